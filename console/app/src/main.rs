@@ -1,0 +1,2 @@
+//! tankops.
+fn main() {}

@@ -1,0 +1,73 @@
+//! What a mission is to do, and within which limits.
+
+use crate::link::Parameters;
+use planner_api::Limits;
+use serde::{Deserialize, Serialize};
+use world::{Point, Pose};
+
+/// Which planner drives, with the parameters that differ from their defaults.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlannerChoice {
+    /// The planner's id.
+    pub id: String,
+    /// Values set by hand; the others take their defaults.
+    #[serde(default)]
+    pub parameters: Parameters,
+}
+
+/// What is to be achieved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TaskConfig {
+    /// Reach a point.
+    Goto {
+        /// The point, metres.
+        goal: Point,
+        /// Distance at which it counts as reached, metres.
+        tolerance_m: f64,
+    },
+    /// Follow preset points in order.
+    Follow {
+        /// The points, the first one first.
+        path: Vec<Point>,
+        /// Distance at which the last one counts as reached, metres.
+        tolerance_m: f64,
+    },
+}
+
+/// A mission as the engine needs it; made and checked by whoever reads the scenario.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MissionConfig {
+    /// What is to be achieved.
+    pub task: TaskConfig,
+    /// Where the robot stands at the start, as surveyed at the manway.
+    pub start: Pose,
+    /// Standard deviation of the surveyed start, metres.
+    pub start_sigma_m: f64,
+    /// Length of a tick, seconds.
+    pub tick_s: f64,
+    /// The mission ends unfinished after this time, seconds.
+    pub time_limit_s: f64,
+    /// What the robot can do.
+    pub limits: Limits,
+    /// Width of floor scanned in one pass, metres.
+    pub swath_m: f64,
+    /// Distance to keep between hull and anything solid, metres.
+    pub clearance_m: f64,
+    /// Edge of a coverage cell, metres.
+    pub cell_m: f64,
+    /// Half width of the 95 % position error above which the position counts as lost, metres.
+    pub position_limit_m: f64,
+    /// The robot holds when the position is lost for this long, seconds.
+    pub lost_hold_s: f64,
+    /// The mission ends as stuck after this time without progress, seconds.
+    pub stuck_s: f64,
+    /// Standard deviation of odometry per metre travelled, metres.
+    pub odometry_sigma_per_m: f64,
+    /// Standard deviation of a range as a share of the range.
+    pub range_sigma_ratio: f64,
+    /// The planner that drives first.
+    pub planner: PlannerChoice,
+    /// The planner that takes over by itself after a fault, if any.
+    pub fallback: Option<PlannerChoice>,
+}

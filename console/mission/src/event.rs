@@ -1,0 +1,410 @@
+//! Everything anyone may know about a run.
+//!
+//! Journal, recording, screen and report are folds over this one enum. Events are past tense, self-contained and
+//! carry neither wall-clock time nor anything else that would differ between two equal runs.
+
+use crate::{
+    config::{MissionConfig, PlannerChoice},
+    link::{Fault, PlannerInfo},
+    order::Order,
+};
+use planner_api::{Command, Drawing, LogLevel, PoseEstimate, Reason};
+use positioning::{Exclusion, Fix, FixError, Ranging};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use world::{CellRun, Obstacle, ObstacleId, Point, Pose, StationId, World};
+
+/// Version of the journal's form; raised when an old reader could not read a new journal.
+pub const JOURNAL_VERSION: u32 = 1;
+
+/// One thing that happened.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// In which tick, from 0.
+    pub tick: u64,
+    /// Mission time at the top of that tick, seconds.
+    pub t_s: f64,
+    /// What happened.
+    #[serde(flatten)]
+    pub kind: EventKind,
+}
+
+/// What happened.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "event")]
+pub enum EventKind {
+    /// First event of every run: everything needed to repeat it.
+    RunOpened(Box<RunOpened>),
+    /// The operator gave an order and it was accepted.
+    Ordered {
+        /// The order.
+        order: Order,
+    },
+    /// The operator gave an order that cannot be followed now.
+    OrderRefused {
+        /// The order.
+        order: Order,
+        /// Why, and what would be right.
+        why: String,
+    },
+    /// Where the robot truly was at the top of this tick; told by the simulator, never known to the mission.
+    Truth {
+        /// True pose.
+        pose: Pose,
+        /// Distance from the hull to the nearest solid thing, metres; negative in a collision.
+        clearance_m: f64,
+        /// Whether the hull touched something in this tick for the first time.
+        collided: bool,
+    },
+    /// A ranging cycle ended: one aggregated range per station heard.
+    Ranged {
+        /// The ranges.
+        ranges: Vec<Ranging>,
+    },
+    /// The ranges gave a position.
+    Fixed {
+        /// The fix.
+        fix: Fix,
+    },
+    /// The ranges gave no position.
+    FixFailed {
+        /// Why.
+        error: FixError,
+    },
+    /// A station was left out of a fix for the first time since it was used.
+    StationExcluded {
+        /// Which station.
+        station: StationId,
+        /// Why.
+        reason: Exclusion,
+    },
+    /// A station that had been left out is used again.
+    StationRegained {
+        /// Which station.
+        station: StationId,
+    },
+    /// Where the robot believes to be.
+    Estimated {
+        /// Pose and covariance.
+        pose: PoseEstimate,
+    },
+    /// The position error grew beyond the limit, or the fixes stopped.
+    PositionLost {
+        /// Half width of the 95 % error, metres.
+        error_m: f64,
+        /// The limit, metres.
+        limit_m: f64,
+    },
+    /// The position error is within the limit again.
+    PositionRegained {
+        /// Half width of the 95 % error, metres.
+        error_m: f64,
+    },
+    /// An obstacle that is not on the drawing was seen for the first time.
+    ObstacleFound {
+        /// Its outline as estimated, tank frame.
+        obstacle: Obstacle,
+    },
+    /// A found obstacle turned out to stand elsewhere than first thought.
+    ObstacleMoved {
+        /// Which one.
+        id: ObstacleId,
+        /// Its outline as estimated now.
+        obstacle: Obstacle,
+    },
+    /// A planner took over.
+    PlannerChosen {
+        /// Which, with its parameters.
+        choice: PlannerChoice,
+        /// Who it is.
+        info: Box<PlannerInfo>,
+        /// Which planner drove before.
+        from: Option<String>,
+    },
+    /// Parameters changed under way.
+    ParametersChanged {
+        /// The planner with its parameters as they are now.
+        choice: PlannerChoice,
+    },
+    /// A plan was made.
+    Planned {
+        /// By whom.
+        planner: String,
+        /// Why.
+        reason: Reason,
+        /// The path.
+        path: Vec<Point>,
+        /// Its length, metres.
+        length_m: f64,
+        /// Whether it achieves the whole task.
+        complete: bool,
+    },
+    /// The planner told how to move, and this is what the robot was sent.
+    Commanded {
+        /// The planner's command; what was sent to the robot.
+        command: Command,
+    },
+    /// The planner explained itself in drawings.
+    Drawn {
+        /// The drawings.
+        drawings: Vec<Drawing>,
+    },
+    /// The planner reported named figures.
+    Scalars {
+        /// Name, value, unit.
+        scalars: Vec<(String, f64, String)>,
+    },
+    /// The planner said something.
+    PlannerSaid {
+        /// Which planner.
+        planner: String,
+        /// How loud.
+        level: LogLevel,
+        /// What.
+        message: String,
+    },
+    /// The planner failed.
+    PlannerFailed {
+        /// How.
+        fault: Fault,
+    },
+    /// Floor was scanned, by the estimated pose.
+    Covered {
+        /// Cells of the coverage grid that are new.
+        runs: Vec<CellRun>,
+    },
+    /// How far the mission is.
+    Progressed {
+        /// Share of the task done, 0 to 1.
+        done: f64,
+        /// Way along the preset path, or way flown, metres.
+        along_m: f64,
+        /// Distance from the preset path, metres; absent without one.
+        cross_track_m: Option<f64>,
+        /// Where the robot goes next.
+        target: Point,
+        /// Scanned share of the reachable floor, 0 to 1.
+        covered_reachable: f64,
+        /// Scanned share of the whole floor, 0 to 1.
+        covered_whole: f64,
+    },
+    /// The robot was told to stand still.
+    Held {
+        /// Why, as a sentence.
+        by: HoldReason,
+    },
+    /// The robot may move again.
+    Resumed,
+    /// Last event of a run that ended by itself or was ended in good order.
+    Ended {
+        /// How.
+        outcome: Outcome,
+        /// Why, as a sentence.
+        reason: String,
+    },
+}
+
+/// Everything needed to repeat a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunOpened {
+    /// [`JOURNAL_VERSION`] of the writer.
+    pub journal_version: u32,
+    /// Version of tankops.
+    pub tankops_version: String,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// The scenario file as it was read, with command line settings already put in.
+    pub scenario_toml: String,
+    /// Start of every random choice.
+    pub seed: u64,
+    /// The tank as it truly is.
+    pub world: World,
+    /// The mission.
+    pub mission: MissionConfig,
+    /// The coverage grid: which cells are floor and which of them the tool can reach.
+    pub floor: world::Floor,
+}
+
+/// Why the robot stands still.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum HoldReason {
+    /// The operator said so.
+    Operator,
+    /// The position is lost.
+    PositionLost,
+    /// The planner failed.
+    PlannerFault {
+        /// The fault's sentence.
+        message: String,
+    },
+    /// A single step is done.
+    Stepped,
+}
+
+impl fmt::Display for HoldReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Operator => f.write_str("held by the operator"),
+            Self::PositionLost => f.write_str("held because the position is lost"),
+            Self::PlannerFault { message } => write!(f, "held because of the planner: {message}"),
+            Self::Stepped => f.write_str("held after a single step"),
+        }
+    }
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// The task is done.
+    Complete,
+    /// No progress, or the planner sees no way on.
+    Stuck,
+    /// The robot touched something.
+    Collision,
+    /// Time is up.
+    TimeLimit,
+    /// Ended by the operator, or because nobody was there to help.
+    Aborted,
+}
+
+impl Outcome {
+    /// The word that scripts and people read.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Complete => "complete",
+            Self::Stuck => "stuck",
+            Self::Collision => "collision",
+            Self::TimeLimit => "time_limit",
+            Self::Aborted => "aborted",
+        }
+    }
+}
+
+/// How much an event asks of the operator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Severity {
+    /// Worth knowing.
+    Info,
+    /// Worth watching.
+    Watch,
+    /// Needs attention.
+    Warn,
+    /// Needs action now.
+    Crit,
+}
+
+/// A line of the event log: how much it matters, who speaks, what.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LogLine {
+    /// How much it asks of the operator.
+    pub severity: Severity,
+    /// `cmd`, `ae`, `plan`, `map`, `robot` or `mission`.
+    pub source: &'static str,
+    /// One sentence.
+    pub text: String,
+}
+
+impl Event {
+    /// The event as a line for people, in the screen's log, the recording and on the command line alike; `None` for
+    /// what happens every tick.
+    pub fn log_line(&self) -> Option<LogLine> {
+        let line = |severity, source, text| Some(LogLine { severity, source, text });
+        match &self.kind {
+            EventKind::RunOpened(run) => {
+                line(Severity::Info, "mission", format!("run opened: scenario {}, seed {}", run.scenario, run.seed))
+            }
+            EventKind::Ordered { order } => line(Severity::Info, "cmd", order_text(order)),
+            EventKind::OrderRefused { order, why } => {
+                line(Severity::Warn, "cmd", format!("{} refused: {why}", order_text(order)))
+            }
+            EventKind::FixFailed { error } => line(Severity::Watch, "ae", format!("no fix: {error}")),
+            EventKind::StationExcluded { station, reason } => {
+                line(Severity::Watch, "ae", format!("station {} left out: {}", station.0, exclusion_text(reason)))
+            }
+            EventKind::StationRegained { station } => {
+                line(Severity::Info, "ae", format!("station {} used again", station.0))
+            }
+            EventKind::PositionLost { error_m, limit_m } => line(
+                Severity::Crit,
+                "ae",
+                format!("position lost: 95 % error {error_m:.2} m, limit {limit_m:.2} m"),
+            ),
+            EventKind::PositionRegained { error_m } => {
+                line(Severity::Info, "ae", format!("position regained: 95 % error {error_m:.2} m"))
+            }
+            EventKind::ObstacleFound { obstacle } => {
+                let at = obstacle.shape.center();
+                line(Severity::Watch, "map", format!("obstacle not on the drawing at {:.2}, {:.2} m", at.x, at.y))
+            }
+            EventKind::PlannerChosen { choice, info, from } => {
+                let before = from.as_ref().map(|id| format!(", took over from {id}")).unwrap_or_default();
+                line(Severity::Info, "plan", format!("planner {} {} drives{before}", choice.id, info.version))
+            }
+            EventKind::ParametersChanged { choice } => {
+                line(Severity::Info, "plan", format!("parameters of {} changed", choice.id))
+            }
+            EventKind::Planned { planner, length_m, complete, .. } => {
+                let part = if *complete { "" } else { ", only part of the way" };
+                line(Severity::Info, "plan", format!("{planner} planned {length_m:.1} m{part}"))
+            }
+            EventKind::PlannerSaid { planner, level, message } => match level {
+                LogLevel::Debug => None,
+                LogLevel::Info => line(Severity::Info, "plan", format!("{planner}: {message}")),
+                LogLevel::Warn => line(Severity::Watch, "plan", format!("{planner}: {message}")),
+            },
+            EventKind::PlannerFailed { fault } => line(Severity::Crit, "plan", fault.message.clone()),
+            EventKind::Truth { collided: true, pose, .. } => line(
+                Severity::Crit,
+                "robot",
+                format!("collision at {:.2}, {:.2} m", pose.position.x, pose.position.y),
+            ),
+            EventKind::Held { by } => line(hold_severity(by), "mission", by.to_string()),
+            EventKind::Resumed => line(Severity::Info, "mission", "moving again".into()),
+            EventKind::Ended { outcome, reason } => {
+                let severity = if *outcome == Outcome::Complete { Severity::Info } else { Severity::Warn };
+                line(severity, "mission", format!("ended {}: {reason}", outcome.word()))
+            }
+            EventKind::Truth { .. }
+            | EventKind::Ranged { .. }
+            | EventKind::Fixed { .. }
+            | EventKind::Estimated { .. }
+            | EventKind::ObstacleMoved { .. }
+            | EventKind::Commanded { .. }
+            | EventKind::Drawn { .. }
+            | EventKind::Scalars { .. }
+            | EventKind::Covered { .. }
+            | EventKind::Progressed { .. } => None,
+        }
+    }
+}
+
+fn hold_severity(by: &HoldReason) -> Severity {
+    match by {
+        HoldReason::Operator | HoldReason::Stepped => Severity::Info,
+        HoldReason::PositionLost | HoldReason::PlannerFault { .. } => Severity::Warn,
+    }
+}
+
+fn order_text(order: &Order) -> String {
+    match order {
+        Order::Start => "start".into(),
+        Order::Hold => "hold".into(),
+        Order::Resume => "resume".into(),
+        Order::Step => "single step".into(),
+        Order::Abort => "end the mission".into(),
+        Order::ChoosePlanner(choice) => format!("choose planner {}", choice.id),
+        Order::SetParameter { key, value } => format!("set {key} = {value}"),
+    }
+}
+
+fn exclusion_text(reason: &Exclusion) -> String {
+    match reason {
+        Exclusion::Silent => "not heard".into(),
+        Exclusion::Residual { residual_m, gate_m } => {
+            format!("residual {residual_m:.2} m, gate {gate_m:.2} m")
+        }
+    }
+}

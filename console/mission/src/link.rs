@@ -1,0 +1,225 @@
+//! The port to planners: what the mission asks of whoever runs them.
+
+use planner_api::{Command, Drawing, LogLevel, Plan, PlanRequest, Sensed, Site};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// The value of a parameter as scenarios, the command line and the screen have it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum ParamValue {
+    /// On or off.
+    Flag(bool),
+    /// A whole number.
+    Int(i64),
+    /// A real number.
+    Float(f64),
+    /// One of the words of a choice.
+    Word(String),
+}
+
+impl fmt::Display for ParamValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flag(on) => write!(f, "{on}"),
+            Self::Int(number) => write!(f, "{number}"),
+            Self::Float(number) => write!(f, "{number}"),
+            Self::Word(word) => f.write_str(word),
+        }
+    }
+}
+
+/// Parameter values by key, in a fixed order.
+pub type Parameters = BTreeMap<String, ParamValue>;
+
+/// What values a parameter takes; the owned form of [`planner_api::Kind`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum ParamKind {
+    /// A real number.
+    Float {
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+        /// Value when nothing is set.
+        default: f64,
+    },
+    /// A whole number.
+    Int {
+        /// Smallest value.
+        min: i64,
+        /// Largest value.
+        max: i64,
+        /// Value when nothing is set.
+        default: i64,
+    },
+    /// On or off.
+    Flag {
+        /// Value when nothing is set.
+        default: bool,
+    },
+    /// One of some words.
+    Choice {
+        /// The words.
+        options: Vec<String>,
+        /// The word when nothing is set.
+        default: String,
+    },
+}
+
+/// One parameter; the owned form of [`planner_api::ParamSpec`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ParamInfo {
+    /// Name in scenarios and on the command line.
+    pub key: String,
+    /// Name on screen.
+    pub label: String,
+    /// Unit; empty for a pure number.
+    pub unit: String,
+    /// What it does.
+    pub help: String,
+    /// Heading under which the screen lists it.
+    pub group: String,
+    /// What values it takes.
+    #[serde(flatten)]
+    pub kind: ParamKind,
+    /// Whether it may change while the mission runs.
+    pub live: bool,
+}
+
+/// A planner that was found, or that drives.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlannerInfo {
+    /// Its id.
+    pub id: String,
+    /// Name on screen.
+    pub name: String,
+    /// Version of its plugin.
+    pub version: String,
+    /// One sentence about it.
+    pub about: String,
+    /// File name of its plugin, without the folder.
+    pub plugin: String,
+    /// SHA-256 of the plugin file, hexadecimal.
+    pub sha256: String,
+    /// Planner ABI it was built for, as `major.minor`.
+    pub abi: String,
+    /// Its parameters.
+    pub parameters: Vec<ParamInfo>,
+}
+
+/// During which call a planner failed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum During {
+    /// Finding and loading the plugin.
+    Load,
+    /// Making the planner.
+    Configure,
+    /// Planning.
+    Plan,
+    /// Deciding a step.
+    Step,
+}
+
+impl fmt::Display for During {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Load => "load",
+            Self::Configure => "configure",
+            Self::Plan => "plan",
+            Self::Step => "step",
+        })
+    }
+}
+
+/// What kind of fault it was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cause {
+    /// The planner itself said no, with this code; its process is well.
+    Planner(planner_api::Code),
+    /// It panicked.
+    Panic,
+    /// Its process ended: a signal, an abort, an exit.
+    Died,
+    /// It did not answer in time and its process was killed.
+    Hung,
+    /// It answered in time after being asked to stop: too slow.
+    Late,
+    /// It answered with numbers that are not finite or beyond the robot's limits.
+    BadOutput,
+    /// It sent something that is no answer.
+    Protocol,
+    /// The host refused to load or configure it.
+    Refused,
+    /// It failed too often and may not drive again in this mission.
+    Quarantined,
+}
+
+/// A planner's failure, told so that an operator knows what happened.
+///
+/// `message` names planner, cause and step, and carries no figure that differs between two equal runs (no
+/// milliseconds, no process ids): it goes into the journal, which must repeat byte for byte.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, thiserror::Error)]
+#[error("{message}")]
+pub struct Fault {
+    /// Id of the planner.
+    pub planner: String,
+    /// During which call.
+    pub during: During,
+    /// What kind.
+    pub cause: Cause,
+    /// One sentence.
+    pub message: String,
+    /// For a plan that got only part of the way: that part.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub partial: Vec<world::Point>,
+}
+
+/// An answer with everything the planner drew and said on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reply<T> {
+    /// The answer.
+    pub value: T,
+    /// What it drew.
+    pub drawings: Vec<Drawing>,
+    /// Named figures of this tick: name, value, unit.
+    pub scalars: Vec<(String, f64, String)>,
+    /// What it said.
+    pub logs: Vec<(LogLevel, String)>,
+}
+
+/// Whoever runs planners for the mission.
+///
+/// Every call returns within its deadline; a planner that misses it comes back as a [`Fault`].
+pub trait PlannerLink {
+    /// Loads and configures a planner; it drives from the next call on, and the one before is stopped.
+    ///
+    /// On a fault the planner before stays in place, if it still lives. Also called to start a planner again that
+    /// died, and to apply parameters that are not live.
+    ///
+    /// # Errors
+    /// Not found, refused, quarantined, or failed while loading or configuring.
+    fn choose(&mut self, id: &str, parameters: &Parameters, site: &Site<'_>) -> Result<PlannerInfo, Fault>;
+
+    /// Gives the planner new values of live parameters.
+    ///
+    /// # Errors
+    /// Out of range, unknown, not live, or the planner failed.
+    fn reconfigure(&mut self, parameters: &Parameters) -> Result<(), Fault>;
+
+    /// Asks for a plan.
+    ///
+    /// # Errors
+    /// The planner found none or failed.
+    fn plan(&mut self, request: &PlanRequest<'_>) -> Result<Reply<Plan>, Fault>;
+
+    /// Asks for a command.
+    ///
+    /// # Errors
+    /// The planner failed; the mission holds the robot.
+    fn step(&mut self, sensed: &Sensed<'_>) -> Result<Reply<Command>, Fault>;
+}

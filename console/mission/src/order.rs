@@ -1,0 +1,29 @@
+//! What the operator tells the mission; it enters at the top of the next tick.
+
+use crate::{config::PlannerChoice, link::ParamValue};
+use serde::{Deserialize, Serialize};
+
+/// One order.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Order {
+    /// Begin the mission.
+    Start,
+    /// Stand still.
+    Hold,
+    /// Go on.
+    Resume,
+    /// While held: move for one tick.
+    Step,
+    /// End the mission here.
+    Abort,
+    /// While held or waiting: another planner takes over.
+    ChoosePlanner(PlannerChoice),
+    /// Change one parameter of the planner; while the mission runs only live ones.
+    SetParameter {
+        /// Which parameter.
+        key: String,
+        /// Its new value.
+        value: ParamValue,
+    },
+}

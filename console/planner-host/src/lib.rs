@@ -1,0 +1,1 @@
+//! Planner plugins: discovery, checks before loading, loader, worker process, supervisor.

@@ -1,0 +1,181 @@
+//! What a position fix is, and why there may be none.
+
+use nalgebra::Matrix2;
+use serde::{Deserialize, Serialize};
+use world::{Point, Station, StationId};
+
+/// The ranges of one station in one cycle, brought down to one number.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Ranging {
+    /// Which station.
+    pub station: StationId,
+    /// Range, metres.
+    pub range_m: f64,
+    /// Standard deviation of `range_m`, metres.
+    pub sigma_m: f64,
+    /// How many repetitions are behind it.
+    pub repetitions: u32,
+}
+
+/// How well a station fits the fix.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Residual {
+    /// Which station.
+    pub station: StationId,
+    /// Measured minus computed range, metres.
+    pub residual_m: f64,
+    /// Standard deviation expected of it, metres.
+    pub sigma_m: f64,
+}
+
+/// Why a station was left out.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Exclusion {
+    /// It was not heard.
+    Silent,
+    /// Its residual is too large.
+    Residual {
+        /// Measured minus computed range, metres.
+        residual_m: f64,
+        /// Largest one accepted, metres.
+        gate_m: f64,
+    },
+}
+
+/// How far the fix can be trusted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Integrity {
+    /// The residuals fit the noise.
+    Ok,
+    /// They fit badly.
+    Suspect,
+    /// There is no range to spare: an error could not be seen.
+    Untestable,
+    /// They contradict each other.
+    Alarm,
+}
+
+/// A position from ranges.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Fix {
+    /// Most likely position, metres, tank frame.
+    pub position: Point,
+    /// Covariance of the position, square metres.
+    pub covariance: Matrix2<f64>,
+    /// One per station used.
+    pub residuals: Vec<Residual>,
+    /// Stations used, in order.
+    pub used: Vec<StationId>,
+    /// Stations left out, with the reason.
+    pub excluded: Vec<(StationId, Exclusion)>,
+    /// Sum of the squared residuals over their variances.
+    pub chi2: f64,
+    /// Stations used minus two.
+    pub degrees_of_freedom: u32,
+    /// Geometric dilution of precision: position sigma per range sigma.
+    pub gdop: f64,
+    /// Condition number of the geometry.
+    pub conditioning: f64,
+    /// The other position that fits nearly as well, if there is one.
+    pub mirror: Option<Point>,
+    /// Radius that holds the truth unless an undetected fault is worse than the design case, metres.
+    pub protection_level_m: Option<f64>,
+    /// How far to trust it.
+    pub integrity: Integrity,
+}
+
+impl Fix {
+    /// Half axes of the 95 % ellipse, metres, and the direction of the longer one, radians.
+    pub fn ellipse_95(&self) -> (f64, f64, f64) {
+        ellipse_95(&self.covariance)
+    }
+}
+
+/// Half axes of the 95 % ellipse of a covariance, metres, and the direction of the longer one, radians.
+pub fn ellipse_95(covariance: &Matrix2<f64>) -> (f64, f64, f64) {
+    // Quantile of the chi-squared distribution with two degrees of freedom: -2 ln 0.05.
+    let scale = -2.0 * 0.05_f64.ln();
+    let (a, b, c) = (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]);
+    let (middle, spread) = (f64::midpoint(a, c), (((a - c) / 2.0).powi(2) + b * b).sqrt());
+    let half = |eigenvalue: f64| (scale * eigenvalue.max(0.0)).sqrt();
+    (half(middle + spread), half(middle - spread), 0.5 * (2.0 * b).atan2(a - c))
+}
+
+/// Why there is no fix.
+#[derive(Debug, Clone, PartialEq, thiserror::Error, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FixError {
+    /// Fewer stations answered than the solver needs.
+    #[error("a position fix needs {need} stations, {have} answered")]
+    TooFewStations {
+        /// How many answered.
+        have: usize,
+        /// How many it takes.
+        need: usize,
+    },
+    /// The stations stand on one line.
+    #[error("the stations stand too nearly on one line (condition number {conditioning:.0}, limit {limit:.0})")]
+    Collinear {
+        /// Condition number of the geometry.
+        conditioning: f64,
+        /// Largest one accepted.
+        limit: f64,
+    },
+    /// A range is not a positive number.
+    #[error("the range of station {} is no positive number", station.0)]
+    BadRange {
+        /// Which station.
+        station: StationId,
+    },
+    /// Two ranges claim the same station.
+    #[error("station {} appears twice", station.0)]
+    DuplicateStation {
+        /// Which station.
+        station: StationId,
+    },
+    /// A range names a station that the tank does not have.
+    #[error("there is no station {}", station.0)]
+    UnknownStation {
+        /// Which station.
+        station: StationId,
+    },
+    /// The iteration did not settle.
+    #[error("the solution did not settle within {iterations} iterations")]
+    NotConverged {
+        /// How many were tried.
+        iterations: usize,
+    },
+    /// The solution lies outside the tank by more than its own uncertainty.
+    #[error("the solution lies {by_m:.2} m outside the tank")]
+    OutsideTank {
+        /// By how much, metres.
+        by_m: f64,
+    },
+    /// The ranges contradict each other.
+    #[error("the ranges contradict each other (chi-squared {chi2:.1} with {degrees_of_freedom} degrees of freedom)")]
+    Inconsistent {
+        /// Sum of the squared residuals over their variances.
+        chi2: f64,
+        /// Stations used minus two.
+        degrees_of_freedom: u32,
+    },
+}
+
+/// A way from ranges to a fix.
+pub trait PositionSolver {
+    /// Finds the position that the ranges tell.
+    ///
+    /// `prior` is a position with its covariance that is already believed; solvers use it to choose between mirror
+    /// solutions, and with fewer than three stations need it.
+    ///
+    /// # Errors
+    /// See [`FixError`]; never panics and never returns a number that is not finite.
+    fn solve(
+        &self,
+        ranges: &[Ranging],
+        stations: &[Station],
+        prior: Option<(Point, Matrix2<f64>)>,
+    ) -> Result<Fix, FixError>;
+}

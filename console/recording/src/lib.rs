@@ -1,0 +1,1 @@
+//! Events to a rerun recording and to the journal, and back.

@@ -1,0 +1,1 @@
+//! Events folded into the summary of a run.

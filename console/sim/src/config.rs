@@ -1,0 +1,101 @@
+//! What is simulated.
+
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+use world::{Pose, World};
+
+/// How ranges scatter about the true distance.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "model")]
+pub enum NoiseModel {
+    /// Exact ranges.
+    None,
+    /// True distance times `1 + u`, `u` uniform in `[-ratio, ratio]` (Wang et al. 2023, eq. 13).
+    Uniform {
+        /// Largest error as a share of the distance.
+        ratio: f64,
+    },
+    /// True distance times `1 + g`, `g` normal with standard deviation `sigma_ratio`.
+    Gaussian {
+        /// Standard deviation as a share of the distance.
+        sigma_ratio: f64,
+    },
+}
+
+/// Acoustic-emission ranging.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AeConfig {
+    /// Time between ranging cycles, seconds.
+    pub period_s: f64,
+    /// Ranges per station and cycle.
+    pub repetitions: u32,
+    /// How they scatter.
+    pub noise: NoiseModel,
+    /// Chance that a station is not heard in a cycle, 0 to 1.
+    pub dropout: f64,
+    /// Spans of mission time without any answer, seconds: from, to.
+    pub outages_s: Vec<(f64, f64)>,
+}
+
+/// The robot's body and its errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RobotConfig {
+    /// True pose at the start.
+    pub start: Pose,
+    /// Radius of the hull, metres.
+    pub radius_m: f64,
+    /// Largest speed, metres per second.
+    pub v_max_m_per_s: f64,
+    /// Largest turn rate, radians per second.
+    pub w_max_rad_per_s: f64,
+    /// Largest change of speed, metres per second squared.
+    pub acceleration_m_per_s2: f64,
+    /// How far it sees obstacles, metres.
+    pub sensing_range_m: f64,
+    /// Share of the commanded way that is lost to slip, on average.
+    pub slip_mean: f64,
+    /// Standard deviation of the slip from tick to tick.
+    pub slip_sigma: f64,
+    /// Standard deviation of the odometry's own error as a share of the way.
+    pub odometry_sigma_ratio: f64,
+    /// Constant error of the gyro, radians per second.
+    pub gyro_bias_rad_per_s: f64,
+}
+
+/// Everything that the simulator needs besides the seed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SimConfig {
+    /// The tank as it truly is.
+    pub world: World,
+    /// The robot.
+    pub robot: RobotConfig,
+    /// The ranging; `None` for a tank without stations.
+    pub ae: Option<AeConfig>,
+    /// Length of a tick, seconds.
+    pub tick_s: f64,
+}
+
+/// What the robot is sent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Drive {
+    /// A unicycle: speed ahead, metres per second, and turn rate, radians per second.
+    Twist {
+        /// Speed ahead.
+        v_m_per_s: f64,
+        /// Turn rate.
+        w_rad_per_s: f64,
+    },
+    /// A point robot: velocity in the tank frame, metres per second.
+    Velocity(Vector2<f64>),
+}
+
+/// The truth of one tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Truth {
+    /// True pose.
+    pub pose: Pose,
+    /// Distance from the hull to the nearest solid thing, metres; negative in a collision.
+    pub clearance_m: f64,
+    /// Whether the hull began to touch something in this tick.
+    pub collided: bool,
+}

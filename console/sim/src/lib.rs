@@ -1,0 +1,8 @@
+//! The truth: where the robot really is and what it would sense there.
+//!
+//! The simulator answers two calls, [`Simulator::sense`] and [`Simulator::act`]. It knows no clock: time is the number
+//! of ticks. Chance comes from one seed; the same seed and the same drives give the same readings on every machine.
+
+pub mod config;
+
+pub use config::{AeConfig, Drive, NoiseModel, RobotConfig, SimConfig, Truth};

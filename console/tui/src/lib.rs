@@ -1,0 +1,1 @@
+//! The console's screens: a pure model, update and view.

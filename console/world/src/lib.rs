@@ -1,0 +1,21 @@
+//! The tank floor and everything on it: boundary, obstacles, stations, zones, what a robot senses there, the
+//! coverage grid and the preset spiral.
+//!
+//! Frame: the tank frame, origin at the tank's centre, x east, y north, metres; angles in radians, counter-clockwise.
+//! Cost: distance queries go through a bounding volume hierarchy and grow with the logarithm of the obstacle count.
+
+pub mod coverage;
+pub mod geometry;
+pub mod obstacles;
+pub mod polyline;
+pub mod readings;
+pub mod shape;
+pub mod spiral;
+pub mod tank;
+
+pub use coverage::{CellRun, CoverageGrid, Floor};
+pub use geometry::{Point, Pose, Vector};
+pub use obstacles::{Near, ObstacleMap};
+pub use readings::{Odometry, RangeSet, Readings, Sighting};
+pub use shape::Shape;
+pub use tank::{Boundary, Obstacle, ObstacleId, Station, StationId, World, Zone, ZoneKind};

@@ -1,0 +1,51 @@
+//! What a robot senses in one tick. Nothing here carries the truth.
+
+use crate::{
+    shape::Shape,
+    tank::{ObstacleId, StationId},
+};
+use serde::{Deserialize, Serialize};
+
+/// The repeated ranges from one station to the robot, from one ranging cycle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RangeSet {
+    /// Which station was heard.
+    pub station: StationId,
+    /// One range per repetition, metres, each greater than zero.
+    pub ranges_m: Vec<f64>,
+}
+
+/// What the tracks say the robot did since the last tick.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Odometry {
+    /// Distance along the robot's x axis, metres.
+    pub forward_m: f64,
+    /// Distance along the robot's y axis, metres; zero for a robot that cannot move sideways.
+    pub sideways_m: f64,
+    /// Change of heading, radians.
+    pub turn_rad: f64,
+}
+
+/// An obstacle within sensing range that is seen for the first time or again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Sighting {
+    /// The tracker's name for it; the same obstacle keeps its id.
+    pub id: ObstacleId,
+    /// Its outline in the robot frame: x ahead, y left, metres.
+    pub shape_in_robot: Shape,
+}
+
+/// Everything sensed in one tick.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Readings {
+    /// Ranges of a cycle that ended in this tick; empty between cycles.
+    pub ranges: Vec<RangeSet>,
+    /// Whether a ranging cycle ended in this tick, with or without answers.
+    pub ranging_cycle: bool,
+    /// Motion since the last tick.
+    pub odometry: Odometry,
+    /// Obstacles within sensing range.
+    pub sightings: Vec<Sighting>,
+    /// Whether the bumper is pressed.
+    pub contact: bool,
+}

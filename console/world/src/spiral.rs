@@ -1,0 +1,68 @@
+//! The preset Archimedean spiral from the wall to the centre (Wang et al. 2023, eq. 2, with the radius corrected).
+
+use crate::geometry::Point;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// An inward, counter-clockwise Archimedean spiral about the tank's centre.
+///
+/// `theta_i = i * step_rad`, `r_i = outer_radius_m - pitch_m * theta_i / (2 pi)`. The paper prints the radius without
+/// the index, which would be a circle; its own Section 3.3 uses the form given here.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Spiral {
+    /// Radius of the first point, metres.
+    pub outer_radius_m: f64,
+    /// Radius below which the list ends, metres (the paper's lists end at 0.1).
+    pub inner_radius_m: f64,
+    /// Distance between neighbouring turns, metres.
+    pub pitch_m: f64,
+    /// Angle between neighbouring points, radians.
+    pub step_rad: f64,
+}
+
+impl Spiral {
+    /// The spiral of Wang et al. 2023: R 10, d 0.4 pi, t 0.02, 2477 points.
+    pub const WANG_2023: Self = Self {
+        outer_radius_m: 10.0,
+        inner_radius_m: 0.1,
+        pitch_m: 0.4 * std::f64::consts::PI,
+        step_rad: 0.02,
+    };
+
+    /// The preset points: every `r_i >= inner_radius_m` and the first one below it.
+    pub fn points(&self) -> Vec<Point> {
+        let radius_at = |i: usize| self.outer_radius_m - self.pitch_m * (i as f64 * self.step_rad) / TAU;
+        let mut points = Vec::new();
+        for i in 0.. {
+            let (radius, theta) = (radius_at(i), i as f64 * self.step_rad);
+            if radius < 0.0 {
+                break;
+            }
+            points.push(Point::new(radius * theta.cos(), radius * theta.sin()));
+            if radius < self.inner_radius_m {
+                break;
+            }
+        }
+        points
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_papers_spiral_has_2477_points_and_250_metres() {
+        let points = Spiral::WANG_2023.points();
+        assert_eq!(points.len(), 2477);
+        assert!((crate::polyline::length_m(&points) - 250.0).abs() < 1.0);
+        assert_eq!(points[0], Point::new(10.0, 0.0));
+    }
+
+    #[test]
+    fn neighbouring_turns_are_one_pitch_apart() {
+        let spiral = Spiral { outer_radius_m: 5.0, inner_radius_m: 0.1, pitch_m: 0.5, step_rad: TAU / 100.0 };
+        let points = spiral.points();
+        assert!((points[0].coords.norm() - points[100].coords.norm() - 0.5).abs() < 1e-12);
+    }
+}

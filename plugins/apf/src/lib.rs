@@ -1,0 +1,1 @@
+//! Artificial potential field planners.

@@ -1,0 +1,1 @@
+//! A planner that misbehaves in every way the tests can think of.

@@ -1,0 +1,1 @@
+//! Force laws shared by the potential-field planners.

@@ -1,0 +1,208 @@
+//! Typed parameters: declared once as constants, checked by the host, read by key.
+
+/// What values a parameter takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// A real number.
+    Float {
+        /// Smallest value allowed.
+        min: f64,
+        /// Largest value allowed.
+        max: f64,
+        /// Value when nothing is set.
+        default: f64,
+    },
+    /// A whole number.
+    Int {
+        /// Smallest value allowed.
+        min: i64,
+        /// Largest value allowed.
+        max: i64,
+        /// Value when nothing is set.
+        default: i64,
+    },
+    /// On or off.
+    Flag {
+        /// Value when nothing is set.
+        default: bool,
+    },
+    /// One of some words.
+    Choice {
+        /// The words.
+        options: &'static [&'static str],
+        /// Index of the word when nothing is set.
+        default: usize,
+    },
+}
+
+/// One parameter of a planner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ParamSpec {
+    /// Name in scenarios and on the command line.
+    pub key: &'static str,
+    /// Name on screen.
+    pub label: &'static str,
+    /// Unit of the value; empty for a pure number.
+    pub unit: &'static str,
+    /// One or two sentences: what it does, what more of it does.
+    pub help: &'static str,
+    /// Heading under which the screen lists it.
+    pub group: &'static str,
+    /// What values it takes.
+    pub kind: Kind,
+    /// Whether it may change while the mission runs.
+    pub live: bool,
+}
+
+impl ParamSpec {
+    const fn new(key: &'static str, label: &'static str, unit: &'static str, kind: Kind) -> Self {
+        Self { key, label, unit, help: "", group: "", kind, live: false }
+    }
+
+    /// Adds the help text.
+    #[must_use]
+    pub const fn help(self, help: &'static str) -> Self {
+        Self { help, ..self }
+    }
+
+    /// Puts it under a heading.
+    #[must_use]
+    pub const fn group(self, group: &'static str) -> Self {
+        Self { group, ..self }
+    }
+
+    /// Lets it change while the mission runs, through [`crate::Planner::reconfigure`].
+    #[must_use]
+    pub const fn live(self) -> Self {
+        Self { live: true, ..self }
+    }
+}
+
+/// A real parameter: `float("k_rep", "Repulsion gain", "m3/s", 0.0, 10.0, 0.4)`.
+pub const fn float(
+    key: &'static str,
+    label: &'static str,
+    unit: &'static str,
+    min: f64,
+    max: f64,
+    default: f64,
+) -> ParamSpec {
+    ParamSpec::new(key, label, unit, Kind::Float { min, max, default })
+}
+
+/// A whole-number parameter.
+pub const fn int(
+    key: &'static str,
+    label: &'static str,
+    unit: &'static str,
+    min: i64,
+    max: i64,
+    default: i64,
+) -> ParamSpec {
+    ParamSpec::new(key, label, unit, Kind::Int { min, max, default })
+}
+
+/// A parameter that is on or off.
+pub const fn flag(key: &'static str, label: &'static str, default: bool) -> ParamSpec {
+    ParamSpec::new(key, label, "", Kind::Flag { default })
+}
+
+/// A parameter that is one of some words; the default is given by its index.
+pub const fn choice(
+    key: &'static str,
+    label: &'static str,
+    options: &'static [&'static str],
+    default: usize,
+) -> ParamSpec {
+    ParamSpec::new(key, label, "", Kind::Choice { options, default })
+}
+
+/// One value as it crosses the boundary: flags are 0 or 1, choices are the index of the word.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Value<'a> {
+    /// Which parameter.
+    pub key: &'a str,
+    /// Its value.
+    pub number: f64,
+}
+
+/// The values of all parameters; the host has filled the defaults and checked the ranges.
+#[derive(Debug, Clone, Copy)]
+pub struct Config<'a> {
+    specs: &'a [ParamSpec],
+    values: &'a [Value<'a>],
+}
+
+impl<'a> Config<'a> {
+    /// Values for these parameters; those that are missing take their defaults.
+    pub fn new(specs: &'a [ParamSpec], values: &'a [Value<'a>]) -> Self {
+        Self { specs, values }
+    }
+
+    /// A real parameter.
+    ///
+    /// # Panics
+    /// If the planner declares no such parameter: a slip of its author that the first test finds.
+    pub fn float(&self, key: &str) -> f64 {
+        self.number(key)
+    }
+
+    /// A whole-number parameter; panics like [`Config::float`].
+    pub fn int(&self, key: &str) -> i64 {
+        self.number(key) as i64
+    }
+
+    /// A parameter that is on or off; panics like [`Config::float`].
+    pub fn flag(&self, key: &str) -> bool {
+        self.number(key) != 0.0
+    }
+
+    /// The chosen word; panics like [`Config::float`], or if it is no choice.
+    pub fn choice(&self, key: &str) -> &'static str {
+        let Kind::Choice { options, default } = self.spec(key).kind else {
+            panic!("parameter `{key}` is no choice")
+        };
+        options.get(self.number(key) as usize).copied().unwrap_or(options[default])
+    }
+
+    fn number(&self, key: &str) -> f64 {
+        let spec = self.spec(key);
+        self.values.iter().find(|value| value.key == key).map_or_else(|| default_number(&spec.kind), |v| v.number)
+    }
+
+    fn spec(&self, key: &str) -> &'a ParamSpec {
+        let found = self.specs.iter().find(|spec| spec.key == key);
+        found.unwrap_or_else(|| panic!("parameter `{key}` is not declared"))
+    }
+}
+
+/// The default of a parameter as it crosses the boundary.
+pub fn default_number(kind: &Kind) -> f64 {
+    match *kind {
+        Kind::Float { default, .. } => default,
+        Kind::Int { default, .. } => default as f64,
+        Kind::Flag { default } => f64::from(u8::from(default)),
+        Kind::Choice { default, .. } => default as f64,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPECS: &[ParamSpec] = &[
+        float("k_rep", "Repulsion gain", "m3/s", 0.0, 10.0, 0.4),
+        int("n", "Exponent", "", 0, 4, 2),
+        flag("improved", "Improved repulsion", true),
+        choice("mode", "Mode", &["literal", "gated"], 1),
+    ];
+
+    #[test]
+    fn a_value_that_is_not_set_is_the_default() {
+        let config = Config::new(SPECS, &[Value { key: "n", number: 3.0 }]);
+        assert!((config.float("k_rep") - 0.4).abs() < f64::EPSILON);
+        assert_eq!(config.int("n"), 3);
+        assert!(config.flag("improved"));
+        assert_eq!(config.choice("mode"), "gated");
+    }
+}

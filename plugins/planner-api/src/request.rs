@@ -1,0 +1,108 @@
+//! What a planner is asked, and what it knows when asked.
+
+use crate::site::{Obstacle, Site};
+use nalgebra::{Matrix3, Point2};
+
+/// An estimated pose with its covariance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PoseEstimate {
+    /// Position, metres.
+    pub position: Point2<f64>,
+    /// Heading, radians.
+    pub heading_rad: f64,
+    /// Covariance of x, y (square metres) and heading (square radians).
+    pub covariance: Matrix3<f64>,
+}
+
+/// Why a plan is wanted.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+pub enum Reason {
+    /// The mission begins.
+    Start,
+    /// The robot cannot go on along the plan.
+    Blocked,
+    /// The map has changed.
+    MapChanged,
+    /// The operator asks for it.
+    Operator,
+    /// This planner takes over from another one.
+    Swap {
+        /// Id of the planner that drove before.
+        from: String,
+    },
+    /// This planner starts again after a fault.
+    Recover,
+}
+
+/// What the mission is to achieve from here on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Task<'a> {
+    /// Reach the goal.
+    Goto {
+        /// The goal.
+        goal: Point2<f64>,
+        /// Distance at which it counts as reached, metres.
+        tolerance_m: f64,
+    },
+    /// Follow preset points in order, as closely as the obstacles allow.
+    Follow {
+        /// The points that remain, the next one first.
+        targets: &'a [Point2<f64>],
+        /// Distance at which the last one counts as reached, metres.
+        tolerance_m: f64,
+    },
+}
+
+/// A request for a plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanRequest<'a> {
+    /// Why.
+    pub reason: &'a Reason,
+    /// From where.
+    pub start: PoseEstimate,
+    /// To what end.
+    pub task: Task<'a>,
+    /// Where.
+    pub site: &'a Site<'a>,
+    /// The path flown so far, oldest first; empty at the start.
+    pub previous: &'a [Point2<f64>],
+}
+
+/// A path to fly.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Plan {
+    /// Points of the path, the start first.
+    pub path: Vec<Point2<f64>>,
+    /// Cost in the planner's own measure; the length in metres unless it says otherwise.
+    pub cost: f64,
+    /// Whether the path achieves the whole task.
+    pub complete: bool,
+}
+
+/// What is known in one tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensed<'a> {
+    /// Number of the tick, from 0.
+    pub tick: u64,
+    /// Mission time, seconds.
+    pub t_s: f64,
+    /// Length of a tick, seconds.
+    pub dt_s: f64,
+    /// Where the robot believes to be.
+    pub pose: PoseEstimate,
+    /// Speed ahead, metres per second.
+    pub v_m_per_s: f64,
+    /// Turn rate, radians per second.
+    pub w_rad_per_s: f64,
+    /// Where to go next: the goal, or the preset point that is due.
+    pub target: Point2<f64>,
+    /// The preset points from the target on, a few metres of them.
+    pub targets_ahead: &'a [Point2<f64>],
+    /// The plan from here on, a few metres of it.
+    pub path_ahead: &'a [Point2<f64>],
+    /// Known and discovered obstacles within the robot's sensing range.
+    pub obstacles: &'a [Obstacle<'a>],
+}
