@@ -14,6 +14,7 @@ pub mod params;
 pub mod planner;
 pub mod request;
 pub mod site;
+pub mod testing;
 
 pub use command::{Command, Drive, Status, Stopping};
 pub use ctx::{Ctx, LogLevel, Services, StopReason};
