@@ -44,8 +44,9 @@ impl Aggregation {
             Self::Mean => set.ranges_m.iter().sum::<f64>() / n,
             Self::RootMeanSquare => (set.ranges_m.iter().map(|r| r * r).sum::<f64>() / n).sqrt(),
         };
-        // The comparison also turns a ratio that is not a number into the floor.
-        let sigma_m = (sigma_ratio * range_m / n.sqrt()).max(SIGMA_FLOOR_M).min(RANGE_LIMIT_M);
+        // `max` also turns what is no number into the floor.
+        let at_least_m = (sigma_ratio * range_m / n.sqrt()).max(SIGMA_FLOOR_M);
+        let sigma_m = at_least_m.min(RANGE_LIMIT_M);
         let repetitions = u32::try_from(set.ranges_m.len()).unwrap_or(u32::MAX);
         // The square of a tiny range may have vanished.
         if is_usable(range_m) {

@@ -61,7 +61,7 @@ pub struct PositionerConfig {
 }
 
 impl PositionerConfig {
-    /// Usual errors: start surveyed to 5 cm and 0.05 rad, ranges to 3 %, odometry 5 cm per metre.
+    /// Usual errors: start surveyed to 5 cm and 0.05 rad, ranges to 3 %, odometry as [`MotionNoise::default`].
     pub fn new(stations: Vec<Station>, start: Pose) -> Self {
         Self {
             stations,
@@ -69,11 +69,7 @@ impl PositionerConfig {
             start_sigma_m: 0.05,
             heading_sigma_rad: 0.05,
             range_sigma_ratio: 0.03,
-            odometry: MotionNoise {
-                sigma_per_m: 0.05,
-                turn_sigma_ratio: 0.05,
-                heading_sigma_per_tick_rad: 0.002,
-            },
+            odometry: MotionNoise::default(),
             aggregation: Aggregation::default(),
             solver: SolverKind::default(),
         }
@@ -111,13 +107,13 @@ pub struct Positioner {
 impl Positioner {
     /// A positioner at the surveyed start.
     pub fn new(config: PositionerConfig) -> Self {
-        let filter = Ekf::new(config.start, config.start_sigma_m, config.heading_sigma_rad);
+        let filter = Ekf::new(config.start, config.start_sigma_m, config.heading_sigma_rad, config.odometry);
         Self { config, filter, refused_in_a_row: 0 }
     }
 
     /// Moves the estimate by one tick of odometry.
     pub fn predict(&mut self, odometry: &Odometry) {
-        self.filter.predict(odometry, &self.config.odometry);
+        self.filter.predict(odometry);
     }
 
     /// Takes in a ranging cycle: ranges to a fix, the fix into the estimate unless its residuals raise an alarm.
@@ -140,7 +136,7 @@ impl Positioner {
 
     /// Where the robot is believed to be.
     pub fn estimate(&self) -> Estimate {
-        Estimate { pose: self.filter.pose(), covariance: *self.filter.covariance() }
+        Estimate { pose: self.filter.pose(), covariance: self.filter.covariance() }
     }
 
     /// Longer half axis of the 95 % ellipse of the position, metres.

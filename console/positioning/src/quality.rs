@@ -24,7 +24,7 @@ pub(crate) fn assess(
     mirror: Option<Point>,
 ) -> Result<Fix, FixError> {
     let views = || anchors.iter().map(|a| (a.station, a.view_from(position)));
-    let chi2: f64 = views().map(|(_, v)| (v.residual_m / v.sigma_m).powi(2)).sum();
+    let chi2: f64 = views().map(|(_, v)| v.squared_error()).sum();
     let degrees_of_freedom = u32::try_from(anchors.len().saturating_sub(2)).unwrap_or(u32::MAX);
     let is_finite = position.iter().chain(covariance.iter()).chain([&chi2]).all(|number| number.is_finite());
     if !is_finite {
