@@ -16,6 +16,11 @@ pub mod request;
 pub mod site;
 pub mod testing;
 
+pub mod abi;
+pub mod export;
+#[doc(hidden)]
+pub mod glue;
+
 pub use command::{Command, Drive, Status, Stopping};
 pub use ctx::{Ctx, LogLevel, Services, StopReason};
 pub use drawing::{Drawing, Layer};
