@@ -33,6 +33,8 @@ pub struct View<'a> {
     pub heading_rad: f64,
     /// Where it is bound.
     pub target: Point,
+    /// Coming this near to the target is enough, metres: preset points pass obstacles closely.
+    pub near_enough_m: f64,
     /// What it senses.
     pub bodies: &'a [Body],
     /// The wall.
@@ -65,6 +67,9 @@ struct Kept {
     members: BTreeSet<u32>,
     sense: Sense,
     seen_s: f64,
+    /// Whether a wall was taken into account; after that the side is not changed again on its account, for what is
+    /// left and right of the way changes as the robot goes round.
+    knows_wall: bool,
 }
 
 impl GapSteering {
@@ -73,7 +78,9 @@ impl GapSteering {
         self.kept = self.kept.take().filter(|kept| view.t_s - kept.seen_s < KEPT_S);
         let group = Group::blocking(view)?;
         let sense = self.sense(&group, view);
-        self.kept = Some(Kept { members: group.members.clone(), sense, seen_s: view.t_s });
+        let same = self.kept.as_ref().is_some_and(|kept| kept.knows_wall && kept.concerns(&group));
+        let knows_wall = same || group.left_closed || group.right_closed;
+        self.kept = Some(Kept { members: group.members.clone(), sense, seen_s: view.t_s, knows_wall });
         Some(Detour { members: group.members, closed: group.closed, sense })
     }
 
@@ -85,10 +92,16 @@ impl GapSteering {
     }
 
     fn sense(&self, group: &Group, view: &View<'_>) -> Sense {
-        let kept = self.kept.as_ref().filter(|kept| !kept.members.is_disjoint(&group.members));
+        let kept = self.kept.as_ref().filter(|kept| kept.concerns(group));
         let Some(kept) = kept else { return group.shorter_side(view) };
-        let is_closed = |sense| if sense == Sense::Clockwise { group.left_closed } else { group.right_closed };
-        if is_closed(kept.sense) && !is_closed(kept.sense.reversed()) { kept.sense.reversed() } else { kept.sense }
+        let leads_nowhere = group.is_closed(kept.sense) && !group.is_closed(kept.sense.reversed());
+        if leads_nowhere && !kept.knows_wall { kept.sense.reversed() } else { kept.sense }
+    }
+}
+
+impl Kept {
+    fn concerns(&self, group: &Group) -> bool {
+        !self.members.is_disjoint(&group.members)
     }
 }
 
@@ -146,6 +159,11 @@ impl Group {
         }
     }
 
+    /// Whether going round this way ends at the wall.
+    fn is_closed(&self, sense: Sense) -> bool {
+        if sense == Sense::Clockwise { self.left_closed } else { self.right_closed }
+    }
+
     /// The side on which less has to be turned away from the target, the present heading weighing a little.
     fn shorter_side(&self, view: &View<'_>) -> Sense {
         let bearing_rad = bearing(view.target - view.at);
@@ -160,8 +178,8 @@ impl Group {
         }
         let heading_rad = wrap_angle_rad(view.heading_rad - bearing_rad).clamp(-1.0, 1.0);
         let penalty = |closed: bool| if closed { 10.0 } else { 0.0 };
-        let left = left_rad - 0.3 * heading_rad + penalty(self.left_closed);
-        let right = right_rad + 0.3 * heading_rad + penalty(self.right_closed);
+        let left = left_rad - 0.3 * heading_rad + penalty(self.is_closed(Sense::Clockwise));
+        let right = right_rad + 0.3 * heading_rad + penalty(self.is_closed(Sense::CounterClockwise));
         if left <= right { Sense::Clockwise } else { Sense::CounterClockwise }
     }
 }
@@ -233,7 +251,8 @@ fn nearest_on_wall(wall: &world::Boundary, point: Point) -> Point {
 
 /// The body nearest to the robot that stands in the way, or belongs to a closed gap that the way leads through.
 fn blocker(view: &View<'_>, bodies: &[&Body], narrow: &[Narrow]) -> Option<usize> {
-    let end = view.at + (view.target - view.at).cap_magnitude(AHEAD_M);
+    let way = view.target - view.at;
+    let end = view.at + way.cap_magnitude((way.norm() - view.near_enough_m).clamp(0.0, AHEAD_M));
     let room_m = view.hull_m + BLOCKING_SHARE * view.keep_m;
     let in_way = bodies.iter().position(|body| body.segment_distance_m(view.at, end) < room_m);
     let across = narrow.iter().filter(|n| crossing(view.at, end, n.line.0, n.line.1).is_some()).map(|n| n.first);
@@ -259,7 +278,7 @@ mod tests {
     fn northward<'a>(bodies: &'a [Body], at: Point) -> View<'a> {
         let heading_rad = std::f64::consts::FRAC_PI_2;
         let target = at + Vector::new(0.0, 2.0);
-        View { t_s: 0.0, at, heading_rad, target, bodies, wall: &WALL, hull_m: 0.25, keep_m: 0.1 }
+        View { t_s: 0.0, at, heading_rad, target, near_enough_m: 0.0, bodies, wall: &WALL, hull_m: 0.25, keep_m: 0.1 }
     }
 
     #[test]

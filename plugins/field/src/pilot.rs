@@ -11,7 +11,7 @@ use crate::{
     part::Part,
     scene::{no_go, wall_contacts, wall_of},
     settings::{Settings, Steering},
-    stall::Stall,
+    stall::{Remedy, Stall},
     trap::TrapDetector,
     turning::Turning,
 };
@@ -24,7 +24,9 @@ const FAR_M: f64 = 1.0;
 const MOST_WIDENING_M: f64 = 0.15;
 /// Within this distance of the last point the robot slows down, metres.
 const ARRIVING_M: f64 = 0.5;
-/// After this share of the time to being stuck, and every such share again, the other side is tried.
+/// The way to a preset point need not be free over this last piece: the mission looks half a metre ahead, metres.
+const PASSING_M: f64 = 0.35;
+/// After this share of the time to being stuck, and every such share again, another remedy is tried.
 const REMEDY_SHARE: f64 = 0.3;
 /// How much of the last direction is kept, so that noise does not shake the robot.
 const SMOOTHING: f64 = 0.5;
@@ -42,7 +44,7 @@ pub struct Pilot {
     gate: Gate,
     gaps: GapSteering,
     stall: Stall,
-    remedy_s: f64,
+    remedy: Remedy,
     direction: Option<Vector>,
 }
 
@@ -69,7 +71,7 @@ impl Pilot {
             },
             gaps: GapSteering::default(),
             stall: Stall::default(),
-            remedy_s: 0.0,
+            remedy: Remedy::default(),
             direction: None,
         }
     }
@@ -89,14 +91,17 @@ impl Pilot {
         let keep_m = self.keep_m(settings, &sensed.pose);
         let bodies = self.bodies(sensed);
         let idle_s = self.stall.update(sensed.t_s, at, sensed.target);
+        if self.remedy.update(idle_s, settings.flight.stuck_s * REMEDY_SHARE) {
+            self.gaps.flip();
+        }
         let detour = self.detour(settings, sensed, &bodies, keep_m);
-        self.try_other_side(settings, idle_s);
         let contacts = self.contacts(settings, at, &bodies, detour.as_ref());
         let forces = self.forces(settings, sensed, &contacts, detour.as_ref());
         drawing::show(ctx, at, &forces, settings.law.k_att);
         show_detour(ctx, detour.as_ref());
         let wanted = self.smoothed(&forces, sensed) * self.speed(settings, sensed, &forces, &contacts);
         let velocity = self.guarded(wanted, &sensed.pose, &bodies, keep_m);
+        if std::env::var("DBG").is_ok() && sensed.tick % 10 == 0 { eprintln!("{:.0} ({:.2},{:.2}) -> ({:.2},{:.2}) idle {:.0} v ({:.2},{:.2}) {:?}", sensed.t_s, at.x, at.y, sensed.target.x, sensed.target.y, idle_s, velocity.x, velocity.y, detour.as_ref().map(|d| (d.members.clone(), d.closed.len(), d.sense))); }
         let status = if idle_s > settings.flight.stuck_s { Status::Stuck } else { Status::Moving };
         Ok(Command { drive: Drive::Velocity(velocity), status })
     }
@@ -124,26 +129,18 @@ impl Pilot {
         if settings.flight.steering == Steering::Paper {
             return None;
         }
-        self.gaps.update(&View {
+        let detour = self.gaps.update(&View {
             t_s: sensed.t_s,
             at: sensed.pose.position,
             heading_rad: sensed.pose.heading_rad,
             target: sensed.target,
+            near_enough_m: if is_last(sensed) { 0.0 } else { PASSING_M },
             bodies,
             wall: &self.wall,
             hull_m: self.limits.radius_m,
             keep_m,
-        })
-    }
-
-    fn try_other_side(&mut self, settings: &Settings, idle_s: f64) {
-        let pause_s = settings.flight.stuck_s * REMEDY_SHARE;
-        if idle_s < pause_s {
-            self.remedy_s = pause_s;
-        } else if idle_s > self.remedy_s {
-            self.gaps.flip();
-            self.remedy_s = idle_s + pause_s;
-        }
+        });
+        detour.filter(|_| !self.remedy.pushes())
     }
 
     /// What acts on the robot: the nearest part of every body, closed gaps of a detour, the wall.
@@ -184,7 +181,7 @@ impl Pilot {
         let at = sensed.pose.position;
         let goal = at + (sensed.target - at).cap_magnitude(FAR_M);
         match settings.flight.steering {
-            Steering::Gaps => settings.law.forces(at, goal, contacts, |c| sense_about(detour, c)),
+            Steering::Gaps => unopposed(settings.law.forces(at, goal, contacts, |c| sense_about(detour, c))),
             Steering::Paper => {
                 self.gate.update(settings, sensed, contacts, self.limits.v_max_m_per_s);
                 settings.law.forces(at, goal, contacts, |c| self.gate.turning.sense(c))
@@ -216,9 +213,8 @@ impl Pilot {
             let closing = (-contact.away.dot(&direction)).max(0.0);
             1.0 - closing * (1.0 - (contact.distance_m / flight.slow_m).clamp(0.0, 1.0))
         });
-        let is_last = sensed.targets_ahead.len() <= 1;
         let missing_m = (sensed.target - sensed.pose.position).norm();
-        let arriving = if is_last { missing_m / ARRIVING_M } else { 1.0 };
+        let arriving = if is_last(sensed) { missing_m / ARRIVING_M } else { 1.0 };
         let share = near.fold(1.0, f64::min).min(arriving).max(flight.min_share);
         self.limits.v_max_m_per_s * share
     }
@@ -255,6 +251,18 @@ impl Gate {
         let trapped = self.detector.is_trapped(step_m, step_m, to_target.norm(), obstacle_acts);
         self.turning.update(trapped, contacts, to_target);
     }
+}
+
+/// The forces without what holds against the rotation, so that nothing stops the robot on its way round.
+fn unopposed(forces: Forces) -> Forces {
+    let Some(around) = forces.rotation.try_normalize(1e-9) else { return forces };
+    let along = |force: Vector| force - around * force.dot(&around).min(0.0);
+    Forces { attraction: along(forces.attraction), repulsion: along(forces.repulsion), ..forces }
+}
+
+/// Whether the target is where the task ends.
+fn is_last(sensed: &Sensed<'_>) -> bool {
+    sensed.targets_ahead.len() <= 1
 }
 
 fn sense_about(detour: Option<&Detour>, contact: &Contact) -> Option<Sense> {

@@ -45,6 +45,34 @@ impl Stall {
     }
 }
 
+/// What is tried in turn while nothing comes of it: the other side first, then straight on without a detour, for the
+/// way to a preset point in a niche is blocked from every side.
+#[derive(Debug, Clone, Default)]
+pub struct Remedy {
+    tried: u32,
+    due_s: f64,
+}
+
+impl Remedy {
+    /// Takes for how long nothing has come of it; true when the side is to be changed now.
+    pub fn update(&mut self, idle_s: f64, pause_s: f64) -> bool {
+        if idle_s < self.due_s - pause_s || idle_s < pause_s {
+            *self = Self { tried: 0, due_s: pause_s };
+        }
+        let is_due = idle_s >= self.due_s && idle_s > 0.0;
+        if is_due {
+            self.tried += 1;
+            self.due_s = idle_s + pause_s;
+        }
+        is_due && !self.pushes()
+    }
+
+    /// Whether to go straight on now.
+    pub fn pushes(&self) -> bool {
+        self.tried > 0 && self.tried.is_multiple_of(2)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

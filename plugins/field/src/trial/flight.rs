@@ -43,6 +43,8 @@ pub struct Outcome {
     pub cross_track_m: f64,
     /// Where it ended.
     pub end: Point,
+    /// The preset point that was due in the end.
+    pub due: Point,
     /// Time flown, seconds.
     pub time_s: f64,
 }
@@ -69,6 +71,7 @@ pub fn fly<P: Planner>(values: &[(&str, f64)], layout: &Layout, robot: Robot, se
         passed: 0.0,
         cross_track_m: 0.0,
         end: pose.position,
+        due: layout.path[0],
         time_s: 0.0,
     };
     let limit_s = PATIENCE * polyline::length_m(&layout.path) / site.limits.v_max_m_per_s;
@@ -91,6 +94,7 @@ pub fn fly<P: Planner>(values: &[(&str, f64)], layout: &Layout, robot: Robot, se
         outcome.time_s = tick as f64 * TICK_S;
     }
     outcome.end = pose.position;
+    outcome.due = course.points[course.due];
     let off: Vec<f64> = course.free_points().map(|p| polyline::distance_m(&flown, p)).collect();
     let n_free = off.len().max(1) as f64;
     outcome.passed = off.iter().filter(|m| **m < LOOKAHEAD_M).count() as f64 / n_free;

@@ -19,7 +19,7 @@ fn measure() {
             minc = minc.min(o.clearance_m);
             ct += o.cross_track_m / n as f64; passed += o.passed / n as f64;
             time += o.time_s / (world::polyline::length_m(&layout.path) / 0.35) / n as f64;
-            if !o.completed && std::env::var("L").is_ok() { println!("  seed {seed} R {:.1} n {} end {:?} passed {:.2} t {:.0}", layout.radius_m, layout.columns.len(), o.end, o.passed, o.time_s); }
+            if !o.completed && std::env::var("L").is_ok() { println!("  seed {seed} R {:.1} n {} end {:?} due {:?} passed {:.2} t {:.0}", layout.radius_m, layout.columns.len(), o.end, o.due, o.passed, o.time_s); }
         }
         println!("{motion:?}: done {done}/{n} coll {coll} stuck {stuck} min {minc:.3} ct {ct:.3} passed {passed:.3} time ratio {time:.2}");
     }
@@ -56,4 +56,14 @@ fn measure_plan() {
         }
         println!("m {m}: P {:.1} rmse {:.2} trap {trap}/{n} ok {ok} time/plan {:.1} ms", p * 100.0, rmse, t0.elapsed().as_secs_f64() * 1e3 / n as f64);
     }
+}
+
+#[test]
+#[ignore]
+fn dump() {
+    let seed: u64 = std::env::var("S").unwrap().parse().unwrap();
+    let l = Layout::random(seed);
+    println!("{} {} {}", l.radius_m, l.hull_m, l.clearance_m);
+    for (c, r) in &l.columns { println!("c {} {} {}", c.x, c.y, r); }
+    for p in &l.path { println!("p {} {}", p.x, p.y); }
 }
