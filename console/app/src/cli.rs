@@ -103,6 +103,18 @@ pub struct ConsoleArgs {
     pub changes: Changes,
     #[command(flatten)]
     pub logs: LogsArg,
+    /// Make a part of the console fail while the robot moves, to see that the run and the terminal survive it.
+    #[arg(long, value_name = "PART", hide = true)]
+    pub drill: Option<Drill>,
+}
+
+/// A part of the console that fails on purpose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Drill {
+    /// The thread that draws panics.
+    PanicScreen,
+    /// The thread that flies panics.
+    PanicEngine,
 }
 
 #[derive(Debug, Args)]

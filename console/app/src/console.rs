@@ -5,7 +5,11 @@ mod engine;
 mod screen;
 mod watch;
 
-use crate::{cli::LogsArg, failure::bad_input, scenario::Scenario};
+use crate::{
+    cli::{Drill, LogsArg},
+    failure::bad_input,
+    scenario::Scenario,
+};
 use engine::Engine;
 use planner_host::PluginDirs;
 use screen::{Left, Screen};
@@ -24,11 +28,16 @@ const QUEUE: usize = 4096;
 const START_SPEED: Speed = Speed::Times(4.0);
 
 /// Opens the console on a scenario; returns when the operator leaves.
-pub fn open(scenario: &Scenario, logs: &LogsArg, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
+pub fn open(
+    scenario: &Scenario,
+    logs: &LogsArg,
+    plugins: &PluginDirs,
+    drill: Option<Drill>,
+) -> anyhow::Result<ExitCode> {
     check_terminal()?;
     let (tell, told) = mpsc::sync_channel(QUEUE);
-    let engine = Engine::start(scenario, &logs.logs, plugins, tell.clone())?;
-    let left = show(&engine, &logs.logs, plugins, tell, told);
+    let engine = Engine::start(scenario, &logs.logs, plugins, tell.clone(), drill)?;
+    let left = show(&engine, &logs.logs, plugins, (tell, told), drill);
     // Whatever happened to the screen, the run is closed in good order.
     let ended = engine.close(left.as_ref().ok().and_then(|left| left.signal));
     Ok(left?.say_goodbye(ended?.as_ref()))
@@ -50,8 +59,8 @@ fn show(
     engine: &Engine,
     logs: &Path,
     plugins: &PluginDirs,
-    tell: SyncSender<Msg>,
-    told: Receiver<Msg>,
+    (tell, told): (SyncSender<Msg>, Receiver<Msg>),
+    drill: Option<Drill>,
 ) -> anyhow::Result<Left> {
     let caps = Caps::from_env(|name| std::env::var(name).ok());
     let mourner = tell.clone();
@@ -60,7 +69,7 @@ fn show(
         // A full queue must not stop a thread that is going down.
         let _ = mourner.try_send(news);
     });
-    let mut screen = Screen::open(caps, told, engine)?;
+    let mut screen = Screen::open(caps, told, engine, drill)?;
     watch::keys(&tell)?;
     watch::signals(&tell)?;
     watch::terminal(&tell)?;

@@ -39,7 +39,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
     let plugins = PluginDirs::standard(&cli.plugins.plugin_dir);
     match cli.command {
         None => by_default(&plugins),
-        Some(Command::Console(args)) => console::open(&console_scenario(&args)?, &args.logs, &plugins),
+        Some(Command::Console(args)) => console::open(&console_scenario(&args)?, &args.logs, &plugins, args.drill),
         Some(Command::Run(args)) => headless::run(&args, &plugins),
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
         Some(Command::Planners { json }) => planners::list(&plugins, json),
@@ -55,7 +55,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
 fn by_default(plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let (scenario, logs) = (demo()?, LogsArg { logs: PathBuf::from("logs") });
     if std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
-        return console::open(&scenario, &logs, plugins);
+        return console::open(&scenario, &logs, plugins, None);
     }
     headless::fly(&scenario, plugins, &logs, headless::Telling { json: false, record: true })
 }
@@ -67,16 +67,16 @@ fn demo() -> anyhow::Result<Scenario> {
 fn console_scenario(args: &ConsoleArgs) -> anyhow::Result<Scenario> {
     match &args.scenario {
         Some(path) => read_scenario(path, &args.changes),
-        None => Scenario::parse_with(DEMO, "the demo scenario", &settings(&args.changes)?)
+        None => Scenario::parse_with(DEMO, "the demo scenario", &settings(&args.changes))
             .map_err(|errors| bad_input(errors.render())),
     }
 }
 
 /// Reads a scenario with what the command line changes in it.
 fn read_scenario(path: &Path, changes: &Changes) -> anyhow::Result<Scenario> {
-    Scenario::read_with(path, &settings(changes)?).map_err(|errors| bad_input(errors.render()))
+    Scenario::read_with(path, &settings(changes)).map_err(|errors| bad_input(errors.render()))
 }
 
-fn settings(changes: &Changes) -> anyhow::Result<Settings> {
-    Settings::new(changes.planner.clone(), changes.seed, &changes.set).map_err(|why| bad_input(why.to_string()))
+fn settings(changes: &Changes) -> Settings {
+    Settings { planner: changes.planner.clone(), seed: changes.seed, set: changes.set.clone() }
 }

@@ -1,6 +1,7 @@
 //! The thread that flies: takes orders, keeps the pace, hands every event to recorder, report and screen.
 
 use crate::{
+    cli::Drill,
     flight::{Flight, Pace},
     headless::CLOSE_TIMEOUT,
     run_folder::RunFolder,
@@ -52,6 +53,7 @@ impl Engine {
         logs: &Path,
         plugins: &PluginDirs,
         tell: SyncSender<Msg>,
+        drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
         let (requests, asked) = mpsc::channel();
         let flight = Flight::prepare(scenario, true, plugins, Pace::Live);
@@ -63,6 +65,7 @@ impl Engine {
             tell,
             speed: super::START_SPEED,
             log: None,
+            drill,
         };
         let thread = thread::Builder::new().name("engine".into()).spawn(move || cockpit.fly())?;
         Ok(Self { requests, thread })
@@ -101,6 +104,7 @@ struct Cockpit {
     tell: SyncSender<Msg>,
     speed: Speed,
     log: Option<RunLog>,
+    drill: Option<Drill>,
 }
 
 /// What is written about the run.
@@ -175,6 +179,8 @@ impl Cockpit {
             self.say(Msg::Busy(Some("planning".into())));
         }
         let events = self.flight.tick(&orders);
+        let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
+        assert!(!failing, "drill: the engine fails on purpose");
         if slow {
             self.say(Msg::Busy(None));
         }

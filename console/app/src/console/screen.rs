@@ -1,7 +1,10 @@
 //! The drawing thread: messages in, model updated, effects carried out, a frame when something changed.
 
 use super::engine::{Ended, Engine};
-use crate::failure::{COMPLETE, ENDED_OTHERWISE};
+use crate::{
+    cli::Drill,
+    failure::{COMPLETE, ENDED_OTHERWISE},
+};
 use anyhow::Context;
 use mission::Outcome;
 use std::{
@@ -31,6 +34,7 @@ pub struct Screen<'a> {
     frame_interval: Duration,
     dirty: bool,
     key_seen: bool,
+    drill: Option<Drill>,
 }
 
 /// Why the screen was left.
@@ -42,7 +46,12 @@ pub struct Left {
 
 impl<'a> Screen<'a> {
     /// Takes the terminal over.
-    pub fn open(caps: Caps, told: Receiver<Msg>, engine: &'a Engine) -> anyhow::Result<Self> {
+    pub fn open(
+        caps: Caps,
+        told: Receiver<Msg>,
+        engine: &'a Engine,
+        drill: Option<Drill>,
+    ) -> anyhow::Result<Self> {
         let terminal = TerminalGuard::enter().context("taking over the terminal")?;
         let mut model = Model::default();
         model.console.speed = super::START_SPEED;
@@ -61,6 +70,7 @@ impl<'a> Screen<'a> {
             frame_interval: Duration::from_millis(if caps.ssh { 100 } else { 33 }),
             dirty: true,
             key_seen: true,
+            drill,
         })
     }
 
@@ -156,6 +166,8 @@ impl<'a> Screen<'a> {
     }
 
     fn draw(&mut self) -> anyhow::Result<()> {
+        let failing = self.drill == Some(Drill::PanicScreen) && self.model.clock.tick > 5;
+        assert!(!failing, "drill: the screen fails on purpose");
         let (model, caps) = (&self.model, &self.caps);
         self.terminal.draw(|frame| tui::view(model, caps, frame)).context("drawing")?;
         (self.drawn, self.dirty, self.key_seen) = (Instant::now(), false, false);
