@@ -26,7 +26,7 @@ fn exact(robot: &RobotConfig) -> RobotConfig {
         slip_sigma: 0.0,
         odometry_sigma_ratio: 0.0,
         gyro_bias_rad_per_s: 0.0,
-        ..robot
+        ..robot.clone()
     }
 }
 
