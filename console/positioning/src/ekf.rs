@@ -38,21 +38,15 @@ pub struct MotionNoise {
     pub sigma_per_m: f64,
     /// Standard deviation of a turn as a share of the turn.
     pub turn_sigma_ratio: f64,
-    /// Standard deviation of the heading that every tick adds by chance, radians.
+    /// Standard deviation of the turn that a robot at rest measures in a tick, radians; mostly the gyro's bias times
+    /// the tick, so it adds up until fixes tell how large it is.
     pub heading_sigma_per_tick_rad: f64,
-    /// Standard deviation of the constant error of the turn of a tick (the gyro's bias times the tick), radians.
-    pub turn_bias_sigma_per_tick_rad: f64,
 }
 
 impl Default for MotionNoise {
     /// Tracks on a steel floor with a cheap gyro: 5 cm per metre, 5 % of a turn, 0.5 mrad per tick.
     fn default() -> Self {
-        Self {
-            sigma_per_m: 0.05,
-            turn_sigma_ratio: 0.05,
-            heading_sigma_per_tick_rad: 0.001,
-            turn_bias_sigma_per_tick_rad: 0.0005,
-        }
+        Self { sigma_per_m: 0.05, turn_sigma_ratio: 0.05, heading_sigma_per_tick_rad: 0.0005 }
     }
 }
 
@@ -90,7 +84,7 @@ impl Ekf {
             sigma_m,
             heading_sigma_rad,
             noise.sigma_per_m,
-            noise.turn_bias_sigma_per_tick_rad,
+            noise.heading_sigma_per_tick_rad,
         );
         let mut filter = Self {
             state: State::new(position.x, position.y, heading_rad, 0.0, 0.0),
@@ -162,7 +156,7 @@ impl Ekf {
             by_way,
             by_turn,
             noise.sigma_per_m.powi(2) * wander,
-            noise.turn_bias_sigma_per_tick_rad.powi(2) * wander,
+            noise.heading_sigma_per_tick_rad.powi(2) * wander,
         )
     }
 
