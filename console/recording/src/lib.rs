@@ -7,16 +7,16 @@
 //!
 //! Nothing here prints: what the recording SDK has to say goes to `tracing`.
 
-pub mod journal;
-pub mod identity;
-pub mod recorder;
-pub mod thread;
-pub mod export;
-pub mod inspect;
 pub mod error;
+pub mod export;
+pub mod identity;
+pub mod inspect;
+pub mod journal;
 mod layout;
+pub mod recorder;
 mod rr;
 mod sink;
+pub mod thread;
 
 pub use error::RecordingError;
 pub use export::export;

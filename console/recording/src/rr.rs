@@ -2,11 +2,12 @@
 
 pub use re_log_encoding::{DecoderApp, Encoder, EncodingOptions};
 pub use rerun::{
-    AnyValues, AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamError, Rotation3D,
-    SerializationError, SerializedComponentBatch, SerializedComponentColumn, StoreKind, TimeCell, TimeColumn,
+    AnyValues, AsComponents, ComponentIdentifier, RecordingStream, RecordingStreamBuilder,
+    RecordingStreamError, SerializationError, SerializedComponentBatch, SerializedComponentColumn, StoreKind,
+    TimeCell, TimeColumn,
     archetypes::{
-        AnnotationContext, Arrows2D, Ellipses2D, LineStrips2D, Points2D, RecordingInfo, Scalars, SegmentationImage,
-        SeriesLines, StateChange, StateConfiguration, TextDocument, TextLog, Transform3D,
+        AnnotationContext, Arrows2D, Ellipses2D, LineStrips2D, Points2D, RecordingInfo, Scalars,
+        SegmentationImage, SeriesLines, StateChange, StateConfiguration, TextDocument, TextLog, Transform3D,
     },
     blueprint as bp,
     components::{Color, ImageFormat, LineStrip2D, MediaType, Radius, Text, TextLogLevel},

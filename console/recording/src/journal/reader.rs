@@ -71,7 +71,8 @@ impl JournalReader {
 
     fn read_event(&mut self) -> Result<Option<Event>, JournalError> {
         self.text.clear();
-        let length = self.lines.read_until(b'\n', &mut self.text).map_err(|error| read_error(&self.path, &error))?;
+        let length =
+            self.lines.read_until(b'\n', &mut self.text).map_err(|error| read_error(&self.path, &error))?;
         self.line += 1;
         let whole = self.text.last() == Some(&b'\n');
         match self.parse() {
@@ -111,7 +112,8 @@ impl JournalReader {
 
     fn check_head(&self) -> Result<(), JournalError> {
         let refuse = |why| JournalError::NotAJournal { why, path: self.path.clone() };
-        let head: Head = serde_json::from_slice(&self.text).map_err(|error| refuse(without_position(&error)))?;
+        let head: Head =
+            serde_json::from_slice(&self.text).map_err(|error| refuse(without_position(&error)))?;
         if head.event != "run_opened" {
             return Err(refuse(format!("it is {}", head.event)));
         }

@@ -49,7 +49,8 @@ impl JournalWriter {
     /// [`JournalError::Create`] if the file exists or cannot be made.
     pub fn create(path: &Path, now: Instant) -> Result<Self, JournalError> {
         let file = OpenOptions::new().write(true).create_new(true).open(path);
-        let file = file.map_err(|error| JournalError::Create { why: error.to_string(), path: path.to_owned() })?;
+        let file =
+            file.map_err(|error| JournalError::Create { why: error.to_string(), path: path.to_owned() })?;
         Ok(Self::writing_to(Box::new(file), now))
     }
 
@@ -61,7 +62,15 @@ impl JournalWriter {
     /// A journal that goes to any writer.
     pub fn writing_to(out: Box<dyn Write + Send>, now: Instant) -> Self {
         let pending = Vec::with_capacity(2 * FLUSH_BYTES);
-        Self { out, pending, hasher: Sha256::new(), events: 0, written_bytes: 0, flushed_at: now, error: None }
+        Self {
+            out,
+            pending,
+            hasher: Sha256::new(),
+            events: 0,
+            written_bytes: 0,
+            flushed_at: now,
+            error: None,
+        }
     }
 
     /// Adds an event; does nothing after an error.

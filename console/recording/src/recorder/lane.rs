@@ -70,7 +70,8 @@ pub(crate) struct Placed {
 }
 
 fn placing<'a>(rows: impl Iterator<Item = &'a Placed> + Clone) -> rr::Transform3D {
-    let turn = |row: &Placed| rr::RotationAxisAngle::new([0.0, 0.0, 1.0], rr::Angle::from_radians(row.angle_rad));
+    let turn =
+        |row: &Placed| rr::RotationAxisAngle::new([0.0, 0.0, 1.0], rr::Angle::from_radians(row.angle_rad));
     rr::Transform3D::update_fields()
         .with_many_translation(rows.clone().map(|row| [row.at[0], row.at[1], 0.0]))
         .with_many_rotation_axis_angle(rows.map(turn))

@@ -36,7 +36,8 @@ type Done = Result<(), RecordingError>;
 impl Stream {
     /// Begins a recording.
     pub(crate) fn open(sink: SafeSink, identity: &Identity) -> Result<Self, RecordingError> {
-        let builder = rr::RecordingStreamBuilder::new(APPLICATION).recording_id(identity.recording_id.clone());
+        let builder =
+            rr::RecordingStreamBuilder::new(APPLICATION).recording_id(identity.recording_id.clone());
         let (_, store, _, _, hooks, _) = builder.into_args();
         // Without a start time: two recordings of one run shall not differ.
         let info = rr::RecordingInfo::update_fields().with_name(identity.name.clone());
