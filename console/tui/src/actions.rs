@@ -214,16 +214,16 @@ impl Action {
 /// Every action, in the order of the footer and of help.
 #[rustfmt::skip]
 pub const ACTIONS: &[Action] = &[
-    action(ActionId::Hold, "hold", "HOLD the robot now; when held: ask to go on", &[Key::Char(' ')], &[Context::Anywhere]).label("HOLD"),
-    action(ActionId::Interrupt, "interrupt", "HOLD the robot now; twice: ask to leave", &[Key::Ctrl('c')], &[Context::Anywhere]),
+    action(ActionId::Hold, "hold", "HOLD now; when held: ask to go on", &[Key::Char(' ')], &[Context::Anywhere]).label("HOLD"),
+    action(ActionId::Interrupt, "interrupt", "HOLD now; twice: ask to leave", &[Key::Ctrl('c')], &[Context::Anywhere]),
     action(ActionId::Start, "start", "Start the mission", &[Key::Char('S')], &[Context::Mission]).label("start").risk(Risk::Moves),
     action(ActionId::Resume, "resume", "Go on after a hold", &[], &[Context::Mission]).risk(Risk::Moves),
     action(ActionId::Step, "step", "Move for one tick while held", &[Key::Char('.')], &[Context::Mission]).label("step").risk(Risk::Moves),
-    action(ActionId::Slower, "slower", "Simulate slower", &[Key::Char('<')], &[Context::Mission]).label("slower").repeats(),
-    action(ActionId::Faster, "faster", "Simulate faster", &[Key::Char('>')], &[Context::Mission]).label("faster").repeats(),
+    action(ActionId::Slower, "slower", "Simulate slower", &[Key::Char('<')], &[Context::Mission]).label("speed").repeats(),
+    action(ActionId::Faster, "faster", "Simulate faster", &[Key::Char('>')], &[Context::Mission]).label("speed").repeats(),
     action(ActionId::Abort, "end", "Hold, then ask to end the mission", &[Key::Char('X')], &[Context::Mission]).label("end").risk(Risk::Destroys),
     action(ActionId::ChoosePlanner, "planner", "Let another planner drive, while held", &[Key::Char('P')], &[Context::Mission]).label("planner").risk(Risk::Moves),
-    action(ActionId::Parameters, "parameters", "Look at the planner's parameters, change them", &[Key::Char('p')], &[Context::Mission]).label("parameters"),
+    action(ActionId::Parameters, "parameters", "See and change the planner's parameters", &[Key::Char('p')], &[Context::Mission]).label("parameters"),
     action(ActionId::Acknowledge, "acknowledge", "Acknowledge the worst alarm", &[Key::Char('a')], &[Context::Mission]).label("ack"),
     action(ActionId::Commands, "commands", "Find a command by its name", &[Key::Char(':'), Key::Ctrl('p')], &[Context::Mission]).label("command"),
     action(ActionId::Help, "help", "Show keys and commands", &[Key::Char('?'), Key::F(1)], &[Context::Mission]).label("keys"),
@@ -233,9 +233,9 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::ZoomIn, "zoom-in", "Enlarge the map", &[Key::Char('z')], &[Context::Mission]).repeats(),
     action(ActionId::ZoomOut, "zoom-out", "Reduce the map", &[Key::Char('Z')], &[Context::Mission]).repeats(),
     action(ActionId::WholeTank, "whole-tank", "Show the whole tank", &[Key::Char('0')], &[Context::Mission]),
-    action(ActionId::Follow, "follow", "Keep the robot in the middle of the map", &[Key::Char('f')], &[Context::Mission]),
+    action(ActionId::Follow, "follow", "Keep the robot in the map's middle", &[Key::Char('f')], &[Context::Mission]),
     action(ActionId::Layers, "layers", "Choose what the map shows", &[Key::Char('L')], &[Context::Mission]),
-    action(ActionId::Severity, "severity", "Show only events from INFO, WATCH, WARN or CRIT on", &[Key::Char('m')], &[Context::Mission]),
+    action(ActionId::Severity, "severity", "Least severity of the events shown", &[Key::Char('m')], &[Context::Mission]),
     action(ActionId::Filter, "filter", "Show only events with some text", &[Key::Char('/')], &[Context::Mission]),
     action(ActionId::PanLeft, "pan-west", "Move the map's window west", &[Key::Left, Key::Char('h')], &[Context::Map]).repeats(),
     action(ActionId::PanRight, "pan-east", "Move the map's window east", &[Key::Right, Key::Char('l')], &[Context::Map]).repeats(),
@@ -248,7 +248,7 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Newest, "newest", "The newest event", &[Key::Home, Key::Char('g')], &[Context::Events]),
     action(ActionId::Oldest, "oldest", "The oldest event", &[Key::End, Key::Char('G')], &[Context::Events]),
     action(ActionId::Redraw, "redraw", "Draw the whole screen anew", &[Key::Ctrl('l')], &[Context::Anywhere]),
-    action(ActionId::Suspend, "suspend", "HOLD, then back to the shell until `fg`", &[Key::Ctrl('z')], &[Context::Anywhere]),
+    action(ActionId::Suspend, "suspend", "HOLD, then back to the shell until fg", &[Key::Ctrl('z')], &[Context::Anywhere]),
     action(ActionId::Edit, "edit", "Type a value", &[Key::Char('e')], &[Context::Parameters]).label("edit"),
     action(ActionId::Accept, "accept", "Agree, or take the selected line", &[Key::Enter], &[Context::List, Context::Text, Context::Confirm, Context::Stepping]).label("yes"),
     action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("one more tick").risk(Risk::Moves),
@@ -299,6 +299,17 @@ pub fn matching(typed: &str) -> Vec<&'static Action> {
         .collect();
     found.sort_by_key(|(far, _)| *far);
     found.into_iter().map(|(_, action)| action).collect()
+}
+
+/// The command list for what was typed; with nothing typed, the keys of the pane in focus come first.
+pub fn listed(typed: &str, pane: Pane) -> Vec<&'static Action> {
+    let mut found = matching(typed);
+    if typed.is_empty() {
+        let here = if pane == Pane::Events { Context::Events } else { Context::Map };
+        let away = if pane == Pane::Events { Context::Map } else { Context::Events };
+        found.sort_by_key(|action| (action.contexts.contains(&away), !action.contexts.contains(&here)));
+    }
+    found
 }
 
 /// How far the letters of `typed` are spread over `text`, and how far in they begin; `None` if they are not there.
@@ -373,7 +384,7 @@ mod tests {
     fn names_are_plain_and_every_action_says_what_it_does() {
         for action in ACTIONS {
             assert!(action.name.chars().all(|c| c.is_ascii_lowercase() || c == '-'), "{}", action.name);
-            assert!(!action.about.is_empty() && action.about.len() <= 52, "{}", action.name);
+            assert!(!action.about.is_empty() && action.about.len() <= 40, "{}", action.name);
         }
     }
 }

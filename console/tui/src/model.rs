@@ -107,8 +107,8 @@ pub struct Clock {
 pub struct Progress {
     /// Share of the task done, 0 to 1.
     pub done: f64,
-    /// Way along the preset path, or way flown, metres.
-    pub along_m: f64,
+    /// Way along the preset path, metres.
+    pub along_m: Option<f64>,
     /// Distance from the preset path, metres.
     pub cross_track_m: Option<f64>,
     /// Where the robot goes next.
@@ -269,9 +269,31 @@ pub struct Console {
 }
 
 impl Model {
-    /// Whether the robot moves or may begin to move any moment.
+    /// Whether the robot moves or may begin to move any moment without being told.
     pub fn may_move(&self) -> bool {
-        self.phase == Phase::Running || self.console.asked.is_some()
+        let by_itself = match &self.phase {
+            Phase::Running | Phase::Held(HoldReason::PositionLost) => true,
+            Phase::Held(HoldReason::PlannerFault { .. }) => self.has_fallback(),
+            Phase::Idle | Phase::Held(_) | Phase::Ended { .. } => false,
+        };
+        by_itself || self.console.asked.is_some()
+    }
+
+    /// Whether another planner may take over by itself after a fault.
+    pub fn has_fallback(&self) -> bool {
+        self.run.as_ref().is_some_and(|run| run.mission.fallback.is_some())
+    }
+
+    /// What is known of the planner that drives, or that will drive first.
+    pub fn planner(&self) -> Option<&PlannerInfo> {
+        let id = self.planner_id();
+        let listed = || self.console.planners.iter().find(|planner| Some(planner.id.as_str()) == id);
+        self.planning.info.as_ref().or_else(listed)
+    }
+
+    /// Id of the planner that drives, or that will drive first.
+    pub fn planner_id(&self) -> Option<&str> {
+        self.planning.choice.as_ref().map(|choice| choice.id.as_str())
     }
 
     /// Whether the run is over.

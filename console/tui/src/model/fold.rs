@@ -39,7 +39,7 @@ impl Model {
                 self.position.failure = None;
                 self.alarms.clear(&Cause::NoFix);
             }
-            EventKind::FixFailed { error } => {
+            EventKind::FixFailed { error, .. } => {
                 self.position.failure = Some(error.to_string());
                 self.raise(event, Cause::NoFix, Severity::Watch, format!("no fix: {error}"));
             }
@@ -132,6 +132,7 @@ impl Model {
             preset_m,
         });
         self.coverage = Some(Raster::new(run.floor.clone()));
+        self.planning.choice = Some(run.mission.planner.clone());
         self.phase = Phase::Idle;
     }
 

@@ -142,7 +142,7 @@ fn acknowledge(model: &mut Model) -> Vec<Effect> {
 }
 
 fn driving(model: &Model) -> usize {
-    let id = model.planning.choice.as_ref().map(|choice| choice.id.as_str());
+    let id = model.planner_id();
     model.console.planners.iter().position(|planner| Some(planner.id.as_str()) == id).unwrap_or(0)
 }
 

@@ -82,6 +82,7 @@ fn start(model: &Model) -> Result<(), String> {
 
 fn held(model: &Model, otherwise: &str) -> Result<(), String> {
     match model.phase {
+        Phase::Held(_) if model.position.lost => Err("the position is lost; wait until it is regained".into()),
         Phase::Held(_) => Ok(()),
         Phase::Idle => Err("the mission has not started; S starts it".into()),
         Phase::Running => Err(otherwise.into()),
@@ -106,8 +107,8 @@ fn swap(model: &Model) -> Result<(), String> {
 }
 
 fn parameters(model: &Model) -> Result<(), String> {
-    match &model.planning.info {
-        None => Err("no planner was chosen yet".into()),
+    match model.planner() {
+        None => Err("the planner is not known yet".into()),
         Some(info) => demand(!info.parameters.is_empty(), &format!("planner {} has no parameters", info.id)),
     }
 }

@@ -91,7 +91,7 @@ fn quit(model: &mut Model) -> Vec<Effect> {
 }
 
 fn run_command(model: &mut Model, filter: &str, selected: usize) -> Vec<Effect> {
-    let Some(action) = actions::matching(filter).get(selected).copied() else {
+    let Some(action) = actions::listed(filter, model.ui.pane).get(selected).copied() else {
         model.say(Severity::Watch, format!("there is no command `{filter}`"));
         return Vec::new();
     };
@@ -107,7 +107,7 @@ fn choose_planner(model: &mut Model, selected: usize) -> Vec<Effect> {
 
 fn edit(model: &mut Model) -> Vec<Effect> {
     let Overlay::Parameters { selected, .. } = model.ui.overlay else { return Vec::new() };
-    let info = model.planning.info.as_ref().and_then(|info| info.parameters.get(selected));
+    let info = model.planner().and_then(|info| info.parameters.get(selected));
     let Some(info) = info else { return Vec::new() };
     if model.has_ended() {
         model.say(Severity::Watch, "the mission has ended; parameters stay as they were");
@@ -124,7 +124,7 @@ fn edit(model: &mut Model) -> Vec<Effect> {
 }
 
 fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
-    let info = model.planning.info.as_ref().and_then(|info| info.parameters.get(selected));
+    let info = model.planner().and_then(|info| info.parameters.get(selected));
     let Some(info) = info else { return close(model) };
     match parameter::parse(info, &edit.text) {
         Ok(value) => {
@@ -142,9 +142,9 @@ fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
 
 fn select(model: &mut Model, by: isize) -> Vec<Effect> {
     let lines = match &model.ui.overlay {
-        Overlay::Commands { filter, .. } => actions::matching(filter).len(),
+        Overlay::Commands { filter, .. } => actions::listed(filter, model.ui.pane).len(),
         Overlay::Planners { .. } => model.console.planners.len(),
-        Overlay::Parameters { .. } => model.planning.info.as_ref().map_or(0, |info| info.parameters.len()),
+        Overlay::Parameters { .. } => model.planner().map_or(0, |info| info.parameters.len()),
         Overlay::Layers { .. } => Layers::NAMES.len(),
         _ => 0,
     };
