@@ -12,7 +12,7 @@ use mission::Event;
 use std::{
     path::{Path, PathBuf},
     sync::{
-        Arc, OnceLock,
+        Arc, Mutex, OnceLock, PoisonError,
         atomic::{AtomicU64, Ordering},
         mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
     },
@@ -91,7 +91,8 @@ impl Shared {
 /// everything else goes on.
 pub struct RunRecorder {
     sender: Option<SyncSender<Arc<[Event]>>>,
-    ended: Receiver<Option<JournalEnd>>,
+    /// Behind a lock so that screens may ask for the health from other threads; only `close` takes it.
+    ended: Mutex<Receiver<Option<JournalEnd>>>,
     shared: Arc<Shared>,
     sink: Option<Arc<SinkHealth>>,
     journal: Option<PathBuf>,
@@ -142,6 +143,7 @@ impl RunRecorder {
             let _ = tell_end.send(end);
         });
         handle.map_err(|error| RecordingError::Thread { why: error.to_string() })?;
+        let ended = Mutex::new(ended);
         Ok(Self { sender: Some(sender), ended, shared, sink, journal: None, recording: None })
     }
 
@@ -180,7 +182,8 @@ impl RunRecorder {
 
     fn close(&mut self, timeout: Duration) -> Option<JournalEnd> {
         drop(self.sender.take()?);
-        match self.ended.recv_timeout(timeout) {
+        let ended = self.ended.get_mut().unwrap_or_else(PoisonError::into_inner);
+        match ended.recv_timeout(timeout) {
             Ok(end) => end,
             Err(RecvTimeoutError::Timeout) => {
                 let waited = timeout.as_secs_f64();

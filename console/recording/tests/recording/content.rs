@@ -35,7 +35,7 @@ pub fn content(path: &Path) -> Content {
 fn take(chunk: &Chunk, content: &mut Content) {
     let entity = chunk.entity_path().to_string().trim_start_matches('/').to_owned();
     for component in chunk.components_identifiers() {
-        let lists = chunk.get_array(component).expect("listed above");
+        let lists = chunk.components().get_array(component).expect("listed above");
         for row in (0..chunk.num_rows()).filter(|row| lists.is_valid(*row)) {
             let mut times: Vec<_> = chunk
                 .timelines()
