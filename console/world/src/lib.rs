@@ -13,7 +13,7 @@ pub mod shape;
 pub mod spiral;
 pub mod tank;
 
-pub use coverage::{CellRun, CoverageGrid, Floor};
+pub use coverage::{Cell, CellRun, Counts, CoverageGrid, Floor};
 pub use geometry::{Point, Pose, Vector};
 pub use obstacles::{Near, ObstacleMap};
 pub use readings::{Odometry, RangeSet, Readings, Sighting};

@@ -22,7 +22,10 @@ pub fn distance_m(path: &[Point], point: Point) -> f64 {
     match path {
         [] => f64::INFINITY,
         [only] => (point - only).norm(),
-        _ => path.windows(2).map(|w| (point - nearest_on_segment(w[0], w[1], point)).norm()).fold(f64::INFINITY, f64::min),
+        _ => path
+            .windows(2)
+            .map(|w| (point - nearest_on_segment(w[0], w[1], point)).norm())
+            .fold(f64::INFINITY, f64::min),
     }
 }
 

@@ -87,14 +87,16 @@ fn mean_of(points: &[Point]) -> Point {
 /// The smallest axis-aligned box around some points.
 pub(crate) fn bounds_of(points: &[Point]) -> (Point, Point) {
     let far = f64::INFINITY;
-    points.iter().fold((Point::new(far, far), Point::new(-far, -far)), |(low, high), p| (low.inf(p), high.sup(p)))
+    points
+        .iter()
+        .fold((Point::new(far, far), Point::new(-far, -far)), |(low, high), p| (low.inf(p), high.sup(p)))
 }
 
 /// Whether a point lies inside a simple polygon (crossing number).
 pub(crate) fn ring_contains(vertices: &[Point], point: Point) -> bool {
     edges(vertices).fold(false, |inside, (a, b)| {
-        let crosses = (a.y > point.y) != (b.y > point.y)
-            && point.x < (b.x - a.x) * (point.y - a.y) / (b.y - a.y) + a.x;
+        let crosses =
+            (a.y > point.y) != (b.y > point.y) && point.x < (b.x - a.x) * (point.y - a.y) / (b.y - a.y) + a.x;
         inside != crosses
     })
 }
@@ -128,7 +130,8 @@ mod tests {
     #[test]
     fn a_moved_disc_keeps_its_radius() {
         let disc = Shape::Disc { center: Point::new(1.0, 0.0), radius_m: 0.5 };
-        let moved = disc.transformed(&Isometry2::new(nalgebra::Vector2::new(0.0, 1.0), std::f64::consts::FRAC_PI_2));
+        let moved =
+            disc.transformed(&Isometry2::new(nalgebra::Vector2::new(0.0, 1.0), std::f64::consts::FRAC_PI_2));
         assert!((moved.center() - Point::new(0.0, 2.0)).norm() < 1e-12);
         assert!((moved.distance_m(Point::new(0.0, 3.0)) - 0.5).abs() < 1e-12);
     }

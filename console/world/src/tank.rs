@@ -123,6 +123,7 @@ pub struct World {
 
 impl World {
     /// The world as the drawing has it: without the obstacles that must be discovered.
+    #[must_use]
     pub fn as_drawn(&self) -> Self {
         let obstacles = self.obstacles.iter().filter(|o| o.known).cloned().collect();
         Self { obstacles, ..self.clone() }
