@@ -2,7 +2,7 @@
 
 use super::{
     Scenario,
-    checks::{Site, check_cells, check_times},
+    checks::{Site, check_cells, check_period, check_ticks},
     expect, floor, layout,
     problem::{Complaint, Problem},
     robot::{self, Robot},
@@ -15,6 +15,9 @@ use sim::{AeConfig, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
 
+/// A start this near to the first path point stands on it, metres.
+const ON_PATH_M: f64 = 1e-3;
+
 /// Reads every section, checks that they fit together, and gives the scenario or everything that is wrong.
 pub fn assemble(text: &str, table: &DeTable<'_>) -> Result<Scenario, Vec<Problem>> {
     let source = Source::new(text);
@@ -24,6 +27,14 @@ pub fn assemble(text: &str, table: &DeTable<'_>) -> Result<Scenario, Vec<Problem
         Some(scenario) if problems.is_empty() => Ok(scenario),
         _ => Err(problems),
     }
+}
+
+/// The sections that are looked at more than once.
+struct Sections<'a> {
+    root: &'a Section<'a>,
+    robot: Option<Section<'a>>,
+    ae: Option<Section<'a>>,
+    mission: Option<Section<'a>>,
 }
 
 /// Everything on the floor and everything that moves there, as far as it could be read.
@@ -40,17 +51,17 @@ fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
     let name = root.slug("name");
     let about = if root.has("about") { root.text("about") } else { Some(String::new()) };
     let seed = root.whole("seed").map(|seed| seed as u64);
-    let mission = root.table("mission");
-    let ae = root.table("ae");
-    let mut floor = read_floor(root, ae.as_ref());
+    let sections =
+        Sections { root, robot: root.table_or_empty("robot"), ae: root.table("ae"), mission: root.table("mission") };
+    let mut floor = Floor::read(&sections);
     let radius_m = floor.robot.as_ref().map(|robot| robot.limits.radius_m);
-    let task = mission.as_ref().and_then(|section| task::task(section, floor.boundary.as_ref(), radius_m));
-    let start = start(root, mission.as_ref(), floor.robot.as_ref(), task.as_ref());
+    let task = sections.mission.as_ref().and_then(|s| task::task(s, floor.boundary.as_ref(), radius_m));
+    let start = start(&sections, floor.robot.as_ref(), task.as_ref());
     scatter(root, &mut floor, seed, start, task.as_ref());
-    check_places(root, mission.as_ref(), &floor, start, task.as_ref());
+    check_places(&sections, &floor, start, task.as_ref());
     let planner = root.table("planner").and_then(|section| Some((task::planner(&section), task::fallback(&section)?)));
     let expect = expect::expect(root);
-    let rest = mission.as_ref().and_then(|mission| Rest::read(mission, ae.as_ref(), floor.boundary.as_ref()));
+    let rest = Rest::read(&sections, &floor);
 
     let (planner, fallback) = planner?;
     let (robot, rest, start, ae) = (floor.robot?, rest?, start?, floor.ae?);
@@ -82,37 +93,40 @@ fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
     Some(Scenario { name: name?, about: about?, text: text.to_owned(), seed: seed?, sim, mission, expect: expect? })
 }
 
-fn read_floor(root: &Section<'_>, ae: Option<&Section<'_>>) -> Floor {
-    let boundary = floor::tank(root);
-    Floor {
-        obstacles: floor::obstacles(root, boundary.as_ref()),
-        zones: floor::zones(root),
-        robot: root.table_or_empty("robot").and_then(|section| robot::robot(&section)),
-        stations: ae.map(|section| robot::stations(section, boundary.as_ref())).unwrap_or_default(),
-        ae: ae.and_then(robot::ae),
-        boundary,
+impl Floor {
+    fn read(sections: &Sections<'_>) -> Self {
+        let boundary = floor::tank(sections.root);
+        let ae = sections.ae.as_ref();
+        Self {
+            obstacles: floor::obstacles(sections.root, boundary.as_ref()),
+            zones: floor::zones(sections.root),
+            robot: sections.robot.as_ref().and_then(robot::robot),
+            stations: ae.map(|section| robot::stations(section, boundary.as_ref())).unwrap_or_default(),
+            ae: ae.and_then(robot::ae),
+            boundary,
+        }
     }
 }
 
 /// Where the robot starts: as given, or on the path and along it.
-fn start(
-    root: &Section<'_>,
-    mission: Option<&Section<'_>>,
-    robot: Option<&Robot>,
-    task: Option<&TaskConfig>,
-) -> Option<Pose> {
-    let (robot, task) = (robot?, task?);
-    let section = root.table_or_empty("robot")?;
-    let (first, ahead) = match task {
-        TaskConfig::Goto { goal, .. } => (None, *goal),
-        TaskConfig::Follow { path, .. } => (path.first().copied(), *path.get(1)?),
+fn start(sections: &Sections<'_>, robot: Option<&Robot>, task: Option<&TaskConfig>) -> Option<Pose> {
+    let (robot, section, task) = (robot?, sections.robot.as_ref()?, task?);
+    let (position, ahead) = match (robot.start, task) {
+        (Some(start), TaskConfig::Goto { goal, .. }) => (start, *goal - start),
+        (None, TaskConfig::Goto { .. }) => {
+            if !section.has("start_m") {
+                section.require("start_m", "add start_m = [x, y] to [robot], where it is put down");
+            }
+            return None;
+        }
+        (start, TaskConfig::Follow { path, .. }) => {
+            let (first, second) = (*path.first()?, *path.get(1)?);
+            let position = start.unwrap_or(first);
+            let is_on_path = (position - first).norm() < ON_PATH_M;
+            (position, if is_on_path { second - first } else { first - position })
+        }
     };
-    if robot.start.is_none() && first.is_none() && !section.has("start_m") && mission.is_some() {
-        section.require("start_m", "add start_m = [x, y], where the robot is put down");
-    }
-    let position = robot.start.or(first)?;
-    let way = if first == Some(position) || first.is_none() { ahead - position } else { first? - position };
-    let along = if way.norm() > 0.0 { way.y.atan2(way.x) } else { 0.0 };
+    let along = if ahead.norm() > 0.0 { ahead.y.atan2(ahead.x) } else { 0.0 };
     Some(Pose { position, heading_rad: robot.start_heading_rad.unwrap_or(along) })
 }
 
@@ -145,28 +159,20 @@ fn scatter(
     }
 }
 
-fn check_places(
-    root: &Section<'_>,
-    mission: Option<&Section<'_>>,
-    floor: &Floor,
-    start: Option<Pose>,
-    task: Option<&TaskConfig>,
-) {
+fn check_places(sections: &Sections<'_>, floor: &Floor, start: Option<Pose>, task: Option<&TaskConfig>) {
     let (Some(boundary), Some(robot)) = (&floor.boundary, &floor.robot) else { return };
-    let site = Site {
-        boundary,
-        obstacles: &floor.obstacles,
-        zones: &floor.zones,
-        radius_m: robot.limits.radius_m,
+    let radius_m = robot.limits.radius_m;
+    let site = Site { boundary, obstacles: &floor.obstacles, zones: &floor.zones, radius_m };
+    let complain = |section: &Option<Section<'_>>, name: &str, place: Point| {
+        if let (Some(section), Some(what)) = (section, site.objection(place)) {
+            section.complain(name, what);
+        }
     };
-    let robot_section = root.table_or_empty("robot");
-    if let (Some(section), Some(what)) = (robot_section, start.and_then(|pose| site.objection(pose.position))) {
-        section.complain("start_m", what);
+    if let Some(pose) = start {
+        complain(&sections.robot, "start_m", pose.position);
     }
-    if let (Some(section), Some(TaskConfig::Goto { goal, .. })) = (mission, task)
-        && let Some(what) = site.objection(*goal)
-    {
-        section.complain("goal_m", what);
+    if let Some(TaskConfig::Goto { goal, .. }) = task {
+        complain(&sections.mission, "goal_m", *goal);
     }
 }
 
@@ -183,13 +189,17 @@ struct Rest {
 }
 
 impl Rest {
-    fn read(mission: &Section<'_>, ae: Option<&Section<'_>>, boundary: Option<&Boundary>) -> Option<Self> {
+    fn read(sections: &Sections<'_>, floor: &Floor) -> Option<Self> {
+        let mission = sections.mission.as_ref()?;
         let (tick, limit) = (mission.number("tick_s"), mission.number("time_limit_s"));
         if let (Some(tick_s), Some(time_limit_s)) = (tick, limit) {
-            check_times(mission, ae, tick_s, time_limit_s);
+            check_ticks(mission, tick_s, time_limit_s);
+        }
+        if let (Some(tick_s), Some(section), Some(ae)) = (tick, &sections.ae, &floor.ae) {
+            check_period(section, tick_s, ae.period_s);
         }
         let cell_m = mission.number("cell_m");
-        if let (Some(boundary), Some(cell_m)) = (boundary, cell_m) {
+        if let (Some(boundary), Some(cell_m)) = (&floor.boundary, cell_m) {
             check_cells(mission, boundary, cell_m);
         }
         let (swath_m, clearance_m) = (mission.number("swath_m"), mission.number("clearance_m"));

@@ -74,18 +74,24 @@ pub fn check_cells(mission: &Section<'_>, boundary: &Boundary, cell_m: f64) {
     }
 }
 
-/// Complains about a run with too many ticks, and about ranging faster than the ticks.
-pub fn check_times(mission: &Section<'_>, ae: Option<&Section<'_>>, tick_s: f64, time_limit_s: f64) {
+/// Complains about a run with too many ticks, or none.
+pub fn check_ticks(mission: &Section<'_>, tick_s: f64, time_limit_s: f64) {
     let ticks = time_limit_s / tick_s;
     if ticks > MOST_TICKS {
         let what = Complaint::TooManyTicks { ticks: ticks as u64, tick_s, limit: MOST_TICKS as u64 };
         mission.complain("time_limit_s", what);
     } else if ticks < 1.0 {
-        mission.complain("time_limit_s", Complaint::OutOfRange(format!("at least one tick, {tick_s} s")));
+        mission.complain("time_limit_s", at_least_a_tick(tick_s));
     }
-    if let Some((ae, period_s)) = ae.and_then(|ae| Some((ae, ae.quiet_number("period_s")?)))
-        && period_s < tick_s
-    {
-        ae.complain("period_s", Complaint::OutOfRange(format!("at least one tick, {tick_s} s")));
+}
+
+/// Complains about ranging more often than once a tick.
+pub fn check_period(ae: &Section<'_>, tick_s: f64, period_s: f64) {
+    if period_s < tick_s {
+        ae.complain("period_s", at_least_a_tick(tick_s));
     }
+}
+
+fn at_least_a_tick(tick_s: f64) -> Complaint {
+    Complaint::OutOfRange(format!("at least one tick, {tick_s} s"))
 }
