@@ -1,2 +1,5 @@
 //! tankops.
+
+mod scenario;
+
 fn main() {}

@@ -42,7 +42,8 @@ impl Robot {
 
 /// Reads `[robot]`.
 pub fn robot(section: &Section<'_>) -> Option<Robot> {
-    let motion = section.word("motion").map(|word| if word == "point" { Motion::Point } else { Motion::Unicycle });
+    let motion =
+        section.word("motion").map(|word| if word == "point" { Motion::Point } else { Motion::Unicycle });
     let radius_m = section.number("radius_m");
     if motion == Some(Motion::Unicycle) && radius_m == Some(0.0) {
         let must_be = "greater than 0 m; only motion = \"point\" has no hull";
@@ -106,7 +107,10 @@ fn noise(section: &Section<'_>) -> Option<NoiseModel> {
         }
         "gaussian" => {
             noise.refuse(&["ratio"], &beside);
-            noise.require("sigma_ratio", "add sigma_ratio = 0.03 for a standard deviation of 3 % of the distance");
+            noise.require(
+                "sigma_ratio",
+                "add sigma_ratio = 0.03 for a standard deviation of 3 % of the distance",
+            );
             Some(NoiseModel::Gaussian { sigma_ratio: noise.number("sigma_ratio")? })
         }
         _ => {
