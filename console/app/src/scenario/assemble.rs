@@ -82,10 +82,15 @@ fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
         position_limit_m: rest.position_limit_m,
         lost_hold_s: rest.lost_hold_s,
         stuck_s: rest.stuck_s,
+        start_heading_sigma_rad: robot.start_heading_sigma_rad,
         odometry_sigma_per_m: robot.odometry_sigma_per_m(),
+        odometry_turn_sigma_per_rad: robot.turn_sigma_per_rad(),
+        gyro_sigma_rad_per_s: robot.gyro_sigma_rad_per_s(),
         range_sigma_ratio: robot::range_sigma_ratio(ae.noise),
         planner: planner?,
         fallback,
+        // Who flies it knows; a scenario does not.
+        attended: false,
     };
     let world = World {
         boundary: floor.boundary?,

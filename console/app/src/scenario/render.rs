@@ -25,13 +25,6 @@ impl ScenarioErrors {
         }
         text
     }
-
-    /// Line and column of a problem, both from 1; none for the file as a whole.
-    pub fn line_and_column(&self, problem: &Problem) -> Option<(usize, usize)> {
-        let at = problem.at.as_ref()?.start;
-        let spot = Spot::of(&self.text, at);
-        Some((spot.line, spot.column))
-    }
 }
 
 /// A place in a text.

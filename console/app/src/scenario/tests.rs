@@ -35,14 +35,14 @@ fn errors(text: &str) -> ScenarioErrors {
     Scenario::parse(text, "x.toml").expect_err("something is wrong with it")
 }
 
-/// The one thing that is wrong after `from` in the small scenario became `to`, as line, column and text.
+/// The one thing that is wrong after `from` in the small scenario became `to`: line, column, sentence.
 fn complaint(from: &str, to: &str) -> String {
     assert!(SMALL.contains(from), "{from}");
     let errors = errors(&SMALL.replacen(from, to, 1));
     assert_eq!(errors.problems.len(), 1, "{}", errors.render());
-    let problem = &errors.problems[0];
-    let (line, column) = errors.line_and_column(problem).expect("a place");
-    format!("{line}:{column}: {problem}")
+    let shown = errors.render();
+    let first = shown.lines().next().expect("a line");
+    first.strip_prefix("error: x.toml:").expect("file first").to_owned()
 }
 
 #[test]
@@ -355,11 +355,13 @@ fn what_is_no_scenario_at_all_is_refused_quickly_and_shortly() {
         let path = folder.path().join(name);
         fs::write(&path, bytes).expect("a file");
         let begun = Instant::now();
-        let shown = Scenario::read(&path).expect_err(name).render();
+        let shown = Scenario::read_with(&path, &Settings::default()).expect_err(name).render();
         assert!(begun.elapsed().as_secs_f64() < 1.0, "{name} took {:?}", begun.elapsed());
         assert!(shown.contains(expected) && shown.len() < 2500, "{name}: {shown}");
     }
-    let missing = Scenario::read(&folder.path().join("none.toml")).expect_err("no file").render();
+    let missing = Scenario::read_with(&folder.path().join("none.toml"), &Settings::default())
+        .expect_err("no file")
+        .render();
     assert!(missing.contains("none.toml: cannot be read: No such file"), "{missing}");
 }
 
