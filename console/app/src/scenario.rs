@@ -1,6 +1,6 @@
 //! Scenario files: one TOML text that says everything about a run.
 //!
-//! [`Scenario::read`] takes a file, [`Scenario::parse`] a text. What comes out has been checked: the engine and the
+//! [`Scenario::read_with`] takes a file, [`Scenario::parse`] a text. What comes out has been checked: the engine and the
 //! simulator need not doubt it. What is wrong comes back as [`ScenarioErrors`], all of it at once, each problem with
 //! line, column, key, value and remedy; [`ScenarioErrors::render`] shows it. Settings from the command line are put
 //! into the text before it is read, so that the text alone gives the same scenario again.
@@ -52,14 +52,6 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Reads a scenario file.
-    ///
-    /// # Errors
-    /// Everything that is wrong with it.
-    pub fn read(path: &Path) -> Result<Self, ScenarioErrors> {
-        Self::read_with(path, &Settings::default())
-    }
-
     /// Reads a scenario file and puts settings from the command line into it.
     ///
     /// # Errors

@@ -49,7 +49,7 @@ impl Fold {
                     scanned.believe(runs);
                 }
             }
-            EventKind::Progressed { along_m, .. } => {
+            EventKind::Progressed { along_m: Some(along_m), .. } => {
                 if let Some(tracker) = &mut self.tracker {
                     tracker.progress(*along_m);
                 }

@@ -51,15 +51,19 @@ fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
     let name = root.slug("name");
     let about = if root.has("about") { root.text("about") } else { Some(String::new()) };
     let seed = root.whole("seed").map(|seed| seed as u64);
-    let sections =
-        Sections { root, robot: root.table_or_empty("robot"), ae: root.table("ae"), mission: root.table("mission") };
+    let sections = Sections {
+        root,
+        robot: root.table_or_empty("robot"),
+        ae: root.table("ae"),
+        mission: root.table("mission"),
+    };
     let mut floor = Floor::read(&sections);
     let radius_m = floor.robot.as_ref().map(|robot| robot.limits.radius_m);
     let task = sections.mission.as_ref().and_then(|s| task::task(s, floor.boundary.as_ref(), radius_m));
     let start = start(&sections, floor.robot.as_ref(), task.as_ref());
     scatter(root, &mut floor, seed, start, task.as_ref());
     check_places(&sections, &floor, start, task.as_ref());
-    let planner = root.table("planner").and_then(|section| Some((task::planner(&section), task::fallback(&section)?)));
+    let planner = root.table("planner").map(|section| (task::planner(&section), task::fallback(&section)));
     let expect = expect::expect(root);
     let rest = Rest::read(&sections, &floor);
 
@@ -78,10 +82,15 @@ fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
         position_limit_m: rest.position_limit_m,
         lost_hold_s: rest.lost_hold_s,
         stuck_s: rest.stuck_s,
+        start_heading_sigma_rad: robot.start_heading_sigma_rad,
         odometry_sigma_per_m: robot.odometry_sigma_per_m(),
+        odometry_turn_sigma_per_rad: robot.turn_sigma_per_rad(),
+        gyro_sigma_rad_per_s: robot.gyro_sigma_rad_per_s(),
         range_sigma_ratio: robot::range_sigma_ratio(ae.noise),
         planner: planner?,
         fallback,
+        // Who flies it knows; a scenario does not.
+        attended: false,
     };
     let world = World {
         boundary: floor.boundary?,
@@ -90,7 +99,15 @@ fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
         zones: floor.zones,
     };
     let sim = SimConfig { world, robot: truth(&robot, start), ae: Some(ae), tick_s: rest.tick_s };
-    Some(Scenario { name: name?, about: about?, text: text.to_owned(), seed: seed?, sim, mission, expect: expect? })
+    Some(Scenario {
+        name: name?,
+        about: about?,
+        text: text.to_owned(),
+        seed: seed?,
+        sim,
+        mission,
+        expect: expect?,
+    })
 }
 
 impl Floor {

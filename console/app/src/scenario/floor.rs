@@ -16,7 +16,8 @@ pub fn tank(root: &Section<'_>) -> Option<Boundary> {
         return Some(Boundary::Circle { radius_m: section.number("radius_m")? });
     }
     if !section.has("vertices_m") {
-        section.require("radius_m", "add radius_m = ..., in m, for a round tank, or vertices_m = [[x, y], ...]");
+        section
+            .require("radius_m", "add radius_m = ..., in m, for a round tank, or vertices_m = [[x, y], ...]");
         return None;
     }
     Some(Boundary::Polygon { vertices: counter_clockwise(&section, "vertices_m")? })
@@ -77,6 +78,10 @@ fn is_wholly_outside(boundary: &Boundary, shape: &Shape) -> bool {
     if let Boundary::Circle { radius_m } = boundary {
         return shape.distance_m(world::Point::origin()) >= *radius_m;
     }
+    let ((low, high), (tank_low, tank_high)) = (shape.bounds(), boundary.bounds());
+    if low.x > tank_high.x || low.y > tank_high.y || high.x < tank_low.x || high.y < tank_low.y {
+        return true;
+    }
     let (points, reach_m) = samples(shape);
     let corner_inside = match boundary {
         Boundary::Polygon { vertices } => vertices.iter().any(|corner| shape.distance_m(*corner) < 0.0),
@@ -94,7 +99,9 @@ mod tests {
     fn an_obstacle_in_the_wall_is_not_wholly_outside() {
         let round = Boundary::Circle { radius_m: 5.0 };
         let square = Boundary::Polygon {
-            vertices: [(-5.0, -5.0), (5.0, -5.0), (5.0, 5.0), (-5.0, 5.0)].map(|(x, y)| Point::new(x, y)).to_vec(),
+            vertices: [(-5.0, -5.0), (5.0, -5.0), (5.0, 5.0), (-5.0, 5.0)]
+                .map(|(x, y)| Point::new(x, y))
+                .to_vec(),
         };
         for boundary in [round, square] {
             let disc = |x_m| Shape::Disc { center: Point::new(x_m, 0.0), radius_m: 0.5 };

@@ -3,7 +3,7 @@
 use super::{problem::Complaint, section::Section};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use world::{Boundary, Obstacle, ObstacleId, Point, Shape};
+use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
 
 /// Places tried for each obstacle before giving up.
 const TRIES_PER_OBSTACLE: usize = 200;
@@ -66,12 +66,18 @@ impl RandomObstacles {
     /// `free` are the places to keep clear.
     pub fn place(&self, boundary: &Boundary, free: &[Point], obstacles: &mut Vec<Obstacle>) -> usize {
         let mut chance = Pcg64Mcg::seed_from_u64(self.seed);
+        let by_hand = ObstacleMap::new(boundary, obstacles);
+        let mut placed: Vec<(Point, f64)> = Vec::new();
         let next_id = obstacles.iter().map(|obstacle| obstacle.id.0 + 1).max().unwrap_or(1);
         for n in 0..self.count {
-            let found = (0..TRIES_PER_OBSTACLE)
-                .map(|_| self.candidate(boundary, &mut chance))
-                .find(|(center, radius_m)| self.fits(boundary, free, obstacles, *center, *radius_m));
+            let found = (0..TRIES_PER_OBSTACLE).map(|_| self.candidate(boundary, &mut chance)).find(
+                |(center, radius_m)| {
+                    self.is_on_clear_floor(boundary, free, *center, *radius_m)
+                        && self.has_gaps(&by_hand, &placed, *center, *radius_m)
+                },
+            );
             let Some((center, radius_m)) = found else { return n };
+            placed.push((center, radius_m));
             obstacles.push(Obstacle {
                 id: ObstacleId(next_id + n as u32),
                 name: format!("random {}", n + 1),
@@ -89,18 +95,16 @@ impl RandomObstacles {
         (center, between(self.radius_m[0], self.radius_m[1]))
     }
 
-    fn fits(
-        &self,
-        boundary: &Boundary,
-        free: &[Point],
-        obstacles: &[Obstacle],
-        center: Point,
-        radius_m: f64,
-    ) -> bool {
+    fn is_on_clear_floor(&self, boundary: &Boundary, free: &[Point], center: Point, radius_m: f64) -> bool {
         let on_floor = self.sampling == Sampling::Square || boundary.contains(center);
-        let is_free = |point: &Point| (center - point).norm() - radius_m >= self.keep_clear_m;
-        let has_gap = |other: &Obstacle| other.shape.distance_m(center) - radius_m >= self.min_gap_m;
-        on_floor && free.iter().all(is_free) && (self.min_gap_m == 0.0 || obstacles.iter().all(has_gap))
+        on_floor && free.iter().all(|point| (center - point).norm() - radius_m >= self.keep_clear_m)
+    }
+
+    fn has_gaps(&self, by_hand: &ObstacleMap, placed: &[(Point, f64)], center: Point, radius_m: f64) -> bool {
+        let gap_m = |(other, other_m): &(Point, f64)| (other - center).norm() - other_m - radius_m;
+        self.min_gap_m == 0.0
+            || (by_hand.obstacle_distance_m(center) - radius_m >= self.min_gap_m
+                && placed.iter().all(|disc| gap_m(disc) >= self.min_gap_m))
     }
 }
 
@@ -119,7 +123,8 @@ mod tests {
             seed,
         };
         let mut obstacles = Vec::new();
-        let placed = random.place(&Boundary::Circle { radius_m: 10.0 }, &[Point::new(10.0, 0.0)], &mut obstacles);
+        let placed =
+            random.place(&Boundary::Circle { radius_m: 10.0 }, &[Point::new(10.0, 0.0)], &mut obstacles);
         assert_eq!(placed, 39);
         obstacles
     }

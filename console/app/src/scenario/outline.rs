@@ -154,7 +154,10 @@ mod tests {
 
     #[test]
     fn an_arrowhead_has_a_dent() {
-        assert_eq!(dent(&ring(&[(0.0, 0.0), (2.0, 1.0), (0.0, 2.0), (0.5, 1.0)])), Some(Point::new(0.5, 1.0)));
+        assert_eq!(
+            dent(&ring(&[(0.0, 0.0), (2.0, 1.0), (0.0, 2.0), (0.5, 1.0)])),
+            Some(Point::new(0.5, 1.0))
+        );
         assert_eq!(dent(&ring(&[(0.0, 0.0), (2.0, 1.0), (0.0, 2.0)])), None);
     }
 }

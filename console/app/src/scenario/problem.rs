@@ -224,24 +224,15 @@ pub enum Complaint {
         /// How many did.
         placed: usize,
     },
-    /// Something else that does not fit together.
-    #[error("{what}")]
-    Conflict {
-        /// What is wrong.
-        what: String,
-        /// What to do about it.
-        remedy: String,
-    },
 }
 
 impl Complaint {
     /// What to do about it, where that is not plain from the message.
     pub fn help(&self) -> Option<String> {
         let text = match self {
-            Self::UnknownKey { remedy }
-            | Self::Missing { remedy }
-            | Self::WrongType { remedy, .. }
-            | Self::Conflict { remedy, .. } => remedy.clone(),
+            Self::UnknownKey { remedy } | Self::Missing { remedy } | Self::WrongType { remedy, .. } => {
+                remedy.clone()
+            }
             Self::TooLarge { .. } | Self::NotText { .. } => {
                 "a scenario is a short TOML file; is this the right file?".into()
             }

@@ -21,6 +21,8 @@ pub struct Robot {
     pub start_heading_rad: Option<f64>,
     /// Standard deviation of the surveyed start, metres.
     pub start_sigma_m: f64,
+    /// Standard deviation of the surveyed heading at the start, radians.
+    pub start_heading_sigma_rad: f64,
     /// Average share of the way lost to slip.
     pub slip_mean: f64,
     /// Its standard deviation from tick to tick.
@@ -32,17 +34,29 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// Standard deviation that the estimator may expect of the way, metres per metre: odometry's own error and slip
-    /// together, at least one per cent.
+    /// Standard deviation of the way as a share of it that the estimator may expect: odometry's own error and slip
+    /// together, never less than 2 %.
     pub fn odometry_sigma_per_m(&self) -> f64 {
         let squares = [self.odometry_sigma_ratio, self.slip_mean, self.slip_sigma].map(|share| share * share);
-        squares.iter().sum::<f64>().sqrt().max(0.01)
+        squares.iter().sum::<f64>().sqrt().max(0.02)
+    }
+
+    /// Standard deviation of a turn as a share of it that the estimator may expect, never less than 1 %.
+    pub fn turn_sigma_per_rad(&self) -> f64 {
+        self.odometry_sigma_ratio.max(0.01)
+    }
+
+    /// Standard deviation of the heading's drift that the estimator may expect, radians per second, never less than
+    /// a good gyro's 3 degrees a minute.
+    pub fn gyro_sigma_rad_per_s(&self) -> f64 {
+        self.gyro_bias_rad_per_s.abs().max(0.05_f64.to_radians())
     }
 }
 
 /// Reads `[robot]`.
 pub fn robot(section: &Section<'_>) -> Option<Robot> {
-    let motion = section.word("motion").map(|word| if word == "point" { Motion::Point } else { Motion::Unicycle });
+    let motion =
+        section.word("motion").map(|word| if word == "point" { Motion::Point } else { Motion::Unicycle });
     let radius_m = section.number("radius_m");
     if motion == Some(Motion::Unicycle) && radius_m == Some(0.0) {
         let must_be = "greater than 0 m; only motion = \"point\" has no hull";
@@ -55,6 +69,7 @@ pub fn robot(section: &Section<'_>) -> Option<Robot> {
     let start = section.point("start_m");
     let heading_deg = section.number("start_heading_deg");
     let start_sigma_m = section.number("start_sigma_m");
+    let start_heading_sigma_deg = section.number("start_heading_sigma_deg");
     let (slip_mean, slip_sigma) = (section.number("slip_mean"), section.number("slip_sigma"));
     let odometry_sigma_ratio = section.number("odometry_sigma_ratio");
     let gyro_bias_deg = section.number("gyro_bias_deg_per_s");
@@ -70,6 +85,7 @@ pub fn robot(section: &Section<'_>) -> Option<Robot> {
         start,
         start_heading_rad: heading_deg.map(f64::to_radians),
         start_sigma_m: start_sigma_m?,
+        start_heading_sigma_rad: start_heading_sigma_deg?.to_radians(),
         slip_mean: slip_mean?,
         slip_sigma: slip_sigma?,
         odometry_sigma_ratio: odometry_sigma_ratio?,
@@ -106,7 +122,10 @@ fn noise(section: &Section<'_>) -> Option<NoiseModel> {
         }
         "gaussian" => {
             noise.refuse(&["ratio"], &beside);
-            noise.require("sigma_ratio", "add sigma_ratio = 0.03 for a standard deviation of 3 % of the distance");
+            noise.require(
+                "sigma_ratio",
+                "add sigma_ratio = 0.03 for a standard deviation of 3 % of the distance",
+            );
             Some(NoiseModel::Gaussian { sigma_ratio: noise.number("sigma_ratio")? })
         }
         _ => {

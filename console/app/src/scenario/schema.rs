@@ -233,6 +233,7 @@ static ROBOT: &[Key] = &[
     point("start_m").or_none("the first point of the path"),
     number("start_heading_deg", "deg", ANGLE).or_none("towards the second point of the path, or the goal"),
     number("start_sigma_m", "m", at_least(0.0).up_to(10.0)).or(0.02),
+    number("start_heading_sigma_deg", "deg", at_least(0.0).up_to(180.0)).or(1.0),
     number("slip_mean", "", at_least(0.0).up_to(0.9)).or(0.0),
     number("slip_sigma", "", SHARE).or(0.0),
     number("odometry_sigma_ratio", "", SHARE).or(0.02),

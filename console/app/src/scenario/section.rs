@@ -13,6 +13,9 @@ use toml::{
 };
 use world::Point;
 
+/// Problems noted; more of them help nobody.
+const MOST_PROBLEMS: usize = 200;
+
 /// Obstacles, zones or stations that a scenario may have.
 const MOST_ENTRIES: usize = 1000;
 
@@ -32,9 +35,16 @@ impl<'a> Source<'a> {
         Self { text, problems: RefCell::default() }
     }
 
-    /// Notes a problem.
+    /// Notes a problem, unless there are more than anyone will read.
     pub fn note(&self, problem: Problem) {
-        self.problems.borrow_mut().push(problem);
+        if !self.is_full() {
+            self.problems.borrow_mut().push(problem);
+        }
+    }
+
+    /// Whether further problems go unnoted.
+    fn is_full(&self) -> bool {
+        self.problems.borrow().len() >= MOST_PROBLEMS
     }
 
     /// Everything noted, in the order of the text.
@@ -98,10 +108,12 @@ impl<'a> Section<'a> {
     }
 
     fn refuse_unknown(&self) {
-        let unknown = self.table.into_iter().flat_map(DeTable::iter).filter(|(name, _)| {
-            !self.keys.iter().any(|key| key.name == &**name.get_ref())
-        });
-        for (name, value) in unknown {
+        let unknown = self
+            .table
+            .into_iter()
+            .flat_map(DeTable::iter)
+            .filter(|(name, _)| !self.keys.iter().any(|key| key.name == &**name.get_ref()));
+        for (name, value) in unknown.take_while(|_| !self.source.is_full()) {
             let number = as_number(value.get_ref());
             let remedy = suggest::remedy(&self.path, self.keys, name.get_ref(), number);
             let shown = number.is_some().then(|| self.source.excerpt(&value.span()));
@@ -192,7 +204,9 @@ impl<'a> Section<'a> {
     /// A number; its default if it is not given, `None` if that is absent or something is wrong.
     pub fn number(&self, name: &str) -> Option<f64> {
         let key = self.key(name);
-        let (Kind::Number(span), unit) = (key.kind, key.unit) else { panic!("{name} is declared as a number") };
+        let (Kind::Number(span), unit) = (key.kind, key.unit) else {
+            panic!("{name} is declared as a number")
+        };
         match (self.required(name), key.default) {
             (None, Default::Number(default)) => Some(default),
             (None, _) => None,
@@ -203,7 +217,9 @@ impl<'a> Section<'a> {
     fn checked_number(&self, key: String, value: &Value<'_>, span: Span, unit: &str) -> Option<f64> {
         let Some(number) = as_number(value.get_ref()) else {
             let remedy = match value.get_ref() {
-                DeValue::String(text) if text.trim().parse::<f64>().is_ok() => "leave out the quotes".to_owned(),
+                DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
+                    "leave out the quotes".to_owned()
+                }
                 _ if unit.is_empty() => "write a plain number".to_owned(),
                 _ => format!("write a plain number, in {unit}"),
             };
@@ -300,7 +316,8 @@ impl<'a> Section<'a> {
 
     fn checked_point(&self, key: String, value: &Value<'_>) -> Option<Point> {
         let span = super::schema::at_least(-FAR_M).up_to(FAR_M);
-        let [x, y] = self.checked_pair(key, value, span, "m", "write [x, y] in metres from the tank's centre")?;
+        let [x, y] =
+            self.checked_pair(key, value, span, "m", "write [x, y] in metres from the tank's centre")?;
         Some(Point::new(x, y))
     }
 
@@ -365,7 +382,8 @@ impl<'a> Section<'a> {
             .enumerate()
             .map(|(i, value)| {
                 let key = format!("{}.{i}", self.path_of(name));
-                let [from, to] = self.checked_pair(key.clone(), value, span, "s", "write [from, to] in seconds")?;
+                let [from, to] =
+                    self.checked_pair(key.clone(), value, span, "s", "write [from, to] in seconds")?;
                 if from >= to {
                     let must_be = "from an earlier to a later time".to_owned();
                     self.complain_at(key, &value.span(), Complaint::OutOfRange(must_be));
@@ -407,7 +425,10 @@ impl<'a> Section<'a> {
             self.complain(name, Complaint::TooMany { have: list.len(), most: MOST_ENTRIES });
             return Vec::new();
         }
-        list.iter().enumerate().filter_map(|(i, value)| self.inner(&format!("{name}.{i}"), keys, value)).collect()
+        list.iter()
+            .enumerate()
+            .filter_map(|(i, value)| self.inner(&format!("{name}.{i}"), keys, value))
+            .collect()
     }
 
     /// Planner parameters; none if not given.
@@ -420,7 +441,9 @@ impl<'a> Section<'a> {
         };
         let found: Vec<_> = table
             .iter()
-            .map(|(key, value)| Some((key.get_ref().to_string(), self.parameter(name, key.get_ref(), value)?)))
+            .map(|(key, value)| {
+                Some((key.get_ref().to_string(), self.parameter(name, key.get_ref(), value)?))
+            })
             .collect();
         found.into_iter().collect()
     }

@@ -56,7 +56,9 @@ pub fn remedy(section: &str, keys: &'static [Key], unknown: &str, value: Option<
     // Names are compared letter by letter; nobody means a known key by a page of text.
     let short: String = unknown.chars().take(64).collect();
     same_quantity(keys, &short, value)
-        .or_else(|| nearest(&short, keys.iter().map(|key| key.name)).map(|name| format!("did you mean `{name}`?")))
+        .or_else(|| {
+            nearest(&short, keys.iter().map(|key| key.name)).map(|name| format!("did you mean `{name}`?"))
+        })
         .or_else(|| elsewhere(&short))
         .unwrap_or_else(|| all_names(section, keys))
 }
@@ -66,7 +68,7 @@ fn same_quantity(keys: &[Key], unknown: &str, value: Option<f64>) -> Option<Stri
     let (stem, unit) = split_unit(unknown);
     let right = keys.iter().find(|key| !key.unit.is_empty() && split_unit(key.name).0 == stem)?;
     let converted = match (unit, value) {
-        (Some((unit, factor)), Some(value)) if unit == right.unit && factor != 1.0 => {
+        (Some((unit, factor)), Some(value)) if unit == right.unit && (factor - 1.0).abs() > 0.0 => {
             format!(": write {} = {}", right.name, rounded(value * factor))
         }
         _ => String::new(),
@@ -108,7 +110,10 @@ mod tests {
 
     #[test]
     fn another_unit_is_converted() {
-        assert_eq!(remedy("tank", keys("tank"), "radius_cm", Some(500.0)), "`radius_m` is the key, in m: write radius_m = 5");
+        assert_eq!(
+            remedy("tank", keys("tank"), "radius_cm", Some(500.0)),
+            "`radius_m` is the key, in m: write radius_m = 5"
+        );
         assert_eq!(
             remedy("robot", keys("robot"), "speed_max_kmh", Some(3.6)),
             "`speed_max_m_per_s` is the key, in m/s: write speed_max_m_per_s = 1"
@@ -133,6 +138,9 @@ mod tests {
 
     #[test]
     fn a_section_of_the_future_gets_the_list() {
-        assert!(remedy("", keys(""), "tether", None).starts_with("a scenario has the keys name, about, seed, tank"));
+        assert!(
+            remedy("", keys(""), "tether", None)
+                .starts_with("a scenario has the keys name, about, seed, tank")
+        );
     }
 }

@@ -25,7 +25,11 @@ pub fn task(section: &Section<'_>, boundary: Option<&Boundary>, radius_m: Option
     Some(TaskConfig::Follow { path, tolerance_m: tolerance_m? })
 }
 
-fn preset_path(section: &Section<'_>, boundary: Option<&Boundary>, radius_m: Option<f64>) -> Option<Vec<Point>> {
+fn preset_path(
+    section: &Section<'_>,
+    boundary: Option<&Boundary>,
+    radius_m: Option<f64>,
+) -> Option<Vec<Point>> {
     let walls = boundary.zip(radius_m);
     if section.has("spiral") {
         section.refuse(&["path_m"], "spiral");
@@ -89,7 +93,7 @@ pub fn planner(section: &Section<'_>) -> Option<PlannerChoice> {
     Some(PlannerChoice { id: id?, parameters: parameters? })
 }
 
-/// Reads the planner that takes over after a fault; `None` within if there is none.
-pub fn fallback(section: &Section<'_>) -> Option<Option<PlannerChoice>> {
-    if section.has("fallback") { planner(&section.table("fallback")?).map(Some) } else { Some(None) }
+/// Reads the planner that takes over after a fault; `None` if there is none, or something is wrong with it.
+pub fn fallback(section: &Section<'_>) -> Option<PlannerChoice> {
+    planner(&section.table("fallback")?)
 }

@@ -51,6 +51,7 @@ fn opened() -> Value {
         "start": { "position": [-1.75, 0.0], "heading_rad": 0.0 },
         "start_sigma_m": 0.0, "tick_s": 0.5, "time_limit_s": 100.0, "limits": limits, "swath_m": 1.0,
         "clearance_m": 0.0, "cell_m": 0.5, "position_limit_m": 0.5, "lost_hold_s": 2.0, "stuck_s": 30.0,
+        "start_heading_sigma_rad": 0.02, "odometry_turn_sigma_per_rad": 0.02, "gyro_sigma_rad_per_s": 0.001,
         "odometry_sigma_per_m": 0.02, "range_sigma_ratio": 0.03,
         "planner": { "id": "rpf", "parameters": { "k_rep": 2.0 } }, "fallback": null,
     });
