@@ -5,7 +5,6 @@ mod drawing;
 use crate::{
     cli::PlanArgs,
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
-    flight::Pace,
     scenario::Scenario,
 };
 use anyhow::Context;

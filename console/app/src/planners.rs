@@ -2,7 +2,7 @@
 
 use crate::{
     failure::{BAD_INPUT, COMPLETE, bad_input},
-    scenario::Scenario,
+    scenario::{Scenario, Settings},
 };
 use anyhow::Context;
 use mission::{ParamInfo, ParamKind, PlannerChoice, PlannerInfo};
@@ -116,7 +116,7 @@ fn check_file(file: &Path) -> Result<String, String> {
     if is_plugin {
         return check_plugin(file);
     }
-    let scenario = Scenario::read(file).map_err(|errors| errors.render())?;
+    let scenario = Scenario::read_with(file, &Settings::default()).map_err(|errors| errors.render())?;
     Ok(format!("scenario {}, planner {}", scenario.name, scenario.mission.planner.id))
 }
 

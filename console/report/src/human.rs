@@ -176,7 +176,8 @@ fn tether(tether: &Tether) -> String {
 fn calls(calls: &PlannerCalls) -> String {
     let PlannerCalls { plan, step, p50_us, p99_us, faults } = calls;
     let (plans, steps, faults) = (counted(*plan, "plan"), counted(*step, "step"), counted(*faults, "fault"));
-    format!("{plans}, {steps} of {p50_us:.0} µs median and {p99_us:.0} µs in 99 %, {faults}")
+    let time = |value: &Option<f64>| value.map_or_else(|| "-".into(), |us| format!("{us:.0} µs"));
+    format!("{plans}, {steps} of {} median and {} in 99 %, {faults}", time(p50_us), time(p99_us))
 }
 
 fn under_way(run: &Summary) -> Option<String> {

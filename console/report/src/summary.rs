@@ -145,10 +145,10 @@ pub struct PlannerCalls {
     pub plan: u64,
     /// Steps asked for.
     pub step: u64,
-    /// Median time of a step, microseconds.
-    pub p50_us: f64,
-    /// Not exceeded by 99 % of the steps, microseconds.
-    pub p99_us: f64,
+    /// Median time of a step, microseconds; absent without steps.
+    pub p50_us: Option<f64>,
+    /// Not exceeded by 99 % of the steps, microseconds; absent without steps.
+    pub p99_us: Option<f64>,
     /// Calls that failed.
     pub faults: u64,
 }
@@ -160,4 +160,6 @@ pub struct Logs {
     pub journal: Option<String>,
     /// The recording.
     pub recording: Option<String>,
+    /// What went wrong while they were written; absent if they are whole.
+    pub error: Option<String>,
 }

@@ -55,7 +55,7 @@ impl<'a> Screen<'a> {
         let terminal = TerminalGuard::enter().context("taking over the terminal")?;
         let mut model = Model::default();
         model.console.speed = super::START_SPEED;
-        let (width, height) = terminal.size().unwrap_or((80, 24));
+        let (width, height) = crossterm::terminal::size().unwrap_or((80, 24));
         update(&mut model, Msg::Resize { width, height });
         let now = Instant::now();
         Ok(Self {
