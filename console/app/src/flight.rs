@@ -4,6 +4,7 @@ use crate::scenario::Scenario;
 use mission::{Event, EventKind, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION};
 use planner_api::Drive;
 use planner_host::{Host, HostConfig, PluginDirs};
+use report::PlannerCalls;
 use sim::Simulator;
 use std::time::Duration;
 use world::Floor;
@@ -58,7 +59,7 @@ impl Flight {
             mission: config.clone(),
             floor: floor.clone(),
         };
-        let host_config = HostConfig { step_deadline: pace.step_deadline(config.tick_s), ..HostConfig::default() };
+        let host_config = HostConfig::new(pace.step_deadline(config.tick_s));
         Self {
             simulator: Simulator::new(scenario.sim.clone(), scenario.seed),
             host: Host::new(plugins, host_config),
@@ -85,8 +86,15 @@ impl Flight {
     }
 
     /// Figures about the planner's calls, by the wall clock.
-    pub fn host(&self) -> &Host {
-        &self.host
+    pub fn planner_calls(&self) -> PlannerCalls {
+        let stats = self.host.stats();
+        PlannerCalls {
+            plan: stats.plan.calls,
+            step: stats.step.calls,
+            p50_us: stats.step.p50_us,
+            p99_us: stats.step.p99_us,
+            faults: stats.faults,
+        }
     }
 
     /// Flies one tick: sense, decide, act. The truth goes into the events first, and nowhere else.

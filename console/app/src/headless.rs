@@ -12,7 +12,7 @@ use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use mission::{Event, EventKind, Order, Outcome, Phase};
 use planner_host::PluginDirs;
-use recording::{Options, RunRecorder};
+use recording::{JournalWriter, Options, RunRecorder};
 use report::{Fold, Logs, Summary};
 use std::{
     io::IsTerminal,
@@ -40,6 +40,7 @@ pub fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
 
 /// Flies a scenario to its end and tells the result.
 pub fn fly(scenario: &Scenario, plugins: &PluginDirs, logs: &LogsArg, telling: Telling) -> anyhow::Result<ExitCode> {
+    crate::planners::check_choices(scenario, plugins)?;
     let began = Instant::now();
     let flight = Flight::prepare(scenario, false, plugins, Pace::Batch);
     let folder = telling
@@ -48,7 +49,7 @@ pub fn fly(scenario: &Scenario, plugins: &PluginDirs, logs: &LogsArg, telling: T
         .transpose()?;
     let recorder = match &folder {
         Some(folder) => RunRecorder::start(folder.path(), Options::default())?,
-        None => RunRecorder::unrecorded()?,
+        None => RunRecorder::spawn(JournalWriter::unwritten(began), None)?,
     };
     let bar = progress_bar(scenario, telling);
     let (flight, fold) = fly_to_end(flight, &recorder, &bar);
@@ -59,8 +60,8 @@ pub fn fly(scenario: &Scenario, plugins: &PluginDirs, logs: &LogsArg, telling: T
         events_sha256: finished.events_sha256,
         planner_calls: Some(flight.planner_calls()),
         logs: folder.is_some().then(|| Logs {
-            journal: finished.journal,
-            recording: finished.recording,
+            journal: finished.journal.map(|path| path.display().to_string()),
+            recording: finished.recording.map(|path| path.display().to_string()),
             error: finished.error.clone(),
         }),
         ..fold.summary()

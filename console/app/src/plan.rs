@@ -56,7 +56,7 @@ pub fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
 }
 
 fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planned> {
-    let mut host = Host::new(plugins, HostConfig { step_deadline: Duration::from_secs(1), ..HostConfig::default() });
+    let mut host = Host::new(plugins, HostConfig::new(Duration::from_secs(1)));
     let began = Instant::now();
     let answer = preview(&scenario.mission, &scenario.sim.world.as_drawn(), scenario.seed, &mut host);
     let plan_time_ms = host.stats().plan.p50_us.unwrap_or(began.elapsed().as_secs_f64() * 1e6) / 1e3;

@@ -31,7 +31,7 @@ pub use host::{Host, HostConfig};
 pub use parameters::check_parameters;
 pub use stats::{CallStats, HostStats};
 pub use supervisor::WorkerCommand;
-pub use survey::{Survey, SurveyedPlugin, survey};
+pub use survey::{Survey, SurveyedPlugin, check_plugin, survey};
 #[cfg(unix)]
 pub use worker::worker_main;
 

@@ -53,6 +53,11 @@ pub fn survey(dirs: &PluginDirs, worker: &WorkerCommand) -> Survey {
     Survey { plugins }
 }
 
+/// Looks at one file, wherever it lies and whatever it is called.
+pub fn check_plugin(file: &Path, worker: &WorkerCommand) -> SurveyedPlugin {
+    look_at(&PluginFile::read(file.to_path_buf()), worker, &mut Vec::new())
+}
+
 fn look_at(plugin: &PluginFile, worker: &WorkerCommand, known: &mut Vec<String>) -> SurveyedPlugin {
     let mut surveyed = SurveyedPlugin {
         path: plugin.path.clone(),

@@ -127,8 +127,8 @@ impl Positioner {
         };
         let mut fix = self.solve(&rangings);
         let accepted = match &mut fix {
-            Ok(fix) => self.take_fix(fix),
-            Err(FixError::TooFewStations { .. }) => self.take_single_ranges(&rangings),
+            Ok(fix) => self.take_fix(fix, &rangings),
+            Err(FixError::TooFewStations { .. }) => self.take_ranges(&rangings),
             Err(_) => false,
         };
         CycleResult { rangings, fix, accepted }
@@ -178,11 +178,11 @@ impl Positioner {
     }
 
     /// Hands a fix to the filter; a fix that contradicts the filter is suspect.
-    fn take_fix(&mut self, fix: &mut Fix) -> bool {
+    fn take_fix(&mut self, fix: &mut Fix, rangings: &[Ranging]) -> bool {
         if fix.integrity == Integrity::Alarm {
             return false;
         }
-        if self.filter.update_position(fix.position, &fix.covariance).accepted {
+        if self.filter_accepts(fix, rangings) {
             self.refused_in_a_row = 0;
             return true;
         }
@@ -201,13 +201,36 @@ impl Positioner {
         true
     }
 
-    fn take_single_ranges(&mut self, rangings: &[Ranging]) -> bool {
-        rangings.iter().fold(false, |taken, ranging| {
+    /// Corrects the filter where the geometry is better known.
+    ///
+    /// Close to a station the error of a fix is bent like the range circle and no ellipse holds it; a filter that is
+    /// surer than the fix takes the ranges instead, as seen from where it believes to be.
+    fn filter_accepts(&mut self, fix: &Fix, rangings: &[Ranging]) -> bool {
+        if self.filter.error_95_m() < fix.ellipse_95().0 {
+            let used: Vec<Ranging> =
+                rangings.iter().filter(|r| fix.used.contains(&r.station)).copied().collect();
+            self.take_ranges(&used)
+        } else {
+            self.filter.update_position(fix.position, &fix.covariance).accepted
+        }
+    }
+
+    /// Corrects the filter by single ranges, by all or by none; whether it took them.
+    fn take_ranges(&mut self, rangings: &[Ranging]) -> bool {
+        let mut filter = self.filter.clone();
+        let fits = |ranging: &Ranging| {
             let station = self.config.stations.iter().find(|s| s.id == ranging.station);
-            let update =
-                station.map(|s| self.filter.update_range(s.position, ranging.range_m, ranging.sigma_m));
-            taken | update.is_some_and(|u| u.accepted)
-        })
+            station.is_some_and(|station| {
+                let expected_m = (filter.pose().position - station.position).norm();
+                let sigma_m = ranging.sigma_m * expected_m / ranging.range_m;
+                filter.update_range(station.position, ranging.range_m, sigma_m).accepted
+            })
+        };
+        let is_taken = !rangings.is_empty() && rangings.iter().all(fits);
+        if is_taken {
+            self.filter = filter;
+        }
+        is_taken
     }
 }
 

@@ -83,11 +83,11 @@ fn gdop(anchors: &[Anchor], position: Point) -> f64 {
     inverse_of(&information).map_or(NO_GEOMETRY, |inverse| inverse.trace().max(0.0).sqrt().min(NO_GEOMETRY))
 }
 
-/// The inverse of a symmetric matrix, if it has a finite and positive one.
+/// The inverse of a symmetric matrix that is no negative one, unless it is all but singular.
 pub(crate) fn inverse_of(information: &Matrix2<f64>) -> Option<Matrix2<f64>> {
     let (a, b, c) = (information[(0, 0)], information[(0, 1)], information[(1, 1)]);
     let determinant = a * c - b * b;
-    let is_sound = determinant > 1e-14 * a * c && determinant.is_finite();
+    let is_sound = determinant > 1e-14 * (a + c).powi(2) && determinant.is_finite();
     is_sound.then(|| Matrix2::new(c, -b, -b, a) / determinant)
 }
 

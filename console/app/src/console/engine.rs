@@ -239,8 +239,8 @@ impl Cockpit {
             events_sha256: finished.events_sha256,
             planner_calls: Some(self.flight.planner_calls()),
             logs: Some(Logs {
-                journal: finished.journal,
-                recording: finished.recording,
+                journal: finished.journal.map(|path| path.display().to_string()),
+                recording: finished.recording.map(|path| path.display().to_string()),
                 error: finished.error.clone(),
             }),
             ..log.fold.summary()
