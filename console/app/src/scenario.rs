@@ -17,6 +17,7 @@ mod robot;
 mod schema;
 mod section;
 mod settings;
+mod source;
 mod suggest;
 mod task;
 

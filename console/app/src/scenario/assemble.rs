@@ -7,7 +7,8 @@ use super::{
     problem::{Complaint, Problem},
     robot::{self, Robot},
     schema,
-    section::{Section, Source},
+    section::Section,
+    source::Source,
     task,
 };
 use mission::{MissionConfig, TaskConfig};
