@@ -18,8 +18,8 @@ pub(crate) fn command(command: &Command, limits: &Limits) -> Result<(), String> 
 }
 
 fn within(what: &str, value: f64, limit: f64, unit: &str) -> Result<(), String> {
-    if !value.is_finite() {
-        return Err(format!("gave {what} that is no finite number"));
+    if value.is_nan() {
+        return Err(format!("gave {what} that is not a number"));
     }
     if value > limit + SLACK {
         return Err(format!("gave {what} of {value:?} {unit}, the robot's limit is {limit} {unit}"));

@@ -54,6 +54,13 @@ impl HostConfig {
     }
 }
 
+impl Default for HostConfig {
+    /// With a tenth of a second for a command.
+    fn default() -> Self {
+        Self::new(Duration::from_millis(100))
+    }
+}
+
 /// Runs planners for one mission, each in a worker process.
 ///
 /// A plugin that fails three times within a minute of mission time is quarantined by the hash of its file and cannot

@@ -4,7 +4,7 @@ use crate::discovery::{PluginDirs, PluginFile};
 use crate::stamp::Abi;
 use crate::supervisor::{Failure, Worker, WorkerCommand};
 use crate::wire::answer::{Described, Loaded};
-use crate::wire::body::Body;
+use crate::wire::body::Writer;
 use crate::wire::{self, kind};
 use mission::PlannerInfo;
 use std::path::{Path, PathBuf};
@@ -91,10 +91,10 @@ pub(crate) fn load(
     within: Duration,
     memory_limit_bytes: u64,
 ) -> Result<Loaded, Failure> {
-    let write = |w: &mut wire::body::Writer| {
+    let write = |w: &mut Writer| {
         w.u32(wire::VERSION).u64(memory_limit_bytes).bytes(path.as_os_str().as_encoded_bytes()).text(id);
     };
-    worker.ask(kind::LOAD, within, write, Body::loaded)
+    worker.ask(kind::LOAD, within, write, |body| body.loaded())
 }
 
 /// A planner as the mission knows it.

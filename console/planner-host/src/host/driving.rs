@@ -62,7 +62,8 @@ impl Driving {
         let write = |w: &mut Writer| {
             w.values(&values).site(site);
         };
-        let answer = driving.worker.ask(kind::CONFIGURE, config.configure_deadline, write, Body::said);
+        let answer =
+            driving.worker.ask(kind::CONFIGURE, config.configure_deadline, write, |body| body.said());
         let said = driving.judged(answer, Phase::Configure)?;
         Ok((driving, said))
     }
@@ -93,7 +94,7 @@ impl Driving {
         let write = |w: &mut Writer| {
             w.values(&values);
         };
-        let answer = self.worker.ask(kind::RECONFIGURE, config.configure_deadline, write, Body::said);
+        let answer = self.worker.ask(kind::RECONFIGURE, config.configure_deadline, write, |body| body.said());
         let said = self.judged(answer, Phase::Configure)?;
         self.parameters = merged;
         Ok(said)

@@ -33,9 +33,9 @@ impl Phase {
 impl fmt::Display for Phase {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Load => f.write_str("loading"),
-            Self::Configure => f.write_str("configuration"),
-            Self::Plan => f.write_str("planning"),
+            Self::Load => f.write_str("load"),
+            Self::Configure => f.write_str("configure"),
+            Self::Plan => f.write_str("plan"),
             Self::State => f.write_str("saving its state"),
             Self::Step(tick) => write!(f, "step {tick}"),
         }

@@ -234,7 +234,7 @@ mod tests {
         let write = |w: &mut Writer| {
             w.loaded(&loaded);
         };
-        assert_eq!(carried(write, Body::loaded), loaded);
+        assert_eq!(carried(write, |body| body.loaded()), loaded);
     }
 
     #[test]
@@ -252,7 +252,7 @@ mod tests {
         let write = |w: &mut Writer| {
             w.said(&said);
         };
-        assert_eq!(carried(write, Body::said), said);
+        assert_eq!(carried(write, |body| body.said()), said);
     }
 
     #[test]
