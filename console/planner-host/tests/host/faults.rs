@@ -115,7 +115,7 @@ fn a_planner_that_does_not_answer_is_killed_in_time() {
         let sentence = "planner faulty did not answer step 5 in time and ignored the request to stop; its process was killed";
         assert_eq!(fault.message, sentence, "{kind}");
         // Deadline, grace, at most 150 ms to reap; the rest is a busy machine.
-        assert!(took < Duration::from_millis(1000), "{kind} took {took:?}");
+        assert!(took < Duration::from_secs(1), "{kind} took {took:?}");
         assert_eq!(step(&mut host, 6).unwrap_err().cause, Cause::Died, "it is gone");
         assert_another_drives(&mut host);
     }
