@@ -71,6 +71,7 @@ fn held(model: &Model, by: &HoldReason) -> (Role, String) {
         HoldReason::Operator => "HELD by you. space asks to go on, P changes the planner.".into(),
         HoldReason::Stepped => "HELD after a step. space asks to go on.".into(),
         HoldReason::PositionLost => "HELD, position lost. Goes on by itself when regained; space keeps it held.".into(),
+        HoldReason::Stuck { message } => format!("HELD, stuck. P changes the planner, space tries again. {message}"),
         HoldReason::PlannerFault { message } if model.has_fallback() => {
             format!("HELD, planner failed. The fallback takes over if it can. {message}")
         }
