@@ -152,7 +152,7 @@ impl Sheet {
                     circles.push((flat(center), radius_m as f32));
                 }
                 Drawing::Line { layer, from, to } if layer == self.layer => {
-                    lines.push([flat(from), flat(to)])
+                    lines.push([flat(from), flat(to)]);
                 }
                 _ => {}
             }
