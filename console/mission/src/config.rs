@@ -62,12 +62,21 @@ pub struct MissionConfig {
     pub lost_hold_s: f64,
     /// The mission ends as stuck after this time without progress, seconds.
     pub stuck_s: f64,
-    /// Standard deviation of odometry per metre travelled, metres.
+    /// Standard deviation of the surveyed heading at the start, radians.
+    pub start_heading_sigma_rad: f64,
+    /// Standard deviation of odometry as a share of the way travelled.
     pub odometry_sigma_per_m: f64,
+    /// Standard deviation of odometry as a share of the angle turned.
+    pub odometry_turn_sigma_per_rad: f64,
+    /// Standard deviation of the heading's drift, radians per second.
+    pub gyro_sigma_rad_per_s: f64,
     /// Standard deviation of a range as a share of the range.
     pub range_sigma_ratio: f64,
     /// The planner that drives first.
     pub planner: PlannerChoice,
     /// The planner that takes over by itself after a fault, if any.
     pub fallback: Option<PlannerChoice>,
+    /// Whether an operator is there; without one a hold that only an operator could end ends the mission.
+    #[serde(default)]
+    pub attended: bool,
 }

@@ -70,6 +70,8 @@ pub enum EventKind {
     FixFailed {
         /// Why.
         error: FixError,
+        /// Whether the cycle before failed too; the log tells only the first of a row.
+        repeated: bool,
     },
     /// A station was left out of a fix for the first time since it was used.
     StationExcluded {
@@ -177,8 +179,8 @@ pub enum EventKind {
     Progressed {
         /// Share of the task done, 0 to 1.
         done: f64,
-        /// Way along the preset path, or way flown, metres.
-        along_m: f64,
+        /// Way along the preset path, metres; absent without one.
+        along_m: Option<f64>,
         /// Distance from the preset path, metres; absent without one.
         cross_track_m: Option<f64>,
         /// Where the robot goes next.
@@ -313,17 +315,23 @@ impl Event {
     pub fn log_line(&self) -> Option<LogLine> {
         let line = |severity, source, text| Some(LogLine { severity, source, text });
         match &self.kind {
-            EventKind::RunOpened(run) => {
-                line(Severity::Info, "mission", format!("run opened: scenario {}, seed {}", run.scenario, run.seed))
-            }
+            EventKind::RunOpened(run) => line(
+                Severity::Info,
+                "mission",
+                format!("run opened: scenario {}, seed {}", run.scenario, run.seed),
+            ),
             EventKind::Ordered { order } => line(Severity::Info, "cmd", order_text(order)),
             EventKind::OrderRefused { order, why } => {
                 line(Severity::Warn, "cmd", format!("{} refused: {why}", order_text(order)))
             }
-            EventKind::FixFailed { error } => line(Severity::Watch, "ae", format!("no fix: {error}")),
-            EventKind::StationExcluded { station, reason } => {
-                line(Severity::Watch, "ae", format!("station {} left out: {}", station.0, exclusion_text(reason)))
+            EventKind::FixFailed { error, repeated: false } => {
+                line(Severity::Watch, "ae", format!("no fix: {error}"))
             }
+            EventKind::StationExcluded { station, reason } => line(
+                Severity::Watch,
+                "ae",
+                format!("station {} left out: {}", station.0, exclusion_text(reason)),
+            ),
             EventKind::StationRegained { station } => {
                 line(Severity::Info, "ae", format!("station {} used again", station.0))
             }
@@ -337,7 +345,11 @@ impl Event {
             }
             EventKind::ObstacleFound { obstacle } => {
                 let at = obstacle.shape.center();
-                line(Severity::Watch, "map", format!("obstacle not on the drawing at {:.2}, {:.2} m", at.x, at.y))
+                line(
+                    Severity::Watch,
+                    "map",
+                    format!("obstacle not on the drawing at {:.2}, {:.2} m", at.x, at.y),
+                )
             }
             EventKind::PlannerChosen { choice, info, from } => {
                 let before = from.as_ref().map(|id| format!(", took over from {id}")).unwrap_or_default();
@@ -370,6 +382,7 @@ impl Event {
             EventKind::Truth { .. }
             | EventKind::Ranged { .. }
             | EventKind::Fixed { .. }
+            | EventKind::FixFailed { .. }
             | EventKind::Estimated { .. }
             | EventKind::ObstacleMoved { .. }
             | EventKind::Commanded { .. }

@@ -2,13 +2,27 @@
 //!
 //! No clock, no file, no thread, no terminal: the same inputs give the same events. Whoever wants to know about a
 //! run reads [`Event`]s; nothing else leaves the engine but the commands to the robot.
+//!
+//! Read in this order: [`engine`] (the tick), [`event`] (what leaves it), [`order`] and [`config`] (what enters),
+//! [`link`] (the port to planners).
 
+mod chart;
 pub mod config;
+pub mod drive;
+pub mod engine;
 pub mod event;
+mod follower;
 pub mod link;
+mod locate;
 pub mod order;
+mod preview;
+mod task;
 
 pub use config::{MissionConfig, PlannerChoice, TaskConfig};
-pub use event::{Event, EventKind, Outcome, Severity};
-pub use link::{Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo, PlannerLink, Reply};
+pub use engine::{Input, Mission, Phase, Step};
+pub use event::{Event, EventKind, HoldReason, LogLine, Outcome, RunOpened, Severity};
+pub use link::{
+    Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo, PlannerLink, Reply,
+};
 pub use order::Order;
+pub use preview::preview;

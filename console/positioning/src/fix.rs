@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
-use world::{Point, Station, StationId};
+use world::{Boundary, Point, Station, StationId};
 
 /// The ranges of one station in one cycle, brought down to one number.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -91,6 +91,15 @@ impl Fix {
     pub fn ellipse_95(&self) -> (f64, f64, f64) {
         ellipse_95(&self.covariance)
     }
+
+    /// Whether the position can lie in the tank.
+    ///
+    /// # Errors
+    /// [`FixError::OutsideTank`] if it is further outside than the longer half axis of its 95 % ellipse.
+    pub fn check_inside(&self, boundary: &Boundary) -> Result<(), FixError> {
+        let by_m = -boundary.wall_distance_m(self.position);
+        if by_m > self.ellipse_95().0 { Err(FixError::OutsideTank { by_m }) } else { Ok(()) }
+    }
 }
 
 /// Half axes of the 95 % ellipse of a covariance, metres, and the direction of the longer one, radians.
@@ -116,15 +125,17 @@ pub enum FixError {
         need: usize,
     },
     /// The stations stand on one line.
-    #[error("the stations stand too nearly on one line (condition number {conditioning:.0}, limit {limit:.0})")]
+    #[error(
+        "the stations stand too nearly on one line (condition number {conditioning:.0}, limit {limit:.0})"
+    )]
     Collinear {
         /// Condition number of the geometry.
         conditioning: f64,
         /// Largest one accepted.
         limit: f64,
     },
-    /// A range is not a positive number.
-    #[error("the range of station {} is no positive number", station.0)]
+    /// A range, or its sigma, is not a positive number that can be a distance in a tank.
+    #[error("the range of station {} is no positive number of metres", station.0)]
     BadRange {
         /// Which station.
         station: StationId,
@@ -135,7 +146,7 @@ pub enum FixError {
         /// Which station.
         station: StationId,
     },
-    /// A range names a station that the tank does not have.
+    /// A range names a station that the tank does not have, or whose place is no place.
     #[error("there is no station {}", station.0)]
     UnknownStation {
         /// Which station.
@@ -154,7 +165,9 @@ pub enum FixError {
         by_m: f64,
     },
     /// The ranges contradict each other.
-    #[error("the ranges contradict each other (chi-squared {chi2:.1} with {degrees_of_freedom} degrees of freedom)")]
+    #[error(
+        "the ranges contradict each other (chi-squared {chi2:.1} with {degrees_of_freedom} degrees of freedom)"
+    )]
     Inconsistent {
         /// Sum of the squared residuals over their variances.
         chi2: f64,

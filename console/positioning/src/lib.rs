@@ -1,7 +1,26 @@
 //! Where the robot is: acoustic-emission ranges to a fix, fixes and odometry to a pose.
 //!
 //! Nothing here knows the truth, a clock or a file. Frame and units as in [`world`].
+//! Cost: a fix takes a few microseconds, a step of the filter less than one.
 
 pub mod fix;
 
+pub mod aggregate;
+pub mod linear;
+pub mod nonlinear;
+
+pub mod ekf;
+pub mod positioner;
+
+mod anchor;
+#[cfg(test)]
+mod draws;
+mod pair;
+mod quality;
+
+pub use aggregate::Aggregation;
+pub use ekf::{Ekf, MotionNoise};
 pub use fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Ranging, Residual};
+pub use linear::LinearLs;
+pub use nonlinear::Nls;
+pub use positioner::{CycleResult, Estimate, Positioner, PositionerConfig, SolverKind};

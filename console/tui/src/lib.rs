@@ -1,1 +1,23 @@
-//! The console's screens: a pure model, update and view.
+//! The console's screens: a pure model, update and view, and the terminal shell around them.
+//!
+//! [`Model`] is plain data. [`update()`] folds a [`Msg`] into it and answers with [`Effect`]s for the caller to carry
+//! out; [`view()`] draws it. Neither knows a clock, a file, a thread or a terminal: time arrives as a message. Only
+//! [`terminal`] touches the real terminal.
+//!
+//! The screen shows what the mission knows. The truth that a simulator adds to the stream of events is never read.
+
+pub mod actions;
+pub mod caps;
+pub mod keys;
+pub mod model;
+pub mod terminal;
+pub mod theme;
+pub mod update;
+pub mod view;
+
+pub use caps::{Caps, Colours, Glyphs};
+pub use keys::{Key, KeyPress};
+pub use model::{Health, Model, Recording, Refused, Speed, Times};
+pub use theme::{Role, Theme};
+pub use update::{Effect, Msg, Signal, update};
+pub use view::{view, view_with};

@@ -140,7 +140,7 @@ impl Floor {
     }
 
     /// Cells whose centre lies within `reach_m` of the segment from `a` to `b`, in order of their index.
-    fn cells_near(&self, a: Point, b: Point, reach_m: f64) -> Vec<usize> {
+    pub fn cells_near(&self, a: Point, b: Point, reach_m: f64) -> Vec<usize> {
         let reach = nalgebra::Vector2::new(reach_m, reach_m);
         let (low, high) = (a.inf(&b) - reach, a.sup(&b) + reach);
         let first = (low - self.origin) / self.cell_m;

@@ -1,6 +1,6 @@
 //! Points, vectors and poses of the tank frame.
 
-use nalgebra::{Isometry2, Point2, Vector2};
+use nalgebra::{Isometry2, Point2, Rotation2, Vector2};
 use serde::{Deserialize, Serialize};
 
 /// A place on the tank floor, metres, tank frame.
@@ -32,6 +32,16 @@ impl Pose {
     pub fn tank_from_robot(&self) -> Isometry2<f64> {
         Isometry2::new(self.position.coords, self.heading_rad)
     }
+
+    /// The pose after moving along the robot's own axes while they turn evenly by `turn_rad`: an arc.
+    #[must_use]
+    pub fn moved(&self, forward_m: f64, sideways_m: f64, turn_rad: f64) -> Self {
+        let half = turn_rad / 2.0;
+        // Chord of the arc over its length.
+        let shortening = if half.abs() < 1e-6 { 1.0 } else { half.sin() / half };
+        let chord = Rotation2::new(self.heading_rad + half) * Vector::new(forward_m, sideways_m) * shortening;
+        Self { position: self.position + chord, heading_rad: wrap_angle_rad(self.heading_rad + turn_rad) }
+    }
 }
 
 /// An angle brought into (-pi, pi].
@@ -46,7 +56,24 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    #[test]
+    fn a_quarter_turn_on_the_way_ends_ahead_and_to_the_left() {
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let pose = Pose::new(1.0, 0.0, quarter).moved(quarter * 2.0, 0.0, quarter);
+        assert!((pose.position - Point::new(-1.0, 2.0)).norm() < 1e-12);
+        assert!((pose.heading_rad - 2.0 * quarter).abs() < 1e-12);
+    }
+
     proptest! {
+        #[test]
+        fn two_halves_of_an_arc_make_the_whole(way in -5.0..5.0_f64, aside in -1.0..1.0_f64, turn in -3.0..3.0_f64) {
+            let start = Pose::new(1.0, -2.0, 0.3);
+            let whole = start.moved(way, aside, turn);
+            let halves = start.moved(way / 2.0, aside / 2.0, turn / 2.0).moved(way / 2.0, aside / 2.0, turn / 2.0);
+            prop_assert!((whole.position - halves.position).norm() < 1e-9);
+            prop_assert!(wrap_angle_rad(whole.heading_rad - halves.heading_rad).abs() < 1e-9);
+        }
+
         #[test]
         fn a_wrapped_angle_points_the_same_way(angle in -1e3..1e3_f64) {
             let wrapped = wrap_angle_rad(angle);

@@ -61,7 +61,9 @@ impl<'a> Ctx<'a> {
     pub fn check(&self) -> Result<()> {
         match self.services.stop() {
             None => Ok(()),
-            Some(StopReason::Cancelled) => Err(PlannerError::new(Code::Cancelled, "cancelled by the console")),
+            Some(StopReason::Cancelled) => {
+                Err(PlannerError::new(Code::Cancelled, "cancelled by the console"))
+            }
             Some(StopReason::Timeout) => Err(PlannerError::new(Code::Timeout, "the deadline passed")),
         }
     }

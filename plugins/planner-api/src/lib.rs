@@ -14,6 +14,12 @@ pub mod params;
 pub mod planner;
 pub mod request;
 pub mod site;
+pub mod testing;
+
+pub mod abi;
+pub mod export;
+#[doc(hidden)]
+pub mod glue;
 
 pub use command::{Command, Drive, Status, Stopping};
 pub use ctx::{Ctx, LogLevel, Services, StopReason};

@@ -167,7 +167,10 @@ impl<'a> Config<'a> {
 
     fn number(&self, key: &str) -> f64 {
         let spec = self.spec(key);
-        self.values.iter().find(|value| value.key == key).map_or_else(|| default_number(&spec.kind), |v| v.number)
+        self.values
+            .iter()
+            .find(|value| value.key == key)
+            .map_or_else(|| default_number(&spec.kind), |v| v.number)
     }
 
     fn spec(&self, key: &str) -> &'a ParamSpec {

@@ -1,6 +1,8 @@
 //! The trait that a planner implements.
 
-use crate::{Command, Config, Ctx, ParamSpec, Plan, PlanRequest, PlannerError, Result, Sensed, Site, Stopping};
+use crate::{
+    Command, Config, Ctx, ParamSpec, Plan, PlanRequest, PlannerError, Result, Sensed, Site, Stopping,
+};
 
 /// What a planner offers, as a set of bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

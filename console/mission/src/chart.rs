@@ -1,0 +1,161 @@
+//! The mission's own map: the drawing, and what was found on the way.
+
+use crate::{config::MissionConfig, event::EventKind};
+use nalgebra::{Isometry2, Translation2};
+use planner_api as api;
+use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, World, ZoneKind};
+
+/// A found obstacle must turn out to stand this much elsewhere before it is told again, metres.
+const MOVED_M: f64 = 0.05;
+/// Sightings that count in the running mean of a found obstacle's place.
+const MEMORY: f64 = 50.0;
+
+/// Drawing and found obstacles, with an index for queries.
+pub struct Chart {
+    world: World,
+    found: Vec<Found>,
+    map: ObstacleMap,
+    revision: u32,
+    limits: api::Limits,
+    swath_m: f64,
+    clearance_m: f64,
+    seed: u64,
+}
+
+struct Found {
+    id: ObstacleId,
+    /// Index into the world's obstacles.
+    index: usize,
+    sightings: f64,
+    told_at: Point,
+}
+
+impl Chart {
+    /// The chart at the start: the drawing alone.
+    pub fn new(drawing: World, config: &MissionConfig, seed: u64) -> Self {
+        let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
+        Self {
+            world: drawing,
+            found: Vec::new(),
+            map,
+            revision: 0,
+            limits: config.limits,
+            swath_m: config.swath_m,
+            clearance_m: config.clearance_m,
+            seed,
+        }
+    }
+
+    /// Distances and neighbours on the chart.
+    pub fn map(&self) -> &ObstacleMap {
+        &self.map
+    }
+
+    /// Puts sightings on the chart, seen from an estimated pose; tells what is new.
+    ///
+    /// The obstacle tracker knows the columns of the drawing again, so only others are put in.
+    pub fn see(&mut self, sightings: &[Sighting], from: &Pose) -> Vec<EventKind> {
+        let mut events = Vec::new();
+        for sighting in sightings {
+            let on_drawing = self.world.obstacles.iter().any(|o| o.known && o.id == sighting.id);
+            if !on_drawing {
+                let shape = sighting.shape_in_robot.transformed(&from.tank_from_robot());
+                events.extend(self.place(sighting.id, shape));
+            }
+        }
+        if !events.is_empty() {
+            self.revision += 1;
+            self.map = ObstacleMap::new(&self.world.boundary, &self.world.obstacles);
+        }
+        events
+    }
+
+    fn place(&mut self, id: ObstacleId, shape: Shape) -> Option<EventKind> {
+        let Some(found) = self.found.iter_mut().find(|found| found.id == id) else {
+            return Some(self.add(id, shape));
+        };
+        let obstacle = &mut self.world.obstacles[found.index];
+        let center = obstacle.shape.center();
+        let mean = center + (shape.center() - center) / (found.sightings + 1.0);
+        found.sightings = (found.sightings + 1.0).min(MEMORY);
+        obstacle.shape = shape.transformed(&shift(mean - shape.center()));
+        if (mean - found.told_at).norm() < MOVED_M {
+            return None;
+        }
+        found.told_at = mean;
+        Some(EventKind::ObstacleMoved { id, obstacle: obstacle.clone() })
+    }
+
+    fn add(&mut self, id: ObstacleId, shape: Shape) -> EventKind {
+        let name = format!("found {}", self.found.len() + 1);
+        let told_at = shape.center();
+        self.found.push(Found { id, index: self.world.obstacles.len(), sightings: 1.0, told_at });
+        let obstacle = Obstacle { id, name, shape, known: false };
+        self.world.obstacles.push(obstacle.clone());
+        EventKind::ObstacleFound { obstacle }
+    }
+
+    /// Calls `ask` with the whole chart in the form that planners read.
+    pub fn with_site<R>(&self, ask: impl FnOnce(&api::Site<'_>) -> R) -> R {
+        let obstacles: Vec<api::Obstacle<'_>> = self.world.obstacles.iter().map(obstacle_of).collect();
+        let zones: Vec<api::Zone<'_>> = self
+            .world
+            .zones
+            .iter()
+            .map(|zone| api::Zone { kind: zone_kind(zone.kind), outline: outline_of(&zone.shape) })
+            .collect();
+        ask(&api::Site {
+            revision: self.revision,
+            boundary: boundary_of(&self.world.boundary),
+            obstacles: &obstacles,
+            zones: &zones,
+            limits: self.limits,
+            swath_m: self.swath_m,
+            clearance_m: self.clearance_m,
+            seed: self.seed,
+        })
+    }
+
+    /// The obstacles within sensing range of a point, in the form that planners read.
+    pub fn near(&self, point: Point) -> Vec<api::Obstacle<'_>> {
+        let reach_m = self.limits.sensing_range_m + self.limits.radius_m;
+        self.map
+            .within(point, reach_m)
+            .iter()
+            .map(|near| obstacle_of(&self.world.obstacles[near.index]))
+            .collect()
+    }
+}
+
+fn shift(by: world::Vector) -> Isometry2<f64> {
+    Isometry2::from_parts(Translation2::from(by), nalgebra::UnitComplex::identity())
+}
+
+fn obstacle_of(obstacle: &Obstacle) -> api::Obstacle<'_> {
+    api::Obstacle { id: obstacle.id.0, outline: outline_of(&obstacle.shape), discovered: !obstacle.known }
+}
+
+fn outline_of(shape: &Shape) -> api::Outline<'_> {
+    match shape {
+        Shape::Disc { center, radius_m } => api::Outline::Disc { center: *center, radius_m: *radius_m },
+        Shape::Polygon { vertices } => api::Outline::Polygon { vertices },
+        Shape::Polyline { points, half_width_m } => {
+            api::Outline::Polyline { points, half_width_m: *half_width_m }
+        }
+    }
+}
+
+fn boundary_of(boundary: &world::Boundary) -> api::Boundary<'_> {
+    match boundary {
+        world::Boundary::Circle { radius_m } => api::Boundary::Circle { radius_m: *radius_m },
+        world::Boundary::Polygon { vertices } => api::Boundary::Polygon { vertices },
+    }
+}
+
+fn zone_kind(kind: ZoneKind) -> api::ZoneKind {
+    match kind {
+        ZoneKind::NoGo => api::ZoneKind::NoGo,
+        ZoneKind::Land => api::ZoneKind::Land,
+        ZoneKind::Underwater => api::ZoneKind::Underwater,
+    }
+}

@@ -1,0 +1,82 @@
+//! From a planner's command to what the robot's drives can do.
+
+use planner_api::{Drive, Limits, Motion, Vector2};
+use world::geometry::wrap_angle_rad;
+
+/// Heading error beyond which a unicycle turns on the spot, radians.
+const TURN_FIRST_RAD: f64 = 1.0;
+/// Turn rate per heading error, 1/s: a 0.5 rad error is gone in about a second.
+const HEADING_GAIN_PER_S: f64 = 2.5;
+
+/// What the robot is sent for a planner's command: within its limits and in its own way of moving.
+///
+/// A unicycle turns into a velocity and slows down as the cosine of the heading error; a point robot takes a twist as
+/// a velocity along its heading.
+pub fn drive_for(command: Drive, heading_rad: f64, limits: &Limits) -> Drive {
+    match (limits.motion, command) {
+        (Motion::Point, Drive::Velocity(velocity)) => {
+            Drive::Velocity(at_most(velocity, limits.v_max_m_per_s))
+        }
+        (Motion::Point, Drive::Twist { v_m_per_s, .. }) => {
+            let velocity = Vector2::new(heading_rad.cos(), heading_rad.sin()) * v_m_per_s;
+            Drive::Velocity(at_most(velocity, limits.v_max_m_per_s))
+        }
+        (Motion::Unicycle, Drive::Twist { v_m_per_s, w_rad_per_s }) => twist(v_m_per_s, w_rad_per_s, limits),
+        (Motion::Unicycle, Drive::Velocity(velocity)) => turn_into(velocity, heading_rad, limits),
+    }
+}
+
+fn turn_into(velocity: Vector2<f64>, heading_rad: f64, limits: &Limits) -> Drive {
+    let speed = velocity.norm();
+    if speed == 0.0 {
+        return Drive::STILL;
+    }
+    let error_rad = wrap_angle_rad(velocity.y.atan2(velocity.x) - heading_rad);
+    let ahead = if error_rad.abs() > TURN_FIRST_RAD { 0.0 } else { speed * error_rad.cos() };
+    twist(ahead, HEADING_GAIN_PER_S * error_rad, limits)
+}
+
+fn twist(v_m_per_s: f64, w_rad_per_s: f64, limits: &Limits) -> Drive {
+    Drive::Twist {
+        v_m_per_s: v_m_per_s.clamp(-limits.v_max_m_per_s, limits.v_max_m_per_s),
+        w_rad_per_s: w_rad_per_s.clamp(-limits.w_max_rad_per_s, limits.w_max_rad_per_s),
+    }
+}
+
+fn at_most(velocity: Vector2<f64>, speed_m_per_s: f64) -> Vector2<f64> {
+    let speed = velocity.norm();
+    if speed > speed_m_per_s { velocity * (speed_m_per_s / speed) } else { velocity }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn limits(motion: Motion) -> Limits {
+        Limits { motion, v_max_m_per_s: 0.4, w_max_rad_per_s: 1.0, radius_m: 0.25, sensing_range_m: 2.0 }
+    }
+
+    #[test]
+    fn a_unicycle_that_looks_the_wrong_way_turns_on_the_spot() {
+        let drive = drive_for(Drive::Velocity(Vector2::new(-0.4, 0.01)), 0.0, &limits(Motion::Unicycle));
+        let Drive::Twist { v_m_per_s, w_rad_per_s } = drive else { panic!("a unicycle takes twists") };
+        assert!(v_m_per_s.abs() < f64::EPSILON && (w_rad_per_s - 1.0).abs() < f64::EPSILON);
+    }
+
+    proptest! {
+        #[test]
+        fn no_command_exceeds_the_limits(x in -9.0..9.0_f64, y in -9.0..9.0_f64, heading in -4.0..4.0_f64) {
+            for motion in [Motion::Point, Motion::Unicycle] {
+                for command in [Drive::Velocity(Vector2::new(x, y)), Drive::Twist { v_m_per_s: x, w_rad_per_s: y }] {
+                    match drive_for(command, heading, &limits(motion)) {
+                        Drive::Velocity(v) => prop_assert!(v.norm() <= 0.4 + 1e-12),
+                        Drive::Twist { v_m_per_s, w_rad_per_s } => {
+                            prop_assert!(v_m_per_s.abs() <= 0.4 && w_rad_per_s.abs() <= 1.0);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,246 @@
+//! The engine: what is sensed and ordered goes in, what the robot does and everything that happened comes out.
+
+mod driving;
+mod orders;
+mod planning;
+
+use crate::{
+    chart::Chart,
+    config::{MissionConfig, PlannerChoice},
+    event::{Event, EventKind, HoldReason, Outcome},
+    follower::Follower,
+    link::{PlannerInfo, PlannerLink},
+    locate::Locator,
+    order::Order,
+    task::{StuckWatch, Task},
+};
+use planner_api::{Drive, Reason};
+use world::{CoverageGrid, Floor, Point, Readings, World};
+
+/// What enters the engine in one tick.
+#[derive(Debug, Clone, Copy)]
+pub struct Input<'a> {
+    /// What was sensed since the last tick.
+    pub readings: &'a Readings,
+    /// What the operator said since the last tick, oldest first.
+    pub orders: &'a [Order],
+}
+
+/// What leaves the engine in one tick.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// How the robot shall move until the next tick, within its limits and in its own way of moving.
+    pub drive: Drive,
+    /// Everything that happened, in order.
+    pub events: Vec<Event>,
+}
+
+/// A mission under way.
+///
+/// Costs per tick: one planner call, one position update, and work that grows with the obstacles in sensing range and
+/// the cells under the swath. Memory grows by one point per decimetre flown.
+pub struct Mission {
+    config: MissionConfig,
+    tick: u64,
+    phase: Phase,
+    locator: Locator,
+    chart: Chart,
+    task: Task,
+    coverage: CoverageGrid,
+    planner: Seat,
+    stuck: StuckWatch,
+    lost_s: f64,
+    trail: Vec<Point>,
+    plan: Option<Follower>,
+    last_drive: Drive,
+    happened: Vec<EventKind>,
+}
+
+/// What the mission is doing.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Phase {
+    /// Nothing has been started.
+    Waiting,
+    /// The robot moves.
+    Running,
+    /// The robot moves for this one tick.
+    Stepping,
+    /// The robot stands still and may go on.
+    Held(HoldReason),
+    /// It is over.
+    Ended(Outcome),
+}
+
+/// The planner that drives.
+struct Seat {
+    choice: PlannerChoice,
+    info: Option<PlannerInfo>,
+    /// Whether it is loaded, configured and has not failed since.
+    fit: bool,
+    /// Whether the automatic replacement after a fault has been used.
+    fallback_used: bool,
+    /// Whether its plan is still to be made, or made for a map that has changed since.
+    plan_due: Option<Reason>,
+}
+
+impl Mission {
+    /// A mission that waits for [`Order::Start`].
+    ///
+    /// `drawing` is the tank as drawn, `floor` its grid; `seed` is handed to planners for their random choices.
+    pub fn new(config: MissionConfig, drawing: World, floor: Floor, seed: u64) -> Self {
+        let start = config.start.position;
+        Self {
+            tick: 0,
+            phase: Phase::Waiting,
+            locator: Locator::new(&config, &drawing.stations),
+            chart: Chart::new(drawing, &config, seed),
+            task: Task::new(&config.task, start),
+            coverage: CoverageGrid::new(floor),
+            planner: Seat {
+                choice: config.planner.clone(),
+                info: None,
+                fit: false,
+                fallback_used: false,
+                plan_due: Some(Reason::Start),
+            },
+            stuck: StuckWatch::new(config.stuck_s),
+            lost_s: 0.0,
+            trail: vec![start],
+            plan: None,
+            last_drive: Drive::STILL,
+            happened: Vec::new(),
+            config,
+        }
+    }
+
+    /// What the mission is doing.
+    pub fn phase(&self) -> &Phase {
+        &self.phase
+    }
+
+    /// One tick.
+    pub fn step(&mut self, input: &Input<'_>, planner: &mut dyn PlannerLink) -> Step {
+        for order in input.orders {
+            self.obey(order, planner);
+        }
+        let before = self.locator.position();
+        let located = self.locator.take(input.readings);
+        self.happened.extend(located);
+        self.look_around(input.readings);
+        self.scan_from(before);
+        self.apply_rules(input.readings, planner);
+        let drive = match self.phase {
+            Phase::Running | Phase::Stepping => self.drive(planner),
+            Phase::Waiting | Phase::Held(_) | Phase::Ended(_) => Drive::STILL,
+        };
+        if self.phase == Phase::Stepping {
+            self.hold(HoldReason::Stepped);
+        }
+        self.finish_tick(drive)
+    }
+
+    fn finish_tick(&mut self, drive: Drive) -> Step {
+        let (tick, t_s) = (self.tick, self.now_s());
+        let happened = std::mem::take(&mut self.happened);
+        let events = happened.into_iter().map(|kind| Event { tick, t_s, kind }).collect();
+        self.tick += 1;
+        self.last_drive = drive;
+        Step { drive, events }
+    }
+
+    fn now_s(&self) -> f64 {
+        self.tick as f64 * self.config.tick_s
+    }
+
+    fn look_around(&mut self, readings: &Readings) {
+        // A found obstacle is placed by the estimated pose, so a lost robot does not draw maps.
+        if !self.locator.is_lost() {
+            let found = self.chart.see(&readings.sightings, &self.locator.pose());
+            if !found.is_empty() {
+                self.planner.plan_due.get_or_insert(Reason::MapChanged);
+            }
+            self.happened.extend(found);
+        }
+    }
+
+    fn scan_from(&mut self, before: Point) {
+        let here = self.locator.position();
+        let room_m = self.config.limits.radius_m + self.config.clearance_m;
+        self.task.advance(here, self.chart.map(), room_m);
+        if self.phase == Phase::Waiting || self.locator.is_lost() {
+            return;
+        }
+        let runs = self.coverage.mark_swath(before, here, self.config.swath_m);
+        if !runs.is_empty() {
+            self.happened.push(EventKind::Covered { runs });
+        }
+        self.happened.push(EventKind::Progressed {
+            done: self.task.done(),
+            along_m: self.task.along_m(),
+            cross_track_m: self.task.cross_track_m(here),
+            target: self.task.target(),
+            covered_reachable: self.coverage.fraction_reachable(),
+            covered_whole: self.coverage.fraction_whole(),
+        });
+    }
+
+    /// The rules that hold the robot, let it go on, or end the mission.
+    fn apply_rules(&mut self, readings: &Readings, planner: &mut dyn PlannerLink) {
+        match self.phase.clone() {
+            Phase::Waiting | Phase::Ended(_) => {}
+            _ if readings.contact => self.end(Outcome::Collision, "the bumper touched something"),
+            _ if self.now_s() >= self.config.time_limit_s => {
+                let reason = format!("time is up after {:.0} s", self.config.time_limit_s);
+                self.end(Outcome::TimeLimit, &reason);
+            }
+            Phase::Running | Phase::Stepping => self.watch_moving(),
+            Phase::Held(reason) => self.watch_held(&reason, planner),
+        }
+    }
+
+    fn watch_moving(&mut self) {
+        let here = self.locator.position();
+        self.lost_s = if self.locator.is_lost() { self.lost_s + self.config.tick_s } else { 0.0 };
+        if self.lost_s >= self.config.lost_hold_s {
+            self.hold(HoldReason::PositionLost);
+        } else if self.task.is_done(here) {
+            self.end(Outcome::Complete, "the task is done");
+        } else if self.stuck.is_stuck(&self.task, here, self.config.tick_s) {
+            let reason = format!(
+                "no progress at {:.2}, {:.2} m, {:.0} % done",
+                here.x,
+                here.y,
+                self.task.done() * 100.0
+            );
+            self.end(Outcome::Stuck, &reason);
+        }
+    }
+
+    fn watch_held(&mut self, reason: &HoldReason, planner: &mut dyn PlannerLink) {
+        match reason {
+            HoldReason::PositionLost if !self.locator.is_lost() => self.go_on(Phase::Running),
+            HoldReason::PlannerFault { message } => self.replace_failed_planner(message, planner),
+            HoldReason::PositionLost | HoldReason::Operator | HoldReason::Stepped => {}
+        }
+    }
+
+    fn hold(&mut self, by: HoldReason) {
+        self.happened.push(EventKind::Held { by: by.clone() });
+        self.phase = Phase::Held(by);
+    }
+
+    fn go_on(&mut self, how: Phase) {
+        self.lost_s = 0.0;
+        self.stuck.reset();
+        self.happened.push(EventKind::Resumed);
+        self.phase = how;
+    }
+
+    fn end(&mut self, outcome: Outcome, reason: &str) {
+        self.happened.push(EventKind::Ended { outcome, reason: reason.into() });
+        self.phase = Phase::Ended(outcome);
+    }
+}
+
+#[cfg(test)]
+mod tests;

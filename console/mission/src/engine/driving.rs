@@ -1,0 +1,71 @@
+//! One tick of moving: ask the planner, send the robot its answer.
+
+use super::Mission;
+use crate::{drive::drive_for, event::EventKind, link::PlannerLink};
+use planner_api::{Command, Drive, Sensed};
+
+/// How much of the targets and of the plan a planner sees ahead, metres.
+const AHEAD_M: f64 = 4.0;
+/// Distance between the points of the path flown that are kept for planners, metres.
+const TRAIL_M: f64 = 0.1;
+
+impl Mission {
+    pub(super) fn drive(&mut self, planner: &mut dyn PlannerLink) -> Drive {
+        let command = self.plan_if_due(planner).and_then(|()| self.ask_for_command(planner));
+        match command {
+            Ok(command) => self.send(command),
+            Err(message) => {
+                self.hold_for_planner(message);
+                Drive::STILL
+            }
+        }
+    }
+
+    fn ask_for_command(&mut self, planner: &mut dyn PlannerLink) -> Result<Command, String> {
+        let pose = self.locator.pose_estimate();
+        let here = pose.position;
+        self.keep_trail();
+        if let Some(plan) = &mut self.plan {
+            plan.advance(here, self.chart.map(), 0.0);
+        }
+        let (v_m_per_s, w_rad_per_s) = match self.last_drive {
+            Drive::Twist { v_m_per_s, w_rad_per_s } => (v_m_per_s, w_rad_per_s),
+            Drive::Velocity(velocity) => (velocity.norm(), 0.0),
+        };
+        let obstacles = self.chart.near(here);
+        let answer = planner.step(&Sensed {
+            tick: self.tick,
+            t_s: self.now_s(),
+            dt_s: self.config.tick_s,
+            pose,
+            v_m_per_s,
+            w_rad_per_s,
+            target: self.task.target(),
+            targets_ahead: self.task.targets_ahead(AHEAD_M),
+            path_ahead: self.plan.as_ref().map_or(&[], |plan| plan.ahead(AHEAD_M)),
+            obstacles: &obstacles,
+        });
+        drop(obstacles);
+        match answer {
+            Ok(reply) => {
+                let command = reply.value;
+                self.pass_on(reply);
+                Ok(command)
+            }
+            Err(fault) => Err(self.note_fault(fault)),
+        }
+    }
+
+    fn send(&mut self, command: Command) -> Drive {
+        let drive = drive_for(command.drive, self.locator.pose().heading_rad, &self.config.limits);
+        self.happened.push(EventKind::Commanded { command: Command { drive, status: command.status } });
+        drive
+    }
+
+    fn keep_trail(&mut self) {
+        let here = self.locator.position();
+        if self.trail.last().is_none_or(|last| (here - last).norm() >= TRAIL_M) {
+            self.trail.push(here);
+        }
+    }
+}

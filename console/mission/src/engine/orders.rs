@@ -1,0 +1,119 @@
+//! What each order does in each phase, and why it may be refused.
+
+use super::{Mission, Phase};
+use crate::{
+    config::PlannerChoice,
+    event::{EventKind, HoldReason, Outcome},
+    link::{ParamValue, PlannerLink},
+    order::Order,
+};
+use planner_api::Reason;
+
+impl Mission {
+    pub(super) fn obey(&mut self, order: &Order, planner: &mut dyn PlannerLink) {
+        // The order stands in the journal before its effects.
+        let slot = self.happened.len();
+        let order_event = match self.follow(order, planner) {
+            Ok(()) => EventKind::Ordered { order: order.clone() },
+            Err(why) => EventKind::OrderRefused { order: order.clone(), why },
+        };
+        self.happened.insert(slot, order_event);
+    }
+
+    fn follow(&mut self, order: &Order, planner: &mut dyn PlannerLink) -> Result<(), String> {
+        match (order, self.phase.clone()) {
+            (_, Phase::Ended(outcome)) => Err(format!("the mission has ended {}", outcome.word())),
+            (Order::Start, Phase::Waiting) => {
+                self.start(planner);
+                Ok(())
+            }
+            (Order::Start, _) => Err("the mission has been started already".into()),
+            (Order::Hold, Phase::Held(HoldReason::Operator)) => Ok(()),
+            (Order::Hold, Phase::Running | Phase::Stepping | Phase::Held(_)) => {
+                self.hold(HoldReason::Operator);
+                Ok(())
+            }
+            (Order::Resume, Phase::Held(_)) => self.resume(Phase::Running, planner),
+            (Order::Resume, Phase::Running | Phase::Stepping) => Err("the robot is moving".into()),
+            (Order::Step, Phase::Held(_)) => self.resume(Phase::Stepping, planner),
+            (Order::Step, Phase::Running | Phase::Stepping) => Err("a single step needs a hold first".into()),
+            (Order::Abort, _) => {
+                self.end(Outcome::Aborted, "ended by the operator");
+                Ok(())
+            }
+            (Order::ChoosePlanner(_), Phase::Running | Phase::Stepping) => {
+                Err("a planner is changed while the robot is held".into())
+            }
+            (Order::ChoosePlanner(choice), _) => self.choose_by_order(choice, planner),
+            (Order::SetParameter { key, value }, _) => self.set_parameter(key, value, planner),
+            (Order::Hold | Order::Resume | Order::Step, Phase::Waiting) => {
+                Err("the mission has not been started".into())
+            }
+        }
+    }
+
+    fn start(&mut self, planner: &mut dyn PlannerLink) {
+        self.phase = Phase::Running;
+        if let Err(message) = self.make_planner_fit(planner) {
+            self.hold_for_planner(message);
+        }
+    }
+
+    /// Lets the robot move again, for good or for one tick.
+    fn resume(&mut self, how: Phase, planner: &mut dyn PlannerLink) -> Result<(), String> {
+        if self.locator.is_lost() {
+            return Err(format!(
+                "the position is lost: 95 % error {:.2} m, limit {:.2} m",
+                self.locator.error_95_m(),
+                self.config.position_limit_m
+            ));
+        }
+        self.make_planner_fit(planner)?;
+        self.go_on(how);
+        Ok(())
+    }
+
+    fn choose_by_order(
+        &mut self,
+        choice: &PlannerChoice,
+        planner: &mut dyn PlannerLink,
+    ) -> Result<(), String> {
+        let from = self.planner.choice.id.clone();
+        self.seat(choice.clone(), planner)?;
+        if self.phase != Phase::Waiting {
+            self.planner.plan_due = Some(Reason::Swap { from });
+            self.plan_if_due(planner)?;
+        }
+        Ok(())
+    }
+
+    fn set_parameter(
+        &mut self,
+        key: &str,
+        value: &ParamValue,
+        planner: &mut dyn PlannerLink,
+    ) -> Result<(), String> {
+        let mut choice = self.planner.choice.clone();
+        choice.parameters.insert(key.into(), value.clone());
+        let live = self
+            .planner
+            .info
+            .as_ref()
+            .is_some_and(|info| info.parameters.iter().any(|p| p.key == key && p.live));
+        if live && self.planner.fit {
+            planner.reconfigure(&choice.parameters).map_err(|fault| fault.message)?;
+            self.planner.choice = choice.clone();
+            self.happened.push(EventKind::ParametersChanged { choice });
+            return Ok(());
+        }
+        if self.phase == Phase::Running {
+            return Err(format!("`{key}` cannot change while the robot moves: hold first"));
+        }
+        self.seat(choice, planner)?;
+        if self.phase != Phase::Waiting {
+            self.planner.plan_due = Some(Reason::Operator);
+            self.plan_if_due(planner)?;
+        }
+        Ok(())
+    }
+}

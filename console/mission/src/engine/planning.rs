@@ -1,0 +1,122 @@
+//! Who plans: seating a planner, asking it for a plan, replacing one that failed.
+
+use super::{Mission, Phase};
+use crate::{
+    config::PlannerChoice,
+    event::{EventKind, HoldReason, Outcome},
+    follower::Follower,
+    link::{Cause, Fault, PlannerLink, Reply},
+};
+use planner_api::{Plan, PlanRequest, Reason};
+use world::polyline;
+
+impl Mission {
+    /// Loads and configures a planner; on a fault the one before stays.
+    pub(super) fn seat(
+        &mut self,
+        choice: PlannerChoice,
+        planner: &mut dyn PlannerLink,
+    ) -> Result<(), String> {
+        match self.chart.with_site(|site| planner.choose(&choice.id, &choice.parameters, site)) {
+            Ok(info) => {
+                let from = self.planner.info.replace(info.clone()).map(|before| before.id);
+                self.planner.choice = choice.clone();
+                self.planner.fit = true;
+                self.happened.push(EventKind::PlannerChosen { choice, info: Box::new(info), from });
+                Ok(())
+            }
+            Err(fault) => Err(self.note_fault(fault)),
+        }
+    }
+
+    /// Makes sure that a planner is there and has planned.
+    pub(super) fn make_planner_fit(&mut self, planner: &mut dyn PlannerLink) -> Result<(), String> {
+        if !self.planner.fit {
+            if self.planner.info.is_some() {
+                self.planner.plan_due = Some(Reason::Recover);
+            }
+            self.seat(self.planner.choice.clone(), planner)?;
+        }
+        self.plan_if_due(planner)
+    }
+
+    /// Asks for a plan if one is due.
+    pub(super) fn plan_if_due(&mut self, planner: &mut dyn PlannerLink) -> Result<(), String> {
+        let Some(reason) = self.planner.plan_due.clone() else { return Ok(()) };
+        let start = self.locator.pose_estimate();
+        let (task, previous) = (self.task.as_request(), &self.trail);
+        let answer = self
+            .chart
+            .with_site(|site| planner.plan(&PlanRequest { reason: &reason, start, task, site, previous }));
+        match answer {
+            Ok(reply) => {
+                self.accept_plan(reason, reply);
+                Ok(())
+            }
+            Err(fault) => Err(self.note_fault(fault)),
+        }
+    }
+
+    fn accept_plan(&mut self, reason: Reason, reply: Reply<Plan>) {
+        self.planner.plan_due = None;
+        let Plan { path, complete, .. } = reply.value.clone();
+        self.plan = (!path.is_empty()).then(|| Follower::new(path.clone()));
+        self.happened.push(EventKind::Planned {
+            planner: self.planner.choice.id.clone(),
+            reason,
+            length_m: polyline::length_m(&path),
+            path,
+            complete,
+        });
+        self.pass_on(reply);
+    }
+
+    /// Tells what the planner drew, reported and said besides its answer.
+    pub(super) fn pass_on<T>(&mut self, reply: Reply<T>) {
+        if !reply.drawings.is_empty() {
+            self.happened.push(EventKind::Drawn { drawings: reply.drawings });
+        }
+        if !reply.scalars.is_empty() {
+            self.happened.push(EventKind::Scalars { scalars: reply.scalars });
+        }
+        for (level, message) in reply.logs {
+            let planner = self.planner.choice.id.clone();
+            self.happened.push(EventKind::PlannerSaid { planner, level, message });
+        }
+    }
+
+    /// Tells a fault and returns its sentence. A planner that said no by itself can be asked again.
+    pub(super) fn note_fault(&mut self, fault: Fault) -> String {
+        let ours = fault.planner == self.planner.choice.id;
+        if ours && !matches!(fault.cause, Cause::Planner(_) | Cause::Refused) {
+            self.planner.fit = false;
+        }
+        let message = fault.message.clone();
+        self.happened.push(EventKind::PlannerFailed { fault });
+        message
+    }
+
+    /// After a fault: the fallback takes over, if there is one; with nobody there to help the mission ends.
+    pub(super) fn replace_failed_planner(&mut self, message: &str, planner: &mut dyn PlannerLink) {
+        let fallback = self.config.fallback.clone().filter(|choice| choice.id != self.planner.choice.id);
+        match fallback {
+            Some(choice) if !self.planner.fallback_used => {
+                self.planner.fallback_used = true;
+                let from = self.planner.choice.id.clone();
+                self.planner.plan_due = Some(Reason::Swap { from });
+                if self.seat(choice, planner).and_then(|()| self.plan_if_due(planner)).is_ok() {
+                    self.go_on(Phase::Running);
+                }
+            }
+            _ if !self.config.attended => {
+                self.end(Outcome::Aborted, &format!("nobody attended the hold: {message}"));
+            }
+            _ => {}
+        }
+    }
+
+    /// Stands still because of the planner.
+    pub(super) fn hold_for_planner(&mut self, message: String) {
+        self.hold(HoldReason::PlannerFault { message });
+    }
+}

@@ -1,0 +1,355 @@
+//! Missions in a perfect little world: exact ranges, a point robot that does what it is told.
+
+use super::*;
+use crate::{
+    config::TaskConfig,
+    link::{Cause, During, Fault, Parameters, Reply},
+};
+use planner_api::{Command, Limits, Motion, Plan, PlanRequest, Sensed, Site, Status};
+use world::{Boundary, Obstacle, ObstacleId, Odometry, Pose, RangeSet, Shape, Sighting, Station, StationId};
+
+/// A planner that drives straight to its target, and does as told by the test otherwise.
+#[derive(Default)]
+struct Straight {
+    fail_at_tick: Option<u64>,
+    refuse: Vec<&'static str>,
+    chosen: Vec<String>,
+    plans: usize,
+}
+
+impl Straight {
+    fn fault(&self, during: During, cause: Cause) -> Fault {
+        let planner = self.chosen.last().cloned().unwrap_or_default();
+        Fault {
+            message: format!("planner {planner} failed during {during}"),
+            planner,
+            during,
+            cause,
+            partial: vec![],
+        }
+    }
+}
+
+fn reply<T>(value: T) -> Reply<T> {
+    Reply { value, drawings: vec![], scalars: vec![], logs: vec![] }
+}
+
+impl PlannerLink for Straight {
+    fn choose(&mut self, id: &str, _: &Parameters, _: &Site<'_>) -> Result<PlannerInfo, Fault> {
+        if self.refuse.contains(&id) {
+            let message = format!("there is no planner {id}");
+            let (during, cause) = (During::Load, Cause::Refused);
+            return Err(Fault { planner: id.into(), during, cause, message, partial: vec![] });
+        }
+        self.chosen.push(id.into());
+        let text = String::new;
+        Ok(PlannerInfo {
+            id: id.into(),
+            name: text(),
+            version: "1.0".into(),
+            about: text(),
+            plugin: text(),
+            sha256: text(),
+            abi: text(),
+            parameters: vec![],
+        })
+    }
+
+    fn reconfigure(&mut self, _: &Parameters) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn plan(&mut self, request: &PlanRequest<'_>) -> Result<Reply<Plan>, Fault> {
+        self.plans += 1;
+        Ok(reply(Plan { path: vec![request.start.position], cost: 0.0, complete: true }))
+    }
+
+    fn step(&mut self, sensed: &Sensed<'_>) -> Result<Reply<Command>, Fault> {
+        if self.fail_at_tick == Some(sensed.tick) {
+            return Err(self.fault(During::Step, Cause::Panic));
+        }
+        let way = sensed.target - sensed.pose.position;
+        Ok(reply(if way.norm() > 0.0 {
+            Command::velocity(way.normalize() * 0.4)
+        } else {
+            Command::still(Status::Waiting)
+        }))
+    }
+}
+
+fn drawing() -> World {
+    let at = [(4.0, 0.0), (-4.0, 0.0), (0.0, 4.0), (0.0, -4.0)];
+    let station = |(i, (x, y)): (usize, &(f64, f64))| Station {
+        id: StationId(i as u32),
+        name: format!("S{i}"),
+        position: Point::new(*x, *y),
+    };
+    World {
+        boundary: Boundary::Circle { radius_m: 5.0 },
+        obstacles: vec![],
+        stations: at.iter().enumerate().map(station).collect(),
+        zones: vec![],
+    }
+}
+
+fn config() -> MissionConfig {
+    MissionConfig {
+        task: TaskConfig::Goto { goal: Point::new(3.0, 0.0), tolerance_m: 0.2 },
+        start: Pose::new(-3.0, 0.0, 0.0),
+        start_sigma_m: 0.05,
+        start_heading_sigma_rad: 0.02,
+        tick_s: 0.1,
+        time_limit_s: 60.0,
+        limits: Limits {
+            motion: Motion::Point,
+            v_max_m_per_s: 0.4,
+            w_max_rad_per_s: 1.0,
+            radius_m: 0.25,
+            sensing_range_m: 2.0,
+        },
+        swath_m: 0.5,
+        clearance_m: 0.05,
+        cell_m: 0.1,
+        position_limit_m: 0.3,
+        lost_hold_s: 1.0,
+        stuck_s: 10.0,
+        odometry_sigma_per_m: 0.05,
+        odometry_turn_sigma_per_rad: 0.05,
+        gyro_sigma_rad_per_s: 0.001,
+        range_sigma_ratio: 0.01,
+        planner: PlannerChoice { id: "straight".into(), parameters: Parameters::new() },
+        fallback: None,
+        attended: true,
+    }
+}
+
+/// The mission, its planner and a robot that is where it was sent.
+struct Flight {
+    mission: Mission,
+    planner: Straight,
+    pose: Pose,
+    moved: Odometry,
+    silent: bool,
+    sightings: Vec<Sighting>,
+    events: Vec<Event>,
+}
+
+impl Flight {
+    fn new(config: MissionConfig) -> Self {
+        let world = drawing();
+        let floor =
+            Floor::new(&world, config.cell_m, config.limits.radius_m, config.swath_m, config.start.position);
+        let pose = config.start;
+        Self {
+            mission: Mission::new(config, world, floor, 1),
+            planner: Straight::default(),
+            pose,
+            moved: Odometry::default(),
+            silent: false,
+            sightings: vec![],
+            events: vec![],
+        }
+    }
+
+    fn tick(&mut self, orders: &[Order]) -> Vec<EventKind> {
+        let heard = |station: &Station| RangeSet {
+            station: station.id,
+            ranges_m: vec![(station.position - self.pose.position).norm()],
+        };
+        let ranges = if self.silent { vec![] } else { drawing().stations.iter().map(heard).collect() };
+        let readings = Readings {
+            ranges,
+            ranging_cycle: true,
+            odometry: self.moved,
+            sightings: std::mem::take(&mut self.sightings),
+            contact: false,
+        };
+        let step = self.mission.step(&Input { readings: &readings, orders }, &mut self.planner);
+        let Drive::Velocity(velocity) = step.drive else {
+            self.moved = Odometry::default();
+            self.events.extend(step.events.clone());
+            return step.events.into_iter().map(|event| event.kind).collect();
+        };
+        // The heading stays: the odometry of a point robot tells both components.
+        self.pose.position += velocity * 0.1;
+        self.moved = Odometry { forward_m: velocity.x * 0.1, sideways_m: velocity.y * 0.1, turn_rad: 0.0 };
+        self.events.extend(step.events.clone());
+        step.events.into_iter().map(|event| event.kind).collect()
+    }
+
+    fn fly(&mut self, ticks: usize) {
+        for _ in 0..ticks {
+            self.tick(&[]);
+        }
+    }
+
+    fn ended(&self) -> Option<Outcome> {
+        match self.mission.phase() {
+            Phase::Ended(outcome) => Some(*outcome),
+            _ => None,
+        }
+    }
+}
+
+fn refusal(events: &[EventKind]) -> Option<&str> {
+    events.iter().find_map(|kind| match kind {
+        EventKind::OrderRefused { why, .. } => Some(why.as_str()),
+        _ => None,
+    })
+}
+
+#[test]
+fn nothing_moves_before_the_start_is_ordered() {
+    let mut flight = Flight::new(config());
+    flight.fly(20);
+    assert_eq!(flight.pose, config().start);
+    assert!(refusal(&flight.tick(&[Order::Resume])).is_some_and(|why| why.contains("not been started")));
+}
+
+#[test]
+fn a_goto_mission_ends_complete_at_its_goal() {
+    let mut flight = Flight::new(config());
+    flight.tick(&[Order::Start]);
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+    assert!((flight.pose.position - Point::new(3.0, 0.0)).norm() < 0.3);
+    let covered = flight.events.iter().rev().find_map(|event| match event.kind {
+        EventKind::Progressed { covered_reachable, .. } => Some(covered_reachable),
+        _ => None,
+    });
+    let swept = (5.8 * 0.5) / (std::f64::consts::PI * 25.0);
+    assert!(covered.is_some_and(|share| (share - swept).abs() < 0.02), "{covered:?} of {swept}");
+}
+
+#[test]
+fn a_held_robot_stands_still_and_goes_on_only_when_told() {
+    let mut flight = Flight::new(config());
+    flight.tick(&[Order::Start]);
+    flight.fly(20);
+    flight.tick(&[Order::Hold]);
+    let held_at = flight.pose;
+    flight.fly(30);
+    assert_eq!(flight.pose, held_at);
+    assert_eq!(flight.mission.phase(), &Phase::Held(HoldReason::Operator));
+    flight.tick(&[Order::Step]);
+    assert!((flight.pose.position - held_at.position).norm() > 0.03);
+    assert_eq!(flight.mission.phase(), &Phase::Held(HoldReason::Stepped));
+    flight.tick(&[Order::Resume]);
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+}
+
+#[test]
+fn a_planner_that_fails_holds_the_robot_in_the_same_tick() {
+    let mut flight = Flight::new(config());
+    flight.planner.fail_at_tick = Some(30);
+    flight.tick(&[Order::Start]);
+    flight.fly(29);
+    let before = flight.pose;
+    let events = flight.tick(&[]);
+    assert_eq!(flight.pose, before);
+    assert!(events.iter().any(|kind| matches!(kind, EventKind::PlannerFailed { .. })));
+    assert!(
+        events.iter().any(|kind| matches!(kind, EventKind::Held { by: HoldReason::PlannerFault { .. } }))
+    );
+    flight.tick(&[Order::ChoosePlanner(PlannerChoice { id: "other".into(), parameters: Parameters::new() })]);
+    flight.tick(&[Order::Resume]);
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+    assert_eq!(flight.planner.chosen, ["straight", "other"]);
+}
+
+#[test]
+fn the_fallback_takes_over_by_itself() {
+    let fallback = PlannerChoice { id: "fallback".into(), parameters: Parameters::new() };
+    let mut flight = Flight::new(MissionConfig { fallback: Some(fallback), ..config() });
+    flight.planner.fail_at_tick = Some(30);
+    flight.tick(&[Order::Start]);
+    flight.fly(250);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+    assert_eq!(flight.planner.chosen, ["straight", "fallback"]);
+}
+
+#[test]
+fn without_operator_and_fallback_a_planner_fault_ends_the_mission() {
+    let mut flight = Flight::new(MissionConfig { attended: false, ..config() });
+    flight.planner.fail_at_tick = Some(30);
+    flight.tick(&[Order::Start]);
+    flight.fly(40);
+    assert_eq!(flight.ended(), Some(Outcome::Aborted));
+}
+
+#[test]
+fn a_planner_that_is_not_there_holds_at_the_start_and_another_may_fly() {
+    let mut flight = Flight::new(config());
+    flight.planner.refuse = vec!["straight"];
+    flight.tick(&[Order::Start]);
+    assert!(matches!(flight.mission.phase(), Phase::Held(HoldReason::PlannerFault { .. })));
+    assert!(refusal(&flight.tick(&[Order::Resume])).is_some_and(|why| why.contains("no planner straight")));
+    flight.tick(&[Order::ChoosePlanner(PlannerChoice { id: "other".into(), parameters: Parameters::new() })]);
+    flight.tick(&[Order::Resume]);
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+}
+
+#[test]
+fn a_planner_is_not_swapped_while_the_robot_moves() {
+    let mut flight = Flight::new(config());
+    flight.tick(&[Order::Start]);
+    let swap = Order::ChoosePlanner(PlannerChoice { id: "other".into(), parameters: Parameters::new() });
+    assert!(refusal(&flight.tick(&[swap])).is_some_and(|why| why.contains("held")));
+}
+
+#[test]
+fn a_lost_position_holds_the_robot_and_a_regained_one_lets_it_go_on() {
+    let mut flight = Flight::new(MissionConfig { odometry_sigma_per_m: 0.5, ..config() });
+    flight.tick(&[Order::Start]);
+    flight.fly(10);
+    flight.silent = true;
+    flight.fly(60);
+    assert_eq!(flight.mission.phase(), &Phase::Held(HoldReason::PositionLost));
+    assert!(refusal(&flight.tick(&[Order::Resume])).is_some_and(|why| why.contains("limit 0.30 m")));
+    flight.silent = false;
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+}
+
+#[test]
+fn a_found_obstacle_is_told_once_and_planned_for() {
+    let mut flight = Flight::new(config());
+    flight.tick(&[Order::Start]);
+    for _ in 0..5 {
+        let relative = Point::from(Point::new(0.0, 2.0) - flight.pose.position);
+        let shape_in_robot = Shape::Disc { center: relative, radius_m: 0.3 };
+        flight.sightings = vec![Sighting { id: ObstacleId(7), shape_in_robot }];
+        flight.tick(&[]);
+    }
+    let found: Vec<&Obstacle> = flight
+        .events
+        .iter()
+        .filter_map(|event| match &event.kind {
+            EventKind::ObstacleFound { obstacle } => Some(obstacle),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(found.len(), 1);
+    assert!((found[0].shape.center() - Point::new(0.0, 2.0)).norm() < 0.1);
+    assert_eq!(flight.planner.plans, 2);
+}
+
+#[test]
+fn two_flights_with_the_same_orders_tell_the_same() {
+    let fly = || {
+        let mut flight = Flight::new(config());
+        flight.tick(&[Order::Start]);
+        flight.fly(30);
+        flight.tick(&[Order::Hold]);
+        flight.tick(&[Order::Resume]);
+        flight.fly(200);
+        serde_json::to_string(&flight.events).unwrap()
+    };
+    let told = fly();
+    assert_eq!(told, fly());
+    let back: Vec<Event> = serde_json::from_str(&told).unwrap();
+    assert_eq!(serde_json::to_string(&back).unwrap(), told);
+}

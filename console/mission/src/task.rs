@@ -1,0 +1,205 @@
+//! The task while it is being done: where to go, how far it is, whether it is done.
+
+use crate::{config::TaskConfig, follower::Follower};
+use planner_api as api;
+use world::{ObstacleMap, Point};
+
+/// Distance that counts as progress, metres.
+const PROGRESS_M: f64 = 0.1;
+
+/// A task under way.
+pub enum Task {
+    /// Reach a point.
+    Goto(Goto),
+    /// Follow preset points.
+    Follow {
+        /// Progress along them.
+        follower: Follower,
+        /// Distance at which the last one counts as reached, metres.
+        tolerance_m: f64,
+    },
+}
+
+/// Progress towards a single goal.
+pub struct Goto {
+    goal: Point,
+    tolerance_m: f64,
+    start_m: f64,
+    position: Point,
+}
+
+impl Task {
+    /// The task at its beginning.
+    pub fn new(config: &TaskConfig, start: Point) -> Self {
+        match config {
+            TaskConfig::Goto { goal, tolerance_m } => {
+                let start_m = (goal - start).norm().max(f64::EPSILON);
+                Self::Goto(Goto { goal: *goal, tolerance_m: *tolerance_m, start_m, position: start })
+            }
+            TaskConfig::Follow { path, tolerance_m } => {
+                Self::Follow { follower: Follower::new(path.clone()), tolerance_m: *tolerance_m }
+            }
+        }
+    }
+
+    /// Takes the robot's position.
+    pub fn advance(&mut self, position: Point, map: &ObstacleMap, room_m: f64) {
+        match self {
+            Self::Goto(goto) => goto.position = position,
+            Self::Follow { follower, .. } => follower.advance(position, map, room_m),
+        }
+    }
+
+    /// Where to go next.
+    pub fn target(&self) -> Point {
+        match self {
+            Self::Goto(goto) => goto.goal,
+            Self::Follow { follower, .. } => follower.target(),
+        }
+    }
+
+    /// The targets from the next one on, a few metres of them.
+    pub fn targets_ahead(&self, length_m: f64) -> &[Point] {
+        match self {
+            Self::Goto(goto) => std::slice::from_ref(&goto.goal),
+            Self::Follow { follower, .. } => follower.ahead(length_m),
+        }
+    }
+
+    /// What is left of the task, as planners read it.
+    pub fn as_request(&self) -> api::Task<'_> {
+        match self {
+            Self::Goto(goto) => api::Task::Goto { goal: goto.goal, tolerance_m: goto.tolerance_m },
+            Self::Follow { follower, tolerance_m } => {
+                api::Task::Follow { targets: follower.remaining(), tolerance_m: *tolerance_m }
+            }
+        }
+    }
+
+    /// Share of the task done, 0 to 1.
+    pub fn done(&self) -> f64 {
+        match self {
+            Self::Goto(goto) => (1.0 - goto.left_m() / goto.start_m).clamp(0.0, 1.0),
+            Self::Follow { follower, .. } if follower.length_m() > 0.0 => {
+                follower.along_m() / follower.length_m()
+            }
+            Self::Follow { .. } => 1.0,
+        }
+    }
+
+    /// Way along the preset path, metres; `None` without one.
+    pub fn along_m(&self) -> Option<f64> {
+        match self {
+            Self::Goto(_) => None,
+            Self::Follow { follower, .. } => Some(follower.along_m()),
+        }
+    }
+
+    /// Distance from the preset path, metres; `None` without one.
+    pub fn cross_track_m(&self, position: Point) -> Option<f64> {
+        match self {
+            Self::Goto(_) => None,
+            Self::Follow { follower, .. } => Some(follower.cross_track_m(position)),
+        }
+    }
+
+    /// Whether the task is done, judged by the position that `advance` took last.
+    pub fn is_done(&self, position: Point) -> bool {
+        match self {
+            Self::Goto(goto) => goto.left_m() <= goto.tolerance_m,
+            Self::Follow { follower, tolerance_m } => follower.is_done(position, *tolerance_m),
+        }
+    }
+
+    /// A number that falls while the task advances, metres.
+    fn left_m(&self) -> f64 {
+        match self {
+            Self::Goto(goto) => goto.left_m(),
+            Self::Follow { follower, .. } => follower.length_m() - follower.along_m(),
+        }
+    }
+}
+
+impl Goto {
+    fn left_m(&self) -> f64 {
+        (self.goal - self.position).norm()
+    }
+}
+
+/// Notices when a moving robot gets nowhere.
+///
+/// Twice `patience_s` without coming nearer, or one `patience_s` on the same spot, is stuck: a detour may lead away
+/// from the goal for a while, but it leads somewhere.
+pub struct StuckWatch {
+    patience_s: f64,
+    least_left_m: f64,
+    since_progress_s: f64,
+    spot: Option<Point>,
+    on_spot_s: f64,
+}
+
+impl StuckWatch {
+    /// A watch of some patience.
+    pub fn new(patience_s: f64) -> Self {
+        Self { patience_s, least_left_m: f64::INFINITY, since_progress_s: 0.0, spot: None, on_spot_s: 0.0 }
+    }
+
+    /// Forgets what it saw, for a new try.
+    pub fn reset(&mut self) {
+        *self = Self::new(self.patience_s);
+    }
+
+    /// Takes one tick of moving; whether the robot is stuck.
+    pub fn is_stuck(&mut self, task: &Task, position: Point, tick_s: f64) -> bool {
+        let left_m = task.left_m();
+        self.since_progress_s += tick_s;
+        if left_m < self.least_left_m - PROGRESS_M {
+            (self.least_left_m, self.since_progress_s) = (left_m, 0.0);
+        }
+        let near = self.spot.is_some_and(|spot| (position - spot).norm() < 3.0 * PROGRESS_M);
+        self.on_spot_s = if near { self.on_spot_s + tick_s } else { 0.0 };
+        if !near {
+            self.spot = Some(position);
+        }
+        self.since_progress_s > 2.0 * self.patience_s
+            || (self.on_spot_s > self.patience_s && self.since_progress_s > self.patience_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn goto(goal: (f64, f64)) -> Task {
+        let goal = Point::new(goal.0, goal.1);
+        Task::new(&TaskConfig::Goto { goal, tolerance_m: 0.2 }, Point::origin())
+    }
+
+    #[test]
+    fn a_robot_that_circles_for_long_is_stuck_but_a_detour_is_not() {
+        let map = ObstacleMap::new(&world::Boundary::Circle { radius_m: 20.0 }, &[]);
+        let (mut task, mut watch) = (goto((9.0, 0.0)), StuckWatch::new(10.0));
+        let stuck_after = (0..1000).find(|tick| {
+            let angle = f64::from(*tick) * 0.05;
+            let position = Point::new(angle.cos(), angle.sin());
+            task.advance(position, &map, 0.3);
+            watch.is_stuck(&task, position, 0.1)
+        });
+        assert!(stuck_after.is_some_and(|tick| (180..260).contains(&tick)), "{stuck_after:?}");
+        let (mut task, mut watch) = (goto((9.0, 0.0)), StuckWatch::new(10.0));
+        assert!((0..150).all(|tick| {
+            let position = Point::new(-f64::from(tick) * 0.04, 0.0);
+            task.advance(position, &map, 0.3);
+            !watch.is_stuck(&task, position, 0.1)
+        }));
+    }
+
+    #[test]
+    fn a_goal_within_tolerance_is_done() {
+        let map = ObstacleMap::new(&world::Boundary::Circle { radius_m: 20.0 }, &[]);
+        let mut task = goto((1.0, 0.0));
+        assert!(!task.is_done(Point::origin()));
+        task.advance(Point::new(0.9, 0.0), &map, 0.3);
+        assert!(task.is_done(Point::new(0.9, 0.0)) && task.done() > 0.89);
+    }
+}

@@ -1,0 +1,79 @@
+//! Ranges tied to the places of their stations, checked once for all solvers.
+
+use crate::{
+    aggregate::{RANGE_LIMIT_M, is_usable},
+    fix::{FixError, Ranging},
+};
+use world::{Point, Station, StationId, Vector};
+
+/// Distances below this count as this, metres: no direction can be told so near to a station.
+const NEAREST_M: f64 = 1e-3;
+
+/// A range and where it was measured from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Anchor {
+    pub station: StationId,
+    pub at: Point,
+    pub range_m: f64,
+    pub sigma_m: f64,
+}
+
+/// A station as seen from a position that is tried.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct View {
+    /// Distance to the station, metres.
+    pub distance_m: f64,
+    /// Unit vector from the station.
+    pub direction: Vector,
+    /// Measured minus computed range, metres.
+    pub residual_m: f64,
+    /// Standard deviation expected of the residual, metres.
+    pub sigma_m: f64,
+}
+
+impl View {
+    /// Squared residual in its own sigmas.
+    pub fn squared_error(&self) -> f64 {
+        (self.residual_m / self.sigma_m).powi(2)
+    }
+}
+
+impl Anchor {
+    /// The station as seen from `position`.
+    ///
+    /// The scatter of a range is a share of the true distance, so its sigma is taken to the computed distance.
+    pub fn view_from(&self, position: Point) -> View {
+        let away = position - self.at;
+        let distance_m = away.norm().max(NEAREST_M);
+        View {
+            distance_m,
+            direction: away / distance_m,
+            residual_m: self.range_m - distance_m,
+            sigma_m: self.sigma_m * distance_m / self.range_m,
+        }
+    }
+}
+
+/// The ranges with the places of their stations, sorted by station.
+pub(crate) fn anchored(ranges: &[Ranging], stations: &[Station]) -> Result<Vec<Anchor>, FixError> {
+    let mut anchors = ranges.iter().map(|r| anchor(r, stations)).collect::<Result<Vec<_>, _>>()?;
+    anchors.sort_by_key(|a| a.station);
+    match anchors.windows(2).find(|pair| pair[0].station == pair[1].station) {
+        Some(pair) => Err(FixError::DuplicateStation { station: pair[0].station }),
+        None => Ok(anchors),
+    }
+}
+
+fn anchor(ranging: &Ranging, stations: &[Station]) -> Result<Anchor, FixError> {
+    let Ranging { station, range_m, sigma_m, .. } = *ranging;
+    if !is_usable(range_m) || !(1e-9..=RANGE_LIMIT_M).contains(&sigma_m) {
+        return Err(FixError::BadRange { station });
+    }
+    let surveyed = stations.iter().find(|s| s.id == station && s.position.coords.amax() <= RANGE_LIMIT_M);
+    let at = surveyed.ok_or(FixError::UnknownStation { station })?.position;
+    // `amax` skips what is no number.
+    if at.coords.iter().any(|c| c.is_nan()) {
+        return Err(FixError::UnknownStation { station });
+    }
+    Ok(Anchor { station, at, range_m, sigma_m })
+}

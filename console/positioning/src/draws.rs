@@ -1,0 +1,111 @@
+//! Seeded truths and noise for the tests of this crate.
+
+use crate::{Aggregation, Ranging};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use world::{Point, RangeSet, Station, StationId};
+
+/// Radius of the paper's tank, metres.
+pub const RADIUS_M: f64 = 10.0;
+
+/// Stations at these places, numbered from 1.
+pub fn stations(places: &[(f64, f64)]) -> Vec<Station> {
+    (1..)
+        .zip(places)
+        .map(|(id, (x, y))| Station {
+            id: StationId(id),
+            name: format!("S{id}"),
+            position: Point::new(*x, *y),
+        })
+        .collect()
+}
+
+/// The layout of Wang et al. 2023; its circumcentre is the origin.
+pub fn paper_stations() -> Vec<Station> {
+    stations(&[(7.5, 0.0), (-7.5, 0.0), (0.0, 7.5)])
+}
+
+/// A layout without any symmetry.
+pub fn skew_stations() -> Vec<Station> {
+    stations(&[(8.1, -1.2), (-5.3, 3.9), (1.7, 6.6)])
+}
+
+/// Stations evenly on a ring.
+pub fn ring(n: u32, radius_m: f64) -> Vec<Station> {
+    let places: Vec<(f64, f64)> = (0..n)
+        .map(|k| f64::from(k) * std::f64::consts::TAU / f64::from(n))
+        .map(|angle| (radius_m * angle.cos(), radius_m * angle.sin()))
+        .collect();
+    stations(&places)
+}
+
+/// Uniform noise of the paper's eq. 13.
+pub struct Draws {
+    /// Largest error as a share of the distance.
+    pub ratio: f64,
+    /// Ranges per station.
+    pub repetitions: usize,
+    rng: Pcg64,
+}
+
+impl Draws {
+    /// Noise from a seed.
+    pub fn new(ratio: f64, repetitions: usize, seed: u64) -> Self {
+        Self { ratio, repetitions, rng: Pcg64::seed_from_u64(seed) }
+    }
+
+    /// Standard deviation of one range as a share of the range.
+    pub fn sigma_ratio(&self) -> f64 {
+        self.ratio / 3.0_f64.sqrt()
+    }
+
+    /// A number evenly between -1 and 1.
+    pub fn even(&mut self) -> f64 {
+        self.rng.random_range(-1.0..1.0)
+    }
+
+    /// A number with mean 0 and variance 1, nearly normal.
+    pub fn bell(&mut self) -> f64 {
+        (0..12).map(|_| self.even() / 2.0).sum()
+    }
+
+    /// A point evenly on the floor of the paper's tank.
+    pub fn on_disc(&mut self) -> Point {
+        loop {
+            let point = Point::new(self.even(), self.even()) * RADIUS_M;
+            if point.coords.norm() <= RADIUS_M {
+                return point;
+            }
+        }
+    }
+
+    /// One ranging cycle.
+    pub fn cycle(&mut self, stations: &[Station], truth: Point) -> Vec<RangeSet> {
+        let set = |station: &Station| {
+            let distance = (truth - station.position).norm();
+            let ranges_m =
+                (0..self.repetitions).map(|_| distance * (1.0 + self.ratio * self.even())).collect();
+            RangeSet { station: station.id, ranges_m }
+        };
+        stations.iter().map(set).collect()
+    }
+
+    /// One ranging cycle, aggregated.
+    pub fn rangings(&mut self, stations: &[Station], truth: Point, how: Aggregation) -> Vec<Ranging> {
+        let sigma_ratio = self.sigma_ratio();
+        how.aggregate(&self.cycle(stations, truth), sigma_ratio).expect("true distances give usable ranges")
+    }
+}
+
+/// Ranges without error and with a sigma of 3 cm.
+pub fn exact(stations: &[Station], truth: Point) -> Vec<Ranging> {
+    stations
+        .iter()
+        .map(|s| Ranging {
+            station: s.id,
+            range_m: (truth - s.position).norm(),
+            sigma_m: 0.03,
+            repetitions: 1,
+        })
+        .collect()
+}

@@ -1,0 +1,222 @@
+//! Weighted nonlinear least squares on the ranges themselves.
+
+use crate::{
+    anchor::{Anchor, anchored},
+    fix::{Fix, FixError, PositionSolver, Ranging},
+    linear::{conditioning, solve_linear},
+    pair::solve_pair,
+    quality::{assess, inverse_of},
+};
+use nalgebra::{Matrix2, Rotation2};
+use std::f64::consts::TAU;
+use world::{Point, Station, Vector};
+
+/// Steps tried before giving up; five are usual.
+const MAX_ITERATIONS: usize = 60;
+/// The search ends when a step is shorter than this share of the longest range.
+const STEP_TOLERANCE: f64 = 1e-9;
+/// Stations nearer to a line than this condition number leave a second position that has to be looked at.
+const MIRROR_CONDITIONING: f64 = 5.0;
+/// A range is short if it is less than this share of the longest one.
+const SHORT_RANGE: f64 = 0.2;
+/// Starts tried around a station that is close by.
+const CIRCLE_STARTS: u32 = 36;
+/// A second position fits nearly as well if its chi-squared is worse by less than this.
+const MIRROR_MARGIN: f64 = 9.0;
+
+/// Least squares on relative range errors, `sum ((r_i - l_i) / (s_i l_i))^2` with `s_i` the relative sigma of a range.
+///
+/// Starts at the linear solution (starting at the tank's centre ends in a false minimum for 5 % of a round tank) and
+/// goes on with Newton steps under Levenberg-Marquardt damping; plain Gauss-Newton steps zigzag on the small range
+/// circle of a station close by. Reaches the Cramér-Rao bound of normal noise.
+///
+/// Stations on one line, and two stations, need a prior: there is a mirror solution, and the prior chooses. It has no
+/// other influence on the fix.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Nls;
+
+impl PositionSolver for Nls {
+    fn solve(
+        &self,
+        ranges: &[Ranging],
+        stations: &[Station],
+        prior: Option<(Point, Matrix2<f64>)>,
+    ) -> Result<Fix, FixError> {
+        let anchors = anchored(ranges, stations)?;
+        let prior =
+            prior.filter(|(at, covariance)| at.iter().chain(covariance.iter()).all(|c| c.is_finite()));
+        match (anchors.as_slice(), prior) {
+            ([first, second], Some((near, _))) => solve_pair(first, second, near),
+            ([] | [_] | [_, _], _) => Err(FixError::TooFewStations {
+                have: anchors.len(),
+                need: if prior.is_some() { 2 } else { 3 },
+            }),
+            _ => solve_many(&anchors, prior),
+        }
+    }
+}
+
+fn solve_many(anchors: &[Anchor], prior: Option<(Point, Matrix2<f64>)>) -> Result<Fix, FixError> {
+    let start = match (solve_linear(anchors), prior) {
+        (Ok(linear), _) => linear.position,
+        (Err(FixError::Collinear { .. }), Some((near, _))) => near,
+        (Err(error), _) => return Err(error),
+    };
+    let conditioning = conditioning(anchors);
+    let found = descend(anchors, around_the_nearest(anchors, start))?;
+    let (best, mirror) =
+        if conditioning > MIRROR_CONDITIONING { choose_side(anchors, found, prior) } else { (found, None) };
+    let covariance =
+        inverse_of(&best.information).ok_or(FixError::NotConverged { iterations: best.iterations })?;
+    assess(anchors, best.position, covariance, conditioning, mirror)
+}
+
+/// A better start close to a station, where the start can be on the wrong side: the best place on its range circle.
+///
+/// The valley of such a small circle is narrow and bent, and a descent along it takes hundreds of steps.
+fn around_the_nearest(anchors: &[Anchor], start: Point) -> Point {
+    let longest_m = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
+    let nearest = anchors.iter().min_by(|a, b| a.range_m.total_cmp(&b.range_m));
+    let Some(nearest) = nearest.filter(|n| n.range_m < SHORT_RANGE * longest_m) else { return start };
+    let on_circle = (0..CIRCLE_STARTS)
+        .map(|k| Rotation2::new(TAU * f64::from(k) / f64::from(CIRCLE_STARTS)) * Vector::x())
+        .map(|direction| nearest.at + direction * nearest.range_m);
+    let cost = |position: Point| anchors.iter().map(|a| a.view_from(position).squared_error()).sum::<f64>();
+    std::iter::once(start).chain(on_circle).min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(start)
+}
+
+/// Where a descent ended.
+#[derive(Debug, Clone, Copy)]
+struct Minimum {
+    position: Point,
+    cost: f64,
+    information: Matrix2<f64>,
+    iterations: usize,
+}
+
+/// Looks for a second minimum behind the line of the stations; the better one first.
+fn choose_side(
+    anchors: &[Anchor],
+    found: Minimum,
+    prior: Option<(Point, Matrix2<f64>)>,
+) -> (Minimum, Option<Point>) {
+    let Ok(other) = descend(anchors, reflected(anchors, found.position)) else {
+        return (found, None);
+    };
+    let apart = (other.position - found.position).norm();
+    if apart < 1e-6 || other.cost > found.cost + MIRROR_MARGIN {
+        return (found, None);
+    }
+    if other.cost < found.cost - MIRROR_MARGIN {
+        return (other, None);
+    }
+    let surprise = |m: &Minimum| m.cost + prior.map_or(0.0, |p| surprise_to(p, m.position));
+    if surprise(&other) < surprise(&found) {
+        (other, Some(found.position))
+    } else {
+        (found, Some(other.position))
+    }
+}
+
+/// Squared distance from a prior in its own sigmas; metres squared if it has no usable covariance.
+fn surprise_to((near, covariance): (Point, Matrix2<f64>), position: Point) -> f64 {
+    let away = position - near;
+    let inverse = inverse_of(&covariance).unwrap_or_else(Matrix2::identity);
+    away.dot(&(inverse * away))
+}
+
+/// The position behind the line that the stations stand on most nearly.
+fn reflected(anchors: &[Anchor], position: Point) -> Point {
+    let n = anchors.len() as f64;
+    let middle = Point::from(anchors.iter().map(|a| a.at.coords).sum::<Vector>() / n);
+    let scatter: Matrix2<f64> = anchors.iter().map(|a| a.at - middle).map(|d| d * d.transpose()).sum();
+    let angle = 0.5 * (2.0 * scatter[(0, 1)]).atan2(scatter[(0, 0)] - scatter[(1, 1)]);
+    let across = Vector::new(-angle.sin(), angle.cos());
+    position - across * (2.0 * across.dot(&(position - middle)))
+}
+
+/// Goes down from `start` until the steps are negligible.
+fn descend(anchors: &[Anchor], start: Point) -> Result<Minimum, FixError> {
+    let scale = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
+    let (mut position, mut damping) = (start, 1e-9);
+    let mut here = Slope::at(anchors, position);
+    for iterations in 1..=MAX_ITERATIONS {
+        let Some(step) = here.step(damping) else { break };
+        let there = Slope::at(anchors, position + step);
+        let is_better = there.cost <= here.cost;
+        if is_better {
+            position += step;
+            here = there;
+        }
+        if step.norm() <= STEP_TOLERANCE * scale {
+            let information = information_at(anchors, position);
+            return Ok(Minimum { position, cost: here.cost, information, iterations });
+        }
+        damping = if is_better { (damping * 0.1).max(1e-9) } else { (damping * 10.0).max(1e-4) };
+    }
+    Err(FixError::NotConverged { iterations: MAX_ITERATIONS })
+}
+
+/// The cost at a position with its derivatives.
+struct Slope {
+    cost: f64,
+    gradient: Vector,
+    /// Second derivatives as far as Gauss and Newton take them.
+    curvature: Matrix2<f64>,
+    /// What they leave out: the bend of the range circles, which matters close to a station.
+    bend: Matrix2<f64>,
+}
+
+impl Slope {
+    fn at(anchors: &[Anchor], position: Point) -> Self {
+        let mut slope = Self {
+            cost: 0.0,
+            gradient: Vector::zeros(),
+            curvature: Matrix2::zeros(),
+            bend: Matrix2::zeros(),
+        };
+        for anchor in anchors {
+            let view = anchor.view_from(position);
+            let error = view.residual_m / view.sigma_m;
+            // d/dl of (r - l) / (s l) is -r / (s l^2).
+            let steepness = anchor.range_m / (view.sigma_m * view.distance_m);
+            let square = view.direction * view.direction.transpose();
+            slope.cost += error * error;
+            slope.gradient -= view.direction * (steepness * error);
+            slope.curvature += square * steepness.powi(2);
+            slope.bend += (square * 3.0 - Matrix2::identity()) * (error * steepness / view.distance_m);
+        }
+        slope
+    }
+
+    /// The damped Newton step downhill; none if the numbers have run away.
+    ///
+    /// Damping by the trace also holds where the stations see the position from one direction only.
+    fn step(&self, damping: f64) -> Option<Vector> {
+        let least = Matrix2::identity() * (damping * self.curvature.trace());
+        let inverse = inverse_of(&(made_positive(self.curvature + self.bend) + least))?;
+        Some(-(inverse * self.gradient)).filter(|step| step.iter().all(|c| c.is_finite()))
+    }
+}
+
+/// The symmetric matrix with the same axes and the eigenvalues without their signs: turns a saddle into a valley.
+fn made_positive(matrix: Matrix2<f64>) -> Matrix2<f64> {
+    let (trace, determinant) = (matrix.trace(), matrix.determinant());
+    if determinant >= 0.0 {
+        return matrix * trace.signum();
+    }
+    let gap = (matrix[(0, 0)] - matrix[(1, 1)]).hypot(2.0 * matrix[(0, 1)]);
+    matrix * (trace / gap) - Matrix2::identity() * (2.0 * determinant / gap)
+}
+
+/// Inverse of the covariance: `sum u_i u_i^T / sigma_i^2` with `u_i` the directions from the stations.
+fn information_at(anchors: &[Anchor], position: Point) -> Matrix2<f64> {
+    anchors
+        .iter()
+        .map(|a| a.view_from(position))
+        .map(|v| v.direction * v.direction.transpose() / v.sigma_m.powi(2))
+        .sum()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,120 @@
+//! How good a position is: residuals, dilution, the chi-squared test.
+
+use crate::{
+    anchor::Anchor,
+    fix::{Fix, FixError, Integrity, Residual},
+};
+use nalgebra::Matrix2;
+use world::Point;
+
+/// Normal quantile beyond which residuals are suspect: one honest fix in 100.
+const SUSPECT_Z: f64 = 2.326_347_874;
+/// Normal quantile beyond which residuals raise an alarm: one honest fix in 1000.
+const ALARM_Z: f64 = 3.090_232_306;
+
+/// Stands for an infinite dilution, so that every number stays finite.
+const NO_GEOMETRY: f64 = 1e9;
+
+/// Puts a fix together and judges it by its residuals.
+pub(crate) fn assess(
+    anchors: &[Anchor],
+    position: Point,
+    covariance: Matrix2<f64>,
+    conditioning: f64,
+    mirror: Option<Point>,
+) -> Result<Fix, FixError> {
+    let views = || anchors.iter().map(|a| (a.station, a.view_from(position)));
+    let chi2: f64 = views().map(|(_, v)| v.squared_error()).sum();
+    let degrees_of_freedom = u32::try_from(anchors.len().saturating_sub(2)).unwrap_or(u32::MAX);
+    let is_finite = position.iter().chain(covariance.iter()).chain([&chi2]).all(|number| number.is_finite());
+    if !is_finite {
+        return Err(FixError::NotConverged { iterations: 0 });
+    }
+    Ok(Fix {
+        position,
+        covariance,
+        residuals: views()
+            .map(|(station, v)| Residual { station, residual_m: v.residual_m, sigma_m: v.sigma_m })
+            .collect(),
+        used: anchors.iter().map(|a| a.station).collect(),
+        excluded: Vec::new(),
+        chi2,
+        degrees_of_freedom,
+        gdop: gdop(anchors, position),
+        conditioning,
+        mirror,
+        protection_level_m: None,
+        integrity: judge(chi2, degrees_of_freedom),
+    })
+}
+
+/// What a sum of squared normalised residuals says.
+pub(crate) fn judge(chi2: f64, degrees_of_freedom: u32) -> Integrity {
+    if degrees_of_freedom == 0 {
+        Integrity::Untestable
+    } else if chi2 > chi_squared_quantile(ALARM_Z, degrees_of_freedom) {
+        Integrity::Alarm
+    } else if chi2 > chi_squared_quantile(SUSPECT_Z, degrees_of_freedom) {
+        Integrity::Suspect
+    } else {
+        Integrity::Ok
+    }
+}
+
+/// Residual beyond which one station of a fix is called wrong, metres.
+pub(crate) fn residual_gate_m(sigma_m: f64) -> f64 {
+    ALARM_Z * sigma_m
+}
+
+/// Quantile of the chi-squared distribution, by Wilson and Hilferty's cube; within 3 % for the tails used here.
+pub(crate) fn chi_squared_quantile(z: f64, degrees_of_freedom: u32) -> f64 {
+    let k = f64::from(degrees_of_freedom);
+    let spread = 2.0 / (9.0 * k);
+    k * (1.0 - spread + z * spread.sqrt()).powi(3)
+}
+
+/// Position sigma per range sigma if all ranges were equally good.
+fn gdop(anchors: &[Anchor], position: Point) -> f64 {
+    let information: Matrix2<f64> = anchors
+        .iter()
+        .map(|a| a.view_from(position).direction)
+        .map(|direction| direction * direction.transpose())
+        .sum();
+    inverse_of(&information).map_or(NO_GEOMETRY, |inverse| inverse.trace().max(0.0).sqrt().min(NO_GEOMETRY))
+}
+
+/// The inverse of a symmetric matrix that is no negative one, unless it is all but singular.
+pub(crate) fn inverse_of(information: &Matrix2<f64>) -> Option<Matrix2<f64>> {
+    let (a, b, c) = (information[(0, 0)], information[(0, 1)], information[(1, 1)]);
+    let determinant = a * c - b * b;
+    let is_sound = determinant > 1e-14 * (a + c).powi(2) && determinant.is_finite();
+    is_sound.then(|| Matrix2::new(c, -b, -b, a) / determinant)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quantiles_are_those_of_the_tables() {
+        for (z, k, table) in [
+            (SUSPECT_Z, 1, 6.635),
+            (SUSPECT_Z, 2, 9.210),
+            (SUSPECT_Z, 6, 16.812),
+            (ALARM_Z, 1, 10.828),
+            (ALARM_Z, 2, 13.816),
+            (ALARM_Z, 6, 22.458),
+        ] {
+            let ours = chi_squared_quantile(z, k);
+            assert!((ours / table - 1.0).abs() < 0.032, "{k} degrees: {ours} for {table}");
+        }
+    }
+
+    #[test]
+    fn more_residual_is_never_trusted_more() {
+        assert_eq!(judge(1.0, 1), Integrity::Ok);
+        assert_eq!(judge(8.0, 1), Integrity::Suspect);
+        assert_eq!(judge(20.0, 1), Integrity::Alarm);
+        assert_eq!(judge(0.0, 0), Integrity::Untestable);
+    }
+}

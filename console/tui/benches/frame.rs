@@ -1,0 +1,79 @@
+//! How long a frame of the mission screen takes: 30 000 scanned cells, 10 000 points of path.
+#![allow(missing_docs, reason = "criterion writes a function without docs")]
+#![allow(clippy::print_stderr, reason = "the percentiles are for the person at the bench")]
+
+#[path = "../tests/console/fixture.rs"]
+#[allow(dead_code, reason = "the tests use all of it")]
+mod fixture;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use fixture::{RICH, Screen};
+use mission::{Event, EventKind};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use std::time::{Duration, Instant};
+use tui::{Msg, update, view};
+use world::{CellRun, Point};
+
+/// Frames behind the percentiles.
+const FRAMES: usize = 2000;
+
+/// A mission with a long way behind it.
+fn long_mission() -> Screen {
+    let mut screen = Screen::running();
+    let path: Vec<Point> = (0..10_000)
+        .map(|i| {
+            let (turn, radius_m) = (f64::from(i) * 0.02, 9.5 * (1.0 - f64::from(i) / 10_000.0));
+            Point::new(radius_m * turn.cos(), radius_m * turn.sin())
+        })
+        .collect();
+    let planned = EventKind::Planned {
+        planner: "rpf".into(),
+        reason: planner_api::Reason::Operator,
+        length_m: world::polyline::length_m(&path),
+        path: path.clone(),
+        complete: true,
+    };
+    let covered = EventKind::Covered { runs: vec![CellRun(0, 34_000)] };
+    let mut events: Vec<Event> = [planned, covered].map(|kind| screen.telling.now(kind)).into();
+    let pose = screen.model.position.pose.expect("the fixture has driven");
+    events.extend(path.into_iter().map(|position| {
+        screen.telling.now(EventKind::Estimated { pose: planner_api::PoseEstimate { position, ..pose } })
+    }));
+    screen.tell(Msg::Events(events));
+    screen
+}
+
+fn frame(criterion: &mut Criterion) {
+    for (width, height) in [(80, 24), (120, 36), (200, 60), (300, 100)] {
+        let mut screen = long_mission();
+        screen.tell(Msg::Resize { width, height });
+        let scanned = screen.model.coverage.as_ref().map_or(0, |raster| raster.counts().covered);
+        let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a screen in memory");
+        let mut draw = || terminal.draw(|frame| view(&screen.model, &RICH, frame)).map(drop).expect("memory");
+        let mut times: Vec<Duration> = (0..FRAMES)
+            .map(|_| {
+                let before = Instant::now();
+                draw();
+                before.elapsed()
+            })
+            .collect();
+        times.sort();
+        let (p50, p99) = (times[FRAMES / 2], times[FRAMES * 99 / 100]);
+        eprintln!("{width}x{height}: {scanned} cells, p50 {p50:?}, p99 {p99:?}");
+        criterion.bench_function(&format!("frame_{width}x{height}"), |bencher| bencher.iter(&mut draw));
+    }
+}
+
+fn fold(criterion: &mut Criterion) {
+    let mut screen = long_mission();
+    criterion.bench_function("update_with_one_tick_of_events", |bencher| {
+        bencher.iter(|| {
+            let events = screen.telling.drive(1);
+            update(&mut screen.model, Msg::Events(events))
+        });
+    });
+}
+
+criterion_group!(benches, frame, fold);
+criterion_main!(benches);

@@ -1,0 +1,337 @@
+//! Everything the screen knows, as plain data.
+
+pub mod alarms;
+pub mod coverage;
+pub mod fold;
+pub mod log;
+pub mod parameter;
+pub mod position;
+pub mod trail;
+pub mod ui;
+
+pub use alarms::{Alarm, Alarms, Cause};
+pub use coverage::Raster;
+pub use log::{Entry, Log};
+pub use position::Position;
+pub use trail::Trail;
+pub use ui::{Overlay, Pane, Ui};
+
+use mission::{MissionConfig, Order, Outcome, PlannerChoice, PlannerInfo, Severity, event::HoldReason, link::Fault};
+use planner_api::{Command, Drawing};
+use serde::{Deserialize, Serialize};
+use world::{Point, World};
+
+/// Seconds for which a refusal or a piece of news stays in the line above the keys.
+const NOTICE_S: f64 = 8.0;
+/// Seconds without any event after which a running mission counts as silent.
+const SILENCE_S: f64 = 2.0;
+
+/// Everything the screen knows.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Model {
+    /// What the run is about; `None` until it is opened.
+    pub run: Option<Run>,
+    /// Whether the mission waits, moves, is held or has ended.
+    pub phase: Phase,
+    /// Mission time.
+    pub clock: Clock,
+    /// Where the robot believes to be, and how well it knows.
+    pub position: Position,
+    /// Where it has been.
+    pub trail: Trail,
+    /// What has been scanned.
+    pub coverage: Option<Raster>,
+    /// How far the mission is; `None` before the first step.
+    pub progress: Option<Progress>,
+    /// The planner and what it last did.
+    pub planning: Planning,
+    /// What is wrong.
+    pub alarms: Alarms,
+    /// What happened.
+    pub log: Log,
+    /// The console itself.
+    pub console: Console,
+    /// What the operator looks at.
+    pub ui: Ui,
+}
+
+/// What a run is about.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Start of every random choice.
+    pub seed: u64,
+    /// The tank as the mission knows it: the drawing, and what was found since.
+    pub world: World,
+    /// The mission.
+    pub mission: MissionConfig,
+    /// Length of the preset path, metres; `None` for a mission without one.
+    pub preset_m: Option<f64>,
+}
+
+/// Whether the mission waits, moves, is held or has ended.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub enum Phase {
+    /// Not started.
+    #[default]
+    Idle,
+    /// The planner drives.
+    Running,
+    /// The robot stands still until it is told to go on.
+    Held(HoldReason),
+    /// The run is over.
+    Ended {
+        /// How.
+        outcome: Outcome,
+        /// Why, as a sentence.
+        reason: String,
+    },
+}
+
+/// Mission time, as the events tell it.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Clock {
+    /// Number of the last tick.
+    pub tick: u64,
+    /// Mission time at its top, seconds.
+    pub t_s: f64,
+    /// Mission time spent under way and not held, seconds.
+    pub moving_s: f64,
+    /// When the last events arrived, on the console's own clock, seconds.
+    pub heard_mono_s: f64,
+}
+
+/// How far the mission is.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Progress {
+    /// Share of the task done, 0 to 1.
+    pub done: f64,
+    /// Way along the preset path, metres.
+    pub along_m: Option<f64>,
+    /// Distance from the preset path, metres.
+    pub cross_track_m: Option<f64>,
+    /// Where the robot goes next.
+    pub target: Point,
+    /// Scanned share of the reachable floor, 0 to 1.
+    pub covered_reachable: f64,
+    /// Scanned share of the whole floor, 0 to 1.
+    pub covered_whole: f64,
+}
+
+/// A plan, thinned out for drawing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlanShown {
+    /// Points of the path.
+    pub path: Vec<Point>,
+    /// Length of the whole path, metres.
+    pub length_m: f64,
+    /// Whether it achieves the whole task.
+    pub complete: bool,
+    /// Mission time at which it was made, seconds.
+    pub t_s: f64,
+}
+
+/// The planner and what it last did.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Planning {
+    /// Which planner drives, with the parameters set by hand.
+    pub choice: Option<PlannerChoice>,
+    /// Who it is.
+    pub info: Option<PlannerInfo>,
+    /// Its plan.
+    pub plan: Option<PlanShown>,
+    /// Its last command, with the mission time of it, seconds.
+    pub command: Option<(f64, Command)>,
+    /// Its last drawings.
+    pub drawings: Vec<Drawing>,
+    /// The tick of these.
+    pub drawings_tick: u64,
+    /// Its last figures: name, value, unit.
+    pub scalars: Vec<(String, f64, String)>,
+    /// Its last failure, until it drives again.
+    pub fault: Option<Fault>,
+}
+
+/// The time as the caller told it.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Times {
+    /// Seconds on a clock that never jumps.
+    pub mono_s: f64,
+    /// Seconds since 1970, UTC.
+    pub wall_unix_s: f64,
+}
+
+/// How fast a simulated mission goes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Speed {
+    /// So many times as fast as the clock on the wall.
+    Times(f64),
+    /// As fast as it goes.
+    Max,
+}
+
+impl Speed {
+    /// Every speed the operator can choose, slowest first.
+    pub const STEPS: [Self; 10] = [
+        Self::Times(0.25),
+        Self::Times(0.5),
+        Self::Times(1.0),
+        Self::Times(2.0),
+        Self::Times(4.0),
+        Self::Times(8.0),
+        Self::Times(16.0),
+        Self::Times(32.0),
+        Self::Times(64.0),
+        Self::Max,
+    ];
+
+    /// The next speed up or down, if there is one.
+    pub fn stepped(self, faster: bool) -> Option<Self> {
+        let at = Self::STEPS.iter().position(|step| *step == self).unwrap_or(2);
+        let next = if faster { at.checked_add(1) } else { at.checked_sub(1) };
+        next.and_then(|index| Self::STEPS.get(index)).copied()
+    }
+}
+
+impl Default for Speed {
+    fn default() -> Self {
+        Self::Times(1.0)
+    }
+}
+
+/// Whether the run is being written down.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Recording {
+    /// Nobody asked for it.
+    #[default]
+    Off,
+    /// All is on its way to the disk.
+    On,
+    /// It failed, and why.
+    Failed(String),
+}
+
+/// How the console itself does.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Health {
+    /// Whether the run is being written down.
+    pub recording: Recording,
+    /// The speed that is really reached, as a multiple of the wall clock; `None` when not measured.
+    pub reached_speed: Option<f64>,
+}
+
+/// A plugin that was found and not accepted.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Refused {
+    /// File name of the plugin, without the folder.
+    pub plugin: String,
+    /// Why, as a sentence.
+    pub reason: String,
+}
+
+/// A line for the operator that goes away by itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Notice {
+    /// How much it asks of the operator.
+    pub severity: Severity,
+    /// What, as a sentence.
+    pub text: String,
+    /// When it goes, on the console's own clock, seconds.
+    pub until_mono_s: f64,
+}
+
+/// The console itself.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Console {
+    /// The time as last told.
+    pub now: Times,
+    /// How fast the mission shall go.
+    pub speed: Speed,
+    /// How the console does.
+    pub health: Health,
+    /// Planners to choose from.
+    pub planners: Vec<PlannerInfo>,
+    /// Plugins that cannot be chosen.
+    pub refused: Vec<Refused>,
+    /// What the engine is busy with while it sends no events.
+    pub busy: Option<String>,
+    /// What was last said to the operator.
+    pub notice: Option<Notice>,
+    /// An order that makes the robot move and was not answered yet.
+    pub asked: Option<Order>,
+    /// Whether HOLD was sent and not answered yet.
+    pub hold_asked: bool,
+    /// When Ctrl-C was last pressed, on the console's own clock, seconds.
+    pub interrupted_mono_s: Option<f64>,
+}
+
+impl Model {
+    /// Whether the robot moves or may begin to move any moment without being told.
+    pub fn may_move(&self) -> bool {
+        let by_itself = match &self.phase {
+            Phase::Running | Phase::Held(HoldReason::PositionLost) => true,
+            Phase::Held(HoldReason::PlannerFault { .. }) => self.has_fallback(),
+            Phase::Idle | Phase::Held(_) | Phase::Ended { .. } => false,
+        };
+        by_itself || self.console.asked.is_some()
+    }
+
+    /// Whether another planner may take over by itself after a fault.
+    pub fn has_fallback(&self) -> bool {
+        self.run.as_ref().is_some_and(|run| run.mission.fallback.is_some())
+    }
+
+    /// What is known of the planner that drives, or that will drive first.
+    pub fn planner(&self) -> Option<&PlannerInfo> {
+        let id = self.planner_id();
+        let listed = || self.console.planners.iter().find(|planner| Some(planner.id.as_str()) == id);
+        self.planning.info.as_ref().or_else(listed)
+    }
+
+    /// Id of the planner that drives, or that will drive first.
+    pub fn planner_id(&self) -> Option<&str> {
+        self.planning.choice.as_ref().map(|choice| choice.id.as_str())
+    }
+
+    /// Whether the run is over.
+    pub fn has_ended(&self) -> bool {
+        matches!(self.phase, Phase::Ended { .. })
+    }
+
+    /// Whether the mission runs and yet nothing was heard of it, and for how long, seconds.
+    pub fn silent_s(&self) -> Option<f64> {
+        let silence_s = self.console.now.mono_s - self.clock.heard_mono_s;
+        (self.phase == Phase::Running && silence_s > SILENCE_S).then_some(silence_s)
+    }
+
+    /// The notice, while it is fresh.
+    pub fn notice(&self) -> Option<&Notice> {
+        self.console.notice.as_ref().filter(|notice| notice.until_mono_s > self.console.now.mono_s)
+    }
+
+    /// When the screen next changes by itself, on the console's own clock, seconds; `None` if it does not.
+    pub fn wakes_at_mono_s(&self) -> Option<f64> {
+        let notice = self.notice().map(|notice| notice.until_mono_s);
+        let silence = (self.phase == Phase::Running).then(|| match self.silent_s() {
+            None => self.clock.heard_mono_s + SILENCE_S,
+            Some(_) => self.console.now.mono_s + 1.0,
+        });
+        notice.into_iter().chain(silence).reduce(f64::min)
+    }
+
+    /// Mission time still to go at the pace so far, seconds.
+    pub fn left_s(&self) -> Option<f64> {
+        let done = self.progress.as_ref()?.done;
+        let known = self.clock.moving_s > 10.0 && done > 0.01 && done <= 1.0 && !self.has_ended();
+        known.then(|| self.clock.moving_s * (1.0 - done) / done)
+    }
+
+    /// Tells the operator something in the line above the keys.
+    pub(crate) fn say(&mut self, severity: Severity, text: impl Into<String>) {
+        let until_mono_s = self.console.now.mono_s + NOTICE_S;
+        self.console.notice = Some(Notice { severity, text: text.into(), until_mono_s });
+    }
+}

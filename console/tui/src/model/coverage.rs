@@ -1,0 +1,158 @@
+//! What has been scanned, kept ready for drawing at any zoom.
+
+use serde::{Deserialize, Serialize};
+use world::{CellRun, CoverageGrid, Floor, Point, coverage::Cell, coverage::Counts};
+
+/// Blocks of cells at one zoom: how many of their cells are floor, and how many of these have been scanned.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Level {
+    width: usize,
+    floor: Vec<u32>,
+    scanned: Vec<u32>,
+}
+
+/// The scanned floor with its own reductions by 2, 4, 8 and so on.
+///
+/// Only cells that change are folded in, and drawing looks up one block per dot: neither costs more as the mission
+/// grows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Raster {
+    grid: CoverageGrid,
+    /// The first one halves the grid.
+    levels: Vec<Level>,
+}
+
+impl Raster {
+    /// A floor of which nothing has been scanned.
+    pub fn new(floor: Floor) -> Self {
+        let mut raster = Self { grid: CoverageGrid::new(floor), levels: Vec::new() };
+        raster.levels = (1..).map_while(|shift| raster.level(shift)).collect();
+        for index in 0..raster.grid.floor().len() {
+            if raster.grid.floor().kind(index) != Cell::Outside {
+                raster.count(index, |level, block| level.floor[block] += 1);
+            }
+        }
+        raster
+    }
+
+    /// Marks cells as scanned.
+    pub fn apply(&mut self, runs: &[CellRun]) {
+        for run in runs {
+            let end = (run.0 as usize).saturating_add(run.1 as usize).min(self.grid.floor().len());
+            for index in (run.0 as usize)..end {
+                if !self.grid.is_covered(index) && self.grid.floor().kind(index) != Cell::Outside {
+                    self.count(index, |level, block| level.scanned[block] += 1);
+                }
+            }
+        }
+        self.grid.apply(runs);
+    }
+
+    /// Scanned share of the floor in a square of some edge about a point; `None` where there is no floor.
+    pub fn scanned_share(&self, center: Point, edge_m: f64) -> Option<f64> {
+        let quarter_m = edge_m / 4.0;
+        let mut sums = (0, 0);
+        for (right, up) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
+            let at = Point::new(center.x + right * quarter_m, center.y + up * quarter_m);
+            let (floor, scanned) = self.block_at(at, edge_m / 2.0);
+            sums = (sums.0 + floor, sums.1 + scanned);
+        }
+        (sums.0 > 0).then(|| f64::from(sums.1) / f64::from(sums.0))
+    }
+
+    /// How many cells of each kind.
+    pub fn counts(&self) -> Counts {
+        self.grid.counts()
+    }
+
+    /// Scanned area, square metres.
+    pub fn scanned_m2(&self) -> f64 {
+        self.counts().covered as f64 * self.grid.floor().cell_m.powi(2)
+    }
+
+    /// Share of the whole floor that the tool cannot reach, 0 to 1.
+    pub fn unreachable_share(&self) -> f64 {
+        let counts = self.counts();
+        if counts.floor == 0 { 0.0 } else { 1.0 - counts.reachable as f64 / counts.floor as f64 }
+    }
+
+    fn level(&self, shift: u32) -> Option<Level> {
+        let floor = self.grid.floor();
+        let half = |count: usize| count.div_ceil(1 << shift);
+        let (width, height) = (half(floor.width), half(floor.height));
+        // The level before this one already was a single block.
+        let useful = shift < 20 && floor.width.max(floor.height) > 1 << (shift - 1);
+        useful.then(|| Level { width, floor: vec![0; width * height], scanned: vec![0; width * height] })
+    }
+
+    fn count(&mut self, index: usize, mut add: impl FnMut(&mut Level, usize)) {
+        let width = self.grid.floor().width;
+        let (column, row) = (index % width, index / width);
+        for (shift, level) in (1..).zip(&mut self.levels) {
+            let block = (row >> shift) * level.width + (column >> shift);
+            add(level, block);
+        }
+    }
+
+    /// Floor cells and scanned cells of the block under a point, of the largest blocks no wider than `edge_m`.
+    fn block_at(&self, point: Point, edge_m: f64) -> (u32, u32) {
+        let floor = self.grid.floor();
+        let Some(index) = floor.cell_at(point) else { return (0, 0) };
+        let shift = (edge_m / floor.cell_m).log2().floor().clamp(0.0, self.levels.len() as f64) as usize;
+        if shift == 0 {
+            let is_floor = floor.kind(index) != Cell::Outside;
+            return (u32::from(is_floor), u32::from(is_floor && self.grid.is_covered(index)));
+        }
+        let level = &self.levels[shift - 1];
+        let block = ((index / floor.width) >> shift) * level.width + ((index % floor.width) >> shift);
+        (level.floor[block], level.scanned[block])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use world::{Boundary, World};
+
+    fn raster() -> Raster {
+        let vertices =
+            vec![Point::new(0.0, 0.0), Point::new(8.0, 0.0), Point::new(8.0, 8.0), Point::new(0.0, 8.0)];
+        let world = World {
+            boundary: Boundary::Polygon { vertices },
+            obstacles: Vec::new(),
+            stations: Vec::new(),
+            zones: Vec::new(),
+        };
+        Raster::new(Floor::new(&world, 0.5, 0.2, 0.4, Point::new(4.0, 4.0)))
+    }
+
+    #[test]
+    fn a_scanned_half_shows_at_every_zoom() {
+        let mut raster = raster();
+        raster.apply(&[CellRun(0, 128)]);
+        for edge_m in [0.4, 1.0, 2.0, 4.0] {
+            let south = raster.scanned_share(Point::new(4.0, 2.0), edge_m);
+            let north = raster.scanned_share(Point::new(4.0, 6.0), edge_m);
+            assert_eq!((south, north), (Some(1.0), Some(0.0)), "edge {edge_m} m");
+        }
+        assert_eq!(raster.scanned_share(Point::new(4.0, 4.0), 8.0), Some(0.5));
+    }
+
+    #[test]
+    fn a_cell_scanned_twice_counts_once() {
+        let mut raster = raster();
+        raster.apply(&[CellRun(0, 3), CellRun(1, 3)]);
+        assert_eq!(raster.counts().covered, 4);
+        assert!((raster.scanned_m2() - 1.0).abs() < 1e-12);
+        assert_eq!(raster.scanned_share(Point::new(1.0, 0.25), 100.0), raster.scanned_share(Point::new(1.0, 0.25), 1e9));
+    }
+
+    #[test]
+    fn runs_beyond_the_grid_and_places_beyond_the_floor_are_ignored() {
+        let mut raster = raster();
+        raster.apply(&[CellRun(250, 100), CellRun(u32::MAX, u32::MAX)]);
+        assert_eq!(raster.counts().covered, 6);
+        assert_eq!(raster.scanned_share(Point::new(-50.0, 4.0), 1.0), None);
+        assert_eq!(raster.scanned_share(Point::new(f64::NAN, 4.0), f64::NAN), None);
+    }
+}

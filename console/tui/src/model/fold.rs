@@ -1,0 +1,229 @@
+//! Events into the model.
+
+use super::{Cause, Model, Overlay, Phase, PlanShown, Progress, Raster, Run, Trail};
+use mission::{Event, EventKind, Order, Outcome, Severity, TaskConfig, event::HoldReason, event::RunOpened};
+use planner_api::Drawing;
+use positioning::Exclusion;
+use world::{Obstacle, ObstacleId, Station, StationId};
+
+/// Most drawings kept of one tick.
+const MAX_DRAWINGS: usize = 512;
+/// Most figures kept of one tick.
+const MAX_SCALARS: usize = 32;
+
+impl Model {
+    /// Takes in one event. What only the simulator can know is left out.
+    pub(crate) fn fold(&mut self, event: &Event) {
+        if matches!(event.kind, EventKind::Truth { .. }) {
+            return;
+        }
+        self.tell_time(event);
+        if let Some(line) = event.log_line() {
+            self.log.add(event.t_s, line.severity, line.source, line.text);
+        }
+        match &event.kind {
+            EventKind::RunOpened(run) => self.open(run),
+            EventKind::Ordered { order } => {
+                self.answered(order);
+                if *order == Order::Start && self.phase == Phase::Idle {
+                    self.phase = Phase::Running;
+                }
+            }
+            EventKind::OrderRefused { order, why } => {
+                self.answered(order);
+                self.say(Severity::Warn, format!("the mission refused: {why}"));
+            }
+            EventKind::Ranged { ranges } => self.position.ranged(event.t_s, ranges.len()),
+            EventKind::Fixed { fix } => {
+                (self.position.fix, self.position.fix_t_s) = (Some(fix.clone()), event.t_s);
+                self.position.failure = None;
+                self.alarms.clear(&Cause::NoFix);
+            }
+            EventKind::FixFailed { error, .. } => {
+                self.position.failure = Some(error.to_string());
+                self.raise(event, Cause::NoFix, Severity::Watch, format!("no fix: {error}"));
+            }
+            EventKind::StationExcluded { station, reason } => self.exclude(event, *station, reason),
+            EventKind::StationRegained { station } => self.alarms.clear(&Cause::Station(*station)),
+            EventKind::Estimated { pose } => {
+                self.position.estimated(event.t_s, *pose);
+                self.trail.add(pose.position);
+            }
+            EventKind::PositionLost { error_m, limit_m } => {
+                self.position.lost = true;
+                let text = format!("position lost: 95 % error {error_m:.2} m, limit {limit_m:.2} m");
+                self.raise(event, Cause::PositionLost, Severity::Crit, text);
+                self.withdraw_question();
+            }
+            EventKind::PositionRegained { .. } => {
+                self.position.lost = false;
+                self.alarms.clear(&Cause::PositionLost);
+            }
+            EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
+            EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
+            EventKind::PlannerChosen { choice, info, .. } => {
+                (self.planning.choice, self.planning.info) = (Some(choice.clone()), Some((**info).clone()));
+                self.planning.scalars.clear();
+                self.planning.drawings.clear();
+                self.planner_works();
+            }
+            EventKind::ParametersChanged { choice } => self.planning.choice = Some(choice.clone()),
+            EventKind::Planned { path, length_m, complete, .. } => {
+                let path = Trail::thinned(path);
+                let plan = PlanShown { path, length_m: *length_m, complete: *complete, t_s: event.t_s };
+                self.planning.plan = Some(plan);
+                self.planner_works();
+            }
+            EventKind::Commanded { command } => self.planning.command = Some((event.t_s, *command)),
+            EventKind::Drawn { drawings } => self.draw(event.tick, drawings),
+            EventKind::Scalars { scalars } => {
+                self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
+            }
+            EventKind::PlannerFailed { fault } => {
+                self.planning.fault = Some(fault.clone());
+                self.raise(event, Cause::Planner, Severity::Crit, fault.message.clone());
+                self.withdraw_question();
+            }
+            EventKind::Covered { runs } => {
+                if let Some(coverage) = &mut self.coverage {
+                    coverage.apply(runs);
+                }
+            }
+            EventKind::Progressed { done, along_m, cross_track_m, target, covered_reachable, covered_whole } => {
+                self.progress = Some(Progress {
+                    done: *done,
+                    along_m: *along_m,
+                    cross_track_m: *cross_track_m,
+                    target: *target,
+                    covered_reachable: *covered_reachable,
+                    covered_whole: *covered_whole,
+                });
+            }
+            EventKind::Held { by } => self.hold(by),
+            EventKind::Resumed => {
+                self.phase = Phase::Running;
+                self.console.asked = None;
+                self.planner_works();
+            }
+            EventKind::Ended { outcome, reason } => self.end(event, *outcome, reason),
+            EventKind::Truth { .. } | EventKind::PlannerSaid { .. } => {}
+        }
+    }
+
+    fn tell_time(&mut self, event: &Event) {
+        let passed_s = event.t_s - self.clock.t_s;
+        if self.phase == Phase::Running && passed_s > 0.0 {
+            self.clock.moving_s += passed_s;
+        }
+        (self.clock.tick, self.clock.t_s) = (event.tick, event.t_s);
+        self.clock.heard_mono_s = self.console.now.mono_s;
+    }
+
+    fn open(&mut self, run: &RunOpened) {
+        let preset_m = match &run.mission.task {
+            TaskConfig::Follow { path, .. } => Some(world::polyline::length_m(path)),
+            TaskConfig::Goto { .. } => None,
+        };
+        self.run = Some(Run {
+            scenario: run.scenario.clone(),
+            seed: run.seed,
+            world: run.world.as_drawn(),
+            mission: run.mission.clone(),
+            preset_m,
+        });
+        self.coverage = Some(Raster::new(run.floor.clone()));
+        self.planning.choice = Some(run.mission.planner.clone());
+        self.phase = Phase::Idle;
+    }
+
+    /// Notes that the mission answered an order, for better or worse.
+    fn answered(&mut self, order: &Order) {
+        if self.console.asked.as_ref() == Some(order) {
+            self.console.asked = None;
+        }
+        if *order == Order::Hold {
+            self.console.hold_asked = false;
+        }
+    }
+
+    fn raise(&mut self, event: &Event, cause: Cause, severity: Severity, text: String) {
+        self.alarms.raise(cause, severity, text, event.t_s);
+    }
+
+    fn exclude(&mut self, event: &Event, station: StationId, reason: &Exclusion) {
+        let name = self.station(station).map_or_else(|| format!("station {}", station.0), |s| s.name.clone());
+        let why = match reason {
+            Exclusion::Silent => "not heard".to_owned(),
+            Exclusion::Residual { residual_m, gate_m } => {
+                format!("residual {residual_m:.2} m, gate {gate_m:.2} m")
+            }
+        };
+        self.raise(event, Cause::Station(station), Severity::Watch, format!("{name} left out: {why}"));
+    }
+
+    /// The station of that id.
+    pub(crate) fn station(&self, id: StationId) -> Option<&Station> {
+        self.run.as_ref()?.world.stations.iter().find(|station| station.id == id)
+    }
+
+    fn found(&mut self, event: &Event, obstacle: &Obstacle) {
+        let at = obstacle.shape.center();
+        if let Some(run) = &mut self.run {
+            run.world.obstacles.retain(|other| other.known || other.id != obstacle.id);
+            run.world.obstacles.push(Obstacle { known: false, ..obstacle.clone() });
+        }
+        let text = format!("obstacle not on the drawing at {:.2}, {:.2} m", at.x, at.y);
+        self.raise(event, Cause::Map, Severity::Watch, text);
+    }
+
+    fn moved(&mut self, id: ObstacleId, obstacle: &Obstacle) {
+        let found = self.run.iter_mut().flat_map(|run| &mut run.world.obstacles);
+        for other in found.filter(|other| !other.known && other.id == id) {
+            other.shape = obstacle.shape.clone();
+        }
+    }
+
+    fn draw(&mut self, tick: u64, drawings: &[Drawing]) {
+        if self.planning.drawings_tick != tick {
+            self.planning.drawings.clear();
+        }
+        self.planning.drawings_tick = tick;
+        let room = MAX_DRAWINGS.saturating_sub(self.planning.drawings.len());
+        self.planning.drawings.extend(drawings.iter().take(room).copied());
+    }
+
+    fn planner_works(&mut self) {
+        self.planning.fault = None;
+        self.alarms.clear(&Cause::Planner);
+    }
+
+    fn hold(&mut self, by: &HoldReason) {
+        self.phase = Phase::Held(by.clone());
+        self.console.hold_asked = false;
+        self.console.asked = None;
+        if !matches!(by, HoldReason::Operator | HoldReason::Stepped) {
+            self.withdraw_question();
+        }
+    }
+
+    fn end(&mut self, event: &Event, outcome: Outcome, reason: &str) {
+        self.phase = Phase::Ended { outcome, reason: reason.to_owned() };
+        self.console.hold_asked = false;
+        self.console.asked = None;
+        self.withdraw_question();
+        let severity = match outcome {
+            Outcome::Complete | Outcome::Aborted => return,
+            Outcome::Stuck | Outcome::TimeLimit => Severity::Warn,
+            Outcome::Collision => Severity::Crit,
+        };
+        self.raise(event, Cause::Ended, severity, format!("ended {}: {reason}", outcome.word()));
+    }
+
+    /// Takes back a question that was asked under circumstances that no longer hold.
+    fn withdraw_question(&mut self) {
+        if matches!(self.ui.overlay, Overlay::Confirm(_) | Overlay::Stepping) {
+            self.ui.overlay = Overlay::None;
+            self.say(Severity::Warn, "the question was withdrawn: things have changed since it was asked");
+        }
+    }
+}

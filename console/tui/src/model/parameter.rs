@@ -1,0 +1,103 @@
+//! A planner's parameters as the operator reads and types them.
+
+use super::Planning;
+use mission::{ParamInfo, ParamKind, ParamValue};
+
+/// The value that a parameter has now: set by hand, or its default.
+pub fn value(planning: &Planning, info: &ParamInfo) -> ParamValue {
+    let by_hand = planning.choice.as_ref().and_then(|choice| choice.parameters.get(&info.key));
+    by_hand.cloned().unwrap_or_else(|| default(&info.kind))
+}
+
+/// The value when nothing is set.
+pub fn default(kind: &ParamKind) -> ParamValue {
+    match kind {
+        ParamKind::Float { default, .. } => ParamValue::Float(*default),
+        ParamKind::Int { default, .. } => ParamValue::Int(*default),
+        ParamKind::Flag { default } => ParamValue::Flag(*default),
+        ParamKind::Choice { default, .. } => ParamValue::Word(default.clone()),
+    }
+}
+
+/// Which values a parameter takes, in words.
+pub fn range(info: &ParamInfo) -> String {
+    let unit = if info.unit.is_empty() { String::new() } else { format!(" {}", info.unit) };
+    match &info.kind {
+        ParamKind::Float { min, max, .. } => format!("{min} to {max}{unit}"),
+        ParamKind::Int { min, max, .. } => format!("a whole number, {min} to {max}{unit}"),
+        ParamKind::Flag { .. } => "true or false".into(),
+        ParamKind::Choice { options, .. } => options.join(", "),
+    }
+}
+
+/// The unit as a column of a table has it.
+pub fn unit(info: &ParamInfo) -> &str {
+    if info.unit.is_empty() { "-" } else { &info.unit }
+}
+
+/// Reads a typed value.
+///
+/// # Errors
+/// What is wrong with it and what would be right, as a sentence.
+pub fn parse(info: &ParamInfo, text: &str) -> Result<ParamValue, String> {
+    let text = text.trim();
+    let wrong = |what: &str| Err(format!("{what}; {} takes {}", info.key, range(info)));
+    let beyond = || wrong(&format!("{text} is out of range"));
+    match &info.kind {
+        _ if text.is_empty() => wrong("nothing was typed"),
+        ParamKind::Float { min, max, .. } => match text.parse::<f64>() {
+            Ok(number) if (*min..=*max).contains(&number) => Ok(ParamValue::Float(number)),
+            Ok(_) => beyond(),
+            Err(_) => wrong(&format!("`{text}` is no number")),
+        },
+        ParamKind::Int { min, max, .. } => match text.parse::<i64>() {
+            Ok(number) if (*min..=*max).contains(&number) => Ok(ParamValue::Int(number)),
+            Ok(_) => beyond(),
+            Err(_) => wrong(&format!("`{text}` is no whole number")),
+        },
+        ParamKind::Flag { .. } => match text {
+            "true" | "on" | "yes" => Ok(ParamValue::Flag(true)),
+            "false" | "off" | "no" => Ok(ParamValue::Flag(false)),
+            _ => wrong(&format!("`{text}` is neither true nor false")),
+        },
+        ParamKind::Choice { options, .. } => match options.iter().find(|option| *option == text) {
+            Some(word) => Ok(ParamValue::Word(word.clone())),
+            None => wrong(&format!("there is no `{text}`")),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn info(kind: ParamKind) -> ParamInfo {
+        ParamInfo {
+            key: "k_rep".into(),
+            label: "Repulsion gain".into(),
+            unit: "m3/s".into(),
+            help: String::new(),
+            group: String::new(),
+            kind,
+            live: true,
+        }
+    }
+
+    #[test]
+    fn a_value_out_of_range_is_refused_with_the_range() {
+        let gain = info(ParamKind::Float { min: 0.0, max: 10.0, default: 0.4 });
+        assert_eq!(parse(&gain, "1.2"), Ok(ParamValue::Float(1.2)));
+        assert_eq!(parse(&gain, "12"), Err("12 is out of range; k_rep takes 0 to 10 m3/s".into()));
+        assert_eq!(parse(&gain, "NaN"), Err("NaN is out of range; k_rep takes 0 to 10 m3/s".into()));
+        assert_eq!(parse(&gain, "much"), Err("`much` is no number; k_rep takes 0 to 10 m3/s".into()));
+    }
+
+    #[test]
+    fn words_and_flags_are_read_by_name() {
+        let mode = info(ParamKind::Choice { options: vec!["literal".into(), "gated".into()], default: "gated".into() });
+        assert_eq!(parse(&mode, "literal"), Ok(ParamValue::Word("literal".into())));
+        assert!(parse(&mode, "other").is_err_and(|why| why.contains("literal, gated")));
+        assert_eq!(parse(&info(ParamKind::Flag { default: true }), "off"), Ok(ParamValue::Flag(false)));
+        assert!(parse(&info(ParamKind::Int { min: 0, max: 4, default: 2 }), "2.5").is_err());
+    }
+}

@@ -1,0 +1,178 @@
+//! Where the robot believes to be, and how well it knows.
+
+use nalgebra::Matrix2;
+use planner_api::PoseEstimate;
+use positioning::Fix;
+use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
+use world::Point;
+
+/// Seconds of mission time that the error history shows.
+pub const HISTORY_S: usize = 120;
+/// Seconds over which the speed is taken.
+const SPEED_SPAN_S: f64 = 2.0;
+
+/// Where the robot believes to be, and how well it knows.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Position {
+    /// The pose as estimated last.
+    pub pose: Option<PoseEstimate>,
+    /// Mission time of it, seconds.
+    pub pose_t_s: f64,
+    /// The last fix.
+    pub fix: Option<Fix>,
+    /// Mission time of it, seconds.
+    pub fix_t_s: f64,
+    /// Stations heard in the last ranging cycle.
+    pub heard: usize,
+    /// Mission time of the last ranging cycle, seconds.
+    pub ranged_t_s: Option<f64>,
+    /// Time between the last two ranging cycles, seconds.
+    pub period_s: Option<f64>,
+    /// Why the last ranging cycle gave no fix; `None` if it gave one.
+    pub failure: Option<String>,
+    /// Whether the position counts as lost.
+    pub lost: bool,
+    /// Largest 95 % error of each second, newest last, metres.
+    history: VecDeque<f64>,
+    history_second: u64,
+    recent: VecDeque<(f64, Point)>,
+}
+
+impl Position {
+    /// Takes in a new pose.
+    pub fn estimated(&mut self, t_s: f64, pose: PoseEstimate) {
+        (self.pose, self.pose_t_s) = (Some(pose), t_s);
+        self.recent.push_back((t_s, pose.position));
+        while self.recent.len() > 1 && (self.recent[0].0 < t_s - SPEED_SPAN_S || self.recent.len() > 1000) {
+            self.recent.pop_front();
+        }
+        let second = t_s.max(0.0) as u64;
+        let error_m = error_95_m(&pose);
+        match self.history.back_mut() {
+            Some(last) if second == self.history_second => *last = last.max(error_m),
+            _ => self.history.push_back(error_m),
+        }
+        self.history_second = second;
+        if self.history.len() > HISTORY_S {
+            self.history.pop_front();
+        }
+    }
+
+    /// Takes in that a ranging cycle ended.
+    pub fn ranged(&mut self, t_s: f64, heard: usize) {
+        if let Some(before) = self.ranged_t_s.filter(|before| *before < t_s) {
+            self.period_s = Some(t_s - before);
+        }
+        (self.heard, self.ranged_t_s) = (heard, Some(t_s));
+    }
+
+    /// Half width of the 95 % error of the pose, metres.
+    pub fn error_m(&self) -> Option<f64> {
+        self.pose.as_ref().map(error_95_m)
+    }
+
+    /// Root mean square of the residuals of the last fix, metres.
+    pub fn residual_rms_m(&self) -> Option<f64> {
+        let fix = self.fix.as_ref().filter(|fix| !fix.residuals.is_empty())?;
+        let mean = fix.residuals.iter().map(|r| r.residual_m.powi(2)).sum::<f64>() / fix.residuals.len() as f64;
+        Some(mean.sqrt())
+    }
+
+    /// Largest 95 % error of each of the last seconds, newest last, metres.
+    pub fn history_m(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        self.history.iter().copied()
+    }
+
+    /// Speed over ground as the estimate has it, metres per second.
+    pub fn speed_m_per_s(&self) -> Option<f64> {
+        let (from, to) = (self.recent.front()?, self.recent.back()?);
+        let span_s = to.0 - from.0;
+        (span_s > 0.0).then(|| (to.1 - from.1).norm() / span_s)
+    }
+
+    /// Age of the last fix, seconds.
+    pub fn fix_age_s(&self, t_s: f64) -> Option<f64> {
+        self.fix.as_ref().map(|_| (t_s - self.fix_t_s).max(0.0))
+    }
+
+    /// Whether the last fix is older than two ranging periods.
+    pub fn is_fix_stale(&self, t_s: f64) -> bool {
+        match (self.fix_age_s(t_s), self.period_s) {
+            (Some(age_s), Some(period_s)) => age_s > 2.0 * period_s,
+            _ => false,
+        }
+    }
+}
+
+/// Half width of the 95 % error of a pose, metres.
+fn error_95_m(pose: &PoseEstimate) -> f64 {
+    ellipse_95(pose).0
+}
+
+/// Half axes of the 95 % ellipse of a pose, metres, and the direction of the longer one, radians.
+pub fn ellipse_95(pose: &PoseEstimate) -> (f64, f64, f64) {
+    let c = &pose.covariance;
+    positioning::fix::ellipse_95(&Matrix2::new(c[(0, 0)], c[(0, 1)], c[(1, 0)], c[(1, 1)]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Matrix3;
+
+    fn pose(x: f64, sigma_m: f64) -> PoseEstimate {
+        let covariance = Matrix3::from_diagonal_element(sigma_m * sigma_m);
+        PoseEstimate { position: Point::new(x, 0.0), heading_rad: 0.0, covariance }
+    }
+
+    #[test]
+    fn the_speed_is_taken_over_two_seconds() {
+        let mut position = Position::default();
+        for tick in 0..100 {
+            let t_s = f64::from(tick) * 0.1;
+            position.estimated(t_s, pose(t_s * 0.2, 0.01));
+        }
+        assert!((position.speed_m_per_s().unwrap_or_default() - 0.2).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_history_keeps_the_worst_of_each_second_and_two_minutes_of_them() {
+        let mut position = Position::default();
+        for tick in 0..3000 {
+            let spike = if tick % 10 == 3 { 0.1 } else { 0.01 };
+            position.estimated(f64::from(tick) * 0.1, pose(0.0, spike));
+        }
+        assert_eq!(position.history_m().len(), HISTORY_S);
+        assert!(position.history_m().all(|error_m| error_m > 0.2));
+    }
+
+    #[test]
+    fn a_fix_is_stale_after_two_periods() {
+        let mut position = Position { fix_t_s: 10.0, ..Position::default() };
+        position.ranged(9.0, 4);
+        position.ranged(10.0, 4);
+        assert_eq!(position.period_s, Some(1.0));
+        assert!(!position.is_fix_stale(20.0), "no fix at all is not a stale one");
+        position.fix = Some(fix());
+        assert!(!position.is_fix_stale(11.9));
+        assert!(position.is_fix_stale(12.1));
+    }
+
+    fn fix() -> Fix {
+        Fix {
+            position: Point::origin(),
+            covariance: Matrix2::identity(),
+            residuals: Vec::new(),
+            used: Vec::new(),
+            excluded: Vec::new(),
+            chi2: 0.0,
+            degrees_of_freedom: 0,
+            gdop: 1.0,
+            conditioning: 1.0,
+            mirror: None,
+            protection_level_m: None,
+            integrity: positioning::Integrity::Ok,
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! What the operator looks at: zoom, filter, selection, and what lies over the screen.
+
+use mission::{Order, PlannerChoice, Severity};
+use serde::{Deserialize, Serialize};
+use world::Point;
+
+/// What the operator looks at.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Ui {
+    /// Columns of the terminal.
+    pub width: u16,
+    /// Rows of the terminal.
+    pub height: u16,
+    /// The pane that takes the arrow keys; on a narrow screen the one that is shown.
+    pub pane: Pane,
+    /// The part of the tank on the map.
+    pub map: MapView,
+    /// What the map shows.
+    pub layers: Layers,
+    /// Least severity of the lines in the events pane.
+    pub least: Severity,
+    /// Text that the lines in the events pane contain.
+    pub needle: String,
+    /// How many lines the events pane is scrolled back.
+    pub scroll: usize,
+    /// What lies over the screen.
+    pub overlay: Overlay,
+}
+
+impl Default for Ui {
+    fn default() -> Self {
+        Self {
+            width: 80,
+            height: 24,
+            pane: Pane::Map,
+            map: MapView::default(),
+            layers: Layers::default(),
+            least: Severity::Info,
+            needle: String::new(),
+            scroll: 0,
+            overlay: Overlay::None,
+        }
+    }
+}
+
+/// A pane of the mission screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Pane {
+    /// The map.
+    Map,
+    /// What has been scanned.
+    Coverage,
+    /// Where the robot is, and how well that is known.
+    Position,
+    /// What the planner does.
+    Planner,
+    /// What happened.
+    Events,
+}
+
+impl Pane {
+    /// Every pane, in the order of the Tab key.
+    pub const ALL: [Self; 5] = [Self::Map, Self::Coverage, Self::Position, Self::Planner, Self::Events];
+}
+
+/// The part of the tank on the map.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct MapView {
+    /// How often the scale was doubled; 0 shows the whole tank.
+    pub zoom: u8,
+    /// Whether the robot stays in the middle.
+    pub follow: bool,
+    /// The middle of the map from the middle of the tank, metres, when it does not follow.
+    pub offset: world::Vector,
+}
+
+/// Most doublings of the map's scale.
+pub const MAX_ZOOM: u8 = 6;
+
+/// What the map shows besides walls, obstacles and the robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Layers {
+    /// Scanned floor.
+    pub coverage: bool,
+    /// Where the robot has been.
+    pub trail: bool,
+    /// Where the plan leads.
+    pub plan: bool,
+    /// What the planner draws.
+    pub drawings: bool,
+    /// Acoustic-emission stations.
+    pub stations: bool,
+}
+
+impl Layers {
+    /// Names of the layers, in order.
+    pub const NAMES: [&'static str; 5] =
+        ["scanned floor", "trail of the robot", "plan", "planner's drawings", "AE stations"];
+
+    /// Whether a layer is shown, by its place in [`Layers::NAMES`].
+    pub fn is_on(&self, index: usize) -> bool {
+        let all = [self.coverage, self.trail, self.plan, self.drawings, self.stations];
+        all.get(index).copied().unwrap_or_default()
+    }
+
+    /// Shows a layer or hides it, by its place in [`Layers::NAMES`].
+    pub fn toggle(&mut self, index: usize) {
+        let all = [&mut self.coverage, &mut self.trail, &mut self.plan, &mut self.drawings, &mut self.stations];
+        if let Some(layer) = all.into_iter().nth(index) {
+            *layer = !*layer;
+        }
+    }
+}
+
+impl Default for Layers {
+    fn default() -> Self {
+        Self { coverage: true, trail: true, plan: true, drawings: true, stations: true }
+    }
+}
+
+/// What lies over the screen and takes the keys.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub enum Overlay {
+    /// Nothing.
+    #[default]
+    None,
+    /// A line that asks before something moves or ends.
+    Confirm(Ask),
+    /// The line for single steps.
+    Stepping,
+    /// The question before leaving.
+    Quit,
+    /// The list of commands.
+    Commands {
+        /// Whether it was opened as help, with every key shown.
+        help: bool,
+        /// What was typed.
+        filter: String,
+        /// Which line is selected.
+        selected: usize,
+    },
+    /// The list of planners.
+    Planners {
+        /// Which line is selected.
+        selected: usize,
+    },
+    /// The parameters of the planner that drives.
+    Parameters {
+        /// Which line is selected.
+        selected: usize,
+        /// The value being typed.
+        edit: Option<Edit>,
+    },
+    /// The layers of the map.
+    Layers {
+        /// Which line is selected.
+        selected: usize,
+    },
+    /// The text filter of the events pane is being typed.
+    Filter,
+}
+
+/// What a confirm line asks for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Ask {
+    /// Start the mission.
+    Start,
+    /// Go on.
+    Resume,
+    /// End the mission.
+    Abort,
+    /// Let another planner drive.
+    Swap(PlannerChoice),
+}
+
+impl Ask {
+    /// The order that follows when the operator agrees.
+    pub fn order(&self) -> Order {
+        match self {
+            Self::Start => Order::Start,
+            Self::Resume => Order::Resume,
+            Self::Abort => Order::Abort,
+            Self::Swap(choice) => Order::ChoosePlanner(choice.clone()),
+        }
+    }
+}
+
+/// A parameter's value being typed.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Edit {
+    /// What was typed.
+    pub text: String,
+    /// Why it cannot be taken.
+    pub refusal: Option<String>,
+}
+
+/// How the screen is laid out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Arrangement {
+    /// From 120 columns and 30 rows: everything, in full words.
+    Wide,
+    /// From 80 columns and 24 rows: everything, in short words.
+    Narrow,
+    /// From 60 columns and 16 rows: one pane at a time.
+    Paged,
+    /// Below: control of the robot, without a map.
+    Strip,
+}
+
+impl Arrangement {
+    /// How a screen of some size is laid out.
+    pub fn of(width: u16, height: u16) -> Self {
+        match (width, height) {
+            (120.., 30..) => Self::Wide,
+            (80.., 24..) => Self::Narrow,
+            (60.., 16..) => Self::Paged,
+            _ => Self::Strip,
+        }
+    }
+}
+
+impl Ui {
+    /// How the screen is laid out.
+    pub fn arrangement(&self) -> Arrangement {
+        Arrangement::of(self.width, self.height)
+    }
+
+    /// Whether the map can be seen.
+    pub fn shows_map(&self) -> bool {
+        match self.arrangement() {
+            Arrangement::Wide | Arrangement::Narrow => true,
+            Arrangement::Paged => self.pane == Pane::Map,
+            Arrangement::Strip => false,
+        }
+    }
+
+    /// Whether the events can be seen.
+    pub fn shows_events(&self) -> bool {
+        match self.arrangement() {
+            Arrangement::Wide | Arrangement::Narrow => true,
+            Arrangement::Paged => self.pane == Pane::Events,
+            Arrangement::Strip => false,
+        }
+    }
+
+    /// The panes that the Tab key visits.
+    pub fn panes(&self) -> &'static [Pane] {
+        match self.arrangement() {
+            Arrangement::Wide | Arrangement::Narrow => &[Pane::Map, Pane::Events],
+            Arrangement::Paged => &Pane::ALL,
+            Arrangement::Strip => &[],
+        }
+    }
+
+    /// The middle of the map, metres, tank frame.
+    pub fn map_center(&self, tank: Point, robot: Option<Point>) -> Point {
+        match robot {
+            Some(robot) if self.map.follow => robot,
+            _ => tank + self.map.offset,
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! The shell around the pure part: takes the terminal over and always gives it back.
+
+mod key;
+mod output;
+mod restore;
+
+pub use key::key_from_crossterm;
+pub use restore::{RESTORE, install_panic_hook, restore, restore_from_signal};
+
+use crossterm::event::{EnableBracketedPaste, EnableFocusChange};
+use crossterm::terminal::{Clear, ClearType, EnterAlternateScreen, enable_raw_mode};
+use crossterm::{cursor, execute, queue};
+use output::FrameOutput;
+use ratatui::backend::CrosstermBackend;
+use ratatui::{Frame, Terminal};
+use std::io;
+
+/// The terminal while the console has it; gives it back when dropped.
+///
+/// The thread that enters owns the terminal: a panic of another thread leaves it alone.
+pub struct TerminalGuard {
+    terminal: Terminal<CrosstermBackend<FrameOutput>>,
+}
+
+impl TerminalGuard {
+    /// Takes the terminal over: raw mode, alternate screen, bracketed paste, reports of focus.
+    ///
+    /// # Errors
+    /// If there is no terminal or it cannot be written; it is given back before that is told.
+    pub fn enter() -> io::Result<Self> {
+        restore::own();
+        let open = || {
+            take_over()?;
+            Terminal::new(CrosstermBackend::new(FrameOutput::default()))
+        };
+        match open() {
+            Ok(terminal) => Ok(Self { terminal }),
+            Err(error) => {
+                restore();
+                Err(error)
+            }
+        }
+    }
+
+    /// Draws a frame: what changed since the last one leaves in one write, as one synchronized update.
+    ///
+    /// # Errors
+    /// If the terminal cannot be written.
+    pub fn draw(&mut self, view: impl FnOnce(&mut Frame)) -> io::Result<()> {
+        self.terminal.draw(view).map(drop)
+    }
+
+    /// Makes the next frame draw every cell. The terminal is not asked anything.
+    ///
+    /// # Errors
+    /// If the terminal cannot be written.
+    pub fn redraw(&mut self) -> io::Result<()> {
+        queue!(self.terminal.backend_mut(), Clear(ClearType::All))?;
+        // Both buffers are blank after this, so every cell counts as changed.
+        self.terminal.swap_buffers();
+        Ok(())
+    }
+
+    /// Gives the terminal back for a while, as before stopping the process.
+    pub fn suspend(&mut self) {
+        restore();
+    }
+
+    /// Takes the terminal over again; the next frame draws every cell.
+    ///
+    /// # Errors
+    /// If the terminal cannot be written.
+    pub fn resume(&mut self) -> io::Result<()> {
+        restore::own();
+        take_over()?;
+        self.redraw()
+    }
+}
+
+impl Drop for TerminalGuard {
+    fn drop(&mut self) {
+        restore();
+    }
+}
+
+fn take_over() -> io::Result<()> {
+    enable_raw_mode()?;
+    execute!(io::stdout(), EnterAlternateScreen, EnableBracketedPaste, EnableFocusChange, cursor::Hide)
+}

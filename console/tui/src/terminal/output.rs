@@ -1,0 +1,64 @@
+//! Bytes to the terminal, a frame at a time.
+
+use std::io::{self, Stdout, Write};
+
+/// Tells the terminal to show nothing until the frame is there.
+const BEGIN: &[u8] = b"\x1b[?2026h";
+/// Tells it to show the frame.
+const END: &[u8] = b"\x1b[?2026l";
+
+/// Gathers what is written until the flush, and sends that as one synchronized update.
+///
+/// What was not flushed is dropped: after a panic half a frame must not reach the shell's screen.
+pub struct FrameOutput<W: Write = Stdout> {
+    bytes: Vec<u8>,
+    to: W,
+}
+
+impl Default for FrameOutput {
+    fn default() -> Self {
+        Self { bytes: BEGIN.to_vec(), to: io::stdout() }
+    }
+}
+
+impl<W: Write> Write for FrameOutput<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.bytes.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.bytes.len() > BEGIN.len() {
+            self.bytes.extend_from_slice(END);
+            let sent = self.to.write_all(&self.bytes);
+            self.bytes.truncate(BEGIN.len());
+            sent?;
+        }
+        self.to.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn output() -> FrameOutput<Vec<u8>> {
+        FrameOutput { bytes: BEGIN.to_vec(), to: Vec::new() }
+    }
+
+    #[test]
+    fn a_frame_is_sent_whole_and_framed() {
+        let mut output = output();
+        output.write_all(b"half a ").and_then(|()| output.write_all(b"frame")).expect("memory");
+        assert!(output.to.is_empty());
+        output.flush().expect("memory");
+        assert_eq!(output.to, [BEGIN, b"half a frame", END].concat());
+    }
+
+    #[test]
+    fn nothing_is_sent_when_nothing_changed() {
+        let mut output = output();
+        output.flush().expect("memory");
+        assert!(output.to.is_empty());
+    }
+}

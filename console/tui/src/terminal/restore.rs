@@ -1,0 +1,122 @@
+//! Giving the terminal back: at the end, in a panic, and from a signal handler.
+
+use crossterm::terminal::disable_raw_mode;
+use std::io::{self, Write};
+use std::panic;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, ThreadId};
+
+/// What undoes everything that taking the terminal over does: end of a synchronized update, focus reports off,
+/// bracketed paste off, plain text, alternate screen left, cursor shown.
+pub const RESTORE: &str = "\x1b[?2026l\x1b[?1004l\x1b[?2004l\x1b[0m\x1b[?1049l\x1b[?25h";
+
+/// Whether the console has the terminal.
+static TAKEN: AtomicBool = AtomicBool::new(false);
+/// The thread that took it.
+static OWNER: Mutex<Option<ThreadId>> = Mutex::new(None);
+
+/// Notes that this thread takes the terminal.
+pub(super) fn own() {
+    modes::save();
+    if let Ok(mut owner) = OWNER.lock() {
+        *owner = Some(thread::current().id());
+    }
+    TAKEN.store(true, Ordering::SeqCst);
+}
+
+/// Gives the terminal back. Does nothing if the console does not have it, so it may be called again and again.
+pub fn restore() {
+    if TAKEN.swap(false, Ordering::SeqCst) {
+        // There is nobody left to tell if the terminal is gone.
+        let mut output = io::stdout();
+        let _ = output.write_all(RESTORE.as_bytes()).and_then(|()| output.flush());
+        let _ = disable_raw_mode();
+    }
+}
+
+/// Gives the terminal back from a signal handler: no lock, no allocation, two or three system calls.
+///
+/// Does nothing if the console does not have the terminal.
+pub fn restore_from_signal() {
+    if TAKEN.swap(false, Ordering::SeqCst) {
+        modes::write_back();
+    }
+}
+
+/// Puts a panic hook in front of the one that is installed.
+///
+/// A panic of the thread that owns the terminal first gives it back, then goes to the hook before. A panic of any
+/// other thread while the console has the terminal must not write on the screen: it is told to `tell`, as the name
+/// of the thread and the message with its place.
+pub fn install_panic_hook(tell: impl Fn(&str, &str) + Send + Sync + 'static) {
+    let before = panic::take_hook();
+    panic::set_hook(Box::new(move |info| {
+        let mine = OWNER.lock().is_ok_and(|owner| *owner == Some(thread::current().id()));
+        if !TAKEN.load(Ordering::SeqCst) || mine {
+            restore();
+            before(info);
+            return;
+        }
+        let payload = info.payload();
+        let said = payload
+            .downcast_ref::<&str>()
+            .copied()
+            .or_else(|| payload.downcast_ref::<String>().map(String::as_str))
+            .unwrap_or("a panic without a message");
+        let place = info.location().map(|at| format!(" ({}:{})", at.file(), at.line())).unwrap_or_default();
+        tell(thread::current().name().unwrap_or("without a name"), &format!("{said}{place}"));
+    }));
+}
+
+#[cfg(unix)]
+mod modes {
+    use super::RESTORE;
+    use rustix::termios::{OptionalActions, Termios, tcgetattr, tcsetattr};
+    use std::sync::OnceLock;
+
+    /// The terminal's modes before the console first took it.
+    static SAVED: OnceLock<Termios> = OnceLock::new();
+
+    pub(super) fn save() {
+        if let Ok(modes) = tcgetattr(rustix::stdio::stdin()) {
+            let _ = SAVED.set(modes);
+        }
+    }
+
+    pub(super) fn write_back() {
+        let _ = rustix::io::write(rustix::stdio::stdout(), RESTORE.as_bytes());
+        if let Some(modes) = SAVED.get() {
+            let _ = tcsetattr(rustix::stdio::stdin(), OptionalActions::Now, modes);
+        }
+    }
+}
+
+#[cfg(not(unix))]
+mod modes {
+    pub(super) fn save() {}
+
+    pub(super) fn write_back() {
+        super::TAKEN.store(true, std::sync::atomic::Ordering::SeqCst);
+        super::restore();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn giving_back_what_was_not_taken_does_nothing() {
+        restore();
+        restore_from_signal();
+        assert!(!TAKEN.load(Ordering::SeqCst));
+    }
+
+    #[test]
+    fn every_mode_that_is_set_is_unset() {
+        for mode in ["2026l", "1004l", "2004l", "1049l", "25h"] {
+            assert!(RESTORE.contains(&format!("\x1b[?{mode}")), "{mode}");
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! Messages into the model; what has to be done outside comes back as effects.
+
+mod act;
+mod offer;
+mod overlay;
+
+pub use act::act;
+pub use offer::offered;
+
+use crate::actions::{self, ActionId};
+use crate::keys::{Key, KeyPress};
+use crate::model::{Cause, Health, Model, Overlay, Pane, Recording, Refused, Speed, Times, ui::Arrangement};
+use mission::{Event, Order, PlannerInfo, Severity};
+use serde::{Deserialize, Serialize};
+
+/// What the model is told.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Msg {
+    /// A key went down.
+    Key(KeyPress),
+    /// Text was pasted.
+    Paste(String),
+    /// The terminal has this size now.
+    Resize {
+        /// Columns.
+        width: u16,
+        /// Rows.
+        height: u16,
+    },
+    /// The mission went on.
+    Events(Vec<Event>),
+    /// The time.
+    Time(Times),
+    /// How the console does.
+    Health(Health),
+    /// Which planners were found, and which plugins were not accepted.
+    Planners {
+        /// Planners to choose from.
+        found: Vec<PlannerInfo>,
+        /// Plugins that cannot be chosen.
+        refused: Vec<Refused>,
+    },
+    /// News of the console itself; a CRIT one becomes an alarm.
+    Notice {
+        /// How much it asks of the operator.
+        severity: Severity,
+        /// What, as a sentence.
+        text: String,
+    },
+    /// What the engine is busy with while it sends no events (`planning`); `None` when it is done.
+    Busy(Option<String>),
+    /// The process was sent a signal.
+    Signal(Signal),
+    /// A thread of the console panicked.
+    ThreadPanicked {
+        /// Its name.
+        thread: String,
+        /// What it said.
+        message: String,
+    },
+}
+
+/// A signal to the process.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Signal {
+    /// SIGINT: as Ctrl-C.
+    Interrupt,
+    /// SIGTERM: hold and leave.
+    Terminate,
+    /// SIGHUP, or the terminal is gone: hold and leave.
+    Hangup,
+    /// SIGTSTP: hold and give the terminal back for a while.
+    Stop,
+    /// SIGCONT: draw anew.
+    Continue,
+}
+
+/// What the caller has to do, in order.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Effect {
+    /// Give the mission an order.
+    Order(Order),
+    /// Change the pace of the simulation.
+    Speed(Speed),
+    /// Draw every cell anew.
+    Redraw,
+    /// Give the terminal back and stop the process until SIGCONT.
+    Suspend,
+    /// Ring the terminal's bell.
+    Bell,
+    /// Close the recording and leave. Orders before it in the list are to be obeyed first.
+    Quit {
+        /// The signal that asked for it, if one did.
+        signal: Option<Signal>,
+    },
+}
+
+/// Takes in one message and answers what has to be done outside.
+///
+/// Pure: the same model and message give the same model and effects.
+pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
+    let alarms_before = model.alarms.unacknowledged(Severity::Crit);
+    let mut effects = match msg {
+        Msg::Key(press) => press_key(model, press),
+        Msg::Paste(text) => overlay::paste(model, &text),
+        Msg::Resize { width, height } => resize(model, width, height),
+        Msg::Events(events) => {
+            events.iter().for_each(|event| model.fold(event));
+            Vec::new()
+        }
+        Msg::Time(now) => {
+            model.console.now = now;
+            Vec::new()
+        }
+        Msg::Health(health) => take_health(model, health),
+        Msg::Planners { found, refused } => take_planners(model, found, refused),
+        Msg::Notice { severity, text } => news(model, Cause::Console, severity, text),
+        Msg::Busy(work) => {
+            model.console.busy = work;
+            // The engine speaks through this message while it sends no events.
+            model.clock.heard_mono_s = model.console.now.mono_s;
+            Vec::new()
+        }
+        Msg::Signal(signal) => obey_signal(model, signal),
+        Msg::ThreadPanicked { thread, message } => {
+            let mut effects = hold_now(model);
+            let text = format!("thread {thread} of the console failed: {message}");
+            effects.extend(news(model, Cause::Console, Severity::Crit, text));
+            effects
+        }
+    };
+    if model.alarms.unacknowledged(Severity::Crit) > alarms_before {
+        effects.push(Effect::Bell);
+    }
+    effects
+}
+
+fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
+    let Some(action) = actions::action_for(press.key, &actions::contexts(model)) else {
+        return if overlay::type_key(model, press.key) { Vec::new() } else { unknown(model, press.key) };
+    };
+    if press.repeat && !action.repeats { Vec::new() } else { act(model, action.id) }
+}
+
+/// A key that means nothing here says so, instead of leaving the operator to wonder.
+fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
+    if model.ui.overlay == Overlay::None {
+        model.say(Severity::Info, format!("{key} means nothing here; ? shows the keys"));
+    }
+    Vec::new()
+}
+
+/// Sends HOLD if anything may move.
+fn hold_now(model: &mut Model) -> Vec<Effect> {
+    if !model.may_move() {
+        return Vec::new();
+    }
+    model.console.hold_asked = true;
+    vec![Effect::Order(Order::Hold)]
+}
+
+fn resize(model: &mut Model, width: u16, height: u16) -> Vec<Effect> {
+    (model.ui.width, model.ui.height) = (width, height);
+    let whole = matches!(model.ui.arrangement(), Arrangement::Wide | Arrangement::Narrow);
+    if whole && !model.ui.panes().contains(&model.ui.pane) {
+        model.ui.pane = Pane::Map;
+    }
+    Vec::new()
+}
+
+fn take_health(model: &mut Model, health: Health) -> Vec<Effect> {
+    let effects = match (&health.recording, &model.console.health.recording) {
+        (Recording::Failed(why), before) if *before != health.recording => {
+            let text = format!("recording failed: {why}");
+            news(model, Cause::Recording, Severity::Crit, text)
+        }
+        (Recording::Failed(_), _) => Vec::new(),
+        _ => {
+            model.alarms.clear(&Cause::Recording);
+            Vec::new()
+        }
+    };
+    model.console.health = health;
+    effects
+}
+
+fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<Refused>) -> Vec<Effect> {
+    for plugin in refused.iter().filter(|plugin| !model.console.refused.contains(plugin)) {
+        let text = format!("plugin {} refused: {}", plugin.plugin, plugin.reason);
+        model.log.add(model.clock.t_s, Severity::Watch, "plan", text);
+    }
+    (model.console.planners, model.console.refused) = (found, refused);
+    Vec::new()
+}
+
+/// Writes news of the console into the log and the line above the keys; what is critical becomes an alarm.
+fn news(model: &mut Model, cause: Cause, severity: Severity, text: String) -> Vec<Effect> {
+    model.log.add(model.clock.t_s, severity, "console", text.clone());
+    if severity == Severity::Crit {
+        model.alarms.raise(cause, severity, text.clone(), model.clock.t_s);
+    }
+    model.say(severity, text);
+    Vec::new()
+}
+
+fn obey_signal(model: &mut Model, signal: Signal) -> Vec<Effect> {
+    match signal {
+        Signal::Interrupt => act(model, ActionId::Interrupt),
+        Signal::Stop => act(model, ActionId::Suspend),
+        Signal::Continue => vec![Effect::Redraw],
+        Signal::Terminate | Signal::Hangup => {
+            let mut effects = hold_now(model);
+            effects.push(Effect::Quit { signal: Some(signal) });
+            effects
+        }
+    }
+}

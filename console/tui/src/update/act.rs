@@ -1,0 +1,189 @@
+//! Actions into changes and effects.
+
+use super::{Effect, hold_now, offered, overlay};
+use crate::actions::ActionId;
+use crate::model::ui::{Ask, MAX_ZOOM, MapView};
+use crate::model::{Model, Overlay, Pane, Phase};
+use mission::{Order, Severity};
+use world::{Point, Vector};
+
+/// Seconds within which a second Ctrl-C asks to leave.
+const INTERRUPT_TWICE_S: f64 = 2.0;
+/// Lines of a page of events.
+const PAGE: usize = 10;
+
+/// Does what an action says, or tells the operator why not.
+pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
+    if let Err(why) = offered(model, id) {
+        model.say(Severity::Watch, why);
+        return Vec::new();
+    }
+    match id {
+        ActionId::Hold => hold(model),
+        ActionId::Interrupt => interrupt(model),
+        ActionId::Redraw => vec![Effect::Redraw],
+        ActionId::Suspend => [hold_now(model), vec![Effect::Suspend]].concat(),
+        ActionId::Leave => leave(model),
+        ActionId::Abort => [hold_now(model), ask(model, Ask::Abort)].concat(),
+        ActionId::Start => ask(model, Ask::Start),
+        ActionId::Resume => ask(model, Ask::Resume),
+        ActionId::Step => step(model),
+        ActionId::Slower => change_speed(model, false),
+        ActionId::Faster => change_speed(model, true),
+        ActionId::Acknowledge => acknowledge(model),
+        ActionId::Accept | ActionId::Cancel | ActionId::Up | ActionId::Down | ActionId::Edit => {
+            overlay::act(model, id)
+        }
+        ActionId::ChoosePlanner => open(model, Overlay::Planners { selected: driving(model) }),
+        ActionId::Parameters => open(model, Overlay::Parameters { selected: 0, edit: None }),
+        ActionId::Layers => open(model, Overlay::Layers { selected: 0 }),
+        ActionId::Filter => open(model, Overlay::Filter),
+        ActionId::Commands => open(model, commands(false)),
+        ActionId::Help => open(model, commands(true)),
+        other => look(model, other),
+    }
+}
+
+/// Changes what the operator looks at, and nothing else.
+fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
+    match id {
+        ActionId::NextPane => turn_to(model, 1),
+        ActionId::PreviousPane => turn_to(model, -1),
+        ActionId::ZoomIn => zoom(model, 1),
+        ActionId::ZoomOut => zoom(model, -1),
+        ActionId::WholeTank => model.ui.map = MapView::default(),
+        ActionId::Follow => model.ui.map.follow = !model.ui.map.follow,
+        ActionId::PanLeft => pan(model, Vector::new(-1.0, 0.0)),
+        ActionId::PanRight => pan(model, Vector::new(1.0, 0.0)),
+        ActionId::PanUp => pan(model, Vector::new(0.0, 1.0)),
+        ActionId::PanDown => pan(model, Vector::new(0.0, -1.0)),
+        ActionId::Severity => next_severity(model),
+        ActionId::Newer => scroll(model, -1),
+        ActionId::Older => scroll(model, 1),
+        ActionId::PageNewer => scroll(model, -(PAGE as isize)),
+        ActionId::PageOlder => scroll(model, PAGE as isize),
+        ActionId::Newest => model.ui.scroll = 0,
+        ActionId::Oldest => scroll(model, isize::MAX),
+        _ => {}
+    }
+    Vec::new()
+}
+
+fn open(model: &mut Model, overlay: Overlay) -> Vec<Effect> {
+    model.ui.overlay = overlay;
+    Vec::new()
+}
+
+/// Opens the line that asks; the robot does not move yet.
+pub(super) fn ask(model: &mut Model, ask: Ask) -> Vec<Effect> {
+    model.console.notice = None;
+    open(model, Overlay::Confirm(ask))
+}
+
+fn commands(help: bool) -> Overlay {
+    Overlay::Commands { help, filter: String::new(), selected: 0 }
+}
+
+fn hold(model: &mut Model) -> Vec<Effect> {
+    if model.may_move() {
+        return hold_now(model);
+    }
+    if model.ui.overlay == Overlay::None {
+        return ask(model, Ask::Resume);
+    }
+    model.say(Severity::Info, "the robot is held already");
+    Vec::new()
+}
+
+fn interrupt(model: &mut Model) -> Vec<Effect> {
+    let now_s = model.console.now.mono_s;
+    let twice = model.console.interrupted_mono_s.is_some_and(|before_s| now_s - before_s <= INTERRUPT_TWICE_S);
+    model.console.interrupted_mono_s = Some(now_s);
+    let effects = hold_now(model);
+    if twice {
+        model.ui.overlay = Overlay::Quit;
+    } else {
+        model.say(Severity::Info, "Ctrl-C once more within 2 s asks to leave");
+    }
+    effects
+}
+
+/// Holds a mission that may move, then asks; where nothing is at stake it leaves at once.
+fn leave(model: &mut Model) -> Vec<Effect> {
+    let effects = hold_now(model);
+    if effects.is_empty() && matches!(model.phase, Phase::Idle | Phase::Ended { .. }) {
+        return vec![Effect::Quit { signal: None }];
+    }
+    model.ui.overlay = Overlay::Quit;
+    effects
+}
+
+fn step(model: &mut Model) -> Vec<Effect> {
+    if model.ui.overlay != Overlay::Stepping {
+        return open(model, Overlay::Stepping);
+    }
+    if model.console.asked.is_some() {
+        return Vec::new();
+    }
+    overlay::send(model, Order::Step)
+}
+
+fn change_speed(model: &mut Model, faster: bool) -> Vec<Effect> {
+    let Some(speed) = model.console.speed.stepped(faster) else { return Vec::new() };
+    model.console.speed = speed;
+    vec![Effect::Speed(speed)]
+}
+
+fn acknowledge(model: &mut Model) -> Vec<Effect> {
+    if let Some(text) = model.alarms.acknowledge() {
+        model.say(Severity::Info, format!("acknowledged: {text}"));
+    }
+    Vec::new()
+}
+
+fn driving(model: &Model) -> usize {
+    let id = model.planner_id();
+    model.console.planners.iter().position(|planner| Some(planner.id.as_str()) == id).unwrap_or(0)
+}
+
+fn turn_to(model: &mut Model, by: isize) {
+    let panes = model.ui.panes();
+    let at = panes.iter().position(|pane| *pane == model.ui.pane).unwrap_or(0);
+    let next = (at as isize + by).rem_euclid(panes.len().max(1) as isize) as usize;
+    model.ui.pane = panes.get(next).copied().unwrap_or(Pane::Map);
+}
+
+fn zoom(model: &mut Model, by: i8) {
+    let map = &mut model.ui.map;
+    map.zoom = map.zoom.saturating_add_signed(by).min(MAX_ZOOM);
+    if map.zoom == 0 {
+        *map = MapView { follow: map.follow, ..MapView::default() };
+    }
+}
+
+/// Moves the map by a quarter of what it shows; the robot need not stay in the middle then.
+fn pan(model: &mut Model, direction: Vector) {
+    let Some(run) = &model.run else { return };
+    let (low, high) = run.world.boundary.bounds();
+    let (middle, span) = (nalgebra::center(&low, &high), high - low);
+    let step_m = span.x.max(span.y) / f64::from(1_u32 << model.ui.map.zoom) / 4.0;
+    let robot = model.position.pose.as_ref().map(|pose| pose.position);
+    let center = model.ui.map_center(middle, robot) + direction * step_m;
+    model.ui.map.follow = false;
+    model.ui.map.offset = Point::new(center.x.clamp(low.x, high.x), center.y.clamp(low.y, high.y)) - middle;
+}
+
+fn next_severity(model: &mut Model) {
+    model.ui.scroll = 0;
+    model.ui.least = match model.ui.least {
+        Severity::Info => Severity::Watch,
+        Severity::Watch => Severity::Warn,
+        Severity::Warn => Severity::Crit,
+        Severity::Crit => Severity::Info,
+    };
+}
+
+fn scroll(model: &mut Model, by: isize) {
+    let lines = model.log.shown(model.ui.least, &model.ui.needle).count();
+    model.ui.scroll = model.ui.scroll.saturating_add_signed(by).min(lines.saturating_sub(1));
+}

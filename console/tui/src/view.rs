@@ -1,0 +1,154 @@
+//! The model onto the screen.
+
+mod ascii;
+mod confirm;
+mod coverage;
+mod events;
+mod footer;
+mod lists;
+mod map;
+mod next;
+mod planner;
+mod position;
+mod shapes;
+mod strip;
+mod text;
+mod top;
+
+use crate::caps::{Caps, Glyphs};
+use crate::model::{Model, Overlay, Pane, ui::Arrangement};
+use crate::theme::{Role, Theme};
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::text::{Line, Span};
+use ratatui::widgets::{Block, Paragraph};
+
+/// Draws the model.
+///
+/// Pure: the same model, caps and size give the same cells.
+pub fn view(model: &Model, caps: &Caps, frame: &mut Frame) {
+    view_with(model, caps, &Theme::for_caps(caps), frame);
+}
+
+/// Draws the model with a theme of the caller's choice.
+pub fn view_with(model: &Model, caps: &Caps, theme: &Theme, frame: &mut Frame) {
+    let look = Look { model, caps: *caps, theme };
+    let area = frame.area();
+    if area.is_empty() {
+        return;
+    }
+    match Arrangement::of(area.width, area.height) {
+        Arrangement::Wide => whole(&look, frame, area, WIDE),
+        Arrangement::Narrow => whole(&look, frame, area, NARROW),
+        Arrangement::Paged => paged(&look, frame, area),
+        Arrangement::Strip => strip::draw(&look, frame, area),
+    }
+    lists::draw(&look, frame, area);
+    if caps.glyphs == Glyphs::Ascii {
+        ascii::reduce(frame.buffer_mut());
+    }
+}
+
+/// What every part of the view needs.
+#[derive(Clone, Copy)]
+struct Look<'a> {
+    model: &'a Model,
+    caps: Caps,
+    theme: &'a Theme,
+}
+
+impl Look<'_> {
+    fn span<'t>(&self, role: Role, text: impl Into<std::borrow::Cow<'t, str>>) -> Span<'t> {
+        Span::styled(text, self.theme.style(role))
+    }
+
+    fn line<'t>(&self, parts: impl IntoIterator<Item = (Role, String)>) -> Line<'t> {
+        Line::from(parts.into_iter().map(|(role, text)| self.span(role, text)).collect::<Vec<_>>())
+    }
+
+    fn pane<'t>(&self, pane: Pane, title: &str, note: &str) -> Block<'t> {
+        let focus = self.model.ui.pane == pane && self.model.ui.panes().contains(&pane);
+        let border = if focus { Role::Focus } else { Role::Border };
+        self.block(border, title, note)
+    }
+
+    fn block<'t>(&self, border: Role, title: &str, note: &str) -> Block<'t> {
+        let block = Block::bordered()
+            .border_style(self.theme.style(border))
+            .title_top(Line::from(vec![Span::raw("─"), self.span(Role::Title, format!(" {title} "))]));
+        if note.is_empty() {
+            block
+        } else {
+            block.title_top(Line::from(vec![self.span(Role::Dim, format!(" {note} ")), Span::raw("─")]).right_aligned())
+        }
+    }
+}
+
+/// Sizes of the parts of a whole screen.
+struct Sizes {
+    side: u16,
+    events: u16,
+    /// Heights of the panes at the side; the last one takes the rest.
+    panes: [u16; 2],
+    wide: bool,
+}
+
+const WIDE: Sizes = Sizes { side: 44, events: 6, panes: [8, 9], wide: true };
+const NARROW: Sizes = Sizes { side: 30, events: 4, panes: [6, 5], wide: false };
+
+fn whole(look: &Look, frame: &mut Frame, area: Rect, sizes: Sizes) {
+    let [top, middle, events, next, keys] = Layout::vertical([
+        Constraint::Length(1),
+        Constraint::Fill(1),
+        Constraint::Length(sizes.events),
+        Constraint::Length(1),
+        Constraint::Length(1),
+    ])
+    .areas(area);
+    let [map, side] =
+        Layout::horizontal([Constraint::Fill(1), Constraint::Length(sizes.side)]).areas(middle);
+    let [coverage, position, planner] = Layout::vertical([
+        Constraint::Length(sizes.panes[0]),
+        Constraint::Length(sizes.panes[1]),
+        Constraint::Fill(1),
+    ])
+    .areas(side);
+    top::draw(look, frame, top);
+    map::draw(look, frame, map);
+    coverage::draw(look, frame, coverage, sizes.wide);
+    position::draw(look, frame, position, sizes.wide);
+    planner::draw(look, frame, planner, sizes.wide);
+    events::draw(look, frame, events);
+    confirm::draw(look, frame, next);
+    footer::draw(look, frame, keys);
+}
+
+fn paged(look: &Look, frame: &mut Frame, area: Rect) {
+    let [top, page, next, keys] = Layout::vertical([
+        Constraint::Length(1),
+        Constraint::Fill(1),
+        Constraint::Length(1),
+        Constraint::Length(1),
+    ])
+    .areas(area);
+    top::draw(look, frame, top);
+    match look.model.ui.pane {
+        Pane::Map => map::draw(look, frame, page),
+        Pane::Coverage => coverage::draw(look, frame, page, true),
+        Pane::Position => position::draw(look, frame, page, true),
+        Pane::Planner => planner::draw(look, frame, page, true),
+        Pane::Events => events::draw(look, frame, page),
+    }
+    confirm::draw(look, frame, next);
+    footer::draw(look, frame, keys);
+}
+
+/// Lines in a pane, cut where it ends.
+fn fill(frame: &mut Frame, area: Rect, block: Block<'_>, lines: Vec<Line<'_>>) {
+    frame.render_widget(Paragraph::new(lines).block(block), area);
+}
+
+/// Whether a question about moving or leaving is open.
+fn asks(model: &Model) -> bool {
+    matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping)
+}

@@ -1,0 +1,110 @@
+//! The coverage pane: how much has been scanned, of which floor, and what is left.
+
+use super::{Look, fill, text};
+use crate::model::{Model, Pane, Speed};
+use crate::theme::Role;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
+    let block = look.pane(Pane::Coverage, "Coverage", "");
+    let lines = if wide { wide_lines(look, area.width) } else { narrow_lines(look, area.width) };
+    fill(frame, area, block, lines);
+}
+
+fn wide_lines(look: &Look, width: u16) -> Vec<Line<'static>> {
+    let model = look.model;
+    let (reachable, whole) = shares(model);
+    let row = |label: &str, value: String| look.line([(Role::Dim, format!(" {label:<12}")), (Role::Text, value)]);
+    vec![
+        row("scanned", format!("{reachable:>5} % of reachable floor")),
+        row("", format!("{whole:>5} % of whole floor")),
+        look.line([(Role::Good, format!(" {}", bar(model, width)))]),
+        row("unreachable", format!("{:>5} % of whole floor", unreachable(model))),
+        row("rate", format!("{}   {}", rate(model), area(model))),
+        row(way_label(model), way(model)),
+        // Past its end a mission has nothing left to tell.
+        row("left", left(model, true)),
+    ]
+}
+
+fn narrow_lines(look: &Look, width: u16) -> Vec<Line<'static>> {
+    let model = look.model;
+    let (reachable, whole) = shares(model);
+    let text = |value: String| look.line([(Role::Text, format!(" {value}"))]);
+    vec![
+        text(format!("{reachable} % reach  {whole} % whole")),
+        look.line([(Role::Good, format!(" {}", bar(model, width)))]),
+        text(format!("{} {}", way_label(model), way(model))),
+        text(format!("left {}", left(model, false))),
+    ]
+}
+
+/// Scanned shares of the reachable and of the whole floor; dashes before the first step.
+pub(super) fn shares(model: &Model) -> (String, String) {
+    model.progress.as_ref().map_or_else(
+        || ("-".into(), "-".into()),
+        |progress| (text::percent(progress.covered_reachable), text::percent(progress.covered_whole)),
+    )
+}
+
+fn bar(model: &Model, width: u16) -> String {
+    let share = model.progress.as_ref().map_or(0.0, |progress| progress.covered_reachable);
+    text::bar(share, usize::from(width).saturating_sub(4))
+}
+
+fn unreachable(model: &Model) -> String {
+    model.coverage.as_ref().map_or_else(|| "-".into(), |raster| text::percent(raster.unreachable_share()))
+}
+
+fn rate(model: &Model) -> String {
+    let minutes = model.clock.moving_s / 60.0;
+    match &model.coverage {
+        Some(raster) if minutes > 0.2 => format!("{} m²/min", text::number(raster.scanned_m2() / minutes, 1)),
+        _ => "- m²/min".into(),
+    }
+}
+
+fn area(model: &Model) -> String {
+    model.coverage.as_ref().map_or_else(String::new, |raster| {
+        format!("{} m² scanned", text::number(raster.scanned_m2(), 0))
+    })
+}
+
+fn way_label(model: &Model) -> &'static str {
+    if model.run.as_ref().is_some_and(|run| run.preset_m.is_some()) { "path" } else { "plan" }
+}
+
+fn way(model: &Model) -> String {
+    let preset_m = model.run.as_ref().and_then(|run| run.preset_m);
+    match (preset_m, &model.progress) {
+        (Some(preset_m), Some(progress)) => {
+            let along = progress.along_m.map_or_else(|| "-".into(), |along_m| text::number(along_m, 1));
+            format!("{along} m of {} m", text::number(preset_m, 1))
+        }
+        (Some(preset_m), None) => format!("0.0 m of {} m", text::number(preset_m, 1)),
+        (None, _) => model
+            .planning
+            .plan
+            .as_ref()
+            .map_or_else(|| "- m".into(), |plan| format!("{} m", text::number(plan.length_m, 1))),
+    }
+}
+
+/// Mission time still to go, and when that will be.
+fn left(model: &Model, wide: bool) -> String {
+    let Some(left_s) = model.left_s() else { return if model.has_ended() { "ended".into() } else { "-".into() } };
+    let factor = match (model.console.speed, model.console.health.reached_speed) {
+        (_, Some(reached)) if reached > 0.0 => Some(reached),
+        (Speed::Times(factor), _) => Some(factor),
+        (Speed::Max, _) => None,
+    };
+    let end = factor.map(|factor| text::time_of_day(model.console.now.wall_unix_s + left_s / factor));
+    match (wide, end) {
+        (true, Some(end)) => format!("{} at this pace, ends {end} UTC", text::clock(left_s)),
+        (true, None) => format!("{} at this pace", text::clock(left_s)),
+        (false, Some(end)) => format!("{} ETA {end}Z", text::clock(left_s)),
+        (false, None) => text::clock(left_s),
+    }
+}

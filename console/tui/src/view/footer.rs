@@ -1,0 +1,75 @@
+//! The keys that do something now, from the one table.
+
+use super::{Look, text};
+use crate::actions::{self, ACTIONS, Action, ActionId, Context};
+use crate::model::{Model, Phase};
+use crate::theme::Role;
+use crate::update::offered;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+
+/// What goes first when there is too little room.
+const DISPENSABLE: [ActionId; 6] = [
+    ActionId::NextPane,
+    ActionId::Parameters,
+    ActionId::Faster,
+    ActionId::Acknowledge,
+    ActionId::ChoosePlanner,
+    ActionId::Commands,
+];
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let mut hints = hints(look.model);
+    for id in DISPENSABLE {
+        if width(&hints) > usize::from(area.width) {
+            hints.retain(|hint| hint.id != id);
+        }
+    }
+    let parts = hints
+        .into_iter()
+        .flat_map(|hint| [(Role::Key, format!(" {}", hint.keys)), (Role::Dim, format!(" {} ", hint.label))]);
+    frame.render_widget(look.line(parts), area);
+}
+
+/// A key and what it does.
+pub(super) struct Hint {
+    id: ActionId,
+    pub keys: String,
+    label: String,
+}
+
+fn width(hints: &[Hint]) -> usize {
+    hints.iter().map(|hint| text::width(&hint.keys) + text::width(&hint.label) + 3).sum()
+}
+
+/// The keys that do something now; keys with the same label stand together.
+pub(super) fn hints(model: &Model) -> Vec<Hint> {
+    let contexts = actions::contexts(model);
+    let mut hints: Vec<Hint> = Vec::new();
+    for action in ACTIONS.iter().filter(|action| shown(action, &contexts, model)) {
+        let key = action.keys.first().map(ToString::to_string).unwrap_or_default();
+        let label = label(action, model);
+        match hints.last_mut().filter(|last| last.label == label) {
+            Some(last) => {
+                last.keys = format!("{} {key}", last.keys);
+                last.id = action.id;
+            }
+            None => hints.push(Hint { id: action.id, keys: key, label }),
+        }
+    }
+    hints
+}
+
+fn shown(action: &Action, contexts: &[Context], model: &Model) -> bool {
+    let here = action.contexts.iter().any(|context| contexts.contains(context));
+    // In a list the space bar only stops, so there it is shown only while something can be stopped.
+    let idle_hold = action.id == ActionId::Hold && !contexts.contains(&Context::Mission) && !model.may_move();
+    here && !idle_hold && !action.label.is_empty() && offered(model, action.id).is_ok()
+}
+
+fn label(action: &Action, model: &Model) -> String {
+    match action.id {
+        ActionId::Hold if matches!(model.phase, Phase::Held(_)) && !model.may_move() => "resume?".into(),
+        _ => action.label.into(),
+    }
+}

@@ -1,0 +1,131 @@
+//! The planner pane: who drives, where to, and what the robot was told.
+
+use super::{Look, fill, text};
+use crate::model::{Model, Pane, Phase};
+use crate::theme::Role;
+use planner_api::{Drive, Status};
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+/// Mission time after which a command counts as old, in ticks.
+const STALE_TICKS: f64 = 3.0;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
+    let note = if look.model.planning.fault.is_some() { "FAILED" } else { "" };
+    let block = look.pane(Pane::Planner, "Planner and robot", note);
+    let inner = block.inner(area);
+    let (columns, rows) = (usize::from(inner.width), usize::from(inner.height));
+    let mut lines: Vec<Line> = rows_of(look.model, wide)
+        .into_iter()
+        .map(|(label, (role, value))| {
+            let label = if wide { format!(" {label:<12}") } else { format!(" {label:<6}") };
+            let value = text::fit(&value, columns.saturating_sub(label.len()));
+            look.line([(Role::Dim, label), (role, value)])
+        })
+        .collect();
+    lines.extend(scalars(look, columns, rows.saturating_sub(lines.len())));
+    fill(frame, area, block, lines);
+}
+
+type Value = (Role, String);
+
+fn rows_of(model: &Model, wide: bool) -> Vec<(&'static str, Value)> {
+    let mut rows = vec![("planner", planner(model))];
+    if let Some(fault) = &model.planning.fault {
+        rows.push(("fault", (Role::Crit, fault.message.clone())));
+    }
+    if wide {
+        rows.extend([
+            ("target", (Role::Text, target(model))),
+            ("cross-track", (Role::Text, cross_track(model))),
+            ("speed", (Role::Text, format!("{}, heading {}", speed(model), heading(model)))),
+            ("command", command(model)),
+            ("plan", (Role::Text, plan(model))),
+        ]);
+    } else {
+        rows[0].0 = "drives";
+        rows.extend([
+            ("to", (Role::Text, target(model))),
+            ("off", (Role::Text, cross_track(model))),
+            ("speed", (Role::Text, speed(model))),
+            ("head", (Role::Text, heading(model))),
+            ("plan", (Role::Text, plan(model))),
+        ]);
+    }
+    rows
+}
+
+fn planner(model: &Model) -> Value {
+    match (model.planner(), model.planner_id()) {
+        (Some(info), _) => (Role::Title, format!("{} {}", info.id, info.version)),
+        (None, Some(id)) => (Role::Title, id.to_owned()),
+        (None, None) => (Role::Text, "-".into()),
+    }
+}
+
+fn target(model: &Model) -> String {
+    let Some(progress) = &model.progress else { return "-".into() };
+    let at = format!("{}, {} m", text::number(progress.target.x, 2), text::number(progress.target.y, 2));
+    match &model.position.pose {
+        Some(pose) => format!("{at}  in {} m", text::number((progress.target - pose.position).norm(), 2)),
+        None => at,
+    }
+}
+
+fn cross_track(model: &Model) -> String {
+    let off_m = model.progress.as_ref().and_then(|progress| progress.cross_track_m);
+    off_m.map_or_else(|| "- (no preset path)".into(), |off_m| format!("{} m off path", text::number(off_m, 2)))
+}
+
+fn speed(model: &Model) -> String {
+    let speed = model.position.speed_m_per_s();
+    speed.map_or_else(|| "- m/s".into(), |speed| format!("{} m/s est.", text::number(speed, 2)))
+}
+
+fn heading(model: &Model) -> String {
+    let pose = model.position.pose.as_ref();
+    pose.map_or_else(|| "-".into(), |pose| format!("{}° from E", text::degrees(pose.heading_rad)))
+}
+
+fn command(model: &Model) -> Value {
+    let Some((t_s, command)) = &model.planning.command else { return (Role::Text, "-".into()) };
+    let tick_s = model.run.as_ref().map_or(0.1, |run| run.mission.tick_s);
+    if model.phase != Phase::Running || model.clock.t_s - t_s > STALE_TICKS * tick_s {
+        return (Role::Text, "stand still".into());
+    }
+    let drive = match command.drive {
+        Drive::Twist { v_m_per_s, w_rad_per_s } => {
+            let turn = text::number(w_rad_per_s.to_degrees(), 1);
+            format!("{} m/s, turn {turn} °/s", text::number(v_m_per_s, 2))
+        }
+        Drive::Velocity(velocity) => {
+            let course = text::degrees(velocity.y.atan2(velocity.x));
+            format!("{} m/s to {course}° from E", text::number(velocity.norm(), 2))
+        }
+    };
+    match command.status {
+        Status::Moving => (Role::Text, drive),
+        Status::Arrived => (Role::Good, format!("arrived, {drive}")),
+        Status::Stuck => (Role::Warn, format!("STUCK, {drive}")),
+        Status::Waiting => (Role::Watch, format!("waiting, {drive}")),
+    }
+}
+
+fn plan(model: &Model) -> String {
+    let Some(plan) = &model.planning.plan else { return "none yet".into() };
+    let part = if plan.complete { "whole task" } else { "PART of the way" };
+    format!("{} m, {part}", text::number(plan.length_m, 1))
+}
+
+fn scalars(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
+    let shown = look.model.planning.scalars.iter().take(rows);
+    shown
+        .map(|(name, value, unit)| {
+            let unit = if unit.is_empty() { "[-]" } else { unit.as_str() };
+            let label = text::column(&format!(" {name}"), 13.min(columns / 2));
+            let value = text::fit(&format!("{} {unit}", text::number(*value, 3)), columns - label.len().min(columns));
+            look.line([(Role::Dim, label), (Role::Text, value)])
+        })
+        .collect()
+}

@@ -1,0 +1,162 @@
+//! The position pane: what the AE stations tell, and how far to trust it.
+
+use super::{Look, fill, text};
+use crate::model::{Model, Pane, position::HISTORY_S};
+use crate::theme::Role;
+use positioning::{Exclusion, Integrity};
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+use world::Station;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
+    let note = if look.model.position.lost { "LOST" } else { "" };
+    let block = look.pane(Pane::Position, if wide { "AE position" } else { "AE" }, note);
+    let inner = block.inner(area);
+    let lines = if wide { wide_lines(look, inner) } else { narrow_lines(look, inner) };
+    fill(frame, area, block, lines);
+}
+
+fn wide_lines(look: &Look, inner: Rect) -> Vec<Line<'static>> {
+    let columns = usize::from(inner.width);
+    let mut lines = vec![
+        look.line([
+            (Role::Dim, " stations   ".into()),
+            (Role::Text, format!("{}   residual {}", heard(look.model), residual(look.model))),
+        ]),
+        look.line([(Role::Dim, " error      ".into()), error(look.model, true)]),
+        curve(look, columns),
+        look.line([
+            (Role::Dim, " fix age    ".into()),
+            age(look.model),
+            (Role::Text, format!("   integrity {}", integrity(look.model))),
+        ]),
+    ];
+    lines.extend(station_lines(look, columns, usize::from(inner.height).saturating_sub(lines.len())));
+    lines
+}
+
+fn narrow_lines(look: &Look, inner: Rect) -> Vec<Line<'static>> {
+    let trouble = look.model.position.fix.as_ref().and_then(|fix| fix.excluded.first()).map(|(id, why)| {
+        let name = look.model.station(*id).map_or_else(|| id.0.to_string(), |station| station.name.clone());
+        (Role::Watch, text::fit(&format!("{name} OUT {}", reason(why)), usize::from(inner.width).saturating_sub(1)))
+    });
+    let last = trouble.unwrap_or_else(|| (Role::Text, format!("residual {}", residual(look.model))));
+    vec![
+        look.line([(Role::Text, format!(" {} ", short_heard(look.model))), error(look.model, false)]),
+        look.line([(Role::Text, " ".into()), last]),
+        look.line([(Role::Dim, " fix age ".into()), age(look.model)]),
+    ]
+}
+
+fn stations(model: &Model) -> &[Station] {
+    model.run.as_ref().map_or(&[], |run| &run.world.stations)
+}
+
+fn heard(model: &Model) -> String {
+    match model.position.ranged_t_s {
+        Some(_) => format!("{} of {} heard", model.position.heard, stations(model).len()),
+        None => format!("- of {} heard", stations(model).len()),
+    }
+}
+
+fn short_heard(model: &Model) -> String {
+    match model.position.ranged_t_s {
+        Some(_) => format!("{}/{}", model.position.heard, stations(model).len()),
+        None => format!("-/{}", stations(model).len()),
+    }
+}
+
+fn residual(model: &Model) -> String {
+    let rms = model.position.residual_rms_m();
+    rms.map_or_else(|| "- mm".into(), |rms_m| format!("{} mm rms", text::number(rms_m * 1000.0, 0)))
+}
+
+fn limit_m(model: &Model) -> f64 {
+    model.run.as_ref().map_or(f64::NAN, |run| run.mission.position_limit_m)
+}
+
+fn error(model: &Model, wide: bool) -> (Role, String) {
+    let limit_m = limit_m(model);
+    let error_m = model.position.error_m();
+    let role = match error_m {
+        _ if model.position.lost => Role::Crit,
+        Some(error_m) if error_m > 0.8 * limit_m => Role::Warn,
+        _ => Role::Text,
+    };
+    let error = error_m.map_or_else(|| "-".into(), |error_m| text::number(error_m, 2));
+    let limit = text::number(limit_m, 2);
+    let lost = if model.position.lost { " LOST" } else { "" };
+    if wide {
+        (role, format!("±{error} m (95 %)  limit {limit} m{lost}"))
+    } else {
+        (role, format!("±{error} m (lim {limit}){lost}"))
+    }
+}
+
+fn curve(look: &Look, columns: usize) -> Line<'static> {
+    let limit_m = limit_m(look.model);
+    let note = format!(" 2 min, to {} m", text::number(limit_m, 2));
+    let room = columns.saturating_sub(text::width(&note) + 2);
+    let curve = text::sparkline(look.model.position.history_m(), limit_m, room, HISTORY_S);
+    look.line([(Role::Text, " ".into()), (Role::Watch, curve), (Role::Dim, note)])
+}
+
+pub(super) fn age(model: &Model) -> (Role, String) {
+    let t_s = model.clock.t_s;
+    match model.position.fix_age_s(t_s) {
+        None => (Role::Text, "no fix yet".into()),
+        Some(age_s) if model.position.is_fix_stale(t_s) => (Role::Stale, format!("◌ {} s old", text::number(age_s, 1))),
+        Some(age_s) => (Role::Text, format!("{} s", text::number(age_s, 1))),
+    }
+}
+
+fn integrity(model: &Model) -> &'static str {
+    match (&model.position.failure, &model.position.fix) {
+        (Some(_), _) => "NO FIX",
+        (None, None) => "-",
+        (None, Some(fix)) => match fix.integrity {
+            Integrity::Ok => "ok",
+            Integrity::Suspect => "SUSPECT",
+            Integrity::Untestable => "UNTESTED",
+            Integrity::Alarm => "ALARM",
+        },
+    }
+}
+
+/// One word per station: its residual, or why it is left out; those left out come first.
+fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
+    let mut words: Vec<(Role, String)> = Vec::new();
+    if let Some(fix) = &look.model.position.fix {
+        let name = |id| look.model.station(id).map_or_else(|| format!("station {}", id.0), |s| s.name.clone());
+        words.extend(fix.excluded.iter().map(|(id, why)| (Role::Watch, format!("{} OUT {}", name(*id), reason(why)))));
+        words.extend(fix.residuals.iter().map(|residual| {
+            let residual_mm = text::number(residual.residual_m * 1000.0, 0);
+            let sign = if residual.residual_m >= 0.0005 { "+" } else { "" };
+            (Role::Text, format!("{} ok {sign}{residual_mm} mm", name(residual.station)))
+        }));
+    }
+    let mut lines: Vec<Vec<(Role, String)>> = Vec::new();
+    let mut used = columns;
+    for (role, word) in words {
+        let word = text::fit(&format!(" {word} "), columns);
+        if used + text::width(&word) > columns {
+            lines.push(Vec::new());
+            used = 0;
+        }
+        used += text::width(&word);
+        if let Some(line) = lines.last_mut() {
+            line.push((role, word));
+        }
+    }
+    lines.into_iter().take(rows).map(|line| look.line(line)).collect()
+}
+
+fn reason(why: &Exclusion) -> String {
+    match why {
+        Exclusion::Silent => "not heard".into(),
+        Exclusion::Residual { residual_m, gate_m } => {
+            format!("{} m (gate {} m)", text::number(*residual_m, 2), text::number(*gate_m, 2))
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Shapes that the map draws dot by dot.
+
+use crate::model::Raster;
+use ratatui::style::Color;
+use ratatui::widgets::canvas::{Painter, Shape};
+use world::{Point, Vector};
+
+/// The part of the floor that is seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Window {
+    /// West and east edge, metres.
+    pub x: [f64; 2],
+    /// South and north edge, metres.
+    pub y: [f64; 2],
+    /// Width of a column, metres; a row is twice as high.
+    pub column_m: f64,
+    /// Columns and rows.
+    pub size: (u16, u16),
+}
+
+impl Window {
+    /// A window about a point.
+    pub fn new(center: Point, column_m: f64, size: (u16, u16)) -> Self {
+        let half_x = f64::from(size.0) * column_m / 2.0;
+        let half_y = f64::from(size.1) * column_m;
+        Self {
+            x: [center.x - half_x, center.x + half_x],
+            y: [center.y - half_y, center.y + half_y],
+            column_m,
+            size,
+        }
+    }
+
+    /// The part of a segment inside the window.
+    fn clipped(&self, from: Point, to: Point) -> Option<(Point, Point)> {
+        let way = to - from;
+        let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+        let sides = [
+            (-way.x, from.x - self.x[0]),
+            (way.x, self.x[1] - from.x),
+            (-way.y, from.y - self.y[0]),
+            (way.y, self.y[1] - from.y),
+        ];
+        for (speed, room) in sides {
+            if speed == 0.0 && room < 0.0 {
+                return None;
+            }
+            match room / speed {
+                at if speed < 0.0 => enter = enter.max(at),
+                at if speed > 0.0 => leave = leave.min(at),
+                _ => {}
+            }
+        }
+        (enter <= leave).then(|| (from + way * enter, from + way * leave))
+    }
+}
+
+/// Scanned floor, in dots of one or half a character.
+pub(super) struct Scanned<'a> {
+    pub raster: &'a Raster,
+    pub window: Window,
+    /// Dots per row of characters: 1 or 2.
+    pub rows_per_row: u16,
+    /// Colours of what is scanned wholly and in part; `None` leaves these dots out.
+    pub whole: Option<Color>,
+    pub partly: Option<Color>,
+}
+
+impl Scanned<'_> {
+    /// Above this share a dot counts as scanned, above the other as scanned in part.
+    const WHOLE: f64 = 0.95;
+    const PARTLY: f64 = 0.05;
+}
+
+impl Shape for Scanned<'_> {
+    fn draw(&self, painter: &mut Painter) {
+        let (columns, rows) = (self.window.size.0, self.window.size.1 * self.rows_per_row);
+        let step = |span: [f64; 2], count: u16| (span[1] - span[0]) / f64::from(count.saturating_sub(1).max(1));
+        let (step_x, step_y) = (step(self.window.x, columns), step(self.window.y, rows));
+        let edge_m = f64::midpoint(step_x, step_y);
+        for row in 0..rows {
+            for column in 0..columns {
+                let x = self.window.x[0] + f64::from(column) * step_x;
+                let y = self.window.y[1] - f64::from(row) * step_y;
+                let color = match self.raster.scanned_share(Point::new(x, y), edge_m) {
+                    Some(share) if share >= Self::WHOLE => self.whole,
+                    Some(share) if share >= Self::PARTLY => self.partly,
+                    _ => None,
+                };
+                if let Some(color) = color {
+                    painter.paint(usize::from(column), usize::from(row), color);
+                }
+            }
+        }
+    }
+}
+
+/// A line through points, solid or dotted.
+pub(super) struct Stroke<'a> {
+    pub points: &'a [Point],
+    pub window: Window,
+    pub dotted: bool,
+    pub color: Color,
+}
+
+impl Shape for Stroke<'_> {
+    fn draw(&self, painter: &mut Painter) {
+        let mut walked = 0_usize;
+        for pair in self.points.windows(2) {
+            let Some((from, to)) = self.window.clipped(pair[0], pair[1]) else { continue };
+            let (Some(a), Some(b)) = (painter.get_point(from.x, from.y), painter.get_point(to.x, to.y)) else {
+                continue;
+            };
+            let (dx, dy) = (b.0 as f64 - a.0 as f64, b.1 as f64 - a.1 as f64);
+            let steps = dx.abs().max(dy.abs());
+            for step in 0..=(steps as usize) {
+                let share = if steps > 0.0 { step as f64 / steps } else { 0.0 };
+                if !self.dotted || (walked + step).is_multiple_of(3) {
+                    let x = (a.0 as f64 + dx * share).round();
+                    let y = (a.1 as f64 + dy * share).round();
+                    painter.paint(x as usize, y as usize, self.color);
+                }
+            }
+            walked += steps as usize;
+        }
+    }
+}
+
+/// The inside of an outline, solid or hatched.
+pub(super) struct Filled<'a> {
+    pub shape: &'a world::Shape,
+    pub window: Window,
+    pub hatched: bool,
+    pub color: Color,
+}
+
+impl Shape for Filled<'_> {
+    fn draw(&self, painter: &mut Painter) {
+        let Window { x, y, .. } = self.window;
+        let (low, high) = self.shape.bounds();
+        let (low, high) = (
+            Point::new(low.x.clamp(x[0], x[1]), low.y.clamp(y[0], y[1])),
+            Point::new(high.x.clamp(x[0], x[1]), high.y.clamp(y[0], y[1])),
+        );
+        let corners = (painter.get_point(low.x, high.y), painter.get_point(high.x, low.y));
+        let (Some(first), Some(last)) = corners else { return };
+        let span = Vector::new((last.0 - first.0).max(1) as f64, (last.1 - first.1).max(1) as f64);
+        for row in first.1..=last.1 {
+            for column in first.0..=last.0 {
+                let share = Vector::new((column - first.0) as f64 / span.x, (row - first.1) as f64 / span.y);
+                let at = Point::new(low.x + share.x * (high.x - low.x), high.y - share.y * (high.y - low.y));
+                let thin = self.hatched && !(row + column).is_multiple_of(4);
+                if !thin && self.shape.distance_m(at) <= 0.0 {
+                    painter.paint(column, row, self.color);
+                }
+            }
+        }
+        // A pipe thinner than a dot still shows.
+        let middle = self.shape.center();
+        if let Some((column, row)) = painter.get_point(middle.x, middle.y) {
+            painter.paint(column, row, self.color);
+        }
+    }
+}
+
+/// Points of an ellipse about a centre, closed.
+pub(super) fn ellipse(center: Point, half_m: (f64, f64), turned_rad: f64, pieces: u32) -> Vec<Point> {
+    let (sin, cos) = turned_rad.sin_cos();
+    (0..=pieces)
+        .map(|piece| {
+            let (up, right) = (std::f64::consts::TAU * f64::from(piece) / f64::from(pieces)).sin_cos();
+            let (along, across) = (right * half_m.0, up * half_m.1);
+            center + Vector::new(along * cos - across * sin, along * sin + across * cos)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_segment_is_cut_at_the_edges_of_the_window() {
+        let window = Window::new(Point::origin(), 0.5, (20, 10));
+        let cut = window.clipped(Point::new(-100.0, 1.0), Point::new(100.0, 1.0));
+        assert_eq!(cut, Some((Point::new(-5.0, 1.0), Point::new(5.0, 1.0))));
+        assert_eq!(window.clipped(Point::new(-100.0, 6.0), Point::new(100.0, 6.0)), None);
+        let inside = (Point::new(1.0, 1.0), Point::new(2.0, -3.0));
+        assert_eq!(window.clipped(inside.0, inside.1), Some(inside));
+    }
+
+    #[test]
+    fn an_ellipse_is_closed_and_has_its_half_axes() {
+        let ring = ellipse(Point::new(1.0, 2.0), (3.0, 1.0), std::f64::consts::FRAC_PI_2, 64);
+        assert!((ring[0] - ring[64]).norm() < 1e-9);
+        assert!((ring[0] - Point::new(1.0, 5.0)).norm() < 1e-9);
+        assert!((ring[16] - Point::new(0.0, 2.0)).norm() < 1e-9);
+    }
+}

@@ -1,0 +1,65 @@
+//! The control strip of a terminal too small for a map: state, alarm, position, and the keys that matter.
+
+use super::{Look, asks, confirm, coverage, footer, lists, next, text, top};
+use crate::theme::Role;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+use ratatui::widgets::Paragraph;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let framed = area.width >= 24 && area.height >= 7;
+    let title = format!("small terminal {}x{}", area.width, area.height);
+    let block = look.block(Role::Border, &title, "");
+    let inner = if framed { block.inner(area) } else { area };
+    if framed {
+        frame.render_widget(block, area);
+    }
+    let columns = usize::from(inner.width);
+    // A question comes first: at this size nothing may push it out.
+    let mut lines = Vec::new();
+    if asks(look.model) {
+        lines.extend(wrapped(look, confirm::line(look.model), columns));
+    }
+    lines.push(state(look));
+    lines.extend(alarm(look, columns));
+    if !asks(look.model) {
+        lines.extend(wrapped(look, next::sentence(look.model), columns));
+    }
+    lines.push(Line::from(look.span(Role::Text, text::fit(&position(look), columns))));
+    let hints: Vec<String> = footer::hints(look.model).into_iter().map(|hint| hint.keys).collect();
+    lines.extend(wrapped(look, (Role::Key, format!("keys: {}", hints.join("  "))), columns));
+    lines.extend(wrapped(look, (Role::Dim, "The map needs 60x16. Control works here.".into()), columns));
+    frame.render_widget(Paragraph::new(lines), inner);
+}
+
+fn state(look: &Look) -> Line<'static> {
+    let mut parts = vec![(Role::Text, " ".to_owned())];
+    parts.extend(top::state(look.model));
+    parts.push((Role::Text, " ".into()));
+    parts.extend(top::time(look.model));
+    look.line(parts)
+}
+
+fn alarm(look: &Look, columns: usize) -> Option<Line<'static>> {
+    let alarm = look.model.alarms.worst()?;
+    let mut parts = vec![(Role::Text, " ".to_owned())];
+    parts.extend(top::alarms(look.model, false));
+    let used: usize = parts.iter().map(|(_, text)| text::width(text)).sum();
+    parts.push((Role::Text, text::fit(&format!(" {}", alarm.text), columns.saturating_sub(used))));
+    Some(look.line(parts))
+}
+
+fn position(look: &Look) -> String {
+    let model = look.model;
+    let scanned = coverage::shares(model).0;
+    let error = model.position.error_m().map_or_else(|| "-".into(), |error_m| text::number(error_m, 2));
+    let lost = if model.position.lost { " LOST" } else { "" };
+    format!(" {scanned} % of reachable floor, ±{error} m{lost}")
+}
+
+/// A sentence in as many lines as it takes.
+fn wrapped(look: &Look, (role, sentence): (Role, String), columns: usize) -> Vec<Line<'static>> {
+    let lines = lists::wrap(&sentence, columns.saturating_sub(1));
+    lines.into_iter().map(|line| Line::from(look.span(role, format!(" {line}")))).collect()
+}

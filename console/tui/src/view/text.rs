@@ -1,0 +1,133 @@
+//! Numbers and words as the screen writes them.
+
+use crate::model::Speed;
+use ratatui::text::Span;
+
+/// A share as a percentage without its sign.
+pub(super) fn percent(share: f64) -> String {
+    number(share * 100.0, 1)
+}
+
+/// A number with some decimals; a dash for what is no number.
+pub(super) fn number(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return "-".into();
+    }
+    let text = format!("{value:.decimals$}");
+    // A rounded zero has no sign.
+    if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
+        text.trim_start_matches('-').into()
+    } else {
+        text
+    }
+}
+
+/// A span of time as hours, minutes and seconds.
+pub(super) fn clock(seconds: f64) -> String {
+    let whole = if seconds.is_finite() { seconds.max(0.0) as u64 } else { 0 };
+    format!("{:02}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
+}
+
+/// Time of day in UTC, hours and minutes, of seconds since 1970.
+pub(super) fn time_of_day(unix_s: f64) -> String {
+    let minutes = if unix_s.is_finite() { unix_s.max(0.0) as u64 / 60 } else { 0 };
+    format!("{:02}:{:02}", minutes / 60 % 24, minutes % 60)
+}
+
+/// The pace of the simulation.
+pub(super) fn speed(speed: Speed) -> String {
+    match speed {
+        Speed::Times(factor) => format!("×{factor}"),
+        Speed::Max => "×max".into(),
+    }
+}
+
+/// A heading in degrees, 0 to 359, counter-clockwise from east.
+pub(super) fn degrees(heading_rad: f64) -> String {
+    let degrees = heading_rad.to_degrees().rem_euclid(360.0).round();
+    number(if degrees >= 360.0 { 0.0 } else { degrees }, 0)
+}
+
+/// Text no wider than some columns; an ellipsis stands for what is cut.
+pub(super) fn fit(text: &str, columns: usize) -> String {
+    if width(text) <= columns {
+        return text.to_owned();
+    }
+    let mut cut = String::new();
+    for letter in text.chars() {
+        if width(&cut) + width(letter.encode_utf8(&mut [0; 4])) >= columns {
+            break;
+        }
+        cut.push(letter);
+    }
+    if columns > 0 {
+        cut.push('…');
+    }
+    cut
+}
+
+/// Text of exactly some columns, padded on the right.
+pub(super) fn column(text: &str, columns: usize) -> String {
+    let cut = fit(text, columns);
+    let blank = columns.saturating_sub(width(&cut));
+    cut + &" ".repeat(blank)
+}
+
+/// Columns that a text takes.
+pub(super) fn width(text: &str) -> usize {
+    Span::raw(text).width()
+}
+
+/// A bar of some columns that is filled to a share.
+pub(super) fn bar(share: f64, columns: usize) -> String {
+    let full = if share.is_finite() { (share.clamp(0.0, 1.0) * columns as f64).round() as usize } else { 0 };
+    "█".repeat(full) + &"░".repeat(columns - full)
+}
+
+/// A curve in some columns, from 0 to `top`; each column shows the largest of its values.
+pub(super) fn sparkline(values: impl ExactSizeIterator<Item = f64>, top: f64, columns: usize, slots: usize) -> String {
+    const STEPS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+    let mut largest: Vec<Option<f64>> = vec![None; columns];
+    let skip = slots.saturating_sub(values.len());
+    for (index, value) in values.enumerate() {
+        let column = ((skip + index) * columns / slots.max(1)).min(columns.saturating_sub(1));
+        if let Some(slot) = largest.get_mut(column) {
+            *slot = Some(slot.map_or(value, |before| before.max(value)));
+        }
+    }
+    let step = |value: f64| {
+        let share = if top > 0.0 && value.is_finite() { value / top } else { 1.0 };
+        STEPS[((share.clamp(0.0, 1.0) * 7.0).round() as usize).min(7)]
+    };
+    largest.into_iter().map(|value| value.map_or(' ', step)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_without_a_value_are_a_dash_and_zero_has_no_sign() {
+        assert_eq!([number(f64::NAN, 2), number(-0.001, 2), number(-1.005, 1)], ["-", "0.00", "-1.0"]);
+    }
+
+    #[test]
+    fn long_text_is_cut_with_an_ellipsis() {
+        assert_eq!([fit("tank-07", 7), fit("tank-07", 5), fit("tank", 0)], ["tank-07", "tank…", ""]);
+        assert_eq!(column("ae", 4), "ae  ");
+    }
+
+    #[test]
+    fn times_are_written_as_clocks() {
+        assert_eq!(clock(2480.9), "00:41:20");
+        assert_eq!(time_of_day(86_400.0 * 3.0 + 12.0 * 3600.0 + 51.0 * 60.0), "12:51");
+        assert_eq!(degrees(-std::f64::consts::FRAC_PI_2), "270");
+        assert_eq!(degrees(-1e-9), "0");
+    }
+
+    #[test]
+    fn a_curve_keeps_the_largest_value_of_each_column() {
+        let curve = sparkline([0.0, 0.0, 1.0, 0.0].into_iter(), 1.0, 4, 8);
+        assert_eq!(curve, "  ▁█");
+    }
+}

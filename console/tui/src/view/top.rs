@@ -1,0 +1,109 @@
+//! The line on top: who is in charge, what runs, whether it is recorded, what is wrong.
+
+use super::{Look, text};
+use crate::model::{Model, Phase, Recording, ui::Arrangement};
+use crate::theme::Role;
+use mission::{Outcome, Severity, event::HoldReason};
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+use world::Boundary;
+
+type Parts = Vec<(Role, String)>;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let arrangement = Arrangement::of(frame.area().width, frame.area().height);
+    let wide = arrangement == Arrangement::Wide;
+    let gap = if wide { "   " } else { " " };
+    let alarms = alarms(look.model, wide);
+    let state = state(look.model);
+    let time = time(look.model);
+    let fixed: usize = [&state, &time, &alarms].into_iter().flatten().map(|(_, text)| text::width(text)).sum();
+    // Names take what the rest leaves; the tank goes first, for the planner can change.
+    let room = usize::from(area.width).saturating_sub(fixed + 1 + 3 * gap.len());
+    let names = names(look.model, wide, gap, room);
+    let blank = || vec![(Role::Text, gap.to_owned())];
+    let left = [vec![(Role::Text, " ".into())], state, blank(), names, time, blank(), alarms].concat();
+    frame.render_widget(look.line(left), area);
+    if wide {
+        frame.render_widget(Line::from(look.span(Role::Dim, "Mission ")).right_aligned(), right_of(area, 9));
+    }
+}
+
+fn right_of(area: Rect, width: u16) -> Rect {
+    let width = width.min(area.width);
+    Rect { x: area.right() - width, width, ..area }
+}
+
+/// Who is in charge, and whether the robot moves.
+pub(super) fn state(model: &Model) -> Parts {
+    let (who, role, word) = match &model.phase {
+        Phase::Idle => ("OPER", Role::Title, "■ IDLE"),
+        Phase::Running => ("AUTO", Role::Run, "▶ RUN"),
+        Phase::Held(HoldReason::Operator | HoldReason::Stepped) => ("OPER", Role::Hold, "‖ HOLD"),
+        Phase::Held(_) => ("AUTO", Role::Hold, "‖ HOLD"),
+        Phase::Ended { outcome: Outcome::Complete, .. } => ("OPER", Role::Good, "✓ DONE"),
+        Phase::Ended { .. } => ("OPER", Role::Warn, "■ ENDED"),
+    };
+    vec![(Role::Title, format!("{who} ")), (role, word.into())]
+}
+
+fn names(model: &Model, wide: bool, gap: &str, room: usize) -> Parts {
+    let planner = match (wide, model.planner(), model.planner_id()) {
+        (true, Some(info), _) => format!("{} {}", info.id, info.version),
+        (_, _, Some(id)) => id.to_owned(),
+        _ => String::new(),
+    };
+    let tank = model.run.as_ref().map_or_else(|| "no run yet".into(), |run| match (&run.world.boundary, wide) {
+        (Boundary::Circle { radius_m }, true) => {
+            format!("{} Ø{} m", run.scenario, text::number(2.0 * radius_m, 0))
+        }
+        _ => run.scenario.clone(),
+    });
+    let planner = text::fit(&planner, room);
+    let left = room.saturating_sub(text::width(&planner));
+    let parts = [(Role::Text, if left >= 4 { text::fit(&tank, left) } else { String::new() }), (Role::Title, planner)];
+    parts.into_iter().filter(|(_, text)| !text.is_empty()).flat_map(|part| [part, (Role::Text, gap.into())]).collect()
+}
+
+/// Mission time, pace and recording.
+pub(super) fn time(model: &Model) -> Parts {
+    let clock = match model.silent_s() {
+        Some(silent_s) => (Role::Stale, format!("◌T+{} {} s old ", text::clock(model.clock.t_s), silent_s as u64)),
+        None => (Role::Text, format!("T+{} ", text::clock(model.clock.t_s))),
+    };
+    vec![clock, (Role::Text, format!("{} ", text::speed(model.console.speed))), recording(model)]
+}
+
+fn recording(model: &Model) -> (Role, String) {
+    match model.console.health.recording {
+        Recording::On => (Role::Good, "REC●".into()),
+        Recording::Off => (Role::Dim, "REC-".into()),
+        Recording::Failed(_) => (Role::Crit, "REC✗".into()),
+    }
+}
+
+/// How many alarms of each severity there are, and whether some are not acknowledged.
+pub(super) fn alarms(model: &Model, wide: bool) -> Parts {
+    if model.alarms.list().is_empty() {
+        return vec![(Role::Dim, if wide { "ALARM none" } else { "! none" }.into())];
+    }
+    let counted = [
+        (Severity::Crit, Role::Crit, "crit", "C"),
+        (Severity::Warn, Role::Warn, "warn", "W"),
+        (Severity::Watch, Role::Watch, "watch", "w"),
+    ];
+    let mut parts = vec![(Role::Title, if wide { "ALARM".into() } else { "!".into() })];
+    for (severity, role, word, letter) in counted {
+        let (count, open) = (model.alarms.count(severity), model.alarms.unacknowledged(severity) > 0);
+        let role = if count == 0 { Role::Dim } else { role };
+        parts.push((Role::Text, " ".into()));
+        parts.push((role, match (wide, open) {
+            (true, true) => format!("{count} {word}(unack)"),
+            (true, false) => format!("{count} {word}"),
+            (false, true) => format!("{count}{letter}*"),
+            (false, false) => format!("{count}{letter}"),
+        }));
+    }
+    parts
+}

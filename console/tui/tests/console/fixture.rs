@@ -1,0 +1,415 @@
+//! A spiral mission in a tank with columns, told as events without any engine.
+
+use mission::event::{HoldReason, JOURNAL_VERSION, RunOpened};
+use mission::link::{Cause, During, Fault};
+use mission::{
+    Event, EventKind, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters, PlannerChoice, PlannerInfo,
+    TaskConfig,
+};
+use nalgebra::{Matrix2, Matrix3};
+use planner_api::{Command, Drawing, Layer, Limits, Motion, PoseEstimate, Reason};
+use positioning::{Exclusion, Fix, Integrity, Ranging, Residual};
+use std::f64::consts::FRAC_PI_2;
+use tui::{Caps, Colours, Glyphs, Health, Model, Msg, Recording, Refused, Times, update};
+use world::spiral::Spiral;
+use world::{
+    Boundary, CoverageGrid, Floor, Obstacle, ObstacleId, Point, Pose, Shape, Station, StationId, Vector, World,
+};
+
+/// Length of a tick, seconds.
+pub const TICK_S: f64 = 0.5;
+/// Distance driven in a tick, metres.
+const STEP_M: f64 = 0.1;
+
+/// The tank.
+pub fn world() -> World {
+    let columns = [(5.0, 0.0), (-4.0, 3.0), (0.0, -6.0), (3.5, 4.5), (-5.5, -3.5)];
+    let mut obstacles: Vec<Obstacle> = columns
+        .iter()
+        .enumerate()
+        .map(|(index, (x, y))| Obstacle {
+            id: ObstacleId(index as u32),
+            name: format!("C{}", index + 1),
+            shape: Shape::Disc { center: Point::new(*x, *y), radius_m: 0.4 },
+            known: true,
+        })
+        .collect();
+    obstacles.push(found());
+    let stations = [(10.0, 45.0_f64), (10.0, 135.0), (10.0, 225.0), (10.0, 315.0)];
+    let stations = stations
+        .iter()
+        .enumerate()
+        .map(|(index, (radius_m, bearing))| Station {
+            id: StationId(index as u32),
+            name: format!("S{}", index + 1),
+            position: Point::new(radius_m * bearing.to_radians().cos(), radius_m * bearing.to_radians().sin()),
+        })
+        .collect();
+    World { boundary: Boundary::Circle { radius_m: 10.0 }, obstacles, stations, zones: Vec::new() }
+}
+
+/// The obstacle that is not on the drawing.
+pub fn found() -> Obstacle {
+    let shape = Shape::Disc { center: Point::new(-1.0, 8.2), radius_m: 0.3 };
+    Obstacle { id: ObstacleId(40), name: "debris".into(), shape, known: false }
+}
+
+/// The preset path.
+pub fn spiral() -> Vec<Point> {
+    Spiral { outer_radius_m: 9.4, inner_radius_m: 0.1, pitch_m: 0.6, step_rad: 0.05 }.points()
+}
+
+/// The mission.
+pub fn config() -> MissionConfig {
+    MissionConfig {
+        task: TaskConfig::Follow { path: spiral(), tolerance_m: 0.2 },
+        start: Pose::new(9.4, 0.0, FRAC_PI_2),
+        start_sigma_m: 0.05,
+        start_heading_sigma_rad: 0.02,
+        tick_s: TICK_S,
+        time_limit_s: 3600.0,
+        limits: Limits {
+            motion: Motion::Unicycle,
+            v_max_m_per_s: 0.3,
+            w_max_rad_per_s: 0.5,
+            radius_m: 0.3,
+            sensing_range_m: 2.0,
+        },
+        swath_m: 0.6,
+        clearance_m: 0.1,
+        cell_m: 0.1,
+        position_limit_m: 0.15,
+        lost_hold_s: 2.0,
+        stuck_s: 60.0,
+        odometry_sigma_per_m: 0.05,
+        odometry_turn_sigma_per_rad: 0.05,
+        gyro_sigma_rad_per_s: 0.001,
+        range_sigma_ratio: 0.01,
+        planner: choice("rpf"),
+        fallback: None,
+        attended: true,
+    }
+}
+
+/// A planner with nothing set by hand.
+pub fn choice(id: &str) -> PlannerChoice {
+    PlannerChoice { id: id.into(), parameters: Parameters::new() }
+}
+
+fn parameter(key: &str, label: &str, unit: &str, help: &str, kind: ParamKind, live: bool) -> ParamInfo {
+    let [key, label, unit, help, group] = [key, label, unit, help, "forces"].map(str::to_owned);
+    ParamInfo { key, label, unit, help, group, kind, live }
+}
+
+/// A planner as the host describes it.
+pub fn planner(id: &str, version: &str, about: &str) -> PlannerInfo {
+    let float = |min, max, default| ParamKind::Float { min, max, default };
+    let gain = "Strength of the rotating field near a column. Higher keeps a wider berth and makes a longer path.";
+    PlannerInfo {
+        id: id.into(),
+        name: id.to_uppercase(),
+        version: version.into(),
+        about: about.into(),
+        plugin: "spiral.so".into(),
+        sha256: "1c9e".into(),
+        abi: "1.0".into(),
+        parameters: vec![
+            parameter("rpf_gain", "Rotating gain", "m3/s", gain, float(0.2, 4.0, 1.2), true),
+            parameter("rpf_radius_m", "Rotating radius", "m", "How far the field reaches.", float(0.3, 2.0, 1.1), true),
+            parameter("order", "Order of repulsion", "", "Exponent.", ParamKind::Int { min: 1, max: 4, default: 2 }, true),
+            parameter(
+                "mode",
+                "Mode",
+                "",
+                "As published, or gated near the path.",
+                ParamKind::Choice { options: vec!["literal".into(), "gated".into()], default: "gated".into() },
+                false,
+            ),
+            parameter("improved", "Improved repulsion", "", "No trap.", ParamKind::Flag { default: true }, true),
+        ],
+    }
+}
+
+/// The planners that were found.
+pub fn planners() -> Vec<PlannerInfo> {
+    vec![
+        planner("apf", "1.2", "Artificial potential field for goals and preset paths"),
+        planner("rpf", "1.2", "Rotating potential field along the preset spiral"),
+        planner("spiral-tangent", "1.0", "Tangent bug about columns on the spiral"),
+    ]
+}
+
+/// The first event.
+pub fn opened() -> EventKind {
+    let (world, mission) = (world(), config());
+    let floor = Floor::new(
+        &world.as_drawn(),
+        mission.cell_m,
+        mission.limits.radius_m,
+        mission.swath_m,
+        mission.start.position,
+    );
+    EventKind::RunOpened(Box::new(RunOpened {
+        journal_version: JOURNAL_VERSION,
+        tankops_version: "0.1.0".into(),
+        scenario: "tank-07".into(),
+        scenario_toml: String::new(),
+        seed: 42,
+        world,
+        mission,
+        floor,
+    }))
+}
+
+/// A mission that is told tick by tick.
+pub struct Telling {
+    path: Vec<Point>,
+    grid: CoverageGrid,
+    tick: u64,
+    at: usize,
+    length_m: f64,
+    /// Standard deviation of the position, metres.
+    pub sigma_m: f64,
+}
+
+impl Telling {
+    /// Before the first tick.
+    pub fn new() -> Self {
+        let EventKind::RunOpened(run) = opened() else { unreachable!("the run opens first") };
+        let path = world::polyline::resampled(&spiral(), STEP_M);
+        let length_m = world::polyline::length_m(&path);
+        Self { path, grid: CoverageGrid::new(run.floor), tick: 0, at: 0, length_m, sigma_m: 0.02 }
+    }
+
+    /// An event of now.
+    pub fn now(&self, kind: EventKind) -> Event {
+        Event { tick: self.tick, t_s: self.tick as f64 * TICK_S, kind }
+    }
+
+    /// The events before anything moves.
+    pub fn opening(&self) -> Vec<Event> {
+        vec![self.now(opened()), self.now(self.estimated())]
+    }
+
+    /// The events of the start.
+    pub fn start(&self) -> Vec<Event> {
+        let info = Box::new(planners().remove(1));
+        [
+            EventKind::Ordered { order: Order::Start },
+            EventKind::PlannerChosen { choice: choice("rpf"), info, from: None },
+            EventKind::Planned {
+                planner: "rpf".into(),
+                reason: Reason::Start,
+                path: self.path.clone(),
+                length_m: self.length_m,
+                complete: true,
+            },
+        ]
+        .map(|kind| self.now(kind))
+        .into()
+    }
+
+    /// The events of some ticks under way.
+    pub fn drive(&mut self, ticks: usize) -> Vec<Event> {
+        (0..ticks).flat_map(|_| self.tick()).collect()
+    }
+
+    /// The events of some ticks standing still.
+    pub fn wait(&mut self, ticks: usize) -> Vec<Event> {
+        (0..ticks)
+            .map(|_| {
+                self.tick += 1;
+                self.now(self.estimated())
+            })
+            .collect()
+    }
+
+    fn tick(&mut self) -> Vec<Event> {
+        let before = self.path[self.at];
+        self.tick += 1;
+        self.at = (self.at + 1).min(self.path.len() - 2);
+        let (here, next) = (self.path[self.at], self.path[self.at + 1]);
+        let way = next - here;
+        let mut kinds = vec![self.estimated()];
+        if self.tick.is_multiple_of(2) {
+            kinds.extend([EventKind::Ranged { ranges: self.ranges() }, EventKind::Fixed { fix: self.fix() }]);
+        }
+        kinds.push(EventKind::Covered { runs: self.grid.mark_swath(before, here, 0.6) });
+        kinds.push(EventKind::Progressed {
+            done: self.at as f64 / self.path.len() as f64,
+            along_m: Some(self.at as f64 * STEP_M),
+            cross_track_m: Some(0.03),
+            target: self.path[(self.at + 6).min(self.path.len() - 1)],
+            covered_reachable: self.grid.fraction_reachable(),
+            covered_whole: self.grid.fraction_whole(),
+        });
+        let arrow = |layer, vector| Drawing::Arrow { layer, at: here, vector };
+        let side = Vector::new(-way.y, way.x);
+        kinds.push(EventKind::Drawn {
+            drawings: vec![
+                arrow(Layer::Attraction, way * 15.0),
+                arrow(Layer::Repulsion, side * 10.0),
+                arrow(Layer::Resultant, (way * 15.0) + (side * 10.0)),
+            ],
+        });
+        kinds.push(EventKind::Scalars { scalars: vec![("field".into(), 1.25, "m/s".into())] });
+        kinds.push(EventKind::Commanded { command: Command::twist(0.2, 0.021) });
+        kinds.into_iter().map(|kind| self.now(kind)).collect()
+    }
+
+    fn estimated(&self) -> EventKind {
+        let (here, next) = (self.path[self.at], self.path[self.at + 1]);
+        let way = next - here;
+        // The error breathes, so that its history has a shape.
+        let breath = 1.0 + 0.4 * (self.tick as f64 * 0.09).sin();
+        let sigma_m = self.sigma_m * breath;
+        let covariance = Matrix3::from_diagonal(&nalgebra::Vector3::new(sigma_m * sigma_m, sigma_m * sigma_m, 1e-4));
+        EventKind::Estimated {
+            pose: PoseEstimate { position: here, heading_rad: way.y.atan2(way.x), covariance },
+        }
+    }
+
+    fn ranges(&self) -> Vec<Ranging> {
+        let here = self.path[self.at];
+        let ranging = |station: &Station| Ranging {
+            station: station.id,
+            range_m: (station.position - here).norm(),
+            sigma_m: 0.05,
+            repetitions: 5,
+        };
+        world().stations.iter().map(ranging).collect()
+    }
+
+    fn fix(&self) -> Fix {
+        let used: Vec<StationId> = (0..3).map(StationId).collect();
+        let residuals_m = [0.012, -0.031, 0.024];
+        let residuals = used.iter().zip(residuals_m);
+        Fix {
+            position: self.path[self.at],
+            covariance: Matrix2::from_diagonal_element(4e-4),
+            residuals: residuals
+                .map(|(station, residual_m)| Residual { station: *station, residual_m, sigma_m: 0.05 })
+                .collect(),
+            used,
+            excluded: vec![(StationId(3), Exclusion::Residual { residual_m: 0.42, gate_m: 0.15 })],
+            chi2: 0.9,
+            degrees_of_freedom: 1,
+            gdop: 1.1,
+            conditioning: 2.0,
+            mirror: None,
+            protection_level_m: None,
+            integrity: Integrity::Ok,
+        }
+    }
+
+    /// Station 4 is left out.
+    pub fn excluded(&self) -> Event {
+        let reason = Exclusion::Residual { residual_m: 0.42, gate_m: 0.15 };
+        self.now(EventKind::StationExcluded { station: StationId(3), reason })
+    }
+
+    /// A hold.
+    pub fn held(&self, by: HoldReason) -> Event {
+        self.now(EventKind::Held { by })
+    }
+
+    /// The planner fails and the robot is held.
+    pub fn planner_fails(&self) -> Vec<Event> {
+        let message = "planner rpf panicked during step".to_owned();
+        let fault = Fault {
+            planner: "rpf".into(),
+            during: During::Step,
+            cause: Cause::Panic,
+            message: message.clone(),
+            partial: Vec::new(),
+        };
+        vec![
+            self.now(EventKind::PlannerFailed { fault }),
+            self.held(HoldReason::PlannerFault { message }),
+        ]
+    }
+
+    /// The end.
+    pub fn ended(&self, outcome: Outcome, reason: &str) -> Event {
+        self.now(EventKind::Ended { outcome, reason: reason.into() })
+    }
+}
+
+/// A screen that has been told of a mission.
+pub struct Screen {
+    /// Its model.
+    pub model: Model,
+    /// The mission it is told of.
+    pub telling: Telling,
+    mono_s: f64,
+}
+
+impl Screen {
+    /// A run that is open and waits.
+    pub fn idle() -> Self {
+        let mut screen = Self { model: Model::default(), telling: Telling::new(), mono_s: 0.0 };
+        screen.tell(Msg::Time(Times { mono_s: 0.0, wall_unix_s: 1_795_264_000.0 }));
+        screen.tell(Msg::Health(Health { recording: Recording::On, reached_speed: None }));
+        let refused = Refused {
+            plugin: "my_plugin.so".into(),
+            reason: "built for planner ABI 3, this console speaks 1; rebuild it".into(),
+        };
+        screen.tell(Msg::Planners { found: planners(), refused: vec![refused] });
+        let events = screen.telling.opening();
+        screen.tell(Msg::Events(events));
+        screen
+    }
+
+    /// A run two thirds done.
+    pub fn running() -> Self {
+        let mut screen = Self::idle();
+        let mut events = screen.telling.start();
+        events.extend(screen.telling.drive(1200));
+        let found = EventKind::ObstacleFound { obstacle: found() };
+        events.push(screen.telling.now(found));
+        events.extend(screen.telling.drive(700));
+        events.push(screen.telling.excluded());
+        events.extend(screen.telling.drive(35));
+        screen.tell(Msg::Events(events));
+        screen
+    }
+
+    /// The same, held by the operator.
+    pub fn held() -> Self {
+        let mut screen = Self::running();
+        let events = vec![
+            screen.telling.now(EventKind::Ordered { order: Order::Hold }),
+            screen.telling.held(HoldReason::Operator),
+        ];
+        screen.tell(Msg::Events(events));
+        screen
+    }
+
+    /// Tells the model something.
+    pub fn tell(&mut self, msg: Msg) -> Vec<tui::Effect> {
+        update(&mut self.model, msg)
+    }
+
+    /// Presses keys, one after the other.
+    pub fn press(&mut self, keys: impl IntoIterator<Item = tui::Key>) -> Vec<tui::Effect> {
+        keys.into_iter().flat_map(|key| self.tell(Msg::Key(key.into()))).collect()
+    }
+
+    /// Types characters.
+    pub fn type_text(&mut self, text: &str) -> Vec<tui::Effect> {
+        self.press(text.chars().map(tui::Key::Char))
+    }
+
+    /// Lets time pass on the console's own clock.
+    pub fn pass(&mut self, seconds: f64) -> Vec<tui::Effect> {
+        self.mono_s += seconds;
+        self.tell(Msg::Time(Times { mono_s: self.mono_s, wall_unix_s: 1_795_264_000.0 + self.mono_s }))
+    }
+}
+
+/// A terminal with everything.
+pub const RICH: Caps = Caps { colours: Colours::True, glyphs: Glyphs::Braille, ssh: false };
+/// A terminal without colours.
+pub const PLAIN: Caps = Caps { colours: Colours::None, glyphs: Glyphs::Braille, ssh: false };
+/// A terminal with letters only.
+pub const ASCII: Caps = Caps { colours: Colours::None, glyphs: Glyphs::Ascii, ssh: false };

@@ -1,0 +1,168 @@
+//! Laws that hold for every screen.
+
+use crate::fixture::{ASCII, PLAIN, RICH, Screen};
+use crate::screens::{drawn, text};
+use mission::event::HoldReason;
+use mission::{Event, EventKind, Order, Outcome, Severity};
+use proptest::prelude::*;
+use ratatui::style::Style;
+use tui::{Caps, Effect, Health, Key, KeyPress, Model, Msg, Recording, Signal, Times};
+
+fn key() -> impl Strategy<Value = Key> {
+    prop_oneof![
+        6 => prop::sample::select(" SX.P<>pa:?qzZ0fLm/hjklgGeq19xyz\u{7}é漢".chars().collect::<Vec<_>>()).prop_map(Key::Char),
+        2 => prop::sample::select(vec![Key::Enter, Key::Esc, Key::Tab, Key::BackTab, Key::Backspace]),
+        2 => prop::sample::select(vec![Key::Up, Key::Down, Key::Left, Key::Right, Key::PageUp, Key::PageDown, Key::Home, Key::End]),
+        1 => prop::sample::select("cpzudl".chars().collect::<Vec<_>>()).prop_map(Key::Ctrl),
+        1 => (1..13_u8).prop_map(Key::F),
+    ]
+}
+
+/// Events of a whole mission in any order, with wild times.
+fn event() -> impl Strategy<Value = Event> {
+    let told: Vec<Event> = {
+        let mut screen = Screen::idle();
+        let telling = &mut screen.telling;
+        let mut events = telling.opening();
+        events.extend(telling.start());
+        events.extend(telling.drive(40));
+        events.push(telling.excluded());
+        events.extend(telling.planner_fails());
+        for by in [HoldReason::Operator, HoldReason::Stepped, HoldReason::PositionLost] {
+            events.push(telling.held(by));
+        }
+        let lone = [
+            EventKind::Resumed,
+            EventKind::PositionLost { error_m: f64::NAN, limit_m: 0.0 },
+            EventKind::PositionRegained { error_m: f64::INFINITY },
+            EventKind::ObstacleFound { obstacle: crate::fixture::found() },
+            EventKind::Scalars { scalars: vec![("x".into(), f64::NAN, String::new()); 40] },
+            EventKind::Covered { runs: vec![world::CellRun(u32::MAX, u32::MAX), world::CellRun(0, 900)] },
+            EventKind::OrderRefused { order: Order::Resume, why: "no".repeat(200) },
+        ];
+        events.extend(lone.into_iter().map(|kind| telling.now(kind)));
+        events.push(telling.ended(Outcome::Stuck, "漢字".repeat(40).as_str()));
+        events
+    };
+    (prop::sample::select(told), prop_oneof![0.0..1e4_f64, Just(f64::NAN), Just(f64::INFINITY), Just(-5.0)])
+        .prop_map(|(event, t_s)| Event { t_s, ..event })
+}
+
+fn msg() -> impl Strategy<Value = Msg> {
+    let recording = prop::sample::select(vec![Recording::On, Recording::Off, Recording::Failed("full".into())]);
+    let signal = prop::sample::select(vec![Signal::Interrupt, Signal::Terminate, Signal::Stop, Signal::Continue]);
+    prop_oneof![
+        8 => (key(), any::<bool>()).prop_map(|(key, repeat)| Msg::Key(KeyPress { key, repeat })),
+        4 => prop::collection::vec(event(), 0..6).prop_map(Msg::Events),
+        1 => (0..300_u16, 0..100_u16).prop_map(|(width, height)| Msg::Resize { width, height }),
+        1 => any::<f64>().prop_map(|mono_s| Msg::Time(Times { mono_s, wall_unix_s: mono_s })),
+        1 => "\\PC{0,90}".prop_map(Msg::Paste),
+        1 => (recording, prop::option::of(any::<f64>()))
+            .prop_map(|(recording, reached_speed)| Msg::Health(Health { recording, reached_speed })),
+        1 => "\\PC{0,90}".prop_map(|text| Msg::Notice { severity: Severity::Crit, text }),
+        1 => prop::option::of("[a-z]{0,9}").prop_map(Msg::Busy),
+        1 => signal.prop_map(Msg::Signal),
+    ]
+}
+
+fn caps() -> impl Strategy<Value = Caps> {
+    prop::sample::select(vec![RICH, PLAIN, ASCII])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(160))]
+
+    #[test]
+    fn no_messages_and_no_size_make_the_screen_fail(
+        msgs in prop::collection::vec(msg(), 0..40),
+        start in 0..3_u8,
+        caps in caps(),
+        size in (0..300_u16, 0..100_u16),
+    ) {
+        let mut screen = match start { 0 => Screen::idle(), 1 => Screen::held(), _ => Screen { model: Model::default(), ..Screen::idle() } };
+        for msg in msgs {
+            screen.tell(msg);
+        }
+        let buffer = drawn(&screen.model, &caps, size);
+        prop_assert_eq!((buffer.area.width, buffer.area.height), size);
+        prop_assert!(caps != ASCII || buffer.content.iter().all(|cell| cell.symbol().is_ascii()));
+    }
+
+    #[test]
+    fn no_key_but_enter_or_a_step_in_its_line_makes_a_held_robot_move(
+        keys in prop::collection::vec(key().prop_filter("agrees", |key| !matches!(key, Key::Enter | Key::Char('.'))), 0..30),
+    ) {
+        let mut screen = Screen::held();
+        for key in keys {
+            let moves = screen.press([key]).into_iter().any(|effect| {
+                matches!(effect, Effect::Order(Order::Start | Order::Resume | Order::Step | Order::ChoosePlanner(_)))
+            });
+            prop_assert!(!moves, "{key} moved the robot");
+        }
+    }
+}
+
+#[test]
+fn the_smallest_and_largest_screens_are_drawn() {
+    for (width, height) in [(0, 0), (1, 1), (0, 9), (9, 0), (3, 2), (24, 7), (59, 16), (60, 15), (80, 24), (300, 100)] {
+        for mut screen in [Screen::idle(), Screen::running()] {
+            for keys in ["", "?", ":z", "P", "p", "L", "/x", "q", "S", "X"] {
+                screen.type_text(keys);
+                drawn(&screen.model, &RICH, (width, height));
+                screen.press([Key::Esc]);
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_but_style_is_lost_without_colour() {
+    let mut lost = Screen::running();
+    let event = lost.telling.now(EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
+    let held = lost.telling.held(HoldReason::PositionLost);
+    lost.tell(Msg::Events(vec![event, held]));
+    let mut failed = Screen::running();
+    let events = failed.telling.planner_fails();
+    failed.tell(Msg::Events(events));
+    let mut unrecorded = Screen::running();
+    unrecorded.tell(Msg::Health(Health { recording: Recording::Failed("full".into()), reached_speed: None }));
+    let cases: [(&str, Screen, &[&str]); 6] = [
+        ("idle", Screen::idle(), &["■ IDLE", "REC●", "NEXT"]),
+        ("running", Screen::running(), &["▶ RUN", "2w", "OUT 0.42 m", "found"]),
+        ("held", Screen::held(), &["‖ HOLD", "HELD by you"]),
+        ("lost", lost, &["‖ HOLD", "LOST", "1C*", "CRIT"]),
+        ("failed", failed, &["‖ HOLD", "FAILED", "1C*", "CRIT"]),
+        ("unrecorded", unrecorded, &["REC✗", "1C*", "recording failed"]),
+    ];
+    for (name, screen, words) in cases {
+        for size in [(80, 24), (120, 36)] {
+            let mut buffer = drawn(&screen.model, &PLAIN, size);
+            let area = buffer.area;
+            buffer.set_style(area, Style::reset());
+            let text = text(&buffer);
+            for word in words {
+                let wide = size.0 >= 120;
+                let word = match *word {
+                    "2w" if wide => "2 watch",
+                    "1C*" if wide => "1 crit(unack)",
+                    "found" if !wide => "?",
+                    word => word,
+                };
+                assert!(text.contains(word), "{word} is missing on {name} at {size:?}\n{text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_drawn_does_not_grow_with_the_mission() {
+    let mut screen = Screen::running();
+    let events = screen.telling.wait(200_000);
+    screen.tell(Msg::Events(events));
+    assert!(screen.model.trail.points().len() <= 2048);
+    assert!(screen.model.position.history_m().len() <= 120);
+    for i in 0..20_000 {
+        screen.tell(Msg::Notice { severity: Severity::Info, text: format!("line {i}") });
+    }
+    assert!(screen.model.log.len() <= 10_000);
+}

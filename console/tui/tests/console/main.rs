@@ -1,0 +1,7 @@
+//! The console from outside: scripts of messages, stored screens, and laws that hold for every screen.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod fixture;
+mod laws;
+mod screens;
+mod scripts;

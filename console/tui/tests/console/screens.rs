@@ -1,0 +1,191 @@
+//! Stored screens: the text, and beside it what each cell stands for.
+
+use crate::fixture::{ASCII, PLAIN, RICH, Screen};
+use mission::event::HoldReason;
+use mission::{EventKind, Outcome};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use ratatui::buffer::Buffer;
+use tui::{Caps, Key, Model, Msg, Recording, Theme, view, view_with};
+
+/// The sizes that the console is made for.
+const SIZES: [(u16, u16); 4] = [(120, 36), (80, 24), (60, 16), (44, 10)];
+
+/// Draws a model.
+pub fn drawn(model: &Model, caps: &Caps, size: (u16, u16)) -> Buffer {
+    let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).unwrap();
+    terminal.draw(|frame| view(model, caps, frame)).unwrap();
+    terminal.backend().buffer().clone()
+}
+
+/// The characters of a screen.
+pub fn text(buffer: &Buffer) -> String {
+    rows(buffer, |cell| cell.symbol().to_owned())
+}
+
+fn rows(buffer: &Buffer, show: impl Fn(&ratatui::buffer::Cell) -> String) -> String {
+    let width = usize::from(buffer.area.width).max(1);
+    buffer.content.chunks(width).map(|row| row.iter().map(&show).collect::<String>() + "\n").collect()
+}
+
+/// One letter for what each cell stands for; `_` for blank ones.
+fn roles(model: &Model, caps: &Caps, size: (u16, u16)) -> String {
+    let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).unwrap();
+    terminal.draw(|frame| view_with(model, caps, &Theme::labelled(), frame)).unwrap();
+    rows(terminal.backend().buffer(), |cell| {
+        let background = Theme::role_of(cell.bg);
+        let role = if cell.symbol() == " " { background } else { Theme::role_of(cell.fg).or(background) };
+        role.map_or('_', tui::Role::letter).into()
+    })
+}
+
+fn store(name: &str, screen: &mut Screen) {
+    for size in SIZES {
+        screen.tell(Msg::Resize { width: size.0, height: size.1 });
+        let text = text(&drawn(&screen.model, &RICH, size));
+        let roles = roles(&screen.model, &RICH, size);
+        insta::assert_snapshot!(format!("{name}_{}x{}", size.0, size.1), format!("{text}\n{roles}"));
+    }
+    let size = (80, 24);
+    screen.tell(Msg::Resize { width: size.0, height: size.1 });
+    insta::assert_snapshot!(format!("{name}_80x24_no_colour"), text(&drawn(&screen.model, &PLAIN, size)));
+}
+
+#[test]
+fn idle() {
+    store("idle", &mut Screen::idle());
+}
+
+#[test]
+fn running() {
+    store("running", &mut Screen::running());
+}
+
+#[test]
+fn running_with_letters_only() {
+    let mut screen = Screen::running();
+    for size in [(120, 36), (80, 24)] {
+        screen.tell(Msg::Resize { width: size.0, height: size.1 });
+        insta::assert_snapshot!(format!("ascii_{}x{}", size.0, size.1), text(&drawn(&screen.model, &ASCII, size)));
+    }
+}
+
+#[test]
+fn running_zoomed_and_followed() {
+    let mut screen = Screen::running();
+    screen.tell(Msg::Resize { width: 120, height: 36 });
+    screen.type_text("zzf");
+    store("zoomed", &mut screen);
+}
+
+#[test]
+fn held() {
+    store("held", &mut Screen::held());
+}
+
+#[test]
+fn position_lost() {
+    let mut screen = Screen::running();
+    screen.telling.sigma_m = 0.2;
+    let mut events = screen.telling.wait(4);
+    events.push(screen.telling.now(EventKind::PositionLost { error_m: 0.49, limit_m: 0.15 }));
+    events.extend(screen.telling.wait(4));
+    events.push(screen.telling.held(HoldReason::PositionLost));
+    screen.tell(Msg::Events(events));
+    store("lost", &mut screen);
+}
+
+#[test]
+fn planner_fault() {
+    let mut screen = Screen::running();
+    let events = screen.telling.planner_fails();
+    screen.tell(Msg::Events(events));
+    store("fault", &mut screen);
+}
+
+#[test]
+fn ended() {
+    let mut screen = Screen::running();
+    let events = vec![screen.telling.ended(Outcome::Complete, "the task is done")];
+    screen.tell(Msg::Events(events));
+    store("ended", &mut screen);
+}
+
+#[test]
+fn ended_in_a_collision_without_recording() {
+    let mut screen = Screen::running();
+    let events = vec![screen.telling.ended(Outcome::Collision, "the bumper touched something")];
+    let recording = Recording::Failed("the disk is full".into());
+    screen.tell(Msg::Events(events));
+    screen.tell(Msg::Health(tui::Health { recording, reached_speed: None }));
+    screen.pass(20.0);
+    store("collision", &mut screen);
+}
+
+#[test]
+fn help() {
+    let mut screen = Screen::running();
+    screen.type_text("?");
+    store("help", &mut screen);
+}
+
+#[test]
+fn commands() {
+    let mut screen = Screen::running();
+    screen.type_text(":plan");
+    store("commands", &mut screen);
+}
+
+#[test]
+fn planner_list() {
+    let mut screen = Screen::held();
+    screen.type_text("P");
+    store("planners", &mut screen);
+}
+
+#[test]
+fn parameters() {
+    let mut screen = Screen::held();
+    screen.type_text("p");
+    store("parameters", &mut screen);
+}
+
+#[test]
+fn refused_value() {
+    let mut screen = Screen::held();
+    screen.press([Key::Char('p'), Key::Enter, Key::Backspace, Key::Backspace, Key::Backspace]);
+    screen.type_text("9");
+    screen.press([Key::Enter]);
+    store("refused", &mut screen);
+}
+
+#[test]
+fn confirm_line() {
+    let mut screen = Screen::idle();
+    screen.type_text("S");
+    store("confirm", &mut screen);
+}
+
+#[test]
+fn swap_question() {
+    let mut screen = Screen::held();
+    screen.press([Key::Char('P'), Key::Down, Key::Enter]);
+    store("swap", &mut screen);
+}
+
+#[test]
+fn quit_question() {
+    let mut screen = Screen::running();
+    screen.type_text("q");
+    store("quit", &mut screen);
+}
+
+#[test]
+fn layers_and_filter() {
+    let mut screen = Screen::running();
+    screen.type_text("L");
+    store("layers", &mut screen);
+    screen.press([Key::Esc]);
+    screen.type_text("/station");
+    store("filter", &mut screen);
+}

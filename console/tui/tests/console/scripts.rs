@@ -1,0 +1,377 @@
+//! Whole missions as scripts of messages: what the operator does, and what follows.
+
+use crate::fixture::{Screen, choice};
+use mission::event::HoldReason;
+use mission::{EventKind, Order, Outcome, ParamValue, Severity};
+use tui::model::{Overlay, Pane, Phase};
+use tui::{Effect, Key, KeyPress, Model, Msg, Recording, Signal, Speed};
+
+const SPACE: Key = Key::Char(' ');
+
+fn order(order: Order) -> Effect {
+    Effect::Order(order)
+}
+
+fn notice(screen: &Screen) -> &str {
+    screen.model.notice().map_or("", |notice| notice.text.as_str())
+}
+
+fn told(screen: &mut Screen, kind: EventKind) -> Vec<Effect> {
+    let event = screen.telling.now(kind);
+    screen.tell(Msg::Events(vec![event]))
+}
+
+#[test]
+fn the_mission_starts_only_after_the_operator_agreed() {
+    let mut screen = Screen::idle();
+    assert_eq!(screen.type_text("S"), []);
+    assert_eq!(screen.model.phase, Phase::Idle);
+    assert_eq!(screen.press([Key::Enter]), [order(Order::Start)]);
+    let events = screen.telling.start();
+    screen.tell(Msg::Events(events));
+    assert_eq!(screen.model.phase, Phase::Running);
+    assert_eq!(screen.model.console.asked, None);
+}
+
+#[test]
+fn a_question_is_dropped_by_esc_and_by_q_and_sends_nothing() {
+    for back in [Key::Esc, Key::Char('q')] {
+        let mut screen = Screen::idle();
+        assert_eq!(screen.press([Key::Char('S'), back, Key::Enter]), []);
+        assert_eq!(screen.model.ui.overlay, Overlay::None);
+    }
+}
+
+#[test]
+fn space_holds_at_once_and_then_asks_to_go_on() {
+    let mut screen = Screen::running();
+    assert_eq!(screen.press([SPACE]), [order(Order::Hold)]);
+    assert!(screen.model.console.hold_asked);
+    told(&mut screen, EventKind::Held { by: HoldReason::Operator });
+    assert_eq!(screen.press([SPACE]), []);
+    assert_eq!(screen.press([SPACE]), [], "space never agrees");
+    assert_eq!(screen.press([Key::Enter]), [order(Order::Resume)]);
+}
+
+#[test]
+fn space_holds_in_every_list_line_and_question() {
+    let ways: [&[Key]; 9] = [
+        &[Key::Char('?')],
+        &[Key::Char(':'), Key::Char('z')],
+        &[Key::Char('p')],
+        &[Key::Char('p'), Key::Enter],
+        &[Key::Char('L')],
+        &[Key::Char('/'), Key::Char('a')],
+        &[Key::Tab],
+        &[Key::Char('z')],
+        &[Key::Char('m')],
+    ];
+    for way in ways {
+        let mut screen = Screen::running();
+        assert_eq!(screen.press(way.iter().copied()), [], "{way:?}");
+        assert_eq!(screen.press([SPACE]), [order(Order::Hold)], "space after {way:?}");
+        assert_eq!(screen.press([Key::Ctrl('c')]), [order(Order::Hold)], "Ctrl-C after {way:?}");
+    }
+}
+
+#[test]
+fn a_start_that_was_not_answered_yet_can_be_held() {
+    let mut screen = Screen::idle();
+    screen.press([Key::Char('S'), Key::Enter]);
+    assert_eq!(screen.press([SPACE]), [order(Order::Hold)]);
+}
+
+#[test]
+fn a_robot_that_waits_for_its_position_can_be_held_for_good() {
+    let mut screen = Screen::running();
+    told(&mut screen, EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
+    told(&mut screen, EventKind::Held { by: HoldReason::PositionLost });
+    assert_eq!(screen.press([SPACE]), [order(Order::Hold)]);
+    told(&mut screen, EventKind::Held { by: HoldReason::Operator });
+    assert_eq!(screen.press([SPACE, Key::Enter]), []);
+    assert!(notice(&screen).contains("position is lost"));
+    told(&mut screen, EventKind::PositionRegained { error_m: 0.1 });
+    assert_eq!(screen.press([SPACE, Key::Enter]), [order(Order::Resume)]);
+}
+
+#[test]
+fn single_steps_ask_once_and_wait_for_each_answer() {
+    let mut screen = Screen::running();
+    assert_eq!(screen.type_text("."), []);
+    assert!(notice(&screen).contains("HOLD first"));
+    let mut screen = Screen::held();
+    assert_eq!(screen.type_text("."), []);
+    assert_eq!(screen.type_text("."), [order(Order::Step)]);
+    assert_eq!(screen.type_text("."), [], "the first step was not answered yet");
+    told(&mut screen, EventKind::Ordered { order: Order::Step });
+    told(&mut screen, EventKind::Resumed);
+    told(&mut screen, EventKind::Held { by: HoldReason::Stepped });
+    assert_eq!(screen.press([Key::Enter]), [order(Order::Step)]);
+    told(&mut screen, EventKind::Resumed);
+    told(&mut screen, EventKind::Held { by: HoldReason::Stepped });
+    assert_eq!(screen.press([Key::Esc, Key::Enter]), []);
+}
+
+#[test]
+fn the_pace_goes_in_steps_and_says_where_it_ends() {
+    let mut screen = Screen::running();
+    assert_eq!(screen.type_text(">>"), [Effect::Speed(Speed::Times(2.0)), Effect::Speed(Speed::Times(4.0))]);
+    assert_eq!(screen.type_text(">>>>>").last(), Some(&Effect::Speed(Speed::Max)));
+    assert_eq!(screen.type_text(">"), []);
+    assert!(notice(&screen).contains("as fast as it goes"));
+    assert_eq!(screen.type_text("<<<<<<<<<").last(), Some(&Effect::Speed(Speed::Times(0.25))));
+    assert_eq!(screen.type_text("<"), []);
+}
+
+#[test]
+fn another_planner_drives_only_when_held_and_agreed() {
+    let mut screen = Screen::running();
+    assert_eq!(screen.type_text("P"), []);
+    assert!(notice(&screen).contains("HOLD first"));
+    let mut screen = Screen::held();
+    screen.type_text("P");
+    assert_eq!(screen.model.ui.overlay, Overlay::Planners { selected: 1 }, "the one that drives is selected");
+    assert_eq!(screen.press([Key::Down, Key::Enter]), []);
+    assert_eq!(screen.press([Key::Enter]), [order(Order::ChoosePlanner(choice("spiral-tangent")))]);
+}
+
+#[test]
+fn a_bad_value_is_refused_in_place_and_a_good_one_sent() {
+    let mut screen = Screen::held();
+    screen.press([Key::Char('p'), Key::Char('e'), Key::Backspace, Key::Backspace, Key::Backspace]);
+    screen.type_text("9");
+    assert_eq!(screen.press([Key::Enter]), []);
+    let Overlay::Parameters { edit: Some(edit), .. } = &screen.model.ui.overlay else { panic!("still typing") };
+    assert!(edit.refusal.as_ref().is_some_and(|why| why.contains("0.2 to 4 m3/s")));
+    screen.press([Key::Backspace]);
+    screen.type_text("1.8");
+    let key = "rpf_gain".to_owned();
+    assert_eq!(screen.press([Key::Enter]), [order(Order::SetParameter { key, value: ParamValue::Float(1.8) })]);
+}
+
+#[test]
+fn what_cannot_change_under_way_says_so() {
+    let mut screen = Screen::running();
+    screen.press([Key::Char('p'), Key::Down, Key::Down, Key::Down, Key::Enter]);
+    assert!(notice(&screen).contains("mode cannot change under way"));
+    assert!(matches!(screen.model.ui.overlay, Overlay::Parameters { edit: None, .. }));
+}
+
+#[test]
+fn ending_holds_first_and_asks() {
+    let mut screen = Screen::running();
+    assert_eq!(screen.type_text("X"), [order(Order::Hold)]);
+    assert_eq!(screen.press([Key::Enter]), [order(Order::Abort)]);
+}
+
+#[test]
+fn leaving_a_running_mission_holds_first_and_ends_it_only_when_agreed() {
+    let mut screen = Screen::running();
+    assert_eq!(screen.type_text("q"), [order(Order::Hold)]);
+    told(&mut screen, EventKind::Held { by: HoldReason::Operator });
+    assert_eq!(screen.press([Key::Esc]), []);
+    screen.type_text("q");
+    assert_eq!(screen.press([Key::Enter]), [order(Order::Abort), Effect::Quit { signal: None }]);
+}
+
+#[test]
+fn leaving_is_not_asked_where_nothing_is_at_stake() {
+    assert_eq!(Screen::idle().type_text("q"), [Effect::Quit { signal: None }]);
+    let mut screen = Screen::running();
+    let ended = screen.telling.ended(Outcome::Complete, "the task is done");
+    screen.tell(Msg::Events(vec![ended]));
+    assert_eq!(screen.type_text("q"), [Effect::Quit { signal: None }]);
+}
+
+#[test]
+fn control_c_holds_and_only_twice_in_two_seconds_asks_to_leave() {
+    let mut screen = Screen::running();
+    assert_eq!(screen.press([Key::Ctrl('c')]), [order(Order::Hold)]);
+    screen.pass(3.0);
+    screen.press([Key::Ctrl('c')]);
+    assert_eq!(screen.model.ui.overlay, Overlay::None);
+    screen.pass(1.0);
+    screen.press([Key::Ctrl('c')]);
+    assert_eq!(screen.model.ui.overlay, Overlay::Quit);
+}
+
+#[test]
+fn control_z_holds_before_the_terminal_is_given_back() {
+    let mut screen = Screen::running();
+    assert_eq!(screen.press([Key::Ctrl('z')]), [order(Order::Hold), Effect::Suspend]);
+    assert_eq!(screen.tell(Msg::Signal(Signal::Continue)), [Effect::Redraw]);
+}
+
+#[test]
+fn a_signal_to_end_holds_and_leaves() {
+    for signal in [Signal::Terminate, Signal::Hangup] {
+        let effects = Screen::running().tell(Msg::Signal(signal));
+        assert_eq!(effects, [order(Order::Hold), Effect::Quit { signal: Some(signal) }]);
+        assert_eq!(Screen::idle().tell(Msg::Signal(signal)), [Effect::Quit { signal: Some(signal) }]);
+    }
+}
+
+#[test]
+fn a_question_is_withdrawn_when_things_change() {
+    let mut screen = Screen::held();
+    screen.press([SPACE]);
+    let events = screen.telling.planner_fails();
+    screen.tell(Msg::Events(events));
+    assert_eq!(screen.model.ui.overlay, Overlay::None);
+    assert_eq!(screen.press([Key::Enter]), []);
+}
+
+#[test]
+fn pasted_text_is_never_a_command() {
+    let mut screen = Screen::running();
+    assert_eq!(screen.tell(Msg::Paste("Xq S\n ".into())), []);
+    assert_eq!(screen.model.ui.overlay, Overlay::None);
+    screen.type_text(":");
+    screen.tell(Msg::Paste("zoom\nin".into()));
+    let Overlay::Commands { filter, .. } = &screen.model.ui.overlay else { panic!("the list is open") };
+    assert_eq!(filter, "zoomin");
+    screen.press([Key::Enter]);
+    assert_eq!(screen.model.ui.map.zoom, 1);
+}
+
+#[test]
+fn a_held_down_key_repeats_movement_and_nothing_else() {
+    let mut screen = Screen::running();
+    let mut repeat = |letter| screen.tell(Msg::Key(KeyPress { key: Key::Char(letter), repeat: true }));
+    assert_eq!(repeat('q'), []);
+    assert_eq!(repeat(' '), []);
+    repeat('z');
+    assert_eq!((screen.model.ui.map.zoom, &screen.model.ui.overlay), (1, &Overlay::None));
+}
+
+#[test]
+fn every_command_can_be_run_by_its_name() {
+    for action in tui::actions::ACTIONS.iter().filter(|action| action.is_command()) {
+        let mut by_name = Screen::held();
+        by_name.press([Key::Char(':')]);
+        by_name.tell(Msg::Paste(action.name.into()));
+        let named = by_name.press([Key::Enter]);
+        let mut by_id = Screen::held();
+        let direct = tui::update::act(&mut by_id.model, action.id);
+        assert_eq!((named, by_name.model), (direct, by_id.model), "{}", action.name);
+    }
+}
+
+#[test]
+fn what_is_refused_says_why() {
+    let mut refused = 0;
+    for mut screen in [Screen::idle(), Screen::running(), Screen::held()] {
+        for action in tui::actions::ACTIONS.iter().filter(|action| action.is_command()) {
+            screen.model.console.notice = None;
+            let before = screen.model.clone();
+            if let Err(why) = tui::update::offered(&screen.model, action.id) {
+                assert_eq!(tui::update::act(&mut screen.model, action.id), [], "{}", action.name);
+                assert_eq!(notice(&screen), why);
+                screen.model.console.notice = None;
+                assert_eq!(screen.model, before, "{} changes nothing when refused", action.name);
+                refused += 1;
+            }
+        }
+    }
+    assert!(refused > 10);
+}
+
+#[test]
+fn the_truth_is_not_known_to_the_screen() {
+    let mut screen = Screen::running();
+    let before = screen.model.clone();
+    let pose = world::Pose::new(1.0, 1.0, 0.0);
+    told(&mut screen, EventKind::Truth { pose, clearance_m: -0.1, collided: true });
+    assert_eq!(screen.model, before);
+    let names: Vec<&str> =
+        before.run.as_ref().map(|run| run.world.obstacles.iter().map(|o| o.name.as_str()).collect()).unwrap();
+    assert_eq!(names.last(), Some(&"debris"), "it was found");
+    let idle = Screen::idle();
+    assert_eq!(idle.model.run.map(|run| run.world.obstacles.len()), Some(5), "it was not known before");
+}
+
+#[test]
+fn a_critical_alarm_rings_and_waits_for_the_operator() {
+    let mut screen = Screen::running();
+    let effects = told(&mut screen, EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
+    assert_eq!(effects, [Effect::Bell]);
+    told(&mut screen, EventKind::PositionRegained { error_m: 0.1 });
+    assert_eq!(screen.model.alarms.count(Severity::Crit), 1);
+    screen.type_text("a");
+    assert_eq!(screen.model.alarms.count(Severity::Crit), 0);
+}
+
+#[test]
+fn a_failed_recording_is_an_alarm_until_it_works_again_and_was_seen() {
+    let mut screen = Screen::running();
+    let health = |recording| Msg::Health(tui::Health { recording, reached_speed: None });
+    assert_eq!(screen.tell(health(Recording::Failed("disk full".into()))), [Effect::Bell]);
+    assert_eq!(screen.tell(health(Recording::Failed("disk full".into()))), []);
+    screen.type_text("a");
+    assert_eq!(screen.model.alarms.count(Severity::Crit), 1, "seen, and not over");
+    screen.tell(health(Recording::On));
+    assert_eq!(screen.model.alarms.count(Severity::Crit), 0);
+}
+
+#[test]
+fn a_thread_that_panics_holds_the_robot() {
+    let mut screen = Screen::running();
+    let panicked = Msg::ThreadPanicked { thread: "recorder".into(), message: "index out of bounds".into() };
+    assert_eq!(screen.tell(panicked), [order(Order::Hold), Effect::Bell]);
+}
+
+#[test]
+fn silence_is_noticed_while_running_and_nowhere_else() {
+    let mut screen = Screen::running();
+    screen.pass(1.9);
+    assert_eq!(screen.model.silent_s(), None);
+    assert!(screen.model.wakes_at_mono_s().is_some_and(|at_s| (at_s - 2.0).abs() < 1e-9));
+    screen.pass(1.0);
+    assert!(screen.model.silent_s().is_some());
+    let mut held = Screen::held();
+    held.pass(60.0);
+    assert_eq!((held.model.silent_s(), held.model.wakes_at_mono_s()), (None, None));
+}
+
+#[test]
+fn news_go_away_by_themselves_and_stay_in_the_log() {
+    let mut screen = Screen::idle();
+    screen.tell(Msg::Notice { severity: Severity::Warn, text: "the disk is nearly full".into() });
+    assert_eq!(notice(&screen), "the disk is nearly full");
+    screen.pass(10.0);
+    assert_eq!(notice(&screen), "");
+    assert!(screen.model.log.shown(Severity::Warn, "disk").count() == 1);
+}
+
+#[test]
+fn panes_follow_the_size_of_the_screen() {
+    let mut screen = Screen::running();
+    screen.tell(Msg::Resize { width: 60, height: 16 });
+    screen.press([Key::Tab, Key::Tab]);
+    assert_eq!(screen.model.ui.pane, Pane::Position);
+    screen.tell(Msg::Resize { width: 120, height: 36 });
+    assert_eq!(screen.model.ui.pane, Pane::Map);
+    screen.press([Key::BackTab]);
+    assert_eq!(screen.model.ui.pane, Pane::Events);
+}
+
+#[test]
+fn the_events_are_scrolled_and_filtered() {
+    let mut screen = Screen::running();
+    screen.press([Key::Tab, Key::End]);
+    let lines = screen.model.log.shown(Severity::Info, "").count();
+    assert_eq!(screen.model.ui.scroll, lines - 1);
+    screen.press([Key::Home, Key::Char('/')]);
+    screen.type_text("STATION");
+    screen.press([Key::Enter]);
+    assert_eq!(screen.model.ui.needle, "STATION");
+    assert_eq!(screen.model.log.shown(Severity::Info, &screen.model.ui.needle).count(), 1);
+}
+
+#[test]
+fn a_model_can_be_saved_and_opened_again() {
+    let screen = Screen::running();
+    let saved = serde_json::to_string(&screen.model).unwrap();
+    let opened: Model = serde_json::from_str(&saved).unwrap();
+    assert_eq!(opened, screen.model);
+}

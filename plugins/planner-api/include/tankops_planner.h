@@ -1,0 +1,263 @@
+/* tankops_planner.h - what a tankops planner in C11 or C++11 includes.
+ *
+ * A planner is a shared library `libplanner_NAME.so` (`.dylib`, `planner_NAME.dll`) that exports one symbol:
+ *
+ *     static const tp_planner mine = { sizeof(tp_planner), TP_CAP_LOCAL, 1, 0, TP_STR("mine"), ... };
+ *     static const tp_planner *const planners[] = { &mine };
+ *     TP_EXPORT const tp_entry tank_planner_entry = TP_ENTRY(planners, 1, "gcc");
+ *     TP_STAMP;
+ *
+ * Rules
+ *  - Nothing is ever freed by the other side. Inputs belong to the console and are good for the length of the call;
+ *    results are handed over by calling the console's functions in tp_host, which copy before they return.
+ *  - Functions return TP_OK or one of TP_E_...; the sentence for the operator goes to host->error before that.
+ *  - One instance is called from one thread, one call at a time. Call host->should_stop in every long loop.
+ *  - Never leave a function by an exception or longjmp.
+ *  - Structs only grow at the end. `size` is what its writer knew: read and write nothing beyond it. Where arrays
+ *    carry a stride, step by the stride and not by sizeof.
+ *  - The planner runs in a process of its own: a crash or an endless loop costs that process, not the console.
+ *
+ * Frame: the tank frame, x east, y north, metres; angles in radians, counter-clockwise from east; SI units.
+ */
+#ifndef TANKOPS_PLANNER_H
+#define TANKOPS_PLANNER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#  define TP_ASSERT(what, text) static_assert(what, text)
+#else
+#  define TP_ASSERT(what, text) _Static_assert(what, text)
+#endif
+
+#define TP_ABI_MAJOR 1u /* libraries of another major version are refused */
+#define TP_ABI_MINOR 0u /* raised when something is added at the end of a struct */
+
+/* ---- numbers that cross the boundary ------------------------------------------------------------------------- */
+
+enum tp_code {
+  TP_OK = 0,
+  TP_E_INVALID = 1,        /* the request makes no sense */
+  TP_E_CONFIG = 2,         /* the parameters do not fit together or do not fit the site */
+  TP_E_START_OCCUPIED = 3,
+  TP_E_START_OUTSIDE = 4,
+  TP_E_GOAL_OCCUPIED = 5,
+  TP_E_GOAL_OUTSIDE = 6,
+  TP_E_NO_PATH = 7,        /* points handed over before are the part of the way that was found */
+  TP_E_TIMEOUT = 8,        /* should_stop said 2 */
+  TP_E_CANCELLED = 9,      /* should_stop said 1 */
+  TP_E_STUCK = 10,         /* in a local minimum */
+  TP_E_STATE = 11,         /* called in the wrong order, or a state that does not fit */
+  TP_E_UNSUPPORTED = 12,   /* not offered */
+  TP_E_INTERNAL = 13       /* a fault of the planner; 14 and 15 are reserved */
+};
+enum tp_cap { TP_CAP_GLOBAL = 1, TP_CAP_LOCAL = 2, TP_CAP_COVERAGE = 4, TP_CAP_SNAPSHOT = 8, TP_CAP_LIVE_PARAMS = 16 };
+enum tp_outline_kind { TP_DISC = 0, TP_POLYGON = 1, TP_POLYLINE = 2 };
+enum tp_obstacle_flag { TP_DISCOVERED = 1 /* seen on the way: its place carries the position error */ };
+enum tp_zone_kind { TP_ZONE_NO_GO = 0, TP_ZONE_LAND = 1, TP_ZONE_UNDERWATER = 2 };
+enum tp_motion { TP_POINT = 0 /* any direction at once */, TP_UNICYCLE = 1 /* ahead and turning */ };
+enum tp_reason {
+  TP_REASON_START = 0, TP_REASON_BLOCKED = 1, TP_REASON_MAP_CHANGED = 2, TP_REASON_OPERATOR = 3,
+  TP_REASON_SWAP = 4 /* `from` drove before */, TP_REASON_RECOVER = 5
+};
+enum tp_task { TP_GOTO = 0 /* one target */, TP_FOLLOW = 1 /* targets in order */ };
+enum tp_status { TP_MOVING = 0, TP_ARRIVED = 1, TP_STUCK = 2, TP_WAITING = 3 };
+enum tp_drive {
+  TP_TWIST = 0,    /* a: speed ahead m/s, b: turn rate rad/s */
+  TP_VELOCITY = 1  /* a, b: velocity in the tank frame, m/s; the console turns the robot into it */
+};
+enum tp_param_kind {
+  TP_PARAM_FLOAT = 0, TP_PARAM_INT = 1, TP_PARAM_FLAG = 2 /* 0 or 1 */, TP_PARAM_CHOICE = 3 /* index of the word */
+};
+enum tp_param_flag { TP_PARAM_LIVE = 1 /* may change under way, through reconfigure */ };
+enum tp_draw_kind {
+  TP_DRAW_ARROW = 0,  /* a: foot, b: from foot to tip */
+  TP_DRAW_CIRCLE = 1, /* a: centre, value: radius */
+  TP_DRAW_LINE = 2    /* a: from, b: to */
+};
+enum tp_layer {
+  TP_LAYER_ATTRACTION = 0, TP_LAYER_REPULSION = 1, TP_LAYER_ROTATION = 2, TP_LAYER_RESULTANT = 3,
+  TP_LAYER_VIRTUAL = 4, TP_LAYER_PATH = 5, TP_LAYER_TETHER = 6, TP_LAYER_OTHER = 7
+};
+enum tp_log_level { TP_LOG_DEBUG = 0, TP_LOG_INFO = 1, TP_LOG_WARN = 2 };
+
+/* ---- values; those without a size are frozen for the major version ------------------------------------------- */
+
+typedef struct tp_str { const char *ptr; size_t len; } tp_str; /* UTF-8, no terminating zero */
+typedef struct tp_vec2 { double x, y; } tp_vec2;
+typedef struct tp_pose { double x, y, heading; } tp_pose;
+typedef struct tp_value { tp_str key; double number; } tp_value;
+typedef struct tp_draw { uint32_t kind, layer; tp_vec2 a, b; double value; } tp_draw;
+typedef struct tp_outline {
+  uint32_t kind, n_points;
+  const tp_vec2 *points; /* disc: its centre; polygon: corners counter-clockwise; polyline: its corners */
+  double size_m;         /* disc: radius; polyline: half its thickness */
+} tp_outline;
+typedef struct tp_obstacle { uint32_t id, flags; tp_outline outline; } tp_obstacle; /* may grow: use the stride */
+typedef struct tp_zone { uint32_t kind, reserved; tp_outline outline; } tp_zone;    /* may grow: use the stride */
+
+/* ---- what the console hands over ----------------------------------------------------------------------------- */
+
+typedef struct tp_site {
+  uint32_t size, revision;  /* revision grows whenever anything here changes */
+  uint64_t seed;            /* start of every random choice, so that a plan can be repeated */
+  tp_outline boundary;      /* disc about the origin, or polygon */
+  const tp_obstacle *obstacles;
+  uint32_t n_obstacles, obstacle_stride;
+  const tp_zone *zones;     /* later ones on top */
+  uint32_t n_zones, zone_stride;
+  uint32_t motion, reserved;
+  double v_max, w_max;      /* largest speed and turn rate of the robot */
+  double radius;            /* of the smallest circle around the robot */
+  double sensing_range;     /* how far it sees obstacles */
+  double swath;             /* width of floor scanned in one pass */
+  double clearance;         /* distance to keep between hull and anything solid */
+} tp_site;
+
+typedef struct tp_plan_in {
+  uint32_t size, reason;
+  tp_str from;              /* with TP_REASON_SWAP: who drove before */
+  tp_pose start;
+  double covariance[6];     /* of x, y, heading: xx xy xh yy yh hh */
+  uint32_t task, n_targets;
+  const tp_vec2 *targets;
+  double tolerance;         /* distance at which the last target counts as reached */
+  const tp_vec2 *previous;  /* the path flown so far */
+  uint32_t n_previous, reserved;
+  const tp_site *site;
+} tp_plan_in;
+
+typedef struct tp_step_in {
+  uint32_t size, reserved;
+  uint64_t tick;
+  double t, dt;             /* mission time and length of a tick, seconds */
+  tp_pose pose;
+  double covariance[6];
+  double v, w;              /* speed ahead and turn rate now */
+  tp_vec2 target;           /* where to go next */
+  const tp_vec2 *targets_ahead;
+  uint32_t n_targets_ahead, n_path_ahead;
+  const tp_vec2 *path_ahead;
+  const tp_obstacle *obstacles; /* within the sensing range */
+  uint32_t n_obstacles, obstacle_stride;
+} tp_step_in;
+
+/* ---- what the planner hands back ----------------------------------------------------------------------------- */
+
+typedef struct tp_param {   /* to host->param during describe */
+  uint32_t size, kind, flags, reserved;
+  tp_str key, label, unit, help, group;
+  tp_str options;           /* words of a choice, joined by '|' */
+  double min, max, def;
+} tp_param;
+
+typedef struct tp_plan_out { uint32_t size, complete; double cost; } tp_plan_out;
+typedef struct tp_step_out { uint32_t size, status, drive, reserved; double a, b; } tp_step_out;
+
+/* ---- functions of both sides --------------------------------------------------------------------------------- */
+
+typedef struct tp_host {    /* the first argument is always host->ctx */
+  uint32_t size, abi_minor; /* abi_minor of the console */
+  void *ctx;
+  uint32_t (*should_stop)(void *ctx);      /* 0 go on, 1 cancelled, 2 the deadline passed; costs one clock read */
+  double (*time_left_s)(void *ctx);
+  uint32_t (*wants_drawing)(void *ctx);    /* 0 when nobody looks */
+  void (*error)(void *ctx, const char *message, size_t len); /* the sentence of a refusal */
+  void (*log)(void *ctx, uint32_t level, const char *message, size_t len);
+  void (*param)(void *ctx, const tp_param *param);           /* in describe */
+  void (*points)(void *ctx, const tp_vec2 *points, size_t n); /* in plan: the path, in one or more pieces */
+  void (*draw)(void *ctx, const tp_draw *drawings, size_t n);
+  void (*scalar)(void *ctx, tp_str name, double value, tp_str unit); /* a named figure of this tick */
+  void (*bytes)(void *ctx, const uint8_t *bytes, size_t n);  /* in snapshot */
+} tp_host;
+
+typedef struct tp_planner { /* the first five functions are required, the others may be null */
+  uint32_t size, caps, state_version, reserved;
+  tp_str id;                /* stable, [a-z0-9_-]{1,32}: scenarios and recordings name it */
+  tp_str name, version, about;
+  int32_t (*describe)(const tp_host *);
+  int32_t (*create)(const tp_host *, const tp_site *, const tp_value *values, uint32_t n, void **instance);
+  void (*destroy)(void *instance);
+  int32_t (*plan)(void *instance, const tp_host *, const tp_plan_in *, tp_plan_out *);
+  int32_t (*step)(void *instance, const tp_host *, const tp_step_in *, tp_step_out *);
+  int32_t (*reconfigure)(void *instance, const tp_host *, const tp_value *values, uint32_t n);
+  uint32_t (*stopping)(void *instance, const tp_host *); /* 1: give me a few more steps */
+  int32_t (*snapshot)(void *instance, const tp_host *);
+  int32_t (*restore)(void *instance, const tp_host *, uint32_t version, const uint8_t *state, size_t n);
+  const void *(*get_extension)(tp_str name);
+} tp_planner;
+
+typedef struct tp_entry {
+  uint8_t magic[8];
+  uint32_t abi_major, abi_minor, size, n_planners;
+  const tp_planner *const *planners;
+  tp_str built_with;
+} tp_entry;
+
+typedef struct tp_stamp { uint8_t magic[8]; uint32_t abi_major, abi_minor; } tp_stamp;
+
+/* ---- to write ------------------------------------------------------------------------------------------------- */
+
+#define TP_MAGIC { 'T', 'A', 'N', 'K', 'P', 'L', 'A', 'N' }
+#define TP_STR(literal) { literal, sizeof(literal) - 1 }
+#define TP_ENTRY(list, n, compiler) \
+  { TP_MAGIC, TP_ABI_MAJOR, TP_ABI_MINOR, sizeof(tp_entry), n, list, TP_STR(compiler) }
+
+#ifdef __cplusplus
+#  define TP_C extern "C"
+#else
+#  define TP_C
+#endif
+
+/* The stamp is read from the file before the library is loaded, so that nothing of a misfit ever runs. */
+#if defined(_MSC_VER)
+#  define TP_EXPORT TP_C __declspec(dllexport)
+#  pragma section(".tankpln", read)
+#  define TP_STAMP TP_EXPORT __declspec(allocate(".tankpln")) \
+     const tp_stamp tank_planner_stamp = { TP_MAGIC, TP_ABI_MAJOR, TP_ABI_MINOR }
+#else
+#  if defined(_WIN32)
+#    define TP_SECTION ".tankpln"
+#    define TP_VISIBLE __attribute__((dllexport))
+#  elif defined(__APPLE__)
+#    define TP_SECTION "__DATA,__tankplan"
+#    define TP_VISIBLE __attribute__((visibility("default")))
+#  else
+#    define TP_SECTION ".tankplan"
+#    define TP_VISIBLE __attribute__((visibility("default")))
+#  endif
+#  ifdef __cplusplus /* a const object of C++ is local to its file unless it is declared extern first */
+#    define TP_EXPORT extern "C" TP_VISIBLE const tp_entry tank_planner_entry;
+#    define TP_STAMP extern "C" TP_VISIBLE const tp_stamp tank_planner_stamp; \
+       __attribute__((used, section(TP_SECTION))) \
+       const tp_stamp tank_planner_stamp = { TP_MAGIC, TP_ABI_MAJOR, TP_ABI_MINOR }
+#  else
+#    define TP_EXPORT TP_VISIBLE
+#    define TP_STAMP TP_VISIBLE __attribute__((used, section(TP_SECTION))) \
+       const tp_stamp tank_planner_stamp = { TP_MAGIC, TP_ABI_MAJOR, TP_ABI_MINOR }
+#  endif
+#endif
+
+/* The layout is the contract; the Rust side asserts the same numbers. */
+TP_ASSERT(sizeof(void *) == 8, "tankops planners are 64-bit libraries");
+TP_ASSERT(sizeof(tp_str) == 16 && sizeof(tp_vec2) == 16 && sizeof(tp_pose) == 24, "layout");
+TP_ASSERT(sizeof(tp_outline) == 24 && sizeof(tp_obstacle) == 32 && sizeof(tp_zone) == 32, "layout");
+TP_ASSERT(sizeof(tp_site) == 128 && offsetof(tp_site, boundary) == 16, "layout");
+TP_ASSERT(offsetof(tp_site, obstacles) == 40 && offsetof(tp_site, zones) == 56, "layout");
+TP_ASSERT(offsetof(tp_site, motion) == 72, "layout");
+TP_ASSERT(sizeof(tp_plan_in) == 144 && offsetof(tp_plan_in, covariance) == 48, "layout");
+TP_ASSERT(offsetof(tp_plan_in, targets) == 104 && offsetof(tp_plan_in, site) == 136, "layout");
+TP_ASSERT(sizeof(tp_step_in) == 176 && offsetof(tp_step_in, target) == 120, "layout");
+TP_ASSERT(offsetof(tp_step_in, targets_ahead) == 136 && offsetof(tp_step_in, obstacles) == 160, "layout");
+TP_ASSERT(sizeof(tp_plan_out) == 16 && sizeof(tp_step_out) == 32 && sizeof(tp_draw) == 48, "layout");
+TP_ASSERT(sizeof(tp_param) == 136 && offsetof(tp_param, min) == 112 && sizeof(tp_value) == 24, "layout");
+TP_ASSERT(sizeof(tp_host) == 96 && offsetof(tp_host, scalar) == 80, "layout");
+TP_ASSERT(sizeof(tp_planner) == 160 && offsetof(tp_planner, describe) == 80, "layout");
+TP_ASSERT(sizeof(tp_entry) == 48 && offsetof(tp_entry, planners) == 24 && sizeof(tp_stamp) == 16, "layout");
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* TANKOPS_PLANNER_H */

@@ -1,0 +1,160 @@
+//! The C table beneath the trait, as in `include/tankops_planner.h`, which explains every field.
+//!
+//! Rules of the boundary: nothing is ever freed by the other side; inputs belong to the console for the length of a
+//! call; results are handed over by calling the console's sinks, which copy at once. Structs grow only at the end
+//! and carry their writer's `size`. Enums cross as numbers and are checked. No panic and no exception may leave a
+//! function of the table.
+
+pub mod input;
+pub mod lend;
+pub mod output;
+pub mod table;
+
+pub use input::{Obstacle, Outline, PlanIn, Site, StepIn, Zone};
+pub use output::{Draw, Param, PlanOut, StepOut, Value};
+pub use table::{Entry, Host, Planner, PlannerList, Stamp};
+
+/// First bytes of entry and stamp.
+pub const MAGIC: [u8; 8] = *b"TANKPLAN";
+/// Libraries of another major version are refused.
+pub const MAJOR: u32 = 1;
+/// Raised when something is added at the end of a struct.
+pub const MINOR: u32 = 0;
+/// The one symbol that a library exports.
+pub const SYMBOL: &str = "tank_planner_entry";
+/// Section of the stamp as file readers name it, on Linux, on macOS and on Windows.
+pub const SECTIONS: [&str; 3] = [".tankplan", "__tankplan", ".tankpln"];
+
+/// Text in UTF-8 without a terminating zero; belongs to whoever gave it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct Str {
+    /// First byte; may be null when `len` is zero.
+    pub ptr: *const u8,
+    /// Number of bytes.
+    pub len: usize,
+}
+
+// SAFETY: in statics a `Str` only ever points at a `&'static str`.
+unsafe impl Sync for Str {}
+
+impl Str {
+    /// Lends a text; the pointer is good for as long as the text is.
+    pub const fn of(text: &str) -> Self {
+        Self { ptr: text.as_ptr(), len: text.len() }
+    }
+
+    /// The text, with what is no UTF-8 replaced; at most `most` bytes of it.
+    ///
+    /// # Safety
+    /// `ptr` is null or points at `len` readable bytes.
+    pub unsafe fn to_text(self, most: usize) -> String {
+        // SAFETY: promised by the caller.
+        String::from_utf8_lossy(unsafe { slice(self.ptr, self.len.min(most)) }).into_owned()
+    }
+}
+
+/// A point or vector of the tank frame, metres.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Vec2 {
+    /// East.
+    pub x: f64,
+    /// North.
+    pub y: f64,
+}
+
+impl From<nalgebra::Point2<f64>> for Vec2 {
+    fn from(point: nalgebra::Point2<f64>) -> Self {
+        Self { x: point.x, y: point.y }
+    }
+}
+
+impl From<nalgebra::Vector2<f64>> for Vec2 {
+    fn from(vector: nalgebra::Vector2<f64>) -> Self {
+        Self { x: vector.x, y: vector.y }
+    }
+}
+
+impl From<Vec2> for nalgebra::Point2<f64> {
+    fn from(v: Vec2) -> Self {
+        Self::new(v.x, v.y)
+    }
+}
+
+impl From<Vec2> for nalgebra::Vector2<f64> {
+    fn from(v: Vec2) -> Self {
+        Self::new(v.x, v.y)
+    }
+}
+
+/// Position and heading; the heading in radians, counter-clockwise from east.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Pose {
+    /// East, metres.
+    pub x: f64,
+    /// North, metres.
+    pub y: f64,
+    /// Heading, radians.
+    pub heading: f64,
+}
+
+/// An array that came over the boundary; null or empty gives an empty slice.
+///
+/// # Safety
+/// `ptr` is null or points at `len` readable values that nobody changes during `'a`.
+pub unsafe fn slice<'a, T>(ptr: *const T, len: usize) -> &'a [T] {
+    if ptr.is_null() || len == 0 || !ptr.is_aligned() {
+        return &[];
+    }
+    // SAFETY: promised by the caller, and null and unaligned pointers are gone.
+    unsafe { std::slice::from_raw_parts(ptr, len) }
+}
+
+/// A struct whose first field is its writer's `size` and that is valid when all its bytes are zero.
+///
+/// # Safety
+/// Implemented only for `repr(C)` structs of numbers, raw pointers and `Option` function pointers that begin with a
+/// `u32` size.
+pub unsafe trait Sized32: Copy {}
+
+/// Copies a struct that may have been written by an older or newer side: what its writer did not have is zero.
+///
+/// # Safety
+/// `from` is aligned and points at a struct that begins with a `u32` telling how many bytes of it are readable.
+pub unsafe fn copy_sized<T: Sized32>(from: *const T) -> T {
+    let mut to = std::mem::MaybeUninit::<T>::zeroed();
+    // SAFETY: the first `size` bytes are readable by promise, and no more than `T` has room for are written;
+    // all-zero bytes are a valid `T` by the promise of `Sized32`.
+    unsafe {
+        let written = from.cast::<u32>().read() as usize;
+        let n = written.min(size_of::<T>());
+        std::ptr::copy_nonoverlapping(from.cast::<u8>(), to.as_mut_ptr().cast::<u8>(), n);
+        to.assume_init()
+    }
+}
+
+// The layout is the contract: a drift from the header must not compile. The header asserts the same numbers.
+const _: () = {
+    use std::mem::offset_of;
+    assert!(size_of::<Str>() == 16 && size_of::<Vec2>() == 16 && size_of::<Pose>() == 24);
+    assert!(size_of::<Outline>() == 24 && size_of::<Obstacle>() == 32 && size_of::<Zone>() == 32);
+    assert!(size_of::<Site>() == 128 && offset_of!(Site, boundary) == 16);
+    assert!(
+        offset_of!(Site, obstacles) == 40 && offset_of!(Site, zones) == 56 && offset_of!(Site, motion) == 72
+    );
+    assert!(size_of::<PlanIn>() == 144 && offset_of!(PlanIn, covariance) == 48);
+    assert!(offset_of!(PlanIn, targets) == 104 && offset_of!(PlanIn, site) == 136);
+    assert!(size_of::<StepIn>() == 176 && offset_of!(StepIn, target) == 120);
+    assert!(offset_of!(StepIn, targets_ahead) == 136 && offset_of!(StepIn, obstacles) == 160);
+    assert!(size_of::<PlanOut>() == 16 && size_of::<StepOut>() == 32 && size_of::<Draw>() == 48);
+    assert!(size_of::<Param>() == 136 && offset_of!(Param, min) == 112 && size_of::<Value>() == 24);
+    assert!(size_of::<Host>() == 96 && offset_of!(Host, scalar) == 80);
+    assert!(size_of::<Planner>() == 160 && offset_of!(Planner, describe) == 80);
+    assert!(size_of::<Entry>() == 48 && offset_of!(Entry, planners) == 24 && size_of::<Stamp>() == 16);
+    // Points are lent as they lie in memory.
+    assert!(
+        size_of::<nalgebra::Point2<f64>>() == 16 && align_of::<nalgebra::Point2<f64>>() == align_of::<Vec2>()
+    );
+};

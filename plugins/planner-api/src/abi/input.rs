@@ -1,0 +1,126 @@
+//! What the console hands to a planner.
+#![allow(missing_docs, reason = "the header explains the fields")]
+
+use super::{Pose, Sized32, Str, Vec2};
+
+/// An outline is a disc: `points[0]` is its centre, `size_m` its radius.
+pub const OUTLINE_DISC: u32 = 0;
+/// An outline is a polygon with these corners, counter-clockwise.
+pub const OUTLINE_POLYGON: u32 = 1;
+/// An outline is a line through these points, `size_m` half its thickness.
+pub const OUTLINE_POLYLINE: u32 = 2;
+/// Flag of an obstacle that was discovered on the way.
+pub const OBSTACLE_DISCOVERED: u32 = 1;
+
+/// Numbers of [`crate::Reason`].
+pub const REASON_START: u32 = 0;
+pub const REASON_BLOCKED: u32 = 1;
+pub const REASON_MAP_CHANGED: u32 = 2;
+pub const REASON_OPERATOR: u32 = 3;
+pub const REASON_SWAP: u32 = 4;
+pub const REASON_RECOVER: u32 = 5;
+
+/// Numbers of [`crate::Task`].
+pub const TASK_GOTO: u32 = 0;
+pub const TASK_FOLLOW: u32 = 1;
+
+/// A disc, polygon or polyline.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct Outline {
+    pub kind: u32,
+    pub n_points: u32,
+    pub points: *const Vec2,
+    pub size_m: f64,
+}
+
+/// Something solid. Arrays of it carry a stride, so that it can grow.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct Obstacle {
+    pub id: u32,
+    pub flags: u32,
+    pub outline: Outline,
+}
+
+/// A part of the floor with a meaning of its own. Arrays of it carry a stride.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct Zone {
+    pub kind: u32,
+    pub reserved: u32,
+    pub outline: Outline,
+}
+
+/// The drawing of the tank, the robot and the margins.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct Site {
+    pub size: u32,
+    pub revision: u32,
+    pub seed: u64,
+    pub boundary: Outline,
+    pub obstacles: *const Obstacle,
+    pub n_obstacles: u32,
+    pub obstacle_stride: u32,
+    pub zones: *const Zone,
+    pub n_zones: u32,
+    pub zone_stride: u32,
+    pub motion: u32,
+    pub reserved: u32,
+    pub v_max: f64,
+    pub w_max: f64,
+    pub radius: f64,
+    pub sensing_range: f64,
+    pub swath: f64,
+    pub clearance: f64,
+}
+
+/// A request for a plan.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct PlanIn {
+    pub size: u32,
+    pub reason: u32,
+    pub from: Str,
+    pub start: Pose,
+    pub covariance: [f64; 6],
+    pub task: u32,
+    pub n_targets: u32,
+    pub targets: *const Vec2,
+    pub tolerance: f64,
+    pub previous: *const Vec2,
+    pub n_previous: u32,
+    pub reserved: u32,
+    pub site: *const Site,
+}
+
+/// What is known in one tick.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct StepIn {
+    pub size: u32,
+    pub reserved: u32,
+    pub tick: u64,
+    pub t: f64,
+    pub dt: f64,
+    pub pose: Pose,
+    pub covariance: [f64; 6],
+    pub v: f64,
+    pub w: f64,
+    pub target: Vec2,
+    pub targets_ahead: *const Vec2,
+    pub n_targets_ahead: u32,
+    pub n_path_ahead: u32,
+    pub path_ahead: *const Vec2,
+    pub obstacles: *const Obstacle,
+    pub n_obstacles: u32,
+    pub obstacle_stride: u32,
+}
+
+// SAFETY: numbers and raw pointers, and each begins with its size.
+unsafe impl Sized32 for Site {}
+// SAFETY: as above.
+unsafe impl Sized32 for PlanIn {}
+// SAFETY: as above.
+unsafe impl Sized32 for StepIn {}

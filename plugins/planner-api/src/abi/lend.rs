@@ -1,0 +1,141 @@
+//! The console's side of the inputs: safe values lent to a planner as the structs of the table.
+//!
+//! Every struct made here points into the values it was made from and is good for as long as they stay in place.
+
+use super::{Obstacle, Outline, PlanIn, Pose, Site, StepIn, Str, Vec2, Zone, input};
+use crate::{PoseEstimate, Reason, Task, site};
+use nalgebra::{Matrix3, Point2};
+
+fn points(points: &[Point2<f64>]) -> (*const Vec2, u32) {
+    (points.as_ptr().cast(), points.len() as u32)
+}
+
+fn outline(from: &site::Outline<'_>) -> Outline {
+    let (kind, (points, n_points), size_m) = match from {
+        site::Outline::Disc { center, radius_m } => {
+            (input::OUTLINE_DISC, points(std::slice::from_ref(center)), *radius_m)
+        }
+        site::Outline::Polygon { vertices } => (input::OUTLINE_POLYGON, points(vertices), 0.0),
+        site::Outline::Polyline { points: corners, half_width_m } => {
+            (input::OUTLINE_POLYLINE, points(corners), *half_width_m)
+        }
+    };
+    Outline { kind, n_points, points, size_m }
+}
+
+/// The centre of a round tank.
+static ORIGIN: Vec2 = Vec2 { x: 0.0, y: 0.0 };
+
+fn boundary(from: &site::Boundary<'_>) -> Outline {
+    match from {
+        site::Boundary::Circle { radius_m } => {
+            Outline { kind: input::OUTLINE_DISC, n_points: 1, points: &raw const ORIGIN, size_m: *radius_m }
+        }
+        site::Boundary::Polygon { vertices } => outline(&site::Outline::Polygon { vertices }),
+    }
+}
+
+/// Obstacles for the table.
+pub fn obstacles(from: &[site::Obstacle<'_>]) -> Vec<Obstacle> {
+    let flags = |discovered| if discovered { input::OBSTACLE_DISCOVERED } else { 0 };
+    from.iter()
+        .map(|o| Obstacle { id: o.id, flags: flags(o.discovered), outline: outline(&o.outline) })
+        .collect()
+}
+
+/// Zones for the table.
+pub fn zones(from: &[site::Zone<'_>]) -> Vec<Zone> {
+    from.iter().map(|z| Zone { kind: z.kind as u32, reserved: 0, outline: outline(&z.outline) }).collect()
+}
+
+/// A site for the table; `obstacles` and `zones` are those of `from`, already lent.
+pub fn site(from: &site::Site<'_>, obstacles: &[Obstacle], zones: &[Zone]) -> Site {
+    Site {
+        size: size_of::<Site>() as u32,
+        revision: from.revision,
+        seed: from.seed,
+        boundary: boundary(&from.boundary),
+        obstacles: obstacles.as_ptr(),
+        n_obstacles: obstacles.len() as u32,
+        obstacle_stride: size_of::<Obstacle>() as u32,
+        zones: zones.as_ptr(),
+        n_zones: zones.len() as u32,
+        zone_stride: size_of::<Zone>() as u32,
+        motion: from.limits.motion as u32,
+        reserved: 0,
+        v_max: from.limits.v_max_m_per_s,
+        w_max: from.limits.w_max_rad_per_s,
+        radius: from.limits.radius_m,
+        sensing_range: from.limits.sensing_range_m,
+        swath: from.swath_m,
+        clearance: from.clearance_m,
+    }
+}
+
+fn pose(from: &PoseEstimate) -> Pose {
+    Pose { x: from.position.x, y: from.position.y, heading: from.heading_rad }
+}
+
+/// The upper triangle of a covariance, row by row.
+pub fn covariance(from: &Matrix3<f64>) -> [f64; 6] {
+    [from[(0, 0)], from[(0, 1)], from[(0, 2)], from[(1, 1)], from[(1, 2)], from[(2, 2)]]
+}
+
+/// A request for the table; `site` is that of `from`, already lent.
+pub fn plan(from: &crate::PlanRequest<'_>, site: &Site) -> PlanIn {
+    let (reason, swap_from) = match from.reason {
+        Reason::Start => (input::REASON_START, ""),
+        Reason::Blocked => (input::REASON_BLOCKED, ""),
+        Reason::MapChanged => (input::REASON_MAP_CHANGED, ""),
+        Reason::Operator => (input::REASON_OPERATOR, ""),
+        Reason::Swap { from } => (input::REASON_SWAP, from.as_str()),
+        Reason::Recover => (input::REASON_RECOVER, ""),
+    };
+    let (task, (targets, n_targets), tolerance) = match &from.task {
+        Task::Goto { goal, tolerance_m } => {
+            (input::TASK_GOTO, points(std::slice::from_ref(goal)), *tolerance_m)
+        }
+        Task::Follow { targets, tolerance_m } => (input::TASK_FOLLOW, points(targets), *tolerance_m),
+    };
+    let (previous, n_previous) = points(from.previous);
+    PlanIn {
+        size: size_of::<PlanIn>() as u32,
+        reason,
+        from: Str::of(swap_from),
+        start: pose(&from.start),
+        covariance: covariance(&from.start.covariance),
+        task,
+        n_targets,
+        targets,
+        tolerance,
+        previous,
+        n_previous,
+        reserved: 0,
+        site,
+    }
+}
+
+/// What is sensed for the table; `obstacles` are those of `from`, already lent.
+pub fn step(from: &crate::Sensed<'_>, obstacles: &[Obstacle]) -> StepIn {
+    let (targets_ahead, n_targets_ahead) = points(from.targets_ahead);
+    let (path_ahead, n_path_ahead) = points(from.path_ahead);
+    StepIn {
+        size: size_of::<StepIn>() as u32,
+        reserved: 0,
+        tick: from.tick,
+        t: from.t_s,
+        dt: from.dt_s,
+        pose: pose(&from.pose),
+        covariance: covariance(&from.pose.covariance),
+        v: from.v_m_per_s,
+        w: from.w_rad_per_s,
+        target: from.target.into(),
+        targets_ahead,
+        n_targets_ahead,
+        n_path_ahead,
+        path_ahead,
+        obstacles: obstacles.as_ptr(),
+        n_obstacles: obstacles.len() as u32,
+        obstacle_stride: size_of::<Obstacle>() as u32,
+    }
+}

@@ -1,0 +1,95 @@
+//! Panics end here: caught, told, forgotten.
+
+use super::services::HostServices;
+use crate::{Code, Result};
+use std::any::Any;
+use std::cell::RefCell;
+use std::io::Write;
+use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
+use std::path::{Component, Path};
+use std::sync::Once;
+
+thread_local! {
+    /// Where this thread panicked last, as `file:line`.
+    static WHERE: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// The library has a standard library of its own, so this hook is nobody else's.
+static HOOK: Once = Once::new();
+
+/// Runs what the author wrote; refusals and panics become a code, their sentence goes to the console.
+///
+/// The sentence of a panic is `file:line: payload`.
+pub(super) fn run(services: &HostServices, call: impl FnOnce() -> Result<()>) -> i32 {
+    match caught(call) {
+        Ok(Ok(())) => 0,
+        Ok(Err(error)) => {
+            services.error(&error.message);
+            error.code as i32
+        }
+        Err(sentence) => {
+            services.error(&sentence);
+            Code::Panic as i32
+        }
+    }
+}
+
+/// Runs what the author wrote and says nothing about a panic.
+pub(super) fn quietly(call: impl FnOnce()) {
+    // Nobody is left to tell: the instance is gone either way.
+    let _ = caught(call);
+}
+
+fn caught<T>(call: impl FnOnce() -> T) -> std::result::Result<T, String> {
+    HOOK.call_once(|| std::panic::set_hook(Box::new(note)));
+    catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
+        let place = WHERE.with_borrow(Clone::clone);
+        let sentence = format!("{place}: {}", text_of(&*payload));
+        // Its drop may panic in turn.
+        std::mem::forget(payload);
+        sentence
+    })
+}
+
+fn note(info: &PanicHookInfo<'_>) {
+    let place = info.location().map(|at| format!("{}:{}", short(at.file()), at.line())).unwrap_or_default();
+    if cfg!(panic = "abort") {
+        // Nothing will be caught, and the console shows the last line of what a dead worker wrote.
+        let what = info.payload_as_str().unwrap_or_default();
+        let _ = writeln!(std::io::stderr(), "panicked at {place}: {what}");
+    }
+    // A thread that is being torn down has no such place any more; then the place stays unknown.
+    let _ = WHERE.try_with(|last| last.replace(place));
+}
+
+/// Source files of the author's workspace as they are; others from the name of their package on, so that the same
+/// panic reads the same on every machine.
+fn short(file: &str) -> String {
+    if !Path::new(file).is_absolute() {
+        return file.to_owned();
+    }
+    let names: Vec<&str> = Path::new(file)
+        .components()
+        .filter_map(|part| if let Component::Normal(name) = part { name.to_str() } else { None })
+        .collect();
+    let source = names.iter().rposition(|name| *name == "src").unwrap_or(names.len().saturating_sub(2));
+    names[source.saturating_sub(1)..].join("/")
+}
+
+fn text_of(payload: &(dyn Any + Send)) -> &str {
+    let owned = payload.downcast_ref::<String>().map(String::as_str);
+    owned.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("the panic carries no text")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn a_place_reads_the_same_on_every_machine() {
+        assert_eq!(short("plugins/apf/src/lib.rs"), "plugins/apf/src/lib.rs");
+        let in_a_dependency = "/home/ann/.cargo/registry/src/index-1/nalgebra-0.35.0/src/base/matrix.rs";
+        assert_eq!(short(in_a_dependency), "nalgebra-0.35.0/src/base/matrix.rs");
+        assert_eq!(short("/a/b"), "a/b");
+    }
+}

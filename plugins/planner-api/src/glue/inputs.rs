@@ -1,0 +1,258 @@
+//! The structs of the table as the safe values that a planner sees.
+
+use super::invalid;
+use crate::abi::{self, input};
+use crate::{
+    Boundary, Limits, Motion, Obstacle, Outline, PlanRequest, PoseEstimate, Reason, Result, Sensed, Site,
+    Task, Value, Zone, ZoneKind,
+};
+use nalgebra::{Matrix3, Point2};
+
+/// Points where they lie.
+unsafe fn points<'a>(ptr: *const abi::Vec2, n: u32) -> &'a [Point2<f64>] {
+    // SAFETY: promised by the caller; a point is two doubles, as `abi` asserts.
+    unsafe { abi::slice(ptr.cast(), n as usize) }
+}
+
+unsafe fn outline<'a>(raw: &abi::Outline) -> Result<Outline<'a>> {
+    // SAFETY: promised by the caller.
+    let points = unsafe { points(raw.points, raw.n_points) };
+    match raw.kind {
+        input::OUTLINE_DISC => {
+            let center =
+                *points.first().ok_or_else(|| invalid("the console sent a disc without a centre"))?;
+            Ok(Outline::Disc { center, radius_m: raw.size_m })
+        }
+        input::OUTLINE_POLYGON => Ok(Outline::Polygon { vertices: points }),
+        input::OUTLINE_POLYLINE => Ok(Outline::Polyline { points, half_width_m: raw.size_m }),
+        unknown => Err(invalid(&format!("the console sent an outline of the unknown kind {unknown}"))),
+    }
+}
+
+/// Elements of an array whose elements may have grown; refuses those that are too short.
+unsafe fn strided<T: Copy, U>(
+    first: *const T,
+    n: u32,
+    stride: u32,
+    make: impl Fn(&T) -> Result<U>,
+) -> Result<Vec<U>> {
+    if n == 0 || first.is_null() {
+        return Ok(Vec::new());
+    }
+    if (stride as usize) < size_of::<T>() {
+        return Err(invalid("the console sent an array with elements that are too short"));
+    }
+    // SAFETY: the caller promises `n` elements `stride` bytes apart.
+    (0..n as usize).map(|i| make(&unsafe { first.byte_add(i * stride as usize).read_unaligned() })).collect()
+}
+
+unsafe fn obstacles<'a>(first: *const abi::Obstacle, n: u32, stride: u32) -> Result<Vec<Obstacle<'a>>> {
+    let make = |raw: &abi::Obstacle| {
+        // SAFETY: promised by the caller.
+        let outline = unsafe { outline(&raw.outline)? };
+        Ok(Obstacle { id: raw.id, outline, discovered: raw.flags & input::OBSTACLE_DISCOVERED != 0 })
+    };
+    // SAFETY: promised by the caller.
+    unsafe { strided(first, n, stride, make) }
+}
+
+unsafe fn zones<'a>(first: *const abi::Zone, n: u32, stride: u32) -> Result<Vec<Zone<'a>>> {
+    let make = |raw: &abi::Zone| {
+        let kind = match raw.kind {
+            0 => ZoneKind::NoGo,
+            1 => ZoneKind::Land,
+            2 => ZoneKind::Underwater,
+            unknown => {
+                return Err(invalid(&format!("the console sent a zone of the unknown kind {unknown}")));
+            }
+        };
+        // SAFETY: promised by the caller.
+        Ok(Zone { kind, outline: unsafe { outline(&raw.outline)? } })
+    };
+    // SAFETY: promised by the caller.
+    unsafe { strided(first, n, stride, make) }
+}
+
+/// A site with the arrays that its safe form borrows.
+pub(super) struct SiteParts<'a> {
+    raw: abi::Site,
+    boundary: Boundary<'a>,
+    obstacles: Vec<Obstacle<'a>>,
+    zones: Vec<Zone<'a>>,
+}
+
+impl SiteParts<'_> {
+    /// Reads a site.
+    ///
+    /// # Safety
+    /// `site` is null or points at a site that stays as it is while `self` is used.
+    pub(super) unsafe fn read(site: *const abi::Site) -> Result<Self> {
+        if site.is_null() {
+            return Err(invalid("the console sent no site"));
+        }
+        // SAFETY: promised by the caller.
+        unsafe {
+            let raw = abi::copy_sized(site);
+            let boundary = match outline(&raw.boundary)? {
+                Outline::Disc { radius_m, .. } => Boundary::Circle { radius_m },
+                Outline::Polygon { vertices } | Outline::Polyline { points: vertices, .. } => {
+                    Boundary::Polygon { vertices }
+                }
+            };
+            let obstacles = obstacles(raw.obstacles, raw.n_obstacles, raw.obstacle_stride)?;
+            let zones = zones(raw.zones, raw.n_zones, raw.zone_stride)?;
+            Ok(Self { raw, boundary, obstacles, zones })
+        }
+    }
+
+    /// The site as a planner sees it.
+    pub(super) fn site(&self) -> Result<Site<'_>> {
+        let motion = match self.raw.motion {
+            0 => Motion::Point,
+            1 => Motion::Unicycle,
+            unknown => return Err(invalid(&format!("the console sent the unknown motion {unknown}"))),
+        };
+        Ok(Site {
+            revision: self.raw.revision,
+            boundary: self.boundary,
+            obstacles: &self.obstacles,
+            zones: &self.zones,
+            limits: Limits {
+                motion,
+                v_max_m_per_s: self.raw.v_max,
+                w_max_rad_per_s: self.raw.w_max,
+                radius_m: self.raw.radius,
+                sensing_range_m: self.raw.sensing_range,
+            },
+            swath_m: self.raw.swath,
+            clearance_m: self.raw.clearance,
+            seed: self.raw.seed,
+        })
+    }
+}
+
+/// The values of parameters, with keys that are UTF-8.
+///
+/// # Safety
+/// `first` points at `n` values that stay as they are while the result is used.
+pub(super) unsafe fn config_values<'a>(first: *const abi::Value, n: u32) -> Result<Vec<Value<'a>>> {
+    // SAFETY: promised by the caller.
+    let raw: &[abi::Value] = unsafe { abi::slice(first, n as usize) };
+    raw.iter()
+        .map(|value| {
+            // SAFETY: promised by the caller.
+            let key = unsafe { text(value.key) }.ok_or_else(|| invalid("a key is no UTF-8"))?;
+            Ok(Value { key, number: value.number })
+        })
+        .collect()
+}
+
+unsafe fn text<'a>(raw: abi::Str) -> Option<&'a str> {
+    // SAFETY: promised by the caller.
+    std::str::from_utf8(unsafe { abi::slice(raw.ptr, raw.len) }).ok()
+}
+
+fn estimate(pose: abi::Pose, covariance: &[f64; 6]) -> PoseEstimate {
+    let [xx, xy, xh, yy, yh, hh] = *covariance;
+    PoseEstimate {
+        position: Point2::new(pose.x, pose.y),
+        heading_rad: pose.heading,
+        covariance: Matrix3::new(xx, xy, xh, xy, yy, yh, xh, yh, hh),
+    }
+}
+
+/// Why a plan is wanted; a reason of a newer console counts as the operator's wish.
+///
+/// # Safety
+/// `raw.from` points at a text.
+pub(super) unsafe fn reason_of(raw: &abi::PlanIn) -> Reason {
+    match raw.reason {
+        input::REASON_START => Reason::Start,
+        input::REASON_BLOCKED => Reason::Blocked,
+        input::REASON_MAP_CHANGED => Reason::MapChanged,
+        // SAFETY: promised by the caller.
+        input::REASON_SWAP => Reason::Swap { from: unsafe { text(raw.from) }.unwrap_or_default().to_owned() },
+        input::REASON_RECOVER => Reason::Recover,
+        _ => Reason::Operator,
+    }
+}
+
+/// The task of a request.
+///
+/// # Safety
+/// `raw.targets` points at points that stay as they are while the result is used.
+pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn) -> Result<Task<'a>> {
+    // SAFETY: promised by the caller.
+    let targets = unsafe { points(raw.targets, raw.n_targets) };
+    match raw.task {
+        input::TASK_GOTO => {
+            let goal = *targets.first().ok_or_else(|| invalid("the console sent no goal"))?;
+            Ok(Task::Goto { goal, tolerance_m: raw.tolerance })
+        }
+        input::TASK_FOLLOW => Ok(Task::Follow { targets, tolerance_m: raw.tolerance }),
+        unknown => Err(invalid(&format!("the console sent the unknown task {unknown}"))),
+    }
+}
+
+/// A request from its parts.
+///
+/// # Safety
+/// `raw.previous` points at points that stay as they are while the result is used.
+pub(super) unsafe fn plan_request<'a>(
+    raw: &abi::PlanIn,
+    reason: &'a Reason,
+    task: Task<'a>,
+    site: &'a Site<'a>,
+) -> PlanRequest<'a> {
+    PlanRequest {
+        reason,
+        start: estimate(raw.start, &raw.covariance),
+        task,
+        site,
+        // SAFETY: promised by the caller.
+        previous: unsafe { points(raw.previous, raw.n_previous) },
+    }
+}
+
+/// What is sensed, with the array that its safe form borrows.
+pub(super) struct SensedParts<'a> {
+    raw: abi::StepIn,
+    targets_ahead: &'a [Point2<f64>],
+    path_ahead: &'a [Point2<f64>],
+    obstacles: Vec<Obstacle<'a>>,
+}
+
+impl SensedParts<'_> {
+    /// Reads what is sensed.
+    ///
+    /// # Safety
+    /// `input` points at a struct that stays as it is while `self` is used.
+    pub(super) unsafe fn read(input: *const abi::StepIn) -> Result<Self> {
+        // SAFETY: promised by the caller.
+        unsafe {
+            let raw = abi::copy_sized(input);
+            Ok(Self {
+                targets_ahead: points(raw.targets_ahead, raw.n_targets_ahead),
+                path_ahead: points(raw.path_ahead, raw.n_path_ahead),
+                obstacles: obstacles(raw.obstacles, raw.n_obstacles, raw.obstacle_stride)?,
+                raw,
+            })
+        }
+    }
+
+    /// What is sensed, as a planner sees it.
+    pub(super) fn sensed(&self) -> Sensed<'_> {
+        Sensed {
+            tick: self.raw.tick,
+            t_s: self.raw.t,
+            dt_s: self.raw.dt,
+            pose: estimate(self.raw.pose, &self.raw.covariance),
+            v_m_per_s: self.raw.v,
+            w_rad_per_s: self.raw.w,
+            target: self.raw.target.into(),
+            targets_ahead: self.targets_ahead,
+            path_ahead: self.path_ahead,
+            obstacles: &self.obstacles,
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! The console's services kept in memory, for the unit tests of a planner.
+//!
+//! ```
+//! use planner_api::testing::Bench;
+//! use planner_api::{Layer, Point2, Vector2};
+//!
+//! let bench = Bench::new();
+//! bench.ctx().arrow(Layer::Attraction, Point2::origin(), Vector2::new(1.0, 0.0));
+//! assert_eq!(bench.drawings().len(), 1);
+//! ```
+
+use crate::{Config, Ctx, Drawing, LogLevel, Planner, Result, Services, Site, StopReason, Value};
+use std::cell::{Cell, RefCell};
+use std::time::Duration;
+
+/// Collects what a planner draws, reports and says. Its deadline is an hour away and somebody is watching, unless a
+/// test says otherwise.
+#[derive(Debug)]
+pub struct Bench {
+    stop: Cell<Option<StopReason>>,
+    watched: Cell<bool>,
+    drawings: RefCell<Vec<Drawing>>,
+    scalars: RefCell<Vec<(String, f64, String)>>,
+    logs: RefCell<Vec<(LogLevel, String)>>,
+}
+
+impl Default for Bench {
+    fn default() -> Self {
+        Self {
+            stop: Cell::new(None),
+            watched: Cell::new(true),
+            drawings: RefCell::default(),
+            scalars: RefCell::default(),
+            logs: RefCell::default(),
+        }
+    }
+}
+
+impl Bench {
+    /// A bench with nothing on it yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The services as a planner sees them.
+    pub fn ctx(&self) -> Ctx<'_> {
+        Ctx::new(self)
+    }
+
+    /// Makes a planner with these parameter values (flags 0 or 1, choices the index of the word); the others take
+    /// their defaults.
+    ///
+    /// # Errors
+    /// What the planner's `configure` refuses.
+    pub fn configure<P: Planner>(&self, values: &[(&str, f64)], site: &Site<'_>) -> Result<P> {
+        let values: Vec<Value<'_>> = values.iter().map(|&(key, number)| Value { key, number }).collect();
+        P::configure(&Config::new(P::PARAMS, &values), site, &self.ctx())
+    }
+
+    /// From now on [`Ctx::check`] fails for this reason; `None` lets the planner work again.
+    pub fn stop_with(&self, reason: impl Into<Option<StopReason>>) {
+        self.stop.set(reason.into());
+    }
+
+    /// From now on nobody looks at drawings; they are still collected.
+    pub fn look_away(&self) {
+        self.watched.set(false);
+    }
+
+    /// What was drawn since the last [`Bench::clear`].
+    pub fn drawings(&self) -> Vec<Drawing> {
+        self.drawings.borrow().clone()
+    }
+
+    /// Named figures since the last [`Bench::clear`]: name, value, unit.
+    pub fn scalars(&self) -> Vec<(String, f64, String)> {
+        self.scalars.borrow().clone()
+    }
+
+    /// The newest value of a named figure.
+    pub fn scalar(&self, name: &str) -> Option<f64> {
+        self.scalars.borrow().iter().rev().find(|(known, ..)| known == name).map(|(_, value, _)| *value)
+    }
+
+    /// What was said since the last [`Bench::clear`].
+    pub fn logs(&self) -> Vec<(LogLevel, String)> {
+        self.logs.borrow().clone()
+    }
+
+    /// Forgets everything that was drawn, reported and said.
+    pub fn clear(&self) {
+        self.drawings.borrow_mut().clear();
+        self.scalars.borrow_mut().clear();
+        self.logs.borrow_mut().clear();
+    }
+}
+
+impl Services for Bench {
+    fn stop(&self) -> Option<StopReason> {
+        self.stop.get()
+    }
+
+    fn time_left(&self) -> Duration {
+        if self.stop.get() == Some(StopReason::Timeout) { Duration::ZERO } else { Duration::from_hours(1) }
+    }
+
+    fn wants_drawing(&self) -> bool {
+        self.watched.get()
+    }
+
+    fn draw(&self, drawings: &[Drawing]) {
+        self.drawings.borrow_mut().extend_from_slice(drawings);
+    }
+
+    fn scalar(&self, name: &str, value: f64, unit: &str) {
+        self.scalars.borrow_mut().push((name.to_owned(), value, unit.to_owned()));
+    }
+
+    fn log(&self, level: LogLevel, message: &str) {
+        self.logs.borrow_mut().push((level, message.to_owned()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Code, Layer};
+    use nalgebra::Point2;
+
+    #[test]
+    fn a_bench_keeps_what_a_planner_shows_and_says() {
+        let bench = Bench::new();
+        let ctx = bench.ctx();
+        ctx.circle(Layer::Virtual, Point2::origin(), 0.5);
+        ctx.scalar("u", 1.0, "J");
+        ctx.scalar("u", 2.0, "J");
+        ctx.log(LogLevel::Warn, "narrow");
+        assert_eq!((bench.drawings().len(), bench.scalar("u")), (1, Some(2.0)));
+        assert_eq!(bench.logs(), [(LogLevel::Warn, "narrow".to_owned())]);
+        bench.clear();
+        assert!(bench.drawings().is_empty() && bench.scalars().is_empty() && bench.logs().is_empty());
+    }
+
+    #[test]
+    fn a_bench_can_run_out_of_time() {
+        let bench = Bench::new();
+        assert_eq!(bench.ctx().check(), Ok(()));
+        bench.stop_with(StopReason::Timeout);
+        assert_eq!(bench.ctx().check().map_err(|error| error.code), Err(Code::Timeout));
+        assert!(bench.ctx().time_left().is_zero());
+    }
+}
