@@ -25,7 +25,9 @@ fn recording(criterion: &mut Criterion) {
                 (RunRecorder::start(folder.path(), Options::default()).expect("new files"), folder)
             },
             |(recorder, folder)| {
-                batches.iter().for_each(|events| recorder.send(Arc::clone(events)));
+                for events in &batches {
+                    recorder.send(Arc::clone(events));
+                }
                 (recorder, folder)
             },
             BatchSize::PerIteration,

@@ -38,11 +38,11 @@ pub(crate) fn messages(
 ) -> Result<(Vec<rr::LogMsg>, rr::BlueprintActivationCommand), RecordingError> {
     let mut sketch = Sketch::default();
     let blueprint = sketch.blueprint(run);
-    build(blueprint, sketch.extras).map_err(|error| RecordingError::sdk(&error))
+    build(&blueprint, sketch.extras).map_err(|error| RecordingError::sdk(&error))
 }
 
 fn build(
-    blueprint: bp::Blueprint,
+    blueprint: &bp::Blueprint,
     extras: Vec<Extra>,
 ) -> Result<(Vec<rr::LogMsg>, rr::BlueprintActivationCommand), rr::RecordingStreamError> {
     let activation = bp::BlueprintActivation { make_active: true, make_default: true };
@@ -68,7 +68,7 @@ impl Sketch {
     fn blueprint(&mut self, run: &RunOpened) -> bp::Blueprint {
         let map = self.map(run);
         let right = self.right(run);
-        let root = bp::Horizontal::new([map, right]).with_column_shares(vec![2.0, 1.0]);
+        let root = bp::Horizontal::new([map, right]).with_column_shares(vec![1.15, 1.0]);
         bp::Blueprint::new(root)
             .with_auto_views(false)
             .with_auto_layout(false)
@@ -105,25 +105,13 @@ impl Sketch {
     }
 
     fn right(&mut self, run: &RunOpened) -> bp::ContainerLike {
-        let error = self.plot(
-            "Position error [m]",
-            &[paths::ERROR, paths::ERROR_95],
-            Some([0.0, 2.0 * run.mission.position_limit_m]),
-        );
-        let covered = self.plot("Coverage of the reachable floor [%]", &[paths::COVERED], Some([0.0, 100.0]));
-        let motion = self.plot(
-            "Speed [m/s] and clearance [m]",
-            &[paths::SPEED, paths::SPEED_SENT, paths::CLEARANCE],
-            None,
-        );
-        let forces = self.plot("Forces [N]", &[paths::FORCE_SIZES], None);
-        let figures = self.plot("Planner", &[&format!("{}/**", paths::PLANNER_SCALARS)], None);
-        let planning = match run.mission.task {
-            TaskConfig::Follow { .. } => {
-                vec![self.plot("Cross-track [m]", &[paths::CROSS_TRACK], None), forces, figures]
-            }
-            TaskConfig::Goto { .. } => vec![forces, figures],
-        };
+        let limit_m = run.mission.position_limit_m;
+        let error =
+            self.plot("Position error [m]", &[paths::ERROR, paths::ERROR_95], Some([0.0, 1.5 * limit_m]));
+        let covered = self.plot("Coverage of the reachable floor [%]", &[paths::COVERED], Some([0.0, 105.0]));
+        let speeds = [paths::SPEED, paths::SPEED_SENT, paths::CLEARANCE];
+        let motion = self.plot("Speed [m/s] and clearance [m]", &speeds, None);
+        let planning = self.planning(&run.mission.task);
         let states = bp::StateTimelineView::new("States")
             .with_origin(format!("/{}", paths::STATE))
             .with_contents(["$origin/**"])
@@ -133,15 +121,26 @@ impl Sketch {
         let scenario =
             bp::TextDocumentView::new("Scenario").with_origin(format!("/{}", paths::SCENARIO)).into();
         bp::Vertical::new([
-            error,
-            covered,
-            motion,
-            bp::Tabs::new(planning).into(),
+            bp::Horizontal::new([error, covered]).into(),
+            bp::Horizontal::new([motion, planning]).into(),
             states,
             bp::Tabs::new([log, mission, scenario]).into(),
         ])
-        .with_row_shares(vec![1.6, 1.4, 1.6, 1.6, 1.7, 2.4])
+        .with_row_shares(vec![2.0, 2.0, 1.8, 2.2])
         .into()
+    }
+
+    /// How the planner does its work: one plot at a time, the most telling one first.
+    fn planning(&mut self, task: &TaskConfig) -> bp::ContainerLike {
+        let forces = self.plot("Forces [N]", &[paths::FORCE_SIZES], None);
+        let figures = self.plot("Planner", &[&format!("{}/**", paths::PLANNER_SCALARS)], None);
+        match task {
+            TaskConfig::Follow { .. } => {
+                let cross_track = self.plot("Cross-track [m]", &[paths::CROSS_TRACK], None);
+                bp::Tabs::new([cross_track, forces, figures]).into()
+            }
+            TaskConfig::Goto { .. } => bp::Tabs::new([forces, figures]).into(),
+        }
     }
 
     fn plot(&mut self, name: &str, entities: &[&str], range: Option<[f64; 2]>) -> bp::ContainerLike {
@@ -153,6 +152,11 @@ impl Sketch {
         if let Some(range) = range {
             self.add(&path, "ScalarAxis", &view::ScalarAxis::new().with_range(datatypes::Range1D(range)));
         }
+        let whole = datatypes::TimeRange {
+            start: datatypes::TimeRangeBoundary::Infinite,
+            end: datatypes::TimeRangeBoundary::Infinite,
+        };
+        self.add(&path, "TimeAxis", &view::TimeAxis::new().with_view_range(whole));
         self.add(&path, "PlotLegend", &view::PlotLegend::new().with_corner(view_part::Corner2D::LeftTop));
         plot
     }

@@ -42,6 +42,7 @@ pub struct Recorder {
     health: Arc<SinkHealth>,
     ticks_waiting: u32,
     sent_at: Instant,
+    sent_in_parts: bool,
 }
 
 impl Recorder {
@@ -68,7 +69,14 @@ impl Recorder {
     fn open(sink: SafeSink, identity: &Identity, now: Instant) -> Result<Self, RecordingError> {
         let health = sink.health();
         let stream = Some(Stream::open(sink, identity)?);
-        Ok(Self { fold: Fold::default(), stream, health, ticks_waiting: 0, sent_at: now })
+        Ok(Self {
+            fold: Fold::default(),
+            stream,
+            health,
+            ticks_waiting: 0,
+            sent_at: now,
+            sent_in_parts: false,
+        })
     }
 
     /// How the file is doing; stays readable after the recorder is gone.
@@ -87,7 +95,7 @@ impl Recorder {
             Err(error) => return self.stop(error),
         }
         // Whoever looks at a robot that stands still wants to see how it came to that.
-        let held = matches!(event.kind, EventKind::Held { .. } | EventKind::Ended { .. });
+        let held = matches!(event.kind, EventKind::Held { .. });
         if held || self.ticks_waiting >= SEND_TICKS { self.send(now) } else { self.idle(now) }
     }
 
@@ -107,6 +115,10 @@ impl Recorder {
         if let Some(stream) = &self.stream {
             self.fold.finish(stream)?;
             self.fold.send(stream)?;
+            stream.flush();
+            if self.sent_in_parts {
+                self.fold.renew_layout(stream)?;
+            }
         }
         // Dropping the last handle writes the footer of the format.
         drop(self.stream.take());
@@ -117,6 +129,7 @@ impl Recorder {
         let Some(stream) = &self.stream else { return Ok(()) };
         self.sent_at = now;
         self.ticks_waiting = 0;
+        self.sent_in_parts = true;
         if let Err(error) = self.fold.send(stream) {
             return self.stop(error);
         }

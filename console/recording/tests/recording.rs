@@ -12,3 +12,8 @@ mod recorder;
 mod synthetic;
 #[path = "recording/thread.rs"]
 mod thread;
+
+/// A made-up run of so many ticks as one list.
+fn events(ticks: u64) -> Vec<mission::Event> {
+    synthetic::run(ticks).into_iter().flatten().collect()
+}

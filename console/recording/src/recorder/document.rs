@@ -23,6 +23,10 @@ impl Document {
         Self { run, drivers: Vec::new(), end: None }
     }
 
+    pub(crate) fn run(&self) -> &RunOpened {
+        &self.run
+    }
+
     pub(crate) fn planner_chosen(&mut self, choice: &PlannerChoice, info: &PlannerInfo) {
         self.drivers.push(Driver { choice: choice.clone(), info: info.clone() });
     }

@@ -33,30 +33,23 @@ fn drawn_length_m(force_n: f64, longest_m: f64) -> f64 {
 /// Rows of one kind of drawing on one layer.
 struct Shown<T> {
     lane: Lane<T>,
-    styled: bool,
+    /// How it looks, until it is drawn for the first time.
+    style: Option<Box<dyn rr::AsComponents + Send>>,
     visible: bool,
 }
 
 impl<T: Row> Shown<T> {
-    fn new(path: String) -> Self {
-        Self { lane: Lane::new(path), styled: false, visible: false }
+    fn new(path: String, style: impl rr::AsComponents + Send + 'static) -> Self {
+        Self { lane: Lane::new(path), style: Some(Box::new(style)), visible: false }
     }
 
     /// Shows what was drawn in this tick, or clears what was drawn before.
-    fn show(
-        &mut self,
-        stream: &Stream,
-        at: At,
-        is_empty: bool,
-        row: T,
-        style: &dyn rr::AsComponents,
-    ) -> Done {
+    fn show(&mut self, stream: &Stream, at: At, is_empty: bool, row: T) -> Done {
         if is_empty && !self.visible {
             return Ok(());
         }
-        if !self.styled {
-            stream.always(self.lane.path(), style)?;
-            self.styled = true;
+        if let Some(style) = self.style.take() {
+            stream.always(self.lane.path(), style.as_ref())?;
         }
         self.visible = !is_empty;
         self.lane.push(at, row);
@@ -85,17 +78,8 @@ pub(crate) struct Drawings {
 impl Drawings {
     /// Nothing drawn yet, in a tank of this smaller side.
     pub(crate) fn new(smaller_side_m: f64) -> Self {
-        let sheet = |layer| {
-            let name = name(layer);
-            Sheet {
-                layer,
-                arrows: Shown::new(format!("{}/{name}", paths::FORCES)),
-                circles: Shown::new(format!("{}/{name}/circles", paths::DRAWN)),
-                lines: Shown::new(format!("{}/{name}/lines", paths::DRAWN)),
-            }
-        };
         Self {
-            sheets: Layer::ALL.into_iter().map(sheet).collect(),
+            sheets: Layer::ALL.into_iter().map(Sheet::new).collect(),
             sizes: Lane::new(paths::FORCE_SIZES),
             longest_m: LONGEST_SHARE * smaller_side_m,
             forces_seen: false,
@@ -141,6 +125,20 @@ impl Drawings {
 }
 
 impl Sheet {
+    fn new(layer: Layer) -> Self {
+        let (name, color) = (name(layer), style::color(ink(layer)));
+        let arrows = rr::Arrows2D::update_fields().with_colors([color]).with_radii([style::on_screen(1.5)]);
+        let circles =
+            rr::Ellipses2D::update_fields().with_colors([color]).with_line_radii([style::on_screen(1.0)]);
+        let lines = scene::line_style(ink(layer), 1.0);
+        Self {
+            layer,
+            arrows: Shown::new(format!("{}/{name}", paths::FORCES), arrows),
+            circles: Shown::new(format!("{}/{name}/circles", paths::DRAWN), circles),
+            lines: Shown::new(format!("{}/{name}/lines", paths::DRAWN), lines),
+        }
+    }
+
     fn show(&mut self, stream: &Stream, at: At, drawings: &[Drawing], longest_m: f64) -> Done {
         let (mut arrows, mut circles, mut lines) = (Vec::new(), Vec::new(), Vec::new());
         for drawing in drawings {
@@ -152,20 +150,14 @@ impl Sheet {
                     circles.push((flat(center), radius_m as f32));
                 }
                 Drawing::Line { layer, from, to } if layer == self.layer => {
-                    lines.push([flat(from), flat(to)])
+                    lines.push([flat(from), flat(to)]);
                 }
                 _ => {}
             }
         }
-        let color = style::color(ink(self.layer));
-        let arrow_style =
-            rr::Arrows2D::update_fields().with_colors([color]).with_radii([style::on_screen(1.5)]);
-        let circle_style =
-            rr::Ellipses2D::update_fields().with_colors([color]).with_line_radii([style::on_screen(1.0)]);
-        let line_style = scene::line_style(ink(self.layer), 1.0);
-        self.arrows.show(stream, at, arrows.is_empty(), Arrows(arrows), &arrow_style)?;
-        self.circles.show(stream, at, circles.is_empty(), Circles(circles), &circle_style)?;
-        self.lines.show(stream, at, lines.is_empty(), Lines(lines), &line_style)
+        self.arrows.show(stream, at, arrows.is_empty(), Arrows(arrows))?;
+        self.circles.show(stream, at, circles.is_empty(), Circles(circles))?;
+        self.lines.show(stream, at, lines.is_empty(), Lines(lines))
     }
 }
 

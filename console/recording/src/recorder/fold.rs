@@ -66,6 +66,16 @@ impl Fold {
         opened.raster.picture(stream, at)
     }
 
+    /// Sends the layout again, with views that are new to the viewer.
+    ///
+    /// The viewer fits the timeline of states only once, to what it has read by then; views that come at the end of
+    /// the file are fitted to the whole run.
+    pub(crate) fn renew_layout(&self, stream: &Stream) -> Done {
+        let Some(opened) = &self.opened else { return Ok(()) };
+        stream.layout(layout::messages(opened.document.run())?);
+        Ok(())
+    }
+
     /// Sends waiting rows.
     pub(crate) fn send(&mut self, stream: &Stream) -> Done {
         let Some(opened) = &mut self.opened else { return Ok(()) };

@@ -52,7 +52,7 @@ fn draw_obstacles(stream: &Stream, path: &str, obstacles: &[&Obstacle], color: [
     let drawn = lines(strips, color, width)
         .with_radii(obstacles.iter().map(|obstacle| thickness(&obstacle.shape, width)))
         .with_labels(obstacles.iter().map(|obstacle| obstacle.name.as_str()))
-        .with_show_labels(obstacles.len() <= MOST_LABELS);
+        .with_show_labels(path == paths::OBSTACLES_KNOWN && obstacles.len() <= MOST_LABELS);
     stream.always(path, &drawn)
 }
 

@@ -28,7 +28,9 @@ pub fn content(path: &Path) -> Content {
             take(&Chunk::from_arrow_msg(&arrow).expect("a chunk"), &mut content);
         }
     }
-    content.values_mut().for_each(|rows| rows.sort());
+    for rows in content.values_mut() {
+        rows.sort();
+    }
     content
 }
 

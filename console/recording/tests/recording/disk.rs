@@ -1,6 +1,6 @@
 //! A disk that fails.
 
-use crate::synthetic;
+use crate::{events, synthetic};
 use recording::{Identity, JournalError, JournalWriter, Recorder, RecordingError, RunRecorder};
 use std::{
     io::{self, Write},
@@ -8,14 +8,12 @@ use std::{
 };
 
 /// A disk with room for so many bytes.
-pub struct SmallDisk {
+struct SmallDisk {
     left: usize,
 }
 
-impl SmallDisk {
-    pub fn new(bytes: usize) -> Box<Self> {
-        Box::new(Self { left: bytes })
-    }
+fn small_disk(bytes: usize) -> Box<dyn Write + Send> {
+    Box::new(SmallDisk { left: bytes })
 }
 
 impl Write for SmallDisk {
@@ -36,8 +34,8 @@ impl Write for SmallDisk {
 #[test]
 fn a_full_disk_stops_the_journal_and_is_told_once() {
     let now = Instant::now();
-    let mut journal = JournalWriter::writing_to(SmallDisk::new(200_000), now);
-    let events = synthetic::events(3000);
+    let mut journal = JournalWriter::writing_to(small_disk(200_000), now);
+    let events = events(3000);
     let errors: Vec<_> = events.iter().filter_map(|event| journal.append(event, now).err()).collect();
     assert_eq!(errors.len(), 1);
     assert!(matches!(errors[0], JournalError::Write { bytes, .. } if bytes > 60_000), "{}", errors[0]);
@@ -50,7 +48,7 @@ fn the_journal_tells_the_words_of_the_system() {
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("linux has it");
     let mut journal = JournalWriter::writing_to(Box::new(full), Instant::now());
     let later = Instant::now() + Duration::from_secs(1);
-    let error = journal.append(&synthetic::events(1)[0], later).expect_err("there is no room");
+    let error = journal.append(&events(1)[0], later).expect_err("there is no room");
     assert!(error.to_string().contains("No space left on device"), "{error}");
 }
 
@@ -58,10 +56,10 @@ fn the_journal_tells_the_words_of_the_system() {
 fn a_full_disk_stops_the_recording_and_is_told_once() {
     let begin = Instant::now();
     let mut recorder =
-        Recorder::writing_to(SmallDisk::new(300_000), &Identity::of_run("test"), begin).expect("opens");
+        Recorder::writing_to(small_disk(300_000), &Identity::of_run("test"), begin).expect("opens");
     let health = recorder.health();
     let mut errors = Vec::new();
-    for (index, event) in synthetic::events(3000).iter().enumerate() {
+    for (index, event) in events(3000).iter().enumerate() {
         errors.extend(recorder.push(event, begin + Duration::from_millis(index as u64)).err());
     }
     assert_eq!(errors.len(), 1, "{errors:?}");
@@ -74,9 +72,8 @@ fn a_full_disk_stops_the_recording_and_is_told_once() {
 #[test]
 fn a_recorder_is_dropped_soon_after_an_error() {
     let now = Instant::now();
-    let mut recorder =
-        Recorder::writing_to(SmallDisk::new(100), &Identity::of_run("test"), now).expect("opens");
-    for event in synthetic::events(700) {
+    let mut recorder = Recorder::writing_to(small_disk(100), &Identity::of_run("test"), now).expect("opens");
+    for event in events(700) {
         // Whichever event it hits: the drop is what counts here.
         let _ = recorder.push(&event, now);
     }
@@ -88,8 +85,7 @@ fn a_recorder_is_dropped_soon_after_an_error() {
 #[test]
 fn the_mission_goes_on_when_the_recording_fails_and_the_journal_is_whole() {
     let now = Instant::now();
-    let recorder =
-        Recorder::writing_to(SmallDisk::new(300_000), &Identity::of_run("test"), now).expect("opens");
+    let recorder = Recorder::writing_to(small_disk(300_000), &Identity::of_run("test"), now).expect("opens");
     let run = RunRecorder::spawn(JournalWriter::unwritten(now), Some(recorder)).expect("a thread");
     for events in synthetic::run(2000) {
         run.send(events);
@@ -106,7 +102,7 @@ fn the_recording_goes_on_when_the_journal_fails() {
     let path = folder.path().join("recording.rrd");
     let now = Instant::now();
     let recorder = Recorder::create(&path, &Identity::of_run("test"), now).expect("a new file");
-    let journal = JournalWriter::writing_to(SmallDisk::new(1000), now);
+    let journal = JournalWriter::writing_to(small_disk(1000), now);
     let run = RunRecorder::spawn(journal, Some(recorder)).expect("a thread");
     for events in synthetic::run(300) {
         run.send(events);

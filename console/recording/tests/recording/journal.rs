@@ -1,6 +1,6 @@
 //! The journal, whole, torn and damaged.
 
-use crate::synthetic;
+use crate::events;
 use mission::event::JOURNAL_VERSION;
 use recording::{JournalError, JournalWriter, read_journal};
 use std::{
@@ -15,7 +15,7 @@ fn written(ticks: u64) -> (TempDir, PathBuf) {
     let path = folder.path().join("events.jsonl");
     let now = Instant::now();
     let mut journal = JournalWriter::create(&path, now).expect("a new file");
-    for event in synthetic::events(ticks) {
+    for event in events(ticks) {
         journal.append(&event, now).expect("room on the disk");
     }
     journal.finish().expect("room on the disk");
@@ -31,7 +31,7 @@ fn change(path: &Path, change: impl FnOnce(String) -> String) {
 fn what_is_written_is_read_back() {
     let (_folder, path) = written(200);
     let journal = read_journal(&path).expect("a whole journal");
-    assert_eq!(journal.events, synthetic::events(200));
+    assert_eq!(journal.events, events(200));
     assert_eq!(journal.truncated, None);
 }
 
@@ -42,14 +42,15 @@ fn the_hash_is_that_of_the_file() {
     let now = Instant::now();
     let mut journal = JournalWriter::create(&path, now).expect("a new file");
     let mut unwritten = JournalWriter::unwritten(now);
-    for event in synthetic::events(50) {
+    for event in events(50) {
         journal.append(&event, now).expect("room on the disk");
         unwritten.append(&event, now).expect("nothing to fail");
     }
     let end = journal.finish().expect("room on the disk");
     let bytes = fs::read(&path).expect("readable");
-    let digest = <sha2::Sha256 as sha2::Digest>::digest(&bytes);
-    assert_eq!(end.events_sha256, digest.iter().map(|byte| format!("{byte:02x}")).collect::<String>());
+    let digest = format!("{:x?}", <sha2::Sha256 as sha2::Digest>::digest(&bytes).as_slice());
+    let of_the_file = digest.trim_matches(['[', ']']).split(", ").map(|byte| format!("{byte:0>2}"));
+    assert_eq!(end.events_sha256, of_the_file.collect::<Vec<_>>().concat());
     assert_eq!(end.bytes, bytes.len() as u64);
     assert_eq!(unwritten.finish().expect("nothing to fail").events_sha256, end.events_sha256);
 }
@@ -126,7 +127,7 @@ fn events_reach_the_system_after_half_a_second_also_when_nothing_happens() {
     let path = folder.path().join("events.jsonl");
     let begin = Instant::now();
     let mut journal = JournalWriter::create(&path, begin).expect("a new file");
-    let events = synthetic::events(2);
+    let events = events(2);
     journal.append(&events[1], begin).expect("room on the disk");
     journal.tick(begin + Duration::from_millis(400)).expect("room on the disk");
     assert_eq!(journal.written_bytes(), 0);

@@ -2,7 +2,7 @@
 
 use crate::{
     content::{Content, content},
-    synthetic,
+    events, synthetic,
 };
 use mission::{Event, EventKind};
 use recording::{Identity, Recorder, RecordingError, export, inspect};
@@ -42,7 +42,7 @@ fn rows<'a>(content: &'a Content, entity: &str, component: &str) -> &'a [(Vec<(S
 
 #[test]
 fn every_tick_has_its_row_of_truth_estimate_and_figures() {
-    let events = synthetic::events(TICKS);
+    let events = events(TICKS);
     let content = recorded(&events);
     let commands = count(&events, |kind| matches!(kind, EventKind::Commanded { .. }));
     for (entity, component, wanted) in [
@@ -67,7 +67,7 @@ fn every_tick_has_its_row_of_truth_estimate_and_figures() {
 
 #[test]
 fn the_last_row_is_the_last_tick_on_both_timelines() {
-    let events = synthetic::events(TICKS);
+    let events = events(TICKS);
     let content = recorded(&events);
     let (times, value) = rows(&content, "map/world/robot/true", "Points2D:positions").last().expect("rows");
     let last = TICKS as i64 - 1;
@@ -82,7 +82,7 @@ fn the_last_row_is_the_last_tick_on_both_timelines() {
 
 #[test]
 fn a_layer_that_is_not_drawn_any_more_is_cleared() {
-    let events = synthetic::events(TICKS);
+    let events = events(TICKS);
     let content = recorded(&events);
     let repulsion = rows(&content, "map/world/forces/repulsion", "Arrows2D:vectors");
     assert!(repulsion.iter().any(|row| !row.1.is_empty()), "it is drawn near an obstacle");
@@ -94,7 +94,7 @@ fn a_layer_that_is_not_drawn_any_more_is_cleared() {
 
 #[test]
 fn the_log_has_a_line_for_every_event_that_people_read() {
-    let events = synthetic::events(TICKS);
+    let events = events(TICKS);
     let content = recorded(&events);
     let lines: usize = content
         .iter()
@@ -106,7 +106,7 @@ fn the_log_has_a_line_for_every_event_that_people_read() {
 
 #[test]
 fn the_last_picture_of_the_floor_holds_every_scanned_cell() {
-    let events = synthetic::events(TICKS);
+    let events = events(TICKS);
     let content = recorded(&events);
     let pictures = rows(&content, "map/world/coverage", "SegmentationImage:buffer");
     let scanned: u32 = events
@@ -124,7 +124,7 @@ fn the_last_picture_of_the_floor_holds_every_scanned_cell() {
 #[test]
 fn chunks_do_not_change_what_is_recorded() {
     let folder = tempdir().expect("a folder");
-    let events = synthetic::events(TICKS);
+    let events = events(TICKS);
     let (fast, slow) = (folder.path().join("fast.rrd"), folder.path().join("slow.rrd"));
     record(&fast, &events, Duration::ZERO);
     record(&slow, &events, Duration::from_millis(700));
@@ -154,7 +154,7 @@ fn a_recording_made_anew_from_the_journal_is_the_same() {
 fn the_summary_tells_run_ticks_coverage_and_end() {
     let folder = tempdir().expect("a folder");
     let path = folder.path().join("recording.rrd");
-    let events = synthetic::events(TICKS);
+    let events = events(TICKS);
     record(&path, &events, Duration::ZERO);
     let summary = inspect(&path).expect("readable");
     let covered = events.iter().rev().find_map(|event| match event.kind {
@@ -174,7 +174,7 @@ fn the_summary_tells_run_ticks_coverage_and_end() {
 fn a_recording_that_is_cut_off_is_read_up_to_there() {
     let folder = tempdir().expect("a folder");
     let path = folder.path().join("recording.rrd");
-    record(&path, &synthetic::events(TICKS), Duration::from_millis(700));
+    record(&path, &events(TICKS), Duration::from_millis(700));
     let bytes = std::fs::read(&path).expect("readable");
     std::fs::write(&path, &bytes[..bytes.len() * 6 / 10]).expect("writable");
     let summary = inspect(&path).expect("readable");
@@ -184,7 +184,7 @@ fn a_recording_that_is_cut_off_is_read_up_to_there() {
 
 #[test]
 fn a_recording_without_a_world_is_refused() {
-    let events = synthetic::events(2);
+    let events = events(2);
     let mut recorder =
         Recorder::writing_to(Box::new(std::io::sink()), &Identity::of_run("test"), Instant::now())
             .expect("opens");
@@ -194,13 +194,15 @@ fn a_recording_without_a_world_is_refused() {
 }
 
 #[test]
-fn ten_thousand_ticks_take_less_than_six_megabytes() {
+fn a_tick_takes_no_more_than_600_bytes() {
     let folder = tempdir().expect("a folder");
-    let path = folder.path().join("recording.rrd");
-    let events = synthetic::events(2000);
-    record(&path, &events, Duration::ZERO);
-    let bytes = std::fs::metadata(&path).expect("it is there").len();
-    // The layout, the scene and the footer are paid once.
-    let fixed = 250_000;
-    assert!(bytes < fixed + 600 * 2000, "{bytes} bytes for 2000 ticks");
+    let size = |ticks| {
+        let path = folder.path().join(format!("{ticks}.rrd"));
+        record(&path, &events(ticks), Duration::ZERO);
+        std::fs::metadata(&path).expect("it is there").len()
+    };
+    // Layout, scene and footer are paid once, so the difference tells.
+    let (short, long) = (size(1000), size(3000));
+    assert!(long - short <= 600 * 2000, "{} bytes a tick", (long - short) / 2000);
+    assert!(short < 1_200_000, "{short} bytes for 1000 ticks");
 }

@@ -5,7 +5,7 @@
 
 use mission::{
     Cause, During, Event, EventKind, Fault, MissionConfig, Order, Outcome, ParamInfo, ParamKind, ParamValue,
-    PlannerChoice, PlannerInfo, TaskConfig,
+    Parameters, PlannerChoice, PlannerInfo, TaskConfig,
     event::{HoldReason, JOURNAL_VERSION, RunOpened},
 };
 use nalgebra::{Matrix2, Matrix3};
@@ -26,12 +26,6 @@ const PITCH_M: f64 = 0.9;
 pub fn run(ticks: u64) -> Vec<Vec<Event>> {
     let mut robot = Robot::new();
     (0..ticks).map(|tick| robot.tick(tick, ticks)).collect()
-}
-
-/// The same run as one list.
-#[allow(dead_code, reason = "not every user of this file wants it flat")]
-pub fn events(ticks: u64) -> Vec<Event> {
-    run(ticks).into_iter().flatten().collect()
 }
 
 struct Robot {
@@ -71,7 +65,7 @@ impl Robot {
         let clearance_m = self.clearance_m(truth.position);
         kinds.push(EventKind::Truth { pose: truth, clearance_m, collided: false });
         let estimate = self.estimate(tick, &truth, &mut kinds);
-        self.happenings(tick, ticks, &mut kinds);
+        Self::happenings(tick, ticks, &mut kinds);
         if !held {
             self.drive(tick, driven, &truth, &estimate, &mut kinds);
         }
@@ -101,7 +95,7 @@ impl Robot {
         let step = Vector::new(self.noise(), self.noise()) * 0.008;
         self.drift += step;
         let age = (tick % 10) as f64;
-        if tick % 10 == 0 {
+        if tick.is_multiple_of(10) {
             self.drift *= 0.6;
             let (ranges, fix) = self.fix(tick, truth);
             kinds.extend([EventKind::Ranged { ranges }, EventKind::Fixed { fix }]);
@@ -150,7 +144,7 @@ impl Robot {
         (ranges, fix)
     }
 
-    fn happenings(&mut self, tick: u64, ticks: u64, kinds: &mut Vec<EventKind>) {
+    fn happenings(tick: u64, ticks: u64, kinds: &mut Vec<EventKind>) {
         let part = |share: u64| tick == ticks * share / 20;
         if part(2) {
             kinds.push(EventKind::ObstacleFound { obstacle: found(0.12) });
@@ -196,10 +190,10 @@ impl Robot {
     ) {
         let along_m = driven as f64 * TICK_S * SPEED_M_PER_S;
         let target = spiral_pose((along_m / 0.5).floor() * 0.5 + 1.0).position;
-        if tick % 300 == 0 {
+        if tick.is_multiple_of(300) {
             let path: Vec<_> = (0..60).map(|k| spiral_pose(along_m + 0.2 * f64::from(k)).position).collect();
             let length_m = world::polyline::length_m(&path);
-            let planner = "rpf".into();
+            let planner = if driven == tick { "rpf".into() } else { "apf".into() };
             kinds.push(EventKind::Planned { planner, reason: Reason::Start, path, length_m, complete: true });
         }
         kinds.push(EventKind::Drawn { drawings: self.forces(estimate.position, target) });
@@ -337,7 +331,7 @@ fn opened() -> RunOpened {
             stuck_s: 60.0,
             odometry_sigma_per_m: 0.02,
             range_sigma_ratio: 0.01,
-            planner: PlannerChoice { id: "rpf".into(), parameters: Default::default() },
+            planner: PlannerChoice { id: "rpf".into(), parameters: Parameters::new() },
             fallback: None,
         },
     }

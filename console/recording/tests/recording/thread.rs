@@ -1,6 +1,6 @@
 //! The recorder's thread.
 
-use crate::synthetic;
+use crate::{events, synthetic};
 use recording::{JournalWriter, Options, RunRecorder, inspect, read_journal};
 use std::{
     io::{self, Write},
@@ -20,7 +20,7 @@ fn a_run_leaves_journal_recording_and_hash() {
     assert_eq!(finished.error, None);
     assert_eq!(finished.events_sha256.expect("a whole journal").len(), 64);
     let journal = read_journal(&finished.journal.expect("asked for")).expect("a whole journal");
-    assert_eq!(journal.events, synthetic::events(300));
+    assert_eq!(journal.events, events(300));
     assert!(inspect(&finished.recording.expect("asked for")).expect("readable").is_complete());
 }
 
@@ -88,7 +88,7 @@ fn a_disk_that_does_not_answer_is_not_waited_for_longer_than_asked() {
     let disk = StuckDisk::default();
     let journal = JournalWriter::writing_to(Box::new(disk.clone()), Instant::now());
     let recorder = RunRecorder::spawn(journal, None).expect("a thread");
-    recorder.send(synthetic::events(50));
+    recorder.send(events(50));
     let begin = Instant::now();
     let finished = recorder.finish(Duration::from_millis(200));
     assert!(begin.elapsed() < Duration::from_secs(2));
@@ -103,7 +103,7 @@ fn the_sender_waits_when_the_queue_is_full_and_nothing_is_lost() {
     let journal = JournalWriter::writing_to(Box::new(disk.clone()), Instant::now());
     let recorder = Arc::new(RunRecorder::spawn(journal, None).expect("a thread"));
     let batches = 12_000;
-    let big: Arc<[_]> = synthetic::events(2).into();
+    let big: Arc<[_]> = events(2).into();
     let sender = {
         let (recorder, big) = (Arc::clone(&recorder), Arc::clone(&big));
         std::thread::spawn(move || (0..batches).for_each(|_| recorder.send(Arc::clone(&big))))
