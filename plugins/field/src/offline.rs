@@ -4,10 +4,11 @@ use crate::{
     descent::{self, Descent},
     judge::{Walk, judge},
     lockstep::{self, Course},
+    rollout,
     scene::Scene,
-    settings::Settings,
+    settings::{Planning, Settings},
 };
-use planner_api::{Code, Ctx, LogLevel, Plan, PlanRequest, PlannerError, Result, Task};
+use planner_api::{Code, Ctx, LogLevel, Plan, PlanRequest, PlannerError, Result, Site, Task};
 use world::{Point, polyline};
 
 /// More preset points than this after splitting long gaps are refused.
@@ -33,9 +34,16 @@ impl Offline<'_> {
         let scene = Scene::new(request.site);
         let start = request.start.position;
         check_start(&scene, start, request.site.limits.radius_m)?;
+        match request.task {
+            Task::Goto { goal, tolerance_m } => check_goal(&scene, goal, tolerance_m)?,
+            Task::Follow { targets, .. } => check_targets(&scene, targets)?,
+        }
+        if self.is_flown(request.site) {
+            let walk = rollout::fly(&scene, self.settings, request, ctx)?;
+            return Ok(told(walk, &scene, request.site.clearance_m, ctx));
+        }
         let walk = match request.task {
             Task::Goto { goal, tolerance_m } => {
-                check_goal(&scene, goal, tolerance_m)?;
                 let step_m = self.settings.walking.goto_step_m;
                 descent::descend(&scene, self.settings, &Descent { start, goal, step_m, tolerance_m }, ctx)?
             }
@@ -48,24 +56,23 @@ impl Offline<'_> {
         Ok(told(walk, &scene, request.site.clearance_m, ctx))
     }
 
+    fn is_flown(&self, site: &Site<'_>) -> bool {
+        match self.settings.planning {
+            Planning::Walked => false,
+            Planning::Flown => true,
+            Planning::ByHull => site.limits.radius_m > 0.0,
+        }
+    }
+
     /// The preset points up to the last one that is free, with long gaps split into steps.
     fn course(&self, scene: &Scene, targets: &[Point]) -> Result<Vec<Point>> {
         let step_m = self.settings.walking.step_m;
-        if targets.is_empty() {
-            return Err(PlannerError::new(Code::Invalid, "there is no preset point to follow"));
-        }
-        if let Some(at) = targets.windows(2).position(|w| (w[1] - w[0]).norm() < 1e-9) {
-            let message = format!("preset points {at} and {} coincide; give each point once", at + 1);
-            return Err(PlannerError::new(Code::Invalid, message));
-        }
         let split = polyline::length_m(targets) / step_m + targets.len() as f64;
         if split > MOST_POINTS as f64 {
             let message = format!("the preset path has {split:.0} steps of {step_m} m, {MOST_POINTS} are allowed");
             return Err(PlannerError::new(Code::Invalid, message));
         }
-        let Some(last) = targets.iter().rposition(|p| scene.hull_clearance_m(*p) >= 0.0) else {
-            return Err(PlannerError::new(Code::NoPath, "every preset point lies in an obstacle"));
-        };
+        let last = targets.iter().rposition(|p| scene.hull_clearance_m(*p) >= 0.0).unwrap_or(0);
         // A hair more than the step, so that points one step apart are not split by rounding.
         Ok(polyline::resampled(&targets[..=last], step_m * (1.0 + 1e-9)))
     }
@@ -81,6 +88,20 @@ fn check_start(scene: &Scene, start: Point, radius_m: f64) -> Result<()> {
     if depth_m > radius_m / 2.0 {
         let message = format!("at {place} the hull is {depth_m:.2} m inside an obstacle");
         return Err(PlannerError::new(Code::StartOccupied, message));
+    }
+    Ok(())
+}
+
+fn check_targets(scene: &Scene, targets: &[Point]) -> Result<()> {
+    if targets.is_empty() {
+        return Err(PlannerError::new(Code::Invalid, "there is no preset point to follow"));
+    }
+    if let Some(at) = targets.windows(2).position(|w| (w[1] - w[0]).norm() < 1e-9) {
+        let message = format!("preset points {at} and {} coincide; give each point once", at + 1);
+        return Err(PlannerError::new(Code::Invalid, message));
+    }
+    if targets.iter().all(|p| scene.hull_clearance_m(*p) < 0.0) {
+        return Err(PlannerError::new(Code::NoPath, "every preset point lies in an obstacle"));
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     law::{Law, Repulsion, RotationForm},
-    settings::{Flight, Settings, Steering, Walking},
+    settings::{Flight, Planning, Settings, Steering, Walking},
     turning::{Reading, SenseRule},
 };
 use planner_api::{Config, ParamSpec, choice, flag, float};
@@ -71,6 +71,12 @@ pub const SENSE: ParamSpec = choice("sense", "Sense of rotation", &["counter-clo
     .group(FIELD)
     .live();
 
+/// How a plan is made.
+pub const PLANNING: ParamSpec = choice("planning", "Planning", &["by-hull", "lock-step", "flight"], 0)
+    .help("Lock-step: the paper's moves, one per preset point. Flight: the known map flown in thought. By hull: \
+           lock-step for a robot without extent, as the paper's, flight for one with a hull.")
+    .group(PLAN)
+    .live();
 /// Move toward a preset point.
 pub const STEP: ParamSpec = float("step_m", "Step on a preset path", "m", 0.01, 1.0, 0.2)
     .help("Longest move per preset point; the paper's step.")
@@ -152,6 +158,7 @@ pub fn settings(config: &Config<'_>) -> Settings {
         },
         reading: Reading::Off,
         rule: SenseRule::CounterClockwise,
+        planning: Planning::Walked,
         walking: walking(config),
         flight: flight(config),
     }
@@ -166,6 +173,11 @@ pub fn rotating_settings(config: &Config<'_>) -> Settings {
     settings.reading = if config.choice("reading") == "literal" { Reading::Literal } else { Reading::Gated };
     settings.rule =
         if config.choice("sense") == "side-aware" { SenseRule::SideAware } else { SenseRule::CounterClockwise };
+    settings.planning = match config.choice("planning") {
+        "lock-step" => Planning::Walked,
+        "flight" => Planning::Flown,
+        _ => Planning::ByHull,
+    };
     settings.flight.steering = if config.choice("steering") == "gaps" { Steering::Gaps } else { Steering::Paper };
     settings
 }

@@ -1,6 +1,7 @@
 //! The known map as the planners see it: contacts near a place, found through the world's bounding volume hierarchy.
 
 use crate::{
+    body::Body,
     contact::{Contact, Source, away_from, direction_or},
     law::Law,
 };
@@ -16,6 +17,7 @@ pub struct Scene {
     map: ObstacleMap,
     wall: world::Boundary,
     centers: Vec<Point>,
+    bodies: Vec<Option<Body>>,
     hull_m: f64,
 }
 
@@ -52,7 +54,15 @@ impl Scene {
             })
             .collect();
         let centers = obstacles.iter().map(|o| o.shape.center()).collect();
-        Self { map: ObstacleMap::new(&wall, &obstacles), wall, centers, hull_m: site.limits.radius_m }
+        let bodies = solids(site).map(|(id, outline)| Body::new(id, &outline)).collect();
+        let map = ObstacleMap::new(&wall, &obstacles);
+        Self { map, wall, centers, bodies, hull_m: site.limits.radius_m }
+    }
+
+    /// The obstacles within a range of a place, as if the robot sensed them from there.
+    pub fn bodies_within(&self, at: Point, range_m: f64) -> Vec<Body> {
+        let near = self.map.within(at, range_m);
+        near.iter().filter_map(|n| self.bodies[n.index].clone()).collect()
     }
 
     /// What acts on a robot at a place by this law; cost grows with what is near, hardly with what there is.

@@ -7,7 +7,8 @@ use planner_api::{
 
 /// The rotating potential field of Wang et al. 2023, in both readings.
 ///
-/// Planning walks the law in lock step as the paper does. In flight the rotating force is, unless set otherwise, used
+/// For a point robot planning walks the law in lock step as the paper does; for one with a hull that fails nearly
+/// always, so there the known map is flown in thought. In flight the rotating force is, unless set otherwise, used
 /// about whatever blocks the way and on the side of the smaller detour: as printed it gets stuck.
 pub struct Rpf {
     settings: Settings,
@@ -31,6 +32,7 @@ impl Planner for Rpf {
         p::REPULSION_IMPROVED,
         p::EXPONENT,
         p::WALL_GAIN,
+        p::PLANNING,
         p::STEP,
         p::GOTO_STEP,
         p::FLEXIBLE_ON,
