@@ -27,15 +27,11 @@ pub const RHO_0: ParamSpec = float("rho_0_m", "Range of obstacles", "m", 0.05, 1
     .group(FIELD)
     .live();
 /// Which repulsion, Khatib's by default.
-pub const REPULSION_CLASSIC: ParamSpec = choice("repulsion", "Repulsion", &["classic", "improved"], 0)
-    .help(REPULSION_HELP)
-    .group(FIELD)
-    .live();
+pub const REPULSION_CLASSIC: ParamSpec =
+    choice("repulsion", "Repulsion", &["classic", "improved"], 0).help(REPULSION_HELP).group(FIELD).live();
 /// Which repulsion, the improved one by default.
-pub const REPULSION_IMPROVED: ParamSpec = choice("repulsion", "Repulsion", &["classic", "improved"], 1)
-    .help(REPULSION_HELP)
-    .group(FIELD)
-    .live();
+pub const REPULSION_IMPROVED: ParamSpec =
+    choice("repulsion", "Repulsion", &["classic", "improved"], 1).help(REPULSION_HELP).group(FIELD).live();
 const REPULSION_HELP: &str = "Improved repulsion fades near the target, so that a target beside an obstacle can be \
      reached; it passes obstacles more closely.";
 /// Power of the goal's distance.
@@ -55,8 +51,11 @@ pub const K_ROT: ParamSpec = float("k_rot", "Rotation gain", "N", 0.0, 1000.0, 1
     .group(FIELD)
     .live();
 /// Form of the rotating force.
-pub const ROTATION: ParamSpec = choice("rotation", "Rotating force", &["literal", "smooth"], 1)
-    .help("Literal is the paper's eq. 3, which jumps at the range of obstacles; smooth begins there at zero.")
+pub const ROTATION: ParamSpec = choice("rotation", "Rotating force", &["literal", "smooth"], 0)
+    .help(
+        "Literal is the paper's eq. 3, which jumps at the range of obstacles; smooth begins there at zero. \
+           Steering by gaps is always smooth.",
+    )
     .group(FIELD)
     .live();
 /// When the rotating force acts.
@@ -66,8 +65,10 @@ pub const READING: ParamSpec = choice("reading", "Reading of the paper", &["lite
     .group(FIELD)
     .live();
 /// Which way round.
-pub const SENSE: ParamSpec = choice("sense", "Sense of rotation", &["counter-clockwise", "side-aware"], 1)
-    .help("The paper turns counter-clockwise always; side-aware turns toward the target and keeps to the side.")
+pub const SENSE: ParamSpec = choice("sense", "Sense of rotation", &["counter-clockwise", "side-aware"], 0)
+    .help(
+        "The paper turns counter-clockwise always; side-aware turns toward the target and keeps to the side.",
+    )
     .group(FIELD)
     .live();
 
@@ -92,11 +93,6 @@ pub const FLEXIBLE: ParamSpec = flag("flexible_step", "Flexible step", false)
     .help("Moves may be twice as long while the robot lags behind its preset point.")
     .group(PLAN)
     .live();
-/// Longer moves when behind, on by default.
-pub const FLEXIBLE_ON: ParamSpec = flag("flexible_step", "Flexible step", true)
-    .help("Moves may be twice as long while the robot lags behind its preset point.")
-    .group(PLAN)
-    .live();
 /// Limit of the change of heading.
 pub const TURN_LIMIT: ParamSpec = float("turn_limit_deg", "Turn limit per step", "deg", 0.0, 180.0, 0.0)
     .help("Largest change of heading from one move to the next; 0 is no limit.")
@@ -116,7 +112,7 @@ pub const STEERING: ParamSpec = choice("steering", "Rotation in flight", &["pape
     .live();
 /// The guard's distance.
 pub const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
-    .help("Hull distance below which no motion toward an obstacle is allowed; never less than the mission's clearance.")
+    .help("Hull distance below which no motion toward an obstacle is allowed; always a little more than the mission's clearance.")
     .group(FLIGHT)
     .live();
 /// How the guard widens.
@@ -171,14 +167,18 @@ pub fn rotating_settings(config: &Config<'_>) -> Settings {
     settings.law.rotation =
         if config.choice("rotation") == "literal" { RotationForm::Literal } else { RotationForm::Smooth };
     settings.reading = if config.choice("reading") == "literal" { Reading::Literal } else { Reading::Gated };
-    settings.rule =
-        if config.choice("sense") == "side-aware" { SenseRule::SideAware } else { SenseRule::CounterClockwise };
+    settings.rule = if config.choice("sense") == "side-aware" {
+        SenseRule::SideAware
+    } else {
+        SenseRule::CounterClockwise
+    };
     settings.planning = match config.choice("planning") {
         "lock-step" => Planning::Walked,
         "flight" => Planning::Flown,
         _ => Planning::ByHull,
     };
-    settings.flight.steering = if config.choice("steering") == "gaps" { Steering::Gaps } else { Steering::Paper };
+    settings.flight.steering =
+        if config.choice("steering") == "gaps" { Steering::Gaps } else { Steering::Paper };
     settings
 }
 

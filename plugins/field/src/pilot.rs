@@ -6,7 +6,7 @@ use crate::{
     drawing,
     gaps::{Detour, GapSteering, View},
     guard,
-    law::Forces,
+    law::{Forces, Law, RotationForm},
     laws::Sense,
     part::Part,
     scene::{no_go, wall_contacts, wall_of},
@@ -18,6 +18,8 @@ use crate::{
 use planner_api::{Command, Ctx, Drive, Layer, Limits, Motion, PoseEstimate, Result, Sensed, Site, Status};
 use world::{Point, Vector};
 
+/// The guard keeps this much more than the mission demands, for it lets the hull touch its limit, metres.
+const SPARE_M: f64 = 0.02;
 /// Beyond this distance the pull of a target no longer grows, metres.
 const FAR_M: f64 = 1.0;
 /// The position error widens the guard by no more than this, metres: a robot that is lost shall still move.
@@ -150,15 +152,11 @@ impl Pilot {
         let position = pose.covariance.fixed_view::<2, 2>(0, 0).into_owned();
         let sigma_m = position.symmetric_eigenvalues().max().max(0.0).sqrt();
         let widening_m = (settings.flight.guard_sigmas * sigma_m).min(MOST_WIDENING_M);
-        settings.flight.guard_m.max(self.clearance_m) + if widening_m.is_finite() { widening_m } else { 0.0 }
+        settings.flight.guard_m.max(self.clearance_m + SPARE_M)
+            + if widening_m.is_finite() { widening_m } else { 0.0 }
     }
 
-    fn detour(
-        &mut self,
-        settings: &Settings,
-        tick: &Tick<'_>,
-        keep_m: f64,
-    ) -> Option<Detour> {
+    fn detour(&mut self, settings: &Settings, tick: &Tick<'_>, keep_m: f64) -> Option<Detour> {
         if settings.flight.steering == Steering::Paper {
             return None;
         }
@@ -177,12 +175,7 @@ impl Pilot {
     }
 
     /// What acts on the robot: the nearest part of every body, closed gaps of a detour, the wall.
-    fn contacts(
-        &self,
-        settings: &Settings,
-        tick: &Tick<'_>,
-        detour: Option<&Detour>,
-    ) -> Vec<Contact> {
+    fn contacts(&self, settings: &Settings, tick: &Tick<'_>, detour: Option<&Detour>) -> Vec<Contact> {
         let at = tick.pose.position;
         let (law, hull_m) = (&settings.law, self.limits.radius_m);
         let mut contacts: Vec<Contact> = tick
@@ -215,7 +208,11 @@ impl Pilot {
         let at = tick.pose.position;
         let goal = at + (tick.target - at).cap_magnitude(FAR_M);
         match settings.flight.steering {
-            Steering::Gaps => unopposed(settings.law.forces(at, goal, contacts, |c| sense_about(detour, c))),
+            Steering::Gaps => {
+                // The printed form would make the robot jerk at the range of every obstacle.
+                let law = Law { rotation: RotationForm::Smooth, ..settings.law };
+                unopposed(law.forces(at, goal, contacts, |c| sense_about(detour, c)))
+            }
             Steering::Paper => {
                 self.gate.update(settings, tick, contacts, self.limits.v_max_m_per_s);
                 settings.law.forces(at, goal, contacts, |c| self.gate.turning.sense(c))
@@ -234,13 +231,7 @@ impl Pilot {
     }
 
     /// Slower toward what is near and at the end of the way.
-    fn speed(
-        &self,
-        settings: &Settings,
-        tick: &Tick<'_>,
-        forces: &Forces,
-        contacts: &[Contact],
-    ) -> f64 {
+    fn speed(&self, settings: &Settings, tick: &Tick<'_>, forces: &Forces, contacts: &[Contact]) -> f64 {
         let flight = &settings.flight;
         let direction = forces.resultant().try_normalize(1e-9).unwrap_or_else(Vector::zeros);
         let near = contacts.iter().map(|contact| {

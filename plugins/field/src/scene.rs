@@ -113,7 +113,10 @@ pub fn wall_contacts(wall: &world::Boundary, at: Point, hull_m: f64, reach_m: f6
             ends.map(|(a, b)| {
                 let closest = nearest_on_segment(*a, *b, at);
                 let inward = Vector::new(a.y - b.y, b.x - a.x);
-                contact((at - closest).norm() - hull_m, direction_or(at - closest, direction_or(inward, Vector::x())))
+                contact(
+                    (at - closest).norm() - hull_m,
+                    direction_or(at - closest, direction_or(inward, Vector::x())),
+                )
             })
             .collect()
         }
@@ -125,6 +128,8 @@ fn shape_of(outline: &Outline<'_>) -> Shape {
     match *outline {
         Outline::Disc { center, radius_m } => Shape::Disc { center, radius_m },
         Outline::Polygon { vertices } => Shape::Polygon { vertices: vertices.to_vec() },
-        Outline::Polyline { points, half_width_m } => Shape::Polyline { points: points.to_vec(), half_width_m },
+        Outline::Polyline { points, half_width_m } => {
+            Shape::Polyline { points: points.to_vec(), half_width_m }
+        }
     }
 }

@@ -45,8 +45,8 @@ pub enum Steering {
 pub struct Flight {
     /// How the rotating force is used.
     pub steering: Steering,
-    /// Distance between hull and anything solid below which no motion toward it is allowed, metres; never less than
-    /// the clearance that the mission demands.
+    /// Distance between hull and anything solid below which no motion toward it is allowed, metres; a little more
+    /// than the clearance that the mission demands, if that is larger.
     pub guard_m: f64,
     /// Widens the guard by this many standard deviations of the estimated position.
     pub guard_sigmas: f64,

@@ -1,9 +1,7 @@
 //! The rotating potential field.
 
-use field::{Offline, Pilot, Settings, params as p};
-use planner_api::{
-    Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site,
-};
+use field::{Pilot, Settings, offline, params as p};
+use planner_api::{Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site};
 
 /// The rotating potential field of Wang et al. 2023, in both readings.
 ///
@@ -35,7 +33,7 @@ impl Planner for Rpf {
         p::PLANNING,
         p::STEP,
         p::GOTO_STEP,
-        p::FLEXIBLE_ON,
+        p::FLEXIBLE,
         p::TURN_LIMIT,
         p::MAX_LAG,
         p::STEERING,
@@ -58,7 +56,7 @@ impl Planner for Rpf {
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
-        Offline { settings: &self.settings }.plan(request, ctx)
+        offline::plan(&self.settings, request, ctx)
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
