@@ -403,7 +403,9 @@ impl Event {
 fn hold_severity(by: &HoldReason) -> Severity {
     match by {
         HoldReason::Operator | HoldReason::Stepped => Severity::Info,
-        HoldReason::PositionLost | HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => Severity::Warn,
+        HoldReason::PositionLost | HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => {
+            Severity::Warn
+        }
     }
 }
 

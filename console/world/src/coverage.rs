@@ -109,7 +109,8 @@ impl Floor {
     fn drivable(&self, clearances: &[f64], robot_radius_m: f64, start: Point) -> Vec<usize> {
         let mut open: Vec<bool> = clearances.iter().map(|clearance| *clearance >= robot_radius_m).collect();
         let distance_m = |index: &usize| (self.center(*index) - start).norm();
-        let first = (0..open.len()).filter(|i| open[*i]).min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)));
+        let first =
+            (0..open.len()).filter(|i| open[*i]).min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)));
         let mut queue: VecDeque<usize> = first.into_iter().collect();
         let mut found = Vec::new();
         while let Some(index) = queue.pop_front() {
