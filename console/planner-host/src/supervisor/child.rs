@@ -2,11 +2,12 @@
 
 use super::WorkerCommand;
 use super::ending::{how_it_ended, last_line};
+use rustix::process::Signal;
 use std::collections::VecDeque;
 use std::io::{self, PipeReader, Read};
 use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
-use std::os::unix::process::CommandExt;
+use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -55,22 +56,23 @@ impl Supervised {
 
     /// How the process ended, and its last line of output. Kills it if it has not ended yet.
     pub(super) fn obituary(&mut self) -> (String, String) {
-        let status = self.child.as_mut().and_then(|child| wait(child, EXIT_WITHIN));
-        if status.is_none() {
-            self.kill();
-        }
+        let ended = self.child.as_mut().and_then(|child| wait(child, EXIT_WITHIN));
+        // A process that was slow to end keeps its own reason; only one that lives on is ended by our signal.
+        let status =
+            ended.or_else(|| self.kill().filter(|status| status.signal() != Some(Signal::KILL.as_raw())));
         (how_it_ended(status), last_line(&self.output.finish()))
     }
 
-    /// Kills the process.
-    pub(super) fn kill(&mut self) {
-        if let Some(mut child) = self.child.take() {
-            // It may have ended by itself.
-            let _ = child.kill();
-            if wait(&mut child, DIE_WITHIN).is_none() {
-                reap_later(child);
-            }
+    /// Kills the process, and tells how it ended if that is known at once.
+    pub(super) fn kill(&mut self) -> Option<ExitStatus> {
+        let mut child = self.child.take()?;
+        // It may have ended by itself.
+        let _ = child.kill();
+        let status = wait(&mut child, DIE_WITHIN);
+        if status.is_none() {
+            reap_later(child);
         }
+        status
     }
 
     /// Leaves the process to end by itself, and kills it if it does not; keeps `socket` open meanwhile.

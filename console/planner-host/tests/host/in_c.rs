@@ -1,6 +1,8 @@
 //! The planner in plain C, and its header in C++.
 
-use crate::stand::{GOAL, choose, compile, config, direct_c, plan, pose, step_at, workspace};
+use crate::stand::{GOAL, choose, compile, config, direct_c, folder_with, plan, pose, step_at, workspace};
+use crate::state::COUNTER;
+use mission::Cause;
 use mission::link::{ParamValue, Parameters, PlannerLink};
 use nalgebra::Point2;
 use planner_api::{Drive, PoseEstimate, Status};
@@ -56,6 +58,28 @@ fn live_values_reach_a_planner_in_c() {
     assert!(host.reconfigure(&gain(99.0)).unwrap_err().message.contains("takes 0.1 to 10 1/s"));
     let speed = Parameters::from([("speed".to_owned(), ParamValue::Float(0.1))]);
     assert!(host.reconfigure(&speed).unwrap_err().message.contains("cannot change under way"));
+}
+
+#[test]
+fn answers_that_are_none_are_caught() {
+    let spoilt = |by: &str| {
+        let good = "out->drive = TP_TWIST; out->status = TP_MOVING; out->a = 0.001 * c->count; out->b = 0.0;";
+        let (_folder, dirs) = folder_with("counter", &COUNTER.replace(good, &format!("(void)out; {by}")));
+        let mut host = Host::new(&dirs, config());
+        choose(&mut host, "counter", &Parameters::new()).unwrap();
+        let fault = step_at(&mut host, 0, pose(Point2::origin())).unwrap_err();
+        assert_eq!(fault.cause, Cause::BadOutput);
+        fault.message
+    };
+    assert_eq!(spoilt(""), "planner counter gave no command during step 0");
+    assert_eq!(
+        spoilt("out->drive = TP_TWIST; out->status = 77; out->a = out->b = 0.0;"),
+        "planner counter gave the unknown status 77 during step 0"
+    );
+    assert_eq!(
+        spoilt("h->error(h->ctx, \"odd\", 3); return 4711;"),
+        "planner counter failed with the unknown code 4711 (odd) during step 0"
+    );
 }
 
 #[test]

@@ -7,7 +7,7 @@ use planner_host::{Host, PluginDirs};
 use tempfile::TempDir;
 
 /// Counts its steps; its speed is the count in millimetres per second. Aborts at the thirtieth step of its process.
-const COUNTER: &str = r#"
+pub const COUNTER: &str = r#"
 #include "tankops_planner.h"
 #include <stdlib.h>
 #include <string.h>
