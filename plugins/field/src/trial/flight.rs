@@ -12,8 +12,10 @@ use world::{Point, Pose, Vector, geometry::wrap_angle_rad, polyline};
 
 /// Length of a tick, seconds.
 const TICK_S: f64 = 0.1;
-/// The target is the first free preset point at least this far from the robot, metres.
+/// The target lies this far ahead along the path, metres.
 const LOOKAHEAD_M: f64 = 0.5;
+/// Length of path that is searched for the nearest point, metres.
+const WINDOW_M: f64 = 1.5;
 /// Distance at which the last point counts as reached, metres.
 const TOLERANCE_M: f64 = 0.3;
 /// A flight ends when the planner says that it is stuck for this long, seconds.
@@ -109,17 +111,24 @@ pub fn fly<P: Planner>(values: &[(&str, f64)], layout: &Layout, robot: Robot, se
     Ok(outcome)
 }
 
-/// The preset points and which of them is due.
+/// The preset points and which of them is due, by the mission's rule: the first free one half a metre on along the
+/// path from the point nearest to the robot, which only moves forward.
 struct Course<'a> {
     points: &'a [Point],
+    stations_m: Vec<f64>,
     is_free: Vec<bool>,
+    nearest: usize,
     due: usize,
+    last: usize,
 }
 
 impl<'a> Course<'a> {
     fn new(layout: &'a Layout) -> Self {
-        let is_free = layout.path.iter().map(|p| layout.hull_clearance_m(*p) >= layout.clearance_m).collect();
-        Self { points: &layout.path, is_free, due: 0 }
+        let points = &layout.path[..];
+        let is_free: Vec<bool> =
+            points.iter().map(|p| layout.hull_clearance_m(*p) >= layout.clearance_m).collect();
+        let last = is_free.iter().rposition(|free| *free).unwrap_or(0);
+        Self { points, stations_m: polyline::stations_m(points), is_free, nearest: 0, due: 0, last }
     }
 
     fn free_points(&self) -> impl Iterator<Item = Point> + '_ {
@@ -127,20 +136,24 @@ impl<'a> Course<'a> {
     }
 
     fn advance(&mut self, at: Point) {
-        while let Some(next) = self.next_free() {
-            if self.is_free[self.due] && (self.points[self.due] - at).norm() >= LOOKAHEAD_M {
-                break;
-            }
-            self.due = next;
-        }
+        let distance_m = |index: usize| (self.points[index] - at).norm();
+        let window_m = (self.stations_m[self.nearest] + WINDOW_M).max(self.stations_m[self.due]);
+        self.nearest = (self.nearest..self.points.len())
+            .take_while(|index| self.stations_m[*index] <= window_m)
+            .min_by(|a, b| distance_m(*a).total_cmp(&distance_m(*b)))
+            .unwrap_or(self.nearest);
+        let aim_m = self.stations_m[self.nearest] + LOOKAHEAD_M;
+        self.due = (self.nearest..=self.last)
+            .find(|index| self.stations_m[*index] >= aim_m && self.is_free[*index])
+            .unwrap_or(self.last);
     }
 
-    fn next_free(&self) -> Option<usize> {
-        (self.due + 1..self.points.len()).find(|index| self.is_free[*index])
+    fn is_last(&self) -> bool {
+        self.due == self.last
     }
 
     fn is_done(&self, at: Point) -> bool {
-        self.next_free().is_none() && (self.points[self.due] - at).norm() < TOLERANCE_M
+        self.is_last() && (self.points[self.due] - at).norm() < TOLERANCE_M
     }
 }
 
@@ -160,8 +173,7 @@ fn sensed_at<'a>(
     near: &'a [Obstacle<'a>],
 ) -> Sensed<'a> {
     let variance = robot.sigma_m * robot.sigma_m;
-    let ahead =
-        if course.next_free().is_none() { course.due + 1 } else { course.points.len().min(course.due + 30) };
+    let ahead = if course.is_last() { course.due + 1 } else { course.points.len().min(course.due + 30) };
     Sensed {
         tick,
         t_s: tick as f64 * TICK_S,
