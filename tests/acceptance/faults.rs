@@ -61,7 +61,9 @@ fn without_a_fallback_and_an_operator_the_mission_ends_with_the_planners_sentenc
 
 #[test]
 fn a_planner_that_panics_or_hangs_while_it_is_made_is_refused_with_a_sentence() {
-    for (fault, word) in [("configure_panic", "panic"), ("configure_hang", "configure"), ("plan_panic", "panic")] {
+    for (fault, word) in
+        [("configure_panic", "panic"), ("configure_hang", "configure"), ("plan_panic", "panic")]
+    {
         let bench = Bench::new();
         let flown = fly_faulty(&bench, fault);
         let report = flown.json();
@@ -93,10 +95,8 @@ fn a_plugin_for_another_abi_is_listed_with_the_remedy() {
     let bench = Bench::new();
     let plugins = bench.path().join("old");
     std::fs::create_dir(&plugins).unwrap();
-    let source = bench.file(
-        "old.c",
-        "#include \"tankops_planner.h\"\nTP_STAMP(9, 0);\nint tank_planner_entry;\n",
-    );
+    let source =
+        bench.file("old.c", "#include \"tankops_planner.h\"\nTP_STAMP(9, 0);\nint tank_planner_entry;\n");
     compile_file(&source, &plugins.join("libplanner_old.so"));
     let listed = bench.tankops(&["planners", "--plugin-dir", plugins.to_str().unwrap()]);
     assert_eq!(listed.code, Some(0), "{listed:?}");

@@ -80,7 +80,9 @@ impl Session {
 
     /// Waits for the shell to be back; the terminal must be as it was. Gives the exit code.
     fn back_in_the_shell(&mut self) -> String {
-        self.until("the shell", |session| session.bench.path().join("after").exists() && session.text().contains("SHELL-AGAIN"));
+        self.until("the shell", |session| {
+            session.bench.path().join("after").exists() && session.text().contains("SHELL-AGAIN")
+        });
         let read = |name: &str| std::fs::read_to_string(self.bench.path().join(name)).unwrap();
         assert_eq!(read("before"), read("after"));
         let parser = self.screen.lock().unwrap();
@@ -175,7 +177,9 @@ fn a_closed_terminal_ends_the_console_and_closes_the_run() {
     let console = session.console_pid();
     drop(session.master.take());
     session.keys = Box::new(std::io::sink());
-    session.until("the console to end", |_| !Path::new(&format!("/proc/{console}")).exists() || is_zombie(console));
+    session.until("the console to end", |_| {
+        !Path::new(&format!("/proc/{console}")).exists() || is_zombie(console)
+    });
     assert_eq!(kinds(&session.run()).last().map(String::as_str), Some("ended"));
 }
 

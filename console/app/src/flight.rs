@@ -1,7 +1,9 @@
 //! One flight: simulator, mission and planner host, tick by tick.
 
 use crate::scenario::Scenario;
-use mission::{Event, EventKind, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION};
+use mission::{
+    Event, EventKind, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION,
+};
 use planner_api::Drive;
 use planner_host::{Host, HostConfig, PluginDirs};
 use report::PlannerCalls;

@@ -39,7 +39,12 @@ pub fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
 }
 
 /// Flies a scenario to its end and tells the result.
-pub fn fly(scenario: &Scenario, plugins: &PluginDirs, logs: &LogsArg, telling: Telling) -> anyhow::Result<ExitCode> {
+pub fn fly(
+    scenario: &Scenario,
+    plugins: &PluginDirs,
+    logs: &LogsArg,
+    telling: Telling,
+) -> anyhow::Result<ExitCode> {
     crate::planners::check_choices(scenario, plugins)?;
     let began = Instant::now();
     let flight = Flight::prepare(scenario, false, plugins, Pace::Batch);
@@ -109,7 +114,11 @@ fn show_progress(bar: &ProgressBar, events: &[Event]) {
     for event in events {
         if let EventKind::Progressed { done, covered_reachable, .. } = event.kind {
             bar.set_position((done * 1000.0) as u64);
-            bar.set_message(format!("T+{:.0} s, {:.1} % of reachable floor", event.t_s, covered_reachable * 100.0));
+            bar.set_message(format!(
+                "T+{:.0} s, {:.1} % of reachable floor",
+                event.t_s,
+                covered_reachable * 100.0
+            ));
         }
         if let Some(line) = event.log_line().filter(|line| line.severity >= mission::Severity::Warn) {
             bar.println(format!("T+{:.1} s  {}  {}", event.t_s, line.source, line.text));

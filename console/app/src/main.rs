@@ -39,7 +39,9 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
     let plugins = PluginDirs::standard(&cli.plugins.plugin_dir);
     match cli.command {
         None => by_default(&plugins),
-        Some(Command::Console(args)) => console::open(&console_scenario(&args)?, &args.logs, &plugins, args.drill),
+        Some(Command::Console(args)) => {
+            console::open(&console_scenario(&args)?, &args.logs, &plugins, args.drill)
+        }
         Some(Command::Run(args)) => headless::run(&args, &plugins),
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
         Some(Command::Planners { json }) => planners::list(&plugins, json),

@@ -33,7 +33,8 @@ struct Listed {
 /// `tankops runs`.
 #[expect(clippy::print_stdout, reason = "this is where the list reaches the user")]
 pub fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
-    let listed: Vec<Listed> = run_folder::past_runs(&logs.logs)?.iter().map(|folder| look_at(folder)).collect();
+    let listed: Vec<Listed> =
+        run_folder::past_runs(&logs.logs)?.iter().map(|folder| look_at(folder)).collect();
     if json {
         println!("{}", serde_json::to_string_pretty(&listed).context("writing the list as JSON")?);
     } else if listed.is_empty() {
@@ -46,7 +47,8 @@ pub fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
 }
 
 fn row(run: &Listed) -> String {
-    let number = |value: Option<f64>, scale: f64| value.map_or_else(|| "-".into(), |v| format!("{:.1}", v * scale));
+    let number =
+        |value: Option<f64>, scale: f64| value.map_or_else(|| "-".into(), |v| format!("{:.1}", v * scale));
     let note = run.note.as_ref().map(|note| format!("  ({note})")).unwrap_or_default();
     format!(
         "{:<12} {:>8} {:>22}  {}{note}",

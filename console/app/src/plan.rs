@@ -62,7 +62,8 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
     let (plan, reason) = match answer {
         Ok((_, reply)) => {
             let said = reply.logs.into_iter().map(|(_, message)| message).next_back();
-            let reason = (!reply.value.complete).then(|| said.unwrap_or_else(|| "the planner did not say why".into()));
+            let reason =
+                (!reply.value.complete).then(|| said.unwrap_or_else(|| "the planner did not say why".into()));
             (reply.value, reason)
         }
         Err(fault) => (partial_plan(&fault)?, Some(fault.message)),

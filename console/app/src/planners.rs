@@ -20,7 +20,8 @@ pub fn found(plugins: &PluginDirs) -> Vec<PlannerInfo> {
 /// Planners that can be chosen, and plugins that are refused: file name and reason.
 pub fn surveyed(plugins: &PluginDirs) -> (Vec<PlannerInfo>, Vec<(String, String)>) {
     let survey = survey(plugins, &WorkerCommand::default());
-    let refused = survey.plugins.iter().filter_map(|plugin| Some((file_name(&plugin.path), plugin.refused.clone()?)));
+    let refused =
+        survey.plugins.iter().filter_map(|plugin| Some((file_name(&plugin.path), plugin.refused.clone()?)));
     (survey.planners().cloned().collect(), refused.collect())
 }
 
@@ -37,8 +38,15 @@ pub fn check_choices(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Resul
 fn check_choice(choice: &PlannerChoice, known: &[PlannerInfo]) -> Result<(), String> {
     let Some(info) = known.iter().find(|info| info.id == choice.id) else {
         let ids: Vec<&str> = known.iter().map(|info| info.id.as_str()).collect();
-        let has = if ids.is_empty() { "no planner was found at all".into() } else { format!("found: {}", ids.join(", ")) };
-        return Err(format!("there is no planner `{}`; {has}; `tankops planners` tells where they are looked for", choice.id));
+        let has = if ids.is_empty() {
+            "no planner was found at all".into()
+        } else {
+            format!("found: {}", ids.join(", "))
+        };
+        return Err(format!(
+            "there is no planner `{}`; {has}; `tankops planners` tells where they are looked for",
+            choice.id
+        ));
     };
     check_parameters(info, &choice.parameters)
 }
@@ -112,7 +120,8 @@ pub fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
 }
 
 fn check_file(file: &Path) -> Result<String, String> {
-    let is_plugin = file.extension().is_some_and(|end| ["so", "dylib", "dll"].iter().any(|known| end == *known));
+    let is_plugin =
+        file.extension().is_some_and(|end| ["so", "dylib", "dll"].iter().any(|known| end == *known));
     if is_plugin {
         return check_plugin(file);
     }

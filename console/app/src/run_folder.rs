@@ -23,7 +23,8 @@ pub struct RunFolder {
 impl RunFolder {
     /// Makes a new folder `<utc>-<scenario>-<planner>-<seed>`, with a number behind it if that exists.
     pub fn create(logs: &Path, scenario: &str, planner: &str, seed: u64) -> anyhow::Result<Self> {
-        fs::create_dir_all(logs).with_context(|| format!("making the folder for runs: {}", logs.display()))?;
+        fs::create_dir_all(logs)
+            .with_context(|| format!("making the folder for runs: {}", logs.display()))?;
         let now = jiff::Timestamp::now().strftime("%Y%m%dT%H%M%SZ").to_string();
         let name = format!("{now}-{}-{}-{seed}", plain(scenario), plain(planner));
         let path = fresh_folder(logs, &name)?;
@@ -42,7 +43,9 @@ impl RunFolder {
         let text = serde_json::to_string_pretty(summary).context("writing the report as JSON")?;
         let (draft, final_name) = (self.path.join("report.json.part"), self.path.join(REPORT_FILE));
         let mut file = File::create(&draft).with_context(|| format!("writing {}", draft.display()))?;
-        file.write_all(text.as_bytes()).and_then(|()| file.write_all(b"\n")).and_then(|()| file.sync_all())?;
+        file.write_all(text.as_bytes())
+            .and_then(|()| file.write_all(b"\n"))
+            .and_then(|()| file.sync_all())?;
         fs::rename(&draft, &final_name).with_context(|| format!("writing {}", final_name.display()))
     }
 }
@@ -90,7 +93,8 @@ pub fn standing(folder: &Path) -> Standing {
             Err(error) => Standing::Unreadable(format!("{REPORT_FILE}: {error}")),
         };
     }
-    let locked = File::open(folder.join(LOCK_FILE)).map(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)));
+    let locked = File::open(folder.join(LOCK_FILE))
+        .map(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)));
     if locked.unwrap_or(false) { Standing::Running } else { Standing::Crashed }
 }
 
@@ -99,9 +103,12 @@ pub fn past_runs(logs: &Path) -> anyhow::Result<Vec<PathBuf>> {
     if !logs.exists() {
         return Ok(Vec::new());
     }
-    let entries = fs::read_dir(logs).with_context(|| format!("reading the folder of runs: {}", logs.display()))?;
-    let mut folders: Vec<PathBuf> =
-        entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| path.join(JOURNAL_FILE).exists()).collect();
+    let entries =
+        fs::read_dir(logs).with_context(|| format!("reading the folder of runs: {}", logs.display()))?;
+    let mut folders: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.join(JOURNAL_FILE).exists())
+        .collect();
     folders.sort();
     Ok(folders)
 }

@@ -79,7 +79,9 @@ fn compare(recorded: &[Event], plugins: &PluginDirs) -> anyhow::Result<Verdict> 
 fn opened(events: &[Event]) -> anyhow::Result<&RunOpened> {
     match events.first().map(|event| &event.kind) {
         Some(EventKind::RunOpened(opened)) => Ok(opened),
-        _ => Err(bad_input("the journal does not begin with the opening of a run, so it cannot be computed again")),
+        _ => Err(bad_input(
+            "the journal does not begin with the opening of a run, so it cannot be computed again",
+        )),
     }
 }
 

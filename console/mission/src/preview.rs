@@ -30,7 +30,8 @@ pub fn preview(
     };
     chart.with_site(|site| {
         let info = planner.choose(&config.planner.id, &config.planner.parameters, site)?;
-        let request = PlanRequest { reason: &Reason::Start, start, task: task.as_request(), site, previous: &[] };
+        let request =
+            PlanRequest { reason: &Reason::Start, start, task: task.as_request(), site, previous: &[] };
         Ok((info, planner.plan(&request)?))
     })
 }

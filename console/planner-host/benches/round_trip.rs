@@ -1,5 +1,4 @@
 //! What a call to a planner costs: from the console through the worker process and back.
-#![expect(missing_docs, reason = "criterion's macro makes an undocumented function")]
 #![expect(clippy::print_stdout, reason = "a bench tells its figures")]
 
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -3,6 +3,7 @@
 use crate::stamp::{self, Abi};
 use sha2::{Digest, Sha256};
 use std::env;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// Folders with plugins; the first that has a planner wins.
@@ -48,9 +49,13 @@ fn named_like_plugins(dir: &Path) -> Vec<PathBuf> {
 }
 
 fn is_plugin_name(path: &Path) -> bool {
-    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-    let unix = name.starts_with("libplanner_") && (name.ends_with(".so") || name.ends_with(".dylib"));
-    unix || (name.starts_with("planner_") && name.ends_with(".dll"))
+    let part = |part: Option<&OsStr>| part.and_then(OsStr::to_str).unwrap_or_default().to_owned();
+    let (stem, extension) = (part(path.file_stem()), part(path.extension()));
+    match extension.as_str() {
+        "so" | "dylib" => stem.starts_with("libplanner_"),
+        "dll" => stem.starts_with("planner_"),
+        _ => false,
+    }
 }
 
 /// A file that is named like a plugin, as far as it can be judged without loading it.

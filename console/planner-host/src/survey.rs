@@ -3,7 +3,7 @@
 use crate::discovery::{PluginDirs, PluginFile};
 use crate::stamp::Abi;
 use crate::supervisor::{Failure, Worker, WorkerCommand};
-use crate::wire::answer::{Described, Loaded};
+use crate::wire::answer::{Described, Loaded, loaded_of};
 use crate::wire::body::Writer;
 use crate::wire::{self, kind};
 use mission::PlannerInfo;
@@ -99,7 +99,7 @@ pub(crate) fn load(
     let write = |w: &mut Writer| {
         w.u32(wire::VERSION).u64(memory_limit_bytes).bytes(path.as_os_str().as_encoded_bytes()).text(id);
     };
-    worker.ask(kind::LOAD, within, write, |body| body.loaded())
+    worker.ask(kind::LOAD, within, write, loaded_of)
 }
 
 /// A planner as the mission knows it.

@@ -369,7 +369,12 @@ mod tests {
     #[test]
     fn every_command_is_found_first_by_its_name() {
         for action in ACTIONS.iter().filter(|action| action.is_command()) {
-            assert_eq!(matching(action.name).first().map(|found| found.id), Some(action.id), "{}", action.name);
+            assert_eq!(
+                matching(action.name).first().map(|found| found.id),
+                Some(action.id),
+                "{}",
+                action.name
+            );
         }
     }
 

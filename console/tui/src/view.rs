@@ -79,7 +79,9 @@ impl Look<'_> {
         if note.is_empty() {
             block
         } else {
-            block.title_top(Line::from(vec![self.span(Role::Dim, format!(" {note} ")), Span::raw("─")]).right_aligned())
+            block.title_top(
+                Line::from(vec![self.span(Role::Dim, format!(" {note} ")), Span::raw("─")]).right_aligned(),
+            )
         }
     }
 }
@@ -105,8 +107,7 @@ fn whole(look: &Look, frame: &mut Frame, area: Rect, sizes: Sizes) {
         Constraint::Length(1),
     ])
     .areas(area);
-    let [map, side] =
-        Layout::horizontal([Constraint::Fill(1), Constraint::Length(sizes.side)]).areas(middle);
+    let [map, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(sizes.side)]).areas(middle);
     let [coverage, position, planner] = Layout::vertical([
         Constraint::Length(sizes.panes[0]),
         Constraint::Length(sizes.panes[1]),

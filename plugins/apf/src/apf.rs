@@ -1,9 +1,7 @@
 //! The classical artificial potential field.
 
-use field::{Offline, Pilot, Settings, params as p};
-use planner_api::{
-    Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site,
-};
+use field::{Pilot, Settings, offline, params as p};
+use planner_api::{Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site};
 
 /// Attraction and repulsion of Khatib 1986, toward a goal and along a preset path alike.
 ///
@@ -50,7 +48,7 @@ impl Planner for Apf {
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
-        Offline { settings: &self.settings }.plan(request, ctx)
+        offline::plan(&self.settings, request, ctx)
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

@@ -45,7 +45,11 @@ mod tests {
     #[test]
     fn arrows_are_scaled_by_the_pull_and_capped() {
         let bench = Bench::new();
-        let forces = Forces { attraction: Vector::new(100.0, 0.0), repulsion: Vector::new(-1e9, 0.0), ..Forces::default() };
+        let forces = Forces {
+            attraction: Vector::new(100.0, 0.0),
+            repulsion: Vector::new(-1e9, 0.0),
+            ..Forces::default()
+        };
         show(&bench.ctx(), Point::origin(), &forces, 200.0);
         let lengths: Vec<f64> = bench
             .drawings()

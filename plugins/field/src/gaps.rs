@@ -255,7 +255,8 @@ fn blocker(view: &View<'_>, bodies: &[&Body], narrow: &[Narrow]) -> Option<usize
     let end = view.at + way.cap_magnitude((way.norm() - view.near_enough_m).clamp(0.0, AHEAD_M));
     let room_m = view.hull_m + BLOCKING_SHARE * view.keep_m;
     let in_way = bodies.iter().position(|body| body.segment_distance_m(view.at, end) < room_m);
-    let across = narrow.iter().filter(|n| crossing(view.at, end, n.line.0, n.line.1).is_some()).map(|n| n.first);
+    let across =
+        narrow.iter().filter(|n| crossing(view.at, end, n.line.0, n.line.1).is_some()).map(|n| n.first);
     // Bodies are sorted by distance, so the smaller index is the nearer one.
     across.chain(in_way).min()
 }
@@ -275,10 +276,20 @@ mod tests {
 
     const WALL: world::Boundary = world::Boundary::Circle { radius_m: 10.0 };
 
-    fn northward<'a>(bodies: &'a [Body], at: Point) -> View<'a> {
+    fn northward(bodies: &[Body], at: Point) -> View<'_> {
         let heading_rad = std::f64::consts::FRAC_PI_2;
         let target = at + Vector::new(0.0, 2.0);
-        View { t_s: 0.0, at, heading_rad, target, near_enough_m: 0.0, bodies, wall: &WALL, hull_m: 0.25, keep_m: 0.1 }
+        View {
+            t_s: 0.0,
+            at,
+            heading_rad,
+            target,
+            near_enough_m: 0.0,
+            bodies,
+            wall: &WALL,
+            hull_m: 0.25,
+            keep_m: 0.1,
+        }
     }
 
     #[test]
@@ -307,7 +318,8 @@ mod tests {
     fn no_detour_leads_between_a_column_and_the_wall() {
         // The smaller detour would be on the right, where the wall is.
         let bodies = columns(&[(9.2, 1.0)]);
-        let detour = GapSteering::default().update(&northward(&bodies, Point::new(9.3, 0.0))).expect("blocked");
+        let detour =
+            GapSteering::default().update(&northward(&bodies, Point::new(9.3, 0.0))).expect("blocked");
         assert_eq!(detour.sense, Sense::Clockwise);
     }
 

@@ -78,6 +78,7 @@ impl fmt::Display for Shortfall {
 /// What is wrong with a walk, its clearance included; the first of several.
 pub fn judge(walk: &Walk, scene: &Scene, demanded_m: f64) -> Option<Shortfall> {
     let clearance_m = scene.path_clearance_m(&walk.path);
-    let close = (clearance_m < demanded_m - ROUNDING_M).then_some(Shortfall::Close { clearance_m, demanded_m });
+    let close =
+        (clearance_m < demanded_m - ROUNDING_M).then_some(Shortfall::Close { clearance_m, demanded_m });
     walk.shortfall.or(close)
 }

@@ -9,34 +9,34 @@
 //! lock-step targets, stop rules). Where those leave something open the item says what was chosen.
 #![forbid(unsafe_code)]
 
-pub mod contact;
-pub mod laws;
-pub mod law;
-pub mod trap;
-pub mod turning;
-pub mod scene;
-pub mod walk;
-pub mod lockstep;
-pub mod descent;
-pub mod judge;
-pub mod offline;
-pub mod part;
 pub mod body;
+pub mod contact;
+pub mod descent;
+pub mod drawing;
 pub mod gaps;
 pub mod guard;
-pub mod stall;
-pub mod pilot;
-pub mod drawing;
-pub mod settings;
+pub mod judge;
+pub mod law;
+pub mod laws;
+pub mod lockstep;
+pub mod offline;
 pub mod params;
+pub mod part;
+pub mod pilot;
+pub mod rollout;
+pub mod scene;
+pub mod settings;
+pub mod stall;
+pub mod trap;
 #[cfg(feature = "trial")]
 pub mod trial;
+pub mod turning;
+pub mod walk;
 
 pub use contact::{Contact, Source};
 pub use law::{Forces, Law, Repulsion, RotationForm};
 pub use laws::Sense;
-pub use offline::Offline;
 pub use pilot::Pilot;
 pub use scene::Scene;
-pub use settings::{Flight, Settings, Steering, Walking};
+pub use settings::{Flight, Planning, Settings, Steering, Walking};
 pub use turning::{Reading, SenseRule};

@@ -2,7 +2,7 @@
 
 use crate::{
     law::{Law, Repulsion, RotationForm},
-    settings::{Flight, Settings, Steering, Walking},
+    settings::{Flight, Planning, Settings, Steering, Walking},
     turning::{Reading, SenseRule},
 };
 use planner_api::{Config, ParamSpec, choice, flag, float};
@@ -27,15 +27,11 @@ pub const RHO_0: ParamSpec = float("rho_0_m", "Range of obstacles", "m", 0.05, 1
     .group(FIELD)
     .live();
 /// Which repulsion, Khatib's by default.
-pub const REPULSION_CLASSIC: ParamSpec = choice("repulsion", "Repulsion", &["classic", "improved"], 0)
-    .help(REPULSION_HELP)
-    .group(FIELD)
-    .live();
+pub const REPULSION_CLASSIC: ParamSpec =
+    choice("repulsion", "Repulsion", &["classic", "improved"], 0).help(REPULSION_HELP).group(FIELD).live();
 /// Which repulsion, the improved one by default.
-pub const REPULSION_IMPROVED: ParamSpec = choice("repulsion", "Repulsion", &["classic", "improved"], 1)
-    .help(REPULSION_HELP)
-    .group(FIELD)
-    .live();
+pub const REPULSION_IMPROVED: ParamSpec =
+    choice("repulsion", "Repulsion", &["classic", "improved"], 1).help(REPULSION_HELP).group(FIELD).live();
 const REPULSION_HELP: &str = "Improved repulsion fades near the target, so that a target beside an obstacle can be \
      reached; it passes obstacles more closely.";
 /// Power of the goal's distance.
@@ -55,8 +51,11 @@ pub const K_ROT: ParamSpec = float("k_rot", "Rotation gain", "N", 0.0, 1000.0, 1
     .group(FIELD)
     .live();
 /// Form of the rotating force.
-pub const ROTATION: ParamSpec = choice("rotation", "Rotating force", &["literal", "smooth"], 1)
-    .help("Literal is the paper's eq. 3, which jumps at the range of obstacles; smooth begins there at zero.")
+pub const ROTATION: ParamSpec = choice("rotation", "Rotating force", &["literal", "smooth"], 0)
+    .help(
+        "Literal is the paper's eq. 3, which jumps at the range of obstacles; smooth begins there at zero. \
+           Steering by gaps is always smooth.",
+    )
     .group(FIELD)
     .live();
 /// When the rotating force acts.
@@ -66,11 +65,19 @@ pub const READING: ParamSpec = choice("reading", "Reading of the paper", &["lite
     .group(FIELD)
     .live();
 /// Which way round.
-pub const SENSE: ParamSpec = choice("sense", "Sense of rotation", &["counter-clockwise", "side-aware"], 1)
-    .help("The paper turns counter-clockwise always; side-aware turns toward the target and keeps to the side.")
+pub const SENSE: ParamSpec = choice("sense", "Sense of rotation", &["counter-clockwise", "side-aware"], 0)
+    .help(
+        "The paper turns counter-clockwise always; side-aware turns toward the target and keeps to the side.",
+    )
     .group(FIELD)
     .live();
 
+/// How a plan is made.
+pub const PLANNING: ParamSpec = choice("planning", "Planning", &["by-hull", "lock-step", "flight"], 0)
+    .help("Lock-step: the paper's moves, one per preset point. Flight: the known map flown in thought. By hull: \
+           lock-step for a robot without extent, as the paper's, flight for one with a hull.")
+    .group(PLAN)
+    .live();
 /// Move toward a preset point.
 pub const STEP: ParamSpec = float("step_m", "Step on a preset path", "m", 0.01, 1.0, 0.2)
     .help("Longest move per preset point; the paper's step.")
@@ -83,11 +90,6 @@ pub const GOTO_STEP: ParamSpec = float("goto_step_m", "Step toward a goal", "m",
     .live();
 /// Longer moves when behind.
 pub const FLEXIBLE: ParamSpec = flag("flexible_step", "Flexible step", false)
-    .help("Moves may be twice as long while the robot lags behind its preset point.")
-    .group(PLAN)
-    .live();
-/// Longer moves when behind, on by default.
-pub const FLEXIBLE_ON: ParamSpec = flag("flexible_step", "Flexible step", true)
     .help("Moves may be twice as long while the robot lags behind its preset point.")
     .group(PLAN)
     .live();
@@ -110,7 +112,7 @@ pub const STEERING: ParamSpec = choice("steering", "Rotation in flight", &["pape
     .live();
 /// The guard's distance.
 pub const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
-    .help("Hull distance below which no motion toward an obstacle is allowed; never less than the mission's clearance.")
+    .help("Hull distance below which no motion toward an obstacle is allowed; always a little more than the mission's clearance.")
     .group(FLIGHT)
     .live();
 /// How the guard widens.
@@ -152,6 +154,7 @@ pub fn settings(config: &Config<'_>) -> Settings {
         },
         reading: Reading::Off,
         rule: SenseRule::CounterClockwise,
+        planning: Planning::Walked,
         walking: walking(config),
         flight: flight(config),
     }
@@ -164,9 +167,18 @@ pub fn rotating_settings(config: &Config<'_>) -> Settings {
     settings.law.rotation =
         if config.choice("rotation") == "literal" { RotationForm::Literal } else { RotationForm::Smooth };
     settings.reading = if config.choice("reading") == "literal" { Reading::Literal } else { Reading::Gated };
-    settings.rule =
-        if config.choice("sense") == "side-aware" { SenseRule::SideAware } else { SenseRule::CounterClockwise };
-    settings.flight.steering = if config.choice("steering") == "gaps" { Steering::Gaps } else { Steering::Paper };
+    settings.rule = if config.choice("sense") == "side-aware" {
+        SenseRule::SideAware
+    } else {
+        SenseRule::CounterClockwise
+    };
+    settings.planning = match config.choice("planning") {
+        "lock-step" => Planning::Walked,
+        "flight" => Planning::Flown,
+        _ => Planning::ByHull,
+    };
+    settings.flight.steering =
+        if config.choice("steering") == "gaps" { Steering::Gaps } else { Steering::Paper };
     settings
 }
 

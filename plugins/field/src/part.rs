@@ -142,7 +142,8 @@ fn closest_of_segments(a: Point, b: Point, c: Point, d: Point) -> (Point, Point)
         (nearest_on_segment(a, b, c), c),
         (nearest_on_segment(a, b, d), d),
     ];
-    let shorter = |x: (Point, Point), y: (Point, Point)| if (y.1 - y.0).norm() < (x.1 - x.0).norm() { y } else { x };
+    let shorter =
+        |x: (Point, Point), y: (Point, Point)| if (y.1 - y.0).norm() < (x.1 - x.0).norm() { y } else { x };
     pairs.into_iter().reduce(shorter).expect("there are four pairs")
 }
 

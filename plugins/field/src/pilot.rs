@@ -6,7 +6,7 @@ use crate::{
     drawing,
     gaps::{Detour, GapSteering, View},
     guard,
-    law::Forces,
+    law::{Forces, Law, RotationForm},
     laws::Sense,
     part::Part,
     scene::{no_go, wall_contacts, wall_of},
@@ -18,6 +18,8 @@ use crate::{
 use planner_api::{Command, Ctx, Drive, Layer, Limits, Motion, PoseEstimate, Result, Sensed, Site, Status};
 use world::{Point, Vector};
 
+/// The guard keeps this much more than the mission demands, for it lets the hull touch its limit, metres.
+const SPARE_M: f64 = 0.02;
 /// Beyond this distance the pull of a target no longer grows, metres.
 const FAR_M: f64 = 1.0;
 /// The position error widens the guard by no more than this, metres: a robot that is lost shall still move.
@@ -46,6 +48,34 @@ pub struct Pilot {
     stall: Stall,
     remedy: Remedy,
     direction: Option<Vector>,
+}
+
+/// The situation in one tick.
+#[derive(Debug, Clone, Copy)]
+pub struct Tick<'a> {
+    /// Mission time, seconds.
+    pub t_s: f64,
+    /// Where the robot believes to be.
+    pub pose: PoseEstimate,
+    /// Where to go next.
+    pub target: Point,
+    /// Whether the task ends at the target.
+    pub is_last: bool,
+    /// What is near, no-go zones included.
+    pub bodies: &'a [Body],
+}
+
+/// How the robot moves, and why.
+#[derive(Debug, Clone)]
+pub struct Decision {
+    /// Velocity in the tank frame, metres per second.
+    pub velocity: Vector,
+    /// Moving, or stuck.
+    pub status: Status,
+    /// The forces that led there.
+    pub forces: Forces,
+    /// What is gone round, if anything.
+    pub detour: Option<Detour>,
 }
 
 /// The paper's gate in flight: a place is recorded whenever a move of the plan would have been over.
@@ -81,29 +111,40 @@ impl Pilot {
         self.gate.turning = Turning::new(settings.reading, settings.rule);
     }
 
-    /// The velocity until the next tick.
+    /// The velocity until the next tick, with the forces drawn.
     ///
     /// # Errors
     /// When the console wants it to stop.
     pub fn step(&mut self, settings: &Settings, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
-        let at = sensed.pose.position;
-        let keep_m = self.keep_m(settings, &sensed.pose);
-        let bodies = self.bodies(sensed);
-        let idle_s = self.stall.update(sensed.t_s, at, sensed.target);
+        let bodies: Vec<Body> = sensed.obstacles.iter().filter_map(|o| Body::new(o.id, &o.outline)).collect();
+        let tick = Tick {
+            t_s: sensed.t_s,
+            pose: sensed.pose,
+            target: sensed.target,
+            is_last: sensed.targets_ahead.len() <= 1,
+            bodies: &bodies.into_iter().chain(self.no_go.iter().cloned()).collect::<Vec<Body>>(),
+        };
+        let decision = self.decide(settings, &tick);
+        drawing::show(ctx, sensed.pose.position, &decision.forces, settings.law.k_att);
+        show_detour(ctx, decision.detour.as_ref());
+        Ok(Command { drive: Drive::Velocity(decision.velocity), status: decision.status })
+    }
+
+    /// The same without a console: how the robot moves in this situation.
+    pub fn decide(&mut self, settings: &Settings, tick: &Tick<'_>) -> Decision {
+        let keep_m = self.keep_m(settings, &tick.pose);
+        let idle_s = self.stall.update(tick.t_s, tick.pose.position, tick.target);
         if self.remedy.update(idle_s, settings.flight.stuck_s * REMEDY_SHARE) {
             self.gaps.flip();
         }
-        let detour = self.detour(settings, sensed, &bodies, keep_m);
-        let contacts = self.contacts(settings, at, &bodies, detour.as_ref());
-        let forces = self.forces(settings, sensed, &contacts, detour.as_ref());
-        drawing::show(ctx, at, &forces, settings.law.k_att);
-        show_detour(ctx, detour.as_ref());
-        let wanted = self.smoothed(&forces, sensed) * self.speed(settings, sensed, &forces, &contacts);
-        let velocity = self.guarded(wanted, &sensed.pose, &bodies, keep_m);
-        if std::env::var("DBG").is_ok() && sensed.tick % 10 == 0 { eprintln!("{:.0} ({:.2},{:.2}) -> ({:.2},{:.2}) idle {:.0} v ({:.2},{:.2}) {:?}", sensed.t_s, at.x, at.y, sensed.target.x, sensed.target.y, idle_s, velocity.x, velocity.y, detour.as_ref().map(|d| (d.members.clone(), d.closed.len(), d.sense))); }
+        let detour = self.detour(settings, tick, keep_m);
+        let contacts = self.contacts(settings, tick, detour.as_ref());
+        let forces = self.forces(settings, tick, &contacts, detour.as_ref());
+        let wanted = self.smoothed(&forces, tick) * self.speed(settings, tick, &forces, &contacts);
+        let velocity = self.guarded(wanted, tick, keep_m);
         let status = if idle_s > settings.flight.stuck_s { Status::Stuck } else { Status::Moving };
-        Ok(Command { drive: Drive::Velocity(velocity), status })
+        Decision { velocity, status, forces, detour }
     }
 
     /// Distance the guard keeps between hull and anything solid, metres.
@@ -111,31 +152,21 @@ impl Pilot {
         let position = pose.covariance.fixed_view::<2, 2>(0, 0).into_owned();
         let sigma_m = position.symmetric_eigenvalues().max().max(0.0).sqrt();
         let widening_m = (settings.flight.guard_sigmas * sigma_m).min(MOST_WIDENING_M);
-        settings.flight.guard_m.max(self.clearance_m) + if widening_m.is_finite() { widening_m } else { 0.0 }
+        settings.flight.guard_m.max(self.clearance_m + SPARE_M)
+            + if widening_m.is_finite() { widening_m } else { 0.0 }
     }
 
-    fn bodies(&self, sensed: &Sensed<'_>) -> Vec<Body> {
-        let obstacles = sensed.obstacles.iter().filter_map(|o| Body::new(o.id, &o.outline));
-        obstacles.chain(self.no_go.iter().cloned()).collect()
-    }
-
-    fn detour(
-        &mut self,
-        settings: &Settings,
-        sensed: &Sensed<'_>,
-        bodies: &[Body],
-        keep_m: f64,
-    ) -> Option<Detour> {
+    fn detour(&mut self, settings: &Settings, tick: &Tick<'_>, keep_m: f64) -> Option<Detour> {
         if settings.flight.steering == Steering::Paper {
             return None;
         }
         let detour = self.gaps.update(&View {
-            t_s: sensed.t_s,
-            at: sensed.pose.position,
-            heading_rad: sensed.pose.heading_rad,
-            target: sensed.target,
-            near_enough_m: if is_last(sensed) { 0.0 } else { PASSING_M },
-            bodies,
+            t_s: tick.t_s,
+            at: tick.pose.position,
+            heading_rad: tick.pose.heading_rad,
+            target: tick.target,
+            near_enough_m: if tick.is_last { 0.0 } else { PASSING_M },
+            bodies: tick.bodies,
             wall: &self.wall,
             hull_m: self.limits.radius_m,
             keep_m,
@@ -144,15 +175,11 @@ impl Pilot {
     }
 
     /// What acts on the robot: the nearest part of every body, closed gaps of a detour, the wall.
-    fn contacts(
-        &self,
-        settings: &Settings,
-        at: Point,
-        bodies: &[Body],
-        detour: Option<&Detour>,
-    ) -> Vec<Contact> {
+    fn contacts(&self, settings: &Settings, tick: &Tick<'_>, detour: Option<&Detour>) -> Vec<Contact> {
+        let at = tick.pose.position;
         let (law, hull_m) = (&settings.law, self.limits.radius_m);
-        let mut contacts: Vec<Contact> = bodies
+        let mut contacts: Vec<Contact> = tick
+            .bodies
             .iter()
             .filter_map(|body| body.nearest_contact(at, hull_m))
             .filter(|contact| contact.distance_m < law.rho_0_m)
@@ -174,24 +201,28 @@ impl Pilot {
     fn forces(
         &mut self,
         settings: &Settings,
-        sensed: &Sensed<'_>,
+        tick: &Tick<'_>,
         contacts: &[Contact],
         detour: Option<&Detour>,
     ) -> Forces {
-        let at = sensed.pose.position;
-        let goal = at + (sensed.target - at).cap_magnitude(FAR_M);
+        let at = tick.pose.position;
+        let goal = at + (tick.target - at).cap_magnitude(FAR_M);
         match settings.flight.steering {
-            Steering::Gaps => unopposed(settings.law.forces(at, goal, contacts, |c| sense_about(detour, c))),
+            Steering::Gaps => {
+                // The printed form would make the robot jerk at the range of every obstacle.
+                let law = Law { rotation: RotationForm::Smooth, ..settings.law };
+                unopposed(law.forces(at, goal, contacts, |c| sense_about(detour, c)))
+            }
             Steering::Paper => {
-                self.gate.update(settings, sensed, contacts, self.limits.v_max_m_per_s);
+                self.gate.update(settings, tick, contacts, self.limits.v_max_m_per_s);
                 settings.law.forces(at, goal, contacts, |c| self.gate.turning.sense(c))
             }
         }
     }
 
     /// The direction of the resultant, with a little of the last one.
-    fn smoothed(&mut self, forces: &Forces, sensed: &Sensed<'_>) -> Vector {
-        let toward = (sensed.target - sensed.pose.position).try_normalize(1e-9);
+    fn smoothed(&mut self, forces: &Forces, tick: &Tick<'_>) -> Vector {
+        let toward = (tick.target - tick.pose.position).try_normalize(1e-9);
         let Some(wanted) = forces.resultant().try_normalize(1e-9).or(toward) else { return Vector::zeros() };
         let last = self.direction.unwrap_or(wanted);
         let direction = (wanted * (1.0 - SMOOTHING) + last * SMOOTHING).try_normalize(1e-3).unwrap_or(wanted);
@@ -200,29 +231,24 @@ impl Pilot {
     }
 
     /// Slower toward what is near and at the end of the way.
-    fn speed(
-        &self,
-        settings: &Settings,
-        sensed: &Sensed<'_>,
-        forces: &Forces,
-        contacts: &[Contact],
-    ) -> f64 {
+    fn speed(&self, settings: &Settings, tick: &Tick<'_>, forces: &Forces, contacts: &[Contact]) -> f64 {
         let flight = &settings.flight;
         let direction = forces.resultant().try_normalize(1e-9).unwrap_or_else(Vector::zeros);
         let near = contacts.iter().map(|contact| {
             let closing = (-contact.away.dot(&direction)).max(0.0);
             1.0 - closing * (1.0 - (contact.distance_m / flight.slow_m).clamp(0.0, 1.0))
         });
-        let missing_m = (sensed.target - sensed.pose.position).norm();
-        let arriving = if is_last(sensed) { missing_m / ARRIVING_M } else { 1.0 };
+        let missing_m = (tick.target - tick.pose.position).norm();
+        let arriving = if tick.is_last { missing_m / ARRIVING_M } else { 1.0 };
         let share = near.fold(1.0, f64::min).min(arriving).max(flight.min_share);
         self.limits.v_max_m_per_s * share
     }
 
-    fn guarded(&self, wanted: Vector, pose: &PoseEstimate, bodies: &[Body], keep_m: f64) -> Vector {
+    fn guarded(&self, wanted: Vector, tick: &Tick<'_>, keep_m: f64) -> Vector {
         let (hull_m, v_max) = (self.limits.radius_m, self.limits.v_max_m_per_s);
         let reach_m = keep_m + v_max;
-        let solid = bodies.iter().flat_map(|body| body.contacts(pose.position, hull_m));
+        let pose = &tick.pose;
+        let solid = tick.bodies.iter().flat_map(|body| body.contacts(pose.position, hull_m));
         let contacts: Vec<Contact> = solid
             .filter(|contact| contact.distance_m < reach_m)
             .chain(wall_contacts(&self.wall, pose.position, hull_m, reach_m))
@@ -239,14 +265,14 @@ impl Pilot {
 }
 
 impl Gate {
-    fn update(&mut self, settings: &Settings, sensed: &Sensed<'_>, contacts: &[Contact], v_max: f64) {
-        if sensed.t_s < self.due_s {
+    fn update(&mut self, settings: &Settings, tick: &Tick<'_>, contacts: &[Contact], v_max: f64) {
+        if tick.t_s < self.due_s {
             return;
         }
         let step_m = settings.walking.step_m;
-        self.due_s = sensed.t_s + step_m / v_max.max(1e-3);
-        let to_target = sensed.target - sensed.pose.position;
-        self.detector.record(sensed.pose.position);
+        self.due_s = tick.t_s + step_m / v_max.max(1e-3);
+        let to_target = tick.target - tick.pose.position;
+        self.detector.record(tick.pose.position);
         let obstacle_acts = contacts.iter().any(|c| c.source != Source::Wall);
         let trapped = self.detector.is_trapped(step_m, step_m, to_target.norm(), obstacle_acts);
         self.turning.update(trapped, contacts, to_target);
@@ -258,11 +284,6 @@ fn unopposed(forces: Forces) -> Forces {
     let Some(around) = forces.rotation.try_normalize(1e-9) else { return forces };
     let along = |force: Vector| force - around * force.dot(&around).min(0.0);
     Forces { attraction: along(forces.attraction), repulsion: along(forces.repulsion), ..forces }
-}
-
-/// Whether the target is where the task ends.
-fn is_last(sensed: &Sensed<'_>) -> bool {
-    sensed.targets_ahead.len() <= 1
 }
 
 fn sense_about(detour: Option<&Detour>, contact: &Contact) -> Option<Sense> {

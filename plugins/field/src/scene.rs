@@ -1,6 +1,7 @@
 //! The known map as the planners see it: contacts near a place, found through the world's bounding volume hierarchy.
 
 use crate::{
+    body::Body,
     contact::{Contact, Source, away_from, direction_or},
     law::Law,
 };
@@ -16,6 +17,7 @@ pub struct Scene {
     map: ObstacleMap,
     wall: world::Boundary,
     centers: Vec<Point>,
+    bodies: Vec<Option<Body>>,
     hull_m: f64,
 }
 
@@ -52,7 +54,15 @@ impl Scene {
             })
             .collect();
         let centers = obstacles.iter().map(|o| o.shape.center()).collect();
-        Self { map: ObstacleMap::new(&wall, &obstacles), wall, centers, hull_m: site.limits.radius_m }
+        let bodies = solids(site).map(|(id, outline)| Body::new(id, &outline)).collect();
+        let map = ObstacleMap::new(&wall, &obstacles);
+        Self { map, wall, centers, bodies, hull_m: site.limits.radius_m }
+    }
+
+    /// The obstacles within a range of a place, as if the robot sensed them from there.
+    pub fn bodies_within(&self, at: Point, range_m: f64) -> Vec<Body> {
+        let near = self.map.within(at, range_m);
+        near.iter().filter_map(|n| self.bodies[n.index].clone()).collect()
     }
 
     /// What acts on a robot at a place by this law; cost grows with what is near, hardly with what there is.
@@ -103,7 +113,10 @@ pub fn wall_contacts(wall: &world::Boundary, at: Point, hull_m: f64, reach_m: f6
             ends.map(|(a, b)| {
                 let closest = nearest_on_segment(*a, *b, at);
                 let inward = Vector::new(a.y - b.y, b.x - a.x);
-                contact((at - closest).norm() - hull_m, direction_or(at - closest, direction_or(inward, Vector::x())))
+                contact(
+                    (at - closest).norm() - hull_m,
+                    direction_or(at - closest, direction_or(inward, Vector::x())),
+                )
             })
             .collect()
         }
@@ -115,6 +128,8 @@ fn shape_of(outline: &Outline<'_>) -> Shape {
     match *outline {
         Outline::Disc { center, radius_m } => Shape::Disc { center, radius_m },
         Outline::Polygon { vertices } => Shape::Polygon { vertices: vertices.to_vec() },
-        Outline::Polyline { points, half_width_m } => Shape::Polyline { points: points.to_vec(), half_width_m },
+        Outline::Polyline { points, half_width_m } => {
+            Shape::Polyline { points: points.to_vec(), half_width_m }
+        }
     }
 }

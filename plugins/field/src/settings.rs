@@ -5,6 +5,17 @@ use crate::{
     turning::{Reading, SenseRule},
 };
 
+/// How a plan is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Planning {
+    /// As in the paper: moves of the law toward targets in lock step.
+    Walked,
+    /// By flying the known map in thought, with the exact position: what the robot will do.
+    Flown,
+    /// Walked for a robot without extent, as the paper's, and flown for one with a hull.
+    ByHull,
+}
+
 /// How a law is walked over the known map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walking {
@@ -34,8 +45,8 @@ pub enum Steering {
 pub struct Flight {
     /// How the rotating force is used.
     pub steering: Steering,
-    /// Distance between hull and anything solid below which no motion toward it is allowed, metres; never less than
-    /// the clearance that the mission demands.
+    /// Distance between hull and anything solid below which no motion toward it is allowed, metres; a little more
+    /// than the clearance that the mission demands, if that is larger.
     pub guard_m: f64,
     /// Widens the guard by this many standard deviations of the estimated position.
     pub guard_sigmas: f64,
@@ -56,6 +67,8 @@ pub struct Settings {
     pub reading: Reading,
     /// Which way round it acts.
     pub rule: SenseRule,
+    /// How a plan is made.
+    pub planning: Planning,
     /// How the law is walked to plan.
     pub walking: Walking,
     /// How the robot is steered.

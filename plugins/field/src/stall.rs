@@ -79,7 +79,9 @@ mod tests {
 
     fn idle_after(path: impl Fn(f64) -> Point) -> f64 {
         let mut stall = Stall::default();
-        (0..=300).map(|k| stall.update(f64::from(k) * 0.1, path(f64::from(k) * 0.1), Point::new(50.0, 0.0))).fold(0.0, f64::max)
+        (0..=300)
+            .map(|k| stall.update(f64::from(k) * 0.1, path(f64::from(k) * 0.1), Point::new(50.0, 0.0)))
+            .fold(0.0, f64::max)
     }
 
     #[test]

@@ -1,13 +1,12 @@
 //! The rotating potential field.
 
-use field::{Offline, Pilot, Settings, params as p};
-use planner_api::{
-    Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site,
-};
+use field::{Pilot, Settings, offline, params as p};
+use planner_api::{Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site};
 
 /// The rotating potential field of Wang et al. 2023, in both readings.
 ///
-/// Planning walks the law in lock step as the paper does. In flight the rotating force is, unless set otherwise, used
+/// For a point robot planning walks the law in lock step as the paper does; for one with a hull that fails nearly
+/// always, so there the known map is flown in thought. In flight the rotating force is, unless set otherwise, used
 /// about whatever blocks the way and on the side of the smaller detour: as printed it gets stuck.
 pub struct Rpf {
     settings: Settings,
@@ -31,9 +30,10 @@ impl Planner for Rpf {
         p::REPULSION_IMPROVED,
         p::EXPONENT,
         p::WALL_GAIN,
+        p::PLANNING,
         p::STEP,
         p::GOTO_STEP,
-        p::FLEXIBLE_ON,
+        p::FLEXIBLE,
         p::TURN_LIMIT,
         p::MAX_LAG,
         p::STEERING,
@@ -56,7 +56,7 @@ impl Planner for Rpf {
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
-        Offline { settings: &self.settings }.plan(request, ctx)
+        offline::plan(&self.settings, request, ctx)
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

@@ -15,7 +15,11 @@ pub fn report(logs: &Path, model: &Model) -> anyhow::Error {
         Ok(std::fs::write(&path, text)?)
     });
     match kept {
-        Ok(()) => anyhow!("the screen failed; the run was closed, what the screen knew is in {}", path.display()),
-        Err(error) => anyhow!("the screen failed; the run was closed, but no crash report could be written: {error}"),
+        Ok(()) => {
+            anyhow!("the screen failed; the run was closed, what the screen knew is in {}", path.display())
+        }
+        Err(error) => {
+            anyhow!("the screen failed; the run was closed, but no crash report could be written: {error}")
+        }
     }
 }

@@ -29,7 +29,9 @@ enum Request {
     Order(Order),
     Speed(Speed),
     /// End the run, close everything, stop.
-    Close { within: Duration },
+    Close {
+        within: Duration,
+    },
 }
 
 /// The flying thread, seen from outside.
@@ -86,7 +88,9 @@ impl Engine {
     pub fn close(self, signal: Option<Signal>) -> anyhow::Result<Option<Ended>> {
         let within = if signal.is_some() { HURRY } else { CLOSE_TIMEOUT };
         let _ = self.requests.send(Request::Close { within });
-        self.thread.join().unwrap_or_else(|panic| Err(anyhow::anyhow!("the engine panicked: {}", words(&*panic))))
+        self.thread
+            .join()
+            .unwrap_or_else(|panic| Err(anyhow::anyhow!("the engine panicked: {}", words(&*panic))))
     }
 }
 
@@ -165,7 +169,9 @@ impl Cockpit {
     fn next_due(&self, due: Instant) -> Instant {
         let now = Instant::now();
         match self.speed {
-            Speed::Times(factor) => due.max(now - Duration::from_millis(50)) + self.flight.tick_length().div_f64(factor),
+            Speed::Times(factor) => {
+                due.max(now - Duration::from_millis(50)) + self.flight.tick_length().div_f64(factor)
+            }
             Speed::Max => now,
         }
     }

@@ -123,9 +123,10 @@ impl<'a> Screen<'a> {
     /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.
     fn wait(&self) -> anyhow::Result<Option<Msg>> {
         let frame = self.dirty.then(|| self.pause().saturating_sub(self.drawn.elapsed()));
-        let by_itself = self.model.wakes_at_mono_s().map(|at| {
-            Duration::from_secs_f64((at - self.began.elapsed().as_secs_f64()).max(0.001))
-        });
+        let by_itself = self
+            .model
+            .wakes_at_mono_s()
+            .map(|at| Duration::from_secs_f64((at - self.began.elapsed().as_secs_f64()).max(0.001)));
         let answer = match frame.into_iter().chain(by_itself).min() {
             Some(timeout) => self.told.recv_timeout(timeout),
             None => self.told.recv().map_err(|_| RecvTimeoutError::Disconnected),
@@ -133,13 +134,16 @@ impl<'a> Screen<'a> {
         match answer {
             Ok(msg) => Ok(Some(msg)),
             Err(RecvTimeoutError::Timeout) => Ok(None),
-            Err(RecvTimeoutError::Disconnected) => anyhow::bail!("all other threads of the console have ended"),
+            Err(RecvTimeoutError::Disconnected) => {
+                anyhow::bail!("all other threads of the console have ended")
+            }
         }
     }
 
     fn tell_time(&mut self) {
         let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
-        let now = Times { mono_s: self.began.elapsed().as_secs_f64(), wall_unix_s: since_epoch.as_secs_f64() };
+        let now =
+            Times { mono_s: self.began.elapsed().as_secs_f64(), wall_unix_s: since_epoch.as_secs_f64() };
         update(&mut self.model, Msg::Time(now));
     }
 

@@ -35,7 +35,8 @@ pub fn keys(tell: &SyncSender<Msg>) -> anyhow::Result<()> {
 /// Signals; one that ends the process ends it within [`GRACE`], whatever the other threads do.
 pub fn signals(tell: &SyncSender<Msg>) -> anyhow::Result<()> {
     let tell = tell.clone();
-    let mut signals = Signals::new([SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT]).context("listening to signals")?;
+    let mut signals =
+        Signals::new([SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT]).context("listening to signals")?;
     spawn("signals", move || {
         for number in signals.forever() {
             let signal = match number {

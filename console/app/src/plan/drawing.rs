@@ -71,7 +71,11 @@ fn outline(body: &mut String, shape: &Shape, room_m: f64) {
 
 fn circle(body: &mut String, center: Point, radius_m: f64, class: &str) {
     // Writing to a String cannot fail.
-    let _ = write!(body, r#"<circle class="{class}" cx="{:.4}" cy="{:.4}" r="{radius_m:.4}"/>"#, center.x, -center.y);
+    let _ = write!(
+        body,
+        r#"<circle class="{class}" cx="{:.4}" cy="{:.4}" r="{radius_m:.4}"/>"#,
+        center.x, -center.y
+    );
 }
 
 fn polygon(body: &mut String, vertices: &[Point], class: &str) {

@@ -3,7 +3,7 @@
 use super::find::Found;
 use super::{Fault, HostConfig, fault, fault::Phase, numbers};
 use crate::supervisor::{Failure, Worker};
-use crate::wire::answer::{BAD_OUTPUT, Said};
+use crate::wire::answer::{BAD_OUTPUT, Said, said_of};
 use crate::wire::body::{Body, Writer};
 use crate::wire::kind;
 use crate::{checks, parameters};
@@ -62,8 +62,7 @@ impl Driving {
         let write = |w: &mut Writer| {
             w.values(&values).site(site);
         };
-        let answer =
-            driving.worker.ask(kind::CONFIGURE, config.configure_deadline, write, |body| body.said());
+        let answer = driving.worker.ask(kind::CONFIGURE, config.configure_deadline, write, said_of);
         let said = driving.judged(answer, Phase::Configure)?;
         Ok((driving, said))
     }
@@ -94,7 +93,7 @@ impl Driving {
         let write = |w: &mut Writer| {
             w.values(&values);
         };
-        let answer = self.worker.ask(kind::RECONFIGURE, config.configure_deadline, write, |body| body.said());
+        let answer = self.worker.ask(kind::RECONFIGURE, config.configure_deadline, write, said_of);
         let said = self.judged(answer, Phase::Configure)?;
         self.parameters = merged;
         Ok(said)
@@ -109,7 +108,7 @@ impl Driving {
         let write = |w: &mut Writer| {
             w.flag(config.wants_drawing).request(request);
         };
-        let read = |body: &mut Body<'_>| Ok((body.plan()?, body.said()?));
+        let read = |body: &mut Body<'_>| Ok((body.plan()?, said_of(body)?));
         let answer = self.worker.ask(kind::PLAN, config.plan_deadline, write, read);
         let (plan, said) = self.judged(answer, Phase::Plan)?;
         checks::plan(&plan).map_err(|what| fault::bad_output(&self.info.id, Phase::Plan, &what))?;
@@ -127,7 +126,7 @@ impl Driving {
         let write = |w: &mut Writer| {
             w.flag(config.wants_drawing).sensed(sensed);
         };
-        let read = |body: &mut Body<'_>| Ok((body.command()?, body.said()?));
+        let read = |body: &mut Body<'_>| Ok((body.command()?, said_of(body)?));
         let answer = self.worker.ask(kind::STEP, config.step_deadline, write, read);
         let (command, said) = self.judged(answer, phase)?;
         checks::command(&command, &self.limits)

@@ -103,26 +103,36 @@ impl Writer {
     }
 }
 
-impl Body<'_> {
-    pub(crate) fn loaded(&mut self) -> Read<Loaded> {
-        Ok(Loaded {
-            sha256: self.text()?,
-            abi_major: self.u32()?,
-            abi_minor: self.u32()?,
-            planners: self.all(|body| {
-                Ok(Described {
-                    id: body.text()?,
-                    name: body.text()?,
-                    version: body.text()?,
-                    about: body.text()?,
-                    caps: body.u32()?,
-                    state_version: body.u32()?,
-                    parameters: body.all(Self::parameter)?,
-                })
-            })?,
-        })
-    }
+/// Reads what a library holds.
+pub(crate) fn loaded_of(body: &mut Body<'_>) -> Read<Loaded> {
+    Ok(Loaded {
+        sha256: body.text()?,
+        abi_major: body.u32()?,
+        abi_minor: body.u32()?,
+        planners: body.all(|body| {
+            Ok(Described {
+                id: body.text()?,
+                name: body.text()?,
+                version: body.text()?,
+                about: body.text()?,
+                caps: body.u32()?,
+                state_version: body.u32()?,
+                parameters: body.all(Body::parameter)?,
+            })
+        })?,
+    })
+}
 
+/// Reads what a planner drew, reported and said.
+pub(crate) fn said_of(body: &mut Body<'_>) -> Read<Said> {
+    Ok(Said {
+        drawings: body.all(Body::drawing)?,
+        scalars: body.all(|body| Ok((body.text()?, body.f64()?, body.text()?)))?,
+        logs: body.all(|body| Ok((log_level(body.u8()?.into()), body.text()?)))?,
+    })
+}
+
+impl Body<'_> {
     fn parameter(&mut self) -> Read<ParamInfo> {
         Ok(ParamInfo {
             key: self.text()?,
@@ -150,14 +160,6 @@ impl Body<'_> {
 
     pub(crate) fn refusal(&mut self) -> Read<Refusal> {
         Ok(Refusal { code: self.i32()?, message: self.text()?, partial: self.points()? })
-    }
-
-    pub(crate) fn said(&mut self) -> Read<Said> {
-        Ok(Said {
-            drawings: self.all(Self::drawing)?,
-            scalars: self.all(|body| Ok((body.text()?, body.f64()?, body.text()?)))?,
-            logs: self.all(|body| Ok((log_level(body.u8()?.into()), body.text()?)))?,
-        })
     }
 
     fn drawing(&mut self) -> Read<Drawing> {
@@ -234,7 +236,7 @@ mod tests {
         let write = |w: &mut Writer| {
             w.loaded(&loaded);
         };
-        assert_eq!(carried(write, Body::loaded), loaded);
+        assert_eq!(carried(write, loaded_of), loaded);
     }
 
     #[test]
@@ -252,7 +254,7 @@ mod tests {
         let write = |w: &mut Writer| {
             w.said(&said);
         };
-        assert_eq!(carried(write, Body::said), said);
+        assert_eq!(carried(write, said_of), said);
     }
 
     #[test]

@@ -48,9 +48,13 @@ pub(super) fn die_with_the_console(socket: OwnedFd) -> io::Result<()> {
     std::thread::Builder::new().name("watchdog".into()).stack_size(64 << 10).spawn(move || {
         loop {
             let mut sockets = [PollFd::new(&socket, PollFlags::empty())];
-            let waited = poll(&mut sockets, None);
             // No events are asked for: only a full hang-up or an error is reported.
-            if waited.is_ok() && !sockets[0].revents().is_empty() {
+            let happened = poll(&mut sockets, None).map_or(PollFlags::empty(), |_| sockets[0].revents());
+            if happened.contains(PollFlags::NVAL) {
+                // The planner closed our descriptor; the main thread finds that out, too, and ends with its own code.
+                return;
+            }
+            if !happened.is_empty() {
                 let _ = kill_process(getpid(), Signal::KILL);
             }
         }

@@ -20,6 +20,7 @@ const HELD: &str = "held by the operator";
 const STEPPED: &str = "held after a step";
 const HELD_LOST: &str = "held, position lost";
 const HELD_FAULT: &str = "held, planner fault";
+const HELD_STUCK: &str = "held, stuck";
 const KNOWN: &str = "known";
 const LOST: &str = "lost";
 
@@ -44,6 +45,7 @@ impl States {
             (STEPPED, amber),
             (HELD_LOST, red),
             (HELD_FAULT, red),
+            (HELD_STUCK, red),
             outcome(Outcome::Complete, style::rgb(60, 120, 200)),
             outcome(Outcome::Stuck, amber),
             outcome(Outcome::Collision, red),
@@ -106,6 +108,7 @@ fn held(by: &HoldReason) -> &'static str {
         HoldReason::Stepped => STEPPED,
         HoldReason::PositionLost => HELD_LOST,
         HoldReason::PlannerFault { .. } => HELD_FAULT,
+        HoldReason::Stuck { .. } => HELD_STUCK,
     }
 }
 

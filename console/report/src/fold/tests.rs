@@ -184,7 +184,13 @@ fn full_run() -> Summary {
     ));
     Summary {
         wall_time_s: Some(0.042),
-        planner_calls: Some(PlannerCalls { plan: 1, step: 36, p50_us: Some(21.4), p99_us: Some(88.0), faults: 0 }),
+        planner_calls: Some(PlannerCalls {
+            plan: 1,
+            step: 36,
+            p50_us: Some(21.4),
+            p99_us: Some(88.0),
+            faults: 0,
+        }),
         events_sha256: Some("5e1f".into()),
         logs: Some(Logs { journal: Some("logs/run/events.jsonl".into()), recording: None, error: None }),
         ..fold(&events).summary()

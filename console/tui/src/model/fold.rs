@@ -89,7 +89,14 @@ impl Model {
                     coverage.apply(runs);
                 }
             }
-            EventKind::Progressed { done, along_m, cross_track_m, target, covered_reachable, covered_whole } => {
+            EventKind::Progressed {
+                done,
+                along_m,
+                cross_track_m,
+                target,
+                covered_reachable,
+                covered_whole,
+            } => {
                 self.progress = Some(Progress {
                     done: *done,
                     along_m: *along_m,

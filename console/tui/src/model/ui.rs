@@ -105,7 +105,8 @@ impl Layers {
 
     /// Shows a layer or hides it, by its place in [`Layers::NAMES`].
     pub fn toggle(&mut self, index: usize) {
-        let all = [&mut self.coverage, &mut self.trail, &mut self.plan, &mut self.drawings, &mut self.stations];
+        let all =
+            [&mut self.coverage, &mut self.trail, &mut self.plan, &mut self.drawings, &mut self.stations];
         if let Some(layer) = all.into_iter().nth(index) {
             *layer = !*layer;
         }

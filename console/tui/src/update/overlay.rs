@@ -85,7 +85,8 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
 
 fn quit(model: &mut Model) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
-    let open = !matches!(model.phase, Phase::Ended { .. }) && (model.phase != Phase::Idle || model.may_move());
+    let open =
+        !matches!(model.phase, Phase::Ended { .. }) && (model.phase != Phase::Idle || model.may_move());
     let end = open.then_some(Effect::Order(Order::Abort));
     end.into_iter().chain([Effect::Quit { signal: None }]).collect()
 }

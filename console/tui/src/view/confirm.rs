@@ -34,21 +34,28 @@ fn question(model: &Model) -> Option<String> {
         }
         Overlay::Confirm(Ask::Abort) => {
             let scanned = coverage::shares(model).0;
-            Some(format!("END here, {scanned} % of reachable floor scanned? Enter ends it for good, Esc not."))
+            Some(format!(
+                "END here, {scanned} % of reachable floor scanned? Enter ends it for good, Esc not."
+            ))
         }
-        Overlay::Confirm(Ask::Swap(choice)) => {
-            Some(format!("CHANGE PLANNER? {} instead of {planner}; nothing moves yet. Enter / Esc", choice.id))
-        }
+        Overlay::Confirm(Ask::Swap(choice)) => Some(format!(
+            "CHANGE PLANNER? {} instead of {planner}; nothing moves yet. Enter / Esc",
+            choice.id
+        )),
         Overlay::Stepping => {
             let tick_s = model.run.as_ref().map_or(0.0, |run| run.mission.tick_s);
             let tick = text::number(tick_s, 2);
             Some(format!("STEP? Enter or . moves for one tick of {tick} s, again and again. Esc ends."))
         }
         Overlay::Quit => Some(match model.phase {
-            Phase::Idle | Phase::Ended { .. } => "LEAVE? Nothing is under way. Enter leaves, Esc stays.".into(),
+            Phase::Idle | Phase::Ended { .. } => {
+                "LEAVE? Nothing is under way. Enter leaves, Esc stays.".into()
+            }
             _ => "LEAVE? It ends the mission here as aborted. Enter leaves, Esc stays, held.".into(),
         }),
-        Overlay::Filter => Some(format!("EVENTS WITH: {}_  Enter keeps the filter, Esc clears it.", model.ui.needle)),
+        Overlay::Filter => {
+            Some(format!("EVENTS WITH: {}_  Enter keeps the filter, Esc clears it.", model.ui.needle))
+        }
         _ => None,
     }
 }

@@ -119,7 +119,11 @@ fn hint(text: &str) -> Row {
 /// What holds everywhere; the keys in it come from the table.
 fn rules() -> Vec<Row> {
     let keys = |id: ActionId| {
-        actions::ACTIONS.iter().rfind(|action| action.id == id).map(actions::Action::keys_text).unwrap_or_default()
+        actions::ACTIONS
+            .iter()
+            .rfind(|action| action.id == id)
+            .map(actions::Action::keys_text)
+            .unwrap_or_default()
     };
     vec![
         hint(" Colour never stands alone: C W w are alarms, * is not acknowledged."),

@@ -42,7 +42,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 }
 
 fn title(model: &Model) -> String {
-    let zoom = if model.ui.map.zoom > 0 { format!("  ×{}", 1_u32 << model.ui.map.zoom) } else { String::new() };
+    let zoom =
+        if model.ui.map.zoom > 0 { format!("  ×{}", 1_u32 << model.ui.map.zoom) } else { String::new() };
     let follow = if model.ui.map.follow { "  follows the robot" } else { "" };
     format!("Map{zoom}{follow}")
 }
@@ -66,17 +67,18 @@ fn window(model: &Model, area: Rect) -> Option<Window> {
 
 fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
     let pen = Pen { look: *look, window };
-    let canvas = Canvas::default().marker(Marker::Braille).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
-        pen.scanned(ctx);
-        ctx.marker(Marker::Braille);
-        pen.zones(ctx);
-        pen.paths(ctx);
-        pen.drawings(ctx);
-        pen.solid(ctx);
-        pen.robot(ctx);
-        ctx.layer();
-        pen.labels(ctx);
-    });
+    let canvas =
+        Canvas::default().marker(Marker::Braille).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
+            pen.scanned(ctx);
+            ctx.marker(Marker::Braille);
+            pen.zones(ctx);
+            pen.paths(ctx);
+            pen.drawings(ctx);
+            pen.solid(ctx);
+            pen.robot(ctx);
+            ctx.layer();
+            pen.labels(ctx);
+        });
     frame.render_widget(canvas, area);
 }
 
@@ -104,10 +106,18 @@ impl Pen<'_> {
     }
 
     fn scanned(&self, ctx: &mut Context<'_>) {
-        let Some(raster) = self.model().coverage.as_ref().filter(|_| self.model().ui.layers.coverage) else { return };
+        let Some(raster) = self.model().coverage.as_ref().filter(|_| self.model().ui.layers.coverage) else {
+            return;
+        };
         let (whole, partly) = (self.look.theme.color(Role::Scanned), self.look.theme.color(Role::Partly));
         let plain = self.look.caps.colours == Colours::None || self.look.caps.glyphs == Glyphs::Ascii;
-        let dots = |rows_per_row, whole, partly| Scanned { raster, window: self.window, rows_per_row, whole, partly };
+        let dots = |rows_per_row, whole, partly| Scanned {
+            raster,
+            window: self.window,
+            rows_per_row,
+            whole,
+            partly,
+        };
         if plain {
             ctx.marker(Marker::Custom('▒'));
             ctx.draw(&dots(1, Some(whole), None));
@@ -168,7 +178,9 @@ impl Pen<'_> {
         let Some(run) = &self.model().run else { return };
         self.take_up(ctx, 'o');
         let wall = match &run.world.boundary {
-            Boundary::Circle { radius_m } => ellipse(Point::origin(), (*radius_m, *radius_m), 0.0, WALL_PIECES),
+            Boundary::Circle { radius_m } => {
+                ellipse(Point::origin(), (*radius_m, *radius_m), 0.0, WALL_PIECES)
+            }
             Boundary::Polygon { vertices } => vertices.iter().chain(vertices.first()).copied().collect(),
         };
         self.stroke(ctx, &wall, Role::Wall, false);
@@ -214,7 +226,11 @@ impl Pen<'_> {
             let role = if model.position.lost { Role::Crit } else { Role::Robot };
             print(pose.position, role, arrow(self.look.caps.glyphs, pose.heading_rad).into());
         } else {
-            print(run.mission.start.position, Role::Robot, arrow_of(&run.mission.start, self.look.caps.glyphs).into());
+            print(
+                run.mission.start.position,
+                Role::Robot,
+                arrow_of(&run.mission.start, self.look.caps.glyphs).into(),
+            );
         }
     }
 }
@@ -249,7 +265,8 @@ fn readout(look: &Look) -> Vec<ratatui::text::Span<'static>> {
 fn draw_scale(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
     let longest_m = window.column_m * 16.0;
     let decade = 10.0_f64.powf(longest_m.log10().floor());
-    let length_m = [5.0, 2.0, 1.0].into_iter().map(|step| step * decade).find(|m| *m <= longest_m).unwrap_or(decade);
+    let length_m =
+        [5.0, 2.0, 1.0].into_iter().map(|step| step * decade).find(|m| *m <= longest_m).unwrap_or(decade);
     let columns = (length_m / window.column_m).round() as usize;
     let decimals = if length_m < 1.0 { 1 + usize::from(length_m < 0.1) } else { 0 };
     let label = format!(" {} m ", text::number(length_m, decimals));
@@ -279,7 +296,9 @@ fn draw_legend(look: &Look, frame: &mut Frame, area: Rect) {
     let lines: Vec<Line> = entries
         .into_iter()
         .filter(|(shown, ..)| *shown)
-        .map(|(_, role, mark, word)| Line::from(vec![look.span(role, mark), look.span(Role::Dim, format!(" {word}"))]))
+        .map(|(_, role, mark, word)| {
+            Line::from(vec![look.span(role, mark), look.span(Role::Dim, format!(" {word}"))])
+        })
         .collect();
     let area = Rect { x: area.x + 1, width: LEGEND.0, height: LEGEND.1, ..area };
     for (line, row) in lines.into_iter().zip(area.rows()) {

@@ -8,11 +8,15 @@ use mission::{Order, Outcome, Severity, event::HoldReason};
 /// What comes next, and how the line looks.
 pub(super) fn sentence(model: &Model) -> (Role, String) {
     if let Some(notice) = model.notice() {
-        let role = if notice.severity == Severity::Info { Role::Title } else { events::role(notice.severity) };
+        let role =
+            if notice.severity == Severity::Info { Role::Title } else { events::role(notice.severity) };
         return (role, notice.text.clone());
     }
     if let Some(silent_s) = model.silent_s().filter(|_| model.console.busy.is_none()) {
-        let text = format!("◌ No news from the mission for {} s: values are old. space asks for HOLD.", silent_s as u64);
+        let text = format!(
+            "◌ No news from the mission for {} s: values are old. space asks for HOLD.",
+            silent_s as u64
+        );
         return (Role::Stale, text);
     }
     if model.console.hold_asked {
@@ -49,10 +53,13 @@ fn idle(model: &Model) -> (Role, String) {
 fn running(model: &Model) -> (Role, String) {
     if model.position.lost {
         let hold_s = model.run.as_ref().map_or(0.0, |run| run.mission.lost_hold_s);
-        let text = format!("POSITION LOST: the robot holds by itself after {} s of it.", text::number(hold_s, 1));
+        let text =
+            format!("POSITION LOST: the robot holds by itself after {} s of it.", text::number(hold_s, 1));
         return (Role::Crit, text);
     }
-    if let Some(alarm) = model.alarms.worst().filter(|alarm| !alarm.acknowledged && alarm.severity >= Severity::Warn) {
+    if let Some(alarm) =
+        model.alarms.worst().filter(|alarm| !alarm.acknowledged && alarm.severity >= Severity::Warn)
+    {
         return (events::role(alarm.severity), format!("a acknowledges: {}", alarm.text));
     }
     let Some(progress) = &model.progress else {
@@ -70,7 +77,12 @@ fn held(model: &Model, by: &HoldReason) -> (Role, String) {
         }
         HoldReason::Operator => "HELD by you. space asks to go on, P changes the planner.".into(),
         HoldReason::Stepped => "HELD after a step. space asks to go on.".into(),
-        HoldReason::PositionLost => "HELD, position lost. Goes on by itself when regained; space keeps it held.".into(),
+        HoldReason::PositionLost => {
+            "HELD, position lost. Goes on by itself when regained; space keeps it held.".into()
+        }
+        HoldReason::Stuck { message } => {
+            format!("HELD, stuck. P changes the planner, space tries again. {message}")
+        }
         HoldReason::PlannerFault { message } if model.has_fallback() => {
             format!("HELD, planner failed. The fallback takes over if it can. {message}")
         }

@@ -75,7 +75,8 @@ fn target(model: &Model) -> String {
 
 fn cross_track(model: &Model) -> String {
     let off_m = model.progress.as_ref().and_then(|progress| progress.cross_track_m);
-    off_m.map_or_else(|| "- (no preset path)".into(), |off_m| format!("{} m off path", text::number(off_m, 2)))
+    off_m
+        .map_or_else(|| "- (no preset path)".into(), |off_m| format!("{} m off path", text::number(off_m, 2)))
 }
 
 fn speed(model: &Model) -> String {
@@ -124,7 +125,8 @@ fn scalars(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
         .map(|(name, value, unit)| {
             let unit = if unit.is_empty() { "[-]" } else { unit.as_str() };
             let label = text::column(&format!(" {name}"), 13.min(columns / 2));
-            let value = text::fit(&format!("{} {unit}", text::number(*value, 3)), columns - label.len().min(columns));
+            let value =
+                text::fit(&format!("{} {unit}", text::number(*value, 3)), columns - label.len().min(columns));
             look.line([(Role::Dim, label), (Role::Text, value)])
         })
         .collect()

@@ -3,8 +3,8 @@
 use mission::event::{HoldReason, JOURNAL_VERSION, RunOpened};
 use mission::link::{Cause, During, Fault};
 use mission::{
-    Event, EventKind, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters, PlannerChoice, PlannerInfo,
-    TaskConfig,
+    Event, EventKind, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters, PlannerChoice,
+    PlannerInfo, TaskConfig,
 };
 use nalgebra::{Matrix2, Matrix3};
 use planner_api::{Command, Drawing, Layer, Limits, Motion, PoseEstimate, Reason};
@@ -13,7 +13,8 @@ use std::f64::consts::FRAC_PI_2;
 use tui::{Caps, Colours, Glyphs, Health, Model, Msg, Recording, Refused, Times, update};
 use world::spiral::Spiral;
 use world::{
-    Boundary, CoverageGrid, Floor, Obstacle, ObstacleId, Point, Pose, Shape, Station, StationId, Vector, World,
+    Boundary, CoverageGrid, Floor, Obstacle, ObstacleId, Point, Pose, Shape, Station, StationId, Vector,
+    World,
 };
 
 /// Length of a tick, seconds.
@@ -42,7 +43,10 @@ pub fn world() -> World {
         .map(|(index, (radius_m, bearing))| Station {
             id: StationId(index as u32),
             name: format!("S{}", index + 1),
-            position: Point::new(radius_m * bearing.to_radians().cos(), radius_m * bearing.to_radians().sin()),
+            position: Point::new(
+                radius_m * bearing.to_radians().cos(),
+                radius_m * bearing.to_radians().sin(),
+            ),
         })
         .collect();
     World { boundary: Boundary::Circle { radius_m: 10.0 }, obstacles, stations, zones: Vec::new() }
@@ -104,7 +108,8 @@ fn parameter(key: &str, label: &str, unit: &str, help: &str, kind: ParamKind, li
 /// A planner as the host describes it.
 pub fn planner(id: &str, version: &str, about: &str) -> PlannerInfo {
     let float = |min, max, default| ParamKind::Float { min, max, default };
-    let gain = "Strength of the rotating field near a column. Higher keeps a wider berth and makes a longer path.";
+    let gain =
+        "Strength of the rotating field near a column. Higher keeps a wider berth and makes a longer path.";
     PlannerInfo {
         id: id.into(),
         name: id.to_uppercase(),
@@ -115,17 +120,41 @@ pub fn planner(id: &str, version: &str, about: &str) -> PlannerInfo {
         abi: "1.0".into(),
         parameters: vec![
             parameter("rpf_gain", "Rotating gain", "m3/s", gain, float(0.2, 4.0, 1.2), true),
-            parameter("rpf_radius_m", "Rotating radius", "m", "How far the field reaches.", float(0.3, 2.0, 1.1), true),
-            parameter("order", "Order of repulsion", "", "Exponent.", ParamKind::Int { min: 1, max: 4, default: 2 }, true),
+            parameter(
+                "rpf_radius_m",
+                "Rotating radius",
+                "m",
+                "How far the field reaches.",
+                float(0.3, 2.0, 1.1),
+                true,
+            ),
+            parameter(
+                "order",
+                "Order of repulsion",
+                "",
+                "Exponent.",
+                ParamKind::Int { min: 1, max: 4, default: 2 },
+                true,
+            ),
             parameter(
                 "mode",
                 "Mode",
                 "",
                 "As published, or gated near the path.",
-                ParamKind::Choice { options: vec!["literal".into(), "gated".into()], default: "gated".into() },
+                ParamKind::Choice {
+                    options: vec!["literal".into(), "gated".into()],
+                    default: "gated".into(),
+                },
                 false,
             ),
-            parameter("improved", "Improved repulsion", "", "No trap.", ParamKind::Flag { default: true }, true),
+            parameter(
+                "improved",
+                "Improved repulsion",
+                "",
+                "No trap.",
+                ParamKind::Flag { default: true },
+                true,
+            ),
         ],
     }
 }
@@ -263,7 +292,8 @@ impl Telling {
         // The error breathes, so that its history has a shape.
         let breath = 1.0 + 0.4 * (self.tick as f64 * 0.09).sin();
         let sigma_m = self.sigma_m * breath;
-        let covariance = Matrix3::from_diagonal(&nalgebra::Vector3::new(sigma_m * sigma_m, sigma_m * sigma_m, 1e-4));
+        let covariance =
+            Matrix3::from_diagonal(&nalgebra::Vector3::new(sigma_m * sigma_m, sigma_m * sigma_m, 1e-4));
         EventKind::Estimated {
             pose: PoseEstimate { position: here, heading_rad: way.y.atan2(way.x), covariance },
         }
@@ -323,10 +353,7 @@ impl Telling {
             message: message.clone(),
             partial: Vec::new(),
         };
-        vec![
-            self.now(EventKind::PlannerFailed { fault }),
-            self.held(HoldReason::PlannerFault { message }),
-        ]
+        vec![self.now(EventKind::PlannerFailed { fault }), self.held(HoldReason::PlannerFault { message })]
     }
 
     /// The end.

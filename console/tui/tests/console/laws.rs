@@ -49,8 +49,10 @@ fn event() -> impl Strategy<Value = Event> {
 }
 
 fn msg() -> impl Strategy<Value = Msg> {
-    let recording = prop::sample::select(vec![Recording::On, Recording::Off, Recording::Failed("full".into())]);
-    let signal = prop::sample::select(vec![Signal::Interrupt, Signal::Terminate, Signal::Stop, Signal::Continue]);
+    let recording =
+        prop::sample::select(vec![Recording::On, Recording::Off, Recording::Failed("full".into())]);
+    let signal =
+        prop::sample::select(vec![Signal::Interrupt, Signal::Terminate, Signal::Stop, Signal::Continue]);
     prop_oneof![
         8 => (key(), any::<bool>()).prop_map(|(key, repeat)| Msg::Key(KeyPress { key, repeat })),
         4 => prop::collection::vec(event(), 0..6).prop_map(Msg::Events),
@@ -104,7 +106,9 @@ proptest! {
 
 #[test]
 fn the_smallest_and_largest_screens_are_drawn() {
-    for (width, height) in [(0, 0), (1, 1), (0, 9), (9, 0), (3, 2), (24, 7), (59, 16), (60, 15), (80, 24), (300, 100)] {
+    for (width, height) in
+        [(0, 0), (1, 1), (0, 9), (9, 0), (3, 2), (24, 7), (59, 16), (60, 15), (80, 24), (300, 100)]
+    {
         for mut screen in [Screen::idle(), Screen::running()] {
             for keys in ["", "?", ":z", "P", "p", "L", "/x", "q", "S", "X"] {
                 screen.type_text(keys);

@@ -66,7 +66,10 @@ fn running_with_letters_only() {
     let mut screen = Screen::running();
     for size in [(120, 36), (80, 24)] {
         screen.tell(Msg::Resize { width: size.0, height: size.1 });
-        insta::assert_snapshot!(format!("ascii_{}x{}", size.0, size.1), text(&drawn(&screen.model, &ASCII, size)));
+        insta::assert_snapshot!(
+            format!("ascii_{}x{}", size.0, size.1),
+            text(&drawn(&screen.model, &ASCII, size))
+        );
     }
 }
 

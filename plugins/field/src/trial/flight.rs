@@ -16,6 +16,8 @@ const TICK_S: f64 = 0.1;
 const LOOKAHEAD_M: f64 = 0.5;
 /// Distance at which the last point counts as reached, metres.
 const TOLERANCE_M: f64 = 0.3;
+/// A flight ends when the planner says that it is stuck for this long, seconds.
+const BORNE_S: f64 = 30.0;
 /// A flight may take this many times as long as the preset path at full speed.
 const PATIENCE: f64 = 3.0;
 
@@ -74,6 +76,7 @@ pub fn fly<P: Planner>(values: &[(&str, f64)], layout: &Layout, robot: Robot, se
         due: layout.path[0],
         time_s: 0.0,
     };
+    let mut stuck_ticks = 0;
     let limit_s = PATIENCE * polyline::length_m(&layout.path) / site.limits.v_max_m_per_s;
     for tick in 0..(limit_s / TICK_S) as u64 {
         let shake = Vector::new(noise.sample(&mut rng), noise.sample(&mut rng));
@@ -87,7 +90,11 @@ pub fn fly<P: Planner>(values: &[(&str, f64)], layout: &Layout, robot: Robot, se
         let sensed = sensed_at(tick, &believed, robot, &course, &near);
         let command = planner.step(&sensed, &bench.ctx())?;
         bench.clear();
-        outcome.said_stuck |= command.status == Status::Stuck;
+        stuck_ticks = if command.status == Status::Stuck { stuck_ticks + 1 } else { 0 };
+        outcome.said_stuck |= stuck_ticks > 0;
+        if f64::from(stuck_ticks) * TICK_S > BORNE_S {
+            break;
+        }
         pose = moved(&pose, command.drive, &site);
         flown.push(pose.position);
         outcome.clearance_m = outcome.clearance_m.min(layout.hull_clearance_m(pose.position));
@@ -153,7 +160,8 @@ fn sensed_at<'a>(
     near: &'a [Obstacle<'a>],
 ) -> Sensed<'a> {
     let variance = robot.sigma_m * robot.sigma_m;
-    let ahead = if course.next_free().is_none() { course.due + 1 } else { course.points.len().min(course.due + 30) };
+    let ahead =
+        if course.next_free().is_none() { course.due + 1 } else { course.points.len().min(course.due + 30) };
     Sensed {
         tick,
         t_s: tick as f64 * TICK_S,
@@ -175,7 +183,8 @@ fn sensed_at<'a>(
 fn moved(pose: &Pose, drive: Drive, site: &Site<'_>) -> Pose {
     match (drive, site.limits.motion) {
         (Drive::Velocity(velocity), Motion::Point) => {
-            let heading_rad = if velocity.norm() > 1e-9 { velocity.y.atan2(velocity.x) } else { pose.heading_rad };
+            let heading_rad =
+                if velocity.norm() > 1e-9 { velocity.y.atan2(velocity.x) } else { pose.heading_rad };
             Pose { position: pose.position + velocity * TICK_S, heading_rad }
         }
         (Drive::Velocity(velocity), Motion::Unicycle) => {

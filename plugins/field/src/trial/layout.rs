@@ -31,7 +31,8 @@ impl Layout {
         let n_columns = rng.random_range(6..=room.clamp(7, 40));
         let (hull_m, clearance_m) = (0.25, 0.05);
         let outer_radius_m = radius_m - hull_m - 0.25;
-        let path = Spiral { outer_radius_m, inner_radius_m: 0.1, pitch_m, step_rad: 0.1 / outer_radius_m }.points();
+        let path =
+            Spiral { outer_radius_m, inner_radius_m: 0.1, pitch_m, step_rad: 0.1 / outer_radius_m }.points();
         let mut columns = Vec::new();
         while columns.len() < n_columns {
             let radius = rng.random_range(0.15..0.4);
