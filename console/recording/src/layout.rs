@@ -105,9 +105,7 @@ impl Sketch {
     }
 
     fn right(&mut self, run: &RunOpened) -> bp::ContainerLike {
-        let limit_m = run.mission.position_limit_m;
-        let error =
-            self.plot("Position error [m]", &[paths::ERROR, paths::ERROR_95], Some([0.0, 1.5 * limit_m]));
+        let error = self.plot("Position error [m]", &[paths::ERROR, paths::ERROR_95], None);
         let covered = self.plot("Coverage of the reachable floor [%]", &[paths::COVERED], Some([0.0, 105.0]));
         let speeds = [paths::SPEED, paths::SPEED_SENT, paths::CLEARANCE];
         let motion = self.plot("Speed [m/s] and clearance [m]", &speeds, None);

@@ -42,7 +42,6 @@ pub struct Recorder {
     health: Arc<SinkHealth>,
     ticks_waiting: u32,
     sent_at: Instant,
-    sent_in_parts: bool,
 }
 
 impl Recorder {
@@ -69,14 +68,7 @@ impl Recorder {
     fn open(sink: SafeSink, identity: &Identity, now: Instant) -> Result<Self, RecordingError> {
         let health = sink.health();
         let stream = Some(Stream::open(sink, identity)?);
-        Ok(Self {
-            fold: Fold::default(),
-            stream,
-            health,
-            ticks_waiting: 0,
-            sent_at: now,
-            sent_in_parts: false,
-        })
+        Ok(Self { fold: Fold::default(), stream, health, ticks_waiting: 0, sent_at: now })
     }
 
     /// How the file is doing; stays readable after the recorder is gone.
@@ -115,10 +107,6 @@ impl Recorder {
         if let Some(stream) = &self.stream {
             self.fold.finish(stream)?;
             self.fold.send(stream)?;
-            stream.flush();
-            if self.sent_in_parts {
-                self.fold.renew_layout(stream)?;
-            }
         }
         // Dropping the last handle writes the footer of the format.
         drop(self.stream.take());
@@ -129,7 +117,6 @@ impl Recorder {
         let Some(stream) = &self.stream else { return Ok(()) };
         self.sent_at = now;
         self.ticks_waiting = 0;
-        self.sent_in_parts = true;
         if let Err(error) = self.fold.send(stream) {
             return self.stop(error);
         }

@@ -23,10 +23,6 @@ impl Document {
         Self { run, drivers: Vec::new(), end: None }
     }
 
-    pub(crate) fn run(&self) -> &RunOpened {
-        &self.run
-    }
-
     pub(crate) fn planner_chosen(&mut self, choice: &PlannerChoice, info: &PlannerInfo) {
         self.drivers.push(Driver { choice: choice.clone(), info: info.clone() });
     }
@@ -100,7 +96,7 @@ impl Document {
             ("position error limit (95 %)", format!("{} m", mission.position_limit_m)),
             ("tankops", run.tankops_version.clone()),
         ];
-        text.push_str("| | |\n|---|---|\n");
+        text.push_str("| item | value |\n|---|---|\n");
         for (name, value) in rows {
             let _ = writeln!(text, "| {name} | {value} |");
         }

@@ -63,17 +63,8 @@ impl Fold {
         let at = opened.tick.at;
         opened.close_tick(stream, at)?;
         opened.ticks.finish();
-        opened.raster.picture(stream, at)
-    }
-
-    /// Sends the layout again, with views that are new to the viewer.
-    ///
-    /// The viewer fits the timeline of states only once, to what it has read by then; views that come at the end of
-    /// the file are fitted to the whole run.
-    pub(crate) fn renew_layout(&self, stream: &Stream) -> Done {
-        let Some(opened) = &self.opened else { return Ok(()) };
-        stream.layout(layout::messages(opened.document.run())?);
-        Ok(())
+        opened.raster.picture(stream, at)?;
+        opened.states.finish(stream)
     }
 
     /// Sends waiting rows.
@@ -110,7 +101,7 @@ impl Opened {
     }
 
     fn apply(&mut self, event: &Event, at: At, stream: &Stream) -> Done {
-        self.states.apply(&event.kind, at, stream)?;
+        self.states.apply(&event.kind, at);
         match &event.kind {
             EventKind::Covered { runs } => self.raster.mark(runs),
             EventKind::Planned { path, .. } => {

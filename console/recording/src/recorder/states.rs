@@ -1,4 +1,8 @@
 //! Who drives, whether the robot moves, and whether its position is known: lanes of the timeline of states.
+//!
+//! The viewer fits this timeline only once, to what it has read when the first lane appears. So the lanes are written
+//! all together at the end, where they are fitted to the whole run. A recording whose writer was killed has none;
+//! the event log tells the same, and the recording made anew from the journal has them.
 
 use super::{
     paths,
@@ -24,6 +28,7 @@ const LOST: &str = "lost";
 pub(crate) struct States {
     mission: &'static str,
     planners: Vec<String>,
+    changes: Vec<(&'static str, At, String)>,
 }
 
 impl States {
@@ -49,42 +54,51 @@ impl States {
         ];
         stream.always(paths::STATE_MISSION, &configuration(&mission))?;
         stream.always(paths::STATE_POSITION, &configuration(&[(KNOWN, green), (LOST, red)]))?;
-        stream.once(paths::STATE_MISSION, at, &rr::StateChange::single(WAITING))?;
-        stream.once(paths::STATE_POSITION, at, &rr::StateChange::single(KNOWN))?;
-        Ok(Self { mission: WAITING, planners: Vec::new() })
+        let mut states = Self { mission: WAITING, planners: Vec::new(), changes: Vec::new() };
+        states.change(paths::STATE_MISSION, at, WAITING);
+        states.change(paths::STATE_POSITION, at, KNOWN);
+        Ok(states)
     }
 
-    pub(crate) fn apply(&mut self, event: &EventKind, at: At, stream: &Stream) -> Done {
+    pub(crate) fn apply(&mut self, event: &EventKind, at: At) {
         match event {
-            EventKind::Ordered { order: Order::Start } | EventKind::Resumed => self.enter(MOVING, at, stream),
+            EventKind::Ordered { order: Order::Start } | EventKind::Resumed => self.enter(MOVING, at),
             // A run without an operator is never told to start.
-            EventKind::Commanded { .. } if self.mission == WAITING => self.enter(MOVING, at, stream),
-            EventKind::Held { by } => self.enter(held(by), at, stream),
-            EventKind::Ended { outcome, .. } => self.enter(outcome.word(), at, stream),
-            EventKind::PositionLost { .. } => {
-                stream.once(paths::STATE_POSITION, at, &rr::StateChange::single(LOST))
-            }
-            EventKind::PositionRegained { .. } => {
-                stream.once(paths::STATE_POSITION, at, &rr::StateChange::single(KNOWN))
-            }
-            EventKind::PlannerChosen { choice, .. } => self.planner(&choice.id, at, stream),
-            _ => Ok(()),
+            EventKind::Commanded { .. } if self.mission == WAITING => self.enter(MOVING, at),
+            EventKind::Held { by } => self.enter(held(by), at),
+            EventKind::Ended { outcome, .. } => self.enter(outcome.word(), at),
+            EventKind::PositionLost { .. } => self.change(paths::STATE_POSITION, at, LOST),
+            EventKind::PositionRegained { .. } => self.change(paths::STATE_POSITION, at, KNOWN),
+            EventKind::PlannerChosen { choice, .. } => self.planner(&choice.id, at),
+            _ => {}
         }
     }
 
-    fn enter(&mut self, state: &'static str, at: At, stream: &Stream) -> Done {
-        self.mission = state;
-        stream.once(paths::STATE_MISSION, at, &rr::StateChange::single(state))
+    /// Writes all lanes.
+    pub(crate) fn finish(&self, stream: &Stream) -> Done {
+        let colors = style::SERIES.into_iter().cycle();
+        let planners: Vec<_> = self.planners.iter().map(String::as_str).zip(colors).collect();
+        stream.always(paths::STATE_PLANNER, &configuration(&planners))?;
+        for (path, at, state) in &self.changes {
+            stream.once(path, *at, &rr::StateChange::single(state.as_str()))?;
+        }
+        Ok(())
     }
 
-    fn planner(&mut self, id: &str, at: At, stream: &Stream) -> Done {
+    fn enter(&mut self, state: &'static str, at: At) {
+        self.mission = state;
+        self.change(paths::STATE_MISSION, at, state);
+    }
+
+    fn planner(&mut self, id: &str, at: At) {
         if !self.planners.iter().any(|known| known == id) {
             self.planners.push(id.to_owned());
-            let colors = style::SERIES.into_iter().cycle();
-            let states: Vec<_> = self.planners.iter().map(String::as_str).zip(colors).collect();
-            stream.always(paths::STATE_PLANNER, &configuration(&states))?;
         }
-        stream.once(paths::STATE_PLANNER, at, &rr::StateChange::single(id))
+        self.change(paths::STATE_PLANNER, at, id);
+    }
+
+    fn change(&mut self, path: &'static str, at: At, state: &str) {
+        self.changes.push((path, at, state.to_owned()));
     }
 }
 

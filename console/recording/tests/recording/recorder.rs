@@ -105,6 +105,22 @@ fn the_log_has_a_line_for_every_event_that_people_read() {
 }
 
 #[test]
+fn the_timeline_of_states_tells_who_drove_and_what_the_mission_did() {
+    let content = recorded(&events(TICKS));
+    let states = |entity| {
+        let rows = rows(&content, entity, "StateChange:state");
+        rows.iter().map(|(times, state)| (times[1].1, state.clone())).collect::<Vec<_>>()
+    };
+    let half = TICKS as i64 / 2;
+    assert_eq!(states("state/planner"), [(0, "rpf".to_owned()), (half + 19, "apf".to_owned())]);
+    let mission = [(0, "moving"), (0, "waiting"), (half, "held by the operator"), (half + 19, "moving")];
+    let last = (TICKS as i64 - 1, "complete");
+    let expected: Vec<_> =
+        mission.iter().chain([&last]).map(|(tick, state)| (*tick, (*state).to_owned())).collect();
+    assert_eq!(states("state/mission"), expected);
+}
+
+#[test]
 fn the_last_picture_of_the_floor_holds_every_scanned_cell() {
     let events = events(TICKS);
     let content = recorded(&events);

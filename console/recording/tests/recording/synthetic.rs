@@ -207,7 +207,7 @@ impl Robot {
         }
         kinds.push(EventKind::Progressed {
             done: self.grid.fraction_reachable(),
-            along_m,
+            along_m: Some(along_m),
             cross_track_m: Some(self.drift.norm()),
             target,
             covered_reachable: self.grid.fraction_reachable(),
@@ -329,10 +329,14 @@ fn opened() -> RunOpened {
             position_limit_m: 0.4,
             lost_hold_s: 5.0,
             stuck_s: 60.0,
+            start_heading_sigma_rad: 0.01,
             odometry_sigma_per_m: 0.02,
+            odometry_turn_sigma_per_rad: 0.02,
+            gyro_sigma_rad_per_s: 0.001,
             range_sigma_ratio: 0.01,
             planner: PlannerChoice { id: "rpf".into(), parameters: Parameters::new() },
             fallback: None,
+            attended: false,
         },
     }
 }
