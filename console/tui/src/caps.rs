@@ -78,7 +78,9 @@ mod tests {
     use super::*;
 
     fn caps(pairs: &[(&str, &str)]) -> Caps {
-        Caps::from_env(|name| pairs.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).to_owned()))
+        Caps::from_env(|name| {
+            pairs.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).to_owned())
+        })
     }
 
     #[test]

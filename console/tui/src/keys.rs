@@ -80,8 +80,9 @@ mod tests {
 
     #[test]
     fn keys_are_written_as_the_keyboard_has_them() {
-        let shown: Vec<String> =
-            [Key::Char(' '), Key::Char('S'), Key::Ctrl('c'), Key::F(1), Key::Enter].map(|key| key.to_string()).into();
+        let shown: Vec<String> = [Key::Char(' '), Key::Char('S'), Key::Ctrl('c'), Key::F(1), Key::Enter]
+            .map(|key| key.to_string())
+            .into();
         assert_eq!(shown, ["space", "S", "Ctrl-C", "F1", "Enter"]);
     }
 }

@@ -16,7 +16,9 @@ pub use position::Position;
 pub use trail::Trail;
 pub use ui::{Overlay, Pane, Ui};
 
-use mission::{MissionConfig, Order, Outcome, PlannerChoice, PlannerInfo, Severity, event::HoldReason, link::Fault};
+use mission::{
+    MissionConfig, Order, Outcome, PlannerChoice, PlannerInfo, Severity, event::HoldReason, link::Fault,
+};
 use planner_api::{Command, Drawing};
 use serde::{Deserialize, Serialize};
 use world::{Point, World};

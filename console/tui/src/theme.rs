@@ -145,10 +145,8 @@ fn style(role: Role, colours: Colours) -> Style {
     match colours {
         Colours::None => plain,
         Colours::Sixteen => sixteen(role).map_or(plain, |color| plain.fg(color)),
-        Colours::Indexed => rich(role).map_or_else(
-            || style(role, Colours::Sixteen),
-            |(index, _)| plain.fg(Color::Indexed(index)),
-        ),
+        Colours::Indexed => rich(role)
+            .map_or_else(|| style(role, Colours::Sixteen), |(index, _)| plain.fg(Color::Indexed(index))),
         Colours::True => rich(role).map_or_else(
             || style(role, Colours::Sixteen),
             |(_, (red, green, blue))| plain.fg(Color::Rgb(red, green, blue)),
@@ -161,9 +159,14 @@ fn weight(role: Role) -> Modifier {
     match role {
         Role::Crit | Role::Confirm => Modifier::BOLD | Modifier::REVERSED,
         Role::Selected => Modifier::REVERSED,
-        Role::Title | Role::Focus | Role::Key | Role::Warn | Role::Run | Role::Hold | Role::Station | Role::Robot => {
-            Modifier::BOLD
-        }
+        Role::Title
+        | Role::Focus
+        | Role::Key
+        | Role::Warn
+        | Role::Run
+        | Role::Hold
+        | Role::Station
+        | Role::Robot => Modifier::BOLD,
         Role::Dim | Role::Border => Modifier::DIM,
         Role::Stale => Modifier::ITALIC,
         _ => Modifier::empty(),

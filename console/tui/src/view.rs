@@ -38,8 +38,8 @@ pub fn view_with(model: &Model, caps: &Caps, theme: &Theme, frame: &mut Frame) {
         return;
     }
     match Arrangement::of(area.width, area.height) {
-        Arrangement::Wide => whole(&look, frame, area, WIDE),
-        Arrangement::Narrow => whole(&look, frame, area, NARROW),
+        Arrangement::Wide => whole(&look, frame, area, &WIDE),
+        Arrangement::Narrow => whole(&look, frame, area, &NARROW),
         Arrangement::Paged => paged(&look, frame, area),
         Arrangement::Strip => strip::draw(&look, frame, area),
     }
@@ -79,7 +79,9 @@ impl Look<'_> {
         if note.is_empty() {
             block
         } else {
-            block.title_top(Line::from(vec![self.span(Role::Dim, format!(" {note} ")), Span::raw("─")]).right_aligned())
+            block.title_top(
+                Line::from(vec![self.span(Role::Dim, format!(" {note} ")), Span::raw("─")]).right_aligned(),
+            )
         }
     }
 }
@@ -93,10 +95,10 @@ struct Sizes {
     wide: bool,
 }
 
-const WIDE: Sizes = Sizes { side: 44, events: 6, panes: [8, 9], wide: true };
+const WIDE: Sizes = Sizes { side: 44, events: 6, panes: [9, 8], wide: true };
 const NARROW: Sizes = Sizes { side: 30, events: 4, panes: [6, 5], wide: false };
 
-fn whole(look: &Look, frame: &mut Frame, area: Rect, sizes: Sizes) {
+fn whole(look: &Look, frame: &mut Frame, area: Rect, sizes: &Sizes) {
     let [top, middle, events, next, keys] = Layout::vertical([
         Constraint::Length(1),
         Constraint::Fill(1),
@@ -105,8 +107,7 @@ fn whole(look: &Look, frame: &mut Frame, area: Rect, sizes: Sizes) {
         Constraint::Length(1),
     ])
     .areas(area);
-    let [map, side] =
-        Layout::horizontal([Constraint::Fill(1), Constraint::Length(sizes.side)]).areas(middle);
+    let [map, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(sizes.side)]).areas(middle);
     let [coverage, position, planner] = Layout::vertical([
         Constraint::Length(sizes.panes[0]),
         Constraint::Length(sizes.panes[1]),

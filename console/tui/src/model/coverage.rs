@@ -144,7 +144,10 @@ mod tests {
         raster.apply(&[CellRun(0, 3), CellRun(1, 3)]);
         assert_eq!(raster.counts().covered, 4);
         assert!((raster.scanned_m2() - 1.0).abs() < 1e-12);
-        assert_eq!(raster.scanned_share(Point::new(1.0, 0.25), 100.0), raster.scanned_share(Point::new(1.0, 0.25), 1e9));
+        assert_eq!(
+            raster.scanned_share(Point::new(1.0, 0.25), 100.0),
+            raster.scanned_share(Point::new(1.0, 0.25), 1e9)
+        );
     }
 
     #[test]

@@ -94,7 +94,10 @@ mod tests {
 
     #[test]
     fn words_and_flags_are_read_by_name() {
-        let mode = info(ParamKind::Choice { options: vec!["literal".into(), "gated".into()], default: "gated".into() });
+        let mode = info(ParamKind::Choice {
+            options: vec!["literal".into(), "gated".into()],
+            default: "gated".into(),
+        });
         assert_eq!(parse(&mode, "literal"), Ok(ParamValue::Word("literal".into())));
         assert!(parse(&mode, "other").is_err_and(|why| why.contains("literal, gated")));
         assert_eq!(parse(&info(ParamKind::Flag { default: true }), "off"), Ok(ParamValue::Flag(false)));

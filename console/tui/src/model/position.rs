@@ -75,7 +75,8 @@ impl Position {
     /// Root mean square of the residuals of the last fix, metres.
     pub fn residual_rms_m(&self) -> Option<f64> {
         let fix = self.fix.as_ref().filter(|fix| !fix.residuals.is_empty())?;
-        let mean = fix.residuals.iter().map(|r| r.residual_m.powi(2)).sum::<f64>() / fix.residuals.len() as f64;
+        let mean =
+            fix.residuals.iter().map(|r| r.residual_m.powi(2)).sum::<f64>() / fix.residuals.len() as f64;
         Some(mean.sqrt())
     }
 

@@ -97,7 +97,8 @@ fn hold(model: &mut Model) -> Vec<Effect> {
 
 fn interrupt(model: &mut Model) -> Vec<Effect> {
     let now_s = model.console.now.mono_s;
-    let twice = model.console.interrupted_mono_s.is_some_and(|before_s| now_s - before_s <= INTERRUPT_TWICE_S);
+    let twice =
+        model.console.interrupted_mono_s.is_some_and(|before_s| now_s - before_s <= INTERRUPT_TWICE_S);
     model.console.interrupted_mono_s = Some(now_s);
     let effects = hold_now(model);
     if twice {

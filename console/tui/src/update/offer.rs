@@ -38,7 +38,9 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::PageNewer
         | ActionId::PageOlder
         | ActionId::Newest
-        | ActionId::Oldest => demand(model.ui.shows_events(), "the events are not shown here; Tab, or 60x16 and more"),
+        | ActionId::Oldest => {
+            demand(model.ui.shows_events(), "the events are not shown here; Tab, or 60x16 and more")
+        }
         ActionId::NextPane | ActionId::PreviousPane => {
             demand(!model.ui.panes().is_empty(), "panes need 60 columns and 16 rows")
         }
@@ -82,7 +84,9 @@ fn start(model: &Model) -> Result<(), String> {
 
 fn held(model: &Model, otherwise: &str) -> Result<(), String> {
     match model.phase {
-        Phase::Held(_) if model.position.lost => Err("the position is lost; wait until it is regained".into()),
+        Phase::Held(_) if model.position.lost => {
+            Err("the position is lost; wait until it is regained".into())
+        }
         Phase::Held(_) => Ok(()),
         Phase::Idle => Err("the mission has not started; S starts it".into()),
         Phase::Running => Err(otherwise.into()),
@@ -114,6 +118,7 @@ fn parameters(model: &Model) -> Result<(), String> {
 }
 
 fn speed(model: &Model, faster: bool) -> Result<(), String> {
+    demand(!model.has_ended(), "the mission has ended; its pace does not matter any more")?;
     let end = if faster { "this is as fast as it goes" } else { "this is the slowest" };
     demand(model.console.speed.stepped(faster).is_some_and(|next: Speed| next != model.console.speed), end)
 }

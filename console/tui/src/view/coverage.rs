@@ -16,7 +16,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
 fn wide_lines(look: &Look, width: u16) -> Vec<Line<'static>> {
     let model = look.model;
     let (reachable, whole) = shares(model);
-    let row = |label: &str, value: String| look.line([(Role::Dim, format!(" {label:<12}")), (Role::Text, value)]);
+    let row =
+        |label: &str, value: String| look.line([(Role::Dim, format!(" {label:<12}")), (Role::Text, value)]);
     vec![
         row("scanned", format!("{reachable:>5} % of reachable floor")),
         row("", format!("{whole:>5} % of whole floor")),
@@ -67,9 +68,10 @@ fn rate(model: &Model) -> String {
 }
 
 fn area(model: &Model) -> String {
-    model.coverage.as_ref().map_or_else(String::new, |raster| {
-        format!("{} m² scanned", text::number(raster.scanned_m2(), 0))
-    })
+    model
+        .coverage
+        .as_ref()
+        .map_or_else(String::new, |raster| format!("{} m² scanned", text::number(raster.scanned_m2(), 0)))
 }
 
 fn way_label(model: &Model) -> &'static str {
@@ -94,7 +96,9 @@ fn way(model: &Model) -> String {
 
 /// Mission time still to go, and when that will be.
 fn left(model: &Model, wide: bool) -> String {
-    let Some(left_s) = model.left_s() else { return if model.has_ended() { "ended".into() } else { "-".into() } };
+    let Some(left_s) = model.left_s() else {
+        return if model.has_ended() { "ended".into() } else { "-".into() };
+    };
     let factor = match (model.console.speed, model.console.health.reached_speed) {
         (_, Some(reached)) if reached > 0.0 => Some(reached),
         (Speed::Times(factor), _) => Some(factor),

@@ -39,7 +39,10 @@ fn wide_lines(look: &Look, inner: Rect) -> Vec<Line<'static>> {
 fn narrow_lines(look: &Look, inner: Rect) -> Vec<Line<'static>> {
     let trouble = look.model.position.fix.as_ref().and_then(|fix| fix.excluded.first()).map(|(id, why)| {
         let name = look.model.station(*id).map_or_else(|| id.0.to_string(), |station| station.name.clone());
-        (Role::Watch, text::fit(&format!("{name} OUT {}", reason(why)), usize::from(inner.width).saturating_sub(1)))
+        (
+            Role::Watch,
+            text::fit(&format!("{name} OUT {}", reason(why)), usize::from(inner.width).saturating_sub(1)),
+        )
     });
     let last = trouble.unwrap_or_else(|| (Role::Text, format!("residual {}", residual(look.model))));
     vec![
@@ -106,7 +109,9 @@ pub(super) fn age(model: &Model) -> (Role, String) {
     let t_s = model.clock.t_s;
     match model.position.fix_age_s(t_s) {
         None => (Role::Text, "no fix yet".into()),
-        Some(age_s) if model.position.is_fix_stale(t_s) => (Role::Stale, format!("◌ {} s old", text::number(age_s, 1))),
+        Some(age_s) if model.position.is_fix_stale(t_s) => {
+            (Role::Stale, format!("◌ {} s old", text::number(age_s, 1)))
+        }
         Some(age_s) => (Role::Text, format!("{} s", text::number(age_s, 1))),
     }
 }
@@ -128,8 +133,11 @@ fn integrity(model: &Model) -> &'static str {
 fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
     let mut words: Vec<(Role, String)> = Vec::new();
     if let Some(fix) = &look.model.position.fix {
-        let name = |id| look.model.station(id).map_or_else(|| format!("station {}", id.0), |s| s.name.clone());
-        words.extend(fix.excluded.iter().map(|(id, why)| (Role::Watch, format!("{} OUT {}", name(*id), reason(why)))));
+        let name =
+            |id| look.model.station(id).map_or_else(|| format!("station {}", id.0), |s| s.name.clone());
+        words.extend(
+            fix.excluded.iter().map(|(id, why)| (Role::Watch, format!("{} OUT {}", name(*id), reason(why)))),
+        );
         words.extend(fix.residuals.iter().map(|residual| {
             let residual_mm = text::number(residual.residual_m * 1000.0, 0);
             let sign = if residual.residual_m >= 0.0005 { "+" } else { "" };

@@ -75,7 +75,8 @@ impl Scanned<'_> {
 impl Shape for Scanned<'_> {
     fn draw(&self, painter: &mut Painter) {
         let (columns, rows) = (self.window.size.0, self.window.size.1 * self.rows_per_row);
-        let step = |span: [f64; 2], count: u16| (span[1] - span[0]) / f64::from(count.saturating_sub(1).max(1));
+        let step =
+            |span: [f64; 2], count: u16| (span[1] - span[0]) / f64::from(count.saturating_sub(1).max(1));
         let (step_x, step_y) = (step(self.window.x, columns), step(self.window.y, rows));
         let edge_m = f64::midpoint(step_x, step_y);
         for row in 0..rows {
@@ -108,7 +109,8 @@ impl Shape for Stroke<'_> {
         let mut walked = 0_usize;
         for pair in self.points.windows(2) {
             let Some((from, to)) = self.window.clipped(pair[0], pair[1]) else { continue };
-            let (Some(a), Some(b)) = (painter.get_point(from.x, from.y), painter.get_point(to.x, to.y)) else {
+            let (Some(a), Some(b)) = (painter.get_point(from.x, from.y), painter.get_point(to.x, to.y))
+            else {
                 continue;
             };
             let (dx, dy) = (b.0 as f64 - a.0 as f64, b.1 as f64 - a.1 as f64);

@@ -85,7 +85,12 @@ pub(super) fn bar(share: f64, columns: usize) -> String {
 }
 
 /// A curve in some columns, from 0 to `top`; each column shows the largest of its values.
-pub(super) fn sparkline(values: impl ExactSizeIterator<Item = f64>, top: f64, columns: usize, slots: usize) -> String {
+pub(super) fn sparkline(
+    values: impl ExactSizeIterator<Item = f64>,
+    top: f64,
+    columns: usize,
+    slots: usize,
+) -> String {
     const STEPS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let mut largest: Vec<Option<f64>> = vec![None; columns];
     let skip = slots.saturating_sub(values.len());

@@ -18,7 +18,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let alarms = alarms(look.model, wide);
     let state = state(look.model);
     let time = time(look.model);
-    let fixed: usize = [&state, &time, &alarms].into_iter().flatten().map(|(_, text)| text::width(text)).sum();
+    let fixed: usize =
+        [&state, &time, &alarms].into_iter().flatten().map(|(_, text)| text::width(text)).sum();
     // Names take what the rest leaves; the tank goes first, for the planner can change.
     let room = usize::from(area.width).saturating_sub(fixed + 1 + 3 * gap.len());
     let names = names(look.model, wide, gap, room);
@@ -54,22 +55,34 @@ fn names(model: &Model, wide: bool, gap: &str, room: usize) -> Parts {
         (_, _, Some(id)) => id.to_owned(),
         _ => String::new(),
     };
-    let tank = model.run.as_ref().map_or_else(|| "no run yet".into(), |run| match (&run.world.boundary, wide) {
-        (Boundary::Circle { radius_m }, true) => {
-            format!("{} Ø{} m", run.scenario, text::number(2.0 * radius_m, 0))
-        }
-        _ => run.scenario.clone(),
-    });
+    let tank = model.run.as_ref().map_or_else(
+        || "no run yet".into(),
+        |run| match (&run.world.boundary, wide) {
+            (Boundary::Circle { radius_m }, true) => {
+                format!("{} Ø{} m", run.scenario, text::number(2.0 * radius_m, 0))
+            }
+            _ => run.scenario.clone(),
+        },
+    );
     let planner = text::fit(&planner, room);
     let left = room.saturating_sub(text::width(&planner));
-    let parts = [(Role::Text, if left >= 4 { text::fit(&tank, left) } else { String::new() }), (Role::Title, planner)];
-    parts.into_iter().filter(|(_, text)| !text.is_empty()).flat_map(|part| [part, (Role::Text, gap.into())]).collect()
+    let parts = [
+        (Role::Text, if left >= 4 { text::fit(&tank, left) } else { String::new() }),
+        (Role::Title, planner),
+    ];
+    parts
+        .into_iter()
+        .filter(|(_, text)| !text.is_empty())
+        .flat_map(|part| [part, (Role::Text, gap.into())])
+        .collect()
 }
 
 /// Mission time, pace and recording.
 pub(super) fn time(model: &Model) -> Parts {
     let clock = match model.silent_s() {
-        Some(silent_s) => (Role::Stale, format!("◌T+{} {} s old ", text::clock(model.clock.t_s), silent_s as u64)),
+        Some(silent_s) => {
+            (Role::Stale, format!("◌T+{} {} s old ", text::clock(model.clock.t_s), silent_s as u64))
+        }
         None => (Role::Text, format!("T+{} ", text::clock(model.clock.t_s))),
     };
     vec![clock, (Role::Text, format!("{} ", text::speed(model.console.speed))), recording(model)]
@@ -98,12 +111,15 @@ pub(super) fn alarms(model: &Model, wide: bool) -> Parts {
         let (count, open) = (model.alarms.count(severity), model.alarms.unacknowledged(severity) > 0);
         let role = if count == 0 { Role::Dim } else { role };
         parts.push((Role::Text, " ".into()));
-        parts.push((role, match (wide, open) {
-            (true, true) => format!("{count} {word}(unack)"),
-            (true, false) => format!("{count} {word}"),
-            (false, true) => format!("{count}{letter}*"),
-            (false, false) => format!("{count}{letter}"),
-        }));
+        parts.push((
+            role,
+            match (wide, open) {
+                (true, true) => format!("{count} {word}(unack)"),
+                (true, false) => format!("{count} {word}"),
+                (false, true) => format!("{count}{letter}*"),
+                (false, false) => format!("{count}{letter}"),
+            },
+        ));
     }
     parts
 }

@@ -3,17 +3,19 @@
 use mission::event::{HoldReason, JOURNAL_VERSION, RunOpened};
 use mission::link::{Cause, During, Fault};
 use mission::{
-    Event, EventKind, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters, PlannerChoice, PlannerInfo,
-    TaskConfig,
+    Event, EventKind, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters, PlannerChoice,
+    PlannerInfo, TaskConfig,
 };
 use nalgebra::{Matrix2, Matrix3};
 use planner_api::{Command, Drawing, Layer, Limits, Motion, PoseEstimate, Reason};
 use positioning::{Exclusion, Fix, Integrity, Ranging, Residual};
 use std::f64::consts::FRAC_PI_2;
+use std::sync::OnceLock;
 use tui::{Caps, Colours, Glyphs, Health, Model, Msg, Recording, Refused, Times, update};
 use world::spiral::Spiral;
 use world::{
-    Boundary, CoverageGrid, Floor, Obstacle, ObstacleId, Point, Pose, Shape, Station, StationId, Vector, World,
+    Boundary, CoverageGrid, Floor, Obstacle, ObstacleId, Point, Pose, Shape, Station, StationId, Vector,
+    World,
 };
 
 /// Length of a tick, seconds.
@@ -40,9 +42,12 @@ pub fn world() -> World {
         .iter()
         .enumerate()
         .map(|(index, (radius_m, bearing))| Station {
-            id: StationId(index as u32),
+            id: StationId(index as u32 + 1),
             name: format!("S{}", index + 1),
-            position: Point::new(radius_m * bearing.to_radians().cos(), radius_m * bearing.to_radians().sin()),
+            position: Point::new(
+                radius_m * bearing.to_radians().cos(),
+                radius_m * bearing.to_radians().sin(),
+            ),
         })
         .collect();
     World { boundary: Boundary::Circle { radius_m: 10.0 }, obstacles, stations, zones: Vec::new() }
@@ -104,7 +109,8 @@ fn parameter(key: &str, label: &str, unit: &str, help: &str, kind: ParamKind, li
 /// A planner as the host describes it.
 pub fn planner(id: &str, version: &str, about: &str) -> PlannerInfo {
     let float = |min, max, default| ParamKind::Float { min, max, default };
-    let gain = "Strength of the rotating field near a column. Higher keeps a wider berth and makes a longer path.";
+    let gain =
+        "Strength of the rotating field near a column. Higher keeps a wider berth and makes a longer path.";
     PlannerInfo {
         id: id.into(),
         name: id.to_uppercase(),
@@ -115,17 +121,41 @@ pub fn planner(id: &str, version: &str, about: &str) -> PlannerInfo {
         abi: "1.0".into(),
         parameters: vec![
             parameter("rpf_gain", "Rotating gain", "m3/s", gain, float(0.2, 4.0, 1.2), true),
-            parameter("rpf_radius_m", "Rotating radius", "m", "How far the field reaches.", float(0.3, 2.0, 1.1), true),
-            parameter("order", "Order of repulsion", "", "Exponent.", ParamKind::Int { min: 1, max: 4, default: 2 }, true),
+            parameter(
+                "rpf_radius_m",
+                "Rotating radius",
+                "m",
+                "How far the field reaches.",
+                float(0.3, 2.0, 1.1),
+                true,
+            ),
+            parameter(
+                "order",
+                "Order of repulsion",
+                "",
+                "Exponent.",
+                ParamKind::Int { min: 1, max: 4, default: 2 },
+                true,
+            ),
             parameter(
                 "mode",
                 "Mode",
                 "",
                 "As published, or gated near the path.",
-                ParamKind::Choice { options: vec!["literal".into(), "gated".into()], default: "gated".into() },
+                ParamKind::Choice {
+                    options: vec!["literal".into(), "gated".into()],
+                    default: "gated".into(),
+                },
                 false,
             ),
-            parameter("improved", "Improved repulsion", "", "No trap.", ParamKind::Flag { default: true }, true),
+            parameter(
+                "improved",
+                "Improved repulsion",
+                "",
+                "No trap.",
+                ParamKind::Flag { default: true },
+                true,
+            ),
         ],
     }
 }
@@ -162,6 +192,7 @@ pub fn opened() -> EventKind {
 }
 
 /// A mission that is told tick by tick.
+#[derive(Clone)]
 pub struct Telling {
     path: Vec<Point>,
     grid: CoverageGrid,
@@ -263,7 +294,8 @@ impl Telling {
         // The error breathes, so that its history has a shape.
         let breath = 1.0 + 0.4 * (self.tick as f64 * 0.09).sin();
         let sigma_m = self.sigma_m * breath;
-        let covariance = Matrix3::from_diagonal(&nalgebra::Vector3::new(sigma_m * sigma_m, sigma_m * sigma_m, 1e-4));
+        let covariance =
+            Matrix3::from_diagonal(&nalgebra::Vector3::new(sigma_m * sigma_m, sigma_m * sigma_m, 1e-4));
         EventKind::Estimated {
             pose: PoseEstimate { position: here, heading_rad: way.y.atan2(way.x), covariance },
         }
@@ -281,7 +313,7 @@ impl Telling {
     }
 
     fn fix(&self) -> Fix {
-        let used: Vec<StationId> = (0..3).map(StationId).collect();
+        let used: Vec<StationId> = (1..4).map(StationId).collect();
         let residuals_m = [0.012, -0.031, 0.024];
         let residuals = used.iter().zip(residuals_m);
         Fix {
@@ -291,7 +323,7 @@ impl Telling {
                 .map(|(station, residual_m)| Residual { station: *station, residual_m, sigma_m: 0.05 })
                 .collect(),
             used,
-            excluded: vec![(StationId(3), Exclusion::Residual { residual_m: 0.42, gate_m: 0.15 })],
+            excluded: vec![(StationId(4), Exclusion::Residual { residual_m: 0.42, gate_m: 0.15 })],
             chi2: 0.9,
             degrees_of_freedom: 1,
             gdop: 1.1,
@@ -305,7 +337,7 @@ impl Telling {
     /// Station 4 is left out.
     pub fn excluded(&self) -> Event {
         let reason = Exclusion::Residual { residual_m: 0.42, gate_m: 0.15 };
-        self.now(EventKind::StationExcluded { station: StationId(3), reason })
+        self.now(EventKind::StationExcluded { station: StationId(4), reason })
     }
 
     /// A hold.
@@ -323,10 +355,7 @@ impl Telling {
             message: message.clone(),
             partial: Vec::new(),
         };
-        vec![
-            self.now(EventKind::PlannerFailed { fault }),
-            self.held(HoldReason::PlannerFault { message }),
-        ]
+        vec![self.now(EventKind::PlannerFailed { fault }), self.held(HoldReason::PlannerFault { message })]
     }
 
     /// The end.
@@ -336,6 +365,7 @@ impl Telling {
 }
 
 /// A screen that has been told of a mission.
+#[derive(Clone)]
 pub struct Screen {
     /// Its model.
     pub model: Model,
@@ -347,6 +377,11 @@ pub struct Screen {
 impl Screen {
     /// A run that is open and waits.
     pub fn idle() -> Self {
+        static MADE: OnceLock<Screen> = OnceLock::new();
+        MADE.get_or_init(Self::make_idle).clone()
+    }
+
+    fn make_idle() -> Self {
         let mut screen = Self { model: Model::default(), telling: Telling::new(), mono_s: 0.0 };
         screen.tell(Msg::Time(Times { mono_s: 0.0, wall_unix_s: 1_795_264_000.0 }));
         screen.tell(Msg::Health(Health { recording: Recording::On, reached_speed: None }));
@@ -362,6 +397,11 @@ impl Screen {
 
     /// A run two thirds done.
     pub fn running() -> Self {
+        static MADE: OnceLock<Screen> = OnceLock::new();
+        MADE.get_or_init(Self::make_running).clone()
+    }
+
+    fn make_running() -> Self {
         let mut screen = Self::idle();
         let mut events = screen.telling.start();
         events.extend(screen.telling.drive(1200));

@@ -49,8 +49,10 @@ fn event() -> impl Strategy<Value = Event> {
 }
 
 fn msg() -> impl Strategy<Value = Msg> {
-    let recording = prop::sample::select(vec![Recording::On, Recording::Off, Recording::Failed("full".into())]);
-    let signal = prop::sample::select(vec![Signal::Interrupt, Signal::Terminate, Signal::Stop, Signal::Continue]);
+    let recording =
+        prop::sample::select(vec![Recording::On, Recording::Off, Recording::Failed("full".into())]);
+    let signal =
+        prop::sample::select(vec![Signal::Interrupt, Signal::Terminate, Signal::Stop, Signal::Continue]);
     prop_oneof![
         8 => (key(), any::<bool>()).prop_map(|(key, repeat)| Msg::Key(KeyPress { key, repeat })),
         4 => prop::collection::vec(event(), 0..6).prop_map(Msg::Events),
@@ -79,11 +81,14 @@ proptest! {
         caps in caps(),
         size in (0..300_u16, 0..100_u16),
     ) {
-        let mut screen = match start { 0 => Screen::idle(), 1 => Screen::held(), _ => Screen { model: Model::default(), ..Screen::idle() } };
+        let mut screen = if start == 1 { Screen::held() } else { Screen::idle() };
+        if start == 2 {
+            screen.model = Model::default();
+        }
         for msg in msgs {
             screen.tell(msg);
         }
-        let buffer = drawn(&screen.model, &caps, size);
+        let buffer = drawn(&screen.model, caps, size);
         prop_assert_eq!((buffer.area.width, buffer.area.height), size);
         prop_assert!(caps != ASCII || buffer.content.iter().all(|cell| cell.symbol().is_ascii()));
     }
@@ -104,11 +109,13 @@ proptest! {
 
 #[test]
 fn the_smallest_and_largest_screens_are_drawn() {
-    for (width, height) in [(0, 0), (1, 1), (0, 9), (9, 0), (3, 2), (24, 7), (59, 16), (60, 15), (80, 24), (300, 100)] {
+    for (width, height) in
+        [(0, 0), (1, 1), (0, 9), (9, 0), (3, 2), (24, 7), (59, 16), (60, 15), (80, 24), (300, 100)]
+    {
         for mut screen in [Screen::idle(), Screen::running()] {
             for keys in ["", "?", ":z", "P", "p", "L", "/x", "q", "S", "X"] {
                 screen.type_text(keys);
-                drawn(&screen.model, &RICH, (width, height));
+                drawn(&screen.model, RICH, (width, height));
                 screen.press([Key::Esc]);
             }
         }
@@ -136,7 +143,7 @@ fn nothing_but_style_is_lost_without_colour() {
     ];
     for (name, screen, words) in cases {
         for size in [(80, 24), (120, 36)] {
-            let mut buffer = drawn(&screen.model, &PLAIN, size);
+            let mut buffer = drawn(&screen.model, PLAIN, size);
             let area = buffer.area;
             buffer.set_style(area, Style::reset());
             let text = text(&buffer);

@@ -141,12 +141,17 @@ fn a_bad_value_is_refused_in_place_and_a_good_one_sent() {
     screen.press([Key::Char('p'), Key::Char('e'), Key::Backspace, Key::Backspace, Key::Backspace]);
     screen.type_text("9");
     assert_eq!(screen.press([Key::Enter]), []);
-    let Overlay::Parameters { edit: Some(edit), .. } = &screen.model.ui.overlay else { panic!("still typing") };
+    let Overlay::Parameters { edit: Some(edit), .. } = &screen.model.ui.overlay else {
+        panic!("still typing")
+    };
     assert!(edit.refusal.as_ref().is_some_and(|why| why.contains("0.2 to 4 m3/s")));
     screen.press([Key::Backspace]);
     screen.type_text("1.8");
     let key = "rpf_gain".to_owned();
-    assert_eq!(screen.press([Key::Enter]), [order(Order::SetParameter { key, value: ParamValue::Float(1.8) })]);
+    assert_eq!(
+        screen.press([Key::Enter]),
+        [order(Order::SetParameter { key, value: ParamValue::Float(1.8) })]
+    );
 }
 
 #[test]
