@@ -1,6 +1,10 @@
 //! How long a frame of the mission screen takes: 30 000 scanned cells, 10 000 points of path.
 #![allow(missing_docs, reason = "criterion writes a function without docs")]
-#![allow(clippy::print_stderr, reason = "the percentiles are for the person at the bench")]
+#![allow(
+    clippy::print_stderr,
+    clippy::disallowed_methods,
+    reason = "a bench looks at the clock and tells it"
+)]
 
 #[path = "../tests/console/fixture.rs"]
 #[allow(dead_code, reason = "the tests use all of it")]

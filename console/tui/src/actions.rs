@@ -301,13 +301,12 @@ pub fn matching(typed: &str) -> Vec<&'static Action> {
     found.into_iter().map(|(_, action)| action).collect()
 }
 
-/// The command list for what was typed; with nothing typed, the keys of the pane in focus come first.
+/// The command list for what was typed; with nothing typed, the keys of a pane that is not in focus come last.
 pub fn listed(typed: &str, pane: Pane) -> Vec<&'static Action> {
     let mut found = matching(typed);
     if typed.is_empty() {
-        let here = if pane == Pane::Events { Context::Events } else { Context::Map };
         let away = if pane == Pane::Events { Context::Map } else { Context::Events };
-        found.sort_by_key(|action| (action.contexts.contains(&away), !action.contexts.contains(&here)));
+        found.sort_by_key(|action| action.contexts.contains(&away));
     }
     found
 }

@@ -105,7 +105,9 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Paste(text) => overlay::paste(model, &text),
         Msg::Resize { width, height } => resize(model, width, height),
         Msg::Events(events) => {
-            events.iter().for_each(|event| model.fold(event));
+            for event in &events {
+                model.fold(event);
+            }
             Vec::new()
         }
         Msg::Time(now) => {

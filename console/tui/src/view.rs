@@ -38,8 +38,8 @@ pub fn view_with(model: &Model, caps: &Caps, theme: &Theme, frame: &mut Frame) {
         return;
     }
     match Arrangement::of(area.width, area.height) {
-        Arrangement::Wide => whole(&look, frame, area, WIDE),
-        Arrangement::Narrow => whole(&look, frame, area, NARROW),
+        Arrangement::Wide => whole(&look, frame, area, &WIDE),
+        Arrangement::Narrow => whole(&look, frame, area, &NARROW),
         Arrangement::Paged => paged(&look, frame, area),
         Arrangement::Strip => strip::draw(&look, frame, area),
     }
@@ -95,10 +95,10 @@ struct Sizes {
     wide: bool,
 }
 
-const WIDE: Sizes = Sizes { side: 44, events: 6, panes: [8, 9], wide: true };
+const WIDE: Sizes = Sizes { side: 44, events: 6, panes: [9, 8], wide: true };
 const NARROW: Sizes = Sizes { side: 30, events: 4, panes: [6, 5], wide: false };
 
-fn whole(look: &Look, frame: &mut Frame, area: Rect, sizes: Sizes) {
+fn whole(look: &Look, frame: &mut Frame, area: Rect, sizes: &Sizes) {
     let [top, middle, events, next, keys] = Layout::vertical([
         Constraint::Length(1),
         Constraint::Fill(1),

@@ -33,32 +33,14 @@ impl Model {
                 self.answered(order);
                 self.say(Severity::Warn, format!("the mission refused: {why}"));
             }
-            EventKind::Ranged { ranges } => self.position.ranged(event.t_s, ranges.len()),
-            EventKind::Fixed { fix } => {
-                (self.position.fix, self.position.fix_t_s) = (Some(fix.clone()), event.t_s);
-                self.position.failure = None;
-                self.alarms.clear(&Cause::NoFix);
-            }
-            EventKind::FixFailed { error, .. } => {
-                self.position.failure = Some(error.to_string());
-                self.raise(event, Cause::NoFix, Severity::Watch, format!("no fix: {error}"));
-            }
-            EventKind::StationExcluded { station, reason } => self.exclude(event, *station, reason),
-            EventKind::StationRegained { station } => self.alarms.clear(&Cause::Station(*station)),
-            EventKind::Estimated { pose } => {
-                self.position.estimated(event.t_s, *pose);
-                self.trail.add(pose.position);
-            }
-            EventKind::PositionLost { error_m, limit_m } => {
-                self.position.lost = true;
-                let text = format!("position lost: 95 % error {error_m:.2} m, limit {limit_m:.2} m");
-                self.raise(event, Cause::PositionLost, Severity::Crit, text);
-                self.withdraw_question();
-            }
-            EventKind::PositionRegained { .. } => {
-                self.position.lost = false;
-                self.alarms.clear(&Cause::PositionLost);
-            }
+            EventKind::Ranged { .. }
+            | EventKind::Fixed { .. }
+            | EventKind::FixFailed { .. }
+            | EventKind::StationExcluded { .. }
+            | EventKind::StationRegained { .. }
+            | EventKind::Estimated { .. }
+            | EventKind::PositionLost { .. }
+            | EventKind::PositionRegained { .. } => self.locate(event),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
             EventKind::PlannerChosen { choice, info, .. } => {
@@ -114,6 +96,39 @@ impl Model {
             }
             EventKind::Ended { outcome, reason } => self.end(event, *outcome, reason),
             EventKind::Truth { .. } | EventKind::PlannerSaid { .. } => {}
+        }
+    }
+
+    /// Takes in what is told about the robot's place.
+    fn locate(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::Ranged { ranges } => self.position.ranged(event.t_s, ranges.len()),
+            EventKind::Fixed { fix } => {
+                (self.position.fix, self.position.fix_t_s) = (Some(fix.clone()), event.t_s);
+                self.position.failure = None;
+                self.alarms.clear(&Cause::NoFix);
+            }
+            EventKind::FixFailed { error, .. } => {
+                self.position.failure = Some(error.to_string());
+                self.raise(event, Cause::NoFix, Severity::Watch, format!("no fix: {error}"));
+            }
+            EventKind::StationExcluded { station, reason } => self.exclude(event, *station, reason),
+            EventKind::StationRegained { station } => self.alarms.clear(&Cause::Station(*station)),
+            EventKind::Estimated { pose } => {
+                self.position.estimated(event.t_s, *pose);
+                self.trail.add(pose.position);
+            }
+            EventKind::PositionLost { error_m, limit_m } => {
+                self.position.lost = true;
+                let text = format!("position lost: 95 % error {error_m:.2} m, limit {limit_m:.2} m");
+                self.raise(event, Cause::PositionLost, Severity::Crit, text);
+                self.withdraw_question();
+            }
+            EventKind::PositionRegained { .. } => {
+                self.position.lost = false;
+                self.alarms.clear(&Cause::PositionLost);
+            }
+            _ => {}
         }
     }
 

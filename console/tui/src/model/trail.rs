@@ -46,7 +46,7 @@ impl Trail {
         let step = path.len().div_ceil(MAX_POINTS).max(1);
         let mut points: Vec<Point> =
             path.iter().copied().step_by(step).filter(|p| p.x.is_finite() && p.y.is_finite()).collect();
-        if let Some(last) = path.last().filter(|_| step > 1 && (path.len() - 1) % step != 0) {
+        if let Some(last) = path.last().filter(|_| step > 1 && !(path.len() - 1).is_multiple_of(step)) {
             points.push(*last);
         }
         points

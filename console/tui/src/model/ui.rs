@@ -77,45 +77,52 @@ pub struct MapView {
 /// Most doublings of the map's scale.
 pub const MAX_ZOOM: u8 = 6;
 
-/// What the map shows besides walls, obstacles and the robot.
+/// A part of the map that can be hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Layers {
+pub enum MapLayer {
     /// Scanned floor.
-    pub coverage: bool,
+    Scanned,
     /// Where the robot has been.
-    pub trail: bool,
+    Trail,
     /// Where the plan leads.
-    pub plan: bool,
+    Plan,
     /// What the planner draws.
-    pub drawings: bool,
+    Drawings,
     /// Acoustic-emission stations.
-    pub stations: bool,
+    Stations,
 }
 
-impl Layers {
-    /// Names of the layers, in order.
-    pub const NAMES: [&'static str; 5] =
-        ["scanned floor", "trail of the robot", "plan", "planner's drawings", "AE stations"];
+impl MapLayer {
+    /// Every layer, in the order of the list.
+    pub const ALL: [Self; 5] = [Self::Scanned, Self::Trail, Self::Plan, Self::Drawings, Self::Stations];
 
-    /// Whether a layer is shown, by its place in [`Layers::NAMES`].
-    pub fn is_on(&self, index: usize) -> bool {
-        let all = [self.coverage, self.trail, self.plan, self.drawings, self.stations];
-        all.get(index).copied().unwrap_or_default()
-    }
-
-    /// Shows a layer or hides it, by its place in [`Layers::NAMES`].
-    pub fn toggle(&mut self, index: usize) {
-        let all =
-            [&mut self.coverage, &mut self.trail, &mut self.plan, &mut self.drawings, &mut self.stations];
-        if let Some(layer) = all.into_iter().nth(index) {
-            *layer = !*layer;
+    /// How the list calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Scanned => "scanned floor",
+            Self::Trail => "trail of the robot",
+            Self::Plan => "plan",
+            Self::Drawings => "drawings of the planner",
+            Self::Stations => "AE stations",
         }
     }
 }
 
-impl Default for Layers {
-    fn default() -> Self {
-        Self { coverage: true, trail: true, plan: true, drawings: true, stations: true }
+/// Which parts of the map are hidden.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Layers {
+    hidden: [bool; MapLayer::ALL.len()],
+}
+
+impl Layers {
+    /// Whether a layer is shown.
+    pub fn shows(&self, layer: MapLayer) -> bool {
+        !self.hidden[layer as usize]
+    }
+
+    /// Shows a layer or hides it.
+    pub fn toggle(&mut self, layer: MapLayer) {
+        self.hidden[layer as usize] = self.shows(layer);
     }
 }
 

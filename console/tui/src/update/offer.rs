@@ -118,6 +118,7 @@ fn parameters(model: &Model) -> Result<(), String> {
 }
 
 fn speed(model: &Model, faster: bool) -> Result<(), String> {
+    demand(!model.has_ended(), "the mission has ended; its pace does not matter any more")?;
     let end = if faster { "this is as fast as it goes" } else { "this is the slowest" };
     demand(model.console.speed.stepped(faster).is_some_and(|next: Speed| next != model.console.speed), end)
 }

@@ -3,7 +3,7 @@
 use super::{Effect, act as do_action, act::ask, offered};
 use crate::actions::{self, ActionId};
 use crate::keys::Key;
-use crate::model::ui::{Ask, Edit, Layers};
+use crate::model::ui::{Ask, Edit, MapLayer};
 use crate::model::{Model, Overlay, Phase, parameter};
 use mission::{Order, PlannerChoice, Severity};
 
@@ -41,7 +41,9 @@ fn accept(model: &mut Model) -> Vec<Effect> {
         Overlay::Parameters { selected, edit: Some(edit) } => take_value(model, selected, edit),
         Overlay::Parameters { edit: None, .. } => edit(model),
         Overlay::Layers { selected } => {
-            model.ui.layers.toggle(selected);
+            if let Some(layer) = MapLayer::ALL.get(selected) {
+                model.ui.layers.toggle(*layer);
+            }
             Vec::new()
         }
         Overlay::Filter => close(model),
@@ -146,7 +148,7 @@ fn select(model: &mut Model, by: isize) -> Vec<Effect> {
         Overlay::Commands { filter, .. } => actions::listed(filter, model.ui.pane).len(),
         Overlay::Planners { .. } => model.console.planners.len(),
         Overlay::Parameters { .. } => model.planner().map_or(0, |info| info.parameters.len()),
-        Overlay::Layers { .. } => Layers::NAMES.len(),
+        Overlay::Layers { .. } => MapLayer::ALL.len(),
         _ => 0,
     };
     if let Overlay::Commands { selected, .. }

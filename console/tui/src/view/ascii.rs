@@ -2,41 +2,34 @@
 
 use ratatui::buffer::Buffer;
 
-/// Puts a plain character in the place of each one that is not.
+/// What stands for what.
+const PLAIN: &[(&str, char)] = &[
+    ("│", '|'),
+    ("┌┐└┘├┤●▅▆", '+'),
+    ("─▃▄", '-'),
+    ("▶→↗", '>'),
+    ("←↙", '<'),
+    ("↑↖", '^'),
+    ("↓↘✓", 'v'),
+    ("‖", '='),
+    ("■█", '#'),
+    ("✗×", 'x'),
+    ("±", '~'),
+    ("Ø", 'D'),
+    ("²", '2'),
+    ("…·▁▂", '.'),
+    ("▇", '*'),
+    ("░", ':'),
+    ("▒", '%'),
+    ("°", 'd'),
+];
+
+/// Puts a plain character in the place of each one that is not; a question mark where nothing else fits.
 pub(super) fn reduce(buffer: &mut Buffer) {
     for cell in &mut buffer.content {
         if !cell.symbol().is_ascii() {
-            let plain = cell.symbol().chars().next().map_or(' ', plain);
-            cell.set_char(plain);
+            let plain = PLAIN.iter().find(|(letters, _)| letters.contains(cell.symbol()));
+            cell.set_char(plain.map_or('?', |(_, plain)| *plain));
         }
-    }
-}
-
-fn plain(letter: char) -> char {
-    match letter {
-        '─' => '-',
-        '│' => '|',
-        '┌' | '┐' | '└' | '┘' | '├' | '┤' => '+',
-        '▶' | '→' | '≥' | '↗' => '>',
-        '←' | '↙' => '<',
-        '↑' | '↖' => '^',
-        '↓' | '↘' => 'v',
-        '‖' => '=',
-        '■' | '█' => '#',
-        '✓' => 'v',
-        '✗' | '×' => 'x',
-        '●' => 'o',
-        '◌' => '?',
-        '±' => '~',
-        'Ø' => 'D',
-        '²' => '2',
-        '…' | '·' | '▁' | '▂' => '.',
-        '▃' | '▄' => '-',
-        '▅' | '▆' => '+',
-        '▇' => '*',
-        '░' => ':',
-        '▒' => '%',
-        '°' => 'd',
-        _ => '?',
     }
 }

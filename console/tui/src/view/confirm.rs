@@ -1,6 +1,7 @@
 //! The line above the keys: a question if one is open, else what comes next.
 
-use super::{Look, coverage, next, text};
+use super::next::{self, Clauses};
+use super::{Look, coverage, text};
 use crate::model::{Model, Overlay, Phase, ui::Ask};
 use crate::theme::Role;
 use ratatui::Frame;
@@ -8,54 +9,55 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    let (role, sentence) = line(look.model);
+    let (role, clauses) = clauses(look.model);
     let columns = usize::from(area.width).saturating_sub(1);
-    let text = text::fit(&sentence, columns.saturating_sub(1));
+    let text = next::joined(&clauses, columns.saturating_sub(1));
     let text = if role == Role::Confirm { text::column(&text, columns) } else { text };
     frame.render_widget(Line::from(vec![look.span(Role::Text, " "), look.span(role, text)]), area);
 }
 
 /// The question that is open, or what comes next.
-pub(super) fn line(model: &Model) -> (Role, String) {
-    match question(model) {
-        Some(question) => (Role::Confirm, question),
-        None => next::sentence(model),
-    }
+pub(super) fn clauses(model: &Model) -> Clauses {
+    question(model).map_or_else(|| next::clauses(model), |clauses| (Role::Confirm, clauses))
 }
 
-fn question(model: &Model) -> Option<String> {
+/// What is asked and which keys answer come in the first clause: they are never left out.
+fn question(model: &Model) -> Option<Vec<String>> {
     let planner = model.planner_id().unwrap_or("the planner");
-    match &model.ui.overlay {
+    let clauses = match &model.ui.overlay {
         Overlay::Confirm(Ask::Start) => {
-            Some(format!("START? The robot moves, driven by {planner}. Enter starts, Esc does not."))
+            ["START? Enter starts, Esc does not.".into(), format!("The robot moves, driven by {planner}.")]
         }
-        Overlay::Confirm(Ask::Resume) => {
-            Some(format!("RESUME? The robot moves again, driven by {planner}. Enter resumes, Esc stays."))
-        }
+        Overlay::Confirm(Ask::Resume) => [
+            "RESUME? Enter resumes, Esc stays held.".into(),
+            format!("The robot moves, driven by {planner}."),
+        ],
         Overlay::Confirm(Ask::Abort) => {
-            let scanned = coverage::shares(model).0;
-            Some(format!(
-                "END here, {scanned} % of reachable floor scanned? Enter ends it for good, Esc not."
-            ))
+            let scanned = format!("{} % of reachable floor scanned.", coverage::shares(model).0);
+            ["END HERE? Enter ends it for good, Esc does not.".into(), scanned]
         }
-        Overlay::Confirm(Ask::Swap(choice)) => Some(format!(
-            "CHANGE PLANNER? {} instead of {planner}; nothing moves yet. Enter / Esc",
-            choice.id
-        )),
+        Overlay::Confirm(Ask::Swap(choice)) => {
+            let next = text::fit(&choice.id, 18);
+            [format!("CHANGE TO {next}? Enter changes, Esc does not."), "Nothing moves yet.".into()]
+        }
         Overlay::Stepping => {
             let tick_s = model.run.as_ref().map_or(0.0, |run| run.mission.tick_s);
-            let tick = text::number(tick_s, 2);
-            Some(format!("STEP? Enter or . moves for one tick of {tick} s, again and again. Esc ends."))
+            [
+                "STEP? Enter or . moves, Esc ends.".into(),
+                format!("One tick of {} s each time.", text::number(tick_s, 2)),
+            ]
         }
-        Overlay::Quit => Some(match model.phase {
+        Overlay::Quit => match model.phase {
             Phase::Idle | Phase::Ended { .. } => {
-                "LEAVE? Nothing is under way. Enter leaves, Esc stays.".into()
+                ["LEAVE? Enter leaves, Esc stays.".into(), "Nothing is under way.".into()]
             }
-            _ => "LEAVE? It ends the mission here as aborted. Enter leaves, Esc stays, held.".into(),
-        }),
+            _ => ["LEAVE? Enter leaves, Esc stays, held.".into(), "The mission ends here as aborted.".into()],
+        },
         Overlay::Filter => {
-            Some(format!("EVENTS WITH: {}_  Enter keeps the filter, Esc clears it.", model.ui.needle))
+            let typed = text::fit(&model.ui.needle, 20);
+            [format!("EVENTS WITH: {typed}_"), " Enter keeps the filter, Esc clears it.".into()]
         }
-        _ => None,
-    }
+        _ => return None,
+    };
+    Some(clauses.into())
 }

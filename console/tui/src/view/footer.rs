@@ -2,39 +2,47 @@
 
 use super::{Look, text};
 use crate::actions::{self, ACTIONS, Action, ActionId, Context};
-use crate::model::{Model, Phase};
+use crate::model::{Model, Overlay, Phase};
 use crate::theme::Role;
 use crate::update::offered;
 use ratatui::Frame;
 use ratatui::layout::Rect;
+use ratatui::text::Line;
 
 /// What goes first when there is too little room.
-const DISPENSABLE: [ActionId; 6] = [
+const DISPENSABLE: [ActionId; 8] = [
     ActionId::NextPane,
     ActionId::Parameters,
     ActionId::Faster,
-    ActionId::Acknowledge,
     ActionId::ChoosePlanner,
+    ActionId::Acknowledge,
     ActionId::Commands,
+    ActionId::Step,
+    ActionId::Help,
 ];
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    frame.render_widget(line(look, usize::from(area.width)), area);
+}
+
+/// As many keys as fit into some columns.
+pub(super) fn line(look: &Look, columns: usize) -> Line<'static> {
     let mut hints = hints(look.model);
     for id in DISPENSABLE {
-        if width(&hints) > usize::from(area.width) {
+        if width(&hints) > columns {
             hints.retain(|hint| hint.id != id);
         }
     }
     let parts = hints
         .into_iter()
         .flat_map(|hint| [(Role::Key, format!(" {}", hint.keys)), (Role::Dim, format!(" {} ", hint.label))]);
-    frame.render_widget(look.line(parts), area);
+    look.line(parts)
 }
 
 /// A key and what it does.
-pub(super) struct Hint {
+struct Hint {
     id: ActionId,
-    pub keys: String,
+    keys: String,
     label: String,
 }
 
@@ -43,7 +51,7 @@ fn width(hints: &[Hint]) -> usize {
 }
 
 /// The keys that do something now; keys with the same label stand together.
-pub(super) fn hints(model: &Model) -> Vec<Hint> {
+fn hints(model: &Model) -> Vec<Hint> {
     let contexts = actions::contexts(model);
     let mut hints: Vec<Hint> = Vec::new();
     for action in ACTIONS.iter().filter(|action| shown(action, &contexts, model)) {
@@ -68,8 +76,16 @@ fn shown(action: &Action, contexts: &[Context], model: &Model) -> bool {
 }
 
 fn label(action: &Action, model: &Model) -> String {
-    match action.id {
-        ActionId::Hold if matches!(model.phase, Phase::Held(_)) && !model.may_move() => "resume?".into(),
-        _ => action.label.into(),
-    }
+    let word = match (action.id, &model.ui.overlay) {
+        (ActionId::Hold, _) if matches!(model.phase, Phase::Held(_)) && !model.may_move() => "resume?",
+        (ActionId::Accept, Overlay::Commands { .. }) => "run",
+        (ActionId::Accept, Overlay::Planners { .. }) => "choose",
+        (ActionId::Accept, Overlay::Layers { .. }) => "show/hide",
+        (ActionId::Accept, Overlay::Parameters { edit: None, .. }) => "edit",
+        (ActionId::Accept, Overlay::Parameters { edit: Some(_), .. }) => "send",
+        (ActionId::Accept, Overlay::Filter) => "keep",
+        (ActionId::Cancel, Overlay::Filter) => "clear",
+        _ => action.label,
+    };
+    word.into()
 }

@@ -2,7 +2,7 @@
 
 use super::{Look, text};
 use crate::actions::{self, ActionId, Risk};
-use crate::model::ui::{Edit, Layers};
+use crate::model::ui::{Edit, MapLayer};
 use crate::model::{Overlay, parameter};
 use crate::theme::Role;
 use crate::update::offered;
@@ -25,6 +25,8 @@ struct List {
     rows: Vec<Row>,
     selected: usize,
     below: Vec<Row>,
+    /// How many of the lines below are worth more than the list's last lines.
+    needed_below: usize,
 }
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
@@ -50,24 +52,34 @@ impl List {
         let block = look.block(Role::Focus, &self.title, self.note);
         let inner = block.inner(area);
         let room = usize::from(inner.height).saturating_sub(self.above.len());
-        // The selected line is worth more than what stands below the list.
-        let below = self.below.len().min(room.saturating_sub(3));
+        // The selected line is worth more than anything below the list.
+        let below =
+            self.below.len().min(room.saturating_sub(3).max(self.needed_below)).min(room.saturating_sub(1));
         let shown = window(self.selected, self.rows.len(), room - below);
         let mut lines: Vec<Line> = self.above.into_iter().map(|row| look.line(row)).collect();
         for (index, row) in self.rows.into_iter().enumerate() {
             if shown.contains(&index) {
-                let mark = if index == self.selected { ">" } else { " " };
-                let mut row = row;
-                row.insert(0, (Role::Text, mark.into()));
-                let line = look.line(row);
-                let chosen = index == self.selected;
-                lines.push(if chosen { line.patch_style(look.theme.style(Role::Selected)) } else { line });
+                lines.push(selectable(look, row, index == self.selected, usize::from(inner.width)));
             }
         }
         lines.extend(self.below.into_iter().take(below).map(|row| look.line(row)));
         frame.render_widget(Clear, area);
         frame.render_widget(Paragraph::new(lines).block(block), area);
     }
+}
+
+fn selectable(look: &Look, mut row: Row, selected: bool, columns: usize) -> Line<'static> {
+    row.insert(0, (Role::Text, if selected { ">" } else { " " }.into()));
+    if !selected {
+        return look.line(row);
+    }
+    let used: usize = row.iter().map(|(_, text)| text::width(text)).sum();
+    row.push((Role::Text, " ".repeat(columns.saturating_sub(used))));
+    let mut line = look.line(row);
+    for span in &mut line.spans {
+        span.style = span.style.patch(look.theme.style(Role::Selected));
+    }
+    line
 }
 
 /// The part of a list that is shown: the selected line is always in it.
@@ -79,8 +91,12 @@ fn window(selected: usize, len: usize, rows: usize) -> Range<usize> {
 fn commands(look: &Look, help: bool, filter: &str, selected: usize, columns: u16) -> List {
     let all = actions::listed("", look.model.ui.pane).len();
     let found = actions::listed(filter, look.model.ui.pane);
-    let wide = columns >= 74;
-    let about = usize::from(columns).saturating_sub(if wide { 2 + 1 + 15 + 14 + 6 } else { 2 + 1 + 14 + 6 });
+    // Name and description where there is room, else the description, else the name.
+    let (name, about) = match columns {
+        74.. => (15, usize::from(columns) - 2 - 1 - 15 - 14 - 6),
+        58.. => (0, usize::from(columns) - 2 - 1 - 14 - 6),
+        _ => (15, 0),
+    };
     let rows = found.iter().map(|action| {
         let now = offered(look.model, action.id).is_ok();
         let role = if now { Role::Text } else { Role::Dim };
@@ -90,15 +106,18 @@ fn commands(look: &Look, help: bool, filter: &str, selected: usize, columns: u16
             (true, Risk::Moves) => "MOVES",
             (true, Risk::Destroys) => "ENDS",
         };
-        let name = if wide { text::column(action.name, 15) } else { String::new() };
         vec![
-            (Role::Key, name),
+            (Role::Key, text::column(action.name, name)),
             (role, text::column(action.about, about)),
             (Role::Key, text::column(&action.keys_text(), 14)),
             (role, risk.into()),
         ]
     });
-    let below = if help { rules() } else { vec![hint(" Enter runs the line   Esc closes   - not now")] };
+    let below = if help {
+        rules(usize::from(columns).saturating_sub(3))
+    } else {
+        vec![hint(" Enter runs the line   Esc closes   - not now")]
+    };
     List {
         title: if help { "Keys and commands here" } else { "Command" }.into(),
         note: "type to filter",
@@ -109,6 +128,7 @@ fn commands(look: &Look, help: bool, filter: &str, selected: usize, columns: u16
         rows: rows.collect(),
         selected,
         below,
+        needed_below: 0,
     }
 }
 
@@ -117,7 +137,7 @@ fn hint(text: &str) -> Row {
 }
 
 /// What holds everywhere; the keys in it come from the table.
-fn rules() -> Vec<Row> {
+fn rules(columns: usize) -> Vec<Row> {
     let keys = |id: ActionId| {
         actions::ACTIONS
             .iter()
@@ -125,40 +145,37 @@ fn rules() -> Vec<Row> {
             .map(actions::Action::keys_text)
             .unwrap_or_default()
     };
-    vec![
-        hint(" Colour never stands alone: C W w are alarms, * is not acknowledged."),
-        hint(" Nothing asks before it STOPS; all ask before they MOVE or END."),
-        vec![(
-            Role::Dim,
-            format!(
-                " {} {} select   {} runs the line   {} closes   - not now",
-                keys(ActionId::Up),
-                keys(ActionId::Down),
-                keys(ActionId::Accept),
-                crate::keys::Key::Esc,
-            ),
-        )],
+    let (up, down, accept) = (keys(ActionId::Up), keys(ActionId::Down), keys(ActionId::Accept));
+    let lists = format!("{up} {down} select, {accept} runs the line, Esc closes, - is not for now.");
+    [
+        lists.as_str(),
+        "Nothing asks before it STOPS; all ask before they MOVE or END.",
+        "Colour never stands alone: C W w are alarms, * is not acknowledged.",
     ]
+    .into_iter()
+    .flat_map(|rule| wrap(rule, columns))
+    .map(|line| hint(&format!(" {line}")))
+    .collect()
 }
 
 fn planners(look: &Look, selected: usize, columns: u16) -> List {
     let driving = look.model.planner_id();
-    let about = usize::from(columns).saturating_sub(2 + 1 + 18 + 8 + 8);
     let rows = look.model.console.planners.iter().map(|planner| {
         let drives = Some(planner.id.as_str()) == driving;
         vec![
             (Role::Title, text::column(&planner.id, 18)),
             (Role::Text, text::column(&planner.version, 8)),
-            (Role::Good, text::column(if drives { "drives" } else { "" }, 8)),
-            (Role::Dim, text::column(&planner.about, about)),
+            (Role::Good, if drives { "drives" } else { "" }.into()),
         ]
     });
     let room = usize::from(columns).saturating_sub(2 + 1);
+    let about =
+        look.model.console.planners.get(selected).map(|planner| planner.about.as_str()).unwrap_or_default();
+    let about = wrap(about, room).into_iter().map(|line| vec![(Role::Text, format!(" {line}"))]);
     let refused = look.model.console.refused.iter().flat_map(|plugin| {
-        [
-            vec![(Role::Warn, text::fit(&format!(" {}  REFUSED", plugin.plugin), room))],
-            vec![(Role::Text, text::fit(&format!("   {}", plugin.reason), room))],
-        ]
+        let name = vec![(Role::Warn, text::fit(&format!(" REFUSED {}", plugin.plugin), room))];
+        let why = wrap(&plugin.reason, room.saturating_sub(2));
+        [name].into_iter().chain(why.into_iter().map(|line| vec![(Role::Text, format!("   {line}"))]))
     });
     List {
         title: "Planners".into(),
@@ -166,7 +183,13 @@ fn planners(look: &Look, selected: usize, columns: u16) -> List {
         above: Vec::new(),
         rows: rows.collect(),
         selected,
-        below: refused.chain([hint(" Enter asks to change   Esc back   what was scanned stays")]).collect(),
+        below: [Row::new()]
+            .into_iter()
+            .chain(about)
+            .chain(refused)
+            .chain([hint(" What was scanned stays; Enter asks before it changes.")])
+            .collect(),
+        needed_below: 0,
     }
 }
 
@@ -179,57 +202,82 @@ fn parameters(look: &Look, selected: usize, edit: Option<&Edit>, columns: u16) -
             rows: Vec::new(),
             selected,
             below: vec![hint(" the planner is not known yet")],
+            needed_below: 1,
         };
     };
     let room = usize::from(columns).saturating_sub(3);
+    let widths = Columns::of(columns);
     let rows = planner.parameters.iter().map(|info| {
         let (now, default) = (parameter::value(&look.model.planning, info), parameter::default(&info.kind));
         let changed = if now == default { " " } else { "*" };
         vec![
-            (Role::Text, text::column(&info.key, 18)),
-            (Role::Title, format!("{}{changed} ", text::column(&now.to_string(), 12))),
-            (Role::Dim, format!("{} ", text::column(&default.to_string(), 12))),
-            (Role::Dim, format!("{} ", text::column(parameter::unit(info), 8))),
-            (Role::Dim, if info.live { "live" } else { "held" }.into()),
+            (Role::Text, text::column(&info.key, widths.name)),
+            (Role::Title, format!("{}{changed} ", text::column(&now.to_string(), widths.value))),
+            (Role::Dim, text::column(&default.to_string(), widths.default)),
+            (Role::Dim, text::column(parameter::unit(info), widths.unit)),
+            (Role::Dim, if info.live { "any time" } else { "held" }.into()),
         ]
     });
-    let mut below = vec![Row::new()];
+    let head = [
+        text::column("name", widths.name),
+        text::column("value", widths.value + 2),
+        text::column("default", widths.default),
+        text::column("unit", widths.unit),
+        "changes".into(),
+    ];
+    let mut below = Vec::new();
+    let mut needed_below = 0;
     if let Some(info) = planner.parameters.get(selected) {
+        below.extend(edit_rows(info, edit, room));
+        needed_below = below.len();
+        below.push(vec![(
+            Role::Dim,
+            text::fit(&format!(" {} takes {}", info.key, parameter::range(info)), room),
+        )]);
         let about = format!("{}. {}", info.label, info.help);
         below.extend(wrap(&about, room).into_iter().map(|line| vec![(Role::Text, format!(" {line}"))]));
-        below.push(vec![(Role::Dim, text::fit(&format!(" takes {}", parameter::range(info)), room))]);
-        below.extend(edit_rows(info, edit, room));
     }
     List {
         title: format!("Parameters of {} {}", planner.id, planner.version),
         note: "* changed",
-        above: vec![hint(&format!(" {:<18}{:<13} {:<12} {:<8} changes", "name", "value", "default", "unit"))],
+        above: vec![hint(&format!(" {}", head.concat()))],
         rows: rows.collect(),
         selected,
         below,
+        needed_below,
     }
 }
 
-fn edit_rows(info: &mission::ParamInfo, edit: Option<&Edit>, room: usize) -> Vec<Row> {
-    match edit {
-        None => vec![hint(" Enter or e types a value   Esc back")],
-        Some(Edit { text, refusal: None }) => vec![
-            vec![(Role::Confirm, text::fit(&format!(" {} = {text}_ ", info.key), room))],
-            hint(" Enter sends it   Esc keeps the old value"),
-        ],
-        Some(Edit { text, refusal: Some(why) }) => {
-            let mut rows = vec![vec![(Role::Confirm, text::fit(&format!(" {} = {text}_ ", info.key), room))]];
-            let why = format!("REFUSED: {why}");
-            rows.extend(wrap(&why, room).into_iter().map(|line| vec![(Role::Warn, format!(" {line}"))]));
-            rows
+/// Widths of the columns of the parameter list; a narrow one goes without defaults.
+struct Columns {
+    name: usize,
+    value: usize,
+    default: usize,
+    unit: usize,
+}
+
+impl Columns {
+    fn of(columns: u16) -> Self {
+        match columns {
+            74.. => Self { name: 20, value: 13, default: 15, unit: 10 },
+            56.. => Self { name: 16, value: 9, default: 11, unit: 8 },
+            _ => Self { name: 14, value: 9, default: 0, unit: 8 },
         }
     }
 }
 
+/// The value being typed, and why it was refused.
+fn edit_rows(info: &mission::ParamInfo, edit: Option<&Edit>, room: usize) -> Vec<Row> {
+    let Some(edit) = edit else { return Vec::new() };
+    let typed = vec![(Role::Confirm, text::fit(&format!(" {} = {}_ ", info.key, edit.text), room))];
+    let why = edit.refusal.iter().flat_map(|why| wrap(&format!("REFUSED: {why}"), room));
+    [typed].into_iter().chain(why.map(|line| vec![(Role::Warn, format!(" {line}"))])).collect()
+}
+
 fn layers(look: &Look, selected: usize) -> List {
-    let rows = Layers::NAMES.iter().enumerate().map(|(index, name)| {
-        let mark = if look.model.ui.layers.is_on(index) { "[x]" } else { "[ ]" };
-        vec![(Role::Text, format!("{mark} {name}"))]
+    let rows = MapLayer::ALL.into_iter().map(|layer| {
+        let mark = if look.model.ui.layers.shows(layer) { "[x]" } else { "[ ]" };
+        vec![(Role::Text, format!("{mark} {}", layer.name()))]
     });
     List {
         title: "Layers of the map".into(),
@@ -237,7 +285,8 @@ fn layers(look: &Look, selected: usize) -> List {
         above: Vec::new(),
         rows: rows.collect(),
         selected,
-        below: vec![hint(" Enter shows or hides   Esc back")],
+        below: Vec::new(),
+        needed_below: 0,
     }
 }
 

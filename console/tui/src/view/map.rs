@@ -3,13 +3,14 @@
 use super::shapes::{Filled, Scanned, Stroke, Window, ellipse};
 use super::{Look, text};
 use crate::caps::{Colours, Glyphs};
-use crate::model::{Model, Pane, position};
+use crate::model::{Model, Pane, position, ui::MapLayer};
 use crate::theme::Role;
 use planner_api::{Drawing, Layer};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::symbols::Marker;
 use ratatui::text::Line;
+use ratatui::widgets::Clear;
 use ratatui::widgets::canvas::{Canvas, Context};
 use world::{Boundary, Point, Pose, ZoneKind};
 
@@ -17,6 +18,10 @@ use world::{Boundary, Point, Pose, ZoneKind};
 const MARGIN: f64 = 1.04;
 /// Pieces of a round wall.
 const WALL_PIECES: u32 = 256;
+/// Columns that a pass of the tool must be wide for all passes to be drawn.
+const PASS_COLUMNS: f64 = 2.0;
+/// Length of trail and plan where not all of it is drawn, in columns.
+const REACH_COLUMNS: f64 = 40.0;
 /// Columns and rows of the legend.
 const LEGEND: (u16, u16) = (12, 8);
 
@@ -29,13 +34,16 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     }
     let floor = Rect { height: inner.height - 1, ..inner };
     let below = Rect { y: inner.bottom() - 1, height: 1, ..inner };
+    let readout = readout(look, inner.width);
     if let Some(window) = window(look.model, floor) {
         draw_floor(look, frame, floor, window);
-        draw_scale(look, frame, below, window);
+        let room = usize::from(below.width).saturating_sub(text::width(&readout.1));
+        let scale = Some(scale(window)).filter(|scale| text::width(scale) < room).unwrap_or_default();
+        frame.render_widget(Line::from(look.span(Role::Dim, scale)), below);
     } else {
         frame.render_widget(Line::from(look.span(Role::Dim, " the tank is not known yet")), floor);
     }
-    frame.render_widget(Line::from(readout(look)).right_aligned(), below);
+    frame.render_widget(look.line([readout]).right_aligned(), below);
     if inner.width >= 70 && inner.height >= 20 {
         draw_legend(look, frame, floor);
     }
@@ -106,7 +114,9 @@ impl Pen<'_> {
     }
 
     fn scanned(&self, ctx: &mut Context<'_>) {
-        let Some(raster) = self.model().coverage.as_ref().filter(|_| self.model().ui.layers.coverage) else {
+        let Some(raster) =
+            self.model().coverage.as_ref().filter(|_| self.model().ui.layers.shows(MapLayer::Scanned))
+        else {
             return;
         };
         let (whole, partly) = (self.look.theme.color(Role::Scanned), self.look.theme.color(Role::Partly));
@@ -140,20 +150,33 @@ impl Pen<'_> {
     }
 
     fn paths(&self, ctx: &mut Context<'_>) {
-        if let Some(plan) = self.model().planning.plan.as_ref().filter(|_| self.model().ui.layers.plan) {
+        let model = self.model();
+        let reach_m = self.reach_m();
+        if let Some(plan) = model.planning.plan.as_ref().filter(|_| model.ui.layers.shows(MapLayer::Plan)) {
             self.take_up(ctx, ',');
-            self.stroke(ctx, &plan.path, Role::Plan, true);
+            let from = model.progress.as_ref().map_or(0, |progress| nearest(&plan.path, progress.target));
+            let ahead = reach_m.map_or(plan.path.as_slice(), |reach_m| within(&plan.path[from..], reach_m));
+            self.stroke(ctx, ahead, Role::Plan, true);
         }
-        if self.model().ui.layers.trail {
+        if model.ui.layers.shows(MapLayer::Trail) {
             self.take_up(ctx, '.');
-            self.stroke(ctx, self.model().trail.points(), Role::Trail, false);
+            let newest: Vec<Point> = model.trail.points().iter().rev().copied().collect();
+            let behind = reach_m.map_or(newest.as_slice(), |reach_m| within(&newest, reach_m));
+            self.stroke(ctx, behind, Role::Trail, false);
         }
+    }
+
+    /// How much of plan and trail is drawn, metres: where neighbouring passes would run into each other, only what
+    /// lies close before and behind the robot. What was scanned tells the rest.
+    fn reach_m(&self) -> Option<f64> {
+        let swath_m = self.model().run.as_ref()?.mission.swath_m;
+        (swath_m < PASS_COLUMNS * self.window.column_m).then_some(REACH_COLUMNS * self.window.column_m)
     }
 
     fn drawings(&self, ctx: &mut Context<'_>) {
         let planning = &self.model().planning;
         let old = self.model().clock.tick.saturating_sub(planning.drawings_tick) > 10;
-        if old || !self.model().ui.layers.drawings {
+        if old || !self.model().ui.layers.shows(MapLayer::Drawings) {
             return;
         }
         self.take_up(ctx, '\'');
@@ -215,7 +238,7 @@ impl Pen<'_> {
             let (role, mark) = if obstacle.known { (Role::Obstacle, "#") } else { (Role::Found, "?") };
             print(obstacle.shape.center(), role, mark.into());
         }
-        for station in run.world.stations.iter().filter(|_| model.ui.layers.stations) {
+        for station in run.world.stations.iter().filter(|_| model.ui.layers.shows(MapLayer::Stations)) {
             let named = model.ui.map.zoom > 0 && station.name.len() <= 4;
             print(station.position, Role::Station, if named { station.name.clone() } else { "S".into() });
         }
@@ -235,6 +258,24 @@ impl Pen<'_> {
     }
 }
 
+/// The first points of a path up to some length.
+fn within(path: &[Point], length_m: f64) -> &[Point] {
+    let mut walked_m = 0.0;
+    let steps = path.windows(2).take_while(|pair| {
+        walked_m += (pair[1] - pair[0]).norm();
+        walked_m <= length_m
+    });
+    let last = steps.count();
+    path.get(..=last).unwrap_or(path)
+}
+
+/// Index of the point of a path that is nearest to a place; 0 for an empty path.
+fn nearest(path: &[Point], place: Point) -> usize {
+    let distance = |point: &Point| (point - place).norm_squared();
+    let best = path.iter().enumerate().min_by(|one, other| distance(one.1).total_cmp(&distance(other.1)));
+    best.map_or(0, |(index, _)| index)
+}
+
 fn arrow_of(pose: &Pose, glyphs: Glyphs) -> &'static str {
     arrow(glyphs, pose.heading_rad)
 }
@@ -250,19 +291,20 @@ fn arrow(glyphs: Glyphs, heading_rad: f64) -> &'static str {
 }
 
 /// The robot's place and the error of it, in words.
-fn readout(look: &Look) -> Vec<ratatui::text::Span<'static>> {
+fn readout(look: &Look, width: u16) -> (Role, String) {
     let position = &look.model.position;
-    let Some(pose) = &position.pose else { return vec![look.span(Role::Dim, "robot: no position yet ")] };
+    let name = if width >= 60 { "robot " } else { "" };
+    let Some(pose) = &position.pose else { return (Role::Dim, "robot: no position yet ".into()) };
     let at = format!("{}, {} m", text::number(pose.position.x, 2), text::number(pose.position.y, 2));
     let error = text::number(position.error_m().unwrap_or(f64::NAN), 2);
     let stale = if position.is_fix_stale(look.model.clock.t_s) { "◌ " } else { "" };
     let role = if position.lost { Role::Crit } else { Role::Text };
     let lost = if position.lost { " LOST" } else { "" };
-    vec![look.span(role, format!("{stale}robot {at} ±{error} m{lost} "))]
+    (role, format!("{stale}{name}{at} ±{error} m{lost} "))
 }
 
 /// A bar of a round number of metres.
-fn draw_scale(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
+fn scale(window: Window) -> String {
     let longest_m = window.column_m * 16.0;
     let decade = 10.0_f64.powf(longest_m.log10().floor());
     let length_m =
@@ -272,8 +314,7 @@ fn draw_scale(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
     let label = format!(" {} m ", text::number(length_m, decimals));
     let dashes = columns.saturating_sub(text::width(&label) + 2);
     let (left, right) = (dashes / 2, dashes - dashes / 2);
-    let bar = format!(" ├{}{label}{}┤", "─".repeat(left), "─".repeat(right));
-    frame.render_widget(Line::from(look.span(Role::Dim, bar)), area);
+    format!(" ├{}{label}{}┤", "─".repeat(left), "─".repeat(right))
 }
 
 fn draw_legend(look: &Look, frame: &mut Frame, area: Rect) {
@@ -284,13 +325,13 @@ fn draw_legend(look: &Look, frame: &mut Frame, area: Rect) {
     let line = |dots: &'static str, letters: &'static str| if braille { dots } else { letters };
     let found = look.model.run.iter().flat_map(|run| &run.world.obstacles).any(|obstacle| !obstacle.known);
     let entries = [
-        (layers.coverage, Role::Scanned, swatch("▒▒"), "scanned"),
-        (layers.coverage, Role::Partly, swatch("░░"), "in part"),
-        (layers.trail, Role::Trail, line("⠤⠤", ".."), "trail"),
-        (layers.plan, Role::Plan, line("⠄⠠", ",,"), "plan"),
+        (layers.shows(MapLayer::Scanned), Role::Scanned, swatch("▒▒"), "scanned"),
+        (layers.shows(MapLayer::Scanned), Role::Partly, swatch("░░"), "in part"),
+        (layers.shows(MapLayer::Trail), Role::Trail, line("⠤⠤", ".."), "trail"),
+        (layers.shows(MapLayer::Plan), Role::Plan, line("⠄⠠", ",,"), "plan"),
         (true, Role::Obstacle, "# ", "obstacle"),
         (found, Role::Found, "? ", "found"),
-        (layers.stations, Role::Station, "S ", "station"),
+        (layers.shows(MapLayer::Stations), Role::Station, "S ", "station"),
         (true, Role::Target, "× ", "target"),
     ];
     let lines: Vec<Line> = entries
@@ -300,7 +341,9 @@ fn draw_legend(look: &Look, frame: &mut Frame, area: Rect) {
             Line::from(vec![look.span(role, mark), look.span(Role::Dim, format!(" {word}"))])
         })
         .collect();
-    let area = Rect { x: area.x + 1, width: LEGEND.0, height: LEGEND.1, ..area };
+    let area = Rect { x: area.x, width: LEGEND.0 + 1, height: LEGEND.1.min(lines.len() as u16), ..area };
+    frame.render_widget(Clear, area);
+    let area = Rect { x: area.x + 1, width: LEGEND.0, ..area };
     for (line, row) in lines.into_iter().zip(area.rows()) {
         frame.render_widget(line, row);
     }

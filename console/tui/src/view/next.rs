@@ -5,90 +5,116 @@ use crate::model::{Model, Phase};
 use crate::theme::Role;
 use mission::{Order, Outcome, Severity, event::HoldReason};
 
-/// What comes next, and how the line looks.
-pub(super) fn sentence(model: &Model) -> (Role, String) {
+/// How a line looks, and its clauses, the most important one first.
+pub(super) type Clauses = (Role, Vec<String>);
+
+/// What comes next.
+pub(super) fn clauses(model: &Model) -> Clauses {
     if let Some(notice) = model.notice() {
         let role =
             if notice.severity == Severity::Info { Role::Title } else { events::role(notice.severity) };
-        return (role, notice.text.clone());
+        return (role, vec![notice.text.clone()]);
     }
     if let Some(silent_s) = model.silent_s().filter(|_| model.console.busy.is_none()) {
-        let text = format!(
-            "◌ No news from the mission for {} s: values are old. space asks for HOLD.",
-            silent_s as u64
-        );
-        return (Role::Stale, text);
+        let news = format!("◌ No news from the mission for {} s: values are old.", silent_s as u64);
+        return (Role::Stale, vec![news, "space asks for HOLD.".into()]);
     }
     if model.console.hold_asked {
-        return (Role::Hold, "HOLD is on its way.".into());
+        return (Role::Hold, vec!["HOLD is on its way.".into()]);
     }
     if let Some(work) = &model.console.busy {
-        return (Role::Watch, format!("BUSY: {work}. space holds as soon as it is done."));
+        return (Role::Watch, vec![format!("BUSY: {work}."), "space holds as soon as it is done.".into()]);
     }
     match (&model.console.asked, &model.phase) {
-        (Some(Order::Start), _) => (Role::Title, "The start is on its way.".into()),
-        (Some(_), _) => (Role::Title, "The order is on its way.".into()),
+        (Some(Order::Start), _) => (Role::Title, vec!["The start is on its way.".into()]),
+        (Some(_), _) => (Role::Title, vec!["The order is on its way.".into()]),
         (None, Phase::Idle) => idle(model),
         (None, Phase::Running) => running(model),
-        (None, Phase::Held(by)) => held(model, by),
-        (None, Phase::Ended { outcome: Outcome::Complete, reason }) => {
-            (Role::Good, format!("DONE: {reason}. Nothing moves any more. q leaves."))
-        }
+        (None, Phase::Held(by)) => (Role::Hold, held(model, by)),
+        (None, Phase::Ended { outcome: Outcome::Complete, reason }) => (
+            Role::Good,
+            vec![format!("DONE: {reason}."), "Nothing moves any more.".into(), "q leaves.".into()],
+        ),
         (None, Phase::Ended { outcome, reason }) => {
-            (Role::Warn, format!("ENDED {}: {reason}. q leaves.", outcome.word()))
+            (Role::Warn, vec![format!("ENDED {}: {reason}.", outcome.word()), "q leaves.".into()])
         }
     }
 }
 
-fn idle(model: &Model) -> (Role, String) {
-    match (&model.run, model.planner_id()) {
-        (None, _) => (Role::Title, "NEXT: the scenario is being read.".into()),
-        (Some(_), id) => {
-            let who = id.unwrap_or("the planner");
-            (Role::Title, format!("NEXT: S asks to start with {who}. Nothing moves before you agree."))
+/// As many clauses as fit into some columns; the first one is cut if need be.
+pub(super) fn joined(clauses: &[String], columns: usize) -> String {
+    let mut line = clauses.first().map_or_else(String::new, |first| text::fit(first, columns));
+    for clause in clauses.iter().skip(1) {
+        if text::width(&line) + 1 + text::width(clause) <= columns {
+            line.push(' ');
+            line.push_str(clause);
         }
     }
+    line
 }
 
-fn running(model: &Model) -> (Role, String) {
+fn idle(model: &Model) -> Clauses {
+    if model.run.is_none() {
+        return (Role::Title, vec!["NEXT: the scenario is being read.".into()]);
+    }
+    let who = model.planner_id().unwrap_or("the planner");
+    (
+        Role::Title,
+        vec![format!("NEXT: S asks to start with {who}."), "Nothing moves before you agree.".into()],
+    )
+}
+
+fn running(model: &Model) -> Clauses {
     if model.position.lost {
         let hold_s = model.run.as_ref().map_or(0.0, |run| run.mission.lost_hold_s);
-        let text =
-            format!("POSITION LOST: the robot holds by itself after {} s of it.", text::number(hold_s, 1));
-        return (Role::Crit, text);
+        let text = format!("POSITION LOST: the robot holds by itself after {} s.", text::number(hold_s, 1));
+        return (Role::Crit, vec![text]);
     }
-    if let Some(alarm) =
-        model.alarms.worst().filter(|alarm| !alarm.acknowledged && alarm.severity >= Severity::Warn)
-    {
-        return (events::role(alarm.severity), format!("a acknowledges: {}", alarm.text));
+    let open = model.alarms.worst().filter(|alarm| !alarm.acknowledged && alarm.severity >= Severity::Warn);
+    if let Some(alarm) = open {
+        return (events::role(alarm.severity), vec![format!("a acknowledges: {}", alarm.text)]);
     }
+    let calm = "Nothing needs you now.".to_owned();
     let Some(progress) = &model.progress else {
-        return (Role::Title, "NEXT: the first step. Nothing needs you now.".into());
+        return (Role::Title, vec!["NEXT: the first step.".into(), calm]);
     };
     let at = format!("{}, {} m", text::number(progress.target.x, 2), text::number(progress.target.y, 2));
     let done = text::percent(progress.done);
-    (Role::Title, format!("NEXT: to {at}; {done} % of the task done. Nothing needs you now."))
+    (Role::Title, vec![format!("NEXT: to {at}; task {done} % done."), calm])
 }
 
-fn held(model: &Model, by: &HoldReason) -> (Role, String) {
-    let text = match by {
+fn held(model: &Model, by: &HoldReason) -> Vec<String> {
+    let clauses: &[&str] = match by {
         HoldReason::Operator | HoldReason::Stepped if model.position.lost => {
-            "HELD by you; the position is lost. Going on needs a fix first.".into()
+            &["HELD by you; the position is lost.", "Going on needs a fix first."]
         }
-        HoldReason::Operator => "HELD by you. space asks to go on, P changes the planner.".into(),
-        HoldReason::Stepped => "HELD after a step. space asks to go on.".into(),
+        HoldReason::Operator => &["HELD by you.", "space asks to go on,", "P changes the planner."],
+        HoldReason::Stepped => &["HELD after a step.", "space asks to go on."],
         HoldReason::PositionLost => {
-            "HELD, position lost. Goes on by itself when regained; space keeps it held.".into()
+            &["HELD, position lost.", "Goes on by itself when regained;", "space keeps it held."]
         }
         HoldReason::Stuck { message } => {
-            format!("HELD, stuck. P changes the planner, space tries again. {message}")
+            &["HELD, stuck.", "P changes the planner,", "space tries again.", message]
         }
         HoldReason::PlannerFault { message } if model.has_fallback() => {
-            format!("HELD, planner failed. The fallback takes over if it can. {message}")
+            &["HELD, planner failed.", "The fallback takes over if it can.", message]
         }
         HoldReason::PlannerFault { message } => {
-            format!("HELD, planner failed. P chooses another, space tries again. {message}")
+            &["HELD, planner failed.", "P chooses another,", "space tries again.", message]
         }
     };
-    (Role::Hold, text)
+    clauses.iter().map(|clause| (*clause).to_owned()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clauses_that_do_not_fit_are_left_out_whole() {
+        let clauses = ["HELD by you.", "space asks to go on.", "P."].map(str::to_owned);
+        assert_eq!(joined(&clauses, 40), "HELD by you. space asks to go on. P.");
+        assert_eq!(joined(&clauses, 20), "HELD by you. P.");
+        assert_eq!(joined(&clauses, 8), "HELD by…");
+    }
 }

@@ -19,7 +19,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
     let mut lines: Vec<Line> = rows_of(look.model, wide)
         .into_iter()
         .map(|(label, (role, value))| {
-            let label = if wide { format!(" {label:<12}") } else { format!(" {label:<6}") };
+            let label = if wide { format!(" {label:<12}") } else { format!(" {label:<6} ") };
             let value = text::fit(&value, columns.saturating_sub(label.len()));
             look.line([(Role::Dim, label), (role, value)])
         })
@@ -39,15 +39,16 @@ fn rows_of(model: &Model, wide: bool) -> Vec<(&'static str, Value)> {
         rows.extend([
             ("target", (Role::Text, target(model))),
             ("cross-track", (Role::Text, cross_track(model))),
-            ("speed", (Role::Text, format!("{}, heading {}", speed(model), heading(model)))),
+            ("speed", (Role::Text, speed(model))),
+            ("heading", (Role::Text, format!("{} (ccw)", heading(model)))),
             ("command", command(model)),
             ("plan", (Role::Text, plan(model))),
         ]);
     } else {
         rows[0].0 = "drives";
         rows.extend([
-            ("to", (Role::Text, target(model))),
-            ("off", (Role::Text, cross_track(model))),
+            ("to", (Role::Text, target_at(model))),
+            ("in", (Role::Text, format!("{}, off {}", target_in(model), off(model)))),
             ("speed", (Role::Text, speed(model))),
             ("head", (Role::Text, heading(model))),
             ("plan", (Role::Text, plan(model))),
@@ -65,18 +66,35 @@ fn planner(model: &Model) -> Value {
 }
 
 fn target(model: &Model) -> String {
-    let Some(progress) = &model.progress else { return "-".into() };
-    let at = format!("{}, {} m", text::number(progress.target.x, 2), text::number(progress.target.y, 2));
-    match &model.position.pose {
-        Some(pose) => format!("{at}  in {} m", text::number((progress.target - pose.position).norm(), 2)),
-        None => at,
+    format!("{}  in {}", target_at(model), target_in(model))
+}
+
+fn target_at(model: &Model) -> String {
+    model.progress.as_ref().map_or_else(
+        || "-".into(),
+        |progress| {
+            format!("{}, {} m", text::number(progress.target.x, 2), text::number(progress.target.y, 2))
+        },
+    )
+}
+
+fn target_in(model: &Model) -> String {
+    match (&model.progress, &model.position.pose) {
+        (Some(progress), Some(pose)) => {
+            format!("{} m", text::number((progress.target - pose.position).norm(), 2))
+        }
+        _ => "- m".into(),
     }
 }
 
-fn cross_track(model: &Model) -> String {
+fn off(model: &Model) -> String {
     let off_m = model.progress.as_ref().and_then(|progress| progress.cross_track_m);
-    off_m
-        .map_or_else(|| "- (no preset path)".into(), |off_m| format!("{} m off path", text::number(off_m, 2)))
+    format!("{} m", off_m.map_or_else(|| "-".into(), |off_m| text::number(off_m, 2)))
+}
+
+fn cross_track(model: &Model) -> String {
+    let preset = model.run.as_ref().is_none_or(|run| run.preset_m.is_some());
+    if preset { format!("{} off the preset path", off(model)) } else { "- (no preset path)".into() }
 }
 
 fn speed(model: &Model) -> String {

@@ -1,5 +1,6 @@
 //! The control strip of a terminal too small for a map: state, alarm, position, and the keys that matter.
 
+use super::next::Clauses;
 use super::{Look, asks, confirm, coverage, footer, lists, next, text, top};
 use crate::theme::Role;
 use ratatui::Frame;
@@ -19,17 +20,18 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     // A question comes first: at this size nothing may push it out.
     let mut lines = Vec::new();
     if asks(look.model) {
-        lines.extend(wrapped(look, confirm::line(look.model), columns));
+        lines.extend(wrapped(look, &confirm::clauses(look.model), columns));
     }
     lines.push(state(look));
     lines.extend(alarm(look, columns));
     if !asks(look.model) {
-        lines.extend(wrapped(look, next::sentence(look.model), columns));
+        lines.extend(wrapped(look, &next::clauses(look.model), columns));
     }
     lines.push(Line::from(look.span(Role::Text, text::fit(&position(look), columns))));
-    let hints: Vec<String> = footer::hints(look.model).into_iter().map(|hint| hint.keys).collect();
-    lines.extend(wrapped(look, (Role::Key, format!("keys: {}", hints.join("  "))), columns));
-    lines.extend(wrapped(look, (Role::Dim, "The map needs 60x16. Control works here.".into()), columns));
+    lines.push(footer::line(look, columns));
+    lines.push(Line::from(
+        look.span(Role::Dim, text::fit(" The map needs 60x16. Control works here.", columns)),
+    ));
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
@@ -59,7 +61,7 @@ fn position(look: &Look) -> String {
 }
 
 /// A sentence in as many lines as it takes.
-fn wrapped(look: &Look, (role, sentence): (Role, String), columns: usize) -> Vec<Line<'static>> {
-    let lines = lists::wrap(&sentence, columns.saturating_sub(1));
-    lines.into_iter().map(|line| Line::from(look.span(role, format!(" {line}")))).collect()
+fn wrapped(look: &Look, (role, clauses): &Clauses, columns: usize) -> Vec<Line<'static>> {
+    let lines = lists::wrap(&clauses.join(" "), columns.saturating_sub(1));
+    lines.into_iter().map(|line| Line::from(look.span(*role, format!(" {line}")))).collect()
 }

@@ -10,6 +10,7 @@ use nalgebra::{Matrix2, Matrix3};
 use planner_api::{Command, Drawing, Layer, Limits, Motion, PoseEstimate, Reason};
 use positioning::{Exclusion, Fix, Integrity, Ranging, Residual};
 use std::f64::consts::FRAC_PI_2;
+use std::sync::OnceLock;
 use tui::{Caps, Colours, Glyphs, Health, Model, Msg, Recording, Refused, Times, update};
 use world::spiral::Spiral;
 use world::{
@@ -41,7 +42,7 @@ pub fn world() -> World {
         .iter()
         .enumerate()
         .map(|(index, (radius_m, bearing))| Station {
-            id: StationId(index as u32),
+            id: StationId(index as u32 + 1),
             name: format!("S{}", index + 1),
             position: Point::new(
                 radius_m * bearing.to_radians().cos(),
@@ -191,6 +192,7 @@ pub fn opened() -> EventKind {
 }
 
 /// A mission that is told tick by tick.
+#[derive(Clone)]
 pub struct Telling {
     path: Vec<Point>,
     grid: CoverageGrid,
@@ -311,7 +313,7 @@ impl Telling {
     }
 
     fn fix(&self) -> Fix {
-        let used: Vec<StationId> = (0..3).map(StationId).collect();
+        let used: Vec<StationId> = (1..4).map(StationId).collect();
         let residuals_m = [0.012, -0.031, 0.024];
         let residuals = used.iter().zip(residuals_m);
         Fix {
@@ -321,7 +323,7 @@ impl Telling {
                 .map(|(station, residual_m)| Residual { station: *station, residual_m, sigma_m: 0.05 })
                 .collect(),
             used,
-            excluded: vec![(StationId(3), Exclusion::Residual { residual_m: 0.42, gate_m: 0.15 })],
+            excluded: vec![(StationId(4), Exclusion::Residual { residual_m: 0.42, gate_m: 0.15 })],
             chi2: 0.9,
             degrees_of_freedom: 1,
             gdop: 1.1,
@@ -335,7 +337,7 @@ impl Telling {
     /// Station 4 is left out.
     pub fn excluded(&self) -> Event {
         let reason = Exclusion::Residual { residual_m: 0.42, gate_m: 0.15 };
-        self.now(EventKind::StationExcluded { station: StationId(3), reason })
+        self.now(EventKind::StationExcluded { station: StationId(4), reason })
     }
 
     /// A hold.
@@ -363,6 +365,7 @@ impl Telling {
 }
 
 /// A screen that has been told of a mission.
+#[derive(Clone)]
 pub struct Screen {
     /// Its model.
     pub model: Model,
@@ -374,6 +377,11 @@ pub struct Screen {
 impl Screen {
     /// A run that is open and waits.
     pub fn idle() -> Self {
+        static MADE: OnceLock<Screen> = OnceLock::new();
+        MADE.get_or_init(Self::make_idle).clone()
+    }
+
+    fn make_idle() -> Self {
         let mut screen = Self { model: Model::default(), telling: Telling::new(), mono_s: 0.0 };
         screen.tell(Msg::Time(Times { mono_s: 0.0, wall_unix_s: 1_795_264_000.0 }));
         screen.tell(Msg::Health(Health { recording: Recording::On, reached_speed: None }));
@@ -389,6 +397,11 @@ impl Screen {
 
     /// A run two thirds done.
     pub fn running() -> Self {
+        static MADE: OnceLock<Screen> = OnceLock::new();
+        MADE.get_or_init(Self::make_running).clone()
+    }
+
+    fn make_running() -> Self {
         let mut screen = Self::idle();
         let mut events = screen.telling.start();
         events.extend(screen.telling.drive(1200));

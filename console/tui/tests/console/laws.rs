@@ -81,11 +81,14 @@ proptest! {
         caps in caps(),
         size in (0..300_u16, 0..100_u16),
     ) {
-        let mut screen = match start { 0 => Screen::idle(), 1 => Screen::held(), _ => Screen { model: Model::default(), ..Screen::idle() } };
+        let mut screen = if start == 1 { Screen::held() } else { Screen::idle() };
+        if start == 2 {
+            screen.model = Model::default();
+        }
         for msg in msgs {
             screen.tell(msg);
         }
-        let buffer = drawn(&screen.model, &caps, size);
+        let buffer = drawn(&screen.model, caps, size);
         prop_assert_eq!((buffer.area.width, buffer.area.height), size);
         prop_assert!(caps != ASCII || buffer.content.iter().all(|cell| cell.symbol().is_ascii()));
     }
@@ -112,7 +115,7 @@ fn the_smallest_and_largest_screens_are_drawn() {
         for mut screen in [Screen::idle(), Screen::running()] {
             for keys in ["", "?", ":z", "P", "p", "L", "/x", "q", "S", "X"] {
                 screen.type_text(keys);
-                drawn(&screen.model, &RICH, (width, height));
+                drawn(&screen.model, RICH, (width, height));
                 screen.press([Key::Esc]);
             }
         }
@@ -140,7 +143,7 @@ fn nothing_but_style_is_lost_without_colour() {
     ];
     for (name, screen, words) in cases {
         for size in [(80, 24), (120, 36)] {
-            let mut buffer = drawn(&screen.model, &PLAIN, size);
+            let mut buffer = drawn(&screen.model, PLAIN, size);
             let area = buffer.area;
             buffer.set_style(area, Style::reset());
             let text = text(&buffer);

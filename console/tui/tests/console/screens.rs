@@ -12,9 +12,9 @@ use tui::{Caps, Key, Model, Msg, Recording, Theme, view, view_with};
 const SIZES: [(u16, u16); 4] = [(120, 36), (80, 24), (60, 16), (44, 10)];
 
 /// Draws a model.
-pub fn drawn(model: &Model, caps: &Caps, size: (u16, u16)) -> Buffer {
+pub fn drawn(model: &Model, caps: Caps, size: (u16, u16)) -> Buffer {
     let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).unwrap();
-    terminal.draw(|frame| view(model, caps, frame)).unwrap();
+    terminal.draw(|frame| view(model, &caps, frame)).unwrap();
     terminal.backend().buffer().clone()
 }
 
@@ -29,9 +29,9 @@ fn rows(buffer: &Buffer, show: impl Fn(&ratatui::buffer::Cell) -> String) -> Str
 }
 
 /// One letter for what each cell stands for; `_` for blank ones.
-fn roles(model: &Model, caps: &Caps, size: (u16, u16)) -> String {
+fn roles(model: &Model, caps: Caps, size: (u16, u16)) -> String {
     let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).unwrap();
-    terminal.draw(|frame| view_with(model, caps, &Theme::labelled(), frame)).unwrap();
+    terminal.draw(|frame| view_with(model, &caps, &Theme::labelled(), frame)).unwrap();
     rows(terminal.backend().buffer(), |cell| {
         let background = Theme::role_of(cell.bg);
         let role = if cell.symbol() == " " { background } else { Theme::role_of(cell.fg).or(background) };
@@ -42,13 +42,13 @@ fn roles(model: &Model, caps: &Caps, size: (u16, u16)) -> String {
 fn store(name: &str, screen: &mut Screen) {
     for size in SIZES {
         screen.tell(Msg::Resize { width: size.0, height: size.1 });
-        let text = text(&drawn(&screen.model, &RICH, size));
-        let roles = roles(&screen.model, &RICH, size);
+        let text = text(&drawn(&screen.model, RICH, size));
+        let roles = roles(&screen.model, RICH, size);
         insta::assert_snapshot!(format!("{name}_{}x{}", size.0, size.1), format!("{text}\n{roles}"));
     }
     let size = (80, 24);
     screen.tell(Msg::Resize { width: size.0, height: size.1 });
-    insta::assert_snapshot!(format!("{name}_80x24_no_colour"), text(&drawn(&screen.model, &PLAIN, size)));
+    insta::assert_snapshot!(format!("{name}_80x24_no_colour"), text(&drawn(&screen.model, PLAIN, size)));
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn running_with_letters_only() {
         screen.tell(Msg::Resize { width: size.0, height: size.1 });
         insta::assert_snapshot!(
             format!("ascii_{}x{}", size.0, size.1),
-            text(&drawn(&screen.model, &ASCII, size))
+            text(&drawn(&screen.model, ASCII, size))
         );
     }
 }
