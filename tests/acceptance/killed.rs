@@ -4,13 +4,13 @@ use crate::bench::{Bench, journal, scenario};
 use std::{
     path::Path,
     process::Stdio,
-    time::{Duration, Instant},
+    time::{Duration, Instant, SystemTime},
 };
 
 #[test]
 fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
     // Times differ, so that the kill hits different moments; seeds are written out.
-    for (seed, wait_ms) in [(11, 150), (12, 320), (13, 480), (14, 610), (15, 750)] {
+    for (seed, wait_ms) in [(11, 50), (12, 320), (13, 780), (14, 1210), (15, 1650)] {
         let bench = Bench::new();
         // A long mission: nobody kills in time what ends in a second.
         let slow = slow_scenario(&bench);
@@ -26,15 +26,23 @@ fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
         wait_for_journal(&bench);
         std::thread::sleep(Duration::from_millis(wait_ms));
         assert!(child.try_wait().unwrap().is_none(), "the mission ended before it could be killed");
+        let killed_at = SystemTime::now();
         child.kill().unwrap();
         child.wait().unwrap();
 
         let run = bench.runs().remove(0);
         let listed = bench.tankops(&["runs", "--json"]).json();
         assert_eq!(listed[0]["end"], "CRASHED", "{listed}");
-        assert!(!journal(&run).is_empty());
+        let written = |name: &str| run.join(name).metadata().unwrap().modified().unwrap();
+        let age = |name: &str| killed_at.duration_since(written(name)).unwrap_or_default();
+        assert!(age("events.jsonl") <= Duration::from_secs(1), "the journal is {:?} old", age("events.jsonl"));
+        assert!(age("recording.rrd") <= Duration::from_secs(5), "the recording is {:?} old", age("recording.rrd"));
+        assert!(!recording::inspect(&run.join("recording.rrd")).unwrap().entities.is_empty());
+        let last_tick = journal(&run).last().unwrap()["tick"].as_i64().unwrap();
         let exported = bench.tankops(&["export", run.to_str().unwrap(), "--rrd", "again.rrd"]);
         assert_eq!(exported.code, Some(0), "{exported:?}");
+        let again = recording::inspect(&bench.path().join("again.rrd")).unwrap();
+        assert!(again.ticks.is_some_and(|(_, last)| last == last_tick || last + 1 == last_tick), "{:?}", again.ticks);
         let verified = bench.tankops(&["verify", run.to_str().unwrap()]);
         assert_eq!(verified.code, Some(0), "{verified:?}");
     }
@@ -42,7 +50,8 @@ fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
 
 fn slow_scenario(bench: &Bench) -> std::path::PathBuf {
     let text = std::fs::read_to_string(scenario("spiral-paper.toml")).unwrap();
-    bench.file("slow.toml", text)
+    // Ten times the ticks, so that it takes seconds.
+    bench.file("slow.toml", text.replace("tick_s = 0.1", "tick_s = 0.01"))
 }
 
 fn wait_for_journal(bench: &Bench) {

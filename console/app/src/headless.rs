@@ -71,6 +71,7 @@ pub fn fly(
         }),
         ..fold.summary()
     };
+    let summary = scenario.expect.judged(summary);
     if let Some(folder) = &folder {
         folder.write_report(&summary)?;
     }

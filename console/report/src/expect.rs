@@ -69,6 +69,12 @@ enum Side {
 }
 
 impl Expect {
+    /// The same figures with the sentences about the bounds that were not kept.
+    #[must_use]
+    pub fn judged(&self, run: Summary) -> Summary {
+        Summary { unmet: Some(self.check(&run).iter().map(ToString::to_string).collect()), ..run }
+    }
+
     /// The bounds that a run did not keep. A figure that is absent keeps no bound.
     pub fn check(&self, run: &Summary) -> Vec<Miss> {
         use Side::{AtLeast, AtMost};

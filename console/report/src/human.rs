@@ -99,6 +99,7 @@ fn warnings(run: &Summary) -> Vec<String> {
             percent(coverage.reachable)
         ));
     }
+    found.extend(run.unmet.iter().flatten().map(|miss| format!("not as expected: {miss}")));
     found
 }
 

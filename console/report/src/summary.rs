@@ -40,6 +40,9 @@ pub struct Summary {
     pub holds: u64,
     /// How often a planner failed.
     pub planner_faults: u64,
+    /// Bounds of the scenario's `[expect]` that the run did not keep, as sentences; absent if nobody compared.
+    #[serde(default)]
+    pub unmet: Option<Vec<String>>,
     /// How much of the floor was scanned.
     pub coverage: Option<Coverage>,
     /// How closely a preset path was followed; absent for other missions.

@@ -156,6 +156,11 @@ impl Cockpit {
                 return (orders, None);
             };
             match request {
+                // A hold does not wait for the tick that is due: the tick comes now.
+                Ok(Request::Order(Order::Hold)) => {
+                    orders.push(Order::Hold);
+                    return (orders, None);
+                }
                 Ok(Request::Order(order)) => orders.push(order),
                 Ok(Request::Speed(speed)) => self.speed = speed,
                 Ok(Request::Close { within }) => return (orders, Some(within)),
@@ -251,6 +256,7 @@ impl Cockpit {
             }),
             ..log.fold.summary()
         };
+        let summary = self.scenario.expect.judged(summary);
         log.folder.write_report(&summary)?;
         log.ended = Some(summary);
         self.say(Msg::Health(super::screen::closed(finished.error)));
