@@ -62,7 +62,10 @@ impl Model {
                 self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
             }
             EventKind::PlannerFailed { fault } => {
-                self.planning.fault = Some(fault.clone());
+                // A planner that was refused leaves the one before in its place.
+                if self.planner_id() == Some(fault.planner.as_str()) {
+                    self.planning.fault = Some(fault.clone());
+                }
                 self.raise(event, Cause::Planner, Severity::Crit, fault.message.clone());
                 self.withdraw_question();
             }
