@@ -1,2 +1,84 @@
-//! tankops.
-fn main() {}
+//! tankops: console for robots that inspect the floors of oil storage tanks.
+
+mod cli;
+mod console;
+mod failure;
+mod flight;
+mod headless;
+mod past_runs;
+mod plan;
+mod planners;
+mod run_folder;
+mod scenario;
+mod stop_signal;
+mod verify;
+
+use clap::Parser;
+use cli::{Changes, Cli, Command, ConsoleArgs, LogsArg};
+use failure::bad_input;
+use planner_host::PluginDirs;
+use scenario::{Scenario, Settings};
+use std::{
+    io::IsTerminal,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+/// The demo, so that `tankops` shows something wherever it is started.
+const DEMO: &str = include_str!("../../../scenarios/demo.toml");
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    if matches!(cli.command, Some(Command::Worker)) {
+        return planner_host::worker_main();
+    }
+    dispatch(cli).unwrap_or_else(|error| failure::tell(&error))
+}
+
+fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
+    let plugins = PluginDirs::standard(&cli.plugins.plugin_dir);
+    match cli.command {
+        None => by_default(&plugins),
+        Some(Command::Console(args)) => {
+            console::open(&console_scenario(&args)?, &args.logs, &plugins, args.drill)
+        }
+        Some(Command::Run(args)) => headless::run(&args, &plugins),
+        Some(Command::Plan(args)) => plan::plan(&args, &plugins),
+        Some(Command::Planners { json }) => planners::list(&plugins, json),
+        Some(Command::Check { files }) => planners::check(&files),
+        Some(Command::Runs { json, logs }) => past_runs::list(&logs, json),
+        Some(Command::Verify { run, logs }) => verify::verify(&run, &logs, &plugins),
+        Some(Command::Export { run, rrd, logs }) => past_runs::export(&run, &rrd, &logs),
+        Some(Command::Worker) => Ok(planner_host::worker_main()),
+    }
+}
+
+/// The console on the demo, or, without a terminal, the demo flown headless.
+fn by_default(plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
+    let (scenario, logs) = (demo()?, LogsArg { logs: PathBuf::from("logs") });
+    if std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
+        return console::open(&scenario, &logs, plugins, None);
+    }
+    headless::fly(&scenario, plugins, &logs, headless::Telling { json: false, record: true })
+}
+
+fn demo() -> anyhow::Result<Scenario> {
+    Scenario::parse(DEMO, "the demo scenario").map_err(|errors| bad_input(errors.render()))
+}
+
+fn console_scenario(args: &ConsoleArgs) -> anyhow::Result<Scenario> {
+    match &args.scenario {
+        Some(path) => read_scenario(path, &args.changes),
+        None => Scenario::parse_with(DEMO, "the demo scenario", &settings(&args.changes))
+            .map_err(|errors| bad_input(errors.render())),
+    }
+}
+
+/// Reads a scenario with what the command line changes in it.
+fn read_scenario(path: &Path, changes: &Changes) -> anyhow::Result<Scenario> {
+    Scenario::read_with(path, &settings(changes)).map_err(|errors| bad_input(errors.render()))
+}
+
+fn settings(changes: &Changes) -> Settings {
+    Settings { planner: changes.planner.clone(), seed: changes.seed, set: changes.set.clone() }
+}

@@ -206,13 +206,18 @@ impl Mission {
         } else if self.task.is_done(here) {
             self.end(Outcome::Complete, "the task is done");
         } else if self.stuck.is_stuck(&self.task, here, self.config.tick_s) {
-            let reason = format!(
-                "no progress at {:.2}, {:.2} m, {:.0} % done",
-                here.x,
-                here.y,
-                self.task.done() * 100.0
-            );
-            self.end(Outcome::Stuck, &reason);
+            self.stop_stuck(here);
+        }
+    }
+
+    /// An operator may know a way on; without one the mission is over.
+    fn stop_stuck(&mut self, here: Point) {
+        let done = self.task.done() * 100.0;
+        let message = format!("no progress at {:.2}, {:.2} m, {done:.0} % done", here.x, here.y);
+        if self.config.attended {
+            self.hold(HoldReason::Stuck { message });
+        } else {
+            self.end(Outcome::Stuck, &message);
         }
     }
 
@@ -220,7 +225,10 @@ impl Mission {
         match reason {
             HoldReason::PositionLost if !self.locator.is_lost() => self.go_on(Phase::Running),
             HoldReason::PlannerFault { message } => self.replace_failed_planner(message, planner),
-            HoldReason::PositionLost | HoldReason::Operator | HoldReason::Stepped => {}
+            HoldReason::PositionLost
+            | HoldReason::Operator
+            | HoldReason::Stuck { .. }
+            | HoldReason::Stepped => {}
         }
     }
 

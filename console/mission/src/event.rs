@@ -240,6 +240,11 @@ pub enum HoldReason {
         /// The fault's sentence.
         message: String,
     },
+    /// The robot gets nowhere.
+    Stuck {
+        /// Where, as a sentence.
+        message: String,
+    },
     /// A single step is done.
     Stepped,
 }
@@ -250,6 +255,7 @@ impl fmt::Display for HoldReason {
             Self::Operator => f.write_str("held by the operator"),
             Self::PositionLost => f.write_str("held because the position is lost"),
             Self::PlannerFault { message } => write!(f, "held because of the planner: {message}"),
+            Self::Stuck { message } => write!(f, "held because the robot is stuck: {message}"),
             Self::Stepped => f.write_str("held after a single step"),
         }
     }
@@ -397,7 +403,9 @@ impl Event {
 fn hold_severity(by: &HoldReason) -> Severity {
     match by {
         HoldReason::Operator | HoldReason::Stepped => Severity::Info,
-        HoldReason::PositionLost | HoldReason::PlannerFault { .. } => Severity::Warn,
+        HoldReason::PositionLost | HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => {
+            Severity::Warn
+        }
     }
 }
 

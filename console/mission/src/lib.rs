@@ -15,6 +15,7 @@ mod follower;
 pub mod link;
 mod locate;
 pub mod order;
+mod preview;
 mod task;
 
 pub use config::{MissionConfig, PlannerChoice, TaskConfig};
@@ -24,3 +25,4 @@ pub use link::{
     Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo, PlannerLink, Reply,
 };
 pub use order::Order;
+pub use preview::preview;

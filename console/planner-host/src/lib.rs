@@ -1,1 +1,42 @@
 //! Planner plugins: discovery, checks before loading, loader, worker process, supervisor.
+//!
+//! A plugin is a shared library of strangers. The console never loads one: it starts itself again as a worker
+//! process, which loads one plugin and answers requests over a socket. Whatever the plugin does there (crash, hang,
+//! eat memory, print) ends as a [`mission::Fault`] with one sentence, within the deadline of the call.
+//!
+//! [`Host`] is the port that the mission asks; [`survey`] lists what was found; [`worker_main`] is what the hidden
+//! command `worker` runs. Planners run on Unix systems; elsewhere every choice is refused with a sentence.
+//!
+//! Frames and units are those of `planner_api`.
+
+#![deny(unsafe_code)]
+
+mod checks;
+pub mod discovery;
+mod host;
+#[cfg(unix)]
+mod loader;
+mod parameters;
+mod quarantine;
+pub mod stamp;
+mod stats;
+mod supervisor;
+mod survey;
+mod wire;
+#[cfg(unix)]
+mod worker;
+
+pub use discovery::PluginDirs;
+pub use host::{Host, HostConfig};
+pub use parameters::check_parameters;
+pub use stats::{CallStats, HostStats};
+pub use supervisor::WorkerCommand;
+pub use survey::{Survey, SurveyedPlugin, check_plugin, survey};
+#[cfg(unix)]
+pub use worker::worker_main;
+
+/// Planners need processes and sockets that this system does not have.
+#[cfg(not(unix))]
+pub fn worker_main() -> std::process::ExitCode {
+    std::process::ExitCode::from(2)
+}

@@ -40,18 +40,17 @@ fn fixes(criterion: &mut Criterion) {
     let start = Pose { position: TRUTH, heading_rad: 0.0 };
     let mut positioner = Positioner::new(PositionerConfig::new(stations.clone(), start));
     criterion.bench_function("cycle of 60 ranges, nls and filter", |b| {
-        b.iter(|| positioner.cycle(black_box(&sets)))
+        b.iter(|| positioner.cycle(black_box(&sets)));
     });
 }
 
 fn filter(criterion: &mut Criterion) {
-    let noise = MotionNoise { sigma_per_m: 0.05, turn_sigma_ratio: 0.05, heading_sigma_per_tick_rad: 0.002 };
     let odometry = Odometry { forward_m: 0.03, sideways_m: 0.0, turn_rad: 0.01 };
     let covariance = Matrix2::identity() * 0.0025;
-    let mut ekf = Ekf::new(Pose::new(0.0, 0.0, 0.0), 0.05, 0.05);
+    let mut ekf = Ekf::new(Pose::new(0.0, 0.0, 0.0), 0.05, 0.05, MotionNoise::default());
     criterion.bench_function("filter step: predict and update", |b| {
         b.iter(|| {
-            ekf.predict(black_box(&odometry), &noise);
+            ekf.predict(black_box(&odometry));
             ekf.update_position(ekf.pose().position, &covariance)
         });
     });

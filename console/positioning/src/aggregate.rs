@@ -7,6 +7,8 @@ use world::RangeSet;
 /// No aggregated range is trusted more than this, metres: stations are not surveyed any better.
 pub const SIGMA_FLOOR_M: f64 = 1e-3;
 
+/// Shortest range that is taken for one, metres.
+const SHORTEST_M: f64 = 1e-6;
 /// Longest range that is taken for one, metres.
 pub(crate) const RANGE_LIMIT_M: f64 = 1e6;
 
@@ -30,7 +32,7 @@ impl Aggregation {
     /// `sigma_ratio` is the standard deviation of one range as a share of the range; repetitions count as independent.
     ///
     /// # Errors
-    /// [`FixError::BadRange`] if a range is not positive, not finite or beyond a million metres.
+    /// [`FixError::BadRange`] if a range is no number between a micrometre and a million metres.
     pub fn aggregate(self, sets: &[RangeSet], sigma_ratio: f64) -> Result<Vec<Ranging>, FixError> {
         sets.iter().filter(|set| !set.ranges_m.is_empty()).map(|set| self.one(set, sigma_ratio)).collect()
     }
@@ -44,21 +46,17 @@ impl Aggregation {
             Self::Mean => set.ranges_m.iter().sum::<f64>() / n,
             Self::RootMeanSquare => (set.ranges_m.iter().map(|r| r * r).sum::<f64>() / n).sqrt(),
         };
-        // The comparison also turns a ratio that is not a number into the floor.
-        let sigma_m = (sigma_ratio * range_m / n.sqrt()).max(SIGMA_FLOOR_M).min(RANGE_LIMIT_M);
+        // `max` also turns what is no number into the floor.
+        let at_least_m = (sigma_ratio * range_m / n.sqrt()).max(SIGMA_FLOOR_M);
+        let sigma_m = at_least_m.min(RANGE_LIMIT_M);
         let repetitions = u32::try_from(set.ranges_m.len()).unwrap_or(u32::MAX);
-        // The square of a tiny range may have vanished.
-        if is_usable(range_m) {
-            Ok(Ranging { station: set.station, range_m, sigma_m, repetitions })
-        } else {
-            Err(FixError::BadRange { station: set.station })
-        }
+        Ok(Ranging { station: set.station, range_m, sigma_m, repetitions })
     }
 }
 
 /// Whether a number can be a range.
 pub(crate) fn is_usable(range_m: f64) -> bool {
-    range_m > 0.0 && range_m <= RANGE_LIMIT_M
+    (SHORTEST_M..=RANGE_LIMIT_M).contains(&range_m)
 }
 
 #[cfg(test)]
@@ -92,7 +90,7 @@ mod tests {
 
     #[test]
     fn one_bad_repetition_is_an_error() {
-        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300] {
+        for bad in [0.0, -1.0, 1e-300, f64::NAN, f64::INFINITY, 1e300] {
             let answer = Aggregation::Mean.aggregate(&[set(&[5.0, bad])], 0.03);
             assert_eq!(answer, Err(FixError::BadRange { station: StationId(1) }), "{bad}");
         }

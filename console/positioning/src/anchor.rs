@@ -31,6 +31,13 @@ pub(crate) struct View {
     pub sigma_m: f64,
 }
 
+impl View {
+    /// Squared residual in its own sigmas.
+    pub fn squared_error(&self) -> f64 {
+        (self.residual_m / self.sigma_m).powi(2)
+    }
+}
+
 impl Anchor {
     /// The station as seen from `position`.
     ///

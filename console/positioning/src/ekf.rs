@@ -1,27 +1,53 @@
-//! Extended Kalman filter over position and heading.
+//! Extended Kalman filter over position, heading, slip and gyro bias.
 
 use crate::fix::ellipse_95;
-use nalgebra::{Matrix2, Matrix3, RowVector3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use world::{Odometry, Point, Pose, geometry::wrap_angle_rad};
 
 /// No position is less known than this, metres; keeps the numbers finite.
 const SIGMA_LIMIT_M: f64 = 1e4;
+/// No variance is smaller than this.
+const VARIANCE_FLOOR: f64 = 1e-14;
 /// Odometry of one tick beyond this is no motion of a robot, metres or radians.
 const MOTION_LIMIT: f64 = 1e3;
 /// Squared distance in sigmas per degree of freedom beyond which a measurement is refused: one honest one in 10 000.
 const GATE: [f64; 2] = [15.14, 18.42];
 
+/// Position, heading, share of the way lost to slip, error of the measured turn per tick.
+type State = SVector<f64, 5>;
+type Covariance = SMatrix<f64, 5, 5>;
+
+/// Where in the state the slip stands.
+const SLIP: usize = 3;
+/// Where in the state the error of the turn stands.
+const TURN_BIAS: usize = 4;
+/// Standard deviations beyond which nothing is less known; they keep the numbers finite.
+const SIGMA_LIMITS: [f64; 5] = [SIGMA_LIMIT_M, SIGMA_LIMIT_M, PI, 1.0, 0.1];
+/// Part of the odometry error that is fresh in every metre, as a share of the part that stays the same.
+const FRESH_SHARE: f64 = 0.3;
+/// Change of slip and turn error within a metre, as a share of what they may be.
+const WANDER_SHARE: f64 = 0.05;
+
 /// How odometry errs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MotionNoise {
-    /// Standard deviation of the position after one metre without a fix, metres.
+    /// Standard deviation of the position after one metre without a fix, metres; mostly slip, so it grows in
+    /// proportion to the way until fixes tell how large the slip is.
     pub sigma_per_m: f64,
     /// Standard deviation of a turn as a share of the turn.
     pub turn_sigma_ratio: f64,
-    /// Standard deviation that the heading gathers in one tick, radians.
+    /// Standard deviation of the turn that a robot at rest measures in a tick, radians; mostly the gyro's bias times
+    /// the tick, so it adds up until fixes tell how large it is.
     pub heading_sigma_per_tick_rad: f64,
+}
+
+impl Default for MotionNoise {
+    /// Tracks on a steel floor with a cheap gyro: 5 cm per metre, 5 % of a turn, 0.5 mrad per tick.
+    fn default() -> Self {
+        Self { sigma_per_m: 0.05, turn_sigma_ratio: 0.05, heading_sigma_per_tick_rad: 0.0005 }
+    }
 }
 
 /// What became of a measurement.
@@ -39,33 +65,47 @@ impl Update {
 
 /// The filter: pose with covariance, moved by odometry, corrected by fixes or single ranges.
 ///
-/// Ranges say nothing about the heading by themselves; it becomes known through the correlation that motion makes
-/// between heading and position. Input that is no number is refused, so the state always is finite.
+/// Besides the pose it estimates the slip and the gyro's bias, because both last. Ranges say nothing about the heading
+/// by themselves; it becomes known through the correlation that motion makes between heading and position. Input that
+/// is no number is refused, so the state always is finite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ekf {
-    pose: Pose,
-    covariance: Matrix3<f64>,
-    way_since_update_m: f64,
+    state: State,
+    covariance: Covariance,
+    noise: MotionNoise,
 }
 
 impl Ekf {
     /// A filter that believes in `start` with the given standard deviations, metres and radians.
-    pub fn new(start: Pose, sigma_m: f64, heading_sigma_rad: f64) -> Self {
-        let covariance =
-            Matrix3::from_diagonal(&Vector3::new(sigma_m, sigma_m, heading_sigma_rad).map(|s| s * s));
-        let mut filter = Self { pose: start, covariance, way_since_update_m: 0.0 };
+    pub fn new(start: Pose, sigma_m: f64, heading_sigma_rad: f64, noise: MotionNoise) -> Self {
+        let Pose { position, heading_rad } = start;
+        let sigma = State::new(
+            sigma_m,
+            sigma_m,
+            heading_sigma_rad,
+            noise.sigma_per_m,
+            noise.heading_sigma_per_tick_rad,
+        );
+        let mut filter = Self {
+            state: State::new(position.x, position.y, heading_rad, 0.0, 0.0),
+            // `min` also turns what is no number into the limit.
+            covariance: Covariance::from_diagonal(
+                &sigma.zip_map(&State::from(SIGMA_LIMITS), |s, limit| s.abs().min(limit).powi(2)),
+            ),
+            noise,
+        };
         filter.keep_sound();
         filter
     }
 
     /// Where the robot is believed to be.
     pub fn pose(&self) -> Pose {
-        self.pose
+        Pose::new(self.state.x, self.state.y, self.state.z)
     }
 
     /// Covariance of x, y (square metres) and heading (square radians).
-    pub fn covariance(&self) -> &Matrix3<f64> {
-        &self.covariance
+    pub fn covariance(&self) -> Matrix3<f64> {
+        self.covariance.fixed_view::<3, 3>(0, 0).into_owned()
     }
 
     /// Covariance of the position, square metres.
@@ -79,63 +119,79 @@ impl Ekf {
     }
 
     /// Moves the belief by what the odometry says.
-    ///
-    /// The position error grows in proportion to the way since the last measurement, not with its root: slip is
-    /// much the same from tick to tick.
-    pub fn predict(&mut self, odometry: &Odometry, noise: &MotionNoise) {
+    pub fn predict(&mut self, odometry: &Odometry) {
         let Odometry { forward_m, sideways_m, turn_rad } = *odometry;
         if ![forward_m, sideways_m, turn_rad].iter().all(|m| m.abs() <= MOTION_LIMIT) {
             return;
         }
-        let before = self.pose.position;
-        self.pose = self.pose.moved(forward_m, sideways_m, turn_rad);
-        let step = self.pose.position - before;
-        let by_state = Matrix3::new(1.0, 0.0, -step.y, 0.0, 1.0, step.x, 0.0, 0.0, 1.0);
-        let way_m = self.way_since_update_m + forward_m.hypot(sideways_m);
-        let gained = noise.sigma_per_m.powi(2) * (way_m.powi(2) - self.way_since_update_m.powi(2));
-        let turned = (noise.turn_sigma_ratio * turn_rad).powi(2) + noise.heading_sigma_per_tick_rad.powi(2);
-        self.way_since_update_m = way_m;
-        self.covariance = by_state * self.covariance * by_state.transpose()
-            + Matrix3::from_diagonal(&Vector3::new(gained, gained, turned));
+        let before = self.pose();
+        let kept = 1.0 - self.state[SLIP];
+        let after = before.moved(forward_m * kept, sideways_m * kept, turn_rad - self.state[TURN_BIAS]);
+        let unslipped = before.moved(forward_m, sideways_m, turn_rad).position - before.position;
+        let step = after.position - before.position;
+        self.state.fixed_rows_mut::<2>(0).copy_from(&after.position.coords);
+        self.state[2] = after.heading_rad;
+
+        let mut by_state = Covariance::identity();
+        let by_heading = Vector2::new(-step.y, step.x);
+        by_state.fixed_view_mut::<2, 1>(0, 2).copy_from(&by_heading);
+        by_state.fixed_view_mut::<2, 1>(0, SLIP).copy_from(&-unslipped);
+        // The heading turns evenly on the way, so the position sees half of it.
+        by_state.fixed_view_mut::<2, 1>(0, TURN_BIAS).copy_from(&(by_heading * -0.5));
+        by_state[(2, TURN_BIAS)] = -1.0;
+        let gained = self.gained_m2_rad2(forward_m.hypot(sideways_m), turn_rad);
+        self.covariance =
+            by_state * self.covariance * by_state.transpose() + Covariance::from_diagonal(&gained);
         self.keep_sound();
+    }
+
+    /// Variances that a motion adds.
+    fn gained_m2_rad2(&self, way_m: f64, turn_rad: f64) -> State {
+        let noise = &self.noise;
+        let by_way = (FRESH_SHARE * noise.sigma_per_m).powi(2) * way_m;
+        let by_turn = (noise.turn_sigma_ratio * turn_rad).powi(2) + noise.heading_sigma_per_tick_rad.powi(2);
+        let wander = WANDER_SHARE.powi(2) * way_m;
+        State::new(
+            by_way,
+            by_way,
+            by_turn,
+            noise.sigma_per_m.powi(2) * wander,
+            noise.heading_sigma_per_tick_rad.powi(2) * wander,
+        )
     }
 
     /// Corrects by a position with its covariance, unless it is too far off to be true.
     pub fn update_position(&mut self, position: Point, covariance: &Matrix2<f64>) -> Update {
-        let by_state = SMatrix::<f64, 2, 3>::identity();
-        self.update(position - self.pose.position, by_state, *covariance)
+        let by_state = SMatrix::<f64, 2, 5>::identity();
+        self.update(position - self.pose().position, by_state, *covariance)
     }
 
     /// Corrects by the range from one station, unless it is too far off to be true.
     pub fn update_range(&mut self, station: Point, range_m: f64, sigma_m: f64) -> Update {
-        let away = self.pose.position - station;
+        let away = self.pose().position - station;
         let distance_m = away.norm();
+        // From this near the direction, and with it the correction, is anyone's guess.
         if distance_m < sigma_m {
             return Update::REFUSED;
         }
-        let by_state = RowVector3::new(away.x / distance_m, away.y / distance_m, 0.0);
-        self.update(
-            SVector::<f64, 1>::new(range_m - distance_m),
-            by_state,
-            SMatrix::<f64, 1, 1>::new(sigma_m.powi(2)),
-        )
+        let by_state = SMatrix::<f64, 1, 5>::new(away.x / distance_m, away.y / distance_m, 0.0, 0.0, 0.0);
+        let variance = SMatrix::<f64, 1, 1>::new(sigma_m.powi(2));
+        self.update(SVector::<f64, 1>::new(range_m - distance_m), by_state, variance)
     }
 
     /// Puts the position where a fix says it is, whatever was believed, and doubts the heading.
     pub fn restart_at(&mut self, position: Point, covariance: &Matrix2<f64>, heading_sigma_rad: f64) {
-        let heading_variance = self.covariance[(2, 2)] + heading_sigma_rad.powi(2);
-        let mut restarted = Self { way_since_update_m: 0.0, ..self.clone() };
-        restarted.pose.position = position;
-        restarted.covariance = Matrix3::zeros();
+        let start = Pose { position, heading_rad: self.state.z };
+        let heading_sigma_rad = (self.covariance[(2, 2)] + heading_sigma_rad.powi(2)).sqrt();
+        let mut restarted = Self::new(start, 0.0, heading_sigma_rad, self.noise);
         restarted.covariance.fixed_view_mut::<2, 2>(0, 0).copy_from(covariance);
-        restarted.covariance[(2, 2)] = heading_variance;
         self.adopt(restarted);
     }
 
     fn update<const N: usize>(
         &mut self,
         innovation: SVector<f64, N>,
-        by_state: SMatrix<f64, N, 3>,
+        by_state: SMatrix<f64, N, 5>,
         noise: SMatrix<f64, N, N>,
     ) -> Update {
         let expected = by_state * self.covariance * by_state.transpose() + noise;
@@ -146,39 +202,40 @@ impl Ekf {
             return Update { nis: if nis.is_finite() { nis } else { f64::MAX }, accepted: false };
         }
         let gain = self.covariance * by_state.transpose() * inverse;
-        let shift = gain * innovation;
-        let mut updated = Self { way_since_update_m: 0.0, ..self.clone() };
-        updated.pose.position += shift.fixed_rows::<2>(0);
-        updated.pose.heading_rad += shift[2];
         // Joseph's form stays positive where the short form may not.
-        let rest = Matrix3::identity() - gain * by_state;
-        updated.covariance = rest * self.covariance * rest.transpose() + gain * noise * gain.transpose();
+        let rest = Covariance::identity() - gain * by_state;
+        let covariance = rest * self.covariance * rest.transpose() + gain * noise * gain.transpose();
+        let updated = Self { state: self.state + gain * innovation, covariance, noise: self.noise };
         Update { nis, accepted: self.adopt(updated) }
     }
 
     /// Takes a new state if it is sound.
     fn adopt(&mut self, mut new: Self) -> bool {
-        let is_finite = new.covariance.iter().all(|c| c.is_finite())
-            && new.pose.position.iter().all(|c| c.is_finite())
-            && new.pose.heading_rad.is_finite();
-        if is_finite {
+        let is_sound = new.covariance.iter().chain(new.state.iter()).all(|number| number.abs() < 1e100);
+        if is_sound {
             new.keep_sound();
             *self = new;
         }
-        is_finite
+        is_sound
     }
 
-    /// Symmetric, not negative, not endless; the heading within one turn.
+    /// Covariance symmetric, not negative, not endless; the heading within one turn, the slip short of standing still.
     fn keep_sound(&mut self) {
-        self.pose.heading_rad = wrap_angle_rad(self.pose.heading_rad);
+        self.state[2] = wrap_angle_rad(self.state[2]);
+        self.state[SLIP] = self.state[SLIP].clamp(-0.5, 0.9);
         let symmetric = (self.covariance + self.covariance.transpose()) / 2.0;
-        let limits = Vector3::new(SIGMA_LIMIT_M, SIGMA_LIMIT_M, PI);
-        let shrink = Matrix3::from_diagonal(&limits.zip_map(&symmetric.diagonal(), |limit, variance| {
+        let limits = State::from(SIGMA_LIMITS);
+        let shrink = Covariance::from_diagonal(&limits.zip_map(&symmetric.diagonal(), |limit, variance| {
             if variance > limit * limit { limit / variance.sqrt() } else { 1.0 }
         }));
         self.covariance = shrink * symmetric * shrink;
-        for i in 0..3 {
-            self.covariance[(i, i)] = self.covariance[(i, i)].max(1e-12);
+        for i in 0..5 {
+            self.covariance[(i, i)] = self.covariance[(i, i)].max(VARIANCE_FLOOR);
+        }
+        for (i, j) in (1..5).flat_map(|i| (0..i).map(move |j| (i, j))) {
+            let most = (self.covariance[(i, i)] * self.covariance[(j, j)]).sqrt();
+            self.covariance[(i, j)] = self.covariance[(i, j)].clamp(-most, most);
+            self.covariance[(j, i)] = self.covariance[(i, j)];
         }
     }
 }

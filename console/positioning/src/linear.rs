@@ -113,7 +113,8 @@ impl Factors {
     fn conditioning(&self) -> f64 {
         let squares = self.r11.powi(2) + self.r12.powi(2) + self.r22.powi(2);
         let product = self.r11 * self.r22;
-        let largest = ((squares + 2.0 * product).sqrt() + (squares - 2.0 * product).max(0.0).sqrt()) / 2.0;
+        let largest =
+            f64::midpoint((squares + 2.0 * product).sqrt(), (squares - 2.0 * product).max(0.0).sqrt());
         if product > 0.0 { (largest * largest / product).min(SINGULAR) } else { SINGULAR }
     }
 }

@@ -7,7 +7,8 @@ use crate::{
     pair::solve_pair,
     quality::{assess, inverse_of},
 };
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Rotation2};
+use std::f64::consts::TAU;
 use world::{Point, Station, Vector};
 
 /// Steps tried before giving up; five are usual.
@@ -16,13 +17,18 @@ const MAX_ITERATIONS: usize = 60;
 const STEP_TOLERANCE: f64 = 1e-9;
 /// Stations nearer to a line than this condition number leave a second position that has to be looked at.
 const MIRROR_CONDITIONING: f64 = 5.0;
+/// A range is short if it is less than this share of the longest one.
+const SHORT_RANGE: f64 = 0.2;
+/// Starts tried around a station that is close by.
+const CIRCLE_STARTS: u32 = 36;
 /// A second position fits nearly as well if its chi-squared is worse by less than this.
 const MIRROR_MARGIN: f64 = 9.0;
 
 /// Least squares on relative range errors, `sum ((r_i - l_i) / (s_i l_i))^2` with `s_i` the relative sigma of a range.
 ///
 /// Starts at the linear solution (starting at the tank's centre ends in a false minimum for 5 % of a round tank) and
-/// goes on with Gauss-Newton steps under Levenberg-Marquardt damping. Reaches the Cramér-Rao bound of normal noise.
+/// goes on with Newton steps under Levenberg-Marquardt damping; plain Gauss-Newton steps zigzag on the small range
+/// circle of a station close by. Reaches the Cramér-Rao bound of normal noise.
 ///
 /// Stations on one line, and two stations, need a prior: there is a mirror solution, and the prior chooses. It has no
 /// other influence on the fix.
@@ -57,12 +63,26 @@ fn solve_many(anchors: &[Anchor], prior: Option<(Point, Matrix2<f64>)>) -> Resul
         (Err(error), _) => return Err(error),
     };
     let conditioning = conditioning(anchors);
-    let found = descend(anchors, start)?;
+    let found = descend(anchors, around_the_nearest(anchors, start))?;
     let (best, mirror) =
         if conditioning > MIRROR_CONDITIONING { choose_side(anchors, found, prior) } else { (found, None) };
     let covariance =
         inverse_of(&best.information).ok_or(FixError::NotConverged { iterations: best.iterations })?;
     assess(anchors, best.position, covariance, conditioning, mirror)
+}
+
+/// A better start close to a station, where the start can be on the wrong side: the best place on its range circle.
+///
+/// The valley of such a small circle is narrow and bent, and a descent along it takes hundreds of steps.
+fn around_the_nearest(anchors: &[Anchor], start: Point) -> Point {
+    let longest_m = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
+    let nearest = anchors.iter().min_by(|a, b| a.range_m.total_cmp(&b.range_m));
+    let Some(nearest) = nearest.filter(|n| n.range_m < SHORT_RANGE * longest_m) else { return start };
+    let on_circle = (0..CIRCLE_STARTS)
+        .map(|k| Rotation2::new(TAU * f64::from(k) / f64::from(CIRCLE_STARTS)) * Vector::x())
+        .map(|direction| nearest.at + direction * nearest.range_m);
+    let cost = |position: Point| anchors.iter().map(|a| a.view_from(position).squared_error()).sum::<f64>();
+    std::iter::once(start).chain(on_circle).min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(start)
 }
 
 /// Where a descent ended.
@@ -137,36 +157,56 @@ fn descend(anchors: &[Anchor], start: Point) -> Result<Minimum, FixError> {
     Err(FixError::NotConverged { iterations: MAX_ITERATIONS })
 }
 
-/// The cost at a position with its first derivatives.
+/// The cost at a position with its derivatives.
 struct Slope {
     cost: f64,
     gradient: Vector,
+    /// Second derivatives as far as Gauss and Newton take them.
     curvature: Matrix2<f64>,
+    /// What they leave out: the bend of the range circles, which matters close to a station.
+    bend: Matrix2<f64>,
 }
 
 impl Slope {
     fn at(anchors: &[Anchor], position: Point) -> Self {
-        let mut slope = Self { cost: 0.0, gradient: Vector::zeros(), curvature: Matrix2::zeros() };
+        let mut slope = Self {
+            cost: 0.0,
+            gradient: Vector::zeros(),
+            curvature: Matrix2::zeros(),
+            bend: Matrix2::zeros(),
+        };
         for anchor in anchors {
             let view = anchor.view_from(position);
             let error = view.residual_m / view.sigma_m;
             // d/dl of (r - l) / (s l) is -r / (s l^2).
-            let slant = view.direction * (-anchor.range_m / (view.sigma_m * view.distance_m));
+            let steepness = anchor.range_m / (view.sigma_m * view.distance_m);
+            let square = view.direction * view.direction.transpose();
             slope.cost += error * error;
-            slope.gradient += slant * error;
-            slope.curvature += slant * slant.transpose();
+            slope.gradient -= view.direction * (steepness * error);
+            slope.curvature += square * steepness.powi(2);
+            slope.bend += (square * 3.0 - Matrix2::identity()) * (error * steepness / view.distance_m);
         }
         slope
     }
 
-    /// The damped Gauss-Newton step; none if the numbers have run away.
+    /// The damped Newton step downhill; none if the numbers have run away.
+    ///
+    /// Damping by the trace also holds where the stations see the position from one direction only.
     fn step(&self, damping: f64) -> Option<Vector> {
-        // Damping by the trace also holds where the stations see the position from one direction only.
-        let damped = self.curvature + Matrix2::identity() * (damping * self.curvature.trace());
-        inverse_of(&damped)
-            .map(|inverse| -(inverse * self.gradient))
-            .filter(|s| s.iter().all(|c| c.is_finite()))
+        let least = Matrix2::identity() * (damping * self.curvature.trace());
+        let inverse = inverse_of(&(made_positive(self.curvature + self.bend) + least))?;
+        Some(-(inverse * self.gradient)).filter(|step| step.iter().all(|c| c.is_finite()))
     }
+}
+
+/// The symmetric matrix with the same axes and the eigenvalues without their signs: turns a saddle into a valley.
+fn made_positive(matrix: Matrix2<f64>) -> Matrix2<f64> {
+    let (trace, determinant) = (matrix.trace(), matrix.determinant());
+    if determinant >= 0.0 {
+        return matrix * trace.signum();
+    }
+    let gap = (matrix[(0, 0)] - matrix[(1, 1)]).hypot(2.0 * matrix[(0, 1)]);
+    matrix * (trace / gap) - Matrix2::identity() * (2.0 * determinant / gap)
 }
 
 /// Inverse of the covariance: `sum u_i u_i^T / sigma_i^2` with `u_i` the directions from the stations.

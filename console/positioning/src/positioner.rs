@@ -61,7 +61,7 @@ pub struct PositionerConfig {
 }
 
 impl PositionerConfig {
-    /// Usual errors: start surveyed to 5 cm and 0.05 rad, ranges to 3 %, odometry 5 cm per metre.
+    /// Usual errors: start surveyed to 5 cm and 0.05 rad, ranges to 3 %, odometry as [`MotionNoise::default`].
     pub fn new(stations: Vec<Station>, start: Pose) -> Self {
         Self {
             stations,
@@ -69,11 +69,7 @@ impl PositionerConfig {
             start_sigma_m: 0.05,
             heading_sigma_rad: 0.05,
             range_sigma_ratio: 0.03,
-            odometry: MotionNoise {
-                sigma_per_m: 0.05,
-                turn_sigma_ratio: 0.05,
-                heading_sigma_per_tick_rad: 0.002,
-            },
+            odometry: MotionNoise::default(),
             aggregation: Aggregation::default(),
             solver: SolverKind::default(),
         }
@@ -111,13 +107,13 @@ pub struct Positioner {
 impl Positioner {
     /// A positioner at the surveyed start.
     pub fn new(config: PositionerConfig) -> Self {
-        let filter = Ekf::new(config.start, config.start_sigma_m, config.heading_sigma_rad);
+        let filter = Ekf::new(config.start, config.start_sigma_m, config.heading_sigma_rad, config.odometry);
         Self { config, filter, refused_in_a_row: 0 }
     }
 
     /// Moves the estimate by one tick of odometry.
     pub fn predict(&mut self, odometry: &Odometry) {
-        self.filter.predict(odometry, &self.config.odometry);
+        self.filter.predict(odometry);
     }
 
     /// Takes in a ranging cycle: ranges to a fix, the fix into the estimate unless its residuals raise an alarm.
@@ -131,8 +127,8 @@ impl Positioner {
         };
         let mut fix = self.solve(&rangings);
         let accepted = match &mut fix {
-            Ok(fix) => self.take_fix(fix),
-            Err(FixError::TooFewStations { .. }) => self.take_single_ranges(&rangings),
+            Ok(fix) => self.take_fix(fix, &rangings),
+            Err(FixError::TooFewStations { .. }) => self.take_ranges(&rangings),
             Err(_) => false,
         };
         CycleResult { rangings, fix, accepted }
@@ -140,7 +136,7 @@ impl Positioner {
 
     /// Where the robot is believed to be.
     pub fn estimate(&self) -> Estimate {
-        Estimate { pose: self.filter.pose(), covariance: *self.filter.covariance() }
+        Estimate { pose: self.filter.pose(), covariance: self.filter.covariance() }
     }
 
     /// Longer half axis of the 95 % ellipse of the position, metres.
@@ -182,11 +178,11 @@ impl Positioner {
     }
 
     /// Hands a fix to the filter; a fix that contradicts the filter is suspect.
-    fn take_fix(&mut self, fix: &mut Fix) -> bool {
+    fn take_fix(&mut self, fix: &mut Fix, rangings: &[Ranging]) -> bool {
         if fix.integrity == Integrity::Alarm {
             return false;
         }
-        if self.filter.update_position(fix.position, &fix.covariance).accepted {
+        if self.filter_accepts(fix, rangings) {
             self.refused_in_a_row = 0;
             return true;
         }
@@ -205,13 +201,36 @@ impl Positioner {
         true
     }
 
-    fn take_single_ranges(&mut self, rangings: &[Ranging]) -> bool {
-        rangings.iter().fold(false, |taken, ranging| {
+    /// Corrects the filter where the geometry is better known.
+    ///
+    /// Close to a station the error of a fix is bent like the range circle and no ellipse holds it; a filter that is
+    /// surer than the fix takes the ranges instead, as seen from where it believes to be.
+    fn filter_accepts(&mut self, fix: &Fix, rangings: &[Ranging]) -> bool {
+        if self.filter.error_95_m() < fix.ellipse_95().0 {
+            let used: Vec<Ranging> =
+                rangings.iter().filter(|r| fix.used.contains(&r.station)).copied().collect();
+            self.take_ranges(&used)
+        } else {
+            self.filter.update_position(fix.position, &fix.covariance).accepted
+        }
+    }
+
+    /// Corrects the filter by single ranges, by all or by none; whether it took them.
+    fn take_ranges(&mut self, rangings: &[Ranging]) -> bool {
+        let mut filter = self.filter.clone();
+        let fits = |ranging: &Ranging| {
             let station = self.config.stations.iter().find(|s| s.id == ranging.station);
-            let update =
-                station.map(|s| self.filter.update_range(s.position, ranging.range_m, ranging.sigma_m));
-            taken | update.is_some_and(|u| u.accepted)
-        })
+            station.is_some_and(|station| {
+                let expected_m = (filter.pose().position - station.position).norm();
+                let sigma_m = ranging.sigma_m * expected_m / ranging.range_m;
+                filter.update_range(station.position, ranging.range_m, sigma_m).accepted
+            })
+        };
+        let is_taken = !rangings.is_empty() && rangings.iter().all(fits);
+        if is_taken {
+            self.filter = filter;
+        }
+        is_taken
     }
 }
 

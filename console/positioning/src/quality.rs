@@ -24,7 +24,7 @@ pub(crate) fn assess(
     mirror: Option<Point>,
 ) -> Result<Fix, FixError> {
     let views = || anchors.iter().map(|a| (a.station, a.view_from(position)));
-    let chi2: f64 = views().map(|(_, v)| (v.residual_m / v.sigma_m).powi(2)).sum();
+    let chi2: f64 = views().map(|(_, v)| v.squared_error()).sum();
     let degrees_of_freedom = u32::try_from(anchors.len().saturating_sub(2)).unwrap_or(u32::MAX);
     let is_finite = position.iter().chain(covariance.iter()).chain([&chi2]).all(|number| number.is_finite());
     if !is_finite {
@@ -83,11 +83,11 @@ fn gdop(anchors: &[Anchor], position: Point) -> f64 {
     inverse_of(&information).map_or(NO_GEOMETRY, |inverse| inverse.trace().max(0.0).sqrt().min(NO_GEOMETRY))
 }
 
-/// The inverse of a symmetric matrix, if it has a finite and positive one.
+/// The inverse of a symmetric matrix that is no negative one, unless it is all but singular.
 pub(crate) fn inverse_of(information: &Matrix2<f64>) -> Option<Matrix2<f64>> {
     let (a, b, c) = (information[(0, 0)], information[(0, 1)], information[(1, 1)]);
     let determinant = a * c - b * b;
-    let is_sound = determinant > 1e-14 * a * c && determinant.is_finite();
+    let is_sound = determinant > 1e-14 * (a + c).powi(2) && determinant.is_finite();
     is_sound.then(|| Matrix2::new(c, -b, -b, a) / determinant)
 }
 

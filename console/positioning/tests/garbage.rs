@@ -57,7 +57,7 @@ fn is_finite(fix: &Fix) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(3000))]
 
     #[test]
     fn solvers_give_finite_fixes_or_reasons(

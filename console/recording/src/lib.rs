@@ -1,1 +1,33 @@
 //! Events to a rerun recording and to the journal, and back.
+//!
+//! The journal (`events.jsonl`) is ours: every event, one line each, versioned, the same bytes for the same run. The
+//! recording (`recording.rrd`) is a view of it for the rerun viewer and can be made anew from the journal at any
+//! time. Both are written by one thread behind a bounded queue ([`RunRecorder`]); a disk error stops only the file
+//! it hits and is told in [`Health`], the mission goes on.
+//!
+//! Nothing here prints: what the recording SDK has to say goes to `tracing`.
+
+pub mod error;
+pub mod export;
+pub mod identity;
+pub mod inspect;
+pub mod journal;
+mod layout;
+pub mod recorder;
+mod rr;
+mod sink;
+pub mod thread;
+
+pub use error::RecordingError;
+pub use export::export;
+pub use identity::Identity;
+pub use inspect::{Summary, inspect};
+pub use journal::{Journal, JournalEnd, JournalError, JournalReader, JournalWriter, read_journal};
+pub use recorder::Recorder;
+pub use sink::SinkHealth;
+pub use thread::{Finished, Health, Options, RunRecorder};
+
+/// Name of the journal in the folder of a run.
+pub const JOURNAL_FILE: &str = "events.jsonl";
+/// Name of the recording in the folder of a run.
+pub const RECORDING_FILE: &str = "recording.rrd";

@@ -1,1 +1,18 @@
 //! Events folded into the summary of a run.
+//!
+//! [`Fold`] reads every event of a run once and gives a [`Summary`]: the object that `run --json` prints, the text of
+//! [`human`], and what [`Expect`] holds to the bounds of a scenario. Wall-clock figures and files are no events; the
+//! app fills them in.
+
+mod accuracy;
+pub mod expect;
+pub mod fold;
+pub mod human;
+mod scanned;
+pub mod summary;
+mod tracking;
+
+pub use expect::{Expect, Miss};
+pub use fold::Fold;
+pub use human::human;
+pub use summary::{Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Summary, Tether, Tracking};

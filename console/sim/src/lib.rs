@@ -2,7 +2,17 @@
 //!
 //! The simulator answers two calls, [`Simulator::sense`] and [`Simulator::act`]. It knows no clock: time is the number
 //! of ticks. Chance comes from one seed; the same seed and the same drives give the same readings on every machine.
+//! Cost: a tick takes a few distance queries, some microseconds.
 
 pub mod config;
+pub mod simulator;
+
+mod motion;
+mod sweep;
+
+mod chance;
+mod ranging;
+mod sight;
 
 pub use config::{AeConfig, Drive, NoiseModel, RobotConfig, SimConfig, Truth};
+pub use simulator::Simulator;

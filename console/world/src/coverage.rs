@@ -104,19 +104,20 @@ impl Floor {
         self.cells.is_empty()
     }
 
-    /// Cells to which the robot's centre can drive from the start: a flood fill over cells with room for the hull.
+    /// Cells to which the robot's centre can drive from the start: a flood fill over cells with room for the hull,
+    /// from the one that is nearest to the start. (The start itself may touch the wall, where no cell's centre lies.)
     fn drivable(&self, clearances: &[f64], robot_radius_m: f64, start: Point) -> Vec<usize> {
-        let mut seen = vec![false; self.cells.len()];
-        let mut queue: VecDeque<usize> = self.cell_at(start).into_iter().collect();
+        let mut open: Vec<bool> = clearances.iter().map(|clearance| *clearance >= robot_radius_m).collect();
+        let distance_m = |index: &usize| (self.center(*index) - start).norm();
+        let first =
+            (0..open.len()).filter(|i| open[*i]).min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)));
+        let mut queue: VecDeque<usize> = first.into_iter().collect();
         let mut found = Vec::new();
         while let Some(index) = queue.pop_front() {
-            // The start itself may stand closer to the wall than a cell's diagonal.
-            let fits = clearances[index] >= robot_radius_m || found.is_empty();
-            if std::mem::replace(&mut seen[index], true) || !fits {
-                continue;
+            if std::mem::replace(&mut open[index], false) {
+                found.push(index);
+                queue.extend(self.neighbours(index).filter(|next| open[*next]));
             }
-            found.push(index);
-            queue.extend(self.neighbours(index).filter(|next| !seen[*next]));
         }
         found
     }
@@ -140,7 +141,7 @@ impl Floor {
     }
 
     /// Cells whose centre lies within `reach_m` of the segment from `a` to `b`, in order of their index.
-    fn cells_near(&self, a: Point, b: Point, reach_m: f64) -> Vec<usize> {
+    pub fn cells_near(&self, a: Point, b: Point, reach_m: f64) -> Vec<usize> {
         let reach = nalgebra::Vector2::new(reach_m, reach_m);
         let (low, high) = (a.inf(&b) - reach, a.sup(&b) + reach);
         let first = (low - self.origin) / self.cell_m;
@@ -327,6 +328,13 @@ mod tests {
         let inside = floor.cell_at(Point::new(3.0, 0.0)).expect("in the grid");
         assert_eq!(floor.kind(inside), Cell::Unreachable);
         assert_eq!(floor.kind(floor.cell_at(Point::origin()).expect("in the grid")), Cell::Reachable);
+    }
+
+    #[test]
+    fn a_start_on_the_wall_reaches_the_floor() {
+        let floor = Floor::new(&tank(vec![]), 0.05, 0.0, 0.6, Point::new(5.0, 0.0));
+        let counts = CoverageGrid::new(floor).counts();
+        assert_eq!(counts.reachable, counts.floor);
     }
 
     #[test]

@@ -120,4 +120,4 @@ static const tp_planner direct_planner = {
 static const tp_planner *const planners[] = {&direct_planner};
 
 TP_EXPORT const tp_entry tank_planner_entry = TP_ENTRY(planners, 1, "C");
-TP_STAMP;
+TP_STAMP(TP_ABI_MAJOR, TP_ABI_MINOR);

@@ -1,1 +1,42 @@
-//! Force laws shared by the potential-field planners.
+//! Force laws shared by the potential-field planners, and the two ways to use them: walking a law over the known map
+//! to plan, and steering a robot along it tick by tick.
+//!
+//! Frame: the tank frame, metres, radians. Distances to obstacles are measured from the robot's hull to the outline;
+//! a point obstacle and a robot of radius zero give the papers' point form.
+//! Cost: only obstacles within reach of a law are looked at, found through a bounding volume hierarchy.
+//!
+//! Sources: Khatib 1986 (attraction, repulsion); Ge and Cui 2000 (improved repulsion); Wang et al. 2023 (rotation,
+//! lock-step targets, stop rules). Where those leave something open the item says what was chosen.
+#![forbid(unsafe_code)]
+
+pub mod body;
+pub mod contact;
+pub mod descent;
+pub mod drawing;
+pub mod gaps;
+pub mod guard;
+pub mod judge;
+pub mod law;
+pub mod laws;
+pub mod lockstep;
+pub mod offline;
+pub mod params;
+pub mod part;
+pub mod pilot;
+pub mod rollout;
+pub mod scene;
+pub mod settings;
+pub mod stall;
+pub mod trap;
+#[cfg(feature = "trial")]
+pub mod trial;
+pub mod turning;
+pub mod walk;
+
+pub use contact::{Contact, Source};
+pub use law::{Forces, Law, Repulsion, RotationForm};
+pub use laws::Sense;
+pub use pilot::Pilot;
+pub use scene::Scene;
+pub use settings::{Flight, Planning, Settings, Steering, Walking};
+pub use turning::{Reading, SenseRule};

@@ -5,7 +5,7 @@
  *     static const tp_planner mine = { sizeof(tp_planner), TP_CAP_LOCAL, 1, 0, TP_STR("mine"), ... };
  *     static const tp_planner *const planners[] = { &mine };
  *     TP_EXPORT const tp_entry tank_planner_entry = TP_ENTRY(planners, 1, "gcc");
- *     TP_STAMP;
+ *     TP_STAMP(TP_ABI_MAJOR, TP_ABI_MINOR);
  *
  * Rules
  *  - Nothing is ever freed by the other side. Inputs belong to the console and are good for the length of the call;
@@ -215,8 +215,8 @@ typedef struct tp_stamp { uint8_t magic[8]; uint32_t abi_major, abi_minor; } tp_
 #if defined(_MSC_VER)
 #  define TP_EXPORT TP_C __declspec(dllexport)
 #  pragma section(".tankpln", read)
-#  define TP_STAMP TP_EXPORT __declspec(allocate(".tankpln")) \
-     const tp_stamp tank_planner_stamp = { TP_MAGIC, TP_ABI_MAJOR, TP_ABI_MINOR }
+#  define TP_STAMP(major, minor) TP_EXPORT __declspec(allocate(".tankpln")) \
+     const tp_stamp tank_planner_stamp = { TP_MAGIC, major, minor }
 #else
 #  if defined(_WIN32)
 #    define TP_SECTION ".tankpln"
@@ -230,13 +230,13 @@ typedef struct tp_stamp { uint8_t magic[8]; uint32_t abi_major, abi_minor; } tp_
 #  endif
 #  ifdef __cplusplus /* a const object of C++ is local to its file unless it is declared extern first */
 #    define TP_EXPORT extern "C" TP_VISIBLE const tp_entry tank_planner_entry;
-#    define TP_STAMP extern "C" TP_VISIBLE const tp_stamp tank_planner_stamp; \
+#    define TP_STAMP(major, minor) extern "C" TP_VISIBLE const tp_stamp tank_planner_stamp; \
        __attribute__((used, section(TP_SECTION))) \
-       const tp_stamp tank_planner_stamp = { TP_MAGIC, TP_ABI_MAJOR, TP_ABI_MINOR }
+       const tp_stamp tank_planner_stamp = { TP_MAGIC, major, minor }
 #  else
 #    define TP_EXPORT TP_VISIBLE
-#    define TP_STAMP TP_VISIBLE __attribute__((used, section(TP_SECTION))) \
-       const tp_stamp tank_planner_stamp = { TP_MAGIC, TP_ABI_MAJOR, TP_ABI_MINOR }
+#    define TP_STAMP(major, minor) TP_VISIBLE __attribute__((used, section(TP_SECTION))) \
+       const tp_stamp tank_planner_stamp = { TP_MAGIC, major, minor }
 #  endif
 #endif
 

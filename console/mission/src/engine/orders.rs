@@ -28,6 +28,7 @@ impl Mission {
                 Ok(())
             }
             (Order::Start, _) => Err("the mission has been started already".into()),
+            (Order::Hold, Phase::Held(HoldReason::Operator)) => Ok(()),
             (Order::Hold, Phase::Running | Phase::Stepping | Phase::Held(_)) => {
                 self.hold(HoldReason::Operator);
                 Ok(())

@@ -315,6 +315,24 @@ fn a_lost_position_holds_the_robot_and_a_regained_one_lets_it_go_on() {
 }
 
 #[test]
+fn a_stuck_robot_is_held_for_the_operator_and_ends_the_mission_without_one() {
+    for attended in [true, false] {
+        let goal = Point::new(3.0, 0.0);
+        let task = TaskConfig::Goto { goal, tolerance_m: 0.0 };
+        let mut flight = Flight::new(MissionConfig { task, attended, ..config() });
+        flight.tick(&[Order::Start]);
+        flight.fly(400);
+        if attended {
+            assert!(matches!(flight.mission.phase(), Phase::Held(HoldReason::Stuck { .. })));
+            flight.tick(&[Order::Resume]);
+            assert_eq!(flight.mission.phase(), &Phase::Running);
+        } else {
+            assert_eq!(flight.ended(), Some(Outcome::Stuck));
+        }
+    }
+}
+
+#[test]
 fn a_found_obstacle_is_told_once_and_planned_for() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);

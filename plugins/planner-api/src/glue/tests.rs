@@ -4,7 +4,7 @@ use super::*;
 use crate::abi::{Draw, Entry, Host, Param, PlanOut, StepOut, Vec2, lend};
 use crate::{Boundary, Limits, Obstacle, Zone, ZoneKind, choice, float};
 use crate::{
-    Caps, Command, Layer, Motion, Outline, Plan, PlanRequest, PoseEstimate, Reason, Sensed, Site, Task, site,
+    Caps, Command, Layer, Motion, Outline, Plan, PlanRequest, PoseEstimate, Reason, Sensed, Site, Task,
 };
 use nalgebra::{Matrix3, Point2, Vector2};
 

@@ -1,0 +1,170 @@
+//! The command line.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Console for robots that inspect the floors of oil storage tanks.
+///
+/// Without a command: the console on the demo scenario, or, with no terminal on stdout, the demo flown headless.
+#[derive(Debug, Parser)]
+#[command(name = "tankops", version, arg_required_else_help = false, max_term_width = 100)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    #[command(flatten)]
+    pub plugins: PluginArgs,
+}
+
+/// Where planners are looked for, besides beside the program and in `$TANKOPS_PLUGIN_PATH`.
+#[derive(Debug, Clone, Default, Args)]
+pub struct PluginArgs {
+    /// Another folder with planner plugins; may be given several times, searched first.
+    #[arg(long, value_name = "DIR", global = true)]
+    pub plugin_dir: Vec<PathBuf>,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Open the console.
+    Console(ConsoleArgs),
+    /// Fly a mission headless to its end.
+    Run(RunArgs),
+    /// Plan on the known map without flying.
+    Plan(PlanArgs),
+    /// List the planners found, and the plugins refused with the reason.
+    Planners {
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Validate scenario files and plugins.
+    Check {
+        /// Scenario files (.toml) and plugins (.so, .dylib, .dll).
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+    },
+    /// List past runs.
+    Runs {
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+        #[command(flatten)]
+        logs: LogsArg,
+    },
+    /// Compute a past run again and prove that its journal is equal.
+    Verify {
+        /// Folder of the run, or its name within the logs.
+        run: PathBuf,
+        #[command(flatten)]
+        logs: LogsArg,
+    },
+    /// Make the recording of a past run anew from its journal.
+    Export {
+        /// Folder of the run, or its name within the logs.
+        run: PathBuf,
+        /// File to write; must not exist.
+        #[arg(long, value_name = "FILE")]
+        rrd: PathBuf,
+        #[command(flatten)]
+        logs: LogsArg,
+    },
+    /// A planner's own process; started by the console.
+    #[command(hide = true)]
+    Worker,
+}
+
+/// Where runs are kept.
+#[derive(Debug, Clone, Args)]
+pub struct LogsArg {
+    /// Folder that holds the runs.
+    #[arg(long, value_name = "DIR", default_value = "logs")]
+    pub logs: PathBuf,
+}
+
+/// What may be changed in a scenario from the command line.
+#[derive(Debug, Clone, Default, Args)]
+pub struct Changes {
+    /// Planner that drives, instead of the scenario's.
+    #[arg(long, value_name = "ID")]
+    pub planner: Option<String>,
+    /// Set a planner parameter (`k_rep=2`) or any key of the scenario (`mission.swath_m=0.5`).
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Start of every random choice, instead of the scenario's.
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+}
+
+#[derive(Debug, Args)]
+pub struct ConsoleArgs {
+    /// Scenario file; the demo if none is given.
+    pub scenario: Option<PathBuf>,
+    #[command(flatten)]
+    pub changes: Changes,
+    #[command(flatten)]
+    pub logs: LogsArg,
+    /// Make a part of the console fail while the robot moves, to see that the run and the terminal survive it.
+    #[arg(long, value_name = "PART", hide = true)]
+    pub drill: Option<Drill>,
+}
+
+/// A part of the console that fails on purpose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Drill {
+    /// The thread that draws panics.
+    PanicScreen,
+    /// The thread that flies panics.
+    PanicEngine,
+}
+
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    /// Scenario file.
+    pub scenario: PathBuf,
+    #[command(flatten)]
+    pub changes: Changes,
+    #[command(flatten)]
+    pub logs: LogsArg,
+    /// Write neither journal nor recording.
+    #[arg(long)]
+    pub no_record: bool,
+    /// Print the report as JSON on stdout, and nothing else.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct PlanArgs {
+    /// Scenario file.
+    pub scenario: PathBuf,
+    #[command(flatten)]
+    pub changes: Changes,
+    /// Print the plan as JSON on stdout.
+    #[arg(long)]
+    pub json: bool,
+    /// Draw tank, obstacles, preset and planned path into this file.
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn the_help_of_every_command_is_as_reviewed() {
+        let mut command = Cli::command().term_width(100);
+        let mut help = command.render_long_help().to_string();
+        for name in ["console", "run", "plan", "planners", "check", "runs", "verify", "export"] {
+            let sub = command.find_subcommand_mut(name).expect("a command of ours");
+            help += &format!("\n===== {name}\n{}", sub.render_long_help());
+        }
+        insta::assert_snapshot!(help);
+    }
+}

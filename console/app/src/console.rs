@@ -1,0 +1,80 @@
+//! The console: engine, keys, signals and screen, each in a thread of its own; this one draws.
+
+mod crash;
+mod engine;
+mod screen;
+mod watch;
+
+use crate::{
+    cli::{Drill, LogsArg},
+    failure::bad_input,
+    scenario::Scenario,
+};
+use engine::Engine;
+use planner_host::PluginDirs;
+use screen::{Left, Screen};
+use std::{
+    io::IsTerminal,
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::Path,
+    process::ExitCode,
+    sync::mpsc::{self, Receiver, SyncSender},
+};
+use tui::{Caps, Msg, Speed, terminal};
+
+/// Messages that may wait for the screen; when so many do, the simulation waits.
+const QUEUE: usize = 4096;
+/// How fast a simulated mission goes at first.
+const START_SPEED: Speed = Speed::Times(4.0);
+
+/// Opens the console on a scenario; returns when the operator leaves.
+pub fn open(
+    scenario: &Scenario,
+    logs: &LogsArg,
+    plugins: &PluginDirs,
+    drill: Option<Drill>,
+) -> anyhow::Result<ExitCode> {
+    check_terminal()?;
+    let (tell, told) = mpsc::sync_channel(QUEUE);
+    let engine = Engine::start(scenario, &logs.logs, plugins, tell.clone(), drill)?;
+    let left = show(&engine, &logs.logs, plugins, (tell, told), drill);
+    // Whatever happened to the screen, the run is closed in good order.
+    let ended = engine.close(left.as_ref().ok().and_then(|left| left.signal));
+    Ok(left?.say_goodbye(ended?.as_ref()))
+}
+
+fn check_terminal() -> anyhow::Result<()> {
+    if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
+        return Err(bad_input(
+            "the console needs a terminal on stdin and stdout; without one use `tankops run SCENARIO`",
+        ));
+    }
+    if std::env::var("TERM").is_ok_and(|term| term == "dumb") {
+        return Err(bad_input("the console cannot draw on TERM=dumb; use `tankops run SCENARIO`"));
+    }
+    Ok(())
+}
+
+fn show(
+    engine: &Engine,
+    logs: &Path,
+    plugins: &PluginDirs,
+    (tell, told): (SyncSender<Msg>, Receiver<Msg>),
+    drill: Option<Drill>,
+) -> anyhow::Result<Left> {
+    let caps = Caps::from_env(|name| std::env::var(name).ok());
+    let mourner = tell.clone();
+    terminal::install_panic_hook(move |thread, message| {
+        let news = Msg::ThreadPanicked { thread: thread.into(), message: message.into() };
+        // A full queue must not stop a thread that is going down.
+        let _ = mourner.try_send(news);
+    });
+    let mut screen = Screen::open(caps, told, engine, drill)?;
+    watch::keys(&tell)?;
+    watch::signals(&tell)?;
+    watch::terminal(&tell)?;
+    watch::planners(plugins, &tell)?;
+    drop(tell);
+    let ran = catch_unwind(AssertUnwindSafe(|| screen.run()));
+    ran.unwrap_or_else(|_| Err(crash::report(logs, screen.model())))
+}

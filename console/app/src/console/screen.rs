@@ -1,0 +1,225 @@
+//! The drawing thread: messages in, model updated, effects carried out, a frame when something changed.
+
+use super::engine::{Ended, Engine};
+use crate::{
+    cli::Drill,
+    failure::{COMPLETE, ENDED_OTHERWISE},
+};
+use anyhow::Context;
+use mission::Outcome;
+use std::{
+    io::Write,
+    process::ExitCode,
+    sync::mpsc::{Receiver, RecvTimeoutError},
+    time::{Duration, Instant, SystemTime},
+};
+use tui::{Caps, Effect, Health, Model, Msg, Recording, Signal, Times, terminal::TerminalGuard, update};
+
+/// Messages that are taken in before the next frame, at most.
+const BURST: usize = 256;
+/// Time that is spent on them before the next frame, at most.
+const BURST_TIME: Duration = Duration::from_millis(5);
+/// Shortest time between two frames that answer keys.
+const KEY_FRAME: Duration = Duration::from_millis(8);
+
+/// The screen while the console is open.
+pub struct Screen<'a> {
+    terminal: TerminalGuard,
+    model: Model,
+    caps: Caps,
+    told: Receiver<Msg>,
+    engine: &'a Engine,
+    began: Instant,
+    drawn: Instant,
+    frame_interval: Duration,
+    dirty: bool,
+    key_seen: bool,
+    drill: Option<Drill>,
+}
+
+/// Why the screen was left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Left {
+    /// The signal that asked for it, if one did.
+    pub signal: Option<Signal>,
+}
+
+impl<'a> Screen<'a> {
+    /// Takes the terminal over.
+    pub fn open(
+        caps: Caps,
+        told: Receiver<Msg>,
+        engine: &'a Engine,
+        drill: Option<Drill>,
+    ) -> anyhow::Result<Self> {
+        let terminal = TerminalGuard::enter().context("taking over the terminal")?;
+        let mut model = Model::default();
+        model.console.speed = super::START_SPEED;
+        let (width, height) = crossterm::terminal::size().unwrap_or((80, 24));
+        update(&mut model, Msg::Resize { width, height });
+        let now = Instant::now();
+        Ok(Self {
+            terminal,
+            model,
+            caps,
+            told,
+            engine,
+            began: now,
+            drawn: now,
+            // A slow line gets fewer frames.
+            frame_interval: Duration::from_millis(if caps.ssh { 100 } else { 33 }),
+            dirty: true,
+            key_seen: true,
+            drill,
+        })
+    }
+
+    /// What the screen knows, for a crash report.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Runs until the operator or a signal wants to leave.
+    pub fn run(&mut self) -> anyhow::Result<Left> {
+        loop {
+            if let Some(left) = self.take_burst()? {
+                return Ok(left);
+            }
+            if self.dirty && self.drawn.elapsed() >= self.pause() {
+                self.draw()?;
+            }
+        }
+    }
+
+    /// Shortest time between the last frame and the next.
+    fn pause(&self) -> Duration {
+        if self.key_seen { KEY_FRAME } else { self.frame_interval }
+    }
+
+    /// Waits for a message, then takes in what else is there.
+    fn take_burst(&mut self) -> anyhow::Result<Option<Left>> {
+        let Some(first) = self.wait()? else {
+            self.tell_time();
+            self.dirty = true;
+            return Ok(None);
+        };
+        self.tell_time();
+        let until = Instant::now() + BURST_TIME;
+        let mut next = Some(first);
+        for _ in 0..BURST {
+            let Some(msg) = next else { break };
+            self.key_seen |= matches!(msg, Msg::Key(_) | Msg::Paste(_) | Msg::Resize { .. });
+            self.dirty = true;
+            for effect in update(&mut self.model, msg) {
+                if let Some(left) = self.carry_out(effect)? {
+                    return Ok(Some(left));
+                }
+            }
+            next = if Instant::now() < until { self.told.try_recv().ok() } else { None };
+        }
+        Ok(None)
+    }
+
+    /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.
+    fn wait(&self) -> anyhow::Result<Option<Msg>> {
+        let frame = self.dirty.then(|| self.pause().saturating_sub(self.drawn.elapsed()));
+        let by_itself = self
+            .model
+            .wakes_at_mono_s()
+            .map(|at| Duration::from_secs_f64((at - self.began.elapsed().as_secs_f64()).max(0.001)));
+        let answer = match frame.into_iter().chain(by_itself).min() {
+            Some(timeout) => self.told.recv_timeout(timeout),
+            None => self.told.recv().map_err(|_| RecvTimeoutError::Disconnected),
+        };
+        match answer {
+            Ok(msg) => Ok(Some(msg)),
+            Err(RecvTimeoutError::Timeout) => Ok(None),
+            Err(RecvTimeoutError::Disconnected) => {
+                anyhow::bail!("all other threads of the console have ended")
+            }
+        }
+    }
+
+    fn tell_time(&mut self) {
+        let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+        let now =
+            Times { mono_s: self.began.elapsed().as_secs_f64(), wall_unix_s: since_epoch.as_secs_f64() };
+        update(&mut self.model, Msg::Time(now));
+    }
+
+    fn carry_out(&mut self, effect: Effect) -> anyhow::Result<Option<Left>> {
+        match effect {
+            Effect::Order(order) => self.engine.order(order),
+            Effect::Speed(speed) => self.engine.speed(speed),
+            Effect::Redraw => self.terminal.redraw().context("drawing")?,
+            Effect::Bell => ring()?,
+            Effect::Suspend => self.suspend()?,
+            Effect::Quit { signal } => return Ok(Some(Left { signal })),
+        }
+        Ok(None)
+    }
+
+    /// Gives the terminal back and stops the process until the shell continues it.
+    fn suspend(&mut self) -> anyhow::Result<()> {
+        self.terminal.suspend();
+        rustix::process::kill_process(rustix::process::getpid(), rustix::process::Signal::STOP)
+            .context("stopping the process")?;
+        self.terminal.resume().context("taking the terminal over again")?;
+        self.dirty = true;
+        Ok(())
+    }
+
+    fn draw(&mut self) -> anyhow::Result<()> {
+        let failing = self.drill == Some(Drill::PanicScreen) && self.model.clock.tick > 5;
+        assert!(!failing, "drill: the screen fails on purpose");
+        let (model, caps) = (&self.model, &self.caps);
+        self.terminal.draw(|frame| tui::view(model, caps, frame)).context("drawing")?;
+        (self.drawn, self.dirty, self.key_seen) = (Instant::now(), false, false);
+        Ok(())
+    }
+}
+
+fn ring() -> anyhow::Result<()> {
+    let mut out = std::io::stdout();
+    out.write_all(b"\x07").and_then(|()| out.flush()).context("ringing the bell")
+}
+
+impl Left {
+    /// Says on the normal screen how the run ended; the exit code tells scripts.
+    pub fn say_goodbye(self, ended: Option<&Ended>) -> ExitCode {
+        // A terminal that is gone takes no goodbye.
+        if let Some(ended) = ended.filter(|_| self.signal != Some(Signal::Hangup)) {
+            let text = format!("{}run kept in {}\n", report::human(&ended.summary), ended.folder.display());
+            let _ = std::io::stdout().write_all(text.as_bytes());
+        }
+        match self.signal {
+            Some(signal) => ExitCode::from(128 + number(signal)),
+            None => ExitCode::from(match ended.and_then(|ended| ended.summary.outcome) {
+                None | Some(Outcome::Complete) => COMPLETE,
+                Some(_) => ENDED_OTHERWISE,
+            }),
+        }
+    }
+}
+
+fn number(signal: Signal) -> u8 {
+    let number = match signal {
+        Signal::Interrupt => signal_hook::consts::SIGINT,
+        Signal::Terminate => signal_hook::consts::SIGTERM,
+        Signal::Hangup => signal_hook::consts::SIGHUP,
+        Signal::Stop => signal_hook::consts::SIGTSTP,
+        Signal::Continue => signal_hook::consts::SIGCONT,
+    };
+    number.unsigned_abs() as u8
+}
+
+/// The recorder's health as the screen shows it.
+pub fn health(recorder: &recording::Health, reached_speed: Option<f64>) -> Health {
+    let recording = recorder.error.clone().map_or(Recording::On, Recording::Failed);
+    Health { recording, reached_speed }
+}
+
+/// The recorder's health after the run was closed.
+pub fn closed(error: Option<String>) -> Health {
+    Health { recording: error.map_or(Recording::Off, Recording::Failed), reached_speed: None }
+}

@@ -1,0 +1,96 @@
+//! The threads that only listen: keys, signals, a terminal that goes away, the survey of planners.
+
+use anyhow::Context;
+use crossterm::event::{self, Event};
+use planner_host::PluginDirs;
+use rustix::event::{PollFd, PollFlags, poll};
+use signal_hook::{
+    consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP},
+    iterator::Signals,
+};
+use std::{sync::mpsc::SyncSender, thread, time::Duration};
+use tui::{Msg, Refused, Signal, terminal};
+
+/// How long the console may take to leave in good order after a signal; then it leaves anyway.
+const GRACE: Duration = Duration::from_secs(1);
+
+/// Keys, pastes and sizes.
+pub fn keys(tell: &SyncSender<Msg>) -> anyhow::Result<()> {
+    let tell = tell.clone();
+    spawn("keys", move || {
+        while let Ok(event) = event::read() {
+            let msg = match event {
+                Event::Key(key) => terminal::key_from_crossterm(&key).map(Msg::Key),
+                Event::Paste(text) => Some(Msg::Paste(text)),
+                Event::Resize(width, height) => Some(Msg::Resize { width, height }),
+                Event::FocusGained | Event::FocusLost | Event::Mouse(_) => None,
+            };
+            if msg.is_some_and(|msg| tell.send(msg).is_err()) {
+                return;
+            }
+        }
+    })
+}
+
+/// Signals; one that ends the process ends it within [`GRACE`], whatever the other threads do.
+pub fn signals(tell: &SyncSender<Msg>) -> anyhow::Result<()> {
+    let tell = tell.clone();
+    let mut signals =
+        Signals::new([SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT]).context("listening to signals")?;
+    spawn("signals", move || {
+        for number in signals.forever() {
+            let signal = match number {
+                SIGTERM => Signal::Terminate,
+                SIGHUP => Signal::Hangup,
+                SIGTSTP => Signal::Stop,
+                SIGCONT => Signal::Continue,
+                _ => Signal::Interrupt,
+            };
+            if tell.send(Msg::Signal(signal)).is_err() {
+                return;
+            }
+            if matches!(signal, Signal::Terminate | Signal::Hangup) {
+                leave_in_any_case(number);
+            }
+        }
+    })
+}
+
+fn leave_in_any_case(signal: i32) {
+    thread::sleep(GRACE);
+    terminal::restore_from_signal();
+    std::process::exit(128 + signal);
+}
+
+/// A terminal that is closed while SIGHUP is ignored, as under nohup, is noticed here.
+pub fn terminal(tell: &SyncSender<Msg>) -> anyhow::Result<()> {
+    let tell = tell.clone();
+    spawn("terminal", move || {
+        let stdin = std::io::stdin();
+        let mut watched = [PollFd::new(&stdin, PollFlags::empty())];
+        loop {
+            let waited = poll(&mut watched, None);
+            let gone = watched[0].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL);
+            if waited.is_ok() && gone {
+                let _ = tell.send(Msg::Signal(Signal::Hangup));
+                leave_in_any_case(SIGHUP);
+            }
+        }
+    })
+}
+
+/// Which planners there are; asks every plugin in a process of its own, so it may take a while.
+pub fn planners(plugins: &PluginDirs, tell: &SyncSender<Msg>) -> anyhow::Result<()> {
+    let (plugins, tell) = (plugins.clone(), tell.clone());
+    spawn("planners", move || {
+        let (found, refused) = crate::planners::surveyed(&plugins);
+        let refused = refused.into_iter().map(|(plugin, reason)| Refused { plugin, reason }).collect();
+        // A screen that is gone needs no list.
+        let _ = tell.send(Msg::Planners { found, refused });
+    })
+}
+
+fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> anyhow::Result<()> {
+    let started = thread::Builder::new().name(name.into()).spawn(work);
+    started.map(drop).with_context(|| format!("starting the thread for {name}"))
+}

@@ -1,0 +1,41 @@
+//! Failures by whose turn it is: the user's or ours.
+
+use std::{fmt, process::ExitCode};
+
+/// The mission was flown and is complete.
+pub const COMPLETE: u8 = 0;
+/// The mission was flown and ended otherwise; also a verification that found a difference.
+pub const ENDED_OTHERWISE: u8 = 1;
+/// Usage or input is wrong.
+pub const BAD_INPUT: u8 = 2;
+/// A fault of the program or the machine.
+pub const INTERNAL: u8 = 3;
+
+/// Input that the user can mend; its text is complete, with place and remedy.
+#[derive(Debug)]
+pub struct BadInput(pub String);
+
+impl fmt::Display for BadInput {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for BadInput {}
+
+/// A failure of input, as an error.
+pub fn bad_input(text: impl Into<String>) -> anyhow::Error {
+    BadInput(text.into()).into()
+}
+
+/// Tells a failure on stderr; the exit code says whose turn it is.
+#[expect(clippy::print_stderr, reason = "this is where errors reach the user")]
+pub fn tell(error: &anyhow::Error) -> ExitCode {
+    if let Some(BadInput(text)) = error.downcast_ref() {
+        let prefix = if text.starts_with("error") { "" } else { "error: " };
+        eprintln!("{prefix}{}", text.trim_end());
+        return ExitCode::from(BAD_INPUT);
+    }
+    eprintln!("error: {error:#}");
+    ExitCode::from(INTERNAL)
+}

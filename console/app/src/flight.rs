@@ -1,0 +1,125 @@
+//! One flight: simulator, mission and planner host, tick by tick.
+
+use crate::scenario::Scenario;
+use mission::{
+    Event, EventKind, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION,
+};
+use planner_api::Drive;
+use planner_host::{Host, HostConfig, PluginDirs};
+use report::PlannerCalls;
+use sim::Simulator;
+use std::time::Duration;
+use world::Floor;
+
+/// How patient the host is with a planner's step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pace {
+    /// A tick is a tick: a planner has 60 % of it, but at least 100 ms so that a busy laptop is no fault.
+    Live,
+    /// As fast as it goes, with nobody waiting for the next tick: only a planner that hangs is late.
+    Batch,
+}
+
+impl Pace {
+    fn step_deadline(self, tick_s: f64) -> Duration {
+        match self {
+            Self::Live => Duration::from_secs_f64((0.6 * tick_s).max(0.1)),
+            Self::Batch => Duration::from_secs(2),
+        }
+    }
+}
+
+/// A scenario being flown.
+pub struct Flight {
+    simulator: Simulator,
+    mission: Mission,
+    host: Host,
+    tick: u64,
+    tick_s: f64,
+    opened: RunOpened,
+}
+
+impl Flight {
+    /// A flight that waits for its start; `attended` says whether an operator is there.
+    pub fn prepare(scenario: &Scenario, attended: bool, plugins: &PluginDirs, pace: Pace) -> Self {
+        let config = MissionConfig { attended, ..scenario.mission.clone() };
+        let drawing = scenario.sim.world.as_drawn();
+        let floor = Floor::new(
+            &drawing,
+            config.cell_m,
+            config.limits.radius_m,
+            config.swath_m,
+            config.start.position,
+        );
+        let opened = RunOpened {
+            journal_version: JOURNAL_VERSION,
+            tankops_version: env!("CARGO_PKG_VERSION").into(),
+            scenario: scenario.name.clone(),
+            scenario_toml: scenario.text.clone(),
+            seed: scenario.seed,
+            world: scenario.sim.world.clone(),
+            mission: config.clone(),
+            floor: floor.clone(),
+        };
+        let host_config = HostConfig::new(pace.step_deadline(config.tick_s));
+        Self {
+            simulator: Simulator::new(scenario.sim.clone(), scenario.seed),
+            host: Host::new(plugins, host_config),
+            tick: 0,
+            tick_s: config.tick_s,
+            mission: Mission::new(config, drawing, floor, scenario.seed),
+            opened,
+        }
+    }
+
+    /// The first event of the run.
+    pub fn opened(&self) -> Event {
+        Event { tick: 0, t_s: 0.0, kind: EventKind::RunOpened(Box::new(self.opened.clone())) }
+    }
+
+    /// What the mission is doing.
+    pub fn phase(&self) -> &Phase {
+        self.mission.phase()
+    }
+
+    /// Length of a tick, mission time.
+    pub fn tick_length(&self) -> Duration {
+        Duration::from_secs_f64(self.tick_s)
+    }
+
+    /// Figures about the planner's calls, by the wall clock.
+    pub fn planner_calls(&self) -> PlannerCalls {
+        let stats = self.host.stats();
+        PlannerCalls {
+            plan: stats.plan.calls,
+            step: stats.step.calls,
+            p50_us: stats.step.p50_us,
+            p99_us: stats.step.p99_us,
+            faults: stats.faults,
+        }
+    }
+
+    /// Flies one tick: sense, decide, act. The truth goes into the events first, and nowhere else.
+    pub fn tick(&mut self, orders: &[Order]) -> Vec<Event> {
+        let readings = self.simulator.sense();
+        let truth = self.simulator.truth();
+        let step = self.mission.step(&Input { readings: &readings, orders }, &mut self.host);
+        self.simulator.act(match step.drive {
+            Drive::Twist { v_m_per_s, w_rad_per_s } => sim::Drive::Twist { v_m_per_s, w_rad_per_s },
+            Drive::Velocity(velocity) => sim::Drive::Velocity(velocity),
+        });
+        let mut events = Vec::with_capacity(step.events.len() + 1);
+        events.push(Event {
+            tick: self.tick,
+            t_s: self.tick as f64 * self.tick_s,
+            kind: EventKind::Truth {
+                pose: truth.pose,
+                clearance_m: truth.clearance_m,
+                collided: truth.collided,
+            },
+        });
+        events.extend(step.events);
+        self.tick += 1;
+        events
+    }
+}

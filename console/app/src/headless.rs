@@ -1,0 +1,144 @@
+//! Flying a mission without a terminal: `tankops run`, and `tankops` where there is no terminal.
+
+use crate::{
+    cli::{LogsArg, RunArgs},
+    failure::{COMPLETE, ENDED_OTHERWISE},
+    flight::{Flight, Pace},
+    run_folder::RunFolder,
+    scenario::Scenario,
+    stop_signal,
+};
+use anyhow::Context;
+use indicatif::{ProgressBar, ProgressStyle};
+use mission::{Event, EventKind, Order, Outcome, Phase};
+use planner_host::PluginDirs;
+use recording::{JournalWriter, Options, RunRecorder};
+use report::{Fold, Logs, Summary};
+use std::{
+    io::IsTerminal,
+    process::ExitCode,
+    time::{Duration, Instant},
+};
+
+/// How long closing the recording may take before it is abandoned with a message.
+pub const CLOSE_TIMEOUT: Duration = Duration::from_secs(10);
+
+/// How a headless run is told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Telling {
+    /// The report as JSON on stdout and nothing else there.
+    pub json: bool,
+    /// A journal and a recording are written.
+    pub record: bool,
+}
+
+/// `tankops run`.
+pub fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
+    let scenario = crate::read_scenario(&args.scenario, &args.changes)?;
+    fly(&scenario, plugins, &args.logs, Telling { json: args.json, record: !args.no_record })
+}
+
+/// Flies a scenario to its end and tells the result.
+pub fn fly(
+    scenario: &Scenario,
+    plugins: &PluginDirs,
+    logs: &LogsArg,
+    telling: Telling,
+) -> anyhow::Result<ExitCode> {
+    crate::planners::check_choices(scenario, plugins)?;
+    let began = Instant::now();
+    let flight = Flight::prepare(scenario, false, plugins, Pace::Batch);
+    let folder = telling
+        .record
+        .then(|| RunFolder::create(&logs.logs, &scenario.name, &scenario.mission.planner.id, scenario.seed))
+        .transpose()?;
+    let recorder = match &folder {
+        Some(folder) => RunRecorder::start(folder.path(), Options::default())?,
+        None => RunRecorder::spawn(JournalWriter::unwritten(began), None)?,
+    };
+    let bar = progress_bar(scenario, telling);
+    let (flight, fold) = fly_to_end(flight, &recorder, &bar);
+    bar.finish_and_clear();
+    let finished = recorder.finish(CLOSE_TIMEOUT);
+    let summary = Summary {
+        wall_time_s: Some(began.elapsed().as_secs_f64()),
+        events_sha256: finished.events_sha256,
+        planner_calls: Some(flight.planner_calls()),
+        logs: folder.is_some().then(|| Logs {
+            journal: finished.journal.map(|path| path.display().to_string()),
+            recording: finished.recording.map(|path| path.display().to_string()),
+            error: finished.error.clone(),
+        }),
+        ..fold.summary()
+    };
+    if let Some(folder) = &folder {
+        folder.write_report(&summary)?;
+    }
+    tell(&summary, finished.error.as_deref(), telling)?;
+    Ok(exit_code(&summary))
+}
+
+fn fly_to_end(mut flight: Flight, recorder: &RunRecorder, bar: &ProgressBar) -> (Flight, Fold) {
+    let stop = stop_signal::listen();
+    let mut fold = Fold::new();
+    let mut take = |events: Vec<Event>| {
+        events.iter().for_each(|event| fold.apply(event));
+        show_progress(bar, &events);
+        recorder.send(events);
+    };
+    take(vec![flight.opened()]);
+    let mut orders = vec![Order::Start];
+    while !matches!(flight.phase(), Phase::Ended(_)) {
+        if stop.requested() {
+            orders.push(Order::Abort);
+        }
+        take(flight.tick(&orders));
+        orders.clear();
+    }
+    (flight, fold)
+}
+
+fn progress_bar(scenario: &Scenario, telling: Telling) -> ProgressBar {
+    if telling.json || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(1000).with_prefix(scenario.name.clone());
+    let style = ProgressStyle::with_template("{prefix}  {wide_bar} {percent:>3} %  {msg}  {elapsed}");
+    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+fn show_progress(bar: &ProgressBar, events: &[Event]) {
+    if bar.is_hidden() {
+        return;
+    }
+    for event in events {
+        if let EventKind::Progressed { done, covered_reachable, .. } = event.kind {
+            bar.set_position((done * 1000.0) as u64);
+            bar.set_message(format!(
+                "T+{:.0} s, {:.1} % of reachable floor",
+                event.t_s,
+                covered_reachable * 100.0
+            ));
+        }
+        if let Some(line) = event.log_line().filter(|line| line.severity >= mission::Severity::Warn) {
+            bar.println(format!("T+{:.1} s  {}  {}", event.t_s, line.source, line.text));
+        }
+    }
+}
+
+#[expect(clippy::print_stdout, clippy::print_stderr, reason = "this is where the report reaches the user")]
+fn tell(summary: &Summary, recording_error: Option<&str>, telling: Telling) -> anyhow::Result<()> {
+    if telling.json {
+        println!("{}", serde_json::to_string_pretty(summary).context("writing the report as JSON")?);
+    } else {
+        print!("{}", report::human(summary));
+    }
+    if let Some(error) = recording_error {
+        eprintln!("warning: the recording is not whole: {error}");
+    }
+    Ok(())
+}
+
+fn exit_code(summary: &Summary) -> ExitCode {
+    ExitCode::from(if summary.outcome == Some(Outcome::Complete) { COMPLETE } else { ENDED_OTHERWISE })
+}

@@ -1,0 +1,146 @@
+//! `tankops planners` and `tankops check`: what was found, and what is wrong with it.
+
+use crate::{
+    failure::{BAD_INPUT, COMPLETE, bad_input},
+    scenario::{Scenario, Settings},
+};
+use anyhow::Context;
+use mission::{ParamInfo, ParamKind, PlannerChoice, PlannerInfo};
+use planner_host::{PluginDirs, Survey, SurveyedPlugin, WorkerCommand, check_parameters, survey};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+/// Planners that can be chosen.
+pub fn found(plugins: &PluginDirs) -> Vec<PlannerInfo> {
+    survey(plugins, &WorkerCommand::default()).planners().cloned().collect()
+}
+
+/// Planners that can be chosen, and plugins that are refused: file name and reason.
+pub fn surveyed(plugins: &PluginDirs) -> (Vec<PlannerInfo>, Vec<(String, String)>) {
+    let survey = survey(plugins, &WorkerCommand::default());
+    let refused =
+        survey.plugins.iter().filter_map(|plugin| Some((file_name(&plugin.path), plugin.refused.clone()?)));
+    (survey.planners().cloned().collect(), refused.collect())
+}
+
+/// Makes sure, before anything is flown, that the planners of a scenario exist and take their parameters.
+pub fn check_choices(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<()> {
+    let known = found(plugins);
+    let mission = &scenario.mission;
+    for choice in std::iter::once(&mission.planner).chain(&mission.fallback) {
+        check_choice(choice, &known).map_err(bad_input)?;
+    }
+    Ok(())
+}
+
+fn check_choice(choice: &PlannerChoice, known: &[PlannerInfo]) -> Result<(), String> {
+    let Some(info) = known.iter().find(|info| info.id == choice.id) else {
+        let ids: Vec<&str> = known.iter().map(|info| info.id.as_str()).collect();
+        let has = if ids.is_empty() {
+            "no planner was found at all".into()
+        } else {
+            format!("found: {}", ids.join(", "))
+        };
+        return Err(format!(
+            "there is no planner `{}`; {has}; `tankops planners` tells where they are looked for",
+            choice.id
+        ));
+    };
+    check_parameters(info, &choice.parameters)
+}
+
+/// `tankops planners`.
+#[expect(clippy::print_stdout, reason = "this is where the list reaches the user")]
+pub fn list(plugins: &PluginDirs, json: bool) -> anyhow::Result<ExitCode> {
+    let survey = survey(plugins, &WorkerCommand::default());
+    if json {
+        println!("{}", serde_json::to_string_pretty(&survey).context("writing the list as JSON")?);
+    } else {
+        print!("{}", listing(&survey, plugins));
+    }
+    Ok(ExitCode::from(COMPLETE))
+}
+
+fn listing(survey: &Survey, plugins: &PluginDirs) -> String {
+    let mut text: String = survey.plugins.iter().map(plugin_listing).collect();
+    if survey.plugins.is_empty() {
+        let places: Vec<String> = plugins.0.iter().map(|dir| format!("  {}\n", dir.display())).collect();
+        text = format!("no plugins found in\n{}", places.concat());
+    }
+    text
+}
+
+fn plugin_listing(plugin: &SurveyedPlugin) -> String {
+    let abi = plugin.abi.as_deref().map(|abi| format!("  ABI {abi}")).unwrap_or_default();
+    let hash = plugin.sha256.get(..12).unwrap_or_default();
+    let mut text = format!("{}{abi}  sha256 {hash}\n", plugin.path.display());
+    if let Some(reason) = &plugin.refused {
+        text += &format!("  REFUSED: {reason}\n");
+    }
+    for info in &plugin.planners {
+        text += &format!("  {} {}  {}\n", info.id, info.version, info.name);
+        if !info.about.is_empty() {
+            text += &format!("      {}\n", info.about);
+        }
+        text.extend(info.parameters.iter().map(parameter_listing));
+    }
+    for id in &plugin.shadowed {
+        text += &format!("  {id}  shadowed by a plugin that is found earlier\n");
+    }
+    text
+}
+
+fn parameter_listing(info: &ParamInfo) -> String {
+    let values = match &info.kind {
+        ParamKind::Float { min, max, default } => format!("{default} ({min} to {max})"),
+        ParamKind::Int { min, max, default } => format!("{default} ({min} to {max})"),
+        ParamKind::Flag { default } => format!("{default}"),
+        ParamKind::Choice { options, default } => format!("{default} ({})", options.join(", ")),
+    };
+    let live = if info.live { ", live" } else { "" };
+    format!("      {:<18} {values} {}{live}\n", info.key, info.unit)
+}
+
+/// `tankops check`.
+#[expect(clippy::print_stdout, clippy::print_stderr, reason = "this is where the verdicts reach the user")]
+pub fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
+    let mut sound = true;
+    for file in files {
+        match check_file(file) {
+            Ok(what) => println!("ok: {}: {what}", file.display()),
+            Err(why) => {
+                sound = false;
+                eprintln!("{}", why.trim_end());
+            }
+        }
+    }
+    Ok(ExitCode::from(if sound { COMPLETE } else { BAD_INPUT }))
+}
+
+fn check_file(file: &Path) -> Result<String, String> {
+    let is_plugin =
+        file.extension().is_some_and(|end| ["so", "dylib", "dll"].iter().any(|known| end == *known));
+    if is_plugin {
+        return check_plugin(file);
+    }
+    let scenario = Scenario::read_with(file, &Settings::default()).map_err(|errors| errors.render())?;
+    Ok(format!("scenario {}, planner {}", scenario.name, scenario.mission.planner.id))
+}
+
+fn check_plugin(file: &Path) -> Result<String, String> {
+    let error = |why: String| format!("error: {}: {why}", file.display());
+    let checked = planner_host::check_plugin(file, &WorkerCommand::default());
+    match checked.refused {
+        Some(reason) => Err(error(reason)),
+        None => {
+            let ids: Vec<&str> = checked.planners.iter().map(|info| info.id.as_str()).collect();
+            Ok(format!("plugin with {}", ids.join(", ")))
+        }
+    }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}

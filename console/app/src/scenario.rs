@@ -1,0 +1,115 @@
+//! Scenario files: one TOML text that says everything about a run.
+//!
+//! [`Scenario::read_with`] takes a file, [`Scenario::parse`] a text. What comes out has been checked: the engine and the
+//! simulator need not doubt it. What is wrong comes back as [`ScenarioErrors`], all of it at once, each problem with
+//! line, column, key, value and remedy; [`ScenarioErrors::render`] shows it. Settings from the command line are put
+//! into the text before it is read, so that the text alone gives the same scenario again.
+
+mod assemble;
+mod checks;
+mod expect;
+mod floor;
+mod layout;
+mod outline;
+mod problem;
+mod render;
+mod robot;
+mod schema;
+mod section;
+mod settings;
+mod source;
+mod suggest;
+mod task;
+
+pub use problem::{Complaint, Problem, ScenarioErrors};
+pub use settings::Settings;
+
+use mission::MissionConfig;
+use report::Expect;
+use sim::SimConfig;
+use std::{fs::File, io::Read, path::Path};
+use toml::de::DeTable;
+
+/// A larger file is no scenario, kilobytes.
+const LIMIT_KB: usize = 1000;
+
+/// A scenario, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scenario {
+    /// What it is called; part of file names.
+    pub name: String,
+    /// What it shows, for people; may be empty.
+    pub about: String,
+    /// The text it was read from, with settings already put in; gives the same scenario again.
+    pub text: String,
+    /// Start of every random choice.
+    pub seed: u64,
+    /// What is simulated.
+    pub sim: SimConfig,
+    /// What is to be done.
+    pub mission: MissionConfig,
+    /// Bounds that the run is held to.
+    pub expect: Expect,
+}
+
+impl Scenario {
+    /// Reads a scenario file and puts settings from the command line into it.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it or with the settings.
+    pub fn read_with(path: &Path, settings: &Settings) -> Result<Self, ScenarioErrors> {
+        let shown_name = path.display().to_string();
+        let text = read_text(path).map_err(|what| ScenarioErrors::of_file(&shown_name, what))?;
+        Self::parse_with(&text, &shown_name, settings)
+    }
+
+    /// Reads a scenario from its text; `shown_name` is what messages call it.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn parse(text: &str, shown_name: &str) -> Result<Self, ScenarioErrors> {
+        if text.len() > LIMIT_KB * 1000 {
+            return Err(ScenarioErrors::of_file(shown_name, Complaint::TooLarge { limit_kb: LIMIT_KB }));
+        }
+        let table = DeTable::parse(text).map_err(|error| syntax_error(text, shown_name, &error))?;
+        assemble::assemble(text, table.get_ref()).map_err(|problems| ScenarioErrors {
+            shown_name: shown_name.to_owned(),
+            text: text.to_owned(),
+            problems,
+        })
+    }
+
+    /// Reads a scenario from its text after putting settings into it.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it or with the settings.
+    pub fn parse_with(text: &str, shown_name: &str, settings: &Settings) -> Result<Self, ScenarioErrors> {
+        if settings.is_empty() {
+            return Self::parse(text, shown_name);
+        }
+        DeTable::parse(text).map_err(|error| syntax_error(text, shown_name, &error))?;
+        let changed = settings.put_into(text).map_err(|what| ScenarioErrors::of_file(shown_name, what))?;
+        Self::parse(&changed, &format!("{shown_name} with {settings}"))
+    }
+}
+
+fn read_text(path: &Path) -> Result<String, Complaint> {
+    let unreadable = |error: std::io::Error| Complaint::Unreadable(error.to_string());
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(unreadable)?;
+    file.take(LIMIT_KB as u64 * 1000 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() > LIMIT_KB * 1000 {
+        return Err(Complaint::TooLarge { limit_kb: LIMIT_KB });
+    }
+    String::from_utf8(bytes).map_err(|error| Complaint::NotText { at_byte: error.utf8_error().valid_up_to() })
+}
+
+fn syntax_error(text: &str, shown_name: &str, error: &toml::de::Error) -> ScenarioErrors {
+    let message: String = error.message().lines().next().unwrap_or_default().chars().take(120).collect();
+    let problem =
+        Problem { key: String::new(), value: None, at: error.span(), what: Complaint::NotToml(message) };
+    ScenarioErrors { shown_name: shown_name.to_owned(), text: text.to_owned(), problems: vec![problem] }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,252 @@
+//! From the parsed TOML to a checked scenario.
+
+use super::{
+    Scenario,
+    checks::{Site, check_cells, check_period, check_ticks},
+    expect, floor, layout,
+    problem::{Complaint, Problem},
+    robot::{self, Robot},
+    schema,
+    section::Section,
+    source::Source,
+    task,
+};
+use mission::{MissionConfig, TaskConfig};
+use sim::{AeConfig, RobotConfig, SimConfig};
+use toml::de::DeTable;
+use world::{Boundary, Obstacle, Point, Pose, Station, World};
+
+/// A start this near to the first path point stands on it, metres.
+const ON_PATH_M: f64 = 1e-3;
+
+/// Reads every section, checks that they fit together, and gives the scenario or everything that is wrong.
+pub fn assemble(text: &str, table: &DeTable<'_>) -> Result<Scenario, Vec<Problem>> {
+    let source = Source::new(text);
+    let scenario = read(&Section::root(&source, table, schema::ROOT), text);
+    let problems = source.into_problems();
+    match scenario {
+        Some(scenario) if problems.is_empty() => Ok(scenario),
+        _ => Err(problems),
+    }
+}
+
+/// The sections that are looked at more than once.
+struct Sections<'a> {
+    root: &'a Section<'a>,
+    robot: Option<Section<'a>>,
+    ae: Option<Section<'a>>,
+    mission: Option<Section<'a>>,
+}
+
+/// Everything on the floor and everything that moves there, as far as it could be read.
+struct Floor {
+    boundary: Option<Boundary>,
+    obstacles: Vec<Obstacle>,
+    zones: Vec<world::Zone>,
+    robot: Option<Robot>,
+    stations: Vec<Station>,
+    ae: Option<AeConfig>,
+}
+
+fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
+    let name = root.slug("name");
+    let about = if root.has("about") { root.text("about") } else { Some(String::new()) };
+    let seed = root.whole("seed").map(|seed| seed as u64);
+    let sections = Sections {
+        root,
+        robot: root.table_or_empty("robot"),
+        ae: root.table("ae"),
+        mission: root.table("mission"),
+    };
+    let mut floor = Floor::read(&sections);
+    let radius_m = floor.robot.as_ref().map(|robot| robot.limits.radius_m);
+    let task = sections.mission.as_ref().and_then(|s| task::task(s, floor.boundary.as_ref(), radius_m));
+    let start = start(&sections, floor.robot.as_ref(), task.as_ref());
+    scatter(root, &mut floor, seed, start, task.as_ref());
+    check_places(&sections, &floor, start, task.as_ref());
+    let planner = root.table("planner").map(|section| (task::planner(&section), task::fallback(&section)));
+    let expect = expect::expect(root);
+    let rest = Rest::read(&sections, &floor);
+
+    let (planner, fallback) = planner?;
+    let (robot, rest, start, ae) = (floor.robot?, rest?, start?, floor.ae?);
+    let mission = MissionConfig {
+        task: task?,
+        start,
+        start_sigma_m: robot.start_sigma_m,
+        tick_s: rest.tick_s,
+        time_limit_s: rest.time_limit_s,
+        limits: robot.limits,
+        swath_m: rest.swath_m,
+        clearance_m: rest.clearance_m,
+        cell_m: rest.cell_m,
+        position_limit_m: rest.position_limit_m,
+        lost_hold_s: rest.lost_hold_s,
+        stuck_s: rest.stuck_s,
+        start_heading_sigma_rad: robot.start_heading_sigma_rad,
+        odometry_sigma_per_m: robot.odometry_sigma_per_m(),
+        odometry_turn_sigma_per_rad: robot.turn_sigma_per_rad(),
+        gyro_sigma_rad_per_s: robot.gyro_sigma_rad_per_s(),
+        range_sigma_ratio: robot::range_sigma_ratio(ae.noise),
+        planner: planner?,
+        fallback,
+        // Who flies it knows; a scenario does not.
+        attended: false,
+    };
+    let world = World {
+        boundary: floor.boundary?,
+        obstacles: floor.obstacles,
+        stations: floor.stations,
+        zones: floor.zones,
+    };
+    let sim = SimConfig { world, robot: truth(&robot, start), ae: Some(ae), tick_s: rest.tick_s };
+    Some(Scenario {
+        name: name?,
+        about: about?,
+        text: text.to_owned(),
+        seed: seed?,
+        sim,
+        mission,
+        expect: expect?,
+    })
+}
+
+impl Floor {
+    fn read(sections: &Sections<'_>) -> Self {
+        let boundary = floor::tank(sections.root);
+        let ae = sections.ae.as_ref();
+        Self {
+            obstacles: floor::obstacles(sections.root, boundary.as_ref()),
+            zones: floor::zones(sections.root),
+            robot: sections.robot.as_ref().and_then(robot::robot),
+            stations: ae.map(|section| robot::stations(section, boundary.as_ref())).unwrap_or_default(),
+            ae: ae.and_then(robot::ae),
+            boundary,
+        }
+    }
+}
+
+/// Where the robot starts: as given, or on the path and along it.
+fn start(sections: &Sections<'_>, robot: Option<&Robot>, task: Option<&TaskConfig>) -> Option<Pose> {
+    let (robot, section, task) = (robot?, sections.robot.as_ref()?, task?);
+    let (position, ahead) = match (robot.start, task) {
+        (Some(start), TaskConfig::Goto { goal, .. }) => (start, *goal - start),
+        (None, TaskConfig::Goto { .. }) => {
+            if !section.has("start_m") {
+                section.require("start_m", "add start_m = [x, y] to [robot], where it is put down");
+            }
+            return None;
+        }
+        (start, TaskConfig::Follow { path, .. }) => {
+            let (first, second) = (*path.first()?, *path.get(1)?);
+            let position = start.unwrap_or(first);
+            let is_on_path = (position - first).norm() < ON_PATH_M;
+            (position, if is_on_path { second - first } else { first - position })
+        }
+    };
+    let along = if ahead.norm() > 0.0 { ahead.y.atan2(ahead.x) } else { 0.0 };
+    Some(Pose { position, heading_rad: robot.start_heading_rad.unwrap_or(along) })
+}
+
+/// The last place of the mission.
+fn end_of(task: &TaskConfig) -> Option<Point> {
+    match task {
+        TaskConfig::Goto { goal, .. } => Some(*goal),
+        TaskConfig::Follow { path, .. } => path.last().copied(),
+    }
+}
+
+/// Puts the random obstacles onto the floor.
+fn scatter(
+    root: &Section<'_>,
+    floor: &mut Floor,
+    seed: Option<u64>,
+    start: Option<Pose>,
+    task: Option<&TaskConfig>,
+) {
+    if !root.has("random_obstacles") {
+        return;
+    }
+    let Some(section) = root.table("random_obstacles") else { return };
+    let random = layout::random_obstacles(&section, seed);
+    let (Some(random), Some(boundary)) = (random, &floor.boundary) else { return };
+    let free: Vec<Point> = start.map(|pose| pose.position).into_iter().chain(task.and_then(end_of)).collect();
+    let placed = random.place(boundary, &free, &mut floor.obstacles);
+    if placed < random.count {
+        section.complain("count", Complaint::NoRoom { placed });
+    }
+}
+
+fn check_places(sections: &Sections<'_>, floor: &Floor, start: Option<Pose>, task: Option<&TaskConfig>) {
+    let (Some(boundary), Some(robot)) = (&floor.boundary, &floor.robot) else { return };
+    let radius_m = robot.limits.radius_m;
+    let site = Site { boundary, obstacles: &floor.obstacles, zones: &floor.zones, radius_m };
+    let complain = |section: &Option<Section<'_>>, name: &str, place: Point| {
+        if let (Some(section), Some(what)) = (section, site.objection(place)) {
+            section.complain(name, what);
+        }
+    };
+    if let Some(pose) = start {
+        complain(&sections.robot, "start_m", pose.position);
+    }
+    if let Some(TaskConfig::Goto { goal, .. }) = task {
+        complain(&sections.mission, "goal_m", *goal);
+    }
+}
+
+/// The keys of `[mission]` that stand for themselves.
+struct Rest {
+    tick_s: f64,
+    time_limit_s: f64,
+    swath_m: f64,
+    clearance_m: f64,
+    cell_m: f64,
+    position_limit_m: f64,
+    lost_hold_s: f64,
+    stuck_s: f64,
+}
+
+impl Rest {
+    fn read(sections: &Sections<'_>, floor: &Floor) -> Option<Self> {
+        let mission = sections.mission.as_ref()?;
+        let (tick, limit) = (mission.number("tick_s"), mission.number("time_limit_s"));
+        if let (Some(tick_s), Some(time_limit_s)) = (tick, limit) {
+            check_ticks(mission, tick_s, time_limit_s);
+        }
+        if let (Some(tick_s), Some(section), Some(ae)) = (tick, &sections.ae, &floor.ae) {
+            check_period(section, tick_s, ae.period_s);
+        }
+        let cell_m = mission.number("cell_m");
+        if let (Some(boundary), Some(cell_m)) = (&floor.boundary, cell_m) {
+            check_cells(mission, boundary, cell_m);
+        }
+        let (swath_m, clearance_m) = (mission.number("swath_m"), mission.number("clearance_m"));
+        let position_limit_m = mission.number("position_limit_m");
+        let (lost_hold_s, stuck_s) = (mission.number("lost_hold_s"), mission.number("stuck_s"));
+        Some(Self {
+            tick_s: tick?,
+            time_limit_s: limit?,
+            swath_m: swath_m?,
+            clearance_m: clearance_m?,
+            cell_m: cell_m?,
+            position_limit_m: position_limit_m?,
+            lost_hold_s: lost_hold_s?,
+            stuck_s: stuck_s?,
+        })
+    }
+}
+
+fn truth(robot: &Robot, start: Pose) -> RobotConfig {
+    RobotConfig {
+        start,
+        radius_m: robot.limits.radius_m,
+        v_max_m_per_s: robot.limits.v_max_m_per_s,
+        w_max_rad_per_s: robot.limits.w_max_rad_per_s,
+        acceleration_m_per_s2: robot.acceleration_m_per_s2,
+        sensing_range_m: robot.limits.sensing_range_m,
+        slip_mean: robot.slip_mean,
+        slip_sigma: robot.slip_sigma,
+        odometry_sigma_ratio: robot.odometry_sigma_ratio,
+        gyro_bias_rad_per_s: robot.gyro_bias_rad_per_s,
+    }
+}

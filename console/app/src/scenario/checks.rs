@@ -1,0 +1,97 @@
+//! Whether the sections fit together: start, goal, sizes of the grid and of the run.
+
+use super::{problem::Complaint, section::Section};
+use world::{Boundary, Obstacle, Point, Zone, ZoneKind};
+
+/// Cells that a coverage grid may have.
+pub const MOST_CELLS: f64 = 4e6;
+
+/// Ticks that a run may last.
+pub const MOST_TICKS: f64 = 1e7;
+
+/// Slack for numbers that were written down rounded, metres.
+const ROUNDING_M: f64 = 1e-6;
+
+/// What a robot of some radius may run into.
+pub struct Site<'a> {
+    /// The wall.
+    pub boundary: &'a Boundary,
+    /// Obstacles, known or not.
+    pub obstacles: &'a [Obstacle],
+    /// Zones.
+    pub zones: &'a [Zone],
+    /// Radius of the hull, metres.
+    pub radius_m: f64,
+}
+
+impl Site<'_> {
+    /// Why the robot cannot stand at a place, if it cannot.
+    pub fn objection(&self, place: Point) -> Option<Complaint> {
+        self.wall(place).or_else(|| self.obstacle(place)).or_else(|| self.no_go(place))
+    }
+
+    fn wall(&self, place: Point) -> Option<Complaint> {
+        let distance_m = self.boundary.wall_distance_m(place);
+        let by_m = self.radius_m - distance_m;
+        if distance_m < -ROUNDING_M {
+            Some(Complaint::OutsideTank { by_m: -distance_m })
+        } else if by_m > ROUNDING_M {
+            Some(Complaint::InWall { by_m, radius_m: self.radius_m })
+        } else {
+            None
+        }
+    }
+
+    fn obstacle(&self, place: Point) -> Option<Complaint> {
+        let distances = self.obstacles.iter().map(|obstacle| (obstacle.shape.distance_m(place), obstacle));
+        let (distance_m, nearest) = distances.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (name, by_m) = (nearest.name.clone(), self.radius_m - distance_m);
+        if distance_m < -ROUNDING_M {
+            Some(Complaint::InObstacle { name })
+        } else if by_m > ROUNDING_M {
+            Some(Complaint::HullInObstacle { name, by_m, radius_m: self.radius_m })
+        } else {
+            None
+        }
+    }
+
+    fn no_go(&self, place: Point) -> Option<Complaint> {
+        let forbids = |zone: &&Zone| zone.kind == ZoneKind::NoGo && zone.shape.distance_m(place) < 0.0;
+        self.zones.iter().find(forbids).map(|zone| Complaint::InNoGo { name: zone.name.clone() })
+    }
+}
+
+/// Complains about a coverage grid with too many cells.
+pub fn check_cells(mission: &Section<'_>, boundary: &Boundary, cell_m: f64) {
+    let (low, high) = boundary.bounds();
+    let size = high - low;
+    let cells = (size.x / cell_m).ceil() * (size.y / cell_m).ceil();
+    if cells > MOST_CELLS {
+        // Rounded up to millimetres, with room for the cells cut at the edges.
+        let fits_m = ((size.x * size.y / MOST_CELLS).sqrt() * 1010.0).ceil() / 1000.0;
+        let what = Complaint::TooManyCells { cells: cells as u64, limit: MOST_CELLS as u64, fits_m };
+        mission.complain("cell_m", what);
+    }
+}
+
+/// Complains about a run with too many ticks, or none.
+pub fn check_ticks(mission: &Section<'_>, tick_s: f64, time_limit_s: f64) {
+    let ticks = time_limit_s / tick_s;
+    if ticks > MOST_TICKS {
+        let what = Complaint::TooManyTicks { ticks: ticks as u64, tick_s, limit: MOST_TICKS as u64 };
+        mission.complain("time_limit_s", what);
+    } else if ticks < 1.0 {
+        mission.complain("time_limit_s", at_least_a_tick(tick_s));
+    }
+}
+
+/// Complains about ranging more often than once a tick.
+pub fn check_period(ae: &Section<'_>, tick_s: f64, period_s: f64) {
+    if period_s < tick_s {
+        ae.complain("period_s", at_least_a_tick(tick_s));
+    }
+}
+
+fn at_least_a_tick(tick_s: f64) -> Complaint {
+    Complaint::OutOfRange(format!("at least one tick, {tick_s} s"))
+}

@@ -1,0 +1,35 @@
+//! The bounds that the run is held to: `[expect]`.
+
+use super::section::Section;
+use mission::Outcome;
+use report::Expect;
+
+/// Reads `[expect]`; no bounds if it is not there.
+pub fn expect(root: &Section<'_>) -> Option<Expect> {
+    let section = root.table_or_empty("expect")?;
+    let outcome = section.word("outcome").map(|word| match word {
+        "complete" => Outcome::Complete,
+        "stuck" => Outcome::Stuck,
+        "collision" => Outcome::Collision,
+        "time_limit" => Outcome::TimeLimit,
+        _ => Outcome::Aborted,
+    });
+    Some(Expect {
+        outcome,
+        collisions_max: section.whole("collisions_max").map(|n| n as u64),
+        min_clearance_min_m: section.number("min_clearance_min_m"),
+        mission_time_max_s: section.number("mission_time_max_s"),
+        path_length_max_m: section.number("path_length_max_m"),
+        coverage_reachable_min: section.number("coverage_reachable_min"),
+        coverage_whole_min: section.number("coverage_whole_min"),
+        overlap_max: section.number("overlap_max"),
+        precision_min: section.number("precision_min"),
+        recall_min: section.number("recall_min"),
+        rmse_max_m: section.number("rmse_max_m"),
+        cross_track_rmse_max_m: section.number("cross_track_rmse_max_m"),
+        mean_error_max_m: section.number("mean_error_max_m"),
+        p95_error_max_m: section.number("p95_error_max_m"),
+        in_95_ellipse_min: section.number("in_95_ellipse_min"),
+        lost_max_s: section.number("lost_max_s"),
+    })
+}

@@ -1,0 +1,112 @@
+//! What stands on the floor: `[tank]`, `[[obstacles]]`, `[[zones]]`.
+
+use super::{
+    outline::{counter_clockwise, outline, samples},
+    problem::Complaint,
+    section::{Place, Section},
+};
+use std::collections::BTreeMap;
+use world::{Boundary, Obstacle, ObstacleId, Shape, Zone, ZoneKind};
+
+/// Reads `[tank]`.
+pub fn tank(root: &Section<'_>) -> Option<Boundary> {
+    let section = root.table("tank")?;
+    if section.has("radius_m") {
+        section.refuse(&["vertices_m"], "radius_m");
+        return Some(Boundary::Circle { radius_m: section.number("radius_m")? });
+    }
+    if !section.has("vertices_m") {
+        section
+            .require("radius_m", "add radius_m = ..., in m, for a round tank, or vertices_m = [[x, y], ...]");
+        return None;
+    }
+    Some(Boundary::Polygon { vertices: counter_clockwise(&section, "vertices_m")? })
+}
+
+/// Reads `[[obstacles]]`; those that are wrong are left out.
+pub fn obstacles(root: &Section<'_>, boundary: Option<&Boundary>) -> Vec<Obstacle> {
+    let mut names = Names::default();
+    let sections = root.tables("obstacles");
+    let read = |(i, section): (usize, &Section<'_>)| {
+        let name = names.of(section, || format!("obstacle {}", i + 1));
+        let (shape, known) = (outline(section, "kind"), section.flag("known"));
+        let shape = shape?;
+        if boundary.is_some_and(|boundary| is_wholly_outside(boundary, &shape)) {
+            section.complain_whole(Complaint::WhollyOutside);
+        }
+        Some(Obstacle { id: ObstacleId(i as u32 + 1), name: name?, shape, known: known? })
+    };
+    sections.iter().enumerate().filter_map(read).collect()
+}
+
+/// Reads `[[zones]]`; those that are wrong are left out.
+pub fn zones(root: &Section<'_>) -> Vec<Zone> {
+    let mut names = Names::default();
+    let sections = root.tables("zones");
+    let read = |(i, section): (usize, &Section<'_>)| {
+        let name = names.of(section, || format!("zone {}", i + 1));
+        let kind = section.word("kind").map(|word| match word {
+            "no_go" => ZoneKind::NoGo,
+            "land" => ZoneKind::Land,
+            _ => ZoneKind::Underwater,
+        });
+        let shape = outline(section, "shape");
+        Some(Zone { name: name?, kind: kind?, shape: shape? })
+    };
+    sections.iter().enumerate().filter_map(read).collect()
+}
+
+/// Names given so far, so that none is given twice.
+#[derive(Default)]
+pub struct Names(BTreeMap<String, Place>);
+
+impl Names {
+    /// The name of an entry, or the one made up for it; complains about one that was given before.
+    pub fn of(&mut self, section: &Section<'_>, made_up: impl Fn() -> String) -> Option<String> {
+        let name = if section.has("name") { section.text("name")? } else { made_up() };
+        if let Some(first) = self.0.get(&name) {
+            section.complain("name", Complaint::Duplicate { other: first.key.clone() });
+        } else {
+            self.0.insert(name.clone(), section.place("name"));
+        }
+        Some(name)
+    }
+}
+
+/// Whether no part of an outline lies in the tank.
+fn is_wholly_outside(boundary: &Boundary, shape: &Shape) -> bool {
+    if let Boundary::Circle { radius_m } = boundary {
+        return shape.distance_m(world::Point::origin()) >= *radius_m;
+    }
+    let ((low, high), (tank_low, tank_high)) = (shape.bounds(), boundary.bounds());
+    if low.x > tank_high.x || low.y > tank_high.y || high.x < tank_low.x || high.y < tank_low.y {
+        return true;
+    }
+    let (points, reach_m) = samples(shape);
+    let corner_inside = match boundary {
+        Boundary::Polygon { vertices } => vertices.iter().any(|corner| shape.distance_m(*corner) < 0.0),
+        Boundary::Circle { .. } => false,
+    };
+    !corner_inside && points.iter().all(|point| boundary.wall_distance_m(*point) <= -reach_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use world::Point;
+
+    #[test]
+    fn an_obstacle_in_the_wall_is_not_wholly_outside() {
+        let round = Boundary::Circle { radius_m: 5.0 };
+        let square = Boundary::Polygon {
+            vertices: [(-5.0, -5.0), (5.0, -5.0), (5.0, 5.0), (-5.0, 5.0)]
+                .map(|(x, y)| Point::new(x, y))
+                .to_vec(),
+        };
+        for boundary in [round, square] {
+            let disc = |x_m| Shape::Disc { center: Point::new(x_m, 0.0), radius_m: 0.5 };
+            assert!(!is_wholly_outside(&boundary, &disc(5.4)));
+            assert!(is_wholly_outside(&boundary, &disc(5.6)));
+        }
+    }
+}

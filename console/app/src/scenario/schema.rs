@@ -1,0 +1,363 @@
+//! Every key a scenario may have: what it holds, its unit, its range, its default.
+//!
+//! The reader checks values against these tables, misspelt keys are compared with them, and a test holds
+//! `docs/scenario-format.md` to them.
+
+use std::fmt;
+
+/// The numbers a key accepts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    low: f64,
+    low_is_open: bool,
+    high: f64,
+}
+
+/// Every number greater than `low`.
+pub const fn above(low: f64) -> Span {
+    Span { low, low_is_open: true, high: f64::INFINITY }
+}
+
+/// Every number from `low` on.
+pub const fn at_least(low: f64) -> Span {
+    Span { low, low_is_open: false, high: f64::INFINITY }
+}
+
+impl Span {
+    /// The same, up to and including `high`.
+    pub const fn up_to(self, high: f64) -> Self {
+        Self { high, ..self }
+    }
+
+    /// What a number must be instead, if it is not accepted: reads on after "must be".
+    pub fn complaint(&self, number: f64, unit: &str) -> Option<String> {
+        let gap = if unit.is_empty() { "" } else { " " };
+        if self.low_is_open && number <= self.low {
+            Some(format!("greater than {}{gap}{unit}", self.low))
+        } else if number < self.low {
+            Some(format!("at least {}{gap}{unit}", self.low))
+        } else if number > self.high {
+            Some(format!("at most {}{gap}{unit}", self.high))
+        } else {
+            None
+        }
+    }
+}
+
+impl fmt::Display for Span {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let low = if self.low_is_open { "> " } else { "≥ " };
+        let has_low = self.low.is_finite();
+        if has_low {
+            write!(f, "{low}{}", self.low)?;
+        }
+        if self.high.is_finite() {
+            write!(f, "{}≤ {}", if has_low { ", " } else { "" }, self.high)?;
+        }
+        Ok(())
+    }
+}
+
+/// What a key holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// A real number; a whole one will do.
+    Number(Span),
+    /// A whole number from the first to the last.
+    Whole(i64, i64),
+    /// `true` or `false`.
+    Flag,
+    /// Any text.
+    Text,
+    /// Text without blanks, as part of file names.
+    Slug,
+    /// One of these words.
+    Word(&'static [&'static str]),
+    /// `[x, y]`.
+    Point,
+    /// `[[x, y], ...]`, at least so many.
+    Points(usize),
+    /// `[a, b]`, each in the span.
+    Pair(Span),
+    /// `[[from, to], ...]`, times.
+    Times,
+    /// A table with keys of its own.
+    Table(&'static [Key]),
+    /// Tables with keys of their own.
+    Tables(&'static [Key]),
+    /// A table of free keys with simple values.
+    Free,
+}
+
+/// What holds when a key is not given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Default {
+    /// It must be given.
+    Required,
+    /// Nothing, or something worked out from other keys: in words.
+    Absent(&'static str),
+    /// This number.
+    Number(f64),
+    /// This whole number.
+    Whole(i64),
+    /// This flag.
+    Flag(bool),
+    /// This word.
+    Word(&'static str),
+}
+
+/// One key of a section.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Key {
+    /// As it is written, unit last.
+    pub name: &'static str,
+    /// Unit of its numbers; empty for pure ones.
+    pub unit: &'static str,
+    /// What it holds.
+    pub kind: Kind,
+    /// What holds without it.
+    pub default: Default,
+}
+
+const fn key(name: &'static str, unit: &'static str, kind: Kind) -> Key {
+    Key { name, unit, kind, default: Default::Required }
+}
+
+const fn number(name: &'static str, unit: &'static str, span: Span) -> Key {
+    key(name, unit, Kind::Number(span))
+}
+
+const fn word(name: &'static str, words: &'static [&'static str]) -> Key {
+    key(name, "", Kind::Word(words))
+}
+
+const fn point(name: &'static str) -> Key {
+    key(name, "m", Kind::Point)
+}
+
+impl Key {
+    const fn or(self, default: f64) -> Self {
+        Self { default: Default::Number(default), ..self }
+    }
+
+    const fn or_none(self, instead: &'static str) -> Self {
+        Self { default: Default::Absent(instead), ..self }
+    }
+
+    const fn or_word(self, default: &'static str) -> Self {
+        Self { default: Default::Word(default), ..self }
+    }
+
+    const fn or_flag(self, default: bool) -> Self {
+        Self { default: Default::Flag(default), ..self }
+    }
+
+    const fn or_whole(self, default: i64) -> Self {
+        Self { default: Default::Whole(default), ..self }
+    }
+}
+
+const LENGTH: Span = above(0.0).up_to(1000.0);
+const ANGLE: Span = at_least(-360.0).up_to(360.0);
+const SHARE: Span = at_least(0.0).up_to(1.0);
+const ANY_LENGTH: Span = at_least(0.0);
+const BY_KIND: &str = "by kind";
+
+/// The whole file.
+pub static ROOT: &[Key] = &[
+    key("name", "", Kind::Slug),
+    key("about", "", Kind::Text).or_none("empty"),
+    key("seed", "", Kind::Whole(0, i64::MAX)).or_whole(1),
+    key("tank", "", Kind::Table(TANK)),
+    key("obstacles", "", Kind::Tables(OBSTACLES)).or_none("none"),
+    key("random_obstacles", "", Kind::Table(RANDOM_OBSTACLES)).or_none("none"),
+    key("zones", "", Kind::Tables(ZONES)).or_none("none"),
+    key("robot", "", Kind::Table(ROBOT)).or_none("all defaults"),
+    key("ae", "", Kind::Table(AE)),
+    key("mission", "", Kind::Table(MISSION)),
+    key("planner", "", Kind::Table(PLANNER)),
+    key("expect", "", Kind::Table(EXPECT)).or_none("no bounds"),
+];
+
+static TANK: &[Key] = &[
+    number("radius_m", "m", LENGTH).or_none("this or `vertices_m`"),
+    key("vertices_m", "m", Kind::Points(3)).or_none("this or `radius_m`"),
+];
+
+/// The outlines an obstacle or a zone may have.
+pub static OUTLINES: &[&str] = &["circle", "box", "polygon", "polyline"];
+
+static OBSTACLES: &[Key] = &[
+    key("name", "", Kind::Text).or_none("`obstacle 1`, `obstacle 2`, ..."),
+    word("kind", OUTLINES),
+    point("center_m").or_none(BY_KIND),
+    number("radius_m", "m", LENGTH).or_none(BY_KIND),
+    key("size_m", "m", Kind::Pair(LENGTH)).or_none(BY_KIND),
+    number("heading_deg", "deg", ANGLE).or(0.0),
+    key("vertices_m", "m", Kind::Points(3)).or_none(BY_KIND),
+    key("points_m", "m", Kind::Points(2)).or_none(BY_KIND),
+    number("width_m", "m", LENGTH).or_none(BY_KIND),
+    key("known", "", Kind::Flag).or_flag(true),
+];
+
+static RANDOM_OBSTACLES: &[Key] = &[
+    key("count", "", Kind::Whole(0, 1000)),
+    key("radius_m", "m", Kind::Pair(LENGTH)),
+    word("sampling", &["disk", "square"]).or_word("disk"),
+    number("min_gap_m", "m", ANY_LENGTH).or(0.0),
+    number("keep_clear_m", "m", ANY_LENGTH).or(0.5),
+    key("known", "", Kind::Flag).or_flag(true),
+    key("seed", "", Kind::Whole(0, i64::MAX)).or_none("the scenario's `seed`"),
+];
+
+static ZONES: &[Key] = &[
+    key("name", "", Kind::Text).or_none("`zone 1`, `zone 2`, ..."),
+    word("kind", &["no_go", "land", "underwater"]),
+    word("shape", OUTLINES),
+    point("center_m").or_none(BY_KIND),
+    number("radius_m", "m", LENGTH).or_none(BY_KIND),
+    key("size_m", "m", Kind::Pair(LENGTH)).or_none(BY_KIND),
+    number("heading_deg", "deg", ANGLE).or(0.0),
+    key("vertices_m", "m", Kind::Points(3)).or_none(BY_KIND),
+    key("points_m", "m", Kind::Points(2)).or_none(BY_KIND),
+    number("width_m", "m", LENGTH).or_none(BY_KIND),
+];
+
+static ROBOT: &[Key] = &[
+    word("motion", &["point", "unicycle"]).or_word("unicycle"),
+    number("radius_m", "m", at_least(0.0).up_to(50.0)).or(0.25),
+    number("speed_max_m_per_s", "m/s", above(0.0).up_to(10.0)).or(0.4),
+    number("turn_max_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(60.0),
+    number("acceleration_m_per_s2", "m/s²", above(0.0).up_to(100.0)).or(0.5),
+    number("sensing_range_m", "m", above(0.0).up_to(100.0)).or(3.0),
+    point("start_m").or_none("the first point of the path"),
+    number("start_heading_deg", "deg", ANGLE).or_none("towards the second point of the path, or the goal"),
+    number("start_sigma_m", "m", at_least(0.0).up_to(10.0)).or(0.02),
+    number("start_heading_sigma_deg", "deg", at_least(0.0).up_to(180.0)).or(1.0),
+    number("slip_mean", "", at_least(0.0).up_to(0.9)).or(0.0),
+    number("slip_sigma", "", SHARE).or(0.0),
+    number("odometry_sigma_ratio", "", SHARE).or(0.02),
+    number("gyro_bias_deg_per_s", "deg/s", at_least(-10.0).up_to(10.0)).or(0.0),
+];
+
+static AE: &[Key] = &[
+    key("stations", "", Kind::Tables(STATIONS)),
+    number("period_s", "s", above(0.0).up_to(3600.0)).or(1.0),
+    key("repetitions", "", Kind::Whole(1, 1000)).or_whole(20),
+    key("noise", "", Kind::Table(NOISE)).or_none("`{ model = \"uniform\", ratio = 0.05 }`"),
+    number("dropout", "", SHARE).or(0.0),
+    key("outages_s", "s", Kind::Times).or_none("none"),
+];
+
+static STATIONS: &[Key] = &[key("name", "", Kind::Text), point("at_m")];
+
+static NOISE: &[Key] = &[
+    word("model", &["none", "uniform", "gaussian"]),
+    number("ratio", "", above(0.0).up_to(0.9)).or_none("for `uniform`"),
+    number("sigma_ratio", "", above(0.0).up_to(0.9)).or_none("for `gaussian`"),
+];
+
+static MISSION: &[Key] = &[
+    word("kind", &["goto", "follow"]),
+    point("goal_m").or_none("for `goto`"),
+    key("spiral", "", Kind::Table(SPIRAL)).or_none("for `follow`: this or `path_m`"),
+    key("path_m", "m", Kind::Points(2)).or_none("for `follow`: this or `spiral`"),
+    number("tolerance_m", "m", above(0.0).up_to(100.0)).or(0.2),
+    number("tick_s", "s", at_least(0.001).up_to(10.0)).or(0.1),
+    number("time_limit_s", "s", above(0.0)).or(600.0),
+    number("swath_m", "m", above(0.0).up_to(100.0)).or(0.5),
+    number("clearance_m", "m", at_least(0.0).up_to(100.0)).or(0.1),
+    number("cell_m", "m", at_least(0.001).up_to(10.0)).or(0.05),
+    number("position_limit_m", "m", above(0.0)).or(0.5),
+    number("lost_hold_s", "s", at_least(0.0)).or(2.0),
+    number("stuck_s", "s", above(0.0)).or(30.0),
+];
+
+static SPIRAL: &[Key] = &[
+    number("outer_radius_m", "m", LENGTH),
+    number("inner_radius_m", "m", at_least(0.0).up_to(1000.0)).or(0.1),
+    number("pitch_m", "m", LENGTH),
+    number("step_deg", "deg", at_least(0.01).up_to(90.0)).or(1.0),
+];
+
+static PLANNER: &[Key] = &[
+    key("id", "", Kind::Slug),
+    key("parameters", "", Kind::Free).or_none("the planner's own"),
+    key("fallback", "", Kind::Table(FALLBACK)).or_none("none"),
+];
+
+static FALLBACK: &[Key] =
+    &[key("id", "", Kind::Slug), key("parameters", "", Kind::Free).or_none("the planner's own")];
+
+const NO_BOUND: &str = "no bound";
+
+static EXPECT: &[Key] = &[
+    word("outcome", &["complete", "stuck", "collision", "time_limit", "aborted"]).or_none(NO_BOUND),
+    key("collisions_max", "", Kind::Whole(0, i64::MAX)).or_none(NO_BOUND),
+    number("min_clearance_min_m", "m", at_least(-1000.0)).or_none(NO_BOUND),
+    number("mission_time_max_s", "s", above(0.0)).or_none(NO_BOUND),
+    number("path_length_max_m", "m", above(0.0)).or_none(NO_BOUND),
+    number("coverage_reachable_min", "", SHARE).or_none(NO_BOUND),
+    number("coverage_whole_min", "", SHARE).or_none(NO_BOUND),
+    number("overlap_max", "", at_least(0.0)).or_none(NO_BOUND),
+    number("precision_min", "", SHARE).or_none(NO_BOUND),
+    number("recall_min", "", SHARE).or_none(NO_BOUND),
+    number("rmse_max_m", "m", above(0.0)).or_none(NO_BOUND),
+    number("cross_track_rmse_max_m", "m", above(0.0)).or_none(NO_BOUND),
+    number("mean_error_max_m", "m", above(0.0)).or_none(NO_BOUND),
+    number("p95_error_max_m", "m", above(0.0)).or_none(NO_BOUND),
+    number("in_95_ellipse_min", "", SHARE).or_none(NO_BOUND),
+    number("lost_max_s", "s", at_least(0.0)).or_none(NO_BOUND),
+];
+
+/// Every section with its path, the whole file first under the empty path.
+pub fn sections() -> Vec<(String, &'static [Key])> {
+    let mut found = vec![(String::new(), ROOT)];
+    let mut next = 0;
+    while next < found.len() {
+        let (path, keys) = found[next].clone();
+        for key in keys {
+            if let Kind::Table(inner) | Kind::Tables(inner) = key.kind {
+                found.push((joined(&path, key.name), inner));
+            }
+        }
+        next += 1;
+    }
+    found
+}
+
+/// A key's path from its section's.
+pub fn joined(section: &str, key: &str) -> String {
+    if section.is_empty() { key.to_owned() } else { format!("{section}.{key}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_default_lies_in_its_own_range() {
+        for (path, keys) in sections() {
+            for key in keys {
+                let ok = match (key.default, key.kind) {
+                    (Default::Number(number), Kind::Number(span)) => span.complaint(number, "").is_none(),
+                    (Default::Whole(number), Kind::Whole(low, high)) => (low..=high).contains(&number),
+                    (Default::Word(word), Kind::Word(words)) => words.contains(&word),
+                    (Default::Flag(_), Kind::Flag) | (Default::Required | Default::Absent(_), _) => true,
+                    _ => false,
+                };
+                assert!(ok, "{path}.{}", key.name);
+            }
+        }
+    }
+
+    #[test]
+    fn a_key_with_a_unit_ends_in_it() {
+        let suffix = |unit: &str| unit.replace("m/s²", "m_per_s2").replace('/', "_per_");
+        for (_, keys) in sections() {
+            for key in keys.iter().filter(|key| !key.unit.is_empty()) {
+                assert!(key.name.ends_with(&format!("_{}", suffix(key.unit))), "{}", key.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! The text of a scenario and what has been found wrong with it.
+
+use super::problem::Problem;
+use std::{cell::RefCell, ops::Range};
+
+/// Problems noted; more of them help nobody.
+const MOST_PROBLEMS: usize = 200;
+
+/// The text and what has been found wrong with it so far.
+pub struct Source<'a> {
+    /// The whole file.
+    pub text: &'a str,
+    problems: RefCell<Vec<Problem>>,
+}
+
+impl<'a> Source<'a> {
+    /// Nothing wrong yet.
+    pub fn new(text: &'a str) -> Self {
+        Self { text, problems: RefCell::default() }
+    }
+
+    /// Notes a problem, unless there are more than anyone will read.
+    pub fn note(&self, problem: Problem) {
+        if !self.is_full() {
+            self.problems.borrow_mut().push(problem);
+        }
+    }
+
+    /// Whether further problems go unnoted.
+    pub fn is_full(&self) -> bool {
+        self.problems.borrow().len() >= MOST_PROBLEMS
+    }
+
+    /// Everything noted, in the order of the text.
+    pub fn into_problems(self) -> Vec<Problem> {
+        let mut problems = self.problems.into_inner();
+        problems.sort_by_key(|problem| problem.at.as_ref().map(|at| at.start));
+        problems
+    }
+
+    /// The text of a value, on one line and short.
+    pub fn excerpt(&self, at: &Range<usize>) -> String {
+        let written = self.text.get(at.clone()).unwrap_or_default();
+        let mut line: String = written.split_whitespace().collect::<Vec<_>>().join(" ");
+        line.retain(|c| !c.is_control());
+        if line.chars().count() > 40 {
+            line = line.chars().take(39).chain(['…']).collect();
+        }
+        line
+    }
+}

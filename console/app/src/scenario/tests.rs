@@ -1,0 +1,501 @@
+//! What scenarios may say, what they may not, and what is said about it.
+
+use super::*;
+use mission::{ParamValue, TaskConfig};
+use proptest::prelude::*;
+use sim::NoiseModel;
+use std::{fs, time::Instant};
+use world::{ObstacleId, Point, Shape};
+
+const DEMO: &str = include_str!("../../../../scenarios/demo.toml");
+const PAPER: &str = include_str!("../../../../scenarios/spiral-paper.toml");
+const GOTO: &str = include_str!("../../../../scenarios/goto-single-obstacle.toml");
+const DOC: &str = include_str!("../../../docs/scenario-format.md");
+
+/// The shortest scenario there is.
+const SMALL: &str = r#"name = "small"
+[tank]
+radius_m = 5
+[ae]
+stations = [{ name = "A", at_m = [5, 0] }, { name = "B", at_m = [0, 5] }]
+[mission]
+kind = "goto"
+goal_m = [3, 0]
+[robot]
+start_m = [-3, 0]
+[planner]
+id = "apf"
+"#;
+
+fn read(text: &str) -> Scenario {
+    Scenario::parse(text, "x.toml").unwrap_or_else(|errors| panic!("{}", errors.render()))
+}
+
+fn errors(text: &str) -> ScenarioErrors {
+    Scenario::parse(text, "x.toml").expect_err("something is wrong with it")
+}
+
+/// The one thing that is wrong after `from` in the small scenario became `to`: line, column, sentence.
+fn complaint(from: &str, to: &str) -> String {
+    assert!(SMALL.contains(from), "{from}");
+    let errors = errors(&SMALL.replacen(from, to, 1));
+    assert_eq!(errors.problems.len(), 1, "{}", errors.render());
+    let shown = errors.render();
+    let first = shown.lines().next().expect("a line");
+    first.strip_prefix("error: x.toml:").expect("file first").to_owned()
+}
+
+#[test]
+fn the_scenarios_in_the_box_are_right() {
+    for text in [DEMO, PAPER, GOTO, SMALL] {
+        read(text);
+    }
+}
+
+#[test]
+fn the_demo_has_columns_on_the_drawing_and_surprises() {
+    let demo = read(DEMO);
+    assert_eq!(demo.sim.world.obstacles.iter().filter(|o| o.known).count(), 8);
+    assert_eq!(demo.sim.world.obstacles.iter().filter(|o| !o.known).count(), 3);
+    assert_eq!(demo.sim.world.stations.len(), 5);
+    assert!(!demo.mission.planner.id.is_empty());
+    let TaskConfig::Follow { path, .. } = &demo.mission.task else { panic!("it follows a spiral") };
+    assert_eq!(path[0], Point::new(4.5, 0.0));
+    assert_eq!(demo.mission.start.position, path[0], "it starts on the path");
+    assert!((demo.mission.start.heading_rad - 95.0_f64.to_radians()).abs() < 0.1, "and along it");
+}
+
+#[test]
+fn the_papers_scenario_has_the_papers_spiral_and_layout() {
+    let paper = read(PAPER);
+    let TaskConfig::Follow { path, .. } = &paper.mission.task else { panic!("it follows a spiral") };
+    assert_eq!(path.len(), 2477);
+    assert_eq!(paper.sim.world.obstacles.len(), 39);
+    let other = Scenario::parse_with(PAPER, "x", &Settings { seed: Some(2), ..Settings::default() });
+    assert_ne!(
+        other.expect("right").sim.world.obstacles,
+        paper.sim.world.obstacles,
+        "the layout follows the seed"
+    );
+}
+
+#[test]
+fn defaults_are_those_of_the_document() {
+    let small = read(SMALL);
+    assert_eq!((small.seed, small.about.as_str()), (1, ""));
+    assert!((small.sim.robot.radius_m - 0.25).abs() < 1e-12 && (small.sim.tick_s - 0.1).abs() < 1e-12);
+    let ae = small.sim.ae.expect("stations");
+    assert_eq!((ae.repetitions, ae.noise), (20, NoiseModel::Uniform { ratio: 0.05 }));
+    assert!((small.mission.range_sigma_ratio - 0.05 / 3.0_f64.sqrt()).abs() < 1e-12);
+    assert!(small.mission.start.heading_rad.abs() < 1e-12, "it looks towards the goal");
+    assert_eq!(small.expect, Expect::default());
+}
+
+#[test]
+fn the_text_of_a_scenario_gives_the_same_scenario_again() {
+    let settings = Settings {
+        set: ["k_rep=2", "mode=literal", "tank.radius_m=5.5", "obstacles.0.known=false"]
+            .map(str::to_owned)
+            .to_vec(),
+        planner: Some("apf".into()),
+        seed: Some(99),
+    };
+    let scenario = Scenario::parse_with(DEMO, "demo.toml", &settings).expect("right");
+    assert_eq!((scenario.seed, scenario.mission.planner.id.as_str()), (99, "apf"));
+    assert_eq!(scenario.mission.planner.parameters["k_rep"], ParamValue::Int(2));
+    assert_eq!(scenario.mission.planner.parameters["mode"], ParamValue::Word("literal".into()));
+    assert!(!scenario.sim.world.obstacles[0].known);
+    assert_eq!(Scenario::parse(&scenario.text, "journal").expect("right"), scenario);
+}
+
+#[test]
+fn settings_that_do_not_fit_are_named_in_the_message() {
+    let settings = Settings { set: vec!["tank.radius_m=0".into()], ..Settings::default() };
+    let errors = Scenario::parse_with(SMALL, "x.toml", &settings).expect_err("no tank");
+    let text = errors.render();
+    assert!(
+        text.starts_with("error: x.toml with --set tank.radius_m=0:3:12: tank.radius_m = 0: must be"),
+        "{text}"
+    );
+    let settings = Settings { set: vec!["k_rep".into()], ..Settings::default() };
+    let errors = Scenario::parse_with(SMALL, "x.toml", &settings).expect_err("no value");
+    assert_eq!(errors.render(), "error: x.toml: --set k_rep: must be KEY=VALUE\n");
+}
+
+#[test]
+fn an_error_shows_file_line_column_key_value_and_remedy() {
+    let text = SMALL.replace("radius_m = 5", "radius_m = 0  # empty");
+    let shown = errors(&text).render();
+    let first = "error: x.toml:3:12: tank.radius_m = 0: must be greater than 0 m\n  |\n3 | radius_m = 0  # empty\n  |            ^\n";
+    assert!(shown.starts_with(first), "{shown}");
+    let text = SMALL.replace("radius_m = 5", "radius_cm = 500");
+    let shown = errors(&text).render();
+    let first = "error: x.toml:3:1: tank.radius_cm = 500: unknown key\n  |\n3 | radius_cm = 500\n  | ^^^^^^^^^\n  help: `radius_m` is the key, in m: write radius_m = 5\n";
+    assert!(shown.contains(first), "{shown}");
+}
+
+/// What the small scenario says, what it says instead, and what is said about that.
+const MISTAKES: &[(&str, &str, &str)] = &[
+    ("radius_m = 5", "radius_m = -5", "3:12: tank.radius_m = -5: must be greater than 0 m"),
+    ("radius_m = 5", "radius_m = 5e9", "3:12: tank.radius_m = 5e9: must be at most 1000 m"),
+    ("radius_m = 5", "radius_m = nan", "3:12: tank.radius_m = nan: must be a finite number"),
+    ("radius_m = 5", "radius_m = 1e999", "3:12: tank.radius_m = 1e999: must be a finite number"),
+    ("radius_m = 5", "radius_m = \"5\"", "3:12: tank.radius_m = \"5\": must be a number"),
+    (
+        "radius_m = 5",
+        "vertices_m = [[0, 0], [1, 1]]",
+        "3:14: tank.vertices_m = [[0, 0], [1, 1]]: needs at least 3 entries, has 2",
+    ),
+    (
+        "radius_m = 5",
+        "vertices_m = [[-5, -5], [5, 5], [5, -5], [-5, 5]]",
+        "3:14: tank.vertices_m = [[-5, -5], [5, 5], [5, -5], [-5, 5]]: sides 1 and 3 cross",
+    ),
+    (
+        "name = \"small\"",
+        "name = \"../x\"",
+        "1:8: name = \"../x\": must be at most 64 letters, digits, `-`, `_` or `.`, the first a letter or a digit",
+    ),
+    ("name = \"small\"", "name = \"small\"\nseed = -1", "2:8: seed = -1: must be at least 0"),
+    ("name = \"small\"", "name = \"small\"\nseed = 1.5", "2:8: seed = 1.5: must be a whole number"),
+    ("[planner]", "[tether]\nlength_m = 30\n[planner]", "11:2: tether: unknown key"),
+    ("kind = \"goto\"", "kind = \"cover\"", "7:8: mission.kind = \"cover\": must be one of goto, follow"),
+    ("goal_m = [3, 0]", "goal_m = [6, 0]", "8:10: mission.goal_m = [6, 0]: lies 1.000 m outside the tank"),
+    (
+        "goal_m = [3, 0]",
+        "goal_m = [4.9, 0]",
+        "8:10: mission.goal_m = [4.9, 0]: the hull would reach 0.150 m into the wall",
+    ),
+    ("goal_m = [3, 0]", "goal_m = 3", "8:10: mission.goal_m = 3: must be a pair of numbers"),
+    (
+        "goal_m = [3, 0]",
+        "goal_m = [3, 0]\ncell_m = 0.001",
+        "9:10: mission.cell_m = 0.001: 100000000 cells; at most 4000000",
+    ),
+    (
+        "goal_m = [3, 0]",
+        "goal_m = [3, 0]\ntime_limit_s = 1e7",
+        "9:16: mission.time_limit_s = 1e7: 100000000 ticks of 0.1 s; at most 10000000",
+    ),
+    ("goal_m = [3, 0]", "goal_m = [3, 0]\ntick_s = 0", "9:10: mission.tick_s = 0: must be at least 0.001 s"),
+    ("goal_m = [3, 0]", "goal_m = [3, 0]\ntick_s = 2", "4:1: ae.period_s: must be at least one tick, 2 s"),
+    ("goal_m = [3, 0]", "", "6:1: mission.goal_m: missing"),
+    (
+        "start_m = [-3, 0]",
+        "start_m = [-7, 0]",
+        "10:11: robot.start_m = [-7, 0]: lies 2.000 m outside the tank",
+    ),
+    ("start_m = [-3, 0]", "", "9:1: robot.start_m: missing"),
+    (
+        "start_m = [-3, 0]",
+        "start_m = [-3, 0]\nspeed_max_m_per_s = 0",
+        "11:21: robot.speed_max_m_per_s = 0: must be greater than 0 m/s",
+    ),
+    (
+        "start_m = [-3, 0]",
+        "start_m = [-3, 0]\nspeed_max_kmh = 3.6",
+        "11:1: robot.speed_max_kmh = 3.6: unknown key",
+    ),
+    (
+        "start_m = [-3, 0]",
+        "start_m = [-3, 0]\nradius_m = 0",
+        "11:12: robot.radius_m = 0: must be greater than 0 m; only motion = \"point\" has no hull",
+    ),
+    (
+        "at_m = [0, 5]",
+        "at_m = [0, 5.5]",
+        "5:65: ae.stations.1.at_m = [0, 5.5]: lies 0.500 m outside the tank",
+    ),
+    (
+        "at_m = [0, 5]",
+        "at_m = [5, 0]",
+        "5:65: ae.stations.1.at_m = [5, 0]: the same as that of station \"A\"",
+    ),
+    (
+        "name = \"B\"",
+        "name = \"A\"",
+        "5:53: ae.stations.1.name = \"A\": the same as that of ae.stations.0.name",
+    ),
+    (
+        ", { name = \"B\", at_m = [0, 5] }",
+        "",
+        "5:12: ae.stations = [{ name = \"A\", at_m = [5, 0] }]: 1 of at least 2 stations",
+    ),
+    ("id = \"apf\"", "", "11:1: planner.id: missing"),
+    (
+        "id = \"apf\"",
+        "id = \"apf\"\nparameters.k = [1]",
+        "13:16: planner.parameters.k = [1]: must be a number, a flag or a word",
+    ),
+    (
+        "id = \"apf\"",
+        "id = \"apf\"\n[expect]\noutcome = \"compete\"",
+        "14:11: expect.outcome = \"compete\": must be one of complete, stuck, collision, time_limit, aborted",
+    ),
+];
+
+#[test]
+fn each_mistake_has_its_place_and_its_sentence() {
+    let found: Vec<String> = MISTAKES.iter().map(|(from, to, _)| complaint(from, to)).collect();
+    assert_eq!(found, MISTAKES.iter().map(|mistake| mistake.2).collect::<Vec<_>>());
+}
+
+#[test]
+fn each_mistake_in_an_obstacle_has_its_sentence() {
+    let cases: &[(&str, &str)] = &[
+        ("kind = \"circle\"\ncenter_m = [0, 0]", "13:1: obstacles.0.radius_m: missing"),
+        (
+            "kind = \"circle\"\ncenter_m = [0, 0]\nradius_m = 0",
+            "16:12: obstacles.0.radius_m = 0: must be greater than 0 m",
+        ),
+        (
+            "kind = \"circle\"\ncenter_m = [0, 0]\nradius_m = 1\nwidth_m = 1",
+            "17:11: obstacles.0.width_m = 1: means nothing with kind = \"circle\"",
+        ),
+        (
+            "kind = \"circle\"\ncenter_m = [9, 0]\nradius_m = 1",
+            "13:1: obstacles.0: lies wholly outside the tank",
+        ),
+        (
+            "kind = \"circle\"\ncenter_m = [-3, 0]\nradius_m = 1",
+            "10:11: robot.start_m = [-3, 0]: lies in obstacle \"obstacle 1\"",
+        ),
+        (
+            "kind = \"circle\"\ncenter_m = [3, 1]\nradius_m = 0.9",
+            "8:10: mission.goal_m = [3, 0]: the hull would reach 0.150 m into obstacle \"obstacle 1\"",
+        ),
+        (
+            "kind = \"box\"\ncenter_m = [0, 0]\nsize_m = [1, 0]",
+            "16:14: obstacles.0.size_m = 0: must be greater than 0 m",
+        ),
+        (
+            "kind = \"polygon\"\nvertices_m = [[0, 0], [2, 1], [0, 2], [0.5, 1]]",
+            "15:14: obstacles.0.vertices_m = [[0, 0], [2, 1], [0, 2], [0.5, 1]]: not convex at [0.5, 1]",
+        ),
+        (
+            "kind = \"polygon\"\nvertices_m = [[0, 0], [1, 1], [2, 2]]",
+            "15:14: obstacles.0.vertices_m = [[0, 0], [1, 1], [2, 2]]: the points enclose nothing",
+        ),
+        (
+            "kind = \"cirle\"",
+            "14:8: obstacles.0.kind = \"cirle\": must be one of circle, box, polygon, polyline",
+        ),
+    ];
+    let with = |obstacle: &str| format!("id = \"apf\"\n[[obstacles]]\n{obstacle}\n");
+    let found: Vec<String> =
+        cases.iter().map(|(obstacle, _)| complaint("id = \"apf\"\n", &with(obstacle))).collect();
+    assert_eq!(found, cases.iter().map(|case| case.1).collect::<Vec<_>>());
+}
+
+#[test]
+fn a_spiral_that_does_not_fit_is_told_what_does() {
+    let spiral = |outer_m: f64| {
+        let task = format!("kind = \"follow\"\nspiral = {{ outer_radius_m = {outer_m}, pitch_m = 1 }}");
+        SMALL.replace("kind = \"goto\"\ngoal_m = [3, 0]", &task)
+    };
+    let shown = errors(&spiral(5.0)).render();
+    assert!(shown.contains("larger than the tank less the robot's radius: 4.75 m fit"), "{shown}");
+    assert!(shown.contains("help: write outer_radius_m = 4.75"), "{shown}");
+    read(&spiral(4.75));
+}
+
+#[test]
+fn a_clockwise_polygon_is_turned_round() {
+    let corners = "kind = \"polygon\"\nvertices_m = [[0, 0], [0, 1], [1, 1], [1, 0]]";
+    let scenario = read(&format!("{SMALL}[[obstacles]]\n{corners}\n"));
+    let Shape::Polygon { vertices } = &scenario.sim.world.obstacles[0].shape else { panic!("a polygon") };
+    assert!((world::shape::ring_area_m2(vertices) - 1.0).abs() < 1e-12);
+    assert_eq!(scenario.sim.world.obstacles[0].id, ObstacleId(1));
+}
+
+#[test]
+fn everything_that_is_wrong_is_told_at_once() {
+    let text = SMALL
+        .replace("radius_m = 5", "radius_m = 0\nraduis_m = 1")
+        .replace("goal_m = [3, 0]", "goal_m = [3]\nswath = 0.5")
+        .replace("id = \"apf\"", "id = 7");
+    let errors = errors(&text);
+    let keys: Vec<&str> = errors.problems.iter().map(|problem| problem.key.as_str()).collect();
+    assert_eq!(keys, ["tank.radius_m", "tank.raduis_m", "mission.goal_m", "mission.swath", "planner.id"]);
+    let shown = errors.render();
+    assert!(
+        shown.contains("did you mean `radius_m`?") && shown.contains("`swath_m` is the key, in m"),
+        "{shown}"
+    );
+}
+
+#[test]
+fn single_brackets_round_obstacles_are_explained() {
+    let shown = errors(&format!("{SMALL}[obstacles]\nkind = \"circle\"\n")).render();
+    assert!(shown.contains("write [[obstacles]] with double brackets"), "{shown}");
+}
+
+#[test]
+fn too_many_random_obstacles_say_how_many_found_room() {
+    let crowd = "[random_obstacles]\ncount = 500\nradius_m = [0.5, 0.5]\nmin_gap_m = 0.6\n";
+    let shown = errors(&format!("{SMALL}{crowd}")).render();
+    assert!(
+        shown.contains("random_obstacles.count = 500: only ") && shown.contains(" of them found room"),
+        "{shown}"
+    );
+}
+
+#[test]
+fn what_is_no_scenario_at_all_is_refused_quickly_and_shortly() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let noise: Vec<u8> = (0..10_000_000_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+    let cases: [(&str, &[u8], &str); 5] = [
+        ("noise.toml", &noise, "larger than 1000 kB"),
+        ("binary.toml", &noise[..5000], "is not UTF-8"),
+        ("empty.toml", b"", "name: missing"),
+        ("words.toml", b"this is not toml\n", "words.toml:1:"),
+        ("deep.toml", &b"[".repeat(900_000), "not TOML"),
+    ];
+    for (name, bytes, expected) in cases {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).expect("a file");
+        let begun = Instant::now();
+        let shown = Scenario::read_with(&path, &Settings::default()).expect_err(name).render();
+        assert!(begun.elapsed().as_secs() < 5, "{name} took {:?}", begun.elapsed());
+        assert!(shown.contains(expected) && shown.len() < 2500, "{name}: {shown}");
+    }
+    let missing = Scenario::read_with(&folder.path().join("none.toml"), &Settings::default())
+        .expect_err("no file")
+        .render();
+    assert!(missing.contains("none.toml: cannot be read: No such file"), "{missing}");
+}
+
+#[test]
+fn control_characters_of_the_file_do_not_reach_the_terminal() {
+    let shown = errors(&SMALL.replace("radius_m = 5", "\"\\u001b[31m\" = \"\u{85}\"")).render();
+    assert!(shown.chars().all(|c| c == '\n' || !c.is_control()), "{shown:?}");
+}
+
+#[test]
+fn the_document_lists_every_key_with_unit_default_and_range() {
+    for (path, keys) in schema::sections() {
+        let head = if path.is_empty() { "## The whole file".to_owned() } else { format!("`{path}`") };
+        let section = DOC
+            .split("\n## ")
+            .find(|section| section.lines().next().is_some_and(|line| format!("## {line}").contains(&head)))
+            .unwrap_or_else(|| panic!("no section for {head}"));
+        for key in keys {
+            let row = document_row(key);
+            assert!(section.contains(&row), "the section of {head} needs a row that begins with\n{row}");
+        }
+    }
+}
+
+/// The beginning of a key's row in the document.
+fn document_row(key: &schema::Key) -> String {
+    use schema::{Default, Kind};
+    let holds = match key.kind {
+        Kind::Number(span) => format!("number {span}"),
+        Kind::Whole(low, i64::MAX) => format!("whole number ≥ {low}"),
+        Kind::Whole(low, high) => format!("whole number ≥ {low}, ≤ {high}"),
+        Kind::Flag => "`true` or `false`".into(),
+        Kind::Text => "text".into(),
+        Kind::Slug => "name without blanks".into(),
+        Kind::Word(words) => words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", "),
+        Kind::Point => "`[x, y]`".into(),
+        Kind::Points(need) => format!("`[[x, y], ...]`, {need} or more"),
+        Kind::Pair(span) => format!("`[a, b]`, each {span}"),
+        Kind::Times => "`[[from, to], ...]`".into(),
+        Kind::Table(_) => "table".into(),
+        Kind::Tables(_) => "list of tables".into(),
+        Kind::Free => "table of numbers, flags, words".into(),
+    };
+    let default = match key.default {
+        Default::Required => "**required**".into(),
+        Default::Absent(instead) => instead.into(),
+        Default::Number(number) => number.to_string(),
+        Default::Whole(number) => number.to_string(),
+        Default::Flag(flag) => format!("`{flag}`"),
+        Default::Word(word) => format!("`{word}`"),
+    };
+    let unit = if key.unit.is_empty() { "" } else { key.unit };
+    format!("| `{}` | {unit} | {holds} | {default} |", key.name).replace("|  |", "| |")
+}
+
+/// Something that may stand where a value stood.
+fn values() -> impl Strategy<Value = String> {
+    prop_oneof![
+        any::<f64>().prop_map(|number| number.to_string()),
+        any::<i64>().prop_map(|number| number.to_string()),
+        (-20.0..20.0_f64).prop_map(|number| number.to_string()),
+        (any::<i8>(), any::<i8>()).prop_map(|(x, y)| format!("[{x}, {y}]")),
+        "[a-z\"\\[\\]{}=.,# ]{0,12}",
+        Just("true".to_owned()),
+        Just("[]".to_owned()),
+        Just("{}".to_owned()),
+    ]
+}
+
+/// Reads a text and shows what is wrong with it, within seconds; what is right stays right.
+fn survives(text: &str) -> Result<(), TestCaseError> {
+    let begun = Instant::now();
+    match Scenario::parse(text, "x.toml") {
+        Err(errors) => prop_assert!(errors.render().starts_with("error: x.toml")),
+        Ok(scenario) => {
+            prop_assert!(scenario.mission.start.position.coords.iter().all(|number| number.is_finite()));
+            prop_assert_eq!(&Scenario::parse(&scenario.text, "y.toml"), &Ok(scenario.clone()));
+        }
+    }
+    prop_assert!(begun.elapsed().as_secs() < 5, "took {:?}", begun.elapsed());
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..2000)) {
+        survives(&String::from_utf8_lossy(&bytes))?;
+    }
+
+    #[test]
+    fn a_demo_with_other_values_never_panics(changes in prop::collection::vec((any::<prop::sample::Index>(), values()), 1..6)) {
+        let mut lines: Vec<String> = DEMO.lines().map(str::to_owned).collect();
+        for (at, value) in changes {
+            let line = at.get(&lines).clone();
+            if let Some((key, _)) = line.split_once('=') {
+                let i = at.index(lines.len());
+                lines[i] = format!("{key}= {value}");
+            }
+        }
+        survives(&lines.join("\n"))?;
+    }
+
+    #[test]
+    fn a_demo_with_lines_lost_doubled_and_swapped_never_panics(changes in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..3_u8), 1..8)) {
+        let mut lines: Vec<&str> = DEMO.lines().collect();
+        for (a, b, what) in changes {
+            let (a, b) = (a.index(lines.len()), b.index(lines.len()));
+            match what {
+                0 => drop(lines.remove(a)),
+                1 => lines.insert(a, lines[b]),
+                _ => lines.swap(a, b),
+            }
+        }
+        survives(&lines.join("\n"))?;
+    }
+
+    #[test]
+    fn a_demo_with_bytes_changed_never_panics(changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..20)) {
+        let mut bytes = DEMO.as_bytes().to_vec();
+        for (at, byte) in changes {
+            let i = at.index(bytes.len());
+            bytes[i] = byte;
+        }
+        survives(&String::from_utf8_lossy(&bytes))?;
+    }
+
+    #[test]
+    fn any_setting_is_put_in_or_refused(key in "[a-z_.0-9]{0,30}", value in values(), planner in "[a-z\"\\\\\n]{0,6}") {
+        let settings = Settings { set: vec![format!("{key}={value}")], planner: Some(planner), seed: None };
+        match Scenario::parse_with(DEMO, "x.toml", &settings) {
+            Ok(scenario) => prop_assert_eq!(&Scenario::parse(&scenario.text, "y"), &Ok(scenario.clone())),
+            Err(errors) => prop_assert!(errors.render().starts_with("error: x.toml")),
+        }
+    }
+}

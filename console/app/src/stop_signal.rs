@@ -1,0 +1,31 @@
+//! Being asked to stop from outside: SIGINT, SIGTERM, SIGHUP.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+};
+
+/// Whether somebody asked this process to stop.
+#[derive(Debug, Clone)]
+pub struct StopSignal(Arc<AtomicBool>);
+
+impl StopSignal {
+    /// Whether a signal has come since listening began.
+    pub fn requested(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Listens from now on; the first signal asks, a second one of the same kind ends the process at once.
+pub fn listen() -> StopSignal {
+    let asked = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM, signal_hook::consts::SIGHUP] {
+        // The order matters: the second signal finds the flag set by the first.
+        let registered =
+            signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&asked))
+                .and_then(|_| signal_hook::flag::register(signal, Arc::clone(&asked)));
+        // Without a handler the signal ends the process, as it does by default.
+        drop(registered);
+    }
+    StopSignal(asked)
+}

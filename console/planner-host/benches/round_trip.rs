@@ -1,0 +1,79 @@
+//! What a call to a planner costs: from the console through the worker process and back.
+#![expect(clippy::print_stdout, reason = "a bench tells its figures")]
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use mission::link::{Parameters, PlannerLink};
+use nalgebra::{Matrix3, Point2};
+use planner_api::{Boundary, Limits, Motion, Obstacle, Outline, PoseEstimate, Sensed, Site};
+use planner_host::{Host, HostConfig, PluginDirs, WorkerCommand};
+use std::time::Duration;
+
+const N_OBSTACLES: u32 = 16;
+
+fn host() -> Host {
+    let worker = env!("CARGO_BIN_EXE_planner-worker");
+    let mut config = HostConfig::new(Duration::from_secs(1));
+    config.worker_command = WorkerCommand::new(worker);
+    Host::new(&PluginDirs::standard(&[]), config)
+}
+
+fn obstacles() -> Vec<Obstacle<'static>> {
+    let disc = |id| Outline::Disc { center: Point2::new(f64::from(id), 1.0), radius_m: 0.2 };
+    (0..N_OBSTACLES).map(|id| Obstacle { id, outline: disc(id), discovered: false }).collect()
+}
+
+fn round_trip(criterion: &mut Criterion) {
+    let obstacles = obstacles();
+    let limits = Limits {
+        motion: Motion::Point,
+        v_max_m_per_s: 0.3,
+        w_max_rad_per_s: 1.0,
+        radius_m: 0.2,
+        sensing_range_m: 3.0,
+    };
+    let boundary = Boundary::Circle { radius_m: 20.0 };
+    let site = Site {
+        revision: 0,
+        boundary,
+        obstacles: &obstacles,
+        zones: &[],
+        limits,
+        swath_m: 0.4,
+        clearance_m: 0.1,
+        seed: 1,
+    };
+    let position = Point2::origin();
+    let mut sensed = Sensed {
+        tick: 0,
+        t_s: 0.0,
+        dt_s: 0.1,
+        pose: PoseEstimate { position, heading_rad: 0.0, covariance: Matrix3::identity() },
+        v_m_per_s: 0.0,
+        w_rad_per_s: 0.0,
+        target: Point2::new(10.0, 0.0),
+        targets_ahead: &[],
+        path_ahead: &[],
+        obstacles: &obstacles,
+    };
+    let mut host = host();
+    host.choose("faulty", &Parameters::new(), &site).expect("the fault injector is built with the benches");
+    criterion.bench_function("step with 16 obstacles", |bench| {
+        bench.iter(|| {
+            sensed.tick += 1;
+            host.step(&sensed).expect("a command")
+        });
+    });
+    let step = host.stats().step;
+    println!(
+        "{} steps, p50 {:.1} us, p99 {:.1} us",
+        step.calls,
+        step.p50_us.unwrap_or(0.0),
+        step.p99_us.unwrap_or(0.0)
+    );
+    criterion.bench_function("choose, from nothing to ready", |bench| {
+        bench.iter(|| host.choose("faulty", &Parameters::new(), &site).expect("chosen"));
+    });
+}
+
+criterion_group!(benches, round_trip);
+criterion_main!(benches);

@@ -1,0 +1,79 @@
+//! What a planner answered, against what the robot can do.
+
+use planner_api::{Command, Drive, Limits, Plan};
+
+/// Commands may exceed a limit by this much, for rounding.
+const SLACK: f64 = 1e-6;
+
+/// Checks a command; the sentence reads on after the planner's name.
+pub(crate) fn command(command: &Command, limits: &Limits) -> Result<(), String> {
+    let (v_max, w_max) = (limits.v_max_m_per_s, limits.w_max_rad_per_s);
+    match command.drive {
+        Drive::Twist { v_m_per_s, w_rad_per_s } => {
+            within("a speed", v_m_per_s.abs(), v_max, "m/s")?;
+            within("a turn rate", w_rad_per_s.abs(), w_max, "rad/s")
+        }
+        Drive::Velocity(velocity) => within("a speed", velocity.norm(), v_max, "m/s"),
+    }
+}
+
+fn within(what: &str, value: f64, limit: f64, unit: &str) -> Result<(), String> {
+    if value.is_nan() {
+        return Err(format!("gave {what} that is not a number"));
+    }
+    if value > limit + SLACK {
+        return Err(format!("gave {what} of {value:?} {unit}, the robot's limit is {limit} {unit}"));
+    }
+    Ok(())
+}
+
+/// Checks a plan; the sentence reads on after the planner's name.
+pub(crate) fn plan(plan: &Plan) -> Result<(), String> {
+    if let Some(index) = plan.path.iter().position(|p| !(p.x.is_finite() && p.y.is_finite())) {
+        return Err(format!("gave a path whose point {index} is not finite"));
+    }
+    if !plan.cost.is_finite() {
+        return Err("gave a plan without a finite cost".to_owned());
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Point2, Vector2};
+    use planner_api::Motion;
+    use proptest::prelude::*;
+
+    const LIMITS: Limits = Limits {
+        motion: Motion::Unicycle,
+        v_max_m_per_s: 0.3,
+        w_max_rad_per_s: 1.0,
+        radius_m: 0.2,
+        sensing_range_m: 2.0,
+    };
+
+    #[test]
+    fn a_command_beyond_the_limits_names_value_and_limit() {
+        let refused = command(&Command::twist(1e308, 0.0), &LIMITS);
+        assert_eq!(refused, Err("gave a speed of 1e308 m/s, the robot's limit is 0.3 m/s".into()));
+        assert!(command(&Command::twist(0.0, -1.1), &LIMITS).is_err());
+        assert!(command(&Command::velocity(Vector2::new(0.3, 0.3)), &LIMITS).is_err());
+        assert!(command(&Command::velocity(Vector2::new(f64::NAN, 0.0)), &LIMITS).is_err());
+    }
+
+    #[test]
+    fn a_path_of_finite_points_is_needed() {
+        let path = vec![Point2::new(0.0, 0.0), Point2::new(f64::INFINITY, 0.0)];
+        let refused = plan(&Plan { path, cost: 1.0, complete: true });
+        assert_eq!(refused, Err("gave a path whose point 1 is not finite".into()));
+        assert!(plan(&Plan { path: Vec::new(), cost: f64::NAN, complete: true }).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn commands_within_the_limits_pass(v in -0.3..=0.3_f64, w in -1.0..=1.0_f64) {
+            prop_assert_eq!(command(&Command::twist(v, w), &LIMITS), Ok(()));
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Where plugins are looked for, and which files there are plugins.
+
+use crate::stamp::{self, Abi};
+use sha2::{Digest, Sha256};
+use std::env;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+/// Folders with plugins; the first that has a planner wins.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PluginDirs(pub Vec<PathBuf>);
+
+impl PluginDirs {
+    /// The folders given by hand, `$TANKOPS_PLUGIN_PATH`, `plugins` beside the program, the program's own folder and
+    /// `deps` in it (where Cargo puts libraries), `$XDG_DATA_HOME/tankops/plugins`.
+    pub fn standard(extra: &[PathBuf]) -> Self {
+        let mut dirs = extra.to_vec();
+        dirs.extend(env::var_os("TANKOPS_PLUGIN_PATH").iter().flat_map(env::split_paths));
+        if let Some(beside) = env::current_exe().ok().as_deref().and_then(Path::parent) {
+            dirs.extend([beside.join("plugins"), beside.to_owned(), beside.join("deps")]);
+        }
+        let data = env::var_os("XDG_DATA_HOME").map(PathBuf::from);
+        let data = data.or_else(|| env::home_dir().map(|home| home.join(".local/share")));
+        dirs.extend(data.map(|data| data.join("tankops/plugins")));
+        dirs.retain(|dir| !dir.as_os_str().is_empty());
+        Self(dirs)
+    }
+
+    /// Every file that is named like a plugin: folder by folder, by name within a folder. A file with the same
+    /// content as an earlier one is the same plugin and left out.
+    pub fn plugins(&self) -> Vec<PluginFile> {
+        let mut found: Vec<PluginFile> = Vec::new();
+        for path in self.0.iter().flat_map(|dir| named_like_plugins(dir)) {
+            let plugin = PluginFile::read(path);
+            if plugin.sha256.is_empty() || found.iter().all(|known| known.sha256 != plugin.sha256) {
+                found.push(plugin);
+            }
+        }
+        found
+    }
+}
+
+fn named_like_plugins(dir: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = std::fs::read_dir(dir) else { return Vec::new() };
+    let mut paths: Vec<PathBuf> =
+        entries.flatten().map(|entry| entry.path()).filter(|p| is_plugin_name(p)).collect();
+    paths.sort();
+    paths
+}
+
+fn is_plugin_name(path: &Path) -> bool {
+    let part = |part: Option<&OsStr>| part.and_then(OsStr::to_str).unwrap_or_default().to_owned();
+    let (stem, extension) = (part(path.file_stem()), part(path.extension()));
+    match extension.as_str() {
+        "so" | "dylib" => stem.starts_with("libplanner_"),
+        "dll" => stem.starts_with("planner_"),
+        _ => false,
+    }
+}
+
+/// A file that is named like a plugin, as far as it can be judged without loading it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PluginFile {
+    /// Where it is.
+    pub path: PathBuf,
+    /// SHA-256 of its bytes, hexadecimal; empty when it cannot be read.
+    pub sha256: String,
+    /// ABI of its stamp, or why it is refused.
+    pub abi: Result<Abi, String>,
+    words: Vec<u8>,
+}
+
+impl PluginFile {
+    /// Reads and judges a file.
+    pub fn read(path: PathBuf) -> Self {
+        match std::fs::read(&path) {
+            Ok(words) => {
+                let abi = stamp::read(&words).map_err(|error| error.to_string());
+                Self {
+                    path,
+                    sha256: sha256_hex(&words),
+                    words: if abi.is_ok() { words } else { Vec::new() },
+                    abi,
+                }
+            }
+            Err(error) => {
+                let abi = Err(format!("cannot be read: {error}"));
+                Self { path, sha256: String::new(), abi, words: Vec::new() }
+            }
+        }
+    }
+
+    /// Name of the file without its folder.
+    pub fn name(&self) -> String {
+        self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// Whether the bytes of this planner's id are in the file at all; a file without them cannot export it.
+    pub fn may_have(&self, id: &str) -> bool {
+        !id.is_empty() && self.words.windows(id.len()).any(|window| window == id.as_bytes())
+    }
+}
+
+/// SHA-256 in hexadecimal.
+pub(crate) fn sha256_hex(bytes: &[u8]) -> String {
+    use std::fmt::Write;
+    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plugins_are_known_by_their_names() {
+        for good in ["libplanner_apf.so", "libplanner_x.dylib", "planner_apf.dll"] {
+            assert!(is_plugin_name(Path::new(good)), "{good}");
+        }
+        for other in ["libapf.so", "libplanner_apf.rlib", "planner_apf.so", "libplanner_apf.d"] {
+            assert!(!is_plugin_name(Path::new(other)), "{other}");
+        }
+    }
+
+    #[test]
+    fn the_same_content_in_two_folders_is_one_plugin() {
+        let (first, second) = (tempfile::tempdir().expect("dir"), tempfile::tempdir().expect("dir"));
+        for (dir, name, content) in [(&first, "b", "1"), (&second, "b", "1"), (&second, "a", "2")] {
+            std::fs::write(dir.path().join(format!("libplanner_{name}.so")), content).expect("written");
+        }
+        let dirs = PluginDirs(vec![first.path().into(), second.path().into()]);
+        let names: Vec<PathBuf> = dirs.plugins().into_iter().map(|plugin| plugin.path).collect();
+        assert_eq!(names, [first.path().join("libplanner_b.so"), second.path().join("libplanner_a.so")]);
+    }
+
+    #[test]
+    fn a_folder_that_is_not_there_has_no_plugins() {
+        assert!(PluginDirs(vec!["/no/such/folder".into()]).plugins().is_empty());
+    }
+
+    #[test]
+    fn folders_given_by_hand_come_first() {
+        let dirs = PluginDirs::standard(&["mine".into()]);
+        assert_eq!(dirs.0[0], Path::new("mine"));
+        assert!(dirs.0.iter().any(|dir| dir.ends_with("deps")));
+    }
+
+    #[test]
+    fn hashes_are_hexadecimal() {
+        assert!(sha256_hex(b"").starts_with("e3b0c44298fc1c149afb"));
+    }
+}

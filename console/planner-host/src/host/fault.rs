@@ -1,0 +1,159 @@
+//! Failures as sentences for the operator. They go into the journal: no time, no process id, no address.
+
+use crate::supervisor::Failure;
+use crate::wire::answer::{BAD_OUTPUT, Refusal};
+use mission::link::{Cause, During, Fault};
+use nalgebra::Point2;
+use planner_api::Code;
+use std::fmt;
+
+/// What a planner was doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Phase {
+    Load,
+    Configure,
+    Plan,
+    /// Saving or restoring private state.
+    State,
+    /// With the number of the tick.
+    Step(u64),
+}
+
+impl Phase {
+    pub(super) fn during(self) -> During {
+        match self {
+            Self::Load => During::Load,
+            Self::Configure => During::Configure,
+            Self::Plan => During::Plan,
+            Self::State | Self::Step(_) => During::Step,
+        }
+    }
+}
+
+impl fmt::Display for Phase {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Load => f.write_str("load"),
+            Self::Configure => f.write_str("configure"),
+            Self::Plan => f.write_str("plan"),
+            Self::State => f.write_str("saving its state"),
+            Self::Step(tick) => write!(f, "step {tick}"),
+        }
+    }
+}
+
+/// A fault with its sentence.
+pub(super) fn new(planner: &str, during: During, cause: Cause, message: String) -> Fault {
+    Fault { planner: planner.to_owned(), during, cause, message, partial: Vec::new() }
+}
+
+/// A planner's answer that no robot can follow; `what` reads on after the planner's name.
+pub(super) fn bad_output(planner: &str, phase: Phase, what: &str) -> Fault {
+    new(planner, phase.during(), Cause::BadOutput, format!("planner {planner} {what} during {phase}"))
+}
+
+/// A failure as the fault of a planner.
+pub(super) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
+    let fault = |cause, message| new(planner, phase.during(), cause, message);
+    match failure {
+        Failure::Planner(refusal) => of_refusal(refusal, planner, phase),
+        Failure::Refused(why) => fault(Cause::Refused, format!("planner {planner} is refused: {why}")),
+        Failure::Console(why) => fault(Cause::Refused, format!("planner {planner} {why}")),
+        Failure::Died { how, last_output } => {
+            let output =
+                if last_output.is_empty() { String::new() } else { format!("; last output: {last_output}") };
+            fault(Cause::Died, format!("planner {planner} {how} during {phase}{output}"))
+        }
+        Failure::Hung => fault(
+            Cause::Hung,
+            format!(
+                "planner {planner} did not answer {phase} in time and ignored the request to stop; its process was killed"
+            ),
+        ),
+        Failure::Late => {
+            fault(Cause::Late, format!("planner {planner} was too slow: it missed the deadline of {phase}"))
+        }
+        Failure::Protocol => fault(
+            Cause::Protocol,
+            format!(
+                "planner {planner} sent something that is no answer during {phase}; its process was killed"
+            ),
+        ),
+        Failure::Gone => fault(
+            Cause::Died,
+            format!("planner {planner} cannot do {phase}: its process has ended and it must be chosen again"),
+        ),
+    }
+}
+
+fn of_refusal(refusal: Refusal, planner: &str, phase: Phase) -> Fault {
+    let Refusal { code, message, partial } = refusal;
+    let fault = |cause, message| new(planner, phase.during(), cause, message);
+    match Code::from_number(code) {
+        Some(Code::Timeout | Code::Cancelled) => of(Failure::Late, planner, phase),
+        Some(Code::Panic) => {
+            let (place, text) = message.split_once(": ").unwrap_or(("an unknown place", &message));
+            fault(Cause::Panic, format!("planner {planner} panicked at {place} during {phase}: {text}"))
+        }
+        Some(Code::Poisoned) => {
+            fault(Cause::Panic, format!("planner {planner} cannot go on during {phase}: {message}"))
+        }
+        Some(code) => {
+            let is_finite = |point: &Point2<f64>| point.x.is_finite() && point.y.is_finite();
+            let partial = if partial.iter().all(is_finite) { partial } else { Vec::new() };
+            let message = format!("planner {planner} gave up {}: {message}", gave_up(phase));
+            Fault { partial, ..fault(Cause::Planner(code), message) }
+        }
+        None if code == BAD_OUTPUT => bad_output(planner, phase, &message),
+        None => bad_output(planner, phase, &format!("failed with the unknown code {code} ({message})")),
+    }
+}
+
+fn gave_up(phase: Phase) -> String {
+    match phase {
+        Phase::Step(tick) => format!("at step {tick}"),
+        other => format!("during {other}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(code: i32, message: &str) -> Fault {
+        let partial = vec![Point2::new(1.0, 2.0)];
+        of(Failure::Planner(Refusal { code, message: message.into(), partial }), "apf", Phase::Step(12))
+    }
+
+    #[test]
+    fn a_panic_names_place_step_and_text() {
+        let fault = refused(Code::Panic as i32, "plugins/apf/src/lib.rs:31: index 7: out of bounds");
+        let sentence =
+            "planner apf panicked at plugins/apf/src/lib.rs:31 during step 12: index 7: out of bounds";
+        assert_eq!((fault.message.as_str(), fault.cause), (sentence, Cause::Panic));
+    }
+
+    #[test]
+    fn a_refusal_keeps_code_and_part_of_the_way() {
+        let fault = refused(Code::NoPath as i32, "walled in");
+        assert_eq!(fault.message, "planner apf gave up at step 12: walled in");
+        assert_eq!((fault.cause, fault.partial.len()), (Cause::Planner(Code::NoPath), 1));
+    }
+
+    #[test]
+    fn a_planner_that_noticed_its_own_deadline_is_late_all_the_same() {
+        for code in [Code::Timeout, Code::Cancelled] {
+            let fault = refused(code as i32, "whatever it says");
+            assert_eq!(fault, of(Failure::Late, "apf", Phase::Step(12)));
+        }
+    }
+
+    #[test]
+    fn codes_that_do_not_exist_are_bad_output() {
+        assert_eq!(refused(4711, "?").cause, Cause::BadOutput);
+        assert_eq!(
+            refused(BAD_OUTPUT, "gave no command").message,
+            "planner apf gave no command during step 12"
+        );
+    }
+}

@@ -1,0 +1,192 @@
+//! Loads a library and calls its planners. The only unsafe code of the console, and it runs only in a worker.
+#![expect(unsafe_code, reason = "libraries of strangers are loaded and called here")]
+
+mod instance;
+mod sink;
+mod stage;
+
+pub(crate) use instance::Instance;
+pub(crate) use sink::{Sink, Watch};
+
+use crate::discovery::sha256_hex;
+use crate::stamp::{self, Abi, CONSOLE_ABI};
+use crate::wire::answer::{Described, Refusal};
+use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
+use mission::{ParamInfo, ParamKind};
+use planner_api::abi;
+use std::error::Error;
+use std::path::Path;
+
+/// Most planners in a library.
+const MOST_PLANNERS: u32 = 64;
+/// Longest text of a table, bytes.
+const LONGEST_TEXT: usize = 4096;
+
+/// A library that was loaded; it stays loaded until the process ends.
+pub(crate) struct Plugin {
+    pub(crate) sha256: String,
+    pub(crate) abi: Abi,
+    pub(crate) tables: Vec<Table>,
+}
+
+/// One planner's table, checked.
+pub(crate) struct Table {
+    pub(crate) id: String,
+    name: String,
+    version: String,
+    about: String,
+    caps: u32,
+    state_version: u32,
+    raw: abi::Planner,
+}
+
+/// Checks a file, loads exactly the bytes that were checked, and checks its table.
+///
+/// # Errors
+/// Why it is refused; reads on after "refused:".
+pub(crate) fn open(path: &Path) -> Result<Plugin, String> {
+    let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
+    let abi = stamp::read(&bytes).map_err(|error| error.to_string())?;
+    let entry = load(&bytes, path)?;
+    check_entry(&entry)?;
+    let tables = (0..entry.n_planners as usize)
+        .map(|index| read_table(&entry, index))
+        .collect::<Result<Vec<_>, _>>()?;
+    if let Some((_, twice)) =
+        tables.iter().enumerate().find(|(i, t)| tables[..*i].iter().any(|u| u.id == t.id))
+    {
+        return Err(format!("exports the planner `{}` twice", twice.id));
+    }
+    Ok(Plugin { sha256: sha256_hex(&bytes), abi, tables })
+}
+
+fn load(bytes: &[u8], path: &Path) -> Result<abi::Entry, String> {
+    let staged = stage::stage(bytes).map_err(|error| format!("cannot be set aside for loading: {error}"))?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    // All symbols are resolved now: a missing one is a refusal here and not the end of the process at its first use.
+    // SAFETY: runs the library's constructors, whatever they do; this process exists to bear that.
+    let library = unsafe { Library::open(Some(staged.path()), RTLD_NOW | RTLD_LOCAL) }.map_err(|error| {
+        let told = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+        format!("the loader refused it: {}", told.replace(&*staged.path().to_string_lossy(), &name))
+    })?;
+    // SAFETY: the stamp promises that this symbol is an entry; its own magic is checked before anything else.
+    let entry = unsafe {
+        let symbol = library.get::<*const abi::Entry>(abi::SYMBOL);
+        let symbol = symbol.map_err(|_| format!("does not export `{}`", abi::SYMBOL))?;
+        symbol.as_ref().ok_or_else(|| format!("exports a null `{}`", abi::SYMBOL))?
+    };
+    let entry = *entry;
+    // Code with thread-local destructors must not be unloaded; the end of the process unloads it.
+    std::mem::forget(library);
+    Ok(entry)
+}
+
+fn check_entry(entry: &abi::Entry) -> Result<(), String> {
+    if entry.magic != abi::MAGIC {
+        return Err(format!("`{}` is no planner entry (wrong magic)", abi::SYMBOL));
+    }
+    let theirs = Abi { major: entry.abi_major, minor: entry.abi_minor };
+    stamp::accept(theirs).map_err(|error| error.to_string())?;
+    check_size("its entry", entry.size, size_of::<abi::Entry>())?;
+    if entry.n_planners == 0 || entry.n_planners > MOST_PLANNERS || entry.planners.is_null() {
+        return Err(format!("exports {} planners, 1 to {MOST_PLANNERS} are allowed", entry.n_planners));
+    }
+    Ok(())
+}
+
+/// The sizes of version 1.0 are the smallest; later ones only add.
+fn check_size(what: &str, size: u32, needed: usize) -> Result<(), String> {
+    if (size as usize) < needed {
+        return Err(format!(
+            "{what} has {size} bytes, ABI {CONSOLE_ABI} needs {needed}: built with a broken header"
+        ));
+    }
+    Ok(())
+}
+
+fn read_table(entry: &abi::Entry, index: usize) -> Result<Table, String> {
+    // SAFETY: the entry promises `n_planners` pointers to tables that live as long as the library, which stays.
+    let raw = unsafe {
+        let table = *entry.planners.add(index);
+        if table.is_null() {
+            return Err(format!("planner number {index} is null"));
+        }
+        let size = table.cast::<u32>().read();
+        check_size(&format!("the table of planner number {index}"), size, size_of::<abi::Planner>())?;
+        abi::copy_sized(table)
+    };
+    let text = |raw| sink::plain(raw, LONGEST_TEXT);
+    let id = text(raw.id);
+    if !planner_api::export::is_id(&id) {
+        return Err(format!("`{id}` is no planner id; ids are 1 to 32 of a-z, 0-9, _ and -"));
+    }
+    let functions = [
+        ("describe", raw.describe.is_some()),
+        ("create", raw.create.is_some()),
+        ("destroy", raw.destroy.is_some()),
+        ("plan", raw.plan.is_some()),
+        ("step", raw.step.is_some()),
+    ];
+    let missing: Vec<&str> =
+        functions.into_iter().filter(|(_, is_there)| !is_there).map(|(name, _)| name).collect();
+    if !missing.is_empty() {
+        return Err(format!("planner `{id}` lacks the function(s): {}", missing.join(", ")));
+    }
+    let [name, version, about] = [raw.name, raw.version, raw.about].map(text);
+    Ok(Table { id, name, version, about, caps: raw.caps, state_version: raw.state_version, raw })
+}
+
+impl Table {
+    /// Asks the planner for its parameters.
+    pub(crate) fn describe(&self, sink: &mut Sink<'_>) -> Result<Described, String> {
+        let describe = self.raw.describe.expect("checked when the table was read");
+        // SAFETY: the services live through the call.
+        let code = sink.during(|host| unsafe { describe(host) });
+        if code != 0 {
+            return Err(format!("planner `{}` does not describe itself: {}", self.id, sink.take_error()));
+        }
+        let parameters = std::mem::take(&mut sink.params);
+        check_parameters(&parameters).map_err(|why| format!("planner `{}`: {why}", self.id))?;
+        let [id, name, version, about] = [&self.id, &self.name, &self.version, &self.about].map(Clone::clone);
+        Ok(Described {
+            id,
+            name,
+            version,
+            about,
+            caps: self.caps,
+            state_version: self.state_version,
+            parameters,
+        })
+    }
+
+    /// Makes an instance.
+    pub(crate) fn create(
+        &self,
+        site: &planner_api::Site<'_>,
+        values: &[(String, f64)],
+        sink: &mut Sink<'_>,
+    ) -> Result<Instance, Refusal> {
+        Instance::create(&self.raw, site, values, sink)
+    }
+}
+
+fn check_parameters(parameters: &[ParamInfo]) -> Result<(), String> {
+    for (index, param) in parameters.iter().enumerate() {
+        let key = &param.key;
+        if key.is_empty() || parameters[..index].iter().any(|earlier| earlier.key == *key) {
+            return Err(format!("parameter number {index} has the key `{key}`, which is empty or taken"));
+        }
+        let is_sound = match &param.kind {
+            ParamKind::Float { min, max, default } => {
+                min <= default && default <= max && (max - min).is_finite()
+            }
+            ParamKind::Int { min, max, default } => min <= default && default <= max,
+            ParamKind::Flag { .. } => true,
+            ParamKind::Choice { options, default } => options.contains(default),
+        };
+        if !is_sound {
+            return Err(format!("the default of parameter `{key}` lies outside its range"));
+        }
+    }
+    Ok(())
+}

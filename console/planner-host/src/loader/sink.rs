@@ -1,0 +1,211 @@
+//! The console's services in the worker: copies what a planner hands over, up to a limit.
+
+use crate::wire::answer::{Said, log_level};
+use mission::{ParamInfo, ParamKind};
+use nalgebra::Point2;
+use planner_api::LogLevel;
+use planner_api::abi::{self, Draw, Host, Param, Str, Vec2, output};
+use std::ffi::c_void;
+
+/// Most of everything that one call may hand over; the surplus is counted and dropped.
+const MOST_DRAWINGS: usize = 4096;
+const MOST_POINTS: usize = 1_000_000;
+const MOST_STATE_BYTES: usize = 1 << 20;
+const MOST_PARAMS: usize = 256;
+const MOST_SCALARS: usize = 256;
+const MOST_LOGS: usize = 64;
+const LONGEST_MESSAGE: usize = 1024;
+
+/// Deadline and wishes of the console during a call.
+pub(crate) trait Watch {
+    /// 0 to go on, 1 when cancelled, 2 when the deadline passed.
+    fn should_stop(&self) -> u32;
+    /// Time until the deadline, seconds.
+    fn time_left_s(&self) -> f64;
+    /// Whether anyone looks at drawings.
+    fn wants_drawing(&self) -> bool;
+}
+
+/// What a planner hands over during one call.
+pub(crate) struct Sink<'a> {
+    watch: &'a dyn Watch,
+    error: String,
+    said: Said,
+    n_dropped: usize,
+    pub(super) params: Vec<ParamInfo>,
+    pub(super) points: Vec<Point2<f64>>,
+    pub(super) bytes: Vec<u8>,
+}
+
+impl<'a> Sink<'a> {
+    /// Nothing yet.
+    pub(crate) fn new(watch: &'a dyn Watch) -> Self {
+        Self {
+            watch,
+            error: String::new(),
+            said: Said::default(),
+            n_dropped: 0,
+            params: Vec::new(),
+            points: Vec::new(),
+            bytes: Vec::new(),
+        }
+    }
+
+    /// Calls a function of the planner with these services.
+    pub(super) fn during<R>(&mut self, call: impl FnOnce(*const Host) -> R) -> R {
+        let host = Host {
+            size: size_of::<Host>() as u32,
+            abi_minor: abi::MINOR,
+            ctx: (&raw mut *self).cast(),
+            should_stop: Some(should_stop),
+            time_left_s: Some(time_left_s),
+            wants_drawing: Some(wants_drawing),
+            error: Some(take_error),
+            log: Some(take_log),
+            param: Some(take_param),
+            points: Some(take_points),
+            draw: Some(take_draws),
+            scalar: Some(take_scalar),
+            bytes: Some(take_bytes),
+        };
+        call(&raw const host)
+    }
+
+    /// The sentence of a refusal.
+    pub(super) fn take_error(&mut self) -> String {
+        let error = std::mem::take(&mut self.error);
+        if error.is_empty() { "without saying why".to_owned() } else { error }
+    }
+
+    /// What was drawn, reported and said; says itself what was dropped.
+    pub(crate) fn take_said(&mut self) -> Said {
+        let mut said = std::mem::take(&mut self.said);
+        if self.n_dropped > 0 {
+            let dropped = format!(
+                "{} drawings, figures or messages were dropped: too many, or not finite",
+                self.n_dropped
+            );
+            said.logs.push((LogLevel::Warn, dropped));
+        }
+        said
+    }
+}
+
+/// A text of the plugin for people: at most so many bytes, nothing that moves a cursor.
+pub(super) fn plain(raw: Str, most: usize) -> String {
+    // SAFETY: the plugin promises that its texts are as long as they say.
+    let text = unsafe { raw.to_text(most) };
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+/// Takes the first of some things as long as there is room.
+fn take<'v, T>(values: &'v [T], have: usize, most: usize, n_dropped: &mut usize) -> &'v [T] {
+    let (taken, surplus) = values.split_at(values.len().min(most.saturating_sub(have)));
+    *n_dropped += surplus.len();
+    taken
+}
+
+/// The sink behind a service's first argument.
+unsafe fn sink<'s>(ctx: *mut c_void) -> &'s mut Sink<'s> {
+    // SAFETY: `during` passes the sink, nobody else uses it during the call, and services are called one at a time.
+    unsafe { &mut *ctx.cast::<Sink<'s>>() }
+}
+
+unsafe extern "C" fn should_stop(ctx: *mut c_void) -> u32 {
+    // SAFETY: `ctx` is the sink, here and in every service below.
+    unsafe { sink(ctx) }.watch.should_stop()
+}
+
+unsafe extern "C" fn time_left_s(ctx: *mut c_void) -> f64 {
+    // SAFETY: as above.
+    unsafe { sink(ctx) }.watch.time_left_s()
+}
+
+unsafe extern "C" fn wants_drawing(ctx: *mut c_void) -> u32 {
+    // SAFETY: as above.
+    u32::from(unsafe { sink(ctx) }.watch.wants_drawing())
+}
+
+unsafe extern "C" fn take_error(ctx: *mut c_void, ptr: *const u8, len: usize) {
+    // SAFETY: as above.
+    unsafe { sink(ctx) }.error = plain(Str { ptr, len }, LONGEST_MESSAGE);
+}
+
+unsafe extern "C" fn take_log(ctx: *mut c_void, level: u32, ptr: *const u8, len: usize) {
+    // SAFETY: as above.
+    let sink = unsafe { sink(ctx) };
+    if sink.said.logs.len() < MOST_LOGS {
+        sink.said.logs.push((log_level(level), plain(Str { ptr, len }, LONGEST_MESSAGE)));
+    } else {
+        sink.n_dropped += 1;
+    }
+}
+
+unsafe extern "C" fn take_points(ctx: *mut c_void, ptr: *const Vec2, n: usize) {
+    // SAFETY: as above, and the plugin promises `n` points.
+    let (sink, points) = unsafe { (sink(ctx), abi::slice(ptr, n)) };
+    let taken = take(points, sink.points.len(), MOST_POINTS, &mut sink.n_dropped);
+    sink.points.extend(taken.iter().copied().map(Point2::from));
+}
+
+unsafe extern "C" fn take_draws(ctx: *mut c_void, ptr: *const Draw, n: usize) {
+    // SAFETY: as above, and the plugin promises `n` drawings.
+    let (sink, draws) = unsafe { (sink(ctx), abi::slice(ptr, n)) };
+    let taken = take(draws, sink.said.drawings.len(), MOST_DRAWINGS, &mut sink.n_dropped);
+    let before = sink.said.drawings.len();
+    sink.said.drawings.extend(taken.iter().filter_map(Draw::get));
+    sink.n_dropped += taken.len() - (sink.said.drawings.len() - before);
+}
+
+unsafe extern "C" fn take_scalar(ctx: *mut c_void, name: Str, value: f64, unit: Str) {
+    // SAFETY: as above.
+    let sink = unsafe { sink(ctx) };
+    if value.is_finite() && sink.said.scalars.len() < MOST_SCALARS {
+        sink.said.scalars.push((plain(name, 64), value, plain(unit, 64)));
+    } else {
+        sink.n_dropped += 1;
+    }
+}
+
+unsafe extern "C" fn take_bytes(ctx: *mut c_void, ptr: *const u8, n: usize) {
+    // SAFETY: as above, and the plugin promises `n` bytes.
+    let (sink, bytes) = unsafe { (sink(ctx), abi::slice(ptr, n)) };
+    let taken = take(bytes, sink.bytes.len(), MOST_STATE_BYTES, &mut sink.n_dropped);
+    sink.bytes.extend_from_slice(taken);
+}
+
+unsafe extern "C" fn take_param(ctx: *mut c_void, param: *const Param) {
+    // SAFETY: as above.
+    let sink = unsafe { sink(ctx) };
+    if param.is_null() || sink.params.len() >= MOST_PARAMS {
+        sink.n_dropped += 1;
+        return;
+    }
+    // SAFETY: the plugin promises a parameter of the size that it tells.
+    sink.params.push(param_info(&unsafe { abi::copy_sized(param) }));
+}
+
+fn param_info(raw: &Param) -> ParamInfo {
+    let text = |raw| plain(raw, super::LONGEST_TEXT);
+    let (min, max, default) = (raw.min, raw.max, raw.default);
+    let kind = match raw.kind {
+        output::PARAM_INT => ParamKind::Int { min: min as i64, max: max as i64, default: default as i64 },
+        output::PARAM_FLAG => ParamKind::Flag { default: default != 0.0 },
+        output::PARAM_CHOICE => {
+            let options: Vec<String> = text(raw.options).split('|').map(str::to_owned).collect();
+            let default = options.get(default as usize).cloned().unwrap_or_default();
+            ParamKind::Choice { options, default }
+        }
+        // An unknown kind of a later version still is a number.
+        _ => ParamKind::Float { min, max, default },
+    };
+    ParamInfo {
+        key: text(raw.key),
+        label: text(raw.label),
+        unit: text(raw.unit),
+        help: text(raw.help),
+        group: text(raw.group),
+        kind,
+        live: raw.flags & output::PARAM_LIVE != 0,
+    }
+}

@@ -1,0 +1,100 @@
+//! What was checked is what runs: the bytes are set aside where nobody can change them while they are loaded.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Bytes set aside under a path for the loader.
+pub(super) struct Staged {
+    path: PathBuf,
+    _place: Place,
+}
+
+enum Place {
+    #[cfg(target_os = "linux")]
+    Memory {
+        _fd: std::os::fd::OwnedFd,
+    },
+    Copy(PathBuf),
+}
+
+impl Staged {
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        match self {
+            #[cfg(target_os = "linux")]
+            Self::Memory { .. } => {}
+            Self::Copy(path) => {
+                // It is loaded or refused by now; a copy that stays behind harms nobody.
+                let _ = std::fs::remove_file(path);
+            }
+        }
+    }
+}
+
+/// Sets bytes aside: in sealed memory where the system has it, else in a private copy.
+#[cfg(target_os = "linux")]
+pub(super) fn stage(bytes: &[u8]) -> io::Result<Staged> {
+    seal(bytes).or_else(|_| copy(bytes))
+}
+
+/// Sets bytes aside in a private copy.
+#[cfg(not(target_os = "linux"))]
+pub(super) fn stage(bytes: &[u8]) -> io::Result<Staged> {
+    copy(bytes)
+}
+
+#[cfg(target_os = "linux")]
+fn seal(bytes: &[u8]) -> io::Result<Staged> {
+    use rustix::fs::{MemfdFlags, SealFlags, fcntl_add_seals, memfd_create};
+    use std::os::fd::{AsRawFd, OwnedFd};
+
+    let fd = memfd_create("planner", MemfdFlags::CLOEXEC | MemfdFlags::ALLOW_SEALING)?;
+    let mut file = std::fs::File::from(fd);
+    file.write_all(bytes)?;
+    let fd = OwnedFd::from(file);
+    fcntl_add_seals(&fd, SealFlags::WRITE | SealFlags::SHRINK | SealFlags::GROW | SealFlags::SEAL)?;
+    let path = PathBuf::from(format!("/proc/self/fd/{}", fd.as_raw_fd()));
+    // Without /proc the private copy is the way.
+    std::fs::metadata(&path)?;
+    Ok(Staged { path, _place: Place::Memory { _fd: fd } })
+}
+
+fn copy(bytes: &[u8]) -> io::Result<Staged> {
+    use std::os::unix::fs::OpenOptionsExt;
+
+    let path = std::env::temp_dir().join(format!("tankops-planner-{}.so", std::process::id()));
+    let mut file = std::fs::OpenOptions::new().write(true).create_new(true).mode(0o700).open(&path)?;
+    let place = Place::Copy(path.clone());
+    file.write_all(bytes)?;
+    Ok(Staged { path, _place: place })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn staged_bytes_are_the_bytes_and_a_copy_goes_away() {
+        let staged = stage(b"content").expect("staged");
+        assert_eq!(std::fs::read(staged.path()).expect("readable"), b"content");
+        let copied = copy(b"content").expect("copied");
+        let path = copied.path().to_owned();
+        assert_eq!(std::fs::read(&path).expect("readable"), b"content");
+        drop(copied);
+        assert!(!path.exists());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn sealed_bytes_cannot_be_changed() {
+        let staged = seal(b"content").expect("sealed");
+        let written =
+            std::fs::OpenOptions::new().write(true).open(staged.path()).and_then(|mut f| f.write_all(b"x"));
+        assert!(written.is_err());
+    }
+}

@@ -1,0 +1,164 @@
+//! What a library says about itself before any of it runs.
+//!
+//! Loading a library runs its constructors, so the planner ABI is read from a section of the file first.
+
+use object::{Architecture, BinaryFormat, File, Object, ObjectKind, ObjectSection};
+use planner_api::abi;
+use std::fmt;
+
+/// The version of the planner ABI that a library was built for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+pub struct Abi {
+    /// Must be the console's own.
+    pub major: u32,
+    /// May be newer or older than the console's.
+    pub minor: u32,
+}
+
+impl fmt::Display for Abi {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}.{}", self.major, self.minor)
+    }
+}
+
+/// The ABI that this console speaks.
+pub const CONSOLE_ABI: Abi = Abi { major: abi::MAJOR, minor: abi::MINOR };
+
+/// Why a file is no plugin of this console; reads on after "refused:".
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum StampError {
+    /// Neither ELF, Mach-O nor PE.
+    #[error("not a shared library")]
+    NotALibrary,
+    /// The file ends too early, or its tables are wrong.
+    #[error("truncated or damaged library ({0})")]
+    Damaged(String),
+    /// A library of another kind of computer.
+    #[error("built for another system ({theirs}, this console runs on {ours})")]
+    OtherSystem {
+        /// Format and processor of the file.
+        theirs: String,
+        /// Those of the console.
+        ours: String,
+    },
+    /// A program or an object file.
+    #[error("not a shared library but {0}")]
+    OtherKind(&'static str),
+    /// No section with the stamp, or something else in it.
+    #[error(
+        "a library, but not a planner plugin (no .tankplan stamp; Rust: export_planners!(..), C: TP_STAMP)"
+    )]
+    NoStamp,
+    /// Another major version of the ABI.
+    #[error("built for planner ABI {theirs}, this console speaks {CONSOLE_ABI}: {advice}", advice = advice(*theirs))]
+    OtherAbi {
+        /// Theirs.
+        theirs: Abi,
+    },
+}
+
+fn advice(theirs: Abi) -> &'static str {
+    if theirs.major < CONSOLE_ABI.major { "rebuild the plugin" } else { "update the console" }
+}
+
+/// Reads the stamp of a library and accepts it if this console can run it.
+///
+/// # Errors
+/// What the file is instead.
+pub fn read(bytes: &[u8]) -> Result<Abi, StampError> {
+    let kind = object::FileKind::parse(bytes).map_err(|_| StampError::NotALibrary)?;
+    if !is_library_format(kind) {
+        return Err(StampError::NotALibrary);
+    }
+    let file = File::parse(bytes).map_err(|error| StampError::Damaged(error.to_string()))?;
+    check_system(&file)?;
+    match file.kind() {
+        ObjectKind::Dynamic => {}
+        ObjectKind::Executable => return Err(StampError::OtherKind("a program")),
+        _ => return Err(StampError::OtherKind("an object file")),
+    }
+    let section =
+        abi::SECTIONS.iter().find_map(|name| file.section_by_name(name)).ok_or(StampError::NoStamp)?;
+    let stamp = section.data().map_err(|error| StampError::Damaged(error.to_string()))?;
+    accept(parse(stamp).ok_or(StampError::NoStamp)?)
+}
+
+/// Accepts every ABI of the console's own major version.
+///
+/// # Errors
+/// [`StampError::OtherAbi`].
+pub fn accept(theirs: Abi) -> Result<Abi, StampError> {
+    if theirs.major == CONSOLE_ABI.major { Ok(theirs) } else { Err(StampError::OtherAbi { theirs }) }
+}
+
+fn parse(stamp: &[u8]) -> Option<Abi> {
+    let rest = stamp.strip_prefix(&abi::MAGIC)?;
+    let (major, rest) = rest.split_first_chunk::<4>()?;
+    let (minor, _) = rest.split_first_chunk::<4>()?;
+    Some(Abi { major: u32::from_ne_bytes(*major), minor: u32::from_ne_bytes(*minor) })
+}
+
+fn is_library_format(kind: object::FileKind) -> bool {
+    use object::FileKind::{Elf32, Elf64, MachO32, MachO64, Pe32, Pe64};
+    matches!(kind, Elf32 | Elf64 | MachO32 | MachO64 | Pe32 | Pe64)
+}
+
+const OUR_FORMAT: BinaryFormat = if cfg!(target_vendor = "apple") {
+    BinaryFormat::MachO
+} else if cfg!(windows) {
+    BinaryFormat::Pe
+} else {
+    BinaryFormat::Elf
+};
+
+fn our_processor() -> Architecture {
+    match std::env::consts::ARCH {
+        "x86_64" => Architecture::X86_64,
+        "aarch64" => Architecture::Aarch64,
+        "riscv64" => Architecture::Riscv64,
+        _ => Architecture::Unknown,
+    }
+}
+
+fn check_system(file: &File<'_>) -> Result<(), StampError> {
+    let (theirs, ours) = ((file.format(), file.architecture()), (OUR_FORMAT, our_processor()));
+    // A processor that is not in the list above is left to the loader.
+    let fits = theirs.0 == ours.0 && (ours.1 == Architecture::Unknown || theirs.1 == ours.1);
+    let text = |(format, processor)| format!("{format:?} {processor:?}");
+    if fits { Ok(()) } else { Err(StampError::OtherSystem { theirs: text(theirs), ours: text(ours) }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_file_is_no_library() {
+        assert_eq!(read(b"not a library"), Err(StampError::NotALibrary));
+        assert_eq!(read(b""), Err(StampError::NotALibrary));
+    }
+
+    #[test]
+    fn a_stamp_is_magic_major_minor() {
+        let mut stamp = abi::MAGIC.to_vec();
+        stamp.extend(1_u32.to_ne_bytes().into_iter().chain(7_u32.to_ne_bytes()));
+        assert_eq!(parse(&stamp), Some(Abi { major: 1, minor: 7 }));
+        assert_eq!(parse(&stamp[..15]), None);
+        assert_eq!(parse(b"TANKPLUM00000000"), None);
+    }
+
+    #[test]
+    fn another_major_version_is_refused_with_what_to_do() {
+        let newer = accept(Abi { major: 9, minor: 0 }).map_err(|error| error.to_string());
+        assert_eq!(
+            newer,
+            Err("built for planner ABI 9.0, this console speaks 1.0: update the console".into())
+        );
+        let older = accept(Abi { major: 0, minor: 3 }).map_err(|error| error.to_string());
+        assert_eq!(
+            older,
+            Err("built for planner ABI 0.3, this console speaks 1.0: rebuild the plugin".into())
+        );
+        assert!(accept(Abi { major: 1, minor: 99 }).is_ok(), "a newer minor version is accepted");
+    }
+}

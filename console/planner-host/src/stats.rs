@@ -1,0 +1,59 @@
+//! How often planners were called and how long it took on the wall clock.
+
+use std::time::Duration;
+
+/// Calls of one kind.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
+pub struct CallStats {
+    /// How many.
+    pub calls: u64,
+    /// Half of them took at most this long, microseconds; absent without calls.
+    pub p50_us: Option<f64>,
+    /// Ninety-nine of a hundred took at most this long, microseconds; absent without calls.
+    pub p99_us: Option<f64>,
+}
+
+/// What planners cost so far. Wall times differ from run to run: they belong in reports, never in the journal.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
+pub struct HostStats {
+    /// Requests for plans.
+    pub plan: CallStats,
+    /// Requests for commands.
+    pub step: CallStats,
+    /// Faults of every kind, refusals to plan included.
+    pub faults: u64,
+}
+
+/// Wall times of the calls of one kind.
+#[derive(Debug, Default)]
+pub(crate) struct Durations(Vec<Duration>);
+
+impl Durations {
+    pub(crate) fn note(&mut self, took: Duration) {
+        self.0.push(took);
+    }
+
+    pub(crate) fn stats(&self) -> CallStats {
+        let mut sorted = self.0.clone();
+        sorted.sort_unstable();
+        let quantile = |share: f64| {
+            let rank = (share * sorted.len() as f64).ceil() as usize;
+            sorted.get(rank.saturating_sub(1)).map(|took| took.as_secs_f64() * 1e6)
+        };
+        CallStats { calls: sorted.len() as u64, p50_us: quantile(0.5), p99_us: quantile(0.99) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_values_that_occurred() {
+        let mut durations = Durations::default();
+        assert_eq!(durations.stats(), CallStats::default());
+        (1..=100).rev().for_each(|n| durations.note(Duration::from_micros(n)));
+        let stats = durations.stats();
+        assert_eq!((stats.calls, stats.p50_us, stats.p99_us), (100, Some(50.0), Some(99.0)));
+    }
+}

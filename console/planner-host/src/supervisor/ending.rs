@@ -1,0 +1,96 @@
+//! How a process ended, in words that are the same in every run.
+
+use crate::worker::CHANNEL_LOST;
+use rustix::process::Signal;
+use std::os::unix::process::ExitStatusExt;
+use std::process::ExitStatus;
+
+/// Longest line of output that is told.
+const LONGEST_LINE: usize = 160;
+
+/// "was killed by SIGSEGV (invalid memory access)" and the like; a process that closed its socket and still had to be
+/// killed has no status.
+pub(super) fn how_it_ended(status: Option<ExitStatus>) -> String {
+    match status.map(|status| (status.signal(), status.code())) {
+        Some((Some(signal), _)) => format!("was killed by {}", signal_text(signal)),
+        Some((_, Some(code))) if code != i32::from(CHANNEL_LOST) => {
+            format!("ended its own process with exit code {code}")
+        }
+        _ => "lost its channel to the console".to_owned(),
+    }
+}
+
+fn signal_text(number: i32) -> String {
+    let (name, meaning) = match Signal::from_named_raw(number) {
+        Some(Signal::ILL) => ("SIGILL", "illegal instruction"),
+        Some(Signal::ABORT) => ("SIGABRT", "out of memory, stack overflow or a call of abort"),
+        Some(Signal::BUS) => ("SIGBUS", "bad address"),
+        Some(Signal::FPE) => ("SIGFPE", "integer division"),
+        Some(Signal::KILL) => ("SIGKILL", "killed from outside, perhaps for lack of memory"),
+        Some(Signal::SEGV) => ("SIGSEGV", "invalid memory access"),
+        Some(Signal::XFSZ) => ("SIGXFSZ", "a file grew too large"),
+        Some(Signal::TERM) => ("SIGTERM", "asked to end"),
+        Some(Signal::PIPE) => ("SIGPIPE", "wrote to a closed channel"),
+        _ => return format!("signal {number}"),
+    };
+    format!("{name} ({meaning})")
+}
+
+/// The last line with anything in it, without what moves a cursor or differs from run to run.
+pub(super) fn last_line(output: &[u8]) -> String {
+    let text = String::from_utf8_lossy(output);
+    let is_telling = |line: &&str| !line.trim().is_empty() && !line.starts_with("note: ");
+    let line = text.lines().rfind(is_telling).unwrap_or_default();
+    let visible: String = line.chars().filter(|c| !c.is_control()).collect();
+    without_ids(&visible).trim().chars().take(LONGEST_LINE).collect()
+}
+
+/// Drops process and thread ids, as in `thread 'main' (4711) panicked`, and the digits of addresses.
+fn without_ids(line: &str) -> String {
+    let mut kept = String::with_capacity(line.len());
+    let mut rest = line;
+    while let Some(c) = rest.chars().next() {
+        if let Some(after) =
+            rest.strip_prefix(" (").and_then(|r| r.trim_start_matches(is_digit).strip_prefix(')'))
+        {
+            rest = after;
+        } else if let Some(after) = rest.strip_prefix("0x") {
+            kept.push_str("0x..");
+            rest = after.trim_start_matches(|d: char| d.is_ascii_hexdigit());
+        } else {
+            kept.push(c);
+            rest = &rest[c.len_utf8()..];
+        }
+    }
+    kept
+}
+
+fn is_digit(c: char) -> bool {
+    c.is_ascii_digit()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn endings_are_told_in_words() {
+        let signalled = |number| how_it_ended(Some(ExitStatus::from_raw(number)));
+        assert_eq!(signalled(11), "was killed by SIGSEGV (invalid memory access)");
+        assert_eq!(signalled(0), "ended its own process with exit code 0");
+        assert_eq!(signalled(i32::from(CHANNEL_LOST) << 8), "lost its channel to the console");
+        assert_eq!(how_it_ended(None), "lost its channel to the console");
+    }
+
+    #[test]
+    fn the_last_line_carries_no_ids_addresses_or_escapes() {
+        let output = b"first\nthread 'main' (4711) panicked at \x1b[31m0x7ffe12ab\nnote: run with\n\n";
+        assert_eq!(last_line(output), "thread 'main' panicked at [31m0x..");
+        assert_eq!(
+            last_line(b"memory allocation of 1048576 bytes failed\n"),
+            "memory allocation of 1048576 bytes failed"
+        );
+        assert_eq!(last_line(b""), "");
+        assert_eq!(last_line(b"f(x) (a)"), "f(x) (a)");
+    }
+}

@@ -1,0 +1,132 @@
+//! Everything that was found: plugins with their planners, and bad ones with the reason.
+
+use crate::discovery::{PluginDirs, PluginFile};
+use crate::stamp::Abi;
+use crate::supervisor::{Failure, Worker, WorkerCommand};
+use crate::wire::answer::{Described, Loaded, loaded_of};
+use crate::wire::body::Writer;
+use crate::wire::{self, kind};
+use mission::PlannerInfo;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// A library that does not load and describe itself within this time is refused.
+pub(crate) const LOAD_WITHIN: Duration = Duration::from_secs(2);
+/// Address space of a worker unless something else is said, bytes.
+pub(crate) const MEMORY_LIMIT: u64 = 256 << 20;
+
+/// Every plugin file, in the order in which they are searched.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Survey {
+    /// The plugins.
+    pub plugins: Vec<SurveyedPlugin>,
+}
+
+/// One plugin file.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct SurveyedPlugin {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Planner ABI it was built for, as `major.minor`; absent when it has no stamp.
+    pub abi: Option<String>,
+    /// SHA-256 of the file, hexadecimal; empty when it cannot be read.
+    pub sha256: String,
+    /// Its planners that can be chosen.
+    pub planners: Vec<PlannerInfo>,
+    /// Ids of its planners that an earlier plugin has, too: they cannot be chosen from here.
+    pub shadowed: Vec<String>,
+    /// Why it is refused, if it is.
+    pub refused: Option<String>,
+}
+
+impl Survey {
+    /// The planners that can be chosen.
+    pub fn planners(&self) -> impl Iterator<Item = &PlannerInfo> {
+        self.plugins.iter().flat_map(|plugin| &plugin.planners)
+    }
+}
+
+/// Looks at every plugin: each is loaded and described in a worker of its own that is thrown away.
+pub fn survey(dirs: &PluginDirs, worker: &WorkerCommand) -> Survey {
+    let mut known: Vec<String> = Vec::new();
+    let plugins = dirs.plugins().iter().map(|plugin| look_at(plugin, worker, &mut known)).collect();
+    Survey { plugins }
+}
+
+/// Looks at one file, wherever it lies and whatever it is called.
+pub fn check_plugin(file: &Path, worker: &WorkerCommand) -> SurveyedPlugin {
+    look_at(&PluginFile::read(file.to_path_buf()), worker, &mut Vec::new())
+}
+
+fn look_at(plugin: &PluginFile, worker: &WorkerCommand, known: &mut Vec<String>) -> SurveyedPlugin {
+    let mut surveyed = SurveyedPlugin {
+        path: plugin.path.clone(),
+        abi: plugin.abi.as_ref().ok().map(ToString::to_string),
+        sha256: plugin.sha256.clone(),
+        planners: Vec::new(),
+        shadowed: Vec::new(),
+        refused: plugin.abi.as_ref().err().cloned(),
+    };
+    if surveyed.refused.is_none() {
+        match probe(plugin, worker) {
+            Ok(planners) => {
+                let is_new = |info: &PlannerInfo| !known.contains(&info.id);
+                let (new, taken): (Vec<_>, Vec<_>) = planners.into_iter().partition(is_new);
+                known.extend(new.iter().map(|info| info.id.clone()));
+                surveyed.planners = new;
+                surveyed.shadowed = taken.into_iter().map(|info| info.id).collect();
+            }
+            Err(failure) => surveyed.refused = Some(refusal_text(&failure)),
+        }
+    }
+    surveyed
+}
+
+fn probe(plugin: &PluginFile, worker: &WorkerCommand) -> Result<Vec<PlannerInfo>, Failure> {
+    let mut worker = Worker::spawn(worker)?;
+    let loaded = load(&mut worker, &plugin.path, "", LOAD_WITHIN, MEMORY_LIMIT)?;
+    Ok(loaded.planners.iter().map(|planner| info(planner, &loaded, &plugin.name())).collect())
+}
+
+/// Asks a worker to load a library and to keep the planner of this id, or to describe all planners for an empty id.
+pub(crate) fn load(
+    worker: &mut Worker,
+    path: &Path,
+    id: &str,
+    within: Duration,
+    memory_limit_bytes: u64,
+) -> Result<Loaded, Failure> {
+    let write = |w: &mut Writer| {
+        w.u32(wire::VERSION).u64(memory_limit_bytes).bytes(path.as_os_str().as_encoded_bytes()).text(id);
+    };
+    worker.ask(kind::LOAD, within, write, loaded_of)
+}
+
+/// A planner as the mission knows it.
+pub(crate) fn info(planner: &Described, loaded: &Loaded, plugin: &str) -> PlannerInfo {
+    PlannerInfo {
+        id: planner.id.clone(),
+        name: planner.name.clone(),
+        version: planner.version.clone(),
+        about: planner.about.clone(),
+        plugin: plugin.to_owned(),
+        sha256: loaded.sha256.clone(),
+        abi: Abi { major: loaded.abi_major, minor: loaded.abi_minor }.to_string(),
+        parameters: planner.parameters.clone(),
+    }
+}
+
+/// Why a library is refused that could not be loaded.
+pub(crate) fn refusal_text(failure: &Failure) -> String {
+    match failure {
+        Failure::Refused(why) | Failure::Console(why) => why.clone(),
+        Failure::Died { how, last_output } if last_output.is_empty() => format!("{how} while it was loaded"),
+        Failure::Died { how, last_output } => {
+            format!("{how} while it was loaded; last output: {last_output}")
+        }
+        Failure::Hung | Failure::Late => "did not load in time; its process was stopped".to_owned(),
+        Failure::Planner(_) | Failure::Protocol | Failure::Gone => {
+            "sent something that is no answer while it was loaded".to_owned()
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! What console and worker say to each other.
+//!
+//! A frame is `u32 length | u8 kind | u32 sequence | u32 soft deadline | body`, little-endian; the length counts
+//! everything after itself, the soft deadline is in microseconds and zero for none. One request, one answer with the
+//! request's sequence number; a CANCEL may follow a request and is never answered.
+
+pub(crate) mod answer;
+pub(crate) mod body;
+#[cfg(unix)]
+pub(crate) mod frame;
+pub(crate) mod input;
+pub(crate) mod owned;
+
+/// Raised whenever a frame changes its form: console and worker must be of one build.
+pub(crate) const VERSION: u32 = 1;
+/// Longest frame, bytes.
+pub(crate) const LONGEST: usize = 16 << 20;
+
+/// Kinds of frames.
+pub(crate) mod kind {
+    pub(crate) const LOAD: u8 = 1;
+    pub(crate) const CONFIGURE: u8 = 2;
+    pub(crate) const RECONFIGURE: u8 = 3;
+    pub(crate) const PLAN: u8 = 4;
+    pub(crate) const STEP: u8 = 5;
+    pub(crate) const SNAPSHOT: u8 = 6;
+    pub(crate) const RESTORE: u8 = 7;
+    pub(crate) const CANCEL: u8 = 8;
+    /// The answer.
+    pub(crate) const DONE: u8 = 0x80;
+    /// The planner refused.
+    pub(crate) const FAILED: u8 = 0x81;
+    /// The loader refused.
+    pub(crate) const REFUSED: u8 = 0x82;
+}

@@ -1,0 +1,187 @@
+//! Site, request and what is sensed: written from the borrowed forms, read into the owned ones.
+
+use super::body::{Body, Malformed, Read, Writer};
+use super::owned::{
+    OwnedBoundary, OwnedObstacle, OwnedOutline, OwnedRequest, OwnedSensed, OwnedSite, OwnedTask, OwnedZone,
+};
+use planner_api::{
+    Boundary, Limits, Motion, Obstacle, Outline, PlanRequest, Reason, Sensed, Site, Task, Zone, ZoneKind,
+};
+
+impl Writer {
+    fn outline(&mut self, outline: &Outline<'_>) -> &mut Self {
+        match outline {
+            Outline::Disc { center, radius_m } => self.u8(0).point(center).f64(*radius_m),
+            Outline::Polygon { vertices } => self.u8(1).points(vertices),
+            Outline::Polyline { points, half_width_m } => self.u8(2).points(points).f64(*half_width_m),
+        }
+    }
+
+    fn obstacle(&mut self, obstacle: &Obstacle<'_>) {
+        self.u32(obstacle.id).flag(obstacle.discovered).outline(&obstacle.outline);
+    }
+
+    fn zone(&mut self, zone: &Zone<'_>) {
+        self.u8(zone.kind as u8).outline(&zone.outline);
+    }
+
+    fn limits(&mut self, limits: &Limits) -> &mut Self {
+        self.u8(limits.motion as u8)
+            .f64(limits.v_max_m_per_s)
+            .f64(limits.w_max_rad_per_s)
+            .f64(limits.radius_m)
+            .f64(limits.sensing_range_m)
+    }
+
+    pub(crate) fn site(&mut self, site: &Site<'_>) -> &mut Self {
+        self.u32(site.revision).u64(site.seed);
+        match site.boundary {
+            Boundary::Circle { radius_m } => self.u8(0).f64(radius_m),
+            Boundary::Polygon { vertices } => self.u8(1).points(vertices),
+        };
+        self.all(site.obstacles, Self::obstacle).all(site.zones, Self::zone);
+        self.limits(&site.limits).f64(site.swath_m).f64(site.clearance_m)
+    }
+
+    fn reason(&mut self, reason: &Reason) -> &mut Self {
+        match reason {
+            Reason::Start => self.u8(0),
+            Reason::Blocked => self.u8(1),
+            Reason::MapChanged => self.u8(2),
+            Reason::Operator => self.u8(3),
+            Reason::Swap { from } => self.u8(4).text(from),
+            Reason::Recover => self.u8(5),
+        }
+    }
+
+    pub(crate) fn request(&mut self, request: &PlanRequest<'_>) -> &mut Self {
+        self.reason(request.reason).pose(&request.start);
+        match &request.task {
+            Task::Goto { goal, tolerance_m } => self.u8(0).point(goal).f64(*tolerance_m),
+            Task::Follow { targets, tolerance_m } => self.u8(1).points(targets).f64(*tolerance_m),
+        };
+        self.site(request.site).points(request.previous)
+    }
+
+    pub(crate) fn sensed(&mut self, sensed: &Sensed<'_>) -> &mut Self {
+        self.u64(sensed.tick)
+            .f64(sensed.t_s)
+            .f64(sensed.dt_s)
+            .pose(&sensed.pose)
+            .f64(sensed.v_m_per_s)
+            .f64(sensed.w_rad_per_s)
+            .point(&sensed.target)
+            .points(sensed.targets_ahead)
+            .points(sensed.path_ahead)
+            .all(sensed.obstacles, Self::obstacle)
+    }
+
+    pub(crate) fn values(&mut self, values: &[(String, f64)]) -> &mut Self {
+        self.all(values, |w, (key, number)| {
+            w.text(key).f64(*number);
+        })
+    }
+}
+
+impl Body<'_> {
+    fn outline(&mut self) -> Read<OwnedOutline> {
+        match self.u8()? {
+            0 => Ok(OwnedOutline::Disc { center: self.point()?, radius_m: self.f64()? }),
+            1 => Ok(OwnedOutline::Polygon { vertices: self.points()? }),
+            2 => Ok(OwnedOutline::Polyline { points: self.points()?, half_width_m: self.f64()? }),
+            _ => Err(Malformed),
+        }
+    }
+
+    fn obstacle(&mut self) -> Read<OwnedObstacle> {
+        Ok(OwnedObstacle { id: self.u32()?, discovered: self.flag()?, outline: self.outline()? })
+    }
+
+    fn zone(&mut self) -> Read<OwnedZone> {
+        let kind = match self.u8()? {
+            0 => ZoneKind::NoGo,
+            1 => ZoneKind::Land,
+            2 => ZoneKind::Underwater,
+            _ => return Err(Malformed),
+        };
+        Ok(OwnedZone { kind, outline: self.outline()? })
+    }
+
+    fn limits(&mut self) -> Read<Limits> {
+        let motion = match self.u8()? {
+            0 => Motion::Point,
+            1 => Motion::Unicycle,
+            _ => return Err(Malformed),
+        };
+        Ok(Limits {
+            motion,
+            v_max_m_per_s: self.f64()?,
+            w_max_rad_per_s: self.f64()?,
+            radius_m: self.f64()?,
+            sensing_range_m: self.f64()?,
+        })
+    }
+
+    pub(crate) fn site(&mut self) -> Read<OwnedSite> {
+        let (revision, seed) = (self.u32()?, self.u64()?);
+        let boundary = match self.u8()? {
+            0 => OwnedBoundary::Circle { radius_m: self.f64()? },
+            1 => OwnedBoundary::Polygon { vertices: self.points()? },
+            _ => return Err(Malformed),
+        };
+        Ok(OwnedSite {
+            revision,
+            seed,
+            boundary,
+            obstacles: self.all(Self::obstacle)?,
+            zones: self.all(Self::zone)?,
+            limits: self.limits()?,
+            swath_m: self.f64()?,
+            clearance_m: self.f64()?,
+        })
+    }
+
+    fn reason(&mut self) -> Read<Reason> {
+        match self.u8()? {
+            0 => Ok(Reason::Start),
+            1 => Ok(Reason::Blocked),
+            2 => Ok(Reason::MapChanged),
+            3 => Ok(Reason::Operator),
+            4 => Ok(Reason::Swap { from: self.text()? }),
+            5 => Ok(Reason::Recover),
+            _ => Err(Malformed),
+        }
+    }
+
+    pub(crate) fn request(&mut self) -> Read<OwnedRequest> {
+        let (reason, start) = (self.reason()?, self.pose()?);
+        let task = match self.u8()? {
+            0 => OwnedTask::Goto { goal: self.point()?, tolerance_m: self.f64()? },
+            1 => OwnedTask::Follow { targets: self.points()?, tolerance_m: self.f64()? },
+            _ => return Err(Malformed),
+        };
+        Ok(OwnedRequest { reason, start, task, site: self.site()?, previous: self.points()? })
+    }
+
+    pub(crate) fn sensed(&mut self) -> Read<OwnedSensed> {
+        Ok(OwnedSensed {
+            tick: self.u64()?,
+            t_s: self.f64()?,
+            dt_s: self.f64()?,
+            pose: self.pose()?,
+            v_m_per_s: self.f64()?,
+            w_rad_per_s: self.f64()?,
+            target: self.point()?,
+            targets_ahead: self.points()?,
+            path_ahead: self.points()?,
+            obstacles: self.all(Self::obstacle)?,
+        })
+    }
+
+    pub(crate) fn values(&mut self) -> Read<Vec<(String, f64)>> {
+        self.all(|body| Ok((body.text()?, body.f64()?)))
+    }
+}
+
+#[cfg(test)]
+mod tests;

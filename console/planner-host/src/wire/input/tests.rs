@@ -1,0 +1,132 @@
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use super::*;
+use nalgebra::{Matrix3, Point2};
+use planner_api::PoseEstimate;
+use proptest::prelude::*;
+
+fn written(write: impl FnOnce(&mut Writer)) -> Vec<u8> {
+    let mut writer = Writer::default();
+    write(writer.begin(1, 0, 0));
+    writer.finish().unwrap()[13..].to_vec()
+}
+
+const CORNERS: [Point2<f64>; 3] = [Point2::new(0.0, 0.0), Point2::new(1.0, 0.0), Point2::new(0.0, 1.0)];
+
+fn with_site<R>(obstacles: &[Obstacle<'_>], call: impl FnOnce(&Site<'_>) -> R) -> R {
+    let zones = [Zone { kind: ZoneKind::Underwater, outline: Outline::Polygon { vertices: &CORNERS } }];
+    let limits = Limits {
+        motion: Motion::Point,
+        v_max_m_per_s: 0.3,
+        w_max_rad_per_s: 1.0,
+        radius_m: 0.25,
+        sensing_range_m: 2.0,
+    };
+    let boundary = Boundary::Polygon { vertices: &CORNERS };
+    let site = Site {
+        revision: 3,
+        boundary,
+        obstacles,
+        zones: &zones,
+        limits,
+        swath_m: 0.4,
+        clearance_m: 0.1,
+        seed: 9,
+    };
+    call(&site)
+}
+
+fn pose(x: f64) -> PoseEstimate {
+    let covariance = Matrix3::new(1.0, 2.0, 3.0, 2.0, 4.0, 5.0, 3.0, 5.0, 6.0);
+    PoseEstimate { position: Point2::new(x, -0.5), heading_rad: 0.1, covariance }
+}
+
+fn obstacles() -> [Obstacle<'static>; 3] {
+    let disc = Outline::Disc { center: Point2::new(1.0, 2.0), radius_m: 0.5 };
+    let line = Outline::Polyline { points: &CORNERS, half_width_m: 0.1 };
+    [
+        Obstacle { id: 7, outline: disc, discovered: true },
+        Obstacle { id: 8, outline: Outline::Polygon { vertices: &CORNERS }, discovered: false },
+        Obstacle { id: 9, outline: line, discovered: false },
+    ]
+}
+
+#[test]
+fn a_site_arrives_as_it_was_sent() {
+    with_site(&obstacles(), |site| {
+        let bytes = written(|w| {
+            w.site(site);
+        });
+        let mut body = Body(&bytes);
+        body.site().unwrap().lend(|arrived| assert_eq!(arrived, site));
+        assert_eq!(body.end(), Ok(()));
+    });
+}
+
+#[test]
+fn every_request_arrives_as_it_was_sent() {
+    let reasons = [
+        Reason::Start,
+        Reason::Blocked,
+        Reason::MapChanged,
+        Reason::Operator,
+        Reason::Swap { from: "apf".into() },
+        Reason::Recover,
+    ];
+    let tasks = [
+        Task::Goto { goal: CORNERS[1], tolerance_m: 0.1 },
+        Task::Follow { targets: &CORNERS, tolerance_m: 0.2 },
+    ];
+    with_site(&[], |site| {
+        for (reason, task) in reasons.iter().flat_map(|reason| tasks.iter().map(move |task| (reason, *task)))
+        {
+            let request = PlanRequest { reason, start: pose(0.5), task, site, previous: &CORNERS };
+            let bytes = written(|w| {
+                w.request(&request);
+            });
+            Body(&bytes).request().unwrap().lend(|arrived| assert_eq!(*arrived, request));
+        }
+    });
+}
+
+fn sensed<'a>(x: f64, obstacles: &'a [Obstacle<'a>], points: &'a [Point2<f64>]) -> Sensed<'a> {
+    Sensed {
+        tick: u64::MAX,
+        t_s: 1.2,
+        dt_s: 0.1,
+        pose: pose(x),
+        v_m_per_s: 0.2,
+        w_rad_per_s: -0.1,
+        target: Point2::new(3.0, 4.0),
+        targets_ahead: points,
+        path_ahead: &points[points.len() / 2..],
+        obstacles,
+    }
+}
+
+proptest! {
+    #[test]
+    fn what_is_sensed_arrives_as_it_was_sent(x in -1e9..1e9_f64, raw in prop::collection::vec(-9.0..9.0_f64, 0..40)) {
+        let points: Vec<_> = raw.windows(2).map(|w| Point2::new(w[0], w[1])).collect();
+        let obstacles = obstacles();
+        let sensed = sensed(x, &obstacles, &points);
+        let bytes = written(|w| { w.sensed(&sensed); });
+        let arrived = Body(&bytes).sensed().unwrap();
+        prop_assert!(arrived.lend(|arrived| *arrived == sensed));
+    }
+
+    #[test]
+    fn a_cut_message_is_malformed_and_nothing_worse(cut in 0_usize..300) {
+        let obstacles = obstacles();
+        let bytes = written(|w| { w.sensed(&sensed(0.0, &obstacles, &CORNERS)); });
+        prop_assume!(cut < bytes.len());
+        prop_assert_eq!(Body(&bytes[..cut]).sensed().err(), Some(Malformed));
+    }
+
+    #[test]
+    fn noise_is_malformed_and_nothing_worse(noise in prop::collection::vec(any::<u8>(), 0..400)) {
+        let _ = Body(&noise).sensed();
+        let _ = Body(&noise).request();
+        let _ = Body(&noise).values();
+    }
+}

@@ -1,0 +1,72 @@
+//! The worker process: one plugin, no way back into the console but one socket.
+
+mod confine;
+mod patience;
+mod session;
+
+use crate::wire::frame::{Incoming, Received};
+use crate::wire::{answer::BAD_OUTPUT, answer::Refusal, body::Writer, kind};
+use patience::Patience;
+use session::{Session, Trouble};
+use std::io::Write;
+use std::os::fd::OwnedFd;
+use std::os::unix::net::UnixStream;
+use std::process::ExitCode;
+
+/// Exit code of a worker that cannot talk to its console any more.
+pub(crate) const CHANNEL_LOST: u8 = 70;
+
+/// Runs a worker: takes the socket that it was given as standard input and answers until the console hangs up.
+pub fn worker_main() -> ExitCode {
+    match confine::take_socket().and_then(|socket| serve(&socket)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(_) => ExitCode::from(CHANNEL_LOST),
+    }
+}
+
+fn serve(socket: &OwnedFd) -> std::io::Result<()> {
+    confine::confine();
+    confine::die_with_the_console(socket.try_clone()?)?;
+    let mut stream = UnixStream::from(socket.try_clone()?);
+    let patience = Patience::new(socket.try_clone()?);
+    let (mut incoming, mut writer, mut session) =
+        (Incoming::default(), Writer::default(), Session::new(&patience));
+    loop {
+        match incoming.receive(&mut stream, None) {
+            Received::Frame => {}
+            Received::Closed => return Ok(()),
+            Received::Late | Received::Broken => return Err(std::io::ErrorKind::InvalidData.into()),
+        }
+        if incoming.kind() != kind::CANCEL {
+            patience.begin(incoming.soft_deadline(), incoming.has_more());
+            answer(&mut session, &incoming, &mut writer)?;
+            stream.write_all(finished(&mut writer, incoming.sequence()))?;
+        }
+    }
+}
+
+fn answer(session: &mut Session<'_>, incoming: &Incoming, writer: &mut Writer) -> std::io::Result<()> {
+    let sequence = incoming.sequence();
+    writer.begin(kind::DONE, sequence, 0);
+    match session.obey(incoming.kind(), incoming.body(), writer) {
+        Ok(()) => {}
+        Err(Trouble::Failed(refusal)) => {
+            writer.begin(kind::FAILED, sequence, 0).refusal(&refusal);
+        }
+        Err(Trouble::Refused(why)) => {
+            writer.begin(kind::REFUSED, sequence, 0).text(&why);
+        }
+        // The console sent something that its own build does not send.
+        Err(Trouble::Malformed) => return Err(std::io::ErrorKind::InvalidData.into()),
+    }
+    Ok(())
+}
+
+fn finished(writer: &mut Writer, sequence: u32) -> &[u8] {
+    if writer.finish().is_err() {
+        let message = "gave more than fits into an answer".to_owned();
+        let refusal = Refusal { code: BAD_OUTPUT, message, partial: Vec::new() };
+        writer.begin(kind::FAILED, sequence, 0).refusal(&refusal);
+    }
+    writer.finish().expect("a sentence fits into a frame")
+}

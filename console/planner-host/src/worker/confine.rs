@@ -1,0 +1,63 @@
+//! What a worker gives up before it loads anything.
+
+use rustix::event::{PollFd, PollFlags, poll};
+use rustix::process::{Resource, Rlimit, Signal, getpid, getrlimit, kill_process, nice, setrlimit};
+use std::io;
+use std::os::fd::{AsFd, OwnedFd};
+
+/// The socket lives above the numbers that careless plugins close.
+const SOCKET_AT: i32 = 200;
+const MOST_FILES: u64 = 256;
+const LARGEST_FILE: u64 = 64 << 20;
+const NICENESS: i32 = 5;
+
+/// Takes the socket that came as standard input and puts nothing in its place.
+pub(super) fn take_socket() -> io::Result<OwnedFd> {
+    let socket = rustix::io::fcntl_dupfd_cloexec(io::stdin().as_fd(), SOCKET_AT)?;
+    let nothing = std::fs::File::open("/dev/null")?;
+    rustix::stdio::dup2_stdin(&nothing)?;
+    Ok(socket)
+}
+
+/// Gives up what a planner does not need. What the system does not grant is left as it is: these are fences against
+/// accidents, and the deadlines hold without them.
+pub(super) fn confine() {
+    limit(Resource::Core, 0);
+    limit(Resource::Nofile, MOST_FILES);
+    limit(Resource::Fsize, LARGEST_FILE);
+    let _ = nice(NICENESS);
+    #[cfg(target_os = "linux")]
+    {
+        let _ = rustix::thread::set_no_new_privs(true);
+        let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
+    }
+}
+
+/// Limits the address space.
+pub(super) fn limit_memory(bytes: u64) {
+    limit(Resource::As, bytes);
+}
+
+fn limit(resource: Resource, most: u64) {
+    let most = getrlimit(resource).maximum.map_or(most, |allowed| allowed.min(most));
+    let _ = setrlimit(resource, Rlimit { current: Some(most), maximum: Some(most) });
+}
+
+/// Starts a thread that ends this process when the console is gone, also in the middle of an endless loop.
+pub(super) fn die_with_the_console(socket: OwnedFd) -> io::Result<()> {
+    std::thread::Builder::new().name("watchdog".into()).stack_size(64 << 10).spawn(move || {
+        loop {
+            let mut sockets = [PollFd::new(&socket, PollFlags::empty())];
+            // No events are asked for: only a full hang-up or an error is reported.
+            let happened = poll(&mut sockets, None).map_or(PollFlags::empty(), |_| sockets[0].revents());
+            if happened.contains(PollFlags::NVAL) {
+                // The planner closed our descriptor; the main thread finds that out, too, and ends with its own code.
+                return;
+            }
+            if !happened.is_empty() {
+                let _ = kill_process(getpid(), Signal::KILL);
+            }
+        }
+    })?;
+    Ok(())
+}

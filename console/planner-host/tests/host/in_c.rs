@@ -1,0 +1,97 @@
+//! The planner in plain C, and its header in C++.
+
+use crate::stand::{GOAL, choose, compile, config, direct_c, folder_with, plan, pose, step_at, workspace};
+use crate::state::COUNTER;
+use mission::Cause;
+use mission::link::{ParamValue, Parameters, PlannerLink};
+use nalgebra::Point2;
+use planner_api::{Drive, PoseEstimate, Status};
+use planner_host::{Host, PluginDirs};
+
+fn host() -> (tempfile::TempDir, Host) {
+    let folder = tempfile::tempdir().unwrap();
+    compile(&direct_c(), folder.path(), "direct_c", &[]);
+    let host = Host::new(&PluginDirs(vec![folder.path().to_owned()]), config());
+    (folder, host)
+}
+
+#[test]
+fn a_planner_in_c_plans_and_drives_to_the_goal() {
+    let (_folder, mut host) = host();
+    let info = choose(&mut host, "direct-c", &Parameters::new()).unwrap();
+    assert_eq!((info.parameters.len(), info.parameters[0].unit.as_str()), (2, "m/s"));
+    let planned = plan(&mut host).unwrap().value;
+    assert_eq!((planned.path, planned.cost, planned.complete), (vec![Point2::origin(), GOAL], 5.0, true));
+    let mut robot = pose(Point2::origin());
+    for tick in 0..600 {
+        let reply = step_at(&mut host, tick, robot).unwrap();
+        if reply.value.status == Status::Arrived {
+            assert!((robot.position - GOAL).norm() < 0.1);
+            return;
+        }
+        assert_eq!((reply.drawings.len(), reply.scalars[0].0.as_str()), (1, "heading_error"));
+        robot = driven(robot, reply.value.drive);
+    }
+    panic!("still at {} after a minute", robot.position);
+}
+
+fn driven(from: PoseEstimate, drive: Drive) -> PoseEstimate {
+    let Drive::Twist { v_m_per_s, w_rad_per_s } = drive else { panic!("it drives by twists") };
+    let heading_rad = from.heading_rad + 0.1 * w_rad_per_s;
+    let ahead = nalgebra::Vector2::new(heading_rad.cos(), heading_rad.sin());
+    PoseEstimate { position: from.position + 0.1 * v_m_per_s * ahead, heading_rad, ..from }
+}
+
+#[test]
+fn live_values_reach_a_planner_in_c() {
+    let (_folder, mut host) = host();
+    choose(&mut host, "direct-c", &Parameters::new()).unwrap();
+    let turn_rate =
+        |host: &mut Host, tick| match step_at(host, tick, pose(Point2::origin())).unwrap().value.drive {
+            Drive::Twist { w_rad_per_s, .. } => w_rad_per_s,
+            Drive::Velocity(_) => panic!("it drives by twists"),
+        };
+    assert!((turn_rate(&mut host, 0) - 1.0).abs() < 1e-12, "at the robot's limit");
+    let gain = |gain| Parameters::from([("turn_gain".to_owned(), ParamValue::Float(gain))]);
+    host.reconfigure(&gain(0.5)).unwrap();
+    assert!((turn_rate(&mut host, 1) - 0.5 * 4.0_f64.atan2(3.0)).abs() < 1e-12);
+    assert!(host.reconfigure(&gain(99.0)).unwrap_err().message.contains("takes 0.1 to 10 1/s"));
+    let speed = Parameters::from([("speed".to_owned(), ParamValue::Float(0.1))]);
+    assert!(host.reconfigure(&speed).unwrap_err().message.contains("cannot change under way"));
+}
+
+#[test]
+fn answers_that_are_none_are_caught() {
+    let spoilt = |by: &str| {
+        let good = "out->drive = TP_TWIST; out->status = TP_MOVING; out->a = 0.001 * c->count; out->b = 0.0;";
+        let (_folder, dirs) = folder_with("counter", &COUNTER.replace(good, &format!("(void)out; {by}")));
+        let mut host = Host::new(&dirs, config());
+        choose(&mut host, "counter", &Parameters::new()).unwrap();
+        let fault = step_at(&mut host, 0, pose(Point2::origin())).unwrap_err();
+        assert_eq!(fault.cause, Cause::BadOutput);
+        fault.message
+    };
+    assert_eq!(spoilt(""), "planner counter gave no command during step 0");
+    assert_eq!(
+        spoilt("out->drive = TP_TWIST; out->status = 77; out->a = out->b = 0.0;"),
+        "planner counter gave the unknown status 77 during step 0"
+    );
+    assert_eq!(
+        spoilt("h->error(h->ctx, \"odd\", 3); return 4711;"),
+        "planner counter failed with the unknown code 4711 (odd) during step 0"
+    );
+}
+
+#[test]
+fn the_header_is_cplusplus_11_too() {
+    let header = workspace().join("plugins/planner-api/include/tankops_planner.h");
+    let compiler = std::process::Command::new("c++")
+        .args(["-std=c++11", "-fsyntax-only", "-Wall", "-Wextra", "-pedantic", "-Werror", "-x", "c++"])
+        .arg(header)
+        .output();
+    // Not every machine that builds tankops has a C++ compiler.
+    if let Ok(compiled) = compiler {
+        let told = String::from_utf8_lossy(&compiled.stderr).replace("#pragma once in main file", "");
+        assert!(compiled.status.success(), "{told}");
+    }
+}

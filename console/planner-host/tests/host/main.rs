@@ -1,0 +1,9 @@
+//! The host against plugins that behave and plugins that do not, through real worker processes.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod faults;
+mod files;
+mod in_c;
+mod stand;
+mod state;

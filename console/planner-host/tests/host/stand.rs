@@ -1,0 +1,164 @@
+//! A tank, a robot, a host and what a C compiler makes of a few lines.
+
+use mission::link::{ParamValue, Parameters, PlannerInfo, PlannerLink, Reply};
+use mission::{Cause, Fault};
+use nalgebra::{Matrix3, Point2};
+use planner_api::{
+    Boundary, Command, Limits, Motion, Obstacle, Outline, Plan, PlanRequest, PoseEstimate, Reason, Sensed,
+    Site, Task,
+};
+use planner_host::{Host, HostConfig, PluginDirs, WorkerCommand};
+use std::path::{Path, PathBuf};
+use std::process::Command as Run;
+use std::time::Duration;
+use tempfile::TempDir;
+
+pub const GOAL: Point2<f64> = Point2::new(3.0, 4.0);
+const TICK_S: f64 = 0.1;
+
+pub fn worker() -> WorkerCommand {
+    WorkerCommand::new(env!("CARGO_BIN_EXE_planner-worker"))
+}
+
+/// Patient enough for a busy machine.
+pub fn config() -> HostConfig {
+    HostConfig { worker_command: worker(), ..HostConfig::new(Duration::from_secs(3)) }
+}
+
+/// For planners that shall be late.
+pub fn impatient() -> HostConfig {
+    HostConfig {
+        configure_deadline: Duration::from_millis(150),
+        plan_deadline: Duration::from_millis(150),
+        step_deadline: Duration::from_millis(150),
+        ..config()
+    }
+}
+
+/// A host for the plugins that were built with this test.
+pub fn host(config: HostConfig) -> Host {
+    Host::new(&built(), config)
+}
+
+/// The folder where plugins land that were built with this test.
+pub fn built() -> PluginDirs {
+    let deps = std::env::current_exe().unwrap().parent().unwrap().to_owned();
+    PluginDirs(vec![deps])
+}
+
+pub fn pose(position: Point2<f64>) -> PoseEstimate {
+    PoseEstimate { position, heading_rad: 0.0, covariance: Matrix3::identity() * 1e-4 }
+}
+
+pub fn with_site<R>(call: impl FnOnce(&Site<'_>) -> R) -> R {
+    let column = Outline::Disc { center: Point2::new(5.0, 0.0), radius_m: 0.3 };
+    let obstacles = [Obstacle { id: 1, outline: column, discovered: false }];
+    let limits = Limits {
+        motion: Motion::Unicycle,
+        v_max_m_per_s: 0.3,
+        w_max_rad_per_s: 1.0,
+        radius_m: 0.2,
+        sensing_range_m: 3.0,
+    };
+    let boundary = Boundary::Circle { radius_m: 10.0 };
+    call(&Site {
+        revision: 0,
+        boundary,
+        obstacles: &obstacles,
+        zones: &[],
+        limits,
+        swath_m: 0.4,
+        clearance_m: 0.1,
+        seed: 1,
+    })
+}
+
+pub fn words(pairs: &[(&str, &str)]) -> Parameters {
+    pairs.iter().map(|(key, word)| ((*key).to_owned(), ParamValue::Word((*word).to_owned()))).collect()
+}
+
+pub fn choose(host: &mut Host, id: &str, parameters: &Parameters) -> Result<PlannerInfo, Fault> {
+    with_site(|site| host.choose(id, parameters, site))
+}
+
+pub fn plan(host: &mut Host) -> Result<Reply<Plan>, Fault> {
+    with_site(|site| {
+        let task = Task::Goto { goal: GOAL, tolerance_m: 0.1 };
+        let start = pose(Point2::origin());
+        host.plan(&PlanRequest { reason: &Reason::Start, start, task, site, previous: &[] })
+    })
+}
+
+/// A step from the origin.
+pub fn step(host: &mut Host, tick: u64) -> Result<Reply<Command>, Fault> {
+    step_at(host, tick, pose(Point2::origin()))
+}
+
+pub fn step_at(host: &mut Host, tick: u64, pose: PoseEstimate) -> Result<Reply<Command>, Fault> {
+    let far = Outline::Disc { center: Point2::new(5.0, 0.0), radius_m: 0.3 };
+    host.step(&Sensed {
+        tick,
+        t_s: tick as f64 * TICK_S,
+        dt_s: TICK_S,
+        pose,
+        v_m_per_s: 0.0,
+        w_rad_per_s: 0.0,
+        target: GOAL,
+        targets_ahead: &[GOAL],
+        path_ahead: &[],
+        obstacles: &[Obstacle { id: 1, outline: far, discovered: false }],
+    })
+}
+
+/// Steps until the first fault, ten at most.
+pub fn fly(host: &mut Host) -> Result<(), Fault> {
+    (0..10).try_for_each(|tick| step(host, tick).map(|_| ()))
+}
+
+/// After whatever happened another planner drives.
+pub fn assert_another_drives(host: &mut Host) {
+    choose(host, "faulty", &Parameters::new()).unwrap();
+    assert!(plan(host).unwrap().value.complete);
+    fly(host).unwrap();
+}
+
+pub fn assert_refused(fault: &Fault, words: &[&str]) {
+    assert_eq!(fault.cause, Cause::Refused, "{fault}");
+    for word in words {
+        assert!(fault.message.contains(word), "`{word}` in: {fault}");
+    }
+}
+
+pub fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Compiles C into a plugin of this name in a folder.
+pub fn compile(source: &Path, folder: &Path, name: &str, defines: &[&str]) {
+    let include = workspace().join("plugins/planner-api/include");
+    let compiled = Run::new("cc")
+        .args(["-std=c11", "-O1", "-shared", "-fPIC", "-Wall", "-Wextra", "-Werror", "-pedantic"])
+        .args(defines.iter().map(|define| format!("-D{define}")))
+        .arg("-I")
+        .arg(include)
+        .arg("-o")
+        .args([&folder.join(format!("libplanner_{name}.so")), source])
+        .arg("-lm")
+        .output()
+        .unwrap();
+    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+}
+
+pub fn direct_c() -> PathBuf {
+    workspace().join("plugins/examples/direct-c/direct.c")
+}
+
+/// A folder with one plugin made from these lines.
+pub fn folder_with(name: &str, source: &str) -> (TempDir, PluginDirs) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join(format!("{name}.c"));
+    std::fs::write(&file, source).unwrap();
+    compile(&file, folder.path(), name, &[]);
+    let dirs = PluginDirs(vec![folder.path().to_owned()]);
+    (folder, dirs)
+}

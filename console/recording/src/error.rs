@@ -1,0 +1,59 @@
+//! What can go wrong with a recording.
+
+use crate::journal::JournalError;
+use std::path::PathBuf;
+
+/// Why there is no recording, or why it stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// The file could not be made.
+    #[error("cannot make the recording ({why}): {}", path.display())]
+    Create {
+        /// What the system says.
+        why: String,
+        /// Which file.
+        path: PathBuf,
+    },
+    /// The file could not be read.
+    #[error("cannot read the recording ({why}): {}", path.display())]
+    Read {
+        /// What the system or the format says.
+        why: String,
+        /// Which file.
+        path: PathBuf,
+    },
+    /// The first event is not `run_opened`, so there is no world to draw.
+    #[error("a recording begins with the event run_opened, got {got} first")]
+    NotOpened {
+        /// Which event came first.
+        got: String,
+    },
+    /// Writing failed; everything before it is in the file.
+    #[error("the recording stopped: {why}")]
+    Write {
+        /// What the system says.
+        why: String,
+    },
+    /// The recording SDK refused something.
+    #[error("the recording stopped: the recording SDK refused data ({why})")]
+    Sdk {
+        /// What it says.
+        why: String,
+    },
+    /// The journal failed.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    /// The recorder's thread could not be started.
+    #[error("cannot start the recorder's thread: {why}")]
+    Thread {
+        /// What the system says.
+        why: String,
+    },
+}
+
+impl RecordingError {
+    /// An error of the recording SDK.
+    pub(crate) fn sdk(error: &impl std::fmt::Display) -> Self {
+        Self::Sdk { why: error.to_string() }
+    }
+}

@@ -1,0 +1,75 @@
+//! The journal of a run: every event, one JSON object a line, in the order in which they happened.
+//!
+//! It carries no wall-clock time, so equal runs have equal journals, byte for byte. It is the record from which
+//! everything else (recording, report, replay) can be made again, and it does not change with the recording SDK.
+
+mod reader;
+mod writer;
+
+pub use reader::{Journal, JournalReader, read_journal};
+pub use writer::{JournalEnd, JournalWriter};
+
+use std::path::PathBuf;
+
+/// Why a journal cannot be written or read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum JournalError {
+    /// The file could not be made; a journal that exists already is never written over.
+    #[error("cannot make the journal ({why}): {}", path.display())]
+    Create {
+        /// What the system says.
+        why: String,
+        /// Which file.
+        path: PathBuf,
+    },
+    /// Writing failed; what was written before it stays.
+    #[error("the journal stopped after {bytes} bytes: {why}")]
+    Write {
+        /// How much was written.
+        bytes: u64,
+        /// What the system says.
+        why: String,
+    },
+    /// The file could not be read.
+    #[error("cannot read the journal ({why}): {}", path.display())]
+    Read {
+        /// What the system says.
+        why: String,
+        /// Which file.
+        path: PathBuf,
+    },
+    /// The first line is no `run_opened` event.
+    #[error("this is no journal: line 1 is not the event run_opened ({why}): {}", path.display())]
+    NotAJournal {
+        /// What is wrong with it.
+        why: String,
+        /// Which file.
+        path: PathBuf,
+    },
+    /// It was written by a newer tankops.
+    #[error(
+        "the journal has version {theirs} and this tankops reads up to {ours}; use the tankops that wrote it \
+         or a newer one: {}",
+        path.display()
+    )]
+    Newer {
+        /// Version of the journal.
+        theirs: u32,
+        /// Version that this tankops reads.
+        ours: u32,
+        /// Which file.
+        path: PathBuf,
+    },
+    /// A line that is complete cannot be understood.
+    #[error("the journal is damaged at line {line}, column {column} ({why}): {}", path.display())]
+    Damaged {
+        /// Which line, from 1.
+        line: usize,
+        /// Which column, from 1.
+        column: usize,
+        /// What is wrong with it.
+        why: String,
+        /// Which file.
+        path: PathBuf,
+    },
+}

@@ -1,0 +1,134 @@
+//! Events to a recording for the rerun viewer.
+
+mod document;
+mod drawings;
+mod fold;
+mod lane;
+pub(crate) mod paths;
+mod raster;
+mod scene;
+mod states;
+pub(crate) mod stream;
+pub(crate) mod style;
+mod tick;
+
+use crate::{
+    error::RecordingError,
+    identity::Identity,
+    sink::{SafeSink, SinkHealth},
+};
+use fold::Fold;
+use mission::{Event, EventKind};
+use std::{
+    io::Write,
+    path::Path,
+    sync::Arc,
+    time::{Duration, Instant},
+};
+use stream::Stream;
+
+/// Rows are sent to the file after this many ticks,
+const SEND_TICKS: u32 = 500;
+/// or after this time, whichever comes first.
+const SEND_AFTER: Duration = Duration::from_secs(5);
+
+/// Folds events into a recording.
+///
+/// What the recording holds depends on the events alone; time decides only how early it reaches the file. The first
+/// error is told once and ends the recording; events after it are not recorded.
+pub struct Recorder {
+    fold: Fold,
+    stream: Option<Stream>,
+    health: Arc<SinkHealth>,
+    ticks_waiting: u32,
+    sent_at: Instant,
+}
+
+impl Recorder {
+    /// Makes a recording where there is none.
+    ///
+    /// # Errors
+    /// [`RecordingError::Create`] if the file exists or cannot be made.
+    pub fn create(path: &Path, identity: &Identity, now: Instant) -> Result<Self, RecordingError> {
+        Self::open(SafeSink::create(path)?, identity, now)
+    }
+
+    /// A recording that goes to any writer.
+    ///
+    /// # Errors
+    /// [`RecordingError::Sdk`] if the recording SDK does not start.
+    pub fn writing_to(
+        out: Box<dyn Write + Send>,
+        identity: &Identity,
+        now: Instant,
+    ) -> Result<Self, RecordingError> {
+        Self::open(SafeSink::writing_to(out)?, identity, now)
+    }
+
+    fn open(sink: SafeSink, identity: &Identity, now: Instant) -> Result<Self, RecordingError> {
+        let health = sink.health();
+        let stream = Some(Stream::open(sink, identity)?);
+        Ok(Self { fold: Fold::default(), stream, health, ticks_waiting: 0, sent_at: now })
+    }
+
+    /// How the file is doing; stays readable after the recorder is gone.
+    pub fn health(&self) -> Arc<SinkHealth> {
+        Arc::clone(&self.health)
+    }
+
+    /// Takes in the next event; does nothing after an error.
+    ///
+    /// # Errors
+    /// The first error, once.
+    pub fn push(&mut self, event: &Event, now: Instant) -> Result<(), RecordingError> {
+        let Some(stream) = &self.stream else { return Ok(()) };
+        match self.fold.apply(event, stream) {
+            Ok(ticks_closed) => self.ticks_waiting += ticks_closed,
+            Err(error) => return self.stop(error),
+        }
+        // Whoever looks at a robot that stands still wants to see how it came to that.
+        let held = matches!(event.kind, EventKind::Held { .. });
+        if held || self.ticks_waiting >= SEND_TICKS { self.send(now) } else { self.idle(now) }
+    }
+
+    /// Sends waiting rows if it is time; to be called now and then while nothing happens.
+    ///
+    /// # Errors
+    /// The first error, once.
+    pub fn idle(&mut self, now: Instant) -> Result<(), RecordingError> {
+        if now.saturating_duration_since(self.sent_at) >= SEND_AFTER { self.send(now) } else { Ok(()) }
+    }
+
+    /// Writes everything and closes the recording.
+    ///
+    /// # Errors
+    /// The first error, also if it has been told before: the recording is not whole.
+    pub fn finish(mut self) -> Result<(), RecordingError> {
+        if let Some(stream) = &self.stream {
+            self.fold.finish(stream)?;
+            self.fold.send(stream)?;
+        }
+        // Dropping the last handle writes the footer of the format.
+        drop(self.stream.take());
+        self.health.error().map_or(Ok(()), |why| Err(RecordingError::Write { why: why.to_owned() }))
+    }
+
+    fn send(&mut self, now: Instant) -> Result<(), RecordingError> {
+        let Some(stream) = &self.stream else { return Ok(()) };
+        self.sent_at = now;
+        self.ticks_waiting = 0;
+        if let Err(error) = self.fold.send(stream) {
+            return self.stop(error);
+        }
+        stream.flush();
+        match self.health.error() {
+            Some(why) => self.stop(RecordingError::Write { why: why.to_owned() }),
+            None => Ok(()),
+        }
+    }
+
+    fn stop(&mut self, error: RecordingError) -> Result<(), RecordingError> {
+        self.stream = None;
+        Err(error)
+    }
+}

@@ -1,0 +1,179 @@
+//! The fold from events to entities.
+
+use super::{
+    document::Document,
+    drawings::Drawings,
+    paths,
+    raster::Raster,
+    scene,
+    states::States,
+    stream::{At, Stream},
+    style,
+    tick::{Tick, Ticks},
+};
+use crate::{error::RecordingError, layout, rr};
+use mission::{Event, EventKind, Severity, event::RunOpened};
+use world::{Obstacle, Point};
+
+type Done = Result<(), RecordingError>;
+
+/// The state of a recording.
+#[derive(Default)]
+pub(crate) struct Fold {
+    opened: Option<Box<Opened>>,
+}
+
+/// The state of a recording whose world is known.
+struct Opened {
+    tick: Tick,
+    ticks: Ticks,
+    drawings: Drawings,
+    raster: Raster,
+    states: States,
+    document: Document,
+    target: Option<Point>,
+}
+
+impl Fold {
+    /// Takes in an event and returns how many ticks it closed: none or one.
+    pub(crate) fn apply(&mut self, event: &Event, stream: &Stream) -> Result<u32, RecordingError> {
+        let at = At::of(event);
+        match (&mut self.opened, &event.kind) {
+            (None, EventKind::RunOpened(run)) => {
+                self.opened = Some(Box::new(Opened::new(run, at, stream)?));
+                log(stream, event, at)?;
+                Ok(0)
+            }
+            (None, _) => Err(RecordingError::NotOpened { got: name_of(event) }),
+            (Some(opened), _) => {
+                let closes = at.tick != opened.tick.at.tick;
+                if closes {
+                    opened.close_tick(stream, at)?;
+                }
+                log(stream, event, at)?;
+                opened.apply(event, at, stream)?;
+                Ok(u32::from(closes))
+            }
+        }
+    }
+
+    /// Closes what is open at the end of the run.
+    pub(crate) fn finish(&mut self, stream: &Stream) -> Done {
+        let Some(opened) = &mut self.opened else { return Ok(()) };
+        let at = opened.tick.at;
+        opened.close_tick(stream, at)?;
+        opened.ticks.finish();
+        opened.raster.picture(stream, at)?;
+        opened.states.finish(stream)
+    }
+
+    /// Sends waiting rows.
+    pub(crate) fn send(&mut self, stream: &Stream) -> Done {
+        let Some(opened) = &mut self.opened else { return Ok(()) };
+        opened.ticks.send(stream)?;
+        opened.drawings.send(stream)
+    }
+}
+
+impl Opened {
+    fn new(run: &RunOpened, at: At, stream: &Stream) -> Result<Self, RecordingError> {
+        stream.layout(layout::messages(run)?);
+        scene::draw(stream, run)?;
+        let document = Document::new(run.clone());
+        stream.property("run", &document.run_properties())?;
+        stream.always(
+            paths::SCENARIO,
+            &rr::TextDocument::new(format!("```toml\n{}\n```\n", run.scenario_toml))
+                .with_media_type(rr::MediaType::markdown()),
+        )?;
+        let (low, high) = run.world.boundary.bounds();
+        let opened = Self {
+            tick: Tick::new(at),
+            ticks: Ticks::open(stream, run)?,
+            drawings: Drawings::new((high.x - low.x).min(high.y - low.y)),
+            raster: Raster::open(stream, run)?,
+            states: States::open(stream, at)?,
+            document,
+            target: None,
+        };
+        opened.write_document(stream, at)?;
+        Ok(opened)
+    }
+
+    fn apply(&mut self, event: &Event, at: At, stream: &Stream) -> Done {
+        self.states.apply(&event.kind, at);
+        match &event.kind {
+            EventKind::Covered { runs } => self.raster.mark(runs),
+            EventKind::Planned { path, .. } => {
+                let strip = path.iter().map(|point| super::lane::flat(*point));
+                let path = rr::LineStrips2D::update_fields().with_strips([rr::LineStrip2D::from_iter(strip)]);
+                stream.once(paths::PLANNED, at, &path)?;
+            }
+            EventKind::ObstacleFound { obstacle } | EventKind::ObstacleMoved { obstacle, .. } => {
+                draw_found(stream, at, obstacle)?;
+            }
+            EventKind::PlannerChosen { choice, info, .. } => {
+                self.document.planner_chosen(choice, info);
+                stream.property("planners", &self.document.planner_properties())?;
+                self.write_document(stream, at)?;
+            }
+            EventKind::ParametersChanged { choice } => {
+                self.document.parameters_changed(choice);
+                stream.property("planners", &self.document.planner_properties())?;
+                self.write_document(stream, at)?;
+            }
+            EventKind::Progressed { target, .. } if self.target != Some(*target) => {
+                self.target = Some(*target);
+                let dot = rr::Points2D::update_fields().with_positions([super::lane::flat(*target)]);
+                stream.once(paths::TARGET, at, &dot)?;
+            }
+            EventKind::Ended { outcome, reason } => {
+                self.document.ended(*outcome, reason);
+                if let Some(end) = self.document.end_properties() {
+                    stream.property("end", &end)?;
+                }
+                self.write_document(stream, at)?;
+            }
+            _ => {}
+        }
+        self.tick.apply(&event.kind);
+        Ok(())
+    }
+
+    fn close_tick(&mut self, stream: &Stream, next: At) -> Done {
+        let tick = std::mem::replace(&mut self.tick, Tick::new(next));
+        self.drawings.show(stream, tick.at, &tick.drawings)?;
+        self.raster.picture_if_due(stream, tick.at)?;
+        self.ticks.push(stream, &tick)
+    }
+
+    fn write_document(&self, stream: &Stream, at: At) -> Done {
+        let text = rr::TextDocument::from_markdown(self.document.text());
+        stream.once(paths::SUMMARY, at, &text)
+    }
+}
+
+fn draw_found(stream: &Stream, at: At, obstacle: &Obstacle) -> Done {
+    let drawn = scene::lines([scene::outline(&obstacle.shape)], style::FOUND, 2.0)
+        .with_radii([scene::thickness(&obstacle.shape, 2.0)])
+        .with_labels([obstacle.name.as_str()]);
+    stream.once(&format!("{}/{}", paths::OBSTACLES_FOUND, obstacle.id.0), at, &drawn)
+}
+
+fn log(stream: &Stream, event: &Event, at: At) -> Done {
+    let Some(line) = event.log_line() else { return Ok(()) };
+    let level = match line.severity {
+        Severity::Info => rr::TextLogLevel::INFO,
+        Severity::Watch => rr::TextLogLevel::WARN,
+        Severity::Warn => rr::TextLogLevel::ERROR,
+        Severity::Crit => rr::TextLogLevel::CRITICAL,
+    };
+    let text = rr::TextLog::new(line.text).with_level(level);
+    stream.once(&format!("{}/{}", paths::LOG, line.source), at, &text)
+}
+
+/// The name of an event as the journal has it.
+fn name_of(event: &Event) -> String {
+    let json = serde_json::to_value(event).unwrap_or_default();
+    json["event"].as_str().unwrap_or("something unreadable").to_owned()
+}

@@ -1,0 +1,55 @@
+//! Names of the entities: where in the recording things are found.
+
+/// Root of the map's view.
+pub(crate) const MAP: &str = "map";
+/// The tank frame, turned over for the viewer.
+pub(crate) const WORLD: &str = "map/world";
+pub(crate) const TANK: &str = "map/world/tank";
+pub(crate) const START: &str = "map/world/start";
+pub(crate) const OBSTACLES_KNOWN: &str = "map/world/obstacles/known";
+pub(crate) const OBSTACLES_HIDDEN: &str = "map/world/obstacles/hidden";
+pub(crate) const OBSTACLES_FOUND: &str = "map/world/obstacles/found";
+pub(crate) const ZONES: &str = "map/world/zones";
+pub(crate) const STATIONS: &str = "map/world/ae/stations";
+pub(crate) const RANGES: &str = "map/world/ae/ranges";
+pub(crate) const FIX: &str = "map/world/ae/fix";
+pub(crate) const PRESET: &str = "map/world/path/preset";
+pub(crate) const GOAL: &str = "map/world/path/goal";
+pub(crate) const PLANNED: &str = "map/world/path/planned";
+pub(crate) const TARGET: &str = "map/world/path/target";
+pub(crate) const WAY_TRUE: &str = "map/world/way/true";
+pub(crate) const WAY_ESTIMATE: &str = "map/world/way/est";
+pub(crate) const TRUE: &str = "map/world/robot/true";
+pub(crate) const ESTIMATE: &str = "map/world/robot/est";
+/// Moves with the true pose.
+pub(crate) const BODY: &str = "map/world/robot/body";
+pub(crate) const HEADING: &str = "map/world/robot/body/heading";
+pub(crate) const HULL: &str = "map/world/robot/body/hull";
+pub(crate) const COVARIANCE: &str = "map/world/robot/cov";
+/// Arrows of planners, one entity a layer below it.
+pub(crate) const FORCES: &str = "map/world/forces";
+/// Circles and lines of planners, one entity a layer and kind below it.
+pub(crate) const DRAWN: &str = "map/world/drawn";
+pub(crate) const COVERAGE: &str = "map/world/coverage";
+
+pub(crate) const SCALARS: &str = "scalars";
+pub(crate) const ERROR: &str = "scalars/position_error";
+pub(crate) const ERROR_95: &str = "scalars/position_error_95";
+pub(crate) const COVERED: &str = "scalars/coverage_reachable";
+pub(crate) const SPEED: &str = "scalars/speed";
+pub(crate) const SPEED_SENT: &str = "scalars/speed_commanded";
+pub(crate) const CLEARANCE: &str = "scalars/clearance";
+pub(crate) const CROSS_TRACK: &str = "scalars/cross_track";
+pub(crate) const FORCE_SIZES: &str = "scalars/forces";
+/// Figures that planners report, one entity a name below it.
+pub(crate) const PLANNER_SCALARS: &str = "scalars/planner";
+
+/// Lanes of the timeline of states.
+pub(crate) const STATE: &str = "state";
+pub(crate) const STATE_PLANNER: &str = "state/planner";
+pub(crate) const STATE_MISSION: &str = "state/mission";
+pub(crate) const STATE_POSITION: &str = "state/position";
+/// The event log, one entity a source below it.
+pub(crate) const LOG: &str = "log";
+pub(crate) const SUMMARY: &str = "mission/summary";
+pub(crate) const SCENARIO: &str = "mission/scenario";

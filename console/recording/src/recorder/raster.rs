@@ -1,0 +1,102 @@
+//! The scanned floor as a picture.
+
+use super::{
+    paths,
+    stream::{At, Stream},
+};
+use crate::{error::RecordingError, rr};
+use mission::event::RunOpened;
+use world::{CellRun, coverage::Cell};
+
+/// Seconds of mission time between two pictures of a small floor.
+const PERIOD_S: f64 = 5.0;
+/// Large floors are pictured more rarely: cells for each tick between two pictures.
+const CELLS_PER_TICK: usize = 500;
+
+/// What a cell looks like; class 0 is not drawn.
+const OPEN: u8 = 0;
+const UNREACHABLE: u8 = 1;
+const SCANNED: u8 = 2;
+
+/// The scanned floor, and when it was pictured last.
+pub(crate) struct Raster {
+    classes: Vec<u8>,
+    width: usize,
+    height: usize,
+    period_ticks: i64,
+    pictured: Option<i64>,
+    changed: bool,
+}
+
+impl Raster {
+    /// The floor of a run, and how its cells look.
+    pub(crate) fn open(stream: &Stream, run: &RunOpened) -> Result<Self, RecordingError> {
+        let floor = &run.floor;
+        let place = rr::Transform3D::from_translation_scale(
+            [floor.origin.x as f32, floor.origin.y as f32, 0.0],
+            [floor.cell_m as f32, floor.cell_m as f32, 1.0],
+        );
+        stream.always(paths::COVERAGE, &place)?;
+        let class = |id: u8, label: &str, [red, green, blue, alpha]: [u8; 4]| rr::AnnotationInfo {
+            id: u16::from(id),
+            label: Some(label.into()),
+            color: Some(rr::Rgba32::from_unmultiplied_rgba(red, green, blue, alpha)),
+        };
+        let classes = [
+            class(OPEN, "not scanned", [0, 0, 0, 0]),
+            class(UNREACHABLE, "out of reach", [95, 85, 80, 255]),
+            class(SCANNED, "scanned", [40, 110, 200, 255]),
+        ];
+        stream.always(paths::COVERAGE, &rr::AnnotationContext::new(classes))?;
+        let mut cells: Vec<u8> = (0..floor.len()).map(|index| bare(floor.kind(index))).collect();
+        // A journal that was edited by hand may claim more cells than it lists.
+        cells.resize(floor.width * floor.height, OPEN);
+        let small_floor = (PERIOD_S / run.mission.tick_s).round().max(1.0) as i64;
+        Ok(Self {
+            classes: cells,
+            width: floor.width,
+            height: floor.height,
+            period_ticks: small_floor.max((floor.width * floor.height / CELLS_PER_TICK) as i64),
+            pictured: None,
+            changed: true,
+        })
+    }
+
+    /// Takes in newly scanned cells.
+    pub(crate) fn mark(&mut self, runs: &[CellRun]) {
+        for run in runs {
+            let (first, count) = (run.0 as usize, run.1 as usize);
+            let last = (first + count).min(self.classes.len());
+            if let Some(cells) = self.classes.get_mut(first..last) {
+                cells.fill(SCANNED);
+                self.changed = true;
+            }
+        }
+    }
+
+    /// Pictures the floor if it changed and the last picture is old enough.
+    pub(crate) fn picture_if_due(&mut self, stream: &Stream, at: At) -> Result<(), RecordingError> {
+        let due = self.pictured.is_none_or(|tick| at.tick - tick >= self.period_ticks);
+        if due { self.picture(stream, at) } else { Ok(()) }
+    }
+
+    /// Pictures the floor if it changed.
+    pub(crate) fn picture(&mut self, stream: &Stream, at: At) -> Result<(), RecordingError> {
+        if !self.changed || self.classes.is_empty() {
+            return Ok(());
+        }
+        self.changed = false;
+        self.pictured = Some(at.tick);
+        let size = [self.width as u32, self.height as u32];
+        let format = rr::ImageFormat::segmentation(size, rr::ChannelDatatype::U8);
+        let image = rr::SegmentationImage::new(self.classes.clone(), format);
+        stream.once(paths::COVERAGE, at, &image.with_opacity(0.55).with_draw_order(-10.0))
+    }
+}
+
+fn bare(cell: Cell) -> u8 {
+    match cell {
+        Cell::Outside | Cell::Reachable => OPEN,
+        Cell::Unreachable => UNREACHABLE,
+    }
+}

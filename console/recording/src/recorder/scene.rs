@@ -1,0 +1,178 @@
+//! What stands still: tank, obstacles, zones, stations, preset path, and how everything else is drawn.
+
+use super::{
+    lane::{Flat, flat},
+    paths,
+    stream::Stream,
+    style,
+};
+use crate::{error::RecordingError, rr};
+use mission::{TaskConfig, event::RunOpened};
+use std::f64::consts::TAU;
+use world::{Boundary, Obstacle, Point, Shape, ZoneKind};
+
+type Done = Result<(), RecordingError>;
+
+/// More labels than this hide the map; the names are there on hovering.
+const MOST_LABELS: usize = 12;
+/// Half the size of the cross that stands for an obstacle without extent, metres.
+const CROSS_M: f64 = 0.08;
+
+/// Draws everything that stands still.
+pub(crate) fn draw(stream: &Stream, run: &RunOpened) -> Done {
+    // The viewer draws y downwards in two dimensions. The picture is turned over once, here; the data stays true.
+    let upright = [[1.0_f32, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
+    stream.always(paths::WORLD, &rr::Transform3D::from_mat3x3(upright))?;
+    draw_wall(stream, &run.world.boundary)?;
+    let (known, hidden): (Vec<_>, Vec<_>) = run.world.obstacles.iter().partition(|obstacle| obstacle.known);
+    draw_obstacles(stream, paths::OBSTACLES_KNOWN, &known, style::OBSTACLE, 2.0)?;
+    draw_obstacles(stream, paths::OBSTACLES_HIDDEN, &hidden, style::HIDDEN, 1.0)?;
+    draw_zones(stream, run)?;
+    draw_stations(stream, run)?;
+    draw_task(stream, &run.mission.task)?;
+    let start =
+        rr::Points2D::new([flat(run.mission.start.position)]).with_colors([style::color(style::WALL)]);
+    stream.always(paths::START, &start.with_radii([style::on_screen(3.0)]).with_labels(["start"]))?;
+    style_moving(stream, run)
+}
+
+fn draw_wall(stream: &Stream, boundary: &Boundary) -> Done {
+    let wall = match boundary {
+        Boundary::Circle { radius_m } => circle(Point::origin(), *radius_m, 180),
+        Boundary::Polygon { vertices } => ring(vertices),
+    };
+    stream.always(paths::TANK, &lines([wall], style::WALL, 2.0))
+}
+
+fn draw_obstacles(stream: &Stream, path: &str, obstacles: &[&Obstacle], color: [u8; 4], width: f32) -> Done {
+    if obstacles.is_empty() {
+        return Ok(());
+    }
+    let strips = obstacles.iter().map(|obstacle| outline(&obstacle.shape));
+    let drawn = lines(strips, color, width)
+        .with_radii(obstacles.iter().map(|obstacle| thickness(&obstacle.shape, width)))
+        .with_labels(obstacles.iter().map(|obstacle| obstacle.name.as_str()))
+        .with_show_labels(path == paths::OBSTACLES_KNOWN && obstacles.len() <= MOST_LABELS);
+    stream.always(path, &drawn)
+}
+
+fn draw_zones(stream: &Stream, run: &RunOpened) -> Done {
+    let zones = &run.world.zones;
+    if zones.is_empty() {
+        return Ok(());
+    }
+    let color = |kind| match kind {
+        ZoneKind::NoGo => [235, 100, 90, 140],
+        ZoneKind::Land => [200, 180, 120, 110],
+        ZoneKind::Underwater => [80, 150, 200, 110],
+    };
+    let drawn = lines(zones.iter().map(|zone| outline(&zone.shape)), style::WALL, 1.0)
+        .with_radii(zones.iter().map(|zone| thickness(&zone.shape, 1.0)))
+        .with_colors(zones.iter().map(|zone| style::color(color(zone.kind))))
+        .with_labels(zones.iter().map(|zone| zone.name.as_str()))
+        .with_show_labels(zones.len() <= MOST_LABELS)
+        .with_draw_order(-5.0);
+    stream.always(paths::ZONES, &drawn)
+}
+
+fn draw_stations(stream: &Stream, run: &RunOpened) -> Done {
+    let stations = &run.world.stations;
+    let drawn = rr::Points2D::new(stations.iter().map(|station| flat(station.position)))
+        .with_colors([style::color(style::STATION)])
+        .with_radii([style::on_screen(6.0)])
+        .with_labels(stations.iter().map(|station| station.name.as_str()))
+        .with_show_labels(stations.len() <= MOST_LABELS);
+    stream.always(paths::STATIONS, &drawn)
+}
+
+fn draw_task(stream: &Stream, task: &TaskConfig) -> Done {
+    match task {
+        TaskConfig::Follow { path, .. } => {
+            let preset = path.iter().map(|point| flat(*point)).collect();
+            stream.always(paths::PRESET, &lines([preset], style::PRESET, 0.8))
+        }
+        TaskConfig::Goto { goal, .. } => {
+            let goal = rr::Points2D::new([flat(*goal)]).with_colors([style::color(style::PLAN)]);
+            stream.always(paths::GOAL, &goal.with_radii([style::on_screen(6.0)]).with_labels(["goal"]))
+        }
+    }
+}
+
+/// Colours and widths of what moves, and the shapes that move with the robot; the stream then carries places only.
+fn style_moving(stream: &Stream, run: &RunOpened) -> Done {
+    let radius_m = run.mission.limits.radius_m;
+    let (low, high) = run.world.boundary.bounds();
+    let heading_m = (2.0 * radius_m).max(0.03 * (high - low).norm());
+    let heading = rr::Arrows2D::from_vectors([[heading_m as f32, 0.0]]).with_origins([[0.0, 0.0]]);
+    stream.always(
+        paths::HEADING,
+        &heading.with_colors([style::color(style::TRUE)]).with_radii([style::on_screen(2.0)]),
+    )?;
+    stream.always(paths::HULL, &lines([circle(Point::origin(), radius_m, 32)], style::TRUE, 1.5))?;
+    let dots = |color, radius| {
+        rr::Points2D::update_fields()
+            .with_colors([style::color(color)])
+            .with_radii([style::on_screen(radius)])
+    };
+    stream.always(paths::TRUE, &dots(style::TRUE, 2.0))?;
+    stream.always(paths::ESTIMATE, &dots(style::ESTIMATE, 1.5))?;
+    stream.always(paths::TARGET, &dots(style::PLAN, 4.0))?;
+    stream.always(paths::FIX, &dots(style::STATION, 2.5))?;
+    let covariance = rr::Ellipses2D::update_fields().with_colors([style::color(style::ESTIMATE)]);
+    stream.always(paths::COVARIANCE, &covariance.with_line_radii([style::on_screen(1.2)]))?;
+    stream.always(paths::PLANNED, &line_style(style::PLAN, 1.5))?;
+    stream.always(paths::WAY_TRUE, &line_style([90, 220, 130, 130], 1.0))?;
+    stream.always(paths::WAY_ESTIMATE, &line_style([255, 120, 220, 110], 0.8))?;
+    stream.always(paths::RANGES, &rr::LineStrips2D::update_fields().with_radii([style::on_screen(0.7)]))
+}
+
+/// Colour and width of lines that come later.
+pub(crate) fn line_style(color: [u8; 4], width: f32) -> rr::LineStrips2D {
+    rr::LineStrips2D::update_fields().with_colors([style::color(color)]).with_radii([style::on_screen(width)])
+}
+
+/// Lines of one colour.
+pub(crate) fn lines(
+    strips: impl IntoIterator<Item = Vec<Flat>>,
+    color: [u8; 4],
+    width: f32,
+) -> rr::LineStrips2D {
+    rr::LineStrips2D::new(strips.into_iter().map(rr::LineStrip2D::from_iter))
+        .with_colors([style::color(color)])
+        .with_radii([style::on_screen(width)])
+}
+
+/// The outline of a shape as a line; a polyline is its own centre line, drawn as thick as it is.
+pub(crate) fn outline(shape: &Shape) -> Vec<Flat> {
+    match shape {
+        Shape::Disc { center, radius_m } if *radius_m < CROSS_M / 4.0 => cross(*center),
+        Shape::Disc { center, radius_m } => circle(*center, *radius_m, 48),
+        Shape::Polygon { vertices } => ring(vertices),
+        Shape::Polyline { points, .. } => points.iter().map(|point| flat(*point)).collect(),
+    }
+}
+
+/// How thick the outline of a shape is drawn.
+pub(crate) fn thickness(shape: &Shape, width: f32) -> rr::Radius {
+    match shape {
+        Shape::Polyline { half_width_m, .. } if *half_width_m > 0.0 => style::on_floor(*half_width_m),
+        _ => style::on_screen(width),
+    }
+}
+
+fn ring(vertices: &[Point]) -> Vec<Flat> {
+    vertices.iter().chain(vertices.first()).map(|point| flat(*point)).collect()
+}
+
+fn circle(center: Point, radius_m: f64, pieces: u32) -> Vec<Flat> {
+    let at = |k| {
+        let angle = TAU * f64::from(k) / f64::from(pieces);
+        flat([center.x + radius_m * angle.cos(), center.y + radius_m * angle.sin()])
+    };
+    (0..=pieces).map(at).collect()
+}
+
+fn cross(center: Point) -> Vec<Flat> {
+    let corner = |x, y| flat([center.x + x * CROSS_M, center.y + y * CROSS_M]);
+    vec![corner(-1.0, -1.0), corner(1.0, 1.0), corner(0.0, 0.0), corner(-1.0, 1.0), corner(1.0, -1.0)]
+}

@@ -1,0 +1,89 @@
+//! The way into the recording: what stands still, what happens once, and columns of what happens every tick.
+
+use crate::{error::RecordingError, identity::Identity, rr, sink::SafeSink};
+use std::time::Duration;
+
+/// Name of the application in the viewer; the viewer keeps layouts by it.
+pub(crate) const APPLICATION: &str = "tankops";
+/// Timeline that counts ticks.
+pub(crate) const TICK: &str = "tick";
+/// Timeline of mission time.
+pub(crate) const SIM_TIME: &str = "sim_time";
+
+/// A moment of the mission on both timelines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct At {
+    /// Number of the tick.
+    pub tick: i64,
+    /// Mission time, nanoseconds.
+    pub sim_ns: i64,
+}
+
+impl At {
+    /// The moment of an event.
+    pub(crate) fn of(event: &mission::Event) -> Self {
+        Self { tick: event.tick as i64, sim_ns: (event.t_s * 1e9).round() as i64 }
+    }
+}
+
+/// A recording that is being written.
+pub(crate) struct Stream {
+    inner: rr::RecordingStream,
+}
+
+type Done = Result<(), RecordingError>;
+
+impl Stream {
+    /// Begins a recording.
+    pub(crate) fn open(sink: SafeSink, identity: &Identity) -> Result<Self, RecordingError> {
+        let builder =
+            rr::RecordingStreamBuilder::new(APPLICATION).recording_id(identity.recording_id.clone());
+        let (_, store, _, _, hooks, _) = builder.into_args();
+        // Without a start time: two recordings of one run shall not differ.
+        let info = rr::RecordingInfo::update_fields().with_name(identity.name.clone());
+        let batcher =
+            rr::ChunkBatcherConfig { flush_tick: Duration::from_secs(5), ..rr::ChunkBatcherConfig::DEFAULT };
+        let inner = rr::RecordingStream::new(store, Some(info), Some(batcher), hooks, Box::new(sink));
+        let inner = inner.map_err(|error| RecordingError::sdk(&error))?;
+        inner.set_log_time_enabled(false);
+        inner.set_log_tick_enabled(false);
+        Ok(Self { inner })
+    }
+
+    /// Logs what holds for the whole recording.
+    pub(crate) fn always(&self, path: &str, what: &dyn rr::AsComponents) -> Done {
+        self.inner.log_static(path, what).map_err(|error| RecordingError::sdk(&error))
+    }
+
+    /// Logs a property of the recording.
+    pub(crate) fn property(&self, name: &str, values: &rr::AnyValues) -> Done {
+        self.inner.send_property(name, values).map_err(|error| RecordingError::sdk(&error))
+    }
+
+    /// Logs what happened at a moment.
+    pub(crate) fn once(&self, path: &str, at: At, what: &dyn rr::AsComponents) -> Done {
+        self.inner.set_time_sequence(TICK, at.tick);
+        self.inner.set_time(SIM_TIME, rr::TimeCell::from_duration_nanos(at.sim_ns));
+        self.inner.log(path, what).map_err(|error| RecordingError::sdk(&error))
+    }
+
+    /// Sends many moments of one entity as one chunk.
+    pub(crate) fn columns(&self, path: &str, at: &[At], columns: Vec<rr::SerializedComponentColumn>) -> Done {
+        let times = [
+            rr::TimeColumn::new_sequence(TICK, at.iter().map(|at| at.tick)),
+            rr::TimeColumn::new_duration_nanos(SIM_TIME, at.iter().map(|at| at.sim_ns)),
+        ];
+        self.inner.send_columns(path, times, columns).map_err(|error| RecordingError::sdk(&error))
+    }
+
+    /// Sends the layout.
+    pub(crate) fn layout(&self, (messages, activation): (Vec<rr::LogMsg>, rr::BlueprintActivationCommand)) {
+        self.inner.send_blueprint(messages, activation);
+    }
+
+    /// Starts the way of everything logged so far to the file, without waiting for it.
+    pub(crate) fn flush(&self) {
+        // The sink keeps its error for itself; it is looked at there.
+        let _ = self.inner.flush_async();
+    }
+}

@@ -1,0 +1,62 @@
+//! How things look in the viewer: colours by meaning, on a dark floor.
+
+use crate::rr;
+
+/// A colour with full strength.
+pub(crate) const fn rgb(red: u8, green: u8, blue: u8) -> [u8; 4] {
+    [red, green, blue, 255]
+}
+
+/// Behind the map.
+pub(crate) const FLOOR: [u8; 4] = rgb(18, 22, 28);
+/// The wall of the tank.
+pub(crate) const WALL: [u8; 4] = rgb(200, 205, 215);
+/// Obstacles on the drawing.
+pub(crate) const OBSTACLE: [u8; 4] = rgb(235, 100, 90);
+/// Obstacles that must be discovered, as they truly are.
+pub(crate) const HIDDEN: [u8; 4] = rgb(140, 80, 80);
+/// Obstacles that were discovered, as estimated.
+pub(crate) const FOUND: [u8; 4] = rgb(255, 170, 60);
+/// Stations and what they measure.
+pub(crate) const STATION: [u8; 4] = rgb(250, 200, 70);
+/// Ranges that were used.
+pub(crate) const RANGE: [u8; 4] = [250, 200, 70, 110];
+/// Ranges that were left out.
+pub(crate) const RANGE_EXCLUDED: [u8; 4] = rgb(255, 70, 60);
+/// The truth.
+pub(crate) const TRUE: [u8; 4] = rgb(90, 220, 130);
+/// The estimate.
+pub(crate) const ESTIMATE: [u8; 4] = rgb(255, 120, 220);
+/// The preset path.
+pub(crate) const PRESET: [u8; 4] = [140, 150, 170, 150];
+/// The planned path and the target.
+pub(crate) const PLAN: [u8; 4] = rgb(90, 170, 255);
+/// A figure that is neither of the truth nor of the estimate.
+pub(crate) const FIGURE: [u8; 4] = rgb(120, 200, 255);
+/// A figure that warns.
+pub(crate) const WARNING: [u8; 4] = rgb(255, 160, 60);
+
+/// Colours for things that come up on the way, like planners.
+pub(crate) const SERIES: [[u8; 4]; 6] = [
+    rgb(70, 130, 200),
+    rgb(150, 110, 200),
+    rgb(60, 160, 150),
+    rgb(190, 140, 70),
+    rgb(190, 90, 130),
+    rgb(120, 150, 80),
+];
+
+/// The SDK's form of a colour.
+pub(crate) fn color([red, green, blue, alpha]: [u8; 4]) -> rr::Color {
+    rr::Color::from_unmultiplied_rgba(red, green, blue, alpha)
+}
+
+/// A width on screen, whatever the zoom.
+pub(crate) fn on_screen(points: f32) -> rr::Radius {
+    rr::Radius::new_ui_points(points)
+}
+
+/// A width on the floor, metres.
+pub(crate) fn on_floor(metres: f64) -> rr::Radius {
+    rr::Radius::new_scene_units(metres as f32)
+}

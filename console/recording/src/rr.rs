@@ -1,0 +1,22 @@
+//! Every name of the recording SDK that this crate uses, so that the SDK can be exchanged in one place.
+
+pub use re_log_encoding::{DecoderApp, Encoder, EncodingOptions};
+pub use rerun::{
+    AnyValues, AsComponents, ComponentIdentifier, RecordingStream, RecordingStreamBuilder,
+    RecordingStreamError, SerializationError, SerializedComponentBatch, SerializedComponentColumn, StoreKind,
+    TimeCell, TimeColumn,
+    archetypes::{
+        AnnotationContext, Arrows2D, Ellipses2D, LineStrips2D, Points2D, RecordingInfo, Scalars,
+        SegmentationImage, SeriesLines, StateChange, StateConfiguration, TextDocument, TextLog, Transform3D,
+    },
+    blueprint as bp,
+    components::{Color, ImageFormat, LineStrip2D, MediaType, Radius, Text, TextLogLevel},
+    datatypes::{self, Angle, AnnotationInfo, ChannelDatatype, Rgba32, RotationAxisAngle},
+    external::{
+        re_build_info::CrateVersion,
+        re_log_types::BlueprintActivationCommand,
+        re_sdk_types::blueprint::{archetypes as view, components as view_part},
+    },
+    log::{Chunk, ChunkBatcherConfig, LogMsg},
+    sink::{LogSink, SinkFlushError},
+};

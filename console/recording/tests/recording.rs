@@ -1,0 +1,19 @@
+//! Journal and recording, written and read back.
+
+#[path = "recording/content.rs"]
+mod content;
+#[path = "recording/disk.rs"]
+mod disk;
+#[path = "recording/journal.rs"]
+mod journal;
+#[path = "recording/recorder.rs"]
+mod recorder;
+#[path = "recording/synthetic.rs"]
+mod synthetic;
+#[path = "recording/thread.rs"]
+mod thread;
+
+/// A made-up run of so many ticks as one list.
+fn events(ticks: u64) -> Vec<mission::Event> {
+    synthetic::run(ticks).into_iter().flatten().collect()
+}

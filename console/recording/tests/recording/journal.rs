@@ -1,0 +1,142 @@
+//! The journal, whole, torn and damaged.
+
+use crate::events;
+use mission::event::JOURNAL_VERSION;
+use recording::{JournalError, JournalWriter, read_journal};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+use tempfile::{TempDir, tempdir};
+
+fn written(ticks: u64) -> (TempDir, PathBuf) {
+    let folder = tempdir().expect("a folder");
+    let path = folder.path().join("events.jsonl");
+    let now = Instant::now();
+    let mut journal = JournalWriter::create(&path, now).expect("a new file");
+    for event in events(ticks) {
+        journal.append(&event, now).expect("room on the disk");
+    }
+    journal.finish().expect("room on the disk");
+    (folder, path)
+}
+
+fn change(path: &Path, change: impl FnOnce(String) -> String) {
+    let text = fs::read_to_string(path).expect("a text file");
+    fs::write(path, change(text)).expect("writable");
+}
+
+#[test]
+fn what_is_written_is_read_back() {
+    let (_folder, path) = written(200);
+    let journal = read_journal(&path).expect("a whole journal");
+    assert_eq!(journal.events, events(200));
+    assert_eq!(journal.truncated, None);
+}
+
+#[test]
+fn the_hash_is_that_of_the_file() {
+    let folder = tempdir().expect("a folder");
+    let path = folder.path().join("events.jsonl");
+    let now = Instant::now();
+    let mut journal = JournalWriter::create(&path, now).expect("a new file");
+    let mut unwritten = JournalWriter::unwritten(now);
+    for event in events(50) {
+        journal.append(&event, now).expect("room on the disk");
+        unwritten.append(&event, now).expect("nothing to fail");
+    }
+    let end = journal.finish().expect("room on the disk");
+    let bytes = fs::read(&path).expect("readable");
+    let digest = format!("{:x?}", <sha2::Sha256 as sha2::Digest>::digest(&bytes).as_slice());
+    let of_the_file = digest.trim_matches(['[', ']']).split(", ").map(|byte| format!("{byte:0>2}"));
+    assert_eq!(end.events_sha256, of_the_file.collect::<Vec<_>>().concat());
+    assert_eq!(end.bytes, bytes.len() as u64);
+    assert_eq!(unwritten.finish().expect("nothing to fail").events_sha256, end.events_sha256);
+}
+
+#[test]
+fn a_line_that_was_cut_off_by_a_kill_is_left_out() {
+    let (_folder, path) = written(20);
+    let whole = read_journal(&path).expect("a whole journal").events;
+    change(&path, |text| text[..text.len() - 10].to_owned());
+    let journal = read_journal(&path).expect("a torn journal can be read");
+    assert_eq!(journal.events, whole[..whole.len() - 1]);
+    let truncated = journal.truncated.expect("it is told");
+    assert!(truncated.starts_with(&format!("line {}, the last one, is cut off", whole.len())), "{truncated}");
+}
+
+#[test]
+fn a_journal_cut_anywhere_gives_a_beginning_of_the_run() {
+    let (_folder, path) = written(3);
+    let whole = read_journal(&path).expect("a whole journal").events;
+    let bytes = fs::read(&path).expect("readable");
+    for length in (0..bytes.len()).step_by(97) {
+        fs::write(&path, &bytes[..length]).expect("writable");
+        let journal = read_journal(&path).expect("a torn journal can be read");
+        assert!(whole.starts_with(&journal.events), "cut at {length}");
+    }
+}
+
+#[test]
+fn damage_in_the_middle_is_told_with_line_and_column() {
+    let (_folder, path) = written(20);
+    change(&path, |text| {
+        let mut lines: Vec<_> = text.lines().map(str::to_owned).collect();
+        lines[6] = lines[6].replacen(':', ";", 1);
+        lines.join("\n") + "\n"
+    });
+    let error = read_journal(&path).expect_err("line 7 is damaged");
+    let JournalError::Damaged { line: 7, column, .. } = &error else { panic!("{error}") };
+    assert_eq!(*column, 8);
+    assert!(error.to_string().starts_with("the journal is damaged at line 7, column 8 ("), "{error}");
+}
+
+#[test]
+fn a_journal_of_a_newer_version_is_refused_with_advice() {
+    let (_folder, path) = written(2);
+    change(&path, |text| {
+        let old = format!("\"journal_version\":{JOURNAL_VERSION}");
+        text.replacen(&old, "\"journal_version\":99,\"something_new\":1", 1)
+    });
+    let error = read_journal(&path).expect_err("too new");
+    assert!(matches!(error, JournalError::Newer { theirs: 99, .. }));
+    assert!(error.to_string().contains("version 99 and this tankops reads up to"), "{error}");
+}
+
+#[test]
+fn a_file_that_is_no_journal_is_refused() {
+    let folder = tempdir().expect("a folder");
+    let path = folder.path().join("events.jsonl");
+    fs::write(&path, "{\"tick\":0}\n").expect("writable");
+    assert!(matches!(read_journal(&path), Err(JournalError::NotAJournal { .. })));
+}
+
+#[test]
+fn a_journal_is_never_written_over() {
+    let (_folder, path) = written(2);
+    let before = fs::read(&path).expect("readable");
+    let error = JournalWriter::create(&path, Instant::now()).err().expect("it exists");
+    assert!(matches!(error, JournalError::Create { .. }));
+    assert_eq!(fs::read(&path).expect("readable"), before);
+}
+
+#[test]
+fn events_reach_the_system_after_half_a_second_also_when_nothing_happens() {
+    let folder = tempdir().expect("a folder");
+    let path = folder.path().join("events.jsonl");
+    let begin = Instant::now();
+    let mut journal = JournalWriter::create(&path, begin).expect("a new file");
+    let events = events(2);
+    journal.append(&events[1], begin).expect("room on the disk");
+    journal.tick(begin + Duration::from_millis(400)).expect("room on the disk");
+    assert_eq!(journal.written_bytes(), 0);
+    journal.tick(begin + Duration::from_millis(500)).expect("room on the disk");
+    let first = journal.written_bytes();
+    assert_eq!(first, fs::metadata(&path).expect("it is there").len());
+    assert!(first > 0);
+    journal.append(&events[2], begin + Duration::from_millis(600)).expect("room on the disk");
+    assert_eq!(journal.written_bytes(), first, "the deadline counts from the last write");
+    journal.append(&events[2], begin + Duration::from_millis(1001)).expect("room on the disk");
+    assert!(journal.written_bytes() > first, "a busy stream meets the deadline too");
+}

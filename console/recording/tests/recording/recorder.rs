@@ -1,0 +1,224 @@
+//! What ends up in the recording.
+
+use crate::{
+    content::{Content, content},
+    events, synthetic,
+};
+use mission::{Event, EventKind};
+use recording::{Identity, Recorder, RecordingError, export, inspect};
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+use tempfile::tempdir;
+
+const TICKS: u64 = 600;
+
+fn record(path: &Path, events: &[Event], step: Duration) {
+    let mut now = Instant::now();
+    let mut recorder = Recorder::create(path, &Identity::of_run("test"), now).expect("a new file");
+    for event in events {
+        recorder.push(event, now).expect("room on the disk");
+        now += step;
+    }
+    recorder.finish().expect("room on the disk");
+}
+
+fn recorded(events: &[Event]) -> Content {
+    let folder = tempdir().expect("a folder");
+    let path = folder.path().join("recording.rrd");
+    record(&path, events, Duration::ZERO);
+    content(&path)
+}
+
+fn count(events: &[Event], wanted: fn(&EventKind) -> bool) -> usize {
+    events.iter().filter(|event| wanted(&event.kind)).count()
+}
+
+fn rows<'a>(content: &'a Content, entity: &str, component: &str) -> &'a [(Vec<(String, i64)>, String)] {
+    let key = (entity.to_owned(), component.to_owned());
+    content.get(&key).unwrap_or_else(|| panic!("no {component} at {entity}")).as_slice()
+}
+
+#[test]
+fn every_tick_has_its_row_of_truth_estimate_and_figures() {
+    let events = events(TICKS);
+    let content = recorded(&events);
+    let commands = count(&events, |kind| matches!(kind, EventKind::Commanded { .. }));
+    for (entity, component, wanted) in [
+        ("map/world/robot/true", "Points2D:positions", TICKS as usize),
+        ("map/world/robot/body", "Transform3D:translation", TICKS as usize),
+        ("map/world/robot/est", "Points2D:positions", TICKS as usize),
+        ("map/world/robot/cov", "Ellipses2D:half_sizes", TICKS as usize),
+        ("scalars/position_error", "Scalars:scalars", TICKS as usize),
+        ("scalars/position_error_95", "Scalars:scalars", TICKS as usize),
+        ("scalars/clearance", "Scalars:scalars", TICKS as usize),
+        ("scalars/speed", "Scalars:scalars", TICKS as usize - 1),
+        ("scalars/speed_commanded", "Scalars:scalars", commands),
+        ("scalars/coverage_reachable", "Scalars:scalars", commands),
+        ("scalars/cross_track", "Scalars:scalars", commands),
+        ("scalars/planner/potential", "Scalars:scalars", commands),
+        ("map/world/ae/ranges", "LineStrips2D:strips", TICKS as usize / 10),
+        ("map/world/ae/fix", "Points2D:positions", TICKS as usize / 10),
+    ] {
+        assert_eq!(rows(&content, entity, component).len(), wanted, "{entity}");
+    }
+}
+
+#[test]
+fn the_last_row_is_the_last_tick_on_both_timelines() {
+    let events = events(TICKS);
+    let content = recorded(&events);
+    let (times, value) = rows(&content, "map/world/robot/true", "Points2D:positions").last().expect("rows");
+    let last = TICKS as i64 - 1;
+    assert_eq!(times, &[("sim_time".to_owned(), last * 100_000_000), ("tick".to_owned(), last)]);
+    let truth = events.iter().rev().find_map(|event| match &event.kind {
+        EventKind::Truth { pose, .. } => Some(pose.position),
+        _ => None,
+    });
+    let truth = truth.expect("the run has a truth");
+    assert_eq!(value, &format!("[{:?}, {:?}]", truth.x as f32, truth.y as f32));
+}
+
+#[test]
+fn a_layer_that_is_not_drawn_any_more_is_cleared() {
+    let events = events(TICKS);
+    let content = recorded(&events);
+    let repulsion = rows(&content, "map/world/forces/repulsion", "Arrows2D:vectors");
+    assert!(repulsion.iter().any(|row| !row.1.is_empty()), "it is drawn near an obstacle");
+    assert!(repulsion.iter().any(|row| row.1.is_empty()), "and cleared behind it");
+    // While the robot is held nothing is drawn: one empty row, not one for every tick.
+    let empty = repulsion.windows(2).filter(|pair| pair[0].1.is_empty() && pair[1].1.is_empty()).count();
+    assert_eq!(empty, 0);
+}
+
+#[test]
+fn the_log_has_a_line_for_every_event_that_people_read() {
+    let events = events(TICKS);
+    let content = recorded(&events);
+    let lines: usize = content
+        .iter()
+        .filter(|((_, component), _)| component == "TextLog:text")
+        .map(|(_, rows)| rows.len())
+        .sum();
+    assert_eq!(lines, events.iter().filter(|event| event.log_line().is_some()).count());
+}
+
+#[test]
+fn the_timeline_of_states_tells_who_drove_and_what_the_mission_did() {
+    let content = recorded(&events(TICKS));
+    let states = |entity| {
+        let rows = rows(&content, entity, "StateChange:state");
+        rows.iter().map(|(times, state)| (times[1].1, state.clone())).collect::<Vec<_>>()
+    };
+    let half = TICKS as i64 / 2;
+    assert_eq!(states("state/planner"), [(0, "rpf".to_owned()), (half + 19, "apf".to_owned())]);
+    let mission = [(0, "moving"), (0, "waiting"), (half, "held by the operator"), (half + 19, "moving")];
+    let last = (TICKS as i64 - 1, "complete");
+    let expected: Vec<_> =
+        mission.iter().chain([&last]).map(|(tick, state)| (*tick, (*state).to_owned())).collect();
+    assert_eq!(states("state/mission"), expected);
+}
+
+#[test]
+fn the_last_picture_of_the_floor_holds_every_scanned_cell() {
+    let events = events(TICKS);
+    let content = recorded(&events);
+    let pictures = rows(&content, "map/world/coverage", "SegmentationImage:buffer");
+    let scanned: u32 = events
+        .iter()
+        .filter_map(|event| match &event.kind {
+            EventKind::Covered { runs } => Some(runs.iter().map(|run| run.1).sum::<u32>()),
+            _ => None,
+        })
+        .sum();
+    let (times, last) = pictures.last().expect("a picture");
+    assert_eq!(last.matches('2').count() as u32, scanned, "class 2 is scanned");
+    assert_eq!(times[1].1, TICKS as i64 - 1, "the end of the run is pictured whenever the last picture was");
+}
+
+#[test]
+fn chunks_do_not_change_what_is_recorded() {
+    let folder = tempdir().expect("a folder");
+    let events = events(TICKS);
+    let (fast, slow) = (folder.path().join("fast.rrd"), folder.path().join("slow.rrd"));
+    record(&fast, &events, Duration::ZERO);
+    record(&slow, &events, Duration::from_millis(700));
+    assert_eq!(content(&fast), content(&slow));
+    let (fast, slow) = (inspect(&fast).expect("readable"), inspect(&slow).expect("readable"));
+    assert_eq!(fast, slow);
+}
+
+#[test]
+fn a_recording_made_anew_from_the_journal_is_the_same() {
+    let folder = tempdir().expect("a folder");
+    let recorder =
+        recording::RunRecorder::start(folder.path(), recording::Options::default()).expect("new files");
+    for events in synthetic::run(TICKS) {
+        recorder.send(events);
+    }
+    let finished = recorder.finish(Duration::from_secs(20));
+    assert_eq!(finished.error, None);
+    let anew = folder.path().join("anew.rrd");
+    assert_eq!(export(&folder.path().join("events.jsonl"), &anew).expect("a whole journal"), None);
+    let first = finished.recording.expect("a recording was asked for");
+    assert_eq!(content(&first), content(&anew));
+    assert_eq!(inspect(&first).expect("readable"), inspect(&anew).expect("readable"));
+}
+
+#[test]
+fn the_summary_tells_run_ticks_coverage_and_end() {
+    let folder = tempdir().expect("a folder");
+    let path = folder.path().join("recording.rrd");
+    let events = events(TICKS);
+    record(&path, &events, Duration::ZERO);
+    let summary = inspect(&path).expect("readable");
+    let covered = events.iter().rev().find_map(|event| match event.kind {
+        EventKind::Progressed { covered_reachable, .. } => Some(100.0 * covered_reachable),
+        _ => None,
+    });
+    assert_eq!(summary.last_coverage_percent, covered);
+    assert_eq!(summary.ticks, Some((0, TICKS as i64 - 1)));
+    assert_eq!(summary.name.as_deref(), Some("test"));
+    assert_eq!(summary.recording_id, Identity::of_run("test").recording_id);
+    assert_eq!(summary.outcome.as_deref(), Some("complete"));
+    assert!(summary.has_layout);
+    assert!(summary.is_complete());
+}
+
+#[test]
+fn a_recording_that_is_cut_off_is_read_up_to_there() {
+    let folder = tempdir().expect("a folder");
+    let path = folder.path().join("recording.rrd");
+    record(&path, &events(TICKS), Duration::from_millis(700));
+    let bytes = std::fs::read(&path).expect("readable");
+    std::fs::write(&path, &bytes[..bytes.len() * 6 / 10]).expect("writable");
+    let summary = inspect(&path).expect("readable");
+    assert!(summary.ticks.expect("some ticks").1 > 100);
+    assert!(!summary.is_complete());
+}
+
+#[test]
+fn a_recording_without_a_world_is_refused() {
+    let events = events(2);
+    let mut recorder =
+        Recorder::writing_to(Box::new(std::io::sink()), &Identity::of_run("test"), Instant::now())
+            .expect("opens");
+    let error = recorder.push(&events[1], Instant::now()).expect_err("the first event is missing");
+    assert!(matches!(&error, RecordingError::NotOpened { got } if got == "planner_chosen"), "{error}");
+    recorder.push(&events[2], Instant::now()).expect("an error is told once");
+}
+
+#[test]
+fn a_tick_takes_no_more_than_600_bytes() {
+    let folder = tempdir().expect("a folder");
+    let size = |ticks| {
+        let path = folder.path().join(format!("{ticks}.rrd"));
+        record(&path, &events(ticks), Duration::ZERO);
+        std::fs::metadata(&path).expect("it is there").len()
+    };
+    // Layout, scene and footer are paid once, so the difference tells.
+    let (short, long) = (size(1000), size(3000));
+    assert!(long - short <= 600 * 2000, "{} bytes a tick", (long - short) / 2000);
+    assert!(short < 1_200_000, "{short} bytes for 1000 ticks");
+}

@@ -1,0 +1,84 @@
+//! How far the estimated position was from the true one.
+
+use crate::summary::Positioning;
+use world::Point;
+
+/// Quantile of the chi-squared distribution with two degrees of freedom: `-2 ln 0.05`.
+const CHI2_95: f64 = 5.991_464_547_107_98;
+
+/// An estimated position and how sure it is.
+#[derive(Debug, Clone, Copy)]
+pub struct Estimate {
+    /// Position, metres.
+    pub position: Point,
+    /// Covariance xx, xy, yy, square metres.
+    pub covariance_m2: [f64; 3],
+}
+
+/// Errors so far; truth and estimate of a tick are paired in whichever order they come.
+#[derive(Debug, Default)]
+pub struct Accuracy {
+    truth: Option<(u64, Point)>,
+    estimate: Option<(u64, Estimate)>,
+    errors_m: Vec<f64>,
+    in_ellipse: usize,
+    lost_since_s: Option<f64>,
+    lost_s: f64,
+}
+
+impl Accuracy {
+    /// Where the robot truly was in a tick.
+    pub fn truth(&mut self, tick: u64, position: Point) {
+        self.truth = Some((tick, position));
+        self.pair();
+    }
+
+    /// Where it believed to be.
+    pub fn estimate(&mut self, tick: u64, estimate: Estimate) {
+        self.estimate = Some((tick, estimate));
+        self.pair();
+    }
+
+    /// The position counts as lost from now on.
+    pub fn lost(&mut self, t_s: f64) {
+        self.lost_since_s.get_or_insert(t_s);
+    }
+
+    /// The position is good again.
+    pub fn regained(&mut self, t_s: f64) {
+        self.lost_s += self.lost_since_s.take().map_or(0.0, |since_s| t_s - since_s);
+    }
+
+    fn pair(&mut self) {
+        let (Some((tick, truth)), Some((estimate_tick, estimate))) = (self.truth, self.estimate) else {
+            return;
+        };
+        if tick != estimate_tick {
+            return;
+        }
+        self.estimate = None;
+        let error = truth - estimate.position;
+        self.errors_m.push(error.norm());
+        let [a, b, c] = estimate.covariance_m2;
+        let determinant = a * c - b * b;
+        // Squared Mahalanobis distance, multiplied by the determinant so that nothing is divided by zero.
+        let scaled = c * error.x * error.x - 2.0 * b * error.x * error.y + a * error.y * error.y;
+        self.in_ellipse += usize::from(scaled <= CHI2_95 * determinant);
+    }
+
+    /// The figures of a run that has come to `now_s`; none if truth and estimate never came together.
+    pub fn positioning(&self, now_s: f64) -> Option<Positioning> {
+        let mut sorted = self.errors_m.clone();
+        sorted.sort_by(f64::total_cmp);
+        let n = sorted.len();
+        let rank = |share: f64| sorted.get(((share * n as f64).ceil() as usize).max(1) - 1).copied();
+        Some(Positioning {
+            mean_error_m: sorted.iter().sum::<f64>() / n as f64,
+            p50_m: rank(0.5)?,
+            p95_m: rank(0.95)?,
+            max_m: *sorted.last()?,
+            in_95_ellipse: self.in_ellipse as f64 / n as f64,
+            lost_s: self.lost_s + self.lost_since_s.map_or(0.0, |since_s| now_s - since_s),
+        })
+    }
+}

@@ -1,0 +1,163 @@
+//! Bounds that a scenario sets to its own run.
+
+use crate::summary::Summary;
+use mission::Outcome;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// The bounds; those that are absent bind nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Expect {
+    /// How the run ends.
+    pub outcome: Option<Outcome>,
+    /// Most collisions.
+    pub collisions_max: Option<u64>,
+    /// Least distance from the hull to anything solid, metres.
+    pub min_clearance_min_m: Option<f64>,
+    /// Longest mission time, seconds.
+    pub mission_time_max_s: Option<f64>,
+    /// Longest true way, metres.
+    pub path_length_max_m: Option<f64>,
+    /// Least share of the reachable floor scanned.
+    pub coverage_reachable_min: Option<f64>,
+    /// Least share of the whole floor scanned.
+    pub coverage_whole_min: Option<f64>,
+    /// Most floor scanned again, as a share of the floor scanned.
+    pub overlap_max: Option<f64>,
+    /// Least tracking precision.
+    pub precision_min: Option<f64>,
+    /// Least tracking recall.
+    pub recall_min: Option<f64>,
+    /// Largest root mean square distance of the preset points from the path, metres.
+    pub rmse_max_m: Option<f64>,
+    /// Largest root mean square distance across the track, metres.
+    pub cross_track_rmse_max_m: Option<f64>,
+    /// Largest mean position error, metres.
+    pub mean_error_max_m: Option<f64>,
+    /// Largest position error exceeded in no more than 5 % of the ticks, metres.
+    pub p95_error_max_m: Option<f64>,
+    /// Least share of the ticks with the truth in the 95 % ellipse.
+    pub in_95_ellipse_min: Option<f64>,
+    /// Longest time without a position, seconds.
+    pub lost_max_s: Option<f64>,
+}
+
+/// A bound that a run did not keep.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Miss {
+    /// The key in `[expect]`.
+    pub key: &'static str,
+    /// The bound.
+    pub bound: String,
+    /// What came out; absent if the run has no such figure.
+    pub found: Option<String>,
+}
+
+impl fmt::Display for Miss {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let found = self.found.as_deref().unwrap_or("nothing to compare it with");
+        write!(f, "expect.{} = {}: got {found}", self.key, self.bound)
+    }
+}
+
+/// Which side of a bound is the right one.
+#[derive(Clone, Copy)]
+enum Side {
+    AtLeast,
+    AtMost,
+}
+
+impl Expect {
+    /// The bounds that a run did not keep. A figure that is absent keeps no bound.
+    pub fn check(&self, run: &Summary) -> Vec<Miss> {
+        use Side::{AtLeast, AtMost};
+        let coverage = run.coverage;
+        let (tracking, positioning) = (run.tracking, run.positioning);
+        let count = |n: Option<u64>| n.map(|n| n as f64);
+        let figures = [
+            ("collisions_max", AtMost, count(self.collisions_max), count(run.collisions)),
+            ("min_clearance_min_m", AtLeast, self.min_clearance_min_m, run.min_clearance_m),
+            ("mission_time_max_s", AtMost, self.mission_time_max_s, run.mission_time_s),
+            ("path_length_max_m", AtMost, self.path_length_max_m, run.path_length_m),
+            ("coverage_reachable_min", AtLeast, self.coverage_reachable_min, coverage.map(|c| c.reachable)),
+            ("coverage_whole_min", AtLeast, self.coverage_whole_min, coverage.map(|c| c.whole)),
+            ("overlap_max", AtMost, self.overlap_max, coverage.and_then(|c| c.overlap)),
+            ("precision_min", AtLeast, self.precision_min, tracking.map(|t| t.precision)),
+            ("recall_min", AtLeast, self.recall_min, tracking.map(|t| t.recall)),
+            ("rmse_max_m", AtMost, self.rmse_max_m, tracking.and_then(|t| t.rmse_m)),
+            (
+                "cross_track_rmse_max_m",
+                AtMost,
+                self.cross_track_rmse_max_m,
+                tracking.map(|t| t.cross_track_rmse_m),
+            ),
+            ("mean_error_max_m", AtMost, self.mean_error_max_m, positioning.map(|p| p.mean_error_m)),
+            ("p95_error_max_m", AtMost, self.p95_error_max_m, positioning.map(|p| p.p95_m)),
+            ("in_95_ellipse_min", AtLeast, self.in_95_ellipse_min, positioning.map(|p| p.in_95_ellipse)),
+            ("lost_max_s", AtMost, self.lost_max_s, positioning.map(|p| p.lost_s)),
+        ];
+        let misses =
+            figures.into_iter().filter_map(|(key, side, bound, found)| miss(key, side, bound?, found));
+        self.miss_outcome(run).into_iter().chain(misses).collect()
+    }
+
+    fn miss_outcome(&self, run: &Summary) -> Option<Miss> {
+        let bound = self.outcome.filter(|bound| run.outcome != Some(*bound))?;
+        let found = run.outcome.map(|outcome| outcome.word().to_owned());
+        Some(Miss { key: "outcome", bound: bound.word().to_owned(), found })
+    }
+}
+
+fn miss(key: &'static str, side: Side, bound: f64, found: Option<f64>) -> Option<Miss> {
+    let keeps = |found: f64| match side {
+        Side::AtLeast => found >= bound,
+        Side::AtMost => found <= bound,
+    };
+    let found = match found {
+        Some(found) if keeps(found) => return None,
+        found => found.map(|found| format!("{}", (found * 1e6).round() / 1e6)),
+    };
+    Some(Miss { key, bound: bound.to_string(), found })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_within_its_bounds_misses_nothing() {
+        let expect =
+            Expect { outcome: Some(Outcome::Complete), collisions_max: Some(0), ..Expect::default() };
+        let run = Summary { outcome: Some(Outcome::Complete), collisions: Some(0), ..Summary::default() };
+        assert_eq!(expect.check(&run), []);
+    }
+
+    #[test]
+    fn each_bound_that_is_not_kept_is_named_with_what_came_out() {
+        let expect = Expect {
+            outcome: Some(Outcome::Complete),
+            path_length_max_m: Some(70.0),
+            min_clearance_min_m: Some(0.1),
+            ..Expect::default()
+        };
+        let run = Summary {
+            outcome: Some(Outcome::Stuck),
+            path_length_m: Some(70.123_45),
+            min_clearance_m: Some(0.1),
+            ..Summary::default()
+        };
+        let misses: Vec<String> = expect.check(&run).iter().map(ToString::to_string).collect();
+        assert_eq!(
+            misses,
+            ["expect.outcome = complete: got stuck", "expect.path_length_max_m = 70: got 70.12345"]
+        );
+    }
+
+    #[test]
+    fn a_figure_that_is_absent_keeps_no_bound() {
+        let expect = Expect { recall_min: Some(0.0), ..Expect::default() };
+        let misses = expect.check(&Summary::default());
+        assert_eq!(misses[0].to_string(), "expect.recall_min = 0: got nothing to compare it with");
+    }
+}

@@ -1,0 +1,146 @@
+//! Events of a run, one after the other, into its summary.
+
+use crate::{
+    accuracy::{Accuracy, Estimate},
+    scanned::Scanned,
+    summary::Summary,
+    tracking::Tracker,
+};
+use mission::{
+    Event, EventKind, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, TaskConfig,
+    event::RunOpened,
+};
+use world::Point;
+
+/// What is known of a run from the events so far.
+#[derive(Debug, Default)]
+pub struct Fold {
+    known: Summary,
+    truth: Option<Point>,
+    scanned: Option<Scanned>,
+    tracker: Option<Tracker>,
+    accuracy: Accuracy,
+}
+
+impl Fold {
+    /// Nothing is known yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Takes in one event; they must come in the order of the journal.
+    pub fn apply(&mut self, event: &Event) {
+        self.known.ticks = Some(event.tick);
+        self.known.mission_time_s = Some(event.t_s);
+        match &event.kind {
+            EventKind::RunOpened(run) => self.open(run),
+            EventKind::Truth { pose, clearance_m, collided } => {
+                self.accuracy.truth(event.tick, pose.position);
+                self.see_truth(pose.position, *clearance_m, *collided);
+            }
+            EventKind::Estimated { pose } => {
+                let covariance_m2 = [(0, 0), (0, 1), (1, 1)].map(|at| pose.covariance[at]);
+                self.accuracy.estimate(event.tick, Estimate { position: pose.position, covariance_m2 });
+            }
+            EventKind::PositionLost { .. } => self.accuracy.lost(event.t_s),
+            EventKind::PositionRegained { .. } => self.accuracy.regained(event.t_s),
+            EventKind::Covered { runs } => {
+                if let Some(scanned) = &mut self.scanned {
+                    scanned.believe(runs);
+                }
+            }
+            EventKind::Progressed { along_m: Some(along_m), .. } => {
+                if let Some(tracker) = &mut self.tracker {
+                    tracker.progress(*along_m);
+                }
+            }
+            EventKind::PlannerChosen { choice, info, .. } => self.choose(choice, info),
+            EventKind::ParametersChanged { choice } => self.set_parameters(choice),
+            EventKind::ObstacleFound { .. } => self.known.obstacles_found += 1,
+            EventKind::PlannerFailed { .. } => self.known.planner_faults += 1,
+            EventKind::Held { .. } => self.known.holds += 1,
+            EventKind::Ended { outcome, reason } => {
+                self.known.outcome = Some(*outcome);
+                self.known.reason = Some(reason.clone());
+            }
+            _ => {}
+        }
+    }
+
+    /// The figures so far. Those that no event tells are absent; the app fills them in.
+    pub fn summary(&self) -> Summary {
+        Summary {
+            coverage: self.scanned.as_ref().map(Scanned::coverage),
+            tracking: self.tracker.as_ref().and_then(Tracker::tracking),
+            positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
+            ..self.known.clone()
+        }
+    }
+
+    fn open(&mut self, run: &RunOpened) {
+        self.known.scenario = Some(run.scenario.clone());
+        self.known.seed = Some(run.seed);
+        self.known.planner = Some(run.mission.planner.id.clone());
+        self.known.parameters = Some(run.mission.planner.parameters.clone());
+        self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.swath_m));
+        self.tracker = match &run.mission.task {
+            TaskConfig::Follow { path, .. } => Some(Tracker::new(path)),
+            TaskConfig::Goto { .. } => None,
+        };
+    }
+
+    fn see_truth(&mut self, position: Point, clearance_m: f64, collided: bool) {
+        let known = &mut self.known;
+        let way_m = self.truth.map_or(0.0, |before| (position - before).norm());
+        known.path_length_m = Some(known.path_length_m.unwrap_or(0.0) + way_m);
+        known.collisions = Some(known.collisions.unwrap_or(0) + u64::from(collided));
+        if clearance_m.is_finite() {
+            known.min_clearance_m =
+                Some(known.min_clearance_m.map_or(clearance_m, |least| least.min(clearance_m)));
+        }
+        let before = self.truth.replace(position).unwrap_or(position);
+        if let Some(scanned) = &mut self.scanned {
+            scanned.pass(before, position);
+        }
+        if let Some(tracker) = &mut self.tracker {
+            tracker.pass(before, position);
+        }
+    }
+
+    fn choose(&mut self, choice: &PlannerChoice, info: &PlannerInfo) {
+        let known = &mut self.known;
+        if known.planners.is_empty() {
+            known.planner = Some(choice.id.clone());
+            known.planner_version = Some(info.version.clone());
+        }
+        if !known.planners.contains(&choice.id) {
+            known.planners.push(choice.id.clone());
+        }
+        if known.planner.as_ref() == Some(&choice.id) {
+            let mut parameters = defaults(info);
+            parameters.extend(choice.parameters.clone());
+            known.parameters = Some(parameters);
+        }
+    }
+
+    fn set_parameters(&mut self, choice: &PlannerChoice) {
+        if self.known.planner.as_ref() == Some(&choice.id) {
+            let parameters = self.known.parameters.get_or_insert_default();
+            parameters.extend(choice.parameters.clone());
+        }
+    }
+}
+
+/// The parameters of a planner when nothing is set.
+fn defaults(info: &PlannerInfo) -> Parameters {
+    let default = |kind: &ParamKind| match kind {
+        ParamKind::Float { default, .. } => ParamValue::Float(*default),
+        ParamKind::Int { default, .. } => ParamValue::Int(*default),
+        ParamKind::Flag { default } => ParamValue::Flag(*default),
+        ParamKind::Choice { default, .. } => ParamValue::Word(default.clone()),
+    };
+    info.parameters.iter().map(|parameter| (parameter.key.clone(), default(&parameter.kind))).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,165 @@
+//! The figures of one run, as `run --json` prints them.
+
+use mission::{Outcome, Parameters};
+use serde::{Deserialize, Serialize};
+
+/// Everything that is told about a run when it is over. What is not known is `None`, in JSON `null`, never zero.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Summary {
+    /// Name of the scenario.
+    pub scenario: Option<String>,
+    /// Id of the planner that drove first.
+    pub planner: Option<String>,
+    /// Version of its plugin.
+    pub planner_version: Option<String>,
+    /// Its parameters, defaults included, as they were last.
+    pub parameters: Option<Parameters>,
+    /// Every planner that drove, in order, each once.
+    pub planners: Vec<String>,
+    /// Start of every random choice.
+    pub seed: Option<u64>,
+    /// How the run ended; absent if it was cut off.
+    pub outcome: Option<Outcome>,
+    /// Why, as a sentence.
+    pub reason: Option<String>,
+    /// Ticks that passed.
+    pub ticks: Option<u64>,
+    /// Mission time that passed, seconds.
+    pub mission_time_s: Option<f64>,
+    /// Time it took to compute, seconds.
+    pub wall_time_s: Option<f64>,
+    /// Way that the robot truly went, metres.
+    pub path_length_m: Option<f64>,
+    /// Smallest true distance from the hull to anything solid, metres; negative after a collision.
+    pub min_clearance_m: Option<f64>,
+    /// How often the hull began to touch something.
+    pub collisions: Option<u64>,
+    /// Obstacles found that are not on the drawing.
+    pub obstacles_found: u64,
+    /// How often the robot was held.
+    pub holds: u64,
+    /// How often a planner failed.
+    pub planner_faults: u64,
+    /// How much of the floor was scanned.
+    pub coverage: Option<Coverage>,
+    /// How closely a preset path was followed; absent for other missions.
+    pub tracking: Option<Tracking>,
+    /// How good the position was.
+    pub positioning: Option<Positioning>,
+    /// How the tether lay; absent without one.
+    pub tether: Option<Tether>,
+    /// How long planners took; told by the app.
+    pub planner_calls: Option<PlannerCalls>,
+    /// SHA-256 of the journal, hexadecimal; told by the app.
+    pub events_sha256: Option<String>,
+    /// The files of the run; told by the app.
+    pub logs: Option<Logs>,
+}
+
+/// How much of the floor was scanned. Shares are 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Coverage {
+    /// Share of the reachable floor, as the mission believes.
+    pub reachable: f64,
+    /// Share of the whole floor (without what obstacles stand on), as the mission believes.
+    pub whole: f64,
+    /// Floor scanned again as a share of the floor scanned, by the true path: the tool came back to it after at
+    /// least two swaths of way. One means that all of it was scanned twice on average. Absent without the truth.
+    pub overlap: Option<f64>,
+    /// Reachable floor that was not scanned, as the mission believes, square metres.
+    pub missed_area_m2: f64,
+    /// The same shares by where the robot truly was; absent without the truth.
+    pub by_truth: Option<CoverageByTruth>,
+}
+
+/// What was scanned by where the robot truly was. Shares are 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CoverageByTruth {
+    /// Share of the reachable floor.
+    pub reachable: f64,
+    /// Share of the whole floor.
+    pub whole: f64,
+}
+
+/// How closely the true path keeps to the preset path. "Near" is within [`Tracking::NEAR_M`].
+///
+/// The true path is sampled every 0.05 m of way, so that standing still counts nothing. Each sample is paired with
+/// the nearest point of the preset path that lies ahead of the pair before, at most 1 m ahead of it or of the
+/// mission's own progress: a robot that loses an arc is not paired with the neighbouring turn of a spiral.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Tracking {
+    /// Share of the samples that are near to their pair, 0 to 1.
+    pub precision: f64,
+    /// Share of the preset points that the true path passes near to, at any time, 0 to 1.
+    pub recall: f64,
+    /// Root mean square distance of the preset points from the piece of true path that was paired with their place,
+    /// metres: an arc cut short counts in full. Points never reached are left to `recall`; absent if there are none.
+    pub rmse_m: Option<f64>,
+    /// Root mean square distance of the samples from their pairs, metres.
+    pub cross_track_rmse_m: f64,
+}
+
+impl Tracking {
+    /// Within this distance counts as on the path, metres (T0 of Wang et al. 2023).
+    pub const NEAR_M: f64 = 0.2;
+}
+
+/// Distance between the estimated and the true position, over all ticks that have both.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Positioning {
+    /// Mean, metres.
+    pub mean_error_m: f64,
+    /// Median, metres; by nearest rank, as `p95_m`.
+    pub p50_m: f64,
+    /// Not exceeded in 95 % of the ticks, metres.
+    pub p95_m: f64,
+    /// Largest, metres.
+    pub max_m: f64,
+    /// Share of the ticks in which the truth lay in the 95 % ellipse, 0 to 1.
+    pub in_95_ellipse: f64,
+    /// Time for which the position counted as lost, seconds.
+    pub lost_s: f64,
+}
+
+/// How the tether lay.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Tether {
+    /// Greatest length out, metres.
+    pub max_length_m: f64,
+    /// Greatest angle about one obstacle, radians.
+    pub max_wrap_rad: f64,
+    /// Greatest sum of angles, radians.
+    pub max_total_wrap_rad: f64,
+    /// Loops at the end.
+    pub loops: u64,
+    /// Length out at the end, metres.
+    pub end_length_m: f64,
+    /// Whether it could not be pulled in.
+    pub entangled: bool,
+}
+
+/// How long planners took to answer.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PlannerCalls {
+    /// Plans asked for.
+    pub plan: u64,
+    /// Steps asked for.
+    pub step: u64,
+    /// Median time of a step, microseconds; absent without steps.
+    pub p50_us: Option<f64>,
+    /// Not exceeded by 99 % of the steps, microseconds; absent without steps.
+    pub p99_us: Option<f64>,
+    /// Calls that failed.
+    pub faults: u64,
+}
+
+/// The files of a run.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Logs {
+    /// The journal.
+    pub journal: Option<String>,
+    /// The recording.
+    pub recording: Option<String>,
+    /// What went wrong while they were written; absent if they are whole.
+    pub error: Option<String>,
+}

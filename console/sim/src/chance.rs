@@ -1,0 +1,109 @@
+//! Chance: one stream of numbers per purpose, all from one seed.
+
+use crate::config::NoiseModel;
+use rand::{Rng, RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use rand_pcg::Pcg64;
+
+/// Shortest range that is ever told, metres.
+const SHORTEST_M: f64 = 1e-6;
+/// Longest range that is ever told, metres.
+const LONGEST_M: f64 = 1e9;
+
+/// The streams; none of them depends on how much the others were used.
+#[derive(Debug, Clone)]
+pub(crate) struct Chance {
+    /// Errors of the ranges.
+    pub ranging: Pcg64,
+    /// Which stations are not heard.
+    pub dropout: Pcg64,
+    /// Errors of the odometry.
+    pub odometry: Pcg64,
+    /// How much the tracks slip.
+    pub slip: Pcg64,
+}
+
+impl Chance {
+    pub fn new(seed: u64) -> Self {
+        let stream = |purpose: u64| Pcg64::seed_from_u64(mixed(seed ^ mixed(purpose)));
+        Self { ranging: stream(1), dropout: stream(2), odometry: stream(3), slip: stream(4) }
+    }
+}
+
+/// Spreads neighbouring numbers over the whole range (the finaliser of splitmix64).
+fn mixed(number: u64) -> u64 {
+    let number = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let number = (number ^ (number >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let number = (number ^ (number >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    number ^ (number >> 31)
+}
+
+/// A normal number with mean 0 and variance 1.
+pub(crate) fn normal(rng: &mut impl Rng) -> f64 {
+    rng.sample(StandardNormal)
+}
+
+impl NoiseModel {
+    /// A range as measured over a true distance, metres; always positive.
+    pub(crate) fn measured_m(&self, distance_m: f64, rng: &mut impl Rng) -> f64 {
+        let error = match *self {
+            Self::None => 0.0,
+            Self::Uniform { ratio } => ratio * rng.random_range(-1.0..=1.0),
+            Self::Gaussian { sigma_ratio } => sigma_ratio * normal(rng),
+        };
+        // A distance so far that the error turns it into nothing is still a distance.
+        (distance_m * (1.0 + error.clamp(-LONGEST_M, LONGEST_M))).clamp(SHORTEST_M, LONGEST_M)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn uniform_noise_stays_within_its_bounds(
+            distance in 0.01..30.0_f64, ratio in 0.0..0.5_f64, seed in any::<u64>(),
+        ) {
+            let mut rng = Pcg64::seed_from_u64(seed);
+            for _ in 0..20 {
+                let range = NoiseModel::Uniform { ratio }.measured_m(distance, &mut rng);
+                prop_assert!((range - distance).abs() <= ratio * distance * (1.0 + 1e-12));
+            }
+        }
+    }
+
+    fn spread(noise: NoiseModel) -> (f64, f64) {
+        let mut rng = Pcg64::seed_from_u64(5);
+        let errors: Vec<f64> = (0..20_000).map(|_| noise.measured_m(10.0, &mut rng) / 10.0 - 1.0).collect();
+        let mean = errors.iter().sum::<f64>() / 20_000.0;
+        (mean, (errors.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / 20_000.0).sqrt())
+    }
+
+    #[test]
+    fn the_models_scatter_as_they_say() {
+        for (noise, sigma) in [
+            (NoiseModel::Uniform { ratio: 0.05 }, 0.05 / 3.0_f64.sqrt()),
+            (NoiseModel::Gaussian { sigma_ratio: 0.02 }, 0.02),
+        ] {
+            let (mean, spread) = spread(noise);
+            assert!(mean.abs() < 4.0 * sigma / 20_000.0_f64.sqrt(), "{noise:?}: {mean}");
+            assert!((spread / sigma - 1.0).abs() < 0.03, "{noise:?}: {spread}");
+        }
+        assert_eq!(spread(NoiseModel::None), (0.0, 0.0));
+    }
+
+    #[test]
+    fn streams_and_neighbouring_seeds_differ() {
+        let (mut a, mut b) = (Chance::new(1), Chance::new(2));
+        let mut first: Vec<u64> =
+            [&mut a.ranging, &mut a.dropout, &mut a.odometry, &mut a.slip, &mut b.ranging]
+                .into_iter()
+                .map(RngExt::random)
+                .collect();
+        first.sort_unstable();
+        first.dedup();
+        assert_eq!(first.len(), 5);
+    }
+}

@@ -1,0 +1,127 @@
+//! The simulator: sense and act.
+
+use crate::{
+    chance::{Chance, normal},
+    config::{Drive, SimConfig, Truth},
+    motion::{Arc, Tracks, bounded},
+    ranging::Ranging,
+    sight::sightings,
+    sweep::sweep,
+};
+use world::{ObstacleMap, Odometry, Pose, Readings};
+
+/// A hull that touched something keeps touching it until the gap is wider than this, metres.
+const CONTACT_GAP_M: f64 = 1e-3;
+
+/// One robot in one tank; time is the number of ticks.
+///
+/// Every tick: [`Simulator::sense`] once, then [`Simulator::act`] once.
+#[derive(Clone)]
+pub struct Simulator {
+    config: SimConfig,
+    map: ObstacleMap,
+    chance: Chance,
+    tracks: Tracks,
+    ranging: Option<Ranging>,
+    pose: Pose,
+    odometry: Odometry,
+    in_contact: bool,
+    collided: bool,
+    tick: u64,
+}
+
+impl Simulator {
+    /// A robot at rest at its start; `seed` is the start of all chance.
+    pub fn new(config: SimConfig, seed: u64) -> Self {
+        let map = ObstacleMap::new(&config.world.boundary, &config.world.obstacles);
+        let mut simulator = Self {
+            map,
+            chance: Chance::new(seed),
+            tracks: Tracks::new(&config.robot, config.tick_s),
+            ranging: config.ae.clone().map(Ranging::new),
+            pose: config.robot.start,
+            odometry: Odometry::default(),
+            in_contact: false,
+            collided: false,
+            tick: 0,
+            config,
+        };
+        simulator.in_contact = simulator.clearance_m() < 0.0;
+        simulator.collided = simulator.in_contact;
+        simulator
+    }
+
+    /// What the robot senses at the top of this tick; to be called once per tick, because it draws chance.
+    pub fn sense(&mut self) -> Readings {
+        let world = &self.config.world;
+        let t_s = self.tick as f64 * self.config.tick_s.max(0.0);
+        let (at, chance) = (self.pose.position, &mut self.chance);
+        let ranges = self.ranging.as_mut().and_then(|r| r.cycle(t_s, at, &world.stations, chance));
+        let robot = &self.config.robot;
+        let reach_m = bounded(robot.radius_m.max(0.0) + robot.sensing_range_m.max(0.0));
+        Readings {
+            ranging_cycle: ranges.is_some(),
+            ranges: ranges.unwrap_or_default(),
+            odometry: self.odometry,
+            sightings: sightings(&self.map, &world.boundary, &world.obstacles, &self.pose, reach_m),
+            contact: self.in_contact,
+        }
+    }
+
+    /// Moves the truth by one tick.
+    pub fn act(&mut self, drive: Drive) {
+        let told = self.tracks.drive(drive, &self.pose);
+        let driven = Arc { way_m: told.way_m * (1.0 - self.draw_slip()), ..told };
+        let reached = sweep(&self.map, self.radius_m(), &self.pose, &driven);
+        self.pose = reached.pose;
+        self.odometry = self.measured(&told);
+        let touched_before = self.in_contact;
+        self.in_contact = reached.is_blocked || (touched_before && self.clearance_m() < CONTACT_GAP_M);
+        self.collided = self.in_contact && !touched_before;
+        if reached.is_blocked {
+            self.tracks.stop();
+        }
+        self.tick += 1;
+    }
+
+    /// The truth at the top of this tick.
+    pub fn truth(&self) -> Truth {
+        Truth { pose: self.pose, clearance_m: self.clearance_m(), collided: self.collided }
+    }
+
+    /// Number of ticks that have passed.
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    fn radius_m(&self) -> f64 {
+        self.config.robot.radius_m.max(0.0)
+    }
+
+    fn clearance_m(&self) -> f64 {
+        self.map.clearance_m(self.pose.position) - self.radius_m()
+    }
+
+    /// Share of the way that is lost in this tick; never less than nothing, never more than all.
+    fn draw_slip(&mut self) -> f64 {
+        let robot = &self.config.robot;
+        (robot.slip_mean + robot.slip_sigma * normal(&mut self.chance.slip)).clamp(0.0, 1.0)
+    }
+
+    /// What the odometry makes of a motion: tracks cannot feel slip nor that the robot was stopped, the gyro can tell
+    /// the turn but drifts.
+    fn measured(&mut self, told: &Arc) -> Odometry {
+        let robot = &self.config.robot;
+        let mut erring = || bounded(1.0 + robot.odometry_sigma_ratio * normal(&mut self.chance.odometry));
+        let (of_way, of_turn) = (erring(), erring());
+        let (forward_m, sideways_m, turn_rad) = told.seen_from_start();
+        Odometry {
+            forward_m: forward_m * of_way,
+            sideways_m: sideways_m * of_way,
+            turn_rad: turn_rad * of_turn + bounded(robot.gyro_bias_rad_per_s * self.config.tick_s.max(0.0)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

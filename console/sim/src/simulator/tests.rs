@@ -1,0 +1,272 @@
+use super::*;
+use crate::{AeConfig, NoiseModel, RobotConfig};
+use proptest::prelude::*;
+use world::{
+    Boundary, Obstacle, ObstacleId, Point, Shape, Station, StationId, Vector, World, geometry::wrap_angle_rad,
+};
+
+fn robot() -> RobotConfig {
+    RobotConfig {
+        start: Pose::new(-6.0, 0.0, 0.0),
+        radius_m: 0.3,
+        v_max_m_per_s: 0.5,
+        w_max_rad_per_s: 1.0,
+        acceleration_m_per_s2: 1.0,
+        sensing_range_m: 3.0,
+        slip_mean: 0.03,
+        slip_sigma: 0.01,
+        odometry_sigma_ratio: 0.02,
+        gyro_bias_rad_per_s: 0.001,
+    }
+}
+
+fn exact(robot: &RobotConfig) -> RobotConfig {
+    RobotConfig {
+        slip_mean: 0.0,
+        slip_sigma: 0.0,
+        odometry_sigma_ratio: 0.0,
+        gyro_bias_rad_per_s: 0.0,
+        ..robot.clone()
+    }
+}
+
+fn obstacles() -> Vec<Obstacle> {
+    let corner = |x: f64, y: f64| Point::new(x, y);
+    let shapes = [
+        Shape::Disc { center: corner(-3.0, 0.0), radius_m: 0.5 },
+        Shape::Disc { center: corner(0.0, 4.0), radius_m: 0.0 },
+        Shape::Polygon { vertices: vec![corner(1.0, -1.0), corner(2.5, -1.0), corner(2.0, 1.0)] },
+        Shape::Polyline {
+            points: vec![corner(-4.0, -4.0), corner(0.0, -5.0), corner(4.0, -4.5)],
+            half_width_m: 0.05,
+        },
+    ];
+    (1..)
+        .zip(shapes)
+        .map(|(id, shape)| Obstacle { id: ObstacleId(id), name: format!("O{id}"), shape, known: id > 1 })
+        .collect()
+}
+
+fn config() -> SimConfig {
+    let station =
+        |id, x, y| Station { id: StationId(id), name: format!("S{id}"), position: Point::new(x, y) };
+    SimConfig {
+        world: World {
+            boundary: Boundary::Circle { radius_m: 10.0 },
+            obstacles: obstacles(),
+            stations: vec![station(1, 7.5, 0.0), station(2, -7.5, 0.0), station(3, 0.0, 7.5)],
+            zones: vec![],
+        },
+        robot: robot(),
+        ae: Some(AeConfig {
+            period_s: 1.0,
+            repetitions: 5,
+            noise: NoiseModel::Uniform { ratio: 0.05 },
+            dropout: 0.1,
+            outages_s: vec![(3.0, 4.0)],
+        }),
+        tick_s: 0.1,
+    }
+}
+
+fn any_drive() -> impl Strategy<Value = Drive> {
+    let number = || prop_oneof![9 => -2.0..2.0_f64, 1 => prop::num::f64::ANY];
+    prop_oneof![
+        (number(), number()).prop_map(|(v_m_per_s, w_rad_per_s)| Drive::Twist { v_m_per_s, w_rad_per_s }),
+        (number(), number()).prop_map(|(x, y)| Drive::Velocity(Vector::new(x, y))),
+    ]
+}
+
+fn numbers_of(readings: &Readings) -> Vec<f64> {
+    let Odometry { forward_m, sideways_m, turn_rad } = readings.odometry;
+    let ranges = readings.ranges.iter().flat_map(|set| set.ranges_m.clone());
+    let centers = readings.sightings.iter().map(|s| s.shape_in_robot.center()).flat_map(|c| [c.x, c.y]);
+    ranges.chain(centers).chain([forward_m, sideways_m, turn_rad]).collect()
+}
+
+fn ahead(v_m_per_s: f64) -> Drive {
+    Drive::Twist { v_m_per_s, w_rad_per_s: 0.0 }
+}
+
+proptest! {
+    #[test]
+    fn the_robot_never_is_faster_than_it_can_nor_inside_an_obstacle(
+        drives in prop::collection::vec((any_drive(), 1..20_usize), 1..30), seed in any::<u64>(),
+    ) {
+        let mut sim = Simulator::new(config(), seed);
+        for drive in drives.iter().flat_map(|(drive, ticks)| std::iter::repeat_n(*drive, *ticks)) {
+            let before = sim.truth().pose;
+            let readings = sim.sense();
+            sim.act(drive);
+            let truth = sim.truth();
+            prop_assert!(truth.clearance_m >= 0.0, "{truth:?}");
+            prop_assert!((truth.pose.position - before.position).norm() <= 0.05 + 1e-9);
+            if matches!(drive, Drive::Twist { .. }) {
+                prop_assert!(wrap_angle_rad(truth.pose.heading_rad - before.heading_rad).abs() <= 0.1 + 1e-9);
+            }
+            prop_assert!(numbers_of(&readings).iter().all(|n| n.is_finite()));
+            prop_assert!(readings.ranges.iter().flat_map(|set| &set.ranges_m).all(|r| *r > 0.0));
+        }
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_readings(
+        drives in prop::collection::vec(any_drive(), 1..60), seed in any::<u64>(),
+    ) {
+        let run = |seed: u64| {
+            let mut sim = Simulator::new(config(), seed);
+            drives.iter().map(|drive| { let readings = sim.sense(); sim.act(*drive); readings }).collect::<Vec<_>>()
+        };
+        prop_assert_eq!(run(seed), run(seed));
+    }
+
+    #[test]
+    fn any_finite_numbers_in_the_robot_are_survived(
+        numbers in prop::collection::vec(prop_oneof![-3.0..3.0_f64, prop::num::f64::NORMAL, Just(0.0)], 12),
+        drives in prop::collection::vec(any_drive(), 1..6),
+    ) {
+        let n = |i: usize| numbers[i];
+        let mut config = config();
+        config.robot = RobotConfig {
+            start: Pose::new(-6.0, 0.0, 0.0), radius_m: n(0), v_max_m_per_s: n(1), w_max_rad_per_s: n(2),
+            acceleration_m_per_s2: n(3), sensing_range_m: n(4), slip_mean: n(5), slip_sigma: n(6),
+            odometry_sigma_ratio: n(7), gyro_bias_rad_per_s: n(8),
+        };
+        config.tick_s = n(9);
+        config.ae = Some(AeConfig {
+            period_s: n(10), repetitions: 2, noise: NoiseModel::Gaussian { sigma_ratio: n(11) }, dropout: n(5),
+            outages_s: vec![(n(6), n(7))],
+        });
+        let mut sim = Simulator::new(config, 1);
+        for drive in drives {
+            let readings = sim.sense();
+            prop_assert!(numbers_of(&readings).iter().all(|n| !n.is_nan()), "{readings:?}");
+            sim.act(drive);
+            let pose = sim.truth().pose;
+            prop_assert!(pose.position.iter().all(|c| c.is_finite()) && pose.heading_rad.is_finite(), "{pose:?}");
+        }
+    }
+}
+
+/// Readings of a drive that meets nothing.
+fn free_run(config: SimConfig) -> Vec<Readings> {
+    let mut sim = Simulator::new(config, 42);
+    let drive = Drive::Twist { v_m_per_s: 0.3, w_rad_per_s: 0.3 };
+    let step = |sim: &mut Simulator| {
+        let readings = sim.sense();
+        sim.act(drive);
+        readings
+    };
+    (0..100).map(|_| step(&mut sim)).collect()
+}
+
+#[test]
+fn turning_one_noise_off_does_not_change_the_others() {
+    let whole = free_run(config());
+    let mut without_ranging_noise = config();
+    without_ranging_noise.ae = None;
+    let odometry = |run: &[Readings]| run.iter().map(|r| r.odometry).collect::<Vec<_>>();
+    assert_eq!(odometry(&free_run(without_ranging_noise)), odometry(&whole));
+    let mut without_odometry_noise = config();
+    without_odometry_noise.robot.odometry_sigma_ratio = 0.0;
+    let ranges = |run: &[Readings]| run.iter().map(|r| r.ranges.clone()).collect::<Vec<_>>();
+    let exact_odometry = free_run(without_odometry_noise);
+    assert_eq!(ranges(&exact_odometry), ranges(&whole));
+    assert_ne!(odometry(&exact_odometry), odometry(&whole));
+}
+
+#[test]
+fn another_seed_gives_other_readings() {
+    let readings = |seed| {
+        let mut sim = Simulator::new(config(), seed);
+        sim.act(ahead(0.5));
+        sim.sense().odometry
+    };
+    assert_ne!(readings(1), readings(2));
+}
+
+#[test]
+fn a_circle_is_driven_exactly() {
+    let mut config = SimConfig { robot: exact(&robot()), tick_s: 0.1, ..config() };
+    config.robot.acceleration_m_per_s2 = 1e3;
+    let start = Pose::new(6.0, 0.0, std::f64::consts::FRAC_PI_2);
+    config.robot.start = start;
+    let mut sim = Simulator::new(config, 1);
+    let mut reckoned = start;
+    // A quarter of a circle of radius 1 about (5, 0) in 50 ticks.
+    let w_rad_per_s = std::f64::consts::FRAC_PI_2 / 5.0;
+    for _ in 0..50 {
+        sim.act(Drive::Twist { v_m_per_s: w_rad_per_s, w_rad_per_s });
+        let Odometry { forward_m, sideways_m, turn_rad } = sim.sense().odometry;
+        reckoned = reckoned.moved(forward_m, sideways_m, turn_rad);
+    }
+    let pose = sim.truth().pose;
+    assert!((pose.position - Point::new(5.0, 1.0)).norm() < 1e-9, "{pose:?}");
+    assert!((reckoned.position - pose.position).norm() < 1e-9);
+    assert_eq!(sim.tick(), 50);
+}
+
+#[test]
+fn exact_odometry_of_a_point_robot_adds_up_to_the_truth() {
+    let mut sim = Simulator::new(SimConfig { robot: exact(&robot()), ..config() }, 1);
+    let mut reckoned = robot().start;
+    for k in 0..120 {
+        let angle = f64::from(k) * 0.2;
+        sim.act(Drive::Velocity(Vector::new(angle.cos(), angle.sin()) * 0.4));
+        let Odometry { forward_m, sideways_m, turn_rad } = sim.sense().odometry;
+        reckoned = reckoned.moved(forward_m, sideways_m, turn_rad);
+    }
+    let truth = sim.truth().pose;
+    assert!((truth.position - robot().start.position).norm() > 0.1);
+    assert!((reckoned.position - truth.position).norm() < 1e-9);
+    assert!(wrap_angle_rad(reckoned.heading_rad - truth.heading_rad).abs() < 1e-9);
+}
+
+#[test]
+fn slip_shortens_the_way_and_odometry_does_not_feel_it() {
+    let mut config = SimConfig { robot: RobotConfig { slip_mean: 0.1, ..exact(&robot()) }, ..config() };
+    config.robot.start = Pose::new(-6.0, 2.0, 0.0);
+    let mut sim = Simulator::new(config, 1);
+    let mut told = 0.0;
+    for _ in 0..100 {
+        sim.act(ahead(0.5));
+        told += sim.sense().odometry.forward_m;
+    }
+    let driven = sim.truth().pose.position.x + 6.0;
+    assert!((driven / told - 0.9).abs() < 1e-9, "{driven} {told}");
+}
+
+#[test]
+fn a_robot_that_runs_into_a_column_stops_at_it_and_collides_once() {
+    let mut sim = Simulator::new(SimConfig { robot: exact(&robot()), ..config() }, 1);
+    let mut collisions = Vec::new();
+    for tick in 1..=100 {
+        sim.act(ahead(0.5));
+        if sim.truth().collided {
+            collisions.push(tick);
+        }
+    }
+    assert_eq!(collisions.len(), 1, "{collisions:?}");
+    assert!(sim.sense().contact);
+    assert!((sim.truth().pose.position.x - -3.8).abs() < 2e-4);
+    for _ in 0..10 {
+        sim.act(ahead(-0.5));
+    }
+    assert!(!sim.sense().contact && !sim.truth().collided);
+}
+
+#[test]
+fn the_start_is_sensed_at_rest_without_a_cycle() {
+    let mut sim = Simulator::new(config(), 1);
+    let readings = sim.sense();
+    assert_eq!(readings.odometry, Odometry::default());
+    assert!(!readings.ranging_cycle && !readings.contact);
+    assert_eq!(readings.sightings.iter().map(|s| s.id.0).collect::<Vec<_>>(), [1]);
+}
+
+#[test]
+fn a_cycle_without_an_answer_is_told() {
+    let run = free_run(config());
+    assert!(run[30].ranging_cycle && run[30].ranges.is_empty());
+    assert!(run[10].ranging_cycle && !run[10].ranges.is_empty());
+}

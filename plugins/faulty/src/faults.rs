@@ -1,0 +1,166 @@
+//! The faults, one function each where it takes more than a line.
+
+use nalgebra::Point2;
+use planner_api::{Code, Ctx, Layer, PlannerError, Result};
+use std::hint::{black_box, spin_loop};
+use std::time::Duration;
+
+/// Every fault there is.
+pub(crate) const FAULTS: &[&str] = &[
+    "none",
+    "panic",
+    "panic_payload",
+    "thread_panic",
+    "drop_panic",
+    "error",
+    "segv",
+    "abort",
+    "exit",
+    "kill",
+    "stop",
+    "stack",
+    "alloc",
+    "hang",
+    "sleep",
+    "slow",
+    "nan",
+    "huge",
+    "draw_flood",
+    "print_flood",
+    "close_fds",
+    "configure_panic",
+    "configure_hang",
+    "plan_panic",
+    "plan_hang",
+];
+
+/// Does what the word says; returns when the fault is one that can be survived.
+pub(crate) fn commit(kind: &str, ctx: &Ctx<'_>) -> Result<()> {
+    match kind {
+        "panic" => look_up_nothing(),
+        "panic_payload" => std::panic::panic_any(42_u8),
+        "thread_panic" => return panic_elsewhere(),
+        "error" => return Err(PlannerError::new(Code::Stuck, "a local minimum, as ordered")),
+        "segv" => process::write_to_nowhere(),
+        "abort" => std::process::abort(),
+        "exit" => std::process::exit(0),
+        "kill" => process::raise_signal(process::SIGKILL),
+        "stop" => process::raise_signal(process::SIGSTOP),
+        "stack" => {
+            black_box(deeper(0));
+        }
+        "alloc" => hoard(),
+        "hang" => spin(),
+        "sleep" => std::thread::sleep(Duration::from_hours(1)),
+        "slow" => return work_politely(ctx),
+        "draw_flood" => draw_flood(ctx),
+        "print_flood" => print_flood(),
+        "close_fds" => process::close_everything(),
+        _ => {}
+    }
+    Ok(())
+}
+
+fn look_up_nothing() {
+    let nothing: Vec<f64> = black_box(Vec::new());
+    black_box(nothing[7]);
+}
+
+fn panic_elsewhere() -> Result<()> {
+    let thread = std::thread::spawn(|| panic!("a panic in a thread of the planner"));
+    thread.join().map_err(|_| PlannerError::new(Code::Internal, "a thread of the planner panicked"))
+}
+
+#[expect(unconditional_recursion, reason = "to use up the stack is the point")]
+#[inline(never)]
+fn deeper(depth: u64) -> u64 {
+    let frame = black_box([depth; 64]);
+    let below = deeper(depth + 1);
+    black_box(&frame)[(depth % 64) as usize] + below
+}
+
+fn hoard() {
+    let mut hoard = Vec::new();
+    loop {
+        hoard.push(vec![1_u8; 1 << 20]);
+        black_box(&hoard);
+    }
+}
+
+fn spin() {
+    while black_box(true) {
+        spin_loop();
+    }
+}
+
+fn work_politely(ctx: &Ctx<'_>) -> Result<()> {
+    loop {
+        ctx.check()?;
+        std::thread::sleep(Duration::from_micros(200));
+    }
+}
+
+fn draw_flood(ctx: &Ctx<'_>) {
+    let line = vec![Point2::origin(); 1001];
+    for _ in 0..100 {
+        ctx.polyline(Layer::Other, &line);
+    }
+}
+
+#[expect(clippy::print_stdout, clippy::print_stderr, reason = "to spam the terminal is the point")]
+fn print_flood() {
+    for i in 0..5000 {
+        println!("\x1b[2Jspam {i}");
+        eprintln!("\x1b[31mmore spam {i}");
+    }
+}
+
+#[cfg(unix)]
+mod process {
+    //! What takes unsafe code; the numbers are those of Linux, SIGSTOP differs on macOS.
+
+    pub(super) const SIGKILL: i32 = 9;
+    pub(super) const SIGSTOP: i32 = if cfg!(target_os = "macos") { 17 } else { 19 };
+
+    unsafe extern "C" {
+        fn raise(signal: i32) -> i32;
+        fn close(fd: i32) -> i32;
+    }
+
+    pub(super) fn raise_signal(signal: i32) {
+        // SAFETY: raising a signal touches no memory.
+        unsafe { raise(signal) };
+    }
+
+    pub(super) fn write_to_nowhere() {
+        // SAFETY: none; an invalid write is the point.
+        unsafe { std::ptr::without_provenance_mut::<u32>(8).write_volatile(1) };
+    }
+
+    pub(super) fn close_everything() {
+        for fd in 0..1024 {
+            // SAFETY: none for the owners of these descriptors; that is the point.
+            unsafe { close(fd) };
+        }
+    }
+}
+
+#[cfg(not(unix))]
+mod process {
+    //! Elsewhere these faults are plain aborts.
+
+    pub(super) const SIGKILL: i32 = 9;
+    pub(super) const SIGSTOP: i32 = 19;
+
+    pub(super) fn raise_signal(_: i32) {
+        std::process::abort()
+    }
+
+    pub(super) fn write_to_nowhere() {
+        std::process::abort()
+    }
+
+    pub(super) fn close_everything() {
+        std::process::abort()
+    }
+}

@@ -1,0 +1,126 @@
+//! The last word before a velocity leaves: nothing moves toward what is already as near as allowed.
+
+use crate::contact::Contact;
+use world::Vector;
+
+/// Time over which a distance may be used up, seconds: several ticks, so that the hull comes to rest before it touches.
+const BRAKING_S: f64 = 0.5;
+/// The fastest the guard drives the robot away from something too near, as a share of the largest speed.
+const RETREAT_SHARE: f64 = 0.4;
+
+/// A velocity `v` with `away . v >= least`.
+#[derive(Debug, Clone, Copy)]
+struct HalfPlane {
+    away: Vector,
+    least: f64,
+}
+
+/// The velocity nearest to `wanted` that keeps a distance `keep_m` from every contact.
+///
+/// Toward a contact at distance `d` no more than `(d - keep_m) / 0.5 s` is allowed, so the robot slides along what it
+/// would run into; nearer than `keep_m` it is driven away. Where that is impossible, as in a gap narrower than both
+/// distances together, it may move along the gap but not across.
+pub fn slide(wanted: Vector, contacts: &[Contact], keep_m: f64, v_max: f64) -> Vector {
+    let planes: Vec<HalfPlane> = contacts
+        .iter()
+        .map(|c| HalfPlane {
+            away: c.away,
+            least: ((keep_m - c.distance_m) / BRAKING_S).min(RETREAT_SHARE * v_max),
+        })
+        .filter(|plane| plane.least > -v_max)
+        .collect();
+    let relaxed: Vec<HalfPlane> =
+        planes.iter().map(|plane| HalfPlane { least: plane.least.min(0.0), ..*plane }).collect();
+    let safe = nearest_within(wanted, &planes).or_else(|| nearest_within(wanted, &relaxed));
+    safe.unwrap_or_else(Vector::zeros).cap_magnitude(v_max)
+}
+
+/// A velocity of the same direction, so slow that a robot that still heads elsewhere stays clear while it turns.
+pub fn braked(velocity: Vector, heading: Vector, contacts: &[Contact], keep_m: f64) -> Vector {
+    let speed = velocity.norm();
+    let allowed = contacts.iter().fold(speed, |allowed, contact| {
+        let closing = -contact.away.dot(&heading);
+        let room_m = (contact.distance_m - keep_m).max(0.0);
+        if closing > 0.05 { allowed.min(room_m / BRAKING_S / closing) } else { allowed }
+    });
+    // Never quite still: the direction of the command is what the robot turns into.
+    let share = if speed > 0.0 { (allowed / speed).max(0.02) } else { 0.0 };
+    velocity * share
+}
+
+/// The point of an intersection of half planes that is nearest to `wanted`, if there is one.
+fn nearest_within(wanted: Vector, planes: &[HalfPlane]) -> Option<Vector> {
+    let is_allowed = |v: &Vector| planes.iter().all(|p| p.away.dot(v) >= p.least - 1e-9);
+    if is_allowed(&wanted) {
+        return Some(wanted);
+    }
+    let onto_edges = planes.iter().map(|p| wanted + p.away * (p.least - p.away.dot(&wanted)));
+    let corners = planes.iter().enumerate().flat_map(|(i, p)| {
+        planes[i + 1..].iter().filter_map(move |q| {
+            let turn = p.away.perp(&q.away);
+            let corner =
+                Vector::new(p.least * q.away.y - q.least * p.away.y, q.least * p.away.x - p.least * q.away.x);
+            (turn.abs() > 1e-9).then(|| corner / turn)
+        })
+    });
+    onto_edges
+        .chain(corners)
+        .filter(is_allowed)
+        .min_by(|a, b| (a - wanted).norm_squared().total_cmp(&(b - wanted).norm_squared()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Source;
+    use proptest::prelude::*;
+
+    fn contact(bearing_rad: f64, distance_m: f64) -> Contact {
+        let away = -Vector::new(bearing_rad.cos(), bearing_rad.sin());
+        Contact { source: Source::Wall, distance_m, away }
+    }
+
+    #[test]
+    fn it_slides_along_what_is_ahead() {
+        let safe = slide(Vector::new(0.3, 0.1), &[contact(0.0, 0.1)], 0.1, 0.4);
+        assert!((safe - Vector::new(0.0, 0.1)).norm() < 1e-9);
+    }
+
+    #[test]
+    fn it_backs_out_of_what_is_too_near() {
+        let safe = slide(Vector::new(0.3, 0.0), &[contact(0.0, 0.05)], 0.1, 0.4);
+        assert!(safe.x < -0.05);
+    }
+
+    #[test]
+    fn in_a_narrow_gap_it_moves_along_but_not_across() {
+        let sides = [contact(0.0, 0.05), contact(std::f64::consts::PI, 0.05)];
+        let safe = slide(Vector::new(0.3, 0.2), &sides, 0.1, 0.4);
+        assert!((safe - Vector::new(0.0, 0.2)).norm() < 1e-9);
+    }
+
+    #[test]
+    fn a_robot_that_heads_into_a_column_creeps_until_it_has_turned() {
+        let velocity = Vector::new(0.0, 0.4);
+        let toward = braked(velocity, Vector::x(), &[contact(0.0, 0.1)], 0.1);
+        let along = braked(velocity, Vector::y(), &[contact(0.0, 0.1)], 0.1);
+        assert!(toward.norm() < 0.01 && toward.norm() > 0.0);
+        assert!((along - velocity).norm() < 1e-12);
+    }
+
+    proptest! {
+        #[test]
+        fn no_allowed_velocity_approaches_what_is_too_near(
+            wanted in (-0.5..0.5_f64, -0.5..0.5_f64),
+            around in prop::collection::vec((0.0..6.3_f64, -0.2..0.5_f64), 0..7),
+        ) {
+            let contacts: Vec<Contact> = around.iter().map(|(b, d)| contact(*b, *d)).collect();
+            let safe = slide(Vector::new(wanted.0, wanted.1), &contacts, 0.1, 0.4);
+            prop_assert!(safe.norm() <= 0.4 + 1e-9);
+            for c in &contacts {
+                let allowed = ((c.distance_m - 0.1) / BRAKING_S).max(0.0);
+                prop_assert!(-c.away.dot(&safe) <= allowed + 1e-6);
+            }
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Planning by walking the law over the known map.
+
+use crate::{
+    descent::{self, Descent},
+    judge::{Walk, judge},
+    lockstep::{self, Course},
+    rollout,
+    scene::Scene,
+    settings::{Planning, Settings},
+};
+use planner_api::{Code, Ctx, LogLevel, Plan, PlanRequest, PlannerError, Result, Task};
+use world::{Point, polyline};
+
+/// More preset points than this after splitting long gaps are refused.
+const MOST_POINTS: usize = 200_000;
+/// Outside the floor by no more than this is rounding, metres.
+const ROUNDING_M: f64 = 1e-6;
+
+/// A path for the task; `complete` tells whether it achieves all of it with the clearance demanded, and the log why
+/// not.
+///
+/// # Errors
+/// [`Code::StartOccupied`], [`Code::StartOutside`], [`Code::GoalOccupied`], [`Code::GoalOutside`],
+/// [`Code::Invalid`] for preset points that coincide or are missing, and whatever ends the call early.
+pub fn plan(settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
+    let scene = Scene::new(request.site);
+    check_start(&scene, request.start.position, request.site.limits.radius_m)?;
+    match request.task {
+        Task::Goto { goal, tolerance_m } => check_goal(&scene, goal, tolerance_m)?,
+        Task::Follow { targets, .. } => check_targets(&scene, targets)?,
+    }
+    let walk = if is_flown(settings.planning, request.site.limits.radius_m) {
+        rollout::fly(&scene, settings, request, ctx)?
+    } else {
+        walked(&scene, settings, request, ctx)?
+    };
+    Ok(told(walk, &scene, request.site.clearance_m, ctx))
+}
+
+fn is_flown(planning: Planning, radius_m: f64) -> bool {
+    match planning {
+        Planning::Walked => false,
+        Planning::Flown => true,
+        Planning::ByHull => radius_m > 0.0,
+    }
+}
+
+fn walked(scene: &Scene, settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Walk> {
+    let start = request.start.position;
+    match request.task {
+        Task::Goto { goal, tolerance_m } => {
+            let step_m = settings.walking.goto_step_m;
+            descent::descend(scene, settings, &Descent { start, goal, step_m, tolerance_m }, ctx)
+        }
+        Task::Follow { targets, tolerance_m } => {
+            let points = course(scene, settings.walking.step_m, targets)?;
+            lockstep::follow(scene, settings, &Course { start, points: &points, tolerance_m }, ctx)
+        }
+    }
+}
+
+/// The preset points up to the last one that is free, with long gaps split into steps.
+fn course(scene: &Scene, step_m: f64, targets: &[Point]) -> Result<Vec<Point>> {
+    let split = polyline::length_m(targets) / step_m + targets.len() as f64;
+    if split > MOST_POINTS as f64 {
+        let message =
+            format!("the preset path has {split:.0} steps of {step_m} m, {MOST_POINTS} are allowed");
+        return Err(PlannerError::new(Code::Invalid, message));
+    }
+    let last = targets.iter().rposition(|p| scene.hull_clearance_m(*p) >= 0.0).unwrap_or(0);
+    // A hair more than the step, so that points one step apart are not split by rounding.
+    Ok(polyline::resampled(&targets[..=last], step_m * (1.0 + 1e-9)))
+}
+
+fn check_start(scene: &Scene, start: Point, radius_m: f64) -> Result<()> {
+    let place = format!("the start ({:.2}, {:.2})", start.x, start.y);
+    if scene.wall_clearance_m(start) + radius_m < -ROUNDING_M {
+        return Err(PlannerError::new(Code::StartOutside, format!("{place} lies outside the tank")));
+    }
+    // The estimated start may be off a little: only a hull that is half inside is refused.
+    let depth_m = -scene.hull_clearance_m(start);
+    if depth_m > radius_m / 2.0 {
+        let message = format!("at {place} the hull is {depth_m:.2} m inside an obstacle");
+        return Err(PlannerError::new(Code::StartOccupied, message));
+    }
+    Ok(())
+}
+
+fn check_targets(scene: &Scene, targets: &[Point]) -> Result<()> {
+    if targets.is_empty() {
+        return Err(PlannerError::new(Code::Invalid, "there is no preset point to follow"));
+    }
+    if let Some(at) = targets.windows(2).position(|w| (w[1] - w[0]).norm() < 1e-9) {
+        let message = format!("preset points {at} and {} coincide; give each point once", at + 1);
+        return Err(PlannerError::new(Code::Invalid, message));
+    }
+    if targets.iter().all(|p| scene.hull_clearance_m(*p) < 0.0) {
+        return Err(PlannerError::new(Code::NoPath, "every preset point lies in an obstacle"));
+    }
+    Ok(())
+}
+
+fn check_goal(scene: &Scene, goal: Point, tolerance_m: f64) -> Result<()> {
+    let place = format!("the goal ({:.2}, {:.2})", goal.x, goal.y);
+    if scene.wall_clearance_m(goal) + tolerance_m < -ROUNDING_M {
+        return Err(PlannerError::new(
+            Code::GoalOutside,
+            format!("{place} lies outside the tank or in its wall"),
+        ));
+    }
+    if scene.hull_clearance_m(goal) + tolerance_m < 0.0 {
+        return Err(PlannerError::new(Code::GoalOccupied, format!("{place} lies in an obstacle")));
+    }
+    Ok(())
+}
+
+fn told(walk: Walk, scene: &Scene, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
+    let shortfall = judge(&walk, scene, demanded_m);
+    if let Some(reason) = shortfall {
+        ctx.log(LogLevel::Warn, &format!("the plan is not complete: {reason}"));
+    }
+    Plan { cost: polyline::length_m(&walk.path), path: walk.path, complete: shortfall.is_none() }
+}

@@ -1,0 +1,197 @@
+//! Outlines in simple parts, for the few obstacles that a robot senses at a time.
+
+use crate::contact::{away_from, direction_or};
+use planner_api::Outline;
+use world::{Point, Vector, polyline::nearest_on_segment};
+
+/// A convex part of an outline.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Part {
+    /// Everything within `half_width_m` of a segment; a disc when both ends are one.
+    Capsule {
+        /// One end.
+        a: Point,
+        /// The other end.
+        b: Point,
+        /// Half the thickness, metres.
+        half_width_m: f64,
+    },
+    /// A convex polygon, counter-clockwise.
+    Polygon {
+        /// Corners.
+        vertices: Vec<Point>,
+    },
+}
+
+/// The shortest way between two parts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gap {
+    /// Its length, metres; not above zero when they touch.
+    pub width_m: f64,
+    /// Its end on the first part's centre line or edge.
+    pub from: Point,
+    /// Its end on the second part's centre line or edge.
+    pub to: Point,
+}
+
+/// The parts of an outline.
+pub fn parts_of(outline: &Outline<'_>) -> Vec<Part> {
+    match *outline {
+        Outline::Disc { center, radius_m } => {
+            vec![Part::Capsule { a: center, b: center, half_width_m: radius_m }]
+        }
+        Outline::Polygon { vertices } => vec![Part::Polygon { vertices: vertices.to_vec() }],
+        Outline::Polyline { points, half_width_m } => {
+            points.windows(2).map(|w| Part::Capsule { a: w[0], b: w[1], half_width_m }).collect()
+        }
+    }
+}
+
+impl Part {
+    /// Signed distance from a point to the outline, negative inside, and the way out.
+    pub fn distance(&self, point: Point) -> (f64, Vector) {
+        match self {
+            Self::Capsule { a, b, half_width_m } => {
+                let from_line = point - nearest_on_segment(*a, *b, point);
+                let across = Vector::new(a.y - b.y, b.x - a.x);
+                let away = direction_or(from_line, direction_or(across, Vector::x()));
+                (from_line.norm() - half_width_m, away)
+            }
+            Self::Polygon { vertices } => {
+                let (closest, distance_m) = nearest_on_ring(vertices, point);
+                let signed_m = if is_inside(vertices, point) { -distance_m } else { distance_m };
+                (signed_m, away_from(point, signed_m, closest, mean(vertices)))
+            }
+        }
+    }
+
+    /// Distance from a segment to the outline, metres; not above zero when they touch.
+    pub fn segment_distance_m(&self, a: Point, b: Point) -> f64 {
+        let inside = matches!(self, Self::Polygon { vertices } if is_inside(vertices, a));
+        if inside { 0.0 } else { self.gap(&Self::Capsule { a, b, half_width_m: 0.0 }).width_m }
+    }
+
+    /// The shortest way to another part that it does not contain.
+    pub fn gap(&self, other: &Self) -> Gap {
+        let mut best = Gap { width_m: f64::INFINITY, from: Point::origin(), to: Point::origin() };
+        for (a, b) in self.edges() {
+            for (c, d) in other.edges() {
+                let (from, to) = closest_of_segments(a, b, c, d);
+                let width_m = (to - from).norm() - self.half_width_m() - other.half_width_m();
+                if width_m < best.width_m {
+                    best = Gap { width_m, from, to };
+                }
+            }
+        }
+        best
+    }
+
+    /// Points and radii whose hull is the part, for its extent as seen from somewhere.
+    pub fn corners(&self) -> Vec<(Point, f64)> {
+        match self {
+            Self::Capsule { a, b, half_width_m } => vec![(*a, *half_width_m), (*b, *half_width_m)],
+            Self::Polygon { vertices } => vertices.iter().map(|v| (*v, 0.0)).collect(),
+        }
+    }
+
+    fn half_width_m(&self) -> f64 {
+        match self {
+            Self::Capsule { half_width_m, .. } => *half_width_m,
+            Self::Polygon { .. } => 0.0,
+        }
+    }
+
+    fn edges(&self) -> Vec<(Point, Point)> {
+        match self {
+            Self::Capsule { a, b, .. } => vec![(*a, *b)],
+            Self::Polygon { vertices } => ring(vertices).collect(),
+        }
+    }
+}
+
+fn ring(vertices: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
+    vertices.iter().copied().zip(vertices.iter().copied().cycle().skip(1))
+}
+
+fn mean(vertices: &[Point]) -> Point {
+    let sum: Vector = vertices.iter().map(|v| v.coords).sum();
+    Point::from(sum / vertices.len().max(1) as f64)
+}
+
+fn nearest_on_ring(vertices: &[Point], point: Point) -> (Point, f64) {
+    ring(vertices)
+        .map(|(a, b)| nearest_on_segment(a, b, point))
+        .map(|closest| (closest, (point - closest).norm()))
+        .min_by(|x, y| x.1.total_cmp(&y.1))
+        .unwrap_or((point, f64::INFINITY))
+}
+
+/// Whether a point lies inside a convex polygon.
+fn is_inside(vertices: &[Point], point: Point) -> bool {
+    vertices.len() > 2 && ring(vertices).all(|(a, b)| (b - a).perp(&(point - a)) > 0.0)
+}
+
+/// The nearest points of two segments; the same point twice where they cross.
+fn closest_of_segments(a: Point, b: Point, c: Point, d: Point) -> (Point, Point) {
+    if let Some(crossing) = crossing(a, b, c, d) {
+        return (crossing, crossing);
+    }
+    let pairs = [
+        (a, nearest_on_segment(c, d, a)),
+        (b, nearest_on_segment(c, d, b)),
+        (nearest_on_segment(a, b, c), c),
+        (nearest_on_segment(a, b, d), d),
+    ];
+    let shorter =
+        |x: (Point, Point), y: (Point, Point)| if (y.1 - y.0).norm() < (x.1 - x.0).norm() { y } else { x };
+    pairs.into_iter().reduce(shorter).expect("there are four pairs")
+}
+
+/// Where two segments cross, unless they are parallel.
+pub fn crossing(a: Point, b: Point, c: Point, d: Point) -> Option<Point> {
+    let (along, across) = (b - a, d - c);
+    let turn = along.perp(&across);
+    if turn.abs() < 1e-12 {
+        return None;
+    }
+    let share = (c - a).perp(&across) / turn;
+    let other = (c - a).perp(&along) / turn;
+    let on_both = (0.0..=1.0).contains(&share) && (0.0..=1.0).contains(&other);
+    on_both.then(|| a + along * share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn disc(x: f64, y: f64, radius_m: f64) -> Part {
+        Part::Capsule { a: Point::new(x, y), b: Point::new(x, y), half_width_m: radius_m }
+    }
+
+    fn square() -> Part {
+        let corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)];
+        Part::Polygon { vertices: corners.iter().map(|(x, y)| Point::new(*x, *y)).collect() }
+    }
+
+    #[test]
+    fn the_gap_between_discs_is_what_is_left_of_their_distance() {
+        let gap = disc(0.0, 0.0, 0.5).gap(&disc(3.0, 0.0, 1.0));
+        assert!((gap.width_m - 1.5).abs() < 1e-12);
+        assert!((square().gap(&disc(4.0, 1.0, 0.5)).width_m - 1.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn distances_to_a_square_are_signed_and_point_outward() {
+        let (inside_m, out) = square().distance(Point::new(1.9, 1.0));
+        assert!((inside_m + 0.1).abs() < 1e-12 && (out - Vector::x()).norm() < 1e-12);
+        let (outside_m, out) = square().distance(Point::new(2.5, 1.0));
+        assert!((outside_m - 0.5).abs() < 1e-12 && (out - Vector::x()).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_segment_through_a_part_has_no_distance_to_it() {
+        let (a, b) = (Point::new(-1.0, 1.0), Point::new(3.0, 1.0));
+        assert!(square().segment_distance_m(a, b) <= 0.0);
+        assert!((disc(1.0, 3.0, 0.5).segment_distance_m(a, b) - 1.5).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,102 @@
+//! Planning by flying the known map in thought.
+
+use crate::{
+    judge::{Shortfall, Walk},
+    pilot::{Pilot, Tick},
+    scene::Scene,
+    settings::Settings,
+};
+use planner_api::{Ctx, Limits, Motion, PlanRequest, PoseEstimate, Result, Site, Status, Task};
+use world::{Point, polyline};
+
+/// Distance covered in a tick at full speed, metres.
+const MOVE_M: f64 = 0.05;
+/// A preset point counts as passed at this distance, metres; the mission looks as far ahead.
+const LOOKAHEAD_M: f64 = 0.5;
+/// Obstacles further from the robot than this do not matter to the pilot, metres.
+const RANGE_M: f64 = 4.5;
+/// Ticks allowed, as a multiple of those of the straight way, and some more for short ways.
+const DETOUR: f64 = 4.0;
+const SPARE_TICKS: usize = 4000;
+
+/// The path of a robot that moves as the pilot decides, at its exact position, in any direction at once.
+///
+/// # Errors
+/// When the console wants it to stop.
+pub fn fly(scene: &Scene, settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Walk> {
+    let limits = Limits { motion: Motion::Point, ..request.site.limits };
+    let mut pilot = Pilot::new(settings, &Site { limits, ..*request.site });
+    let mut course = Course::new(scene, request);
+    let v_max = limits.v_max_m_per_s.max(1e-6);
+    let tick_s = MOVE_M / v_max;
+    let mut at = request.start.position;
+    let mut heading_rad = request.start.heading_rad;
+    let mut path = vec![at];
+    for tick in 0..course.most_ticks(at) {
+        ctx.check()?;
+        course.advance(at);
+        if course.is_done(at) {
+            return Ok(Walk { path, shortfall: None });
+        }
+        let bodies = scene.bodies_within(at, RANGE_M + limits.radius_m);
+        let pose = PoseEstimate { position: at, heading_rad, covariance: nalgebra::Matrix3::zeros() };
+        let t_s = tick as f64 * tick_s;
+        let tick = Tick { t_s, pose, target: course.target(), is_last: course.is_last(), bodies: &bodies };
+        let decision = pilot.decide(settings, &tick);
+        if decision.status == Status::Stuck {
+            return Ok(Walk { path, shortfall: Some(Shortfall::Trapped { at }) });
+        }
+        if decision.velocity.norm() > 1e-9 {
+            heading_rad = decision.velocity.y.atan2(decision.velocity.x);
+        }
+        at += decision.velocity * tick_s;
+        path.push(at);
+    }
+    let missing_m = (course.target() - at).norm();
+    Ok(Walk { path, shortfall: Some(Shortfall::Short { missing_m, at }) })
+}
+
+/// Targets in order; those that the robot cannot stand on are left out.
+struct Course {
+    targets: Vec<Point>,
+    due: usize,
+    tolerance_m: f64,
+}
+
+impl Course {
+    fn new(scene: &Scene, request: &PlanRequest<'_>) -> Self {
+        let demanded_m = request.site.clearance_m;
+        let is_free = |p: &&Point| scene.hull_clearance_m(**p).min(scene.wall_clearance_m(**p)) >= demanded_m;
+        let (targets, tolerance_m) = match request.task {
+            Task::Goto { goal, tolerance_m } => (vec![goal], tolerance_m),
+            Task::Follow { targets, tolerance_m } => {
+                let free: Vec<Point> = targets.iter().filter(is_free).copied().collect();
+                (if free.is_empty() { targets.to_vec() } else { free }, tolerance_m)
+            }
+        };
+        Self { targets, due: 0, tolerance_m }
+    }
+
+    fn target(&self) -> Point {
+        self.targets[self.due]
+    }
+
+    fn is_last(&self) -> bool {
+        self.due + 1 == self.targets.len()
+    }
+
+    fn advance(&mut self, at: Point) {
+        while !self.is_last() && (self.target() - at).norm() < LOOKAHEAD_M {
+            self.due += 1;
+        }
+    }
+
+    fn is_done(&self, at: Point) -> bool {
+        self.is_last() && (self.target() - at).norm() <= self.tolerance_m
+    }
+
+    fn most_ticks(&self, start: Point) -> usize {
+        let way_m = (self.target() - start).norm() + polyline::length_m(&self.targets);
+        (DETOUR * way_m / MOVE_M) as usize + SPARE_TICKS
+    }
+}

@@ -1,0 +1,76 @@
+//! Everything a potential-field planner can be set to.
+
+use crate::{
+    law::Law,
+    turning::{Reading, SenseRule},
+};
+
+/// How a plan is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Planning {
+    /// As in the paper: moves of the law toward targets in lock step.
+    Walked,
+    /// By flying the known map in thought, with the exact position: what the robot will do.
+    Flown,
+    /// Walked for a robot without extent, as the paper's, and flown for one with a hull.
+    ByHull,
+}
+
+/// How a law is walked over the known map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Walking {
+    /// Longest move toward a preset point, metres; the paper's `s`.
+    pub step_m: f64,
+    /// Length of a move toward a goal, metres.
+    pub goto_step_m: f64,
+    /// Whether moves may be twice as long while the robot lags behind its preset point.
+    pub flexible: bool,
+    /// Largest change of heading from one move to the next, radians, if it is limited.
+    pub turn_limit_rad: Option<f64>,
+    /// A path that falls further behind its preset point than this skips floor, metres.
+    pub max_lag_m: f64,
+}
+
+/// How the rotating force is used in flight.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Steering {
+    /// As in the plan: by the reading and the sense that are set.
+    Paper,
+    /// About whatever blocks the way, on the side of the smaller detour, with narrow gaps closed; ours.
+    Gaps,
+}
+
+/// How the robot is steered along the law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flight {
+    /// How the rotating force is used.
+    pub steering: Steering,
+    /// Distance between hull and anything solid below which no motion toward it is allowed, metres; a little more
+    /// than the clearance that the mission demands, if that is larger.
+    pub guard_m: f64,
+    /// Widens the guard by this many standard deviations of the estimated position.
+    pub guard_sigmas: f64,
+    /// Distance between hull and obstacle below which the robot goes slower, metres.
+    pub slow_m: f64,
+    /// The smallest share of the largest speed it slows down to by itself.
+    pub min_share: f64,
+    /// Time without getting on after which the robot reports that it is stuck, seconds.
+    pub stuck_s: f64,
+}
+
+/// Everything a potential-field planner can be set to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Gains and ranges.
+    pub law: Law,
+    /// When the rotating force acts.
+    pub reading: Reading,
+    /// Which way round it acts.
+    pub rule: SenseRule,
+    /// How a plan is made.
+    pub planning: Planning,
+    /// How the law is walked to plan.
+    pub walking: Walking,
+    /// How the robot is steered.
+    pub flight: Flight,
+}

@@ -1,0 +1,60 @@
+//! When a law counts as trapped.
+
+use std::collections::VecDeque;
+use world::Point;
+
+/// Moves that the detector looks back over.
+const WINDOW: usize = 6;
+/// It is a trap when the net displacement falls below this share of what those moves could have covered.
+const SHARE: f64 = 0.35;
+
+/// Tells a trap from the last six moves: they led less than 0.35 of their length away from where they began, the target
+/// is more than a step off, and an obstacle acts.
+///
+/// Wang et al. 2023 do not say when they call the robot trapped; window and share are ours.
+#[derive(Debug, Clone, Default)]
+pub struct TrapDetector {
+    recent: VecDeque<Point>,
+}
+
+impl TrapDetector {
+    /// Takes the place reached by a move.
+    pub fn record(&mut self, at: Point) {
+        self.recent.push_back(at);
+        if self.recent.len() > WINDOW + 1 {
+            self.recent.pop_front();
+        }
+    }
+
+    /// Whether the robot is trapped; `expected_m` is what a free move would cover, `lag_m` the distance to the target.
+    pub fn is_trapped(&self, expected_m: f64, step_m: f64, lag_m: f64, obstacle_acts: bool) -> bool {
+        let (Some(first), Some(last)) = (self.recent.front(), self.recent.back()) else { return false };
+        let hardly_moved = (last - first).norm() < SHARE * WINDOW as f64 * expected_m;
+        self.recent.len() > WINDOW && hardly_moved && lag_m > step_m && obstacle_acts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(places: impl Iterator<Item = f64>) -> TrapDetector {
+        let mut detector = TrapDetector::default();
+        places.for_each(|x| detector.record(Point::new(x, 0.0)));
+        detector
+    }
+
+    #[test]
+    fn going_to_and_fro_is_a_trap() {
+        let detector = after((0..8).map(|i| f64::from(i % 2) * 0.2));
+        assert!(detector.is_trapped(0.2, 0.2, 1.0, true));
+        assert!(!detector.is_trapped(0.2, 0.2, 1.0, false));
+        assert!(!detector.is_trapped(0.2, 0.2, 0.1, true));
+    }
+
+    #[test]
+    fn moving_on_is_none_and_neither_are_the_first_moves() {
+        assert!(!after((0..8).map(|i| f64::from(i) * 0.2)).is_trapped(0.2, 0.2, 1.0, true));
+        assert!(!after((0..4).map(|_| 0.0)).is_trapped(0.2, 0.2, 1.0, true));
+    }
+}

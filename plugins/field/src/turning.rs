@@ -1,0 +1,115 @@
+//! When the rotating force acts, and which way round.
+
+use crate::{
+    contact::{Contact, Source},
+    laws::Sense,
+};
+use std::collections::BTreeMap;
+use world::Vector;
+
+/// Moves for which a gate stays open once the detector has fired.
+const HOLD: usize = 10;
+
+/// How the rotating force of Wang et al. 2023 is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reading {
+    /// No rotating force.
+    Off,
+    /// As printed: about every obstacle within range, always.
+    Literal,
+    /// Only while the robot is trapped and ten moves on; the paper's figures fit only this.
+    Gated,
+}
+
+/// How the sense of rotation is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SenseRule {
+    /// Always counter-clockwise, as printed: helps at obstacles on the left hand, pushes back at those on the right.
+    CounterClockwise,
+    /// The one that points more toward the target when the force begins to act, kept while the obstacle is in range.
+    SideAware,
+}
+
+/// Gate and senses of the rotating force along a walk.
+#[derive(Debug, Clone)]
+pub struct Turning {
+    reading: Reading,
+    rule: SenseRule,
+    open_for: usize,
+    kept: BTreeMap<Source, Sense>,
+}
+
+impl Turning {
+    /// Closed, and with no sense chosen.
+    pub fn new(reading: Reading, rule: SenseRule) -> Self {
+        Self { reading, rule, open_for: 0, kept: BTreeMap::new() }
+    }
+
+    /// Takes the state of the next move: whether the law is trapped, and what is near.
+    pub fn update(&mut self, is_trapped: bool, contacts: &[Contact], to_goal: Vector) {
+        self.open_for = if is_trapped { HOLD } else { self.open_for.saturating_sub(1) };
+        self.kept.retain(|source, _| contacts.iter().any(|c| c.source == *source));
+        if self.is_on() && self.rule == SenseRule::SideAware {
+            for contact in contacts {
+                self.kept.entry(contact.source).or_insert_with(|| toward(to_goal, contact.away));
+            }
+        }
+    }
+
+    /// Whether the force acts now.
+    pub fn is_on(&self) -> bool {
+        match self.reading {
+            Reading::Off => false,
+            Reading::Literal => true,
+            Reading::Gated => self.open_for > 0,
+        }
+    }
+
+    /// Which way round a contact, if the force acts.
+    pub fn sense(&self, contact: &Contact) -> Option<Sense> {
+        if !self.is_on() || contact.source == Source::Wall {
+            return None;
+        }
+        Some(self.kept.get(&contact.source).copied().unwrap_or(Sense::CounterClockwise))
+    }
+}
+
+/// The sense whose tangent points more toward the goal.
+fn toward(to_goal: Vector, away: Vector) -> Sense {
+    let counter_clockwise = Sense::CounterClockwise;
+    if counter_clockwise.tangent(away).dot(&to_goal) >= 0.0 { counter_clockwise } else { Sense::Clockwise }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EAST_OF_IT: Contact =
+        Contact { source: Source::Obstacle(4), distance_m: 0.3, away: Vector::new(1.0, 0.0) };
+
+    #[test]
+    fn a_gate_opens_in_a_trap_and_closes_ten_moves_later() {
+        let mut turning = Turning::new(Reading::Gated, SenseRule::CounterClockwise);
+        turning.update(false, &[EAST_OF_IT], Vector::y());
+        assert_eq!(turning.sense(&EAST_OF_IT), None);
+        turning.update(true, &[EAST_OF_IT], Vector::y());
+        for _ in 0..9 {
+            turning.update(false, &[EAST_OF_IT], Vector::y());
+        }
+        assert_eq!(turning.sense(&EAST_OF_IT), Some(Sense::CounterClockwise));
+        turning.update(false, &[EAST_OF_IT], Vector::y());
+        assert_eq!(turning.sense(&EAST_OF_IT), None);
+    }
+
+    #[test]
+    fn a_side_once_chosen_is_kept_while_the_obstacle_is_near() {
+        let mut turning = Turning::new(Reading::Literal, SenseRule::SideAware);
+        turning.update(false, &[EAST_OF_IT], -Vector::y());
+        assert_eq!(turning.sense(&EAST_OF_IT), Some(Sense::Clockwise));
+        turning.update(false, &[EAST_OF_IT], Vector::y());
+        assert_eq!(turning.sense(&EAST_OF_IT), Some(Sense::Clockwise));
+        turning.update(false, &[], Vector::y());
+        turning.update(false, &[EAST_OF_IT], Vector::y());
+        assert_eq!(turning.sense(&EAST_OF_IT), Some(Sense::CounterClockwise));
+    }
+}

@@ -1,0 +1,122 @@
+//! Walking a law over the known map, move by move.
+
+use crate::{
+    contact::{Contact, Source},
+    scene::Scene,
+    settings::Settings,
+    trap::TrapDetector,
+    turning::Turning,
+};
+use std::collections::VecDeque;
+use world::{Point, Vector};
+
+/// A walk counts as trapped after this many moves that lead nowhere.
+const TRAP_MOVES: usize = 25;
+
+/// One walk and its memory.
+pub struct Walker<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    turning: Turning,
+    detector: TrapDetector,
+    lagging: VecDeque<Point>,
+    heading: Option<Vector>,
+    at: Point,
+    path: Vec<Point>,
+    trap: Option<Point>,
+}
+
+/// One move to make.
+#[derive(Debug, Clone, Copy)]
+pub struct Move {
+    /// Where to.
+    pub target: Point,
+    /// Longest move that counts as ordinary, metres.
+    pub step_m: f64,
+    /// Longest move allowed now, metres.
+    pub cap_m: f64,
+    /// What a free move covers here, metres.
+    pub expected_m: f64,
+}
+
+impl<'a> Walker<'a> {
+    /// A walk from here.
+    pub fn new(scene: &'a Scene, settings: &'a Settings, start: Point) -> Self {
+        let mut detector = TrapDetector::default();
+        detector.record(start);
+        Self {
+            scene,
+            settings,
+            turning: Turning::new(settings.reading, settings.rule),
+            detector,
+            lagging: VecDeque::new(),
+            heading: None,
+            at: start,
+            path: vec![start],
+            trap: None,
+        }
+    }
+
+    /// Where the walk is.
+    pub fn at(&self) -> Point {
+        self.at
+    }
+
+    /// Where the walk was first trapped: 25 moves that led less than a step away, with the target more than a step off
+    /// all the time and two in the end.
+    pub fn trap(&self) -> Option<Point> {
+        self.trap
+    }
+
+    /// Every point of the walk, the start first.
+    pub fn into_path(self) -> Vec<Point> {
+        self.path
+    }
+
+    /// Moves along the resultant, by no more than the distance to the target: a free way ends exactly there.
+    pub fn advance(&mut self, next: &Move) {
+        let to_target = next.target - self.at;
+        let contacts = self.scene.contacts(self.at, &self.settings.law);
+        let obstacle_acts = contacts.iter().any(|c| c.source != Source::Wall);
+        let trapped = self.detector.is_trapped(next.expected_m, next.step_m, to_target.norm(), obstacle_acts);
+        self.turning.update(trapped, &contacts, to_target);
+        if let Some(direction) = self.direction(next.target, &contacts) {
+            self.at += direction * next.cap_m.min(to_target.norm());
+            self.heading = Some(direction);
+        }
+        self.path.push(self.at);
+        self.detector.record(self.at);
+        self.watch_for_trap((next.target - self.at).norm(), next.step_m);
+    }
+
+    fn direction(&self, target: Point, contacts: &[Contact]) -> Option<Vector> {
+        let forces = self.settings.law.forces(self.at, target, contacts, |c| self.turning.sense(c));
+        let wanted = forces.resultant().try_normalize(1e-12)?;
+        match (self.settings.walking.turn_limit_rad, self.heading) {
+            (Some(limit_rad), Some(heading)) => Some(turned_at_most(heading, wanted, limit_rad)),
+            _ => Some(wanted),
+        }
+    }
+
+    fn watch_for_trap(&mut self, lag_m: f64, step_m: f64) {
+        if lag_m <= step_m {
+            self.lagging.clear();
+            return;
+        }
+        self.lagging.push_back(self.at);
+        if self.lagging.len() > TRAP_MOVES {
+            let first = self.lagging.pop_front().expect("more than 25 places are kept");
+            let led_nowhere = (self.at - first).norm() < step_m && lag_m > 2.0 * step_m;
+            self.trap = self.trap.or(led_nowhere.then_some(self.at));
+        }
+    }
+}
+
+/// `wanted`, or as near to it as a turn by the limit gets; unit vectors.
+fn turned_at_most(heading: Vector, wanted: Vector, limit_rad: f64) -> Vector {
+    let turn_rad = heading.perp(&wanted).atan2(heading.dot(&wanted));
+    if turn_rad.abs() <= limit_rad {
+        return wanted;
+    }
+    nalgebra::Rotation2::new(limit_rad.copysign(turn_rad)) * heading
+}

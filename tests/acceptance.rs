@@ -1,0 +1,18 @@
+//! Acceptance: the built `tankops`, its plugins and its terminal, as a user meets them.
+
+#[path = "acceptance/bench.rs"]
+mod bench;
+#[path = "acceptance/command_line.rs"]
+mod command_line;
+#[path = "acceptance/faults.rs"]
+mod faults;
+#[cfg(unix)]
+#[path = "acceptance/killed.rs"]
+mod killed;
+#[path = "acceptance/replay.rs"]
+mod replay;
+#[path = "acceptance/scenarios.rs"]
+mod scenarios;
+#[cfg(unix)]
+#[path = "acceptance/terminal.rs"]
+mod terminal;

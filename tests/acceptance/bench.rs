@@ -1,0 +1,98 @@
+//! Starting `tankops` and reading what it leaves.
+
+use serde_json::Value;
+use std::{
+    path::{Path, PathBuf},
+    process::{Command, Output},
+};
+use tempfile::TempDir;
+
+/// The workspace's folder.
+pub fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
+}
+
+/// A scenario that is shipped.
+pub fn scenario(name: &str) -> PathBuf {
+    workspace().join("scenarios").join(name)
+}
+
+/// A fresh folder for runs and files, and the command to work in it.
+pub struct Bench {
+    folder: TempDir,
+}
+
+impl Bench {
+    pub fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Writes a file and gives its path.
+    pub fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.path().join(name);
+        std::fs::write(&path, content).unwrap();
+        path
+    }
+
+    /// `tankops` in this folder; test-only plugins lie in `deps` beside it.
+    pub fn command(&self) -> Command {
+        let program = Path::new(env!("CARGO_BIN_EXE_tankops"));
+        let mut command = Command::new(program);
+        command.current_dir(self.path()).env_remove("TANKOPS_PLUGIN_PATH");
+        command.arg("--plugin-dir").arg(program.parent().unwrap().join("deps"));
+        command
+    }
+
+    /// Runs `tankops` with arguments.
+    pub fn tankops(&self, arguments: &[&str]) -> Ended {
+        Ended::from(self.command().args(arguments).output().unwrap())
+    }
+
+    /// Flies a scenario headless and gives the report.
+    pub fn fly(&self, scenario: &Path, more: &[&str]) -> Ended {
+        let mut command = self.command();
+        command.arg("run").arg(scenario).arg("--json").args(more);
+        Ended::from(command.output().unwrap())
+    }
+
+    /// Folders of runs, oldest first.
+    pub fn runs(&self) -> Vec<PathBuf> {
+        let mut runs: Vec<PathBuf> = std::fs::read_dir(self.path().join("logs"))
+            .map(|entries| entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()).collect())
+            .unwrap_or_default();
+        runs.sort();
+        runs
+    }
+}
+
+/// What a finished `tankops` left.
+#[derive(Debug)]
+pub struct Ended {
+    pub code: Option<i32>,
+    pub out: String,
+    pub err: String,
+}
+
+impl From<Output> for Ended {
+    fn from(output: Output) -> Self {
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        Self { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+    }
+}
+
+impl Ended {
+    /// Stdout as JSON.
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error} in {self:?}"))
+    }
+}
+
+/// The lines of a journal.
+pub fn journal(run: &Path) -> Vec<Value> {
+    let text = std::fs::read_to_string(run.join("events.jsonl")).unwrap();
+    text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
+}

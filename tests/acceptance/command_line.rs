@@ -1,0 +1,103 @@
+//! The command line as scripts use it: exit codes, JSON, clear refusals.
+
+use crate::bench::{Bench, scenario};
+
+#[test]
+fn planners_are_listed_with_their_parameters() {
+    let bench = Bench::new();
+    let listed = bench.tankops(&["planners", "--json"]).json();
+    let plugins = listed["plugins"].as_array().unwrap();
+    let planners: Vec<&serde_json::Value> =
+        plugins.iter().flat_map(|plugin| plugin["planners"].as_array().unwrap()).collect();
+    let ids: Vec<&str> = planners.iter().map(|planner| planner["id"].as_str().unwrap()).collect();
+    assert!(ids.contains(&"apf") && ids.contains(&"rpf"), "{ids:?}");
+    for planner in planners {
+        for parameter in planner["parameters"].as_array().unwrap() {
+            assert_ne!(parameter["help"], "", "{}: {}", planner["id"], parameter["key"]);
+        }
+    }
+}
+
+#[test]
+fn a_plan_is_printed_as_json_without_flying() {
+    let bench = Bench::new();
+    let planned = bench.command().args(["plan", "--json"]).arg(scenario("demo.toml")).output().unwrap();
+    let plan: serde_json::Value = serde_json::from_slice(&planned.stdout).unwrap();
+    assert_eq!(plan["planner"], "rpf");
+    assert!(plan["path"].as_array().unwrap().len() > 100);
+    assert!(plan["length_m"].as_f64() > Some(10.0));
+    assert!(bench.runs().is_empty());
+}
+
+#[test]
+fn damaged_scenarios_are_refused_with_file_line_key_and_remedy() {
+    let demo = std::fs::read_to_string(scenario("demo.toml")).unwrap();
+    let damaged = [
+        ("unknown.toml", demo.replacen("[robot]", "[robot]\nrobot_colour = 3", 1), "robot_colour"),
+        ("unit.toml", demo.replacen("radius_m", "radius_cm", 1), "radius_m"),
+        ("noise.toml", "\u{1}%&~".repeat(2_500_000), "larger"),
+        ("nan.toml", regex_free_replace(&demo, "swath_m", "nan"), "swath_m"),
+        ("zero.toml", regex_free_replace(&demo, "radius_m", "0"), "radius_m"),
+    ];
+    let bench = Bench::new();
+    for (name, text, word) in damaged {
+        let file = bench.file(name, text);
+        let flown = bench.tankops(&["run", file.to_str().unwrap()]);
+        assert_eq!(flown.code, Some(2), "{name}: {flown:?}");
+        assert!(flown.err.contains(name) && flown.err.contains(word), "{name}: {}", flown.err);
+        assert!(flown.err.len() < 4000, "{name}: {} bytes of message", flown.err.len());
+        assert_eq!(bench.tankops(&["check", file.to_str().unwrap()]).code, Some(2), "{name}");
+    }
+    assert!(bench.runs().is_empty());
+}
+
+/// The text with the first value of a key changed.
+fn regex_free_replace(text: &str, key: &str, value: &str) -> String {
+    let mut done = false;
+    let lines: Vec<String> = text
+        .lines()
+        .map(|line| {
+            if !done && line.trim_start().starts_with(&format!("{key} =")) {
+                done = true;
+                return format!("{key} = {value}");
+            }
+            line.to_owned()
+        })
+        .collect();
+    assert!(done, "no {key} in the scenario");
+    lines.join("\n")
+}
+
+#[test]
+fn wrong_usage_is_exit_code_2_and_names_the_remedy() {
+    let bench = Bench::new();
+    let demo = scenario("demo.toml");
+    let demo = demo.to_str().unwrap();
+    for (arguments, word) in [
+        (vec!["fly"], "--help"),
+        (vec!["run", "nowhere.toml"], "nowhere.toml"),
+        (vec!["run", demo, "--planner", "rfp", "--no-record"], "rpf"),
+        (vec!["run", demo, "--set", "k_rpe=2", "--no-record"], "k_rep"),
+        (vec!["run", demo, "--set", "k_rep=1e99", "--no-record"], "k_rep"),
+    ] {
+        let ended = bench.tankops(&arguments);
+        assert_eq!(ended.code, Some(2), "{arguments:?}: {ended:?}");
+        assert!(ended.err.contains(word), "{arguments:?}: {}", ended.err);
+    }
+}
+
+#[test]
+fn without_a_terminal_the_demo_is_flown_and_told() {
+    let bench = Bench::new();
+    let flown = bench.tankops(&[]);
+    assert_eq!(flown.code, Some(0), "{flown:?}");
+    assert!(flown.out.contains("complete") && flown.out.contains("reachable"), "{flown:?}");
+    assert_eq!(bench.runs().len(), 1);
+}
+
+#[test]
+fn the_console_without_a_terminal_says_what_to_use_instead() {
+    let ended = Bench::new().tankops(&["console"]);
+    assert_eq!(ended.code, Some(2));
+    assert!(ended.err.contains("tankops run"), "{ended:?}");
+}

@@ -1,0 +1,122 @@
+//! Planners that misbehave: the robot holds within the tick, the operator reads why, the mission can go on.
+
+use crate::bench::{Bench, Ended, journal, scenario};
+use serde_json::Value;
+
+/// Flies the goto scenario with the faulty planner; `apf` is its fallback.
+fn fly_faulty(bench: &Bench, fault: &str) -> Ended {
+    let set = format!("fault={fault}");
+    bench.fly(
+        &scenario("goto-single-obstacle.toml"),
+        &["--planner", "faulty", "--set", &set, "--set", "at_step=12", "--set", "planner.fallback.id=apf"],
+    )
+}
+
+fn of_kind<'a>(events: &'a [Value], kind: &str) -> Vec<&'a Value> {
+    events.iter().filter(|event| event["event"] == kind).collect()
+}
+
+#[test]
+fn whatever_a_planner_does_the_robot_holds_and_another_planner_ends_the_mission() {
+    let faults = [
+        ("panic", "panic"),
+        ("segv", "SIGSEGV"),
+        ("abort", "SIGABRT"),
+        ("exit", "exit"),
+        ("hang", "did not answer"),
+        ("alloc", "memory"),
+        ("nan", "not a number"),
+        ("stack", "SIG"),
+        ("error", "faulty"),
+    ];
+    for (fault, word) in faults {
+        let bench = Bench::new();
+        let flown = fly_faulty(&bench, fault);
+        let report = flown.json();
+        assert_eq!(report["outcome"], "complete", "{fault}: {flown:?}");
+        assert_eq!(report["planner_faults"], 1, "{fault}: {flown:?}");
+        let events = journal(&bench.runs()[0]);
+        let failed = of_kind(&events, "planner_failed");
+        let message = failed[0]["fault"]["message"].as_str().unwrap();
+        assert!(message.contains("faulty") && message.contains(word), "{fault}: {message}");
+        assert!(message.contains("step"), "{fault}: {message}");
+        let held = of_kind(&events, "held");
+        assert_eq!(held[0]["tick"], failed[0]["tick"], "{fault}");
+        let verified = bench.tankops(&["verify", bench.runs()[0].to_str().unwrap()]);
+        assert_eq!(verified.code, Some(0), "{fault}: {verified:?}");
+    }
+}
+
+#[test]
+fn without_a_fallback_and_an_operator_the_mission_ends_with_the_planners_sentence() {
+    let bench = Bench::new();
+    let flown =
+        bench.fly(&scenario("goto-single-obstacle.toml"), &["--planner", "faulty", "--set", "fault=segv"]);
+    assert_eq!(flown.code, Some(1), "{flown:?}");
+    let report = flown.json();
+    assert_eq!(report["outcome"], "aborted");
+    assert!(report["reason"].as_str().unwrap().contains("SIGSEGV"), "{report}");
+    assert!(bench.runs()[0].join("recording.rrd").metadata().unwrap().len() > 1000);
+}
+
+#[test]
+fn a_planner_that_panics_or_hangs_while_it_is_made_is_refused_with_a_sentence() {
+    for (fault, word) in
+        [("configure_panic", "panic"), ("configure_hang", "configure"), ("plan_panic", "panic")]
+    {
+        let bench = Bench::new();
+        let flown = fly_faulty(&bench, fault);
+        let report = flown.json();
+        assert_eq!(report["outcome"], "complete", "{fault}: {flown:?}");
+        let events = journal(&bench.runs()[0]);
+        let message = of_kind(&events, "planner_failed")[0]["fault"]["message"].as_str().unwrap().to_owned();
+        assert!(message.contains(word), "{fault}: {message}");
+    }
+}
+
+#[test]
+fn a_planner_in_plain_c_flies() {
+    let bench = Bench::new();
+    let plugins = bench.path().join("plugins-in-c");
+    std::fs::create_dir(&plugins).unwrap();
+    compile("direct.c", &plugins.join("libplanner_direct_c.so"));
+    let flown = bench.fly(
+        &scenario("goto-single-obstacle.toml"),
+        &["--planner", "direct-c", "--plugin-dir", plugins.to_str().unwrap(), "--no-record"],
+    );
+    let report = flown.json();
+    assert_eq!(report["planner"], "direct-c", "{flown:?}");
+    assert!(report["ticks"].as_u64() > Some(50), "{flown:?}");
+    assert_eq!(report["planner_faults"], 0, "{flown:?}");
+}
+
+#[test]
+fn a_plugin_for_another_abi_is_listed_with_the_remedy() {
+    let bench = Bench::new();
+    let plugins = bench.path().join("old");
+    std::fs::create_dir(&plugins).unwrap();
+    let source =
+        bench.file("old.c", "#include \"tankops_planner.h\"\nTP_STAMP(9, 0);\nint tank_planner_entry;\n");
+    compile_file(&source, &plugins.join("libplanner_old.so"));
+    let listed = bench.tankops(&["planners", "--plugin-dir", plugins.to_str().unwrap()]);
+    assert_eq!(listed.code, Some(0), "{listed:?}");
+    assert!(listed.out.contains("ABI 9.0") && listed.out.contains("update the console"), "{listed:?}");
+}
+
+fn compile(example: &str, library: &std::path::Path) {
+    compile_file(&crate::bench::workspace().join("plugins/examples/direct-c").join(example), library);
+}
+
+fn compile_file(source: &std::path::Path, library: &std::path::Path) {
+    let include = crate::bench::workspace().join("plugins/planner-api/include");
+    let compiled = std::process::Command::new("cc")
+        .args(["-std=c11", "-shared", "-fPIC", "-O1", "-Wall", "-Werror", "-o"])
+        .arg(library)
+        .arg(source)
+        .arg("-I")
+        .arg(include)
+        .arg("-lm")
+        .output()
+        .unwrap();
+    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+}

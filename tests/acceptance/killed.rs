@@ -1,0 +1,55 @@
+//! kill -9 in the middle of a mission: nothing but the last moment is lost.
+
+use crate::bench::{Bench, journal, scenario};
+use std::{
+    path::Path,
+    process::Stdio,
+    time::{Duration, Instant},
+};
+
+#[test]
+fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
+    // Times differ, so that the kill hits different moments; seeds are written out.
+    for (seed, wait_ms) in [(11, 150), (12, 320), (13, 480), (14, 610), (15, 750)] {
+        let bench = Bench::new();
+        // A long mission: nobody kills in time what ends in a second.
+        let slow = slow_scenario(&bench);
+        let mut child = bench
+            .command()
+            .arg("run")
+            .arg(&slow)
+            .args(["--seed", &seed.to_string()])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        wait_for_journal(&bench);
+        std::thread::sleep(Duration::from_millis(wait_ms));
+        assert!(child.try_wait().unwrap().is_none(), "the mission ended before it could be killed");
+        child.kill().unwrap();
+        child.wait().unwrap();
+
+        let run = bench.runs().remove(0);
+        let listed = bench.tankops(&["runs", "--json"]).json();
+        assert_eq!(listed[0]["end"], "CRASHED", "{listed}");
+        assert!(!journal(&run).is_empty());
+        let exported = bench.tankops(&["export", run.to_str().unwrap(), "--rrd", "again.rrd"]);
+        assert_eq!(exported.code, Some(0), "{exported:?}");
+        let verified = bench.tankops(&["verify", run.to_str().unwrap()]);
+        assert_eq!(verified.code, Some(0), "{verified:?}");
+    }
+}
+
+fn slow_scenario(bench: &Bench) -> std::path::PathBuf {
+    let text = std::fs::read_to_string(scenario("spiral-paper.toml")).unwrap();
+    bench.file("slow.toml", text)
+}
+
+fn wait_for_journal(bench: &Bench) {
+    let until = Instant::now() + Duration::from_secs(20);
+    let begun = |run: &Path| run.join("events.jsonl").metadata().is_ok_and(|file| file.len() > 100);
+    while !bench.runs().iter().any(|run| begun(run)) {
+        assert!(Instant::now() < until, "the run never began");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}

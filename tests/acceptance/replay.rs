@@ -1,0 +1,52 @@
+//! Past runs: listed, verified, exported.
+
+use crate::bench::{Bench, journal, scenario};
+
+#[test]
+fn a_run_is_listed_verified_and_exported() {
+    let bench = Bench::new();
+    assert_eq!(bench.fly(&scenario("goto-single-obstacle.toml"), &[]).code, Some(0));
+    let run = bench.runs().remove(0);
+    let name = run.file_name().unwrap().to_str().unwrap();
+
+    let listed = bench.tankops(&["runs", "--json"]).json();
+    assert_eq!(listed[0]["name"], name);
+    assert_eq!(listed[0]["end"], "complete");
+
+    let verified = bench.tankops(&["verify", name]);
+    assert_eq!(verified.code, Some(0), "{verified:?}");
+    assert!(verified.out.starts_with("equal: "), "{verified:?}");
+
+    let exported = bench.tankops(&["export", name, "--rrd", "again.rrd"]);
+    assert_eq!(exported.code, Some(0), "{exported:?}");
+    let again = bench.tankops(&["export", name, "--rrd", "again.rrd"]);
+    assert_eq!(again.code, Some(2), "{again:?}");
+    assert!(again.err.contains("never overwritten"), "{again:?}");
+}
+
+#[test]
+fn a_changed_journal_is_told_from_its_first_difference_on() {
+    let bench = Bench::new();
+    bench.fly(&scenario("goto-single-obstacle.toml"), &[]);
+    let run = bench.runs().remove(0);
+    let path = run.join("events.jsonl");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let tick = journal(&run)[200]["tick"].as_u64().unwrap();
+    let changed: Vec<String> = text
+        .lines()
+        .enumerate()
+        .map(|(i, line)| if i == 200 { line.replacen("\"t_s\":", "\"t_s\":9", 1) } else { line.into() })
+        .collect();
+    std::fs::write(&path, changed.join("\n") + "\n").unwrap();
+    let verified = bench.tankops(&["verify", run.to_str().unwrap()]);
+    assert_eq!(verified.code, Some(1), "{verified:?}");
+    assert!(verified.out.contains(&format!("different from tick {tick} on")), "{verified:?}");
+}
+
+#[test]
+fn a_run_that_does_not_exist_is_told_with_the_way_to_find_others() {
+    let bench = Bench::new();
+    let verified = bench.tankops(&["verify", "yesterday"]);
+    assert_eq!(verified.code, Some(2));
+    assert!(verified.err.contains("tankops runs"), "{verified:?}");
+}

@@ -1,0 +1,47 @@
+//! Every shipped scenario meets its own `[expect]`, and repeats.
+
+use crate::bench::{Bench, scenario, workspace};
+
+fn shipped() -> Vec<std::path::PathBuf> {
+    let entries = std::fs::read_dir(workspace().join("scenarios")).unwrap();
+    let mut files: Vec<_> =
+        entries.map(|e| e.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "toml")).collect();
+    files.sort();
+    assert!(files.len() >= 3, "{files:?}");
+    files
+}
+
+#[test]
+fn every_shipped_scenario_meets_its_expectations() {
+    let bench = Bench::new();
+    for file in shipped() {
+        let flown = bench.fly(&file, &["--no-record"]);
+        let report = flown.json();
+        assert_eq!(report["unmet"], serde_json::json!([]), "{}: {flown:?}", file.display());
+        assert_eq!(flown.code, Some(0), "{}: {flown:?}", file.display());
+    }
+}
+
+#[test]
+fn two_runs_of_one_seed_have_equal_journals() {
+    let bench = Bench::new();
+    let demo = scenario("demo.toml");
+    let (first, second) = (bench.fly(&demo, &[]).json(), bench.fly(&demo, &[]).json());
+    assert_eq!(first["events_sha256"], second["events_sha256"]);
+    let runs = bench.runs();
+    let read = |run: &std::path::Path| std::fs::read(run.join("events.jsonl")).unwrap();
+    assert!(read(&runs[0]) == read(&runs[1]), "journals differ");
+    let other = bench.fly(&demo, &["--seed", "77"]).json();
+    assert_ne!(first["events_sha256"], other["events_sha256"]);
+}
+
+#[test]
+fn the_demo_shows_what_it_is_there_for() {
+    let bench = Bench::new();
+    let report = bench.fly(&scenario("demo.toml"), &[]).json();
+    assert_eq!(report["outcome"], "complete");
+    assert_eq!(report["collisions"], 0);
+    assert!(report["obstacles_found"].as_u64() >= Some(1), "{report}");
+    assert!((100.0..400.0).contains(&report["mission_time_s"].as_f64().unwrap()), "{report}");
+    assert!(report["min_clearance_m"].as_f64().unwrap() > 0.0, "{report}");
+}
