@@ -94,7 +94,7 @@ fn held(model: &Model, by: &HoldReason) -> Vec<String> {
             &["HELD, position lost.", "Goes on by itself when regained.", "space keeps it held."]
         }
         HoldReason::Stuck { message } => {
-            &["HELD, stuck.", "P changes the planner,", "space tries again.", message]
+            &["HELD, stuck.", "P changes the planner.", "space tries again.", message]
         }
         HoldReason::PlannerFault { message } if model.has_fallback() => {
             &["HELD, planner failed.", "The fallback takes over if it can.", message]
