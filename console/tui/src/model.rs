@@ -306,7 +306,8 @@ impl Model {
     /// Whether the mission runs and yet nothing was heard of it, and for how long, seconds.
     pub fn silent_s(&self) -> Option<f64> {
         let silence_s = self.console.now.mono_s - self.clock.heard_mono_s;
-        (self.phase == Phase::Running && silence_s > SILENCE_S).then_some(silence_s)
+        let told = self.phase != Phase::Running || self.console.busy.is_some();
+        (!told && silence_s > SILENCE_S).then_some(silence_s)
     }
 
     /// The notice, while it is fresh.

@@ -19,6 +19,8 @@ pub enum Cause {
     Map,
     /// The planner failed.
     Planner,
+    /// The robot gets nowhere.
+    Stuck,
     /// The run ended otherwise than complete.
     Ended,
     /// The run is not being written down.

@@ -50,6 +50,11 @@ impl Raster {
 
     /// Scanned share of the floor in a square of some edge about a point; `None` where there is no floor.
     pub fn scanned_share(&self, center: Point, edge_m: f64) -> Option<f64> {
+        // A square that is hardly larger than a cell takes the cell under its centre.
+        if edge_m < 1.5 * self.grid.floor().cell_m {
+            let (floor, scanned) = self.block_at(center, 0.0);
+            return (floor > 0).then(|| f64::from(scanned));
+        }
         let quarter_m = edge_m / 4.0;
         let mut sums = (0, 0);
         for (right, up) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
@@ -98,7 +103,9 @@ impl Raster {
     fn block_at(&self, point: Point, edge_m: f64) -> (u32, u32) {
         let floor = self.grid.floor();
         let Some(index) = floor.cell_at(point) else { return (0, 0) };
-        let shift = (edge_m / floor.cell_m).log2().floor().clamp(0.0, self.levels.len() as f64) as usize;
+        let cells = edge_m / floor.cell_m;
+        let shift =
+            if cells >= 2.0 { (cells as usize).ilog2().min(self.levels.len() as u32) as usize } else { 0 };
         if shift == 0 {
             let is_floor = floor.kind(index) != Cell::Outside;
             return (u32::from(is_floor), u32::from(is_floor && self.grid.is_covered(index)));

@@ -62,7 +62,10 @@ impl Model {
                 self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
             }
             EventKind::PlannerFailed { fault } => {
-                self.planning.fault = Some(fault.clone());
+                // A planner that was refused leaves the one before in its place.
+                if self.planner_id() == Some(fault.planner.as_str()) {
+                    self.planning.fault = Some(fault.clone());
+                }
                 self.raise(event, Cause::Planner, Severity::Crit, fault.message.clone());
                 self.withdraw_question();
             }
@@ -88,10 +91,11 @@ impl Model {
                     covered_whole: *covered_whole,
                 });
             }
-            EventKind::Held { by } => self.hold(by),
+            EventKind::Held { by } => self.hold(event, by),
             EventKind::Resumed => {
                 self.phase = Phase::Running;
                 self.console.asked = None;
+                self.alarms.clear(&Cause::Stuck);
                 self.planner_works();
             }
             EventKind::Ended { outcome, reason } => self.end(event, *outcome, reason),
@@ -219,7 +223,10 @@ impl Model {
         self.alarms.clear(&Cause::Planner);
     }
 
-    fn hold(&mut self, by: &HoldReason) {
+    fn hold(&mut self, event: &Event, by: &HoldReason) {
+        if let HoldReason::Stuck { message } = by {
+            self.raise(event, Cause::Stuck, Severity::Warn, format!("stuck: {message}"));
+        }
         self.phase = Phase::Held(by.clone());
         self.console.hold_asked = false;
         self.console.asked = None;

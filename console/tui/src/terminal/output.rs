@@ -1,5 +1,6 @@
 //! Bytes to the terminal, a frame at a time.
 
+use super::restore::is_taken;
 use std::io::{self, Stdout, Write};
 
 /// Tells the terminal to show nothing until the frame is there.
@@ -9,15 +10,17 @@ const END: &[u8] = b"\x1b[?2026l";
 
 /// Gathers what is written until the flush, and sends that as one synchronized update.
 ///
-/// What was not flushed is dropped: after a panic half a frame must not reach the shell's screen.
+/// Once the terminal was given back, whatever is still flushed is dropped: after a panic or at the end, half a frame
+/// must not reach the shell's screen.
 pub struct FrameOutput<W: Write = Stdout> {
     bytes: Vec<u8>,
     to: W,
+    is_ours: fn() -> bool,
 }
 
 impl Default for FrameOutput {
     fn default() -> Self {
-        Self { bytes: BEGIN.to_vec(), to: io::stdout() }
+        Self { bytes: BEGIN.to_vec(), to: io::stdout(), is_ours: is_taken }
     }
 }
 
@@ -28,6 +31,10 @@ impl<W: Write> Write for FrameOutput<W> {
     }
 
     fn flush(&mut self) -> io::Result<()> {
+        if !(self.is_ours)() {
+            self.bytes.truncate(BEGIN.len());
+            return Ok(());
+        }
         if self.bytes.len() > BEGIN.len() {
             self.bytes.extend_from_slice(END);
             let sent = self.to.write_all(&self.bytes);
@@ -43,7 +50,7 @@ mod tests {
     use super::*;
 
     fn output() -> FrameOutput<Vec<u8>> {
-        FrameOutput { bytes: BEGIN.to_vec(), to: Vec::new() }
+        FrameOutput { bytes: BEGIN.to_vec(), to: Vec::new(), is_ours: || true }
     }
 
     #[test]
@@ -53,6 +60,15 @@ mod tests {
         assert!(output.to.is_empty());
         output.flush().expect("memory");
         assert_eq!(output.to, [BEGIN, b"half a frame", END].concat());
+    }
+
+    #[test]
+    fn nothing_is_sent_to_a_terminal_that_was_given_back() {
+        let mut output = FrameOutput { is_ours: || false, ..output() };
+        output.write_all(b"half a frame").and_then(|()| output.flush()).expect("memory");
+        output.is_ours = || true;
+        output.flush().expect("memory");
+        assert!(output.to.is_empty());
     }
 
     #[test]

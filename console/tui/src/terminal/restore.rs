@@ -25,6 +25,11 @@ pub(super) fn own() {
     TAKEN.store(true, Ordering::SeqCst);
 }
 
+/// Whether the console has the terminal.
+pub(super) fn is_taken() -> bool {
+    TAKEN.load(Ordering::SeqCst)
+}
+
 /// Gives the terminal back. Does nothing if the console does not have it, so it may be called again and again.
 pub fn restore() {
     if TAKEN.swap(false, Ordering::SeqCst) {
@@ -53,7 +58,7 @@ pub fn install_panic_hook(tell: impl Fn(&str, &str) + Send + Sync + 'static) {
     let before = panic::take_hook();
     panic::set_hook(Box::new(move |info| {
         let mine = OWNER.lock().is_ok_and(|owner| *owner == Some(thread::current().id()));
-        if !TAKEN.load(Ordering::SeqCst) || mine {
+        if !is_taken() || mine {
             restore();
             before(info);
             return;
@@ -85,10 +90,10 @@ mod modes {
     }
 
     pub(super) fn write_back() {
-        let _ = rustix::io::write(rustix::stdio::stdout(), RESTORE.as_bytes());
         if let Some(modes) = SAVED.get() {
             let _ = tcsetattr(rustix::stdio::stdin(), OptionalActions::Now, modes);
         }
+        let _ = rustix::io::write(rustix::stdio::stdout(), RESTORE.as_bytes());
     }
 }
 
@@ -110,7 +115,7 @@ mod tests {
     fn giving_back_what_was_not_taken_does_nothing() {
         restore();
         restore_from_signal();
-        assert!(!TAKEN.load(Ordering::SeqCst));
+        assert!(!is_taken());
     }
 
     #[test]

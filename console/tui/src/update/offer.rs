@@ -104,9 +104,12 @@ fn under_way(model: &Model) -> Result<(), String> {
 
 fn swap(model: &Model) -> Result<(), String> {
     match model.phase {
-        Phase::Running => Err("another planner needs HOLD first (space)".into()),
+        // Orders are obeyed in order: after HOLD was sent the list may open without waiting for the answer.
+        Phase::Running if !model.console.hold_asked => Err("another planner needs HOLD first (space)".into()),
         Phase::Ended { .. } => Err("the mission has ended; no planner drives any more".into()),
-        Phase::Idle | Phase::Held(_) => demand(!model.console.planners.is_empty(), "no planner was found"),
+        Phase::Idle | Phase::Running | Phase::Held(_) => {
+            demand(!model.console.planners.is_empty(), "no planner was found")
+        }
     }
 }
 

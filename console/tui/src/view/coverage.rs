@@ -25,7 +25,6 @@ fn wide_lines(look: &Look, width: u16) -> Vec<Line<'static>> {
         row("unreachable", format!("{:>5} % of whole floor", unreachable(model))),
         row("rate", format!("{}   {}", rate(model), area(model))),
         row(way_label(model), way(model)),
-        // Past its end a mission has nothing left to tell.
         row("left", left(model, true)),
     ]
 }
@@ -106,9 +105,8 @@ fn left(model: &Model, wide: bool) -> String {
     };
     let end = factor.map(|factor| text::time_of_day(model.console.now.wall_unix_s + left_s / factor));
     match (wide, end) {
-        (true, Some(end)) => format!("{} at this pace, ends {end} UTC", text::clock(left_s)),
-        (true, None) => format!("{} at this pace", text::clock(left_s)),
+        (true, Some(end)) => format!("{}, ends {end} UTC", text::clock(left_s)),
         (false, Some(end)) => format!("{} ETA {end}Z", text::clock(left_s)),
-        (false, None) => text::clock(left_s),
+        (_, None) => text::clock(left_s),
     }
 }

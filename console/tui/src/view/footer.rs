@@ -2,7 +2,7 @@
 
 use super::{Look, text};
 use crate::actions::{self, ACTIONS, Action, ActionId, Context};
-use crate::model::{Model, Overlay, Phase};
+use crate::model::{Model, Overlay, Phase, ui::Arrangement};
 use crate::theme::Role;
 use crate::update::offered;
 use ratatui::Frame;
@@ -28,8 +28,11 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 /// As many keys as fit into some columns.
 pub(super) fn line(look: &Look, columns: usize) -> Line<'static> {
     let mut hints = hints(look.model);
+    let paged = look.model.ui.arrangement() == Arrangement::Paged;
     for id in DISPENSABLE {
-        if width(&hints) > columns {
+        // One pane at a time: without the key to the next one the others are lost.
+        let kept = paged && id == ActionId::NextPane;
+        if width(&hints) > columns && !kept {
             hints.retain(|hint| hint.id != id);
         }
     }

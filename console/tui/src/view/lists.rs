@@ -1,6 +1,7 @@
 //! Lists over the screen: commands, planners, parameters, layers.
 
-use super::{Look, text};
+use super::Look;
+use super::text::{self, wrap};
 use crate::actions::{self, ActionId, Risk};
 use crate::model::ui::{Edit, MapLayer};
 use crate::model::{Overlay, parameter};
@@ -230,10 +231,11 @@ fn parameters(look: &Look, selected: usize, edit: Option<&Edit>, columns: u16) -
     if let Some(info) = planner.parameters.get(selected) {
         below.extend(edit_rows(info, edit, room));
         needed_below = below.len();
-        below.push(vec![(
-            Role::Dim,
-            text::fit(&format!(" {} takes {}", info.key, parameter::range(info)), room),
-        )]);
+        // A refusal names the range already.
+        if edit.is_none_or(|edit| edit.refusal.is_none()) {
+            let takes = format!(" {} takes {}", info.key, parameter::range(info));
+            below.push(vec![(Role::Dim, text::fit(&takes, room))]);
+        }
         let about = format!("{}. {}", info.label, info.help);
         below.extend(wrap(&about, room).into_iter().map(|line| vec![(Role::Text, format!(" {line}"))]));
     }
@@ -290,21 +292,6 @@ fn layers(look: &Look, selected: usize) -> List {
     }
 }
 
-/// Words in lines of at most some columns.
-pub(super) fn wrap(sentence: &str, columns: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in sentence.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if text::width(line) + 1 + text::width(word) < columns => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -319,11 +306,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn words_are_wrapped_and_none_is_lost() {
-        let lines = wrap("one planner drives at a time", 12);
-        assert_eq!(lines, ["one planner", "drives at a", "time"]);
     }
 }

@@ -88,19 +88,19 @@ fn held(model: &Model, by: &HoldReason) -> Vec<String> {
         HoldReason::Operator | HoldReason::Stepped if model.position.lost => {
             &["HELD by you; the position is lost.", "Going on needs a fix first."]
         }
-        HoldReason::Operator => &["HELD by you.", "space asks to go on,", "P changes the planner."],
+        HoldReason::Operator => &["HELD by you.", "space asks to go on.", "P changes the planner."],
         HoldReason::Stepped => &["HELD after a step.", "space asks to go on."],
         HoldReason::PositionLost => {
-            &["HELD, position lost.", "Goes on by itself when regained;", "space keeps it held."]
+            &["HELD, position lost.", "Goes on by itself when regained.", "space keeps it held."]
         }
         HoldReason::Stuck { message } => {
-            &["HELD, stuck.", "P changes the planner,", "space tries again.", message]
+            &["HELD, stuck.", "P changes the planner.", "space tries again.", message]
         }
         HoldReason::PlannerFault { message } if model.has_fallback() => {
             &["HELD, planner failed.", "The fallback takes over if it can.", message]
         }
         HoldReason::PlannerFault { message } => {
-            &["HELD, planner failed.", "P chooses another,", "space tries again.", message]
+            &["HELD, planner failed.", "P chooses another.", "space tries again.", message]
         }
     };
     clauses.iter().map(|clause| (*clause).to_owned()).collect()

@@ -11,17 +11,20 @@ use ratatui::text::Line;
 /// Mission time after which a command counts as old, in ticks.
 const STALE_TICKS: f64 = 3.0;
 
+/// Most rows that a fault takes.
+const FAULT_ROWS: usize = 2;
+
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
     let note = if look.model.planning.fault.is_some() { "FAILED" } else { "" };
     let block = look.pane(Pane::Planner, "Planner and robot", note);
     let inner = block.inner(area);
     let (columns, rows) = (usize::from(inner.width), usize::from(inner.height));
-    let mut lines: Vec<Line> = rows_of(look.model, wide)
+    let labels = if wide { 12 } else { 7 };
+    let room = columns.saturating_sub(labels + 1);
+    let mut lines: Vec<Line> = rows_of(look.model, wide, room)
         .into_iter()
         .map(|(label, (role, value))| {
-            let label = if wide { format!(" {label:<12}") } else { format!(" {label:<6} ") };
-            let value = text::fit(&value, columns.saturating_sub(label.len()));
-            look.line([(Role::Dim, label), (role, value)])
+            look.line([(Role::Dim, format!(" {label:<labels$}")), (role, text::fit(&value, room))])
         })
         .collect();
     lines.extend(scalars(look, columns, rows.saturating_sub(lines.len())));
@@ -30,10 +33,13 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
 
 type Value = (Role, String);
 
-fn rows_of(model: &Model, wide: bool) -> Vec<(&'static str, Value)> {
+fn rows_of(model: &Model, wide: bool, room: usize) -> Vec<(&'static str, Value)> {
     let mut rows = vec![("planner", planner(model))];
     if let Some(fault) = &model.planning.fault {
-        rows.push(("fault", (Role::Crit, fault.message.clone())));
+        let words = text::wrap(&fault.message, room + 1).into_iter().take(FAULT_ROWS);
+        rows.extend(
+            words.enumerate().map(|(row, words)| (if row == 0 { "fault" } else { "" }, (Role::Crit, words))),
+        );
     }
     if wide {
         rows.extend([

@@ -21,8 +21,8 @@ fn wide_lines(look: &Look, inner: Rect) -> Vec<Line<'static>> {
     let columns = usize::from(inner.width);
     let mut lines = vec![
         look.line([
-            (Role::Dim, " stations   ".into()),
-            (Role::Text, format!("{}   residual {}", heard(look.model), residual(look.model))),
+            (Role::Dim, " heard      ".into()),
+            (Role::Text, format!("{}   residual {}", heard(look.model, " of "), residual(look.model))),
         ]),
         look.line([(Role::Dim, " error      ".into()), error(look.model, true)]),
         curve(look, columns),
@@ -46,7 +46,7 @@ fn narrow_lines(look: &Look, inner: Rect) -> Vec<Line<'static>> {
     });
     let last = trouble.unwrap_or_else(|| (Role::Text, format!("residual {}", residual(look.model))));
     vec![
-        look.line([(Role::Text, format!(" {} ", short_heard(look.model))), error(look.model, false)]),
+        look.line([(Role::Text, format!(" {} ", heard(look.model, "/"))), error(look.model, false)]),
         look.line([(Role::Text, " ".into()), last]),
         look.line([(Role::Dim, " fix age ".into()), age(look.model)]),
     ]
@@ -56,18 +56,10 @@ fn stations(model: &Model) -> &[Station] {
     model.run.as_ref().map_or(&[], |run| &run.world.stations)
 }
 
-fn heard(model: &Model) -> String {
-    match model.position.ranged_t_s {
-        Some(_) => format!("{} of {} heard", model.position.heard, stations(model).len()),
-        None => format!("- of {} heard", stations(model).len()),
-    }
-}
-
-fn short_heard(model: &Model) -> String {
-    match model.position.ranged_t_s {
-        Some(_) => format!("{}/{}", model.position.heard, stations(model).len()),
-        None => format!("-/{}", stations(model).len()),
-    }
+/// Stations heard in the last ranging cycle, of how many.
+fn heard(model: &Model, of: &str) -> String {
+    let heard = model.position.ranged_t_s.map_or_else(|| "-".into(), |_| model.position.heard.to_string());
+    format!("{heard}{of}{}", stations(model).len())
 }
 
 fn residual(model: &Model) -> String {

@@ -1,7 +1,7 @@
 //! The control strip of a terminal too small for a map: state, alarm, position, and the keys that matter.
 
 use super::next::Clauses;
-use super::{Look, asks, confirm, coverage, footer, lists, next, text, top};
+use super::{Look, asks, confirm, coverage, footer, next, text, top};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -62,6 +62,6 @@ fn position(look: &Look) -> String {
 
 /// A sentence in as many lines as it takes.
 fn wrapped(look: &Look, (role, clauses): &Clauses, columns: usize) -> Vec<Line<'static>> {
-    let lines = lists::wrap(&clauses.join(" "), columns.saturating_sub(1));
+    let lines = text::wrap(&clauses.join(" "), columns.saturating_sub(1));
     lines.into_iter().map(|line| Line::from(look.span(*role, format!(" {line}")))).collect()
 }

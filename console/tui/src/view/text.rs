@@ -78,6 +78,21 @@ pub(super) fn width(text: &str) -> usize {
     Span::raw(text).width()
 }
 
+/// Words in lines of at most some columns.
+pub(super) fn wrap(sentence: &str, columns: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in sentence.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width(line) + 1 + width(word) < columns => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
 /// A bar of some columns that is filled to a share.
 pub(super) fn bar(share: f64, columns: usize) -> String {
     let full = if share.is_finite() { (share.clamp(0.0, 1.0) * columns as f64).round() as usize } else { 0 };
@@ -134,5 +149,11 @@ mod tests {
     fn a_curve_keeps_the_largest_value_of_each_column() {
         let curve = sparkline([0.0, 0.0, 1.0, 0.0].into_iter(), 1.0, 4, 8);
         assert_eq!(curve, "  ▁█");
+    }
+
+    #[test]
+    fn words_are_wrapped_and_none_is_lost() {
+        let lines = wrap("one planner drives at a time", 12);
+        assert_eq!(lines, ["one planner", "drives at a", "time"]);
     }
 }

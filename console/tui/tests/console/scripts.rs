@@ -128,6 +128,11 @@ fn another_planner_drives_only_when_held_and_agreed() {
     let mut screen = Screen::running();
     assert_eq!(screen.type_text("P"), []);
     assert!(notice(&screen).contains("HOLD first"));
+    screen.press([SPACE, Key::Char('P')]);
+    assert!(
+        matches!(screen.model.ui.overlay, Overlay::Planners { .. }),
+        "HOLD is on its way, the list may open"
+    );
     let mut screen = Screen::held();
     screen.type_text("P");
     assert_eq!(screen.model.ui.overlay, Overlay::Planners { selected: 1 }, "the one that drives is selected");
@@ -304,6 +309,18 @@ fn a_critical_alarm_rings_and_waits_for_the_operator() {
     assert_eq!(screen.model.alarms.count(Severity::Crit), 1);
     screen.type_text("a");
     assert_eq!(screen.model.alarms.count(Severity::Crit), 0);
+}
+
+#[test]
+fn a_stuck_robot_is_held_with_an_alarm_until_it_goes_on_and_the_operator_knows() {
+    let mut screen = Screen::running();
+    told(&mut screen, EventKind::Held { by: HoldReason::Stuck { message: "no progress".into() } });
+    assert_eq!(screen.model.alarms.unacknowledged(Severity::Warn), 1);
+    screen.type_text("a");
+    assert_eq!(screen.model.alarms.count(Severity::Warn), 1, "seen, and not over");
+    assert_eq!(screen.press([SPACE, Key::Enter]), [order(Order::Resume)]);
+    told(&mut screen, EventKind::Resumed);
+    assert_eq!(screen.model.alarms.count(Severity::Warn), 0);
 }
 
 #[test]
