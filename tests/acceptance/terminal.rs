@@ -20,6 +20,11 @@ struct Session {
     master: Option<Box<dyn MasterPty + Send>>,
 }
 
+fn screen_of(width: u16, height: u16) -> vt100::Parser {
+    let size = |count| std::num::NonZero::new(count).unwrap();
+    vt100::Parser::new(size(height), size(width), 0)
+}
+
 impl Session {
     fn open(arguments: &str, width: u16, height: u16) -> Self {
         let bench = Bench::new();
@@ -40,7 +45,7 @@ impl Session {
         command.env_remove("NO_COLOR");
         let child = pair.slave.spawn_command(command).unwrap();
         drop(pair.slave);
-        let screen = Arc::new(Mutex::new(vt100::Parser::new(height, width, 0)));
+        let screen = Arc::new(Mutex::new(screen_of(width, height)));
         let mut output = pair.master.try_clone_reader().unwrap();
         let shown = Arc::clone(&screen);
         std::thread::spawn(move || {

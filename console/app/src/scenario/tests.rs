@@ -60,7 +60,7 @@ fn the_demo_has_columns_on_the_drawing_and_surprises() {
     assert_eq!(demo.sim.world.stations.len(), 5);
     assert!(!demo.mission.planner.id.is_empty());
     let TaskConfig::Follow { path, .. } = &demo.mission.task else { panic!("it follows a spiral") };
-    assert_eq!(path[0], Point::new(4.5, 0.0));
+    assert_eq!(path[0], Point::new(4.65, 0.0));
     assert_eq!(demo.mission.start.position, path[0], "it starts on the path");
     assert!((demo.mission.start.heading_rad - 95.0_f64.to_radians()).abs() < 0.1, "and along it");
 }
