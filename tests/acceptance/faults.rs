@@ -5,7 +5,8 @@ use serde_json::Value;
 
 /// Flies the goto scenario with the faulty planner; `apf` is its fallback.
 fn fly_faulty(bench: &Bench, fault: &str) -> Ended {
-    let set = format!("fault={fault}");
+    // In quotes, or `nan` would be a number.
+    let set = format!("fault=\"{fault}\"");
     bench.fly(
         &scenario("goto-single-obstacle.toml"),
         &["--planner", "faulty", "--set", &set, "--set", "at_step=12", "--set", "planner.fallback.id=apf"],

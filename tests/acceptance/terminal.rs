@@ -124,32 +124,35 @@ fn kinds(run: &Path) -> Vec<String> {
 
 #[test]
 fn a_mission_is_flown_held_swapped_and_finished_by_hand() {
-    let mut session = Session::open(&goto(), 120, 36);
+    let mut session = Session::open("console --planner apf", 120, 36);
     session.see("IDLE");
     session.press("S");
-    session.see("Enter");
+    session.see("START?");
     session.press("\r");
-    session.see("RUN");
+    session.see("▶ RUN");
     session.press(" ");
-    session.see("HOLD");
+    session.see("‖ HOLD");
     session.press("P");
-    session.see("rpf");
-    session.press("\x1b[B\r");
-    session.see("Enter");
+    session.see("Rotating potential field");
+    // The planners by name: apf, which drives, faulty, rpf.
+    session.press("\x1b[B\x1b[B\r");
+    session.see("CHANGE PLANNER? rpf");
     session.press("\r");
     session.until("the swap in the journal", |session| {
         kinds(&session.run()).iter().filter(|kind| *kind == "planner_chosen").count() == 2
     });
     session.press(" ");
-    session.see("Enter");
+    session.see("RESUME?");
     session.press("\r");
-    session.see("RUN");
-    session.press(">>>>>");
+    session.see("▶ RUN");
+    session.press(">>>>>>");
     session.see("DONE");
     session.press("q");
     assert_eq!(session.back_in_the_shell(), "code=0");
     let listed = session.bench.tankops(&["runs", "--json"]).json();
     assert_eq!(listed[0]["end"], "complete", "{listed}");
+    let verified = session.bench.tankops(&["verify", session.run().to_str().unwrap()]);
+    assert_eq!(verified.code, Some(0), "{verified:?}");
 }
 
 #[test]

@@ -54,6 +54,8 @@ pub struct Mission {
     plan: Option<Follower>,
     last_drive: Drive,
     happened: Vec<EventKind>,
+    /// Told when everything else of the tick has been told.
+    ending: Option<EventKind>,
 }
 
 /// What the mission is doing.
@@ -109,6 +111,7 @@ impl Mission {
             plan: None,
             last_drive: Drive::STILL,
             happened: Vec::new(),
+            ending: None,
             config,
         }
     }
@@ -141,7 +144,8 @@ impl Mission {
 
     fn finish_tick(&mut self, drive: Drive) -> Step {
         let (tick, t_s) = (self.tick, self.now_s());
-        let happened = std::mem::take(&mut self.happened);
+        let mut happened = std::mem::take(&mut self.happened);
+        happened.extend(self.ending.take());
         let events = happened.into_iter().map(|kind| Event { tick, t_s, kind }).collect();
         self.tick += 1;
         self.last_drive = drive;
@@ -245,7 +249,7 @@ impl Mission {
     }
 
     fn end(&mut self, outcome: Outcome, reason: &str) {
-        self.happened.push(EventKind::Ended { outcome, reason: reason.into() });
+        self.ending = Some(EventKind::Ended { outcome, reason: reason.into() });
         self.phase = Phase::Ended(outcome);
     }
 }

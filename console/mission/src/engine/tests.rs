@@ -222,6 +222,15 @@ fn a_goto_mission_ends_complete_at_its_goal() {
 }
 
 #[test]
+fn the_end_is_the_last_that_is_told_also_by_order() {
+    let mut flight = Flight::new(config());
+    flight.tick(&[Order::Start]);
+    flight.fly(20);
+    let events = flight.tick(&[Order::Abort]);
+    assert!(matches!(events.last(), Some(EventKind::Ended { outcome: Outcome::Aborted, .. })), "{events:?}");
+}
+
+#[test]
 fn a_held_robot_stands_still_and_goes_on_only_when_told() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
