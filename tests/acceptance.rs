@@ -1,5 +1,7 @@
 //! Acceptance: the built `tankops`, its plugins and its terminal, as a user meets them.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 #[path = "acceptance/bench.rs"]
 mod bench;
 #[path = "acceptance/command_line.rs"]

@@ -83,7 +83,9 @@ fn fly_to_end(mut flight: Flight, recorder: &RunRecorder, bar: &ProgressBar) -> 
     let stop = stop_signal::listen();
     let mut fold = Fold::new();
     let mut take = |events: Vec<Event>| {
-        events.iter().for_each(|event| fold.apply(event));
+        for event in &events {
+            fold.apply(event);
+        }
         show_progress(bar, &events);
         recorder.send(events);
     };

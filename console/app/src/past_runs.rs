@@ -41,7 +41,9 @@ pub fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
         println!("no runs in {}", logs.logs.display());
     } else {
         println!("{:<12} {:>8} {:>22}  run", "end", "T+ s", "% of reachable floor");
-        listed.iter().for_each(|run| println!("{}", row(run)));
+        for run in &listed {
+            println!("{}", row(run));
+        }
     }
     Ok(ExitCode::from(COMPLETE))
 }
@@ -91,7 +93,9 @@ fn rebuild(folder: &Path) -> (Option<Summary>, String) {
     match read_journal(&folder.join(JOURNAL_FILE)) {
         Ok(journal) => {
             let mut fold = Fold::new();
-            journal.events.iter().for_each(|event| fold.apply(event));
+            for event in &journal.events {
+                fold.apply(event);
+            }
             let until_s = journal.events.last().map_or(0.0, |event| event.t_s);
             (Some(fold.summary()), format!("killed; the journal holds everything up to T+{until_s:.1} s"))
         }

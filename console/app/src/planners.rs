@@ -75,21 +75,18 @@ fn listing(survey: &Survey, plugins: &PluginDirs) -> String {
 fn plugin_listing(plugin: &SurveyedPlugin) -> String {
     let abi = plugin.abi.as_deref().map(|abi| format!("  ABI {abi}")).unwrap_or_default();
     let hash = plugin.sha256.get(..12).unwrap_or_default();
-    let mut text = format!("{}{abi}  sha256 {hash}\n", plugin.path.display());
-    if let Some(reason) = &plugin.refused {
-        text += &format!("  REFUSED: {reason}\n");
-    }
-    for info in &plugin.planners {
-        text += &format!("  {} {}  {}\n", info.id, info.version, info.name);
-        if !info.about.is_empty() {
-            text += &format!("      {}\n", info.about);
-        }
-        text.extend(info.parameters.iter().map(parameter_listing));
-    }
-    for id in &plugin.shadowed {
-        text += &format!("  {id}  shadowed by a plugin that is found earlier\n");
-    }
-    text
+    let head = format!("{}{abi}  sha256 {hash}\n", plugin.path.display());
+    let refused = plugin.refused.iter().map(|reason| format!("  REFUSED: {reason}\n"));
+    let planners = plugin.planners.iter().map(planner_listing);
+    let shadowed =
+        plugin.shadowed.iter().map(|id| format!("  {id}  shadowed by a plugin that is found earlier\n"));
+    std::iter::once(head).chain(refused).chain(planners).chain(shadowed).collect()
+}
+
+fn planner_listing(info: &PlannerInfo) -> String {
+    let head = format!("  {} {}  {}\n", info.id, info.version, info.name);
+    let about = (!info.about.is_empty()).then(|| format!("      {}\n", info.about));
+    std::iter::once(head).chain(about).chain(info.parameters.iter().map(parameter_listing)).collect()
 }
 
 fn parameter_listing(info: &ParamInfo) -> String {
@@ -105,7 +102,7 @@ fn parameter_listing(info: &ParamInfo) -> String {
 
 /// `tankops check`.
 #[expect(clippy::print_stdout, clippy::print_stderr, reason = "this is where the verdicts reach the user")]
-pub fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
+pub fn check(files: &[PathBuf]) -> ExitCode {
     let mut sound = true;
     for file in files {
         match check_file(file) {
@@ -116,7 +113,7 @@ pub fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
             }
         }
     }
-    Ok(ExitCode::from(if sound { COMPLETE } else { BAD_INPUT }))
+    ExitCode::from(if sound { COMPLETE } else { BAD_INPUT })
 }
 
 fn check_file(file: &Path) -> Result<String, String> {
@@ -132,13 +129,11 @@ fn check_file(file: &Path) -> Result<String, String> {
 fn check_plugin(file: &Path) -> Result<String, String> {
     let error = |why: String| format!("error: {}: {why}", file.display());
     let checked = planner_host::check_plugin(file, &WorkerCommand::default());
-    match checked.refused {
-        Some(reason) => Err(error(reason)),
-        None => {
-            let ids: Vec<&str> = checked.planners.iter().map(|info| info.id.as_str()).collect();
-            Ok(format!("plugin with {}", ids.join(", ")))
-        }
+    if let Some(reason) = checked.refused {
+        return Err(error(reason));
     }
+    let ids: Vec<&str> = checked.planners.iter().map(|info| info.id.as_str()).collect();
+    Ok(format!("plugin with {}", ids.join(", ")))
 }
 
 fn file_name(path: &Path) -> String {

@@ -35,7 +35,9 @@ pub fn verify(run: &Path, logs: &LogsArg, plugins: &PluginDirs) -> anyhow::Resul
         }
         Verdict::Different { tick, recorded, computed } => {
             println!("different from tick {tick} on\n  recorded: {recorded}\n  computed: {computed}");
-            planner_changes(&journal.events, plugins).iter().for_each(|note| println!("note: {note}"));
+            for note in planner_changes(&journal.events, plugins) {
+                println!("note: {note}");
+            }
             Ok(ExitCode::from(ENDED_OTHERWISE))
         }
     }

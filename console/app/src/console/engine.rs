@@ -21,6 +21,8 @@ use tui::{Msg, Signal, Speed};
 
 /// How often the screen hears how the recorder is doing.
 const HEALTH_PERIOD: Duration = Duration::from_millis(500);
+/// A tick that is later than this is not made up for.
+const MOST_LATE: Duration = Duration::from_millis(50);
 /// How long a process that was told to end may take to close the recording.
 const HURRY: Duration = Duration::from_millis(900);
 
@@ -129,7 +131,7 @@ impl Cockpit {
             let (orders, close) = self.wait_until(due);
             if !orders.is_empty() || self.is_under_way() {
                 due = self.next_due(due);
-                self.tick(orders)?;
+                self.tick(&orders)?;
             }
             if let Some(within) = close {
                 return self.close(within);
@@ -174,14 +176,15 @@ impl Cockpit {
     fn next_due(&self, due: Instant) -> Instant {
         let now = Instant::now();
         match self.speed {
-            Speed::Times(factor) => {
-                due.max(now - Duration::from_millis(50)) + self.flight.tick_length().div_f64(factor)
+            Speed::Times(factor) if now.saturating_duration_since(due) < MOST_LATE => {
+                due + self.flight.tick_length().div_f64(factor)
             }
+            Speed::Times(factor) => now + self.flight.tick_length().div_f64(factor),
             Speed::Max => now,
         }
     }
 
-    fn tick(&mut self, orders: Vec<Order>) -> anyhow::Result<()> {
+    fn tick(&mut self, orders: &[Order]) -> anyhow::Result<()> {
         if self.log.is_none() && orders.contains(&Order::Start) {
             self.open_log()?;
         }
@@ -189,7 +192,7 @@ impl Cockpit {
         if slow {
             self.say(Msg::Busy(Some("planning".into())));
         }
-        let events = self.flight.tick(&orders);
+        let events = self.flight.tick(orders);
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
         assert!(!failing, "drill: the engine fails on purpose");
         if slow {
@@ -223,7 +226,9 @@ impl Cockpit {
 
     fn keep(&mut self, events: &[Event]) {
         let Some(log) = &mut self.log else { return };
-        events.iter().for_each(|event| log.fold.apply(event));
+        for event in events {
+            log.fold.apply(event);
+        }
         if let Some(recorder) = &log.recorder {
             recorder.send(events);
         }
