@@ -5,7 +5,10 @@ use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system}
 use std::{
     io::{Read, Write},
     path::{Path, PathBuf},
-    sync::{Arc, Mutex},
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
     time::{Duration, Instant},
 };
 
@@ -18,6 +21,8 @@ struct Session {
     keys: Box<dyn Write + Send>,
     child: Box<dyn Child + Send + Sync>,
     master: Option<Box<dyn MasterPty + Send>>,
+    /// Whether the terminal has been closed: its reader then lets go of it, too.
+    closed: Arc<AtomicBool>,
 }
 
 fn screen_of(width: u16, height: u16) -> vt100::Parser {
@@ -48,17 +53,19 @@ impl Session {
         let screen = Arc::new(Mutex::new(screen_of(width, height)));
         let mut output = pair.master.try_clone_reader().unwrap();
         let shown = Arc::clone(&screen);
+        let closed = Arc::new(AtomicBool::new(false));
+        let is_closed = Arc::clone(&closed);
         std::thread::spawn(move || {
             let mut bytes = [0; 8192];
             while let Ok(count) = output.read(&mut bytes) {
-                if count == 0 {
+                if count == 0 || is_closed.load(Ordering::SeqCst) {
                     return;
                 }
                 shown.lock().unwrap().process(&bytes[..count]);
             }
         });
         let keys = pair.master.take_writer().unwrap();
-        Self { bench, screen, keys, child, master: Some(pair.master) }
+        Self { bench, screen, keys, child, master: Some(pair.master), closed }
     }
 
     fn text(&self) -> String {
@@ -133,7 +140,7 @@ fn a_mission_is_flown_held_swapped_and_finished_by_hand() {
     session.press(" ");
     session.see("‖ HOLD");
     session.press("P");
-    session.see("Rotating potential field");
+    session.see("What was scanned stays");
     // The planners by name: apf, which drives, faulty, rpf.
     session.press("\x1b[B\x1b[B\r");
     session.see("CHANGE PLANNER? rpf");
@@ -183,6 +190,7 @@ fn a_closed_terminal_ends_the_console_and_closes_the_run() {
     session.press("S\r");
     session.see("RUN");
     let console = session.console_pid();
+    session.closed.store(true, Ordering::SeqCst);
     drop(session.master.take());
     session.keys = Box::new(std::io::sink());
     session.until("the console to end", |_| {
