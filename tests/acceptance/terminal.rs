@@ -143,7 +143,7 @@ fn a_mission_is_flown_held_swapped_and_finished_by_hand() {
     session.see("What was scanned stays");
     // The planners by name: apf, which drives, faulty, rpf.
     session.press("\x1b[B\x1b[B\r");
-    session.see("CHANGE PLANNER? rpf");
+    session.see("CHANGE TO rpf?");
     session.press("\r");
     session.until("the swap in the journal", |session| {
         kinds(&session.run()).iter().filter(|kind| *kind == "planner_chosen").count() == 2
