@@ -35,14 +35,26 @@ fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
         assert_eq!(listed[0]["end"], "CRASHED", "{listed}");
         let written = |name: &str| run.join(name).metadata().unwrap().modified().unwrap();
         let age = |name: &str| killed_at.duration_since(written(name)).unwrap_or_default();
-        assert!(age("events.jsonl") <= Duration::from_secs(1), "the journal is {:?} old", age("events.jsonl"));
-        assert!(age("recording.rrd") <= Duration::from_secs(5), "the recording is {:?} old", age("recording.rrd"));
+        assert!(
+            age("events.jsonl") <= Duration::from_secs(1),
+            "the journal is {:?} old",
+            age("events.jsonl")
+        );
+        assert!(
+            age("recording.rrd") <= Duration::from_secs(5),
+            "the recording is {:?} old",
+            age("recording.rrd")
+        );
         assert!(!recording::inspect(&run.join("recording.rrd")).unwrap().entities.is_empty());
         let last_tick = journal(&run).last().unwrap()["tick"].as_i64().unwrap();
         let exported = bench.tankops(&["export", run.to_str().unwrap(), "--rrd", "again.rrd"]);
         assert_eq!(exported.code, Some(0), "{exported:?}");
         let again = recording::inspect(&bench.path().join("again.rrd")).unwrap();
-        assert!(again.ticks.is_some_and(|(_, last)| last == last_tick || last + 1 == last_tick), "{:?}", again.ticks);
+        assert!(
+            again.ticks.is_some_and(|(_, last)| last == last_tick || last + 1 == last_tick),
+            "{:?}",
+            again.ticks
+        );
         let verified = bench.tankops(&["verify", run.to_str().unwrap()]);
         assert_eq!(verified.code, Some(0), "{verified:?}");
     }

@@ -2,5 +2,15 @@
 #![forbid(unsafe_code)]
 
 mod rpf;
+mod spiral_lattice;
 
-planner_api::export_planners!(rpf::Rpf);
+mod course;
+mod lattice;
+mod polish;
+mod refusal;
+mod strip;
+
+#[cfg(test)]
+mod bench;
+
+planner_api::export_planners!(rpf::Rpf, spiral_lattice::SpiralLattice);
