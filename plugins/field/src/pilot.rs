@@ -157,6 +157,9 @@ impl Pilot {
     pub fn pursue(&mut self, flight: &Flight, tick: &Tick<'_>, aim: Point) -> Decision {
         let at = tick.pose.position;
         let idle_s = self.stall.update(tick.t_s, at, tick.target);
+        if self.remedy.update(idle_s, flight.stuck_s * REMEDY_SHARE) {
+            self.gaps.flip();
+        }
         let forces = Forces { attraction: (aim - at).cap_magnitude(FAR_M), ..Forces::default() };
         let near = tick.bodies.iter().filter_map(|body| body.nearest_contact(at, self.limits.radius_m));
         let contacts: Vec<Contact> = near.filter(|contact| contact.distance_m < flight.slow_m).collect();
@@ -164,6 +167,11 @@ impl Pilot {
         let velocity = self.guarded(wanted, tick, self.keep_m(flight, &tick.pose));
         let status = if idle_s > flight.stuck_s { Status::Stuck } else { Status::Moving };
         Decision { velocity, status, forces, detour: None }
+    }
+
+    /// Radius of the hull, metres.
+    pub fn hull_m(&self) -> f64 {
+        self.limits.radius_m
     }
 
     /// What is sensed in parts, no-go zones included.
@@ -181,9 +189,12 @@ impl Pilot {
     }
 
     fn detour(&mut self, settings: &Settings, tick: &Tick<'_>, keep_m: f64) -> Option<Detour> {
-        if settings.flight.steering == Steering::Paper {
-            return None;
-        }
+        if settings.flight.steering == Steering::Paper { None } else { self.way_round(tick, keep_m) }
+    }
+
+    /// What blocks the way to the target, if anything, and which way round to go; another side is tried, or none, while
+    /// nothing comes of it.
+    pub fn way_round(&mut self, tick: &Tick<'_>, keep_m: f64) -> Option<Detour> {
         let detour = self.gaps.update(&View {
             t_s: tick.t_s,
             at: tick.pose.position,

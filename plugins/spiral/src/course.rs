@@ -189,3 +189,16 @@ pub fn finite(config: &Config<'_>, key: &str) -> Result<f64> {
     }
     Err(PlannerError::new(Code::Config, format!("{key} is {value}; give a number from 0 on")))
 }
+
+/// Where a path along a course can begin: its first point, or the nearest free place about it.
+pub fn nearest_free(course: &Course, room: &Room) -> Point {
+    let start = course.points[0];
+    let rings = (0..80).map(|k| f64::from(k) * 0.025);
+    let places = rings.flat_map(|radius_m| {
+        (0..48)
+            .map(move |k| f64::from(k) * TAU / 48.0)
+            .map(move |a| start + Vector::new(a.cos(), a.sin()) * radius_m)
+    });
+    let mut free = places.filter(|place| room.spare_m(*place) >= 0.0);
+    free.next().unwrap_or(start)
+}

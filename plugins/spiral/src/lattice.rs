@@ -22,6 +22,8 @@ const RAMPS_M: [f64; 2] = [1.4, 4.0];
 const REFINEMENTS: [(f64, usize); 2] = [(0.025, 2), (0.025, 4)];
 /// The last point counts more than any other, so that the path arrives.
 const END_WEIGHT: f64 = 20.0;
+/// A last point inside an obstacle is missed by no more than this beside what it must be, metres.
+const NEARLY_M: f64 = 0.1;
 /// Cells of the passes that polish a way, metres.
 const POLISH_M: [f64; 7] = [0.03, 0.03, 0.02, 0.02, 0.01, 0.01, 0.005];
 /// The course itself may turn faster than the limit; the path may do so a little faster than the course.
@@ -136,16 +138,34 @@ impl Search<'_> {
     fn beside(&self, window: &RangeInclusive<usize>) -> Beside {
         let far_m = self.limits.offset_m;
         let mut furthest = *window.start();
-        for (limits_heading, offset_m) in
-            [(true, far_m * 0.6), (true, far_m), (false, far_m), (false, far_m * 2.0)]
-        {
-            match self.within(window, limits_heading, offset_m) {
+        let mut short_of_end = None;
+        let begin = self.enter(*window.start());
+        let mut attempts = vec![
+            (true, far_m * 0.6, begin),
+            (true, far_m, begin),
+            (false, far_m, begin),
+            (false, far_m * 2.0, begin),
+        ];
+        if begin == End::On {
+            // Where nothing leads on from the start itself the path begins beside it.
+            attempts.push((false, far_m, End::Anywhere));
+        }
+        for (limits_heading, offset_m, enter) in attempts {
+            match self.within(window, limits_heading, offset_m, enter) {
+                Ok(points) if !self.arrives(window, &points) => short_of_end = Some(points),
                 Ok(points) if limits_heading => return Beside::Smooth(points),
                 Ok(points) => return Beside::Sharp(points),
                 Err(station) => furthest = furthest.max(station),
             }
         }
-        Beside::Blocked { station: furthest }
+        short_of_end.map_or(Beside::Blocked { station: furthest }, Beside::Sharp)
+    }
+
+    /// Whether the last window ends at the end of the course, or as near to it as obstacles allow.
+    fn arrives(&self, window: &RangeInclusive<usize>, points: &[Point]) -> bool {
+        let end = self.course.points[self.course.last()];
+        let allowed_m = self.course.tolerance_m.max(NEARLY_M - self.room.spare_m(end));
+        *window.end() < self.course.last() || (points[points.len() - 1] - end).norm() <= allowed_m
     }
 
     /// A way round within a window, one point for every point of the course; or the point that cannot be passed.
@@ -154,6 +174,7 @@ impl Search<'_> {
         window: &RangeInclusive<usize>,
         limits_heading: bool,
         offset_m: f64,
+        enter: End,
     ) -> std::result::Result<Vec<Point>, usize> {
         let coarse_m = self.coarse_stations(window);
         let mut stations: Vec<Station> = coarse_m.iter().map(|s| self.station(*s, 1.0)).collect();
@@ -169,7 +190,7 @@ impl Search<'_> {
             half,
             most_change,
             limits_heading,
-            enter: self.enter(*window.start()),
+            enter,
             leave: self.leave(*window.end()),
         };
         match strip.cheapest(self.room) {
@@ -178,7 +199,7 @@ impl Search<'_> {
                 Err(index.min(*window.end()))
             }
             Found::Way(offsets_m) => {
-                self.refined(window, limits_heading, &coarse_m, &offsets_m).ok_or(*window.start())
+                self.refined(window, (limits_heading, enter), &coarse_m, &offsets_m).ok_or(*window.start())
             }
         }
     }
@@ -187,7 +208,7 @@ impl Search<'_> {
     fn refined(
         &self,
         window: &RangeInclusive<usize>,
-        limits_heading: bool,
+        (limits_heading, enter): (bool, End),
         coarse_m: &[f64],
         offsets_m: &[f64],
     ) -> Option<Vec<Point>> {
@@ -208,7 +229,7 @@ impl Search<'_> {
                 half,
                 most_change: 2 * half,
                 limits_heading,
-                enter: self.enter(*window.start()),
+                enter,
                 leave: self.leave(*window.end()),
             };
             if let Found::Way(offsets_m) = strip.cheapest(self.room) {
@@ -222,12 +243,7 @@ impl Search<'_> {
         }
         let mut places: Vec<Point> =
             stations.iter().zip(&middle_m).map(|(s, n)| s.at + s.left * *n).collect();
-        let polish = Polish {
-            stations: &stations,
-            limits_heading,
-            enter: self.enter(*window.start()),
-            leave: self.leave(*window.end()),
-        };
+        let polish = Polish { stations: &stations, limits_heading, enter, leave: self.leave(*window.end()) };
         for cell_m in POLISH_M {
             places = polish.pass(self.room, &places, cell_m).unwrap_or(places);
         }

@@ -3,14 +3,17 @@
 
 mod rpf;
 mod spiral_lattice;
+mod spiral_tangent;
 
 mod course;
 mod lattice;
 mod polish;
+mod pursuit;
 mod refusal;
 mod strip;
+mod tangent;
 
 #[cfg(test)]
 mod bench;
 
-planner_api::export_planners!(rpf::Rpf, spiral_lattice::SpiralLattice);
+planner_api::export_planners!(rpf::Rpf, spiral_lattice::SpiralLattice, spiral_tangent::SpiralTangent);

@@ -3,11 +3,12 @@
 use crate::{
     course::{self, Course},
     lattice::{self, Blocked, Limits},
+    pursuit::Pursuit,
     refusal,
 };
-use field::{Flight, Pilot, drawing, params as p, pilot::Tick};
+use field::params as p;
 use planner_api::{
-    Caps, Command, Config, Ctx, Drive, LogLevel, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site,
+    Caps, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site,
 };
 use world::polyline;
 
@@ -17,8 +18,7 @@ use world::polyline;
 /// through the guard; what is discovered on the way is gone round by a new plan.
 pub struct SpiralLattice {
     wishes: Wishes,
-    flight: Flight,
-    pilot: Pilot,
+    pursuit: Pursuit,
 }
 
 /// What is asked of a plan.
@@ -46,13 +46,13 @@ impl Planner for SpiralLattice {
     ];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
-        let (wishes, flight) = (wishes(config)?, p::flight(config));
-        Ok(Self { wishes, flight, pilot: Pilot::pursuing(site) })
+        let wishes = wishes(config)?;
+        Ok(Self { wishes, pursuit: Pursuit::new(p::flight(config), wishes.clearance_m, site) })
     }
 
     fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
         self.wishes = wishes(config)?;
-        self.flight = p::flight(config);
+        self.pursuit.set(p::flight(config), self.wishes.clearance_m);
         Ok(())
     }
 
@@ -67,14 +67,7 @@ impl Planner for SpiralLattice {
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
-        ctx.check()?;
-        let bodies = self.pilot.bodies(sensed);
-        let target = sensed.path_ahead.first().copied().unwrap_or(sensed.target);
-        let is_last = sensed.targets_ahead.len() <= 1 && sensed.path_ahead.len() <= 1;
-        let tick = Tick { t_s: sensed.t_s, pose: sensed.pose, target, is_last, bodies: &bodies };
-        let decision = self.pilot.pursue(&self.flight, &tick, target);
-        drawing::show(ctx, sensed.pose.position, &decision.forces, 1.0);
-        Ok(Command { drive: Drive::Velocity(decision.velocity), status: decision.status })
+        self.pursuit.step(sensed, ctx)
     }
 }
 

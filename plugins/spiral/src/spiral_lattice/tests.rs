@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::bench::{CLEARANCE_M, Figures, plan};
-use field::trial::{Distribution, Layout, Sampling, exact_pose, score};
+use field::trial::{Distribution, Layout, Robot, Sampling, exact_pose, fly, score};
 use planner_api::{Code, Motion, PlannerError, Reason, Task, testing::Bench};
 use proptest::prelude::*;
 use world::{Point, Vector, spiral::Spiral};
@@ -139,6 +139,15 @@ fn a_plan_for_a_robot_with_a_hull_keeps_the_mission_clearance() {
         plan.complete
     });
     assert!(complete.count() >= 17);
+}
+
+#[test]
+fn without_a_plan_it_arrives_by_what_it_senses() {
+    let robot = Robot { motion: Motion::Unicycle, sigma_m: 0.03 };
+    let flights = (0..20).map(|seed| fly::<SpiralLattice>(&[], &Layout::random(seed), robot, seed).unwrap());
+    let arrived =
+        flights.inspect(|flight| assert!(flight.clearance_m > 0.0)).filter(|flight| flight.completed);
+    assert!(arrived.count() >= 18);
 }
 
 proptest! {
