@@ -13,6 +13,7 @@ pub mod body;
 pub mod contact;
 pub mod descent;
 pub mod drawing;
+pub mod escape;
 pub mod gaps;
 pub mod guard;
 pub mod judge;
@@ -35,6 +36,7 @@ pub mod turning;
 pub mod walk;
 
 pub use contact::{Contact, Source};
+pub use escape::Escape;
 pub use law::{Forces, Law, Repulsion, RotationForm};
 pub use laws::Sense;
 pub use pilot::Pilot;

@@ -1,6 +1,7 @@
 //! The parameters that the potential-field planners share, and how they become settings.
 
 use crate::{
+    escape::Escape,
     law::{Law, Repulsion, RotationForm},
     settings::{Flight, Planning, Settings, Steering, Walking},
     turning::{Reading, SenseRule},
@@ -170,6 +171,7 @@ pub fn settings(config: &Config<'_>) -> Settings {
         },
         reading: Reading::Off,
         rule: SenseRule::CounterClockwise,
+        escape: Escape::None,
         planning: Planning::Walked,
         walking: walking(config),
         flight: flight(config),

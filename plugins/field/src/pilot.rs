@@ -4,6 +4,7 @@ use crate::{
     body::Body,
     contact::{Contact, Source},
     drawing,
+    escape::{Escape, Escaping, Situation},
     gaps::{Detour, GapSteering, View},
     guard,
     law::{Forces, Law, RotationForm},
@@ -82,6 +83,8 @@ pub struct Decision {
 #[derive(Debug, Clone)]
 struct Gate {
     turning: Turning,
+    escaping: Escaping,
+    escape: Vector,
     detector: TrapDetector,
     due_s: f64,
 }
@@ -89,21 +92,27 @@ struct Gate {
 impl Pilot {
     /// A pilot for a site.
     pub fn new(settings: &Settings, site: &Site<'_>) -> Self {
-        Self::with(Turning::new(settings.reading, settings.rule), site)
+        Self::with(Turning::new(settings.reading, settings.rule), settings.escape, site)
     }
 
     /// A pilot that only pursues aims.
     pub fn pursuing(site: &Site<'_>) -> Self {
-        Self::with(Turning::new(Reading::Off, SenseRule::CounterClockwise), site)
+        Self::with(Turning::new(Reading::Off, SenseRule::CounterClockwise), Escape::None, site)
     }
 
-    fn with(turning: Turning, site: &Site<'_>) -> Self {
+    fn with(turning: Turning, escape: Escape, site: &Site<'_>) -> Self {
         Self {
             limits: site.limits,
             clearance_m: site.clearance_m,
             wall: wall_of(&site.boundary),
             no_go: no_go(site).filter_map(|(id, outline)| Body::new(id, &outline)).collect(),
-            gate: Gate { turning, detector: TrapDetector::default(), due_s: f64::NEG_INFINITY },
+            gate: Gate {
+                turning,
+                escaping: Escaping::new(escape),
+                escape: Vector::zeros(),
+                detector: TrapDetector::default(),
+                due_s: f64::NEG_INFINITY,
+            },
             gaps: GapSteering::default(),
             stall: Stall::default(),
             remedy: Remedy::default(),
@@ -250,7 +259,9 @@ impl Pilot {
             }
             Steering::Paper => {
                 self.gate.update(settings, tick, contacts, self.limits.v_max_m_per_s);
-                settings.law.forces(at, goal, contacts, |c| self.gate.turning.sense(c))
+                let mut forces = settings.law.forces(at, goal, contacts, |c| self.gate.turning.sense(c));
+                forces.attraction += self.gate.escape;
+                forces
             }
         }
     }
@@ -310,6 +321,14 @@ impl Gate {
         let obstacle_acts = contacts.iter().any(|c| c.source != Source::Wall);
         let trapped = self.detector.is_trapped(step_m, step_m, to_target.norm(), obstacle_acts);
         self.turning.update(trapped, contacts, to_target);
+        self.escape = self.escaping.update(&Situation {
+            is_trapped: trapped,
+            at: tick.pose.position,
+            goal: tick.target,
+            contacts,
+            law: &settings.law,
+            step_m,
+        });
     }
 }
 

@@ -1,6 +1,7 @@
 //! Planners for the preset spiral.
 #![forbid(unsafe_code)]
 
+mod escapes;
 mod rpf;
 mod spiral_lattice;
 mod spiral_tangent;
@@ -16,4 +17,10 @@ mod tangent;
 #[cfg(test)]
 mod bench;
 
-planner_api::export_planners!(rpf::Rpf, spiral_lattice::SpiralLattice, spiral_tangent::SpiralTangent);
+planner_api::export_planners!(
+    escapes::Vt,
+    escapes::Iapf,
+    rpf::Rpf,
+    spiral_lattice::SpiralLattice,
+    spiral_tangent::SpiralTangent
+);
