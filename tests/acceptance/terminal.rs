@@ -90,6 +90,20 @@ impl Session {
         self.keys.flush().unwrap();
     }
 
+    /// Goes down an open list to an entry and takes it.
+    fn choose(&mut self, entry: &str) {
+        let chosen = format!(">{entry} ");
+        for _ in 0..20 {
+            if self.text().contains(&chosen) {
+                break;
+            }
+            self.press("\x1b[B");
+            std::thread::sleep(Duration::from_millis(100));
+        }
+        self.see(&chosen);
+        self.press("\r");
+    }
+
     /// Waits for the shell to be back; the terminal must be as it was. Gives the exit code.
     fn back_in_the_shell(&mut self) -> String {
         self.until("the shell", |session| {
@@ -141,8 +155,7 @@ fn a_mission_is_flown_held_swapped_and_finished_by_hand() {
     session.see("‖ HOLD");
     session.press("P");
     session.see("What was scanned stays");
-    // The planners by name: apf, which drives, faulty, rpf.
-    session.press("\x1b[B\x1b[B\r");
+    session.choose("rpf");
     session.see("CHANGE TO rpf?");
     session.press("\r");
     session.until("the swap in the journal", |session| {

@@ -126,6 +126,7 @@ mod tests {
         },
         reading: Reading::Off,
         rule: SenseRule::CounterClockwise,
+        escape: crate::Escape::None,
         planning: Planning::Walked,
         walking: Walking {
             step_m: 0.2,

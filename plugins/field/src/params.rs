@@ -1,6 +1,7 @@
 //! The parameters that the potential-field planners share, and how they become settings.
 
 use crate::{
+    escape::Escape,
     law::{Law, Repulsion, RotationForm},
     settings::{Flight, Planning, Settings, Steering, Walking},
     turning::{Reading, SenseRule},
@@ -136,6 +137,22 @@ pub const STUCK: ParamSpec = float("stuck_s", "Stuck after", "s", 1.0, 600.0, 30
     .group(FLIGHT)
     .live();
 
+/// Clearance asked of a plan.
+pub const CLEARANCE: ParamSpec = float("clearance_m", "Clearance at least", "m", 0.0, 5.0, 0.0)
+    .help("Distance between hull and obstacles that a plan keeps; never less than the mission's clearance.")
+    .group(PLAN)
+    .live();
+/// Limit of the change of heading along a plan.
+pub const TURN_PER_STEP: ParamSpec = float("turn_deg", "Turn limit per 0.2 m", "deg", 0.0, 180.0, 30.0)
+    .help("Largest change of heading along 0.2 m of path, where the preset path itself turns no faster; 0 is no limit.")
+    .group(PLAN)
+    .live();
+/// How far a plan may leave its preset path.
+pub const MAX_OFFSET: ParamSpec = float("max_offset_m", "Furthest offset", "m", 0.1, 5.0, 1.25)
+    .help("How far beside the preset path a way round is looked for first; twice as far if there is none.")
+    .group(PLAN)
+    .live();
+
 /// Settings of a law without a rotating force.
 pub fn settings(config: &Config<'_>) -> Settings {
     let repulsion = match config.choice("repulsion") {
@@ -154,6 +171,7 @@ pub fn settings(config: &Config<'_>) -> Settings {
         },
         reading: Reading::Off,
         rule: SenseRule::CounterClockwise,
+        escape: Escape::None,
         planning: Planning::Walked,
         walking: walking(config),
         flight: flight(config),
@@ -193,7 +211,8 @@ fn walking(config: &Config<'_>) -> Walking {
     }
 }
 
-fn flight(config: &Config<'_>) -> Flight {
+/// How a robot is steered along a plan or a law.
+pub fn flight(config: &Config<'_>) -> Flight {
     Flight {
         steering: Steering::Paper,
         guard_m: config.float("guard_m"),

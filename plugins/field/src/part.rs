@@ -67,6 +67,11 @@ impl Part {
 
     /// Distance from a segment to the outline, metres; not above zero when they touch.
     pub fn segment_distance_m(&self, a: Point, b: Point) -> f64 {
+        if let Self::Capsule { a: center, b: other, half_width_m } = self
+            && center == other
+        {
+            return (center - nearest_on_segment(a, b, *center)).norm() - half_width_m;
+        }
         let inside = matches!(self, Self::Polygon { vertices } if is_inside(vertices, a));
         if inside { 0.0 } else { self.gap(&Self::Capsule { a, b, half_width_m: 0.0 }).width_m }
     }

@@ -4,16 +4,17 @@ use crate::{
     body::Body,
     contact::{Contact, Source},
     drawing,
+    escape::{Escape, Escaping, Situation},
     gaps::{Detour, GapSteering, View},
     guard,
     law::{Forces, Law, RotationForm},
     laws::Sense,
     part::Part,
     scene::{no_go, wall_contacts, wall_of},
-    settings::{Settings, Steering},
+    settings::{Flight, Settings, Steering},
     stall::{Remedy, Stall},
     trap::TrapDetector,
-    turning::Turning,
+    turning::{Reading, SenseRule, Turning},
 };
 use planner_api::{Command, Ctx, Drive, Layer, Limits, Motion, PoseEstimate, Result, Sensed, Site, Status};
 use world::{Point, Vector};
@@ -82,6 +83,8 @@ pub struct Decision {
 #[derive(Debug, Clone)]
 struct Gate {
     turning: Turning,
+    escaping: Escaping,
+    escape: Vector,
     detector: TrapDetector,
     due_s: f64,
 }
@@ -89,13 +92,24 @@ struct Gate {
 impl Pilot {
     /// A pilot for a site.
     pub fn new(settings: &Settings, site: &Site<'_>) -> Self {
+        Self::with(Turning::new(settings.reading, settings.rule), settings.escape, site)
+    }
+
+    /// A pilot that only pursues aims.
+    pub fn pursuing(site: &Site<'_>) -> Self {
+        Self::with(Turning::new(Reading::Off, SenseRule::CounterClockwise), Escape::None, site)
+    }
+
+    fn with(turning: Turning, escape: Escape, site: &Site<'_>) -> Self {
         Self {
             limits: site.limits,
             clearance_m: site.clearance_m,
             wall: wall_of(&site.boundary),
             no_go: no_go(site).filter_map(|(id, outline)| Body::new(id, &outline)).collect(),
             gate: Gate {
-                turning: Turning::new(settings.reading, settings.rule),
+                turning,
+                escaping: Escaping::new(escape),
+                escape: Vector::zeros(),
                 detector: TrapDetector::default(),
                 due_s: f64::NEG_INFINITY,
             },
@@ -117,13 +131,12 @@ impl Pilot {
     /// When the console wants it to stop.
     pub fn step(&mut self, settings: &Settings, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
-        let bodies: Vec<Body> = sensed.obstacles.iter().filter_map(|o| Body::new(o.id, &o.outline)).collect();
         let tick = Tick {
             t_s: sensed.t_s,
             pose: sensed.pose,
             target: sensed.target,
             is_last: sensed.targets_ahead.len() <= 1,
-            bodies: &bodies.into_iter().chain(self.no_go.iter().cloned()).collect::<Vec<Body>>(),
+            bodies: &self.bodies(sensed),
         };
         let decision = self.decide(settings, &tick);
         drawing::show(ctx, sensed.pose.position, &decision.forces, settings.law.k_att);
@@ -133,7 +146,7 @@ impl Pilot {
 
     /// The same without a console: how the robot moves in this situation.
     pub fn decide(&mut self, settings: &Settings, tick: &Tick<'_>) -> Decision {
-        let keep_m = self.keep_m(settings, &tick.pose);
+        let keep_m = self.keep_m(&settings.flight, &tick.pose);
         let idle_s = self.stall.update(tick.t_s, tick.pose.position, tick.target);
         if self.remedy.update(idle_s, settings.flight.stuck_s * REMEDY_SHARE) {
             self.gaps.flip();
@@ -141,25 +154,56 @@ impl Pilot {
         let detour = self.detour(settings, tick, keep_m);
         let contacts = self.contacts(settings, tick, detour.as_ref());
         let forces = self.forces(settings, tick, &contacts, detour.as_ref());
-        let wanted = self.smoothed(&forces, tick) * self.speed(settings, tick, &forces, &contacts);
+        let wanted = self.smoothed(&forces, tick) * self.speed(&settings.flight, tick, &forces, &contacts);
         let velocity = self.guarded(wanted, tick, keep_m);
         let status = if idle_s > settings.flight.stuck_s { Status::Stuck } else { Status::Moving };
         Decision { velocity, status, forces, detour }
     }
 
+    /// Toward an aim instead of along a law: for planners that know where to go next, not by what force.
+    ///
+    /// Speed, guard and the report of being stuck are those of [`Pilot::decide`].
+    pub fn pursue(&mut self, flight: &Flight, tick: &Tick<'_>, aim: Point) -> Decision {
+        let at = tick.pose.position;
+        let idle_s = self.stall.update(tick.t_s, at, tick.target);
+        if self.remedy.update(idle_s, flight.stuck_s * REMEDY_SHARE) {
+            self.gaps.flip();
+        }
+        let forces = Forces { attraction: (aim - at).cap_magnitude(FAR_M), ..Forces::default() };
+        let near = tick.bodies.iter().filter_map(|body| body.nearest_contact(at, self.limits.radius_m));
+        let contacts: Vec<Contact> = near.filter(|contact| contact.distance_m < flight.slow_m).collect();
+        let wanted = self.smoothed(&forces, tick) * self.speed(flight, tick, &forces, &contacts);
+        let velocity = self.guarded(wanted, tick, self.keep_m(flight, &tick.pose));
+        let status = if idle_s > flight.stuck_s { Status::Stuck } else { Status::Moving };
+        Decision { velocity, status, forces, detour: None }
+    }
+
+    /// Radius of the hull, metres.
+    pub fn hull_m(&self) -> f64 {
+        self.limits.radius_m
+    }
+
+    /// What is sensed in parts, no-go zones included.
+    pub fn bodies(&self, sensed: &Sensed<'_>) -> Vec<Body> {
+        let near = sensed.obstacles.iter().filter_map(|o| Body::new(o.id, &o.outline));
+        near.chain(self.no_go.iter().cloned()).collect()
+    }
+
     /// Distance the guard keeps between hull and anything solid, metres.
-    fn keep_m(&self, settings: &Settings, pose: &PoseEstimate) -> f64 {
+    pub fn keep_m(&self, flight: &Flight, pose: &PoseEstimate) -> f64 {
         let position = pose.covariance.fixed_view::<2, 2>(0, 0).into_owned();
         let sigma_m = position.symmetric_eigenvalues().max().max(0.0).sqrt();
-        let widening_m = (settings.flight.guard_sigmas * sigma_m).min(MOST_WIDENING_M);
-        settings.flight.guard_m.max(self.clearance_m + SPARE_M)
-            + if widening_m.is_finite() { widening_m } else { 0.0 }
+        let widening_m = (flight.guard_sigmas * sigma_m).min(MOST_WIDENING_M);
+        flight.guard_m.max(self.clearance_m + SPARE_M) + if widening_m.is_finite() { widening_m } else { 0.0 }
     }
 
     fn detour(&mut self, settings: &Settings, tick: &Tick<'_>, keep_m: f64) -> Option<Detour> {
-        if settings.flight.steering == Steering::Paper {
-            return None;
-        }
+        if settings.flight.steering == Steering::Paper { None } else { self.way_round(tick, keep_m) }
+    }
+
+    /// What blocks the way to the target, if anything, and which way round to go; another side is tried, or none, while
+    /// nothing comes of it.
+    pub fn way_round(&mut self, tick: &Tick<'_>, keep_m: f64) -> Option<Detour> {
         let detour = self.gaps.update(&View {
             t_s: tick.t_s,
             at: tick.pose.position,
@@ -215,7 +259,9 @@ impl Pilot {
             }
             Steering::Paper => {
                 self.gate.update(settings, tick, contacts, self.limits.v_max_m_per_s);
-                settings.law.forces(at, goal, contacts, |c| self.gate.turning.sense(c))
+                let mut forces = settings.law.forces(at, goal, contacts, |c| self.gate.turning.sense(c));
+                forces.attraction += self.gate.escape;
+                forces
             }
         }
     }
@@ -231,8 +277,7 @@ impl Pilot {
     }
 
     /// Slower toward what is near and at the end of the way.
-    fn speed(&self, settings: &Settings, tick: &Tick<'_>, forces: &Forces, contacts: &[Contact]) -> f64 {
-        let flight = &settings.flight;
+    fn speed(&self, flight: &Flight, tick: &Tick<'_>, forces: &Forces, contacts: &[Contact]) -> f64 {
         let direction = forces.resultant().try_normalize(1e-9).unwrap_or_else(Vector::zeros);
         let near = contacts.iter().map(|contact| {
             let closing = (-contact.away.dot(&direction)).max(0.0);
@@ -276,6 +321,14 @@ impl Gate {
         let obstacle_acts = contacts.iter().any(|c| c.source != Source::Wall);
         let trapped = self.detector.is_trapped(step_m, step_m, to_target.norm(), obstacle_acts);
         self.turning.update(trapped, contacts, to_target);
+        self.escape = self.escaping.update(&Situation {
+            is_trapped: trapped,
+            at: tick.pose.position,
+            goal: tick.target,
+            contacts,
+            law: &settings.law,
+            step_m,
+        });
     }
 }
 

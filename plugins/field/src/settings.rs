@@ -1,6 +1,7 @@
 //! Everything a potential-field planner can be set to.
 
 use crate::{
+    escape::Escape,
     law::Law,
     turning::{Reading, SenseRule},
 };
@@ -67,6 +68,8 @@ pub struct Settings {
     pub reading: Reading,
     /// Which way round it acts.
     pub rule: SenseRule,
+    /// What is done about a trap besides.
+    pub escape: Escape,
     /// How a plan is made.
     pub planning: Planning,
     /// How the law is walked to plan.

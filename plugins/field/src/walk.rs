@@ -2,6 +2,7 @@
 
 use crate::{
     contact::{Contact, Source},
+    escape::{Escaping, Situation},
     scene::Scene,
     settings::Settings,
     trap::TrapDetector,
@@ -18,6 +19,7 @@ pub struct Walker<'a> {
     scene: &'a Scene,
     settings: &'a Settings,
     turning: Turning,
+    escaping: Escaping,
     detector: TrapDetector,
     lagging: VecDeque<Point>,
     heading: Option<Vector>,
@@ -48,6 +50,7 @@ impl<'a> Walker<'a> {
             scene,
             settings,
             turning: Turning::new(settings.reading, settings.rule),
+            escaping: Escaping::new(settings.escape),
             detector,
             lagging: VecDeque::new(),
             heading: None,
@@ -80,7 +83,15 @@ impl<'a> Walker<'a> {
         let obstacle_acts = contacts.iter().any(|c| c.source != Source::Wall);
         let trapped = self.detector.is_trapped(next.expected_m, next.step_m, to_target.norm(), obstacle_acts);
         self.turning.update(trapped, &contacts, to_target);
-        if let Some(direction) = self.direction(next.target, &contacts) {
+        let escape = self.escaping.update(&Situation {
+            is_trapped: trapped,
+            at: self.at,
+            goal: next.target,
+            contacts: &contacts,
+            law: &self.settings.law,
+            step_m: next.step_m,
+        });
+        if let Some(direction) = self.direction(next.target, &contacts, escape) {
             self.at += direction * next.cap_m.min(to_target.norm());
             self.heading = Some(direction);
         }
@@ -89,9 +100,9 @@ impl<'a> Walker<'a> {
         self.watch_for_trap((next.target - self.at).norm(), next.step_m);
     }
 
-    fn direction(&self, target: Point, contacts: &[Contact]) -> Option<Vector> {
+    fn direction(&self, target: Point, contacts: &[Contact], escape: Vector) -> Option<Vector> {
         let forces = self.settings.law.forces(self.at, target, contacts, |c| self.turning.sense(c));
-        let wanted = forces.resultant().try_normalize(1e-12)?;
+        let wanted = (forces.resultant() + escape).try_normalize(1e-12)?;
         match (self.settings.walking.turn_limit_rad, self.heading) {
             (Some(limit_rad), Some(heading)) => Some(turned_at_most(heading, wanted, limit_rad)),
             _ => Some(wanted),

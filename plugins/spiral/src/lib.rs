@@ -1,6 +1,26 @@
 //! Planners for the preset spiral.
 #![forbid(unsafe_code)]
 
+mod escapes;
 mod rpf;
+mod spiral_lattice;
+mod spiral_tangent;
 
-planner_api::export_planners!(rpf::Rpf);
+mod course;
+mod lattice;
+mod polish;
+mod pursuit;
+mod refusal;
+mod strip;
+mod tangent;
+
+#[cfg(test)]
+mod bench;
+
+planner_api::export_planners!(
+    escapes::Vt,
+    escapes::Iapf,
+    rpf::Rpf,
+    spiral_lattice::SpiralLattice,
+    spiral_tangent::SpiralTangent
+);

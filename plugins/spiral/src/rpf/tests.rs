@@ -39,9 +39,13 @@ fn mean_score(values: &[(&str, f64)], n_layouts: u64) -> Score {
     let mean = |figure: fn(&Score) -> f64| scores.iter().map(figure).sum::<f64>() / n_layouts as f64;
     Score {
         precision: mean(|s| s.precision),
+        recall: mean(|s| s.recall),
         rmse_m: mean(|s| s.rmse_m),
         worst_m: mean(|s| s.worst_m),
         covered: mean(|s| s.covered),
+        cross_track_precision: mean(|s| s.cross_track_precision),
+        cross_track_rmse_m: mean(|s| s.cross_track_rmse_m),
+        cross_track_worst_m: mean(|s| s.cross_track_worst_m),
     }
 }
 

@@ -1,0 +1,163 @@
+//! Where the middle of the hull may be: hard clearances to everything solid and to the wall.
+
+use crate::{
+    part::{Part, parts_of},
+    scene::{solids, wall_of},
+};
+use planner_api::Site;
+use world::{Boundary, Point};
+
+/// Edge of a bucket, metres.
+const BUCKET_M: f64 = 1.0;
+/// Spare room is told up to this much, metres; beyond it there is at least as much.
+pub const MOST_SPARE_M: f64 = 0.6;
+/// Slack for rounding, metres.
+const ROUNDING_M: f64 = 1e-9;
+
+/// Something solid and the distance that the middle of the hull keeps from it.
+#[derive(Debug, Clone)]
+struct Solid {
+    part: Part,
+    keep_m: f64,
+}
+
+/// Distances the middle of the hull has to keep, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Keep {
+    /// From the outline of an obstacle.
+    pub obstacle_m: f64,
+    /// From the wall.
+    pub wall_m: f64,
+}
+
+/// The floor that the middle of the hull may use.
+///
+/// Obstacles are found through buckets of one metre, so a question costs as much as there is nearby.
+#[derive(Debug, Clone)]
+pub struct Room {
+    wall: Boundary,
+    keep: Keep,
+    solids: Vec<Solid>,
+    low: Point,
+    columns: usize,
+    buckets: Vec<Vec<u32>>,
+}
+
+impl Room {
+    /// The floor of a site, no-go zones left out.
+    pub fn new(site: &Site<'_>, keep: Keep) -> Self {
+        let parts = solids(site).flat_map(|(_, outline)| parts_of(&outline));
+        Self::of_parts(wall_of(&site.boundary), parts, keep)
+    }
+
+    /// The floor between some parts.
+    pub fn of_parts(wall: Boundary, parts: impl Iterator<Item = Part>, keep: Keep) -> Self {
+        let mut solids: Vec<Solid> = parts.map(|part| Solid { part, keep_m: keep.obstacle_m }).collect();
+        if let Boundary::Polygon { vertices } = &wall {
+            let edges = vertices.iter().zip(vertices.iter().cycle().skip(1));
+            let edge = |(a, b): (&Point, &Point)| Part::Capsule { a: *a, b: *b, half_width_m: 0.0 };
+            solids.extend(edges.map(edge).map(|part| Solid { part, keep_m: keep.wall_m }));
+        }
+        let (low, high) = wall.bounds();
+        let columns = ((high.x - low.x) / BUCKET_M).ceil().max(1.0) as usize + 1;
+        let rows = ((high.y - low.y) / BUCKET_M).ceil().max(1.0) as usize + 1;
+        let mut room = Self { wall, keep, solids, low, columns, buckets: vec![Vec::new(); columns * rows] };
+        for index in 0..room.solids.len() {
+            room.enter(index);
+        }
+        room
+    }
+
+    /// Room left at a place, metres: negative where the middle of the hull may not be, at most 0.6.
+    pub fn spare_m(&self, at: Point) -> f64 {
+        let wall = self.wall.wall_distance_m(at) - self.keep.wall_m + ROUNDING_M;
+        self.near(at).map(|s| s.part.distance(at).0 - s.keep_m).fold(wall.min(MOST_SPARE_M), f64::min)
+    }
+
+    /// Whether the middle of the hull may go straight from `a` to `b`, which are less than 0.6 m apart.
+    pub fn is_free(&self, a: Point, b: Point) -> bool {
+        let wall_m = self.wall.wall_distance_m(a).min(self.wall.wall_distance_m(b));
+        wall_m - self.keep.wall_m >= -ROUNDING_M
+            && self.near(nalgebra::center(&a, &b)).all(|s| s.part.segment_distance_m(a, b) >= s.keep_m)
+    }
+
+    /// The parts within reach of a place with what they demand, for those who look at them one by one.
+    pub fn parts_near(&self, at: Point) -> impl Iterator<Item = (&Part, f64)> + '_ {
+        self.near(at).map(|s| (&s.part, s.keep_m))
+    }
+
+    /// The wall.
+    pub fn wall(&self) -> &Boundary {
+        &self.wall
+    }
+
+    /// The distances kept.
+    pub fn keep(&self) -> Keep {
+        self.keep
+    }
+
+    fn near(&self, at: Point) -> impl Iterator<Item = &Solid> + '_ {
+        let bucket = self.bucket(at).map_or(&[][..], |index| &self.buckets[index]);
+        bucket.iter().map(|index| &self.solids[*index as usize])
+    }
+
+    fn bucket(&self, at: Point) -> Option<usize> {
+        let (x, y) = ((at.x - self.low.x) / BUCKET_M, (at.y - self.low.y) / BUCKET_M);
+        let inside = x >= 0.0 && y >= 0.0 && (x as usize) < self.columns;
+        Some((y as usize) * self.columns + x as usize).filter(|index| inside && *index < self.buckets.len())
+    }
+
+    /// Lists a solid in every bucket from which it can matter.
+    fn enter(&mut self, index: usize) {
+        let solid = &self.solids[index];
+        let reach_m = solid.keep_m + MOST_SPARE_M + BUCKET_M * std::f64::consts::FRAC_1_SQRT_2;
+        let n_rows = self.buckets.len() / self.columns;
+        for row in 0..n_rows {
+            for column in 0..self.columns {
+                let corner = nalgebra::Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * BUCKET_M;
+                if solid.part.distance(self.low + corner).0 < reach_m {
+                    self.buckets[row * self.columns + column].push(index as u32);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn room(discs: &[(f64, f64, f64)]) -> Room {
+        let part = |&(x, y, r): &(f64, f64, f64)| Part::Capsule {
+            a: Point::new(x, y),
+            b: Point::new(x, y),
+            half_width_m: r,
+        };
+        let keep = Keep { obstacle_m: 0.3, wall_m: 0.1 };
+        Room::of_parts(Boundary::Circle { radius_m: 5.0 }, discs.iter().map(part), keep)
+    }
+
+    #[test]
+    fn the_wall_and_the_obstacles_are_kept_at_their_own_distances() {
+        let room = room(&[(1.0, 0.0, 0.2)]);
+        assert!((room.spare_m(Point::new(1.6, 0.0)) - 0.1).abs() < 1e-6);
+        assert!((room.spare_m(Point::new(-4.8, 0.0)) - 0.1).abs() < 1e-6);
+        assert!(room.is_free(Point::new(1.0, 0.5), Point::new(1.2, 0.5)));
+        assert!(!room.is_free(Point::new(0.8, 0.49), Point::new(1.2, 0.49)));
+        assert!(!room.is_free(Point::new(-4.8, 0.0), Point::new(-4.95, 0.0)));
+    }
+
+    proptest! {
+        #[test]
+        fn the_buckets_forget_nothing_that_matters(
+            discs in prop::collection::vec((-5.0..5.0_f64, -5.0..5.0_f64, 0.0..1.5_f64), 1..9),
+            at in (-4.0..4.0_f64, -4.0..4.0_f64),
+        ) {
+            let at = Point::new(at.0, at.1);
+            let all = discs.iter().map(|(x, y, r)| (at - Point::new(*x, *y)).norm() - r - 0.3);
+            let truth = all.fold((4.9 - at.coords.norm()).min(MOST_SPARE_M), f64::min);
+            prop_assert!((room(&discs).spare_m(at) - truth).abs() < 1e-6);
+        }
+    }
+}

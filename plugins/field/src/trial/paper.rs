@@ -1,0 +1,52 @@
+//! The layouts of Wang et al. 2023 by their names.
+
+use super::layout::Layout;
+
+/// The paper's three distributions of obstacles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Distribution {
+    /// 39 obstacles.
+    D1,
+    /// 36 obstacles.
+    D2,
+    /// 20 obstacles.
+    D3,
+}
+
+/// Where obstacles are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sampling {
+    /// Uniform in the tank.
+    Disk,
+    /// Uniform in the square around it, as printed: one in five falls outside.
+    Square,
+}
+
+impl Distribution {
+    /// Every distribution.
+    pub const ALL: [Self; 3] = [Self::D1, Self::D2, Self::D3];
+
+    /// Number of obstacles.
+    pub fn n_obstacles(self) -> usize {
+        match self {
+            Self::D1 => 39,
+            Self::D2 => 36,
+            Self::D3 => 20,
+        }
+    }
+
+    /// Range of obstacles, metres.
+    pub fn rho_0_m(self) -> f64 {
+        match self {
+            Self::D1 => 1.5,
+            Self::D2 => 1.0,
+            Self::D3 => 0.8,
+        }
+    }
+
+    /// A layout: point obstacles, a point robot that keeps `clearance_m` from them, and the paper's spiral.
+    pub fn layout(self, sampling: Sampling, seed: u64, clearance_m: f64) -> Layout {
+        let layout = Layout::of_the_paper(seed, self.n_obstacles(), sampling == Sampling::Square);
+        Layout { clearance_m, ..layout }
+    }
+}

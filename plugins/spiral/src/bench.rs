@@ -1,0 +1,122 @@
+//! What the tests of our own planners share: plans of the paper's layouts and their figures over many seeds.
+
+use field::trial::{Distribution, Layout, Safety, Sampling, Score, exact_pose, floor_rmse_m, safety, score};
+use planner_api::{Motion, Plan, PlanRequest, Planner, Reason, Result, Task, testing::Bench};
+use std::time::Duration;
+
+/// Clearance of the paper's layouts in our tests, metres.
+pub const CLEARANCE_M: f64 = 0.3;
+
+/// Plans a whole layout.
+pub fn plan<P: Planner>(layout: &Layout, values: &[(&str, f64)]) -> Result<Plan> {
+    let bench = Bench::new();
+    let obstacles = layout.obstacles();
+    let site = layout.site(&obstacles, Motion::Point);
+    let mut planner: P = bench.configure(values, &site)?;
+    let task = Task::Follow { targets: &layout.path, tolerance_m: 0.2 };
+    let start = exact_pose(layout.path[0]);
+    let request = PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[] };
+    planner.plan(&request, &bench.ctx())
+}
+
+/// Time this thread has spent computing, so that figures hold on a busy machine; zero where it cannot be told.
+fn on_cpu() -> Duration {
+    let stat = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let nanoseconds = stat.split_whitespace().next().and_then(|word| word.parse().ok());
+    Duration::from_nanos(nanoseconds.unwrap_or_default())
+}
+
+/// The figures of many plans.
+#[derive(Debug, Default)]
+pub struct Figures {
+    pub n_layouts: usize,
+    pub scores: Vec<Score>,
+    pub safeties: Vec<Safety>,
+    pub floors_m: Vec<f64>,
+    pub refusals: Vec<(u64, String)>,
+    pub times: Vec<Duration>,
+}
+
+impl Figures {
+    pub fn of<P: Planner>(
+        distribution: Distribution,
+        seeds: std::ops::Range<u64>,
+        values: &[(&str, f64)],
+    ) -> Self {
+        let mut figures = Self::default();
+        for seed in seeds {
+            let layout = distribution.layout(Sampling::Disk, seed, CLEARANCE_M);
+            let began = on_cpu();
+            let plan = plan::<P>(&layout, values);
+            figures.times.push(on_cpu().saturating_sub(began));
+            figures.n_layouts += 1;
+            match plan {
+                Ok(plan) => {
+                    figures.scores.push(score(&plan.path, &layout.path));
+                    figures.safeties.push(safety(&plan.path, &layout.path, &layout.columns, layout.radius_m));
+                    figures.floors_m.push(floor_rmse_m(&layout.path, &layout.columns, CLEARANCE_M));
+                    if !figures.safeties[figures.safeties.len() - 1].is_ok(CLEARANCE_M) {
+                        let safety = figures.safeties[figures.safeties.len() - 1];
+                        figures.refusals.push((seed, format!("not ok: {safety:?}")));
+                    }
+                }
+                Err(error) => figures.refusals.push((seed, error.message)),
+            }
+        }
+        figures
+    }
+
+    pub fn ok_rate(&self) -> f64 {
+        self.safeties.iter().filter(|s| s.is_ok(CLEARANCE_M)).count() as f64 / self.n_layouts as f64
+    }
+
+    pub fn mean(&self, figure: fn(&Score) -> f64) -> f64 {
+        self.scores.iter().map(figure).sum::<f64>() / self.scores.len() as f64
+    }
+
+    pub fn floor_m(&self) -> f64 {
+        self.floors_m.iter().sum::<f64>() / self.floors_m.len() as f64
+    }
+
+    pub fn least(&self, figure: fn(&Safety) -> f64) -> f64 {
+        self.safeties.iter().map(figure).fold(f64::INFINITY, f64::min)
+    }
+
+    pub fn most(&self, figure: fn(&Safety) -> f64) -> f64 {
+        self.safeties.iter().map(figure).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    pub fn time_ms(&self, share: f64) -> f64 {
+        let mut times = self.times.clone();
+        times.sort();
+        times[((times.len() - 1) as f64 * share) as usize].as_secs_f64() * 1e3
+    }
+
+    pub fn told(&self) -> String {
+        format!(
+            "n {} ok {:.4} rmse {:.4} floor {:.4} ratio {:.3} P {:.4} R {:.4} cov {:.4} ct {:.4} Pct {:.4} worst {:.2} \
+             clearance {:.4} wall {:.4} turn {:.1} (mean of most {:.1}) ms p50 {:.1} p99 {:.1} max {:.1}\n  refusals {} {:?}",
+            self.n_layouts,
+            self.ok_rate(),
+            self.mean(|s| s.rmse_m),
+            self.floor_m(),
+            self.mean(|s| s.rmse_m) / self.floor_m(),
+            self.mean(|s| s.precision),
+            self.mean(|s| s.recall),
+            self.mean(|s| s.covered),
+            self.mean(|s| s.cross_track_rmse_m),
+            self.mean(|s| s.cross_track_precision),
+            self.scores.iter().map(|s| s.worst_m).fold(0.0, f64::max),
+            self.least(|s| s.clearance_m),
+            self.least(|s| s.wall_m),
+            self.most(|s| s.heading_step_rad).to_degrees(),
+            self.safeties.iter().map(|s| s.heading_step_rad).sum::<f64>().to_degrees()
+                / self.safeties.len() as f64,
+            self.time_ms(0.5),
+            self.time_ms(0.99),
+            self.time_ms(1.0),
+            self.refusals.len(),
+            &self.refusals[..self.refusals.len().min(6)],
+        )
+    }
+}

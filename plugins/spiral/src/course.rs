@@ -1,0 +1,204 @@
+//! The course to follow: preset points with stations and directions, checked once.
+
+use field::{Keep, Room};
+use planner_api::{Code, Config, Ctx, LogLevel, PlanRequest, PlannerError, Result, Site, Task};
+use std::f64::consts::TAU;
+use world::{Point, Vector, geometry::wrap_angle_rad, polyline};
+
+/// Neighbouring points are no further apart than this, metres: the paper's step.
+const SPACING_M: f64 = 0.2;
+/// More points than this are refused.
+const MOST_POINTS: usize = 200_000;
+/// A start nearer to the first point than this is on the course, metres.
+const ON_COURSE_M: f64 = 1e-3;
+/// Outside the floor by no more than this is rounding, metres.
+const ROUNDING_M: f64 = 1e-6;
+/// Turns nearer to each other than this lie on top of each other, metres.
+const LEAST_PITCH_M: f64 = 1e-3;
+
+/// Points to follow in order.
+#[derive(Debug, Clone)]
+pub struct Course {
+    /// The points; where the robot is comes first.
+    pub points: Vec<Point>,
+    /// Way along the course to every point, metres.
+    pub stations_m: Vec<f64>,
+    /// Distance at which the last point counts as reached, metres.
+    pub tolerance_m: f64,
+}
+
+impl Course {
+    /// The course of a task, from where the robot is.
+    ///
+    /// # Errors
+    /// [`Code::Invalid`] for points that are missing, no numbers or too many, and for turns on top of each other.
+    pub fn new(request: &PlanRequest<'_>) -> Result<Self> {
+        let start = request.start.position;
+        let (targets, tolerance_m) = match request.task {
+            Task::Goto { goal, tolerance_m } => (vec![goal], tolerance_m),
+            Task::Follow { targets, tolerance_m } => (targets.to_vec(), tolerance_m),
+        };
+        let Some(&first) = targets.first() else { return Err(invalid("there is no preset point to follow")) };
+        if let Some(at) = targets.iter().position(|p| !p.x.is_finite() || !p.y.is_finite()) {
+            return Err(invalid(format!("preset point {at} is not a number")));
+        }
+        if !start.x.is_finite() || !start.y.is_finite() {
+            return Err(invalid("the start is not a number"));
+        }
+        if let Some(at) = targets.windows(2).position(|w| (w[1] - w[0]).norm() < 1e-9) {
+            return Err(invalid(format!("preset points {at} and {} coincide; give each point once", at + 1)));
+        }
+        if let Some(pitch_m) = pitch_m(&targets).filter(|pitch_m| *pitch_m < LEAST_PITCH_M) {
+            return Err(invalid(format!(
+                "the turns of the preset path are {pitch_m:.3} m apart; give it a pitch"
+            )));
+        }
+        let mut points = if (first - start).norm() > ON_COURSE_M { vec![start] } else { Vec::new() };
+        points.extend(targets);
+        let split = polyline::length_m(&points) / SPACING_M + points.len() as f64;
+        if split > MOST_POINTS as f64 {
+            let message = format!("the preset path has {split:.0} points, {MOST_POINTS} are allowed");
+            return Err(invalid(message));
+        }
+        // A hair more, so that points one step apart are not split by rounding.
+        let most_m = SPACING_M * (1.0 + 1e-6);
+        let has_gaps = points.windows(2).any(|w| (w[1] - w[0]).norm() > most_m);
+        let points = if has_gaps { polyline::resampled(&points, most_m) } else { points };
+        let stations_m = polyline::stations_m(&points);
+        Ok(Self { points, stations_m, tolerance_m })
+    }
+
+    /// Index of the last point.
+    pub fn last(&self) -> usize {
+        self.points.len() - 1
+    }
+
+    /// Unit vector along the course at a point.
+    pub fn direction(&self, index: usize) -> Vector {
+        let (before, after) = (index.saturating_sub(1), (index + 1).min(self.last()));
+        (self.points[after] - self.points[before]).try_normalize(1e-12).unwrap_or_else(Vector::x)
+    }
+
+    /// Unit vector from a point to the next one.
+    pub fn leg(&self, index: usize) -> Vector {
+        let from = index.min(self.last().saturating_sub(1));
+        let along = self.points[(from + 1).min(self.last())] - self.points[from];
+        along.try_normalize(1e-12).unwrap_or_else(Vector::x)
+    }
+
+    /// Place and direction so far along the course, metres.
+    pub fn at_m(&self, station_m: f64) -> (Point, Vector) {
+        let next = self.stations_m.partition_point(|s| *s <= station_m).clamp(1, self.last().max(1));
+        if next > self.last() {
+            return (self.points[0], self.direction(0));
+        }
+        let (from_m, to_m) = (self.stations_m[next - 1], self.stations_m[next]);
+        let share = ((station_m - from_m) / (to_m - from_m)).clamp(0.0, 1.0);
+        let at = self.points[next - 1] + (self.points[next] - self.points[next - 1]) * share;
+        let direction = self.direction(next - 1).lerp(&self.direction(next), share);
+        (at, direction.try_normalize(1e-9).unwrap_or_else(|| self.leg(next - 1)))
+    }
+
+    /// How fast the course itself turns about a point, radians per metre.
+    pub fn turn_per_m(&self, index: usize) -> f64 {
+        let before = self.leg(index.saturating_sub(1));
+        let after = self.leg(index);
+        let (first, end) = (index.saturating_sub(1), (index + 1).min(self.last()));
+        let length_m = (self.stations_m[end] - self.stations_m[first]) / 2.0;
+        before.perp(&after).atan2(before.dot(&after)).abs() / length_m.max(1e-9)
+    }
+}
+
+/// The room for the robot: the mission's clearance or a larger one from obstacles, and from the wall the mission's
+/// unless the course itself passes the wall more closely; the hull never touches it.
+///
+/// # Errors
+/// [`Code::Config`] when hull and clearance are larger than the distance between the turns.
+pub fn room(site: &Site<'_>, clearance_m: f64, course: &Course) -> Result<Room> {
+    let hull_m = site.limits.radius_m;
+    let obstacle_m = hull_m + site.clearance_m.max(clearance_m);
+    if let Some(pitch_m) = pitch_m(&course.points).filter(|pitch_m| obstacle_m > *pitch_m) {
+        let message = format!(
+            "hull and clearance need {obstacle_m:.2} m, but the turns of the preset path are {pitch_m:.2} m apart; \
+             ask for less clearance or a wider pitch"
+        );
+        return Err(PlannerError::new(Code::Config, message));
+    }
+    let wall = field::scene::wall_of(&site.boundary);
+    let nearest_m = course.points.iter().map(|p| wall.wall_distance_m(*p)).fold(f64::INFINITY, f64::min);
+    let wall_m = (hull_m + site.clearance_m).min(nearest_m.max(hull_m));
+    Ok(Room::new(site, Keep { obstacle_m, wall_m }))
+}
+
+/// Distance between a point and the one a full turn on, if the path goes round more than once, metres.
+fn pitch_m(points: &[Point]) -> Option<f64> {
+    let mut turned_rad = 0.0_f64;
+    let mut one_turn_on = None;
+    for (index, pair) in points.windows(2).enumerate() {
+        let bearing = |p: &Point| p.y.atan2(p.x);
+        turned_rad += wrap_angle_rad(bearing(&pair[1]) - bearing(&pair[0]));
+        if one_turn_on.is_none() && turned_rad.abs() >= TAU - 1e-9 {
+            one_turn_on = Some(index + 1);
+        }
+        if turned_rad.abs() > 1.5 * TAU {
+            return one_turn_on.map(|index| (points[0].coords.norm() - points[index].coords.norm()).abs());
+        }
+    }
+    None
+}
+
+fn invalid(message: impl Into<String>) -> PlannerError {
+    PlannerError::new(Code::Invalid, message)
+}
+
+/// Refuses a start outside the tank or with half the hull in an obstacle; says where the path begins if the start
+/// itself is nearer to something than the clearance allows.
+///
+/// # Errors
+/// [`Code::StartOutside`] or [`Code::StartOccupied`].
+pub fn check_start(request: &PlanRequest<'_>, course: &Course, room: &Room, ctx: &Ctx<'_>) -> Result<()> {
+    let (start, hull_m) = (request.start.position, request.site.limits.radius_m);
+    let place = format!("the start ({:.2}, {:.2})", start.x, start.y);
+    if room.wall().wall_distance_m(start) < -ROUNDING_M {
+        return Err(PlannerError::new(Code::StartOutside, format!("{place} lies outside the tank")));
+    }
+    let bare = Room::new(request.site, Keep { obstacle_m: 0.0, wall_m: f64::NEG_INFINITY });
+    // The estimated start may be off a little: only a hull that is half inside is refused.
+    let outline_m = bare.spare_m(start);
+    if outline_m < hull_m / 2.0 || outline_m <= 0.0 {
+        let message = format!("at {place} the hull is {:.2} m inside an obstacle", hull_m - outline_m);
+        return Err(PlannerError::new(Code::StartOccupied, message));
+    }
+    if room.spare_m(course.points[0]) < 0.0 {
+        let message = format!(
+            "{place} is nearer to something solid than the clearance allows; the path begins beside it"
+        );
+        ctx.log(LogLevel::Warn, &message);
+    }
+    Ok(())
+}
+
+/// A parameter that has to be a number.
+///
+/// # Errors
+/// [`Code::Config`] if it is none.
+pub fn finite(config: &Config<'_>, key: &str) -> Result<f64> {
+    let value = config.float(key);
+    if value.is_finite() && value >= 0.0 {
+        return Ok(value);
+    }
+    Err(PlannerError::new(Code::Config, format!("{key} is {value}; give a number from 0 on")))
+}
+
+/// Where a path along a course can begin: its first point, or the nearest free place about it.
+pub fn nearest_free(course: &Course, room: &Room) -> Point {
+    let start = course.points[0];
+    let rings = (0..80).map(|k| f64::from(k) * 0.025);
+    let places = rings.flat_map(|radius_m| {
+        (0..48)
+            .map(move |k| f64::from(k) * TAU / 48.0)
+            .map(move |a| start + Vector::new(a.cos(), a.sin()) * radius_m)
+    });
+    let mut free = places.filter(|place| room.spare_m(*place) >= 0.0);
+    free.next().unwrap_or(start)
+}

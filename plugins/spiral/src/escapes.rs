@@ -1,0 +1,136 @@
+//! The two potential fields that the rotating one is compared with: a virtual target, and a push out of the trap.
+
+use field::{Escape, Pilot, Settings, offline, params as p};
+use planner_api::{Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site};
+
+const PARAMS: &[ParamSpec] = &[
+    p::K_ATT,
+    p::K_REP,
+    p::RHO_0,
+    p::REPULSION_CLASSIC,
+    p::EXPONENT,
+    p::WALL_GAIN,
+    p::STEP,
+    p::GOTO_STEP,
+    p::FLEXIBLE,
+    p::TURN_LIMIT,
+    p::MAX_LAG,
+    p::GUARD,
+    p::GUARD_SIGMAS,
+    p::SLOW,
+    p::MIN_SHARE,
+    p::STUCK,
+];
+
+/// A potential field that leaves traps by a virtual target beside the obstacle; Yang 2018, reconstructed.
+pub struct Vt {
+    settings: Settings,
+    pilot: Pilot,
+}
+
+/// A potential field that leaves traps by a push to the side; Zhao 2022, reconstructed.
+pub struct Iapf {
+    settings: Settings,
+    pilot: Pilot,
+}
+
+impl Planner for Vt {
+    const ID: &'static str = "vt";
+    const NAME: &'static str = "Virtual target";
+    const ABOUT: &'static str = "Potential field that leaves traps by a virtual target; reconstructed from what Wang et al. \
+                                 2023 tell of Yang 2018.";
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
+    const PARAMS: &'static [ParamSpec] = PARAMS;
+
+    fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
+        let settings = settings(config, Escape::VirtualTarget);
+        Ok(Self { settings, pilot: Pilot::new(&settings, site) })
+    }
+
+    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
+        self.settings = settings(config, Escape::VirtualTarget);
+        self.pilot.reset(&self.settings);
+        Ok(())
+    }
+
+    fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
+        offline::plan(&self.settings, request, ctx)
+    }
+
+    fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
+        self.pilot.step(&self.settings, sensed, ctx)
+    }
+}
+
+impl Planner for Iapf {
+    const ID: &'static str = "iapf";
+    const NAME: &'static str = "Improved potential field";
+    const ABOUT: &'static str = "Potential field that leaves traps by a push to the side; reconstructed from what Wang et \
+                                 al. 2023 tell of Zhao 2022.";
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
+    const PARAMS: &'static [ParamSpec] = PARAMS;
+
+    fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
+        let settings = settings(config, Escape::Push);
+        Ok(Self { settings, pilot: Pilot::new(&settings, site) })
+    }
+
+    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
+        self.settings = settings(config, Escape::Push);
+        self.pilot.reset(&self.settings);
+        Ok(())
+    }
+
+    fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
+        offline::plan(&self.settings, request, ctx)
+    }
+
+    fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
+        self.pilot.step(&self.settings, sensed, ctx)
+    }
+}
+
+fn settings(config: &Config<'_>, escape: Escape) -> Settings {
+    Settings { escape, ..p::settings(config) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::plan;
+    use field::trial::{Distribution, Layout, Robot, Sampling, fly, score};
+    use planner_api::Motion;
+
+    /// Wang et al. 2023, first distribution.
+    const PAPER: [(&str, f64); 4] =
+        [("k_att", 200.0), ("k_rep", 200.0), ("rho_0_m", 1.5), ("wall_gain", 0.0)];
+
+    fn precision<P: Planner>(values: &[(&str, f64)]) -> f64 {
+        let values: Vec<_> = PAPER.iter().chain(values).copied().collect();
+        let of = |seed| {
+            let layout = Distribution::D1.layout(Sampling::Square, seed, 0.0);
+            score(&plan::<P>(&layout, &values).expect("a plan").path, &layout.path).precision
+        };
+        (0..12).map(of).sum::<f64>() / 12.0
+    }
+
+    #[test]
+    fn both_follow_as_reconstructions_do_and_better_with_improved_repulsion() {
+        for (classic, improved) in [
+            (precision::<Vt>(&[]), precision::<Vt>(&[("repulsion", 1.0)])),
+            (precision::<Iapf>(&[]), precision::<Iapf>(&[("repulsion", 1.0)])),
+        ] {
+            assert!((0.4..0.9).contains(&classic) && improved > 0.85, "{classic} {improved}");
+        }
+    }
+
+    #[test]
+    fn in_flight_they_touch_nothing() {
+        let robot = Robot { motion: Motion::Point, sigma_m: 0.03 };
+        for seed in 0..6 {
+            let layout = Layout::random(seed);
+            assert!(fly::<Vt>(&[], &layout, robot, seed).expect("a flight").clearance_m > 0.0);
+            assert!(fly::<Iapf>(&[], &layout, robot, seed).expect("a flight").clearance_m > 0.0);
+        }
+    }
+}

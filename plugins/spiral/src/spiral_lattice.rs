@@ -1,0 +1,107 @@
+//! The offset lattice: our global planner for preset paths.
+
+use crate::{
+    course::{self, Course},
+    lattice::{self, Blocked, Limits},
+    pursuit::Pursuit,
+    refusal,
+};
+use field::params as p;
+use planner_api::{
+    Caps, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site,
+};
+use world::polyline;
+
+/// Plans along a preset path: on it wherever it is free, beside it at the least cost where it is not.
+///
+/// Clearance and wall are hard limits of the search, and so is the change of heading. In flight the plan is pursued
+/// through the guard; what is discovered on the way is gone round by a new plan.
+pub struct SpiralLattice {
+    wishes: Wishes,
+    pursuit: Pursuit,
+}
+
+/// What is asked of a plan.
+#[derive(Debug, Clone, Copy)]
+struct Wishes {
+    clearance_m: f64,
+    limits: Limits,
+}
+
+impl Planner for SpiralLattice {
+    const ID: &'static str = "spiral-lattice";
+    const NAME: &'static str = "Offset lattice";
+    const ABOUT: &'static str = "Global plan along a preset path: least squared offset with hard clearance, wall and \
+                                 turn limit, by dynamic programming.";
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
+    const PARAMS: &'static [ParamSpec] = &[
+        p::CLEARANCE,
+        p::TURN_PER_STEP,
+        p::MAX_OFFSET,
+        p::GUARD,
+        p::GUARD_SIGMAS,
+        p::SLOW,
+        p::MIN_SHARE,
+        p::STUCK,
+    ];
+
+    fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
+        let wishes = wishes(config)?;
+        Ok(Self { wishes, pursuit: Pursuit::new(p::flight(config), wishes.clearance_m, site) })
+    }
+
+    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
+        self.wishes = wishes(config)?;
+        self.pursuit.set(p::flight(config), self.wishes.clearance_m);
+        Ok(())
+    }
+
+    fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
+        let course = Course::new(request)?;
+        let room = course::room(request.site, self.wishes.clearance_m, &course)?;
+        course::check_start(request, &course, &room, ctx)?;
+        match lattice::plan(&course, &room, self.wishes.limits, ctx)? {
+            Ok(path) => Ok(told(path, &course, &room, ctx)),
+            Err(Blocked { station, partial }) => Err(refusal::no_path(&course, &room, station, partial)),
+        }
+    }
+
+    fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
+        self.pursuit.step(sensed, ctx)
+    }
+}
+
+fn wishes(config: &Config<'_>) -> Result<Wishes> {
+    let turn_deg = course::finite(config, "turn_deg")?;
+    let turn_per_m = if turn_deg > 0.0 { turn_deg.to_radians() / 0.2 } else { f64::INFINITY };
+    let offset_m = course::finite(config, "max_offset_m")?;
+    let limits = Limits { offset_m, turn_per_m };
+    Ok(Wishes { clearance_m: course::finite(config, "clearance_m")?, limits })
+}
+
+fn told(path: lattice::Path, course: &Course, room: &field::Room, ctx: &Ctx<'_>) -> Plan {
+    for window in &path.sharp {
+        let (from, to) = (course.points[*window.start()], course.points[*window.end()]);
+        ctx.log(
+            LogLevel::Warn,
+            &format!(
+                "between ({:.2}, {:.2}) and ({:.2}, {:.2}) the only way turns faster than the turn limit",
+                from.x, from.y, to.x, to.y
+            ),
+        );
+    }
+    let end = path.points[path.points.len() - 1];
+    let goal = course.points[course.last()];
+    let missing_m = (goal - end).norm();
+    let complete = missing_m <= course.tolerance_m || room.spare_m(goal) < 0.0;
+    if !complete {
+        ctx.log(
+            LogLevel::Warn,
+            &format!("the plan is not complete: it ends {missing_m:.2} m short of its end"),
+        );
+    }
+    Plan { cost: polyline::length_m(&path.points), path: path.points, complete }
+}
+
+#[cfg(test)]
+mod tests;

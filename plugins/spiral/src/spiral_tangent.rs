@@ -1,0 +1,146 @@
+//! The tangent follower: our reactive planner for preset paths.
+
+use crate::{
+    course::{self, Course},
+    pursuit::Pursuit,
+    refusal,
+    tangent::{Around, Follower, Stuck, Track},
+};
+use field::{
+    Room, params as p,
+    part::{Part, parts_of},
+    scene::solids,
+};
+use planner_api::{
+    Caps, Code, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result,
+    Sensed, Site, float,
+};
+use world::{Point, polyline};
+
+/// What is sensed is looked up anew after this way, metres.
+const LOOK_M: f64 = 0.2;
+/// Beyond clearance the robot has to see at least this far, metres.
+const LEAST_SIGHT_M: f64 = 0.5;
+/// Moves allowed, as a multiple of those of the course.
+const DETOUR: f64 = 4.0;
+
+const RANGE: ParamSpec = float("range_m", "Sensing range", "m", 0.5, 10.0, 1.2)
+    .help("Obstacles further from the middle of the robot are not taken into account; never more than it senses.")
+    .group("Plan");
+const STEP: ParamSpec = float("step_m", "Longest move", "m", 0.01, 0.3, 0.1)
+    .help("Length of a move of the plan; shorter ones pass obstacles more closely to the clearance.")
+    .group("Plan");
+
+/// Follows a preset path, or a plan of another planner, by what the robot senses.
+///
+/// Straight to the next free point; past what is in the way along the tangent of the headings it blocks, on the side
+/// that misses less floor. It never goes where hull and clearance have no room.
+pub struct SpiralTangent {
+    clearance_m: f64,
+    range_m: f64,
+    step_m: f64,
+    pursuit: Pursuit,
+}
+
+impl Planner for SpiralTangent {
+    const ID: &'static str = "spiral-tangent";
+    const NAME: &'static str = "Tangent follower";
+    const ABOUT: &'static str = "Reactive: follows a preset path or a plan by what is sensed, past obstacles along their \
+                                 tangents, with hard clearance and wall.";
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
+    const PARAMS: &'static [ParamSpec] =
+        &[p::CLEARANCE, RANGE, STEP, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
+
+    fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
+        let clearance_m = course::finite(config, "clearance_m")?;
+        let hull_m = site.limits.radius_m;
+        let range_m = course::finite(config, "range_m")?.min(site.limits.sensing_range_m + hull_m);
+        let least_m = hull_m + clearance_m.max(site.clearance_m) + LEAST_SIGHT_M;
+        if range_m < least_m {
+            let message = format!(
+                "a range of {range_m:.2} m is too short for hull and clearance; {least_m:.2} m are needed"
+            );
+            return Err(PlannerError::new(Code::Config, message));
+        }
+        Ok(Self {
+            clearance_m,
+            range_m,
+            step_m: course::finite(config, "step_m")?.max(0.005),
+            pursuit: Pursuit::new(p::flight(config), clearance_m, site),
+        })
+    }
+
+    fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
+        let course = Course::new(request)?;
+        let room = course::room(request.site, self.clearance_m, &course)?;
+        course::check_start(request, &course, &room, ctx)?;
+        let parts: Vec<Part> = solids(request.site).flat_map(|(_, outline)| parts_of(&outline)).collect();
+        let (path, end) = self.walked(&course, &room, &parts, ctx)?;
+        match end {
+            Ok(()) => {
+                let last = path[path.len() - 1];
+                let goal = course.points[course.last()];
+                let complete = (goal - last).norm() <= course.tolerance_m || room.spare_m(goal) < 0.0;
+                if !complete {
+                    ctx.log(LogLevel::Warn, "the plan is not complete: it ends short of its end");
+                }
+                Ok(Plan { cost: polyline::length_m(&path), path, complete })
+            }
+            Err(station) => Err(refusal::no_path(&course, &room, station, path)),
+        }
+    }
+
+    fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
+        self.pursuit.step(sensed, ctx)
+    }
+}
+
+impl SpiralTangent {
+    /// The path of a follower that senses no further than its range; or the station where it is stuck.
+    fn walked(
+        &self,
+        course: &Course,
+        room: &Room,
+        parts: &[Part],
+        ctx: &Ctx<'_>,
+    ) -> Result<(Vec<Point>, std::result::Result<(), usize>)> {
+        let track = Track { points: &course.points, stations_m: &course.stations_m };
+        let mut around = Around { wall: room.wall(), parts: Vec::new(), keep: room.keep() };
+        let mut follower = Follower::new(course::nearest_free(course, room), 0);
+        let mut path = vec![follower.at];
+        let mut looked = None;
+        let most = (DETOUR * course.stations_m[course.last()] / self.step_m) as usize
+            + DETOUR as usize * path.len()
+            + 4000;
+        for _ in 0..most + course.points.len() {
+            ctx.check()?;
+            let before = follower.at;
+            if looked.is_none_or(|from: Point| (before - from).norm() > LOOK_M) {
+                around.parts = parts.iter().filter(|part| part.distance(before).0 < self.range_m).collect();
+                looked = Some(before);
+            }
+            if follower.is_done(&track, 1e-9) {
+                return Ok((path, Ok(())));
+            }
+            let ended = self.ends_here(&follower, course, room);
+            if ended || follower.advance(&track, &around, self.step_m) == Err(Stuck) {
+                let end = if ended { Ok(()) } else { Err(follower.nearest) };
+                return Ok((path, end));
+            }
+            if (follower.at - before).norm() > 1e-9 {
+                path.push(follower.at);
+            }
+        }
+        Ok((path, Err(follower.nearest)))
+    }
+
+    /// The last point lies in an obstacle, and the follower has come as near as it can.
+    fn ends_here(&self, follower: &Follower, course: &Course, room: &Room) -> bool {
+        let last = course.points[course.last()];
+        let near_m = (last - follower.at).norm();
+        room.spare_m(last) < 0.0 && near_m < -room.spare_m(last) + self.step_m
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,170 @@
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use super::*;
+use crate::bench::{CLEARANCE_M, Figures, plan};
+use field::Keep;
+use field::trial::{Distribution, Layout, Outcome, Robot, exact_pose, fly};
+use planner_api::{Drive, Motion, Obstacle, Outline, testing::Bench};
+use proptest::prelude::*;
+use world::{Boundary, Vector};
+
+#[test]
+fn a_free_spiral_is_followed_exactly() {
+    let layout =
+        Layout { columns: Vec::new(), ..Distribution::D1.layout(field::trial::Sampling::Disk, 0, 0.3) };
+    let plan = plan::<SpiralTangent>(&layout, &[]).unwrap();
+    let score = field::trial::score(&plan.path, &layout.path);
+    assert!(
+        plan.complete && score.cross_track_worst_m < 0.02,
+        "{} {}",
+        plan.complete,
+        score.cross_track_worst_m
+    );
+}
+
+#[test]
+fn on_layouts_of_the_paper_it_keeps_clear_and_near() {
+    for (distribution, ok, cross_track_m, precision) in bounds() {
+        // Few layouts scatter.
+        let figures = Figures::of::<SpiralTangent>(distribution, 100..130, &[]);
+        hold(&figures, ok - 0.02, cross_track_m, precision);
+    }
+}
+
+#[test]
+#[ignore = "takes minutes: the figures on a thousand layouts of each distribution"]
+fn on_a_thousand_layouts_it_holds_its_figures() {
+    for (distribution, ok, cross_track_m, precision) in bounds() {
+        let figures = Figures::of::<SpiralTangent>(distribution, 1_000_000..1_001_000, &[]);
+        println!("{distribution:?} {}", figures.told());
+        hold(&figures, ok, cross_track_m, precision);
+    }
+}
+
+fn bounds() -> [(Distribution, f64, f64, f64); 3] {
+    [
+        (Distribution::D1, 0.98, 0.055, 0.97),
+        (Distribution::D2, 0.99, 0.055, 0.97),
+        (Distribution::D3, 0.99, 0.040, 0.985),
+    ]
+}
+
+fn hold(figures: &Figures, ok: f64, cross_track_m: f64, precision: f64) {
+    let told = figures.told();
+    assert!(figures.ok_rate() >= ok, "{told}");
+    assert!(figures.least(|s| s.clearance_m) >= CLEARANCE_M - 1e-6, "{told}");
+    assert!(figures.least(|s| s.wall_m) >= -1e-6, "{told}");
+    assert!(figures.mean(|s| s.cross_track_rmse_m) <= cross_track_m, "{told}");
+    assert!(figures.mean(|s| s.cross_track_precision) >= precision, "{told}");
+}
+
+#[test]
+fn what_lies_beyond_its_range_changes_nothing() {
+    let spiral = Distribution::D1.layout(field::trial::Sampling::Disk, 0, CLEARANCE_M);
+    let near = spiral.path[700];
+    let short = |columns: Vec<(Point, f64)>| {
+        let path = spiral.path[600..760].to_vec();
+        plan::<SpiralTangent>(&Layout { columns, path, ..spiral.clone() }, &[]).unwrap().path
+    };
+    let alone = short(vec![(near, 0.0)]);
+    let outward = near.coords.normalize();
+    assert_eq!(alone, short(vec![(near, 0.0), (Point::from(-outward * 5.0), 0.0)]));
+    assert_ne!(alone, short(vec![(near, 0.0), (near + outward * 0.35, 0.0), (near - outward * 0.35, 0.0)]));
+}
+
+#[test]
+fn a_ring_of_columns_is_refused_with_the_station() {
+    let ring = (0..60).map(|k| f64::from(k) * std::f64::consts::TAU / 60.0);
+    let columns = ring.map(|a| (Point::new(4.0 * a.cos(), 4.0 * a.sin()), 0.0)).collect();
+    let layout = Layout { columns, ..Distribution::D1.layout(field::trial::Sampling::Disk, 0, CLEARANCE_M) };
+    let error = plan::<SpiralTangent>(&layout, &[]).unwrap_err();
+    assert!(error.code == Code::NoPath && error.message.contains("proved"), "{}", error.message);
+    assert!(error.partial.iter().all(|p| p.coords.norm() > 4.0));
+}
+
+#[test]
+fn a_range_shorter_than_the_clearance_is_refused() {
+    let layout = Layout::random(0);
+    let obstacles = layout.obstacles();
+    let site = layout.site(&obstacles, Motion::Point);
+    let refused = Bench::new().configure::<SpiralTangent>(&[("range_m", 0.5)], &site);
+    assert_eq!(refused.err().map(|error| error.code), Some(Code::Config));
+}
+
+fn flights(motion: Motion) -> Vec<Outcome> {
+    let robot = Robot { motion, sigma_m: 0.03 };
+    (0..50).map(|seed| fly::<SpiralTangent>(&[], &Layout::random(seed), robot, seed).unwrap()).collect()
+}
+
+#[test]
+fn in_fifty_random_tanks_it_touches_nothing_and_nearly_always_arrives() {
+    for motion in [Motion::Point, Motion::Unicycle] {
+        let flights = flights(motion);
+        let arrived = flights.iter().filter(|flight| flight.completed).count();
+        let least_m = flights.iter().map(|flight| flight.clearance_m).fold(f64::INFINITY, f64::min);
+        println!("{motion:?} arrived {arrived} clearance {least_m:.3}");
+        assert!(least_m > 0.0, "{least_m}");
+        assert!(arrived >= 47, "{arrived}");
+    }
+}
+
+#[test]
+fn a_plan_is_followed_round_an_obstacle_that_it_does_not_know() {
+    let layout = Layout { columns: Vec::new(), ..Layout::random(1) };
+    let site = layout.site(&[], Motion::Point);
+    let bench = Bench::new();
+    let mut planner: SpiralTangent = bench.configure(&[], &site).unwrap();
+    let outline = Outline::Disc { center: Point::new(1.0, 0.05), radius_m: 0.2 };
+    let discovered = [Obstacle { id: 7, outline, discovered: true }];
+    let mut at = Point::new(0.0, 0.0);
+    let plan: Vec<Point> = (0..40).map(|k| Point::new(f64::from(k) * 0.1, 0.0)).collect();
+    let mut least_m = f64::INFINITY;
+    for tick in 0..200_u32 {
+        let from = plan.partition_point(|p| p.x < at.x + 0.5).min(plan.len() - 1);
+        let sensed = Sensed {
+            t_s: f64::from(tick) * 0.1,
+            pose: exact_pose(at),
+            path_ahead: &plan[from..],
+            ..field::trial::sensed_at_rest(at, &plan[from..], &discovered)
+        };
+        let command = planner.step(&sensed, &bench.ctx()).unwrap();
+        let Drive::Velocity(velocity) = command.drive else { panic!("a velocity") };
+        at += velocity * 0.1;
+        least_m = least_m.min((at - Point::new(1.0, 0.05)).norm() - 0.2 - layout.hull_m);
+    }
+    assert!(at.x > 3.0 && at.y.abs() < 0.1, "{at}");
+    assert!(least_m >= layout.clearance_m, "{least_m}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn every_plan_keeps_its_distance_and_its_wall(seed in 0..100_000_u64, square in any::<bool>()) {
+        let sampling = if square { field::trial::Sampling::Square } else { field::trial::Sampling::Disk };
+        let layout = Distribution::D1.layout(sampling, seed, CLEARANCE_M);
+        if let Ok(plan) = plan::<SpiralTangent>(&layout, &[]) {
+            let safety = field::trial::safety(&plan.path, &layout.path, &layout.columns, layout.radius_m);
+            prop_assert!(safety.clearance_m >= CLEARANCE_M - 1e-6 && safety.wall_m >= -1e-6);
+        }
+    }
+
+    #[test]
+    fn a_tangent_never_leads_nearer_than_allowed(
+        columns in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64), 1..5),
+        wanted_rad in 0.0..6.3_f64,
+        clockwise in any::<bool>(),
+    ) {
+        let keep = Keep { obstacle_m: 0.3, wall_m: 0.0 };
+        let parts: Vec<Part> = columns
+            .iter()
+            .map(|(x, y)| Part::Capsule { a: Point::new(*x, *y), b: Point::new(*x, *y), half_width_m: 0.0 })
+            .collect();
+        let around = Around { wall: &Boundary::Circle { radius_m: 0.95 }, parts: parts.iter().collect(), keep };
+        let at = Point::new(0.0, 0.9);
+        let side = if clockwise { field::Sense::Clockwise } else { field::Sense::CounterClockwise };
+        let wanted = Vector::new(wanted_rad.cos(), wanted_rad.sin());
+        if around.spare_m(at) >= 0.0 && let Some(heading) = around.tangent(at, wanted, 0.1, side) {
+            prop_assert!(around.spare_m(at + heading * 0.1) >= -1e-6);
+        }
+    }
+}

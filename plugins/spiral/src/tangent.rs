@@ -1,0 +1,261 @@
+//! Following a course by what is sensed: straight to its next free point, and past what is in the way along the
+//! tangents of the headings that it blocks.
+
+use field::{Keep, Sense, part::Part};
+use std::f64::consts::{PI, TAU};
+use world::{Boundary, Point, Vector, geometry::wrap_angle_rad};
+
+/// The nearest point of the course is looked for this far ahead, metres.
+const WINDOW_M: f64 = 1.5;
+/// Nearer to the course than this is on it, metres.
+const ON_COURSE_M: f64 = 0.01;
+/// Headings are kept this far from those that are blocked, radians.
+const MARGIN_RAD: f64 = 1e-6;
+/// A way round is thought through for this many moves.
+const THOUGHT_MOVES: usize = 120;
+/// Without getting on along the course for this many moves the other side is tried.
+const PATIENCE_MOVES: usize = 120;
+/// As many changes of side as are borne without getting on.
+const MOST_CHANGES: usize = 3;
+/// What is not left behind in thought costs this much for every metre that is missing.
+const UNFINISHED: f64 = 1.0;
+
+/// A course with the way along it.
+#[derive(Debug, Clone, Copy)]
+pub struct Track<'a> {
+    /// Its points, at least one.
+    pub points: &'a [Point],
+    /// Way to every point, metres.
+    pub stations_m: &'a [f64],
+}
+
+/// What is known about the surroundings.
+#[derive(Debug, Clone)]
+pub struct Around<'a> {
+    /// The wall.
+    pub wall: &'a Boundary,
+    /// Everything sensed, in parts.
+    pub parts: Vec<&'a Part>,
+    /// Distances to keep.
+    pub keep: Keep,
+}
+
+/// Headings that are blocked: within `half_rad` of `middle_rad`.
+#[derive(Debug, Clone, Copy)]
+struct Interval {
+    middle_rad: f64,
+    half_rad: f64,
+}
+
+/// Where a follower is and how it goes round.
+#[derive(Debug, Clone, Copy)]
+pub struct Follower {
+    /// Where it is.
+    pub at: Point,
+    /// Index of the nearest point of the course; only moves forward.
+    pub nearest: usize,
+    /// Which way round it goes, while it does.
+    pub side: Option<Sense>,
+    best: usize,
+    idle: usize,
+    changes: usize,
+}
+
+/// No way on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stuck;
+
+impl Around<'_> {
+    /// Room left at a place, metres; negative where the middle of the hull may not be.
+    pub fn spare_m(&self, at: Point) -> f64 {
+        let wall_m = self.wall.wall_distance_m(at) - self.keep.wall_m + 1e-9;
+        self.parts.iter().map(|part| part.distance(at).0 - self.keep.obstacle_m).fold(wall_m, f64::min)
+    }
+
+    /// Whether the middle of the hull may go straight from one place to another, as far as is known.
+    pub fn is_free(&self, a: Point, b: Point) -> bool {
+        self.wall.wall_distance_m(b) >= self.keep.wall_m - 1e-9
+            && self.parts.iter().all(|part| part.segment_distance_m(a, b) >= self.keep.obstacle_m)
+    }
+
+    /// Headings in which a move of this length would come too near to something.
+    fn blocked(&self, at: Point, reach_m: f64) -> Vec<Interval> {
+        let mut blocked: Vec<Interval> = Vec::new();
+        for part in &self.parts {
+            let (distance_m, away) = part.distance(at);
+            blocked.extend(interval(distance_m - self.keep.obstacle_m, away, reach_m));
+        }
+        match self.wall {
+            Boundary::Circle { radius_m } => {
+                blocked.extend(round_wall(radius_m - self.keep.wall_m, at, reach_m));
+            }
+            Boundary::Polygon { .. } => {
+                let contacts = field::scene::wall_contacts(self.wall, at, self.keep.wall_m, reach_m);
+                blocked.extend(contacts.iter().filter_map(|c| interval(c.distance_m, c.away, reach_m)));
+            }
+        }
+        blocked
+    }
+
+    /// The heading nearest to the one wanted, turning only to one side; `None` if all are blocked.
+    pub fn tangent(&self, at: Point, wanted: Vector, reach_m: f64, side: Sense) -> Option<Vector> {
+        let blocked = self.blocked(at, reach_m);
+        // Clockwise about what is in the way keeps it on the right hand: turn left.
+        let sign = if side == Sense::Clockwise { 1.0 } else { -1.0 };
+        let wanted_rad = wanted.y.atan2(wanted.x);
+        let mut turned_rad = 0.0;
+        while let Some(beyond_rad) =
+            blocked.iter().find_map(|i| i.beyond(wanted_rad + sign * turned_rad, sign))
+        {
+            turned_rad += beyond_rad + MARGIN_RAD;
+            if turned_rad > TAU {
+                return None;
+            }
+        }
+        let heading_rad = wanted_rad + sign * turned_rad;
+        Some(Vector::new(heading_rad.cos(), heading_rad.sin()))
+    }
+}
+
+impl Interval {
+    /// How far to turn on to leave the interval, if the heading lies in it.
+    fn beyond(&self, heading_rad: f64, sign: f64) -> Option<f64> {
+        let off_rad = wrap_angle_rad(heading_rad - self.middle_rad);
+        (off_rad.abs() < self.half_rad).then(|| (self.half_rad - sign * off_rad).max(MARGIN_RAD))
+    }
+}
+
+/// Something convex lies behind the plane through its nearest point.
+fn interval(spare_m: f64, away: Vector, reach_m: f64) -> Option<Interval> {
+    // Who is too near already may go along, or away.
+    let cosine = (spare_m.max(0.0) / reach_m).min(1.0);
+    (cosine < 1.0).then(|| Interval { middle_rad: (-away.y).atan2(-away.x), half_rad: cosine.acos() })
+}
+
+/// A round wall bends toward the robot, so a tangent would leave the tank.
+fn round_wall(radius_m: f64, at: Point, reach_m: f64) -> Option<Interval> {
+    let r = at.coords.norm();
+    if r + reach_m <= radius_m || r < 1e-9 {
+        return None;
+    }
+    let cosine = ((radius_m * radius_m - r * r - reach_m * reach_m) / (2.0 * r * reach_m)).clamp(-1.0, 1.0);
+    Some(Interval { middle_rad: at.y.atan2(at.x), half_rad: cosine.acos() })
+}
+
+impl Follower {
+    /// A follower at a place near a point of its course.
+    pub fn new(at: Point, nearest: usize) -> Self {
+        Self { at, nearest, side: None, best: nearest, idle: 0, changes: 0 }
+    }
+
+    /// Makes one move of at most this length.
+    ///
+    /// # Errors
+    /// [`Stuck`] when nothing leads on.
+    pub fn advance(&mut self, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> Result<(), Stuck> {
+        self.note_progress(track);
+        let Some(aim) = self.aim(track, around) else { return Err(Stuck) };
+        let length_m = step_m.min((aim - self.at).norm());
+        let Some(wanted) = (aim - self.at).try_normalize(1e-12) else {
+            self.nearest = (self.nearest + 1).min(track.points.len() - 1);
+            return Ok(());
+        };
+        if around.is_free(self.at, self.at + wanted * length_m) {
+            self.at += wanted * length_m;
+            return Ok(());
+        }
+        let side = self.side.unwrap_or_else(|| self.better_side(track, around, step_m));
+        self.side = Some(side);
+        let heading = around.tangent(self.at, wanted, step_m, side).ok_or(Stuck)?;
+        self.at += heading * step_m;
+        Ok(())
+    }
+
+    /// Whether the last point of the course is reached, or as nearly as what is known allows.
+    pub fn is_done(&self, track: &Track<'_>, tolerance_m: f64) -> bool {
+        let last = track.points.len() - 1;
+        let left_m = track.stations_m[last] - track.stations_m[self.nearest];
+        left_m < tolerance_m && (track.points[last] - self.at).norm() < tolerance_m
+    }
+
+    /// Whether it follows the course and not a way round.
+    pub fn is_on(&self, track: &Track<'_>) -> bool {
+        self.off_m(track) < ON_COURSE_M
+    }
+
+    fn off_m(&self, track: &Track<'_>) -> f64 {
+        let next = (self.nearest + 1).min(track.points.len() - 1);
+        let before = self.nearest.saturating_sub(1);
+        let to = |a: usize, b: usize| {
+            (world::polyline::nearest_on_segment(track.points[a], track.points[b], self.at) - self.at).norm()
+        };
+        to(self.nearest, next).min(to(before, self.nearest))
+    }
+
+    fn note_progress(&mut self, track: &Track<'_>) {
+        let end_m = track.stations_m[self.nearest] + WINDOW_M;
+        let mut best_m = (track.points[self.nearest] - self.at).norm_squared();
+        for index in self.nearest + 1..track.points.len() {
+            if track.stations_m[index] > end_m {
+                break;
+            }
+            let off_m = (track.points[index] - self.at).norm_squared();
+            if off_m <= best_m {
+                (best_m, self.nearest) = (off_m, index);
+            } else if best_m < ON_COURSE_M * ON_COURSE_M {
+                break;
+            }
+        }
+        let got_on = self.nearest > self.best;
+        self.idle = if got_on { 0 } else { self.idle + 1 };
+        self.best = self.best.max(self.nearest);
+        if got_on && self.side.is_some() && self.is_on(track) {
+            (self.side, self.changes) = (None, 0);
+        }
+    }
+
+    /// The first point of the course that is ahead and free, as far as is known.
+    fn aim(&mut self, track: &Track<'_>, around: &Around<'_>) -> Option<Point> {
+        if self.idle > PATIENCE_MOVES {
+            self.changes += 1;
+            self.idle = 0;
+            self.side = self.side.map(Sense::reversed);
+            if self.changes > MOST_CHANGES {
+                return None;
+            }
+        }
+        let off_m = self.off_m(track);
+        let lead_m = if off_m < ON_COURSE_M { 1e-6 } else { 0.05 + 0.5 * off_m };
+        let from_m = track.stations_m[self.nearest] + lead_m;
+        let ahead = (self.nearest..track.points.len()).filter(|index| track.stations_m[*index] >= from_m);
+        let mut free = ahead.filter(|index| around.spare_m(track.points[*index]) >= 0.0);
+        let last = track.points[track.points.len() - 1];
+        Some(free.next().map_or(last, |index| track.points[index]))
+    }
+
+    /// The side on which less floor is missed, as far as is known: both are gone in thought.
+    fn better_side(&self, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> Sense {
+        let cost = |side: Sense| self.cost_of(side, track, around, step_m);
+        if cost(Sense::Clockwise) <= cost(Sense::CounterClockwise) {
+            Sense::Clockwise
+        } else {
+            Sense::CounterClockwise
+        }
+    }
+
+    fn cost_of(&self, side: Sense, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> f64 {
+        let mut thought = Self { side: Some(side), idle: 0, changes: 0, ..*self };
+        let mut cost = 0.0;
+        for _ in 0..THOUGHT_MOVES {
+            let (before, nearest) = (thought.at, thought.nearest);
+            if thought.advance(track, around, step_m).is_err() {
+                return f64::INFINITY;
+            }
+            if thought.side.is_none() && thought.is_on(track) && nearest > self.nearest {
+                return cost;
+            }
+            cost += (thought.at - before).norm() * thought.off_m(track).powi(2);
+        }
+        cost + UNFINISHED + thought.off_m(track) * PI
+    }
+}
