@@ -101,3 +101,24 @@ fn the_console_without_a_terminal_says_what_to_use_instead() {
     assert_eq!(ended.code, Some(2));
     assert!(ended.err.contains("tankops run"), "{ended:?}");
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_output_that_cannot_be_written_is_an_error_and_no_panic() {
+    let bench = Bench::new();
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let listed = bench.command().arg("planners").stdout(full).output().unwrap();
+    let told = String::from_utf8(listed.stderr).unwrap();
+    assert_eq!(listed.status.code(), Some(3), "{told}");
+    assert!(told.contains("writing to stdout") && !told.contains("panicked"), "{told}");
+}
+
+#[test]
+fn check_refuses_a_planner_that_is_not_there() {
+    let bench = Bench::new();
+    let demo = std::fs::read_to_string(scenario("demo.toml")).unwrap();
+    let file = bench.file("rfp.toml", demo.replace("id = \"rpf\"", "id = \"rfp\""));
+    let checked = bench.tankops(&["check", file.to_str().unwrap()]);
+    assert_eq!(checked.code, Some(2), "{checked:?}");
+    assert!(checked.err.contains("rfp") && checked.err.contains("rpf"), "{checked:?}");
+}

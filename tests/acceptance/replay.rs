@@ -50,3 +50,19 @@ fn a_run_that_does_not_exist_is_told_with_the_way_to_find_others() {
     assert_eq!(verified.code, Some(2));
     assert!(verified.err.contains("tankops runs"), "{verified:?}");
 }
+
+#[test]
+fn an_export_that_fails_leaves_nothing_behind() {
+    let bench = Bench::new();
+    bench.fly(&scenario("goto-single-obstacle.toml"), &[]);
+    let run = bench.runs().remove(0);
+    let path = run.join("events.jsonl");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let damaged: Vec<&str> =
+        text.lines().enumerate().map(|(i, line)| if i == 300 { "{]" } else { line }).collect();
+    std::fs::write(&path, damaged.join("\n") + "\n").unwrap();
+    let exported = bench.tankops(&["export", run.to_str().unwrap(), "--rrd", "again.rrd"]);
+    assert_eq!(exported.code, Some(2), "{exported:?}");
+    assert!(exported.err.contains("301"), "{exported:?}");
+    assert!(!bench.path().join("again.rrd").exists());
+}

@@ -4,6 +4,7 @@ use crate::{
     cli::{LogsArg, RunArgs},
     failure::{COMPLETE, ENDED_OTHERWISE},
     flight::{Flight, Pace},
+    output::{say, say_line},
     run_folder::RunFolder,
     scenario::Scenario,
     stop_signal,
@@ -72,10 +73,9 @@ pub fn fly(
         ..fold.summary()
     };
     let summary = scenario.expect.judged(summary);
-    if let Some(folder) = &folder {
-        folder.write_report(&summary)?;
-    }
-    tell(&summary, finished.error.as_deref(), telling)?;
+    let report = folder.as_ref().map_or(Ok(()), |folder| folder.write_report(&summary));
+    let report_error = report.err().map(|error| format!("{error:#}"));
+    tell(&summary, finished.error.as_deref().or(report_error.as_deref()), telling)?;
     Ok(exit_code(&summary))
 }
 
@@ -129,17 +129,16 @@ fn show_progress(bar: &ProgressBar, events: &[Event]) {
     }
 }
 
-#[expect(clippy::print_stdout, clippy::print_stderr, reason = "this is where the report reaches the user")]
+#[expect(clippy::print_stderr, reason = "this is where warnings reach the user")]
 fn tell(summary: &Summary, recording_error: Option<&str>, telling: Telling) -> anyhow::Result<()> {
-    if telling.json {
-        println!("{}", serde_json::to_string_pretty(summary).context("writing the report as JSON")?);
-    } else {
-        print!("{}", report::human(summary));
-    }
     if let Some(error) = recording_error {
-        eprintln!("warning: the recording is not whole: {error}");
+        eprintln!("warning: what was written of the run is not whole: {error}");
     }
-    Ok(())
+    if telling.json {
+        say_line(&serde_json::to_string_pretty(summary).context("writing the report as JSON")?)
+    } else {
+        say(&report::human(summary))
+    }
 }
 
 fn exit_code(summary: &Summary) -> ExitCode {

@@ -5,6 +5,7 @@ mod console;
 mod failure;
 mod flight;
 mod headless;
+mod output;
 mod past_runs;
 mod plan;
 mod planners;
@@ -45,7 +46,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Run(args)) => headless::run(&args, &plugins),
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
         Some(Command::Planners { json }) => planners::list(&plugins, json),
-        Some(Command::Check { files }) => Ok(planners::check(&files)),
+        Some(Command::Check { files }) => planners::check(&files, &plugins),
         Some(Command::Runs { json, logs }) => past_runs::list(&logs, json),
         Some(Command::Verify { run, logs }) => verify::verify(&run, &logs, &plugins),
         Some(Command::Export { run, rrd, logs }) => past_runs::export(&run, &rrd, &logs),

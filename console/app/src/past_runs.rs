@@ -3,10 +3,11 @@
 use crate::{
     cli::LogsArg,
     failure::{COMPLETE, bad_input},
+    output::say_line,
     run_folder::{self, Standing},
 };
 use anyhow::Context;
-use recording::{JOURNAL_FILE, RECORDING_FILE, read_journal};
+use recording::{JOURNAL_FILE, read_journal};
 use report::{Fold, Summary};
 use serde::Serialize;
 use std::{
@@ -31,18 +32,17 @@ struct Listed {
 }
 
 /// `tankops runs`.
-#[expect(clippy::print_stdout, reason = "this is where the list reaches the user")]
 pub fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
     let listed: Vec<Listed> =
         run_folder::past_runs(&logs.logs)?.iter().map(|folder| look_at(folder)).collect();
     if json {
-        println!("{}", serde_json::to_string_pretty(&listed).context("writing the list as JSON")?);
+        say_line(&serde_json::to_string_pretty(&listed).context("writing the list as JSON")?)?;
     } else if listed.is_empty() {
-        println!("no runs in {}", logs.logs.display());
+        say_line(&format!("no runs in {}", logs.logs.display()))?;
     } else {
-        println!("{:<12} {:>8} {:>22}  run", "end", "T+ s", "% of reachable floor");
+        say_line(&format!("{:<12} {:>8} {:>22}  run", "end", "T+ s", "% of reachable floor"))?;
         for run in &listed {
-            println!("{}", row(run));
+            say_line(&row(run))?;
         }
     }
     Ok(ExitCode::from(COMPLETE))
@@ -104,16 +104,22 @@ fn rebuild(folder: &Path) -> (Option<Summary>, String) {
 }
 
 /// `tankops export`.
-#[expect(clippy::print_stdout, reason = "this is where the result reaches the user")]
 pub fn export(run: &Path, rrd: &Path, logs: &LogsArg) -> anyhow::Result<ExitCode> {
     let folder = run_folder::find(run, &logs.logs)?;
     if rrd.exists() {
         return Err(bad_input(format!("{} exists already; recordings are never overwritten", rrd.display())));
     }
-    let damage = recording::export(&folder.join(JOURNAL_FILE), rrd).context("making the recording anew")?;
-    if let Some(damage) = damage {
-        println!("note: the journal stops early ({damage}); the recording holds what it holds");
+    let path = folder.join(JOURNAL_FILE);
+    let journal = read_journal(&path).map_err(|error| bad_input(format!("{error}: {}", path.display())))?;
+    crate::verify::opened(&journal.events)?;
+    let made = recording::export(&path, rrd);
+    if made.is_err() {
+        // What was begun must not stand in the way of the next try.
+        let _ = std::fs::remove_file(rrd);
     }
-    println!("{} made anew from the journal of {}", rrd.display(), folder.join(RECORDING_FILE).display());
+    if let Some(damage) = made.context("making the recording anew")? {
+        say_line(&format!("note: the journal stops early ({damage}); the recording holds what it holds"))?;
+    }
+    say_line(&format!("{} made anew from {}", rrd.display(), path.display()))?;
     Ok(ExitCode::from(COMPLETE))
 }

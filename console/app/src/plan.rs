@@ -5,6 +5,7 @@ mod drawing;
 use crate::{
     cli::PlanArgs,
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
+    output::{say, say_line},
     scenario::Scenario,
 };
 use anyhow::Context;
@@ -46,11 +47,13 @@ struct Leg {
 pub fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = crate::read_scenario(&args.scenario, &args.changes)?;
     let planned = make_plan(&scenario, plugins)?;
+    tell(&planned, args.json)?;
     if let Some(file) = &args.svg {
         let picture = drawing::svg(&scenario, &planned.path);
-        std::fs::write(file, picture).with_context(|| format!("writing the drawing: {}", file.display()))?;
+        std::fs::write(file, picture).map_err(|error| {
+            bad_input(format!("the drawing cannot be written: {error}: {}", file.display()))
+        })?;
     }
-    tell(&planned, args.json)?;
     Ok(ExitCode::from(if planned.complete { COMPLETE } else { ENDED_OTHERWISE }))
 }
 
@@ -95,18 +98,17 @@ fn legs(path: &[Point]) -> Vec<Leg> {
     if path.is_empty() { vec![] } else { vec![Leg { tag: "path", first: 0, last: path.len() - 1 }] }
 }
 
-#[expect(clippy::print_stdout, reason = "this is where the plan reaches the user")]
 fn tell(planned: &Planned, json: bool) -> anyhow::Result<()> {
     if json {
-        println!("{}", serde_json::to_string(planned).context("writing the plan as JSON")?);
-        return Ok(());
+        return say_line(&serde_json::to_string(planned).context("writing the plan as JSON")?);
     }
-    println!("planner   {}", planned.planner);
-    println!("length    {:.2} m, {} points", planned.length_m, planned.path.len());
-    println!("time      {:.2} ms", planned.plan_time_ms);
-    println!("complete  {}", if planned.complete { "yes" } else { "no" });
-    if let Some(reason) = &planned.reason {
-        println!("reason    {reason}");
-    }
-    Ok(())
+    let reason = planned.reason.as_ref().map(|reason| format!("reason    {reason}\n")).unwrap_or_default();
+    say(&format!(
+        "planner   {}\nlength    {:.2} m, {} points\ntime      {:.2} ms\ncomplete  {}\n{reason}",
+        planned.planner,
+        planned.length_m,
+        planned.path.len(),
+        planned.plan_time_ms,
+        if planned.complete { "yes" } else { "no" },
+    ))
 }

@@ -2,6 +2,7 @@
 
 use crate::{
     failure::{BAD_INPUT, COMPLETE, bad_input},
+    output::{say, say_line},
     scenario::{Scenario, Settings},
 };
 use anyhow::Context;
@@ -52,13 +53,12 @@ fn check_choice(choice: &PlannerChoice, known: &[PlannerInfo]) -> Result<(), Str
 }
 
 /// `tankops planners`.
-#[expect(clippy::print_stdout, reason = "this is where the list reaches the user")]
 pub fn list(plugins: &PluginDirs, json: bool) -> anyhow::Result<ExitCode> {
     let survey = survey(plugins, &WorkerCommand::default());
     if json {
-        println!("{}", serde_json::to_string_pretty(&survey).context("writing the list as JSON")?);
+        say_line(&serde_json::to_string_pretty(&survey).context("writing the list as JSON")?)?;
     } else {
-        print!("{}", listing(&survey, plugins));
+        say(&listing(&survey, plugins))?;
     }
     Ok(ExitCode::from(COMPLETE))
 }
@@ -101,28 +101,29 @@ fn parameter_listing(info: &ParamInfo) -> String {
 }
 
 /// `tankops check`.
-#[expect(clippy::print_stdout, clippy::print_stderr, reason = "this is where the verdicts reach the user")]
-pub fn check(files: &[PathBuf]) -> ExitCode {
+#[expect(clippy::print_stderr, reason = "this is where refusals reach the user")]
+pub fn check(files: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let mut sound = true;
     for file in files {
-        match check_file(file) {
-            Ok(what) => println!("ok: {}: {what}", file.display()),
+        match check_file(file, plugins) {
+            Ok(what) => say_line(&format!("ok: {}: {what}", file.display()))?,
             Err(why) => {
                 sound = false;
                 eprintln!("{}", why.trim_end());
             }
         }
     }
-    ExitCode::from(if sound { COMPLETE } else { BAD_INPUT })
+    Ok(ExitCode::from(if sound { COMPLETE } else { BAD_INPUT }))
 }
 
-fn check_file(file: &Path) -> Result<String, String> {
+fn check_file(file: &Path, plugins: &PluginDirs) -> Result<String, String> {
     let is_plugin =
         file.extension().is_some_and(|end| ["so", "dylib", "dll"].iter().any(|known| end == *known));
     if is_plugin {
         return check_plugin(file);
     }
     let scenario = Scenario::read_with(file, &Settings::default()).map_err(|errors| errors.render())?;
+    check_choices(&scenario, plugins).map_err(|error| format!("error: {}: {error}", file.display()))?;
     Ok(format!("scenario {}, planner {}", scenario.name, scenario.mission.planner.id))
 }
 

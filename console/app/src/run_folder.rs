@@ -23,8 +23,12 @@ pub struct RunFolder {
 impl RunFolder {
     /// Makes a new folder `<utc>-<scenario>-<planner>-<seed>`, with a number behind it if that exists.
     pub fn create(logs: &Path, scenario: &str, planner: &str, seed: u64) -> anyhow::Result<Self> {
-        fs::create_dir_all(logs)
-            .with_context(|| format!("making the folder for runs: {}", logs.display()))?;
+        fs::create_dir_all(logs).map_err(|error| {
+            let place = logs.display();
+            bad_input(format!(
+                "the folder for runs cannot be made: {error}; choose another with --logs: {place}"
+            ))
+        })?;
         let now = jiff::Timestamp::now().strftime("%Y%m%dT%H%M%SZ").to_string();
         let name = format!("{now}-{}-{}-{seed}", plain(scenario), plain(planner));
         let path = fresh_folder(logs, &name)?;

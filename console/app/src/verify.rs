@@ -4,6 +4,7 @@ use crate::{
     cli::LogsArg,
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
     flight::{Flight, Pace},
+    output::say_line,
     run_folder,
     scenario::Scenario,
 };
@@ -21,22 +22,24 @@ enum Verdict {
 }
 
 /// `tankops verify RUN`.
-#[expect(clippy::print_stdout, reason = "this is where the verdict reaches the user")]
 pub fn verify(run: &Path, logs: &LogsArg, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let folder = run_folder::find(run, &logs.logs)?;
-    let journal = read_journal(&folder.join(JOURNAL_FILE)).context("reading the journal")?;
+    let path = folder.join(JOURNAL_FILE);
+    let journal = read_journal(&path).map_err(|error| bad_input(format!("{error}: {}", path.display())))?;
     if let Some(damage) = &journal.truncated {
-        println!("note: the journal stops early ({damage}); what it holds is compared");
+        say_line(&format!("note: the journal stops early ({damage}); what it holds is compared"))?;
     }
     match compare(&journal.events, plugins)? {
         Verdict::Equal { events, ticks } => {
-            println!("equal: {events} events of {ticks} ticks computed again, byte for byte");
+            say_line(&format!("equal: {events} events of {ticks} ticks computed again, byte for byte"))?;
             Ok(ExitCode::from(COMPLETE))
         }
         Verdict::Different { tick, recorded, computed } => {
-            println!("different from tick {tick} on\n  recorded: {recorded}\n  computed: {computed}");
+            say_line(&format!(
+                "different from tick {tick} on\n  recorded: {recorded}\n  computed: {computed}"
+            ))?;
             for note in planner_changes(&journal.events, plugins) {
-                println!("note: {note}");
+                say_line(&format!("note: {note}"))?;
             }
             Ok(ExitCode::from(ENDED_OTHERWISE))
         }
@@ -78,7 +81,8 @@ fn compare(recorded: &[Event], plugins: &PluginDirs) -> anyhow::Result<Verdict> 
     Ok(Verdict::Equal { events: position, ticks: last_tick + 1 })
 }
 
-fn opened(events: &[Event]) -> anyhow::Result<&RunOpened> {
+/// How the run was opened; a journal without that tells nothing.
+pub fn opened(events: &[Event]) -> anyhow::Result<&RunOpened> {
     match events.first().map(|event| &event.kind) {
         Some(EventKind::RunOpened(opened)) => Ok(opened),
         _ => Err(bad_input(

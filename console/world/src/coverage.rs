@@ -69,7 +69,15 @@ impl Floor {
                 *cell = Cell::Unreachable;
             }
         }
-        for index in floor.drivable(&clearances, robot_radius_m, start) {
+        let drivable = floor.drivable(&clearances, robot_radius_m, start);
+        for index in &drivable {
+            floor.cells[*index] = Cell::Reachable;
+        }
+        // The drivable cell that is nearest to any other cell has a neighbour that is not drivable.
+        let inside: std::collections::HashSet<usize> = drivable.iter().copied().collect();
+        let at_edge = |index: &usize| floor.neighbours(*index).any(|next| !inside.contains(&next));
+        let edge: Vec<usize> = drivable.iter().copied().filter(at_edge).collect();
+        for index in edge {
             floor.reach_from(index, swath_m);
         }
         floor

@@ -134,7 +134,7 @@ impl Cockpit {
                 self.tick(&orders)?;
             }
             if let Some(within) = close {
-                return self.close(within);
+                return Ok(self.close(within));
             }
         }
     }
@@ -202,7 +202,7 @@ impl Cockpit {
         self.tell_events(&events);
         self.tell_health();
         if matches!(self.flight.phase(), Phase::Ended(_)) {
-            self.close_log(CLOSE_TIMEOUT)?;
+            self.close_log(CLOSE_TIMEOUT);
         }
         Ok(())
     }
@@ -246,9 +246,9 @@ impl Cockpit {
     }
 
     /// Closes journal and recording and writes the report.
-    fn close_log(&mut self, within: Duration) -> anyhow::Result<()> {
-        let Some(log) = &mut self.log else { return Ok(()) };
-        let Some(recorder) = log.recorder.take() else { return Ok(()) };
+    fn close_log(&mut self, within: Duration) {
+        let Some(log) = &mut self.log else { return };
+        let Some(recorder) = log.recorder.take() else { return };
         let finished = recorder.finish(within);
         let summary = Summary {
             wall_time_s: Some(log.began.elapsed().as_secs_f64()),
@@ -262,23 +262,22 @@ impl Cockpit {
             ..log.fold.summary()
         };
         let summary = self.scenario.expect.judged(summary);
-        log.folder.write_report(&summary)?;
+        let report = log.folder.write_report(&summary);
         log.ended = Some(summary);
-        self.say(Msg::Health(super::screen::closed(finished.error)));
-        Ok(())
+        let error = finished.error.or_else(|| report.err().map(|error| format!("{error:#}")));
+        self.say(Msg::Health(super::screen::closed(error)));
     }
 
-    fn close(mut self, within: Duration) -> anyhow::Result<Option<Ended>> {
+    fn close(mut self, within: Duration) -> Option<Ended> {
         if self.is_under_way() {
             let events = self.flight.tick(&[Order::Abort]);
             self.keep(&events);
         }
-        self.close_log(within)?;
-        let ended = self.log.and_then(|log| {
+        self.close_log(within);
+        self.log.and_then(|log| {
             let folder = log.folder.path().to_path_buf();
             log.ended.map(|summary| Ended { summary, folder })
-        });
-        Ok(ended)
+        })
     }
 
     fn tell_events(&self, events: &[Event]) {

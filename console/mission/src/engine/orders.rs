@@ -83,6 +83,10 @@ impl Mission {
         if self.phase != Phase::Waiting {
             self.planner.plan_due = Some(Reason::Swap { from });
             self.plan_if_due(planner)?;
+            if matches!(self.phase, Phase::Held(HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. })) {
+                // The reason is gone with the planner; now it is the operator who lets the robot go on.
+                self.hold(HoldReason::Operator);
+            }
         }
         Ok(())
     }
