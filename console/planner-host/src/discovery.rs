@@ -58,6 +58,9 @@ fn is_plugin_name(path: &Path) -> bool {
     }
 }
 
+/// A larger file is no plugin, bytes.
+const MOST_BYTES: u64 = 512 << 20;
+
 /// A file that is named like a plugin, as far as it can be judged without loading it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PluginFile {
@@ -73,7 +76,7 @@ pub struct PluginFile {
 impl PluginFile {
     /// Reads and judges a file.
     pub fn read(path: PathBuf) -> Self {
-        match std::fs::read(&path) {
+        match read_bytes(&path) {
             Ok(words) => {
                 let abi = stamp::read(&words).map_err(|error| error.to_string());
                 Self {
@@ -84,7 +87,7 @@ impl PluginFile {
                 }
             }
             Err(error) => {
-                let abi = Err(format!("cannot be read: {error}"));
+                let abi = Err(error);
                 Self { path, sha256: String::new(), abi, words: Vec::new() }
             }
         }
@@ -102,6 +105,18 @@ impl PluginFile {
 }
 
 /// SHA-256 in hexadecimal.
+/// The bytes of a plain file of sensible size; a device or a pipe might never end.
+fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
+    let about = std::fs::metadata(path).map_err(|error| format!("cannot be read: {error}"))?;
+    if !about.is_file() {
+        return Err("not a plain file".into());
+    }
+    if about.len() > MOST_BYTES {
+        return Err(format!("{} bytes: no plugin is larger than {MOST_BYTES}", about.len()));
+    }
+    std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))
+}
+
 pub(crate) fn sha256_hex(bytes: &[u8]) -> String {
     use std::fmt::Write;
     Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut text, byte| {
