@@ -37,19 +37,23 @@ pub fn check_choices(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Resul
 }
 
 fn check_choice(choice: &PlannerChoice, known: &[PlannerInfo]) -> Result<(), String> {
-    let Some(info) = known.iter().find(|info| info.id == choice.id) else {
+    check_parameters(choice_of(&choice.id, known)?, &choice.parameters)
+}
+
+/// The planner of this id.
+///
+/// # Errors
+/// One sentence with what there is.
+pub fn choice_of<'a>(id: &str, known: &'a [PlannerInfo]) -> Result<&'a PlannerInfo, String> {
+    known.iter().find(|info| info.id == id).ok_or_else(|| {
         let ids: Vec<&str> = known.iter().map(|info| info.id.as_str()).collect();
         let has = if ids.is_empty() {
             "no planner was found at all".into()
         } else {
             format!("found: {}", ids.join(", "))
         };
-        return Err(format!(
-            "there is no planner `{}`; {has}; `tankops planners` tells where they are looked for",
-            choice.id
-        ));
-    };
-    check_parameters(info, &choice.parameters)
+        format!("there is no planner `{id}`; {has}; `tankops planners` tells where they are looked for")
+    })
 }
 
 /// `tankops planners`.
