@@ -39,6 +39,9 @@ fn main() -> ExitCode {
 }
 
 fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
+    if let Some(missing) = cli.plugins.plugin_dir.iter().find(|dir| !dir.is_dir()) {
+        return Err(bad_input(format!("--plugin-dir {}: there is no such folder", missing.display())));
+    }
     let plugins = PluginDirs::standard(&cli.plugins.plugin_dir);
     match cli.command {
         None => by_default(&plugins),
