@@ -9,7 +9,9 @@
 pub mod paper;
 pub mod score;
 pub mod spiral;
+pub mod traps;
 
 pub use paper::{Distribution, Sampling};
 pub use score::{Safety, Score, floor_rmse_m, safety, score};
 pub use spiral::Layout;
+pub use traps::Trap;

@@ -4,9 +4,10 @@
 //! a square floor of 50 m, a trap made of discs that leave no passage, its mouth towards the start, and 8 to 14 free
 //! discs. A robot of radius 0.3 m can always pass: between a free disc and anything else there are 0.9 m or more.
 
+use planner_api::{Boundary, Limits, Motion, Obstacle, Outline, Site};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use world::{Boundary, Obstacle, ObstacleId, Point, Shape, Vector, polyline};
+use world::{Point, Shape, Vector, polyline};
 
 /// Side of the square floor, metres.
 pub const SIDE_M: f64 = 50.0;
@@ -90,24 +91,46 @@ impl Trap {
         Self { kind, start, goal, discs, n_trap }
     }
 
-    /// The floor.
-    pub fn boundary(&self) -> Boundary {
+    /// Corners of the floor.
+    pub fn corners() -> [Point; 4] {
         let half = SIDE_M / 2.0;
-        let corner = |x: f64, y: f64| Point::new(x * half, y * half);
-        Boundary::Polygon {
-            vertices: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Point::new(x * half, y * half))
+    }
+
+    /// The discs as a planner gets them, on the drawing or discovered on the way; ids from 0.
+    pub fn obstacles(&self, discovered: bool) -> Vec<Obstacle<'static>> {
+        let obstacle = |(id, &(center, radius_m)): (usize, &(Point, f64))| Obstacle {
+            id: id as u32,
+            outline: Outline::Disc { center, radius_m },
+            discovered,
+            velocity_m_per_s: Vector::zeros(),
+        };
+        self.discs.iter().enumerate().map(obstacle).collect()
+    }
+
+    /// The site as a planner gets it: obstacles are those known so far, `corners` those of the floor.
+    pub fn site<'a>(corners: &'a [Point], obstacles: &'a [Obstacle<'a>], sensing_range_m: f64) -> Site<'a> {
+        Site {
+            revision: 0,
+            boundary: Boundary::Polygon { vertices: corners },
+            obstacles,
+            zones: &[],
+            limits: Limits {
+                motion: Motion::Point,
+                v_max_m_per_s: 1.0,
+                w_max_rad_per_s: 1.0,
+                radius_m: HULL_M,
+                sensing_range_m,
+            },
+            swath_m: 1.0,
+            clearance_m: 0.0,
+            seed: 0,
         }
     }
 
-    /// The discs as obstacles of a known or unknown map, ids from 0.
-    pub fn obstacles(&self, known: bool) -> Vec<Obstacle> {
-        let obstacle = |(index, &(center, radius_m)): (usize, &(Point, f64))| Obstacle {
-            id: ObstacleId(index as u32),
-            name: format!("{} {index}", if index < self.n_trap { "trap" } else { "free" }),
-            shape: Shape::Disc { center, radius_m },
-            known,
-        };
-        self.discs.iter().enumerate().map(obstacle).collect()
+    /// The discs as shapes of the world.
+    pub fn shapes(&self) -> Vec<Shape> {
+        self.discs.iter().map(|&(center, radius_m)| Shape::Disc { center, radius_m }).collect()
     }
 
     /// Distance from a robot's hull at a place to the nearest disc or the wall, metres; negative is a collision.
