@@ -10,13 +10,13 @@ use mission::{
     Event, EventKind, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, TaskConfig,
     event::RunOpened,
 };
-use world::Point;
+use world::Pose;
 
 /// What is known of a run from the events so far.
 #[derive(Debug, Default)]
 pub struct Fold {
     known: Summary,
-    truth: Option<Point>,
+    truth: Option<Pose>,
     scanned: Option<Scanned>,
     tracker: Option<Tracker>,
     accuracy: Accuracy,
@@ -36,7 +36,7 @@ impl Fold {
             EventKind::RunOpened(run) => self.open(run),
             EventKind::Truth { pose, clearance_m, collided } => {
                 self.accuracy.truth(event.tick, pose.position);
-                self.see_truth(pose.position, *clearance_m, *collided);
+                self.see_truth(*pose, *clearance_m, *collided);
             }
             EventKind::Estimated { pose } => {
                 let covariance_m2 = [(0, 0), (0, 1), (1, 1)].map(|at| pose.covariance[at]);
@@ -47,6 +47,11 @@ impl Fold {
             EventKind::Covered { runs } => {
                 if let Some(scanned) = &mut self.scanned {
                     scanned.believe(runs);
+                }
+            }
+            EventKind::FloorChanged { changes } => {
+                if let Some(scanned) = &mut self.scanned {
+                    scanned.change(changes);
                 }
             }
             EventKind::Progressed { along_m: Some(along_m), .. } => {
@@ -82,28 +87,28 @@ impl Fold {
         self.known.seed = Some(run.seed);
         self.known.planner = Some(run.mission.planner.id.clone());
         self.known.parameters = Some(run.mission.planner.parameters.clone());
-        self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.swath_m));
+        self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool()));
         self.tracker = match &run.mission.task {
             TaskConfig::Follow { path, .. } => Some(Tracker::new(path)),
-            TaskConfig::Goto { .. } => None,
+            TaskConfig::Goto { .. } | TaskConfig::Cover { .. } => None,
         };
     }
 
-    fn see_truth(&mut self, position: Point, clearance_m: f64, collided: bool) {
+    fn see_truth(&mut self, pose: Pose, clearance_m: f64, collided: bool) {
         let known = &mut self.known;
-        let way_m = self.truth.map_or(0.0, |before| (position - before).norm());
+        let before = self.truth.replace(pose).unwrap_or(pose);
+        let way_m = (pose.position - before.position).norm();
         known.path_length_m = Some(known.path_length_m.unwrap_or(0.0) + way_m);
         known.collisions = Some(known.collisions.unwrap_or(0) + u64::from(collided));
         if clearance_m.is_finite() {
             known.min_clearance_m =
                 Some(known.min_clearance_m.map_or(clearance_m, |least| least.min(clearance_m)));
         }
-        let before = self.truth.replace(position).unwrap_or(position);
         if let Some(scanned) = &mut self.scanned {
-            scanned.pass(before, position);
+            scanned.pass(before, pose);
         }
         if let Some(tracker) = &mut self.tracker {
-            tracker.pass(before, position);
+            tracker.pass(before.position, pose.position);
         }
     }
 
