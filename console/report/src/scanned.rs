@@ -30,6 +30,11 @@ impl Scanned {
         Self { believed, truth, tool, way_m: 0.0, last_m, cells: 0, cells_again: 0, has_truth: false }
     }
 
+    /// The floor with what the mission believes to have scanned.
+    pub fn believed(&self) -> &CoverageGrid {
+        &self.believed
+    }
+
     /// The mission says that it scanned these cells.
     pub fn believe(&mut self, runs: &[CellRun]) {
         self.believed.apply(runs);

@@ -311,6 +311,7 @@ static EXPECT: &[Key] = &[
     number("mission_time_max_s", "s", above(0.0)).or_none(NO_BOUND),
     number("path_length_max_m", "m", above(0.0)).or_none(NO_BOUND),
     number("coverage_reachable_min", "", SHARE).or_none(NO_BOUND),
+    number("coverage_truth_min", "", SHARE).or_none(NO_BOUND),
     number("coverage_whole_min", "", SHARE).or_none(NO_BOUND),
     number("overlap_max", "", at_least(0.0)).or_none(NO_BOUND),
     number("precision_min", "", SHARE).or_none(NO_BOUND),
