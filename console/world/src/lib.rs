@@ -12,6 +12,7 @@ pub mod readings;
 pub mod shape;
 pub mod spiral;
 pub mod tank;
+pub mod tether;
 
 pub use coverage::{Cell, CellRun, Counts, CoverageGrid, Floor};
 pub use geometry::{Point, Pose, Vector};
