@@ -14,6 +14,7 @@ pub mod shape;
 pub mod shortest;
 pub mod spiral;
 pub mod tank;
+pub mod tether;
 
 pub use coverage::{Cell, CellRun, Counts, CoverageGrid, Floor, FloorMaker, KindRun, Tool};
 pub use geometry::{Point, Pose, Vector};
