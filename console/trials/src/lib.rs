@@ -9,6 +9,7 @@
 pub mod paper;
 pub mod score;
 pub mod spiral;
+pub mod tanks;
 pub mod traps;
 pub mod verdict;
 

@@ -158,7 +158,7 @@ fn wall_ends(ground: &Ground, own: &Group, outward: Vector, alpha_rad: f64) -> V
 
 /// The cut along the lanes.
 fn lane_end(ground: &Ground, pattern: &Pattern, own: &Group, outward: Vector, alpha_rad: f64) -> Option<Candidate> {
-    let lane = pattern.ahead(own.foot)?;
+    let lane = pattern.ahead()?;
     let ahead = if lane.dot(&outward) < 0.0 { -lane } else { lane };
     let chain_m = to_wall_m(&ground.wall, own.foot, ahead);
     let is_near = outward.perp(&ahead).atan2(outward.dot(&ahead)).abs() <= alpha_rad;

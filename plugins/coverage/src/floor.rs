@@ -78,6 +78,25 @@ impl FloorGrid {
         grid
     }
 
+    /// Leaves out what lies outside some polygons; without polygons nothing is left out.
+    pub fn keep_within(&mut self, regions: &[&[Point]]) {
+        if regions.is_empty() {
+            return;
+        }
+        for cell in 0..self.reachable.len() {
+            let at = self.center(cell);
+            self.reachable[cell] = self.reachable[cell] && regions.iter().any(|ring| ring_contains(ring, at));
+        }
+        self.n_reachable = self.reachable.iter().filter(|r| **r).count();
+    }
+
+    /// Whether there is floor to scan within half a swath of a place.
+    pub fn has_reachable_near(&self, at: Point) -> bool {
+        let mut found = false;
+        self.near(at, at, self.half_m, |cell, _| found |= self.reachable[cell]);
+        found
+    }
+
     /// Area of the floor that the tool can reach, square metres.
     pub fn area_m2(&self) -> f64 {
         self.n_reachable as f64 * self.cell_m * self.cell_m
@@ -284,4 +303,12 @@ impl FloorGrid {
         groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
         groups
     }
+}
+
+/// Whether a point lies inside a simple polygon.
+fn ring_contains(ring: &[Point], at: Point) -> bool {
+    ring.iter().zip(ring.iter().cycle().skip(1)).fold(false, |inside, (a, b)| {
+        let crosses = (a.y > at.y) != (b.y > at.y) && at.x < (b.x - a.x) * (at.y - a.y) / (b.y - a.y) + a.x;
+        inside != crosses
+    })
 }

@@ -30,19 +30,6 @@ pub enum Pattern {
         /// Contours along the wall around them.
         laps: usize,
     },
-    /// Straight outward in sectors about the anchor, with the lanes of neighbouring sectors joined where they meet.
-    Sectors {
-        /// Number of sectors.
-        n: usize,
-        /// Direction of the first sector's axis, radians.
-        angle_rad: f64,
-        /// Centre of the sectors.
-        center: Point,
-        /// Distance between lanes, metres.
-        spacing_m: f64,
-        /// Contours along the wall around them.
-        laps: usize,
-    },
 }
 
 /// A lane, in the direction it was made in.
@@ -50,6 +37,20 @@ pub enum Pattern {
 pub struct Lane {
     /// Its points; at least two.
     pub points: Vec<Point>,
+}
+
+impl Lane {
+    /// The pieces of the lane that are wanted.
+    pub fn kept(&self, is_wanted: &dyn Fn(Point) -> bool) -> Vec<Self> {
+        let fine = polyline::resampled(&self.points, 0.1);
+        let wanted: Vec<bool> = fine.iter().map(|p| is_wanted(*p)).collect();
+        if wanted.iter().all(|w| *w) {
+            return vec![self.clone()];
+        }
+        let places: Vec<usize> = (0..fine.len()).collect();
+        let runs = places.split(|k| !wanted[*k]).filter(|run| run.len() > 1);
+        runs.map(|run| Self { points: thinned(&fine[run[0]..=run[run.len() - 1]]) }).collect()
+    }
 }
 
 /// How near lanes come to what bounds them.
@@ -61,10 +62,6 @@ pub struct Reach {
     pub lap_share: f64,
     /// Shorter lanes are left out, metres.
     pub least_m: f64,
-    /// Whether a lane runs along one side of every cut.
-    pub corridor: bool,
-    /// A wedge narrower than this share of its length is swept along its cuts.
-    pub narrow: f64,
 }
 
 impl Pattern {
@@ -81,42 +78,27 @@ impl Pattern {
                 let laps = if wall.wall_distance_m(b) < 0.1 { *laps as f64 } else { 0.0 };
                 (across / spacing_m).max(0.0) + laps
             }
-            Self::Sectors { spacing_m, laps, .. } => {
-                let ahead = self.ahead(a).unwrap_or_else(Vector::x);
-                let laps = if wall.wall_distance_m(b) < 0.1 { *laps as f64 } else { 0.0 };
-                ahead.perp(&(b - a)).abs() / spacing_m + laps
-            }
         }
     }
 
-    /// Direction outward of the lanes about a place.
-    pub fn ahead(&self, at: Point) -> Option<Vector> {
+    /// Direction of the lanes, if they are straight.
+    pub fn ahead(&self) -> Option<Vector> {
         match self {
             Self::Contours => None,
             Self::Straight { angle_rad, .. } => Some(direction(*angle_rad)),
-            Self::Sectors { n, angle_rad, center, .. } => {
-                let way = at - center;
-                let step = TAU / *n as f64;
-                let sector = ((way.y.atan2(way.x) - angle_rad) / step).round();
-                Some(direction(angle_rad + sector * step))
-            }
         }
     }
 
     /// Where a cut that runs with the lanes shall leave its obstacle, so as to lie between two lanes.
     pub fn bend(&self, foot: Point, end: Point) -> Option<Point> {
-        let (origin, shift_m, spacing_m) = match self {
-            Self::Contours => return None,
-            Self::Straight { shift_m, spacing_m, .. } => (Point::origin(), *shift_m, *spacing_m),
-            Self::Sectors { center, spacing_m, .. } => (*center, spacing_m / 2.0, *spacing_m),
-        };
-        let ahead = self.ahead(foot)?;
+        let Self::Straight { shift_m, spacing_m, .. } = self else { return None };
+        let ahead = self.ahead()?;
         let along = (end - foot).try_normalize(1e-9)?;
         if along.perp(&ahead).abs() > 0.02 {
             return None;
         }
         let side = Vector::new(-ahead.y, ahead.x);
-        let place = ((foot - origin).dot(&side) - shift_m) / spacing_m;
+        let place = (foot.coords.dot(&side) - shift_m) / spacing_m;
         let gap = (place - 0.5).round() + 0.5;
         Some(foot + side * ((gap - place) * spacing_m) + along * 0.05)
     }
@@ -131,7 +113,7 @@ pub fn lanes(
     reach: &Reach,
 ) -> Vec<Lane> {
     let mut lanes = Vec::new();
-    let sides = if reach.corridor { corridors(ground, cuts, reach) } else { Vec::new() };
+    let sides = if *pattern == Pattern::Contours { corridors(ground, cuts) } else { Vec::new() };
     for k in 0..sides.len() {
         let fence = Fence { cuts, cut_m: 0.45 * ground.swath_m, sides: &sides[..k], side_m: 0.25 * ground.swath_m };
         clip(ground, slit, &fence, &sides[k], reach, &mut lanes);
@@ -171,47 +153,15 @@ fn bounds(line: &[Point]) -> (Point, Point) {
     line.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)))
 }
 
-/// Lines along the cuts: one along one side of every cut, the same side everywhere, so that what was swept outward
-/// is left inward; and as many as it takes where the way along the cut is longer than the way across.
-fn corridors(ground: &Ground, cuts: &[Cut], reach: &Reach) -> Vec<Vec<Point>> {
-    let swath_m = ground.swath_m;
-    let mut lines = Vec::new();
-    let mut more = Vec::new();
-    for (index, cut) in cuts.iter().enumerate() {
-        let n = cut.line.len();
-        let (a, b) = (cut.line[n - 2], cut.line[n - 1]);
-        let length_m = (b - a).norm();
-        let ahead = (b - a) / length_m;
-        for turn in [1.0, -1.0] {
-            let side = Vector::new(-ahead.y, ahead.x) * turn;
-            let at = |m: usize| side * ((m as f64 + 0.5) * swath_m);
-            let wide_m = width_m(ground, cuts, index, a, b, side);
-            let is_narrow = wide_m < reach.narrow * length_m;
-            if turn > 0.0 || is_narrow {
-                lines.push(vec![a + at(0), b + at(0)]);
-            }
-            if is_narrow {
-                let n = (wide_m / swath_m / 2.0 + 0.5) as usize;
-                more.extend((1..n).map(|m| vec![a + at(m), b + at(m)]));
-            }
-        }
-    }
-    lines.extend(more);
-    lines
-}
-
-/// Mean way from a cut to whatever lies beside it: another cut, an obstacle or the wall.
-fn width_m(ground: &Ground, cuts: &[Cut], own: usize, a: Point, b: Point, side: Vector) -> f64 {
-    const SAMPLES: usize = 5;
-    let most_m = 20.0 * ground.swath_m;
-    let ray = |k: usize| {
-        let from = a + (b - a) * ((k as f64 + 0.5) / SAMPLES as f64) + side * 1e-3;
-        let to = from + side * most_m;
-        let lines = cuts.iter().enumerate().filter(|(index, _)| *index != own).flat_map(|(_, cut)| cut.line.windows(2));
-        let hits = lines.filter_map(|w| field::part::crossing(from, to, w[0], w[1]).map(|p| (p - from).norm()));
-        hits.fold(crate::cuts::to_wall_m(&ground.wall, from, side).min(most_m), f64::min)
+/// Lines along one side of every cut, the same side everywhere, so that what was swept outward is left inward.
+fn corridors(ground: &Ground, cuts: &[Cut]) -> Vec<Vec<Point>> {
+    let last_side = |cut: &Cut| {
+        let (a, b) = (cut.line[cut.line.len() - 2], cut.line[cut.line.len() - 1]);
+        let ahead = (b - a).try_normalize(1e-9)?;
+        let aside = Vector::new(-ahead.y, ahead.x) * (ground.swath_m / 2.0);
+        Some(vec![a + aside, b + aside])
     };
-    (0..SAMPLES).map(ray).sum::<f64>() / SAMPLES as f64
+    cuts.iter().filter_map(last_side).collect()
 }
 
 /// The unbroken lines of a pattern.
@@ -227,34 +177,6 @@ fn lines(ground: &Ground, pattern: &Pattern, reach: &Reach) -> Vec<Vec<Point>> {
                 start_m + (laps as f64 - reach.lap_share) * ground.swath_m
             };
             lines.extend(straight(ground, angle_rad, shift_m, spacing_m, edge_m));
-            lines
-        }
-        Pattern::Sectors { n, angle_rad, center, spacing_m, laps } => {
-            let mut lines = contours(ground, start_m, laps);
-            let edge_m =
-                if laps == 0 { start_m } else { start_m + (laps as f64 - reach.lap_share) * ground.swath_m };
-            let half = std::f64::consts::PI / n as f64;
-            for sector in 0..n {
-                let left = direction(angle_rad + 2.0 * half * sector as f64);
-                let right = direction(angle_rad + 2.0 * half * (sector + 1) as f64);
-                let along = direction(angle_rad + 2.0 * half * (sector as f64 + 0.5));
-                for j in 0..1000 {
-                    let corner = center + along * ((j as f64 + 0.5) * spacing_m / half.sin());
-                    if ground.wall.wall_distance_m(corner) < edge_m {
-                        break;
-                    }
-                    let end = |ahead: Vector| {
-                        let most_m = crate::cuts::to_wall_m(&ground.wall, corner, ahead);
-                        let (mut low, mut high) = (0.0, most_m);
-                        for _ in 0..40 {
-                            let middle = f64::midpoint(low, high);
-                            if ground.wall.wall_distance_m(corner + ahead * middle) < edge_m { high = middle } else { low = middle }
-                        }
-                        corner + ahead * low
-                    };
-                    lines.push(vec![end(left), corner, end(right)]);
-                }
-            }
             lines
         }
     }
@@ -305,7 +227,7 @@ fn straight(ground: &Ground, angle_rad: f64, shift_m: f64, spacing_m: f64, edge_
     let ahead = direction(angle_rad);
     let side = Vector::new(-ahead.y, ahead.x);
     let (low, high) = ground.wall.bounds();
-    let middle = nalgebra_center(low, high);
+    let middle = halfway(low, high);
     let reach_m = (high - low).norm();
     let first = ((middle.coords.dot(&side) - reach_m / 2.0 - shift_m) / spacing_m).floor() as i64;
     let last = ((middle.coords.dot(&side) + reach_m / 2.0 - shift_m) / spacing_m).ceil() as i64;
@@ -321,7 +243,7 @@ fn straight(ground: &Ground, angle_rad: f64, shift_m: f64, spacing_m: f64, edge_
     lines
 }
 
-fn nalgebra_center(a: Point, b: Point) -> Point {
+fn halfway(a: Point, b: Point) -> Point {
     a + (b - a) / 2.0
 }
 

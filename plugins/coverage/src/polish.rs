@@ -252,6 +252,7 @@ impl<'a> Track<'a> {
         &mut self,
         ground: &Ground,
         cuts: &[Cut],
+        is_wanted: &dyn Fn(Point) -> bool,
         prices: &Prices,
         enough: f64,
         ctx: &Ctx<'_>,
@@ -265,6 +266,9 @@ impl<'a> Track<'a> {
             }
             ctx.check()?;
             for lane in touch_up(ground, self.slit, cuts, &self.grid, &group) {
+                if !lane.points.iter().all(|p| is_wanted(*p)) {
+                    continue;
+                }
                 if let Some((cost_m, _, _)) = self.best_tie(&lane, prices) {
                     let gained = self.grid.would_gain(&lane.points);
                     offers.push((cost_m / (gained as f64 * cell_m2).max(1e-9), gained, lane));

@@ -57,6 +57,11 @@ pub struct Scan {
 }
 
 impl Scan {
+    /// The cuts as lines.
+    pub fn cut_lines(&self) -> Vec<Vec<Point>> {
+        self.cuts.iter().map(|cut| cut.line.clone()).collect()
+    }
+
     /// The whole path.
     pub fn path(&self) -> Vec<Point> {
         let mut path: Vec<Point> = Vec::new();
@@ -69,49 +74,66 @@ impl Scan {
     }
 }
 
-/// Makes a candidate.
+/// What is to be scanned, from where, and how far the robot may go.
+#[derive(Debug, Clone, Copy)]
+pub struct Order<'a> {
+    /// Where the robot is.
+    pub start: Point,
+    /// Polygons still to scan; all floor if empty.
+    pub regions: &'a [&'a [Point]],
+    /// Longest way from home, metres.
+    pub reel_m: f64,
+    /// Edge of a cell of the floor, metres.
+    pub cell_m: f64,
+}
+
+/// Makes a candidate; `None` where the robot has no room at all.
 ///
 /// # Errors
 /// When the console wants an end.
-pub fn scan(ground: &Ground, recipe: &Recipe, cell_m: f64, ctx: &Ctx<'_>) -> Result<Option<Scan>> {
-    let t0 = std::time::Instant::now();
+pub fn scan(ground: &Ground, recipe: &Recipe, order: &Order<'_>, ctx: &Ctx<'_>) -> Result<Option<Scan>> {
     let home = ground.home();
     let cuts = cuts(ground, &recipe.pattern, &recipe.rule);
     let lines: Vec<Vec<Point>> = cuts.iter().map(|cut| cut.line.clone()).collect();
     let Some(slit) = Slit::new(ground, &lines, home) else { return Ok(None) };
-    let mut grid = FloorGrid::new(ground, &slit, cell_m);
-    let mut lanes = lanes(ground, &slit, &cuts, &recipe.pattern, &recipe.reach);
-    let mut pieces = toured(&slit, &lanes, home, &recipe.effort, ctx)?;
+    let mut grid = FloorGrid::new(ground, &slit, order.cell_m);
+    grid.keep_within(order.regions);
+    let all = lanes(ground, &slit, &cuts, &recipe.pattern, &recipe.reach);
+    let in_reach =
+        |at: Point| order.reel_m.is_infinite() || slit.way_m(home, at).is_some_and(|way_m| way_m <= order.reel_m);
+    let is_wanted = |at: Point| {
+        in_reach(at) && (order.regions.is_empty() || grid.has_reachable_near(at))
+    };
+    let wants_all = order.reel_m.is_infinite() && order.regions.is_empty();
+    let wanted = |lanes: Vec<Lane>| {
+        if wants_all { lanes } else { lanes.iter().flat_map(|lane| lane.kept(&is_wanted)).collect() }
+    };
+    let mut lanes = wanted(all);
+    let start = if slit.contains(order.start) { order.start } else { home };
+    let mut pieces = toured(&slit, &lanes, (home, start), &recipe.effort, ctx)?;
     for _ in 0..recipe.rounds {
-        grid.swept.fill(0);
-        grid.sweep(&joined(&pieces));
-        let least = (recipe.touch_m2 / (cell_m * cell_m)) as usize;
-        let missed = grid.missed();
-        let fresh: Vec<Lane> = missed
-            .iter()
-            .take_while(|group| group.len() > least)
-            .flat_map(|group| touch_up(ground, &slit, &cuts, &grid, group))
-            .collect();
+        let mut swept = grid.clone();
+        swept.sweep(&joined(&pieces));
+        let least = (recipe.touch_m2 / (order.cell_m * order.cell_m)) as usize;
+        let missed = swept.missed();
+        let large = missed.iter().take_while(|group| group.len() > least);
+        let fresh: Vec<Lane> =
+            wanted(large.flat_map(|group| touch_up(ground, &slit, &cuts, &swept, group)).collect());
         if fresh.is_empty() {
             break;
         }
         lanes.extend(fresh);
-        pieces = toured(&slit, &lanes, home, &recipe.effort, ctx)?;
+        pieces = toured(&slit, &lanes, (home, start), &recipe.effort, ctx)?;
     }
     let prices = Prices { turn_m_per_rad: recipe.effort.turn_m_per_rad, floor_m_per_m2: recipe.floor_m_per_m2 };
-    let dear = Prices { floor_m_per_m2: 1e6, ..prices };
+    let careful = Prices { floor_m_per_m2: 1e6, ..prices };
     let mut track = Track::new(&slit, &pieces, grid);
-    let p = |t: &Track| if std::env::var("V").is_ok() { println!("   {:?} {:.2} {:.4} {:.1}", t0.elapsed(), 100.0 * t.grid.coverage(), length_ratio(&t.points, &t.grid, ground.swath_m), rotation_turns(&t.points)); };
-    p(&track);
     track.shorten(&prices, ctx)?;
-    p(&track);
     for _ in 0..3 {
-        if track.touch_up(ground, &cuts, &prices, recipe.enough, ctx)? == 0 {
+        if track.touch_up(ground, &cuts, &in_reach, &prices, recipe.enough, ctx)? == 0 {
             break;
         }
-    p(&track);
-        track.shorten(&dear, ctx)?;
-    p(&track);
+        track.shorten(&careful, ctx)?;
     }
     let (pieces, grid) = (pieces_of(&track.points, &track.on_lane), track.grid);
     Ok(Some(Scan { pieces, cuts, slit, grid }))
@@ -126,15 +148,38 @@ fn pieces_of(points: &[Point], on_lane: &[bool]) -> Vec<Piece> {
             _ => pieces.push(Piece { points: vec![points[k], points[k + 1]], is_lane: *is_lane }),
         }
     }
+    for piece in &mut pieces {
+        piece.points = straightened(&piece.points);
+    }
     pieces
+}
+
+/// The same line without points that lie on the straight way between their neighbours.
+fn straightened(points: &[Point]) -> Vec<Point> {
+    let mut kept = vec![points[0]];
+    for k in 1..points.len() - 1 {
+        let (before, after) = (points[k] - kept[kept.len() - 1], points[k + 1] - points[k]);
+        let is_corner = before.perp(&after).abs() > 1e-9 * (1.0 + before.norm()) || before.dot(&after) < 0.0;
+        if is_corner {
+            kept.push(points[k]);
+        }
+    }
+    kept.push(points[points.len() - 1]);
+    kept
 }
 
 fn joined(pieces: &[Piece]) -> Vec<Point> {
     pieces.iter().flat_map(|piece| piece.points.iter().copied()).collect()
 }
 
-fn toured(slit: &Slit, lanes: &[Lane], home: Point, effort: &Effort, ctx: &Ctx<'_>) -> Result<Vec<Piece>> {
-    let ways = Ways::new(slit, lanes, home, effort.turn_m_per_rad);
+fn toured(
+    slit: &Slit,
+    lanes: &[Lane],
+    (home, start): (Point, Point),
+    effort: &Effort,
+    ctx: &Ctx<'_>,
+) -> Result<Vec<Piece>> {
+    let ways = Ways::new(slit, lanes, home, start, effort.turn_m_per_rad);
     let order = tour(&ways, effort, ctx)?;
     Ok(assembled(&ways, lanes, &order))
 }

@@ -176,11 +176,15 @@ impl Slit {
         Some(funnel(a, b, &self.sleeve(from, to)))
     }
 
+    /// Length of the shortest path between two places of the domain, metres.
+    pub fn way_m(&self, a: Point, b: Point) -> Option<f64> {
+        self.path(a, b).map(|path| world::polyline::length_m(&path))
+    }
+
     /// Whether the straight way between two places stays in the domain.
     pub fn sees(&self, a: Point, b: Point) -> bool {
         self.path(a, b).is_some_and(|path| {
-            let length_m: f64 = path.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-            length_m <= (b - a).norm() + 1e-9
+            world::polyline::length_m(&path) <= (b - a).norm() + 1e-9
         })
     }
 

@@ -32,7 +32,8 @@ pub struct Effort {
     pub seed: u64,
 }
 
-/// Ends of lanes: `2 * lane` is its first point, `2 * lane + 1` its last; the lane after the last one is home.
+/// Ends of lanes: `2 * lane` is its first point, `2 * lane + 1` its last; behind the last lane come home, where the tour
+/// ends, and the start.
 pub type End = usize;
 
 /// Costs of the ways between ends.
@@ -46,15 +47,15 @@ pub struct Ways<'a> {
 }
 
 impl<'a> Ways<'a> {
-    /// Ways between the ends of some lanes and home.
-    pub fn new(slit: &'a Slit, lanes: &[Lane], home: Point, turn_m_per_rad: f64) -> Self {
+    /// Ways between the ends of some lanes, home and start.
+    pub fn new(slit: &'a Slit, lanes: &[Lane], home: Point, start: Point, turn_m_per_rad: f64) -> Self {
         let (mut at, mut out) = (Vec::new(), Vec::new());
         for lane in lanes {
             let (p, n) = (&lane.points, lane.points.len());
             at.extend([p[0], p[n - 1]]);
             out.extend([(p[0] - p[1]).try_normalize(1e-9), (p[n - 1] - p[n - 2]).try_normalize(1e-9)]);
         }
-        at.extend([home, home]);
+        at.extend([home, start]);
         out.extend([None, None]);
         let n = at.len();
         let table = if n <= TABLE { vec![f32::NAN; n * n] } else { Vec::new() };
@@ -270,6 +271,11 @@ impl Search<'_> {
         let home = self.ways.len() / 2 - 1;
         let at = self.place[home];
         self.entries.rotate_left(at);
+        if self.entries[0] != 2 * home {
+            // The same ring the other way round: it leaves from the start and ends at home.
+            self.entries.iter_mut().for_each(|e| *e ^= 1);
+            self.entries[1..].reverse();
+        }
         self.entries
     }
 
