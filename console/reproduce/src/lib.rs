@@ -8,6 +8,7 @@ mod bench;
 mod planners;
 mod row;
 mod sample;
+pub mod coverage;
 pub mod spiral;
 mod study;
 pub mod tune;

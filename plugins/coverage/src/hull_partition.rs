@@ -8,14 +8,14 @@ use crate::{
     genetic,
     ground::{Ground, direction, middle},
     lanes::thinned,
-    partition::{Border, Cell, borders, cells},
+    partition::{Border, Cell, borders, cells, unmerged},
     roam::Roam,
     scan::{Order, Piece, Scan},
     slit::Slit,
 };
 use field::params as p;
 use planner_api::{
-    Caps, Code, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result, Sensed, Site, choice,
+    Caps, Code, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result, Sensed, Site, choice,
     float,
 };
 use world::{Boundary, Point, Vector, polyline};
@@ -71,13 +71,13 @@ impl Planner for HullPartition {
             return Err(PlannerError::new(Code::Unsupported, "hull rings need a convex wall; choose tether-safe"));
         }
         let columns: Vec<(Point, f64)> = ground.parts.iter().map(column).collect();
-        let cells = cells(&ground, &columns);
-        let borders = borders(&cells, &ground, &columns);
         let home = ground.home();
-        let first = (0..cells.len()).find(|k| cells[*k].contains(home)).unwrap_or(0);
-        let cuts = if self.is_tree { cuts(&cells, &borders, first) } else { Vec::new() };
+        let Division { cells, first, cuts, slit } =
+            Division::new(&ground, &columns, self.is_tree, home).ok_or_else(|| answer::no_room(&ground))?;
+        if self.is_tree && !slit.is_simple {
+            ctx.log(LogLevel::Warn, "columns too near to each other leave a way round: the tether may be left out");
+        }
         let lines: Vec<Vec<Point>> = cuts.iter().map(|cut| cut.line.clone()).collect();
-        let slit = Slit::new(&ground, &lines, home).ok_or_else(|| answer::no_room(&ground))?;
         let grid = FloorGrid::new(&ground, &slit, self.cell_m);
         let roam = if self.is_tree { None } else { Some(Roam::new(&ground, ctx)?) };
         let way = |a: Point, b: Point| match &roam {
@@ -116,6 +116,34 @@ impl Planner for HullPartition {
     }
 }
 
+/// The floor in cells, and the domain in which the robot moves between them.
+struct Division {
+    cells: Vec<Cell>,
+    first: usize,
+    cuts: Vec<Cut>,
+    slit: Slit,
+}
+
+impl Division {
+    /// Merged cells, unless merging leaves a way round a column, which the paper's rule does not rule out.
+    fn new(ground: &Ground, columns: &[(Point, f64)], is_tree: bool, home: Point) -> Option<Self> {
+        let merged = Self::of(cells(ground, columns), ground, columns, is_tree, home)?;
+        if !is_tree || merged.slit.is_simple {
+            return Some(merged);
+        }
+        Self::of(unmerged(ground, columns), ground, columns, is_tree, home)
+    }
+
+    fn of(cells: Vec<Cell>, ground: &Ground, columns: &[(Point, f64)], is_tree: bool, home: Point) -> Option<Self> {
+        let first = (0..cells.len()).find(|k| cells[*k].contains(home)).unwrap_or(0);
+        let borders = borders(&cells, ground, columns);
+        let cuts = if is_tree { cuts(&cells, &borders, first) } else { Vec::new() };
+        let lines: Vec<Vec<Point>> = cuts.iter().map(|cut| cut.line.clone()).collect();
+        let slit = Slit::new(ground, &lines, home)?;
+        Some(Self { cells, first, cuts, slit })
+    }
+}
+
 impl HullPartition {
     fn order(&self, cells: &[Cell], first: usize, seed: u64) -> Vec<usize> {
         let names: Vec<usize> = std::iter::once(first).chain((0..cells.len()).filter(|k| *k != first)).collect();
@@ -144,8 +172,8 @@ fn is_convex(wall: &Boundary) -> bool {
 /// Every border but one gate for each branch of the tree of cells is a cut.
 fn cuts(cells: &[Cell], borders: &[Border], first: usize) -> Vec<Cut> {
     let gates = tree(cells, borders, first);
-    // Pieces that cannot be passed need no cut.
-    let closed = borders.iter().enumerate().filter(|(k, border)| border.is_gate && !gates.contains(k));
+    // Pieces under the discs need no cut.
+    let closed = borders.iter().enumerate().filter(|(k, border)| border.is_open && !gates.contains(k));
     let mut lines: Vec<(Point, Point)> = Vec::new();
     for (_, border) in closed {
         let mut line = border.ends;

@@ -56,7 +56,9 @@ pub struct Border {
     pub cells: (usize, usize),
     /// Its ends.
     pub ends: (Point, Point),
-    /// Whether the robot can pass: no disc with the distance to keep covers it.
+    /// Whether no disc with the distance to keep covers it.
+    pub is_open: bool,
+    /// Whether it is open and wide enough to pass.
     pub is_gate: bool,
 }
 
@@ -69,9 +71,13 @@ impl Border {
 
 /// The cells of a ground: hull rings, with small cells merged.
 pub fn cells(ground: &Ground, columns: &[(Point, f64)]) -> Vec<Cell> {
+    merged(unmerged(ground, columns), ground, columns)
+}
+
+/// The cells of a ground as they are between the rings.
+pub fn unmerged(ground: &Ground, columns: &[(Point, f64)]) -> Vec<Cell> {
     let polygons = rings(&wall(&ground.wall), columns, ground.anchor);
-    let cells = polygons.into_iter().map(|p| Cell { polygons: vec![p] }).collect();
-    merged(cells, ground, columns)
+    polygons.into_iter().map(|p| Cell { polygons: vec![p] }).collect()
 }
 
 fn wall(boundary: &Boundary) -> Vec<Point> {
@@ -184,10 +190,11 @@ pub fn borders(cells: &[Cell], ground: &Ground, columns: &[(Point, f64)]) -> Vec
             for p in &cells[a].polygons {
                 for q in &cells[b].polygons {
                     for ends in shared(p, q) {
-                        borders.extend(pieces(ends, ground, columns).into_iter().map(|(ends, is_gate)| Border {
+                        borders.extend(pieces(ends, ground, columns).into_iter().map(|(ends, is_open)| Border {
                             cells: (b, a),
                             ends,
-                            is_gate,
+                            is_open,
+                            is_gate: is_open && (ends.1 - ends.0).norm() > LEAST_GATE_M,
                         }));
                     }
                 }
@@ -223,7 +230,7 @@ fn shared(p: &[Point], q: &[Point]) -> Vec<(Point, Point)> {
     found
 }
 
-/// A border in pieces, with whether each can be passed.
+/// A border in pieces, with whether each is open.
 fn pieces(ends: (Point, Point), ground: &Ground, columns: &[(Point, f64)]) -> Vec<((Point, Point), bool)> {
     let length_m = (ends.1 - ends.0).norm();
     let along = (ends.1 - ends.0) / length_m;
@@ -240,8 +247,7 @@ fn pieces(ends: (Point, Point), ground: &Ground, columns: &[(Point, f64)]) -> Ve
     marks.sort_by(f64::total_cmp);
     let piece = |w: &[f64]| {
         let middle = ends.0 + along * f64::midpoint(w[0], w[1]);
-        let is_free = ground.is_free(middle) && w[1] - w[0] > LEAST_GATE_M;
-        ((ends.0 + along * w[0], ends.0 + along * w[1]), is_free)
+        ((ends.0 + along * w[0], ends.0 + along * w[1]), ground.is_free(middle))
     };
     marks.windows(2).filter(|w| w[1] - w[0] > EPSILON_M).map(piece).collect()
 }
