@@ -101,7 +101,10 @@ fn suite(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>
 fn some(rows: Vec<Row>, study: &Study) -> Result<Vec<Row>, Problem> {
     if rows.is_empty() {
         let methods = METHODS.iter().map(|method| method.id).collect::<Vec<_>>().join(", ");
-        return Err(Problem::Nothing(format!("{}: no case or method is left; methods are {methods}", study.name)));
+        return Err(Problem::Nothing(format!(
+            "{}: no case or method is left; methods are {methods}",
+            study.name
+        )));
     }
     Ok(rows)
 }
@@ -156,11 +159,14 @@ fn plan(planners: &Planners, method: &Method, tank: &Tank) -> Result<Measured, P
 
 fn rows_of(table: &str, case: &str, method: &str, all: &[Measured]) -> Vec<Row> {
     let n = all.len();
-    let sample =
-        |figure: &dyn Fn(&Scan) -> f64| all.iter().filter_map(|m| m.scan.as_ref()).map(figure).collect::<Sample>();
-    let row = |metric: &str, ours: Option<f64>, unit: &str| Row::new(table, case, method, metric, ours, unit).of(n);
+    let sample = |figure: &dyn Fn(&Scan) -> f64| {
+        all.iter().filter_map(|m| m.scan.as_ref()).map(figure).collect::<Sample>()
+    };
+    let row =
+        |metric: &str, ours: Option<f64>, unit: &str| Row::new(table, case, method, metric, ours, unit).of(n);
     let worst_of = |metric: &str, sample: &Sample, unit: &str| {
-        row(metric, sample.mean(), unit).note(sample.max().map_or_else(String::new, |worst| format!("worst {worst:.3}")))
+        row(metric, sample.mean(), unit)
+            .note(sample.max().map_or_else(String::new, |worst| format!("worst {worst:.3}")))
     };
     let coverage = sample(&|s| s.coverage_reachable);
     let least = coverage.min().map_or_else(String::new, |least| format!("worst {least:.4}"));

@@ -5,10 +5,10 @@
 #![forbid(unsafe_code)]
 
 mod bench;
+pub mod coverage;
 mod planners;
 mod row;
 mod sample;
-pub mod coverage;
 pub mod spiral;
 mod study;
 pub mod tune;

@@ -6,13 +6,14 @@ use crate::{
     follow::Follow,
     ground::Ground,
     lanes::{Lane, Pattern, Reach, lanes},
+    roam::Roam,
     scan::{Order, Piece, Scan},
     slit::Slit,
-    roam::Roam,
 };
 use field::params as p;
 use planner_api::{
-    Caps, Code, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result, Sensed, Site, float,
+    Caps, Code, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result, Sensed,
+    Site, float,
 };
 use world::Point;
 
@@ -67,7 +68,10 @@ impl Planner for Boustrophedon {
         if wanted.is_empty() {
             return Err(PlannerError::new(
                 Code::NoPath,
-                format!("no lane fits between the walls and obstacles; hull and clearance need {:.2} m", ground.keep_m),
+                format!(
+                    "no lane fits between the walls and obstacles; hull and clearance need {:.2} m",
+                    ground.keep_m
+                ),
             ));
         }
         let start = if slit.contains(request.start.position) { request.start.position } else { home };
@@ -78,7 +82,7 @@ impl Planner for Boustrophedon {
         let order = Order { start, regions: task.regions, reel_m: f64::INFINITY, cell_m: self.cell_m };
         answer::tell_unreachable(&ground, &scan, &order, ctx);
         self.follow.keep_off(&[]);
-        Ok(plan_of(&scan, request.start.position, Vec::new()))
+        Ok(plan_of(&scan, request.start.position, &[]))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
@@ -108,7 +112,9 @@ fn in_order(
         let mut row: Vec<Lane> = row.iter().map(|lane| (*lane).clone()).collect();
         if k % 2 == 1 {
             row.reverse();
-            row.iter_mut().for_each(|lane| lane.points.reverse());
+            for lane in &mut row {
+                lane.points.reverse();
+            }
         }
         for lane in row {
             pieces.push(Piece { points: roam.way(at, lane.points[0]), is_lane: false });

@@ -72,7 +72,8 @@ pub struct Worth {
 impl Worth {
     /// Whether another is no worse in anything and better in something.
     pub fn is_beaten_by(&self, other: &Self) -> bool {
-        let figures = |w: &Self| [w.length_m, w.turns, w.certificate.max_cable_m, w.certificate.max_sum_wrap_rad];
+        let figures =
+            |w: &Self| [w.length_m, w.turns, w.certificate.max_cable_m, w.certificate.max_sum_wrap_rad];
         let pairs = || figures(self).into_iter().zip(figures(other));
         pairs().all(|(own, theirs)| theirs <= own) && pairs().any(|(own, theirs)| theirs < own)
     }
@@ -148,7 +149,8 @@ pub fn candidates(ground: &Ground, wishes: &Wishes, alpha_rad: f64) -> Vec<Candi
 fn cable_m(ground: &Ground, wishes: &Wishes, pattern: &Pattern, alpha_rad: f64) -> f64 {
     let least_m = least_cable_m(ground);
     let most_m = (least_m * wishes.cable_share).min(wishes.limits.reel_m);
-    let with = |slack: f64| (least_m + (least_m * wishes.cable_share - least_m) * slack).min(wishes.limits.reel_m);
+    let with =
+        |slack: f64| (least_m + (least_m * wishes.cable_share - least_m) * slack).min(wishes.limits.reel_m);
     if *pattern == Pattern::Contours {
         return with(SLACK_ACROSS);
     }
@@ -156,14 +158,19 @@ fn cable_m(ground: &Ground, wishes: &Wishes, pattern: &Pattern, alpha_rad: f64) 
         let rule = CutRule { alpha_rad, cable_m: with(**slack) };
         let lines: Vec<Vec<Point>> = cuts(ground, pattern, &rule).into_iter().map(|cut| cut.line).collect();
         let home = ground.home();
-        Slit::new(ground, &lines, home).is_none_or(|slit| slit.farthest_m(home) <= most_m + AROUND_SHARE * least_m)
+        Slit::new(ground, &lines, home)
+            .is_none_or(|slit| slit.farthest_m(home) <= most_m + AROUND_SHARE * least_m)
     };
     with(SLACKS_ALONG.iter().find(keeps).copied().unwrap_or(0.0))
 }
 
 /// Place of the first lane across a direction, and the distance between lanes: even between straight walls.
 fn rows(ground: &Ground, angle_rad: f64) -> (f64, f64) {
-    if matches!(ground.wall, Boundary::Circle { .. }) { (0.0, ground.swath_m * 0.997) } else { even_rows(ground, angle_rad) }
+    if matches!(ground.wall, Boundary::Circle { .. }) {
+        (0.0, ground.swath_m * 0.997)
+    } else {
+        even_rows(ground, angle_rad)
+    }
 }
 
 /// Place of the first lane across a direction, and an even distance between lanes from wall to wall.
@@ -241,7 +248,12 @@ pub fn certificate(
 pub fn solids(site: &Site<'_>) -> Vec<Obstacle> {
     site.obstacles
         .iter()
-        .map(|o| Obstacle { id: ObstacleId(o.id), name: format!("obstacle {}", o.id), shape: shape(&o.outline), known: true })
+        .map(|o| Obstacle {
+            id: ObstacleId(o.id),
+            name: format!("obstacle {}", o.id),
+            shape: shape(&o.outline),
+            known: true,
+        })
         .collect()
 }
 
@@ -250,6 +262,8 @@ fn shape(outline: &planner_api::Outline<'_>) -> Shape {
     match *outline {
         Outline::Disc { center, radius_m } => Shape::Disc { center, radius_m },
         Outline::Polygon { vertices } => Shape::Polygon { vertices: vertices.to_vec() },
-        Outline::Polyline { points, half_width_m } => Shape::Polyline { points: points.to_vec(), half_width_m },
+        Outline::Polyline { points, half_width_m } => {
+            Shape::Polyline { points: points.to_vec(), half_width_m }
+        }
     }
 }

@@ -69,7 +69,9 @@ fn crossed(mother: &[usize], father: &[usize], random: &mut Pcg64Mcg) -> Vec<usi
     let (from, to) = (a.min(b), a.max(b));
     let stretch = &mother[from..=to];
     let mut rest = father.iter().copied().filter(|cell| !stretch.contains(cell));
-    (0..n).map(|k| if (from..=to).contains(&k) { mother[k] } else { rest.next().unwrap_or_default() }).collect()
+    (0..n)
+        .map(|k| if (from..=to).contains(&k) { mother[k] } else { rest.next().unwrap_or_default() })
+        .collect()
 }
 
 fn mutate(order: &mut [usize], random: &mut Pcg64Mcg) {

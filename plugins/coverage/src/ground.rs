@@ -104,7 +104,8 @@ impl Ground {
 
     /// Whether a place is floor: inside the wall and outside everything solid.
     pub fn is_floor(&self, at: Point) -> bool {
-        self.wall.wall_distance_m(at) >= 0.0 && self.room.parts_near(at).all(|(part, _)| part.distance(at).0 >= 0.0)
+        self.wall.wall_distance_m(at) >= 0.0
+            && self.room.parts_near(at).all(|(part, _)| part.distance(at).0 >= 0.0)
     }
 
     /// Where the anchor lets the robot be: the anchor itself, or the nearest place with room beside it.
@@ -142,10 +143,10 @@ fn around(corners: &[Point], radius_m: f64) -> Vec<Point> {
         (-along.x).atan2(along.y)
     };
     let mut ring = Vec::new();
-    for k in 0..n {
+    for (k, corner) in corners.iter().enumerate() {
         let before = normal(k + n - 1);
         let turn = (normal(k) - before).rem_euclid(TAU);
-        ring.extend(arc(corners[k], before, turn, radius_m));
+        ring.extend(arc(*corner, before, turn, radius_m));
     }
     ring
 }

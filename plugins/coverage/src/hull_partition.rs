@@ -15,8 +15,8 @@ use crate::{
 };
 use field::params as p;
 use planner_api::{
-    Caps, Code, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result, Sensed, Site, choice,
-    float,
+    Caps, Code, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result,
+    Sensed, Site, choice, float,
 };
 use world::{Boundary, Point, Vector, polyline};
 
@@ -34,7 +34,7 @@ const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
 const STEP_M: f64 = 0.04;
 
 /// Cuts reach this far beyond the corners of cells, metres.
-const SEAM_M: f64 = 1e-3;
+const SEAM_M: f64 = 0.02;
 /// The outermost lanes stay this far inside the strips of a cell, for rounding, metres.
 const INSIDE_M: f64 = 3e-3;
 
@@ -68,14 +68,20 @@ impl Planner for HullPartition {
         let task = answer::cover(request, Self::ID)?;
         let ground = Ground::new(request.site, task.anchor)?;
         if !is_convex(&ground.wall) {
-            return Err(PlannerError::new(Code::Unsupported, "hull rings need a convex wall; choose tether-safe"));
+            return Err(PlannerError::new(
+                Code::Unsupported,
+                "hull rings need a convex wall; choose tether-safe",
+            ));
         }
         let columns: Vec<(Point, f64)> = ground.parts.iter().map(column).collect();
         let home = ground.home();
         let Division { cells, first, cuts, slit } =
             Division::new(&ground, &columns, self.is_tree, home).ok_or_else(|| answer::no_room(&ground))?;
         if self.is_tree && !slit.is_simple {
-            ctx.log(LogLevel::Warn, "columns too near to each other leave a way round: the tether may be left out");
+            ctx.log(
+                LogLevel::Warn,
+                "columns too near to each other leave a way round: the tether may be left out",
+            );
         }
         let lines: Vec<Vec<Point>> = cuts.iter().map(|cut| cut.line.clone()).collect();
         let grid = FloorGrid::new(&ground, &slit, self.cell_m);
@@ -106,7 +112,7 @@ impl Planner for HullPartition {
         scan.grid.sweep(&scan.path());
         let order = Order { start, regions: task.regions, reel_m: f64::INFINITY, cell_m: self.cell_m };
         answer::tell_unreachable(&ground, &scan, &order, ctx);
-        let plan = plan_of(&scan, request.start.position, Vec::new());
+        let plan = plan_of(&scan, request.start.position, &[]);
         self.follow.keep_off(&plan.cuts);
         Ok(plan)
     }
@@ -134,7 +140,13 @@ impl Division {
         Self::of(unmerged(ground, columns), ground, columns, is_tree, home)
     }
 
-    fn of(cells: Vec<Cell>, ground: &Ground, columns: &[(Point, f64)], is_tree: bool, home: Point) -> Option<Self> {
+    fn of(
+        cells: Vec<Cell>,
+        ground: &Ground,
+        columns: &[(Point, f64)],
+        is_tree: bool,
+        home: Point,
+    ) -> Option<Self> {
         let first = (0..cells.len()).find(|k| cells[*k].contains(home)).unwrap_or(0);
         let borders = borders(&cells, ground, columns);
         let cuts = if is_tree { cuts(&cells, &borders, first) } else { Vec::new() };
@@ -146,11 +158,13 @@ impl Division {
 
 impl HullPartition {
     fn order(&self, cells: &[Cell], first: usize, seed: u64) -> Vec<usize> {
-        let names: Vec<usize> = std::iter::once(first).chain((0..cells.len()).filter(|k| *k != first)).collect();
+        let names: Vec<usize> =
+            std::iter::once(first).chain((0..cells.len()).filter(|k| *k != first)).collect();
         let centers: Vec<Point> = names.iter().map(|k| cells[*k].center()).collect();
         let distance: Vec<Vec<f64>> =
             centers.iter().map(|a| centers.iter().map(|b| (a - b).norm()).collect()).collect();
-        let order = if self.is_exact { genetic::exact(&distance, seed) } else { genetic::evolved(&distance, seed) };
+        let order =
+            if self.is_exact { genetic::exact(&distance, seed) } else { genetic::evolved(&distance, seed) };
         order.into_iter().map(|k| names[k]).collect()
     }
 }
@@ -211,9 +225,19 @@ fn tree(cells: &[Cell], borders: &[Border], first: usize) -> Vec<usize> {
         let cell = open.swap_remove(place);
         for (k, border) in borders.iter().enumerate().filter(|(_, b)| b.is_gate) {
             let (a, b) = border.cells;
-            let Some(next) = (if a == cell { Some(b) } else if b == cell { Some(a) } else { None }) else { continue };
+            let Some(next) = (if a == cell {
+                Some(b)
+            } else if b == cell {
+                Some(a)
+            } else {
+                None
+            }) else {
+                continue;
+            };
             let through = border.middle();
-            let way_m = far_m[cell] + (through - cells[cell].center()).norm() + (cells[next].center() - through).norm();
+            let way_m = far_m[cell]
+                + (through - cells[cell].center()).norm()
+                + (cells[next].center() - through).norm();
             if way_m < far_m[next] {
                 (far_m[next], gate[next]) = (way_m, Some(k));
             }
@@ -242,12 +266,15 @@ fn lanes(cell: &Cell, ground: &Ground, slit: &Slit, is_wanted: &dyn Fn(Point) ->
         let foot = side * (low + (row as f64 + 0.5) * strip_m);
         let ends = [Point::from(foot + ahead * from), Point::from(foot + ahead * to)];
         let line = polyline::resampled(&ends, STEP_M);
-        let is_open = |p: &Point| cell.contains(*p) && ground.is_free(*p) && slit.contains(*p) && is_wanted(*p);
+        let is_open =
+            |p: &Point| cell.contains(*p) && ground.is_free(*p) && slit.contains(*p) && is_wanted(*p);
         let mut runs: Vec<Vec<Point>> =
             line.split(|p| !is_open(p)).filter(|run| run.len() > 2).map(thinned).collect();
         if k % 2 == 1 {
             runs.reverse();
-            runs.iter_mut().for_each(|run| run.reverse());
+            for run in &mut runs {
+                run.reverse();
+            }
         }
         lanes.extend(runs);
     }
@@ -265,7 +292,11 @@ fn smallest_rectangle(hull: &[Point]) -> Option<(Vector, (f64, f64))> {
         let across = Vector::new(-along.y, along.x);
         let (l, w) = (spread(along), spread(across));
         let area = (l.1 - l.0) * (w.1 - w.0);
-        if l.1 - l.0 >= w.1 - w.0 { (area, along, w) } else { (area, across, spread(Vector::new(-across.y, across.x))) }
+        if l.1 - l.0 >= w.1 - w.0 {
+            (area, along, w)
+        } else {
+            (area, across, spread(Vector::new(-across.y, across.x)))
+        }
     };
     edges.map(rectangle).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, along, extent)| {
         let turn = direction(along.y.atan2(along.x));

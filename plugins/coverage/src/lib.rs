@@ -24,4 +24,8 @@ pub mod tour;
 #[cfg(test)]
 mod bench;
 
-planner_api::export_planners!(boustrophedon::Boustrophedon, hull_partition::HullPartition, tether_safe::TetherSafe);
+planner_api::export_planners!(
+    boustrophedon::Boustrophedon,
+    hull_partition::HullPartition,
+    tether_safe::TetherSafe
+);

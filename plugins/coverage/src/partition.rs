@@ -82,9 +82,9 @@ pub fn unmerged(ground: &Ground, columns: &[(Point, f64)]) -> Vec<Cell> {
 
 fn wall(boundary: &Boundary) -> Vec<Point> {
     match boundary {
-        Boundary::Circle { radius_m } => {
-            (0..WALL_SIDES).map(|k| Point::origin() + direction(TAU * k as f64 / WALL_SIDES as f64) * *radius_m).collect()
-        }
+        Boundary::Circle { radius_m } => (0..WALL_SIDES)
+            .map(|k| Point::origin() + direction(TAU * k as f64 / WALL_SIDES as f64) * *radius_m)
+            .collect(),
         Boundary::Polygon { vertices } => vertices.clone(),
     }
 }
@@ -118,7 +118,8 @@ fn rings(wall: &[Point], columns: &[(Point, f64)], anchor: Point) -> Vec<Vec<Poi
 /// What is inside the last ring: whole, or cut along the line of the columns that are left.
 fn last(outer: &[Point], left: &[Point], anchor: Point) -> Vec<Vec<Point>> {
     let Some(first) = left.first() else { return vec![outer.to_vec()] };
-    let far = left.iter().max_by(|a, b| (*a - first).norm().total_cmp(&(*b - first).norm())).expect("not empty");
+    let far =
+        left.iter().max_by(|a, b| (*a - first).norm().total_cmp(&(*b - first).norm())).expect("not empty");
     let way = if left.len() > 1 { far - first } else { anchor - first };
     let way = way.try_normalize(1e-9).unwrap_or_else(Vector::x);
     let halves = [clipped(outer, *first, way), clipped(outer, *first, -way)];
@@ -150,7 +151,9 @@ pub fn hull(points: &[Point]) -> Vec<Point> {
     let mut others: Vec<Point> = points.iter().copied().filter(|p| (p - pivot).norm() > EPSILON_M).collect();
     let angle = |p: &Point| (p.y - pivot.y).atan2(p.x - pivot.x);
     // On a tie the farther point comes last and stays.
-    others.sort_by(|a, b| angle(a).total_cmp(&angle(b)).then((a - pivot).norm().total_cmp(&(b - pivot).norm())));
+    others.sort_by(|a, b| {
+        angle(a).total_cmp(&angle(b)).then((a - pivot).norm().total_cmp(&(b - pivot).norm()))
+    });
     let mut stack = vec![pivot];
     for p in others {
         while let [.., a, b] = stack[..] {
@@ -190,11 +193,13 @@ pub fn borders(cells: &[Cell], ground: &Ground, columns: &[(Point, f64)]) -> Vec
             for p in &cells[a].polygons {
                 for q in &cells[b].polygons {
                     for ends in shared(p, q) {
-                        borders.extend(pieces(ends, ground, columns).into_iter().map(|(ends, is_open)| Border {
-                            cells: (b, a),
-                            ends,
-                            is_open,
-                            is_gate: is_open && (ends.1 - ends.0).norm() > LEAST_GATE_M,
+                        borders.extend(pieces(ends, ground, columns).into_iter().map(|(ends, is_open)| {
+                            Border {
+                                cells: (b, a),
+                                ends,
+                                is_open,
+                                is_gate: is_open && (ends.1 - ends.0).norm() > LEAST_GATE_M,
+                            }
                         }));
                     }
                 }
@@ -261,8 +266,10 @@ fn merged(mut cells: Vec<Cell>, ground: &Ground, columns: &[(Point, f64)]) -> Ve
         let Some(small) = (0..cells.len()).find(|k| is_small(&cells[*k])) else { return cells };
         let all = borders(&cells, ground, columns);
         let others = (0..cells.len()).filter(|k| *k != small && joins(&all, small, *k));
-        let whole = |k: usize| Cell { polygons: [&cells[small].polygons[..], &cells[k].polygons[..]].concat() };
-        let convexity = |cell: &Cell| cell.area_m2() / world::shape::ring_area_m2(&cell.hull()).abs().max(1e-12);
+        let whole =
+            |k: usize| Cell { polygons: [&cells[small].polygons[..], &cells[k].polygons[..]].concat() };
+        let convexity =
+            |cell: &Cell| cell.area_m2() / world::shape::ring_area_m2(&cell.hull()).abs().max(1e-12);
         let best = others
             .map(|k| (convexity(&whole(k)), k))
             .filter(|(share, k)| *share >= CONVEX_ENOUGH && is_sound(&all, &whole(*k), (small, *k), columns))
@@ -292,7 +299,15 @@ fn is_sound(borders: &[Border], whole: &Cell, (a, b): (usize, usize), columns: &
     };
     let third = |k: usize| {
         let pairs = borders.iter().filter(move |border| border.is_gate).map(|border| border.cells);
-        pairs.filter_map(move |(p, q)| if p == k { Some(q) } else if q == k { Some(p) } else { None })
+        pairs.filter_map(move |(p, q)| {
+            if p == k {
+                Some(q)
+            } else if q == k {
+                Some(p)
+            } else {
+                None
+            }
+        })
     };
     let shares = third(a).any(|other| other != b && third(b).any(|twin| twin == other));
     !shares && !columns.iter().any(|(center, _)| is_deep(*center))

@@ -155,7 +155,9 @@ fn neighbours(ways: &Ways<'_>, ctx: &Ctx<'_>) -> Result<Vec<Vec<End>>> {
             found.clear();
             for dx in -ring..=ring {
                 for dy in -ring..=ring {
-                    found.extend(cells.get(&(x + dx, y + dy)).into_iter().flatten().filter(|v| **v / 2 != u / 2));
+                    found.extend(
+                        cells.get(&(x + dx, y + dy)).into_iter().flatten().filter(|v| **v / 2 != u / 2),
+                    );
                 }
             }
             ring += 1;
@@ -169,23 +171,27 @@ fn neighbours(ways: &Ways<'_>, ctx: &Ctx<'_>) -> Result<Vec<Vec<End>>> {
     Ok(all)
 }
 
+/// The chain that a lane belongs to.
+fn root(chain: &mut [usize], mut k: usize) -> usize {
+    while chain[k] != k {
+        chain[k] = chain[chain[k]];
+        k = chain[k];
+    }
+    k
+}
+
 /// Joins the cheapest pairs of ends first.
 fn greedy(ways: &Ways<'_>, near: &[Vec<End>]) -> Tour {
     let n = ways.len();
     let mut pairs: Vec<(f64, End, End)> = Vec::new();
     for (u, list) in near.iter().enumerate() {
-        pairs.extend(list.iter().filter(|v| u < **v || !near[**v].contains(&u)).map(|v| (ways.cost(u, *v), u, *v)));
+        pairs.extend(
+            list.iter().filter(|v| u < **v || !near[**v].contains(&u)).map(|v| (ways.cost(u, *v), u, *v)),
+        );
     }
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut joined: Vec<Option<End>> = vec![None; n];
     let mut chain: Vec<usize> = (0..n / 2).collect();
-    fn root(chain: &mut [usize], mut k: usize) -> usize {
-        while chain[k] != k {
-            chain[k] = chain[chain[k]];
-            k = chain[k];
-        }
-        k
-    }
     let mut join = |u: End, v: End, joined: &mut Vec<Option<End>>| {
         let (a, b) = (root(&mut chain, u / 2), root(&mut chain, v / 2));
         if joined[u].is_none() && joined[v].is_none() && a != b {
@@ -234,14 +240,20 @@ struct Search<'a> {
     place: Vec<usize>,
 }
 
-fn improved(ways: &Ways<'_>, near: &[Vec<End>], entries: Tour, effort: &Effort, ctx: &Ctx<'_>) -> Result<Tour> {
+fn improved(
+    ways: &Ways<'_>,
+    near: &[Vec<End>],
+    entries: Tour,
+    effort: &Effort,
+    ctx: &Ctx<'_>,
+) -> Result<Tour> {
     let mut search = Search { ways, near, place: vec![0; entries.len()], entries };
     search.number(0, search.entries.len());
     let all: Vec<End> = (0..ways.len()).collect();
     search.descend(all, ctx)?;
     let n = search.entries.len();
     if n < 8 {
-        return Ok(search.from_home());
+        return Ok(search.into_tour());
     }
     let mut random = Pcg64Mcg::seed_from_u64(effort.seed);
     let kicks = (effort.kicks_per_lane * n as f64) as usize;
@@ -257,7 +269,7 @@ fn improved(ways: &Ways<'_>, near: &[Vec<End>], entries: Tour, effort: &Effort, 
             search.number(0, n);
         }
     }
-    Ok(search.from_home())
+    Ok(search.into_tour())
 }
 
 impl Search<'_> {
@@ -267,7 +279,7 @@ impl Search<'_> {
         }
     }
 
-    fn from_home(mut self) -> Tour {
+    fn into_tour(mut self) -> Tour {
         let home = self.ways.len() / 2 - 1;
         let at = self.place[home];
         self.entries.rotate_left(at);
@@ -293,13 +305,15 @@ impl Search<'_> {
     fn descend(&mut self, ends: Vec<End>, ctx: &Ctx<'_>) -> Result<f64> {
         let mut waiting = vec![false; self.ways.len()];
         let mut queue: std::collections::VecDeque<End> = ends.into();
-        queue.iter().for_each(|u| waiting[*u] = true);
+        for u in &queue {
+            waiting[*u] = true;
+        }
         let mut gained = 0.0;
         let mut rounds = 0_u32;
         while let Some(u) = queue.pop_front() {
             waiting[u] = false;
             rounds += 1;
-            if rounds % 256 == 0 {
+            if rounds.is_multiple_of(256) {
                 ctx.check()?;
             }
             if let Some((gain, touched)) = self.improve(u) {
@@ -391,7 +405,8 @@ impl Search<'_> {
             let tail = if is_exit { self.entries[far] } else { self.entries[far] ^ 1 };
             let before = self.entries[(first + n - 1) % n] ^ 1;
             let after = self.entries[(last + 1) % n];
-            let removed = ways.cost(before, self.entries[first]) + ways.cost(self.entries[last] ^ 1, after) + other;
+            let removed =
+                ways.cost(before, self.entries[first]) + ways.cost(self.entries[last] ^ 1, after) + other;
             let most = removed - new;
             if most - ways.least(tail, pv) - ways.least(before, after) <= 1e-6 {
                 continue;
@@ -416,7 +431,9 @@ impl Search<'_> {
         // Behind an exit the run begins with `u`; before an entry it ends with it.
         if v_is_exit != u_is_entry {
             taken.reverse();
-            taken.iter_mut().for_each(|e| *e ^= 1);
+            for entry in &mut taken {
+                *entry ^= 1;
+            }
         }
         let cut = if v_is_exit { at + 1 } else { at };
         self.entries.clear();
@@ -432,16 +449,14 @@ impl Search<'_> {
         let reach = 30.min(n - 3);
         let a = random.random_range(0..n - reach - 1);
         let mut steps = [0; 2];
-        steps.iter_mut().for_each(|s| *s = 1 + random.random_range(0..reach / 2));
+        for step in &mut steps {
+            *step = 1 + random.random_range(0..reach / 2);
+        }
         let (b, c) = (a + steps[0], a + steps[0] + steps[1]);
-        let ends: Vec<End> = [a, b, c]
-            .iter()
-            .flat_map(|k| [self.entries[*k] ^ 1, self.entries[(*k + 1) % n]])
-            .collect();
-        let before: f64 = [a, b, c]
-            .iter()
-            .map(|k| self.ways.cost(self.entries[*k] ^ 1, self.entries[(*k + 1) % n]))
-            .sum();
+        let ends: Vec<End> =
+            [a, b, c].iter().flat_map(|k| [self.entries[*k] ^ 1, self.entries[(*k + 1) % n]]).collect();
+        let before: f64 =
+            [a, b, c].iter().map(|k| self.ways.cost(self.entries[*k] ^ 1, self.entries[(*k + 1) % n])).sum();
         self.entries[a + 1..=c].rotate_left(steps[0]);
         self.number(a + 1, c + 1);
         let middle = a + steps[1];
