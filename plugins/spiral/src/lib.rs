@@ -6,9 +6,9 @@ mod rpf;
 mod spiral_lattice;
 mod spiral_tangent;
 
+mod band;
 mod course;
 mod lattice;
-mod polish;
 mod pursuit;
 mod refusal;
 mod strip;
