@@ -16,9 +16,12 @@ use world::{Boundary, Point, Vector, polyline};
 
 /// Length of path over which a change of heading is measured, metres.
 pub const SPAN_M: f64 = 0.2;
-/// The limits are kept with this much to spare, metres and as a share of the turn.
+/// Chords are laid along the way from places so far apart, metres.
+const MARK_M: f64 = 0.03;
+/// Once a way is found this share of the turn limit is aimed at.
+const TURN_SHARE: f64 = 0.985;
+/// Clearances are kept with this much to spare, metres.
 const SPARE_M: f64 = 2e-4;
-const SPARE_TURN: f64 = 0.99;
 /// Weights of the first and second differences of offsets, which keep the points in order.
 const ORDER_WEIGHT: f64 = 0.02;
 const BEND_WEIGHT: f64 = 0.1;
@@ -58,6 +61,8 @@ pub struct Patience {
     pub sets: usize,
     /// Growth of the penalties from one set to the next as long as a limit is broken.
     pub growth: f64,
+    /// Share of the turn limit that is aimed at.
+    pub turn_share: f64,
 }
 
 /// A band along a course.
@@ -79,7 +84,8 @@ impl<'a> Band<'a> {
         let mut best: Option<(f64, Vec<Point>)> = None;
         let (mut grown, mut allowed) = (1.0_f64, false);
         for _ in 0..patience.sets {
-            rows = self.rows(&solids, &places, &rows);
+            let share = if best.is_some() { TURN_SHARE } else { patience.turn_share };
+            rows = self.rows(&solids, &places, share, &rows);
             let before = grown;
             grown = if allowed { grown / patience.growth } else { grown * patience.growth }
                 .clamp(1.0, MOST_GROWN);
@@ -114,19 +120,22 @@ impl<'a> Band<'a> {
         way.windows(2).all(|w| self.room.is_free(w[0], w[1])) && self.turns_slowly(way)
     }
 
-    /// Whether no two chords of [`SPAN_M`] that meet in a point turn faster than allowed.
+    /// Whether no two chords of [`SPAN_M`] that meet turn faster than allowed.
     fn turns_slowly(&self, way: &[Point]) -> bool {
         let stations_m = polyline::stations_m(way);
-        let ends = (stations_m[0], stations_m[way.len() - 1]);
-        (0..way.len()).all(|index| {
-            let s_m = stations_m[index];
-            if s_m - SPAN_M < ends.0 || s_m + SPAN_M > ends.1 {
+        let length_m = stations_m[way.len() - 1];
+        let n_marks = ((length_m - 2.0 * SPAN_M) / MARK_M).max(0.0) as usize;
+        let marks_m = (0..=n_marks).map(|k| SPAN_M + k as f64 * MARK_M);
+        marks_m.take_while(|s_m| s_m + SPAN_M <= length_m).all(|s_m| {
+            let (index, share) = piece(&stations_m, s_m);
+            let most_rad = self.knots[index].turn_per_m.max(self.knots[index + 1].turn_per_m) * SPAN_M;
+            if most_rad >= PI {
                 return true;
             }
-            let before = way[index] - at(way, &stations_m, s_m - SPAN_M);
-            let after = at(way, &stations_m, s_m + SPAN_M) - way[index];
-            let turn_rad = before.perp(&after).atan2(before.dot(&after)).abs();
-            turn_rad <= self.knots[index].turn_per_m * SPAN_M + 1e-9
+            let here = way[index].lerp(&way[index + 1], share);
+            let before = here - at(way, &stations_m, s_m - SPAN_M);
+            let after = at(way, &stations_m, s_m + SPAN_M) - here;
+            before.perp(&after).atan2(before.dot(&after)).abs() <= most_rad
         })
     }
 
@@ -144,9 +153,9 @@ impl<'a> Band<'a> {
     }
 
     /// The rows about a way; multipliers of the same rows are taken over.
-    fn rows(&self, solids: &[Solid<'a>], way: &[Point], before: &[Row<'a>]) -> Vec<Row<'a>> {
+    fn rows(&self, solids: &[Solid<'a>], way: &[Point], share: f64, before: &[Row<'a>]) -> Vec<Row<'a>> {
         let mut rows = Vec::with_capacity(before.len() + 8);
-        self.turn_rows(way, &mut rows);
+        self.turn_rows(way, share, &mut rows);
         for (index, solid) in solids.iter().enumerate() {
             solid.rows(index as u32 + 1, way, &mut rows);
         }
@@ -173,11 +182,11 @@ impl<'a> Band<'a> {
     }
 
     /// The second difference over the span at every point.
-    fn turn_rows(&self, way: &[Point], rows: &mut Vec<Row<'a>>) {
+    fn turn_rows(&self, way: &[Point], share: f64, rows: &mut Vec<Row<'a>>) {
         let stations_m = polyline::stations_m(way);
         let last = way.len() - 1;
         for index in 1..last {
-            let turn_rad = self.knots[index].turn_per_m * SPAN_M * SPARE_TURN;
+            let turn_rad = self.knots[index].turn_per_m * SPAN_M * share;
             let (from_m, to_m) = (stations_m[index] - SPAN_M, stations_m[index] + SPAN_M);
             if turn_rad >= PI || from_m < stations_m[0] || to_m > stations_m[last] {
                 continue;

@@ -26,8 +26,8 @@ const TOUCH_M: f64 = 0.1;
 const MOST_COST: f64 = 2.0;
 const MOST_OTHERS: usize = 2;
 /// Most ways are soon drawn; what is not is worth more.
-const HASTE: Patience = Patience { sets: 40, growth: 1.1 };
-const PATIENCE: Patience = Patience { sets: 80, growth: 1.3 };
+const HASTE: Patience = Patience { sets: 40, growth: 1.1, turn_share: 0.95 };
+const PATIENCE: Patience = Patience { sets: 80, growth: 1.2, turn_share: 0.92 };
 /// The last point counts more than any other, so that the path arrives.
 const END_WEIGHT: f64 = 20.0;
 /// A last point inside an obstacle is missed by no more than this beside what it must be, metres.
@@ -283,7 +283,8 @@ impl Search<'_> {
                 || (index >= *window.end() && *window.end() < last)
         };
         let knot = |(k, index): (usize, &usize)| {
-            let own = self.course.turn_per_m(*index) * OWN_TURN;
+            let own = self.course.turn_per_m(*index);
+            let own = if own > self.limits.turn_per_m { own * OWN_TURN } else { 0.0 };
             Knot {
                 at: self.course.points[*index],
                 weight: indices.get(k + 1).map_or(END_WEIGHT, |next| (next - index) as f64),

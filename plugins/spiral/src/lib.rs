@@ -11,6 +11,7 @@ mod course;
 mod lattice;
 mod pursuit;
 mod refusal;
+mod ring;
 mod strip;
 mod tangent;
 
