@@ -23,8 +23,8 @@ pub struct Field {
     /// Distance from the goal, metres; infinite where it is blocked or not known yet.
     distance_m: Vec<f32>,
     is_source: Vec<bool>,
-    /// Cells that may lower their neighbours, by their distance.
-    buckets: Vec<Vec<u32>>,
+    /// Cells that may lower their neighbours, with the distance they had when they came here, by that distance.
+    buckets: Vec<Vec<(u32, f32)>>,
     /// No bucket before this one holds anything.
     first: usize,
     n_settled: usize,
@@ -108,10 +108,10 @@ impl Field {
         while self.first < self.buckets.len() && !self.is_settled(until) && keep_going() {
             let mut bucket = std::mem::take(&mut self.buckets[self.first]);
             // What is settled may put cells into the same bucket again, by rounding.
-            while let Some(cell) = bucket.pop() {
-                let cell = cell as usize;
-                if self.bucket_of(self.distance_m[cell]) == Some(self.first) {
-                    self.settle(cell);
+            while let Some((cell, distance_m)) = bucket.pop() {
+                // What was lowered since, or emptied, came here again or has nothing to give.
+                if self.distance_m[cell as usize].to_bits() == distance_m.to_bits() {
+                    self.settle(cell as usize);
                 }
             }
             if self.buckets[self.first].is_empty() {
@@ -156,7 +156,7 @@ impl Field {
             if bucket >= self.buckets.len() {
                 self.buckets.resize_with(bucket + 1, Vec::new);
             }
-            self.buckets[bucket].push(cell as u32);
+            self.buckets[bucket].push((cell as u32, distance_m));
             self.first = self.first.min(bucket);
         }
     }
