@@ -109,7 +109,7 @@ impl Journey<'_> {
         let answer = host.plan(&request);
         self.plan_times_ms.push(asked.elapsed().as_secs_f64() * 1e3);
         match answer {
-            Ok(reply) => self.plan = Course::new(reply.value.path),
+            Ok(reply) => self.plan = Course::new(&reply.value.path),
             // A planner that finds no plan may still know how to move.
             Err(fault) if matches!(fault.cause, Cause::Planner(_)) => self.plan = Course::default(),
             Err(fault) => return Err(Problem::Planner { case: method.id.to_owned(), fault }),
@@ -168,8 +168,8 @@ struct Course {
 }
 
 impl Course {
-    fn new(path: Vec<Point>) -> Self {
-        let path = polyline::resampled(&path, STEP_M);
+    fn new(path: &[Point]) -> Self {
+        let path = polyline::resampled(path, STEP_M);
         Self { stations_m: polyline::stations_m(&path), path, nearest: 0 }
     }
 
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn what_lies_ahead_begins_half_a_metre_on_and_ends_with_the_plan() {
-        let mut course = Course::new(vec![Point::origin(), Point::new(3.0, 0.0)]);
+        let mut course = Course::new(&[Point::origin(), Point::new(3.0, 0.0)]);
         course.advance(Point::new(1.0, 0.1));
         let ahead = course.ahead();
         assert!((ahead[0].x - 1.5).abs() < 1e-9 && (ahead[ahead.len() - 1].x - 3.0).abs() < 1e-9);
