@@ -13,6 +13,7 @@ pub mod shape;
 pub mod shortest;
 pub mod spiral;
 pub mod tank;
+pub mod tether;
 
 pub use coverage::{Cell, CellRun, Counts, CoverageGrid, Floor};
 pub use geometry::{Point, Pose, Vector};
