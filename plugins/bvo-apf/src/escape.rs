@@ -25,6 +25,7 @@ pub struct Escape {
     members: Vec<usize>,
     circle: (Point, f64),
     hugs: bool,
+    until_m: f64,
     walked_m: f64,
     looked: Option<(Point, Look)>,
     checked_m: f64,
@@ -47,6 +48,7 @@ impl Escape {
             members,
             circle: (Point::origin(), 0.0),
             hugs: false,
+            until_m: f64::INFINITY,
             walked_m: 0.0,
             looked: None,
             checked_m: 0.0,
@@ -64,6 +66,11 @@ impl Escape {
     /// Follows every bay of the outline from now on.
     pub fn hug(&mut self) {
         self.hugs = true;
+    }
+
+    /// Goes on until the goal is nearer than this, metres.
+    pub fn gain(&mut self, until_m: f64) {
+        self.until_m = until_m;
     }
 
     /// Tries the other side.
@@ -88,7 +95,8 @@ impl Escape {
             self.hugs = true;
         }
         let keep_m = ground.hull_m + margin_m;
-        self.members.iter().all(|m| ground.solids[*m].segment_distance_m(at, goal, keep_m) >= keep_m)
+        (goal - at).norm() < self.until_m
+            && self.members.iter().all(|m| ground.solids[*m].segment_distance_m(at, goal, keep_m) >= keep_m)
     }
 
     /// Unit vector of the way round.

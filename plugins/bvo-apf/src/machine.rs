@@ -18,6 +18,11 @@ use world::{Point, Vector};
 /// The nearest solid on the way to the goal is looked for this far ahead, as a multiple of the law's range.
 const AHEAD_RANGES: f64 = 2.0;
 
+/// An escape that begins this near to an earlier one is another attempt at the same, metres.
+const SAME_PLACE_M: f64 = 1.5;
+/// Another attempt goes on until it is this much nearer to the goal than where it began, metres.
+const GAIN_M: f64 = 1.0;
+
 /// What the machine is doing.
 #[derive(Debug, Clone)]
 pub enum Phase {
@@ -102,6 +107,7 @@ pub struct Machine {
     phase: Phase,
     clusters: Clusters,
     trail: Vec<Point>,
+    began: Vec<Point>,
     oscillation: Oscillation,
     nearby: Nearby,
     sides: Sides,
@@ -122,6 +128,7 @@ impl Machine {
             forces: Forces::default(),
             phase: Phase::Approach,
             trail: Vec::new(),
+            began: Vec::new(),
             retreats: 0,
             escapes: 0,
             news: Vec::new(),
@@ -145,6 +152,7 @@ impl Machine {
             phase: self.phase.clone(),
             clusters: self.clusters.clone(),
             trail: Vec::new(),
+            began: self.began.clone(),
             oscillation: Oscillation::new(settings.window_m, step_m),
             nearby: Nearby::new(settings.law.rho_m + self.ground.hull_m),
             sides: Sides::default(),
@@ -237,7 +245,7 @@ impl Machine {
             let solid = &self.ground.solids[index];
             let (outline_m, away) = solid.distance(at);
             let distance_m = outline_m - self.ground.hull_m;
-            if distance_m < reach_m && !is_virtual(solid) {
+            if distance_m < reach_m {
                 contacts.push(Contact { source: Source::Obstacle(solid.id), distance_m, away });
             }
         }
@@ -341,17 +349,28 @@ impl Machine {
         if hugs {
             escape.hug();
         }
+        let attempts = self.began.iter().filter(|place| (*place - at).norm() < SAME_PLACE_M).count();
+        if attempts > 0 {
+            escape.gain((goal - at).norm() - GAIN_M);
+        }
+        self.began.push(at);
         self.phase = Phase::Escape(escape);
         self.oscillation.forget();
         self.count_escape(at);
-        if let (Phase::Escape(_), Mode::Rollout | Mode::Pre, false) =
-            (&self.phase, self.settings.mode, self.in_thought)
-        {
-            let side = thought::shorter_side(self, at, goal);
-            self.take_side(side);
-        }
+        self.choose_side(at, goal, attempts);
         if let Phase::Escape(escape) = &self.phase {
             self.news.push(News::Escapes { at, side: escape.side });
+        }
+    }
+
+    /// Left, as in the paper, or the shorter side; the other one when that has been tried here before.
+    fn choose_side(&mut self, at: Point, goal: Point, attempts: usize) {
+        let rolls_out = matches!(self.settings.mode, Mode::Rollout | Mode::Pre) && !self.in_thought;
+        if rolls_out && matches!(self.phase, Phase::Escape(_)) {
+            let side = thought::shorter_side(self, at, goal);
+            self.take_side(side);
+        } else if attempts % 2 == 1 {
+            self.take_side(Side::Right);
         }
     }
 

@@ -34,7 +34,7 @@ const TANGENT_WEIGHT: ParamSpec = float("tangent_weight", "Weight of the tangent
 const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
     .help("Length of a move when planning; the paper moves 0.01, its step count fits 0.0071.")
     .group("Plan");
-const MARGIN: ParamSpec = float("margin_m", "Margin of a detour", "m", 0.02, 5.0, 0.2)
+const MARGIN: ParamSpec = float("margin_m", "Margin of a detour", "m", 0.02, 5.0, 0.14)
     .help("Distance kept from what is gone round. Gaps that leave less on both sides of the hull count as closed.")
     .group(TRAP);
 const TAUT_MARGIN: ParamSpec = float("taut_margin_m", "Margin of a taut path", "m", 0.0, 5.0, 0.05)
