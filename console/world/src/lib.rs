@@ -10,6 +10,7 @@ pub mod obstacles;
 pub mod polyline;
 pub mod readings;
 pub mod shape;
+pub mod shortest;
 pub mod spiral;
 pub mod tank;
 
