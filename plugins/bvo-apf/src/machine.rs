@@ -107,7 +107,7 @@ pub struct Machine {
     phase: Phase,
     clusters: Clusters,
     trail: Vec<Point>,
-    began: Vec<Point>,
+    began: Vec<(Point, Side)>,
     oscillation: Oscillation,
     nearby: Nearby,
     sides: Sides,
@@ -314,9 +314,12 @@ impl Machine {
         let hull_m = self.ground.hull_m;
         let Phase::Retreat(retreat) = &mut self.phase else { return Next::Nowhere };
         let view = View::of(at, &self.ground, &retreat.members, hull_m);
+        let is_at_start = self.trail.is_empty();
         let out = view.and_then(|view| match retreat.mouth {
-            Some(mouth) => mouth.is_withdrawn(at, hull_m, view.gap_rad).then_some(mouth),
-            None => Mouth::of_spiral(at, &view),
+            Some(mouth) if mouth.is_withdrawn(at, hull_m, view.gap_rad) => Some(mouth),
+            _ if is_at_start && view.gap_rad >= PI => Some(Mouth::from_outside(at, &view)),
+            // Deep in a spiral what looks like the mouth may be none.
+            seen => Mouth::left_behind(at, &view, seen.is_some()),
         });
         if let Some(mouth) = out {
             let ids = retreat.ids.clone();
@@ -349,29 +352,28 @@ impl Machine {
         if hugs {
             escape.hug();
         }
-        let attempts = self.began.iter().filter(|place| (*place - at).norm() < SAME_PLACE_M).count();
+        let is_here = |(place, _): &&(Point, Side)| (place - at).norm() < SAME_PLACE_M;
+        let attempts = self.began.iter().filter(is_here).count();
+        let before = self.began.iter().rfind(is_here).map(|(_, side)| *side);
         if attempts > 0 {
-            escape.gain((goal - at).norm() - GAIN_M);
+            escape.gain((goal - at).norm() - GAIN_M * attempts as f64);
         }
-        self.began.push(at);
         self.phase = Phase::Escape(escape);
         self.oscillation.forget();
         self.count_escape(at);
-        self.choose_side(at, goal, attempts);
+        let side = before.map_or_else(|| self.first_side(at, goal), Side::other);
+        self.began.push((at, side));
+        self.take_side(side);
         if let Phase::Escape(escape) = &self.phase {
             self.news.push(News::Escapes { at, side: escape.side });
         }
     }
 
-    /// Left, as in the paper, or the shorter side; the other one when that has been tried here before.
-    fn choose_side(&mut self, at: Point, goal: Point, attempts: usize) {
+    /// Left, as in the paper, or the side that is shorter in thought.
+    fn first_side(&self, at: Point, goal: Point) -> Side {
         let rolls_out = matches!(self.settings.mode, Mode::Rollout | Mode::Pre) && !self.in_thought;
-        if rolls_out && matches!(self.phase, Phase::Escape(_)) {
-            let side = thought::shorter_side(self, at, goal);
-            self.take_side(side);
-        } else if attempts % 2 == 1 {
-            self.take_side(Side::Right);
-        }
+        let goes_round = matches!(self.phase, Phase::Escape(_));
+        if rolls_out && goes_round { thought::shorter_side(self, at, goal) } else { Side::Left }
     }
 
     fn count_escape(&mut self, at: Point) {

@@ -15,6 +15,8 @@ const OPEN_RAD: f64 = 0.98 * PI;
 const NARROW_RAD: f64 = 0.15;
 /// A spiral is left when its opening is wider than this.
 const OUT_RAD: f64 = 1.1 * PI;
+/// Any trap is left when its opening is wider than this.
+const FAR_OUT_RAD: f64 = 1.3 * PI;
 /// Virtual circles are not smaller than this, metres.
 const SMALLEST_M: f64 = 0.15;
 /// Two circles overlap at least this much, so that a seal of any length stays finite and closed.
@@ -68,9 +70,17 @@ impl Mouth {
         gap_rad >= OPEN_RAD && self.edges.iter().all(beyond)
     }
 
-    /// The mouth of a spiral that has been left, if it has: between the outermost solids as seen from outside.
-    pub fn of_spiral(at: Point, view: &View) -> Option<Self> {
-        (view.gap_rad > OUT_RAD).then(|| Self::between(at, view.leftmost, view.rightmost))
+    /// The mouth of a spiral that has been left, if it has; further out if another mouth had been seen from within.
+    pub fn left_behind(at: Point, view: &View, had_seen: bool) -> Option<Self> {
+        let out_rad = if had_seen { FAR_OUT_RAD } else { OUT_RAD };
+        (view.gap_rad > out_rad).then(|| Self::from_outside(at, view))
+    }
+
+    /// Between the outermost solids as seen from outside.
+    pub fn from_outside(at: Point, view: &View) -> Self {
+        let mut mouth = Self::between(at, view.leftmost, view.rightmost);
+        mouth.outward = -mouth.outward;
+        mouth
     }
 
     /// Virtual circles along the mouth, none of them on the robot or the goal.
