@@ -9,7 +9,6 @@ pub mod view;
 
 pub mod machine;
 pub mod mouth;
-pub mod oscillation;
 pub mod settings;
 
 pub mod escape;

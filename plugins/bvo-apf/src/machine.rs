@@ -4,13 +4,13 @@ use crate::{
     clusters::Clusters,
     escape::Escape,
     mouth::{FIRST_VIRTUAL, Mouth, is_virtual},
-    oscillation::Oscillation,
     settings::{Mode, Settings},
     thought,
     view::View,
 };
 use field::{
-    Contact, Ground, Nearby, Side, Sides, Source, body::Body, guard, law::Forces, scene::wall_contacts,
+    Contact, Ground, Nearby, Side, Sides, Source, body::Body, guard, law::Forces, oscillation::Oscillation,
+    scene::wall_contacts,
 };
 use std::{collections::BTreeSet, f64::consts::PI};
 use world::{Point, Vector};

@@ -17,6 +17,7 @@ pub mod drawing;
 pub mod escape;
 pub mod gaps;
 pub mod goal_law;
+pub mod goal_walk;
 pub mod ground;
 pub mod guard;
 pub mod judge;
@@ -24,6 +25,7 @@ pub mod law;
 pub mod laws;
 pub mod lockstep;
 pub mod offline;
+pub mod oscillation;
 pub mod params;
 pub mod part;
 pub mod pilot;
@@ -38,6 +40,7 @@ pub mod trap;
 #[cfg(feature = "trial")]
 pub mod trial;
 pub mod turning;
+pub mod virtual_goals;
 pub mod walk;
 
 pub use contact::{Contact, Source};
