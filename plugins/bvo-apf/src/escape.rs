@@ -84,6 +84,11 @@ impl Escape {
         self.circle
     }
 
+    /// Way round the circle about the group, metres.
+    pub fn round_m(&self) -> f64 {
+        2.0 * PI * self.circle.1
+    }
+
     /// Whether the straight way to the goal clears the group; looked at every few centimetres.
     pub fn is_over(&mut self, at: Point, goal: Point, ground: &Ground, margin_m: f64, step_m: f64) -> bool {
         self.walked_m += step_m;
@@ -91,7 +96,7 @@ impl Escape {
             return false;
         }
         self.checked_m = self.walked_m + 0.05;
-        if self.walked_m > ROUNDS * 2.0 * PI * self.circle.1 {
+        if self.walked_m > ROUNDS * self.round_m() {
             self.hugs = true;
         }
         let keep_m = ground.hull_m + margin_m;

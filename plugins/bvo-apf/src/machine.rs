@@ -23,6 +23,11 @@ const SAME_PLACE_M: f64 = 1.5;
 /// Another attempt goes on until it is this much nearer to the goal than where it began, metres.
 const GAIN_M: f64 = 1.0;
 
+/// A way round may take this many times the circle about the group before it counts as leading nowhere.
+const ROUNDS: f64 = 2.5;
+/// On the way back the trap is looked at anew after this way, metres.
+const LOOK_BACK_M: f64 = 0.05;
+
 /// What the machine is doing.
 #[derive(Debug, Clone)]
 pub enum Phase {
@@ -42,6 +47,7 @@ pub struct Retreat {
     ids: BTreeSet<u32>,
     members: Vec<usize>,
     mouth: Option<Mouth>,
+    looked: Option<Point>,
 }
 
 /// Where to move next.
@@ -243,6 +249,9 @@ impl Machine {
         let mut contacts: Vec<Contact> = Vec::new();
         for &index in self.nearby.update(&self.ground, at) {
             let solid = &self.ground.solids[index];
+            if solid.is_beyond(at, self.ground.hull_m + reach_m) {
+                continue;
+            }
             let (outline_m, away) = solid.distance(at);
             let distance_m = outline_m - self.ground.hull_m;
             if distance_m < reach_m {
@@ -271,6 +280,7 @@ impl Machine {
             Phase::Escape(escape) => {
                 escape.turn_back();
                 escape.hug();
+                self.oscillation.forget_for((ROUNDS * escape.round_m() / self.settings.step_m) as usize);
                 self.count_escape(at);
             }
             Phase::Approach => self.leave_trap(at, goal),
@@ -280,7 +290,8 @@ impl Machine {
 
     fn leave_trap(&mut self, at: Point, goal: Point) {
         let Some(culprit) = self.culprit(at, goal) else { return };
-        let members = self.clusters.members(culprit);
+        let attempts = self.began.iter().filter(|(place, _)| (place - at).norm() < SAME_PLACE_M).count();
+        let members = if attempts == 0 { self.clusters.members(culprit) } else { self.all_near(at, culprit) };
         let gap_rad = |from: Point| {
             View::of(from, &self.ground, &members, self.ground.hull_m).map_or(2.0 * PI, |view| view.gap_rad)
         };
@@ -295,7 +306,16 @@ impl Machine {
         let view = View::of(at, &self.ground, &members, self.ground.hull_m);
         let mouth = view.and_then(|view| Mouth::seen(at, &view));
         let ids = members.iter().map(|index| self.ground.solids[*index].id).collect();
-        self.phase = Phase::Retreat(Retreat { ids, members, mouth });
+        self.phase = Phase::Retreat(Retreat { ids, members, mouth, looked: None });
+    }
+
+    /// Everything that pushes the robot back here, and what belongs to it: between two groups the field may have a
+    /// minimum though the robot would fit through.
+    fn all_near(&self, at: Point, culprit: usize) -> Vec<usize> {
+        let reach_m = self.settings.law.rho_m + self.ground.hull_m;
+        let near = self.ground.solids.iter().filter(|s| s.distance(at).0 < reach_m);
+        let ids = near.chain([&self.ground.solids[culprit]]).map(|s| s.id).collect();
+        self.clusters.closure(&self.ground, &ids)
     }
 
     /// What holds the robot: the first solid on the way to the goal within twice the range, or else the nearest.
@@ -313,8 +333,16 @@ impl Machine {
     fn retreat(&mut self, at: Point, goal: Point) -> Next {
         let hull_m = self.ground.hull_m;
         let Phase::Retreat(retreat) = &mut self.phase else { return Next::Nowhere };
-        let view = View::of(at, &self.ground, &retreat.members, hull_m);
         let is_at_start = self.trail.is_empty();
+        if let Some(back) = self.trail.last()
+            && retreat.looked.is_some_and(|from| (from - at).norm() < LOOK_BACK_M)
+        {
+            let back = *back;
+            self.trail.pop();
+            return Next::Back(back);
+        }
+        retreat.looked = Some(at);
+        let view = View::of(at, &self.ground, &retreat.members, hull_m);
         let out = view.and_then(|view| match retreat.mouth {
             Some(mouth) if mouth.is_withdrawn(at, hull_m, view.gap_rad) => Some(mouth),
             _ if is_at_start && view.gap_rad >= PI => Some(Mouth::from_outside(at, &view)),
@@ -358,8 +386,8 @@ impl Machine {
         if attempts > 0 {
             escape.gain((goal - at).norm() - GAIN_M * attempts as f64);
         }
+        self.oscillation.forget_for((ROUNDS * escape.round_m() / self.settings.step_m) as usize);
         self.phase = Phase::Escape(escape);
-        self.oscillation.forget();
         self.count_escape(at);
         let side = before.map_or_else(|| self.first_side(at, goal), Side::other);
         self.began.push((at, side));

@@ -91,7 +91,7 @@ fn detour_m(machine: &Machine, start: Point, goal: Point, side: Side) -> f64 {
     let mut thought = machine.thought(step_m);
     thought.take_side(side);
     let round_m = match thought.phase() {
-        Phase::Escape(escape) => 2.0 * std::f64::consts::PI * escape.circle().1,
+        Phase::Escape(escape) => escape.round_m(),
         _ => 0.0,
     };
     let steps = (PATIENCE * (round_m + 2.0) / step_m) as usize;

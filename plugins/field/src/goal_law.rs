@@ -65,6 +65,9 @@ impl Sides {
     }
 
     fn release(&mut self, index: usize) {
+        if self.kept.is_empty() {
+            return;
+        }
         self.kept.retain(|(known, _)| *known != index);
     }
 }
@@ -82,12 +85,14 @@ impl GoalLaw {
         let mut forces = Forces { attraction: self.pull.force(at, goal), ..Forces::default() };
         for &index in nearby.update(ground, at) {
             let solid = &ground.solids[index];
+            if solid.is_beyond(at, self.rho_m + ground.hull_m) {
+                sides.release(index);
+                continue;
+            }
             let (outline_m, away) = solid.distance(at);
             let distance_m = outline_m - ground.hull_m;
             if distance_m >= self.rho_m {
-                if self.tangent == TangentUse::Blocking {
-                    sides.release(index);
-                }
+                sides.release(index);
                 continue;
             }
             let contact =

@@ -45,6 +45,12 @@ impl Solid {
         &self.corners
     }
 
+    /// Whether a point is certainly further than this from the outline; costs next to nothing.
+    pub fn is_beyond(&self, at: Point, distance_m: f64) -> bool {
+        let reach_m = self.radius_m + distance_m;
+        (at - self.center).norm_squared() > reach_m * reach_m
+    }
+
     /// Signed distance from a point to the outline, metres, and the way out.
     pub fn distance(&self, at: Point) -> (f64, Vector) {
         if self.corners.len() > 1 {

@@ -5,7 +5,7 @@ use world::Point;
 
 /// It is an oscillation when the way covered leads less far than this share of it.
 const SHARE: f64 = 0.15;
-/// Without a new best distance to the goal it is one after this many windows.
+/// Without a new best distance to the goal it is one after this many windows, unless more are allowed.
 const PATIENCE_WINDOWS: usize = 20;
 
 /// Looks back over a window of steps.
@@ -16,6 +16,7 @@ pub struct Oscillation {
     recent: VecDeque<Point>,
     best_m: f64,
     without_gain: usize,
+    patience: usize,
 }
 
 impl Oscillation {
@@ -28,6 +29,7 @@ impl Oscillation {
             recent: VecDeque::with_capacity(n_steps + 1),
             best_m: f64::INFINITY,
             without_gain: 0,
+            patience: PATIENCE_WINDOWS * n_steps,
         }
     }
 
@@ -43,14 +45,20 @@ impl Oscillation {
             return false;
         }
         let first = self.recent.pop_front().expect("the window is full");
-        (at - first).norm_squared() < self.least_m * self.least_m
-            || self.without_gain > PATIENCE_WINDOWS * self.n_steps
+        (at - first).norm_squared() < self.least_m * self.least_m || self.without_gain > self.patience
     }
 
     /// Begins anew.
     pub fn forget(&mut self) {
         self.recent.clear();
         (self.best_m, self.without_gain) = (f64::INFINITY, 0);
+        self.patience = PATIENCE_WINDOWS * self.n_steps;
+    }
+
+    /// Begins anew and allows so many steps without a new best distance, if they are more than usual.
+    pub fn forget_for(&mut self, steps: usize) {
+        self.forget();
+        self.patience = self.patience.max(steps);
     }
 }
 
