@@ -146,6 +146,7 @@ impl Machine {
     }
 
     /// The same machine in thought: it takes coarser steps, remembers no way back and keeps to a side.
+    #[must_use]
     pub fn thought(&self, step_m: f64) -> Self {
         let settings = Settings { step_m, ..self.settings };
         Self {
@@ -356,15 +357,13 @@ impl Machine {
             self.go_round(at, goal, members, false);
             return self.next(at, goal);
         }
-        match self.trail.pop() {
-            Some(back) => Next::Back(back),
-            None => {
-                // It began inside: there is no way back, and a seal would shut it in.
-                let members = retreat.members.clone();
-                self.go_round(at, goal, members, true);
-                self.next(at, goal)
-            }
+        if let Some(back) = self.trail.pop() {
+            return Next::Back(back);
         }
+        // It began inside: there is no way back, and a seal would shut it in.
+        let members = retreat.members.clone();
+        self.go_round(at, goal, members, true);
+        self.next(at, goal)
     }
 
     fn seal(&mut self, at: Point, goal: Point, mouth: &Mouth) {
