@@ -88,7 +88,7 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
 fn partial_plan(fault: &Fault) -> anyhow::Result<Plan> {
     match fault.cause {
         Cause::Planner(code) if code != Code::Config => {
-            Ok(Plan { path: fault.partial.clone(), cost: 0.0, complete: false })
+            Ok(Plan { path: fault.partial.clone(), ..Plan::default() })
         }
         _ => Err(bad_input(fault.message.clone())),
     }

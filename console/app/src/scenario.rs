@@ -11,6 +11,7 @@ mod expect;
 mod floor;
 mod layout;
 mod outline;
+mod planner_keys;
 mod problem;
 mod render;
 mod robot;
@@ -40,6 +41,8 @@ pub struct Scenario {
     pub name: String,
     /// What it shows, for people; may be empty.
     pub about: String,
+    /// The file, or what else it is called in messages.
+    pub shown_name: String,
     /// The text it was read from, with settings already put in; gives the same scenario again.
     pub text: String,
     /// Start of every random choice.
@@ -72,7 +75,7 @@ impl Scenario {
             return Err(ScenarioErrors::of_file(shown_name, Complaint::TooLarge { limit_kb: LIMIT_KB }));
         }
         let table = DeTable::parse(text).map_err(|error| syntax_error(text, shown_name, &error))?;
-        assemble::assemble(text, table.get_ref()).map_err(|problems| ScenarioErrors {
+        assemble::assemble(text, shown_name, table.get_ref()).map_err(|problems| ScenarioErrors {
             shown_name: shown_name.to_owned(),
             text: text.to_owned(),
             problems,

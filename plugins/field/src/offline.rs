@@ -28,6 +28,12 @@ pub fn plan(settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Re
     match request.task {
         Task::Goto { goal, tolerance_m } => check_goal(&scene, goal, tolerance_m)?,
         Task::Follow { targets, .. } => check_targets(&scene, targets)?,
+        Task::Cover { .. } => {
+            return Err(PlannerError::new(
+                Code::Unsupported,
+                "it flies to points and along paths, it covers no floor",
+            ));
+        }
     }
     let walk = if is_flown(settings.planning, request.site.limits.radius_m) {
         rollout::fly(&scene, settings, request, ctx)?
@@ -48,7 +54,7 @@ fn is_flown(planning: Planning, radius_m: f64) -> bool {
 fn walked(scene: &Scene, settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Walk> {
     let start = request.start.position;
     match request.task {
-        Task::Goto { goal, tolerance_m } => {
+        Task::Goto { goal, tolerance_m } | Task::Cover { anchor: goal, tolerance_m, .. } => {
             let step_m = settings.walking.goto_step_m;
             descent::descend(scene, settings, &Descent { start, goal, step_m, tolerance_m }, ctx)
         }
@@ -128,5 +134,10 @@ pub fn told(walk: Walk, scene: &Scene, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
     if let Some(reason) = shortfall {
         ctx.log(LogLevel::Warn, &format!("the plan is not complete: {reason}"));
     }
-    Plan { cost: polyline::length_m(&walk.path), path: walk.path, complete: shortfall.is_none() }
+    Plan {
+        cost: polyline::length_m(&walk.path),
+        path: walk.path,
+        complete: shortfall.is_none(),
+        ..Plan::default()
+    }
 }

@@ -20,9 +20,9 @@ use world::{Boundary, Obstacle, Point, Pose, Station, World};
 const ON_PATH_M: f64 = 1e-3;
 
 /// Reads every section, checks that they fit together, and gives the scenario or everything that is wrong.
-pub fn assemble(text: &str, table: &DeTable<'_>) -> Result<Scenario, Vec<Problem>> {
+pub fn assemble(text: &str, shown_name: &str, table: &DeTable<'_>) -> Result<Scenario, Vec<Problem>> {
     let source = Source::new(text);
-    let scenario = read(&Section::root(&source, table, schema::ROOT), text);
+    let scenario = read(&Section::root(&source, table, schema::ROOT), text, shown_name);
     let problems = source.into_problems();
     match scenario {
         Some(scenario) if problems.is_empty() => Ok(scenario),
@@ -48,7 +48,7 @@ struct Floor {
     ae: Option<AeConfig>,
 }
 
-fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
+fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let name = root.slug("name");
     let about = if root.has("about") { root.text("about") } else { Some(String::new()) };
     let seed = root.whole("seed").map(|seed| seed as u64);
@@ -103,6 +103,7 @@ fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
     Some(Scenario {
         name: name?,
         about: about?,
+        shown_name: shown_name.to_owned(),
         text: text.to_owned(),
         seed: seed?,
         sim,

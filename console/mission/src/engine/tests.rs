@@ -61,7 +61,7 @@ impl PlannerLink for Straight {
 
     fn plan(&mut self, request: &PlanRequest<'_>) -> Result<Reply<Plan>, Fault> {
         self.plans += 1;
-        Ok(reply(Plan { path: vec![request.start.position], cost: 0.0, complete: true }))
+        Ok(reply(Plan { path: vec![request.start.position], complete: true, ..Plan::default() }))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>) -> Result<Reply<Command>, Fault> {

@@ -4,7 +4,7 @@ use super::invalid;
 use crate::abi::{self, input};
 use crate::{
     Boundary, Limits, Motion, Obstacle, Outline, PlanRequest, PoseEstimate, Reason, Result, Sensed, Site,
-    Task, Value, Zone, ZoneKind,
+    Task, TetherLimits, Value, Zone, ZoneKind,
 };
 use nalgebra::{Matrix3, Point2};
 
@@ -199,11 +199,30 @@ pub(super) unsafe fn reason_of(raw: &abi::PlanIn) -> Reason {
     }
 }
 
-/// The task of a request.
+/// The regions of a request: what is still to cover.
+///
+/// # Safety
+/// `raw.regions` points at outlines that stay as they are while the result is used.
+pub(super) unsafe fn regions_of<'a>(raw: &abi::PlanIn) -> Result<Vec<&'a [Point2<f64>]>> {
+    // SAFETY: promised by the caller.
+    let outlines: &[abi::Outline] = unsafe { abi::slice(raw.regions, raw.n_regions as usize) };
+    outlines
+        .iter()
+        // SAFETY: as above.
+        .map(|raw| match unsafe { outline(raw)? } {
+            Outline::Polygon { vertices } => Ok(vertices),
+            Outline::Disc { .. } | Outline::Polyline { .. } => {
+                Err(invalid("the console sent a region that is no polygon"))
+            }
+        })
+        .collect()
+}
+
+/// The task of a request; `regions` are those of the same request.
 ///
 /// # Safety
 /// `raw.targets` points at points that stay as they are while the result is used.
-pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn) -> Result<Task<'a>> {
+pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn, regions: &'a [&'a [Point2<f64>]]) -> Result<Task<'a>> {
     // SAFETY: promised by the caller.
     let targets = unsafe { points(raw.targets, raw.n_targets) };
     match raw.task {
@@ -212,6 +231,15 @@ pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn) -> Result<Task<'a>> {
             Ok(Task::Goto { goal, tolerance_m: raw.tolerance })
         }
         input::TASK_FOLLOW => Ok(Task::Follow { targets, tolerance_m: raw.tolerance }),
+        input::TASK_COVER => {
+            let anchor = *targets.first().ok_or_else(|| invalid("the console sent no anchor"))?;
+            let tether = (raw.has_tether != 0).then_some(TetherLimits {
+                reel_m: raw.reel,
+                max_wrap_rad: raw.max_wrap,
+                max_sum_wrap_rad: raw.max_sum_wrap,
+            });
+            Ok(Task::Cover { anchor, regions, tether, tolerance_m: raw.tolerance })
+        }
         unknown => Err(invalid(&format!("the console sent the unknown task {unknown}"))),
     }
 }

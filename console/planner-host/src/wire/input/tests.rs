@@ -86,6 +86,13 @@ fn every_request_arrives_as_it_was_sent() {
     let tasks = [
         Task::Goto { goal: CORNERS[1], tolerance_m: 0.1 },
         Task::Follow { targets: &CORNERS, tolerance_m: 0.2 },
+        Task::Cover { anchor: CORNERS[2], regions: &[], tether: None, tolerance_m: 0.3 },
+        Task::Cover {
+            anchor: CORNERS[2],
+            regions: &[&CORNERS, &CORNERS[..1]],
+            tether: Some(TetherLimits { reel_m: 30.0, max_wrap_rad: 1.0, max_sum_wrap_rad: f64::INFINITY }),
+            tolerance_m: 0.3,
+        },
     ];
     with_site(&[], |site| {
         for (reason, task) in reasons.iter().flat_map(|reason| tasks.iter().map(move |task| (reason, *task)))
