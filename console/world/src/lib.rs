@@ -6,6 +6,7 @@
 
 pub mod coverage;
 pub mod geometry;
+pub mod medium;
 pub mod obstacles;
 pub mod polyline;
 pub mod readings;
@@ -16,6 +17,7 @@ pub mod tank;
 
 pub use coverage::{Cell, CellRun, Counts, CoverageGrid, Floor};
 pub use geometry::{Point, Pose, Vector};
+pub use medium::{Amphibious, Medium, Mode, Pace};
 pub use obstacles::{Near, ObstacleMap};
 pub use readings::{Odometry, RangeSet, Readings, Sighting};
 pub use shape::Shape;
