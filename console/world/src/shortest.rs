@@ -16,6 +16,7 @@ mod tangent;
 
 use crate::{
     geometry::{Point, Vector},
+    polyline::nearest_on_segment,
     shape::{Shape, edges, ring_area_m2, ring_contains},
     tank::Boundary,
 };
@@ -162,18 +163,57 @@ impl GrownFloor {
         goal: Point,
         keep_going: &mut dyn FnMut() -> bool,
     ) -> Result<Way, NoWay> {
+        self.check_ends(start, goal)?;
+        let all: Vec<usize> = (0..self.corners.len()).collect();
+        self.search(start, goal, &all, keep_going)
+    }
+
+    /// A way pulled taut: the shortest one that bends only about what lies within `reach_m` of it.
+    ///
+    /// The way may touch what it likes; only its ends and its neighbourhood matter.
+    ///
+    /// # Errors
+    /// As [`GrownFloor::shortest`], but [`NoWay::Unreachable`] only means that the neighbourhood was too small.
+    pub fn pulled_taut(
+        &self,
+        way: &[Point],
+        reach_m: f64,
+        keep_going: &mut dyn FnMut() -> bool,
+    ) -> Result<Way, NoWay> {
+        let [start, .., goal] = way else { return Err(NoWay::Unreachable { n_tangents: 0 }) };
+        self.check_ends(*start, *goal)?;
+        let is_near = |corner: &Corner| {
+            let near_m = corner.radius_m + reach_m;
+            way.windows(2).any(|pair| {
+                (corner.center - nearest_on_segment(pair[0], pair[1], corner.center)).norm_squared()
+                    < near_m * near_m
+            })
+        };
+        let near: Vec<usize> =
+            (0..self.corners.len()).filter(|index| is_near(&self.corners[*index])).collect();
+        self.search(*start, *goal, &near, keep_going)
+    }
+
+    fn check_ends(&self, start: Point, goal: Point) -> Result<(), NoWay> {
         // An end that is no number fits nowhere.
         let short_m = |at: Point| Some(-self.spare_m(at)).filter(|by_m| *by_m > TOUCH_M || by_m.is_nan());
         if let Some(by_m) = short_m(start) {
             return Err(NoWay::StartBlocked { at: start, by_m });
         }
-        if let Some(by_m) = short_m(goal) {
-            return Err(NoWay::GoalBlocked { at: goal, by_m });
-        }
+        short_m(goal).map_or(Ok(()), |by_m| Err(NoWay::GoalBlocked { at: goal, by_m }))
+    }
+
+    fn search(
+        &self,
+        start: Point,
+        goal: Point,
+        corners: &[usize],
+        keep_going: &mut dyn FnMut() -> bool,
+    ) -> Result<Way, NoWay> {
         if (goal - start).norm() < TOUCH_M {
             return Ok(Way { pieces: vec![Piece::Straight { from: start, to: goal }], length_m: 0.0 });
         }
-        search::Search::new(self, start, goal).run(keep_going)
+        search::Search::new(self, start, goal, corners).run(keep_going)
     }
 }
 

@@ -85,7 +85,8 @@ impl Window {
                 }
             }
         }
-        self.best(&candidates).unwrap_or_else(|| self.turned_on_the_spot(pose, speeds, turns, pace, reference))
+        self.best(&candidates)
+            .unwrap_or_else(|| self.turned_on_the_spot(pose, speeds, turns, pace, reference))
     }
 
     /// Whether it can stop in time. A robot that is too near already may move where it does not get nearer.

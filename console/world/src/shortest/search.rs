@@ -82,6 +82,8 @@ impl Eq for Candidate {}
 pub(super) struct Search<'a> {
     floor: &'a GrownFloor,
     goal: Point,
+    /// The turns that may be taken.
+    turns: Vec<TurnId>,
     /// Exits of the start (last) and of every turn that was met.
     exits: Vec<Option<Vec<Exit>>>,
     arrivals: Vec<Arrival>,
@@ -92,11 +94,13 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub fn new(floor: &'a GrownFloor, start: Point, goal: Point) -> Self {
+    /// A search among the ways that bend about some of the floor's corners.
+    pub fn new(floor: &'a GrownFloor, start: Point, goal: Point, corners: &[usize]) -> Self {
         let n_turns = 2 * floor.corners.len();
         let mut search = Self {
             floor,
             goal,
+            turns: corners.iter().flat_map(|corner| [2 * corner, 2 * corner + 1]).collect(),
             exits: (0..=n_turns).map(|_| None).collect(),
             arrivals: Vec::new(),
             met: vec![Vec::new(); n_turns],
@@ -215,7 +219,7 @@ impl<'a> Search<'a> {
         let to_goal = goal.and_then(|tangent| {
             Some(Exit { bearing_rad: leave(&tangent)?, tangent, end: End::Goal, test: Test::Due })
         });
-        let others = (0..self.met.len()).filter(|id| turn.is_none_or(|own| own / 2 != id / 2));
+        let others = self.turns.iter().copied().filter(|id| turn.is_none_or(|own| own / 2 != id / 2));
         let to_turns = others.filter_map(|id| {
             let tangent = tangent(here, self.turn(id))?;
             let leave_rad = leave(&tangent)?;

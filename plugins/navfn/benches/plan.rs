@@ -1,0 +1,2 @@
+//! What a plan costs on the random traps.
+fn main() {}
