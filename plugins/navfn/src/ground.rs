@@ -90,7 +90,7 @@ fn fitting(distance_m: f64, wanted_m: f64, least_m: f64) -> Option<f64> {
     if distance_m >= wanted_m {
         return Some(wanted_m);
     }
-    (distance_m >= least_m - ROUNDING_M && distance_m > ROUNDING_M).then_some(distance_m - ROUNDING_M)
+    (distance_m >= least_m - ROUNDING_M && distance_m > ROUNDING_M).then_some(distance_m)
 }
 
 fn refused(site: &Site<'_>, at: Point, distance_m: f64, what: &str) -> PlannerError {

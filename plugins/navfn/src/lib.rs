@@ -10,4 +10,7 @@ pub mod marching;
 mod navigation;
 mod raster;
 
+#[cfg(test)]
+mod trial;
+
 planner_api::export_planners!(navfn::Navfn, shortest::Shortest);
