@@ -253,8 +253,7 @@ fn out_of_reach(kind: Cell) -> Option<OutOfReach> {
 fn critical_zone(run: &RunOpened, grid: &CoverageGrid) -> CriticalZone {
     let floor = grid.floor();
     let in_zone = |index: &usize| {
-        floor.is_floor(*index)
-            && run.world.boundary.wall_distance_m(floor.center(*index)) <= CRITICAL_ZONE_M
+        floor.is_floor(*index) && run.world.boundary.wall_distance_m(floor.center(*index)) <= CRITICAL_ZONE_M
     };
     let zone: Vec<usize> = (0..floor.len()).filter(in_zone).collect();
     let covered = zone.iter().filter(|index| grid.is_covered(**index)).count();

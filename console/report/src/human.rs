@@ -122,9 +122,11 @@ fn mission_time(run: &Summary) -> Option<String> {
 fn path(run: &Summary) -> Option<String> {
     let mut parts = vec![format!("{:.2} m", run.path_length_m?)];
     parts.extend(run.min_clearance_m.map(|least_m| format!("smallest clearance {least_m:.3} m")));
-    parts.extend(run.turns.zip(run.rotation_turns).map(|(turns, rotation)| {
-        format!("{} and {rotation:.1} rotations in all", counted(turns, "turn"))
-    }));
+    parts.extend(
+        run.turns.zip(run.rotation_turns).map(|(turns, rotation)| {
+            format!("{} and {rotation:.1} rotations in all", counted(turns, "turn"))
+        }),
+    );
     parts.extend(run.collisions.map(|n| counted(n, "collision")));
     Some(parts.join(", "))
 }
