@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod bench;
+pub mod fields;
 mod planners;
 mod row;
 mod sample;
