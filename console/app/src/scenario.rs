@@ -30,6 +30,7 @@ use report::Expect;
 use sim::SimConfig;
 use std::{fs::File, io::Read, path::Path};
 use toml::de::DeTable;
+use world::PlateLayout;
 
 /// A larger file is no scenario, kilobytes.
 const LIMIT_KB: usize = 1000;
@@ -51,6 +52,8 @@ pub struct Scenario {
     pub sim: SimConfig,
     /// What is to be done.
     pub mission: MissionConfig,
+    /// How the plates of the floor lie, if the drawing tells.
+    pub plates: Option<PlateLayout>,
     /// Bounds that the run is held to.
     pub expect: Expect,
 }

@@ -40,10 +40,15 @@ impl Chart {
             map,
             revision: 0,
             limits: config.limits,
-            swath_m: config.swath_m,
+            swath_m: config.lane_m(),
             clearance_m: config.clearance_m,
             seed,
         }
+    }
+
+    /// The tank as far as it is known.
+    pub fn world(&self) -> &World {
+        &self.world
     }
 
     /// Distances and neighbours on the chart.
