@@ -102,7 +102,7 @@ pub fn certify(case: &Case<'_>) -> Result<Certificate, TetherError> {
         certified: false,
         reasons: Vec::new(),
         max_cable_m: replay.max_cable.0,
-        eccentricity_m: Geodesic::new(case.anchor, ground).farthest_m(replay.lengths.iter().copied()),
+        eccentricity_m: replay.eccentricity_m(case.anchor, ground),
         max_wrap_rad: replay.max_wrap.0,
         max_sum_wrap_rad: replay.max_sum.0,
         left_out_m: case.returns.then(|| left.length_m()),
@@ -161,6 +161,15 @@ impl Replay {
         if sum_rad > self.max_sum.0 {
             self.max_sum = (sum_rad, point);
         }
+    }
+
+    /// Between the largest straight distance and the longest cable; searched for only if these differ.
+    fn eccentricity_m(&self, anchor: Point, ground: Arc<Ground>) -> f64 {
+        let straight_m = self.lengths.iter().map(|(point, _)| (point - anchor).norm()).fold(0.0, f64::max);
+        if self.max_cable.0 <= straight_m + 1e-3 {
+            return straight_m;
+        }
+        Geodesic::new(anchor, ground).farthest_m(self.lengths.iter().copied())
     }
 
     fn cable_on_return(&self, anchor: Point) -> Cable {
@@ -303,3 +312,6 @@ impl Reasons<'_> {
 fn place(at: Point) -> String {
     format!("{:.2}, {:.2} m", at.x, at.y)
 }
+
+#[cfg(test)]
+mod tests;
