@@ -1,10 +1,11 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
-use field::trial::{Layout, Outcome, Robot, Score, exact_pose, fly, score, sensed_at_rest};
+use field::trial::{Outcome, Robot, exact_pose, fly, sensed_at_rest};
 use planner_api::testing::Bench;
 use planner_api::{Drawing, Drive, Layer, Motion, Obstacle, Outline, Reason, Task};
 use proptest::prelude::*;
+use trials::{Layout, Score, score};
 use world::{Point, polyline, spiral::Spiral};
 
 /// Choices by the index of their word.
@@ -219,11 +220,11 @@ proptest! {
         let layout = Layout { columns, ..Layout::random(1) };
         let corners = [Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(0.5, 1.0)];
         let mut obstacles = layout.obstacles();
-        obstacles.push(Obstacle { id: 90, outline: Outline::Polygon { vertices: &corners }, discovered: true });
+        obstacles.push(Obstacle { id: 90, outline: Outline::Polygon { vertices: &corners }, discovered: true, velocity_m_per_s: planner_api::Vector2::zeros() });
         obstacles.push(Obstacle {
             id: 91,
             outline: Outline::Polyline { points: &corners, half_width_m: 0.0 },
-            discovered: true,
+            discovered: true, velocity_m_per_s: planner_api::Vector2::zeros(),
         });
         let site = layout.site(&obstacles, Motion::Unicycle);
         let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Random tanks.
+//! Round tanks with columns and a preset spiral.
 
 use planner_api::{Boundary, Limits, Motion, Obstacle, Outline, Site};
 use rand::{RngExt, SeedableRng};
@@ -66,6 +66,7 @@ impl Layout {
             id: id as u32,
             outline: Outline::Disc { center, radius_m },
             discovered: false,
+            velocity_m_per_s: planner_api::Vector2::zeros(),
         };
         self.columns.iter().enumerate().map(obstacle).collect()
     }
