@@ -84,6 +84,26 @@ pub struct Certificate {
     pub sealed_m2: f64,
 }
 
+impl Certificate {
+    /// The judgement of a path that could not even be looked at.
+    pub fn refused(reason: String) -> Self {
+        Self {
+            certified: false,
+            reasons: vec![reason],
+            max_cable_m: 0.0,
+            eccentricity_m: 0.0,
+            max_wrap_rad: 0.0,
+            max_sum_wrap_rad: 0.0,
+            left_out_m: None,
+            crossings_left: 0,
+            collisions: 0,
+            min_clearance_m: 0.0,
+            cut_crossings: 0,
+            sealed_m2: 0.0,
+        }
+    }
+}
+
 /// Judges a path: replays the cable, looks for collisions, crossings of cuts and sealed floor.
 ///
 /// Knows no planner. Without cuts the last two are empty.
