@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, clippy::float_cmp, reason = "tests with exact figures")]
 
 use super::*;
-use world::Point;
 use crate::{
     human::human,
     summary::{Logs, PlannerCalls},
