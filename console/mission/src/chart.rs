@@ -137,7 +137,12 @@ fn shift(by: world::Vector) -> Isometry2<f64> {
 }
 
 fn obstacle_of(obstacle: &Obstacle) -> api::Obstacle<'_> {
-    api::Obstacle { id: obstacle.id.0, outline: outline_of(&obstacle.shape), discovered: !obstacle.known }
+    api::Obstacle {
+        id: obstacle.id.0,
+        outline: outline_of(&obstacle.shape),
+        discovered: !obstacle.known,
+        velocity_m_per_s: api::Vector2::zeros(),
+    }
 }
 
 fn outline_of(shape: &Shape) -> api::Outline<'_> {

@@ -10,6 +10,7 @@ mod row;
 mod sample;
 pub mod spiral;
 mod study;
+pub mod traps;
 pub mod tune;
 
 pub use bench::Bench;

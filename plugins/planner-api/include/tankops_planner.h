@@ -107,7 +107,11 @@ typedef struct tp_outline {
   const tp_vec2 *points; /* disc: its centre; polygon: corners counter-clockwise; polyline: its corners */
   double size_m;         /* disc: radius; polyline: half its thickness */
 } tp_outline;
-typedef struct tp_obstacle { uint32_t id, flags; tp_outline outline; } tp_obstacle; /* may grow: use the stride */
+typedef struct tp_obstacle { /* may grow: use the stride */
+  uint32_t id, flags;
+  tp_outline outline;
+  tp_vec2 velocity;      /* m/s, as estimated; zero for what stands still (since minor 1) */
+} tp_obstacle;
 typedef struct tp_zone { uint32_t kind, reserved; tp_outline outline; } tp_zone;    /* may grow: use the stride */
 
 /* ---- what the console hands over ----------------------------------------------------------------------------- */
@@ -266,7 +270,7 @@ typedef struct tp_stamp { uint8_t magic[8]; uint32_t abi_major, abi_minor; } tp_
 /* The layout is the contract; the Rust side asserts the same numbers. */
 TP_ASSERT(sizeof(void *) == 8, "tankops planners are 64-bit libraries");
 TP_ASSERT(sizeof(tp_str) == 16 && sizeof(tp_vec2) == 16 && sizeof(tp_pose) == 24, "layout");
-TP_ASSERT(sizeof(tp_outline) == 24 && sizeof(tp_obstacle) == 32 && sizeof(tp_zone) == 32, "layout");
+TP_ASSERT(sizeof(tp_outline) == 24 && sizeof(tp_obstacle) == 48 && sizeof(tp_zone) == 32, "layout");
 TP_ASSERT(sizeof(tp_site) == 128 && offsetof(tp_site, boundary) == 16, "layout");
 TP_ASSERT(offsetof(tp_site, obstacles) == 40 && offsetof(tp_site, zones) == 56, "layout");
 TP_ASSERT(offsetof(tp_site, motion) == 72, "layout");

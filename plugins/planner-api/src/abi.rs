@@ -139,7 +139,7 @@ pub unsafe fn copy_sized<T: Sized32>(from: *const T) -> T {
 const _: () = {
     use std::mem::offset_of;
     assert!(size_of::<Str>() == 16 && size_of::<Vec2>() == 16 && size_of::<Pose>() == 24);
-    assert!(size_of::<Outline>() == 24 && size_of::<Obstacle>() == 32 && size_of::<Zone>() == 32);
+    assert!(size_of::<Outline>() == 24 && size_of::<Obstacle>() == 48 && size_of::<Zone>() == 32);
     assert!(size_of::<Site>() == 128 && offset_of!(Site, boundary) == 16);
     assert!(
         offset_of!(Site, obstacles) == 40 && offset_of!(Site, zones) == 56 && offset_of!(Site, motion) == 72

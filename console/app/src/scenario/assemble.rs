@@ -278,5 +278,6 @@ fn truth(robot: &Robot, start: Pose) -> RobotConfig {
         slip_sigma: robot.slip_sigma,
         odometry_sigma_ratio: robot.odometry_sigma_ratio,
         gyro_bias_rad_per_s: robot.gyro_bias_rad_per_s,
+        amphibious: robot.amphibious,
     }
 }

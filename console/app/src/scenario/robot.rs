@@ -3,7 +3,7 @@
 use super::{floor::Names, problem::Complaint, section::Section};
 use planner_api::{Limits, Motion};
 use sim::{AeConfig, NoiseModel};
-use world::{Boundary, Point, Station, StationId};
+use world::{Amphibious, Boundary, Pace, Point, Station, StationId};
 
 /// A station may lie this far behind the wall: sensors sit on it, and drawings are rounded to centimetres.
 const ON_WALL_M: f64 = 0.01;
@@ -31,6 +31,8 @@ pub struct Robot {
     pub odometry_sigma_ratio: f64,
     /// Constant error of the gyro, radians per second.
     pub gyro_bias_rad_per_s: f64,
+    /// How it walks and swims, if it does both.
+    pub amphibious: Option<Amphibious>,
 }
 
 impl Robot {
@@ -55,15 +57,15 @@ impl Robot {
 
 /// Reads `[robot]`.
 pub fn robot(section: &Section<'_>) -> Option<Robot> {
-    let motion =
-        section.word("motion").map(|word| if word == "point" { Motion::Point } else { Motion::Unicycle });
+    let word = section.word("motion");
+    let motion = word.map(|word| if word == "point" { Motion::Point } else { Motion::Unicycle });
     let radius_m = section.number("radius_m");
     if motion == Some(Motion::Unicycle) && radius_m == Some(0.0) {
         let must_be = "greater than 0 m; only motion = \"point\" has no hull";
         section.complain("radius_m", Complaint::OutOfRange(must_be.into()));
     }
-    let speed = section.number("speed_max_m_per_s");
-    let turn_deg = section.number("turn_max_deg_per_s");
+    let amphibious = word.map(|word| amphibious(section, word));
+    let one_pace = pace(section, ONE_PACE);
     let sensing_range_m = section.number("sensing_range_m");
     let acceleration = section.number("acceleration_m_per_s2");
     let start = section.point("start_m");
@@ -73,11 +75,14 @@ pub fn robot(section: &Section<'_>) -> Option<Robot> {
     let (slip_mean, slip_sigma) = (section.number("slip_mean"), section.number("slip_sigma"));
     let odometry_sigma_ratio = section.number("odometry_sigma_ratio");
     let gyro_bias_deg = section.number("gyro_bias_deg_per_s");
+    let amphibious = amphibious?;
+    // Planners are told the faster of both paces; the zones tell them where the other one holds.
+    let fastest = amphibious.map_or(one_pace?, |both| both.fastest());
     Some(Robot {
         limits: Limits {
             motion: motion?,
-            v_max_m_per_s: speed?,
-            w_max_rad_per_s: turn_deg?.to_radians(),
+            v_max_m_per_s: fastest.v_max_m_per_s,
+            w_max_rad_per_s: fastest.w_max_rad_per_s,
             radius_m: radius_m?,
             sensing_range_m: sensing_range_m?,
         },
@@ -90,7 +95,33 @@ pub fn robot(section: &Section<'_>) -> Option<Robot> {
         slip_sigma: slip_sigma?,
         odometry_sigma_ratio: odometry_sigma_ratio?,
         gyro_bias_rad_per_s: gyro_bias_deg?.to_radians(),
+        amphibious,
     })
+}
+
+/// The limits that hold everywhere, and those that hold by zone.
+const ONE_PACE: [&str; 2] = ["speed_max_m_per_s", "turn_max_deg_per_s"];
+const ON_LAND: [&str; 2] = ["land_speed_m_per_s", "land_turn_deg_per_s"];
+const UNDERWATER: [&str; 2] = ["underwater_speed_m_per_s", "underwater_turn_deg_per_s"];
+
+/// How a robot walks and swims, if its motion is that; keys that do not go with the motion are refused.
+fn amphibious(section: &Section<'_>, motion: &str) -> Option<Amphibious> {
+    let beside = format!("motion = \"{motion}\"");
+    if motion != "amphibious" {
+        section.refuse(&ON_LAND, &beside);
+        section.refuse(&UNDERWATER, &beside);
+        section.refuse(&["transition_ticks"], &beside);
+        return None;
+    }
+    section.refuse(&ONE_PACE, &beside);
+    let (land, underwater) = (pace(section, ON_LAND), pace(section, UNDERWATER));
+    let transition_steps = section.whole("transition_ticks")? as u32;
+    Some(Amphibious { land: land?, underwater: underwater?, transition_steps })
+}
+
+fn pace(section: &Section<'_>, keys: [&'static str; 2]) -> Option<Pace> {
+    let (speed, turn_deg) = (section.number(keys[0]), section.number(keys[1]));
+    Some(Pace { v_max_m_per_s: speed?, w_max_rad_per_s: turn_deg?.to_radians() })
 }
 
 /// Reads `[ae]` without its stations.

@@ -234,10 +234,15 @@ static ZONES: &[Key] = &[
 ];
 
 static ROBOT: &[Key] = &[
-    word("motion", &["point", "unicycle"]).or_word("unicycle"),
+    word("motion", &["point", "unicycle", "amphibious"]).or_word("unicycle"),
     number("radius_m", "m", at_least(0.0).up_to(50.0)).or(0.25),
     number("speed_max_m_per_s", "m/s", above(0.0).up_to(10.0)).or(0.4),
     number("turn_max_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(60.0),
+    number("land_speed_m_per_s", "m/s", above(0.0).up_to(10.0)).or(0.13),
+    number("land_turn_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(6.9),
+    number("underwater_speed_m_per_s", "m/s", above(0.0).up_to(10.0)).or(0.23),
+    number("underwater_turn_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(17.8),
+    key("transition_ticks", "", Kind::Whole(0, 10_000)).or_whole(20),
     number("acceleration_m_per_s2", "m/s²", above(0.0).up_to(100.0)).or(0.5),
     number("sensing_range_m", "m", above(0.0).up_to(100.0)).or(3.0),
     point("start_m").or_none("the first point of the path"),

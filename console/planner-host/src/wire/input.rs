@@ -19,7 +19,10 @@ impl Writer {
     }
 
     fn obstacle(&mut self, obstacle: &Obstacle<'_>) {
-        self.u32(obstacle.id).flag(obstacle.discovered).outline(&obstacle.outline);
+        self.u32(obstacle.id)
+            .flag(obstacle.discovered)
+            .outline(&obstacle.outline)
+            .vector(&obstacle.velocity_m_per_s);
     }
 
     fn zone(&mut self, zone: &Zone<'_>) {
@@ -109,7 +112,12 @@ impl Body<'_> {
     }
 
     fn obstacle(&mut self) -> Read<OwnedObstacle> {
-        Ok(OwnedObstacle { id: self.u32()?, discovered: self.flag()?, outline: self.outline()? })
+        Ok(OwnedObstacle {
+            id: self.u32()?,
+            discovered: self.flag()?,
+            outline: self.outline()?,
+            velocity_m_per_s: self.point()?.coords,
+        })
     }
 
     fn zone(&mut self) -> Read<OwnedZone> {

@@ -23,6 +23,7 @@ pub(crate) enum OwnedOutline {
 pub(crate) struct OwnedObstacle {
     pub(crate) id: u32,
     pub(crate) discovered: bool,
+    pub(crate) velocity_m_per_s: nalgebra::Vector2<f64>,
     pub(crate) outline: OwnedOutline,
 }
 
@@ -109,7 +110,12 @@ impl OwnedOutline {
 fn lend_obstacles(obstacles: &[OwnedObstacle]) -> Vec<Obstacle<'_>> {
     obstacles
         .iter()
-        .map(|o| Obstacle { id: o.id, outline: o.outline.lend(), discovered: o.discovered })
+        .map(|o| Obstacle {
+            id: o.id,
+            outline: o.outline.lend(),
+            discovered: o.discovered,
+            velocity_m_per_s: o.velocity_m_per_s,
+        })
         .collect()
 }
 

@@ -52,7 +52,12 @@ pub fn pose(position: Point2<f64>) -> PoseEstimate {
 
 pub fn with_site<R>(call: impl FnOnce(&Site<'_>) -> R) -> R {
     let column = Outline::Disc { center: Point2::new(5.0, 0.0), radius_m: 0.3 };
-    let obstacles = [Obstacle { id: 1, outline: column, discovered: false }];
+    let obstacles = [Obstacle {
+        id: 1,
+        outline: column,
+        discovered: false,
+        velocity_m_per_s: planner_api::Vector2::zeros(),
+    }];
     let limits = Limits {
         motion: Motion::Unicycle,
         v_max_m_per_s: 0.3,
@@ -118,7 +123,12 @@ pub fn step_at(host: &mut Host, tick: u64, pose: PoseEstimate) -> Result<Reply<C
         target: GOAL,
         targets_ahead: &[GOAL],
         path_ahead: &[],
-        obstacles: &[Obstacle { id: 1, outline: far, discovered: false }],
+        obstacles: &[Obstacle {
+            id: 1,
+            outline: far,
+            discovered: false,
+            velocity_m_per_s: planner_api::Vector2::zeros(),
+        }],
     })
 }
 

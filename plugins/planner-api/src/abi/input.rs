@@ -42,6 +42,7 @@ pub struct Obstacle {
     pub id: u32,
     pub flags: u32,
     pub outline: Outline,
+    pub velocity: Vec2,
 }
 
 /// A part of the floor with a meaning of its own. Arrays of it carry a stride.

@@ -39,7 +39,12 @@ fn boundary(from: &site::Boundary<'_>) -> Outline {
 pub fn obstacles(from: &[site::Obstacle<'_>]) -> Vec<Obstacle> {
     let flags = |discovered| if discovered { input::OBSTACLE_DISCOVERED } else { 0 };
     from.iter()
-        .map(|o| Obstacle { id: o.id, flags: flags(o.discovered), outline: outline(&o.outline) })
+        .map(|o| Obstacle {
+            id: o.id,
+            flags: flags(o.discovered),
+            outline: outline(&o.outline),
+            velocity: o.velocity_m_per_s.into(),
+        })
         .collect()
 }
 

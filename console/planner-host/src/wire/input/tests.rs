@@ -45,9 +45,19 @@ fn obstacles() -> [Obstacle<'static>; 3] {
     let disc = Outline::Disc { center: Point2::new(1.0, 2.0), radius_m: 0.5 };
     let line = Outline::Polyline { points: &CORNERS, half_width_m: 0.1 };
     [
-        Obstacle { id: 7, outline: disc, discovered: true },
-        Obstacle { id: 8, outline: Outline::Polygon { vertices: &CORNERS }, discovered: false },
-        Obstacle { id: 9, outline: line, discovered: false },
+        Obstacle {
+            id: 7,
+            outline: disc,
+            discovered: true,
+            velocity_m_per_s: planner_api::Vector2::new(0.5, -0.25),
+        },
+        Obstacle {
+            id: 8,
+            outline: Outline::Polygon { vertices: &CORNERS },
+            discovered: false,
+            velocity_m_per_s: planner_api::Vector2::zeros(),
+        },
+        Obstacle { id: 9, outline: line, discovered: false, velocity_m_per_s: planner_api::Vector2::zeros() },
     ]
 }
 
