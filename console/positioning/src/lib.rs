@@ -4,11 +4,17 @@
 //! Cost: a fix takes a few microseconds, a step of the filter less than one.
 
 pub mod fix;
+pub mod noise;
 
 pub mod aggregate;
+pub mod bounded;
+pub mod consensus;
 pub mod linear;
 pub mod nonlinear;
+pub mod screened;
+pub mod weighted;
 
+pub mod calibration;
 pub mod ekf;
 pub mod positioner;
 
@@ -19,8 +25,14 @@ mod pair;
 mod quality;
 
 pub use aggregate::Aggregation;
+pub use bounded::Bounded;
+pub use calibration::{Calibration, Unknowns};
+pub use consensus::{Consensus, WrongRanges};
 pub use ekf::{Ekf, MotionNoise};
 pub use fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Ranging, Residual};
 pub use linear::LinearLs;
+pub use noise::RangeNoise;
 pub use nonlinear::Nls;
 pub use positioner::{CycleResult, Estimate, Positioner, PositionerConfig, SolverKind};
+pub use screened::Screened;
+pub use weighted::WeightedLinear;

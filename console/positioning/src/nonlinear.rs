@@ -30,8 +30,9 @@ const MIRROR_MARGIN: f64 = 9.0;
 /// goes on with Newton steps under Levenberg-Marquardt damping; plain Gauss-Newton steps zigzag on the small range
 /// circle of a station close by. Reaches the Cramér-Rao bound of normal noise.
 ///
-/// Stations on one line, and two stations, need a prior: there is a mirror solution, and the prior chooses. It has no
-/// other influence on the fix.
+/// Stations on one line need a prior: there is a mirror solution, and the prior chooses. Two stations give both
+/// crossings of their circles, one as position and the other as mirror; a prior chooses there too. It has no other
+/// influence on the fix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Nls;
 
@@ -42,17 +43,20 @@ impl PositionSolver for Nls {
         stations: &[Station],
         prior: Option<(Point, Matrix2<f64>)>,
     ) -> Result<Fix, FixError> {
-        let anchors = anchored(ranges, stations)?;
-        let prior =
-            prior.filter(|(at, covariance)| at.iter().chain(covariance.iter()).all(|c| c.is_finite()));
-        match (anchors.as_slice(), prior) {
-            ([first, second], Some((near, _))) => solve_pair(first, second, near),
-            ([] | [_] | [_, _], _) => Err(FixError::TooFewStations {
-                have: anchors.len(),
-                need: if prior.is_some() { 2 } else { 3 },
-            }),
-            _ => solve_many(&anchors, prior),
-        }
+        solve_anchors(&anchored(ranges, stations)?, prior)
+    }
+}
+
+/// The least squares fit to anchors; two of them leave both crossings of their circles, and a prior chooses.
+pub(crate) fn solve_anchors(
+    anchors: &[Anchor],
+    prior: Option<(Point, Matrix2<f64>)>,
+) -> Result<Fix, FixError> {
+    let prior = prior.filter(|(at, covariance)| at.iter().chain(covariance.iter()).all(|c| c.is_finite()));
+    match anchors {
+        [first, second] => solve_pair(first, second, prior.map(|(near, _)| near)),
+        [] | [_] => Err(FixError::TooFewStations { have: anchors.len(), need: 2 }),
+        _ => solve_many(anchors, prior),
     }
 }
 
@@ -158,17 +162,17 @@ fn descend(anchors: &[Anchor], start: Point) -> Result<Minimum, FixError> {
 }
 
 /// The cost at a position with its derivatives.
-struct Slope {
+pub(crate) struct Slope {
     cost: f64,
-    gradient: Vector,
+    pub gradient: Vector,
     /// Second derivatives as far as Gauss and Newton take them.
-    curvature: Matrix2<f64>,
+    pub curvature: Matrix2<f64>,
     /// What they leave out: the bend of the range circles, which matters close to a station.
     bend: Matrix2<f64>,
 }
 
 impl Slope {
-    fn at(anchors: &[Anchor], position: Point) -> Self {
+    pub fn at(anchors: &[Anchor], position: Point) -> Self {
         let mut slope = Self {
             cost: 0.0,
             gradient: Vector::zeros(),
@@ -192,7 +196,7 @@ impl Slope {
     /// The damped Newton step downhill; none if the numbers have run away.
     ///
     /// Damping by the trace also holds where the stations see the position from one direction only.
-    fn step(&self, damping: f64) -> Option<Vector> {
+    pub fn step(&self, damping: f64) -> Option<Vector> {
         let least = Matrix2::identity() * (damping * self.curvature.trace());
         let inverse = inverse_of(&(made_positive(self.curvature + self.bend) + least))?;
         Some(-(inverse * self.gradient)).filter(|step| step.iter().all(|c| c.is_finite()))
@@ -210,7 +214,7 @@ fn made_positive(matrix: Matrix2<f64>) -> Matrix2<f64> {
 }
 
 /// Inverse of the covariance: `sum u_i u_i^T / sigma_i^2` with `u_i` the directions from the stations.
-fn information_at(anchors: &[Anchor], position: Point) -> Matrix2<f64> {
+pub(crate) fn information_at(anchors: &[Anchor], position: Point) -> Matrix2<f64> {
     anchors
         .iter()
         .map(|a| a.view_from(position))

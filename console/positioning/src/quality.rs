@@ -10,7 +10,12 @@ use world::Point;
 /// Normal quantile beyond which residuals are suspect: one honest fix in 100.
 const SUSPECT_Z: f64 = 2.326_347_874;
 /// Normal quantile beyond which residuals raise an alarm: one honest fix in 1000.
-const ALARM_Z: f64 = 3.090_232_306;
+pub(crate) const ALARM_Z: f64 = 3.090_232_306;
+
+/// Standard deviations that a protection level grants to chance: one position in 3000 lies further off.
+const PROTECTION_SIGMAS: f64 = 4.0;
+/// A range whose residual keeps a smaller share of its variance than this cannot be checked by the others.
+const LEAST_SPARED: f64 = 1e-6;
 
 /// Stands for an infinite dilution, so that every number stays finite.
 const NO_GEOMETRY: f64 = 1e9;
@@ -43,9 +48,37 @@ pub(crate) fn assess(
         gdop: gdop(anchors, position),
         conditioning,
         mirror,
-        protection_level_m: None,
+        protection_level_m: protection_level_m(anchors, position, &covariance),
         integrity: judge(chi2, degrees_of_freedom),
     })
+}
+
+/// Radius that holds the truth even if any one of the ranges is wrong: for each station the distance to the position
+/// of the others and their own uncertainty (solution separation). `None` if some station cannot be spared.
+fn protection_level_m(anchors: &[Anchor], position: Point, covariance: &Matrix2<f64>) -> Option<f64> {
+    let reach_m = |covariance: &Matrix2<f64>| PROTECTION_SIGMAS * largest_sigma_m(covariance);
+    if anchors.len() < 3 {
+        return None;
+    }
+    let mut level_m = reach_m(covariance);
+    for view in anchors.iter().map(|a| a.view_from(position)) {
+        // Taking one range out of a least squares fit (Sherman and Morrison).
+        let pull = covariance * view.direction;
+        let spared = view.sigma_m.powi(2) - view.direction.dot(&pull);
+        let without = covariance + pull * pull.transpose() / spared;
+        let shift_m = (pull * (view.residual_m / spared)).norm();
+        let needed_m = shift_m + reach_m(&without);
+        if spared <= view.sigma_m.powi(2) * LEAST_SPARED || !needed_m.is_finite() {
+            return None;
+        }
+        level_m = level_m.max(needed_m);
+    }
+    Some(level_m)
+}
+
+fn largest_sigma_m(covariance: &Matrix2<f64>) -> f64 {
+    let (a, b, c) = (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]);
+    (f64::midpoint(a, c) + ((a - c) / 2.0).hypot(b)).max(0.0).sqrt()
 }
 
 /// What a sum of squared normalised residuals says.

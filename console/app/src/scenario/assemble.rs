@@ -115,12 +115,17 @@ impl Floor {
     fn read(sections: &Sections<'_>) -> Self {
         let boundary = floor::tank(sections.root);
         let ae = sections.ae.as_ref();
+        let stations = ae.map(|section| robot::stations(section, boundary.as_ref())).unwrap_or_default();
+        let mut ranging = ae.and_then(robot::ae);
+        if let (Some(section), Some(ranging)) = (ae, &mut ranging) {
+            ranging.disturbances.faults = robot::faults(section, &stations);
+        }
         Self {
             obstacles: floor::obstacles(sections.root, boundary.as_ref()),
             zones: floor::zones(sections.root),
             robot: sections.robot.as_ref().and_then(robot::robot),
-            stations: ae.map(|section| robot::stations(section, boundary.as_ref())).unwrap_or_default(),
-            ae: ae.and_then(robot::ae),
+            stations,
+            ae: ranging,
             boundary,
         }
     }

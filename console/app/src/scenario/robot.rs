@@ -1,8 +1,8 @@
 //! The robot and its ranging: `[robot]` and `[ae]`.
 
-use super::{floor::Names, problem::Complaint, section::Section};
+use super::{floor::Names, problem::Complaint, section::Section, suggest};
 use planner_api::{Limits, Motion};
-use sim::{AeConfig, NoiseModel};
+use sim::{AeConfig, BehindColumns, Disturbances, NoiseModel, StationFault};
 use world::{Boundary, Point, Station, StationId};
 
 /// A station may lie this far behind the wall: sensors sit on it, and drawings are rounded to centimetres.
@@ -97,14 +97,66 @@ pub fn robot(section: &Section<'_>) -> Option<Robot> {
 pub fn ae(section: &Section<'_>) -> Option<AeConfig> {
     let (period_s, repetitions) = (section.number("period_s"), section.whole("repetitions"));
     let (noise, dropout) = (noise(section), section.number("dropout"));
-    let outages_s = section.times("outages_s");
+    let (outages_s, disturbances) = (section.times("outages_s"), disturbances(section));
     Some(AeConfig {
         period_s: period_s?,
         repetitions: repetitions? as u32,
         noise: noise?,
         dropout: dropout?,
         outages_s: outages_s?,
+        disturbances: disturbances?,
     })
+}
+
+/// What goes wrong with ranges besides their scatter, but for the faults of single stations.
+fn disturbances(section: &Section<'_>) -> Option<Disturbances> {
+    let (ping_dropout, nlos_chance) = (section.number("ping_dropout"), section.number("nlos_chance"));
+    let (outlier_chance, outlier_factor) =
+        (section.number("outlier_chance"), section.number("outlier_factor"));
+    let (late_ping_chance, late_mean_m) =
+        (section.number("late_ping_chance"), section.number("late_mean_m"));
+    let behind = section.word("behind_columns");
+    let (survey, sound) = (section.number("survey_sigma_m"), section.number("sound_speed_error_ratio"));
+    Some(Disturbances {
+        ping_dropout: ping_dropout?,
+        outlier_chance: outlier_chance?,
+        outlier_factor: outlier_factor?,
+        late_ping_chance: late_ping_chance?,
+        nlos_chance: nlos_chance?,
+        late_mean_m: late_mean_m?,
+        behind_columns: match behind? {
+            "creeping" => BehindColumns::Creeping,
+            "late" => BehindColumns::Late,
+            "wall-echo" => BehindColumns::WallEcho,
+            "silent" => BehindColumns::Silent,
+            _ => BehindColumns::Heard,
+        },
+        survey_sigma_m: survey?,
+        sound_speed_error_ratio: sound?,
+        faults: Vec::new(),
+    })
+}
+
+/// Reads the faults of single stations.
+pub fn faults(section: &Section<'_>, stations: &[Station]) -> Vec<StationFault> {
+    section.tables("faults").iter().filter_map(|entry| fault(entry, stations)).collect()
+}
+
+fn fault(entry: &Section<'_>, stations: &[Station]) -> Option<StationFault> {
+    let name = entry.text("station");
+    let (from_s, to_s) = (entry.number("from_s"), entry.number("to_s"));
+    let late_m = entry.number("late_m");
+    let name = name?;
+    let station = stations.iter().find(|station| station.name == name);
+    if station.is_none() {
+        let nearest = suggest::nearest(&name, stations.iter().map(|station| station.name.as_str()));
+        let hint = nearest.map(|name| format!("; did you mean \"{name}\"?")).unwrap_or_default();
+        entry.complain("station", Complaint::OutOfRange(format!("the name of a station{hint}")));
+    }
+    if from_s? >= to_s? {
+        entry.complain("to_s", Complaint::OutOfRange(format!("greater than {} s, the beginning", from_s?)));
+    }
+    Some(StationFault { station: station?.id, from_s: from_s?, to_s: to_s?, late_m })
 }
 
 fn noise(section: &Section<'_>) -> Option<NoiseModel> {
@@ -115,18 +167,26 @@ fn noise(section: &Section<'_>) -> Option<NoiseModel> {
     let model = noise.word("model")?;
     let beside = format!("model = \"{model}\"");
     match model {
-        "uniform" => {
+        "uniform" | "triangular" => {
             noise.refuse(&["sigma_ratio"], &beside);
             noise.require("ratio", "add ratio = 0.05 for at most 5 % of the distance");
-            Some(NoiseModel::Uniform { ratio: noise.number("ratio")? })
+            let ratio = noise.number("ratio")?;
+            let is_uniform = model == "uniform";
+            Some(if is_uniform { NoiseModel::Uniform { ratio } } else { NoiseModel::Triangular { ratio } })
         }
-        "gaussian" => {
+        "gaussian" | "heavy-tailed" => {
             noise.refuse(&["ratio"], &beside);
             noise.require(
                 "sigma_ratio",
                 "add sigma_ratio = 0.03 for a standard deviation of 3 % of the distance",
             );
-            Some(NoiseModel::Gaussian { sigma_ratio: noise.number("sigma_ratio")? })
+            let sigma_ratio = noise.number("sigma_ratio")?;
+            let is_normal = model == "gaussian";
+            Some(if is_normal {
+                NoiseModel::Gaussian { sigma_ratio }
+            } else {
+                NoiseModel::HeavyTailed { sigma_ratio }
+            })
         }
         _ => {
             noise.refuse(&["ratio", "sigma_ratio"], &beside);
@@ -141,7 +201,8 @@ pub fn range_sigma_ratio(noise: NoiseModel) -> f64 {
     match noise {
         NoiseModel::None => LEAST,
         NoiseModel::Uniform { ratio } => (ratio / 3.0_f64.sqrt()).max(LEAST),
-        NoiseModel::Gaussian { sigma_ratio } => sigma_ratio.max(LEAST),
+        NoiseModel::Triangular { ratio } => (ratio / 6.0_f64.sqrt()).max(LEAST),
+        NoiseModel::Gaussian { sigma_ratio } | NoiseModel::HeavyTailed { sigma_ratio } => sigma_ratio.max(LEAST),
     }
 }
 
