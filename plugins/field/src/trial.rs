@@ -2,17 +2,11 @@
 //! the mission's rule for the target.
 
 pub mod flight;
-pub mod layout;
-pub mod paper;
-pub mod score;
 
 use planner_api::{Obstacle, PoseEstimate, Sensed};
 use world::Point;
 
 pub use flight::{Outcome, Robot, fly};
-pub use layout::Layout;
-pub use paper::{Distribution, Sampling};
-pub use score::{Safety, Score, floor_rmse_m, safety, score};
 
 /// A pose known exactly, looking east.
 pub fn exact_pose(position: Point) -> PoseEstimate {

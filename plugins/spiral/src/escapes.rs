@@ -98,8 +98,9 @@ fn settings(config: &Config<'_>, escape: Escape) -> Settings {
 mod tests {
     use super::*;
     use crate::bench::plan;
-    use field::trial::{Distribution, Layout, Robot, Sampling, fly, score};
+    use field::trial::{Robot, fly};
     use planner_api::Motion;
+    use trials::{Distribution, Layout, Sampling, score};
 
     /// Wang et al. 2023, first distribution.
     const PAPER: [(&str, f64); 4] =

@@ -1,10 +1,11 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
-use field::trial::{Layout, Outcome, Robot, exact_pose, fly, sensed_at_rest};
+use field::trial::{Outcome, Robot, exact_pose, fly, sensed_at_rest};
 use planner_api::testing::Bench;
 use planner_api::{Code, Drive, LogLevel, Motion, Obstacle, Outline, Reason, StopReason, Task};
 use proptest::prelude::*;
+use trials::Layout;
 use world::{Point, polyline};
 
 /// A robot of radius 0.25 m in a round tank of radius 8 m.

@@ -1,6 +1,5 @@
 //! One flight.
 
-use super::layout::Layout;
 use nalgebra::Matrix3;
 use planner_api::{
     Drive, Motion, Obstacle, Outline, Planner, PoseEstimate, Result, Sensed, Site, Status, testing::Bench,
@@ -8,6 +7,7 @@ use planner_api::{
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64Mcg;
+use trials::Layout;
 use world::{Point, Pose, Vector, geometry::wrap_angle_rad, polyline};
 
 /// Length of a tick, seconds.

@@ -1,10 +1,11 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
-use field::trial::{Layout, Outcome, Robot, Score, exact_pose, fly, score, sensed_at_rest};
+use field::trial::{Outcome, Robot, exact_pose, fly, sensed_at_rest};
 use planner_api::testing::Bench;
 use planner_api::{Drawing, Drive, Layer, Motion, Obstacle, Outline, Reason, Task};
 use proptest::prelude::*;
+use trials::{Layout, Score, score};
 use world::{Point, polyline, spiral::Spiral};
 
 /// Choices by the index of their word.

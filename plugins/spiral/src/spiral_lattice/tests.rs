@@ -2,9 +2,10 @@
 
 use super::*;
 use crate::bench::{CLEARANCE_M, Figures, plan};
-use field::trial::{Distribution, Layout, Robot, Sampling, exact_pose, fly, score};
+use field::trial::{Robot, exact_pose, fly};
 use planner_api::{Code, Motion, PlannerError, Reason, Task, testing::Bench};
 use proptest::prelude::*;
+use trials::{Distribution, Layout, Sampling, score};
 use world::{Point, Vector, spiral::Spiral};
 
 fn tank(points: &[Point]) -> Layout {
@@ -157,7 +158,7 @@ proptest! {
         let sampling = if square { Sampling::Square } else { Sampling::Disk };
         let layout = Distribution::D1.layout(sampling, seed, CLEARANCE_M);
         if let Ok(plan) = plan::<SpiralLattice>(&layout, &[]) {
-            let safety = field::trial::safety(&plan.path, &layout.path, &layout.columns, layout.radius_m);
+            let safety = trials::safety(&plan.path, &layout.path, &layout.columns, layout.radius_m);
             prop_assert!(safety.clearance_m >= CLEARANCE_M - 1e-6 && safety.wall_m >= -1e-6);
             prop_assert_eq!(plan.path.len(), layout.path.len());
         }

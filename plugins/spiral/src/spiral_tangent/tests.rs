@@ -3,17 +3,17 @@
 use super::*;
 use crate::bench::{CLEARANCE_M, Figures, plan};
 use field::Keep;
-use field::trial::{Distribution, Layout, Outcome, Robot, exact_pose, fly};
+use field::trial::{Outcome, Robot, exact_pose, fly};
 use planner_api::{Drive, Motion, Obstacle, Outline, testing::Bench};
 use proptest::prelude::*;
+use trials::{Distribution, Layout};
 use world::{Boundary, Vector};
 
 #[test]
 fn a_free_spiral_is_followed_exactly() {
-    let layout =
-        Layout { columns: Vec::new(), ..Distribution::D1.layout(field::trial::Sampling::Disk, 0, 0.3) };
+    let layout = Layout { columns: Vec::new(), ..Distribution::D1.layout(trials::Sampling::Disk, 0, 0.3) };
     let plan = plan::<SpiralTangent>(&layout, &[]).unwrap();
-    let score = field::trial::score(&plan.path, &layout.path);
+    let score = trials::score(&plan.path, &layout.path);
     assert!(
         plan.complete && score.cross_track_worst_m < 0.02,
         "{} {}",
@@ -60,7 +60,7 @@ fn hold(figures: &Figures, ok: f64, cross_track_m: f64, precision: f64) {
 
 #[test]
 fn what_lies_beyond_its_range_changes_nothing() {
-    let spiral = Distribution::D1.layout(field::trial::Sampling::Disk, 0, CLEARANCE_M);
+    let spiral = Distribution::D1.layout(trials::Sampling::Disk, 0, CLEARANCE_M);
     let near = spiral.path[700];
     let short = |columns: Vec<(Point, f64)>| {
         let path = spiral.path[600..760].to_vec();
@@ -76,7 +76,7 @@ fn what_lies_beyond_its_range_changes_nothing() {
 fn a_ring_of_columns_is_refused_with_the_station() {
     let ring = (0..60).map(|k| f64::from(k) * std::f64::consts::TAU / 60.0);
     let columns = ring.map(|a| (Point::new(4.0 * a.cos(), 4.0 * a.sin()), 0.0)).collect();
-    let layout = Layout { columns, ..Distribution::D1.layout(field::trial::Sampling::Disk, 0, CLEARANCE_M) };
+    let layout = Layout { columns, ..Distribution::D1.layout(trials::Sampling::Disk, 0, CLEARANCE_M) };
     let error = plan::<SpiralTangent>(&layout, &[]).unwrap_err();
     assert!(error.code == Code::NoPath && error.message.contains("proved"), "{}", error.message);
     assert!(error.partial.iter().all(|p| p.coords.norm() > 4.0));
@@ -140,10 +140,10 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
     fn every_plan_keeps_its_distance_and_its_wall(seed in 0..100_000_u64, square in any::<bool>()) {
-        let sampling = if square { field::trial::Sampling::Square } else { field::trial::Sampling::Disk };
+        let sampling = if square { trials::Sampling::Square } else { trials::Sampling::Disk };
         let layout = Distribution::D1.layout(sampling, seed, CLEARANCE_M);
         if let Ok(plan) = plan::<SpiralTangent>(&layout, &[]) {
-            let safety = field::trial::safety(&plan.path, &layout.path, &layout.columns, layout.radius_m);
+            let safety = trials::safety(&plan.path, &layout.path, &layout.columns, layout.radius_m);
             prop_assert!(safety.clearance_m >= CLEARANCE_M - 1e-6 && safety.wall_m >= -1e-6);
         }
     }

@@ -1,4 +1,4 @@
-//! Random tanks.
+//! Round tanks with columns and a preset spiral.
 
 use planner_api::{Boundary, Limits, Motion, Obstacle, Outline, Site};
 use rand::{RngExt, SeedableRng};

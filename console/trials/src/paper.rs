@@ -1,6 +1,6 @@
 //! The layouts of Wang et al. 2023 by their names.
 
-use super::layout::Layout;
+use crate::spiral::Layout;
 
 /// The paper's three distributions of obstacles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,0 +1,98 @@
+//! What can be reproduced.
+
+use crate::{bench::Bench, row::Row, spiral};
+use mission::Fault;
+
+/// What a study is asked for.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Number of layouts or draws; the study's own if none.
+    pub layouts: Option<usize>,
+    /// Seed of the first layout; the others follow.
+    pub first_seed: u64,
+    /// Cases whose ids begin with one of these; all if empty.
+    pub cases: Vec<String>,
+    /// Methods whose ids begin with one of these; all if empty.
+    pub methods: Vec<String>,
+}
+
+impl Options {
+    /// Whether a case is asked for.
+    pub fn has_case(&self, id: &str) -> bool {
+        is_asked(&self.cases, id)
+    }
+
+    /// Whether a method is asked for.
+    pub fn has_method(&self, id: &str) -> bool {
+        is_asked(&self.methods, id)
+    }
+
+    /// The seeds of the layouts, `default` of them if no number was given.
+    pub fn seeds(&self, default: usize) -> impl Iterator<Item = u64> + Clone + use<> {
+        let first = self.first_seed;
+        (0..self.layouts.unwrap_or(default) as u64).map(move |k| first.wrapping_add(k))
+    }
+}
+
+fn is_asked(asked: &[String], id: &str) -> bool {
+    asked.is_empty() || asked.iter().any(|prefix| id.starts_with(prefix.as_str()))
+}
+
+/// Why a study has no rows.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Problem {
+    /// A planner is missing, refuses its parameters or broke down; with the case it was asked for.
+    #[error("{case}: {fault}")]
+    Planner {
+        /// Layout and method.
+        case: String,
+        /// What happened.
+        fault: Fault,
+    },
+    /// Nothing is left to measure.
+    #[error("{0}")]
+    Nothing(String),
+}
+
+/// A table or figure.
+#[derive(Debug, Clone, Copy)]
+pub struct Study {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// One sentence: what it is, and of which paper.
+    pub about: &'static str,
+    /// What its layouts are when no number is given.
+    pub layouts: usize,
+    /// Makes its rows.
+    pub run: fn(&Study, &Bench<'_>, &Options) -> Result<Vec<Row>, Problem>,
+}
+
+/// Every study.
+pub const STUDIES: &[&[Study]] = &[spiral::STUDIES];
+
+/// The study of this name.
+pub fn study(name: &str) -> Option<&'static Study> {
+    STUDIES.iter().flat_map(|studies| studies.iter()).find(|study| study.name == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_study_has_a_name_of_its_own() {
+        let names: Vec<&str> = STUDIES.iter().flat_map(|s| s.iter()).map(|study| study.name).collect();
+        assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
+        assert!(names.iter().all(|name| study(name).is_some()));
+    }
+
+    #[test]
+    fn prefixes_choose_cases() {
+        let options = Options { cases: vec!["d1/".into(), "d2/disk".into()], ..Options::default() };
+        assert!(
+            options.has_case("d1/square") && options.has_case("d2/disk") && !options.has_case("d2/square")
+        );
+        assert!(options.has_method("rpf"));
+    }
+}
