@@ -40,7 +40,7 @@ impl PositionSolver for Bounded {
     ) -> Result<Fix, FixError> {
         let anchors = anchored(ranges, stations)?;
         let annuli = anchors.iter().map(|a| self.annulus(a, ranges)).collect::<Option<Vec<_>>>();
-        let empty = FixError::EmptySet { ratio: if self.ratio.is_finite() { self.ratio } else { 0.0 } };
+        let empty = FixError::EmptySet { ratio: self.told_ratio() };
         let annuli = annuli.ok_or(empty.clone())?;
         // The middle of each annulus is the best single range; it gives the place to look at.
         let middles: Vec<Anchor> = anchors
@@ -63,7 +63,33 @@ impl PositionSolver for Bounded {
     }
 }
 
+/// How likely positions are by bounded ranges.
+#[derive(Debug, Clone)]
+pub(crate) struct Likelihood(Vec<Annulus>);
+
+impl Likelihood {
+    /// Likelihood of a position up to a factor; 0 where some range cannot be.
+    pub fn at(&self, position: Point) -> f64 {
+        region::weight_at(&self.0, position)
+    }
+}
+
 impl Bounded {
+    /// The likelihood of these ranges.
+    pub(crate) fn likelihood(
+        &self,
+        ranges: &[Ranging],
+        stations: &[Station],
+    ) -> Result<Likelihood, FixError> {
+        let anchors = anchored(ranges, stations)?;
+        let annuli = anchors.iter().map(|a| self.annulus(a, ranges)).collect::<Option<Vec<_>>>();
+        annuli.map(Likelihood).ok_or(FixError::EmptySet { ratio: self.told_ratio() })
+    }
+
+    fn told_ratio(&self) -> f64 {
+        if self.ratio.is_finite() { self.ratio } else { 0.0 }
+    }
+
     fn annulus(&self, anchor: &Anchor, ranges: &[Ranging]) -> Option<Annulus> {
         let ranging = ranges.iter().find(|r| r.station == anchor.station)?;
         let is_usable = (0.0..1.0).contains(&self.ratio);

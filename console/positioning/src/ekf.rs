@@ -1,10 +1,15 @@
 //! Extended Kalman filter over position, heading, slip and gyro bias.
 
-use crate::fix::ellipse_95;
+use crate::{
+    anchor::{Anchor, anchored},
+    fix::{Ranging, ellipse_95},
+    nonlinear::{Slope, information_at},
+    quality::{chi_squared_quantile, inverse_of},
+};
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use world::{Odometry, Point, Pose, geometry::wrap_angle_rad};
+use world::{Odometry, Point, Pose, Station, geometry::wrap_angle_rad};
 
 /// No position is less known than this, metres; keeps the numbers finite.
 const SIGMA_LIMIT_M: f64 = 1e4;
@@ -15,9 +20,16 @@ const MOTION_LIMIT: f64 = 1e3;
 /// Squared distance in sigmas per degree of freedom beyond which a measurement is refused: one honest one in 10 000.
 const GATE: [f64; 2] = [15.14, 18.42];
 
+/// The same as a normal quantile, for any number of ranges.
+const GATE_Z: f64 = 3.719;
+/// Steps of an iterated update; three are usual.
+const UPDATE_STEPS: usize = 12;
+/// It ends when a step is shorter than this, metres.
+const SETTLED_M: f64 = 1e-5;
+
 /// Position, heading, share of the way lost to slip, error of the measured turn per tick.
-type State = SVector<f64, 5>;
-type Covariance = SMatrix<f64, 5, 5>;
+pub(crate) type State = SVector<f64, 5>;
+pub(crate) type Covariance = SMatrix<f64, 5, 5>;
 
 /// Where in the state the slip stands.
 const SLIP: usize = 3;
@@ -120,9 +132,14 @@ impl Ekf {
 
     /// Moves the belief by what the odometry says.
     pub fn predict(&mut self, odometry: &Odometry) {
+        self.moved_by(odometry);
+    }
+
+    /// Moves the belief; gives what the state after the motion depends on of the state before.
+    pub(crate) fn moved_by(&mut self, odometry: &Odometry) -> Covariance {
         let Odometry { forward_m, sideways_m, turn_rad } = *odometry;
         if ![forward_m, sideways_m, turn_rad].iter().all(|m| m.abs() <= MOTION_LIMIT) {
-            return;
+            return Covariance::identity();
         }
         let before = self.pose();
         let kept = 1.0 - self.state[SLIP];
@@ -143,6 +160,7 @@ impl Ekf {
         self.covariance =
             by_state * self.covariance * by_state.transpose() + Covariance::from_diagonal(&gained);
         self.keep_sound();
+        by_state
     }
 
     /// Variances that a motion adds.
@@ -177,6 +195,59 @@ impl Ekf {
         let by_state = SMatrix::<f64, 1, 5>::new(away.x / distance_m, away.y / distance_m, 0.0, 0.0, 0.0);
         let variance = SMatrix::<f64, 1, 1>::new(sigma_m.powi(2));
         self.update(SVector::<f64, 1>::new(range_m - distance_m), by_state, variance)
+    }
+
+    /// Corrects by all ranges of a cycle at once, unless they are too far off to be true.
+    ///
+    /// The position that fits belief and ranges best is searched for (an iterated update), so bent range circles are
+    /// no matter; heading, slip and bias follow by their correlation with the position. Ranges of unknown stations
+    /// are left out.
+    pub fn update_ranges(&mut self, ranges: &[Ranging], stations: &[Station]) -> Update {
+        let Ok(anchors) = anchored(ranges, stations) else { return Update::REFUSED };
+        let Some(belief) = inverse_of(&self.position_covariance()) else { return Update::REFUSED };
+        let start = self.pose().position;
+        let Some(found) = best_of_belief_and_ranges(&anchors, start, &belief) else { return Update::REFUSED };
+        let degrees = u32::try_from(anchors.len()).unwrap_or(u32::MAX);
+        // The comparison also refuses what is no number.
+        if !(found.cost <= chi_squared_quantile(GATE_Z, degrees)) {
+            return Update {
+                nis: if found.cost.is_finite() { found.cost } else { f64::MAX },
+                accepted: false,
+            };
+        }
+        let updated = self.with_position(found.position, &found.covariance, &belief);
+        Update { nis: found.cost, accepted: self.adopt(updated) }
+    }
+
+    /// The belief after its position has become known better; the rest follows by correlation.
+    fn with_position(&self, position: Point, covariance: &Matrix2<f64>, belief: &Matrix2<f64>) -> Self {
+        let gain = self.covariance.fixed_view::<5, 2>(0, 0) * belief;
+        let lost = self.position_covariance() - covariance;
+        Self {
+            state: self.state + gain * (position - self.pose().position),
+            covariance: self.covariance - gain * lost * gain.transpose(),
+            noise: self.noise,
+        }
+    }
+
+    pub(crate) fn state(&self) -> &State {
+        &self.state
+    }
+
+    pub(crate) fn state_covariance(&self) -> &Covariance {
+        &self.covariance
+    }
+
+    /// Makes the position as uncertain as if the tracks had slipped all the way of the last motion.
+    ///
+    /// For a filter whose ranges were refused while the solver finds them sound.
+    pub fn doubt_motion(&mut self, odometry: &Odometry) {
+        let way_m = odometry.forward_m.hypot(odometry.sideways_m);
+        if way_m <= MOTION_LIMIT {
+            self.covariance[(0, 0)] += way_m * way_m;
+            self.covariance[(1, 1)] += way_m * way_m;
+            self.keep_sound();
+        }
     }
 
     /// Puts the position where a fix says it is, whatever was believed, and doubts the heading.
@@ -238,6 +309,39 @@ impl Ekf {
             self.covariance[(j, i)] = self.covariance[(i, j)];
         }
     }
+}
+
+/// Where belief and ranges meet.
+struct Meeting {
+    position: Point,
+    covariance: Matrix2<f64>,
+    cost: f64,
+}
+
+/// Goes down the sum of the squared errors of belief and ranges; `belief` is the inverse of its covariance.
+fn best_of_belief_and_ranges(anchors: &[Anchor], start: Point, belief: &Matrix2<f64>) -> Option<Meeting> {
+    let cost_at = |slope: &Slope, at: Point| slope.cost + (at - start).dot(&(belief * (at - start)));
+    let (mut position, mut damping) = (start, 0.0);
+    let mut slope = Slope::at(anchors, position);
+    let mut cost = cost_at(&slope, position);
+    for _ in 0..UPDATE_STEPS {
+        let curvature = slope.curvature + belief;
+        let damped = curvature + Matrix2::identity() * (damping * curvature.trace());
+        let step = inverse_of(&damped)? * -(slope.gradient + belief * (position - start));
+        let there = Slope::at(anchors, position + step);
+        let cost_there = cost_at(&there, position + step);
+        if cost_there <= cost {
+            (position, slope, cost) = (position + step, there, cost_there);
+            damping *= 0.1;
+        } else {
+            damping = (damping * 10.0).max(1e-2);
+        }
+        if step.norm() < SETTLED_M {
+            break;
+        }
+    }
+    let covariance = inverse_of(&(information_at(anchors, position) + belief))?;
+    Some(Meeting { position, covariance, cost })
 }
 
 #[cfg(test)]

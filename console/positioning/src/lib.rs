@@ -16,6 +16,8 @@ pub mod weighted;
 
 pub mod calibration;
 pub mod ekf;
+pub mod fixed_lag;
+pub mod particle;
 pub mod positioner;
 
 mod anchor;
@@ -30,9 +32,11 @@ pub use calibration::{Calibration, Unknowns};
 pub use consensus::{Consensus, WrongRanges};
 pub use ekf::{Ekf, MotionNoise};
 pub use fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Ranging, Residual};
+pub use fixed_lag::FixedLag;
 pub use linear::LinearLs;
 pub use noise::RangeNoise;
 pub use nonlinear::Nls;
+pub use particle::{Particles, ParticlesConfig};
 pub use positioner::{CycleResult, Estimate, Positioner, PositionerConfig, SolverKind};
 pub use screened::Screened;
 pub use weighted::WeightedLinear;

@@ -163,7 +163,7 @@ fn descend(anchors: &[Anchor], start: Point) -> Result<Minimum, FixError> {
 
 /// The cost at a position with its derivatives.
 pub(crate) struct Slope {
-    cost: f64,
+    pub cost: f64,
     pub gradient: Vector,
     /// Second derivatives as far as Gauss and Newton take them.
     pub curvature: Matrix2<f64>,

@@ -166,7 +166,7 @@ impl Frame {
 }
 
 /// Likelihood of a position up to a factor near 1; 0 outside any annulus.
-fn weight_at(annuli: &[Annulus], position: Point) -> f64 {
+pub(super) fn weight_at(annuli: &[Annulus], position: Point) -> f64 {
     let mut weight = 1.0;
     for annulus in annuli {
         let distance_m = (position - annulus.at).norm();
