@@ -2,6 +2,7 @@
 
 use crate::link::Parameters;
 use planner_api::Limits;
+use positioning::{Aggregation, RangeNoise, SolverKind};
 use serde::{Deserialize, Serialize};
 use world::{Point, Pose};
 
@@ -33,6 +34,20 @@ pub enum TaskConfig {
         /// Distance at which the last one counts as reached, metres.
         tolerance_m: f64,
     },
+}
+
+/// How ranges become a position.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Locating {
+    /// How single ranges scatter; none: normally, by [`MissionConfig::range_sigma_ratio`].
+    pub noise: Option<RangeNoise>,
+    /// How repetitions become one range.
+    pub aggregation: Aggregation,
+    /// How ranges become a fix.
+    pub solver: SolverKind,
+    /// Whether the speed of sound is found out under way.
+    pub calibrates_sound: bool,
 }
 
 /// A mission as the engine needs it; made and checked by whoever reads the scenario.
@@ -72,6 +87,9 @@ pub struct MissionConfig {
     pub gyro_sigma_rad_per_s: f64,
     /// Standard deviation of a range as a share of the range.
     pub range_sigma_ratio: f64,
+    /// How ranges become a position.
+    #[serde(default)]
+    pub locating: Locating,
     /// The planner that drives first.
     pub planner: PlannerChoice,
     /// The planner that takes over by itself after a fault, if any.

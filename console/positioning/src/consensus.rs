@@ -4,7 +4,7 @@ use crate::{
     anchor::{Anchor, anchored},
     fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Ranging},
     linear::solve_linear,
-    nonlinear::{Slope, solve_anchors},
+    nonlinear::{Slope, on_near_circle, solve_anchors},
 };
 use nalgebra::Matrix2;
 use world::{Point, Station};
@@ -16,11 +16,11 @@ const SUBSET_STEPS: usize = 2;
 /// Subsets looked at before some are skipped: all of up to ten stations.
 const MOST_SUBSETS: usize = 120;
 /// Best subsets that are refined.
-const REFINED: usize = 6;
+const REFINED: usize = 8;
 /// Rounds of choosing the agreeing stations anew.
 const ROUNDS: usize = 6;
 /// A second answer whose cost is larger by less than this is as good as the first.
-const MARGIN: f64 = 9.0;
+const MARGIN: f64 = 16.0;
 /// Fewer agreeing stations than this cannot show that they agree.
 const NEEDED: usize = 4;
 
@@ -71,10 +71,10 @@ struct Answer {
 }
 
 impl Answer {
-    /// Whether another answer is nearly as good and somewhere else.
+    /// Whether another answer is nearly as good and not where this one lies by its own account.
     fn is_contested_by(&self, other: &Self) -> bool {
         let apart_m = (self.fix.position - other.fix.position).norm();
-        other.cost < self.cost + MARGIN && apart_m > self.fix.ellipse_95().0 + other.fix.ellipse_95().0
+        other.cost < self.cost + MARGIN && apart_m > self.fix.ellipse_95().0
     }
 }
 
@@ -83,6 +83,7 @@ impl Consensus {
     fn answers(self, anchors: &[Anchor], prior: Option<(Point, Matrix2<f64>)>) -> Vec<Answer> {
         let mut tries: Vec<(f64, Point)> = subsets(anchors.len())
             .filter_map(|[i, j, k]| fit_three(&[anchors[i], anchors[j], anchors[k]]))
+            .chain(on_near_circle(anchors))
             .map(|position| (self.cost_at(anchors, position), position))
             .collect();
         tries.sort_by(|a, b| a.0.total_cmp(&b.0));

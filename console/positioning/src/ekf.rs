@@ -39,6 +39,10 @@ const TURN_BIAS: usize = 4;
 const SIGMA_LIMITS: [f64; 5] = [SIGMA_LIMIT_M, SIGMA_LIMIT_M, PI, 1.0, 0.1];
 /// Part of the odometry error that is fresh in every metre, as a share of the part that stays the same.
 const FRESH_SHARE: f64 = 0.3;
+/// Fresh odometry error across the way as a share of that along it.
+const ACROSS_SHARE: f64 = 0.3;
+/// Part of a motion that is lost when tracks slip through, on average, and its standard deviation.
+const SLIPPED_THROUGH: (f64, f64) = (0.5, 0.2);
 /// Change of slip and turn error within a metre, as a share of what they may be.
 const WANDER_SHARE: f64 = 0.05;
 
@@ -48,17 +52,29 @@ pub struct MotionNoise {
     /// Standard deviation of the position after one metre without a fix, metres; mostly slip, so it grows in
     /// proportion to the way until fixes tell how large the slip is.
     pub sigma_per_m: f64,
+    /// Standard deviation of a single motion as a share of it, fresh in every motion.
+    #[serde(default)]
+    pub way_sigma_ratio: f64,
     /// Standard deviation of a turn as a share of the turn.
     pub turn_sigma_ratio: f64,
     /// Standard deviation of the turn that a robot at rest measures in a tick, radians; mostly the gyro's bias times
     /// the tick, so it adds up until fixes tell how large it is.
     pub heading_sigma_per_tick_rad: f64,
+    /// Chance that the tracks slip through in a motion and it is mostly lost, 0 to 1.
+    #[serde(default)]
+    pub slip_chance: f64,
 }
 
 impl Default for MotionNoise {
     /// Tracks on a steel floor with a cheap gyro: 5 cm per metre, 5 % of a turn, 0.5 mrad per tick.
     fn default() -> Self {
-        Self { sigma_per_m: 0.05, turn_sigma_ratio: 0.05, heading_sigma_per_tick_rad: 0.0005 }
+        Self {
+            sigma_per_m: 0.05,
+            way_sigma_ratio: 0.0,
+            turn_sigma_ratio: 0.05,
+            heading_sigma_per_tick_rad: 0.0005,
+            slip_chance: 0.0,
+        }
     }
 }
 
@@ -69,10 +85,16 @@ pub struct Update {
     pub nis: f64,
     /// Whether the filter took it.
     pub accepted: bool,
+    /// How likely the tracks slipped through in the motion before, 0 to 1.
+    pub slipped: f64,
 }
 
 impl Update {
-    const REFUSED: Self = Self { nis: f64::MAX, accepted: false };
+    const REFUSED: Self = Self { nis: f64::MAX, accepted: false, slipped: 0.0 };
+
+    fn refused(nis: f64) -> Self {
+        Self { nis: if nis.is_finite() { nis } else { f64::MAX }, ..Self::REFUSED }
+    }
 }
 
 /// The filter: pose with covariance, moved by odometry, corrected by fixes or single ranges.
@@ -85,6 +107,8 @@ pub struct Ekf {
     state: State,
     covariance: Covariance,
     noise: MotionNoise,
+    /// The last motion in the tank frame, metres.
+    last_way: Vector2<f64>,
 }
 
 impl Ekf {
@@ -105,6 +129,7 @@ impl Ekf {
                 &sigma.zip_map(&State::from(SIGMA_LIMITS), |s, limit| s.abs().min(limit).powi(2)),
             ),
             noise,
+            last_way: Vector2::zeros(),
         };
         filter.keep_sound();
         filter
@@ -159,14 +184,27 @@ impl Ekf {
         let gained = self.gained_m2_rad2(forward_m.hypot(sideways_m), turn_rad);
         self.covariance =
             by_state * self.covariance * by_state.transpose() + Covariance::from_diagonal(&gained);
+        self.narrow_across(step, gained[0]);
+        self.last_way = step;
         self.keep_sound();
         by_state
+    }
+
+    /// Takes back most of the fresh variance across the way: tracks err along it, and the heading does the rest.
+    fn narrow_across(&mut self, step: Vector2<f64>, gained_m2: f64) {
+        if let Some(along) = step.try_normalize(1e-9) {
+            let across = Vector2::new(-along.y, along.x);
+            let taken = across * across.transpose() * (gained_m2 * (1.0 - ACROSS_SHARE.powi(2)));
+            let mut position = self.covariance.fixed_view_mut::<2, 2>(0, 0);
+            position -= taken;
+        }
     }
 
     /// Variances that a motion adds.
     fn gained_m2_rad2(&self, way_m: f64, turn_rad: f64) -> State {
         let noise = &self.noise;
-        let by_way = (FRESH_SHARE * noise.sigma_per_m).powi(2) * way_m;
+        let by_way =
+            (FRESH_SHARE * noise.sigma_per_m).powi(2) * way_m + (noise.way_sigma_ratio * way_m).powi(2);
         let by_turn = (noise.turn_sigma_ratio * turn_rad).powi(2) + noise.heading_sigma_per_tick_rad.powi(2);
         let wander = WANDER_SHARE.powi(2) * way_m;
         State::new(
@@ -204,19 +242,61 @@ impl Ekf {
     /// are left out.
     pub fn update_ranges(&mut self, ranges: &[Ranging], stations: &[Station]) -> Update {
         let Ok(anchors) = anchored(ranges, stations) else { return Update::REFUSED };
-        let Some(belief) = inverse_of(&self.position_covariance()) else { return Update::REFUSED };
-        let start = self.pose().position;
-        let Some(found) = best_of_belief_and_ranges(&anchors, start, &belief) else { return Update::REFUSED };
         let degrees = u32::try_from(anchors.len()).unwrap_or(u32::MAX);
+        let gate = chi_squared_quantile(GATE_Z, degrees);
         // The comparison also refuses what is no number.
-        if !(found.cost <= chi_squared_quantile(GATE_Z, degrees)) {
-            return Update {
-                nis: if found.cost.is_finite() { found.cost } else { f64::MAX },
-                accepted: false,
-            };
-        }
-        let updated = self.with_position(found.position, &found.covariance, &belief);
-        Update { nis: found.cost, accepted: self.adopt(updated) }
+        let met = |filter: &Self| filter.meeting(&anchors).filter(|(_, met)| met.cost <= gate);
+        let slip_chance =
+            if self.last_way.norm() > 0.0 { self.noise.slip_chance.clamp(0.0, 0.5) } else { 0.0 };
+        let gripped = met(self);
+        let slipped = if slip_chance > 0.0 { met(&self.slipped_through(1.0)) } else { None };
+        let (updated, nis, share) = match (gripped, slipped) {
+            (None, None) => {
+                return Update::refused(self.meeting(&anchors).map_or(f64::MAX, |(_, met)| met.cost));
+            }
+            (Some((updated, met)), None) => (updated, met.cost, 0.0),
+            (None, Some((updated, met))) => (updated, met.cost, 1.0),
+            (Some((held, met_held)), Some((lost, met_lost))) => {
+                let odds = (met_lost.log_evidence - met_held.log_evidence).clamp(-50.0, 50.0).exp();
+                let share = slip_chance * odds / (1.0 - slip_chance + slip_chance * odds);
+                (held.mixed_with(&lost, share), met_held.cost.min(met_lost.cost), share)
+            }
+        };
+        let accepted = self.adopt(updated);
+        self.last_way = Vector2::zeros();
+        Update { nis, accepted, slipped: share }
+    }
+
+    /// The belief if the tracks slipped through in the last motion, as far as `share` says.
+    pub(crate) fn slipped_through(&self, share: f64) -> Self {
+        let (mean, sigma) = SLIPPED_THROUGH;
+        let mut lost = self.clone();
+        let mut position = lost.state.fixed_rows_mut::<2>(0);
+        position -= self.last_way * (mean * share);
+        let mut covariance = lost.covariance.fixed_view_mut::<2, 2>(0, 0);
+        let variance = share * sigma * sigma + share * (1.0 - share) * mean * mean;
+        covariance += self.last_way * self.last_way.transpose() * variance;
+        lost
+    }
+
+    /// The belief after it met the ranges, and how well they met.
+    fn meeting(&self, anchors: &[Anchor]) -> Option<(Self, Meeting)> {
+        let prior = self.position_covariance();
+        let belief = inverse_of(&prior)?;
+        let mut met = best_of_belief_and_ranges(anchors, self.pose().position, &belief)?;
+        met.log_evidence = 0.5 * ((met.covariance.determinant() / prior.determinant()).ln() - met.cost);
+        Some((self.with_position(met.position, &met.covariance, &belief), met))
+    }
+
+    /// One belief with the mean and covariance of two, of which the other has the given share.
+    fn mixed_with(&self, other: &Self, share: f64) -> Self {
+        let state = self.state * (1.0 - share) + other.state * share;
+        let spread = |filter: &Self| {
+            let off = filter.state - state;
+            filter.covariance + off * off.transpose()
+        };
+        let covariance = spread(self) * (1.0 - share) + spread(other) * share;
+        Self { state, covariance, ..self.clone() }
     }
 
     /// The belief after its position has become known better; the rest follows by correlation.
@@ -226,7 +306,7 @@ impl Ekf {
         Self {
             state: self.state + gain * (position - self.pose().position),
             covariance: self.covariance - gain * lost * gain.transpose(),
-            noise: self.noise,
+            ..self.clone()
         }
     }
 
@@ -270,14 +350,14 @@ impl Ekf {
         let nis = (innovation.transpose() * inverse * innovation)[(0, 0)];
         // The comparison also refuses what is no number.
         if !(0.0..=GATE[N - 1]).contains(&nis) {
-            return Update { nis: if nis.is_finite() { nis } else { f64::MAX }, accepted: false };
+            return Update::refused(nis);
         }
         let gain = self.covariance * by_state.transpose() * inverse;
         // Joseph's form stays positive where the short form may not.
         let rest = Covariance::identity() - gain * by_state;
         let covariance = rest * self.covariance * rest.transpose() + gain * noise * gain.transpose();
-        let updated = Self { state: self.state + gain * innovation, covariance, noise: self.noise };
-        Update { nis, accepted: self.adopt(updated) }
+        let updated = Self { state: self.state + gain * innovation, covariance, ..self.clone() };
+        Update { nis, accepted: self.adopt(updated), slipped: 0.0 }
     }
 
     /// Takes a new state if it is sound.
@@ -316,6 +396,8 @@ struct Meeting {
     position: Point,
     covariance: Matrix2<f64>,
     cost: f64,
+    /// Logarithm of the likelihood of the ranges under the belief, up to what only depends on the ranges.
+    log_evidence: f64,
 }
 
 /// Goes down the sum of the squared errors of belief and ranges; `belief` is the inverse of its covariance.
@@ -341,7 +423,7 @@ fn best_of_belief_and_ranges(anchors: &[Anchor], start: Point, belief: &Matrix2<
         }
     }
     let covariance = inverse_of(&(information_at(anchors, position) + belief))?;
-    Some(Meeting { position, covariance, cost })
+    Some(Meeting { position, covariance, cost, log_evidence: 0.0 })
 }
 
 #[cfg(test)]

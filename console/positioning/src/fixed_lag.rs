@@ -6,7 +6,7 @@ use crate::{
 };
 use nalgebra::Matrix2;
 use std::collections::VecDeque;
-use world::{Odometry, Pose, Station, geometry::wrap_angle_rad};
+use world::{Odometry, Point, Pose, Station, geometry::wrap_angle_rad};
 
 /// An [`Ekf`] that remembers its last motions and looks back over them (Rauch, Tung and Striebel).
 ///
@@ -58,14 +58,35 @@ impl FixedLag {
         &self.filter
     }
 
-    /// The filter of the present, to be corrected by what was measured now.
-    pub fn filter_mut(&mut self) -> &mut Ekf {
-        &mut self.filter
+    /// Corrects the present by the ranges of a cycle; whether they were taken.
+    ///
+    /// A motion in which the tracks slipped through says little about where it began.
+    pub fn update_ranges(&mut self, ranges: &[Ranging], stations: &[Station]) -> bool {
+        let before = self.filter.clone();
+        let update = self.filter.update_ranges(ranges, stations);
+        if update.slipped > 0.0 {
+            self.expect(&before.slipped_through(update.slipped));
+        }
+        update.accepted
     }
 
-    /// Corrects the present by the ranges of a cycle; whether they were taken.
-    pub fn update_ranges(&mut self, ranges: &[Ranging], stations: &[Station]) -> bool {
-        self.filter.update_ranges(ranges, stations).accepted
+    /// Makes the position as uncertain as if the tracks had slipped all the way; see [`Ekf::doubt_motion`].
+    pub fn doubt_motion(&mut self, odometry: &Odometry) {
+        self.filter.doubt_motion(odometry);
+        self.expect(&self.filter.clone());
+    }
+
+    /// Puts the present where a fix says it is; see [`Ekf::restart_at`]. The past tells nothing about it.
+    pub fn restart_at(&mut self, position: Point, covariance: &Matrix2<f64>, heading_sigma_rad: f64) {
+        self.filter.restart_at(position, covariance, heading_sigma_rad);
+        self.past.clear();
+    }
+
+    fn expect(&mut self, filter: &Ekf) {
+        if let Some(last) = self.past.back_mut() {
+            last.expected = *filter.state();
+            last.expected_covariance = *filter.state_covariance();
+        }
     }
 
     /// Moves the present by what the odometry says.

@@ -79,14 +79,22 @@ fn solve_many(anchors: &[Anchor], prior: Option<(Point, Matrix2<f64>)>) -> Resul
 ///
 /// The valley of such a small circle is narrow and bent, and a descent along it takes hundreds of steps.
 fn around_the_nearest(anchors: &[Anchor], start: Point) -> Point {
-    let longest_m = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
-    let nearest = anchors.iter().min_by(|a, b| a.range_m.total_cmp(&b.range_m));
-    let Some(nearest) = nearest.filter(|n| n.range_m < SHORT_RANGE * longest_m) else { return start };
-    let on_circle = (0..CIRCLE_STARTS)
-        .map(|k| Rotation2::new(TAU * f64::from(k) / f64::from(CIRCLE_STARTS)) * Vector::x())
-        .map(|direction| nearest.at + direction * nearest.range_m);
     let cost = |position: Point| anchors.iter().map(|a| a.view_from(position).squared_error()).sum::<f64>();
-    std::iter::once(start).chain(on_circle).min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(start)
+    std::iter::once(start)
+        .chain(on_near_circle(anchors))
+        .min_by(|a, b| cost(*a).total_cmp(&cost(*b)))
+        .unwrap_or(start)
+}
+
+/// Places on the range circle of a station that is close by; none if there is no such station.
+pub(crate) fn on_near_circle(anchors: &[Anchor]) -> impl Iterator<Item = Point> {
+    let longest_m = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
+    let nearest = anchors.iter().min_by(|a, b| a.range_m.total_cmp(&b.range_m)).copied();
+    nearest.filter(|n| n.range_m < SHORT_RANGE * longest_m).into_iter().flat_map(|nearest| {
+        (0..CIRCLE_STARTS)
+            .map(|k| Rotation2::new(TAU * f64::from(k) / f64::from(CIRCLE_STARTS)) * Vector::x())
+            .map(move |direction| nearest.at + direction * nearest.range_m)
+    })
 }
 
 /// Where a descent ended.

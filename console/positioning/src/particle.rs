@@ -104,7 +104,7 @@ impl Particles {
         for guess in &mut self.guesses {
             let slips_through = rng.random::<f64>() < self.config.slip_chance;
             let kept = if slips_through { rng.random::<f64>() } else { 1.0 };
-            let fresh = bounded(noise.sigma_per_m) * way_m.sqrt().min(way_m);
+            let fresh = bounded(noise.way_sigma_ratio).max(0.3 * bounded(noise.sigma_per_m)) * way_m;
             let along = (1.0 - guess.slip) * kept;
             let turned = turn_rad - guess.turn_bias_rad
                 + bounded(noise.turn_sigma_ratio) * turn_rad * bell(rng)

@@ -3,6 +3,7 @@
 use crate::{
     anchor::Anchor,
     fix::{Fix, FixError, Integrity, Residual},
+    nonlinear::on_near_circle,
 };
 use nalgebra::Matrix2;
 use world::Point;
@@ -14,6 +15,8 @@ pub(crate) const ALARM_Z: f64 = 3.090_232_306;
 
 /// Standard deviations that a protection level grants to chance: one position in 3000 lies further off.
 const PROTECTION_SIGMAS: f64 = 4.0;
+/// Where a place this many standard deviations off is not ruled out, errors are no ellipse.
+const BENT_SIGMAS: f64 = 5.0;
 /// A range whose residual keeps a smaller share of its variance than this cannot be checked by the others.
 const LEAST_SPARED: f64 = 1e-6;
 
@@ -35,6 +38,11 @@ pub(crate) fn assess(
     if !is_finite {
         return Err(FixError::NotConverged { iterations: 0 });
     }
+    let bent = || has_rival_on_circle(anchors, position, &covariance, chi2);
+    let integrity = match judge(chi2, degrees_of_freedom) {
+        Integrity::Ok if bent() => Integrity::Suspect,
+        judged => judged,
+    };
     Ok(Fix {
         position,
         covariance,
@@ -49,8 +57,17 @@ pub(crate) fn assess(
         conditioning,
         mirror,
         protection_level_m: protection_level_m(anchors, position, &covariance),
-        integrity: judge(chi2, degrees_of_freedom),
+        integrity,
     })
+}
+
+/// Whether a place on the range circle of a station close by fits nearly as well and is further off than any ellipse
+/// says: there errors are bent like the circle.
+fn has_rival_on_circle(anchors: &[Anchor], position: Point, covariance: &Matrix2<f64>, chi2: f64) -> bool {
+    let reach_m = BENT_SIGMAS * largest_sigma_m(covariance);
+    let cost = |at: Point| anchors.iter().map(|a| a.view_from(at).squared_error()).sum::<f64>();
+    on_near_circle(anchors)
+        .any(|at| (at - position).norm() > reach_m && cost(at) < chi2 + PROTECTION_SIGMAS.powi(2))
 }
 
 /// Radius that holds the truth even if any one of the ranges is wrong: for each station the distance to the position

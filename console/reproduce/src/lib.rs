@@ -6,6 +6,7 @@
 
 mod bench;
 mod planners;
+pub mod positioning;
 mod row;
 mod sample;
 pub mod spiral;

@@ -6,7 +6,7 @@ use world::{Point, Vector};
 /// How often the rings are taken for strips anew, each time about a better place.
 const RELINEARISATIONS: usize = 3;
 /// Cells along each axis of the box in which the region is summed up.
-const CELLS: u32 = 24;
+const CELLS: u32 = 16;
 /// The same where no polygon says where the region is.
 const SEARCH_CELLS: u32 = 64;
 /// The box is this much larger than the polygon, because rings are bent.

@@ -81,3 +81,17 @@ fn many_stations_do_not_mean_many_subsets() {
     assert!(subsets(40).count() <= 2 * MOST_SUBSETS);
     assert_eq!(subsets(2).count(), 0);
 }
+
+#[test]
+fn beside_a_station_the_other_side_of_its_circle_is_looked_at() {
+    // A station in arm's reach, another one that lies: the first answer that holds together is on the wrong side.
+    let (stations, mut draws) = (ring(6, 7.5), Draws::new(0.05, 20, 10_001));
+    for run in 0..2_000 {
+        let truth = stations[0].position + world::Vector::new(draws.even(), draws.even()) * 0.3;
+        let mut ranges = draws.rangings(&stations, truth, Aggregation::Mean);
+        ranges[1 + run % 5].range_m += 1.0;
+        let fix = LATE.solve(&ranges, &stations, None).unwrap();
+        let error_m = (fix.position - truth).norm();
+        assert!(fix.integrity != Integrity::Ok || error_m < 0.3, "{truth} {fix:?}");
+    }
+}
