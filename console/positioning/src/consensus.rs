@@ -15,7 +15,7 @@ const CUT_SIGMAS: f64 = 3.0;
 const SUBSET_STEPS: usize = 2;
 /// Subsets looked at before some are skipped: all of up to ten stations.
 const MOST_SUBSETS: usize = 120;
-/// Best subsets that are refined.
+/// Best groups of agreeing stations that are refined.
 const REFINED: usize = 8;
 /// Rounds of choosing the agreeing stations anew.
 const ROUNDS: usize = 6;
@@ -87,12 +87,11 @@ impl Consensus {
             .map(|position| (self.cost_at(anchors, position), position))
             .collect();
         tries.sort_by(|a, b| a.0.total_cmp(&b.0));
-        tries.truncate(REFINED);
         let mut answers: Vec<Answer> = Vec::new();
         let mut seen: Vec<Vec<bool>> = Vec::new();
         for (_, position) in tries {
             let agreeing = self.agreeing(anchors, position);
-            if !seen.contains(&agreeing) {
+            if seen.len() < REFINED && !seen.contains(&agreeing) {
                 seen.push(agreeing);
                 answers.extend(self.refined(anchors, position, prior));
             }
