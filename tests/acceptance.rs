@@ -13,6 +13,8 @@ mod faults;
 mod killed;
 #[path = "acceptance/replay.rs"]
 mod replay;
+#[path = "acceptance/reproduce.rs"]
+mod reproduce;
 #[path = "acceptance/scenarios.rs"]
 mod scenarios;
 #[cfg(unix)]

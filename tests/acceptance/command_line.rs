@@ -122,3 +122,39 @@ fn check_refuses_a_planner_that_is_not_there() {
     assert_eq!(checked.code, Some(2), "{checked:?}");
     assert!(checked.err.contains("rfp") && checked.err.contains("rpf"), "{checked:?}");
 }
+
+#[test]
+fn every_objection_of_a_planner_is_told_at_its_line() {
+    let demo = std::fs::read_to_string(scenario("demo.toml")).unwrap();
+    let bench = Bench::new();
+    let head = "[planner]\n";
+    assert!(demo.contains(head));
+    let damaged = "[planner]\nparameters = { k_rep = -3.0, k_ratt = 1.0 }\n";
+    let file = bench.file("objections.toml", demo.replacen(head, damaged, 1));
+    for command in ["check", "run"] {
+        let answer = bench.tankops(&[command, file.to_str().unwrap()]);
+        assert_eq!(answer.code, Some(2), "{answer:?}");
+        let line = |key: &str| answer.err.lines().find(|l| l.contains("objections.toml:") && l.contains(key));
+        assert!(line("planner.parameters.k_rep = -3.0").is_some(), "{}", answer.err);
+        assert!(line("planner.parameters.k_ratt").is_some_and(|l| l.contains("k_att")), "{}", answer.err);
+    }
+}
+
+#[test]
+fn a_plugin_folder_that_does_not_exist_is_an_error() {
+    let answer = Bench::new().tankops(&["planners", "--plugin-dir", "no/such/folder"]);
+    assert!(answer.code == Some(2) && answer.err.contains("no/such/folder"), "{answer:?}");
+}
+
+#[test]
+fn a_run_that_lost_its_report_is_told_by_its_journal() {
+    let bench = Bench::new();
+    assert_eq!(
+        bench.tankops(&["run", scenario("goto-single-obstacle.toml").to_str().unwrap()]).code,
+        Some(0)
+    );
+    let run = bench.runs().pop().unwrap();
+    std::fs::remove_file(run.join("report.json")).unwrap();
+    let listed = bench.tankops(&["runs", "--json"]).json();
+    assert_eq!(listed[0]["end"], "complete", "{listed}");
+}

@@ -43,6 +43,10 @@ pub enum Command {
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },
+    /// Make a paper's table or figure anew, ours beside the printed values.
+    Reproduce(ReproduceArgs),
+    /// Search for better parameters of a planner on one set of layouts, and judge them on another.
+    Tune(TuneArgs),
     /// List past runs.
     Runs {
         /// Print JSON.
@@ -147,6 +151,73 @@ pub struct PlanArgs {
     pub svg: Option<PathBuf>,
 }
 
+#[derive(Debug, Args)]
+pub struct ReproduceArgs {
+    /// What to reproduce; without it, everything there is is listed.
+    pub name: Option<String>,
+    /// Number of layouts or draws of each case; each study has a number of its own.
+    #[arg(long, value_name = "N")]
+    pub layouts: Option<usize>,
+    /// Seed of the first layout; the others follow.
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    pub first_seed: u64,
+    /// Only cases whose ids begin so (`d1/disk`); may be given several times.
+    #[arg(long, value_name = "CASE")]
+    pub case: Vec<String>,
+    /// Only methods whose ids begin so (`rpf/gated`); may be given several times.
+    #[arg(long, value_name = "METHOD")]
+    pub method: Vec<String>,
+    /// Threads to work with; 0 is one for each core. Figures do not depend on it, times do.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+    /// Print an array of rows as JSON on stdout.
+    #[arg(long)]
+    pub json: bool,
+    /// List everything that can be reproduced.
+    #[arg(long, conflicts_with = "name")]
+    pub list: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct TuneArgs {
+    /// Planner to tune.
+    #[arg(long, value_name = "ID")]
+    pub planner: String,
+    /// Layouts: wang-d1, wang-d2, wang-d3, drawn in the disk, or wang-d1-square and so on.
+    #[arg(long, value_name = "LAYOUTS")]
+    pub on: String,
+    /// Parameter to tune; may be given several times. Without it, every real number of the group "Field".
+    #[arg(long, value_name = "KEY")]
+    pub tune: Vec<String>,
+    /// Value to start from, or of a parameter that is not tuned (`reading=gated`).
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Number of layouts to tune on.
+    #[arg(long, value_name = "N", default_value_t = 30)]
+    pub layouts: usize,
+    /// Seed of the first layout to tune on.
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    pub first_seed: u64,
+    /// Number of layouts to judge on.
+    #[arg(long, value_name = "N", default_value_t = 200)]
+    pub test_layouts: usize,
+    /// Seed of the first layout to judge on.
+    #[arg(long, value_name = "SEED", default_value_t = 1_000_000)]
+    pub test_first_seed: u64,
+    /// Generations of the search.
+    #[arg(long, value_name = "N", default_value_t = 30)]
+    pub generations: usize,
+    /// Seed of the search.
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub seed: u64,
+    /// Threads to work with; 0 is one for each core. The result does not depend on it.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+    /// Print values, losses and rows as JSON on stdout.
+    #[arg(long)]
+    pub json: bool,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -161,7 +232,9 @@ mod tests {
     fn the_help_of_every_command_is_as_reviewed() {
         let mut command = Cli::command().term_width(100);
         let mut help = vec![command.render_long_help().to_string()];
-        for name in ["console", "run", "plan", "planners", "check", "runs", "verify", "export"] {
+        for name in
+            ["console", "run", "plan", "planners", "check", "reproduce", "tune", "runs", "verify", "export"]
+        {
             let sub = command.find_subcommand_mut(name).expect("a command of ours");
             help.push(format!("===== {name}\n{}", sub.render_long_help()));
         }

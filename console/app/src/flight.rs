@@ -1,6 +1,6 @@
 //! One flight: simulator, mission and planner host, tick by tick.
 
-use crate::scenario::Scenario;
+use crate::{plan::patient, scenario::Scenario};
 use mission::{
     Event, EventKind, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION,
 };
@@ -44,13 +44,8 @@ impl Flight {
     pub fn prepare(scenario: &Scenario, attended: bool, plugins: &PluginDirs, pace: Pace) -> Self {
         let config = MissionConfig { attended, ..scenario.mission.clone() };
         let drawing = scenario.sim.world.as_drawn();
-        let floor = Floor::new(
-            &drawing,
-            config.cell_m,
-            config.limits.radius_m,
-            config.swath_m,
-            config.start.position,
-        );
+        let floor =
+            Floor::new(&drawing, config.cell_m, config.room_m(), config.swath_m, config.start.position);
         let opened = RunOpened {
             journal_version: JOURNAL_VERSION,
             tankops_version: env!("CARGO_PKG_VERSION").into(),
@@ -60,8 +55,9 @@ impl Flight {
             world: scenario.sim.world.clone(),
             mission: config.clone(),
             floor: floor.clone(),
+            plates: scenario.plates,
         };
-        let host_config = HostConfig::new(pace.step_deadline(config.tick_s));
+        let host_config = patient(HostConfig::new(pace.step_deadline(config.tick_s)), &config);
         Self {
             simulator: Simulator::new(scenario.sim.clone(), scenario.seed),
             host: Host::new(plugins, host_config),

@@ -9,9 +9,11 @@ mod output;
 mod past_runs;
 mod plan;
 mod planners;
+mod reproduce;
 mod run_folder;
 mod scenario;
 mod stop_signal;
+mod tune;
 mod verify;
 
 use clap::Parser;
@@ -37,6 +39,9 @@ fn main() -> ExitCode {
 }
 
 fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
+    if let Some(missing) = cli.plugins.plugin_dir.iter().find(|dir| !dir.is_dir()) {
+        return Err(bad_input(format!("--plugin-dir {}: there is no such folder", missing.display())));
+    }
     let plugins = PluginDirs::standard(&cli.plugins.plugin_dir);
     match cli.command {
         None => by_default(&plugins),
@@ -47,6 +52,8 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
         Some(Command::Planners { json }) => planners::list(&plugins, json),
         Some(Command::Check { files }) => planners::check(&files, &plugins),
+        Some(Command::Reproduce(args)) => reproduce::reproduce(&args, &plugins),
+        Some(Command::Tune(args)) => tune::tune(&args, &plugins),
         Some(Command::Runs { json, logs }) => past_runs::list(&logs, json),
         Some(Command::Verify { run, logs }) => verify::verify(&run, &logs, &plugins),
         Some(Command::Export { run, rrd, logs }) => past_runs::export(&run, &rrd, &logs),

@@ -57,7 +57,7 @@ fn row(run: &Listed) -> String {
         run.end,
         number(run.mission_time_s, 1.0),
         number(run.coverage_reachable, 100.0),
-        run.name
+        run.name.replace(char::is_control, "?")
     )
 }
 
@@ -83,7 +83,11 @@ fn look_at(folder: &Path) -> Listed {
         Standing::Unreadable(why) => from("UNREADABLE".into(), None, Some(why)),
         Standing::Crashed => {
             let (summary, note) = rebuild(folder);
-            from("CRASHED".into(), summary, Some(note))
+            match summary.as_ref().and_then(|summary| summary.outcome) {
+                // Whatever became of the report: the journal has the run to its end.
+                Some(outcome) => from(outcome.word().to_owned(), summary, Some("without a report".into())),
+                None => from("CRASHED".into(), summary, Some(note)),
+            }
         }
     }
 }

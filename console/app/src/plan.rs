@@ -9,7 +9,7 @@ use crate::{
     scenario::Scenario,
 };
 use anyhow::Context;
-use mission::{Cause, Fault, Parameters, preview};
+use mission::{Cause, Fault, MissionConfig, Parameters, TaskConfig, preview};
 use planner_api::{Code, Plan};
 use planner_host::{Host, HostConfig, PluginDirs};
 use serde::Serialize;
@@ -19,6 +19,9 @@ use std::{
 };
 use world::{Point, polyline};
 
+/// Time that a planner may take for a plan of the whole floor.
+const COVER_WITHIN: Duration = Duration::from_secs(60);
+
 /// A plan as scripts read it.
 #[derive(Debug, Serialize)]
 struct Planned {
@@ -26,6 +29,8 @@ struct Planned {
     parameters: Parameters,
     path: Vec<Point>,
     legs: Vec<Leg>,
+    /// Lines that the tethered robot never crosses.
+    cuts: Vec<Vec<Point>>,
     length_m: f64,
     plan_time_ms: f64,
     complete: bool,
@@ -37,7 +42,7 @@ struct Planned {
 
 /// Some points of the path that serve one purpose: index of the first and of the last.
 #[derive(Debug, Serialize)]
-struct Leg {
+pub struct Leg {
     tag: &'static str,
     first: usize,
     last: usize,
@@ -49,7 +54,7 @@ pub fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let planned = make_plan(&scenario, plugins)?;
     tell(&planned, args.json)?;
     if let Some(file) = &args.svg {
-        let picture = drawing::svg(&scenario, &planned.path);
+        let picture = drawing::svg(&scenario, &planned.path, &planned.legs, &planned.cuts);
         std::fs::write(file, picture).map_err(|error| {
             bad_input(format!("the drawing cannot be written: {error}: {}", file.display()))
         })?;
@@ -58,7 +63,7 @@ pub fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
 }
 
 fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planned> {
-    let mut host = Host::new(plugins, HostConfig::new(Duration::from_secs(1)));
+    let mut host = Host::new(plugins, patient(HostConfig::new(Duration::from_secs(1)), &scenario.mission));
     let began = Instant::now();
     let answer = preview(&scenario.mission, &scenario.sim.world.as_drawn(), scenario.seed, &mut host);
     let plan_time_ms = host.stats().plan.p50_us.unwrap_or(began.elapsed().as_secs_f64() * 1e6) / 1e3;
@@ -74,7 +79,8 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
     Ok(Planned {
         planner: scenario.mission.planner.id.clone(),
         parameters: scenario.mission.planner.parameters.clone(),
-        legs: legs(&plan.path),
+        legs: legs(&plan),
+        cuts: plan.cuts,
         length_m: polyline::length_m(&plan.path),
         path: plan.path,
         plan_time_ms,
@@ -84,18 +90,47 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
     })
 }
 
+/// A plan for a whole floor takes longer than a way to a point.
+pub fn patient(config: HostConfig, mission: &MissionConfig) -> HostConfig {
+    match mission.task {
+        TaskConfig::Cover { .. } => HostConfig { plan_deadline: COVER_WITHIN, ..config },
+        TaskConfig::Goto { .. } | TaskConfig::Follow { .. } => config,
+    }
+}
+
 /// A planner that says no by itself gives as much as it has; any other fault is the user's to mend.
 fn partial_plan(fault: &Fault) -> anyhow::Result<Plan> {
     match fault.cause {
         Cause::Planner(code) if code != Code::Config => {
-            Ok(Plan { path: fault.partial.clone(), cost: 0.0, complete: false })
+            Ok(Plan { path: fault.partial.clone(), ..Plan::default() })
         }
         _ => Err(bad_input(fault.message.clone())),
     }
 }
 
-fn legs(path: &[Point]) -> Vec<Leg> {
-    if path.is_empty() { vec![] } else { vec![Leg { tag: "path", first: 0, last: path.len() - 1 }] }
+/// The legs as the planner told them; a planner that told none has a single one.
+fn legs(plan: &Plan) -> Vec<Leg> {
+    let told = plan.legs.iter().map(|leg| Leg { tag: leg.tag.word(), first: leg.first, last: leg.last });
+    match plan.path.len() {
+        0 => vec![],
+        n if plan.legs.is_empty() => vec![Leg { tag: "path", first: 0, last: n - 1 }],
+        _ => told.collect(),
+    }
+}
+
+/// Lengths by tag, for people.
+fn lengths(planned: &Planned) -> String {
+    let length_m = |tag| -> f64 {
+        let legs = planned.legs.iter().filter(|leg| leg.tag == tag);
+        legs.map(|leg| polyline::length_m(&planned.path[leg.first..=leg.last])).sum()
+    };
+    let told = ["swath", "connector", "retract", "travel"].map(|tag| (tag, length_m(tag)));
+    let parts: Vec<String> = told
+        .iter()
+        .filter(|(_, length_m)| *length_m > 0.0)
+        .map(|(tag, length_m)| format!("{tag} {length_m:.1} m"))
+        .collect();
+    if parts.is_empty() { String::new() } else { format!("legs      {}\n", parts.join(", ")) }
 }
 
 fn tell(planned: &Planned, json: bool) -> anyhow::Result<()> {
@@ -104,10 +139,11 @@ fn tell(planned: &Planned, json: bool) -> anyhow::Result<()> {
     }
     let reason = planned.reason.as_ref().map(|reason| format!("reason    {reason}\n")).unwrap_or_default();
     say(&format!(
-        "planner   {}\nlength    {:.2} m, {} points\ntime      {:.2} ms\ncomplete  {}\n{reason}",
+        "planner   {}\nlength    {:.2} m, {} points\n{}time      {:.2} ms\ncomplete  {}\n{reason}",
         planned.planner,
         planned.length_m,
         planned.path.len(),
+        lengths(planned),
         planned.plan_time_ms,
         if planned.complete { "yes" } else { "no" },
     ))

@@ -7,7 +7,7 @@ use crate::{
 };
 use anyhow::Context;
 use mission::{ParamInfo, ParamKind, PlannerChoice, PlannerInfo};
-use planner_host::{PluginDirs, Survey, SurveyedPlugin, WorkerCommand, check_parameters, survey};
+use planner_host::{PluginDirs, Survey, SurveyedPlugin, WorkerCommand, parameter_problems, survey};
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,
@@ -27,29 +27,44 @@ pub fn surveyed(plugins: &PluginDirs) -> (Vec<PlannerInfo>, Vec<(String, String)
 }
 
 /// Makes sure, before anything is flown, that the planners of a scenario exist and take their parameters.
+///
+/// # Errors
+/// Every objection, with its place in the scenario.
 pub fn check_choices(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<()> {
     let known = found(plugins);
     let mission = &scenario.mission;
-    for choice in std::iter::once(&mission.planner).chain(&mission.fallback) {
-        check_choice(choice, &known).map_err(bad_input)?;
-    }
-    Ok(())
+    let fallback = mission.fallback.iter().map(|choice| ("planner.fallback", choice));
+    let choices = std::iter::once(("planner", &mission.planner)).chain(fallback);
+    let objections: Vec<_> =
+        choices.flat_map(|(section, choice)| objections(section, choice, &known)).collect();
+    if objections.is_empty() { Ok(()) } else { Err(bad_input(scenario.refused(objections).render())) }
 }
 
-fn check_choice(choice: &PlannerChoice, known: &[PlannerInfo]) -> Result<(), String> {
-    let Some(info) = known.iter().find(|info| info.id == choice.id) else {
+fn objections(section: &str, choice: &PlannerChoice, known: &[PlannerInfo]) -> Vec<(String, String)> {
+    let at = |key: String| format!("{section}.parameters.{key}");
+    match choice_of(&choice.id, known) {
+        Err(message) => vec![(format!("{section}.id"), message)],
+        Ok(info) => {
+            let problems = parameter_problems(info, &choice.parameters);
+            problems.into_iter().map(|(key, message)| (at(key), message)).collect()
+        }
+    }
+}
+
+/// The planner of this id.
+///
+/// # Errors
+/// One sentence with what there is.
+pub fn choice_of<'a>(id: &str, known: &'a [PlannerInfo]) -> Result<&'a PlannerInfo, String> {
+    known.iter().find(|info| info.id == id).ok_or_else(|| {
         let ids: Vec<&str> = known.iter().map(|info| info.id.as_str()).collect();
         let has = if ids.is_empty() {
             "no planner was found at all".into()
         } else {
             format!("found: {}", ids.join(", "))
         };
-        return Err(format!(
-            "there is no planner `{}`; {has}; `tankops planners` tells where they are looked for",
-            choice.id
-        ));
-    };
-    check_parameters(info, &choice.parameters)
+        format!("there is no planner `{id}`; {has}; `tankops planners` tells where they are looked for")
+    })
 }
 
 /// `tankops planners`.
@@ -123,7 +138,7 @@ fn check_file(file: &Path, plugins: &PluginDirs) -> Result<String, String> {
         return check_plugin(file);
     }
     let scenario = Scenario::read_with(file, &Settings::default()).map_err(|errors| errors.render())?;
-    check_choices(&scenario, plugins).map_err(|error| format!("error: {}: {error}", file.display()))?;
+    check_choices(&scenario, plugins).map_err(|error| error.to_string())?;
     Ok(format!("scenario {}, planner {}", scenario.name, scenario.mission.planner.id))
 }
 

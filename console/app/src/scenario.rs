@@ -11,7 +11,9 @@ mod expect;
 mod floor;
 mod layout;
 mod outline;
+mod planner_keys;
 mod problem;
+mod ranging;
 mod render;
 mod robot;
 mod schema;
@@ -29,6 +31,7 @@ use report::Expect;
 use sim::SimConfig;
 use std::{fs::File, io::Read, path::Path};
 use toml::de::DeTable;
+use world::PlateLayout;
 
 /// A larger file is no scenario, kilobytes.
 const LIMIT_KB: usize = 1000;
@@ -40,6 +43,8 @@ pub struct Scenario {
     pub name: String,
     /// What it shows, for people; may be empty.
     pub about: String,
+    /// The file, or what else it is called in messages.
+    pub shown_name: String,
     /// The text it was read from, with settings already put in; gives the same scenario again.
     pub text: String,
     /// Start of every random choice.
@@ -48,6 +53,8 @@ pub struct Scenario {
     pub sim: SimConfig,
     /// What is to be done.
     pub mission: MissionConfig,
+    /// How the plates of the floor lie, if the drawing tells.
+    pub plates: Option<PlateLayout>,
     /// Bounds that the run is held to.
     pub expect: Expect,
 }
@@ -72,7 +79,7 @@ impl Scenario {
             return Err(ScenarioErrors::of_file(shown_name, Complaint::TooLarge { limit_kb: LIMIT_KB }));
         }
         let table = DeTable::parse(text).map_err(|error| syntax_error(text, shown_name, &error))?;
-        assemble::assemble(text, table.get_ref()).map_err(|problems| ScenarioErrors {
+        assemble::assemble(text, shown_name, table.get_ref()).map_err(|problems| ScenarioErrors {
             shown_name: shown_name.to_owned(),
             text: text.to_owned(),
             problems,

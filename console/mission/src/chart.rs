@@ -40,10 +40,15 @@ impl Chart {
             map,
             revision: 0,
             limits: config.limits,
-            swath_m: config.swath_m,
+            swath_m: config.lane_m(),
             clearance_m: config.clearance_m,
             seed,
         }
+    }
+
+    /// The tank as far as it is known.
+    pub fn world(&self) -> &World {
+        &self.world
     }
 
     /// Distances and neighbours on the chart.
@@ -132,7 +137,12 @@ fn shift(by: world::Vector) -> Isometry2<f64> {
 }
 
 fn obstacle_of(obstacle: &Obstacle) -> api::Obstacle<'_> {
-    api::Obstacle { id: obstacle.id.0, outline: outline_of(&obstacle.shape), discovered: !obstacle.known }
+    api::Obstacle {
+        id: obstacle.id.0,
+        outline: outline_of(&obstacle.shape),
+        discovered: !obstacle.known,
+        velocity_m_per_s: api::Vector2::zeros(),
+    }
 }
 
 fn outline_of(shape: &Shape) -> api::Outline<'_> {

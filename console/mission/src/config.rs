@@ -1,10 +1,10 @@
 //! What a mission is to do, and within which limits.
 
 use crate::link::Parameters;
-use planner_api::Limits;
+use planner_api::{Limits, Motion, TetherLimits};
 use positioning::{Aggregation, RangeNoise, SolverKind};
 use serde::{Deserialize, Serialize};
-use world::{Point, Pose};
+use world::{Point, Pose, coverage::Tool};
 
 /// Which planner drives, with the parameters that differ from their defaults.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -34,10 +34,32 @@ pub enum TaskConfig {
         /// Distance at which the last one counts as reached, metres.
         tolerance_m: f64,
     },
+    /// Scan the floor and come back to the anchor.
+    Cover {
+        /// Where the path ends, and where the tether is made fast if there is one, metres.
+        anchor: Point,
+        /// What is to be scanned, as closed polygons; empty for all floor that can be reached.
+        #[serde(default)]
+        regions: Vec<Vec<Point>>,
+        /// Distance from the anchor at which the robot counts as back, metres.
+        tolerance_m: f64,
+    },
+}
+
+/// What it takes for floor to count as scanned.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ScanConfig {
+    /// Width by which neighbouring lanes shall overlap, metres: planners are told a swath narrower by this, so that
+    /// the position error leaves no gaps between lanes.
+    pub overlap_m: f64,
+    /// Half width of the 95 % position error above which nothing counts as scanned, metres; `None` for the limit
+    /// above which the position counts as lost.
+    pub position_limit_m: Option<f64>,
 }
 
 /// How ranges become a position.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Locating {
     /// How single ranges scatter; none: normally, by [`MissionConfig::range_sigma_ratio`].
@@ -48,6 +70,23 @@ pub struct Locating {
     pub solver: SolverKind,
     /// Whether the speed of sound is found out under way.
     pub calibrates_sound: bool,
+    /// Ranges per station and cycle, as far as forecasts of the accuracy go.
+    pub repetitions: u32,
+    /// Whether a station is of no use where an obstacle hides it.
+    pub needs_sight: bool,
+}
+
+impl Default for Locating {
+    fn default() -> Self {
+        Self {
+            noise: None,
+            aggregation: Aggregation::default(),
+            solver: SolverKind::default(),
+            calibrates_sound: false,
+            repetitions: 20,
+            needs_sight: false,
+        }
+    }
 }
 
 /// A mission as the engine needs it; made and checked by whoever reads the scenario.
@@ -90,6 +129,9 @@ pub struct MissionConfig {
     /// How ranges become a position.
     #[serde(default)]
     pub locating: Locating,
+    /// What it takes for floor to count as scanned.
+    #[serde(default)]
+    pub scan: ScanConfig,
     /// The planner that drives first.
     pub planner: PlannerChoice,
     /// The planner that takes over by itself after a fault, if any.
@@ -97,4 +139,34 @@ pub struct MissionConfig {
     /// Whether an operator is there; without one a hold that only an operator could end ends the mission.
     #[serde(default)]
     pub attended: bool,
+}
+
+impl MissionConfig {
+    /// Distance to keep between the robot's centre and anything solid, metres.
+    pub fn room_m(&self) -> f64 {
+        self.limits.radius_m + self.clearance_m
+    }
+
+    /// Width of floor that planners may count on in one pass, metres.
+    pub fn lane_m(&self) -> f64 {
+        self.swath_m - self.scan.overlap_m
+    }
+
+    /// The tool: a bar across the heading of a robot that has one, a disc under a point robot.
+    pub fn tool(&self) -> Tool {
+        match self.limits.motion {
+            Motion::Point => Tool::Disc { swath_m: self.swath_m },
+            Motion::Unicycle => Tool::Bar { swath_m: self.swath_m },
+        }
+    }
+
+    /// Half width of the 95 % position error above which nothing counts as scanned, metres.
+    pub fn scan_limit_m(&self) -> f64 {
+        self.scan.position_limit_m.unwrap_or(self.position_limit_m)
+    }
+
+    /// What the tether bears, for planners; `None` without one.
+    pub fn tether_limits(&self) -> Option<TetherLimits> {
+        None
+    }
 }

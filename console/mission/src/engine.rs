@@ -3,6 +3,7 @@
 mod driving;
 mod orders;
 mod planning;
+mod scanning;
 
 use crate::{
     chart::Chart,
@@ -15,7 +16,7 @@ use crate::{
     task::{StuckWatch, Task},
 };
 use planner_api::{Drive, Reason};
-use world::{CoverageGrid, Floor, Point, Readings, World};
+use world::{CoverageGrid, Floor, FloorMaker, Point, Readings, World};
 
 /// What enters the engine in one tick.
 #[derive(Debug, Clone, Copy)]
@@ -47,6 +48,8 @@ pub struct Mission {
     chart: Chart,
     task: Task,
     coverage: CoverageGrid,
+    /// Makes the floor anew when an obstacle was found; made for the first one.
+    surveyor: Option<FloorMaker>,
     planner: Seat,
     stuck: StuckWatch,
     lost_s: f64,
@@ -98,6 +101,7 @@ impl Mission {
             chart: Chart::new(drawing, &config, seed),
             task: Task::new(&config.task, start),
             coverage: CoverageGrid::new(floor),
+            surveyor: None,
             planner: Seat {
                 choice: config.planner.clone(),
                 info: None,
@@ -126,7 +130,7 @@ impl Mission {
         for order in input.orders {
             self.obey(order, planner);
         }
-        let before = self.locator.position();
+        let before = self.locator.pose();
         let located = self.locator.take(input.readings);
         self.happened.extend(located);
         self.look_around(input.readings);
@@ -156,38 +160,6 @@ impl Mission {
         self.tick as f64 * self.config.tick_s
     }
 
-    fn look_around(&mut self, readings: &Readings) {
-        // A found obstacle is placed by the estimated pose, so a lost robot does not draw maps.
-        if !self.locator.is_lost() {
-            let found = self.chart.see(&readings.sightings, &self.locator.pose());
-            if !found.is_empty() {
-                self.planner.plan_due.get_or_insert(Reason::MapChanged);
-            }
-            self.happened.extend(found);
-        }
-    }
-
-    fn scan_from(&mut self, before: Point) {
-        let here = self.locator.position();
-        let room_m = self.config.limits.radius_m + self.config.clearance_m;
-        self.task.advance(here, self.chart.map(), room_m);
-        if self.phase == Phase::Waiting || self.locator.is_lost() {
-            return;
-        }
-        let runs = self.coverage.mark_swath(before, here, self.config.swath_m);
-        if !runs.is_empty() {
-            self.happened.push(EventKind::Covered { runs });
-        }
-        self.happened.push(EventKind::Progressed {
-            done: self.task.done(),
-            along_m: self.task.along_m(),
-            cross_track_m: self.task.cross_track_m(here),
-            target: self.task.target(),
-            covered_reachable: self.coverage.fraction_reachable(),
-            covered_whole: self.coverage.fraction_whole(),
-        });
-    }
-
     /// The rules that hold the robot, let it go on, or end the mission.
     fn apply_rules(&mut self, readings: &Readings, planner: &mut dyn PlannerLink) {
         match self.phase.clone() {
@@ -209,7 +181,7 @@ impl Mission {
         if self.lost_s >= self.config.lost_hold_s && (lost || alarmed) {
             self.hold(if lost { HoldReason::PositionLost } else { HoldReason::PositionAlarmed });
         } else if self.task.is_done(here) {
-            self.end(Outcome::Complete, "the task is done");
+            self.end(Outcome::Complete, &self.done_reason());
         } else if self.stuck.is_stuck(&self.task, here, self.config.tick_s) {
             self.stop_stuck(here);
         }

@@ -8,14 +8,14 @@ use crate::{
     link::{Fault, PlannerInfo},
     order::Order,
 };
-use planner_api::{Command, Drawing, LogLevel, PoseEstimate, Reason};
+use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, PoseEstimate, Reason};
 use positioning::{Exclusion, Fix, FixError, Ranging};
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use world::{CellRun, Obstacle, ObstacleId, Point, Pose, StationId, World};
+use world::{CellRun, KindRun, Obstacle, ObstacleId, Point, Pose, StationId, World};
 
 /// Version of the journal's form; raised when an old reader could not read a new journal.
-pub const JOURNAL_VERSION: u32 = 1;
+pub const JOURNAL_VERSION: u32 = 2;
 
 /// One thing that happened.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -149,6 +149,12 @@ pub enum EventKind {
         length_m: f64,
         /// Whether it achieves the whole task.
         complete: bool,
+        /// What the stretches of the path are for, as far as the planner told.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        legs: Vec<Leg>,
+        /// Lines that the tethered robot never crosses.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        cuts: Vec<Vec<Point>>,
     },
     /// The planner told how to move, and this is what the robot was sent.
     Commanded {
@@ -184,6 +190,16 @@ pub enum EventKind {
         /// Cells of the coverage grid that are new.
         runs: Vec<CellRun>,
     },
+    /// The tool passed over floor, but the position was too uncertain for it to count as scanned.
+    Uncounted {
+        /// Cells of the coverage grid that were not scanned before.
+        runs: Vec<CellRun>,
+    },
+    /// An obstacle that was found changed which cells are floor and which of them the tool can reach.
+    FloorChanged {
+        /// The cells, and what they are now.
+        changes: Vec<KindRun>,
+    },
     /// How far the mission is.
     Progressed {
         /// Share of the task done, 0 to 1.
@@ -198,6 +214,9 @@ pub enum EventKind {
         covered_reachable: f64,
         /// Scanned share of the whole floor, 0 to 1.
         covered_whole: f64,
+        /// What the stretch of the plan under the robot is for; absent if the planner did not tell.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        leg: Option<LegTag>,
     },
     /// The robot was told to stand still.
     Held {
@@ -234,6 +253,9 @@ pub struct RunOpened {
     pub mission: MissionConfig,
     /// The coverage grid: which cells are floor and which of them the tool can reach.
     pub floor: world::Floor,
+    /// How the plates of the floor lie, if the drawing tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plates: Option<world::PlateLayout>,
 }
 
 /// Why the robot stands still.
@@ -415,6 +437,8 @@ impl Event {
             | EventKind::Drawn { .. }
             | EventKind::Scalars { .. }
             | EventKind::Covered { .. }
+            | EventKind::Uncounted { .. }
+            | EventKind::FloorChanged { .. }
             | EventKind::Progressed { .. } => None,
         }
     }

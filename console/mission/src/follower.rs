@@ -1,9 +1,20 @@
 //! How far along a path the robot is, and where to go next.
 
-use world::{ObstacleMap, Point, polyline};
+use std::collections::VecDeque;
+use world::{ObstacleMap, Point, geometry::wrap_angle_rad, polyline};
 
 /// Distance ahead of the robot at which it aims, metres.
 const LOOKAHEAD_M: f64 = 0.5;
+/// The same along a path that is to be followed exactly, metres.
+const EXACT_LOOKAHEAD_M: f64 = 0.25;
+/// Distance between the points of a path that is to be followed exactly, metres.
+const EXACT_SPACING_M: f64 = 0.1;
+/// Turn of a path above which the robot goes to the corner before it turns, radians.
+const CORNER_RAD: f64 = 0.5;
+/// Distance at which a corner counts as reached, metres.
+const CORNER_M: f64 = 0.05;
+/// Distance from a corner within which having gone past it counts as having reached it, metres.
+const BESIDE_CORNER_M: f64 = 0.4;
 /// Length of path that is searched for the nearest point, metres; shorter than one turn of any useful spiral.
 const WINDOW_M: f64 = 1.5;
 
@@ -16,6 +27,10 @@ pub struct Follower {
     target: usize,
     /// Last point that the robot can stand on; later ones lie in obstacles.
     last: usize,
+    lookahead_m: f64,
+    /// Points that are reached before the path beyond them is looked at, the next one first; empty when corners may
+    /// be cut.
+    corners: VecDeque<usize>,
 }
 
 impl Follower {
@@ -23,7 +38,18 @@ impl Follower {
     pub fn new(path: Vec<Point>) -> Self {
         let stations_m = polyline::stations_m(&path);
         let last = path.len().saturating_sub(1);
-        Self { path, stations_m, nearest: 0, target: 0, last }
+        let corners = VecDeque::new();
+        Self { path, stations_m, nearest: 0, target: 0, last, lookahead_m: LOOKAHEAD_M, corners }
+    }
+
+    /// A follower that goes to every corner of a path before it turns, so that no lane is cut short and no lane is
+    /// mistaken for the one beside it. The path has at least one point.
+    pub fn exact(path: &[Point]) -> Self {
+        let mut path = path.to_vec();
+        path.dedup_by(|next, before| (*next - *before).norm() < 1e-6);
+        let follower = Self::new(polyline::resampled(&path, EXACT_SPACING_M));
+        let corners = corners(&follower.path);
+        Self { lookahead_m: EXACT_LOOKAHEAD_M, corners, ..follower }
     }
 
     /// Takes the robot's position: moves on along the path and chooses the next target.
@@ -33,15 +59,31 @@ impl Follower {
     pub fn advance(&mut self, position: Point, map: &ObstacleMap, room_m: f64) {
         let free = |index: &usize| map.clearance_m(self.path[*index]) >= room_m;
         let window_end_m = (self.stations_m[self.nearest] + WINDOW_M).max(self.stations_m[self.target]);
-        self.nearest = (self.nearest..self.path.len())
+        self.nearest = (self.nearest..=self.next_corner())
             .take_while(|index| self.stations_m[*index] <= window_end_m)
             .min_by(|a, b| (self.path[*a] - position).norm().total_cmp(&(self.path[*b] - position).norm()))
             .unwrap_or(self.nearest);
+        if self.corners.front().is_some_and(|corner| self.has_reached(*corner, position)) {
+            self.nearest = self.corners.pop_front().unwrap_or(self.nearest);
+        }
         self.last = (self.nearest..self.path.len()).rev().find(free).unwrap_or(self.nearest);
-        let aim_m = self.stations_m[self.nearest] + LOOKAHEAD_M;
+        let aim_m = self.stations_m[self.nearest] + self.lookahead_m;
         self.target = (self.nearest..=self.last)
             .find(|index| self.stations_m[*index] >= aim_m && free(index))
-            .unwrap_or(self.last);
+            .unwrap_or(self.last)
+            .min(self.next_corner());
+    }
+
+    /// The next corner, or the end of the path.
+    fn next_corner(&self) -> usize {
+        self.corners.front().copied().unwrap_or(self.path.len() - 1)
+    }
+
+    /// Whether a position is at a corner, or a little beside it and past it.
+    fn has_reached(&self, corner: usize, position: Point) -> bool {
+        let off = position - self.path[corner];
+        let into = self.path[corner] - self.path[corner - 1];
+        off.norm() <= CORNER_M || (off.norm() <= BESIDE_CORNER_M && off.dot(&into) >= 0.0)
     }
 
     /// Where to go next.
@@ -84,6 +126,15 @@ impl Follower {
     }
 }
 
+/// The points at which a path turns sharply, the first point apart.
+fn corners(path: &[Point]) -> VecDeque<usize> {
+    let bearing = |from: Point, to: Point| (to.y - from.y).atan2(to.x - from.x);
+    let turns = |trio: &[Point]| {
+        wrap_angle_rad(bearing(trio[1], trio[2]) - bearing(trio[0], trio[1])).abs() > CORNER_RAD
+    };
+    path.windows(3).enumerate().filter(|(_, trio)| turns(trio)).map(|(index, _)| index + 1).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -110,6 +161,23 @@ mod tests {
         assert!((follower.along_m() - 1.0).abs() < 1e-9);
         assert!((follower.target().x - 1.5).abs() < 1e-9);
         assert!((follower.cross_track_m(Point::new(1.0, 0.05)) - 0.05).abs() < 1e-9);
+    }
+
+    #[test]
+    fn an_exact_follower_goes_to_the_end_of_a_lane_before_it_turns_into_the_next() {
+        let lanes: Vec<Point> =
+            [(0.0, 0.0), (5.0, 0.0), (5.0, 0.4), (0.0, 0.4)].map(|(x, y)| Point::new(x, y)).to_vec();
+        let mut follower = Follower::exact(&lanes);
+        // Nearer to the second lane than to the first, but on the way along the first.
+        for step in 0..=24 {
+            follower.advance(Point::new(0.2 * f64::from(step), 0.25), &map(&[]), 0.0);
+            assert!(follower.target().y < 0.01, "{}", follower.target());
+        }
+        follower.advance(Point::new(5.02, 0.1), &map(&[]), 0.0);
+        assert!((follower.along_m() - 5.0).abs() < 1e-9 && follower.target().x > 4.99);
+        follower.advance(Point::new(5.0, 0.39), &map(&[]), 0.0);
+        assert!(follower.target().x < 4.9, "{}", follower.target());
+        assert!(!follower.is_done(Point::new(0.0, 0.4), 0.2));
     }
 
     #[test]

@@ -18,7 +18,7 @@ pub mod order;
 mod preview;
 mod task;
 
-pub use config::{Locating, MissionConfig, PlannerChoice, TaskConfig};
+pub use config::{Locating, MissionConfig, PlannerChoice, ScanConfig, TaskConfig};
 pub use engine::{Input, Mission, Phase, Step};
 pub use event::{Event, EventKind, HoldReason, LogLine, Outcome, RunOpened, Severity};
 pub use link::{

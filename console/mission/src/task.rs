@@ -1,8 +1,12 @@
 //! The task while it is being done: where to go, how far it is, whether it is done.
 
+mod cover;
+
+pub use cover::Cover;
+
 use crate::{config::TaskConfig, follower::Follower};
 use planner_api as api;
-use world::{ObstacleMap, Point};
+use world::{CoverageGrid, ObstacleMap, Point, Shape};
 
 /// Distance that counts as progress, metres.
 const PROGRESS_M: f64 = 0.1;
@@ -18,6 +22,8 @@ pub enum Task {
         /// Distance at which the last one counts as reached, metres.
         tolerance_m: f64,
     },
+    /// Scan the floor.
+    Cover(Cover),
 }
 
 /// Progress towards a single goal.
@@ -39,6 +45,9 @@ impl Task {
             TaskConfig::Follow { path, tolerance_m } => {
                 Self::Follow { follower: Follower::new(path.clone()), tolerance_m: *tolerance_m }
             }
+            TaskConfig::Cover { anchor, regions, tolerance_m } => {
+                Self::Cover(Cover::new(*anchor, regions.clone(), *tolerance_m, start))
+            }
         }
     }
 
@@ -47,6 +56,7 @@ impl Task {
         match self {
             Self::Goto(goto) => goto.position = position,
             Self::Follow { follower, .. } => follower.advance(position, map, room_m),
+            Self::Cover(cover) => cover.advance(position, map),
         }
     }
 
@@ -55,6 +65,7 @@ impl Task {
         match self {
             Self::Goto(goto) => goto.goal,
             Self::Follow { follower, .. } => follower.target(),
+            Self::Cover(cover) => cover.target(),
         }
     }
 
@@ -63,16 +74,54 @@ impl Task {
         match self {
             Self::Goto(goto) => std::slice::from_ref(&goto.goal),
             Self::Follow { follower, .. } => follower.ahead(length_m),
+            Self::Cover(cover) => cover.ahead(length_m),
         }
     }
 
-    /// What is left of the task, as planners read it.
-    pub fn as_request(&self) -> api::Task<'_> {
+    /// Takes a plan that was made for what is left of the task.
+    pub fn take_plan(&mut self, plan: &api::Plan) {
+        if let Self::Cover(cover) = self {
+            cover.take_plan(plan);
+        }
+    }
+
+    /// What is left to scan, as polygons; none unless the task is to cover, or when all of it is left.
+    pub fn regions_left(&self, coverage: &CoverageGrid, lane_m: f64) -> Vec<Vec<Point>> {
+        match self {
+            Self::Cover(cover) => cover.regions_left(coverage, lane_m),
+            Self::Goto(_) | Self::Follow { .. } => Vec::new(),
+        }
+    }
+
+    /// What the stretch of the plan under the robot is for, if the planner told.
+    pub fn leg(&self) -> Option<api::LegTag> {
+        match self {
+            Self::Cover(cover) => cover.leg(),
+            Self::Goto(_) | Self::Follow { .. } => None,
+        }
+    }
+
+    /// Whether what is left of the task leads the robot's centre nearer than `room_m` to an outline. Planners that go
+    /// round obstacles by themselves always want to know of a new one.
+    pub fn is_in_the_way(&self, shape: &Shape, room_m: f64) -> bool {
+        match self {
+            Self::Cover(cover) => cover.is_in_the_way(shape, room_m),
+            Self::Goto(_) | Self::Follow { .. } => true,
+        }
+    }
+
+    /// What is left of the task, as planners read it; `regions` are those of [`Task::regions_left`].
+    pub fn as_request<'a>(
+        &'a self,
+        regions: &'a [&'a [Point]],
+        tether: Option<api::TetherLimits>,
+    ) -> api::Task<'a> {
         match self {
             Self::Goto(goto) => api::Task::Goto { goal: goto.goal, tolerance_m: goto.tolerance_m },
             Self::Follow { follower, tolerance_m } => {
                 api::Task::Follow { targets: follower.remaining(), tolerance_m: *tolerance_m }
             }
+            Self::Cover(cover) => cover.as_request(regions, tether),
         }
     }
 
@@ -84,22 +133,24 @@ impl Task {
                 follower.along_m() / follower.length_m()
             }
             Self::Follow { .. } => 1.0,
+            Self::Cover(cover) => cover.done(),
         }
     }
 
     /// Way along the preset path, metres; `None` without one.
     pub fn along_m(&self) -> Option<f64> {
         match self {
-            Self::Goto(_) => None,
+            Self::Goto(_) | Self::Cover(_) => None,
             Self::Follow { follower, .. } => Some(follower.along_m()),
         }
     }
 
-    /// Distance from the preset path, metres; `None` without one.
+    /// Distance from the preset path or the lanes, metres; `None` without one.
     pub fn cross_track_m(&self, position: Point) -> Option<f64> {
         match self {
             Self::Goto(_) => None,
             Self::Follow { follower, .. } => Some(follower.cross_track_m(position)),
+            Self::Cover(cover) => cover.cross_track_m(position),
         }
     }
 
@@ -108,6 +159,7 @@ impl Task {
         match self {
             Self::Goto(goto) => goto.left_m() <= goto.tolerance_m,
             Self::Follow { follower, tolerance_m } => follower.is_done(position, *tolerance_m),
+            Self::Cover(cover) => cover.is_done(position),
         }
     }
 
@@ -116,6 +168,7 @@ impl Task {
         match self {
             Self::Goto(goto) => goto.left_m(),
             Self::Follow { follower, .. } => follower.length_m() - follower.along_m(),
+            Self::Cover(cover) => cover.left_m(),
         }
     }
 }

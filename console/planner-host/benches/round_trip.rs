@@ -19,7 +19,14 @@ fn host() -> Host {
 
 fn obstacles() -> Vec<Obstacle<'static>> {
     let disc = |id| Outline::Disc { center: Point2::new(f64::from(id), 1.0), radius_m: 0.2 };
-    (0..N_OBSTACLES).map(|id| Obstacle { id, outline: disc(id), discovered: false }).collect()
+    (0..N_OBSTACLES)
+        .map(|id| Obstacle {
+            id,
+            outline: disc(id),
+            discovered: false,
+            velocity_m_per_s: planner_api::Vector2::zeros(),
+        })
+        .collect()
 }
 
 fn round_trip(criterion: &mut Criterion) {

@@ -32,8 +32,28 @@ pub(crate) fn plan(plan: &Plan) -> Result<(), String> {
     if let Some(index) = plan.path.iter().position(|p| !(p.x.is_finite() && p.y.is_finite())) {
         return Err(format!("gave a path whose point {index} is not finite"));
     }
+    if plan.cuts.iter().flatten().any(|p| !(p.x.is_finite() && p.y.is_finite())) {
+        return Err("gave a cut with a point that is not finite".to_owned());
+    }
+    legs(plan)?;
     if !plan.cost.is_finite() {
         return Err("gave a plan without a finite cost".to_owned());
+    }
+    Ok(())
+}
+
+/// Legs lie on the path, in order, and share at most a point.
+fn legs(plan: &Plan) -> Result<(), String> {
+    let mut from = 0;
+    for (index, leg) in plan.legs.iter().enumerate() {
+        let (first, last, n) = (leg.first, leg.last, plan.path.len());
+        if first > last || last >= n {
+            return Err(format!("gave leg {index} from point {first} to {last} of a path of {n} points"));
+        }
+        if first < from {
+            return Err(format!("gave leg {index} from point {first} on, within the leg before it"));
+        }
+        from = last;
     }
     Ok(())
 }
@@ -42,7 +62,7 @@ pub(crate) fn plan(plan: &Plan) -> Result<(), String> {
 mod tests {
     use super::*;
     use nalgebra::{Point2, Vector2};
-    use planner_api::Motion;
+    use planner_api::{Leg, LegTag, Motion};
     use proptest::prelude::*;
 
     const LIMITS: Limits = Limits {
@@ -65,9 +85,25 @@ mod tests {
     #[test]
     fn a_path_of_finite_points_is_needed() {
         let path = vec![Point2::new(0.0, 0.0), Point2::new(f64::INFINITY, 0.0)];
-        let refused = plan(&Plan { path, cost: 1.0, complete: true });
+        let refused = plan(&Plan { path, cost: 1.0, complete: true, ..Plan::default() });
         assert_eq!(refused, Err("gave a path whose point 1 is not finite".into()));
-        assert!(plan(&Plan { path: Vec::new(), cost: f64::NAN, complete: true }).is_err());
+        assert!(plan(&Plan { cost: f64::NAN, complete: true, ..Plan::default() }).is_err());
+        assert!(plan(&Plan { cuts: vec![vec![Point2::new(0.0, f64::NAN)]], ..Plan::default() }).is_err());
+    }
+
+    #[test]
+    fn legs_lie_on_the_path_in_order() {
+        let judged = |legs: &[(usize, usize)]| {
+            let legs = legs.iter().map(|&(first, last)| Leg { tag: LegTag::Swath, first, last }).collect();
+            plan(&Plan { path: vec![Point2::origin(); 5], legs, ..Plan::default() })
+        };
+        assert_eq!(judged(&[(0, 2), (2, 2), (3, 4)]), Ok(()));
+        assert_eq!(judged(&[(0, 5)]), Err("gave leg 0 from point 0 to 5 of a path of 5 points".into()));
+        assert_eq!(
+            judged(&[(0, 3), (2, 4)]),
+            Err("gave leg 1 from point 2 on, within the leg before it".into())
+        );
+        assert!(judged(&[(2, 1)]).is_err());
     }
 
     proptest! {

@@ -28,7 +28,7 @@ mod worker;
 
 pub use discovery::PluginDirs;
 pub use host::{Host, HostConfig};
-pub use parameters::check_parameters;
+pub use parameters::{check_parameters, parameter_problems};
 pub use stats::{CallStats, HostStats};
 pub use supervisor::WorkerCommand;
 pub use survey::{Survey, SurveyedPlugin, check_plugin, survey};

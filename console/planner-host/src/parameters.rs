@@ -7,7 +7,15 @@ use mission::{ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo};
 /// # Errors
 /// One sentence: what is wrong and what would be right.
 pub fn check_parameters(planner: &PlannerInfo, parameters: &Parameters) -> Result<(), String> {
-    numbers(planner, parameters).map(|_| ())
+    parameter_problems(planner, parameters).into_iter().next().map_or(Ok(()), |(_, problem)| Err(problem))
+}
+
+/// Everything that is wrong with values set by hand: the key, and one sentence with what would be right.
+pub fn parameter_problems(planner: &PlannerInfo, parameters: &Parameters) -> Vec<(String, String)> {
+    let problem = |key: &String, value: &ParamValue| {
+        find(planner, key).and_then(|param| number(&planner.id, param, value)).err()
+    };
+    parameters.iter().filter_map(|(key, value)| Some((key.clone(), problem(key, value)?))).collect()
 }
 
 /// All parameters of a planner as numbers: those set by hand, the others by their defaults.

@@ -12,7 +12,7 @@ pub(crate) mod input;
 pub(crate) mod owned;
 
 /// Raised whenever a frame changes its form: console and worker must be of one build.
-pub(crate) const VERSION: u32 = 1;
+pub(crate) const VERSION: u32 = 2;
 /// Longest frame, bytes.
 pub(crate) const LONGEST: usize = 16 << 20;
 

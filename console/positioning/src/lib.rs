@@ -14,6 +14,8 @@ pub mod nonlinear;
 pub mod screened;
 pub mod weighted;
 
+pub mod accuracy;
+
 pub mod calibration;
 pub mod ekf;
 pub mod fixed_lag;
@@ -26,6 +28,10 @@ mod draws;
 mod pair;
 mod quality;
 
+pub use accuracy::{
+    Accuracy, AccuracyMap, Forecast,
+    adviser::{Advice, AdviceError, advise},
+};
 pub use aggregate::Aggregation;
 pub use bounded::Bounded;
 pub use calibration::{Calibration, Unknowns};

@@ -21,7 +21,7 @@ const BENT_SIGMAS: f64 = 5.0;
 const LEAST_SPARED: f64 = 1e-6;
 
 /// Stands for an infinite dilution, so that every number stays finite.
-const NO_GEOMETRY: f64 = 1e9;
+pub(crate) const NO_GEOMETRY: f64 = 1e9;
 
 /// Puts a fix together and judges it by its residuals.
 pub(crate) fn assess(

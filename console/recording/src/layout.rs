@@ -133,7 +133,7 @@ impl Sketch {
         let forces = self.plot("Forces [N]", &[paths::FORCE_SIZES], None);
         let figures = self.plot("Planner", &[&format!("{}/**", paths::PLANNER_SCALARS)], None);
         match task {
-            TaskConfig::Follow { .. } => {
+            TaskConfig::Follow { .. } | TaskConfig::Cover { .. } => {
                 let cross_track = self.plot("Cross-track [m]", &[paths::CROSS_TRACK], None);
                 bp::Tabs::new([cross_track, forces, figures]).into()
             }

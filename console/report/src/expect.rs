@@ -21,6 +21,8 @@ pub struct Expect {
     pub path_length_max_m: Option<f64>,
     /// Least share of the reachable floor scanned.
     pub coverage_reachable_min: Option<f64>,
+    /// Least share of the reachable floor scanned, by where the robot truly was.
+    pub coverage_truth_min: Option<f64>,
     /// Least share of the whole floor scanned.
     pub coverage_whole_min: Option<f64>,
     /// Most floor scanned again, as a share of the floor scanned.
@@ -87,6 +89,12 @@ impl Expect {
             ("mission_time_max_s", AtMost, self.mission_time_max_s, run.mission_time_s),
             ("path_length_max_m", AtMost, self.path_length_max_m, run.path_length_m),
             ("coverage_reachable_min", AtLeast, self.coverage_reachable_min, coverage.map(|c| c.reachable)),
+            (
+                "coverage_truth_min",
+                AtLeast,
+                self.coverage_truth_min,
+                coverage.and_then(|c| c.by_truth).map(|truth| truth.reachable),
+            ),
             ("coverage_whole_min", AtLeast, self.coverage_whole_min, coverage.map(|c| c.whole)),
             ("overlap_max", AtMost, self.overlap_max, coverage.and_then(|c| c.overlap)),
             ("precision_min", AtLeast, self.precision_min, tracking.map(|t| t.precision)),

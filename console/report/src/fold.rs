@@ -1,25 +1,30 @@
 //! Events of a run, one after the other, into its summary.
 
 use crate::{
+    account::{Account, Evidence, account},
     accuracy::{Accuracy, Estimate},
     scanned::Scanned,
     summary::Summary,
     tracking::Tracker,
+    turning::Turning,
 };
 use mission::{
     Event, EventKind, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, TaskConfig,
     event::RunOpened,
 };
-use world::Point;
+use world::{Obstacle, Pose};
 
 /// What is known of a run from the events so far.
 #[derive(Debug, Default)]
 pub struct Fold {
     known: Summary,
-    truth: Option<Point>,
+    truth: Option<Pose>,
     scanned: Option<Scanned>,
     tracker: Option<Tracker>,
     accuracy: Accuracy,
+    turning: Turning,
+    run: Option<Box<RunOpened>>,
+    evidence: Option<Evidence>,
 }
 
 impl Fold {
@@ -36,9 +41,12 @@ impl Fold {
             EventKind::RunOpened(run) => self.open(run),
             EventKind::Truth { pose, clearance_m, collided } => {
                 self.accuracy.truth(event.tick, pose.position);
-                self.see_truth(pose.position, *clearance_m, *collided);
+                self.see_truth(*pose, *clearance_m, *collided);
             }
             EventKind::Estimated { pose } => {
+                if let Some(evidence) = &mut self.evidence {
+                    evidence.visit(pose.position);
+                }
                 let covariance_m2 = [(0, 0), (0, 1), (1, 1)].map(|at| pose.covariance[at]);
                 self.accuracy.estimate(event.tick, Estimate { position: pose.position, covariance_m2 });
             }
@@ -49,6 +57,22 @@ impl Fold {
                     scanned.believe(runs);
                 }
             }
+            EventKind::Planned { path, .. } => {
+                if let Some(evidence) = &mut self.evidence {
+                    evidence.plan(path);
+                }
+            }
+            EventKind::Uncounted { runs } => {
+                if let Some(evidence) = &mut self.evidence {
+                    evidence.leave_uncounted(runs);
+                }
+            }
+            EventKind::ObstacleMoved { obstacle, .. } => self.find(obstacle),
+            EventKind::FloorChanged { changes } => {
+                if let Some(scanned) = &mut self.scanned {
+                    scanned.change(changes);
+                }
+            }
             EventKind::Progressed { along_m: Some(along_m), .. } => {
                 if let Some(tracker) = &mut self.tracker {
                     tracker.progress(*along_m);
@@ -56,7 +80,10 @@ impl Fold {
             }
             EventKind::PlannerChosen { choice, info, .. } => self.choose(choice, info),
             EventKind::ParametersChanged { choice } => self.set_parameters(choice),
-            EventKind::ObstacleFound { .. } => self.known.obstacles_found += 1,
+            EventKind::ObstacleFound { obstacle } => {
+                self.known.obstacles_found += 1;
+                self.find(obstacle);
+            }
             EventKind::PlannerFailed { .. } => self.known.planner_faults += 1,
             EventKind::Held { .. } => self.known.holds += 1,
             EventKind::Ended { outcome, reason } => {
@@ -71,39 +98,64 @@ impl Fold {
     pub fn summary(&self) -> Summary {
         Summary {
             coverage: self.scanned.as_ref().map(Scanned::coverage),
+            floor: self.account(),
+            turns: self.known.path_length_m.map(|_| self.turning.turns()),
+            rotation_turns: self.known.path_length_m.map(|_| self.turning.rotation_turns()),
             tracking: self.tracker.as_ref().and_then(Tracker::tracking),
             positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
             ..self.known.clone()
         }
     }
 
+    /// The account of the floor; none for missions that are not there to scan it.
+    fn account(&self) -> Option<Account> {
+        let run = self.run.as_ref()?;
+        Some(account(run, self.scanned.as_ref()?.believed(), self.evidence.as_ref()?))
+    }
+
+    fn find(&mut self, obstacle: &Obstacle) {
+        if let Some(evidence) = &mut self.evidence {
+            evidence.find(obstacle);
+        }
+    }
+
     fn open(&mut self, run: &RunOpened) {
+        if !matches!(run.mission.task, TaskConfig::Goto { .. }) {
+            self.evidence = Some(Evidence::new(run));
+            self.run = Some(Box::new(run.clone()));
+        }
         self.known.scenario = Some(run.scenario.clone());
         self.known.seed = Some(run.seed);
         self.known.planner = Some(run.mission.planner.id.clone());
         self.known.parameters = Some(run.mission.planner.parameters.clone());
-        self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.swath_m));
+        self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool()));
         self.tracker = match &run.mission.task {
-            TaskConfig::Follow { path, .. } => Some(Tracker::new(path)),
-            TaskConfig::Goto { .. } => None,
+            TaskConfig::Follow { path, .. } => {
+                if let Some(evidence) = &mut self.evidence {
+                    evidence.plan(path);
+                }
+                Some(Tracker::new(path))
+            }
+            TaskConfig::Goto { .. } | TaskConfig::Cover { .. } => None,
         };
     }
 
-    fn see_truth(&mut self, position: Point, clearance_m: f64, collided: bool) {
+    fn see_truth(&mut self, pose: Pose, clearance_m: f64, collided: bool) {
         let known = &mut self.known;
-        let way_m = self.truth.map_or(0.0, |before| (position - before).norm());
+        self.turning.pass(pose);
+        let before = self.truth.replace(pose).unwrap_or(pose);
+        let way_m = (pose.position - before.position).norm();
         known.path_length_m = Some(known.path_length_m.unwrap_or(0.0) + way_m);
         known.collisions = Some(known.collisions.unwrap_or(0) + u64::from(collided));
         if clearance_m.is_finite() {
             known.min_clearance_m =
                 Some(known.min_clearance_m.map_or(clearance_m, |least| least.min(clearance_m)));
         }
-        let before = self.truth.replace(position).unwrap_or(position);
         if let Some(scanned) = &mut self.scanned {
-            scanned.pass(before, position);
+            scanned.pass(before, pose);
         }
         if let Some(tracker) = &mut self.tracker {
-            tracker.pass(before, position);
+            tracker.pass(before.position, pose.position);
         }
     }
 
@@ -143,4 +195,4 @@ fn defaults(info: &PlannerInfo) -> Parameters {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

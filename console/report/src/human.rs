@@ -1,5 +1,7 @@
 //! The summary that a person reads when a run is over.
 
+mod floor;
+
 use crate::summary::{Coverage, PlannerCalls, Positioning, Summary, Tether, Tracking};
 use mission::Outcome;
 use std::fmt::{Display, Write};
@@ -23,6 +25,9 @@ pub fn human(run: &Summary) -> String {
     text.some("path", path(run));
     for line in run.coverage.iter().flat_map(coverage) {
         text.next("coverage", line);
+    }
+    for (label, line) in run.floor.iter().flat_map(floor::lines) {
+        text.next(label, line);
     }
     for line in run.tracking.iter().flat_map(tracking) {
         text.next("tracking", line);
@@ -117,6 +122,9 @@ fn mission_time(run: &Summary) -> Option<String> {
 fn path(run: &Summary) -> Option<String> {
     let mut parts = vec![format!("{:.2} m", run.path_length_m?)];
     parts.extend(run.min_clearance_m.map(|least_m| format!("smallest clearance {least_m:.3} m")));
+    parts.extend(run.turns.zip(run.rotation_turns).map(|(turns, rotation)| {
+        format!("{} and {rotation:.1} rotations in all", counted(turns, "turn"))
+    }));
     parts.extend(run.collisions.map(|n| counted(n, "collision")));
     Some(parts.join(", "))
 }

@@ -4,6 +4,7 @@
 //! [`human`], and what [`Expect`] holds to the bounds of a scenario. Wall-clock figures and files are no events; the
 //! app fills them in.
 
+pub mod account;
 mod accuracy;
 pub mod expect;
 pub mod fold;
@@ -11,7 +12,9 @@ pub mod human;
 mod scanned;
 pub mod summary;
 mod tracking;
+mod turning;
 
+pub use account::Account;
 pub use expect::{Expect, Miss};
 pub use fold::Fold;
 pub use human::human;

@@ -1,7 +1,7 @@
 //! How much of the floor was scanned, as believed and by truth, and how much of it again.
 
 use crate::summary::{Coverage, CoverageByTruth};
-use world::{CellRun, CoverageGrid, Floor, Point};
+use world::{CellRun, CoverageGrid, Floor, KindRun, Pose, Tool};
 
 /// Coming back to a cell counts as scanning it again after this many swaths of way.
 const AGAIN_SWATHS: f64 = 2.0;
@@ -11,7 +11,7 @@ const AGAIN_SWATHS: f64 = 2.0;
 pub struct Scanned {
     believed: CoverageGrid,
     truth: CoverageGrid,
-    swath_m: f64,
+    tool: Tool,
     /// Way gone so far, metres.
     way_m: f64,
     /// Way gone when each cell was last under the tool, metres; negative before the first time.
@@ -23,11 +23,16 @@ pub struct Scanned {
 
 impl Scanned {
     /// Nothing is scanned yet.
-    pub fn new(floor: Floor, swath_m: f64) -> Self {
+    pub fn new(floor: Floor, tool: Tool) -> Self {
         let last_m = vec![-1.0; floor.len()];
         let believed = CoverageGrid::new(floor);
         let truth = believed.clone();
-        Self { believed, truth, swath_m, way_m: 0.0, last_m, cells: 0, cells_again: 0, has_truth: false }
+        Self { believed, truth, tool, way_m: 0.0, last_m, cells: 0, cells_again: 0, has_truth: false }
+    }
+
+    /// The floor with what the mission believes to have scanned.
+    pub fn believed(&self) -> &CoverageGrid {
+        &self.believed
     }
 
     /// The mission says that it scanned these cells.
@@ -35,20 +40,26 @@ impl Scanned {
         self.believed.apply(runs);
     }
 
+    /// An obstacle that was found changed the floor.
+    pub fn change(&mut self, changes: &[KindRun]) {
+        self.believed.change(changes);
+        self.truth.change(changes);
+    }
+
     /// The robot truly went from `a` to `b`.
-    pub fn pass(&mut self, a: Point, b: Point) {
+    pub fn pass(&mut self, a: Pose, b: Pose) {
         self.has_truth = true;
         let before_m = self.way_m;
-        self.way_m += (b - a).norm();
-        self.truth.mark_swath(a, b, self.swath_m);
-        for cell in self.truth.floor().cells_near(a, b, self.swath_m / 2.0) {
+        self.way_m += (b.position - a.position).norm();
+        self.truth.mark(self.tool, a, b);
+        for cell in self.truth.floor().cells_under(self.tool, a, b) {
             let last_m = std::mem::replace(&mut self.last_m[cell], self.way_m);
             if !self.truth.is_covered(cell) {
                 continue;
             }
             if last_m < 0.0 {
                 self.cells += 1;
-            } else if before_m - last_m > AGAIN_SWATHS * self.swath_m {
+            } else if before_m - last_m > AGAIN_SWATHS * self.tool.swath_m() {
                 self.cells_again += 1;
             }
         }

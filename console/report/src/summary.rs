@@ -1,5 +1,6 @@
 //! The figures of one run, as `run --json` prints them.
 
+use crate::account::Account;
 use mission::{Outcome, Parameters};
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +31,12 @@ pub struct Summary {
     pub wall_time_s: Option<f64>,
     /// Way that the robot truly went, metres.
     pub path_length_m: Option<f64>,
+    /// Changes of heading above 30 degrees within half a metre of the true way.
+    #[serde(default)]
+    pub turns: Option<u64>,
+    /// Sum of the true heading changes as whole turns.
+    #[serde(default)]
+    pub rotation_turns: Option<f64>,
     /// Smallest true distance from the hull to anything solid, metres; negative after a collision.
     pub min_clearance_m: Option<f64>,
     /// How often the hull began to touch something.
@@ -45,6 +52,9 @@ pub struct Summary {
     pub unmet: Option<Vec<String>>,
     /// How much of the floor was scanned.
     pub coverage: Option<Coverage>,
+    /// The account of the floor for inspectors; absent for missions that are not there to scan it.
+    #[serde(default)]
+    pub floor: Option<Account>,
     /// How closely a preset path was followed; absent for other missions.
     pub tracking: Option<Tracking>,
     /// How good the position was.

@@ -11,6 +11,8 @@ mod row;
 mod sample;
 pub mod spiral;
 mod study;
+pub mod traps;
+pub mod tune;
 
 pub use bench::Bench;
 pub use planners::{Planned, Planners};

@@ -89,7 +89,7 @@ fn is_no(fault: &Fault) -> bool {
 }
 
 fn no_plan(fault: Fault, plan_time_ms: f64) -> Planned {
-    let plan = Plan { path: fault.partial, cost: 0.0, complete: false };
+    let plan = Plan { path: fault.partial, ..Plan::default() };
     Planned { plan, reason: Some(fault.message), plan_time_ms }
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use world::{Pose, StationId, World};
+use world::{Amphibious, Pose, StationId, World};
 
 /// How ranges scatter about the true distance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -129,6 +129,9 @@ pub struct RobotConfig {
     pub odometry_sigma_ratio: f64,
     /// Constant error of the gyro, radians per second.
     pub gyro_bias_rad_per_s: f64,
+    /// For a robot that walks and swims: limits that take the place of those above, by the zone it is in.
+    #[serde(default)]
+    pub amphibious: Option<Amphibious>,
 }
 
 /// Everything that the simulator needs besides the seed.

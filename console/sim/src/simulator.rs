@@ -8,7 +8,7 @@ use crate::{
     sight::sightings,
     sweep::sweep,
 };
-use world::{ObstacleMap, Odometry, Pose, Readings};
+use world::{Medium, Mode, ObstacleMap, Odometry, Pose, Readings};
 
 /// A hull that touched something keeps touching it until the gap is wider than this, metres.
 const CONTACT_GAP_M: f64 = 1e-3;
@@ -23,6 +23,7 @@ pub struct Simulator {
     chance: Chance,
     tracks: Tracks,
     sounder: Option<Sounder>,
+    mode: Mode,
     pose: Pose,
     odometry: Odometry,
     in_contact: bool,
@@ -39,6 +40,7 @@ impl Simulator {
             chance: Chance::new(seed),
             tracks: Tracks::new(&config.robot, config.tick_s),
             sounder: config.ae.clone().map(|ae| Sounder::new(ae, &config.world, seed)),
+            mode: Mode::of(Medium::at(&config.world.zones, config.robot.start.position)),
             pose: config.robot.start,
             odometry: Odometry::default(),
             in_contact: false,
@@ -70,6 +72,7 @@ impl Simulator {
 
     /// Moves the truth by one tick.
     pub fn act(&mut self, drive: Drive) {
+        self.adapt();
         let told = self.tracks.drive(drive, &self.pose);
         let driven = Arc { way_m: told.way_m * (1.0 - self.draw_slip()), ..told };
         let reached = sweep(&self.map, self.radius_m(), &self.pose, &driven);
@@ -92,6 +95,14 @@ impl Simulator {
     /// Number of ticks that have passed.
     pub fn tick(&self) -> u64 {
         self.tick
+    }
+
+    /// Changes a little from walking to swimming or back, as the floor under the robot asks for.
+    fn adapt(&mut self) {
+        let Some(amphibious) = self.config.robot.amphibious else { return };
+        let medium = Medium::at(&self.config.world.zones, self.pose.position);
+        self.mode = self.mode.toward(medium, amphibious.transition_steps);
+        self.tracks.limit(amphibious.pace(self.mode));
     }
 
     fn radius_m(&self) -> f64 {

@@ -8,8 +8,14 @@
 
 pub mod paper;
 pub mod score;
+pub mod shore;
 pub mod spiral;
+pub mod traps;
+pub mod verdict;
 
 pub use paper::{Distribution, Sampling};
-pub use score::{Safety, Score, floor_rmse_m, safety, score};
+pub use score::{Safety, Score, floor_rmse_m, precision_recall, safety, score};
+pub use shore::Shore;
 pub use spiral::Layout;
+pub use traps::Trap;
+pub use verdict::{Verdict, verdict};

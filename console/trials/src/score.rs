@@ -50,12 +50,12 @@ pub struct Safety {
 pub fn score(path: &[Point], preset: &[Point]) -> Score {
     let lags: Vec<f64> = path.iter().zip(preset).skip(1).map(|(p, q)| (p - q).norm()).collect();
     let offs = cross_track_m(path, preset);
-    let n_correct = lags.iter().filter(|lag| **lag <= CORRECT_M).count();
+    let (precision, recall) = precision_recall(path, preset, CORRECT_M);
     let n_covered = preset.iter().filter(|q| is_covered(path, **q)).count();
     let n_preset = preset.len().max(1) as f64;
     Score {
-        precision: share(&lags),
-        recall: n_correct as f64 / n_preset,
+        precision,
+        recall,
         rmse_m: root_mean_square(&lags),
         worst_m: lags.iter().copied().fold(0.0, f64::max),
         covered: n_covered as f64 / n_preset,
@@ -63,6 +63,14 @@ pub fn score(path: &[Point], preset: &[Point]) -> Score {
         cross_track_rmse_m: root_mean_square(&offs),
         cross_track_worst_m: offs.iter().copied().fold(0.0, f64::max),
     }
+}
+
+/// Share of planned points within `correct_m` of the preset point of the same index, and the number of them as a share
+/// of the preset points: the paper's P and R for its `T0`.
+pub fn precision_recall(path: &[Point], preset: &[Point], correct_m: f64) -> (f64, f64) {
+    let is_correct = |(p, q): &(&Point, &Point)| (*p - *q).norm() <= correct_m;
+    let n_correct = path.iter().zip(preset).skip(1).filter(is_correct).count() as f64;
+    (n_correct / path.len().saturating_sub(1).max(1) as f64, n_correct / preset.len().max(1) as f64)
 }
 
 /// Clearances and turns of a path in a round tank with columns (centre and radius).

@@ -66,6 +66,7 @@ impl Layout {
             id: id as u32,
             outline: Outline::Disc { center, radius_m },
             discovered: false,
+            velocity_m_per_s: planner_api::Vector2::zeros(),
         };
         self.columns.iter().enumerate().map(obstacle).collect()
     }

@@ -37,6 +37,8 @@ fn long_mission() -> Screen {
         length_m: world::polyline::length_m(&path),
         path: path.clone(),
         complete: true,
+        legs: vec![],
+        cuts: vec![],
     };
     let covered = EventKind::Covered { runs: vec![CellRun(0, 34_000)] };
     let mut events: Vec<Event> = [planned, covered].map(|kind| screen.telling.now(kind)).into();

@@ -1,42 +1,16 @@
 //! Which of the floor has been scanned, in square cells.
 
-use crate::{geometry::Point, obstacles::ObstacleMap, polyline::nearest_on_segment, tank::World};
+mod floor;
+mod making;
+pub mod regions;
+mod tool;
+
+pub use floor::{Cell, CellRun, Floor, KindRun};
+pub use making::FloorMaker;
+pub use tool::Tool;
+
+use crate::geometry::{Point, Pose};
 use serde::{Deserialize, Serialize};
-use std::collections::VecDeque;
-
-/// What a cell of the floor is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Cell {
-    /// Not floor: outside the tank or inside an obstacle.
-    Outside,
-    /// Floor that the tool cannot reach.
-    Unreachable,
-    /// Floor that the tool can reach.
-    Reachable,
-}
-
-/// The floor as a grid of square cells, row by row from the south west corner.
-///
-/// A cell is floor if its centre is. It is reachable if the swath covers its centre from some place to which the
-/// robot's centre can drive from the start. Stored and written as runs of equal cells.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(from = "FloorRuns", into = "FloorRuns")]
-pub struct Floor {
-    /// South west corner of cell 0, metres.
-    pub origin: Point,
-    /// Edge of a cell, metres.
-    pub cell_m: f64,
-    /// Cells from west to east.
-    pub width: usize,
-    /// Cells from south to north.
-    pub height: usize,
-    cells: Vec<Cell>,
-}
-
-/// Some cells of one row: index of the first and how many.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct CellRun(pub u32, pub u32);
 
 /// How many cells of each kind there are and how many of them have been scanned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -51,123 +25,6 @@ pub struct Counts {
     pub covered_reachable: usize,
 }
 
-impl Floor {
-    /// The floor of a tank for a robot of some radius with a tool of some swath, driving from `start`.
-    ///
-    /// Costs one distance query per cell and a flood fill.
-    pub fn new(world: &World, cell_m: f64, robot_radius_m: f64, swath_m: f64, start: Point) -> Self {
-        let (low, high) = world.boundary.bounds();
-        let count = |span_m: f64| (span_m / cell_m).ceil().max(1.0) as usize;
-        let (width, height) = (count(high.x - low.x), count(high.y - low.y));
-        let mut floor =
-            Self { origin: low, cell_m, width, height, cells: vec![Cell::Outside; width * height] };
-        let map = ObstacleMap::new(&world.boundary, &world.obstacles);
-        let clearances: Vec<f64> =
-            (0..width * height).map(|index| map.clearance_m(floor.center(index))).collect();
-        for (cell, clearance) in floor.cells.iter_mut().zip(&clearances) {
-            if *clearance >= 0.0 {
-                *cell = Cell::Unreachable;
-            }
-        }
-        let drivable = floor.drivable(&clearances, robot_radius_m, start);
-        for index in &drivable {
-            floor.cells[*index] = Cell::Reachable;
-        }
-        // The drivable cell that is nearest to any other cell has a neighbour that is not drivable.
-        let inside: std::collections::HashSet<usize> = drivable.iter().copied().collect();
-        let at_edge = |index: &usize| floor.neighbours(*index).any(|next| !inside.contains(&next));
-        let edge: Vec<usize> = drivable.iter().copied().filter(at_edge).collect();
-        for index in edge {
-            floor.reach_from(index, swath_m);
-        }
-        floor
-    }
-
-    /// The cell under a point, if it lies in the grid.
-    pub fn cell_at(&self, point: Point) -> Option<usize> {
-        let offset = (point - self.origin) / self.cell_m;
-        let inside = |at: f64, count: usize| at >= 0.0 && at < count as f64;
-        (inside(offset.x, self.width) && inside(offset.y, self.height))
-            .then(|| offset.y as usize * self.width + offset.x as usize)
-    }
-
-    /// Centre of a cell, metres.
-    pub fn center(&self, index: usize) -> Point {
-        let (column, row) = (index % self.width, index / self.width);
-        self.origin + nalgebra::Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m
-    }
-
-    /// What a cell is.
-    pub fn kind(&self, index: usize) -> Cell {
-        self.cells[index]
-    }
-
-    /// How many cells the grid has.
-    pub fn len(&self) -> usize {
-        self.cells.len()
-    }
-
-    /// Whether the grid has no cells.
-    pub fn is_empty(&self) -> bool {
-        self.cells.is_empty()
-    }
-
-    /// Cells to which the robot's centre can drive from the start: a flood fill over cells with room for the hull,
-    /// from the one that is nearest to the start. (The start itself may touch the wall, where no cell's centre lies.)
-    fn drivable(&self, clearances: &[f64], robot_radius_m: f64, start: Point) -> Vec<usize> {
-        let mut open: Vec<bool> = clearances.iter().map(|clearance| *clearance >= robot_radius_m).collect();
-        let distance_m = |index: &usize| (self.center(*index) - start).norm();
-        let first =
-            (0..open.len()).filter(|i| open[*i]).min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)));
-        let mut queue: VecDeque<usize> = first.into_iter().collect();
-        let mut found = Vec::new();
-        while let Some(index) = queue.pop_front() {
-            if std::mem::replace(&mut open[index], false) {
-                found.push(index);
-                queue.extend(self.neighbours(index).filter(|next| open[*next]));
-            }
-        }
-        found
-    }
-
-    fn neighbours(&self, index: usize) -> impl Iterator<Item = usize> + use<> {
-        let (column, row, width, height) = (index % self.width, index / self.width, self.width, self.height);
-        let west = (column > 0).then(|| index - 1);
-        let east = (column + 1 < width).then(|| index + 1);
-        let south = (row > 0).then(|| index - width);
-        let north = (row + 1 < height).then(|| index + width);
-        [west, east, south, north].into_iter().flatten()
-    }
-
-    fn reach_from(&mut self, index: usize, swath_m: f64) {
-        let center = self.center(index);
-        for near in self.cells_near(center, center, swath_m / 2.0) {
-            if self.cells[near] == Cell::Unreachable {
-                self.cells[near] = Cell::Reachable;
-            }
-        }
-    }
-
-    /// Cells whose centre lies within `reach_m` of the segment from `a` to `b`, in order of their index.
-    pub fn cells_near(&self, a: Point, b: Point, reach_m: f64) -> Vec<usize> {
-        let reach = nalgebra::Vector2::new(reach_m, reach_m);
-        let (low, high) = (a.inf(&b) - reach, a.sup(&b) + reach);
-        let first = (low - self.origin) / self.cell_m;
-        let last = (high - self.origin) / self.cell_m;
-        let span = |from: f64, to: f64, count: usize| {
-            (from.floor().max(0.0) as usize)..((to.ceil().max(0.0) as usize).min(count))
-        };
-        let columns = span(first.x, last.x, self.width);
-        span(first.y, last.y, self.height)
-            .flat_map(|row| columns.clone().map(move |column| row * self.width + column))
-            .filter(|index| {
-                let center = self.center(*index);
-                (center - nearest_on_segment(a, b, center)).norm() <= reach_m
-            })
-            .collect()
-    }
-}
-
 /// A floor with the scanned cells marked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CoverageGrid {
@@ -180,13 +37,26 @@ impl CoverageGrid {
     /// A floor of which nothing has been scanned.
     pub fn new(floor: Floor) -> Self {
         let covered = vec![false; floor.len()];
-        let count = |wanted: &[Cell]| floor.cells.iter().filter(|cell| wanted.contains(cell)).count();
-        let counts = Counts {
-            floor: count(&[Cell::Unreachable, Cell::Reachable]),
-            reachable: count(&[Cell::Reachable]),
-            ..Counts::default()
-        };
-        Self { floor, covered, counts }
+        let mut grid = Self { floor, covered, counts: Counts::default() };
+        grid.count();
+        grid
+    }
+
+    fn count(&mut self) {
+        self.counts = Counts::default();
+        for (index, covered) in self.covered.iter().enumerate() {
+            let (floor, reachable) = (self.floor.is_floor(index), self.floor.is_reachable(index));
+            self.counts.floor += usize::from(floor);
+            self.counts.reachable += usize::from(reachable);
+            self.counts.covered += usize::from(floor && *covered);
+            self.counts.covered_reachable += usize::from(reachable && *covered);
+        }
+    }
+
+    /// Makes some cells another kind of floor; what has been scanned stays scanned.
+    pub fn change(&mut self, changes: &[KindRun]) {
+        self.floor.change(changes);
+        self.count();
     }
 
     /// The floor beneath.
@@ -194,17 +64,24 @@ impl CoverageGrid {
         &self.floor
     }
 
-    /// Marks what a tool of some swath scans on its way from `a` to `b`; returns the floor cells that are new.
+    /// Marks what a disc of some diameter scans on its way from `a` to `b`; returns the floor cells that are new.
     pub fn mark_swath(&mut self, a: Point, b: Point, swath_m: f64) -> Vec<CellRun> {
-        let fresh: Vec<usize> = self
-            .floor
-            .cells_near(a, b, swath_m / 2.0)
-            .into_iter()
-            .filter(|index| !self.covered[*index] && self.floor.kind(*index) != Cell::Outside)
-            .collect();
-        let runs = runs_of(&fresh);
+        let at = |position| Pose { position, heading_rad: 0.0 };
+        let runs = self.not_covered_under(Tool::Disc { swath_m }, at(a), at(b));
         self.apply(&runs);
         runs
+    }
+
+    /// Marks what a tool scans on its way from `a` to `b`.
+    pub fn mark(&mut self, tool: Tool, a: Pose, b: Pose) {
+        let runs = self.not_covered_under(tool, a, b);
+        self.apply(&runs);
+    }
+
+    /// The floor cells that a tool would scan on its way from `a` to `b` and that have not been scanned.
+    pub fn not_covered_under(&self, tool: Tool, a: Pose, b: Pose) -> Vec<CellRun> {
+        let is_new = |index: &usize| !self.covered[*index] && self.floor.is_floor(*index);
+        runs_of(self.floor.cells_under(tool, a, b).into_iter().filter(is_new))
     }
 
     /// Marks cells as scanned; cells beyond the grid are ignored.
@@ -213,9 +90,8 @@ impl CoverageGrid {
             let end = (*first as usize + *count as usize).min(self.floor.len());
             for index in (*first as usize)..end {
                 if !std::mem::replace(&mut self.covered[index], true) {
-                    let kind = self.floor.kind(index);
-                    self.counts.covered += usize::from(kind != Cell::Outside);
-                    self.counts.covered_reachable += usize::from(kind == Cell::Reachable);
+                    self.counts.covered += usize::from(self.floor.is_floor(index));
+                    self.counts.covered_reachable += usize::from(self.floor.is_reachable(index));
                 }
             }
         }
@@ -246,63 +122,22 @@ fn share(part: usize, whole: usize) -> f64 {
     if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
 }
 
-fn runs_of(sorted: &[usize]) -> Vec<CellRun> {
+/// Cells in order of their index as runs.
+pub fn runs_of(sorted: impl IntoIterator<Item = usize>) -> Vec<CellRun> {
     let mut runs: Vec<CellRun> = Vec::new();
     for index in sorted {
         match runs.last_mut() {
-            Some(CellRun(first, count)) if *first as usize + *count as usize == *index => *count += 1,
-            _ => runs.push(CellRun(*index as u32, 1)),
+            Some(CellRun(first, count)) if *first as usize + *count as usize == index => *count += 1,
+            _ => runs.push(CellRun(index as u32, 1)),
         }
     }
     runs
 }
 
-/// The written form of a [`Floor`].
-#[derive(Clone, Serialize, Deserialize)]
-struct FloorRuns {
-    origin: Point,
-    cell_m: f64,
-    width: usize,
-    height: usize,
-    runs: Vec<(Cell, u32)>,
-}
-
-impl From<Floor> for FloorRuns {
-    fn from(floor: Floor) -> Self {
-        let mut runs: Vec<(Cell, u32)> = Vec::new();
-        for cell in floor.cells {
-            match runs.last_mut() {
-                Some((kind, count)) if *kind == cell => *count += 1,
-                _ => runs.push((cell, 1)),
-            }
-        }
-        Self { origin: floor.origin, cell_m: floor.cell_m, width: floor.width, height: floor.height, runs }
-    }
-}
-
-impl From<FloorRuns> for Floor {
-    fn from(written: FloorRuns) -> Self {
-        let mut cells: Vec<Cell> = written
-            .runs
-            .iter()
-            .flat_map(|(cell, count)| std::iter::repeat_n(*cell, *count as usize))
-            .collect();
-        // A damaged file must not make later look-ups run past the end.
-        cells.resize(written.width * written.height, Cell::Outside);
-        Self {
-            origin: written.origin,
-            cell_m: written.cell_m,
-            width: written.width,
-            height: written.height,
-            cells,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Boundary, Obstacle, ObstacleId, Shape};
+    use crate::{Boundary, Obstacle, ObstacleId, Shape, World};
     use proptest::prelude::*;
 
     fn tank(obstacles: Vec<Shape>) -> World {

@@ -6,16 +6,22 @@
 
 pub mod coverage;
 pub mod geometry;
+pub mod medium;
 pub mod obstacles;
+pub mod plates;
 pub mod polyline;
 pub mod readings;
 pub mod shape;
+pub mod shortest;
 pub mod spiral;
 pub mod tank;
+pub mod tether;
 
-pub use coverage::{Cell, CellRun, Counts, CoverageGrid, Floor};
+pub use coverage::{Cell, CellRun, Counts, CoverageGrid, Floor, FloorMaker, KindRun, Tool};
 pub use geometry::{Point, Pose, Vector};
+pub use medium::{Amphibious, Medium, Mode, Pace};
 pub use obstacles::{Near, ObstacleMap};
+pub use plates::{Plate, PlateKind, PlateLayout, PlateMap};
 pub use readings::{Odometry, RangeSet, Readings, Sighting};
 pub use shape::Shape;
 pub use tank::{Boundary, Obstacle, ObstacleId, Station, StationId, World, Zone, ZoneKind};

@@ -142,7 +142,7 @@ impl ObstacleMap {
 
 /// A wall keeps its distance between the ends of a segment only if it is round: the distance to a circle from
 /// inside is concave along a line, so its least value is at an end.
-fn wall_clearance_m(boundary: &Boundary, a: Point, b: Point) -> f64 {
+pub(crate) fn wall_clearance_m(boundary: &Boundary, a: Point, b: Point) -> f64 {
     let ends = boundary.wall_distance_m(a).min(boundary.wall_distance_m(b));
     let Boundary::Polygon { vertices } = boundary else { return ends };
     let pieces = Geometry::of_ring(vertices);

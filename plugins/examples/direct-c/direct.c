@@ -73,6 +73,8 @@ static int32_t reconfigure(void *instance, const tp_host *host, const tp_value *
 
 static int32_t plan(void *instance, const tp_host *host, const tp_plan_in *in, tp_plan_out *out) {
   direct *self = instance;
+  if (in->task != TP_GOTO && in->task != TP_FOLLOW)
+    return refuse(host, TP_E_UNSUPPORTED, "direct-c drives to points, it covers no floor");
   if (in->n_targets == 0) return refuse(host, TP_E_INVALID, "there is no target to drive to");
   const tp_vec2 start = {in->start.x, in->start.y};
   host->points(host->ctx, &start, 1);
@@ -80,6 +82,10 @@ static int32_t plan(void *instance, const tp_host *host, const tp_plan_in *in, t
   double length = hypot(in->targets[0].x - start.x, in->targets[0].y - start.y);
   for (uint32_t i = 1; i < in->n_targets; i++)
     length += hypot(in->targets[i].x - in->targets[i - 1].x, in->targets[i].y - in->targets[i - 1].y);
+  if (TP_HOST_HAS(host, legs)) { /* a console of ABI 1.0 knows no legs */
+    const tp_leg way = {TP_LEG_TRAVEL, 0, in->n_targets, 0};
+    host->legs(host->ctx, &way, 1);
+  }
   self->tolerance = in->tolerance;
   out->cost = length;
   out->complete = 1;

@@ -45,11 +45,11 @@ impl Planner for Faulty {
         }
         let mut path = vec![request.start.position];
         match request.task {
-            Task::Goto { goal, .. } => path.push(goal),
+            Task::Goto { goal, .. } | Task::Cover { anchor: goal, .. } => path.push(goal),
             Task::Follow { targets, .. } => path.extend_from_slice(targets),
         }
         let cost = path.windows(2).map(|leg| (leg[1] - leg[0]).norm()).sum();
-        Ok(Plan { path, cost, complete: true })
+        Ok(Plan { path, cost, complete: true, ..Plan::default() })
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

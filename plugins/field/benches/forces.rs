@@ -15,7 +15,12 @@ fn columns(n_obstacles: u32) -> (f64, Vec<Obstacle<'static>>) {
         let (from_center_m, angle_rad) =
             (radius_m * (f64::from(id) / f64::from(n_obstacles)).sqrt(), f64::from(id) * golden_rad);
         let center = Point2::new(from_center_m * angle_rad.cos(), from_center_m * angle_rad.sin());
-        Obstacle { id, outline: Outline::Disc { center, radius_m: 0.2 }, discovered: false }
+        Obstacle {
+            id,
+            outline: Outline::Disc { center, radius_m: 0.2 },
+            discovered: false,
+            velocity_m_per_s: planner_api::Vector2::zeros(),
+        }
     });
     (radius_m, columns.collect())
 }

@@ -28,6 +28,12 @@ pub fn plan(settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Re
     match request.task {
         Task::Goto { goal, tolerance_m } => check_goal(&scene, goal, tolerance_m)?,
         Task::Follow { targets, .. } => check_targets(&scene, targets)?,
+        Task::Cover { .. } => {
+            return Err(PlannerError::new(
+                Code::Unsupported,
+                "it flies to points and along paths, it covers no floor",
+            ));
+        }
     }
     let walk = if is_flown(settings.planning, request.site.limits.radius_m) {
         rollout::fly(&scene, settings, request, ctx)?
@@ -48,7 +54,7 @@ fn is_flown(planning: Planning, radius_m: f64) -> bool {
 fn walked(scene: &Scene, settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Walk> {
     let start = request.start.position;
     match request.task {
-        Task::Goto { goal, tolerance_m } => {
+        Task::Goto { goal, tolerance_m } | Task::Cover { anchor: goal, tolerance_m, .. } => {
             let step_m = settings.walking.goto_step_m;
             descent::descend(scene, settings, &Descent { start, goal, step_m, tolerance_m }, ctx)
         }
@@ -72,7 +78,11 @@ fn course(scene: &Scene, step_m: f64, targets: &[Point]) -> Result<Vec<Point>> {
     Ok(polyline::resampled(&targets[..=last], step_m * (1.0 + 1e-9)))
 }
 
-fn check_start(scene: &Scene, start: Point, radius_m: f64) -> Result<()> {
+/// Refuses a start outside the tank or deep in an obstacle.
+///
+/// # Errors
+/// [`Code::StartOutside`], [`Code::StartOccupied`].
+pub fn check_start(scene: &Scene, start: Point, radius_m: f64) -> Result<()> {
     let place = format!("the start ({:.2}, {:.2})", start.x, start.y);
     if scene.wall_clearance_m(start) + radius_m < -ROUNDING_M {
         return Err(PlannerError::new(Code::StartOutside, format!("{place} lies outside the tank")));
@@ -100,7 +110,11 @@ fn check_targets(scene: &Scene, targets: &[Point]) -> Result<()> {
     Ok(())
 }
 
-fn check_goal(scene: &Scene, goal: Point, tolerance_m: f64) -> Result<()> {
+/// Refuses a goal that lies out of reach by more than the tolerance.
+///
+/// # Errors
+/// [`Code::GoalOutside`], [`Code::GoalOccupied`].
+pub fn check_goal(scene: &Scene, goal: Point, tolerance_m: f64) -> Result<()> {
     let place = format!("the goal ({:.2}, {:.2})", goal.x, goal.y);
     if scene.wall_clearance_m(goal) + tolerance_m < -ROUNDING_M {
         return Err(PlannerError::new(
@@ -114,10 +128,16 @@ fn check_goal(scene: &Scene, goal: Point, tolerance_m: f64) -> Result<()> {
     Ok(())
 }
 
-fn told(walk: Walk, scene: &Scene, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
+/// A walk as a plan; what is wrong with it is said in the log.
+pub fn told(walk: Walk, scene: &Scene, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
     let shortfall = judge(&walk, scene, demanded_m);
     if let Some(reason) = shortfall {
         ctx.log(LogLevel::Warn, &format!("the plan is not complete: {reason}"));
     }
-    Plan { cost: polyline::length_m(&walk.path), path: walk.path, complete: shortfall.is_none() }
+    Plan {
+        cost: polyline::length_m(&walk.path),
+        path: walk.path,
+        complete: shortfall.is_none(),
+        ..Plan::default()
+    }
 }

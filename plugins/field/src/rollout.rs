@@ -68,7 +68,10 @@ impl Course {
         let demanded_m = request.site.clearance_m;
         let is_free = |p: &&Point| scene.hull_clearance_m(**p).min(scene.wall_clearance_m(**p)) >= demanded_m;
         let (targets, tolerance_m) = match request.task {
-            Task::Goto { goal, tolerance_m } => (vec![goal], tolerance_m),
+            // Covering is refused before it comes to this; of it only the way home is left.
+            Task::Goto { goal, tolerance_m } | Task::Cover { anchor: goal, tolerance_m, .. } => {
+                (vec![goal], tolerance_m)
+            }
             Task::Follow { targets, tolerance_m } => {
                 let free: Vec<Point> = targets.iter().filter(is_free).copied().collect();
                 (if free.is_empty() { targets.to_vec() } else { free }, tolerance_m)

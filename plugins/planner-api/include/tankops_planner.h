@@ -33,7 +33,7 @@ extern "C" {
 #endif
 
 #define TP_ABI_MAJOR 1u /* libraries of another major version are refused */
-#define TP_ABI_MINOR 0u /* raised when something is added at the end of a struct */
+#define TP_ABI_MINOR 1u /* raised when something is added at the end of a struct */
 
 /* ---- numbers that cross the boundary ------------------------------------------------------------------------- */
 
@@ -62,7 +62,12 @@ enum tp_reason {
   TP_REASON_START = 0, TP_REASON_BLOCKED = 1, TP_REASON_MAP_CHANGED = 2, TP_REASON_OPERATOR = 3,
   TP_REASON_SWAP = 4 /* `from` drove before */, TP_REASON_RECOVER = 5
 };
-enum tp_task { TP_GOTO = 0 /* one target */, TP_FOLLOW = 1 /* targets in order */ };
+enum tp_task {
+  TP_GOTO = 0,   /* one target */
+  TP_FOLLOW = 1, /* targets in order */
+  TP_COVER = 2   /* since 1.1: scan the regions with the swath and come back to targets[0], the tether's anchor; asked
+                    only of planners with TP_CAP_COVERAGE */
+};
 enum tp_status { TP_MOVING = 0, TP_ARRIVED = 1, TP_STUCK = 2, TP_WAITING = 3 };
 enum tp_drive {
   TP_TWIST = 0,    /* a: speed ahead m/s, b: turn rate rad/s */
@@ -70,6 +75,12 @@ enum tp_drive {
 };
 enum tp_param_kind {
   TP_PARAM_FLOAT = 0, TP_PARAM_INT = 1, TP_PARAM_FLAG = 2 /* 0 or 1 */, TP_PARAM_CHOICE = 3 /* index of the word */
+};
+enum tp_leg_tag { /* since 1.1 */
+  TP_LEG_SWATH = 0,     /* the tool scans new floor */
+  TP_LEG_CONNECTOR = 1, /* from the end of one lane to the beginning of another */
+  TP_LEG_RETRACT = 2,   /* back along its own way so that the tether is taken in */
+  TP_LEG_TRAVEL = 3     /* to the first lane, or home */
 };
 enum tp_param_flag { TP_PARAM_LIVE = 1 /* may change under way, through reconfigure */ };
 enum tp_draw_kind {
@@ -90,12 +101,17 @@ typedef struct tp_vec2 { double x, y; } tp_vec2;
 typedef struct tp_pose { double x, y, heading; } tp_pose;
 typedef struct tp_value { tp_str key; double number; } tp_value;
 typedef struct tp_draw { uint32_t kind, layer; tp_vec2 a, b; double value; } tp_draw;
+typedef struct tp_leg { uint32_t tag, first, last, reserved; } tp_leg; /* points first to last of the path, inclusive */
 typedef struct tp_outline {
   uint32_t kind, n_points;
   const tp_vec2 *points; /* disc: its centre; polygon: corners counter-clockwise; polyline: its corners */
   double size_m;         /* disc: radius; polyline: half its thickness */
 } tp_outline;
-typedef struct tp_obstacle { uint32_t id, flags; tp_outline outline; } tp_obstacle; /* may grow: use the stride */
+typedef struct tp_obstacle { /* may grow: use the stride */
+  uint32_t id, flags;
+  tp_outline outline;
+  tp_vec2 velocity;      /* m/s, as estimated; zero for what stands still (since minor 1) */
+} tp_obstacle;
 typedef struct tp_zone { uint32_t kind, reserved; tp_outline outline; } tp_zone;    /* may grow: use the stride */
 
 /* ---- what the console hands over ----------------------------------------------------------------------------- */
@@ -127,6 +143,12 @@ typedef struct tp_plan_in {
   const tp_vec2 *previous;  /* the path flown so far */
   uint32_t n_previous, reserved;
   const tp_site *site;
+  /* since 1.1, with TP_COVER */
+  const tp_outline *regions; /* what is still to scan: polygons; none means all floor that can be reached */
+  uint32_t n_regions, has_tether; /* has_tether 0: no tether, and its limits are infinite */
+  double reel;              /* length on the reel */
+  double max_wrap;          /* largest wrap angle on one obstacle, radians */
+  double max_sum_wrap;      /* largest sum of the wrap angles, radians */
 } tp_plan_in;
 
 typedef struct tp_step_in {
@@ -171,6 +193,9 @@ typedef struct tp_host {    /* the first argument is always host->ctx */
   void (*draw)(void *ctx, const tp_draw *drawings, size_t n);
   void (*scalar)(void *ctx, tp_str name, double value, tp_str unit); /* a named figure of this tick */
   void (*bytes)(void *ctx, const uint8_t *bytes, size_t n);  /* in snapshot */
+  /* since 1.1: ask TP_HOST_HAS first */
+  void (*legs)(void *ctx, const tp_leg *legs, size_t n);     /* in plan: what stretches of the path are for, in order */
+  void (*cut)(void *ctx, const tp_vec2 *points, size_t n);   /* in plan: one line that the robot never crosses */
 } tp_host;
 
 typedef struct tp_planner { /* the first five functions are required, the others may be null */
@@ -201,6 +226,8 @@ typedef struct tp_stamp { uint8_t magic[8]; uint32_t abi_major, abi_minor; } tp_
 /* ---- to write ------------------------------------------------------------------------------------------------- */
 
 #define TP_MAGIC { 'T', 'A', 'N', 'K', 'P', 'L', 'A', 'N' }
+#define TP_HOST_HAS(host, member) \
+  ((host)->size >= offsetof(tp_host, member) + sizeof((host)->member) && (host)->member)
 #define TP_STR(literal) { literal, sizeof(literal) - 1 }
 #define TP_ENTRY(list, n, compiler) \
   { TP_MAGIC, TP_ABI_MAJOR, TP_ABI_MINOR, sizeof(tp_entry), n, list, TP_STR(compiler) }
@@ -243,17 +270,19 @@ typedef struct tp_stamp { uint8_t magic[8]; uint32_t abi_major, abi_minor; } tp_
 /* The layout is the contract; the Rust side asserts the same numbers. */
 TP_ASSERT(sizeof(void *) == 8, "tankops planners are 64-bit libraries");
 TP_ASSERT(sizeof(tp_str) == 16 && sizeof(tp_vec2) == 16 && sizeof(tp_pose) == 24, "layout");
-TP_ASSERT(sizeof(tp_outline) == 24 && sizeof(tp_obstacle) == 32 && sizeof(tp_zone) == 32, "layout");
+TP_ASSERT(sizeof(tp_outline) == 24 && sizeof(tp_obstacle) == 48 && sizeof(tp_zone) == 32, "layout");
 TP_ASSERT(sizeof(tp_site) == 128 && offsetof(tp_site, boundary) == 16, "layout");
 TP_ASSERT(offsetof(tp_site, obstacles) == 40 && offsetof(tp_site, zones) == 56, "layout");
 TP_ASSERT(offsetof(tp_site, motion) == 72, "layout");
-TP_ASSERT(sizeof(tp_plan_in) == 144 && offsetof(tp_plan_in, covariance) == 48, "layout");
+TP_ASSERT(sizeof(tp_plan_in) == 184 && offsetof(tp_plan_in, covariance) == 48, "layout");
 TP_ASSERT(offsetof(tp_plan_in, targets) == 104 && offsetof(tp_plan_in, site) == 136, "layout");
+TP_ASSERT(offsetof(tp_plan_in, regions) == 144 && offsetof(tp_plan_in, reel) == 160, "layout");
 TP_ASSERT(sizeof(tp_step_in) == 176 && offsetof(tp_step_in, target) == 120, "layout");
 TP_ASSERT(offsetof(tp_step_in, targets_ahead) == 136 && offsetof(tp_step_in, obstacles) == 160, "layout");
 TP_ASSERT(sizeof(tp_plan_out) == 16 && sizeof(tp_step_out) == 32 && sizeof(tp_draw) == 48, "layout");
 TP_ASSERT(sizeof(tp_param) == 136 && offsetof(tp_param, min) == 112 && sizeof(tp_value) == 24, "layout");
-TP_ASSERT(sizeof(tp_host) == 96 && offsetof(tp_host, scalar) == 80, "layout");
+TP_ASSERT(sizeof(tp_host) == 112 && offsetof(tp_host, scalar) == 80 && offsetof(tp_host, legs) == 96, "layout");
+TP_ASSERT(sizeof(tp_leg) == 16, "layout");
 TP_ASSERT(sizeof(tp_planner) == 160 && offsetof(tp_planner, describe) == 80, "layout");
 TP_ASSERT(sizeof(tp_entry) == 48 && offsetof(tp_entry, planners) == 24 && sizeof(tp_stamp) == 16, "layout");
 

@@ -11,7 +11,7 @@ pub mod output;
 pub mod table;
 
 pub use input::{Obstacle, Outline, PlanIn, Site, StepIn, Zone};
-pub use output::{Draw, Param, PlanOut, StepOut, Value};
+pub use output::{Draw, Leg, Param, PlanOut, StepOut, Value};
 pub use table::{Entry, Host, Planner, PlannerList, Stamp};
 
 /// First bytes of entry and stamp.
@@ -19,7 +19,7 @@ pub const MAGIC: [u8; 8] = *b"TANKPLAN";
 /// Libraries of another major version are refused.
 pub const MAJOR: u32 = 1;
 /// Raised when something is added at the end of a struct.
-pub const MINOR: u32 = 0;
+pub const MINOR: u32 = 1;
 /// The one symbol that a library exports.
 pub const SYMBOL: &str = "tank_planner_entry";
 /// Section of the stamp as file readers name it, on Linux, on macOS and on Windows.
@@ -139,18 +139,20 @@ pub unsafe fn copy_sized<T: Sized32>(from: *const T) -> T {
 const _: () = {
     use std::mem::offset_of;
     assert!(size_of::<Str>() == 16 && size_of::<Vec2>() == 16 && size_of::<Pose>() == 24);
-    assert!(size_of::<Outline>() == 24 && size_of::<Obstacle>() == 32 && size_of::<Zone>() == 32);
+    assert!(size_of::<Outline>() == 24 && size_of::<Obstacle>() == 48 && size_of::<Zone>() == 32);
     assert!(size_of::<Site>() == 128 && offset_of!(Site, boundary) == 16);
     assert!(
         offset_of!(Site, obstacles) == 40 && offset_of!(Site, zones) == 56 && offset_of!(Site, motion) == 72
     );
-    assert!(size_of::<PlanIn>() == 144 && offset_of!(PlanIn, covariance) == 48);
+    assert!(size_of::<PlanIn>() == 184 && offset_of!(PlanIn, covariance) == 48);
     assert!(offset_of!(PlanIn, targets) == 104 && offset_of!(PlanIn, site) == 136);
+    assert!(offset_of!(PlanIn, regions) == 144 && offset_of!(PlanIn, reel) == 160);
     assert!(size_of::<StepIn>() == 176 && offset_of!(StepIn, target) == 120);
     assert!(offset_of!(StepIn, targets_ahead) == 136 && offset_of!(StepIn, obstacles) == 160);
     assert!(size_of::<PlanOut>() == 16 && size_of::<StepOut>() == 32 && size_of::<Draw>() == 48);
     assert!(size_of::<Param>() == 136 && offset_of!(Param, min) == 112 && size_of::<Value>() == 24);
-    assert!(size_of::<Host>() == 96 && offset_of!(Host, scalar) == 80);
+    assert!(size_of::<Host>() == 112 && offset_of!(Host, scalar) == 80 && offset_of!(Host, legs) == 96);
+    assert!(size_of::<Leg>() == 16);
     assert!(size_of::<Planner>() == 160 && offset_of!(Planner, describe) == 80);
     assert!(size_of::<Entry>() == 48 && offset_of!(Entry, planners) == 24 && size_of::<Stamp>() == 16);
     // Points are lent as they lie in memory.

@@ -10,7 +10,7 @@ mod services;
 use crate::abi::{self, Str, output};
 use crate::{Code, Config, Ctx, Kind, ParamSpec, Planner, PlannerError, Result, Stopping, params};
 use guard::{quietly, run};
-use inputs::{SensedParts, SiteParts, config_values, plan_request, task_of};
+use inputs::{SensedParts, SiteParts, config_values, plan_request, regions_of, task_of};
 use services::HostServices;
 use std::ffi::c_void;
 
@@ -162,13 +162,17 @@ pub unsafe extern "C" fn plan<P: Planner>(
         let parts = unsafe { SiteParts::read(input.site)? };
         let site = parts.site()?;
         // SAFETY: as above.
-        let (reason, task) = unsafe { (inputs::reason_of(&input), task_of(&input)?) };
+        let (reason, regions) = unsafe { (inputs::reason_of(&input), regions_of(&input)?) };
+        // SAFETY: as above.
+        let task = unsafe { task_of(&input, &regions)? };
         // SAFETY: as above.
         let request = unsafe { plan_request(&input, &reason, task, &site) };
         let plan = planner
             .plan(&request, &Ctx::new(&services))
             .inspect_err(|error| services.points(&error.partial))?;
         services.points(&plan.path);
+        services.legs(&plan.legs);
+        plan.cuts.iter().for_each(|cut| services.cut(cut));
         // SAFETY: as above.
         unsafe {
             (*out).cost = plan.cost;

@@ -28,7 +28,7 @@ pub use error::{Code, PlannerError};
 pub use nalgebra::{Point2, Vector2};
 pub use params::{Config, Kind, ParamSpec, Value, choice, flag, float, int};
 pub use planner::{Caps, Planner};
-pub use request::{Plan, PlanRequest, PoseEstimate, Reason, Sensed, Task};
+pub use request::{Leg, LegTag, Plan, PlanRequest, PoseEstimate, Reason, Sensed, Task, TetherLimits};
 pub use site::{Boundary, Limits, Motion, Obstacle, Outline, Site, Zone, ZoneKind};
 
 /// The result of a planner's call.

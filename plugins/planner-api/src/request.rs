@@ -53,6 +53,30 @@ pub enum Task<'a> {
         /// Distance at which the last one counts as reached, metres.
         tolerance_m: f64,
     },
+    /// Scan the floor with the swath, and come back to the anchor.
+    Cover {
+        /// Where the path ends, and where the tether is made fast if there is one.
+        anchor: Point2<f64>,
+        /// What is still to scan: closed polygons, counter-clockwise, that do not overlap. Empty: all floor that can
+        /// be reached. They may be ragged (built of square cells) and need not respect obstacles or clearances.
+        regions: &'a [&'a [Point2<f64>]],
+        /// The tether's limits; `None` without a tether.
+        tether: Option<TetherLimits>,
+        /// Distance from the anchor at which the robot counts as back, metres.
+        tolerance_m: f64,
+    },
+}
+
+/// What a tether bears. It runs from the anchor to the robot, taut, and may touch obstacles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TetherLimits {
+    /// Length on the reel, metres; infinite without a limit.
+    pub reel_m: f64,
+    /// Largest wrap angle on one obstacle, radians; infinite without a limit.
+    pub max_wrap_rad: f64,
+    /// Largest sum of the wrap angles on all obstacles, radians; infinite without a limit.
+    pub max_sum_wrap_rad: f64,
 }
 
 /// A request for a plan.
@@ -80,6 +104,57 @@ pub struct Plan {
     pub cost: f64,
     /// Whether the path achieves the whole task.
     pub complete: bool,
+    /// What the stretches of the path are for, in order; empty when the planner does not tell. Two legs may share a
+    /// point, and what no leg names is on the way from one place to another.
+    pub legs: Vec<Leg>,
+    /// Lines that the tethered robot never crosses, neither on the path nor when it leaves it.
+    pub cuts: Vec<Vec<Point2<f64>>>,
+}
+
+/// What a stretch of a path is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[repr(u32)]
+pub enum LegTag {
+    /// The tool scans new floor.
+    Swath = 0,
+    /// From the end of one lane to the beginning of another.
+    Connector = 1,
+    /// Back along its own way so that the tether is taken in.
+    Retract = 2,
+    /// To the first lane, or home.
+    Travel = 3,
+}
+
+/// A stretch of a plan's path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Leg {
+    /// What it is for.
+    pub tag: LegTag,
+    /// Index of its first point in [`Plan::path`].
+    pub first: usize,
+    /// Index of its last point, which belongs to it.
+    pub last: usize,
+}
+
+impl LegTag {
+    /// The word that scripts and people read.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Swath => "swath",
+            Self::Connector => "connector",
+            Self::Retract => "retract",
+            Self::Travel => "travel",
+        }
+    }
+
+    /// The tag of a number that came over the boundary, if it is one.
+    pub fn from_number(number: u32) -> Option<Self> {
+        [Self::Swath, Self::Connector, Self::Retract, Self::Travel]
+            .into_iter()
+            .find(|tag| *tag as u32 == number)
+    }
 }
 
 /// What is known in one tick.

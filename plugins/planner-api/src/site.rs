@@ -1,6 +1,6 @@
 //! Where the mission takes place, as far as the drawing tells.
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 /// The wall of the tank.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,6 +50,9 @@ pub struct Obstacle<'a> {
     pub outline: Outline<'a>,
     /// Whether it was discovered on the way (so its place carries the position error) or stands on the drawing.
     pub discovered: bool,
+    /// How fast it moves, metres per second, tank frame; zero for what stands still. An estimate, and only what is sensed
+    /// now is known to move.
+    pub velocity_m_per_s: Vector2<f64>,
 }
 
 /// What is special about a part of the floor.

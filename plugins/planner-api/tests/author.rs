@@ -32,6 +32,11 @@ export_planners!(Idle);
 fn the_macro_puts_the_stamp_into_the_file() {
     let own = std::env::current_exe().and_then(std::fs::read).expect("the test can read itself");
     // Built at run time, so that the bytes searched for are not found in the test's own constants.
-    let stamp: Vec<u8> = "NALPKNAT".bytes().rev().chain([1, 0, 0, 0, 0, 0, 0, 0]).collect();
+    let stamp: Vec<u8> = "NALPKNAT"
+        .bytes()
+        .rev()
+        .chain(planner_api::abi::MAJOR.to_le_bytes())
+        .chain(planner_api::abi::MINOR.to_le_bytes())
+        .collect();
     assert!(own.windows(stamp.len()).any(|bytes| bytes == stamp), "the stamp is in the file");
 }

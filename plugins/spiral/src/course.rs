@@ -37,6 +37,10 @@ impl Course {
         let (targets, tolerance_m) = match request.task {
             Task::Goto { goal, tolerance_m } => (vec![goal], tolerance_m),
             Task::Follow { targets, tolerance_m } => (targets.to_vec(), tolerance_m),
+            Task::Cover { .. } => {
+                let message = "it flies to points and along paths, it covers no floor";
+                return Err(PlannerError::new(Code::Unsupported, message));
+            }
         };
         let Some(&first) = targets.first() else { return Err(invalid("there is no preset point to follow")) };
         if let Some(at) = targets.iter().position(|p| !p.x.is_finite() || !p.y.is_finite()) {

@@ -100,7 +100,7 @@ fn told(path: lattice::Path, course: &Course, room: &field::Room, ctx: &Ctx<'_>)
             &format!("the plan is not complete: it ends {missing_m:.2} m short of its end"),
         );
     }
-    Plan { cost: polyline::length_m(&path.points), path: path.points, complete }
+    Plan { cost: polyline::length_m(&path.points), path: path.points, complete, ..Plan::default() }
 }
 
 #[cfg(test)]

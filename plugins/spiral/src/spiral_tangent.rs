@@ -84,7 +84,7 @@ impl Planner for SpiralTangent {
                 if !complete {
                     ctx.log(LogLevel::Warn, "the plan is not complete: it ends short of its end");
                 }
-                Ok(Plan { cost: polyline::length_m(&path), path, complete })
+                Ok(Plan { cost: polyline::length_m(&path), path, complete, ..Plan::default() })
             }
             Err(station) => Err(refusal::no_path(&course, &room, station, path)),
         }

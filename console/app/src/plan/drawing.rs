@@ -1,6 +1,7 @@
 //! A plan as a picture for people: tank, obstacles with the margin that the robot's centre keeps, preset and planned
-//! path.
+//! path, lanes in the colour of what they are for, and the lines that a tethered robot never crosses.
 
+use super::Leg;
 use crate::scenario::Scenario;
 use mission::TaskConfig;
 use std::fmt::Write;
@@ -12,7 +13,7 @@ const SCALE: f64 = 50.0;
 const RIM_M: f64 = 0.5;
 
 /// The picture as an SVG document; north is up.
-pub fn svg(scenario: &Scenario, path: &[Point]) -> String {
+pub fn svg(scenario: &Scenario, path: &[Point], legs: &[Leg], cuts: &[Vec<Point>]) -> String {
     let world = scenario.sim.world.as_drawn();
     let (low, high) = world.boundary.bounds();
     let (width, height) = (high.x - low.x + 2.0 * RIM_M, high.y - low.y + 2.0 * RIM_M);
@@ -28,7 +29,20 @@ pub fn svg(scenario: &Scenario, path: &[Point]) -> String {
     if let TaskConfig::Follow { path, .. } = &scenario.mission.task {
         polyline(&mut body, path, "preset");
     }
-    polyline(&mut body, path, "planned");
+    let swath_m = scenario.mission.swath_m;
+    for leg in legs.iter().filter(|leg| leg.tag == "swath") {
+        let style = format!(r#"class="band" style="stroke-width:{swath_m}""#);
+        line(&mut body, &path[leg.first..=leg.last], &style);
+    }
+    for leg in legs {
+        polyline(&mut body, &path[leg.first..=leg.last], if leg.tag == "path" { "planned" } else { leg.tag });
+    }
+    for cut in cuts {
+        polyline(&mut body, cut, "cut");
+    }
+    if let TaskConfig::Cover { anchor, .. } = &scenario.mission.task {
+        circle(&mut body, *anchor, 0.15, "anchor");
+    }
     for station in &world.stations {
         circle(&mut body, station.position, 0.1, "station");
     }
@@ -37,7 +51,10 @@ pub fn svg(scenario: &Scenario, path: &[Point]) -> String {
             r#"<svg xmlns="http://www.w3.org/2000/svg" width="{:.0}" height="{:.0}" viewBox="{} {} {} {}">"#,
             "<style>*{{fill:none;stroke-width:0.03}}.wall{{stroke:#333;stroke-width:0.06}}",
             ".obstacle{{fill:#c0504d;stroke:#7a2e2c}}.margin{{stroke:#c0504d;stroke-dasharray:0.08}}",
-            ".preset{{stroke:#999}}.planned{{stroke:#1f5fbf;stroke-width:0.05}}.station{{fill:#e0a020}}</style>",
+            ".preset{{stroke:#999}}.planned,.swath{{stroke:#1f5fbf;stroke-width:0.05}}.station{{fill:#e0a020}}",
+            ".band{{stroke:#1f5fbf;stroke-opacity:0.12;stroke-linejoin:round}}.connector{{stroke:#e07b00}}",
+            ".retract{{stroke:#8a3ab9}}.travel{{stroke:#2a9d4a}}.anchor{{fill:#2a9d4a}}",
+            ".cut{{stroke:#d00;stroke-width:0.05;stroke-dasharray:0.2 0.12}}</style>",
             r#"<rect x="{}" y="{}" width="{}" height="{}" style="fill:#fff"/>{}</svg>"#,
             "\n"
         ),

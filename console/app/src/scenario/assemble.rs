@@ -5,13 +5,14 @@ use super::{
     checks::{Site, check_cells, check_period, check_ticks},
     expect, floor, layout,
     problem::{Complaint, Problem},
+    ranging,
     robot::{self, Robot},
     schema,
     section::Section,
     source::Source,
     task,
 };
-use mission::{MissionConfig, TaskConfig};
+use mission::{MissionConfig, ScanConfig, TaskConfig};
 use sim::{AeConfig, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
@@ -20,9 +21,9 @@ use world::{Boundary, Obstacle, Point, Pose, Station, World};
 const ON_PATH_M: f64 = 1e-3;
 
 /// Reads every section, checks that they fit together, and gives the scenario or everything that is wrong.
-pub fn assemble(text: &str, table: &DeTable<'_>) -> Result<Scenario, Vec<Problem>> {
+pub fn assemble(text: &str, shown_name: &str, table: &DeTable<'_>) -> Result<Scenario, Vec<Problem>> {
     let source = Source::new(text);
-    let scenario = read(&Section::root(&source, table, schema::ROOT), text);
+    let scenario = read(&Section::root(&source, table, schema::ROOT), text, shown_name);
     let problems = source.into_problems();
     match scenario {
         Some(scenario) if problems.is_empty() => Ok(scenario),
@@ -46,9 +47,10 @@ struct Floor {
     robot: Option<Robot>,
     stations: Vec<Station>,
     ae: Option<AeConfig>,
+    locating: Option<Locating>,
 }
 
-fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
+fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let name = root.slug("name");
     let about = if root.has("about") { root.text("about") } else { Some(String::new()) };
     let seed = root.whole("seed").map(|seed| seed as u64);
@@ -60,11 +62,15 @@ fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
     };
     let mut floor = Floor::read(&sections);
     let radius_m = floor.robot.as_ref().map(|robot| robot.limits.radius_m);
-    let task = sections.mission.as_ref().and_then(|s| task::task(s, floor.boundary.as_ref(), radius_m));
-    let start = start(&sections, floor.robot.as_ref(), task.as_ref());
+    let put_down = floor.robot.as_ref().and_then(|robot| robot.start);
+    let task =
+        sections.mission.as_ref().and_then(|s| task::task(s, floor.boundary.as_ref(), radius_m, put_down));
+    require_start(&sections);
+    let start = start(floor.robot.as_ref(), task.as_ref());
     scatter(root, &mut floor, seed, start, task.as_ref());
     check_places(&sections, &floor, start, task.as_ref());
     let planner = root.table("planner").map(|section| (task::planner(&section), task::fallback(&section)));
+    let plates = if root.has("plates") { floor::plates(root, floor.boundary.as_ref()) } else { None };
     let expect = expect::expect(root);
     let rest = Rest::read(&sections, &floor);
 
@@ -78,6 +84,7 @@ fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
         time_limit_s: rest.time_limit_s,
         limits: robot.limits,
         swath_m: rest.swath_m,
+        scan: rest.scan,
         clearance_m: rest.clearance_m,
         cell_m: rest.cell_m,
         position_limit_m: rest.position_limit_m,
@@ -87,7 +94,8 @@ fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
         odometry_sigma_per_m: robot.odometry_sigma_per_m(),
         odometry_turn_sigma_per_rad: robot.turn_sigma_per_rad(),
         gyro_sigma_rad_per_s: robot.gyro_sigma_rad_per_s(),
-        range_sigma_ratio: robot::range_sigma_ratio(ae.noise),
+        range_sigma_ratio: ranging::range_sigma_ratio(ae.noise),
+        locating: locating?,
         planner: planner?,
         fallback,
         // Who flies it knows; a scenario does not.
@@ -103,10 +111,12 @@ fn read(root: &Section<'_>, text: &str) -> Option<Scenario> {
     Some(Scenario {
         name: name?,
         about: about?,
+        shown_name: shown_name.to_owned(),
         text: text.to_owned(),
         seed: seed?,
         sim,
         mission,
+        plates,
         expect: expect?,
     })
 }
@@ -115,33 +125,39 @@ impl Floor {
     fn read(sections: &Sections<'_>) -> Self {
         let boundary = floor::tank(sections.root);
         let ae = sections.ae.as_ref();
-        let stations = ae.map(|section| robot::stations(section, boundary.as_ref())).unwrap_or_default();
-        let mut ranging = ae.and_then(robot::ae);
-        if let (Some(section), Some(ranging)) = (ae, &mut ranging) {
-            ranging.disturbances.faults = robot::faults(section, &stations);
+        let stations = ae.map(|section| ranging::stations(section, boundary.as_ref())).unwrap_or_default();
+        let mut heard = ae.and_then(ranging::ae);
+        if let (Some(section), Some(heard)) = (ae, &mut heard) {
+            heard.disturbances.faults = ranging::faults(section, &stations);
         }
         Self {
             obstacles: floor::obstacles(sections.root, boundary.as_ref()),
             zones: floor::zones(sections.root),
             robot: sections.robot.as_ref().and_then(robot::robot),
             stations,
-            ae: ranging,
+            locating: ae.zip(heard.as_ref()).and_then(|(section, heard)| ranging::locating(section, heard)),
+            ae: heard,
             boundary,
         }
     }
 }
 
+/// Complains of a mission that does not say by itself where the robot is put down.
+fn require_start(sections: &Sections<'_>) {
+    let (Some(mission), Some(robot)) = (&sections.mission, &sections.robot) else { return };
+    if mission.has("kind") && matches!(mission.word("kind"), Some("goto" | "cover")) && !robot.has("start_m")
+    {
+        robot.require("start_m", "add start_m = [x, y] to [robot], where it is put down");
+    }
+}
+
 /// Where the robot starts: as given, or on the path and along it.
-fn start(sections: &Sections<'_>, robot: Option<&Robot>, task: Option<&TaskConfig>) -> Option<Pose> {
-    let (robot, section, task) = (robot?, sections.robot.as_ref()?, task?);
+fn start(robot: Option<&Robot>, task: Option<&TaskConfig>) -> Option<Pose> {
+    let (robot, task) = (robot?, task?);
     let (position, ahead) = match (robot.start, task) {
         (Some(start), TaskConfig::Goto { goal, .. }) => (start, *goal - start),
-        (None, TaskConfig::Goto { .. }) => {
-            if !section.has("start_m") {
-                section.require("start_m", "add start_m = [x, y] to [robot], where it is put down");
-            }
-            return None;
-        }
+        (Some(start), TaskConfig::Cover { .. }) => (start, world::Vector::zeros()),
+        (None, TaskConfig::Goto { .. } | TaskConfig::Cover { .. }) => return None,
         (start, TaskConfig::Follow { path, .. }) => {
             let (first, second) = (*path.first()?, *path.get(1)?);
             let position = start.unwrap_or(first);
@@ -158,6 +174,7 @@ fn end_of(task: &TaskConfig) -> Option<Point> {
     match task {
         TaskConfig::Goto { goal, .. } => Some(*goal),
         TaskConfig::Follow { path, .. } => path.last().copied(),
+        TaskConfig::Cover { anchor, .. } => Some(*anchor),
     }
 }
 
@@ -204,6 +221,7 @@ struct Rest {
     tick_s: f64,
     time_limit_s: f64,
     swath_m: f64,
+    scan: ScanConfig,
     clearance_m: f64,
     cell_m: f64,
     position_limit_m: f64,
@@ -227,11 +245,13 @@ impl Rest {
         }
         let (swath_m, clearance_m) = (mission.number("swath_m"), mission.number("clearance_m"));
         let position_limit_m = mission.number("position_limit_m");
+        let scan = scan(mission, swath_m);
         let (lost_hold_s, stuck_s) = (mission.number("lost_hold_s"), mission.number("stuck_s"));
         Some(Self {
             tick_s: tick?,
             time_limit_s: limit?,
             swath_m: swath_m?,
+            scan: scan?,
             clearance_m: clearance_m?,
             cell_m: cell_m?,
             position_limit_m: position_limit_m?,
@@ -239,6 +259,20 @@ impl Rest {
             stuck_s: stuck_s?,
         })
     }
+}
+
+/// What it takes for floor to count as scanned; lanes must be left some width.
+fn scan(mission: &Section<'_>, swath_m: Option<f64>) -> Option<ScanConfig> {
+    let (overlap_m, limit_m) = (mission.number("overlap_m"), mission.number("scan_position_limit_m"));
+    let (overlap_m, swath_m) = (overlap_m?, swath_m?);
+    if overlap_m >= swath_m {
+        mission.complain("overlap_m", Complaint::OutOfRange(format!("less than swath_m, {swath_m} m")));
+        return None;
+    }
+    if mission.has("scan_position_limit_m") && limit_m.is_none() {
+        return None;
+    }
+    Some(ScanConfig { overlap_m, position_limit_m: limit_m })
 }
 
 fn truth(robot: &Robot, start: Pose) -> RobotConfig {
@@ -253,5 +287,6 @@ fn truth(robot: &Robot, start: Pose) -> RobotConfig {
         slip_sigma: robot.slip_sigma,
         odometry_sigma_ratio: robot.odometry_sigma_ratio,
         gyro_bias_rad_per_s: robot.gyro_bias_rad_per_s,
+        amphibious: robot.amphibious,
     }
 }

@@ -6,7 +6,7 @@ use super::{
     section::{Place, Section},
 };
 use std::collections::BTreeMap;
-use world::{Boundary, Obstacle, ObstacleId, Shape, Zone, ZoneKind};
+use world::{Boundary, Obstacle, ObstacleId, PlateLayout, Shape, Zone, ZoneKind};
 
 /// Reads `[tank]`.
 pub fn tank(root: &Section<'_>) -> Option<Boundary> {
@@ -21,6 +21,21 @@ pub fn tank(root: &Section<'_>) -> Option<Boundary> {
         return None;
     }
     Some(Boundary::Polygon { vertices: counter_clockwise(&section, "vertices_m")? })
+}
+
+/// Reads `[plates]`.
+pub fn plates(root: &Section<'_>, boundary: Option<&Boundary>) -> Option<PlateLayout> {
+    let section = root.table("plates")?;
+    let (annular_m, length_m) = (section.number("annular_width_m")?, section.number("plate_length_m")?);
+    let width_m = section.number("plate_width_m")?;
+    let n_annular = if section.has("annular_count") {
+        section.whole("annular_count")? as u32
+    } else {
+        // Of a square or any other floor as much shell as a round one of its area has.
+        let shell_m = (4.0 * std::f64::consts::PI * boundary?.area_m2()).sqrt();
+        (shell_m / length_m).ceil().clamp(1.0, 1000.0) as u32
+    };
+    Some(PlateLayout { annular_m, n_annular, length_m, width_m })
 }
 
 /// Reads `[[obstacles]]`; those that are wrong are left out.

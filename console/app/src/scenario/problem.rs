@@ -218,6 +218,9 @@ pub enum Complaint {
         /// How many at most.
         limit: u64,
     },
+    /// A planner that does not exist, or that refuses a value.
+    #[error("{0}")]
+    Planner(String),
     /// Random obstacles that do not fit.
     #[error("only {placed} of them found room")]
     NoRoom {
@@ -262,6 +265,7 @@ impl Complaint {
             Self::NoRoom { .. } => "ask for fewer or smaller obstacles, or for a smaller gap".into(),
             Self::Unreadable(_)
             | Self::BadSetting(_)
+            | Self::Planner(_)
             | Self::NotFinite
             | Self::OutOfRange(_)
             | Self::UnknownWord { nearest: None, .. }

@@ -81,6 +81,8 @@ pub enum Kind {
     Pair(Span),
     /// `[[from, to], ...]`, times.
     Times,
+    /// `[[west, south, east, north], ...]`, at least one.
+    Boxes,
     /// A table with keys of its own.
     Table(&'static [Key]),
     /// Tables with keys of their own.
@@ -172,6 +174,7 @@ pub static ROOT: &[Key] = &[
     key("obstacles", "", Kind::Tables(OBSTACLES)).or_none("none"),
     key("random_obstacles", "", Kind::Table(RANDOM_OBSTACLES)).or_none("none"),
     key("zones", "", Kind::Tables(ZONES)).or_none("none"),
+    key("plates", "", Kind::Table(PLATES)).or_none("not known"),
     key("robot", "", Kind::Table(ROBOT)).or_none("all defaults"),
     key("ae", "", Kind::Table(AE)),
     key("mission", "", Kind::Table(MISSION)),
@@ -182,6 +185,13 @@ pub static ROOT: &[Key] = &[
 static TANK: &[Key] = &[
     number("radius_m", "m", LENGTH).or_none("this or `vertices_m`"),
     key("vertices_m", "m", Kind::Points(3)).or_none("this or `radius_m`"),
+];
+
+static PLATES: &[Key] = &[
+    number("annular_width_m", "m", at_least(0.0).up_to(100.0)).or(0.6),
+    key("annular_count", "", Kind::Whole(1, 1000)).or_none("one for every `plate_length_m` of shell"),
+    number("plate_length_m", "m", at_least(0.1).up_to(1000.0)).or(6.0),
+    number("plate_width_m", "m", at_least(0.1).up_to(1000.0)).or(1.8),
 ];
 
 /// The outlines an obstacle or a zone may have.
@@ -224,10 +234,15 @@ static ZONES: &[Key] = &[
 ];
 
 static ROBOT: &[Key] = &[
-    word("motion", &["point", "unicycle"]).or_word("unicycle"),
+    word("motion", &["point", "unicycle", "amphibious"]).or_word("unicycle"),
     number("radius_m", "m", at_least(0.0).up_to(50.0)).or(0.25),
     number("speed_max_m_per_s", "m/s", above(0.0).up_to(10.0)).or(0.4),
     number("turn_max_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(60.0),
+    number("land_speed_m_per_s", "m/s", above(0.0).up_to(10.0)).or(0.13),
+    number("land_turn_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(6.9),
+    number("underwater_speed_m_per_s", "m/s", above(0.0).up_to(10.0)).or(0.23),
+    number("underwater_turn_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(17.8),
+    key("transition_ticks", "", Kind::Whole(0, 10_000)).or_whole(20),
     number("acceleration_m_per_s2", "m/s²", above(0.0).up_to(100.0)).or(0.5),
     number("sensing_range_m", "m", above(0.0).up_to(100.0)).or(3.0),
     point("start_m").or_none("the first point of the path"),
@@ -247,28 +262,51 @@ static AE: &[Key] = &[
     key("noise", "", Kind::Table(NOISE)).or_none("`{ model = \"uniform\", ratio = 0.05 }`"),
     number("dropout", "", SHARE).or(0.0),
     key("outages_s", "s", Kind::Times).or_none("none"),
+    number("ping_dropout", "", SHARE).or(0.0),
+    number("outlier_chance", "", SHARE).or(0.0),
+    number("outlier_factor", "", at_least(1.0).up_to(100.0)).or(10.0),
+    number("nlos_chance", "", SHARE).or(0.0),
+    number("late_ping_chance", "", SHARE).or(0.0),
+    number("late_mean_m", "m", above(0.0).up_to(1000.0)).or(1.0),
+    word("behind_columns", &["heard", "creeping", "late", "wall-echo", "silent"]).or_word("heard"),
+    number("survey_sigma_m", "m", at_least(0.0).up_to(10.0)).or(0.0),
+    number("sound_speed_error_ratio", "", at_least(-0.5).up_to(0.5)).or(0.0),
+    key("faults", "", Kind::Tables(FAULTS)).or_none("none"),
+    word("solver", &["linear", "weighted-linear", "nls", "bounded", "consensus"]).or_word("nls"),
+    word("aggregation", &["mean", "midrange", "trimmed-mean", "posterior"]).or_word("mean"),
+    key("calibrates_sound", "", Kind::Flag).or_flag(false),
+];
+
+static FAULTS: &[Key] = &[
+    key("station", "", Kind::Text),
+    number("from_s", "s", at_least(0.0)),
+    number("to_s", "s", above(0.0)),
+    number("late_m", "m", above(0.0).up_to(1000.0)).or_none("the station is silent"),
 ];
 
 static STATIONS: &[Key] = &[key("name", "", Kind::Text), point("at_m")];
 
 static NOISE: &[Key] = &[
-    word("model", &["none", "uniform", "gaussian"]),
-    number("ratio", "", above(0.0).up_to(0.9)).or_none("for `uniform`"),
-    number("sigma_ratio", "", above(0.0).up_to(0.9)).or_none("for `gaussian`"),
+    word("model", &["none", "uniform", "triangular", "gaussian", "heavy-tailed"]),
+    number("ratio", "", above(0.0).up_to(0.9)).or_none("for `uniform`, `triangular`"),
+    number("sigma_ratio", "", above(0.0).up_to(0.9)).or_none("for `gaussian`, `heavy-tailed`"),
 ];
 
 static MISSION: &[Key] = &[
-    word("kind", &["goto", "follow"]),
+    word("kind", &["goto", "follow", "cover"]),
     point("goal_m").or_none("for `goto`"),
     key("spiral", "", Kind::Table(SPIRAL)).or_none("for `follow`: this or `path_m`"),
     key("path_m", "m", Kind::Points(2)).or_none("for `follow`: this or `spiral`"),
+    key("boxes_m", "m", Kind::Boxes).or_none("for `cover`: all floor that can be reached"),
     number("tolerance_m", "m", above(0.0).up_to(100.0)).or(0.2),
     number("tick_s", "s", at_least(0.001).up_to(10.0)).or(0.1),
     number("time_limit_s", "s", above(0.0)).or(600.0),
     number("swath_m", "m", above(0.0).up_to(100.0)).or(0.5),
+    number("overlap_m", "m", at_least(0.0).up_to(100.0)).or(0.0),
     number("clearance_m", "m", at_least(0.0).up_to(100.0)).or(0.1),
     number("cell_m", "m", at_least(0.001).up_to(10.0)).or(0.05),
     number("position_limit_m", "m", above(0.0)).or(0.5),
+    number("scan_position_limit_m", "m", above(0.0)).or_none("`position_limit_m`"),
     number("lost_hold_s", "s", at_least(0.0)).or(2.0),
     number("stuck_s", "s", above(0.0)).or(30.0),
 ];
@@ -298,6 +336,7 @@ static EXPECT: &[Key] = &[
     number("mission_time_max_s", "s", above(0.0)).or_none(NO_BOUND),
     number("path_length_max_m", "m", above(0.0)).or_none(NO_BOUND),
     number("coverage_reachable_min", "", SHARE).or_none(NO_BOUND),
+    number("coverage_truth_min", "", SHARE).or_none(NO_BOUND),
     number("coverage_whole_min", "", SHARE).or_none(NO_BOUND),
     number("overlap_max", "", at_least(0.0)).or_none(NO_BOUND),
     number("precision_min", "", SHARE).or_none(NO_BOUND),

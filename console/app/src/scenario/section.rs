@@ -308,6 +308,40 @@ impl<'a> Section<'a> {
         points.into_iter().collect()
     }
 
+    /// Boxes as their south west and north east corners.
+    pub fn boxes(&self, name: &str) -> Option<Vec<[Point; 2]>> {
+        let remedy = "write [[west, south, east, north], ...] in metres";
+        let list = self.list(name, "a list of boxes", remedy)?;
+        if list.is_empty() {
+            self.complain(name, Complaint::TooFew { have: 0, need: 1 });
+            return None;
+        }
+        let boxes: Vec<_> = list
+            .iter()
+            .enumerate()
+            .map(|(i, value)| self.checked_box(format!("{}.{i}", self.path_of(name)), value, remedy))
+            .collect();
+        boxes.into_iter().collect()
+    }
+
+    fn checked_box(&self, key: String, value: &Value<'_>, remedy: &str) -> Option<[Point; 2]> {
+        let span = super::schema::at_least(-FAR_M).up_to(FAR_M);
+        let numbers: Vec<&Value<'_>> = value.get_ref().as_array().into_iter().flatten().collect();
+        let [west, south, east, north] = numbers[..] else {
+            self.complain_at(key, &value.span(), wrong_type("four numbers", remedy));
+            return None;
+        };
+        let [west, south, east, north] =
+            [west, south, east, north].map(|number| self.checked_number(key.clone(), number, span, "m"));
+        let (low, high) = (Point::new(west?, south?), Point::new(east?, north?));
+        if low.x < high.x && low.y < high.y {
+            return Some([low, high]);
+        }
+        let must_be = "[west, south, east, north] with west < east and south < north".to_owned();
+        self.complain_at(key, &value.span(), Complaint::OutOfRange(must_be));
+        None
+    }
+
     fn list(&self, name: &str, wanted: &str, remedy: &str) -> Option<&'a [Value<'a>]> {
         let value = self.required(name)?;
         if let DeValue::Array(list) = value.get_ref() {
@@ -456,6 +490,7 @@ fn missing_remedy(section: &str, key: &Key) -> String {
         Kind::Point => format!("add {name} = [x, y]"),
         Kind::Points(_) => format!("add {name} = [[x, y], ...]"),
         Kind::Pair(_) => format!("add {name} = [a, b]"),
+        Kind::Boxes => format!("add {name} = [[west, south, east, north], ...]"),
         _ if key.unit.is_empty() => format!("add {name} = ..."),
         _ => format!("add {name} = ..., in {}", key.unit),
     }

@@ -2,7 +2,7 @@
 
 use super::{problem::Complaint, section::Section};
 use mission::{PlannerChoice, TaskConfig};
-use world::{Boundary, Point, spiral::Spiral};
+use world::{Boundary, Point, coverage::regions, spiral::Spiral};
 
 /// Points that a path may have.
 const MOST_POINTS: u64 = 200_000;
@@ -10,17 +10,29 @@ const MOST_POINTS: u64 = 200_000;
 /// Slack for numbers that were written down rounded, metres.
 const ROUNDING_M: f64 = 1e-6;
 
-/// Reads the task of `[mission]`; a preset path must leave the hull room at the wall.
-pub fn task(section: &Section<'_>, boundary: Option<&Boundary>, radius_m: Option<f64>) -> Option<TaskConfig> {
+/// Reads the task of `[mission]`; a preset path must leave the hull room at the wall, and a coverage mission ends at
+/// `start`.
+pub fn task(
+    section: &Section<'_>,
+    boundary: Option<&Boundary>,
+    radius_m: Option<f64>,
+    start: Option<Point>,
+) -> Option<TaskConfig> {
     let kind = section.word("kind")?;
     let tolerance_m = section.number("tolerance_m");
     let beside = format!("kind = \"{kind}\"");
     if kind == "goto" {
-        section.refuse(&["spiral", "path_m"], &beside);
+        section.refuse(&["spiral", "path_m", "boxes_m"], &beside);
         section.require("goal_m", "add goal_m = [x, y], where the robot is to go");
         return Some(TaskConfig::Goto { goal: section.point("goal_m")?, tolerance_m: tolerance_m? });
     }
-    section.refuse(&["goal_m"], &beside);
+    if kind == "cover" {
+        section.refuse(&["spiral", "path_m", "goal_m"], &beside);
+        let boxes = if section.has("boxes_m") { section.boxes("boxes_m")? } else { Vec::new() };
+        let regions = boxes.iter().map(|[low, high]| regions::rectangle(*low, *high)).collect();
+        return Some(TaskConfig::Cover { anchor: start?, regions, tolerance_m: tolerance_m? });
+    }
+    section.refuse(&["goal_m", "boxes_m"], &beside);
     let path = preset_path(section, boundary, radius_m)?;
     Some(TaskConfig::Follow { path, tolerance_m: tolerance_m? })
 }

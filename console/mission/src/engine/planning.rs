@@ -44,7 +44,10 @@ impl Mission {
     pub(super) fn plan_if_due(&mut self, planner: &mut dyn PlannerLink) -> Result<(), String> {
         let Some(reason) = self.planner.plan_due.clone() else { return Ok(()) };
         let start = self.locator.pose_estimate();
-        let (task, previous) = (self.task.as_request(), &self.trail);
+        let regions = self.task.regions_left(&self.coverage, self.config.lane_m());
+        let regions: Vec<&[world::Point]> = regions.iter().map(Vec::as_slice).collect();
+        let task = self.task.as_request(&regions, self.config.tether_limits());
+        let previous = &self.trail;
         let answer = self
             .chart
             .with_site(|site| planner.plan(&PlanRequest { reason: &reason, start, task, site, previous }));
@@ -59,7 +62,10 @@ impl Mission {
 
     fn accept_plan(&mut self, reason: Reason, reply: Reply<Plan>) {
         self.planner.plan_due = None;
-        let Plan { path, complete, .. } = reply.value.clone();
+        self.task.take_plan(&reply.value);
+        // What is left is counted anew along the new plan.
+        self.stuck.reset();
+        let Plan { path, complete, legs, cuts, .. } = reply.value.clone();
         self.plan = (!path.is_empty()).then(|| Follower::new(path.clone()));
         self.happened.push(EventKind::Planned {
             planner: self.planner.choice.id.clone(),
@@ -67,6 +73,8 @@ impl Mission {
             length_m: polyline::length_m(&path),
             path,
             complete,
+            legs,
+            cuts,
         });
         self.pass_on(reply);
     }

@@ -1,11 +1,13 @@
 //! Missions in a perfect little world: exact ranges, a point robot that does what it is told.
 
+mod covering;
+
 use super::*;
 use crate::{
-    config::TaskConfig,
+    config::{ScanConfig, TaskConfig},
     link::{Cause, During, Fault, Parameters, Reply},
 };
-use planner_api::{Command, Limits, Motion, Plan, PlanRequest, Sensed, Site, Status};
+use planner_api::{self as api, Command, Limits, Motion, Plan, PlanRequest, Sensed, Site, Status};
 use world::{Boundary, Obstacle, ObstacleId, Odometry, Pose, RangeSet, Shape, Sighting, Station, StationId};
 
 /// A planner that drives straight to its target, and does as told by the test otherwise.
@@ -15,6 +17,8 @@ struct Straight {
     refuse: Vec<&'static str>,
     chosen: Vec<String>,
     plans: usize,
+    /// Area of the regions of every request to cover, square metres.
+    regions_m2: Vec<f64>,
 }
 
 impl Straight {
@@ -61,7 +65,11 @@ impl PlannerLink for Straight {
 
     fn plan(&mut self, request: &PlanRequest<'_>) -> Result<Reply<Plan>, Fault> {
         self.plans += 1;
-        Ok(reply(Plan { path: vec![request.start.position], cost: 0.0, complete: true }))
+        if let api::Task::Cover { anchor, regions, .. } = request.task {
+            self.regions_m2.push(regions.iter().map(|r| world::shape::ring_area_m2(r)).sum());
+            return Ok(reply(covering::lanes(request, anchor)));
+        }
+        Ok(reply(Plan { path: vec![request.start.position], complete: true, ..Plan::default() }))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>) -> Result<Reply<Command>, Fault> {
@@ -118,6 +126,7 @@ fn config() -> MissionConfig {
         gyro_sigma_rad_per_s: 0.001,
         range_sigma_ratio: 0.01,
         locating: crate::Locating::default(),
+        scan: ScanConfig::default(),
         planner: PlannerChoice { id: "straight".into(), parameters: Parameters::new() },
         fallback: None,
         attended: true,

@@ -8,7 +8,7 @@ use crate::wire::body::{Body, Writer};
 use crate::wire::kind;
 use crate::{checks, parameters};
 use mission::link::{Cause, During, Parameters, PlannerInfo};
-use planner_api::{Caps, Code, Command, Limits, Plan, PlanRequest, Sensed, Site};
+use planner_api::{Caps, Code, Command, Limits, Plan, PlanRequest, Sensed, Site, Task};
 
 /// Private state is saved this often, seconds of mission time.
 const SAVE_EVERY_S: f64 = 1.0;
@@ -19,6 +19,7 @@ pub(super) struct Driving {
     pub(super) info: PlannerInfo,
     parameters: Parameters,
     limits: Limits,
+    covers: bool,
     saves_state: bool,
     state_version: u32,
     saved_at_s: Option<f64>,
@@ -55,6 +56,7 @@ impl Driving {
             info: found.info,
             parameters: parameters.clone(),
             limits: site.limits,
+            covers: Caps(found.caps).has(Caps::COVERAGE),
             saves_state: Caps(found.caps).has(Caps::SNAPSHOT),
             state_version: found.state_version,
             saved_at_s: None,
@@ -105,6 +107,11 @@ impl Driving {
         request: &PlanRequest<'_>,
         config: &HostConfig,
     ) -> Result<(Plan, Said), Fault> {
+        if matches!(request.task, Task::Cover { .. }) && !self.covers {
+            let id = &self.info.id;
+            let message = format!("planner {id} covers no floor: choose one that offers coverage");
+            return Err(fault::new(id, During::Plan, Cause::Refused, message));
+        }
         let write = |w: &mut Writer| {
             w.flag(config.wants_drawing).request(request);
         };

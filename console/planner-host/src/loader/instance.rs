@@ -80,7 +80,8 @@ impl Instance {
         let site = request.site;
         let (obstacles, zones) = (lend::obstacles(site.obstacles), lend::zones(site.zones));
         let site = lend::site(site, &obstacles, &zones);
-        let input = lend::plan(request, &site);
+        let regions = lend::regions(&request.task);
+        let input = lend::plan(request, &site, &regions);
         let mut out = PlanOut::UNSET;
         // SAFETY: as above.
         let code = sink.during(|host| unsafe { plan(self.planner, host, &raw const input, &raw mut out) });
@@ -88,7 +89,14 @@ impl Instance {
         if out.complete > 1 {
             return Err(bad_output("gave a plan without telling whether it is complete".to_owned()));
         }
-        Ok(Plan { path: std::mem::take(&mut sink.points), cost: out.cost, complete: out.complete == 1 })
+        let legs = sink.legs.drain(..).map(|leg| leg.get()).collect::<Result<_, _>>().map_err(bad_output)?;
+        Ok(Plan {
+            path: std::mem::take(&mut sink.points),
+            cost: out.cost,
+            complete: out.complete == 1,
+            legs,
+            cuts: std::mem::take(&mut sink.cuts),
+        })
     }
 
     /// Asks for a command.

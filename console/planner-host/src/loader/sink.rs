@@ -4,12 +4,13 @@ use crate::wire::answer::{Said, log_level};
 use mission::{ParamInfo, ParamKind};
 use nalgebra::Point2;
 use planner_api::LogLevel;
-use planner_api::abi::{self, Draw, Host, Param, Str, Vec2, output};
+use planner_api::abi::{self, Draw, Host, Leg, Param, Str, Vec2, output};
 use std::ffi::c_void;
 
 /// Most of everything that one call may hand over; the surplus is counted and dropped.
 const MOST_DRAWINGS: usize = 4096;
 const MOST_POINTS: usize = 1_000_000;
+const MOST_CUTS: usize = 10_000;
 const MOST_STATE_BYTES: usize = 1 << 20;
 const MOST_PARAMS: usize = 256;
 const MOST_SCALARS: usize = 256;
@@ -34,6 +35,9 @@ pub(crate) struct Sink<'a> {
     n_dropped: usize,
     pub(super) params: Vec<ParamInfo>,
     pub(super) points: Vec<Point2<f64>>,
+    pub(super) legs: Vec<Leg>,
+    pub(super) cuts: Vec<Vec<Point2<f64>>>,
+    n_cut_points: usize,
     pub(super) bytes: Vec<u8>,
 }
 
@@ -47,6 +51,9 @@ impl<'a> Sink<'a> {
             n_dropped: 0,
             params: Vec::new(),
             points: Vec::new(),
+            legs: Vec::new(),
+            cuts: Vec::new(),
+            n_cut_points: 0,
             bytes: Vec::new(),
         }
     }
@@ -67,6 +74,8 @@ impl<'a> Sink<'a> {
             draw: Some(take_draws),
             scalar: Some(take_scalar),
             bytes: Some(take_bytes),
+            legs: Some(take_legs),
+            cut: Some(take_cut),
         };
         call(&raw const host)
     }
@@ -146,6 +155,25 @@ unsafe extern "C" fn take_points(ctx: *mut c_void, ptr: *const Vec2, n: usize) {
     let (sink, points) = unsafe { (sink(ctx), abi::slice(ptr, n)) };
     let taken = take(points, sink.points.len(), MOST_POINTS, &mut sink.n_dropped);
     sink.points.extend(taken.iter().copied().map(Point2::from));
+}
+
+unsafe extern "C" fn take_legs(ctx: *mut c_void, ptr: *const Leg, n: usize) {
+    // SAFETY: as above, and the plugin promises `n` legs.
+    let (sink, legs) = unsafe { (sink(ctx), abi::slice(ptr, n)) };
+    let taken = take(legs, sink.legs.len(), MOST_POINTS, &mut sink.n_dropped);
+    sink.legs.extend_from_slice(taken);
+}
+
+unsafe extern "C" fn take_cut(ctx: *mut c_void, ptr: *const Vec2, n: usize) {
+    // SAFETY: as above, and the plugin promises `n` points.
+    let (sink, points) = unsafe { (sink(ctx), abi::slice(ptr, n)) };
+    if sink.cuts.len() >= MOST_CUTS {
+        sink.n_dropped += 1;
+        return;
+    }
+    let taken = take(points, sink.n_cut_points, MOST_POINTS, &mut sink.n_dropped);
+    sink.n_cut_points += taken.len();
+    sink.cuts.push(taken.iter().copied().map(Point2::from).collect());
 }
 
 unsafe extern "C" fn take_draws(ctx: *mut c_void, ptr: *const Draw, n: usize) {

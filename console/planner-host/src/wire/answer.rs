@@ -3,7 +3,7 @@
 use super::body::{Body, Malformed, Read, Writer};
 use mission::{ParamInfo, ParamKind};
 use nalgebra::Point2;
-use planner_api::{Command, Drawing, LogLevel, Plan, abi};
+use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, Plan, abi};
 
 /// What a planner drew, reported and said during a call.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -93,7 +93,13 @@ impl Writer {
     }
 
     pub(crate) fn plan(&mut self, plan: &Plan) -> &mut Self {
-        self.points(&plan.path).f64(plan.cost).flag(plan.complete)
+        self.points(&plan.path).f64(plan.cost).flag(plan.complete);
+        self.all(&plan.legs, |w, leg| {
+            w.u32(leg.tag as u32).u32(leg.first as u32).u32(leg.last as u32);
+        });
+        self.all(&plan.cuts, |w, cut| {
+            w.points(cut);
+        })
     }
 
     pub(crate) fn command(&mut self, command: Command) -> &mut Self {
@@ -169,7 +175,18 @@ impl Body<'_> {
     }
 
     pub(crate) fn plan(&mut self) -> Read<Plan> {
-        Ok(Plan { path: self.points()?, cost: self.f64()?, complete: self.flag()? })
+        Ok(Plan {
+            path: self.points()?,
+            cost: self.f64()?,
+            complete: self.flag()?,
+            legs: self.all(Self::leg)?,
+            cuts: self.all(Self::points)?,
+        })
+    }
+
+    fn leg(&mut self) -> Read<Leg> {
+        let tag = LegTag::from_number(self.u32()?).ok_or(Malformed)?;
+        Ok(Leg { tag, first: self.u32()? as usize, last: self.u32()? as usize })
     }
 
     pub(crate) fn command(&mut self) -> Read<Command> {
@@ -259,7 +276,13 @@ mod tests {
 
     #[test]
     fn plans_commands_and_refusals_arrive() {
-        let plan = Plan { path: vec![Point2::new(1.0, 2.0)], cost: 3.0, complete: true };
+        let path = vec![Point2::new(1.0, 2.0)];
+        let legs = vec![
+            Leg { tag: LegTag::Retract, first: 0, last: 0 },
+            Leg { tag: LegTag::Swath, first: 0, last: 0 },
+        ];
+        let cuts = vec![path.clone(), Vec::new()];
+        let plan = Plan { path, cost: 3.0, complete: true, legs, cuts };
         let command = Command { status: Status::Waiting, ..Command::twist(0.1, -0.2) };
         let refusal = Refusal { code: -7, message: "no".into(), partial: plan.path.clone() };
         let write = |w: &mut Writer| {

@@ -67,6 +67,10 @@ impl Writer {
         self.f64(value.x).f64(value.y)
     }
 
+    pub(crate) fn vector(&mut self, value: &nalgebra::Vector2<f64>) -> &mut Self {
+        self.f64(value.x).f64(value.y)
+    }
+
     pub(crate) fn points(&mut self, values: &[Point2<f64>]) -> &mut Self {
         self.all(values, |w, point| {
             w.point(point);

@@ -5,7 +5,8 @@ use super::owned::{
     OwnedBoundary, OwnedObstacle, OwnedOutline, OwnedRequest, OwnedSensed, OwnedSite, OwnedTask, OwnedZone,
 };
 use planner_api::{
-    Boundary, Limits, Motion, Obstacle, Outline, PlanRequest, Reason, Sensed, Site, Task, Zone, ZoneKind,
+    Boundary, Limits, Motion, Obstacle, Outline, PlanRequest, Reason, Sensed, Site, Task, TetherLimits, Zone,
+    ZoneKind,
 };
 
 impl Writer {
@@ -18,7 +19,10 @@ impl Writer {
     }
 
     fn obstacle(&mut self, obstacle: &Obstacle<'_>) {
-        self.u32(obstacle.id).flag(obstacle.discovered).outline(&obstacle.outline);
+        self.u32(obstacle.id)
+            .flag(obstacle.discovered)
+            .outline(&obstacle.outline)
+            .vector(&obstacle.velocity_m_per_s);
     }
 
     fn zone(&mut self, zone: &Zone<'_>) {
@@ -59,8 +63,22 @@ impl Writer {
         match &request.task {
             Task::Goto { goal, tolerance_m } => self.u8(0).point(goal).f64(*tolerance_m),
             Task::Follow { targets, tolerance_m } => self.u8(1).points(targets).f64(*tolerance_m),
+            Task::Cover { anchor, regions, tether, tolerance_m } => {
+                self.u8(2).point(anchor).f64(*tolerance_m).tether(tether.as_ref());
+                self.all(regions, |w, region| {
+                    w.points(region);
+                })
+            }
         };
         self.site(request.site).points(request.previous)
+    }
+
+    fn tether(&mut self, limits: Option<&TetherLimits>) -> &mut Self {
+        self.flag(limits.is_some());
+        if let Some(limits) = limits {
+            self.f64(limits.reel_m).f64(limits.max_wrap_rad).f64(limits.max_sum_wrap_rad);
+        }
+        self
     }
 
     pub(crate) fn sensed(&mut self, sensed: &Sensed<'_>) -> &mut Self {
@@ -94,7 +112,12 @@ impl Body<'_> {
     }
 
     fn obstacle(&mut self) -> Read<OwnedObstacle> {
-        Ok(OwnedObstacle { id: self.u32()?, discovered: self.flag()?, outline: self.outline()? })
+        Ok(OwnedObstacle {
+            id: self.u32()?,
+            discovered: self.flag()?,
+            outline: self.outline()?,
+            velocity_m_per_s: self.point()?.coords,
+        })
     }
 
     fn zone(&mut self) -> Read<OwnedZone> {
@@ -153,11 +176,25 @@ impl Body<'_> {
         }
     }
 
+    fn tether(&mut self) -> Read<Option<TetherLimits>> {
+        if !self.flag()? {
+            return Ok(None);
+        }
+        let (reel_m, max_wrap_rad, max_sum_wrap_rad) = (self.f64()?, self.f64()?, self.f64()?);
+        Ok(Some(TetherLimits { reel_m, max_wrap_rad, max_sum_wrap_rad }))
+    }
+
     pub(crate) fn request(&mut self) -> Read<OwnedRequest> {
         let (reason, start) = (self.reason()?, self.pose()?);
         let task = match self.u8()? {
             0 => OwnedTask::Goto { goal: self.point()?, tolerance_m: self.f64()? },
             1 => OwnedTask::Follow { targets: self.points()?, tolerance_m: self.f64()? },
+            2 => OwnedTask::Cover {
+                anchor: self.point()?,
+                tolerance_m: self.f64()?,
+                tether: self.tether()?,
+                regions: self.all(Self::points)?,
+            },
             _ => return Err(Malformed),
         };
         Ok(OwnedRequest { reason, start, task, site: self.site()?, previous: self.points()? })

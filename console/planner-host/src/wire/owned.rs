@@ -2,8 +2,8 @@
 
 use nalgebra::Point2;
 use planner_api::{
-    Boundary, Limits, Obstacle, Outline, PlanRequest, PoseEstimate, Reason, Sensed, Site, Task, Zone,
-    ZoneKind,
+    Boundary, Limits, Obstacle, Outline, PlanRequest, PoseEstimate, Reason, Sensed, Site, Task, TetherLimits,
+    Zone, ZoneKind,
 };
 
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,7 @@ pub(crate) enum OwnedOutline {
 pub(crate) struct OwnedObstacle {
     pub(crate) id: u32,
     pub(crate) discovered: bool,
+    pub(crate) velocity_m_per_s: nalgebra::Vector2<f64>,
     pub(crate) outline: OwnedOutline,
 }
 
@@ -46,8 +47,29 @@ pub(crate) struct OwnedSite {
 
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum OwnedTask {
-    Goto { goal: Point2<f64>, tolerance_m: f64 },
-    Follow { targets: Vec<Point2<f64>>, tolerance_m: f64 },
+    Goto {
+        goal: Point2<f64>,
+        tolerance_m: f64,
+    },
+    Follow {
+        targets: Vec<Point2<f64>>,
+        tolerance_m: f64,
+    },
+    Cover {
+        anchor: Point2<f64>,
+        regions: Vec<Vec<Point2<f64>>>,
+        tether: Option<TetherLimits>,
+        tolerance_m: f64,
+    },
+}
+
+impl OwnedTask {
+    fn regions(&self) -> Vec<&[Point2<f64>]> {
+        match self {
+            Self::Cover { regions, .. } => regions.iter().map(Vec::as_slice).collect(),
+            Self::Goto { .. } | Self::Follow { .. } => Vec::new(),
+        }
+    }
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -88,7 +110,12 @@ impl OwnedOutline {
 fn lend_obstacles(obstacles: &[OwnedObstacle]) -> Vec<Obstacle<'_>> {
     obstacles
         .iter()
-        .map(|o| Obstacle { id: o.id, outline: o.outline.lend(), discovered: o.discovered })
+        .map(|o| Obstacle {
+            id: o.id,
+            outline: o.outline.lend(),
+            discovered: o.discovered,
+            velocity_m_per_s: o.velocity_m_per_s,
+        })
         .collect()
 }
 
@@ -116,9 +143,13 @@ impl OwnedSite {
 impl OwnedRequest {
     /// Lends the request for the length of a call.
     pub(crate) fn lend<R>(&self, call: impl FnOnce(&PlanRequest<'_>) -> R) -> R {
+        let regions = self.task.regions();
         let task = match &self.task {
             OwnedTask::Goto { goal, tolerance_m } => Task::Goto { goal: *goal, tolerance_m: *tolerance_m },
             OwnedTask::Follow { targets, tolerance_m } => Task::Follow { targets, tolerance_m: *tolerance_m },
+            OwnedTask::Cover { anchor, tether, tolerance_m, .. } => {
+                Task::Cover { anchor: *anchor, regions: &regions, tether: *tether, tolerance_m: *tolerance_m }
+            }
         };
         let (reason, start, previous) = (&self.reason, self.start, self.previous.as_slice());
         self.site.lend(|site| call(&PlanRequest { reason, start, task, site, previous }))

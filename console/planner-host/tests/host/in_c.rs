@@ -1,11 +1,14 @@
 //! The planner in plain C, and its header in C++.
 
-use crate::stand::{GOAL, choose, compile, config, direct_c, folder_with, plan, pose, step_at, workspace};
+use crate::stand::{
+    GOAL, assert_refused, choose, compile, config, direct_c, folder_with, plan, plan_to_cover, pose, step_at,
+    workspace,
+};
 use crate::state::COUNTER;
 use mission::Cause;
 use mission::link::{ParamValue, Parameters, PlannerLink};
 use nalgebra::Point2;
-use planner_api::{Drive, PoseEstimate, Status};
+use planner_api::{Drive, Leg, LegTag, PoseEstimate, Status};
 use planner_host::{Host, PluginDirs};
 
 fn host() -> (tempfile::TempDir, Host) {
@@ -22,6 +25,7 @@ fn a_planner_in_c_plans_and_drives_to_the_goal() {
     assert_eq!((info.parameters.len(), info.parameters[0].unit.as_str()), (2, "m/s"));
     let planned = plan(&mut host).unwrap().value;
     assert_eq!((planned.path, planned.cost, planned.complete), (vec![Point2::origin(), GOAL], 5.0, true));
+    assert_eq!(planned.legs, [Leg { tag: LegTag::Travel, first: 0, last: 1 }]);
     let mut robot = pose(Point2::origin());
     for tick in 0..600 {
         let reply = step_at(&mut host, tick, robot).unwrap();
@@ -80,6 +84,59 @@ fn answers_that_are_none_are_caught() {
         spoilt("h->error(h->ctx, \"odd\", 3); return 4711;"),
         "planner counter failed with the unknown code 4711 (odd) during step 0"
     );
+}
+
+/// A planner in C that covers: it hands over the last corner of every region, and what the test puts in.
+fn plans_to_cover(by: &str) -> Result<planner_api::Plan, mission::link::Fault> {
+    let plan = "out->cost = 0.0; out->complete = 1;";
+    let covers = format!(
+        "if (in->task != TP_COVER || in->n_regions != 2 || !in->has_tether || in->reel != 40.0 ||
+             in->max_wrap != 1.5 || in->max_sum_wrap != 2.5 || !TP_HOST_HAS(h, cut)) return TP_E_INVALID;
+         h->points(h->ctx, in->targets, 1);
+         for (uint32_t i = 0; i < in->n_regions; i++) h->points(h->ctx, &in->regions[i].points[2], 1);
+         {by} {plan}"
+    );
+    let source = COUNTER.replace(plan, &covers).replace("TP_CAP_LOCAL", "TP_CAP_COVERAGE");
+    let (_folder, dirs) = folder_with("counter", &source);
+    let mut host = Host::new(&dirs, config());
+    choose(&mut host, "counter", &Parameters::new()).unwrap();
+    plan_to_cover(&mut host).map(|reply| reply.value)
+}
+
+#[test]
+fn a_planner_in_c_covers_regions_and_tells_legs_and_cuts() {
+    let told = plans_to_cover(
+        "const tp_leg legs[] = {{TP_LEG_TRAVEL, 0, 1, 0}, {TP_LEG_SWATH, 1, 2, 0}};
+         h->legs(h->ctx, legs, 2); h->cut(h->ctx, in->regions[0].points, 3); h->cut(h->ctx, in->targets, 1);",
+    )
+    .unwrap();
+    let corner = Point2::new(1.0, 1.0);
+    assert_eq!(told.path, [Point2::new(0.5, 0.0), corner, corner]);
+    let leg = |tag, first, last| Leg { tag, first, last };
+    assert_eq!(told.legs, [leg(LegTag::Travel, 0, 1), leg(LegTag::Swath, 1, 2)]);
+    assert_eq!(told.cuts.iter().map(Vec::len).collect::<Vec<_>>(), [3, 1]);
+}
+
+#[test]
+fn legs_that_are_none_are_caught() {
+    let refused = |legs: &str| {
+        let fault =
+            plans_to_cover(&format!("const tp_leg leg = {legs}; h->legs(h->ctx, &leg, 1);")).unwrap_err();
+        assert_eq!(fault.cause, Cause::BadOutput);
+        fault.message
+    };
+    assert_eq!(refused("{9, 0, 1, 0}"), "planner counter gave a leg of the unknown kind 9 during plan");
+    assert_eq!(
+        refused("{0, 0, 3, 0}"),
+        "planner counter gave leg 0 from point 0 to 3 of a path of 3 points during plan"
+    );
+}
+
+#[test]
+fn a_planner_that_covers_no_floor_is_not_asked_to() {
+    let (_folder, mut host) = host();
+    choose(&mut host, "direct-c", &Parameters::new()).unwrap();
+    assert_refused(&plan_to_cover(&mut host).unwrap_err(), &["direct-c covers no floor"]);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use mission::{Cause, Fault};
 use nalgebra::{Matrix3, Point2};
 use planner_api::{
     Boundary, Command, Limits, Motion, Obstacle, Outline, Plan, PlanRequest, PoseEstimate, Reason, Sensed,
-    Site, Task,
+    Site, Task, TetherLimits,
 };
 use planner_host::{Host, HostConfig, PluginDirs, WorkerCommand};
 use std::path::{Path, PathBuf};
@@ -52,7 +52,12 @@ pub fn pose(position: Point2<f64>) -> PoseEstimate {
 
 pub fn with_site<R>(call: impl FnOnce(&Site<'_>) -> R) -> R {
     let column = Outline::Disc { center: Point2::new(5.0, 0.0), radius_m: 0.3 };
-    let obstacles = [Obstacle { id: 1, outline: column, discovered: false }];
+    let obstacles = [Obstacle {
+        id: 1,
+        outline: column,
+        discovered: false,
+        velocity_m_per_s: planner_api::Vector2::zeros(),
+    }];
     let limits = Limits {
         motion: Motion::Unicycle,
         v_max_m_per_s: 0.3,
@@ -82,8 +87,20 @@ pub fn choose(host: &mut Host, id: &str, parameters: &Parameters) -> Result<Plan
 }
 
 pub fn plan(host: &mut Host) -> Result<Reply<Plan>, Fault> {
+    plan_for(host, Task::Goto { goal: GOAL, tolerance_m: 0.1 })
+}
+
+/// Asks to cover two triangles on a tether.
+pub fn plan_to_cover(host: &mut Host) -> Result<Reply<Plan>, Fault> {
+    let triangle = [Point2::new(1.0, 0.0), Point2::new(2.0, 0.0), Point2::new(1.0, 1.0)];
+    let tether = TetherLimits { reel_m: 40.0, max_wrap_rad: 1.5, max_sum_wrap_rad: 2.5 };
+    let regions: [&[_]; 2] = [&triangle, &triangle];
+    let (anchor, tether) = (Point2::new(0.5, 0.0), Some(tether));
+    plan_for(host, Task::Cover { anchor, regions: &regions, tether, tolerance_m: 0.1 })
+}
+
+fn plan_for(host: &mut Host, task: Task<'_>) -> Result<Reply<Plan>, Fault> {
     with_site(|site| {
-        let task = Task::Goto { goal: GOAL, tolerance_m: 0.1 };
         let start = pose(Point2::origin());
         host.plan(&PlanRequest { reason: &Reason::Start, start, task, site, previous: &[] })
     })
@@ -106,7 +123,12 @@ pub fn step_at(host: &mut Host, tick: u64, pose: PoseEstimate) -> Result<Reply<C
         target: GOAL,
         targets_ahead: &[GOAL],
         path_ahead: &[],
-        obstacles: &[Obstacle { id: 1, outline: far, discovered: false }],
+        obstacles: &[Obstacle {
+            id: 1,
+            outline: far,
+            discovered: false,
+            velocity_m_per_s: planner_api::Vector2::zeros(),
+        }],
     })
 }
 

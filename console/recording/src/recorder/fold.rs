@@ -104,6 +104,7 @@ impl Opened {
         self.states.apply(&event.kind, at);
         match &event.kind {
             EventKind::Covered { runs } => self.raster.mark(runs),
+            EventKind::FloorChanged { changes } => self.raster.change(changes),
             EventKind::Planned { path, .. } => {
                 let strip = path.iter().map(|point| super::lane::flat(*point));
                 let path = rr::LineStrips2D::update_fields().with_strips([rr::LineStrip2D::from_iter(strip)]);

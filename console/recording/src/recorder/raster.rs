@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{error::RecordingError, rr};
 use mission::event::RunOpened;
-use world::{CellRun, coverage::Cell};
+use world::{CellRun, KindRun, coverage::Cell};
 
 /// Seconds of mission time between two pictures of a small floor.
 const PERIOD_S: f64 = 5.0;
@@ -74,6 +74,20 @@ impl Raster {
         }
     }
 
+    /// Takes in cells that became another kind of floor.
+    pub(crate) fn change(&mut self, changes: &[KindRun]) {
+        for KindRun(kind, first, count) in changes {
+            let first = (*first as usize).min(self.classes.len());
+            let end = first.saturating_add(*count as usize).min(self.classes.len());
+            for class in &mut self.classes[first..end] {
+                if *class != SCANNED || *kind == Cell::Outside {
+                    *class = bare(*kind);
+                }
+            }
+            self.changed = true;
+        }
+    }
+
     /// Pictures the floor if it changed and the last picture is old enough.
     pub(crate) fn picture_if_due(&mut self, stream: &Stream, at: At) -> Result<(), RecordingError> {
         let due = self.pictured.is_none_or(|tick| at.tick - tick >= self.period_ticks);
@@ -97,6 +111,6 @@ impl Raster {
 fn bare(cell: Cell) -> u8 {
     match cell {
         Cell::Outside | Cell::Reachable => OPEN,
-        Cell::Unreachable => UNREACHABLE,
+        Cell::Unreachable | Cell::Margin | Cell::Beside | Cell::NoGo => UNREACHABLE,
     }
 }

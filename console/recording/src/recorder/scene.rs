@@ -91,11 +91,14 @@ fn draw_task(stream: &Stream, task: &TaskConfig) -> Done {
             let preset = path.iter().map(|point| flat(*point)).collect();
             stream.always(paths::PRESET, &lines([preset], style::PRESET, 0.8))
         }
-        TaskConfig::Goto { goal, .. } => {
-            let goal = rr::Points2D::new([flat(*goal)]).with_colors([style::color(style::PLAN)]);
-            stream.always(paths::GOAL, &goal.with_radii([style::on_screen(6.0)]).with_labels(["goal"]))
-        }
+        TaskConfig::Goto { goal, .. } => draw_end(stream, *goal, "goal"),
+        TaskConfig::Cover { anchor, .. } => draw_end(stream, *anchor, "anchor"),
     }
+}
+
+fn draw_end(stream: &Stream, at: Point, label: &str) -> Done {
+    let end = rr::Points2D::new([flat(at)]).with_colors([style::color(style::PLAN)]);
+    stream.always(paths::GOAL, &end.with_radii([style::on_screen(6.0)]).with_labels([label]))
 }
 
 /// Colours and widths of what moves, and the shapes that move with the robot; the stream then carries places only.

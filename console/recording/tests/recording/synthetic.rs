@@ -5,7 +5,7 @@
 
 use mission::{
     Cause, During, Event, EventKind, Fault, MissionConfig, Order, Outcome, ParamInfo, ParamKind, ParamValue,
-    Parameters, PlannerChoice, PlannerInfo, TaskConfig,
+    Parameters, PlannerChoice, PlannerInfo, ScanConfig, TaskConfig,
     event::{HoldReason, JOURNAL_VERSION, RunOpened},
 };
 use nalgebra::{Matrix2, Matrix3};
@@ -196,7 +196,15 @@ impl Robot {
             let path: Vec<_> = (0..60).map(|k| spiral_pose(along_m + 0.2 * f64::from(k)).position).collect();
             let length_m = world::polyline::length_m(&path);
             let planner = if driven == tick { "rpf".into() } else { "apf".into() };
-            kinds.push(EventKind::Planned { planner, reason: Reason::Start, path, length_m, complete: true });
+            kinds.push(EventKind::Planned {
+                planner,
+                reason: Reason::Start,
+                path,
+                length_m,
+                complete: true,
+                legs: vec![],
+                cuts: vec![],
+            });
         }
         kinds.push(EventKind::Drawn { drawings: self.forces(estimate.position, target) });
         let pull = (target - estimate.position).norm();
@@ -214,6 +222,7 @@ impl Robot {
             target,
             covered_reachable: self.grid.fraction_reachable(),
             covered_whole: self.grid.fraction_whole(),
+            leg: None,
         });
     }
 
@@ -314,6 +323,7 @@ fn opened() -> RunOpened {
         journal_version: JOURNAL_VERSION,
         tankops_version: "0.1.0".into(),
         scenario: "synthetic".into(),
+        plates: None,
         scenario_toml: "[tank]\nradius_m = 8.0\n".into(),
         seed: 42,
         floor: Floor::new(&world, 0.1, limits.radius_m, 0.6, start.position),
@@ -326,6 +336,7 @@ fn opened() -> RunOpened {
             time_limit_s: 3600.0,
             limits,
             swath_m: 0.6,
+            scan: ScanConfig::default(),
             clearance_m: 0.1,
             cell_m: 0.1,
             position_limit_m: 0.4,

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::float_cmp, reason = "tests with exact figures")]
 
 use super::*;
+use world::Point;
 use crate::{
     human::human,
     summary::{Logs, PlannerCalls},
@@ -59,6 +60,32 @@ fn opened() -> Value {
         "event": "run_opened", "journal_version": 1, "tankops_version": "0.1.0", "scenario": "tiny",
         "scenario_toml": "", "seed": 7, "world": world, "mission": mission, "floor": floor,
     })
+}
+
+/// A round tank of 5 m with a column, a robot that keeps 0.45 m from anything and a bar of 0.6 m.
+pub fn round_tank(cell_m: f64) -> RunOpened {
+    let mut run: Value = opened();
+    let column = Obstacle {
+        id: world::ObstacleId(1),
+        name: "column".into(),
+        shape: world::Shape::Disc { center: Point::new(0.0, 3.0), radius_m: 0.2 },
+        known: true,
+    };
+    let world = world::World {
+        boundary: world::Boundary::Circle { radius_m: 5.0 },
+        obstacles: vec![column],
+        stations: Vec::new(),
+        zones: Vec::new(),
+    };
+    let plates = world::PlateLayout { annular_m: 0.6, n_annular: 6, length_m: 3.0, width_m: 1.5 };
+    let mission = &mut run["mission"];
+    mission["limits"]["motion"] = json!("unicycle");
+    (mission["limits"]["radius_m"], mission["clearance_m"]) = (json!(0.25), json!(0.2));
+    (mission["swath_m"], mission["cell_m"]) = (json!(0.6), json!(cell_m));
+    run["floor"] = json!(world::Floor::new(&world, cell_m, 0.45, 0.6, Point::origin()));
+    (run["world"], run["plates"]) = (json!(world), json!(plates));
+    let EventKind::RunOpened(run) = event(0, &run).kind else { panic!("that is what it is") };
+    *run
 }
 
 fn chosen(id: &str) -> Value {

@@ -1,7 +1,7 @@
 //! What has been scanned, kept ready for drawing at any zoom.
 
 use serde::{Deserialize, Serialize};
-use world::{CellRun, CoverageGrid, Floor, Point, coverage::Cell, coverage::Counts};
+use world::{CellRun, CoverageGrid, Floor, KindRun, Point, coverage::Counts};
 
 /// Blocks of cells at one zoom: how many of their cells are floor, and how many of these have been scanned.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,14 +25,29 @@ pub struct Raster {
 impl Raster {
     /// A floor of which nothing has been scanned.
     pub fn new(floor: Floor) -> Self {
-        let mut raster = Self { grid: CoverageGrid::new(floor), levels: Vec::new() };
+        Self::of(CoverageGrid::new(floor))
+    }
+
+    fn of(grid: CoverageGrid) -> Self {
+        let mut raster = Self { grid, levels: Vec::new() };
         raster.levels = (1..).map_while(|shift| raster.level(shift)).collect();
         for index in 0..raster.grid.floor().len() {
-            if raster.grid.floor().kind(index) != Cell::Outside {
-                raster.count(index, |level, block| level.floor[block] += 1);
+            if raster.grid.floor().is_floor(index) {
+                let scanned = u32::from(raster.grid.is_covered(index));
+                raster.count(index, |level, block| {
+                    level.floor[block] += 1;
+                    level.scanned[block] += scanned;
+                });
             }
         }
         raster
+    }
+
+    /// Makes some cells another kind of floor; costs one look at every cell, and happens when an obstacle is found.
+    pub fn change(&mut self, changes: &[KindRun]) {
+        let mut grid = self.grid.clone();
+        grid.change(changes);
+        *self = Self::of(grid);
     }
 
     /// Marks cells as scanned.
@@ -40,7 +55,7 @@ impl Raster {
         for run in runs {
             let end = (run.0 as usize).saturating_add(run.1 as usize).min(self.grid.floor().len());
             for index in (run.0 as usize)..end {
-                if !self.grid.is_covered(index) && self.grid.floor().kind(index) != Cell::Outside {
+                if !self.grid.is_covered(index) && self.grid.floor().is_floor(index) {
                     self.count(index, |level, block| level.scanned[block] += 1);
                 }
             }
@@ -107,7 +122,7 @@ impl Raster {
         let shift =
             if cells >= 2.0 { (cells as usize).ilog2().min(self.levels.len() as u32) as usize } else { 0 };
         if shift == 0 {
-            let is_floor = floor.kind(index) != Cell::Outside;
+            let is_floor = floor.is_floor(index);
             return (u32::from(is_floor), u32::from(is_floor && self.grid.is_covered(index)));
         }
         let level = &self.levels[shift - 1];

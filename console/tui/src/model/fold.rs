@@ -74,6 +74,11 @@ impl Model {
                     coverage.apply(runs);
                 }
             }
+            EventKind::FloorChanged { changes } => {
+                if let Some(coverage) = &mut self.coverage {
+                    coverage.change(changes);
+                }
+            }
             EventKind::Progressed {
                 done,
                 along_m,
@@ -81,6 +86,7 @@ impl Model {
                 target,
                 covered_reachable,
                 covered_whole,
+                ..
             } => {
                 self.progress = Some(Progress {
                     done: *done,
@@ -99,7 +105,7 @@ impl Model {
                 self.planner_works();
             }
             EventKind::Ended { outcome, reason } => self.end(event, *outcome, reason),
-            EventKind::Truth { .. } | EventKind::PlannerSaid { .. } => {}
+            EventKind::Truth { .. } | EventKind::PlannerSaid { .. } | EventKind::Uncounted { .. } => {}
         }
     }
 
@@ -148,7 +154,7 @@ impl Model {
     fn open(&mut self, run: &RunOpened) {
         let preset_m = match &run.mission.task {
             TaskConfig::Follow { path, .. } => Some(world::polyline::length_m(path)),
-            TaskConfig::Goto { .. } => None,
+            TaskConfig::Goto { .. } | TaskConfig::Cover { .. } => None,
         };
         self.run = Some(Run {
             scenario: run.scenario.clone(),

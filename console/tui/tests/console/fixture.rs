@@ -4,7 +4,7 @@ use mission::event::{HoldReason, JOURNAL_VERSION, RunOpened};
 use mission::link::{Cause, During, Fault};
 use mission::{
     Event, EventKind, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters, PlannerChoice,
-    PlannerInfo, TaskConfig,
+    PlannerInfo, ScanConfig, TaskConfig,
 };
 use nalgebra::{Matrix2, Matrix3};
 use planner_api::{Command, Drawing, Layer, Limits, Motion, PoseEstimate, Reason};
@@ -81,6 +81,7 @@ pub fn config() -> MissionConfig {
             sensing_range_m: 2.0,
         },
         swath_m: 0.6,
+        scan: ScanConfig::default(),
         clearance_m: 0.1,
         cell_m: 0.1,
         position_limit_m: 0.15,
@@ -189,6 +190,7 @@ pub fn opened() -> EventKind {
         world,
         mission,
         floor,
+        plates: None,
     }))
 }
 
@@ -235,6 +237,8 @@ impl Telling {
                 path: self.path.clone(),
                 length_m: self.length_m,
                 complete: true,
+                legs: vec![],
+                cuts: vec![],
             },
         ]
         .map(|kind| self.now(kind))
@@ -274,6 +278,7 @@ impl Telling {
             target: self.path[(self.at + 6).min(self.path.len() - 1)],
             covered_reachable: self.grid.fraction_reachable(),
             covered_whole: self.grid.fraction_whole(),
+            leg: None,
         });
         let arrow = |layer, vector| Drawing::Arrow { layer, at: here, vector };
         let side = Vector::new(-way.y, way.x);

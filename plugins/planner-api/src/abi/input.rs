@@ -23,6 +23,7 @@ pub const REASON_RECOVER: u32 = 5;
 /// Numbers of [`crate::Task`].
 pub const TASK_GOTO: u32 = 0;
 pub const TASK_FOLLOW: u32 = 1;
+pub const TASK_COVER: u32 = 2;
 
 /// A disc, polygon or polyline.
 #[repr(C)]
@@ -41,6 +42,7 @@ pub struct Obstacle {
     pub id: u32,
     pub flags: u32,
     pub outline: Outline,
+    pub velocity: Vec2,
 }
 
 /// A part of the floor with a meaning of its own. Arrays of it carry a stride.
@@ -93,6 +95,13 @@ pub struct PlanIn {
     pub n_previous: u32,
     pub reserved: u32,
     pub site: *const Site,
+    // Since 1.1.
+    pub regions: *const Outline,
+    pub n_regions: u32,
+    pub has_tether: u32,
+    pub reel: f64,
+    pub max_wrap: f64,
+    pub max_sum_wrap: f64,
 }
 
 /// What is known in one tick.

@@ -3,7 +3,7 @@
 //! Every struct made here points into the values it was made from and is good for as long as they stay in place.
 
 use super::{Obstacle, Outline, PlanIn, Pose, Site, StepIn, Str, Vec2, Zone, input};
-use crate::{PoseEstimate, Reason, Task, site};
+use crate::{PoseEstimate, Reason, Task, TetherLimits, site};
 use nalgebra::{Matrix3, Point2};
 
 fn points(points: &[Point2<f64>]) -> (*const Vec2, u32) {
@@ -39,7 +39,12 @@ fn boundary(from: &site::Boundary<'_>) -> Outline {
 pub fn obstacles(from: &[site::Obstacle<'_>]) -> Vec<Obstacle> {
     let flags = |discovered| if discovered { input::OBSTACLE_DISCOVERED } else { 0 };
     from.iter()
-        .map(|o| Obstacle { id: o.id, flags: flags(o.discovered), outline: outline(&o.outline) })
+        .map(|o| Obstacle {
+            id: o.id,
+            flags: flags(o.discovered),
+            outline: outline(&o.outline),
+            velocity: o.velocity_m_per_s.into(),
+        })
         .collect()
 }
 
@@ -81,8 +86,14 @@ pub fn covariance(from: &Matrix3<f64>) -> [f64; 6] {
     [from[(0, 0)], from[(0, 1)], from[(0, 2)], from[(1, 1)], from[(1, 2)], from[(2, 2)]]
 }
 
-/// A request for the table; `site` is that of `from`, already lent.
-pub fn plan(from: &crate::PlanRequest<'_>, site: &Site) -> PlanIn {
+/// The regions of a task for the table; none unless it is to cover.
+pub fn regions(task: &Task<'_>) -> Vec<Outline> {
+    let Task::Cover { regions, .. } = task else { return Vec::new() };
+    regions.iter().map(|vertices| outline(&site::Outline::Polygon { vertices })).collect()
+}
+
+/// A request for the table; `site` and `regions` are those of `from`, already lent.
+pub fn plan(from: &crate::PlanRequest<'_>, site: &Site, regions: &[Outline]) -> PlanIn {
     let (reason, swap_from) = match from.reason {
         Reason::Start => (input::REASON_START, ""),
         Reason::Blocked => (input::REASON_BLOCKED, ""),
@@ -96,7 +107,17 @@ pub fn plan(from: &crate::PlanRequest<'_>, site: &Site) -> PlanIn {
             (input::TASK_GOTO, points(std::slice::from_ref(goal)), *tolerance_m)
         }
         Task::Follow { targets, tolerance_m } => (input::TASK_FOLLOW, points(targets), *tolerance_m),
+        Task::Cover { anchor, tolerance_m, .. } => {
+            (input::TASK_COVER, points(std::slice::from_ref(anchor)), *tolerance_m)
+        }
     };
+    let tether = match from.task {
+        Task::Cover { tether, .. } => tether,
+        Task::Goto { .. } | Task::Follow { .. } => None,
+    };
+    let free =
+        TetherLimits { reel_m: f64::INFINITY, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY };
+    let TetherLimits { reel_m, max_wrap_rad, max_sum_wrap_rad } = tether.unwrap_or(free);
     let (previous, n_previous) = points(from.previous);
     PlanIn {
         size: size_of::<PlanIn>() as u32,
@@ -112,6 +133,12 @@ pub fn plan(from: &crate::PlanRequest<'_>, site: &Site) -> PlanIn {
         n_previous,
         reserved: 0,
         site,
+        regions: regions.as_ptr(),
+        n_regions: regions.len() as u32,
+        has_tether: u32::from(tether.is_some()),
+        reel: reel_m,
+        max_wrap: max_wrap_rad,
+        max_sum_wrap: max_sum_wrap_rad,
     }
 }
 

@@ -2,7 +2,7 @@
 #![allow(missing_docs, reason = "the header explains the fields")]
 
 use super::{Sized32, Str, Vec2};
-use crate::{Command, Drawing, Drive, Layer, Status};
+use crate::{Command, Drawing, Drive, Layer, LegTag, Status};
 
 /// Kinds of [`Param`].
 pub const PARAM_FLOAT: u32 = 0;
@@ -57,6 +57,16 @@ pub struct Draw {
     pub a: Vec2,
     pub b: Vec2,
     pub value: f64,
+}
+
+/// What a stretch of a path is for; frozen for the major version.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Leg {
+    pub tag: u32,
+    pub first: u32,
+    pub last: u32,
+    pub reserved: u32,
 }
 
 /// What a plan says beside its points; the console fills it with what is no answer.
@@ -133,6 +143,24 @@ impl StepOut {
             unknown => return Err(format!("gave the unknown kind of drive {unknown}")),
         };
         Ok(Command { drive, status })
+    }
+}
+
+impl From<&crate::Leg> for Leg {
+    fn from(leg: &crate::Leg) -> Self {
+        Self { tag: leg.tag as u32, first: leg.first as u32, last: leg.last as u32, reserved: 0 }
+    }
+}
+
+impl Leg {
+    /// The leg; tells when its tag is none.
+    ///
+    /// # Errors
+    /// A sentence for the operator that reads on after the planner's name.
+    pub fn get(&self) -> Result<crate::Leg, String> {
+        let tag = LegTag::from_number(self.tag)
+            .ok_or_else(|| format!("gave a leg of the unknown kind {}", self.tag))?;
+        Ok(crate::Leg { tag, first: self.first as usize, last: self.last as usize })
     }
 }
 

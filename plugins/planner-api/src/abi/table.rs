@@ -1,7 +1,7 @@
 //! The functions of both sides, the entry of a library and its stamp.
 #![allow(missing_docs, reason = "the header explains the fields")]
 
-use super::{Draw, Param, PlanIn, PlanOut, Site, Sized32, StepIn, StepOut, Str, Value, Vec2};
+use super::{Draw, Leg, Param, PlanIn, PlanOut, Site, Sized32, StepIn, StepOut, Str, Value, Vec2};
 use std::ffi::c_void;
 
 /// Signatures of the console's services; the first argument is [`Host::ctx`].
@@ -11,6 +11,7 @@ pub type TakeText = unsafe extern "C" fn(*mut c_void, *const u8, usize);
 pub type TakeLog = unsafe extern "C" fn(*mut c_void, u32, *const u8, usize);
 pub type TakeParam = unsafe extern "C" fn(*mut c_void, *const Param);
 pub type TakePoints = unsafe extern "C" fn(*mut c_void, *const Vec2, usize);
+pub type TakeLegs = unsafe extern "C" fn(*mut c_void, *const Leg, usize);
 pub type TakeDraws = unsafe extern "C" fn(*mut c_void, *const Draw, usize);
 pub type TakeScalar = unsafe extern "C" fn(*mut c_void, Str, f64, Str);
 
@@ -31,6 +32,9 @@ pub struct Host {
     pub draw: Option<TakeDraws>,
     pub scalar: Option<TakeScalar>,
     pub bytes: Option<TakeText>,
+    // Since 1.1.
+    pub legs: Option<TakeLegs>,
+    pub cut: Option<TakePoints>,
 }
 
 /// Signatures of a planner's functions; all return 0 or a [`crate::Code`].

@@ -4,7 +4,7 @@ use super::invalid;
 use crate::abi::{self, input};
 use crate::{
     Boundary, Limits, Motion, Obstacle, Outline, PlanRequest, PoseEstimate, Reason, Result, Sensed, Site,
-    Task, Value, Zone, ZoneKind,
+    Task, TetherLimits, Value, Zone, ZoneKind,
 };
 use nalgebra::{Matrix3, Point2};
 
@@ -29,31 +29,53 @@ unsafe fn outline<'a>(raw: &abi::Outline) -> Result<Outline<'a>> {
     }
 }
 
-/// Elements of an array whose elements may have grown; refuses those that are too short.
+/// Bytes of an obstacle in the first version of the table, without its velocity.
+const FIRST_OBSTACLE: usize = 32;
+
+/// Elements of an array whose elements may have grown: what those of an older console do not have is zero. Refuses
+/// elements shorter than `least` bytes.
+///
+/// # Safety
+/// `first` points at `n` elements `stride` bytes apart, and all-zero bytes are a valid `T`.
 unsafe fn strided<T: Copy, U>(
     first: *const T,
     n: u32,
     stride: u32,
+    least: usize,
     make: impl Fn(&T) -> Result<U>,
 ) -> Result<Vec<U>> {
     if n == 0 || first.is_null() {
         return Ok(Vec::new());
     }
-    if (stride as usize) < size_of::<T>() {
+    let stride = stride as usize;
+    if stride < least {
         return Err(invalid("the console sent an array with elements that are too short"));
     }
-    // SAFETY: the caller promises `n` elements `stride` bytes apart.
-    (0..n as usize).map(|i| make(&unsafe { first.byte_add(i * stride as usize).read_unaligned() })).collect()
+    let element = |index: usize| {
+        let mut element = std::mem::MaybeUninit::<T>::zeroed();
+        // SAFETY: the caller promises `n` elements `stride` bytes apart, and that zeros are a valid element.
+        unsafe {
+            let from = first.cast::<u8>().add(index * stride);
+            std::ptr::copy_nonoverlapping(from, element.as_mut_ptr().cast(), stride.min(size_of::<T>()));
+            element.assume_init()
+        }
+    };
+    (0..n as usize).map(|index| make(&element(index))).collect()
 }
 
 unsafe fn obstacles<'a>(first: *const abi::Obstacle, n: u32, stride: u32) -> Result<Vec<Obstacle<'a>>> {
     let make = |raw: &abi::Obstacle| {
         // SAFETY: promised by the caller.
         let outline = unsafe { outline(&raw.outline)? };
-        Ok(Obstacle { id: raw.id, outline, discovered: raw.flags & input::OBSTACLE_DISCOVERED != 0 })
+        Ok(Obstacle {
+            id: raw.id,
+            outline,
+            discovered: raw.flags & input::OBSTACLE_DISCOVERED != 0,
+            velocity_m_per_s: raw.velocity.into(),
+        })
     };
-    // SAFETY: promised by the caller.
-    unsafe { strided(first, n, stride, make) }
+    // SAFETY: promised by the caller; an obstacle is numbers and raw pointers.
+    unsafe { strided(first, n, stride, FIRST_OBSTACLE, make) }
 }
 
 unsafe fn zones<'a>(first: *const abi::Zone, n: u32, stride: u32) -> Result<Vec<Zone<'a>>> {
@@ -69,8 +91,8 @@ unsafe fn zones<'a>(first: *const abi::Zone, n: u32, stride: u32) -> Result<Vec<
         // SAFETY: promised by the caller.
         Ok(Zone { kind, outline: unsafe { outline(&raw.outline)? } })
     };
-    // SAFETY: promised by the caller.
-    unsafe { strided(first, n, stride, make) }
+    // SAFETY: promised by the caller; a zone is numbers and raw pointers.
+    unsafe { strided(first, n, stride, size_of::<abi::Zone>(), make) }
 }
 
 /// A site with the arrays that its safe form borrows.
@@ -177,11 +199,30 @@ pub(super) unsafe fn reason_of(raw: &abi::PlanIn) -> Reason {
     }
 }
 
-/// The task of a request.
+/// The regions of a request: what is still to cover.
+///
+/// # Safety
+/// `raw.regions` points at outlines that stay as they are while the result is used.
+pub(super) unsafe fn regions_of<'a>(raw: &abi::PlanIn) -> Result<Vec<&'a [Point2<f64>]>> {
+    // SAFETY: promised by the caller.
+    let outlines: &[abi::Outline] = unsafe { abi::slice(raw.regions, raw.n_regions as usize) };
+    outlines
+        .iter()
+        // SAFETY: as above.
+        .map(|raw| match unsafe { outline(raw)? } {
+            Outline::Polygon { vertices } => Ok(vertices),
+            Outline::Disc { .. } | Outline::Polyline { .. } => {
+                Err(invalid("the console sent a region that is no polygon"))
+            }
+        })
+        .collect()
+}
+
+/// The task of a request; `regions` are those of the same request.
 ///
 /// # Safety
 /// `raw.targets` points at points that stay as they are while the result is used.
-pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn) -> Result<Task<'a>> {
+pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn, regions: &'a [&'a [Point2<f64>]]) -> Result<Task<'a>> {
     // SAFETY: promised by the caller.
     let targets = unsafe { points(raw.targets, raw.n_targets) };
     match raw.task {
@@ -190,6 +231,15 @@ pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn) -> Result<Task<'a>> {
             Ok(Task::Goto { goal, tolerance_m: raw.tolerance })
         }
         input::TASK_FOLLOW => Ok(Task::Follow { targets, tolerance_m: raw.tolerance }),
+        input::TASK_COVER => {
+            let anchor = *targets.first().ok_or_else(|| invalid("the console sent no anchor"))?;
+            let tether = (raw.has_tether != 0).then_some(TetherLimits {
+                reel_m: raw.reel,
+                max_wrap_rad: raw.max_wrap,
+                max_sum_wrap_rad: raw.max_sum_wrap,
+            });
+            Ok(Task::Cover { anchor, regions, tether, tolerance_m: raw.tolerance })
+        }
         unknown => Err(invalid(&format!("the console sent the unknown task {unknown}"))),
     }
 }

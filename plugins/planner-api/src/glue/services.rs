@@ -1,7 +1,7 @@
 //! The console's services over the C table.
 
 use crate::abi::{self, Host, Str};
-use crate::{Drawing, LogLevel, Services, StopReason};
+use crate::{Drawing, Leg, LogLevel, Services, StopReason};
 use nalgebra::Point2;
 use std::time::Duration;
 
@@ -42,6 +42,23 @@ impl HostServices {
         if let (Some(take), false) = (self.0.points, points.is_empty()) {
             // SAFETY: copied before it returns; a point is two doubles, as `abi` asserts.
             unsafe { take(self.0.ctx, points.as_ptr().cast(), points.len()) }
+        }
+    }
+
+    /// Tells what the stretches of the path are for.
+    pub(super) fn legs(&self, legs: &[Leg]) {
+        if let (Some(take), false) = (self.0.legs, legs.is_empty()) {
+            let raw: Vec<abi::Leg> = legs.iter().map(abi::Leg::from).collect();
+            // SAFETY: copied before it returns.
+            unsafe { take(self.0.ctx, raw.as_ptr(), raw.len()) }
+        }
+    }
+
+    /// Hands over one line that is never crossed.
+    pub(super) fn cut(&self, line: &[Point2<f64>]) {
+        if let Some(take) = self.0.cut {
+            // SAFETY: copied before it returns; a point is two doubles, as `abi` asserts.
+            unsafe { take(self.0.ctx, line.as_ptr().cast(), line.len()) }
         }
     }
 

@@ -4,7 +4,8 @@ use super::*;
 use crate::abi::{Draw, Entry, Host, Param, PlanOut, StepOut, Vec2, lend};
 use crate::{Boundary, Limits, Obstacle, Zone, ZoneKind, choice, float};
 use crate::{
-    Caps, Command, Layer, Motion, Outline, Plan, PlanRequest, PoseEstimate, Reason, Sensed, Site, Task,
+    Caps, Command, Layer, Leg, LegTag, Motion, Outline, Plan, PlanRequest, PoseEstimate, Reason, Sensed,
+    Site, Task, TetherLimits,
 };
 use nalgebra::{Matrix3, Point2, Vector2};
 
@@ -46,7 +47,14 @@ impl Planner for Probe {
             return Err(PlannerError::no_path_but("walled in", path));
         }
         ctx.log(crate::LogLevel::Info, &format!("{request:?}"));
-        Ok(Plan { path, cost: 3.5, complete: true })
+        let legs = vec![Leg { tag: LegTag::Swath, first: 0, last: 1 }];
+        Ok(Plan {
+            path,
+            cost: 3.5,
+            complete: true,
+            legs,
+            cuts: vec![CORNERS.to_vec(), CORNERS[..2].to_vec()],
+        })
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
@@ -84,6 +92,8 @@ struct Sink {
     logs: Vec<String>,
     keys: Vec<String>,
     points: Vec<Vec2>,
+    legs: Vec<abi::Leg>,
+    cuts: Vec<usize>,
     draws: Vec<Draw>,
     scalars: Vec<(String, f64)>,
     bytes: Vec<u8>,
@@ -115,6 +125,12 @@ unsafe extern "C" fn param(ctx: *mut c_void, param: *const Param) {
 unsafe extern "C" fn points(ctx: *mut c_void, ptr: *const Vec2, n: usize) {
     unsafe { sink(ctx).points.extend_from_slice(abi::slice(ptr, n)) }
 }
+unsafe extern "C" fn legs(ctx: *mut c_void, ptr: *const abi::Leg, n: usize) {
+    unsafe { sink(ctx).legs.extend_from_slice(abi::slice(ptr, n)) }
+}
+unsafe extern "C" fn cut(ctx: *mut c_void, _: *const Vec2, n: usize) {
+    unsafe { sink(ctx).cuts.push(n) }
+}
 unsafe extern "C" fn draw(ctx: *mut c_void, ptr: *const Draw, n: usize) {
     unsafe { sink(ctx).draws.extend_from_slice(abi::slice(ptr, n)) }
 }
@@ -140,6 +156,8 @@ fn host(sink: &mut Sink) -> Host {
         draw: Some(draw),
         scalar: Some(scalar),
         bytes: Some(bytes),
+        legs: Some(legs),
+        cut: Some(cut),
     }
 }
 
@@ -149,9 +167,14 @@ fn obstacles() -> [Obstacle<'static>; 3] {
     let disc = Outline::Disc { center: Point2::new(1.0, 2.0), radius_m: 0.5 };
     let line = Outline::Polyline { points: &CORNERS, half_width_m: 0.1 };
     [
-        Obstacle { id: 7, outline: disc, discovered: true },
-        Obstacle { id: 8, outline: Outline::Polygon { vertices: &CORNERS }, discovered: false },
-        Obstacle { id: 9, outline: line, discovered: false },
+        Obstacle { id: 7, outline: disc, discovered: true, velocity_m_per_s: Vector2::new(0.5, -0.25) },
+        Obstacle {
+            id: 8,
+            outline: Outline::Polygon { vertices: &CORNERS },
+            discovered: false,
+            velocity_m_per_s: Vector2::zeros(),
+        },
+        Obstacle { id: 9, outline: line, discovered: false, velocity_m_per_s: Vector2::zeros() },
     ]
 }
 
@@ -256,9 +279,66 @@ fn a_request_for_a_plan_arrives_whole() {
     let task = Task::Follow { targets: &CORNERS, tolerance_m: 0.2 };
     let request = PlanRequest { reason: &reason, start: pose(), task, site: &site, previous: &CORNERS[..1] };
     let mut out = PlanOut::UNSET;
-    let code = unsafe { plan::<Probe>(planner, &host(&mut sink), &lend::plan(&request, &raw), &mut out) };
+    let code =
+        unsafe { plan::<Probe>(planner, &host(&mut sink), &lend::plan(&request, &raw, &[]), &mut out) };
     assert_eq!((code, out.complete, out.cost), (0, 1, 3.5));
     assert_eq!(sink.points, [Vec2 { x: 0.5, y: -0.5 }, Vec2 { x: 9.0, y: 9.0 }]);
+    assert_eq!(sink.legs, [abi::Leg { tag: 0, first: 0, last: 1, reserved: 0 }]);
+    assert_eq!(sink.cuts, [3, 2]);
+    assert_eq!(sink.logs, [format!("{request:?}")]);
+    unsafe { destroy::<Probe>(planner) };
+}
+
+#[test]
+fn a_request_to_cover_arrives_with_its_regions_and_the_limits_of_the_tether() {
+    let mut sink = Sink::default();
+    let planner = instance(&mut sink, 0.0);
+    let site = site(&[], &[]);
+    let raw = lend::site(&site, &[], &[]);
+    let tethers =
+        [None, Some(TetherLimits { reel_m: 40.0, max_wrap_rad: 1.5, max_sum_wrap_rad: f64::INFINITY })];
+    for (tether, regions) in tethers.into_iter().zip([&[] as &[&[_]], &[&CORNERS, &CORNERS[1..]]]) {
+        let task = Task::Cover { anchor: CORNERS[1], regions, tether, tolerance_m: 0.2 };
+        let request = PlanRequest { reason: &Reason::Start, start: pose(), task, site: &site, previous: &[] };
+        let lent = lend::regions(&task);
+        let input = lend::plan(&request, &raw, &lent);
+        let code = unsafe { plan::<Probe>(planner, &host(&mut sink), &input, &mut { PlanOut::UNSET }) };
+        assert_eq!((code, sink.logs.pop()), (0, Some(format!("{request:?}"))));
+    }
+    unsafe { destroy::<Probe>(planner) };
+}
+
+#[test]
+fn a_region_that_is_no_polygon_is_refused() {
+    let mut sink = Sink::default();
+    let planner = instance(&mut sink, 0.0);
+    let site = site(&[], &[]);
+    let raw = lend::site(&site, &[], &[]);
+    let task = Task::Cover { anchor: CORNERS[1], regions: &[&CORNERS], tether: None, tolerance_m: 0.2 };
+    let request = PlanRequest { reason: &Reason::Start, start: pose(), task, site: &site, previous: &[] };
+    let mut lent = lend::regions(&task);
+    lent[0].kind = abi::input::OUTLINE_POLYLINE;
+    let input = lend::plan(&request, &raw, &lent);
+    let code = unsafe { plan::<Probe>(planner, &host(&mut sink), &input, &mut { PlanOut::UNSET }) };
+    assert_eq!((code, sink.error.contains("no polygon")), (Code::Invalid as i32, true));
+    unsafe { destroy::<Probe>(planner) };
+}
+
+#[test]
+fn a_console_of_version_1_0_gets_a_plan_without_legs_and_cuts() {
+    let mut sink = Sink::default();
+    let planner = instance(&mut sink, 0.0);
+    let site = site(&[], &[]);
+    let raw = lend::site(&site, &[], &[]);
+    let task = Task::Goto { goal: CORNERS[1], tolerance_m: 0.2 };
+    let request = PlanRequest { reason: &Reason::Start, start: pose(), task, site: &site, previous: &[] };
+    let older = Host { size: std::mem::offset_of!(Host, legs) as u32, ..host(&mut sink) };
+    let input = abi::PlanIn {
+        size: std::mem::offset_of!(abi::PlanIn, regions) as u32,
+        ..lend::plan(&request, &raw, &[])
+    };
+    let code = unsafe { plan::<Probe>(planner, &older, &input, &mut { PlanOut::UNSET }) };
+    assert_eq!((code, sink.points.len(), sink.legs.len(), sink.cuts.len()), (0, 2, 0, 0));
     assert_eq!(sink.logs, [format!("{request:?}")]);
     unsafe { destroy::<Probe>(planner) };
 }
@@ -272,7 +352,8 @@ fn a_plan_that_got_part_of_the_way_hands_that_part_over() {
     let request = PlanRequest { reason: &Reason::Start, start: pose(), task, site: &site, previous: &[] };
     let raw = lend::site(&site, &[], &[]);
     let mut out = PlanOut::UNSET;
-    let code = unsafe { plan::<Probe>(planner, &host(&mut sink), &lend::plan(&request, &raw), &mut out) };
+    let code =
+        unsafe { plan::<Probe>(planner, &host(&mut sink), &lend::plan(&request, &raw, &[]), &mut out) };
     assert_eq!((code, sink.error.as_str(), sink.points.len()), (Code::NoPath as i32, "walled in", 2));
     unsafe { destroy::<Probe>(planner) };
 }

@@ -220,11 +220,11 @@ proptest! {
         let layout = Layout { columns, ..Layout::random(1) };
         let corners = [Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(0.5, 1.0)];
         let mut obstacles = layout.obstacles();
-        obstacles.push(Obstacle { id: 90, outline: Outline::Polygon { vertices: &corners }, discovered: true });
+        obstacles.push(Obstacle { id: 90, outline: Outline::Polygon { vertices: &corners }, discovered: true, velocity_m_per_s: planner_api::Vector2::zeros() });
         obstacles.push(Obstacle {
             id: 91,
             outline: Outline::Polyline { points: &corners, half_width_m: 0.0 },
-            discovered: true,
+            discovered: true, velocity_m_per_s: planner_api::Vector2::zeros(),
         });
         let site = layout.site(&obstacles, Motion::Unicycle);
         let bench = Bench::new();

@@ -115,7 +115,8 @@ fn a_plan_is_followed_round_an_obstacle_that_it_does_not_know() {
     let bench = Bench::new();
     let mut planner: SpiralTangent = bench.configure(&[], &site).unwrap();
     let outline = Outline::Disc { center: Point::new(1.0, 0.05), radius_m: 0.2 };
-    let discovered = [Obstacle { id: 7, outline, discovered: true }];
+    let discovered =
+        [Obstacle { id: 7, outline, discovered: true, velocity_m_per_s: planner_api::Vector2::zeros() }];
     let mut at = Point::new(0.0, 0.0);
     let plan: Vec<Point> = (0..40).map(|k| Point::new(f64::from(k) * 0.1, 0.0)).collect();
     let mut least_m = f64::INFINITY;

@@ -45,9 +45,19 @@ fn obstacles() -> [Obstacle<'static>; 3] {
     let disc = Outline::Disc { center: Point2::new(1.0, 2.0), radius_m: 0.5 };
     let line = Outline::Polyline { points: &CORNERS, half_width_m: 0.1 };
     [
-        Obstacle { id: 7, outline: disc, discovered: true },
-        Obstacle { id: 8, outline: Outline::Polygon { vertices: &CORNERS }, discovered: false },
-        Obstacle { id: 9, outline: line, discovered: false },
+        Obstacle {
+            id: 7,
+            outline: disc,
+            discovered: true,
+            velocity_m_per_s: planner_api::Vector2::new(0.5, -0.25),
+        },
+        Obstacle {
+            id: 8,
+            outline: Outline::Polygon { vertices: &CORNERS },
+            discovered: false,
+            velocity_m_per_s: planner_api::Vector2::zeros(),
+        },
+        Obstacle { id: 9, outline: line, discovered: false, velocity_m_per_s: planner_api::Vector2::zeros() },
     ]
 }
 
@@ -76,6 +86,13 @@ fn every_request_arrives_as_it_was_sent() {
     let tasks = [
         Task::Goto { goal: CORNERS[1], tolerance_m: 0.1 },
         Task::Follow { targets: &CORNERS, tolerance_m: 0.2 },
+        Task::Cover { anchor: CORNERS[2], regions: &[], tether: None, tolerance_m: 0.3 },
+        Task::Cover {
+            anchor: CORNERS[2],
+            regions: &[&CORNERS, &CORNERS[..1]],
+            tether: Some(TetherLimits { reel_m: 30.0, max_wrap_rad: 1.0, max_sum_wrap_rad: f64::INFINITY }),
+            tolerance_m: 0.3,
+        },
     ];
     with_site(&[], |site| {
         for (reason, task) in reasons.iter().flat_map(|reason| tasks.iter().map(move |task| (reason, *task)))

@@ -1,0 +1,113 @@
+//! What one tick of looking around and scanning adds to the map and to the coverage.
+
+use super::{Mission, Phase};
+use crate::{event::EventKind, task::Task};
+use planner_api::Reason;
+use world::{CellRun, FloorMaker, Pose, Readings, Shape};
+
+impl Mission {
+    pub(super) fn look_around(&mut self, readings: &Readings) {
+        // A found obstacle is placed by the estimated pose, so a lost robot does not draw maps.
+        if self.locator.is_lost() {
+            return;
+        }
+        let found = self.chart.see(&readings.sightings, &self.locator.pose());
+        if found.is_empty() {
+            return;
+        }
+        let shapes: Vec<Shape> = found.iter().filter_map(shape_of).collect();
+        if self.planner.plan_due.is_none() && found.iter().any(|event| self.is_in_the_way(event)) {
+            self.planner.plan_due = Some(Reason::MapChanged);
+        }
+        self.happened.extend(found);
+        self.survey(&shapes);
+    }
+
+    /// An obstacle that was found is in the way with the clearance demanded; one that was planned for already and
+    /// stands a little elsewhere only when half of it is gone.
+    fn is_in_the_way(&self, event: &EventKind) -> bool {
+        let (radius_m, clearance_m) = (self.config.limits.radius_m, self.config.clearance_m);
+        match event {
+            EventKind::ObstacleMoved { obstacle, .. } => {
+                self.task.is_in_the_way(&obstacle.shape, radius_m + 0.5 * clearance_m)
+            }
+            EventKind::ObstacleFound { obstacle } => {
+                self.task.is_in_the_way(&obstacle.shape, radius_m + clearance_m)
+            }
+            _ => false,
+        }
+    }
+
+    /// What stands where is no floor, and what is beside it cannot be reached.
+    fn survey(&mut self, shapes: &[Shape]) {
+        let (config, world) = (&self.config, self.chart.world());
+        let surveyor = self.surveyor.get_or_insert_with(|| {
+            FloorMaker::of(
+                self.coverage.floor(),
+                world,
+                config.room_m(),
+                config.swath_m,
+                config.start.position,
+            )
+        });
+        let changes = surveyor.update(world, self.chart.map(), shapes);
+        if !changes.is_empty() {
+            self.coverage.change(&changes);
+            self.happened.push(EventKind::FloorChanged { changes });
+        }
+    }
+
+    pub(super) fn scan_from(&mut self, before: Pose) {
+        let here = self.locator.pose();
+        self.task.advance(here.position, self.chart.map(), self.config.room_m());
+        if self.phase == Phase::Waiting {
+            return;
+        }
+        let fresh = self.coverage.not_covered_under(self.config.tool(), before, here);
+        if self.locator.error_95_m() > self.config.scan_limit_m() {
+            self.leave_uncounted(fresh);
+        } else if !fresh.is_empty() {
+            self.coverage.apply(&fresh);
+            self.happened.push(EventKind::Covered { runs: fresh });
+        }
+        if self.locator.is_lost() {
+            return;
+        }
+        self.happened.push(EventKind::Progressed {
+            done: self.task.done(),
+            along_m: self.task.along_m(),
+            cross_track_m: self.task.cross_track_m(here.position),
+            target: self.task.target(),
+            covered_reachable: self.coverage.fraction_reachable(),
+            covered_whole: self.coverage.fraction_whole(),
+            leg: self.task.leg(),
+        });
+    }
+
+    /// The tool passed, but nobody knows well enough where.
+    fn leave_uncounted(&mut self, runs: Vec<CellRun>) {
+        if !runs.is_empty() {
+            self.happened.push(EventKind::Uncounted { runs });
+        }
+    }
+
+    /// Why a task counts as done, as a sentence.
+    pub(super) fn done_reason(&self) -> String {
+        match &self.task {
+            Task::Goto(_) | Task::Follow { .. } => "the task is done".into(),
+            Task::Cover(_) => {
+                let share = 100.0 * self.coverage.fraction_reachable();
+                format!("back at the anchor, {share:.1} % of the reachable floor scanned")
+            }
+        }
+    }
+}
+
+fn shape_of(event: &EventKind) -> Option<Shape> {
+    match event {
+        EventKind::ObstacleFound { obstacle } | EventKind::ObstacleMoved { obstacle, .. } => {
+            Some(obstacle.shape.clone())
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,163 @@
+//! Coverage missions: lanes up and down, home again, also round what nobody drew.
+
+use super::*;
+use planner_api::{Leg, LegTag};
+
+/// Straight lanes over the regions, or over everything; round obstacles they leave a gap and pass it to the north.
+pub fn lanes(request: &PlanRequest<'_>, anchor: Point) -> Plan {
+    let room_m = request.site.limits.radius_m + request.site.clearance_m;
+    let mut path = vec![request.start.position];
+    let mut legs = Vec::new();
+    let n_lanes = (2.0 * (5.0 - room_m) / request.site.swath_m).ceil() as usize;
+    for lane in 0..n_lanes {
+        let y = -5.0 + room_m + request.site.swath_m * lane as f64;
+        let half_m = ((5.0 - room_m).powi(2) - y * y).max(0.0).sqrt();
+        let mut points: Vec<Point> = (0..=100)
+            .map(|k| Point::new(-half_m + 2.0 * half_m * f64::from(k) / 100.0, y))
+            .filter(|p| is_wanted(request, *p))
+            .map(|p| beside(request, p, room_m))
+            .collect();
+        if points.is_empty() {
+            continue;
+        }
+        if lane % 2 == 1 {
+            points.reverse();
+        }
+        legs.push(Leg { tag: LegTag::Connector, first: path.len() - 1, last: path.len() });
+        legs.push(Leg { tag: LegTag::Swath, first: path.len(), last: path.len() + points.len() - 1 });
+        path.extend(points);
+    }
+    legs.push(Leg { tag: LegTag::Travel, first: path.len() - 1, last: path.len() });
+    path.push(anchor);
+    Plan { path, complete: true, legs, ..Plan::default() }
+}
+
+fn is_wanted(request: &PlanRequest<'_>, point: Point) -> bool {
+    let api::Task::Cover { regions, .. } = request.task else { return false };
+    let is_near = |region: &&[Point]| {
+        let near = Shape::Polygon { vertices: region.to_vec() };
+        near.distance_m(point) < 0.2
+    };
+    regions.is_empty() || regions.iter().any(is_near)
+}
+
+fn beside(request: &PlanRequest<'_>, point: Point, room_m: f64) -> Point {
+    for obstacle in request.site.obstacles {
+        let api::Outline::Disc { center, radius_m } = obstacle.outline else { continue };
+        let (off_m, reach_m) = (point.x - center.x, radius_m + room_m + 0.05);
+        if (point - center).norm() < reach_m {
+            return Point::new(point.x, center.y + (reach_m * reach_m - off_m * off_m).sqrt());
+        }
+    }
+    point
+}
+
+fn covering() -> MissionConfig {
+    let start = Pose::new(0.0, -4.4, 0.0);
+    let task = TaskConfig::Cover { anchor: start.position, regions: vec![], tolerance_m: 0.2 };
+    MissionConfig { task, start, time_limit_s: 1000.0, ..config() }
+}
+
+fn covered(flight: &Flight) -> f64 {
+    flight
+        .events
+        .iter()
+        .rev()
+        .find_map(|event| match event.kind {
+            EventKind::Progressed { covered_reachable, .. } => Some(covered_reachable),
+            _ => None,
+        })
+        .unwrap()
+}
+
+fn reasons(flight: &Flight) -> Vec<Reason> {
+    let reason = |event: &Event| match &event.kind {
+        EventKind::Planned { reason, .. } => Some(reason.clone()),
+        _ => None,
+    };
+    flight.events.iter().filter_map(reason).collect()
+}
+
+#[test]
+fn a_coverage_mission_scans_the_floor_and_ends_back_at_the_anchor() {
+    let mut flight = Flight::new(covering());
+    flight.tick(&[Order::Start]);
+    flight.fly(6000);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+    assert!((flight.pose.position - covering().start.position).norm() < 0.3);
+    assert!(covered(&flight) > 0.94, "{}", covered(&flight));
+    let legs: Vec<LegTag> = flight
+        .events
+        .iter()
+        .filter_map(|event| match event.kind {
+            EventKind::Progressed { leg, .. } => leg,
+            _ => None,
+        })
+        .collect();
+    assert!(legs.contains(&LegTag::Swath) && legs.last() == Some(&LegTag::Travel));
+}
+
+#[test]
+fn a_column_found_on_the_way_is_planned_around_and_what_is_scanned_stays_scanned() {
+    let mut flight = Flight::new(covering());
+    flight.tick(&[Order::Start]);
+    for _ in 0..8000 {
+        let relative = Point::from(Point::new(0.0, 1.0) - flight.pose.position);
+        if relative.coords.norm() < 2.0 {
+            let shape_in_robot = Shape::Disc { center: relative, radius_m: 0.3 };
+            flight.sightings = vec![Sighting { id: ObstacleId(7), shape_in_robot }];
+        }
+        flight.tick(&[]);
+        assert!(relative.coords.norm() > 0.5, "it drove into the column");
+    }
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+    assert_eq!(reasons(&flight)[..2], [Reason::Start, Reason::MapChanged]);
+    let whole_m2 = std::f64::consts::PI * 25.0;
+    assert!(flight.planner.regions_m2[1] < 0.8 * whole_m2, "{:?}", flight.planner.regions_m2);
+    assert!(covered(&flight) > 0.92, "{}", covered(&flight));
+    let changed = flight.events.iter().any(|event| matches!(event.kind, EventKind::FloorChanged { .. }));
+    assert!(changed, "the floor under a column is none");
+}
+
+#[test]
+fn another_planner_goes_on_with_what_is_left() {
+    let mut flight = Flight::new(covering());
+    flight.tick(&[Order::Start]);
+    flight.fly(1500);
+    let before = covered(&flight);
+    flight.tick(&[Order::Hold]);
+    flight.tick(&[Order::ChoosePlanner(PlannerChoice { id: "other".into(), parameters: Parameters::new() })]);
+    flight.tick(&[Order::Resume]);
+    let left_m2 = flight.planner.regions_m2[1];
+    let whole_m2 = std::f64::consts::PI * 25.0;
+    assert!((left_m2 - (1.0 - before) * whole_m2).abs() < 3.0, "{left_m2} m² left after {before}");
+    flight.fly(6000);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+    assert_eq!(reasons(&flight), [Reason::Start, Reason::Swap { from: "straight".into() }]);
+    assert!(covered(&flight) > 0.94, "{}", covered(&flight));
+}
+
+#[test]
+fn floor_passed_with_an_uncertain_position_does_not_count() {
+    let scan = ScanConfig { position_limit_m: Some(1e-6), ..ScanConfig::default() };
+    let mut flight = Flight::new(MissionConfig { scan, ..covering() });
+    flight.tick(&[Order::Start]);
+    flight.fly(300);
+    assert!(covered(&flight).abs() < f64::EPSILON);
+    assert!(flight.events.iter().any(|event| matches!(event.kind, EventKind::Uncounted { .. })));
+}
+
+#[test]
+fn lanes_are_planned_closer_together_than_the_swath_is_wide() {
+    let scan = ScanConfig { overlap_m: 0.1, ..ScanConfig::default() };
+    let plans = |scan| {
+        let mut flight = Flight::new(MissionConfig { scan, ..covering() });
+        flight.tick(&[Order::Start]);
+        let length_m = flight.events.iter().find_map(|event| match event.kind {
+            EventKind::Planned { length_m, .. } => Some(length_m),
+            _ => None,
+        });
+        length_m.unwrap()
+    };
+    assert!(plans(scan) > 1.15 * plans(ScanConfig::default()));
+}

@@ -1,0 +1,206 @@
+//! Scanning the floor along the legs of a plan, and coming back to the anchor.
+
+use crate::follower::Follower;
+use planner_api::{self as api, LegTag, Plan};
+use world::{CoverageGrid, ObstacleMap, Point, Shape, coverage::regions, polyline};
+
+/// Blocks of floor handed to planners are this share of a lane wide.
+const BLOCK_LANES: f64 = 0.25;
+
+/// Progress of a coverage mission. What is scanned is kept by the mission's grid, so any planner can go on from here.
+pub struct Cover {
+    anchor: Point,
+    /// What is to be scanned at all; empty for everything.
+    regions: Vec<Vec<Point>>,
+    tolerance_m: f64,
+    position: Point,
+    lanes: Option<Lanes>,
+    /// Way along the plans before this one, metres.
+    before_m: f64,
+}
+
+/// A plan under way.
+struct Lanes {
+    follower: Follower,
+    /// What the stretches are for, with the stations at which they end, metres.
+    legs: Vec<(LegTag, f64)>,
+}
+
+impl Cover {
+    /// Nothing is planned yet.
+    pub fn new(anchor: Point, regions: Vec<Vec<Point>>, tolerance_m: f64, start: Point) -> Self {
+        Self { anchor, regions, tolerance_m, position: start, lanes: None, before_m: 0.0 }
+    }
+
+    /// Takes a plan for what is left.
+    pub fn take_plan(&mut self, plan: &Plan) {
+        self.before_m += self.lanes.as_ref().map_or(0.0, |lanes| lanes.follower.along_m());
+        let stations_m = polyline::stations_m(&plan.path);
+        let legs = plan.legs.iter().map(|leg| (leg.tag, stations_m[leg.last])).collect();
+        self.lanes = (!plan.path.is_empty()).then(|| Lanes { follower: Follower::exact(&plan.path), legs });
+    }
+
+    /// Takes the robot's position.
+    pub fn advance(&mut self, position: Point, map: &ObstacleMap) {
+        self.position = position;
+        if let Some(lanes) = &mut self.lanes {
+            lanes.follower.advance(position, map, 0.0);
+        }
+    }
+
+    /// Where to go next; home without a plan.
+    pub fn target(&self) -> Point {
+        self.lanes.as_ref().map_or(self.anchor, |lanes| lanes.follower.target())
+    }
+
+    /// The plan from the target on.
+    pub fn ahead(&self, length_m: f64) -> &[Point] {
+        let home = || std::slice::from_ref(&self.anchor);
+        self.lanes.as_ref().map_or_else(home, |lanes| lanes.follower.ahead(length_m))
+    }
+
+    /// What the stretch under the robot is for.
+    pub fn leg(&self) -> Option<LegTag> {
+        let lanes = self.lanes.as_ref()?;
+        let along_m = lanes.follower.along_m();
+        lanes.legs.iter().find(|(_, end_m)| along_m < *end_m).or(lanes.legs.last()).map(|(tag, _)| *tag)
+    }
+
+    /// Whether the rest of the plan comes nearer than `room_m` to an outline.
+    pub fn is_in_the_way(&self, shape: &Shape, room_m: f64) -> bool {
+        let (low, high) = shape.bounds();
+        let reach = world::Vector::new(room_m, room_m);
+        let (low, high) = (low - reach, high + reach);
+        let is_near = |p: &Point| p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y;
+        // The follower's points are close enough together to stand for the path.
+        let is_in_the_way = |p: &Point| is_near(p) && shape.distance_m(*p) < room_m;
+        self.lanes.as_ref().is_none_or(|lanes| lanes.follower.remaining().iter().any(is_in_the_way))
+    }
+
+    /// What is left to scan, as boxes of floor. Nothing at all is told as one cell at the anchor: an empty list would
+    /// mean everything.
+    pub fn regions_left(&self, coverage: &CoverageGrid, lane_m: f64) -> Vec<Vec<Point>> {
+        if self.regions.is_empty() && coverage.counts().covered == 0 {
+            return Vec::new();
+        }
+        let floor = coverage.floor();
+        let wanted = regions::cells_within(floor, &self.regions);
+        let is_left = |index: usize| {
+            floor.is_reachable(index)
+                && !coverage.is_covered(index)
+                && wanted.as_ref().is_none_or(|w| w[index])
+        };
+        let block = ((BLOCK_LANES * lane_m / floor.cell_m).round() as usize).max(1);
+        let left = regions::boxes(floor, block, is_left);
+        if left.is_empty() { vec![regions::square(self.anchor, floor.cell_m)] } else { left }
+    }
+
+    /// What is left, as planners read it.
+    pub fn as_request<'a>(
+        &self,
+        regions: &'a [&'a [Point]],
+        tether: Option<api::TetherLimits>,
+    ) -> api::Task<'a> {
+        api::Task::Cover { anchor: self.anchor, regions, tether, tolerance_m: self.tolerance_m }
+    }
+
+    /// Share of the way done, 0 to 1: what was flown along this plan and those before, and what this one has left.
+    pub fn done(&self) -> f64 {
+        let flown_m = self.before_m + self.lanes.as_ref().map_or(0.0, |lanes| lanes.follower.along_m());
+        let whole_m = flown_m + self.left_m();
+        if self.lanes.is_none() || whole_m <= 0.0 { 0.0 } else { flown_m / whole_m }
+    }
+
+    /// Way left along the plan, metres.
+    pub fn left_m(&self) -> f64 {
+        let left_m = |lanes: &Lanes| lanes.follower.length_m() - lanes.follower.along_m();
+        self.lanes.as_ref().map_or_else(|| (self.anchor - self.position).norm(), left_m)
+    }
+
+    /// Distance from the plan, metres.
+    pub fn cross_track_m(&self, position: Point) -> Option<f64> {
+        self.lanes.as_ref().map(|lanes| lanes.follower.cross_track_m(position))
+    }
+
+    /// Whether the plan has been flown to its end and the robot is back at the anchor.
+    pub fn is_done(&self, position: Point) -> bool {
+        let is_back = (self.anchor - position).norm() <= self.tolerance_m;
+        is_back && self.lanes.as_ref().is_some_and(|l| l.follower.is_done(position, self.tolerance_m))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use planner_api::Leg;
+    use world::{Boundary, Floor, World};
+
+    fn floor() -> Floor {
+        let boundary = Boundary::Circle { radius_m: 3.0 };
+        let world = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+        Floor::new(&world, 0.1, 0.3, 0.6, Point::origin())
+    }
+
+    fn area_m2(regions: &[Vec<Point>]) -> f64 {
+        regions.iter().map(|vertices| world::shape::ring_area_m2(vertices)).sum()
+    }
+
+    fn plan() -> Plan {
+        let path = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 0.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+        let leg = |tag, first, last| Leg { tag, first, last };
+        let legs = vec![leg(LegTag::Swath, 0, 1), leg(LegTag::Connector, 1, 2), leg(LegTag::Travel, 2, 3)];
+        Plan { path, complete: true, legs, ..Plan::default() }
+    }
+
+    #[test]
+    fn what_is_left_shrinks_by_what_was_scanned_and_nothing_left_is_not_everything() {
+        let cover = Cover::new(Point::origin(), vec![], 0.2, Point::origin());
+        let mut grid = CoverageGrid::new(floor());
+        assert_eq!(cover.regions_left(&grid, 0.6), Vec::<Vec<Point>>::new());
+        grid.mark_swath(Point::new(-3.0, 0.0), Point::new(3.0, 0.0), 2.0);
+        let left_m2 = area_m2(&cover.regions_left(&grid, 0.6));
+        let expected_m2 = (grid.counts().reachable - grid.counts().covered_reachable) as f64 * 0.01;
+        assert!((left_m2 - expected_m2).abs() < 1.5, "{left_m2} of {expected_m2}");
+        grid.mark_swath(Point::new(0.0, 0.0), Point::new(0.0, 0.0), 20.0);
+        let left = cover.regions_left(&grid, 0.6);
+        assert!(left.len() == 1 && area_m2(&left) < 0.011, "{left:?}");
+    }
+
+    #[test]
+    fn a_mission_for_some_regions_asks_for_no_more() {
+        let region = regions::square(Point::new(1.0, 1.0), 1.0);
+        let cover = Cover::new(Point::origin(), vec![region], 0.2, Point::origin());
+        let left_m2 = area_m2(&cover.regions_left(&CoverageGrid::new(floor()), 0.6));
+        assert!((left_m2 - 1.0).abs() < 0.3, "{left_m2}");
+    }
+
+    #[test]
+    fn the_leg_under_the_robot_is_told_and_the_end_is_at_the_anchor() {
+        let map = ObstacleMap::new(&Boundary::Circle { radius_m: 3.0 }, &[]);
+        let mut cover = Cover::new(Point::origin(), vec![], 0.2, Point::origin());
+        cover.take_plan(&plan());
+        let mut legs = Vec::new();
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 0.5), (2.0, 1.0), (1.0, 0.5), (0.0, 0.0)] {
+            assert!(!cover.is_done(Point::new(x, y)));
+            cover.advance(Point::new(x, y), &map);
+            legs.push(cover.leg().map(LegTag::word));
+        }
+        let words = ["swath", "swath", "connector", "connector", "travel", "travel", "travel"];
+        assert_eq!(legs, words.map(Some));
+        assert!(cover.is_done(Point::origin()) && cover.done() > 0.99);
+    }
+
+    #[test]
+    fn only_what_stands_beside_the_rest_of_the_way_is_in_the_way() {
+        let map = ObstacleMap::new(&Boundary::Circle { radius_m: 3.0 }, &[]);
+        let mut cover = Cover::new(Point::origin(), vec![], 0.2, Point::origin());
+        cover.take_plan(&plan());
+        let column = |x, y| Shape::Disc { center: Point::new(x, y), radius_m: 0.1 };
+        assert!(cover.is_in_the_way(&column(1.0, 0.3), 0.3));
+        assert!(!cover.is_in_the_way(&column(1.0, -1.0), 0.3));
+        for x in [0.0, 0.7, 1.4, 2.0] {
+            cover.advance(Point::new(x, 0.0), &map);
+        }
+        assert!(!cover.is_in_the_way(&column(1.0, -0.3), 0.3), "the lane beside it is behind");
+    }
+}

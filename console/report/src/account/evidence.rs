@@ -1,0 +1,91 @@
+//! What tells why floor was missed: where plans led, where the robot went, where its position was uncertain.
+
+use super::MissReason;
+use mission::event::RunOpened;
+use world::{CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, Tool};
+
+/// Plans are laid out on the floor in pieces no longer than this, metres.
+const PIECE_M: f64 = 0.5;
+
+/// What was planned and done, cell by cell.
+#[derive(Debug)]
+pub struct Evidence {
+    grid: Floor,
+    tool: Tool,
+    /// Distance from a found obstacle within which it is to blame, metres.
+    beside_m: f64,
+    planned: Vec<bool>,
+    /// Within a swath of where the robot believed to be: it was there, if not above it.
+    visited: Vec<bool>,
+    uncertain: Vec<bool>,
+    found: Vec<(ObstacleId, Shape)>,
+    last: Option<Point>,
+}
+
+impl Evidence {
+    /// Nothing was planned or done yet.
+    pub fn new(run: &RunOpened) -> Self {
+        let none = vec![false; run.floor.len()];
+        Self {
+            grid: run.floor.clone(),
+            tool: run.mission.tool(),
+            beside_m: run.mission.room_m() + run.mission.swath_m / 2.0,
+            planned: none.clone(),
+            visited: none.clone(),
+            uncertain: none,
+            found: Vec::new(),
+            last: None,
+        }
+    }
+
+    /// A plan was made.
+    pub fn plan(&mut self, path: &[Point]) {
+        let path = world::polyline::resampled(path, PIECE_M);
+        for pair in path.windows(2).filter(|pair| pair[0] != pair[1]) {
+            let ahead = pair[1] - pair[0];
+            let at = |position| Pose { position, heading_rad: ahead.y.atan2(ahead.x) };
+            for index in self.grid.cells_under(self.tool, at(pair[0]), at(pair[1])) {
+                self.planned[index] = true;
+            }
+        }
+    }
+
+    /// The robot believed to be here.
+    pub fn visit(&mut self, here: Point) {
+        let before = self.last.replace(here).unwrap_or(here);
+        for index in self.grid.cells_near(before, here, self.tool.swath_m()) {
+            self.visited[index] = true;
+        }
+    }
+
+    /// The tool passed, but nothing counted.
+    pub fn leave_uncounted(&mut self, runs: &[CellRun]) {
+        for CellRun(first, count) in runs {
+            let first = (*first as usize).min(self.uncertain.len());
+            let end = first.saturating_add(*count as usize).min(self.uncertain.len());
+            self.uncertain[first..end].fill(true);
+        }
+    }
+
+    /// An obstacle was found, or turned out to stand elsewhere.
+    pub fn find(&mut self, obstacle: &Obstacle) {
+        self.found.retain(|(id, _)| *id != obstacle.id);
+        self.found.push((obstacle.id, obstacle.shape.clone()));
+    }
+
+    /// Why a cell was missed.
+    pub fn why_missed(&self, floor: &Floor, index: usize) -> MissReason {
+        let center = floor.center(index);
+        if self.uncertain[index] {
+            MissReason::PositionUncertain
+        } else if self.found.iter().any(|(_, shape)| shape.distance_m(center) <= self.beside_m) {
+            MissReason::FoundObstacle
+        } else if !self.planned[index] {
+            MissReason::NotPlanned
+        } else if self.visited[index] {
+            MissReason::PassedBeside
+        } else {
+            MissReason::NotReached
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Accounts of a small round tank: shares that sum up, gaps that have their reasons, plates and the zone at the shell.
+
+use super::*;
+use crate::fold::tests::round_tank;
+use proptest::prelude::*;
+use world::{CellRun, Pose, Tool};
+
+/// Lanes from west to east, of which `lanes` were flown.
+fn scanned(run: &RunOpened, lanes: usize) -> (CoverageGrid, Evidence) {
+    let (mut grid, mut evidence) = (CoverageGrid::new(run.floor.clone()), Evidence::new(run));
+    for lane in 0..14 {
+        let y = -3.9 + 0.6 * lane as f64;
+        let half_m = (4.5_f64.powi(2) - y * y).max(0.0).sqrt();
+        let ends = [Point::new(-half_m, y), Point::new(half_m, y)];
+        evidence.plan(&ends);
+        if lane < lanes {
+            let [west, east] = ends.map(|position| Pose { position, heading_rad: 0.0 });
+            grid.mark(Tool::Bar { swath_m: 0.6 }, west, east);
+            (0..=100).for_each(|k| evidence.visit(ends[0] + (ends[1] - ends[0]) * f64::from(k) / 100.0));
+        }
+    }
+    (grid, evidence)
+}
+
+fn sum(shares: &Shares) -> f64 {
+    shares.scanned + shares.missed + shares.unreachable + shares.margin
+}
+
+#[test]
+fn both_bases_and_every_plate_sum_to_the_whole() {
+    let run = round_tank(0.05);
+    let (grid, evidence) = scanned(&run, 9);
+    let account = account(&run, &grid, &evidence);
+    assert!((sum(&account.whole) - 1.0).abs() < 1e-12 && (sum(&account.reachable) - 1.0).abs() < 1e-12);
+    assert!(account.reachable.unreachable + account.reachable.margin < 1e-12);
+    assert!(account.whole.margin > 0.02, "{:?}", account.whole);
+    let plates_m2: f64 = account.plates.iter().map(|plate| plate.shares.area_m2).sum();
+    assert!((plates_m2 - account.whole.area_m2).abs() < 1e-9);
+    assert!(account.plates.iter().all(|plate| (sum(&plate.shares) - 1.0).abs() < 1e-12));
+    assert!(account.plates.iter().any(|plate| plate.shares.scanned == 0.0), "also those with nothing");
+    let listed_m2: f64 = account.missed.iter().map(|area| area.area_m2).sum();
+    let missed_m2 = account.reachable.missed * account.reachable.area_m2;
+    assert!((listed_m2 + account.slivers.area_m2 - missed_m2).abs() < 1e-9);
+}
+
+#[test]
+fn lanes_that_were_not_flown_are_told_with_place_plate_and_reason() {
+    let run = round_tank(0.05);
+    let (grid, evidence) = scanned(&run, 9);
+    let account = account(&run, &grid, &evidence);
+    let north = &account.missed[0];
+    assert_eq!(north.reason, MissReason::NotReached);
+    assert!(north.area_m2 > 2.0 && north.at.y > 1.5 && north.low.y > 1.1, "{north:?}");
+    assert!(north.plate.is_some());
+    let corners: Vec<&Area<MissReason>> =
+        account.missed.iter().filter(|area| area.reason == MissReason::NotPlanned).collect();
+    assert!(!corners.is_empty() && corners.iter().all(|area| area.area_m2 < 3.0 && area.at.coords.norm() > 4.0), "{corners:?}");
+}
+
+#[test]
+fn floor_passed_without_a_position_says_so() {
+    let run = round_tank(0.05);
+    let (grid, mut evidence) = scanned(&run, 0);
+    evidence.leave_uncounted(&[CellRun(0, run.floor.len() as u32)]);
+    let account = account(&run, &grid, &evidence);
+    assert!(account.missed.iter().all(|area| area.reason == MissReason::PositionUncertain));
+    assert!(account.missed.len() >= account.plates.len() - 2, "each plate has its own");
+}
+
+#[test]
+fn the_critical_zone_is_named_as_not_done_with_the_reason() {
+    let run = round_tank(0.05);
+    let (grid, evidence) = scanned(&run, 14);
+    let zone = account(&run, &grid, &evidence).critical_zone;
+    assert!(!zone.done && zone.scanned.is_some_and(|share| share < 0.05), "{zone:?}");
+    assert_eq!(zone.why.as_deref(), Some("the tool ends 0.150 m before the shell"));
+}
+
+#[test]
+fn out_of_reach_is_listed_with_the_reason() {
+    let run = round_tank(0.05);
+    let (grid, evidence) = scanned(&run, 0);
+    let account = account(&run, &grid, &evidence);
+    let reasons: Vec<OutOfReach> = account.unreachable.iter().map(|area| area.reason).collect();
+    assert!(reasons.contains(&OutOfReach::ShellMargin) && reasons.contains(&OutOfReach::BesideObstacle));
+    let all_m2 = (account.whole.unreachable + account.whole.margin) * account.whole.area_m2;
+    let listed_m2: f64 = account.unreachable.iter().map(|area| area.area_m2).sum();
+    assert!(listed_m2 > 0.9 * all_m2, "{listed_m2} of {all_m2}");
+}
+
+#[test]
+fn the_figures_converge_as_the_cells_get_smaller() {
+    let shares = [0.2, 0.1, 0.05, 0.025].map(|cell_m| {
+        let run = round_tank(cell_m);
+        let (grid, evidence) = scanned(&run, 9);
+        account(&run, &grid, &evidence).whole
+    });
+    let finest = shares[3];
+    for (coarse, allowed) in shares[..3].iter().zip([0.02, 0.01, 0.004]) {
+        let figures = |s: &Shares| [s.scanned, s.missed, s.margin];
+        let off = figures(coarse).iter().zip(figures(&finest)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < allowed, "{off} off, {coarse:?} against {finest:?}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn whatever_was_scanned_the_shares_sum_to_one(runs in prop::collection::vec((0_u32..12_000, 1_u32..400), 0..30)) {
+        let run = round_tank(0.1);
+        let mut grid = CoverageGrid::new(run.floor.clone());
+        grid.apply(&runs.iter().map(|(first, count)| CellRun(*first, *count)).collect::<Vec<_>>());
+        let account = account(&run, &grid, &Evidence::new(&run));
+        prop_assert!((sum(&account.whole) - 1.0).abs() < 1e-12 && (sum(&account.reachable) - 1.0).abs() < 1e-12);
+    }
+}

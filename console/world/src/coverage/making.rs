@@ -1,0 +1,205 @@
+//! Which cells are floor, and which of them the tool can reach.
+
+use super::{Cell, Floor, KindRun};
+use crate::{
+    geometry::{Point, Vector},
+    obstacles::ObstacleMap,
+    shape::Shape,
+    tank::{World, ZoneKind},
+};
+use std::collections::VecDeque;
+
+/// Rounding that does not make a cell beside the wall one beside an obstacle, metres.
+const ROUNDING_M: f64 = 1e-6;
+
+/// A floor with what it takes to make it anew when an obstacle is found.
+pub struct FloorMaker {
+    floor: Floor,
+    /// Distance from every cell's centre to anything solid, metres.
+    clearance_m: Vec<f32>,
+    /// Whether the robot's centre must not come to a cell because of a zone.
+    forbidden: Vec<bool>,
+    room_m: f64,
+    swath_m: f64,
+    start: Point,
+}
+
+impl FloorMaker {
+    /// The floor of a tank; see [`Floor::new`].
+    pub fn new(world: &World, cell_m: f64, room_m: f64, swath_m: f64, start: Point) -> Self {
+        let (low, high) = world.boundary.bounds();
+        let count = |span_m: f64| (span_m / cell_m).ceil().max(1.0) as usize;
+        let (width, height) = (count(high.x - low.x), count(high.y - low.y));
+        let cells = vec![Cell::Outside; width * height];
+        Self::of(&Floor { origin: low, cell_m, width, height, cells }, world, room_m, swath_m, start)
+    }
+
+    /// The maker of a floor with the cells of another one.
+    pub fn of(grid: &Floor, world: &World, room_m: f64, swath_m: f64, start: Point) -> Self {
+        let map = ObstacleMap::new(&world.boundary, &world.obstacles);
+        let clearance_m = (0..grid.len()).map(|index| map.clearance_m(grid.center(index)) as f32).collect();
+        let mut forbidden = vec![false; grid.len()];
+        for zone in world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo) {
+            for index in around(grid, &zone.shape, room_m) {
+                forbidden[index] |= zone.shape.distance_m(grid.center(index)) < room_m;
+            }
+        }
+        let mut maker = Self { floor: grid.clone(), clearance_m, forbidden, room_m, swath_m, start };
+        maker.classify(world);
+        maker
+    }
+
+    /// The floor.
+    pub fn into_floor(self) -> Floor {
+        self.floor
+    }
+
+    /// Makes the floor anew after obstacles of these outlines came or moved a little; tells the cells that changed.
+    ///
+    /// Costs a distance query per cell near the outlines and a flood fill.
+    pub fn update(&mut self, world: &World, map: &ObstacleMap, changed: &[Shape]) -> Vec<KindRun> {
+        let before = self.floor.cells.clone();
+        // An obstacle that moved stood no further off than it was told to have moved at most.
+        let reach_m = self.room_m + self.swath_m;
+        for shape in changed {
+            for index in around(&self.floor, shape, reach_m) {
+                self.clearance_m[index] = map.clearance_m(self.floor.center(index)) as f32;
+            }
+        }
+        self.classify(world);
+        changes(&before, &self.floor.cells)
+    }
+
+    fn classify(&mut self, world: &World) {
+        for (cell, clearance) in self.floor.cells.iter_mut().zip(&self.clearance_m) {
+            *cell = if *clearance >= 0.0 { Cell::Beside } else { Cell::Outside };
+        }
+        let room_m = self.room_m as f32;
+        let is_free = |(clearance, forbidden): (&f32, &bool)| *clearance >= room_m && !forbidden;
+        let free: Vec<bool> = self.clearance_m.iter().zip(&self.forbidden).map(is_free).collect();
+        let drivable = self.drivable(&free);
+        self.reach(&drivable, Cell::Reachable);
+        self.reach(&free, Cell::Unreachable);
+        for index in 0..self.floor.len() {
+            if self.floor.cells[index] == Cell::Beside {
+                self.floor.cells[index] = self.why_not(index, world);
+            }
+        }
+    }
+
+    /// Why the tool cannot reach a cell that is not merely cut off.
+    fn why_not(&self, index: usize, world: &World) -> Cell {
+        let center = self.floor.center(index);
+        if self.forbidden[index] && f64::from(self.clearance_m[index]) >= self.room_m {
+            return Cell::NoGo;
+        }
+        let wall_m = world.boundary.wall_distance_m(center);
+        if wall_m <= f64::from(self.clearance_m[index]) + ROUNDING_M { Cell::Margin } else { Cell::Beside }
+    }
+
+    /// Cells to which the robot's centre can drive from the start: a flood fill over cells with room for it, from the
+    /// one that is nearest to the start. (The start itself may touch the wall, where no cell's centre lies.)
+    fn drivable(&self, free: &[bool]) -> Vec<bool> {
+        let distance_m = |index: &usize| (self.floor.center(*index) - self.start).norm();
+        let first =
+            (0..free.len()).filter(|i| free[*i]).min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)));
+        let mut queue: VecDeque<usize> = first.into_iter().collect();
+        let mut found = vec![false; free.len()];
+        while let Some(index) = queue.pop_front() {
+            if !std::mem::replace(&mut found[index], true) {
+                queue.extend(self.floor.neighbours(index).filter(|next| free[*next] && !found[*next]));
+            }
+        }
+        found
+    }
+
+    /// Gives a kind to the floor that the tool reaches from some places and that has no kind yet.
+    fn reach(&mut self, from: &[bool], kind: Cell) {
+        // The place that is nearest to any other cell has a neighbour that is none.
+        let at_edge = |index: &usize| self.floor.neighbours(*index).any(|next| !from[next]);
+        let places: Vec<usize> = (0..from.len()).filter(|index| from[*index]).collect();
+        let edge: Vec<usize> = places.iter().copied().filter(at_edge).collect();
+        for index in places {
+            if self.floor.cells[index] == Cell::Beside {
+                self.floor.cells[index] = kind;
+            }
+        }
+        for index in edge {
+            let center = self.floor.center(index);
+            for near in self.floor.cells_near(center, center, self.swath_m / 2.0) {
+                if self.floor.cells[near] == Cell::Beside {
+                    self.floor.cells[near] = kind;
+                }
+            }
+        }
+    }
+}
+
+/// The cells of the box around an outline, with some margin.
+fn around(floor: &Floor, shape: &Shape, margin_m: f64) -> impl Iterator<Item = usize> + use<> {
+    let (low, high) = shape.bounds();
+    let margin = Vector::new(margin_m, margin_m);
+    floor.cells_in(low - margin, high + margin)
+}
+
+fn changes(before: &[Cell], after: &[Cell]) -> Vec<KindRun> {
+    let mut runs: Vec<KindRun> = Vec::new();
+    for (index, (_, kind)) in before.iter().zip(after).enumerate().filter(|(_, (old, new))| old != new) {
+        match runs.last_mut() {
+            Some(KindRun(last, first, count)) if last == kind && (*first + *count) as usize == index => {
+                *count += 1;
+            }
+            _ => runs.push(KindRun(*kind, index as u32, 1)),
+        }
+    }
+    runs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Boundary, Obstacle, ObstacleId, Zone};
+
+    fn tank(discs: &[(f64, f64, f64)]) -> World {
+        let obstacle = |(i, (x, y, r)): (usize, &(f64, f64, f64))| Obstacle {
+            id: ObstacleId(i as u32),
+            name: String::new(),
+            shape: Shape::Disc { center: Point::new(*x, *y), radius_m: *r },
+            known: true,
+        };
+        let obstacles = discs.iter().enumerate().map(obstacle).collect();
+        World { boundary: Boundary::Circle { radius_m: 5.0 }, obstacles, stations: vec![], zones: vec![] }
+    }
+
+    fn kind(floor: &Floor, x: f64, y: f64) -> Cell {
+        floor.kind(floor.cell_at(Point::new(x, y)).expect("in the grid"))
+    }
+
+    #[test]
+    fn floor_that_the_tool_cannot_reach_says_why() {
+        let mut world = tank(&[(2.0, 0.0, 0.3)]);
+        let shape = Shape::Disc { center: Point::new(-2.0, 0.0), radius_m: 1.0 };
+        world.zones.push(Zone { name: "sump".into(), kind: ZoneKind::NoGo, shape });
+        let floor = Floor::new(&world, 0.05, 0.5, 0.6, Point::origin());
+        assert_eq!(kind(&floor, 4.9, 0.0), Cell::Margin);
+        assert_eq!(kind(&floor, 4.7, 0.0), Cell::Reachable);
+        assert_eq!(kind(&floor, 2.0, 0.4), Cell::Beside);
+        assert_eq!(kind(&floor, 2.0, 0.0), Cell::Outside);
+        assert_eq!(kind(&floor, -2.0, 0.0), Cell::NoGo);
+        assert_eq!(kind(&floor, 0.0, 0.0), Cell::Reachable);
+    }
+
+    #[test]
+    fn a_found_obstacle_gives_the_floor_that_it_would_have_given_from_the_start() {
+        let (before, after) = (tank(&[(2.0, 0.0, 0.3)]), tank(&[(2.0, 0.0, 0.3), (-1.0, 2.0, 0.4)]));
+        let make = |world: &World| FloorMaker::new(world, 0.05, 0.35, 0.5, Point::origin());
+        let mut maker = make(&before);
+        let mut told = Floor::new(&before, 0.05, 0.35, 0.5, Point::origin());
+        let map = ObstacleMap::new(&after.boundary, &after.obstacles);
+        let changes = maker.update(&after, &map, &[after.obstacles[1].shape.clone()]);
+        told.change(&changes);
+        let anew = make(&after).into_floor();
+        assert_eq!((&maker.into_floor(), &told), (&anew, &anew));
+        assert!(!changes.is_empty() && changes.len() < 200);
+    }
+}

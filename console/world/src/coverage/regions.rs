@@ -1,0 +1,135 @@
+//! Cells of the floor as polygons, and polygons as cells.
+
+use super::Floor;
+use crate::{
+    geometry::{Point, Vector},
+    shape::{bounds_of, ring_contains},
+};
+
+/// A square about a point, counter-clockwise.
+pub fn square(center: Point, edge_m: f64) -> Vec<Point> {
+    rectangle(center - Vector::new(edge_m, edge_m) / 2.0, center + Vector::new(edge_m, edge_m) / 2.0)
+}
+
+/// A box from its south west and north east corners, counter-clockwise.
+pub fn rectangle(low: Point, high: Point) -> Vec<Point> {
+    vec![low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)]
+}
+
+/// Which cells have their centre in one of some polygons; `None` for no polygons, which stand for everything.
+pub fn cells_within(floor: &Floor, polygons: &[Vec<Point>]) -> Option<Vec<bool>> {
+    if polygons.is_empty() {
+        return None;
+    }
+    let mut within = vec![false; floor.len()];
+    for vertices in polygons {
+        let (low, high) = bounds_of(vertices);
+        for index in floor.cells_in(low, high) {
+            within[index] |= ring_contains(vertices, floor.center(index));
+        }
+    }
+    Some(within)
+}
+
+/// Wanted cells as boxes that do not overlap, made of square blocks of `block` by `block` cells.
+///
+/// A block is taken if at least half of its floor is wanted, so slivers fall out and ragged edges are evened. Blocks
+/// of one row are joined, and rows of equal length with those below. Costs one look at every cell.
+pub fn boxes(floor: &Floor, block: usize, is_wanted: impl Fn(usize) -> bool) -> Vec<Vec<Point>> {
+    let (columns, rows) = (floor.width.div_ceil(block), floor.height.div_ceil(block));
+    let mut done: Vec<Box2> = Vec::new();
+    let mut open: Vec<Box2> = Vec::new();
+    for row in 0..rows {
+        let spans = spans(columns, |column| is_taken(floor, block, column, row, &is_wanted));
+        let (mut kept, closed): (Vec<Box2>, Vec<Box2>) =
+            open.into_iter().partition(|b| spans.contains(&(b.first, b.end)));
+        done.extend(closed);
+        kept.iter_mut().for_each(|b| b.top = row + 1);
+        for (first, end) in spans {
+            if !kept.iter().any(|b| b.first == first) {
+                kept.push(Box2 { first, end, bottom: row, top: row + 1 });
+            }
+        }
+        open = kept;
+    }
+    done.extend(open);
+    done.sort_by_key(|b| (b.bottom, b.first));
+    let edge_m = floor.cell_m * block as f64;
+    let corner = |column: usize, row: usize| floor.origin + Vector::new(column as f64, row as f64) * edge_m;
+    done.iter().map(|b| rectangle(corner(b.first, b.bottom), corner(b.end, b.top))).collect()
+}
+
+/// A box of blocks; `end` and `top` are one beyond.
+struct Box2 {
+    first: usize,
+    end: usize,
+    bottom: usize,
+    top: usize,
+}
+
+/// Runs of taken columns: first and one beyond the last.
+fn spans(columns: usize, is_taken: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
+    let mut spans: Vec<(usize, usize)> = Vec::new();
+    for column in (0..columns).filter(|column| is_taken(*column)) {
+        match spans.last_mut() {
+            Some((_, end)) if *end == column => *end += 1,
+            _ => spans.push((column, column + 1)),
+        }
+    }
+    spans
+}
+
+fn is_taken(
+    floor: &Floor,
+    block: usize,
+    column: usize,
+    row: usize,
+    is_wanted: &impl Fn(usize) -> bool,
+) -> bool {
+    let (mut of_floor, mut wanted) = (0, 0);
+    for y in row * block..((row + 1) * block).min(floor.height) {
+        for x in column * block..((column + 1) * block).min(floor.width) {
+            let index = y * floor.width + x;
+            of_floor += usize::from(floor.is_floor(index));
+            wanted += usize::from(is_wanted(index));
+        }
+    }
+    wanted > 0 && 2 * wanted >= of_floor
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Boundary, World, shape::ring_area_m2};
+    use proptest::prelude::*;
+
+    fn floor() -> Floor {
+        let vertices = square(Point::origin(), 4.0);
+        let boundary = Boundary::Polygon { vertices };
+        let world = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+        Floor::new(&world, 0.1, 0.2, 0.4, Point::origin())
+    }
+
+    proptest! {
+        #[test]
+        fn boxes_of_single_cells_hold_exactly_the_wanted_cells(seed in prop::collection::vec(any::<bool>(), 64)) {
+            let floor = floor();
+            let is_wanted = |index: usize| seed[(index / 3 + index / floor.width) % 64];
+            let boxes = boxes(&floor, 1, is_wanted);
+            let within = cells_within(&floor, &boxes);
+            let wanted: Vec<bool> = (0..floor.len()).map(is_wanted).collect();
+            prop_assert_eq!(within.unwrap_or(vec![false; floor.len()]), wanted.clone());
+            let area_m2: f64 = boxes.iter().map(|b| ring_area_m2(b)).sum();
+            let count = wanted.iter().filter(|w| **w).count();
+            prop_assert!((area_m2 - count as f64 * 0.01).abs() < 1e-9, "boxes overlap");
+        }
+    }
+
+    #[test]
+    fn blocks_leave_slivers_out_and_join_what_belongs_together() {
+        let floor = floor();
+        assert_eq!(boxes(&floor, 4, |index| index / floor.width == 7), Vec::<Vec<Point>>::new());
+        let half = boxes(&floor, 4, |index| index / floor.width < 20);
+        assert_eq!(half, [rectangle(Point::new(-2.0, -2.0), Point::new(2.0, 0.0))]);
+    }
+}

@@ -1,0 +1,305 @@
+//! What a whole path does to the cable: the certificate, computed on the final polyline and on nothing else.
+
+use super::{
+    cable::{Bearing, Cable, TetherError},
+    cuts,
+    geodesic::Geodesic,
+    ground::{Ground, solids_of},
+    pocket,
+    solid::Solid,
+};
+use crate::{
+    geometry::Point,
+    obstacles::wall_clearance_m,
+    tank::{Boundary, Obstacle},
+};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Room that a path may lack before that is a collision, metres: chords of arcs.
+const SPARE_M: f64 = 0.005;
+/// Distance from the anchor at which a path has come back, metres.
+const BACK_M: f64 = 0.3;
+
+/// What a cable may do.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Limits {
+    /// Cable on the reel, metres.
+    pub reel_m: f64,
+    /// Largest wrap on one obstacle, radians.
+    pub max_wrap_rad: f64,
+    /// Largest sum of all wraps, radians.
+    pub max_sum_wrap_rad: f64,
+}
+
+/// A path to be judged.
+#[derive(Debug, Clone, Copy)]
+pub struct Case<'a> {
+    /// The whole path, tank frame.
+    pub path: &'a [Point],
+    /// Where the cable comes out.
+    pub anchor: Point,
+    /// The cable as it lies at the path's beginning; without one it runs straight to the first point.
+    pub cable: Option<&'a Cable>,
+    /// The wall.
+    pub boundary: &'a Boundary,
+    /// Obstacles, known and found.
+    pub obstacles: &'a [Obstacle],
+    /// Room that the middle of the hull needs, metres: hull radius plus clearance.
+    pub room_m: f64,
+    /// What the cable may do.
+    pub limits: Limits,
+    /// Whether the path is to end at the anchor with the cable reeled in.
+    pub returns: bool,
+    /// Lines that the path must not cross.
+    pub cuts: &'a [Vec<Point>],
+}
+
+/// The judgement.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Certificate {
+    /// Whether the path may be flown with a tether.
+    pub certified: bool,
+    /// Why not, in words; empty when certified.
+    pub reasons: Vec<String>,
+    /// Longest cable on the way, metres.
+    pub max_cable_m: f64,
+    /// Largest shortest distance from the anchor to a point of the path, metres: the least reel that would do.
+    pub eccentricity_m: f64,
+    /// Largest wrap on one obstacle at any time, radians.
+    pub max_wrap_rad: f64,
+    /// Largest sum of wraps at any time, radians.
+    pub max_sum_wrap_rad: f64,
+    /// Cable left out after the return to the anchor, metres; absent for a path that need not return.
+    pub left_out_m: Option<f64>,
+    /// Crossings that were not undone on return; 0 means that the cable comes in.
+    pub crossings_left: usize,
+    /// Pieces of the path that are nearer to something solid than the hull allows.
+    pub collisions: usize,
+    /// Least distance from the path to anything solid, metres; as far as it is below the room needed.
+    pub min_clearance_m: f64,
+    /// Crossings of cuts.
+    pub cut_crossings: usize,
+    /// Floor sealed off by cuts, square metres.
+    pub sealed_m2: f64,
+}
+
+/// Judges a path: replays the cable, looks for collisions, crossings of cuts and sealed floor.
+///
+/// Knows no planner. Without cuts the last two are empty.
+///
+/// # Errors
+/// The anchor lies inside an obstacle or nowhere.
+pub fn certify(case: &Case<'_>) -> Result<Certificate, TetherError> {
+    let shapes: Vec<_> = case.obstacles.iter().map(|o| o.shape.clone()).collect();
+    let ground = Arc::new(Ground::new(case.boundary, &shapes));
+    let mut replay = Replay::new(case, &ground)?;
+    case.path.iter().for_each(|point| replay.take(*point));
+    let clearance = clearance(case);
+    let pocket = if case.cuts.is_empty() { None } else { pocket::sealed(case) };
+    let left = replay.cable_on_return(case.anchor);
+    let mut certificate = Certificate {
+        certified: false,
+        reasons: Vec::new(),
+        max_cable_m: replay.max_cable.0,
+        eccentricity_m: Geodesic::new(case.anchor, ground).farthest_m(replay.lengths.iter().copied()),
+        max_wrap_rad: replay.max_wrap.0,
+        max_sum_wrap_rad: replay.max_sum.0,
+        left_out_m: case.returns.then(|| left.length_m()),
+        crossings_left: if case.returns { left.word().letters().len() } else { 0 },
+        collisions: clearance.collisions,
+        min_clearance_m: clearance.least_m,
+        cut_crossings: cuts::crossings(case.path, case.cuts),
+        sealed_m2: pocket.map_or(0.0, |p| p.area_m2),
+    };
+    let reasons = Reasons { case, replay: &replay, left: &left, clearance: &clearance, pocket };
+    certificate.reasons = reasons.of(&certificate);
+    certificate.certified = certificate.reasons.is_empty();
+    Ok(certificate)
+}
+
+/// The cable along the path, with what was worst and where.
+struct Replay {
+    cable: Cable,
+    lengths: Vec<(Point, f64)>,
+    max_cable: (f64, Point),
+    max_wrap: (f64, Option<Bearing>),
+    max_sum: (f64, Point),
+}
+
+impl Replay {
+    fn new(case: &Case<'_>, ground: &Arc<Ground>) -> Result<Self, TetherError> {
+        let cable = match case.cable {
+            Some(cable) => cable.clone(),
+            None => Cable::on(case.anchor, Arc::clone(ground))?,
+        };
+        let (anchor, none) = (case.anchor, (0.0, None));
+        Ok(Self {
+            cable,
+            lengths: Vec::with_capacity(case.path.len()),
+            max_cable: (0.0, anchor),
+            max_wrap: none,
+            max_sum: (0.0, anchor),
+        })
+    }
+
+    fn take(&mut self, point: Point) {
+        self.cable.drag_to(point);
+        let length_m = self.cable.length_m();
+        self.lengths.push((point, length_m));
+        if length_m > self.max_cable.0 {
+            self.max_cable = (length_m, point);
+        }
+        let wrap_rad = self.cable.max_wrap_rad();
+        if wrap_rad > self.max_wrap.0 {
+            let contacts = self.cable.contacts();
+            let on =
+                contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs())).map(|c| c.on);
+            self.max_wrap = (wrap_rad, on);
+        }
+        let sum_rad = self.cable.sum_wrap_rad();
+        if sum_rad > self.max_sum.0 {
+            self.max_sum = (sum_rad, point);
+        }
+    }
+
+    fn cable_on_return(&self, anchor: Point) -> Cable {
+        let mut cable = self.cable.clone();
+        cable.drag_to(anchor);
+        cable
+    }
+}
+
+struct Clearance {
+    collisions: usize,
+    least_m: f64,
+    first: Option<(Point, String)>,
+}
+
+fn clearance(case: &Case<'_>) -> Clearance {
+    let solids: Vec<(usize, Solid)> = case
+        .obstacles
+        .iter()
+        .enumerate()
+        .flat_map(|(k, o)| solids_of(&o.shape, 0.0).into_iter().map(move |solid| (k, solid)))
+        .collect();
+    let mut found = Clearance { collisions: 0, least_m: case.room_m, first: None };
+    for pair in pieces(case.path) {
+        let (mut least_m, mut by) = (wall_clearance_m(case.boundary, pair.0, pair.1), None);
+        for (k, solid) in &solids {
+            if !solid.is_far_from(pair.0, pair.1, case.room_m) {
+                let distance_m = solid.distance_m(pair.0, pair.1);
+                (least_m, by) = if distance_m < least_m { (distance_m, Some(*k)) } else { (least_m, by) };
+            }
+        }
+        found.least_m = found.least_m.min(least_m);
+        if least_m < case.room_m - SPARE_M {
+            found.collisions += 1;
+            let name = by.map_or_else(|| "the wall".to_owned(), |k| case.obstacles[k].name.clone());
+            found.first.get_or_insert((pair.0, name));
+        }
+    }
+    found
+}
+
+fn pieces(path: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
+    let single = (path.len() == 1).then(|| (path[0], path[0]));
+    path.windows(2).map(|pair| (pair[0], pair[1])).chain(single)
+}
+
+/// Puts what is wrong into words.
+struct Reasons<'a> {
+    case: &'a Case<'a>,
+    replay: &'a Replay,
+    left: &'a Cable,
+    clearance: &'a Clearance,
+    pocket: Option<pocket::Sealed>,
+}
+
+impl Reasons<'_> {
+    fn of(&self, certificate: &Certificate) -> Vec<String> {
+        let limits = &self.case.limits;
+        let mut reasons: Vec<String> = Vec::new();
+        if self.case.path.is_empty() {
+            reasons.push("the plan has no path".into());
+        }
+        if self.case.path.iter().any(|p| !(p.x.is_finite() && p.y.is_finite())) {
+            reasons.push("the path has a coordinate that is not a finite number".into());
+        }
+        reasons.extend(self.collision(certificate));
+        if certificate.max_cable_m > limits.reel_m {
+            let (most_m, at) = self.replay.max_cable;
+            let place = place(at);
+            reasons.push(format!(
+                "{most_m:.1} m of cable are out at {place}, the reel holds {:.1} m",
+                limits.reel_m
+            ));
+        }
+        if certificate.max_wrap_rad > limits.max_wrap_rad {
+            let (most, allowed) = (self.replay.max_wrap.0.to_degrees(), limits.max_wrap_rad.to_degrees());
+            let on = self.name_of(self.replay.max_wrap.1);
+            reasons.push(format!("the cable wraps {most:.0} deg round {on}, allowed are {allowed:.0} deg"));
+        }
+        if certificate.max_sum_wrap_rad > limits.max_sum_wrap_rad {
+            let (most, at) = self.replay.max_sum;
+            let (most, allowed) = (most.to_degrees(), limits.max_sum_wrap_rad.to_degrees());
+            reasons.push(format!(
+                "all wraps together reach {most:.0} deg at {}, allowed are {allowed:.0} deg",
+                place(at)
+            ));
+        }
+        reasons.extend(self.left_out(certificate));
+        if certificate.cut_crossings > 0 {
+            reasons.push(format!("the path crosses cuts {} times", certificate.cut_crossings));
+        }
+        if let Some(pocket) = self.pocket {
+            reasons.push(format!("cuts seal off {:.2} m2 of floor at {}", pocket.area_m2, place(pocket.at)));
+        }
+        reasons
+    }
+
+    fn collision(&self, certificate: &Certificate) -> Option<String> {
+        let (at, name) = self.clearance.first.as_ref()?;
+        Some(format!(
+            "{} pieces of the path lack room, the first at {} by {name}: least room {:.3} m, needed {:.3} m",
+            certificate.collisions,
+            place(*at),
+            certificate.min_clearance_m,
+            self.case.room_m
+        ))
+    }
+
+    fn left_out(&self, certificate: &Certificate) -> Option<String> {
+        let last = self.case.path.last().filter(|_| self.case.returns)?;
+        let away_m = (last - self.case.anchor).norm();
+        if away_m > BACK_M {
+            return Some(format!("the path ends {away_m:.2} m away from the anchor"));
+        }
+        let left_out_m = certificate.left_out_m.unwrap_or(0.0);
+        if self.left.word().is_empty() && left_out_m <= BACK_M {
+            return None;
+        }
+        let mut round: Vec<String> = self.left.contacts().iter().map(|c| self.name_of(Some(c.on))).collect();
+        round.dedup();
+        let round = if round.len() > 3 {
+            format!("{} obstacles, {} first", round.len(), round[0])
+        } else {
+            round.join(", ")
+        };
+        Some(format!("{left_out_m:.1} m of cable stay out on return, hooked round {round}"))
+    }
+
+    fn name_of(&self, on: Option<Bearing>) -> String {
+        match on {
+            Some(Bearing::Obstacle(k)) => {
+                let obstacle = self.case.obstacles.get(k);
+                obstacle.map_or_else(|| format!("obstacle {k}"), |o| o.name.clone())
+            }
+            Some(Bearing::Wall) | None => "a corner of the wall".into(),
+        }
+    }
+}
+
+fn place(at: Point) -> String {
+    format!("{:.2}, {:.2} m", at.x, at.y)
+}

@@ -1,0 +1,193 @@
+//! Shortest ways from the anchor to anywhere, with no regard to how the robot got there: the least cable that would do.
+
+use super::{
+    cable::tangent_point,
+    ground::{Ground, Post},
+};
+use crate::geometry::{Point, wrap_angle_rad};
+use std::{
+    cmp::{Ordering, Reverse},
+    collections::BinaryHeap,
+    f64::consts::{PI, TAU},
+    sync::Arc,
+};
+
+/// Differences of length that do not matter, metres.
+const SAME_M: f64 = 1e-9;
+
+/// The tangent graph of the posts, searched once from the anchor.
+#[derive(Debug, Clone)]
+pub struct Geodesic {
+    ground: Arc<Ground>,
+    anchor: Point,
+    arrivals: Vec<Arrival>,
+}
+
+/// A shortest way that has come to touch a post.
+#[derive(Debug, Clone, Copy)]
+struct Arrival {
+    post: usize,
+    side: f64,
+    bearing_rad: f64,
+    length_m: f64,
+}
+
+/// Heap order: by length alone.
+struct Queued(Arrival);
+
+impl PartialEq for Queued {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Queued {}
+impl PartialOrd for Queued {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Queued {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let key = |a: &Arrival| (a.post, a.side > 0.0);
+        self.0.length_m.total_cmp(&other.0.length_m).then_with(|| key(&self.0).cmp(&key(&other.0)))
+    }
+}
+
+impl Geodesic {
+    /// All shortest ways from an anchor; costs about `posts^2` tangents and as many lines of sight.
+    pub fn new(anchor: Point, ground: Arc<Ground>) -> Self {
+        let mut found = Self { ground, anchor, arrivals: Vec::new() };
+        found.search();
+        found
+    }
+
+    fn search(&mut self) {
+        let n = self.ground.posts.len();
+        let mut queue = BinaryHeap::new();
+        for (post, side) in (0..n).flat_map(|post| [(post, 1.0), (post, -1.0)]) {
+            let target = self.ground.posts[post];
+            let Some(bearing_rad) = tangent((self.anchor, 0.0, 0.0), (target.center, target.radius_m, side))
+            else {
+                continue;
+            };
+            let at = tangent_point(target.center, target.radius_m, side, bearing_rad);
+            if self.sees(self.anchor, at) {
+                let length_m = (at - self.anchor).norm();
+                queue.push(Reverse(Queued(Arrival { post, side, bearing_rad, length_m })));
+            }
+        }
+        while let Some(Reverse(Queued(next))) = queue.pop() {
+            if !self.is_beaten(&next) {
+                self.arrivals.push(next);
+                queue.extend(self.onward(&next).into_iter().map(|a| Reverse(Queued(a))));
+            }
+        }
+    }
+
+    fn onward(&self, from: &Arrival) -> Vec<Arrival> {
+        let posts = &self.ground.posts;
+        let base = posts[from.post];
+        (0..posts.len())
+            .filter(|post| *post != from.post)
+            .flat_map(|post| [(post, 1.0), (post, -1.0)])
+            .filter_map(|(post, side)| {
+                let target = posts[post];
+                let ends = (target.center, target.radius_m, side);
+                let bearing_rad = tangent((base.center, base.radius_m, from.side), ends)?;
+                let at = tangent_point(target.center, target.radius_m, side, bearing_rad);
+                let length_m = self.leave(from, bearing_rad, at)?;
+                let arrival = Arrival { post, side, bearing_rad, length_m };
+                (!self.is_beaten(&arrival) && self.is_clear(from, bearing_rad, at)).then_some(arrival)
+            })
+            .collect()
+    }
+
+    /// Whether a way that came to the same post before is as short all the way from there.
+    fn is_beaten(&self, by: &Arrival) -> bool {
+        self.arrivals.iter().any(|a| {
+            let post = &self.ground.posts[a.post];
+            a.post == by.post
+                && a.side * by.side > 0.0
+                && wrap_of(a, by.bearing_rad)
+                    .is_some_and(|wrap_rad| a.length_m + post.radius_m * wrap_rad <= by.length_m + SAME_M)
+        })
+    }
+
+    /// Length of the way that leaves a post at some bearing and ends at a point; `None` if it would not be taut.
+    fn leave(&self, from: &Arrival, bearing_rad: f64, to: Point) -> Option<f64> {
+        let post = &self.ground.posts[from.post];
+        let wrap_rad = wrap_of(from, bearing_rad)?;
+        let leaves = tangent_point(post.center, post.radius_m, from.side, bearing_rad);
+        Some(from.length_m + post.radius_m * wrap_rad + (to - leaves).norm())
+    }
+
+    fn is_clear(&self, from: &Arrival, bearing_rad: f64, to: Point) -> bool {
+        let post = &self.ground.posts[from.post];
+        self.sees(tangent_point(post.center, post.radius_m, from.side, bearing_rad), to)
+            && self.arc_is_clear(post, from, bearing_rad)
+    }
+
+    /// Overlapping obstacles can block the way along an outline.
+    fn arc_is_clear(&self, post: &Post, from: &Arrival, bearing_rad: f64) -> bool {
+        let wrap_rad = wrap_of(from, bearing_rad).unwrap_or(0.0);
+        let steps = if post.radius_m > 0.0 { (wrap_rad / 0.5).ceil() as u32 } else { 0 };
+        (0..steps).all(|k| {
+            let bearing_rad =
+                from.bearing_rad + from.side * wrap_rad * (f64::from(k) + 0.5) / f64::from(steps);
+            !self.ground.sidestep.holds(tangent_point(post.center, post.radius_m, from.side, bearing_rad))
+        })
+    }
+
+    fn sees(&self, a: Point, b: Point) -> bool {
+        self.ground.is_open(a, b)
+    }
+
+    /// Length of the shortest way from the anchor to a point, metres; infinite if there is none.
+    pub fn distance_m(&self, point: Point) -> f64 {
+        if self.sees(self.anchor, point) {
+            return (point - self.anchor).norm();
+        }
+        let mut least_m = f64::INFINITY;
+        for from in &self.arrivals {
+            let post = &self.ground.posts[from.post];
+            let way = point - post.center;
+            let far = way.norm();
+            if far + from.length_m - post.radius_m >= least_m || far < post.radius_m {
+                continue;
+            }
+            let bearing_rad = way.y.atan2(way.x)
+                + (from.side * post.radius_m / far.max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0).asin();
+            let shorter = self.leave(from, bearing_rad, point).filter(|length_m| *length_m < least_m);
+            if let Some(length_m) = shorter
+                && self.is_clear(from, bearing_rad, point)
+            {
+                least_m = length_m;
+            }
+        }
+        least_m
+    }
+
+    /// The largest distance from the anchor to any of some points, each with a length that surely reaches it, metres.
+    pub fn farthest_m(&self, points: impl IntoIterator<Item = (Point, f64)>) -> f64 {
+        let mut points: Vec<(Point, f64)> = points.into_iter().collect();
+        points.sort_by(|a, b| b.1.total_cmp(&a.1));
+        points.iter().fold(0.0, |most_m, (point, enough_m)| {
+            if *enough_m <= most_m { most_m } else { most_m.max(self.distance_m(*point).min(*enough_m)) }
+        })
+    }
+}
+
+/// Bearing of the common tangent that leaves one disc and comes to another, each on its side.
+fn tangent(from: (Point, f64, f64), to: (Point, f64, f64)) -> Option<f64> {
+    let way = to.0 - from.0;
+    let (far, offset) = (way.norm(), to.2 * to.1 - from.2 * from.1);
+    (far > 1e-12 && offset.abs() <= far + SAME_M)
+        .then(|| way.y.atan2(way.x) - (offset / far).clamp(-1.0, 1.0).asin())
+}
+
+/// Angle by which a way bends round its post until it leaves at a bearing; shortest ways bend less than half a turn.
+fn wrap_of(from: &Arrival, bearing_rad: f64) -> Option<f64> {
+    let turn = wrap_angle_rad(from.side * (bearing_rad - from.bearing_rad)).rem_euclid(TAU);
+    let turn = if TAU - turn < 1e-9 { 0.0 } else { turn };
+    (turn <= PI + 1e-9).then_some(turn)
+}

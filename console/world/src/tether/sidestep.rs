@@ -1,0 +1,97 @@
+//! A way that cuts through a solid, bent round it.
+//!
+//! A robot cannot drive through a column, but the estimate of its position can, and so can a plan. The rule: a move
+//! through a solid goes round it the shorter way, which for a column is the side on which it passes the centre; a point
+//! inside counts as the nearest point outside. An estimate that strays less than hull plus column from the truth
+//! therefore winds nothing: on the straight line between the two nothing passes a centre, so both ways have the same
+//! side of every column.
+
+use super::solid::Solid;
+use crate::geometry::Point;
+
+/// Depth to which touching is not entering, metres.
+const TOUCH_M: f64 = 1e-9;
+/// Bends of one move at most; a cluster of overlapping solids can ask for many.
+const MOST_BENDS: usize = 256;
+/// Solids that a bend round a solid may lead into, in turn.
+const DEEPEST: usize = 6;
+
+/// The solids that a way must not enter.
+#[derive(Debug, Clone)]
+pub struct Sidestep {
+    solids: Vec<Solid>,
+}
+
+impl Sidestep {
+    /// Sidesteps round these solids.
+    pub fn new(solids: Vec<Solid>) -> Self {
+        Self { solids }
+    }
+
+    /// The nearest point that lies in no solid, as far as a few steps find one.
+    pub fn outside(&self, point: Point) -> Point {
+        let mut at = point;
+        for _ in 0..DEEPEST {
+            match self.solids.iter().find_map(|solid| solid.pushed_out(at, TOUCH_M)) {
+                Some(next) => at = next,
+                None => break,
+            }
+        }
+        at
+    }
+
+    /// Whether a point lies in a solid.
+    pub fn holds(&self, point: Point) -> bool {
+        self.solids.iter().any(|solid| solid.pushed_out(point, TOUCH_M).is_some())
+    }
+
+    /// Whether a segment enters no solid.
+    pub fn is_open(&self, from: Point, to: Point) -> bool {
+        !self.solids.iter().any(|solid| solid.is_entered_by(from, to, TOUCH_M))
+    }
+
+    /// Calls `go` with the ends of the straight pieces that lead from one point to another round every solid.
+    pub fn along(&self, from: Point, to: Point, mut go: impl FnMut(Point)) {
+        let to = self.outside(to);
+        if self.first_entered(from, to).is_none() {
+            return go(to);
+        }
+        let mut way = Vec::new();
+        self.bend(from, to, 0, &mut way);
+        way.into_iter().for_each(go);
+    }
+
+    fn bend(&self, from: Point, to: Point, depth: usize, way: &mut Vec<Point>) {
+        let entered = self.first_entered(from, to);
+        let Some(solid) = entered.filter(|_| depth < DEEPEST && way.len() < MOST_BENDS) else {
+            return way.push(to);
+        };
+        let mut at = from;
+        for corner in solid.way_round(from, to) {
+            let corner = self.outside(corner);
+            self.bend(at, corner, depth + 1, way);
+            at = corner;
+        }
+        // What is left of the move lies outside this solid, or touches it.
+        if depth + 1 < DEEPEST { self.bend_past(solid, at, to, depth + 1, way) } else { way.push(to) }
+    }
+
+    fn bend_past(&self, passed: &Solid, from: Point, to: Point, depth: usize, way: &mut Vec<Point>) {
+        if passed.is_entered_by(from, to, TOUCH_M) {
+            way.push(to);
+        } else {
+            self.bend(from, to, depth, way);
+        }
+    }
+
+    fn first_entered(&self, from: Point, to: Point) -> Option<&Solid> {
+        let mut entered = self.solids.iter().filter(|solid| solid.is_entered_by(from, to, TOUCH_M));
+        let first = entered.next()?;
+        Some(entered.fold(
+            first,
+            |best, solid| {
+                if solid.met_at(from, to) < best.met_at(from, to) { solid } else { best }
+            },
+        ))
+    }
+}

@@ -1,0 +1,222 @@
+//! A convex solid with rounded corners: what a cable and a robot cannot enter.
+
+use crate::{
+    geometry::{Point, Vector},
+    polyline::nearest_on_segment,
+    shape::{edges, ring_area_m2},
+};
+use std::f64::consts::TAU;
+
+/// Directions of the tangents that make the outline of a round solid.
+const TANGENTS: u32 = 24;
+
+/// All points within a radius of a point, a segment or a convex polygon.
+#[derive(Debug, Clone)]
+pub struct Solid {
+    /// One point, two points, or a convex polygon, counter-clockwise.
+    core: Vec<Point>,
+    radius_m: f64,
+    middle: Point,
+    reach_m: f64,
+    /// A polygon about it that touches it, counter-clockwise.
+    outline: Vec<Point>,
+}
+
+impl Solid {
+    /// The solid about a core that is not empty.
+    pub fn new(mut core: Vec<Point>, radius_m: f64) -> Self {
+        if core.len() > 2 && ring_area_m2(&core) < 0.0 {
+            core.reverse();
+        }
+        let sum: Vector = core.iter().map(|p| p.coords).sum();
+        let middle = Point::from(sum / core.len() as f64);
+        let reach_m = core.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max) + radius_m;
+        let outline = if radius_m > 0.0 { outline_of(&core, radius_m) } else { core.clone() };
+        Self { core, radius_m, middle, reach_m, outline }
+    }
+
+    /// Whether a segment surely stays further away than `room_m`.
+    pub fn is_far_from(&self, a: Point, b: Point, room_m: f64) -> bool {
+        let nearest = nearest_on_segment(a, b, self.middle);
+        let far = self.reach_m + room_m;
+        (nearest - self.middle).norm_squared() > far * far
+    }
+
+    /// Distance from a segment to the solid, metres; not above zero if it enters.
+    pub fn distance_m(&self, a: Point, b: Point) -> f64 {
+        if let [only] = self.core[..] {
+            return (nearest_on_segment(a, b, only) - only).norm() - self.radius_m;
+        }
+        let from_edges =
+            self.core_edges().map(|(p, q)| between_segments_m(a, b, p, q)).fold(f64::INFINITY, f64::min);
+        let inside = self.core.len() > 2 && clip(&self.core, a, b, 0.0).is_some();
+        if inside { -from_edges - self.radius_m } else { from_edges - self.radius_m }
+    }
+
+    /// Whether a segment goes through the solid, more than touching it.
+    pub fn is_entered_by(&self, a: Point, b: Point, slack_m: f64) -> bool {
+        if self.is_far_from(a, b, 0.0) {
+            return false;
+        }
+        if self.radius_m > slack_m {
+            return self.distance_m(a, b) < -slack_m;
+        }
+        self.core.len() > 2 && clip(&self.core, a, b, slack_m).is_some()
+    }
+
+    /// Share of the segment at which it comes near; for sorting.
+    pub fn met_at(&self, a: Point, b: Point) -> f64 {
+        clip(&self.outline, a, b, 0.0).map_or(0.0, |(first, _)| first)
+    }
+
+    /// The nearest point outside for a point inside; `None` for a point that is outside already.
+    pub fn pushed_out(&self, point: Point, slack_m: f64) -> Option<Point> {
+        if self.is_far_from(point, point, 0.0) || self.distance_m(point, point) >= -slack_m {
+            return None;
+        }
+        let inside_core = self.core.len() > 2 && clip(&self.core, point, point, 0.0).is_some();
+        let (nearest, normal) = self
+            .core_edges()
+            .map(|(p, q)| (nearest_on_segment(p, q, point), Vector::new(q.y - p.y, p.x - q.x)))
+            .min_by(|(p, _), (q, _)| (p - point).norm_squared().total_cmp(&(q - point).norm_squared()))?;
+        let away = if inside_core { normal } else { point - nearest };
+        let away = away.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector::x);
+        Some(nearest + away * (self.radius_m + 2.0 * slack_m))
+    }
+
+    /// Corners of the shorter way round, for a segment that goes through.
+    pub fn way_round(&self, a: Point, b: Point) -> Vec<Point> {
+        let Some((first, last)) = clip(&self.outline, a, b, 0.0) else { return Vec::new() };
+        let (enter, leave) = (a + (b - a) * first, a + (b - a) * last);
+        let (from, to) = (self.nearest_edge(enter), self.nearest_edge(leave));
+        let left = self.corners(from, to);
+        let mut right = self.corners(to, from);
+        right.reverse();
+        if way_m(enter, &left, leave) <= way_m(enter, &right, leave) { left } else { right }
+    }
+
+    /// Corners passed when walking counter-clockwise from one edge of the outline to another.
+    fn corners(&self, from: usize, to: usize) -> Vec<Point> {
+        let n = self.outline.len();
+        let steps = (to + n - from) % n;
+        (1..=steps).map(|k| self.outline[(from + k) % n]).collect()
+    }
+
+    fn nearest_edge(&self, point: Point) -> usize {
+        edges(&self.outline)
+            .enumerate()
+            .min_by(|(_, (p, q)), (_, (r, s))| {
+                let here = (nearest_on_segment(*p, *q, point) - point).norm_squared();
+                here.total_cmp(&(nearest_on_segment(*r, *s, point) - point).norm_squared())
+            })
+            .map_or(0, |(index, _)| index)
+    }
+
+    fn core_edges(&self) -> impl Iterator<Item = (Point, Point)> + '_ {
+        edges(&self.core)
+    }
+}
+
+/// A polygon of tangents: those at the edges of the core and some all round.
+fn outline_of(core: &[Point], radius_m: f64) -> Vec<Point> {
+    let mut bearings: Vec<f64> = (0..TANGENTS).map(|k| TAU * f64::from(k) / f64::from(TANGENTS)).collect();
+    if core.len() > 1 {
+        bearings.extend(edges(core).map(|(p, q)| (p.x - q.x).atan2(q.y - p.y).rem_euclid(TAU)));
+    }
+    bearings.sort_by(f64::total_cmp);
+    bearings.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
+    let tangent = |bearing: f64| {
+        let normal = Vector::new(bearing.cos(), bearing.sin());
+        let far = core.iter().map(|p| normal.dot(&p.coords)).fold(f64::NEG_INFINITY, f64::max);
+        (normal, far + radius_m)
+    };
+    let n = bearings.len();
+    (0..n)
+        .map(|k| {
+            let ((m, g), (o, h)) = (tangent(bearings[k]), tangent(bearings[(k + 1) % n]));
+            let det = m.perp(&o);
+            Point::new((g * o.y - h * m.y) / det, (m.x * h - o.x * g) / det)
+        })
+        .collect()
+}
+
+/// The part of a segment within a convex polygon that is shrunk by a slack, as shares of its length.
+fn clip(ring: &[Point], a: Point, b: Point, slack_m: f64) -> Option<(f64, f64)> {
+    let along = b - a;
+    let (mut first, mut last) = (0.0_f64, 1.0_f64);
+    for (p, q) in edges(ring) {
+        let edge = q - p;
+        let scale = edge.norm();
+        if scale == 0.0 {
+            continue;
+        }
+        // Inside is left of every edge.
+        let depth = edge.perp(&(a - p)) / scale - slack_m;
+        let rate = edge.perp(&along) / scale;
+        if rate == 0.0 {
+            if depth <= 0.0 {
+                return None;
+            }
+        } else if rate > 0.0 {
+            first = first.max(-depth / rate);
+        } else {
+            last = last.min(-depth / rate);
+        }
+        if first >= last && !(along.norm_squared() == 0.0 && first <= last) {
+            return None;
+        }
+    }
+    Some((first, last))
+}
+
+/// Distance between two segments, metres; 0 if they cross.
+pub(super) fn between_segments_m(a: Point, b: Point, p: Point, q: Point) -> f64 {
+    let (u, v) = (b - a, q - p);
+    let sides = |o: Point, d: Vector, s: Point, t: Point| d.perp(&(s - o)) * d.perp(&(t - o)) < 0.0;
+    if sides(a, u, p, q) && sides(p, v, a, b) {
+        return 0.0;
+    }
+    let gap = |s: Point, t: Point, x: Point| (nearest_on_segment(s, t, x) - x).norm_squared();
+    gap(a, b, p).min(gap(a, b, q)).min(gap(p, q, a)).min(gap(p, q, b)).sqrt()
+}
+
+fn way_m(from: Point, corners: &[Point], to: Point) -> f64 {
+    let mut last = from;
+    let mut sum = 0.0;
+    for corner in corners.iter().chain(std::iter::once(&to)) {
+        sum += (corner - last).norm();
+        last = *corner;
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_round_a_disc_takes_the_side_on_which_the_segment_passes_its_centre() {
+        let disc = Solid::new(vec![Point::origin()], 0.5);
+        let (a, b) = (Point::new(-2.0, 0.1), Point::new(2.0, 0.1));
+        assert!(disc.is_entered_by(a, b, 1e-9));
+        let way = disc.way_round(a, b);
+        assert!(way.len() > 4 && way.iter().all(|p| p.y > 0.0 && p.coords.norm() >= 0.5), "{way:?}");
+    }
+
+    #[test]
+    fn a_point_inside_is_pushed_to_the_nearest_edge() {
+        let square = vec![Point::new(0., 0.), Point::new(2., 0.), Point::new(2., 2.), Point::new(0., 2.)];
+        let out = Solid::new(square.clone(), 0.0).pushed_out(Point::new(1.0, 0.2), 1e-9).unwrap();
+        assert!((out - Point::new(1.0, 0.0)).norm() < 1e-6, "{out}");
+        let out = Solid::new(square, 0.3).pushed_out(Point::new(1.0, -0.2), 1e-9).unwrap();
+        assert!((out - Point::new(1.0, -0.3)).norm() < 1e-6, "{out}");
+    }
+
+    #[test]
+    fn a_segment_along_an_edge_does_not_enter() {
+        let square = vec![Point::new(0., 0.), Point::new(2., 0.), Point::new(2., 2.), Point::new(0., 2.)];
+        let solid = Solid::new(square, 0.0);
+        assert!(!solid.is_entered_by(Point::new(-1.0, 0.0), Point::new(3.0, 0.0), 1e-9));
+        assert!(solid.is_entered_by(Point::new(-1.0, 0.1), Point::new(3.0, 0.1), 1e-9));
+    }
+}

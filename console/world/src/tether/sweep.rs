@@ -1,0 +1,193 @@
+//! What happens first to the free piece of a cable while its end moves in a straight line.
+
+use super::{
+    cable::{SLACK_M, tangent_point},
+    ground::Post,
+};
+use crate::geometry::{Point, Vector, wrap_angle_rad};
+
+/// What the free piece leaves from: the anchor, or the last post.
+#[derive(Debug, Clone, Copy)]
+pub struct Base {
+    pub center: Point,
+    pub radius_m: f64,
+    /// 1: the cable turns counter-clockwise round it; -1: clockwise; 0: the anchor.
+    pub side: f64,
+    pub out_rad: f64,
+    /// Infinite for the anchor, which never lets go.
+    pub wrap_rad: f64,
+    pub post: Option<usize>,
+}
+
+/// What comes next in a move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Event {
+    /// Nothing: the end gets where it goes.
+    Arrive,
+    /// The last bend is wound off.
+    LetGo,
+    /// The free piece becomes tangent to a post.
+    Touch { post: usize, side: f64, bearing_rad: f64, at: Point },
+}
+
+impl Base {
+    /// Where the free piece begins when it has some bearing.
+    pub fn leaves_at(&self, bearing_rad: f64) -> Point {
+        tangent_point(self.center, self.radius_m, self.side, bearing_rad)
+    }
+
+    /// Bearing of the free piece to a point; `None` if the point is the base itself.
+    pub fn bearing_to(&self, point: Point) -> Option<f64> {
+        let way = point - self.center;
+        let far = way.norm();
+        (far > 1e-12).then(|| way.y.atan2(way.x) + (self.side * self.radius_m / far).clamp(-1.0, 1.0).asin())
+    }
+
+    /// Angle by which the free piece turns until its end is at `to`, radians, on a move from `from`.
+    pub fn turn_to(&self, from: Point, to: Point) -> f64 {
+        let Some(bearing_rad) = self.bearing_to(to) else { return 0.0 };
+        let turn = wrap_angle_rad(bearing_rad - self.out_rad);
+        // Seen from close by, a move can turn it by nearly half a turn; the sense is that of the motion.
+        let sense = direction(self.out_rad).perp(&(to - from));
+        if turn.abs() > 3.0 && turn * sense < 0.0 {
+            turn - std::f64::consts::TAU.copysign(turn)
+        } else {
+            turn
+        }
+    }
+}
+
+pub fn direction(bearing_rad: f64) -> Vector {
+    Vector::new(bearing_rad.cos(), bearing_rad.sin())
+}
+
+/// The first event of a move that still has to turn the free piece by `turn_rad`.
+///
+/// `let_go` are posts that this very move has wound off: a straight move cannot meet them again.
+pub fn next_event(
+    posts: &[Post],
+    base: &Base,
+    from: Point,
+    to: Point,
+    turn_rad: f64,
+    let_go: &[usize],
+) -> Event {
+    let sense = if turn_rad < 0.0 { -1.0 } else { 1.0 };
+    let end = base.leaves_at(base.out_rad + turn_rad);
+    let left_over_rad = base.wrap_rad - turn_rad.abs();
+    let lets_go = sense * base.side < 0.0 && left_over_rad * (to - end).norm() < -SLACK_M;
+    let sweep = Sweep::new(base, from, to, turn_rad, sense);
+    let touched = sweep.first_touched(posts, |k| base.post == Some(k) || let_go.contains(&k));
+    match touched {
+        Some(touch) if !lets_go || touch.after_rad < base.wrap_rad => Event::Touch {
+            post: touch.post,
+            side: sense,
+            bearing_rad: base.out_rad + sense * touch.after_rad,
+            at: touch.at,
+        },
+        _ if lets_go => Event::LetGo,
+        _ => Event::Arrive,
+    }
+}
+
+/// The area that the free piece sweeps in one turn about its base.
+struct Sweep<'a> {
+    base: &'a Base,
+    sense: f64,
+    turn_rad: f64,
+    from: Point,
+    to: Point,
+    /// Unit vector of the move.
+    along: Vector,
+    /// First and last position of the free piece: where it begins, its direction.
+    start: (Point, Vector),
+    end: (Point, Vector),
+    /// How far before the start and beyond the end a tangent may lie and still count, radians.
+    early_rad: f64,
+    late_rad: f64,
+}
+
+struct Touch {
+    post: usize,
+    after_rad: f64,
+    far_m: f64,
+    at: Point,
+}
+
+impl<'a> Sweep<'a> {
+    fn new(base: &'a Base, from: Point, to: Point, turn_rad: f64, sense: f64) -> Self {
+        let out_rad = base.out_rad + turn_rad;
+        let start = (base.leaves_at(base.out_rad), direction(base.out_rad));
+        let end = (base.leaves_at(out_rad), direction(out_rad));
+        let reach_m = |at: Point, from: Point| (at - from).norm().max(SLACK_M);
+        Self {
+            base,
+            sense,
+            turn_rad,
+            from,
+            to,
+            along: (to - from).normalize(),
+            early_rad: 0.25 * SLACK_M / reach_m(from, start.0),
+            late_rad: 0.5 * SLACK_M / reach_m(to, end.0),
+            start,
+            end,
+        }
+    }
+
+    fn first_touched(&self, posts: &[Post], is_out: impl Fn(usize) -> bool) -> Option<Touch> {
+        let mut first: Option<Touch> = None;
+        for (k, post) in posts.iter().enumerate() {
+            if !self.may_touch(post) || is_out(k) {
+                continue;
+            }
+            let Some(touch) = self.touch(k, post) else { continue };
+            let is_first = first.as_ref().is_none_or(|best| {
+                let same = (touch.after_rad - best.after_rad).abs() <= self.early_rad;
+                if same { touch.far_m < best.far_m } else { touch.after_rad < best.after_rad }
+            });
+            if is_first {
+                first = Some(touch);
+            }
+        }
+        first
+    }
+
+    /// Cheap test: the post reaches into the cone of the sweep, on the near side of the move.
+    fn may_touch(&self, post: &Post) -> bool {
+        let room_m = post.radius_m + SLACK_M;
+        // The free piece leaves from another point of a round base at every bearing.
+        let wide_m = room_m + 2.0 * self.base.radius_m;
+        let side_of = |o: Point, d: Vector| self.sense * d.perp(&(post.center - o));
+        side_of(self.from, self.along) >= -room_m
+            && side_of(self.start.0, self.start.1) >= -wide_m
+            && side_of(self.end.0, self.end.1) <= wide_m
+    }
+
+    /// The common tangent of base and post, if the free piece passes it on this move.
+    fn touch(&self, k: usize, post: &Post) -> Option<Touch> {
+        let way = post.center - self.base.center;
+        let far = way.norm();
+        let offset = self.sense * post.radius_m - self.base.side * self.base.radius_m;
+        if far <= 1e-12 || offset.abs() > far + SLACK_M {
+            return None;
+        }
+        let bearing_rad = way.y.atan2(way.x) - (offset / far).clamp(-1.0, 1.0).asin();
+        let after_rad = self.sense * wrap_angle_rad(bearing_rad - self.base.out_rad);
+        if after_rad < -self.early_rad || after_rad > self.turn_rad.abs() + self.late_rad {
+            return None;
+        }
+        let at = tangent_point(post.center, post.radius_m, self.sense, bearing_rad);
+        let leaves = self.base.leaves_at(bearing_rad);
+        let (far_m, free) = ((at - leaves).norm(), direction(bearing_rad));
+        let across = free.perp(&self.along);
+        // Beyond the line of the move the end passes before the post.
+        let is_near = if across.abs() > 1e-9 {
+            self.sense * self.along.perp(&(at - self.from)) >= 0.0
+        } else {
+            // The move leads along the free piece itself: away from the base, or towards and past it.
+            let end = if free.dot(&self.along) > 0.0 { self.to } else { self.from };
+            far_m <= (end - leaves).norm() + SLACK_M
+        };
+        is_near.then_some(Touch { post: k, after_rad, far_m, at })
+    }
+}

@@ -1,0 +1,16 @@
+//! Goal planners that always arrive, or prove that nobody can.
+#![forbid(unsafe_code)]
+
+pub mod navfn;
+pub mod shortest;
+
+mod flight;
+mod ground;
+pub mod marching;
+mod navigation;
+mod raster;
+
+#[cfg(test)]
+mod trial;
+
+planner_api::export_planners!(navfn::Navfn, shortest::Shortest);

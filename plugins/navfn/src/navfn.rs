@@ -1,0 +1,97 @@
+//! The navigation function.
+
+use crate::{
+    flight::Flyer,
+    ground::{Ground, plan_of, refusal},
+    navigation::Navigation,
+};
+use field::params as p;
+use planner_api::{
+    Caps, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site, int,
+};
+use world::shortest::{GrownFloor, NoWay, Way};
+
+/// A way is pulled taut about what lies within so many cells of it.
+const REACH_CELLS: f64 = 4.0;
+
+const CELLS: ParamSpec = int("cells", "Cells along the floor", "", 20, 2000, 240)
+    .help("Cells along the longer side of the floor. More of them find narrower ways and take more time.")
+    .group("Plan");
+
+/// Fast marching from the goal over the cells of the floor, down the field from the robot, and the way pulled taut.
+///
+/// The field is kept: an obstacle that is discovered repairs it. Where the cells show no way, the exact search has the
+/// last word, so it arrives or proves that nobody can.
+pub struct Navfn {
+    clearance_m: f64,
+    cells: usize,
+    navigation: Option<Navigation>,
+    flyer: Flyer,
+}
+
+impl Planner for Navfn {
+    const ID: &'static str = "navfn";
+    const NAME: &'static str = "Navigation function";
+    const ABOUT: &'static str = "Eikonal distance to the goal on a grid, repaired when the map changes, and string pulling; \
+                                 proves it when there is no way.";
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
+    const PARAMS: &'static [ParamSpec] =
+        &[CELLS, p::CLEARANCE, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
+
+    fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
+        Ok(Self {
+            clearance_m: config.float("clearance_m"),
+            cells: config.int("cells").max(2) as usize,
+            navigation: None,
+            flyer: Flyer::new(p::flight(config), site),
+        })
+    }
+
+    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
+        self.clearance_m = config.float("clearance_m");
+        self.cells = config.int("cells").max(2) as usize;
+        self.flyer.set(p::flight(config));
+        Ok(())
+    }
+
+    fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
+        let ground = Ground::new(request, self.clearance_m)?;
+        let floor = ground.grown();
+        self.way(&ground, &floor, ctx).map(|way| plan_of(&way)).map_err(|no_way| refusal(no_way, ctx))
+    }
+
+    fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
+        self.flyer.step(sensed, ctx)
+    }
+}
+
+impl Navfn {
+    fn way(&mut self, ground: &Ground, floor: &GrownFloor, ctx: &Ctx<'_>) -> std::result::Result<Way, NoWay> {
+        let mut keep_going = || ctx.check().is_ok();
+        let navigation = match &mut self.navigation {
+            Some(kept) => {
+                kept.update(ground, floor, self.cells);
+                kept
+            }
+            none => none.insert(Navigation::new(ground, floor, self.cells)),
+        };
+        let before = navigation.n_settled();
+        let way = navigation.way(ground.start, floor, &mut keep_going);
+        ctx.scalar("cells_settled", navigation.n_settled().saturating_sub(before) as f64, "");
+        let reach_m = REACH_CELLS * navigation.cell_m();
+        let taut = way.and_then(|way| floor.pulled_taut(&way, reach_m, &mut keep_going).ok());
+        if let Some(way) = taut {
+            return Ok(way);
+        }
+        let exact = floor.shortest(ground.start, ground.goal, &mut keep_going)?;
+        let message = format!(
+            "the cells of {:.2} m are too coarse for the only way; the exact search found it",
+            navigation.cell_m()
+        );
+        ctx.log(LogLevel::Info, &message);
+        Ok(exact)
+    }
+}
+
+#[cfg(test)]
+mod tests;

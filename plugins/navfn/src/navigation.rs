@@ -1,0 +1,163 @@
+//! The navigation function of a goal, kept between plans and repaired when the map changes.
+
+use crate::{
+    ground::{Ground, Solid},
+    marching::Field,
+    raster::Raster,
+};
+use world::{Boundary, Point, Vector, shortest::GrownFloor};
+
+/// Distances within so many cells of the goal are exact, if nothing is in the way: a march is worst near its source.
+const SOURCE_CELLS: usize = 8;
+/// A way down the field may take this many steps for each cell.
+const STEPS_PER_CELL: usize = 4;
+/// Length of a step down the field, in cells.
+const STEP_CELLS: f64 = 0.7;
+
+/// Distances to a goal over the cells of a floor.
+pub struct Navigation {
+    goal: Point,
+    boundary: Boundary,
+    wall_keep_m: f64,
+    cells: usize,
+    raster: Raster,
+    solids: Vec<Solid>,
+    field: Field,
+}
+
+impl Navigation {
+    /// The navigation function of a ground with so many cells along its longer side.
+    pub fn new(ground: &Ground, floor: &GrownFloor, cells: usize) -> Self {
+        let mut raster = Raster::new(&ground.boundary, ground.wall_keep_m, cells);
+        for solid in &ground.solids {
+            raster.cover(solid, &mut Vec::new());
+        }
+        Self {
+            goal: ground.goal,
+            boundary: ground.boundary.clone(),
+            wall_keep_m: ground.wall_keep_m,
+            cells,
+            field: field_of(&raster, ground.goal, floor),
+            raster,
+            solids: ground.solids.clone(),
+        }
+    }
+
+    /// Edge of a cell, metres.
+    pub fn cell_m(&self) -> f64 {
+        self.raster.cell_m()
+    }
+
+    /// Number of cells settled since the field was made.
+    pub fn n_settled(&self) -> usize {
+        self.field.n_settled()
+    }
+
+    /// Takes over a changed ground; the field is repaired, or made anew if goal or wall changed.
+    pub fn update(&mut self, ground: &Ground, floor: &GrownFloor, cells: usize) {
+        let same_wall =
+            self.boundary == ground.boundary && (self.wall_keep_m - ground.wall_keep_m).abs() < 1e-12;
+        if self.goal != ground.goal || !same_wall || self.cells != cells {
+            *self = Self::new(ground, floor, cells);
+            return;
+        }
+        let (mut blocked, mut freed) = (Vec::new(), Vec::new());
+        for index in 0..self.solids.len().max(ground.solids.len()) {
+            let (old, new) = (self.solids.get(index), ground.solids.get(index));
+            if old != new {
+                // First on, then off: what stays covered does not change.
+                if let Some(solid) = new {
+                    self.raster.cover(solid, &mut blocked);
+                }
+                if let Some(solid) = old {
+                    self.raster.uncover(solid, &mut freed);
+                }
+            }
+        }
+        self.solids.clone_from(&ground.solids);
+        // A cell may have been both.
+        let is_blocked: Vec<bool> = self.raster.blocked().collect();
+        blocked.retain(|cell| is_blocked[*cell]);
+        freed.retain(|cell| !is_blocked[*cell]);
+        if blocked.iter().chain(&freed).any(|cell| self.field.is_source(*cell)) {
+            self.field = field_of(&self.raster, self.goal, floor);
+        } else {
+            self.field.block(&blocked);
+            self.field.free(&freed);
+        }
+    }
+
+    /// A way down the field from a start to the goal; it may cut corners by less than a cell. None if the cells show
+    /// no way, which may be their own fault.
+    pub fn way(
+        &mut self,
+        start: Point,
+        floor: &GrownFloor,
+        keep_going: &mut dyn FnMut() -> bool,
+    ) -> Option<Vec<Point>> {
+        let mut near: Vec<(usize, f64)> = self.raster.free_near(start, 2).collect();
+        near.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let seen = near.iter().find(|(cell, _)| floor.is_free(start, self.raster.center(*cell)));
+        let (first, _) = *seen?;
+        self.field.march(first, keep_going);
+        let mut at = start;
+        let mut cell = first;
+        let mut way = vec![start, self.raster.center(first)];
+        for _ in 0..STEPS_PER_CELL * self.raster.columns().pow(2) {
+            if !self.field.distance_m(cell).is_finite() {
+                return None;
+            }
+            if self.field.is_source(cell) {
+                way.push(self.goal);
+                return Some(way);
+            }
+            at = self.step_down(if way.len() == 2 { way[1] } else { at }, cell);
+            cell = self.raster.cell_at(at);
+            way.push(at);
+        }
+        None
+    }
+
+    /// A step along the gradient, or to the lowest neighbour where the gradient leads astray.
+    fn step_down(&self, at: Point, cell: usize) -> Point {
+        let here_m = self.field.distance_m(cell);
+        let next = at + self.downhill(cell) * (STEP_CELLS * self.raster.cell_m());
+        let next_cell = self.raster.cell_at(next);
+        // In the same cell the way goes straight on, so it leaves it.
+        if next_cell == cell || self.field.distance_m(next_cell) < here_m {
+            return next;
+        }
+        let lowest = self.around(cell).into_iter().min_by(|a, b| self.order(*a, *b));
+        self.raster.center(lowest.unwrap_or(cell))
+    }
+
+    fn order(&self, a: usize, b: usize) -> std::cmp::Ordering {
+        self.field.distance_m(a).total_cmp(&self.field.distance_m(b))
+    }
+
+    fn around(&self, cell: usize) -> [usize; 4] {
+        let columns = self.raster.columns();
+        // A free cell is never in the frame.
+        [cell - 1, cell + 1, cell - columns, cell + columns]
+    }
+
+    /// Unit vector against the upwind gradient.
+    fn downhill(&self, cell: usize) -> Vector {
+        let here_m = self.field.distance_m(cell);
+        let [west, east, south, north] =
+            self.around(cell).map(|c| (here_m - self.field.distance_m(c)).max(0.0));
+        let along = |back: f32, ahead: f32| f64::from(if ahead >= back { ahead } else { -back });
+        Vector::new(along(west, east), along(south, north)).try_normalize(0.0).unwrap_or_else(Vector::zeros)
+    }
+}
+
+/// The field of a goal that is yet to be marched.
+fn field_of(raster: &Raster, goal: Point, floor: &GrownFloor) -> Field {
+    let spare_m = floor.spare_m(goal);
+    let sees =
+        |cell: usize, distance_m: f64| distance_m <= spare_m || floor.is_free(goal, raster.center(cell));
+    let reach = ((spare_m / raster.cell_m()) as usize).clamp(1, SOURCE_CELLS);
+    let sources: Vec<(usize, f64)> =
+        raster.free_near(goal, reach).filter(|(cell, distance_m)| sees(*cell, *distance_m)).collect();
+    Field::new(raster.columns(), raster.cell_m(), raster.blocked().collect(), &sources)
+}

@@ -1,0 +1,65 @@
+//! The papers' tables and the tuning of parameters, over the plugin boundary.
+
+use crate::bench::Bench;
+use serde_json::Value;
+
+fn rows(bench: &Bench, arguments: &[&str]) -> Vec<Value> {
+    let answer = bench.tankops(&[&["reproduce"], arguments, &["--json"]].concat());
+    assert_eq!(answer.code, Some(0), "{answer:?}");
+    answer.json().as_array().unwrap().clone()
+}
+
+fn without_times(rows: Vec<Value>) -> Vec<Value> {
+    rows.into_iter().filter(|row| !row["metric"].as_str().unwrap().contains("time")).collect()
+}
+
+#[test]
+fn a_table_does_not_depend_on_the_number_of_threads() {
+    let bench = Bench::new();
+    let asked = ["wang-table1", "--layouts", "3", "--first-seed", "70", "--case", "d3/disk", "--threads"];
+    let one = without_times(rows(&bench, &[&asked[..], &["1"]].concat()));
+    let three = without_times(rows(&bench, &[&asked[..], &["3"]].concat()));
+    assert!(one.len() > 100);
+    assert_eq!(one, three);
+    let printed =
+        one.iter().find(|row| row["method"] == "rpf/gated+ir" && row["metric"] == "precision").unwrap();
+    assert_eq!(printed["paper"], 0.9506);
+}
+
+#[test]
+fn our_followers_keep_clear_on_layouts_that_nobody_chose() {
+    let rows = rows(&Bench::new(), &["spiral-followers", "--layouts", "8", "--first-seed", "4242"]);
+    let of = |metric: &str| rows.iter().filter(|row| row["metric"] == metric).collect::<Vec<_>>();
+    for row in of("collisions").into_iter().chain(of("wall_exits")) {
+        assert_eq!(row["ours"], 0.0, "{row}");
+    }
+    assert_eq!(of("ok_rate").len(), 18);
+}
+
+#[test]
+fn names_and_cases_that_do_not_exist_are_answered_with_what_does() {
+    let bench = Bench::new();
+    let listed = bench.tankops(&["reproduce", "--list", "--json"]).json();
+    assert!(listed.as_array().unwrap().iter().any(|study| study["name"] == "wang-table2"));
+    let misspelt = bench.tankops(&["reproduce", "wang-tabel1"]);
+    assert!(misspelt.code == Some(2) && misspelt.err.contains("wang-table1"), "{misspelt:?}");
+    let no_case = bench.tankops(&["reproduce", "wang-table1", "--case", "d9"]);
+    assert!(no_case.code == Some(2) && no_case.err.contains("--case"), "{no_case:?}");
+}
+
+#[test]
+fn tuning_repeats_and_is_judged_on_other_layouts() {
+    let bench = Bench::new();
+    let asked = "tune --planner rpf --on wang-d3 --tune k_rep --tune rho_0_m --set wall_gain=0 --layouts 3 \
+                 --test-layouts 4 --generations 2 --json";
+    let asked: Vec<&str> = asked.split_whitespace().collect();
+    let tuned = bench.tankops(&asked).json();
+    assert_eq!(tuned["parameters"], bench.tankops(&asked).json()["parameters"]);
+    let loss = &tuned["training_loss"];
+    assert!(loss["tuned"].as_f64() <= loss["start"].as_f64(), "{loss}");
+    assert!(
+        tuned["rows"].as_array().unwrap().iter().any(|row| row["method"] == "rpf/tuned" && row["n"] == 4)
+    );
+    let overlap = bench.tankops(&[&asked[..], &["--test-first-seed", "2"]].concat());
+    assert!(overlap.code == Some(2) && overlap.err.contains("overlap"), "{overlap:?}");
+}
