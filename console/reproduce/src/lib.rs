@@ -7,6 +7,7 @@
 mod bench;
 pub mod fields;
 mod planners;
+pub mod positioning;
 mod row;
 mod sample;
 pub mod spiral;
