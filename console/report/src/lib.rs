@@ -11,6 +11,7 @@ pub mod fold;
 pub mod human;
 mod scanned;
 pub mod summary;
+mod tethered;
 mod tracking;
 mod turning;
 

@@ -127,6 +127,7 @@ fn config() -> MissionConfig {
         range_sigma_ratio: 0.01,
         scan: ScanConfig::default(),
         planner: PlannerChoice { id: "straight".into(), parameters: Parameters::new() },
+        tether: None,
         fallback: None,
         attended: true,
     }

@@ -346,6 +346,7 @@ fn opened() -> RunOpened {
             gyro_sigma_rad_per_s: 0.001,
             range_sigma_ratio: 0.01,
             planner: PlannerChoice { id: "rpf".into(), parameters: Parameters::new() },
+            tether: None,
             fallback: None,
             attended: false,
         },

@@ -68,6 +68,7 @@ fn config() -> SimConfig {
             outages_s: vec![(3.0, 4.0)],
         }),
         tick_s: 0.1,
+        tether_anchor: None,
     }
 }
 

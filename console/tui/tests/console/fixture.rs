@@ -92,6 +92,7 @@ pub fn config() -> MissionConfig {
         gyro_sigma_rad_per_s: 0.001,
         range_sigma_ratio: 0.01,
         planner: choice("rpf"),
+        tether: None,
         fallback: None,
         attended: true,
     }
