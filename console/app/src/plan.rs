@@ -10,14 +10,17 @@ use crate::{
 };
 use anyhow::Context;
 use mission::{Cause, Fault, MissionConfig, Parameters, TaskConfig, preview};
-use planner_api::{Code, Plan};
+use planner_api::{Code, Plan, TetherLimits};
 use planner_host::{Host, HostConfig, PluginDirs};
 use serde::Serialize;
 use std::{
     process::ExitCode,
     time::{Duration, Instant},
 };
-use world::{Point, polyline};
+use world::{
+    Point, polyline,
+    tether::{Case, Certificate, Limits, certify},
+};
 
 /// Time that a planner may take for a plan of the whole floor.
 const COVER_WITHIN: Duration = Duration::from_secs(60);
@@ -36,8 +39,8 @@ struct Planned {
     complete: bool,
     /// Why it is not complete.
     reason: Option<String>,
-    /// Proof about the tether; absent without one.
-    certificate: Option<()>,
+    /// What the path does to a tether that runs from its anchor; absent for missions that are not to cover.
+    certificate: Option<Certificate>,
 }
 
 /// Some points of the path that serve one purpose: index of the first and of the last.
@@ -76,6 +79,7 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
         }
         Err(fault) => (partial_plan(&fault)?, Some(fault.message)),
     };
+    let certificate = certificate(scenario, &plan);
     Ok(Planned {
         planner: scenario.mission.planner.id.clone(),
         parameters: scenario.mission.planner.parameters.clone(),
@@ -86,7 +90,7 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
         plan_time_ms,
         complete: plan.complete,
         reason,
-        certificate: None,
+        certificate,
     })
 }
 
@@ -106,6 +110,30 @@ fn partial_plan(fault: &Fault) -> anyhow::Result<Plan> {
         }
         _ => Err(bad_input(fault.message.clone())),
     }
+}
+
+/// The judgement of a coverage plan, independent of its planner; without limits where there is no tether.
+fn certificate(scenario: &Scenario, plan: &Plan) -> Option<Certificate> {
+    let TaskConfig::Cover { anchor, .. } = &scenario.mission.task else { return None };
+    let drawing = scenario.sim.world.as_drawn();
+    let limits = scenario.mission.tether_limits();
+    let or_none = |limit: fn(&TetherLimits) -> f64| limits.as_ref().map_or(f64::INFINITY, limit);
+    let case = Case {
+        path: &plan.path,
+        anchor: *anchor,
+        cable: None,
+        boundary: &drawing.boundary,
+        obstacles: &drawing.obstacles,
+        room_m: scenario.mission.room_m(),
+        limits: Limits {
+            reel_m: or_none(|limits| limits.reel_m),
+            max_wrap_rad: or_none(|limits| limits.max_wrap_rad),
+            max_sum_wrap_rad: or_none(|limits| limits.max_sum_wrap_rad),
+        },
+        returns: true,
+        cuts: &plan.cuts,
+    };
+    certify(&case).ok()
 }
 
 /// The legs as the planner told them; a planner that told none has a single one.
@@ -133,18 +161,31 @@ fn lengths(planned: &Planned) -> String {
     if parts.is_empty() { String::new() } else { format!("legs      {}\n", parts.join(", ")) }
 }
 
+/// The certificate, for people.
+fn certified(certificate: &Certificate) -> String {
+    let Certificate { max_cable_m, eccentricity_m, max_wrap_rad, max_sum_wrap_rad, .. } = certificate;
+    let reasons: String = certificate.reasons.iter().map(|why| format!("          {why}\n")).collect();
+    format!(
+        "tether    {}, cable {max_cable_m:.2} m at most ({eccentricity_m:.2} m the least possible), wrap {:.0} deg on one obstacle, {:.0} deg in sum\n{reasons}",
+        if certificate.certified { "certified" } else { "NOT certified" },
+        max_wrap_rad.to_degrees(),
+        max_sum_wrap_rad.to_degrees(),
+    )
+}
+
 fn tell(planned: &Planned, json: bool) -> anyhow::Result<()> {
     if json {
         return say_line(&serde_json::to_string(planned).context("writing the plan as JSON")?);
     }
     let reason = planned.reason.as_ref().map(|reason| format!("reason    {reason}\n")).unwrap_or_default();
     say(&format!(
-        "planner   {}\nlength    {:.2} m, {} points\n{}time      {:.2} ms\ncomplete  {}\n{reason}",
+        "planner   {}\nlength    {:.2} m, {} points\n{}time      {:.2} ms\ncomplete  {}\n{reason}{}",
         planned.planner,
         planned.length_m,
         planned.path.len(),
         lengths(planned),
         planned.plan_time_ms,
         if planned.complete { "yes" } else { "no" },
+        planned.certificate.as_ref().map(certified).unwrap_or_default(),
     ))
 }
