@@ -12,7 +12,7 @@ use super::{
     source::Source,
     task,
 };
-use mission::{MissionConfig, ScanConfig, TaskConfig};
+use mission::{Locating, MissionConfig, ScanConfig, TaskConfig};
 use sim::{AeConfig, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
