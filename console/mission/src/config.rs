@@ -1,6 +1,6 @@
 //! What a mission is to do, and within which limits.
 
-use crate::link::Parameters;
+use crate::{link::Parameters, tether::TetherConfig};
 use planner_api::{Limits, Motion, TetherLimits};
 use positioning::{Aggregation, Forecast, RangeNoise, SolverKind};
 use serde::{Deserialize, Serialize};
@@ -44,6 +44,17 @@ pub enum TaskConfig {
         /// Distance from the anchor at which the robot counts as back, metres.
         tolerance_m: f64,
     },
+}
+
+impl TaskConfig {
+    /// The last place of the task; `None` for an empty path.
+    pub fn end(&self) -> Option<Point> {
+        match self {
+            Self::Goto { goal, .. } => Some(*goal),
+            Self::Follow { path, .. } => path.last().copied(),
+            Self::Cover { anchor, .. } => Some(*anchor),
+        }
+    }
 }
 
 /// What it takes for floor to count as scanned.
@@ -132,6 +143,9 @@ pub struct MissionConfig {
     /// What it takes for floor to count as scanned.
     #[serde(default)]
     pub scan: ScanConfig,
+    /// The tether; `None` for a robot without one.
+    #[serde(default)]
+    pub tether: Option<TetherConfig>,
     /// The planner that drives first.
     pub planner: PlannerChoice,
     /// The planner that takes over by itself after a fault, if any.
@@ -167,7 +181,7 @@ impl MissionConfig {
 
     /// What the tether bears, for planners; `None` without one.
     pub fn tether_limits(&self) -> Option<TetherLimits> {
-        None
+        self.tether.as_ref().map(TetherConfig::as_request)
     }
 }
 

@@ -17,6 +17,7 @@ mod locate;
 pub mod order;
 mod preview;
 mod task;
+pub mod tether;
 
 pub use config::{Locating, MissionConfig, PlannerChoice, ScanConfig, TaskConfig};
 pub use engine::{Input, Mission, Phase, Step};
@@ -26,3 +27,4 @@ pub use link::{
 };
 pub use order::Order;
 pub use preview::preview;
+pub use tether::TetherConfig;

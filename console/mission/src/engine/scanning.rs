@@ -6,14 +6,15 @@ use planner_api::Reason;
 use world::{CellRun, FloorMaker, Pose, Readings, Shape};
 
 impl Mission {
-    pub(super) fn look_around(&mut self, readings: &Readings) {
+    /// Puts what is seen on the chart; whether the chart has changed.
+    pub(super) fn look_around(&mut self, readings: &Readings) -> bool {
         // A found obstacle is placed by the estimated pose, so a lost robot does not draw maps.
         if self.locator.is_lost() {
-            return;
+            return false;
         }
         let found = self.chart.see(&readings.sightings, &self.locator.pose());
         if found.is_empty() {
-            return;
+            return false;
         }
         let shapes: Vec<Shape> = found.iter().filter_map(shape_of).collect();
         if self.planner.plan_due.is_none() && found.iter().any(|event| self.is_in_the_way(event)) {
@@ -21,6 +22,7 @@ impl Mission {
         }
         self.happened.extend(found);
         self.survey(&shapes);
+        true
     }
 
     /// An obstacle that was found is in the way with the clearance demanded; one that was planned for already and
