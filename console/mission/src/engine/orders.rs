@@ -93,7 +93,14 @@ impl Mission {
         if self.phase != Phase::Waiting {
             self.planner.plan_due = Some(Reason::Swap { from });
             self.plan_if_due(planner)?;
-            if matches!(self.phase, Phase::Held(HoldReason::PlannerFault { .. } | HoldReason::PlanRefused { .. } | HoldReason::Stuck { .. })) {
+            if matches!(
+                self.phase,
+                Phase::Held(
+                    HoldReason::PlannerFault { .. }
+                        | HoldReason::PlanRefused { .. }
+                        | HoldReason::Stuck { .. }
+                )
+            ) {
                 // The reason is gone with the planner; now it is the operator who lets the robot go on.
                 self.hold(HoldReason::Operator);
             }

@@ -186,6 +186,8 @@ pub enum Ask {
     Start,
     /// Go on.
     Resume,
+    /// Fly a plan that was refused because of the tether.
+    FlyUncertified,
     /// End the mission.
     Abort,
     /// Let another planner drive.
@@ -198,6 +200,7 @@ impl Ask {
         match self {
             Self::Start => Order::Start,
             Self::Resume => Order::Resume,
+            Self::FlyUncertified => Order::FlyUncertified,
             Self::Abort => Order::Abort,
             Self::Swap(choice) => Order::ChoosePlanner(choice.clone()),
         }

@@ -84,6 +84,7 @@ fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
             pen.paths(ctx);
             pen.drawings(ctx);
             pen.solid(ctx);
+            pen.tether(ctx);
             pen.robot(ctx);
             ctx.layer();
             pen.labels(ctx);
@@ -243,6 +244,14 @@ impl Pen<'_> {
         }
     }
 
+    /// The taut cable, above all else that does not move.
+    fn tether(&self, ctx: &mut Context<'_>) {
+        if let Some(tether) = &self.model().tether {
+            self.take_up(ctx, '~');
+            self.stroke(ctx, &tether.line, Role::Tether, false);
+        }
+    }
+
     /// The hull and the 95 % error, where they are large enough to be seen.
     fn robot(&self, ctx: &mut Context<'_>) {
         let Some(pose) = &self.model().position.pose else { return };
@@ -359,6 +368,7 @@ fn draw_legend(look: &Look, frame: &mut Frame, area: Rect) {
         (layers.shows(MapLayer::Accuracy), Role::Crit, if plain { "%%" } else { "██" }, "bad fixes"),
         (layers.shows(MapLayer::Trail), Role::Trail, line("⠤⠤", ".."), "trail"),
         (layers.shows(MapLayer::Plan), Role::Plan, line("⠄⠠", ",,"), "plan"),
+        (look.model.tether.is_some(), Role::Tether, line("⠤⠤", "~~"), "tether"),
         (true, Role::Obstacle, "# ", "obstacle"),
         (found, Role::Found, "? ", "found"),
         (layers.shows(MapLayer::Stations), Role::Station, "S ", "station"),
