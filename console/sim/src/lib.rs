@@ -8,11 +8,12 @@ pub mod config;
 pub mod simulator;
 
 mod motion;
+mod movers;
 mod sweep;
 
 mod chance;
 mod ranging;
 mod sight;
 
-pub use config::{AeConfig, Drive, NoiseModel, RobotConfig, SimConfig, Truth};
+pub use config::{AeConfig, Drive, Mover, NoiseModel, RobotConfig, SimConfig, Track, Truth};
 pub use simulator::Simulator;

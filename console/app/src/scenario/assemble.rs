@@ -12,7 +12,7 @@ use super::{
     task,
 };
 use mission::{MissionConfig, ScanConfig, TaskConfig};
-use sim::{AeConfig, RobotConfig, SimConfig};
+use sim::{AeConfig, Mover, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
 
@@ -42,6 +42,7 @@ struct Sections<'a> {
 struct Floor {
     boundary: Option<Boundary>,
     obstacles: Vec<Obstacle>,
+    movers: Vec<Mover>,
     zones: Vec<world::Zone>,
     robot: Option<Robot>,
     stations: Vec<Station>,
@@ -104,7 +105,13 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         stations: floor.stations,
         zones: floor.zones,
     };
-    let sim = SimConfig { world, robot: truth(&robot, start), ae: Some(ae), tick_s: rest.tick_s };
+    let sim = SimConfig {
+        world,
+        robot: truth(&robot, start),
+        ae: Some(ae),
+        tick_s: rest.tick_s,
+        movers: floor.movers,
+    };
     Some(Scenario {
         name: name?,
         about: about?,
@@ -122,8 +129,10 @@ impl Floor {
     fn read(sections: &Sections<'_>) -> Self {
         let boundary = floor::tank(sections.root);
         let ae = sections.ae.as_ref();
+        let (obstacles, movers) = floor::obstacles(sections.root, boundary.as_ref());
         Self {
-            obstacles: floor::obstacles(sections.root, boundary.as_ref()),
+            obstacles,
+            movers,
             zones: floor::zones(sections.root),
             robot: sections.robot.as_ref().and_then(robot::robot),
             stations: ae.map(|section| robot::stations(section, boundary.as_ref())).unwrap_or_default(),
