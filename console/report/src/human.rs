@@ -2,6 +2,8 @@
 
 mod floor;
 
+pub(crate) use floor::lines as floor_lines;
+
 use crate::summary::{Coverage, PlannerCalls, Positioning, Summary, Tether, Tracking};
 use mission::Outcome;
 use std::fmt::{Display, Write};

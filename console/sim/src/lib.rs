@@ -5,6 +5,7 @@
 //! Cost: a tick takes a few distance queries, some microseconds.
 
 pub mod config;
+pub mod ranging;
 pub mod simulator;
 
 mod motion;
@@ -12,8 +13,11 @@ mod movers;
 mod sweep;
 
 mod chance;
-mod ranging;
 mod sight;
 
-pub use config::{AeConfig, Drive, Mover, NoiseModel, RobotConfig, SimConfig, Track, Truth};
+pub use config::{
+    AeConfig, BehindColumns, Disturbances, Drive, Mover, NoiseModel, RobotConfig, SimConfig, StationFault,
+    Track, Truth,
+};
+pub use ranging::Sounder;
 pub use simulator::Simulator;

@@ -46,6 +46,13 @@ impl Mission {
             }
             (Order::ChoosePlanner(choice), _) => self.choose_by_order(choice, planner),
             (Order::SetParameter { key, value }, _) => self.set_parameter(key, value, planner),
+            (Order::FlyUncertified, Phase::Held(HoldReason::PlanRefused { .. })) => {
+                if let Some(tether) = &mut self.tether {
+                    tether.fly_uncertified();
+                }
+                self.resume(Phase::Running, planner)
+            }
+            (Order::FlyUncertified, _) => Err("no plan has been refused because of the tether".into()),
             (Order::Hold | Order::Resume | Order::Step, Phase::Waiting) => {
                 Err("the mission has not been started".into())
             }
@@ -83,7 +90,14 @@ impl Mission {
         if self.phase != Phase::Waiting {
             self.planner.plan_due = Some(Reason::Swap { from });
             self.plan_if_due(planner)?;
-            if matches!(self.phase, Phase::Held(HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. })) {
+            if matches!(
+                self.phase,
+                Phase::Held(
+                    HoldReason::PlannerFault { .. }
+                        | HoldReason::PlanRefused { .. }
+                        | HoldReason::Stuck { .. }
+                )
+            ) {
                 // The reason is gone with the planner; now it is the operator who lets the robot go on.
                 self.hold(HoldReason::Operator);
             }

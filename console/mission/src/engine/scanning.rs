@@ -6,15 +6,16 @@ use planner_api::Reason;
 use world::{CellRun, FloorMaker, Pose, Readings, Shape};
 
 impl Mission {
-    pub(super) fn look_around(&mut self, readings: &Readings) {
+    /// Puts what is seen on the chart; whether the chart has changed.
+    pub(super) fn look_around(&mut self, readings: &Readings) -> bool {
         // A found obstacle is placed by the estimated pose, so a lost robot does not draw maps.
         if self.locator.is_lost() {
-            return;
+            return false;
         }
         let (now_s, pose) = (self.now_s(), self.locator.pose());
         let Seen { events, changes_plans } = self.chart.see(now_s, &readings.sightings, &pose);
         if events.is_empty() && !changes_plans {
-            return;
+            return false;
         }
         // What moves is no part of the floor.
         let still = events.iter().filter(|event| !self.chart.moves(event));
@@ -26,6 +27,7 @@ impl Mission {
         }
         self.happened.extend(events);
         self.survey(&shapes);
+        true
     }
 
     /// An obstacle that was found is in the way with the clearance demanded; one that was planned for already and
