@@ -9,7 +9,7 @@ use crate::{
     scenario::Scenario,
 };
 use anyhow::Context;
-use mission::{Cause, Fault, MissionConfig, Parameters, TaskConfig, preview};
+use mission::{Cause, Fault, MissionConfig, Parameters, TaskConfig, preview, tether::judge_from_start};
 use planner_api::{Code, Plan};
 use planner_host::{Host, HostConfig, PluginDirs};
 use serde::Serialize;
@@ -17,7 +17,7 @@ use std::{
     process::ExitCode,
     time::{Duration, Instant},
 };
-use world::{Point, polyline};
+use world::{Point, polyline, tether::Certificate};
 
 /// Time that a planner may take for a plan of the whole floor.
 const COVER_WITHIN: Duration = Duration::from_secs(60);
@@ -37,7 +37,7 @@ struct Planned {
     /// Why it is not complete.
     reason: Option<String>,
     /// Proof about the tether; absent without one.
-    certificate: Option<()>,
+    certificate: Option<Certificate>,
 }
 
 /// Some points of the path that serve one purpose: index of the first and of the last.
@@ -80,14 +80,20 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
         planner: scenario.mission.planner.id.clone(),
         parameters: scenario.mission.planner.parameters.clone(),
         legs: legs(&plan),
-        cuts: plan.cuts,
         length_m: polyline::length_m(&plan.path),
-        path: plan.path,
         plan_time_ms,
         complete: plan.complete,
         reason,
-        certificate: None,
+        certificate: certificate(scenario, &plan.path, &plan.cuts),
+        cuts: plan.cuts,
+        path: plan.path,
     })
+}
+
+/// What the plan does to the tether, judged on its path alone.
+fn certificate(scenario: &Scenario, path: &[Point], cuts: &[Vec<Point>]) -> Option<Certificate> {
+    let tether = scenario.mission.tether.as_ref()?;
+    Some(judge_from_start(tether, &scenario.mission, path, cuts, &scenario.sim.world.as_drawn()))
 }
 
 /// A plan for a whole floor takes longer than a way to a point.
@@ -133,13 +139,23 @@ fn lengths(planned: &Planned) -> String {
     if parts.is_empty() { String::new() } else { format!("legs      {}\n", parts.join(", ")) }
 }
 
+fn tether_line(certificate: &Certificate) -> String {
+    let Certificate { max_cable_m, max_wrap_rad, .. } = certificate;
+    let wrap_deg = max_wrap_rad.to_degrees();
+    let verdict = if certificate.certified { "certified".to_owned() } else { certificate.reasons.join("; ") };
+    format!(
+        "tether    {verdict}\ncable     {max_cable_m:.1} m at most, {wrap_deg:.0} deg round one obstacle at most\n"
+    )
+}
+
 fn tell(planned: &Planned, json: bool) -> anyhow::Result<()> {
     if json {
         return say_line(&serde_json::to_string(planned).context("writing the plan as JSON")?);
     }
     let reason = planned.reason.as_ref().map(|reason| format!("reason    {reason}\n")).unwrap_or_default();
+    let tether = planned.certificate.as_ref().map(tether_line).unwrap_or_default();
     say(&format!(
-        "planner   {}\nlength    {:.2} m, {} points\n{}time      {:.2} ms\ncomplete  {}\n{reason}",
+        "planner   {}\nlength    {:.2} m, {} points\n{}time      {:.2} ms\ncomplete  {}\n{reason}{tether}",
         planned.planner,
         planned.length_m,
         planned.path.len(),

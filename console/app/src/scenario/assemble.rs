@@ -10,9 +10,9 @@ use super::{
     schema,
     section::Section,
     source::Source,
-    task,
+    task, tether,
 };
-use mission::{MissionConfig, ScanConfig, TaskConfig};
+use mission::{MissionConfig, ScanConfig, TaskConfig, TetherConfig};
 use sim::{AeConfig, Mover, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
@@ -70,6 +70,8 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let start = start(floor.robot.as_ref(), task.as_ref());
     scatter(root, &mut floor, seed, start, task.as_ref());
     check_places(&sections, &floor, start, task.as_ref());
+    let tether = tether_of(root, &floor, start);
+    let task = task.map(|task| back_to_the_anchor(task, tether.as_ref()));
     let planner = root.table("planner").map(|section| (task::planner(&section), task::fallback(&section)));
     let plates = if root.has("plates") { floor::plates(root, floor.boundary.as_ref()) } else { None };
     let expect = expect::expect(root);
@@ -79,6 +81,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let (robot, rest, start, ae) = (floor.robot?, rest?, start?, floor.ae?);
     let mission = MissionConfig {
         task: task?,
+        tether,
         start,
         start_sigma_m: robot.start_sigma_m,
         tick_s: rest.tick_s,
@@ -102,6 +105,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         // Who flies it knows; a scenario does not.
         attended: false,
     };
+    let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);
     let world = World {
         boundary: floor.boundary?,
         obstacles: floor.obstacles,
@@ -114,6 +118,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         ae: Some(ae),
         tick_s: rest.tick_s,
         movers: floor.movers,
+        tether_anchor,
     };
     Some(Scenario {
         name: name?,
@@ -222,6 +227,31 @@ fn check_places(sections: &Sections<'_>, floor: &Floor, start: Option<Pose>, tas
     }
     if let Some(TaskConfig::Goto { goal, .. }) = task {
         complain(&sections.mission, "goal_m", *goal);
+    }
+}
+
+/// The tether, if there is one; a complaint stands for one that cannot be.
+fn tether_of(root: &Section<'_>, floor: &Floor, start: Option<Pose>) -> Option<TetherConfig> {
+    if !root.has("tether") {
+        return None;
+    }
+    let section = root.table("tether")?;
+    let start = start.map(|pose| pose.position);
+    let tether = tether::tether(&section, start)?;
+    if let (Some(boundary), Some(start)) = (&floor.boundary, start) {
+        let site = Site { boundary, obstacles: &floor.obstacles, zones: &[], radius_m: 0.0 };
+        tether::check(&section, &tether, &site, start);
+    }
+    Some(tether)
+}
+
+/// A robot that scans the floor on a tether comes back to where the tether is made fast.
+fn back_to_the_anchor(task: TaskConfig, tether: Option<&TetherConfig>) -> TaskConfig {
+    match (task, tether) {
+        (TaskConfig::Cover { regions, tolerance_m, .. }, Some(tether)) => {
+            TaskConfig::Cover { anchor: tether.anchor, regions, tolerance_m }
+        }
+        (task, _) => task,
     }
 }
 

@@ -128,6 +128,7 @@ fn config() -> MissionConfig {
         locating: crate::Locating::default(),
         scan: ScanConfig::default(),
         planner: PlannerChoice { id: "straight".into(), parameters: Parameters::new() },
+        tether: None,
         fallback: None,
         attended: true,
     }

@@ -21,6 +21,8 @@ const STEPPED: &str = "held after a step";
 const HELD_LOST: &str = "held, position lost";
 const HELD_FAULT: &str = "held, planner fault";
 const HELD_STUCK: &str = "held, stuck";
+const HELD_TETHER: &str = "held, tether";
+const HELD_REFUSED: &str = "held, plan refused";
 const KNOWN: &str = "known";
 const LOST: &str = "lost";
 
@@ -46,10 +48,13 @@ impl States {
             (HELD_LOST, red),
             (HELD_FAULT, red),
             (HELD_STUCK, red),
+            (HELD_TETHER, red),
+            (HELD_REFUSED, red),
             outcome(Outcome::Complete, style::rgb(60, 120, 200)),
             outcome(Outcome::Stuck, amber),
             outcome(Outcome::Collision, red),
             outcome(Outcome::TimeLimit, amber),
+            outcome(Outcome::Entangled, red),
             outcome(Outcome::Aborted, amber),
         ];
         stream.always(paths::STATE_MISSION, &configuration(&mission))?;
@@ -109,6 +114,8 @@ fn held(by: &HoldReason) -> &'static str {
         HoldReason::PositionLost => HELD_LOST,
         HoldReason::PlannerFault { .. } => HELD_FAULT,
         HoldReason::Stuck { .. } => HELD_STUCK,
+        HoldReason::Tether { .. } => HELD_TETHER,
+        HoldReason::PlanRefused { .. } => HELD_REFUSED,
     }
 }
 

@@ -71,6 +71,7 @@ fn config() -> SimConfig {
         }),
         tick_s: 0.1,
         movers: vec![],
+        tether_anchor: None,
     }
 }
 

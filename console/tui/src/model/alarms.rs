@@ -17,6 +17,10 @@ pub enum Cause {
     Station(world::StationId),
     /// An obstacle was found that is not on the drawing.
     Map,
+    /// The cable comes near a limit or has reached it: which one.
+    Tether(String),
+    /// The last plan could not be certified for the tether.
+    Certificate,
     /// The planner failed.
     Planner,
     /// The robot gets nowhere.

@@ -14,7 +14,7 @@ const MAX_SCALARS: usize = 32;
 impl Model {
     /// Takes in one event. What only the simulator can know is left out.
     pub(crate) fn fold(&mut self, event: &Event) {
-        if matches!(event.kind, EventKind::Truth { .. }) {
+        if matches!(event.kind, EventKind::Truth { .. } | EventKind::TetherTruth { .. }) {
             return;
         }
         self.tell_time(event);
@@ -97,6 +97,10 @@ impl Model {
                     covered_whole: *covered_whole,
                 });
             }
+            EventKind::Tethered { .. }
+            | EventKind::TetherAlarmed { .. }
+            | EventKind::TetherEased { .. }
+            | EventKind::Certified { .. } => self.tethered(event),
             EventKind::Held { by } => self.hold(event, by),
             EventKind::Resumed => {
                 self.phase = Phase::Running;
@@ -105,7 +109,33 @@ impl Model {
                 self.planner_works();
             }
             EventKind::Ended { outcome, reason } => self.end(event, *outcome, reason),
-            EventKind::Truth { .. } | EventKind::PlannerSaid { .. } | EventKind::Uncounted { .. } => {}
+            EventKind::Truth { .. }
+            | EventKind::TetherTruth { .. }
+            | EventKind::PlannerSaid { .. }
+            | EventKind::Uncounted { .. } => {}
+        }
+    }
+
+    /// Takes in what is told about the tether.
+    fn tethered(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::TetherAlarmed { alarm, reached } => {
+                let severity = if *reached { Severity::Crit } else { Severity::Warn };
+                self.raise(event, Cause::Tether(alarm.word().to_owned()), severity, alarm.to_string());
+            }
+            EventKind::TetherEased { alarm } => self.alarms.clear(&Cause::Tether(alarm.word().to_owned())),
+            EventKind::Certified { planner, refused, certificate } => {
+                self.tether.get_or_insert_default().certified = Some(certificate.certified);
+                if certificate.certified {
+                    self.alarms.clear(&Cause::Certificate);
+                } else {
+                    let severity = if *refused { Severity::Crit } else { Severity::Warn };
+                    let reasons = certificate.reasons.join("; ");
+                    let text = format!("plan of {planner} not certified: {reasons}");
+                    self.raise(event, Cause::Certificate, severity, text);
+                }
+            }
+            other => self.tether.get_or_insert_default().lie(other),
         }
     }
 
@@ -248,7 +278,7 @@ impl Model {
         self.withdraw_question();
         let severity = match outcome {
             Outcome::Complete | Outcome::Aborted => return,
-            Outcome::Stuck | Outcome::TimeLimit => Severity::Warn,
+            Outcome::Stuck | Outcome::TimeLimit | Outcome::Entangled => Severity::Warn,
             Outcome::Collision => Severity::Crit,
         };
         self.raise(event, Cause::Ended, severity, format!("ended {}: {reason}", outcome.word()));

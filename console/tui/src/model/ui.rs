@@ -175,6 +175,8 @@ pub enum Ask {
     Start,
     /// Go on.
     Resume,
+    /// Fly a plan that was refused because of the tether.
+    FlyUncertified,
     /// End the mission.
     Abort,
     /// Let another planner drive.
@@ -187,6 +189,7 @@ impl Ask {
         match self {
             Self::Start => Order::Start,
             Self::Resume => Order::Resume,
+            Self::FlyUncertified => Order::FlyUncertified,
             Self::Abort => Order::Abort,
             Self::Swap(choice) => Order::ChoosePlanner(choice.clone()),
         }

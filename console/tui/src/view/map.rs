@@ -23,7 +23,7 @@ const PASS_COLUMNS: f64 = 2.0;
 /// Length of trail and plan where not all of it is drawn, in columns.
 const REACH_COLUMNS: f64 = 40.0;
 /// Columns and rows of the legend.
-const LEGEND: (u16, u16) = (12, 8);
+const LEGEND: (u16, u16) = (12, 9);
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let block = look.pane(Pane::Map, &title(look.model), keys(area.width));
@@ -83,6 +83,7 @@ fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
             pen.paths(ctx);
             pen.drawings(ctx);
             pen.solid(ctx);
+            pen.tether(ctx);
             pen.robot(ctx);
             ctx.layer();
             pen.labels(ctx);
@@ -214,6 +215,14 @@ impl Pen<'_> {
         }
     }
 
+    /// The taut cable, above all else that does not move.
+    fn tether(&self, ctx: &mut Context<'_>) {
+        if let Some(tether) = &self.model().tether {
+            self.take_up(ctx, '~');
+            self.stroke(ctx, &tether.line, Role::Tether, false);
+        }
+    }
+
     /// The hull and the 95 % error, where they are large enough to be seen.
     fn robot(&self, ctx: &mut Context<'_>) {
         let Some(pose) = &self.model().position.pose else { return };
@@ -329,6 +338,7 @@ fn draw_legend(look: &Look, frame: &mut Frame, area: Rect) {
         (layers.shows(MapLayer::Scanned), Role::Partly, swatch("░░"), "in part"),
         (layers.shows(MapLayer::Trail), Role::Trail, line("⠤⠤", ".."), "trail"),
         (layers.shows(MapLayer::Plan), Role::Plan, line("⠄⠠", ",,"), "plan"),
+        (look.model.tether.is_some(), Role::Tether, line("⠤⠤", "~~"), "tether"),
         (true, Role::Obstacle, "# ", "obstacle"),
         (found, Role::Found, "? ", "found"),
         (layers.shows(MapLayer::Stations), Role::Station, "S ", "station"),

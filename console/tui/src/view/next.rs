@@ -96,6 +96,15 @@ fn held(model: &Model, by: &HoldReason) -> Vec<String> {
         HoldReason::Stuck { message } => {
             &["HELD, stuck.", "P changes the planner.", "space tries again.", message]
         }
+        HoldReason::Tether { message } => {
+            &["HELD, tether.", "space goes on, the alarm stays.", "X ends here.", message]
+        }
+        HoldReason::PlanRefused { message } if model.has_fallback() => {
+            &["HELD, plan refused.", "The fallback takes over if it can.", message]
+        }
+        HoldReason::PlanRefused { message } => {
+            &["HELD, plan refused.", "P chooses another.", ":fly-uncertified flies it.", message]
+        }
         HoldReason::PlannerFault { message } if model.has_fallback() => {
             &["HELD, planner failed.", "The fallback takes over if it can.", message]
         }
