@@ -12,7 +12,7 @@ use super::{
     source::Source,
     task, tether,
 };
-use mission::{MissionConfig, ScanConfig, TaskConfig, TetherConfig};
+use mission::{Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
 use sim::{AeConfig, Mover, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
