@@ -128,7 +128,11 @@ fn certificate(scenario: &Scenario, plan: &Plan) -> Option<Certificate> {
         boundary: &drawing.boundary,
         obstacles: &drawing.obstacles,
         room_m: scenario.mission.room_m(),
-        limits: Limits { reel_m: f64::INFINITY, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY },
+        limits: Limits {
+            reel_m: f64::INFINITY,
+            max_wrap_rad: f64::INFINITY,
+            max_sum_wrap_rad: f64::INFINITY,
+        },
         returns: true,
         cuts: &plan.cuts,
     };

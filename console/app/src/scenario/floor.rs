@@ -12,6 +12,11 @@ use world::{Boundary, Obstacle, ObstacleId, PlateLayout, Shape, Vector, Zone, Zo
 /// Reads `[tank]`.
 pub fn tank(root: &Section<'_>) -> Option<Boundary> {
     let section = root.table("tank")?;
+    if section.has("map") {
+        section.text("map")?;
+        section.complain("map", Complaint::Map("maps are read from scenario files only".into()));
+        return None;
+    }
     if section.has("radius_m") {
         section.refuse(&["vertices_m"], "radius_m");
         return Some(Boundary::Circle { radius_m: section.number("radius_m")? });

@@ -184,8 +184,9 @@ pub static ROOT: &[Key] = &[
 ];
 
 static TANK: &[Key] = &[
-    number("radius_m", "m", LENGTH).or_none("this or `vertices_m`"),
-    key("vertices_m", "m", Kind::Points(3)).or_none("this or `radius_m`"),
+    number("radius_m", "m", LENGTH).or_none("this, `vertices_m` or `map`"),
+    key("vertices_m", "m", Kind::Points(3)).or_none("this, `radius_m` or `map`"),
+    key("map", "", Kind::Text).or_none("this, `radius_m` or `vertices_m`"),
 ];
 
 static PLATES: &[Key] = &[
