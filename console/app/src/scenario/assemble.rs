@@ -78,7 +78,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let rest = Rest::read(&sections, &floor);
 
     let (planner, fallback) = planner?;
-    let (robot, rest, start, ae) = (floor.robot?, rest?, start?, floor.ae?);
+    let (robot, rest, start, ae, locating) = (floor.robot?, rest?, start?, floor.ae?, floor.locating?);
     let mission = MissionConfig {
         task: task?,
         tether,
@@ -99,7 +99,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         odometry_turn_sigma_per_rad: robot.turn_sigma_per_rad(),
         gyro_sigma_rad_per_s: robot.gyro_sigma_rad_per_s(),
         range_sigma_ratio: ranging::range_sigma_ratio(ae.noise),
-        locating: locating?,
+        locating,
         planner: planner?,
         fallback,
         // Who flies it knows; a scenario does not.
