@@ -20,6 +20,8 @@ const ATTEMPTS: u32 = 6;
 /// Whether the way is still free is looked at after so many steps; it is looked for anew when it is not, and whenever
 /// the map changes.
 const LOOK_STEPS: usize = 20;
+/// It is looked for anew after so many steps anyway: the robot has moved aside.
+const FRESH_STEPS: usize = 40;
 /// A way counts as free with this much less room than the window keeps, metres.
 const SLACK_M: f64 = 0.03;
 
@@ -133,7 +135,7 @@ impl Guide {
                 self.way.remove(0);
             }
             let corner = self.way.first().copied().unwrap_or(goal);
-            if !ground.is_free(at, corner, margin_m) {
+            if self.age >= FRESH_STEPS || !ground.is_free(at, corner, margin_m) {
                 self.find_way(field, ground, at, goal);
             }
         }
