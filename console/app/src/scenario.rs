@@ -22,6 +22,7 @@ mod settings;
 mod source;
 mod suggest;
 mod task;
+mod tether;
 
 pub use problem::{Complaint, Problem, ScenarioErrors};
 pub use settings::Settings;

@@ -343,7 +343,9 @@ impl TetherAlarm {
 impl fmt::Display for TetherAlarm {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Reel { out_m, reel_m } => write!(f, "{out_m:.1} m of cable out, the reel holds {reel_m:.1} m"),
+            Self::Reel { out_m, reel_m } => {
+                write!(f, "{out_m:.1} m of cable out, the reel holds {reel_m:.1} m")
+            }
             Self::Wrap { on, wrap_rad, limit_rad } => {
                 let (wrap, limit) = (wrap_rad.to_degrees(), limit_rad.to_degrees());
                 write!(f, "the cable wraps {wrap:.0} deg round {on}, limit {limit:.0} deg")
@@ -573,9 +575,11 @@ impl Event {
             EventKind::TetherEased { alarm } => {
                 line(Severity::Info, "tether", format!("{} well within its limit again", alarm.word()))
             }
-            EventKind::Certified { planner, refused, certificate } => {
-                line(certificate_severity(*refused, certificate), "tether", certificate_text(planner, *refused, certificate))
-            }
+            EventKind::Certified { planner, refused, certificate } => line(
+                certificate_severity(*refused, certificate),
+                "tether",
+                certificate_text(planner, *refused, certificate),
+            ),
             EventKind::Truth { .. }
             | EventKind::TetherTruth { .. }
             | EventKind::Tethered { .. }
@@ -634,8 +638,12 @@ fn certificate_text(planner: &str, refused: bool, certificate: &Certificate) -> 
         (true, _) => format!("plan of {planner} refused: {reasons}"),
         (false, false) => format!("plan of {planner} flies without a certificate: {reasons}"),
         (false, true) => {
-            let left = certificate.left_out_m.map_or_else(String::new, |m| format!(", {m:.1} m left out on return"));
-            format!("plan of {planner} certified: at most {:.1} m of cable out{left}", certificate.max_cable_m)
+            let left =
+                certificate.left_out_m.map_or_else(String::new, |m| format!(", {m:.1} m left out on return"));
+            format!(
+                "plan of {planner} certified: at most {:.1} m of cable out{left}",
+                certificate.max_cable_m
+            )
         }
     }
 }

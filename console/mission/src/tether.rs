@@ -10,7 +10,10 @@
 //! An obstacle found later may lie across the taut line: on which side the cable passes it is then decided by the way
 //! driven, which is kept and driven again in thought among all obstacles known now.
 
-use crate::event::{EventKind, TetherAlarm, TetherContact};
+use crate::{
+    config::MissionConfig,
+    event::{EventKind, TetherAlarm, TetherContact},
+};
 use planner_api::TetherLimits;
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, sync::Arc};
@@ -25,6 +28,8 @@ const KEPT_M: f64 = 0.05;
 const NEAR: f64 = 0.8;
 /// Share of a limit below which an alarm is over.
 const EASED: f64 = 0.75;
+/// Distance from the anchor within which a task ends at it, metres.
+const AT_ANCHOR_M: f64 = 0.3;
 /// Cable beyond the straight line to the robot that counts as left out at the end, metres.
 const LEFT_M: f64 = 0.3;
 
@@ -208,16 +213,21 @@ impl Tether {
     }
 }
 
-/// Judges a plan of a whole mission before anything has moved.
-pub fn certified_from_start(
-    config: &TetherConfig,
-    hull_m: f64,
+/// Judges a plan of a whole mission before anything has moved, on the drawing.
+pub fn judge_from_start(
+    tether: &TetherConfig,
+    config: &MissionConfig,
     path: &[Point],
     cuts: &[Vec<Point>],
-    world: &World,
-    returns: bool,
+    drawing: &World,
 ) -> Certificate {
-    certified(config, hull_m, None, path, cuts, world, returns)
+    let returns = ends_at_anchor(tether, config);
+    certified(tether, config.limits.radius_m, None, path, cuts, drawing, returns)
+}
+
+/// Whether the task ends where the tether is made fast.
+pub(crate) fn ends_at_anchor(tether: &TetherConfig, config: &MissionConfig) -> bool {
+    config.task.end().is_some_and(|end| (end - tether.anchor).norm() <= AT_ANCHOR_M)
 }
 
 fn certified(
@@ -240,6 +250,9 @@ fn certified(
         returns,
         cuts,
     };
+    if path.is_empty() {
+        return Certificate::refused("the planner tells no path that could be judged".into());
+    }
     certify(&case).unwrap_or_else(|error| Certificate::refused(error.to_string()))
 }
 

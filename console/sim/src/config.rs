@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use world::{Amphibious, Pose, StationId, World};
+use world::{Amphibious, Point, Pose, StationId, World};
 
 /// How ranges scatter about the true distance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -145,6 +145,9 @@ pub struct SimConfig {
     pub ae: Option<AeConfig>,
     /// Length of a tick, seconds.
     pub tick_s: f64,
+    /// Where the tether is made fast, metres; `None` for a robot without one.
+    #[serde(default)]
+    pub tether_anchor: Option<Point>,
 }
 
 /// What the robot is sent.
@@ -170,4 +173,19 @@ pub struct Truth {
     pub clearance_m: f64,
     /// Whether the hull began to touch something in this tick.
     pub collided: bool,
+    /// How the cable lies; `None` without one.
+    pub tether: Option<TetherTruth>,
+}
+
+/// How the cable truly lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TetherTruth {
+    /// Cable between anchor and robot, metres.
+    pub length_m: f64,
+    /// Largest wrap on one obstacle, radians.
+    pub max_wrap_rad: f64,
+    /// Sum of all wraps, radians.
+    pub sum_wrap_rad: f64,
+    /// Cable beyond the straight line from the anchor to the robot, metres.
+    pub detour_m: f64,
 }

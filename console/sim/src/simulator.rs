@@ -2,13 +2,13 @@
 
 use crate::{
     chance::{Chance, normal},
-    config::{Drive, SimConfig, Truth},
+    config::{Drive, SimConfig, TetherTruth, Truth},
     motion::{Arc, Tracks, bounded},
     ranging::Sounder,
     sight::sightings,
     sweep::sweep,
 };
-use world::{Medium, Mode, ObstacleMap, Odometry, Pose, Readings};
+use world::{Medium, Mode, ObstacleMap, Odometry, Pose, Readings, tether::Cable};
 
 /// A hull that touched something keeps touching it until the gap is wider than this, metres.
 const CONTACT_GAP_M: f64 = 1e-3;
@@ -25,6 +25,7 @@ pub struct Simulator {
     sounder: Option<Sounder>,
     mode: Mode,
     pose: Pose,
+    cable: Option<Cable>,
     odometry: Odometry,
     in_contact: bool,
     collided: bool,
@@ -42,6 +43,7 @@ impl Simulator {
             sounder: config.ae.clone().map(|ae| Sounder::new(ae, &config.world, seed)),
             mode: Mode::of(Medium::at(&config.world.zones, config.robot.start.position)),
             pose: config.robot.start,
+            cable: cable(&config),
             odometry: Odometry::default(),
             in_contact: false,
             collided: false,
@@ -84,12 +86,25 @@ impl Simulator {
         if reached.is_blocked {
             self.tracks.stop();
         }
+        if let Some(cable) = &mut self.cable {
+            cable.drag_to(self.pose.position);
+        }
         self.tick += 1;
     }
 
     /// The truth at the top of this tick.
     pub fn truth(&self) -> Truth {
-        Truth { pose: self.pose, clearance_m: self.clearance_m(), collided: self.collided }
+        Truth {
+            pose: self.pose,
+            clearance_m: self.clearance_m(),
+            collided: self.collided,
+            tether: self.cable.as_ref().map(|cable| TetherTruth {
+                length_m: cable.length_m(),
+                max_wrap_rad: cable.max_wrap_rad(),
+                sum_wrap_rad: cable.sum_wrap_rad(),
+                detour_m: cable.length_m() - (cable.tip() - cable.anchor()).norm(),
+            }),
+        }
     }
 
     /// Number of ticks that have passed.
@@ -132,6 +147,14 @@ impl Simulator {
             turn_rad: turn_rad * of_turn + bounded(robot.gyro_bias_rad_per_s * self.config.tick_s.max(0.0)),
         }
     }
+}
+
+/// The cable from its anchor straight to the robot; none if the anchor cannot be.
+fn cable(config: &SimConfig) -> Option<Cable> {
+    let shapes: Vec<_> = config.world.obstacles.iter().map(|o| o.shape.clone()).collect();
+    let mut cable = Cable::new(config.tether_anchor?, &config.world.boundary, &shapes).ok()?;
+    cable.drag_to(config.robot.start.position);
+    Some(cable)
 }
 
 #[cfg(test)]

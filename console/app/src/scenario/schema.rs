@@ -177,6 +177,7 @@ pub static ROOT: &[Key] = &[
     key("plates", "", Kind::Table(PLATES)).or_none("not known"),
     key("robot", "", Kind::Table(ROBOT)).or_none("all defaults"),
     key("ae", "", Kind::Table(AE)),
+    key("tether", "", Kind::Table(TETHER)).or_none("none"),
     key("mission", "", Kind::Table(MISSION)),
     key("planner", "", Kind::Table(PLANNER)),
     key("expect", "", Kind::Table(EXPECT)).or_none("no bounds"),
@@ -284,6 +285,15 @@ static FAULTS: &[Key] = &[
     number("late_m", "m", above(0.0).up_to(1000.0)).or_none("the station is silent"),
 ];
 
+static TETHER: &[Key] = &[
+    point("anchor_m").or_none("where the robot starts"),
+    number("reel_m", "m", LENGTH),
+    number("max_wrap_deg", "deg", above(0.0).up_to(3600.0)).or(360.0),
+    number("max_sum_wrap_deg", "deg", above(0.0).up_to(36_000.0)).or(720.0),
+    number("friction", "", at_least(0.0).up_to(2.0)).or(0.3),
+    key("fly_uncertified", "", Kind::Flag).or_flag(false),
+];
+
 static STATIONS: &[Key] = &[key("name", "", Kind::Text), point("at_m")];
 
 static NOISE: &[Key] = &[
@@ -330,7 +340,8 @@ static FALLBACK: &[Key] =
 const NO_BOUND: &str = "no bound";
 
 static EXPECT: &[Key] = &[
-    word("outcome", &["complete", "stuck", "collision", "time_limit", "aborted"]).or_none(NO_BOUND),
+    word("outcome", &["complete", "stuck", "collision", "time_limit", "entangled", "aborted"])
+        .or_none(NO_BOUND),
     key("collisions_max", "", Kind::Whole(0, i64::MAX)).or_none(NO_BOUND),
     number("min_clearance_min_m", "m", at_least(-1000.0)).or_none(NO_BOUND),
     number("mission_time_max_s", "s", above(0.0)).or_none(NO_BOUND),
@@ -347,6 +358,9 @@ static EXPECT: &[Key] = &[
     number("p95_error_max_m", "m", above(0.0)).or_none(NO_BOUND),
     number("in_95_ellipse_min", "", SHARE).or_none(NO_BOUND),
     number("lost_max_s", "s", at_least(0.0)).or_none(NO_BOUND),
+    number("cable_max_m", "m", above(0.0)).or_none(NO_BOUND),
+    number("wrap_max_deg", "deg", above(0.0)).or_none(NO_BOUND),
+    number("left_out_max_m", "m", at_least(0.0)).or_none(NO_BOUND),
 ];
 
 /// Every section with its path, the whole file first under the empty path.

@@ -68,6 +68,9 @@ impl Mission {
 
     /// Lets the robot move again, for good or for one tick.
     fn resume(&mut self, how: Phase, planner: &mut dyn PlannerLink) -> Result<(), String> {
+        if self.locator.is_alarmed() {
+            return Err("the ranges contradict each other; going on needs a fix that holds together".into());
+        }
         if self.locator.is_lost() {
             return Err(format!(
                 "the position is lost: 95 % error {:.2} m, limit {:.2} m",
@@ -90,7 +93,14 @@ impl Mission {
         if self.phase != Phase::Waiting {
             self.planner.plan_due = Some(Reason::Swap { from });
             self.plan_if_due(planner)?;
-            if matches!(self.phase, Phase::Held(HoldReason::PlannerFault { .. } | HoldReason::PlanRefused { .. } | HoldReason::Stuck { .. })) {
+            if matches!(
+                self.phase,
+                Phase::Held(
+                    HoldReason::PlannerFault { .. }
+                        | HoldReason::PlanRefused { .. }
+                        | HoldReason::Stuck { .. }
+                )
+            ) {
                 // The reason is gone with the planner; now it is the operator who lets the robot go on.
                 self.hold(HoldReason::Operator);
             }

@@ -3,12 +3,9 @@
 use super::Mission;
 use crate::{
     event::{EventKind, HoldReason, Outcome, TetherAlarm},
-    task::Task,
+    tether::ends_at_anchor,
 };
 use world::Point;
-
-/// Distance from the anchor within which a task ends at it, metres.
-const AT_ANCHOR_M: f64 = 0.3;
 
 impl Mission {
     /// Drags the cable along, and holds the robot when it may go no further.
@@ -71,12 +68,6 @@ impl Mission {
     }
 
     fn task_ends_at_anchor(&self) -> bool {
-        let Some(tether) = &self.config.tether else { return false };
-        match &self.task {
-            Task::Cover(_) => true,
-            Task::Goto(_) | Task::Follow { .. } => {
-                self.config.task.end().is_some_and(|end| (end - tether.anchor).norm() <= AT_ANCHOR_M)
-            }
-        }
+        self.config.tether.as_ref().is_some_and(|tether| ends_at_anchor(tether, &self.config))
     }
 }

@@ -69,6 +69,7 @@ fn config() -> SimConfig {
             disturbances: Disturbances::default(),
         }),
         tick_s: 0.1,
+        tether_anchor: None,
     }
 }
 

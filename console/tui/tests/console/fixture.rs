@@ -93,6 +93,7 @@ pub fn config() -> MissionConfig {
         range_sigma_ratio: 0.01,
         locating: mission::Locating::default(),
         planner: choice("rpf"),
+        tether: None,
         fallback: None,
         attended: true,
     }
