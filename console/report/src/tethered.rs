@@ -26,7 +26,8 @@ impl Tethered {
 
     /// Takes in how the cable lies in one tick.
     pub fn lie(&mut self, length_m: f64, max_wrap_rad: f64, sum_wrap_rad: f64, detour_m: f64) {
-        let before = self.known.map_or((0.0, 0.0, 0.0), |t| (t.max_length_m, t.max_wrap_rad, t.max_total_wrap_rad));
+        let before =
+            self.known.map_or((0.0, 0.0, 0.0), |t| (t.max_length_m, t.max_wrap_rad, t.max_total_wrap_rad));
         self.detour_m = detour_m;
         self.known = Some(Tether {
             max_length_m: length_m.max(before.0),
