@@ -72,6 +72,30 @@ pub enum Command {
         #[command(flatten)]
         logs: LogsArg,
     },
+    /// Tell the result of a past run, or of a scan and its re-scans together.
+    Report {
+        /// Folders of runs, or their names within the logs; several must be of one floor.
+        #[arg(required = true, value_name = "RUN")]
+        runs: Vec<PathBuf>,
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+        /// Write into this file instead of to stdout.
+        #[arg(short = 'o', long, value_name = "FILE")]
+        output: Option<PathBuf>,
+        #[command(flatten)]
+        logs: LogsArg,
+    },
+    /// Make a scenario that scans what a past run missed, with a plan of its own.
+    Rescan {
+        /// Folder of the run, or its name within the logs.
+        run: PathBuf,
+        /// Scenario file to write; must not exist.
+        #[arg(short = 'o', long, value_name = "SCENARIO")]
+        output: PathBuf,
+        #[command(flatten)]
+        logs: LogsArg,
+    },
     /// A planner's own process; started by the console.
     #[command(hide = true)]
     Worker,
@@ -232,9 +256,20 @@ mod tests {
     fn the_help_of_every_command_is_as_reviewed() {
         let mut command = Cli::command().term_width(100);
         let mut help = vec![command.render_long_help().to_string()];
-        for name in
-            ["console", "run", "plan", "planners", "check", "reproduce", "tune", "runs", "verify", "export"]
-        {
+        for name in [
+            "console",
+            "run",
+            "plan",
+            "planners",
+            "check",
+            "reproduce",
+            "tune",
+            "runs",
+            "verify",
+            "export",
+            "report",
+            "rescan",
+        ] {
             let sub = command.find_subcommand_mut(name).expect("a command of ours");
             help.push(format!("===== {name}\n{}", sub.render_long_help()));
         }

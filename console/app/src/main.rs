@@ -1,5 +1,6 @@
 //! tankops: console for robots that inspect the floors of oil storage tanks.
 
+mod again;
 mod cli;
 mod console;
 mod failure;
@@ -57,6 +58,10 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Runs { json, logs }) => past_runs::list(&logs, json),
         Some(Command::Verify { run, logs }) => verify::verify(&run, &logs, &plugins),
         Some(Command::Export { run, rrd, logs }) => past_runs::export(&run, &rrd, &logs),
+        Some(Command::Report { runs, json, output, logs }) => {
+            again::report(&runs, &logs, json, output.as_deref())
+        }
+        Some(Command::Rescan { run, output, logs }) => again::rescan(&run, &logs, &output),
         Some(Command::Worker) => Ok(planner_host::worker_main()),
     }
 }

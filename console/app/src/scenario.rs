@@ -13,6 +13,7 @@ mod layout;
 mod outline;
 mod planner_keys;
 mod problem;
+mod ranging;
 mod render;
 mod robot;
 mod schema;

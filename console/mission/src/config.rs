@@ -2,6 +2,7 @@
 
 use crate::{link::Parameters, tether::TetherConfig};
 use planner_api::{Limits, Motion, TetherLimits};
+use positioning::{Aggregation, RangeNoise, SolverKind};
 use serde::{Deserialize, Serialize};
 use world::{Point, Pose, coverage::Tool};
 
@@ -68,6 +69,37 @@ pub struct ScanConfig {
     pub position_limit_m: Option<f64>,
 }
 
+/// How ranges become a position.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Locating {
+    /// How single ranges scatter; none: normally, by [`MissionConfig::range_sigma_ratio`].
+    pub noise: Option<RangeNoise>,
+    /// How repetitions become one range.
+    pub aggregation: Aggregation,
+    /// How ranges become a fix.
+    pub solver: SolverKind,
+    /// Whether the speed of sound is found out under way.
+    pub calibrates_sound: bool,
+    /// Ranges per station and cycle, as far as forecasts of the accuracy go.
+    pub repetitions: u32,
+    /// Whether a station is of no use where an obstacle hides it.
+    pub needs_sight: bool,
+}
+
+impl Default for Locating {
+    fn default() -> Self {
+        Self {
+            noise: None,
+            aggregation: Aggregation::default(),
+            solver: SolverKind::default(),
+            calibrates_sound: false,
+            repetitions: 20,
+            needs_sight: false,
+        }
+    }
+}
+
 /// A mission as the engine needs it; made and checked by whoever reads the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MissionConfig {
@@ -105,6 +137,9 @@ pub struct MissionConfig {
     pub gyro_sigma_rad_per_s: f64,
     /// Standard deviation of a range as a share of the range.
     pub range_sigma_ratio: f64,
+    /// How ranges become a position.
+    #[serde(default)]
+    pub locating: Locating,
     /// What it takes for floor to count as scanned.
     #[serde(default)]
     pub scan: ScanConfig,

@@ -114,7 +114,7 @@ impl Mission {
             cuts: Cuts { lines: Vec::new(), beyond: false, seen_at: start },
             cable_trouble: None,
             phase: Phase::Waiting,
-            locator: Locator::new(&config, &drawing.stations),
+            locator: Locator::new(&config, &drawing),
             chart: Chart::new(drawing, &config, seed),
             task: Task::new(&config.task, start),
             coverage: CoverageGrid::new(floor),
@@ -195,9 +195,10 @@ impl Mission {
 
     fn watch_moving(&mut self) {
         let here = self.locator.position();
-        self.lost_s = if self.locator.is_lost() { self.lost_s + self.config.tick_s } else { 0.0 };
-        if self.lost_s >= self.config.lost_hold_s {
-            self.hold(HoldReason::PositionLost);
+        let (lost, alarmed) = (self.locator.is_lost(), self.locator.is_alarmed());
+        self.lost_s = if lost || alarmed { self.lost_s + self.config.tick_s } else { 0.0 };
+        if self.lost_s >= self.config.lost_hold_s && (lost || alarmed) {
+            self.hold(if lost { HoldReason::PositionLost } else { HoldReason::PositionAlarmed });
         } else if self.task.is_done(here) {
             self.end_done();
         } else if self.watch_tether() {
@@ -220,11 +221,16 @@ impl Mission {
 
     fn watch_held(&mut self, reason: &HoldReason, planner: &mut dyn PlannerLink) {
         match reason {
-            HoldReason::PositionLost if !self.locator.is_lost() => self.go_on(Phase::Running),
+            HoldReason::PositionLost | HoldReason::PositionAlarmed
+                if !self.locator.is_lost() && !self.locator.is_alarmed() =>
+            {
+                self.go_on(Phase::Running);
+            }
             HoldReason::PlannerFault { message } | HoldReason::PlanRefused { message } => {
                 self.replace_failed_planner(message, planner);
             }
             HoldReason::PositionLost
+            | HoldReason::PositionAlarmed
             | HoldReason::Operator
             | HoldReason::Stuck { .. }
             | HoldReason::Tether { .. }

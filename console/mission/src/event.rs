@@ -154,6 +154,15 @@ pub enum EventKind {
         /// Half width of the 95 % error, metres.
         error_m: f64,
     },
+    /// The ranges contradict each other, and leaving out a station does not mend it.
+    PositionAlarmed {
+        /// Sum of the squared residuals over their variances.
+        chi2: f64,
+        /// Stations used minus two.
+        degrees_of_freedom: u32,
+    },
+    /// The ranges agree again.
+    PositionTrusted,
     /// An obstacle that is not on the drawing was seen for the first time.
     ObstacleFound {
         /// Its outline as estimated, tank frame.
@@ -386,6 +395,8 @@ pub enum HoldReason {
     Operator,
     /// The position is lost.
     PositionLost,
+    /// The ranges contradict each other.
+    PositionAlarmed,
     /// The planner failed.
     PlannerFault {
         /// The fault's sentence.
@@ -415,6 +426,7 @@ impl fmt::Display for HoldReason {
         match self {
             Self::Operator => f.write_str("held by the operator"),
             Self::PositionLost => f.write_str("held because the position is lost"),
+            Self::PositionAlarmed => f.write_str("held because the ranges contradict each other"),
             Self::PlannerFault { message } => write!(f, "held because of the planner: {message}"),
             Self::Stuck { message } => write!(f, "held because the robot is stuck: {message}"),
             Self::Tether { message } => write!(f, "held because of the tether: {message}"),
@@ -515,6 +527,14 @@ impl Event {
             EventKind::PositionRegained { error_m } => {
                 line(Severity::Info, "ae", format!("position regained: 95 % error {error_m:.2} m"))
             }
+            EventKind::PositionAlarmed { chi2, degrees_of_freedom } => line(
+                Severity::Crit,
+                "ae",
+                format!(
+                    "ranges contradict each other: chi-squared {chi2:.0}, {degrees_of_freedom} degrees of freedom"
+                ),
+            ),
+            EventKind::PositionTrusted => line(Severity::Info, "ae", "ranges agree again".into()),
             EventKind::ObstacleFound { obstacle } => {
                 let at = obstacle.shape.center();
                 line(
@@ -587,6 +607,7 @@ fn hold_severity(by: &HoldReason) -> Severity {
     match by {
         HoldReason::Operator | HoldReason::Stepped => Severity::Info,
         HoldReason::PositionLost
+        | HoldReason::PositionAlarmed
         | HoldReason::PlannerFault { .. }
         | HoldReason::PlanRefused { .. }
         | HoldReason::Tether { .. }

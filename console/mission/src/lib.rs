@@ -19,7 +19,7 @@ mod preview;
 mod task;
 pub mod tether;
 
-pub use config::{MissionConfig, PlannerChoice, ScanConfig, TaskConfig};
+pub use config::{Locating, MissionConfig, PlannerChoice, ScanConfig, TaskConfig};
 pub use engine::{Input, Mission, Phase, Step};
 pub use event::{Event, EventKind, HoldReason, LogLine, Outcome, RunOpened, Severity};
 pub use link::{

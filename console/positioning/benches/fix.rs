@@ -3,12 +3,13 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Matrix2;
 use positioning::{
-    Aggregation, Ekf, LinearLs, MotionNoise, Nls, PositionSolver, Positioner, PositionerConfig,
+    Aggregation, Ekf, LinearLs, MotionNoise, Nls, PositionSolver, Positioner, PositionerConfig, RangeNoise,
 };
 use rand::{RngExt, SeedableRng};
 use std::hint::black_box;
 use world::{Odometry, Point, Pose, RangeSet, Station, StationId};
 
+const NOISE: RangeNoise = RangeNoise::Uniform { ratio: 0.05 };
 const TRUTH: Point = Point::new(3.0, -4.0);
 
 fn stations() -> Vec<Station> {
@@ -32,7 +33,7 @@ fn fixes(criterion: &mut Criterion) {
     let stations = stations();
     let sets = cycle(&stations);
     let solve = |solver: &dyn PositionSolver| {
-        let rangings = Aggregation::Mean.aggregate(black_box(&sets), 0.029).expect("usable ranges");
+        let rangings = Aggregation::Mean.aggregate(black_box(&sets), &NOISE).expect("usable ranges");
         solver.solve(&rangings, &stations, None).expect("a fix")
     };
     criterion.bench_function("fix of 60 ranges, linear", |b| b.iter(|| solve(&LinearLs)));

@@ -13,20 +13,20 @@ use mission::{
     Event, EventKind, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, TaskConfig,
     event::RunOpened,
 };
-use world::{Obstacle, Pose};
+use world::{Obstacle, Point, Pose, coverage::regions};
 
 /// What is known of a run from the events so far.
 #[derive(Debug, Default)]
 pub struct Fold {
     known: Summary,
     truth: Option<Pose>,
-    scanned: Option<Scanned>,
+    pub(crate) scanned: Option<Scanned>,
     tracker: Option<Tracker>,
     accuracy: Accuracy,
     turning: Turning,
     tethered: Option<Tethered>,
-    run: Option<Box<RunOpened>>,
-    evidence: Option<Evidence>,
+    pub(crate) run: Option<Box<RunOpened>>,
+    pub(crate) evidence: Option<Evidence>,
 }
 
 impl Fold {
@@ -113,6 +113,17 @@ impl Fold {
             positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
             ..self.known.clone()
         }
+    }
+
+    /// What is to be scanned again, as boxes of no more than `most` (the fewer, the coarser): south west and north east
+    /// corners. Slivers thinner than a block of cells are left out. None for missions that are not there to scan.
+    pub fn missed_boxes(&self, most: usize) -> Option<Vec<[Point; 2]>> {
+        self.evidence.as_ref()?;
+        let grid = self.scanned.as_ref()?.believed();
+        let is_missed = |index: usize| grid.floor().is_reachable(index) && !grid.is_covered(index);
+        let boxes = |block| regions::boxes(grid.floor(), block, is_missed);
+        let missed = (1..8).map(|fold| boxes(1 << fold)).find(|boxes| boxes.len() <= most)?;
+        Some(missed.iter().map(|corners| [corners[0], corners[2]]).collect())
     }
 
     /// The account of the floor; none for missions that are not there to scan it.

@@ -5,7 +5,9 @@
 #![forbid(unsafe_code)]
 
 mod bench;
+pub mod fields;
 mod planners;
+pub mod positioning;
 mod row;
 mod sample;
 pub mod spiral;

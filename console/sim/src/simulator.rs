@@ -4,7 +4,7 @@ use crate::{
     chance::{Chance, normal},
     config::{Drive, SimConfig, TetherTruth, Truth},
     motion::{Arc, Tracks, bounded},
-    ranging::Ranging,
+    ranging::Sounder,
     sight::sightings,
     sweep::sweep,
 };
@@ -22,8 +22,8 @@ pub struct Simulator {
     map: ObstacleMap,
     chance: Chance,
     tracks: Tracks,
+    sounder: Option<Sounder>,
     mode: Mode,
-    ranging: Option<Ranging>,
     pose: Pose,
     cable: Option<Cable>,
     odometry: Odometry,
@@ -40,8 +40,8 @@ impl Simulator {
             map,
             chance: Chance::new(seed),
             tracks: Tracks::new(&config.robot, config.tick_s),
+            sounder: config.ae.clone().map(|ae| Sounder::new(ae, &config.world, seed)),
             mode: Mode::of(Medium::at(&config.world.zones, config.robot.start.position)),
-            ranging: config.ae.clone().map(Ranging::new),
             pose: config.robot.start,
             cable: cable(&config),
             odometry: Odometry::default(),
@@ -59,8 +59,8 @@ impl Simulator {
     pub fn sense(&mut self) -> Readings {
         let world = &self.config.world;
         let t_s = self.tick as f64 * self.config.tick_s.max(0.0);
-        let (at, chance) = (self.pose.position, &mut self.chance);
-        let ranges = self.ranging.as_mut().and_then(|r| r.cycle(t_s, at, &world.stations, chance));
+        let at = self.pose.position;
+        let ranges = self.sounder.as_mut().and_then(|sounder| sounder.due_cycle(t_s, at));
         let robot = &self.config.robot;
         let reach_m = bounded(robot.radius_m.max(0.0) + robot.sensing_range_m.max(0.0));
         Readings {

@@ -10,6 +10,7 @@ pub mod paper;
 pub mod score;
 pub mod shore;
 pub mod spiral;
+pub mod tanks;
 pub mod traps;
 pub mod verdict;
 

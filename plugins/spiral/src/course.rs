@@ -90,19 +90,6 @@ impl Course {
         along.try_normalize(1e-12).unwrap_or_else(Vector::x)
     }
 
-    /// Place and direction so far along the course, metres.
-    pub fn at_m(&self, station_m: f64) -> (Point, Vector) {
-        let next = self.stations_m.partition_point(|s| *s <= station_m).clamp(1, self.last().max(1));
-        if next > self.last() {
-            return (self.points[0], self.direction(0));
-        }
-        let (from_m, to_m) = (self.stations_m[next - 1], self.stations_m[next]);
-        let share = ((station_m - from_m) / (to_m - from_m)).clamp(0.0, 1.0);
-        let at = self.points[next - 1] + (self.points[next] - self.points[next - 1]) * share;
-        let direction = self.direction(next - 1).lerp(&self.direction(next), share);
-        (at, direction.try_normalize(1e-9).unwrap_or_else(|| self.leg(next - 1)))
-    }
-
     /// How fast the course itself turns about a point, radians per metre.
     pub fn turn_per_m(&self, index: usize) -> f64 {
         let before = self.leg(index.saturating_sub(1));

@@ -6,11 +6,12 @@ mod rpf;
 mod spiral_lattice;
 mod spiral_tangent;
 
+mod band;
 mod course;
 mod lattice;
-mod polish;
 mod pursuit;
 mod refusal;
+mod ring;
 mod strip;
 mod tangent;
 

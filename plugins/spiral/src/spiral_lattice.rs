@@ -62,7 +62,9 @@ impl Planner for SpiralLattice {
         course::check_start(request, &course, &room, ctx)?;
         match lattice::plan(&course, &room, self.wishes.limits, ctx)? {
             Ok(path) => Ok(told(path, &course, &room, ctx)),
-            Err(Blocked { station, partial }) => Err(refusal::no_path(&course, &room, station, partial)),
+            Err(Blocked { station, partial }) => {
+                Err(refusal::no_path(&course, (request.site, &room), station, partial))
+            }
         }
     }
 
@@ -88,6 +90,14 @@ fn told(path: lattice::Path, course: &Course, room: &field::Room, ctx: &Ctx<'_>)
                 "between ({:.2}, {:.2}) and ({:.2}, {:.2}) the only way turns faster than the turn limit",
                 from.x, from.y, to.x, to.y
             ),
+        );
+    }
+    let (start, begin) = (course.points[0], path.points[0]);
+    if (begin - start).norm() > 1e-6 && room.spare_m(start) >= 0.0 {
+        let beside_m = (begin - start).norm();
+        ctx.log(
+            LogLevel::Warn,
+            &format!("nothing leads on along the preset path from the start; the path begins {beside_m:.2} m beside it"),
         );
     }
     let end = path.points[path.points.len() - 1];

@@ -86,7 +86,7 @@ impl Planner for SpiralTangent {
                 }
                 Ok(Plan { cost: polyline::length_m(&path), path, complete, ..Plan::default() })
             }
-            Err(station) => Err(refusal::no_path(&course, &room, station, path)),
+            Err(station) => Err(refusal::no_path(&course, (request.site, &room), station, path)),
         }
     }
 

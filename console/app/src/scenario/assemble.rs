@@ -5,6 +5,7 @@ use super::{
     checks::{Site, check_cells, check_period, check_ticks},
     expect, floor, layout,
     problem::{Complaint, Problem},
+    ranging,
     robot::{self, Robot},
     schema,
     section::Section,
@@ -46,6 +47,7 @@ struct Floor {
     robot: Option<Robot>,
     stations: Vec<Station>,
     ae: Option<AeConfig>,
+    locating: Option<Locating>,
 }
 
 fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
@@ -95,7 +97,8 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         odometry_sigma_per_m: robot.odometry_sigma_per_m(),
         odometry_turn_sigma_per_rad: robot.turn_sigma_per_rad(),
         gyro_sigma_rad_per_s: robot.gyro_sigma_rad_per_s(),
-        range_sigma_ratio: robot::range_sigma_ratio(ae.noise),
+        range_sigma_ratio: ranging::range_sigma_ratio(ae.noise),
+        locating: locating?,
         planner: planner?,
         fallback,
         // Who flies it knows; a scenario does not.
@@ -126,12 +129,18 @@ impl Floor {
     fn read(sections: &Sections<'_>) -> Self {
         let boundary = floor::tank(sections.root);
         let ae = sections.ae.as_ref();
+        let stations = ae.map(|section| ranging::stations(section, boundary.as_ref())).unwrap_or_default();
+        let mut heard = ae.and_then(ranging::ae);
+        if let (Some(section), Some(heard)) = (ae, &mut heard) {
+            heard.disturbances.faults = ranging::faults(section, &stations);
+        }
         Self {
             obstacles: floor::obstacles(sections.root, boundary.as_ref()),
             zones: floor::zones(sections.root),
             robot: sections.robot.as_ref().and_then(robot::robot),
-            stations: ae.map(|section| robot::stations(section, boundary.as_ref())).unwrap_or_default(),
-            ae: ae.and_then(robot::ae),
+            stations,
+            locating: ae.zip(heard.as_ref()).and_then(|(section, heard)| ranging::locating(section, heard)),
+            ae: heard,
             boundary,
         }
     }

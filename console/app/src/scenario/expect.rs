@@ -22,6 +22,7 @@ pub fn expect(root: &Section<'_>) -> Option<Expect> {
         mission_time_max_s: section.number("mission_time_max_s"),
         path_length_max_m: section.number("path_length_max_m"),
         coverage_reachable_min: section.number("coverage_reachable_min"),
+        coverage_truth_min: section.number("coverage_truth_min"),
         coverage_whole_min: section.number("coverage_whole_min"),
         overlap_max: section.number("overlap_max"),
         precision_min: section.number("precision_min"),

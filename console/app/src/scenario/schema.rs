@@ -263,6 +263,26 @@ static AE: &[Key] = &[
     key("noise", "", Kind::Table(NOISE)).or_none("`{ model = \"uniform\", ratio = 0.05 }`"),
     number("dropout", "", SHARE).or(0.0),
     key("outages_s", "s", Kind::Times).or_none("none"),
+    number("ping_dropout", "", SHARE).or(0.0),
+    number("outlier_chance", "", SHARE).or(0.0),
+    number("outlier_factor", "", at_least(1.0).up_to(100.0)).or(10.0),
+    number("nlos_chance", "", SHARE).or(0.0),
+    number("late_ping_chance", "", SHARE).or(0.0),
+    number("late_mean_m", "m", above(0.0).up_to(1000.0)).or(1.0),
+    word("behind_columns", &["heard", "creeping", "late", "wall-echo", "silent"]).or_word("heard"),
+    number("survey_sigma_m", "m", at_least(0.0).up_to(10.0)).or(0.0),
+    number("sound_speed_error_ratio", "", at_least(-0.5).up_to(0.5)).or(0.0),
+    key("faults", "", Kind::Tables(FAULTS)).or_none("none"),
+    word("solver", &["linear", "weighted-linear", "nls", "bounded", "consensus"]).or_word("nls"),
+    word("aggregation", &["mean", "midrange", "trimmed-mean", "posterior"]).or_word("mean"),
+    key("calibrates_sound", "", Kind::Flag).or_flag(false),
+];
+
+static FAULTS: &[Key] = &[
+    key("station", "", Kind::Text),
+    number("from_s", "s", at_least(0.0)),
+    number("to_s", "s", above(0.0)),
+    number("late_m", "m", above(0.0).up_to(1000.0)).or_none("the station is silent"),
 ];
 
 static TETHER: &[Key] = &[
@@ -277,9 +297,9 @@ static TETHER: &[Key] = &[
 static STATIONS: &[Key] = &[key("name", "", Kind::Text), point("at_m")];
 
 static NOISE: &[Key] = &[
-    word("model", &["none", "uniform", "gaussian"]),
-    number("ratio", "", above(0.0).up_to(0.9)).or_none("for `uniform`"),
-    number("sigma_ratio", "", above(0.0).up_to(0.9)).or_none("for `gaussian`"),
+    word("model", &["none", "uniform", "triangular", "gaussian", "heavy-tailed"]),
+    number("ratio", "", above(0.0).up_to(0.9)).or_none("for `uniform`, `triangular`"),
+    number("sigma_ratio", "", above(0.0).up_to(0.9)).or_none("for `gaussian`, `heavy-tailed`"),
 ];
 
 static MISSION: &[Key] = &[

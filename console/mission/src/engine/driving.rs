@@ -1,7 +1,12 @@
 //! One tick of moving: ask the planner, send the robot its answer.
 
 use super::Mission;
-use crate::{drive::drive_for, event::EventKind, link::PlannerLink};
+use crate::{
+    drive::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD, drive_for},
+    event::EventKind,
+    link::PlannerLink,
+    task::Task,
+};
 use planner_api::{Command, Drive, Sensed};
 
 /// How much of the targets and of the plan a planner sees ahead, metres.
@@ -57,7 +62,12 @@ impl Mission {
     }
 
     fn send(&mut self, command: Command) -> Drive {
-        let drive = drive_for(command.drive, self.locator.pose().heading_rad, &self.config.limits);
+        let turn_first_rad = match self.task {
+            Task::Cover(_) => TURN_FIRST_IN_LANES_RAD,
+            Task::Goto(_) | Task::Follow { .. } => TURN_FIRST_RAD,
+        };
+        let heading_rad = self.locator.pose().heading_rad;
+        let drive = drive_for(command.drive, heading_rad, &self.config.limits, turn_first_rad);
         self.happened.push(EventKind::Commanded { command: Command { drive, status: command.status } });
         drive
     }

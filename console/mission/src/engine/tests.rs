@@ -126,6 +126,7 @@ fn config() -> MissionConfig {
         odometry_turn_sigma_per_rad: 0.05,
         gyro_sigma_rad_per_s: 0.001,
         range_sigma_ratio: 0.01,
+        locating: crate::Locating::default(),
         scan: ScanConfig::default(),
         planner: PlannerChoice { id: "straight".into(), parameters: Parameters::new() },
         tether: None,

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{AeConfig, NoiseModel, RobotConfig};
+use crate::{AeConfig, Disturbances, NoiseModel, RobotConfig};
 use proptest::prelude::*;
 use world::{
     Amphibious, Boundary, Obstacle, ObstacleId, Point, Shape, Station, StationId, Vector, World, Zone,
@@ -66,6 +66,7 @@ fn config() -> SimConfig {
             noise: NoiseModel::Uniform { ratio: 0.05 },
             dropout: 0.1,
             outages_s: vec![(3.0, 4.0)],
+            disturbances: Disturbances::default(),
         }),
         tick_s: 0.1,
         tether_anchor: None,
@@ -140,6 +141,10 @@ proptest! {
         config.ae = Some(AeConfig {
             period_s: n(10), repetitions: 2, noise: NoiseModel::Gaussian { sigma_ratio: n(11) }, dropout: n(5),
             outages_s: vec![(n(6), n(7))],
+            disturbances: Disturbances {
+                outlier_chance: n(8), outlier_factor: n(9), late_mean_m: n(10), nlos_chance: n(11),
+                survey_sigma_m: n(3), sound_speed_error_ratio: n(4), ..Disturbances::default()
+            },
         });
         let mut sim = Simulator::new(config, 1);
         for drive in drives {

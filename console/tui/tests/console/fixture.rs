@@ -92,6 +92,7 @@ pub fn config() -> MissionConfig {
         odometry_turn_sigma_per_rad: 0.05,
         gyro_sigma_rad_per_s: 0.001,
         range_sigma_ratio: 0.01,
+        locating: mission::Locating::default(),
         planner: choice("rpf"),
         tether: None,
         fallback: None,
@@ -321,6 +322,8 @@ impl Telling {
             range_m: (station.position - here).norm(),
             sigma_m: 0.05,
             repetitions: 5,
+            least_m: (station.position - here).norm(),
+            most_m: (station.position - here).norm(),
         };
         world().stations.iter().map(ranging).collect()
     }

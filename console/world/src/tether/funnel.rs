@@ -83,7 +83,8 @@ impl Funnel {
         'from_apex: while next < gates.len() {
             let (mut left, mut right) = gates[next];
             let (mut left_at, mut right_at) = (next, next);
-            for k in next..gates.len() {
+            let first = next;
+            for k in first..gates.len() {
                 let (l, r) = gates[k];
                 if (right - apex).perp(&(r - apex)) >= 0.0 {
                     if right == apex || (left - apex).perp(&(r - apex)) <= 0.0 {

@@ -31,16 +31,6 @@ fn on_layouts_of_the_paper_it_keeps_clear_and_near() {
     }
 }
 
-#[test]
-#[ignore = "takes minutes: the figures on a thousand layouts of each distribution"]
-fn on_a_thousand_layouts_it_holds_its_figures() {
-    for (distribution, ok, cross_track_m, precision) in bounds() {
-        let figures = Figures::of::<SpiralTangent>(distribution, 1_000_000..1_001_000, &[]);
-        println!("{distribution:?} {}", figures.told());
-        hold(&figures, ok, cross_track_m, precision);
-    }
-}
-
 fn bounds() -> [(Distribution, f64, f64, f64); 3] {
     [
         (Distribution::D1, 0.98, 0.055, 0.97),

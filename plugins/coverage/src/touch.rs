@@ -1,0 +1,113 @@
+//! Touch-ups: short lanes over what the tour has missed.
+
+use crate::{
+    cuts::Cut,
+    floor::FloorGrid,
+    ground::{Ground, SLACK_M},
+    lanes::{Lane, thinned},
+    slit::Slit,
+};
+use world::{Point, Vector, polyline};
+
+/// Distance that touch-ups keep from cuts, metres.
+const CUT_M: f64 = 0.03;
+/// Touch-ups are looked at this closely, metres.
+const STEP_M: f64 = 0.05;
+
+/// Lanes over a group of missed cells, as long as it is and as many as it is wide.
+pub fn touch_up(ground: &Ground, slit: &Slit, cuts: &[Cut], grid: &FloorGrid, group: &[usize]) -> Vec<Lane> {
+    let points: Vec<Point> = group.iter().map(|cell| grid.center(*cell)).collect();
+    let (middle, along) = axis(&points);
+    let across = Vector::new(-along.y, along.x);
+    let spread = |direction: Vector| {
+        let places = points.iter().map(|p| (p - middle).dot(&direction));
+        places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| (low.min(s), high.max(s)))
+    };
+    let ((from, to), (left, right)) = (spread(along), spread(across));
+    let n = ((right - left) / ground.swath_m).ceil().max(1.0);
+    let mut lanes = Vec::new();
+    for k in 0..n as usize {
+        let offset = left + (right - left) * (k as f64 + 0.5) / n;
+        let strip_m = (right - left) / n / 2.0 + grid.cell_m;
+        let own = points.iter().filter(|p| ((*p - middle).dot(&across) - offset).abs() <= strip_m);
+        let places = own.map(|p| (p - middle).dot(&along));
+        let (own_from, own_to) =
+            places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| (low.min(s), high.max(s)));
+        let (a, b) = if own_from <= own_to { (own_from, own_to) } else { (from, to) };
+        let grow = (0.06 - (b - a)).max(0.0) / 2.0;
+        let line = [middle + across * offset + along * (a - grow), middle + across * offset + along * (b + grow)];
+        let pushed: Vec<Point> =
+            polyline::resampled(&line, STEP_M).iter().filter_map(|p| pushed(ground, slit, cuts, *p)).collect();
+        lanes.extend(runs(slit, cuts, &pushed));
+    }
+    lanes
+}
+
+/// Mean and main direction of some points.
+fn axis(points: &[Point]) -> (Point, Vector) {
+    let n = points.len().max(1) as f64;
+    let middle = Point::from(points.iter().map(|p| p.coords).sum::<Vector>() / n);
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for offset in points.iter().map(|p| p - middle) {
+        xx += offset.x * offset.x;
+        xy += offset.x * offset.y;
+        yy += offset.y * offset.y;
+    }
+    let angle = (2.0 * xy).atan2(xx - yy) / 2.0;
+    (middle, crate::ground::direction(angle))
+}
+
+/// The nearest place with room, by walking out of what is in the way.
+fn pushed(ground: &Ground, slit: &Slit, cuts: &[Cut], from: Point) -> Option<Point> {
+    let mut at = from;
+    for _ in 0..12 {
+        let wall_m = ground.wall.wall_distance_m(at) - ground.keep_m - SLACK_M;
+        let mut worst = (wall_m, inward(ground, at));
+        for (part, keep_m) in ground.room.parts_near(at) {
+            let (distance_m, away) = part.distance(at);
+            // Facets stand out a little.
+            let spare_m = distance_m - keep_m * 1.025 - SLACK_M;
+            if spare_m < worst.0 {
+                worst = (spare_m, away);
+            }
+        }
+        if worst.0 >= -1e-6 {
+            break;
+        }
+        at += worst.1 * (-worst.0 + 1e-4);
+    }
+    let is_clear = cuts.iter().all(|cut| polyline::distance_m(&cut.line, at) >= CUT_M);
+    (is_clear && slit.contains(at)).then_some(at)
+}
+
+fn inward(ground: &Ground, at: Point) -> Vector {
+    let step = 1e-4;
+    let d = |offset: Vector| ground.wall.wall_distance_m(at + offset);
+    let slope = Vector::new(
+        d(Vector::new(step, 0.0)) - d(Vector::new(-step, 0.0)),
+        d(Vector::new(0.0, step)) - d(Vector::new(0.0, -step)),
+    );
+    slope.try_normalize(1e-12).unwrap_or_else(Vector::x)
+}
+
+/// Pieces of a line that can be driven straight.
+fn runs(slit: &Slit, cuts: &[Cut], points: &[Point]) -> Vec<Lane> {
+    let mut lanes: Vec<Vec<Point>> = vec![Vec::new()];
+    for p in points {
+        let current = lanes.last_mut().expect("there is always one");
+        match current.last() {
+            Some(last) if (p - last).norm() < 1e-3 => {}
+            Some(last) if (p - last).norm() > 3.0 * STEP_M || crosses(cuts, *last, *p) || !slit.sees(*last, *p) => {
+                lanes.push(vec![*p]);
+            }
+            _ => current.push(*p),
+        }
+    }
+    let long_enough = lanes.into_iter().filter(|line| line.len() > 1);
+    long_enough.map(|line| Lane { points: thinned(&line) }).collect()
+}
+
+fn crosses(cuts: &[Cut], a: Point, b: Point) -> bool {
+    let mut sides = cuts.iter().flat_map(|cut| cut.line.windows(2));
+    sides.any(|side| field::part::crossing(a, b, side[0], side[1]).is_some())
+}
