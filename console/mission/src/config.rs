@@ -2,7 +2,7 @@
 
 use crate::{link::Parameters, tether::TetherConfig};
 use planner_api::{Limits, Motion, TetherLimits};
-use positioning::{Aggregation, RangeNoise, SolverKind};
+use positioning::{Aggregation, Forecast, RangeNoise, SolverKind};
 use serde::{Deserialize, Serialize};
 use world::{Point, Pose, coverage::Tool};
 
@@ -182,5 +182,18 @@ impl MissionConfig {
     /// What the tether bears, for planners; `None` without one.
     pub fn tether_limits(&self) -> Option<TetherLimits> {
         self.tether.as_ref().map(TetherConfig::as_request)
+    }
+}
+
+impl MissionConfig {
+    /// What a forecast of the accuracy has to know, for cells of this edge.
+    pub fn forecast(&self, cell_m: f64) -> Forecast {
+        let normal = RangeNoise::Gaussian { sigma_ratio: self.range_sigma_ratio };
+        Forecast {
+            noise: self.locating.noise.unwrap_or(normal),
+            repetitions: self.locating.repetitions,
+            needs_sight: self.locating.needs_sight,
+            cell_m,
+        }
     }
 }

@@ -22,6 +22,7 @@ use mission::{
     MissionConfig, Order, Outcome, PlannerChoice, PlannerInfo, Severity, event::HoldReason, link::Fault,
 };
 use planner_api::{Command, Drawing};
+use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
 use world::{Point, World};
 
@@ -45,6 +46,8 @@ pub struct Model {
     pub trail: Trail,
     /// What has been scanned.
     pub coverage: Option<Raster>,
+    /// How well the stations are forecast to locate the robot.
+    pub accuracy: Option<AccuracyMap>,
     /// How far the mission is; `None` before the first step.
     pub progress: Option<Progress>,
     /// The tether; `None` without one.
@@ -279,7 +282,7 @@ impl Model {
     /// Whether the robot moves or may begin to move any moment without being told.
     pub fn may_move(&self) -> bool {
         let by_itself = match &self.phase {
-            Phase::Running | Phase::Held(HoldReason::PositionLost) => true,
+            Phase::Running | Phase::Held(HoldReason::PositionLost | HoldReason::PositionAlarmed) => true,
             Phase::Held(HoldReason::PlannerFault { .. } | HoldReason::PlanRefused { .. }) => {
                 self.has_fallback()
             }

@@ -12,7 +12,7 @@ use super::{
     source::Source,
     task, tether,
 };
-use mission::{MissionConfig, ScanConfig, TaskConfig, TetherConfig};
+use mission::{Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
 use sim::{AeConfig, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
@@ -77,7 +77,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let rest = Rest::read(&sections, &floor);
 
     let (planner, fallback) = planner?;
-    let (robot, rest, start, ae) = (floor.robot?, rest?, start?, floor.ae?);
+    let (robot, rest, start, ae, locating) = (floor.robot?, rest?, start?, floor.ae?, floor.locating?);
     let mission = MissionConfig {
         task: task?,
         tether,
@@ -98,7 +98,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         odometry_turn_sigma_per_rad: robot.turn_sigma_per_rad(),
         gyro_sigma_rad_per_s: robot.gyro_sigma_rad_per_s(),
         range_sigma_ratio: ranging::range_sigma_ratio(ae.noise),
-        locating: locating?,
+        locating,
         planner: planner?,
         fallback,
         // Who flies it knows; a scenario does not.
@@ -111,7 +111,8 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         stations: floor.stations,
         zones: floor.zones,
     };
-    let sim = SimConfig { world, robot: truth(&robot, start), ae: Some(ae), tick_s: rest.tick_s, tether_anchor };
+    let sim =
+        SimConfig { world, robot: truth(&robot, start), ae: Some(ae), tick_s: rest.tick_s, tether_anchor };
     Some(Scenario {
         name: name?,
         about: about?,

@@ -340,7 +340,8 @@ static FALLBACK: &[Key] =
 const NO_BOUND: &str = "no bound";
 
 static EXPECT: &[Key] = &[
-    word("outcome", &["complete", "stuck", "collision", "time_limit", "entangled", "aborted"]).or_none(NO_BOUND),
+    word("outcome", &["complete", "stuck", "collision", "time_limit", "entangled", "aborted"])
+        .or_none(NO_BOUND),
     key("collisions_max", "", Kind::Whole(0, i64::MAX)).or_none(NO_BOUND),
     number("min_clearance_min_m", "m", at_least(-1000.0)).or_none(NO_BOUND),
     number("mission_time_max_s", "s", above(0.0)).or_none(NO_BOUND),

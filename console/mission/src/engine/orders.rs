@@ -68,6 +68,9 @@ impl Mission {
 
     /// Lets the robot move again, for good or for one tick.
     fn resume(&mut self, how: Phase, planner: &mut dyn PlannerLink) -> Result<(), String> {
+        if self.locator.is_alarmed() {
+            return Err("the ranges contradict each other; going on needs a fix that holds together".into());
+        }
         if self.locator.is_lost() {
             return Err(format!(
                 "the position is lost: 95 % error {:.2} m, limit {:.2} m",

@@ -19,6 +19,7 @@ const MOVING: &str = "moving";
 const HELD: &str = "held by the operator";
 const STEPPED: &str = "held after a step";
 const HELD_LOST: &str = "held, position lost";
+const HELD_ALARMED: &str = "held, ranges contradict";
 const HELD_FAULT: &str = "held, planner fault";
 const HELD_STUCK: &str = "held, stuck";
 const HELD_TETHER: &str = "held, tether";
@@ -46,6 +47,7 @@ impl States {
             (HELD, amber),
             (STEPPED, amber),
             (HELD_LOST, red),
+            (HELD_ALARMED, red),
             (HELD_FAULT, red),
             (HELD_STUCK, red),
             (HELD_TETHER, red),
@@ -112,6 +114,7 @@ fn held(by: &HoldReason) -> &'static str {
         HoldReason::Operator => HELD,
         HoldReason::Stepped => STEPPED,
         HoldReason::PositionLost => HELD_LOST,
+        HoldReason::PositionAlarmed => HELD_ALARMED,
         HoldReason::PlannerFault { .. } => HELD_FAULT,
         HoldReason::Stuck { .. } => HELD_STUCK,
         HoldReason::Tether { .. } => HELD_TETHER,

@@ -347,7 +347,7 @@ fn opened() -> RunOpened {
             odometry_turn_sigma_per_rad: 0.02,
             gyro_sigma_rad_per_s: 0.001,
             range_sigma_ratio: 0.01,
-        locating: mission::Locating::default(),
+            locating: mission::Locating::default(),
             planner: PlannerChoice { id: "rpf".into(), parameters: Parameters::new() },
             tether: None,
             fallback: None,

@@ -11,6 +11,8 @@ const MAX_ALARMS: usize = 64;
 pub enum Cause {
     /// The position error is beyond the limit.
     PositionLost,
+    /// The ranges contradict each other.
+    Contradiction,
     /// The ranges give no position.
     NoFix,
     /// A station is left out.

@@ -3,11 +3,13 @@
 use super::{Cause, Model, Overlay, Phase, PlanShown, Progress, Raster, Run, Trail};
 use mission::{Event, EventKind, Order, Outcome, Severity, TaskConfig, event::HoldReason, event::RunOpened};
 use planner_api::Drawing;
-use positioning::Exclusion;
+use positioning::{AccuracyMap, Exclusion};
 use world::{Obstacle, ObstacleId, Station, StationId};
 
 /// Most drawings kept of one tick.
 const MAX_DRAWINGS: usize = 512;
+/// Cells of the accuracy forecast along the longer side of the floor.
+const FORECAST_CELLS: f64 = 100.0;
 /// Most figures kept of one tick.
 const MAX_SCALARS: usize = 32;
 
@@ -40,7 +42,9 @@ impl Model {
             | EventKind::StationRegained { .. }
             | EventKind::Estimated { .. }
             | EventKind::PositionLost { .. }
-            | EventKind::PositionRegained { .. } => self.locate(event),
+            | EventKind::PositionRegained { .. }
+            | EventKind::PositionAlarmed { .. }
+            | EventKind::PositionTrusted => self.locate(event),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
             EventKind::PlannerChosen { choice, info, .. } => {
@@ -168,6 +172,16 @@ impl Model {
                 self.position.lost = false;
                 self.alarms.clear(&Cause::PositionLost);
             }
+            EventKind::PositionAlarmed { .. } => {
+                self.raise(
+                    event,
+                    Cause::Contradiction,
+                    Severity::Crit,
+                    "ranges contradict each other".into(),
+                );
+                self.withdraw_question();
+            }
+            EventKind::PositionTrusted => self.alarms.clear(&Cause::Contradiction),
             _ => {}
         }
     }
@@ -194,6 +208,9 @@ impl Model {
             preset_m,
         });
         self.coverage = Some(Raster::new(run.floor.clone()));
+        let (low, high) = run.world.boundary.bounds();
+        let forecast = run.mission.forecast((high - low).amax() / FORECAST_CELLS);
+        self.accuracy = Some(AccuracyMap::new(&run.world.as_drawn(), &forecast));
         self.planning.choice = Some(run.mission.planner.clone());
         self.phase = Phase::Idle;
     }

@@ -90,6 +90,11 @@ fn held(model: &Model, by: &HoldReason) -> Vec<String> {
         }
         HoldReason::Operator => &["HELD by you.", "space asks to go on.", "P changes the planner."],
         HoldReason::Stepped => &["HELD after a step.", "space asks to go on."],
+        HoldReason::PositionAlarmed => &[
+            "HELD, ranges contradict each other.",
+            "Goes on by itself when they agree.",
+            "space keeps it held.",
+        ],
         HoldReason::PositionLost => {
             &["HELD, position lost.", "Goes on by itself when regained.", "space keeps it held."]
         }
