@@ -18,6 +18,7 @@ use crate::{
     tether::Tether,
 };
 use planner_api::{Drive, Reason};
+use tethering::Cuts;
 use world::{CoverageGrid, Floor, FloorMaker, Point, Readings, World};
 
 /// What enters the engine in one tick.
@@ -54,6 +55,8 @@ pub struct Mission {
     surveyor: Option<FloorMaker>,
     /// `None` without a tether, or if its anchor cannot be.
     tether: Option<Tether>,
+    /// What the plan keeps to.
+    cuts: Cuts,
     /// What the cable reached in this tick.
     cable_trouble: Option<TetherAlarm>,
     planner: Seat,
@@ -108,6 +111,7 @@ impl Mission {
                 .tether
                 .as_ref()
                 .and_then(|tether| Tether::new(tether, config.limits.radius_m, &drawing, start).ok()),
+            cuts: Cuts { lines: Vec::new(), beyond: false, seen_at: start },
             cable_trouble: None,
             phase: Phase::Waiting,
             locator: Locator::new(&config, &drawing),
