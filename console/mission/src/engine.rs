@@ -53,6 +53,8 @@ pub struct Mission {
     planner: Seat,
     stuck: StuckWatch,
     lost_s: f64,
+    /// For how long the planner has said that it is stuck, seconds.
+    blocked_s: f64,
     trail: Vec<Point>,
     plan: Option<Follower>,
     last_drive: Drive,
@@ -111,6 +113,7 @@ impl Mission {
             },
             stuck: StuckWatch::new(config.stuck_s),
             lost_s: 0.0,
+            blocked_s: 0.0,
             trail: vec![start],
             plan: None,
             last_drive: Drive::STILL,
