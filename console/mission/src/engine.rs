@@ -18,6 +18,9 @@ use crate::{
 use planner_api::{Drive, Reason};
 use world::{CoverageGrid, Floor, FloorMaker, Point, Readings, World};
 
+/// A robot that is stuck again within this distance is stuck in the same place, metres.
+const SAME_PLACE_M: f64 = 1.0;
+
 /// What enters the engine in one tick.
 #[derive(Debug, Clone, Copy)]
 pub struct Input<'a> {
@@ -55,6 +58,8 @@ pub struct Mission {
     lost_s: f64,
     /// For how long the planner has said that it is stuck, seconds.
     blocked_s: f64,
+    /// Where the robot was stuck last and got another plan.
+    replanned_at: Option<Point>,
     trail: Vec<Point>,
     plan: Option<Follower>,
     last_drive: Drive,
@@ -114,6 +119,7 @@ impl Mission {
             stuck: StuckWatch::new(config.stuck_s),
             lost_s: 0.0,
             blocked_s: 0.0,
+            replanned_at: None,
             trail: vec![start],
             plan: None,
             last_drive: Drive::STILL,
@@ -185,8 +191,24 @@ impl Mission {
         } else if self.task.is_done(here) {
             self.end(Outcome::Complete, &self.done_reason());
         } else if self.stuck.is_stuck(&self.task, here, self.config.tick_s) {
-            self.stop_stuck(here);
+            if !self.tries_another_plan(here) {
+                self.stop_stuck(here);
+            }
+        } else {
+            self.task.wait(self.config.tick_s);
         }
+    }
+
+    /// A robot that is stuck in its lanes gets another plan from where it stands, once at each place.
+    fn tries_another_plan(&mut self, here: Point) -> bool {
+        let tried = self.replanned_at.is_some_and(|at| (here - at).norm() < SAME_PLACE_M);
+        if tried || !matches!(self.task, Task::Cover(_)) {
+            return false;
+        }
+        self.replanned_at = Some(here);
+        self.planner.plan_due.get_or_insert(Reason::Blocked);
+        self.stuck.reset();
+        true
     }
 
     /// An operator may know a way on; without one the mission is over.

@@ -7,8 +7,8 @@ use crate::{
     link::PlannerLink,
     task::Task,
 };
-use world::Point;
 use planner_api::{Command, Drive, Reason, Sensed, Status};
+use world::Point;
 
 /// How much of the targets and of the plan a planner sees ahead, metres.
 const AHEAD_M: f64 = 4.0;
