@@ -31,6 +31,8 @@ pub enum Command {
     Run(RunArgs),
     /// Plan on the known map without flying.
     Plan(PlanArgs),
+    /// Forecast how well the stations will locate the robot, and advise where they should stand.
+    Accuracy(AccuracyArgs),
     /// List the planners found, and the plugins refused with the reason.
     Planners {
         /// Print JSON.
@@ -69,6 +71,30 @@ pub enum Command {
         /// File to write; must not exist.
         #[arg(long, value_name = "FILE")]
         rrd: PathBuf,
+        #[command(flatten)]
+        logs: LogsArg,
+    },
+    /// Tell the result of a past run, or of a scan and its re-scans together.
+    Report {
+        /// Folders of runs, or their names within the logs; several must be of one floor.
+        #[arg(required = true, value_name = "RUN")]
+        runs: Vec<PathBuf>,
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+        /// Write into this file instead of to stdout.
+        #[arg(short = 'o', long, value_name = "FILE")]
+        output: Option<PathBuf>,
+        #[command(flatten)]
+        logs: LogsArg,
+    },
+    /// Make a scenario that scans what a past run missed, with a plan of its own.
+    Rescan {
+        /// Folder of the run, or its name within the logs.
+        run: PathBuf,
+        /// Scenario file to write; must not exist.
+        #[arg(short = 'o', long, value_name = "SCENARIO")]
+        output: PathBuf,
         #[command(flatten)]
         logs: LogsArg,
     },
@@ -218,6 +244,23 @@ pub struct TuneArgs {
     pub json: bool,
 }
 
+#[derive(Debug, Args)]
+pub struct AccuracyArgs {
+    /// Scenario file.
+    pub scenario: PathBuf,
+    #[command(flatten)]
+    pub changes: Changes,
+    /// Print the forecast of every cell as JSON on stdout.
+    #[arg(long)]
+    pub json: bool,
+    /// Draw the forecast into this file.
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// Find the best places on the wall for so many stations, 3 to 32.
+    #[arg(long, value_name = "N")]
+    pub advise: Option<usize>,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -232,9 +275,21 @@ mod tests {
     fn the_help_of_every_command_is_as_reviewed() {
         let mut command = Cli::command().term_width(100);
         let mut help = vec![command.render_long_help().to_string()];
-        for name in
-            ["console", "run", "plan", "planners", "check", "reproduce", "tune", "runs", "verify", "export"]
-        {
+        for name in [
+            "console",
+            "run",
+            "plan",
+            "accuracy",
+            "planners",
+            "check",
+            "reproduce",
+            "tune",
+            "runs",
+            "verify",
+            "export",
+            "report",
+            "rescan",
+        ] {
             let sub = command.find_subcommand_mut(name).expect("a command of ours");
             help.push(format!("===== {name}\n{}", sub.render_long_help()));
         }

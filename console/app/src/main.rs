@@ -1,7 +1,10 @@
 //! tankops: console for robots that inspect the floors of oil storage tanks.
 
+mod accuracy;
+mod again;
 mod cli;
 mod console;
+mod drawing;
 mod failure;
 mod flight;
 mod headless;
@@ -50,6 +53,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         }
         Some(Command::Run(args)) => headless::run(&args, &plugins),
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
+        Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
         Some(Command::Planners { json }) => planners::list(&plugins, json),
         Some(Command::Check { files }) => planners::check(&files, &plugins),
         Some(Command::Reproduce(args)) => reproduce::reproduce(&args, &plugins),
@@ -57,6 +61,10 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Runs { json, logs }) => past_runs::list(&logs, json),
         Some(Command::Verify { run, logs }) => verify::verify(&run, &logs, &plugins),
         Some(Command::Export { run, rrd, logs }) => past_runs::export(&run, &rrd, &logs),
+        Some(Command::Report { runs, json, output, logs }) => {
+            again::report(&runs, &logs, json, output.as_deref())
+        }
+        Some(Command::Rescan { run, output, logs }) => again::rescan(&run, &logs, &output),
         Some(Command::Worker) => Ok(planner_host::worker_main()),
     }
 }

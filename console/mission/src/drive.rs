@@ -4,15 +4,17 @@ use planner_api::{Drive, Limits, Motion, Vector2};
 use world::geometry::wrap_angle_rad;
 
 /// Heading error beyond which a unicycle turns on the spot, radians.
-const TURN_FIRST_RAD: f64 = 1.0;
+pub const TURN_FIRST_RAD: f64 = 1.0;
+/// The same along lanes that are to be followed exactly: a wide curve at the end of a lane leads into the wall.
+pub const TURN_FIRST_IN_LANES_RAD: f64 = 0.25;
 /// Turn rate per heading error, 1/s: a 0.5 rad error is gone in about a second.
 const HEADING_GAIN_PER_S: f64 = 2.5;
 
 /// What the robot is sent for a planner's command: within its limits and in its own way of moving.
 ///
-/// A unicycle turns into a velocity and slows down as the cosine of the heading error; a point robot takes a twist as
-/// a velocity along its heading.
-pub fn drive_for(command: Drive, heading_rad: f64, limits: &Limits) -> Drive {
+/// A unicycle turns into a velocity, on the spot above `turn_first_rad`, and slows down as the cosine of the heading
+/// error; a point robot takes a twist as a velocity along its heading.
+pub fn drive_for(command: Drive, heading_rad: f64, limits: &Limits, turn_first_rad: f64) -> Drive {
     match (limits.motion, command) {
         (Motion::Point, Drive::Velocity(velocity)) => {
             Drive::Velocity(at_most(velocity, limits.v_max_m_per_s))
@@ -22,17 +24,19 @@ pub fn drive_for(command: Drive, heading_rad: f64, limits: &Limits) -> Drive {
             Drive::Velocity(at_most(velocity, limits.v_max_m_per_s))
         }
         (Motion::Unicycle, Drive::Twist { v_m_per_s, w_rad_per_s }) => twist(v_m_per_s, w_rad_per_s, limits),
-        (Motion::Unicycle, Drive::Velocity(velocity)) => turn_into(velocity, heading_rad, limits),
+        (Motion::Unicycle, Drive::Velocity(velocity)) => {
+            turn_into(velocity, heading_rad, limits, turn_first_rad)
+        }
     }
 }
 
-fn turn_into(velocity: Vector2<f64>, heading_rad: f64, limits: &Limits) -> Drive {
+fn turn_into(velocity: Vector2<f64>, heading_rad: f64, limits: &Limits, turn_first_rad: f64) -> Drive {
     let speed = velocity.norm();
     if speed == 0.0 {
         return Drive::STILL;
     }
     let error_rad = wrap_angle_rad(velocity.y.atan2(velocity.x) - heading_rad);
-    let ahead = if error_rad.abs() > TURN_FIRST_RAD { 0.0 } else { speed * error_rad.cos() };
+    let ahead = if error_rad.abs() > turn_first_rad { 0.0 } else { speed * error_rad.cos() };
     twist(ahead, HEADING_GAIN_PER_S * error_rad, limits)
 }
 
@@ -59,7 +63,12 @@ mod tests {
 
     #[test]
     fn a_unicycle_that_looks_the_wrong_way_turns_on_the_spot() {
-        let drive = drive_for(Drive::Velocity(Vector2::new(-0.4, 0.01)), 0.0, &limits(Motion::Unicycle));
+        let drive = drive_for(
+            Drive::Velocity(Vector2::new(-0.4, 0.01)),
+            0.0,
+            &limits(Motion::Unicycle),
+            TURN_FIRST_RAD,
+        );
         let Drive::Twist { v_m_per_s, w_rad_per_s } = drive else { panic!("a unicycle takes twists") };
         assert!(v_m_per_s.abs() < f64::EPSILON && (w_rad_per_s - 1.0).abs() < f64::EPSILON);
     }
@@ -69,7 +78,7 @@ mod tests {
         fn no_command_exceeds_the_limits(x in -9.0..9.0_f64, y in -9.0..9.0_f64, heading in -4.0..4.0_f64) {
             for motion in [Motion::Point, Motion::Unicycle] {
                 for command in [Drive::Velocity(Vector2::new(x, y)), Drive::Twist { v_m_per_s: x, w_rad_per_s: y }] {
-                    match drive_for(command, heading, &limits(motion)) {
+                    match drive_for(command, heading, &limits(motion), TURN_FIRST_RAD) {
                         Drive::Velocity(v) => prop_assert!(v.norm() <= 0.4 + 1e-12),
                         Drive::Twist { v_m_per_s, w_rad_per_s } => {
                             prop_assert!(v_m_per_s.abs() <= 0.4 && w_rad_per_s.abs() <= 1.0);

@@ -116,6 +116,8 @@ pub enum MissReason {
     PositionUncertain,
     /// Beside an obstacle that was found on the way.
     FoundObstacle,
+    /// Outside the areas that the mission was to scan.
+    NotAsked,
     /// No plan led there.
     NotPlanned,
     /// A plan led there, but the mission ended before.
@@ -143,6 +145,7 @@ impl fmt::Display for MissReason {
         f.write_str(match self {
             Self::PositionUncertain => "passed, but the position error was above the limit",
             Self::FoundObstacle => "beside an obstacle that was found on the way",
+            Self::NotAsked => "not among the areas to be scanned",
             Self::NotPlanned => "left out of the plan",
             Self::NotReached => "planned, but the mission ended before",
             Self::PassedBeside => "planned, but the robot passed beside it",
@@ -253,8 +256,7 @@ fn out_of_reach(kind: Cell) -> Option<OutOfReach> {
 fn critical_zone(run: &RunOpened, grid: &CoverageGrid) -> CriticalZone {
     let floor = grid.floor();
     let in_zone = |index: &usize| {
-        floor.is_floor(*index)
-            && run.world.boundary.wall_distance_m(floor.center(*index)) <= CRITICAL_ZONE_M
+        floor.is_floor(*index) && run.world.boundary.wall_distance_m(floor.center(*index)) <= CRITICAL_ZONE_M
     };
     let zone: Vec<usize> = (0..floor.len()).filter(in_zone).collect();
     let covered = zone.iter().filter(|index| grid.is_covered(**index)).count();
@@ -264,7 +266,7 @@ fn critical_zone(run: &RunOpened, grid: &CoverageGrid) -> CriticalZone {
     let why = match scanned {
         _ if done => None,
         None => Some(format!("cells of {} m are too coarse to see it", floor.cell_m)),
-        Some(_) if gap_m > 0.0 => Some(format!("the tool ends {gap_m:.3} m before the shell")),
+        Some(_) if gap_m > 1e-3 => Some(format!("the tool ends {gap_m:.3} m before the shell")),
         Some(share) => Some(format!("{:.1} % of it scanned", 100.0 * share)),
     };
     CriticalZone { width_m: CRITICAL_ZONE_M, scanned, done, why }

@@ -4,7 +4,8 @@ use crate::{
     account::{Account, Evidence, account},
     accuracy::{Accuracy, Estimate},
     scanned::Scanned,
-    summary::Summary,
+    summary::{Summary, Tether},
+    tethered::Tethered,
     tracking::Tracker,
     turning::Turning,
 };
@@ -12,19 +13,20 @@ use mission::{
     Event, EventKind, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, TaskConfig,
     event::RunOpened,
 };
-use world::{Obstacle, Pose};
+use world::{Obstacle, Point, Pose, coverage::regions};
 
 /// What is known of a run from the events so far.
 #[derive(Debug, Default)]
 pub struct Fold {
     known: Summary,
     truth: Option<Pose>,
-    scanned: Option<Scanned>,
+    pub(crate) scanned: Option<Scanned>,
     tracker: Option<Tracker>,
     accuracy: Accuracy,
     turning: Turning,
-    run: Option<Box<RunOpened>>,
-    evidence: Option<Evidence>,
+    tethered: Option<Tethered>,
+    pub(crate) run: Option<Box<RunOpened>>,
+    pub(crate) evidence: Option<Evidence>,
 }
 
 impl Fold {
@@ -42,6 +44,11 @@ impl Fold {
             EventKind::Truth { pose, clearance_m, collided } => {
                 self.accuracy.truth(event.tick, pose.position);
                 self.see_truth(*pose, *clearance_m, *collided);
+            }
+            EventKind::TetherTruth { length_m, max_wrap_rad, sum_wrap_rad, detour_m } => {
+                if let Some(tethered) = &mut self.tethered {
+                    tethered.lie(*length_m, *max_wrap_rad, *sum_wrap_rad, *detour_m);
+                }
             }
             EventKind::Estimated { pose } => {
                 if let Some(evidence) = &mut self.evidence {
@@ -101,16 +108,32 @@ impl Fold {
             floor: self.account(),
             turns: self.known.path_length_m.map(|_| self.turning.turns()),
             rotation_turns: self.known.path_length_m.map(|_| self.turning.rotation_turns()),
+            tether: self.tether(),
             tracking: self.tracker.as_ref().and_then(Tracker::tracking),
             positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
             ..self.known.clone()
         }
     }
 
+    /// What is to be scanned again, as boxes of no more than `most` (the fewer, the coarser): south west and north east
+    /// corners. Slivers thinner than a block of cells are left out. None for missions that are not there to scan.
+    pub fn missed_boxes(&self, most: usize) -> Option<Vec<[Point; 2]>> {
+        self.evidence.as_ref()?;
+        let grid = self.scanned.as_ref()?.believed();
+        let is_missed = |index: usize| grid.floor().is_reachable(index) && !grid.is_covered(index);
+        let boxes = |block| regions::boxes(grid.floor(), block, is_missed);
+        let missed = (1..8).map(|fold| boxes(1 << fold)).find(|boxes| boxes.len() <= most)?;
+        Some(missed.iter().map(|corners| [corners[0], corners[2]]).collect())
+    }
+
     /// The account of the floor; none for missions that are not there to scan it.
     fn account(&self) -> Option<Account> {
         let run = self.run.as_ref()?;
         Some(account(run, self.scanned.as_ref()?.believed(), self.evidence.as_ref()?))
+    }
+
+    fn tether(&self) -> Option<Tether> {
+        self.tethered.as_ref()?.tether(self.truth.map(|pose| pose.position), self.known.outcome)
     }
 
     fn find(&mut self, obstacle: &Obstacle) {
@@ -124,6 +147,7 @@ impl Fold {
             self.evidence = Some(Evidence::new(run));
             self.run = Some(Box::new(run.clone()));
         }
+        self.tethered = run.mission.tether.as_ref().map(Tethered::new);
         self.known.scenario = Some(run.scenario.clone());
         self.known.seed = Some(run.seed);
         self.known.planner = Some(run.mission.planner.id.clone());

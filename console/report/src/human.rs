@@ -2,6 +2,8 @@
 
 mod floor;
 
+pub(crate) use floor::lines as floor_lines;
+
 use crate::summary::{Coverage, PlannerCalls, Positioning, Summary, Tether, Tracking};
 use mission::Outcome;
 use std::fmt::{Display, Write};
@@ -122,9 +124,11 @@ fn mission_time(run: &Summary) -> Option<String> {
 fn path(run: &Summary) -> Option<String> {
     let mut parts = vec![format!("{:.2} m", run.path_length_m?)];
     parts.extend(run.min_clearance_m.map(|least_m| format!("smallest clearance {least_m:.3} m")));
-    parts.extend(run.turns.zip(run.rotation_turns).map(|(turns, rotation)| {
-        format!("{} and {rotation:.1} rotations in all", counted(turns, "turn"))
-    }));
+    parts.extend(
+        run.turns.zip(run.rotation_turns).map(|(turns, rotation)| {
+            format!("{} and {rotation:.1} rotations in all", counted(turns, "turn"))
+        }),
+    );
     parts.extend(run.collisions.map(|n| counted(n, "collision")));
     Some(parts.join(", "))
 }

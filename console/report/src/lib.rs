@@ -9,8 +9,10 @@ mod accuracy;
 pub mod expect;
 pub mod fold;
 pub mod human;
+pub mod merged;
 mod scanned;
 pub mod summary;
+mod tethered;
 mod tracking;
 mod turning;
 
@@ -18,4 +20,5 @@ pub use account::Account;
 pub use expect::{Expect, Miss};
 pub use fold::Fold;
 pub use human::human;
+pub use merged::{Merged, MergedRun, merged};
 pub use summary::{Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Summary, Tether, Tracking};

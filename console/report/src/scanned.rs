@@ -7,7 +7,7 @@ use world::{CellRun, CoverageGrid, Floor, KindRun, Pose, Tool};
 const AGAIN_SWATHS: f64 = 2.0;
 
 /// The floor with what was scanned so far.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Scanned {
     believed: CoverageGrid,
     truth: CoverageGrid,
@@ -44,6 +44,15 @@ impl Scanned {
     pub fn change(&mut self, changes: &[KindRun]) {
         self.believed.change(changes);
         self.truth.change(changes);
+    }
+
+    /// Takes in what another run scanned of the same floor.
+    pub fn join(&mut self, other: &Self) {
+        self.believed.join(&other.believed);
+        self.truth.join(&other.truth);
+        self.has_truth &= other.has_truth;
+        // How often floor was scanned again is a figure of one way.
+        self.cells = 0;
     }
 
     /// The robot truly went from `a` to `b`.

@@ -36,7 +36,8 @@ impl Turning {
             self.lately.pop_front();
         }
         let headings = || self.lately.iter().map(|(_, heading_rad)| *heading_rad);
-        let span_rad = headings().fold(f64::NEG_INFINITY, f64::max) - headings().fold(f64::INFINITY, f64::min);
+        let span_rad =
+            headings().fold(f64::NEG_INFINITY, f64::max) - headings().fold(f64::INFINITY, f64::min);
         if !self.is_turning && span_rad > TURN_RAD {
             self.is_turning = true;
             self.turns += 1;
@@ -83,7 +84,10 @@ mod tests {
 
     #[test]
     fn corners_with_a_straight_piece_between_them_are_two_turns() {
-        assert_eq!(driven(&[(5.0, 0.0), (0.0, FRAC_PI_2), (2.0, 0.0), (0.0, FRAC_PI_2), (5.0, 0.0)]).turns(), 2);
+        assert_eq!(
+            driven(&[(5.0, 0.0), (0.0, FRAC_PI_2), (2.0, 0.0), (0.0, FRAC_PI_2), (5.0, 0.0)]).turns(),
+            2
+        );
     }
 
     #[test]

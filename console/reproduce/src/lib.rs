@@ -6,11 +6,14 @@
 
 mod bench;
 pub mod coverage;
+pub mod fields;
 mod planners;
+pub mod positioning;
 mod row;
 mod sample;
 pub mod spiral;
 mod study;
+pub mod traps;
 pub mod tune;
 
 pub use bench::Bench;

@@ -1,7 +1,7 @@
 //! From what the robot is told to the arc that its tracks run in one tick.
 
 use crate::config::{Drive, RobotConfig};
-use world::{Pose, Vector, geometry::wrap_angle_rad};
+use world::{Pace, Pose, Vector, geometry::wrap_angle_rad};
 
 /// No motion of one tick is longer than this, metres or radians; keeps absurd settings finite.
 const LONGEST: f64 = 1e6;
@@ -40,6 +40,12 @@ impl Tracks {
         }
     }
 
+    /// Takes other limits from now on. A robot that is faster than they allow brakes as hard as it can.
+    pub fn limit(&mut self, pace: Pace) {
+        self.v_max_m_per_s = pace.v_max_m_per_s.max(0.0);
+        self.w_max_rad_per_s = pace.w_max_rad_per_s.max(0.0);
+    }
+
     /// Obeys a drive for one tick as far as the limits allow. A drive that is no number means standing still.
     pub fn drive(&mut self, drive: Drive, pose: &Pose) -> Arc {
         match drive {
@@ -52,7 +58,7 @@ impl Tracks {
 
     fn twist(&mut self, v_m_per_s: f64, w_rad_per_s: f64, pose: &Pose) -> Arc {
         let wanted = v_m_per_s.clamp(-self.v_max_m_per_s, self.v_max_m_per_s);
-        let now = self.velocity.dot(&pose.direction()).clamp(-self.v_max_m_per_s, self.v_max_m_per_s);
+        let now = self.velocity.dot(&pose.direction());
         let change = self.change_m_per_s();
         let speed = now + (wanted - now).clamp(-change, change);
         let turn = w_rad_per_s.clamp(-self.w_max_rad_per_s, self.w_max_rad_per_s) * self.tick_s;

@@ -8,6 +8,7 @@
 
 pub mod paper;
 pub mod score;
+pub mod shore;
 pub mod spiral;
 pub mod tanks;
 pub mod traps;
@@ -15,6 +16,7 @@ pub mod verdict;
 
 pub use paper::{Distribution, Sampling};
 pub use score::{Safety, Score, floor_rmse_m, precision_recall, safety, score};
+pub use shore::Shore;
 pub use spiral::Layout;
 pub use traps::Trap;
 pub use verdict::{Verdict, verdict};

@@ -97,6 +97,12 @@ impl CoverageGrid {
         }
     }
 
+    /// Marks everything that has been scanned on another grid with the same cells.
+    pub fn join(&mut self, other: &Self) {
+        let covered = other.covered.iter().enumerate().filter(|(_, covered)| **covered);
+        self.apply(&runs_of(covered.map(|(index, _)| index)));
+    }
+
     /// Whether a cell has been scanned.
     pub fn is_covered(&self, index: usize) -> bool {
         self.covered[index]

@@ -6,6 +6,7 @@
 
 pub mod coverage;
 pub mod geometry;
+pub mod medium;
 pub mod obstacles;
 pub mod plates;
 pub mod polyline;
@@ -18,6 +19,7 @@ pub mod tether;
 
 pub use coverage::{Cell, CellRun, Counts, CoverageGrid, Floor, FloorMaker, KindRun, Tool};
 pub use geometry::{Point, Pose, Vector};
+pub use medium::{Amphibious, Medium, Mode, Pace};
 pub use obstacles::{Near, ObstacleMap};
 pub use plates::{Plate, PlateKind, PlateLayout, PlateMap};
 pub use readings::{Odometry, RangeSet, Readings, Sighting};

@@ -6,7 +6,8 @@
 //! Cost: only obstacles within reach of a law are looked at, found through a bounding volume hierarchy.
 //!
 //! Sources: Khatib 1986 (attraction, repulsion); Ge and Cui 2000 (improved repulsion); Wang et al. 2023 (rotation,
-//! lock-step targets, stop rules). Where those leave something open the item says what was chosen.
+//! lock-step targets, stop rules); Xu et al. 2022 (logarithmic pull, tangent force); Yang et al. 2021 (capped pull).
+//! Where those leave something open the item says what was chosen.
 #![forbid(unsafe_code)]
 
 pub mod body;
@@ -15,32 +16,43 @@ pub mod descent;
 pub mod drawing;
 pub mod escape;
 pub mod gaps;
+pub mod goal_law;
+pub mod goal_walk;
+pub mod ground;
 pub mod guard;
 pub mod judge;
 pub mod law;
 pub mod laws;
 pub mod lockstep;
 pub mod offline;
+pub mod oscillation;
 pub mod params;
 pub mod part;
 pub mod pilot;
+pub mod pull;
 pub mod rollout;
 pub mod room;
 pub mod scene;
 pub mod settings;
 pub mod stall;
+pub mod tangents;
 pub mod trap;
 #[cfg(feature = "trial")]
 pub mod trial;
 pub mod turning;
+pub mod virtual_goals;
 pub mod walk;
 
 pub use contact::{Contact, Source};
 pub use escape::Escape;
+pub use goal_law::{GoalLaw, Sides, TangentUse};
+pub use ground::{Ground, Nearby, Solid};
 pub use law::{Forces, Law, Repulsion, RotationForm};
 pub use laws::Sense;
 pub use pilot::Pilot;
+pub use pull::{NearLaw, Pull};
 pub use room::{Keep, Room};
 pub use scene::Scene;
 pub use settings::{Flight, Planning, Settings, Steering, Walking};
+pub use tangents::{Side, Tangent};
 pub use turning::{Reading, SenseRule};

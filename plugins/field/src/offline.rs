@@ -40,7 +40,8 @@ pub fn plan(settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Re
     } else {
         walked(&scene, settings, request, ctx)?
     };
-    Ok(told(walk, &scene, request.site.clearance_m, ctx))
+    let clearance_m = scene.path_clearance_m(&walk.path);
+    Ok(told(walk, clearance_m, request.site.clearance_m, ctx))
 }
 
 fn is_flown(planning: Planning, radius_m: f64) -> bool {
@@ -78,7 +79,11 @@ fn course(scene: &Scene, step_m: f64, targets: &[Point]) -> Result<Vec<Point>> {
     Ok(polyline::resampled(&targets[..=last], step_m * (1.0 + 1e-9)))
 }
 
-fn check_start(scene: &Scene, start: Point, radius_m: f64) -> Result<()> {
+/// Refuses a start outside the tank or deep in an obstacle.
+///
+/// # Errors
+/// [`Code::StartOutside`], [`Code::StartOccupied`].
+pub fn check_start(scene: &Scene, start: Point, radius_m: f64) -> Result<()> {
     let place = format!("the start ({:.2}, {:.2})", start.x, start.y);
     if scene.wall_clearance_m(start) + radius_m < -ROUNDING_M {
         return Err(PlannerError::new(Code::StartOutside, format!("{place} lies outside the tank")));
@@ -106,7 +111,11 @@ fn check_targets(scene: &Scene, targets: &[Point]) -> Result<()> {
     Ok(())
 }
 
-fn check_goal(scene: &Scene, goal: Point, tolerance_m: f64) -> Result<()> {
+/// Refuses a goal that lies out of reach by more than the tolerance.
+///
+/// # Errors
+/// [`Code::GoalOutside`], [`Code::GoalOccupied`].
+pub fn check_goal(scene: &Scene, goal: Point, tolerance_m: f64) -> Result<()> {
     let place = format!("the goal ({:.2}, {:.2})", goal.x, goal.y);
     if scene.wall_clearance_m(goal) + tolerance_m < -ROUNDING_M {
         return Err(PlannerError::new(
@@ -120,8 +129,10 @@ fn check_goal(scene: &Scene, goal: Point, tolerance_m: f64) -> Result<()> {
     Ok(())
 }
 
-fn told(walk: Walk, scene: &Scene, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
-    let shortfall = judge(&walk, scene, demanded_m);
+/// A walk as a plan, with its least distance between hull and anything solid and that demanded, metres; what is wrong
+/// with it is said in the log.
+pub fn told(walk: Walk, clearance_m: f64, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
+    let shortfall = judge(&walk, clearance_m, demanded_m);
     if let Some(reason) = shortfall {
         ctx.log(LogLevel::Warn, &format!("the plan is not complete: {reason}"));
     }

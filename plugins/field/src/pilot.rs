@@ -178,6 +178,11 @@ impl Pilot {
         Decision { velocity, status, forces, detour: None }
     }
 
+    /// What the robot can do.
+    pub fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
     /// Radius of the hull, metres.
     pub fn hull_m(&self) -> f64 {
         self.limits.radius_m

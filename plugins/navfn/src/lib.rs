@@ -4,10 +4,14 @@
 pub mod navfn;
 pub mod shortest;
 
+mod evade;
 mod flight;
 mod ground;
 pub mod marching;
 mod navigation;
 mod raster;
+
+#[cfg(test)]
+mod trial;
 
 planner_api::export_planners!(navfn::Navfn, shortest::Shortest);

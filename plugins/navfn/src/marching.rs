@@ -17,12 +17,16 @@ const ROUNDING: f32 = 1e-4;
 pub struct Field {
     columns: usize,
     cell_m: f32,
+    /// Buckets to the metre.
+    buckets_per_m: f32,
     blocked: Vec<bool>,
     /// Distance from the goal, metres; infinite where it is blocked or not known yet.
     distance_m: Vec<f32>,
     is_source: Vec<bool>,
-    /// Cells that may lower their neighbours, by their distance.
-    buckets: Vec<Vec<u32>>,
+    /// Cells that may lower their neighbours, with the distance they had when they came here, by that distance.
+    buckets: Vec<Vec<(u32, f32)>>,
+    /// Emptied buckets, to be filled again: only the front of the march takes memory.
+    spare: Vec<Vec<(u32, f32)>>,
     /// No bucket before this one holds anything.
     first: usize,
     n_settled: usize,
@@ -36,10 +40,12 @@ impl Field {
         let mut field = Self {
             columns,
             cell_m: cell_m as f32,
+            buckets_per_m: std::f32::consts::SQRT_2 / cell_m as f32,
             blocked,
             distance_m: vec![f32::INFINITY; n],
             is_source: vec![false; n],
             buckets: Vec::new(),
+            spare: Vec::new(),
             first: 0,
             n_settled: 0,
         };
@@ -105,14 +111,14 @@ impl Field {
         while self.first < self.buckets.len() && !self.is_settled(until) && keep_going() {
             let mut bucket = std::mem::take(&mut self.buckets[self.first]);
             // What is settled may put cells into the same bucket again, by rounding.
-            while let Some(cell) = bucket.pop() {
-                let cell = cell as usize;
-                if self.bucket_of(self.distance_m[cell]) == Some(self.first) {
-                    self.settle(cell);
+            while let Some((cell, distance_m)) = bucket.pop() {
+                // What was lowered since, or emptied, came here again or has nothing to give.
+                if self.distance_m[cell as usize].to_bits() == distance_m.to_bits() {
+                    self.settle(cell as usize);
                 }
             }
             if self.buckets[self.first].is_empty() {
-                self.buckets[self.first] = bucket;
+                self.spare.push(bucket);
                 self.first += 1;
             }
         }
@@ -125,8 +131,9 @@ impl Field {
 
     fn settle(&mut self, cell: usize) {
         self.n_settled += 1;
+        let here_m = self.distance_m[cell];
         for neighbour in self.neighbours(cell) {
-            if !self.blocked[neighbour] && self.distance_m[neighbour] > self.distance_m[cell] {
+            if self.distance_m[neighbour] > here_m && !self.blocked[neighbour] {
                 let through_m = self.supported_m(neighbour);
                 if through_m < self.distance_m[neighbour] {
                     self.lower(neighbour, through_m);
@@ -152,25 +159,21 @@ impl Field {
             if bucket >= self.buckets.len() {
                 self.buckets.resize_with(bucket + 1, Vec::new);
             }
-            self.buckets[bucket].push(cell as u32);
+            if self.buckets[bucket].capacity() == 0 {
+                self.buckets[bucket] = self.spare.pop().unwrap_or_default();
+            }
+            self.buckets[bucket].push((cell as u32, distance_m));
             self.first = self.first.min(bucket);
         }
     }
 
     fn bucket_of(&self, distance_m: f32) -> Option<usize> {
-        let width_m = self.cell_m * std::f32::consts::FRAC_1_SQRT_2;
-        distance_m.is_finite().then(|| (distance_m / width_m) as usize)
+        distance_m.is_finite().then_some((distance_m * self.buckets_per_m) as usize)
     }
 
     fn neighbours(&self, cell: usize) -> [usize; 4] {
-        // A blocked cell of the frame may be asked for neighbours outside: it is its own.
-        let last = self.distance_m.len() - 1;
-        [
-            cell.saturating_sub(1),
-            (cell + 1).min(last),
-            cell.saturating_sub(self.columns),
-            (cell + self.columns).min(last),
-        ]
+        // Only cells within the frame are asked.
+        [cell - 1, cell + 1, cell - self.columns, cell + self.columns]
     }
 
     /// The distance that follows from the neighbours.

@@ -12,6 +12,7 @@ pub fn expect(root: &Section<'_>) -> Option<Expect> {
         "stuck" => Outcome::Stuck,
         "collision" => Outcome::Collision,
         "time_limit" => Outcome::TimeLimit,
+        "entangled" => Outcome::Entangled,
         _ => Outcome::Aborted,
     });
     Some(Expect {
@@ -21,6 +22,7 @@ pub fn expect(root: &Section<'_>) -> Option<Expect> {
         mission_time_max_s: section.number("mission_time_max_s"),
         path_length_max_m: section.number("path_length_max_m"),
         coverage_reachable_min: section.number("coverage_reachable_min"),
+        coverage_truth_min: section.number("coverage_truth_min"),
         coverage_whole_min: section.number("coverage_whole_min"),
         overlap_max: section.number("overlap_max"),
         precision_min: section.number("precision_min"),
@@ -31,5 +33,8 @@ pub fn expect(root: &Section<'_>) -> Option<Expect> {
         p95_error_max_m: section.number("p95_error_max_m"),
         in_95_ellipse_min: section.number("in_95_ellipse_min"),
         lost_max_s: section.number("lost_max_s"),
+        cable_max_m: section.number("cable_max_m"),
+        wrap_max_rad: section.number("wrap_max_deg").map(f64::to_radians),
+        left_out_max_m: section.number("left_out_max_m"),
     })
 }

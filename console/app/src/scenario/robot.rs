@@ -1,12 +1,8 @@
-//! The robot and its ranging: `[robot]` and `[ae]`.
+//! The robot: `[robot]`.
 
-use super::{floor::Names, problem::Complaint, section::Section};
+use super::{problem::Complaint, section::Section};
 use planner_api::{Limits, Motion};
-use sim::{AeConfig, NoiseModel};
-use world::{Boundary, Point, Station, StationId};
-
-/// A station may lie this far behind the wall: sensors sit on it, and drawings are rounded to centimetres.
-const ON_WALL_M: f64 = 0.01;
+use world::{Amphibious, Pace, Point};
 
 /// `[robot]` as read; the start may still follow from the mission.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +27,8 @@ pub struct Robot {
     pub odometry_sigma_ratio: f64,
     /// Constant error of the gyro, radians per second.
     pub gyro_bias_rad_per_s: f64,
+    /// How it walks and swims, if it does both.
+    pub amphibious: Option<Amphibious>,
 }
 
 impl Robot {
@@ -55,15 +53,15 @@ impl Robot {
 
 /// Reads `[robot]`.
 pub fn robot(section: &Section<'_>) -> Option<Robot> {
-    let motion =
-        section.word("motion").map(|word| if word == "point" { Motion::Point } else { Motion::Unicycle });
+    let word = section.word("motion");
+    let motion = word.map(|word| if word == "point" { Motion::Point } else { Motion::Unicycle });
     let radius_m = section.number("radius_m");
     if motion == Some(Motion::Unicycle) && radius_m == Some(0.0) {
         let must_be = "greater than 0 m; only motion = \"point\" has no hull";
         section.complain("radius_m", Complaint::OutOfRange(must_be.into()));
     }
-    let speed = section.number("speed_max_m_per_s");
-    let turn_deg = section.number("turn_max_deg_per_s");
+    let amphibious = word.map(|word| amphibious(section, word));
+    let one_pace = pace(section, ONE_PACE);
     let sensing_range_m = section.number("sensing_range_m");
     let acceleration = section.number("acceleration_m_per_s2");
     let start = section.point("start_m");
@@ -73,11 +71,14 @@ pub fn robot(section: &Section<'_>) -> Option<Robot> {
     let (slip_mean, slip_sigma) = (section.number("slip_mean"), section.number("slip_sigma"));
     let odometry_sigma_ratio = section.number("odometry_sigma_ratio");
     let gyro_bias_deg = section.number("gyro_bias_deg_per_s");
+    let amphibious = amphibious?;
+    // Planners are told the faster of both paces; the zones tell them where the other one holds.
+    let fastest = amphibious.map_or(one_pace?, |both| both.fastest());
     Some(Robot {
         limits: Limits {
             motion: motion?,
-            v_max_m_per_s: speed?,
-            w_max_rad_per_s: turn_deg?.to_radians(),
+            v_max_m_per_s: fastest.v_max_m_per_s,
+            w_max_rad_per_s: fastest.w_max_rad_per_s,
             radius_m: radius_m?,
             sensing_range_m: sensing_range_m?,
         },
@@ -90,80 +91,31 @@ pub fn robot(section: &Section<'_>) -> Option<Robot> {
         slip_sigma: slip_sigma?,
         odometry_sigma_ratio: odometry_sigma_ratio?,
         gyro_bias_rad_per_s: gyro_bias_deg?.to_radians(),
+        amphibious,
     })
 }
 
-/// Reads `[ae]` without its stations.
-pub fn ae(section: &Section<'_>) -> Option<AeConfig> {
-    let (period_s, repetitions) = (section.number("period_s"), section.whole("repetitions"));
-    let (noise, dropout) = (noise(section), section.number("dropout"));
-    let outages_s = section.times("outages_s");
-    Some(AeConfig {
-        period_s: period_s?,
-        repetitions: repetitions? as u32,
-        noise: noise?,
-        dropout: dropout?,
-        outages_s: outages_s?,
-    })
+/// The limits that hold everywhere, and those that hold by zone.
+const ONE_PACE: [&str; 2] = ["speed_max_m_per_s", "turn_max_deg_per_s"];
+const ON_LAND: [&str; 2] = ["land_speed_m_per_s", "land_turn_deg_per_s"];
+const UNDERWATER: [&str; 2] = ["underwater_speed_m_per_s", "underwater_turn_deg_per_s"];
+
+/// How a robot walks and swims, if its motion is that; keys that do not go with the motion are refused.
+fn amphibious(section: &Section<'_>, motion: &str) -> Option<Amphibious> {
+    let beside = format!("motion = \"{motion}\"");
+    if motion != "amphibious" {
+        section.refuse(&ON_LAND, &beside);
+        section.refuse(&UNDERWATER, &beside);
+        section.refuse(&["transition_ticks"], &beside);
+        return None;
+    }
+    section.refuse(&ONE_PACE, &beside);
+    let (land, underwater) = (pace(section, ON_LAND), pace(section, UNDERWATER));
+    let transition_steps = section.whole("transition_ticks")? as u32;
+    Some(Amphibious { land: land?, underwater: underwater?, transition_steps })
 }
 
-fn noise(section: &Section<'_>) -> Option<NoiseModel> {
-    if !section.has("noise") {
-        return Some(NoiseModel::Uniform { ratio: 0.05 });
-    }
-    let noise = section.table("noise")?;
-    let model = noise.word("model")?;
-    let beside = format!("model = \"{model}\"");
-    match model {
-        "uniform" => {
-            noise.refuse(&["sigma_ratio"], &beside);
-            noise.require("ratio", "add ratio = 0.05 for at most 5 % of the distance");
-            Some(NoiseModel::Uniform { ratio: noise.number("ratio")? })
-        }
-        "gaussian" => {
-            noise.refuse(&["ratio"], &beside);
-            noise.require(
-                "sigma_ratio",
-                "add sigma_ratio = 0.03 for a standard deviation of 3 % of the distance",
-            );
-            Some(NoiseModel::Gaussian { sigma_ratio: noise.number("sigma_ratio")? })
-        }
-        _ => {
-            noise.refuse(&["ratio", "sigma_ratio"], &beside);
-            Some(NoiseModel::None)
-        }
-    }
-}
-
-/// Standard deviation of one range as a share of it, as the estimator may expect it; never quite zero.
-pub fn range_sigma_ratio(noise: NoiseModel) -> f64 {
-    const LEAST: f64 = 1e-3;
-    match noise {
-        NoiseModel::None => LEAST,
-        NoiseModel::Uniform { ratio } => (ratio / 3.0_f64.sqrt()).max(LEAST),
-        NoiseModel::Gaussian { sigma_ratio } => sigma_ratio.max(LEAST),
-    }
-}
-
-/// Reads the stations of `[ae]`.
-pub fn stations(section: &Section<'_>, boundary: Option<&Boundary>) -> Vec<Station> {
-    let mut names = Names::default();
-    let mut stations: Vec<Station> = Vec::new();
-    let sections = section.tables("stations");
-    for (i, entry) in sections.iter().enumerate() {
-        let (name, at) = (entry.text("name").and_then(|_| names.of(entry, String::new)), entry.point("at_m"));
-        let Some(position) = at else { continue };
-        if let Some(twin) = stations.iter().find(|other| (other.position - position).norm() < ON_WALL_M) {
-            entry.complain("at_m", Complaint::Duplicate { other: format!("station \"{}\"", twin.name) });
-        }
-        let by_m = boundary.map_or(0.0, |boundary| -boundary.wall_distance_m(position));
-        if by_m > ON_WALL_M {
-            entry.complain("at_m", Complaint::OutsideTank { by_m });
-        }
-        stations.extend(name.map(|name| Station { id: StationId(i as u32 + 1), name, position }));
-    }
-    if section.has("stations") && sections.len() < 2 && section.is_list("stations") {
-        section.complain("stations", Complaint::TooFewStations { have: sections.len() });
-    }
-    stations
+fn pace(section: &Section<'_>, keys: [&'static str; 2]) -> Option<Pace> {
+    let (speed, turn_deg) = (section.number(keys[0]), section.number(keys[1]));
+    Some(Pace { v_max_m_per_s: speed?, w_max_rad_per_s: turn_deg?.to_radians() })
 }

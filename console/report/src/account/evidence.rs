@@ -1,14 +1,14 @@
 //! What tells why floor was missed: where plans led, where the robot went, where its position was uncertain.
 
 use super::MissReason;
-use mission::event::RunOpened;
+use mission::{TaskConfig, event::RunOpened};
 use world::{CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, Tool};
 
 /// Plans are laid out on the floor in pieces no longer than this, metres.
 const PIECE_M: f64 = 0.5;
 
 /// What was planned and done, cell by cell.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Evidence {
     grid: Floor,
     tool: Tool,
@@ -18,6 +18,8 @@ pub struct Evidence {
     /// Within a swath of where the robot believed to be: it was there, if not above it.
     visited: Vec<bool>,
     uncertain: Vec<bool>,
+    /// What was to be scanned; `None` for everything.
+    asked: Option<Vec<bool>>,
     found: Vec<(ObstacleId, Shape)>,
     last: Option<Point>,
 }
@@ -33,6 +35,7 @@ impl Evidence {
             planned: none.clone(),
             visited: none.clone(),
             uncertain: none,
+            asked: asked(run),
             found: Vec::new(),
             last: None,
         }
@@ -73,6 +76,22 @@ impl Evidence {
         self.found.push((obstacle.id, obstacle.shape.clone()));
     }
 
+    /// Takes in what another run on the same floor planned and did.
+    pub fn join(&mut self, other: &Self) {
+        let or = |own: &mut [bool], others: &[bool]| own.iter_mut().zip(others).for_each(|(a, b)| *a |= b);
+        or(&mut self.planned, &other.planned);
+        or(&mut self.visited, &other.visited);
+        or(&mut self.uncertain, &other.uncertain);
+        self.asked = match (self.asked.take(), &other.asked) {
+            (Some(mut asked), Some(others)) => {
+                or(&mut asked, others);
+                Some(asked)
+            }
+            _ => None,
+        };
+        self.found.extend(other.found.iter().cloned());
+    }
+
     /// Why a cell was missed.
     pub fn why_missed(&self, floor: &Floor, index: usize) -> MissReason {
         let center = floor.center(index);
@@ -80,6 +99,8 @@ impl Evidence {
             MissReason::PositionUncertain
         } else if self.found.iter().any(|(_, shape)| shape.distance_m(center) <= self.beside_m) {
             MissReason::FoundObstacle
+        } else if self.asked.as_ref().is_some_and(|asked| !asked[index]) {
+            MissReason::NotAsked
         } else if !self.planned[index] {
             MissReason::NotPlanned
         } else if self.visited[index] {
@@ -87,5 +108,12 @@ impl Evidence {
         } else {
             MissReason::NotReached
         }
+    }
+}
+
+fn asked(run: &RunOpened) -> Option<Vec<bool>> {
+    match &run.mission.task {
+        TaskConfig::Cover { regions, .. } => world::coverage::regions::cells_within(&run.floor, regions),
+        TaskConfig::Goto { .. } | TaskConfig::Follow { .. } => None,
     }
 }

@@ -54,7 +54,10 @@ fn lanes_that_were_not_flown_are_told_with_place_plate_and_reason() {
     assert!(north.plate.is_some());
     let corners: Vec<&Area<MissReason>> =
         account.missed.iter().filter(|area| area.reason == MissReason::NotPlanned).collect();
-    assert!(!corners.is_empty() && corners.iter().all(|area| area.area_m2 < 3.0 && area.at.coords.norm() > 4.0), "{corners:?}");
+    assert!(
+        !corners.is_empty() && corners.iter().all(|area| area.area_m2 < 3.0 && area.at.coords.norm() > 4.0),
+        "{corners:?}"
+    );
 }
 
 #[test]
@@ -98,7 +101,8 @@ fn the_figures_converge_as_the_cells_get_smaller() {
     let finest = shares[3];
     for (coarse, allowed) in shares[..3].iter().zip([0.02, 0.01, 0.004]) {
         let figures = |s: &Shares| [s.scanned, s.missed, s.margin];
-        let off = figures(coarse).iter().zip(figures(&finest)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let off =
+            figures(coarse).iter().zip(figures(&finest)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(off < allowed, "{off} off, {coarse:?} against {finest:?}");
     }
 }

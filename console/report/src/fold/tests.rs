@@ -3,12 +3,12 @@
 #![allow(clippy::unwrap_used, clippy::float_cmp, reason = "tests with exact figures")]
 
 use super::*;
-use world::Point;
 use crate::{
     human::human,
     summary::{Logs, PlannerCalls},
 };
 use serde_json::{Value, json};
+use world::Point;
 
 fn event(tick: u64, kind: &Value) -> Event {
     let mut event = json!({ "tick": tick, "t_s": tick as f64 * 0.5 });

@@ -1,8 +1,10 @@
 use super::*;
-use crate::{AeConfig, NoiseModel, RobotConfig};
+use crate::config::{Mover, Track};
+use crate::{AeConfig, Disturbances, NoiseModel, RobotConfig};
 use proptest::prelude::*;
 use world::{
-    Boundary, Obstacle, ObstacleId, Point, Shape, Station, StationId, Vector, World, geometry::wrap_angle_rad,
+    Amphibious, Boundary, Obstacle, ObstacleId, Point, Shape, Station, StationId, Vector, World, Zone,
+    ZoneKind, geometry::wrap_angle_rad,
 };
 
 fn robot() -> RobotConfig {
@@ -17,6 +19,7 @@ fn robot() -> RobotConfig {
         slip_sigma: 0.01,
         odometry_sigma_ratio: 0.02,
         gyro_bias_rad_per_s: 0.001,
+        amphibious: None,
     }
 }
 
@@ -64,8 +67,11 @@ fn config() -> SimConfig {
             noise: NoiseModel::Uniform { ratio: 0.05 },
             dropout: 0.1,
             outages_s: vec![(3.0, 4.0)],
+            disturbances: Disturbances::default(),
         }),
         tick_s: 0.1,
+        movers: vec![],
+        tether_anchor: None,
     }
 }
 
@@ -131,11 +137,16 @@ proptest! {
             start: Pose::new(-6.0, 0.0, 0.0), radius_m: n(0), v_max_m_per_s: n(1), w_max_rad_per_s: n(2),
             acceleration_m_per_s2: n(3), sensing_range_m: n(4), slip_mean: n(5), slip_sigma: n(6),
             odometry_sigma_ratio: n(7), gyro_bias_rad_per_s: n(8),
+            amphibious: None,
         };
         config.tick_s = n(9);
         config.ae = Some(AeConfig {
             period_s: n(10), repetitions: 2, noise: NoiseModel::Gaussian { sigma_ratio: n(11) }, dropout: n(5),
             outages_s: vec![(n(6), n(7))],
+            disturbances: Disturbances {
+                outlier_chance: n(8), outlier_factor: n(9), late_mean_m: n(10), nlos_chance: n(11),
+                survey_sigma_m: n(3), sound_speed_error_ratio: n(4), ..Disturbances::default()
+            },
         });
         let mut sim = Simulator::new(config, 1);
         for drive in drives {
@@ -269,4 +280,62 @@ fn a_cycle_without_an_answer_is_told() {
     let run = free_run(config());
     assert!(run[30].ranging_cycle && run[30].ranges.is_empty());
     assert!(run[10].ranging_cycle && !run[10].ranges.is_empty());
+}
+
+/// A robot that goes from the flooded west to the dry east at the greatest speed it is allowed.
+fn speeds_across_the_shore(transition_steps: u32) -> Vec<(f64, f64)> {
+    let amphibious = Amphibious { transition_steps, ..Amphibious::YANG_2021 };
+    let water =
+        vec![Point::new(-9.0, -9.0), Point::new(0.0, -9.0), Point::new(0.0, 9.0), Point::new(-9.0, 9.0)];
+    let mut config = config();
+    config.world.obstacles.clear();
+    config.world.zones = vec![Zone {
+        name: "basin".into(),
+        kind: ZoneKind::Underwater,
+        shape: Shape::Polygon { vertices: water },
+    }];
+    let start = Pose::new(-1.0, 0.0, 0.0);
+    config.robot =
+        RobotConfig { start, acceleration_m_per_s2: 0.1, amphibious: Some(amphibious), ..exact(&robot()) };
+    let mut simulator = Simulator::new(config, 1);
+    let mut speeds = Vec::new();
+    for _ in 0..200 {
+        let before = simulator.truth().pose.position;
+        simulator.act(Drive::Twist { v_m_per_s: 0.23, w_rad_per_s: 0.0 });
+        let after = simulator.truth().pose.position;
+        speeds.push((before.x, (after - before).norm() / 0.1));
+    }
+    speeds
+}
+
+#[test]
+fn an_amphibious_robot_swims_faster_than_it_walks_and_brakes_at_the_shore() {
+    let speeds = speeds_across_the_shore(20);
+    assert!(speeds.iter().any(|(x, speed)| *x < 0.0 && (speed - 0.23).abs() < 1e-9));
+    assert!((speeds[199].1 - 0.13).abs() < 1e-9);
+    // In 20 steps the limit falls by 0.005 m/s each, half of what the brakes can do.
+    let falls = speeds.windows(2).map(|w| w[0].1 - w[1].1).fold(0.0, f64::max);
+    assert!((falls - 0.005).abs() < 1e-9, "{falls}");
+    let ashore_at_once = speeds_across_the_shore(0);
+    let first = ashore_at_once.iter().find(|(x, _)| *x > 0.0).map(|(_, speed)| speed - 0.13);
+    assert!(first.is_some_and(|over| over > 0.08), "{first:?}");
+}
+
+#[test]
+fn what_runs_into_a_robot_that_stands_still_is_a_collision() {
+    let shape = Shape::Disc { center: Point::new(3.0, 0.0), radius_m: 0.5 };
+    let world = World {
+        obstacles: vec![Obstacle { id: ObstacleId(9), name: "M".into(), shape, known: false }],
+        ..config().world
+    };
+    let track = Track::Straight { velocity_m_per_s: nalgebra::Vector2::new(-0.5, 0.0) };
+    let movers = vec![Mover { id: ObstacleId(9), track }];
+    let robot = RobotConfig { start: Pose::new(0.0, 0.0, 0.0), ..exact(&robot()) };
+    let mut sim = Simulator::new(SimConfig { world, robot, movers, tick_s: 0.1, ..config() }, 1);
+    let collided = (0..80).find(|_| {
+        sim.act(Drive::Twist { v_m_per_s: 0.0, w_rad_per_s: 0.0 });
+        sim.truth().collided
+    });
+    assert!(collided.is_some_and(|tick| (35..60).contains(&tick)), "{collided:?}");
+    assert!(sim.sense().contact && sim.sense().sightings.len() == 1);
 }

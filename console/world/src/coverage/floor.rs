@@ -61,6 +61,13 @@ impl Floor {
         super::FloorMaker::new(world, cell_m, room_m, swath_m, start).into_floor()
     }
 
+    /// Whether another floor has its cells in the same places.
+    pub fn is_aligned_with(&self, other: &Self) -> bool {
+        self.width == other.width
+            && self.height == other.height
+            && (self.origin, self.cell_m) == (other.origin, other.cell_m)
+    }
+
     /// The cell under a point, if it lies in the grid.
     pub fn cell_at(&self, point: Point) -> Option<usize> {
         let offset = (point - self.origin) / self.cell_m;

@@ -8,7 +8,7 @@ use crate::geometry::{Point, Vector};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Bearings differ by rounding only up to this, radians.
-const ROUNDING_RAD: f64 = 1e-7;
+pub(super) const ROUNDING_RAD: f64 = 1e-7;
 
 /// Bearings from one to another, counter-clockwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +19,39 @@ pub(super) struct Span {
     pub to_rad: f64,
 }
 
+/// A span by its directions, for a test without angles.
+#[derive(Debug, Clone, Copy)]
+struct Sector {
+    from: Vector,
+    middle: Vector,
+    to: Vector,
+    is_wide: bool,
+}
+
+impl Sector {
+    fn new(span: &Span) -> Self {
+        let towards = |rad: f64| Vector::new(rad.cos(), rad.sin());
+        let is_wide = span.to_rad - span.from_rad > PI;
+        Self {
+            from: towards(span.from_rad),
+            middle: towards(f64::midpoint(span.from_rad, span.to_rad)),
+            to: towards(span.to_rad),
+            is_wide,
+        }
+    }
+
+    fn contains(&self, direction: Vector) -> bool {
+        let (after, before) = (self.from.perp(&direction), direction.perp(&self.to));
+        if self.is_wide {
+            after >= -ROUNDING_RAD || before >= -ROUNDING_RAD
+        } else {
+            // A narrow one must not be taken for its opposite.
+            let is_ahead = self.middle.dot(&direction) >= -ROUNDING_RAD;
+            after >= -ROUNDING_RAD && before >= -ROUNDING_RAD && is_ahead
+        }
+    }
+}
+
 /// A circle that ways can bend about.
 #[derive(Debug, Clone)]
 pub(super) struct Corner {
@@ -26,6 +59,7 @@ pub(super) struct Corner {
     pub radius_m: f64,
     /// The bearings at which nothing else covers it; one span of a whole turn if nothing does.
     pub free: Vec<Span>,
+    sectors: Vec<Sector>,
 }
 
 impl Corner {
@@ -39,12 +73,15 @@ impl Corner {
             let cuts = circle.cuts_with_circle(Point::origin(), wall_m);
             circle.split(&cuts, &mut covered, |at| at.coords.norm() > wall_m + TOUCH_M);
         }
-        Self { center, radius_m, free: complement(covered) }
+        let free = complement(covered);
+        let sectors = free.iter().map(Sector::new).collect();
+        Self { center, radius_m, free, sectors }
     }
 
-    /// Whether a bearing is free.
-    pub fn is_free(&self, bearing_rad: f64) -> bool {
-        self.span(bearing_rad).is_some()
+    /// Whether the bearing of a unit vector is free.
+    pub fn is_free(&self, direction: Vector) -> bool {
+        let is_whole = self.free.first().is_some_and(|span| span.to_rad - span.from_rad >= TAU);
+        is_whole || self.sectors.iter().any(|sector| sector.contains(direction))
     }
 
     /// How far one can turn from a bearing, counter-clockwise and clockwise, radians; none where it is not free.
@@ -208,7 +245,9 @@ mod tests {
             let at = corner.center + Vector::new(bearing.cos(), bearing.sin()) * radius_m;
             let clear_m = bars.iter().map(|b| b.distance_m(at)).fold(wall_m - at.coords.norm(), f64::min);
             prop_assume!(clear_m.abs() > 1e-5);
-            prop_assert_eq!(corner.is_free(bearing), clear_m > 0.0);
+            let direction = Vector::new(bearing.cos(), bearing.sin());
+            prop_assert_eq!(corner.is_free(direction), clear_m > 0.0);
+            prop_assert_eq!(corner.room_rad(bearing).is_some(), clear_m > 0.0);
         }
     }
 
@@ -222,8 +261,7 @@ mod tests {
         assert_eq!(corner.free.len(), 1);
         let (ahead_rad, back_rad) = corner.room_rad(0.2).unwrap();
         assert!((ahead_rad - (FRAC_PI_2 - 0.2)).abs() < 1e-9 && (back_rad - 0.2).abs() < 1e-9);
-        assert!(
-            corner.is_free(0.0) && corner.is_free(FRAC_PI_2) && !corner.is_free(-0.1) && !corner.is_free(PI)
-        );
+        let is_free = |rad: f64| corner.is_free(Vector::new(rad.cos(), rad.sin()));
+        assert!(is_free(0.0) && is_free(FRAC_PI_2) && !is_free(-0.1) && !is_free(PI));
     }
 }

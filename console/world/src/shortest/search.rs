@@ -2,16 +2,20 @@
 
 use super::{
     GrownFloor, NoWay, Piece, Way,
-    corner::turned_rad,
+    corner::{ROUNDING_RAD, turned_rad},
     tangent::{Tangent, Turn, tangent},
 };
-use crate::geometry::Point;
+use crate::geometry::{Point, Vector};
 use std::{cmp::Ordering, collections::BinaryHeap};
 
 /// The caller is asked after so many tangents.
 const ASK_EVERY: usize = 64;
 /// Of two ways to the same place one must be shorter by more than this, metres.
 const ROUNDING_M: f64 = 1e-12;
+
+fn bearing_rad(direction: Vector) -> f64 {
+    direction.y.atan2(direction.x)
+}
 
 /// A way can turn about a corner in two senses: turn `2 c` is corner `c` counter-clockwise, `2 c + 1` clockwise.
 type TurnId = usize;
@@ -42,6 +46,8 @@ struct Exit {
 struct Arrival {
     turn: Option<TurnId>,
     bearing_rad: f64,
+    /// How far the way can turn from there, radians.
+    room_rad: f64,
     at: Point,
     way_m: f64,
     /// The arrival before, and by which of its exits.
@@ -107,7 +113,14 @@ impl<'a> Search<'a> {
             queue: BinaryHeap::new(),
             n_tested: 0,
         };
-        search.arrive(Arrival { turn: None, bearing_rad: 0.0, at: start, way_m: 0.0, from: None });
+        search.arrive(Arrival {
+            turn: None,
+            bearing_rad: 0.0,
+            room_rad: 0.0,
+            at: start,
+            way_m: 0.0,
+            from: None,
+        });
         search
     }
 
@@ -128,7 +141,8 @@ impl<'a> Search<'a> {
                 End::Turn { id, bearing_rad } => {
                     let from = Some((candidate.arrival, candidate.exit));
                     let at = exit.tangent.to;
-                    self.arrive(Arrival { turn: Some(id), bearing_rad, at, way_m, from });
+                    let room_rad = self.room_rad(id, bearing_rad);
+                    self.arrive(Arrival { turn: Some(id), bearing_rad, room_rad, at, way_m, from });
                 }
             }
         }
@@ -193,11 +207,15 @@ impl<'a> Search<'a> {
     /// Length of the arc from an arrival to a bearing, in the sense of its turn; none if something is in the way.
     fn arc_m(&self, arrival: &Arrival, bearing_rad: f64) -> Option<f64> {
         let Some(id) = arrival.turn else { return Some(0.0) };
-        let corner = &self.floor.corners[id / 2];
-        let (ahead_rad, back_rad) = corner.room_rad(arrival.bearing_rad)?;
-        let (sign, room_rad) = if id.is_multiple_of(2) { (1.0, ahead_rad) } else { (-1.0, back_rad) };
-        let arc_rad = turned_rad(arrival.bearing_rad, bearing_rad, sign);
-        (arc_rad <= room_rad + 1e-7).then_some(arc_rad.max(0.0) * corner.radius_m)
+        let turn = self.turn(id);
+        let arc_rad = turned_rad(arrival.bearing_rad, bearing_rad, turn.signed_m.signum());
+        (arc_rad <= arrival.room_rad + ROUNDING_RAD).then_some(arc_rad.max(0.0) * turn.signed_m.abs())
+    }
+
+    /// How far a way that meets a turn at a bearing can follow it, radians.
+    fn room_rad(&self, id: TurnId, bearing_rad: f64) -> f64 {
+        let (ahead_rad, back_rad) = self.floor.corners[id / 2].room_rad(bearing_rad).unwrap_or_default();
+        if id.is_multiple_of(2) { ahead_rad } else { back_rad }
     }
 
     fn turn(&self, id: TurnId) -> Turn {
@@ -212,8 +230,7 @@ impl<'a> Search<'a> {
         let corner = turn.map(|id| &self.floor.corners[id / 2]);
         let leave = |tangent: &Tangent| {
             let Some(corner) = corner else { return Some(0.0) };
-            let bearing_rad = tangent.leave.y.atan2(tangent.leave.x);
-            corner.is_free(bearing_rad).then_some(bearing_rad)
+            corner.is_free(tangent.leave).then(|| bearing_rad(tangent.leave))
         };
         let goal = tangent(here, Turn { center: self.goal, signed_m: 0.0 });
         let to_goal = goal.and_then(|tangent| {
@@ -222,11 +239,12 @@ impl<'a> Search<'a> {
         let others = self.turns.iter().copied().filter(|id| turn.is_none_or(|own| own / 2 != id / 2));
         let to_turns = others.filter_map(|id| {
             let tangent = tangent(here, self.turn(id))?;
+            if !self.floor.corners[id / 2].is_free(tangent.meet) {
+                return None;
+            }
             let leave_rad = leave(&tangent)?;
-            let bearing_rad = tangent.meet.y.atan2(tangent.meet.x);
-            let is_free = self.floor.corners[id / 2].is_free(bearing_rad);
-            let end = End::Turn { id, bearing_rad };
-            is_free.then_some(Exit { bearing_rad: leave_rad, tangent, end, test: Test::Due })
+            let end = End::Turn { id, bearing_rad: bearing_rad(tangent.meet) };
+            Some(Exit { bearing_rad: leave_rad, tangent, end, test: Test::Due })
         });
         to_goal.into_iter().chain(to_turns).collect()
     }

@@ -1,5 +1,6 @@
 //! Common tangents of circles that are turned about.
 
+use super::TOUCH_M;
 use crate::geometry::{Point, Vector};
 
 /// A circle and the sense in which a way turns about it.
@@ -29,10 +30,11 @@ pub(super) fn tangent(i: Turn, j: Turn) -> Option<Tangent> {
     let squared = way.norm_squared();
     let grown_m = j.signed_m - i.signed_m;
     let length_squared = squared - grown_m * grown_m;
-    if length_squared <= 0.0 || squared == 0.0 {
+    // An end of the way may lie on the circle, up to rounding: then it leaves along it.
+    if length_squared <= -4.0 * TOUCH_M * grown_m.abs() || squared == 0.0 {
         return None;
     }
-    let length_m = length_squared.sqrt();
+    let length_m = length_squared.max(0.0).sqrt();
     let along = (way * length_m - Vector::new(-way.y, way.x) * grown_m) / squared;
     let left = Vector::new(-along.y, along.x);
     Some(Tangent {

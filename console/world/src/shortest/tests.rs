@@ -37,6 +37,15 @@ fn past_one_disc_it_is_two_tangents_and_an_arc() {
 }
 
 #[test]
+fn a_way_may_begin_and_end_on_the_circle_it_turns_about() {
+    let floor = floor(&ROUND, &[disc(0.0, 0.0, 0.7)], 0.3);
+    for lift_m in [-5e-10, 0.0, 5e-10] {
+        let way = shortest(&floor, (-1.0 - lift_m, 0.0), (0.0, 1.0 + lift_m)).unwrap();
+        assert!((way.length_m - PI / 2.0).abs() < 1e-4, "{lift_m} {}", way.length_m);
+    }
+}
+
+#[test]
 fn a_free_way_is_straight() {
     let way = shortest(&floor(&ROUND, &[disc(0.0, 3.0, 1.0)], 0.2), (-5.0, 0.0), (5.0, 0.0)).unwrap();
     assert_eq!(way.points(), [Point::new(-5.0, 0.0), Point::new(5.0, 0.0)]);

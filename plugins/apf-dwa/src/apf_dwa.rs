@@ -1,0 +1,187 @@
+//! The planner: offline on the known map, and tick by tick.
+
+use crate::{
+    hybrid::{Hybrid, Settings, State, run},
+    parameters,
+    window::{Twist, Window, arc, moved},
+};
+use field::{Ground, Scene, body::Body, drawing, judge, offline, scene::no_go, stall::Stall};
+use planner_api::{
+    Caps, Code, Command, Config, Ctx, Drive, Layer, LogLevel, Motion, Outline, ParamSpec, Plan, PlanRequest,
+    Planner, PlannerError, Result, Sensed, Site, Status, Task, Vector2, ZoneKind,
+};
+use world::{Point, Pose, Shape, Zone};
+
+/// Steps allowed for a plan, as a multiple of the straight way at the slower pace, and some more.
+const DETOUR: f64 = 6.0;
+const SPARE_STEPS: usize = 2500;
+
+/// The hybrid of potential field and dynamic window, for land and water.
+pub struct ApfDwa {
+    settings: Settings,
+    hybrid: Hybrid,
+    ground: Ground,
+    no_go: Vec<Body>,
+    motion: Motion,
+    stuck_s: f64,
+    stall: Stall,
+    used: u32,
+}
+
+impl Planner for ApfDwa {
+    const ID: &'static str = "apf-dwa";
+    const NAME: &'static str = "Field and dynamic window";
+    const ABOUT: &'static str = "A potential field with virtual goals steers a dynamic window with limits by land and \
+                                 water, after Yang et al. 2021.";
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
+    const PARAMS: &'static [ParamSpec] = parameters::PARAMS;
+
+    fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
+        let settings = parameters::settings(config, site);
+        Ok(Self {
+            settings,
+            hybrid: Hybrid::new(settings, zones(site), site.limits.radius_m),
+            ground: Ground::new(site),
+            no_go: no_go(site).filter_map(|(id, outline)| Body::new(id, &outline)).collect(),
+            motion: site.limits.motion,
+            stuck_s: config.float("stuck_s"),
+            stall: Stall::default(),
+            used: 0,
+        })
+    }
+
+    fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
+        let Task::Goto { goal, tolerance_m } = request.task else {
+            let message = "apf-dwa goes to single goals; for preset paths choose apf or rpf";
+            return Err(PlannerError::new(Code::Unsupported, message));
+        };
+        let site = request.site;
+        let (scene, start) = (Scene::new(site), request.start);
+        offline::check_start(&scene, start.position, site.limits.radius_m)?;
+        offline::check_goal(&scene, goal, tolerance_m)?;
+        self.ground = Ground::new(site);
+        self.hybrid.forget_map();
+        let pose = Pose { position: start.position, heading_rad: start.heading_rad };
+        let mut hybrid = Hybrid::new(self.settings, zones(site), site.limits.radius_m);
+        let steps_max = self.steps_max((goal - start.position).norm());
+        let run = run(&mut hybrid, pose, goal, tolerance_m, steps_max, &self.ground, || ctx.check())?;
+        ctx.scalar("virtual_goals", f64::from(hybrid.guide().used()), "");
+        ctx.scalar("overspeed", run.overspeed_m_per_s, "m/s");
+        let at = run.path[run.path.len() - 1];
+        let missing_m = (goal - at).norm();
+        let shortfall = (!run.arrived).then_some(judge::Shortfall::Short { missing_m, at });
+        let clearance_m = self.ground.path_clearance_m(&run.path, site.clearance_m + 1.0);
+        Ok(offline::told(judge::Walk { path: run.path, shortfall }, clearance_m, site.clearance_m, ctx))
+    }
+
+    fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
+        ctx.check()?;
+        let near = sensed.obstacles.iter().filter_map(|o| Body::new(o.id, &o.outline));
+        let bodies: Vec<Body> = near.chain(self.no_go.iter().cloned()).collect();
+        if self.ground.learn(&bodies) {
+            self.hybrid.forget_map();
+        }
+        let pose = Pose { position: sensed.pose.position, heading_rad: sensed.pose.heading_rad };
+        let twist = Twist { v_m_per_s: sensed.v_m_per_s.max(0.0), w_rad_per_s: sensed.w_rad_per_s };
+        let velocity_of = |id| {
+            let sighted = sensed.obstacles.iter().find(|o| o.id == id);
+            sighted.map_or_else(Vector2::zeros, |o| o.velocity_m_per_s)
+        };
+        let state = State { pose, twist };
+        let decision = self.hybrid.decide(&state, sensed.target, &self.ground, velocity_of);
+        drawing::show(ctx, pose.position, &decision.forces, self.settings.field.square.k_att);
+        for (index, distance_m) in decision.distances_m.iter().enumerate() {
+            ctx.scalar(DISTANCES[index], *distance_m, "m");
+        }
+        ctx.scalar("safe_distance", self.settings.window.keep_m - self.ground.hull_m, "m");
+        ctx.scalar("mode", self.hybrid.mode().unwrap_or(0.0), "");
+        ctx.scalar("speed_limit", decision.pace.v_max_m_per_s, "m/s");
+        self.tell(&pose, decision.twist, ctx);
+        let idle_s = self.stall.update(sensed.t_s, pose.position, sensed.target);
+        let status = if idle_s > self.stuck_s { Status::Stuck } else { Status::Moving };
+        Ok(Command { drive: self.drive(&pose, decision.twist), status })
+    }
+}
+
+/// Names of the distances to the nearest obstacles (Figs 12 to 15 of the paper plot ten).
+const DISTANCES: [&str; 10] = [
+    "obstacle_distance",
+    "obstacle_distance_2",
+    "obstacle_distance_3",
+    "obstacle_distance_4",
+    "obstacle_distance_5",
+    "obstacle_distance_6",
+    "obstacle_distance_7",
+    "obstacle_distance_8",
+    "obstacle_distance_9",
+    "obstacle_distance_10",
+];
+
+impl ApfDwa {
+    fn steps_max(&self, straight_m: f64) -> usize {
+        let slowest =
+            self.settings.robot.land.v_max_m_per_s.min(self.settings.robot.underwater.v_max_m_per_s);
+        let Window { dt_s, .. } = self.settings.window;
+        let straight = straight_m / (slowest.max(1e-3) * dt_s);
+        if self.settings.steps_max > 0 {
+            self.settings.steps_max
+        } else {
+            (DETOUR * straight) as usize + SPARE_STEPS
+        }
+    }
+
+    fn tell(&mut self, pose: &Pose, twist: Twist, ctx: &Ctx<'_>) {
+        let guide = self.hybrid.guide();
+        if guide.used() > self.used {
+            self.used = guide.used();
+            ctx.log(LogLevel::Info, "in a minimum: goes for a virtual goal");
+        }
+        if !ctx.wants_drawing() {
+            return;
+        }
+        if let Some(corner) = guide.virtual_goal() {
+            ctx.circle(Layer::Virtual, corner, 0.2);
+        }
+        ctx.polyline(Layer::Path, guide.way());
+        ctx.polyline(Layer::Other, &arc(pose, twist));
+    }
+
+    /// A twist; for a robot that moves in any direction at once the velocity along its arc.
+    fn drive(&self, pose: &Pose, twist: Twist) -> Drive {
+        if self.motion == Motion::Unicycle {
+            return Drive::Twist { v_m_per_s: twist.v_m_per_s, w_rad_per_s: twist.w_rad_per_s };
+        }
+        let dt_s = self.settings.window.dt_s;
+        let turned = moved(pose, Twist { v_m_per_s: 0.0, ..twist }, dt_s);
+        // A point robot looks where it goes: it cannot turn on the spot.
+        Drive::Velocity(turned.direction() * twist.v_m_per_s.max(1e-3))
+    }
+}
+
+fn zones(site: &Site<'_>) -> Vec<Zone> {
+    let kind = |kind: ZoneKind| match kind {
+        ZoneKind::NoGo => world::ZoneKind::NoGo,
+        ZoneKind::Land => world::ZoneKind::Land,
+        ZoneKind::Underwater => world::ZoneKind::Underwater,
+    };
+    let zone = |zone: &planner_api::Zone<'_>| Zone {
+        name: String::new(),
+        kind: kind(zone.kind),
+        shape: shape_of(&zone.outline),
+    };
+    site.zones.iter().map(zone).collect()
+}
+
+fn shape_of(outline: &Outline<'_>) -> Shape {
+    let points = |points: &[Point]| points.to_vec();
+    match *outline {
+        Outline::Disc { center, radius_m } => Shape::Disc { center, radius_m },
+        Outline::Polygon { vertices } => Shape::Polygon { vertices: points(vertices) },
+        Outline::Polyline { points: line, half_width_m } => {
+            Shape::Polyline { points: points(line), half_width_m }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

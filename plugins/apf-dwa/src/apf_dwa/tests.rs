@@ -1,0 +1,137 @@
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use super::*;
+use field::trial::exact_pose;
+use planner_api::{Obstacle, Reason, testing::Bench};
+use proptest::prelude::*;
+use trials::shore::{Group, Shore};
+
+fn with_planner<T>(
+    values: &[(&str, f64)],
+    seed: u64,
+    act: impl FnOnce(&mut ApfDwa, &Site<'_>, &Bench) -> T,
+) -> T {
+    let (bench, shore) = (Bench::new(), Shore::random(Group::Free, seed));
+    let (corners, obstacles, water) = (Shore::corners(), shore.obstacles(), Shore::water());
+    let zones = Shore::zones(&water);
+    let site = Shore::site(&corners, &obstacles, &zones);
+    let mut planner = bench.configure(values, &site).unwrap();
+    act(&mut planner, &site, &bench)
+}
+
+const GOAL: Point = Point::new(4.5, 4.5);
+
+fn request<'a>(site: &'a Site<'a>, task: Task<'a>) -> PlanRequest<'a> {
+    let start = planner_api::PoseEstimate { heading_rad: 0.8, ..exact_pose(Point::new(-4.5, -4.5)) };
+    PlanRequest { reason: &Reason::Start, start, task, site, previous: &[] }
+}
+
+#[test]
+fn a_plan_is_the_run_of_the_loop_and_tells_its_overspeed() {
+    with_planner(&[], 3, |planner, site, bench| {
+        let task = Task::Goto { goal: GOAL, tolerance_m: 0.15 };
+        let plan = planner.plan(&request(site, task), &bench.ctx()).unwrap();
+        assert!(plan.complete, "{:?}", bench.logs());
+        assert!(plan.path.windows(2).all(|w| (w[1] - w[0]).norm() <= 0.023 + 1e-9));
+        assert!(bench.scalar("overspeed").unwrap() < 1e-9);
+    });
+}
+
+#[test]
+fn preset_paths_are_refused_with_the_reason() {
+    with_planner(&[], 3, |planner, site, bench| {
+        let targets = [GOAL];
+        let task = Task::Follow { targets: &targets, tolerance_m: 0.1 };
+        assert_eq!(planner.plan(&request(site, task), &bench.ctx()).unwrap_err().code, Code::Unsupported);
+    });
+}
+
+fn sensed<'a>(pose: Pose, tick: u64, twist: Twist, obstacles: &'a [Obstacle<'a>]) -> Sensed<'a> {
+    let estimate = planner_api::PoseEstimate { heading_rad: pose.heading_rad, ..exact_pose(pose.position) };
+    Sensed {
+        tick,
+        t_s: tick as f64 * 0.1,
+        dt_s: 0.1,
+        pose: estimate,
+        v_m_per_s: twist.v_m_per_s,
+        w_rad_per_s: twist.w_rad_per_s,
+        target: GOAL,
+        targets_ahead: std::slice::from_ref(&GOAL),
+        path_ahead: &[],
+        obstacles,
+    }
+}
+
+/// Flies with a shaking pose; `new_at` puts a new planner in its place at a tick.
+fn fly(seed: u64, new_at: Option<u64>) -> (bool, f64) {
+    let shore = Shore::random(Group::Block, seed);
+    let obstacles = shore.obstacles();
+    with_planner(&[], seed, |_, site, bench| {
+        let blind = Site { obstacles: &[], ..*site };
+        let mut planner: ApfDwa = bench.configure(&[], &blind).unwrap();
+        let (mut pose, mut twist) = (Pose::new(-4.5, -4.5, 0.8), Twist::default());
+        let mut clearance_m = f64::INFINITY;
+        for tick in 0..3000 {
+            if new_at == Some(tick) {
+                planner = bench.configure(&[], &blind).unwrap();
+            }
+            if (pose.position - GOAL).norm() < 0.2 {
+                return (true, clearance_m);
+            }
+            let near = |o: &&Obstacle<'_>| match o.outline {
+                Outline::Disc { center, radius_m } => (center - pose.position).norm() - radius_m < 2.5,
+                _ => true,
+            };
+            let near: Vec<Obstacle<'_>> = obstacles.iter().filter(near).copied().collect();
+            let shake = Vector2::new((tick as f64 * 0.3).sin(), (tick as f64 * 0.2).cos()) * 0.02;
+            let believed = Pose { position: pose.position + shake, ..pose };
+            let command = planner.step(&sensed(believed, tick, twist, &near), &bench.ctx()).unwrap();
+            bench.clear();
+            let Drive::Twist { v_m_per_s, w_rad_per_s } = command.drive else { panic!("a twist") };
+            twist = Twist { v_m_per_s, w_rad_per_s };
+            pose = moved(&pose, twist, 0.1);
+            clearance_m = clearance_m.min(shore.hull_clearance_m(pose.position));
+        }
+        (false, clearance_m)
+    })
+}
+
+#[test]
+fn in_flight_it_arrives_though_it_must_discover_everything_and_is_swapped_on_the_way() {
+    for seed in 40..46 {
+        for new_at in [None, Some(200), Some(450)] {
+            let (arrived, clearance_m) = fly(seed, new_at);
+            assert!(arrived && clearance_m > 0.05, "{seed} {new_at:?} {clearance_m}");
+        }
+    }
+}
+
+#[test]
+fn it_tells_ten_distances_the_mode_and_the_limit() {
+    with_planner(&[], 3, |planner, site, bench| {
+        let at = Pose::new(-4.5, -4.5, 0.8);
+        planner.step(&sensed(at, 0, Twist::default(), site.obstacles), &bench.ctx()).unwrap();
+        assert!(DISTANCES.iter().all(|name| bench.scalar(name).is_some()));
+        assert_eq!((bench.scalar("mode"), bench.scalar("speed_limit")), (Some(1.0), Some(0.23)));
+        assert!(bench.scalar("F_att").is_some() && bench.scalar("safe_distance").is_some());
+    });
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn whatever_is_sensed_the_command_is_a_number_within_the_limits(
+        at in (-6.0..6.0_f64, -6.0..6.0_f64), heading in -4.0..4.0_f64, v in -1.0..1.0_f64, w in -1.0..1.0_f64,
+        on_top in any::<bool>(),
+    ) {
+        with_planner(&[], 3, |planner, site, bench| {
+            let place = if on_top { Shore::random(Group::Free, 3).discs[0].0 } else { Point::new(at.0, at.1) };
+            let pose = Pose { position: place, heading_rad: heading };
+            let twist = Twist { v_m_per_s: v, w_rad_per_s: w };
+            let command = planner.step(&sensed(pose, 0, twist, site.obstacles), &bench.ctx()).unwrap();
+            let Drive::Twist { v_m_per_s, w_rad_per_s } = command.drive else { panic!("a twist") };
+            assert!(v_m_per_s.is_finite() && w_rad_per_s.is_finite());
+            assert!(v_m_per_s >= 0.0 && v_m_per_s <= v.max(0.23) + 0.01);
+        });
+    }
+}

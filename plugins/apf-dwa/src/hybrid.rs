@@ -1,0 +1,189 @@
+//! The loop of Yang et al. 2021, Fig. 6: medium, limits, forces, virtual goal, window.
+
+use crate::{
+    guide::{Field, Guide},
+    near::NearThings,
+    window::{Twist, Window, moved},
+};
+use field::{Forces, Ground};
+use world::{Amphibious, Medium, Mode, Pace, Point, Pose, Vector, Zone};
+
+/// Near the goal, or a place to pass, the robot does not go faster than it can turn there.
+const TURNING_M: f64 = 1.2;
+/// A robot that looks away from where it is to go by more than this turns first, radians.
+const ASIDE_RAD: f64 = 0.35;
+/// The reference leaves a little of every speed, so that the window is never empty, metres per second.
+const SLOWEST_M_PER_S: f64 = 0.02;
+
+/// Everything that the loop needs besides the map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// How it walks and swims.
+    pub robot: Amphibious,
+    /// The window.
+    pub window: Window,
+    /// The field.
+    pub field: Field,
+    /// Steps of a plan at most; 0 lets the length of the trip decide.
+    pub steps_max: usize,
+}
+
+/// Where a robot is and how it moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    /// Its pose.
+    pub pose: Pose,
+    /// Its speed and turn rate.
+    pub twist: Twist,
+}
+
+/// What was decided in a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Decision {
+    /// How to move until the next step.
+    pub twist: Twist,
+    /// The forces that point there.
+    pub forces: Forces,
+    /// The limits that hold now.
+    pub pace: Pace,
+    /// Distance from the hull to the nearest outlines, up to ten, nearest first, metres.
+    pub distances_m: Vec<f64>,
+}
+
+/// The loop and what it remembers.
+#[derive(Debug, Clone)]
+pub struct Hybrid {
+    settings: Settings,
+    zones: Vec<Zone>,
+    mode: Option<Mode>,
+    guide: Guide,
+}
+
+/// How many distances are told: as many as the paper plots.
+const N_DISTANCES: usize = 10;
+
+impl Hybrid {
+    /// A loop that has not begun.
+    pub fn new(settings: Settings, zones: Vec<Zone>, hull_m: f64) -> Self {
+        Self { guide: Guide::new(&settings.field, hull_m), settings, zones, mode: None }
+    }
+
+    /// What it is set to.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// What it remembers of virtual goals.
+    pub fn guide(&self) -> &Guide {
+        &self.guide
+    }
+
+    /// Share of swimming, 0 to 1.
+    pub fn mode(&self) -> Option<f64> {
+        self.mode.map(Mode::weight)
+    }
+
+    /// The map has changed.
+    pub fn forget_map(&mut self) {
+        self.guide.forget_map();
+    }
+
+    /// Decides how to move in the next tick; `velocity_of` tells how an obstacle moves, metres per second.
+    pub fn decide(
+        &mut self,
+        state: &State,
+        goal: Point,
+        ground: &Ground,
+        velocity_of: impl Fn(u32) -> Vector,
+    ) -> Decision {
+        let pace = self.adapt(state.pose.position);
+        let window = &self.settings.window;
+        let (at, step_m) = (state.pose.position, pace.v_max_m_per_s * window.dt_s);
+        let forces = self.guide.forces(&self.settings.field, ground, at, goal, step_m);
+        let reference = forces.resultant().try_normalize(1e-9).unwrap_or(goal - at);
+        let fastest = ground.solids.iter().map(|s| velocity_of(s.id).norm()).fold(0.0, f64::max);
+        let near = NearThings::of(ground, at, window.reach_m(pace, fastest), velocity_of);
+        let drivable = Pace { v_max_m_per_s: drivable(state, goal, pace), ..pace };
+        let twist = window.choose(&state.pose, state.twist, drivable, reference, &near);
+        Decision { twist, forces, pace, distances_m: distances_m(ground, at) }
+    }
+
+    /// The limits by the floor under the robot; one step of the transition each time.
+    fn adapt(&mut self, at: Point) -> Pace {
+        let robot = &self.settings.robot;
+        let medium = Medium::at(&self.zones, at);
+        let mode =
+            self.mode.map_or_else(|| Mode::of(medium), |mode| mode.toward(medium, robot.transition_steps));
+        self.mode = Some(mode);
+        robot.pace(mode)
+    }
+}
+
+/// The largest speed at which an arc at the largest turn rate still reaches the goal, when the goal is near: a
+/// robot that is faster circles round it for ever.
+fn drivable(state: &State, goal: Point, pace: Pace) -> f64 {
+    let way = goal - state.pose.position;
+    let missing_m = way.norm();
+    if missing_m > TURNING_M {
+        return pace.v_max_m_per_s;
+    }
+    let off_rad = state.pose.direction().angle(&way);
+    let bend = 2.0 * off_rad.min(std::f64::consts::FRAC_PI_2).sin() / missing_m.max(1e-3);
+    let turning = 0.8 * pace.w_max_rad_per_s / bend.max(1e-6);
+    let speed = if off_rad > std::f64::consts::FRAC_PI_2 { 0.0 } else { turning };
+    let slow = if off_rad > ASIDE_RAD { speed } else { speed.max(SLOWEST_M_PER_S) };
+    slow.min(pace.v_max_m_per_s)
+}
+
+fn distances_m(ground: &Ground, at: Point) -> Vec<f64> {
+    let mut all: Vec<f64> = ground.solids.iter().map(|s| s.distance(at).0 - ground.hull_m).collect();
+    all.sort_by(f64::total_cmp);
+    all.truncate(N_DISTANCES);
+    all
+}
+
+/// A run of the loop in thought, at the exact pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// The place at every tick, the start first.
+    pub path: Vec<Point>,
+    /// Whether the goal was reached.
+    pub arrived: bool,
+    /// Furthest above the limit of the moment, metres per second.
+    pub overspeed_m_per_s: f64,
+}
+
+/// Runs the loop over the known map; `check` ends it early.
+///
+/// # Errors
+/// What `check` says.
+pub fn run<E>(
+    hybrid: &mut Hybrid,
+    start: Pose,
+    goal: Point,
+    tolerance_m: f64,
+    steps_max: usize,
+    ground: &Ground,
+    mut check: impl FnMut() -> Result<(), E>,
+) -> Result<Run, E> {
+    let mut state = State { pose: start, twist: Twist::default() };
+    let mut run = Run { path: vec![start.position], arrived: false, overspeed_m_per_s: 0.0 };
+    let dt_s = hybrid.settings.window.dt_s;
+    for _ in 0..steps_max {
+        if (goal - state.pose.position).norm() <= tolerance_m {
+            run.arrived = true;
+            break;
+        }
+        check()?;
+        let decision = hybrid.decide(&state, goal, ground, |_| Vector::zeros());
+        state.twist = decision.twist;
+        state.pose = moved(&state.pose, state.twist, dt_s);
+        run.path.push(state.pose.position);
+        let over = state.twist.v_m_per_s - decision.pace.v_max_m_per_s;
+        run.overspeed_m_per_s = run.overspeed_m_per_s.max(over);
+    }
+    Ok(run)
+}
+
+#[cfg(test)]
+mod tests;

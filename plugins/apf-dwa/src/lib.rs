@@ -1,0 +1,18 @@
+//! The hybrid planner of Yang et al. 2021: a potential field with virtual goals says where to, a dynamic window how.
+//!
+//! For a robot that walks and swims: its limits follow the zones of the floor. Frame: the tank frame, metres, radians.
+#![forbid(unsafe_code)]
+
+pub mod window;
+
+pub mod guide;
+pub mod hybrid;
+pub mod near;
+
+mod apf_dwa;
+mod parameters;
+
+pub use hybrid::{Hybrid, Settings, State};
+pub use window::{Twist, Weights, Window};
+
+planner_api::export_planners!(apf_dwa::ApfDwa);

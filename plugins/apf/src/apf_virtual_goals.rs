@@ -1,0 +1,193 @@
+//! The improved field with virtual goals.
+
+use crate::goal_flight::GoalFlight;
+use field::{
+    GoalLaw, Ground, Nearby, Pull, Sides, TangentUse, goal_walk,
+    law::Forces,
+    params as p,
+    virtual_goals::{SquareLaw, VirtualGoals},
+};
+use planner_api::{
+    Caps, Command, Config, Ctx, Layer, LogLevel, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site,
+    choice, flag, float, int,
+};
+use world::{Point, Vector};
+
+/// Attraction, repulsion and, in a minimum, a virtual goal on a square round the goal (Yang et al. 2021).
+pub struct ApfVirtualGoals {
+    law: Law,
+    flight: GoalFlight,
+    goals: VirtualGoals,
+}
+
+/// The field and the way it is walked.
+#[derive(Debug, Clone, Copy)]
+struct Law {
+    square: SquareLaw,
+    repulsion: GoalLaw,
+    step_m: f64,
+    proportional: bool,
+    steps_max: usize,
+}
+
+const FIELD: &str = "Field";
+const GOALS: &str = "Virtual goals";
+const K_ATT: ParamSpec = float("k_att", "Attraction gain", "N/m", 0.001, 1000.0, 15.0)
+    .help("Pull toward the goal per metre of distance; Table 2 of the paper has 15.")
+    .group(FIELD);
+const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 5.0)
+    .help("Push of obstacles; Table 2 of the paper has 5.")
+    .group(FIELD);
+const RHO_0: ParamSpec = float("rho_0_m", "Range of obstacles", "m", 0.05, 50.0, 1.0)
+    .help("Distance between hull and obstacle at which obstacles begin to act.")
+    .group(FIELD);
+const D_0: ParamSpec = float("d_0_m", "Range of the goal", "m", 0.0, 100.0, 3.0)
+    .help("Nearer than this the pull is constant and no virtual goal is used.")
+    .group(GOALS);
+const SQUARE: ParamSpec = float("square_m", "Distance of virtual goals", "m", 0.1, 100.0, 2.0)
+    .help("How far from the goal the four virtual goals lie; the paper gives no number.")
+    .group(GOALS);
+const IMPROVED: ParamSpec = flag("improved", "Improved", true)
+    .help("Without it is the traditional field that the paper compares with.")
+    .group(GOALS);
+const HOLD: ParamSpec = int("hold_steps", "Steps with a virtual goal", "", 1, 10_000, 30)
+    .help("A virtual goal is kept for this many steps at most; the paper gives no number.")
+    .group(GOALS);
+const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.1)
+    .help("Longest move when planning; the paper's time step of 0.1 s.")
+    .group("Plan");
+const STEP_RULE: ParamSpec = choice("step_rule", "Step rule", &["fixed", "proportional"], 1)
+    .help("proportional: shorter where the force is smaller than the attraction gain, nearer to the paper's tables.")
+    .group("Plan");
+const STEPS: ParamSpec = int("steps_max", "Steps at most", "", 0, 1_000_000, 0)
+    .help("Iterations of a plan; the paper has 200. 0 lets the length of the trip decide.")
+    .group("Plan");
+
+impl Planner for ApfVirtualGoals {
+    const ID: &'static str = "apf-virtual-goals";
+    const NAME: &'static str = "Field with virtual goals";
+    const ABOUT: &'static str = "Leaves minima toward virtual goals on a square round the goal and keeps its pull near \
+                                 the goal, after Yang et al. 2021.";
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
+    const PARAMS: &'static [ParamSpec] = &[
+        K_ATT,
+        K_REP,
+        RHO_0,
+        D_0,
+        SQUARE,
+        IMPROVED,
+        HOLD,
+        p::WALL_GAIN,
+        STEP,
+        STEP_RULE,
+        STEPS,
+        p::GUARD,
+        p::GUARD_SIGMAS,
+        p::SLOW,
+        p::MIN_SHARE,
+        p::STUCK,
+    ];
+
+    fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
+        let law = law(config);
+        let flight = GoalFlight::new(site, p::flight(config), law.repulsion.rho_m);
+        Ok(Self { law, flight, goals: VirtualGoals::default() })
+    }
+
+    fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
+        let mut checked = self.flight.check(request, Self::ID, self.law.step_m)?;
+        let law = self.law;
+        if law.steps_max > 0 {
+            checked.trip.steps_max = law.steps_max;
+        }
+        let trip = checked.trip;
+        let (ground, mut nearby) = (&self.flight.ground, self.flight.nearby.clone());
+        let mut goals = VirtualGoals::default();
+        let next = |at: Point| {
+            let missing_m = (trip.goal - at).norm();
+            if missing_m <= law.step_m {
+                return Some(trip.goal - at);
+            }
+            let force = law.forces(at, trip.goal, ground, &mut nearby, &mut goals).resultant();
+            Some(force.try_normalize(1e-12).unwrap_or_else(Vector::zeros) * law.move_m(force))
+        };
+        let walk = goal_walk::walk(&trip, next, || ctx.check())?;
+        if goals.used > 0 {
+            ctx.log(LogLevel::Info, &format!("the way uses {} virtual goals", goals.used));
+        }
+        ctx.scalar("virtual_goals", f64::from(goals.used), "");
+        Ok(checked.told(walk, ground, ctx))
+    }
+
+    fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
+        let (law, goals) = (self.law, &mut self.goals);
+        let used = goals.used;
+        let command = self.flight.step(sensed, ctx, law.square.k_att, |at, ground, nearby| {
+            law.forces(at, sensed.target, ground, nearby, goals)
+        })?;
+        if self.goals.used > used {
+            ctx.log(LogLevel::Info, "in a minimum: goes for a virtual goal");
+        }
+        if let Some(corner) = self.goals.current() {
+            ctx.circle(Layer::Virtual, corner, 0.2);
+        }
+        ctx.scalar("virtual_goals", f64::from(self.goals.used), "");
+        Ok(command)
+    }
+}
+
+impl Law {
+    /// The forces at a place; a virtual goal is taken when the robot is in a minimum.
+    fn forces(
+        &self,
+        at: Point,
+        goal: Point,
+        ground: &Ground,
+        nearby: &mut Nearby,
+        goals: &mut VirtualGoals,
+    ) -> Forces {
+        let forces = self.repulsion.forces(at, goal, ground, nearby, &mut Sides::default());
+        let push = forces.repulsion;
+        let without = self.square.attraction(at, goal, None) + push;
+        if goals.needs_one(&self.square, at, goal, without, self.step_m) {
+            let is_usable = |corner: Point| ground.clearance_m(corner) > 0.0;
+            if let Some(corner) = self.square.best_corner(at, goal, push, is_usable) {
+                goals.take(corner);
+            }
+        }
+        Forces { attraction: self.square.attraction(at, goal, goals.current()), ..forces }
+    }
+
+    fn move_m(&self, force: Vector) -> f64 {
+        let share = if self.proportional { (force.norm() / self.square.k_att).min(1.0) } else { 1.0 };
+        self.step_m * share
+    }
+}
+
+fn law(config: &Config<'_>) -> Law {
+    let square = SquareLaw {
+        k_att: config.float("k_att"),
+        d_0_m: config.float("d_0_m"),
+        square_m: config.float("square_m"),
+        improved: config.flag("improved"),
+        hold_steps: config.int("hold_steps") as usize,
+    };
+    let repulsion = GoalLaw {
+        pull: Pull::Capped { k: square.k_att, d_0_m: square.d_0_m },
+        k_rep: config.float("k_rep"),
+        rho_m: config.float("rho_0_m"),
+        tangent: TangentUse::Off,
+        tangent_weight: 0.0,
+        wall_gain: config.float("wall_gain"),
+    };
+    Law {
+        square,
+        repulsion,
+        step_m: config.float("goto_step_m"),
+        proportional: config.choice("step_rule") == "proportional",
+        steps_max: config.int("steps_max") as usize,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,107 @@
+//! The tangent field.
+
+use crate::goal_flight::GoalFlight;
+use field::{GoalLaw, Pull, Sides, TangentUse, goal_walk, params as p};
+use planner_api::{
+    Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site, choice, float,
+};
+
+/// Attraction, repulsion and a force along the tangent of obstacles, as Xu et al. 2022 compare with.
+///
+/// It passes single obstacles in the way; in a trap it stops and says so.
+pub struct Tapf {
+    law: GoalLaw,
+    step_m: f64,
+    window_m: f64,
+    flight: GoalFlight,
+    sides: Sides,
+}
+
+const FIELD: &str = "Field";
+const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 10.0)
+    .help("Push and tangent force of obstacles; the paper's mu.")
+    .group(FIELD);
+const RHO_0: ParamSpec = float("rho_0_m", "Range of obstacles", "m", 0.05, 50.0, 2.0)
+    .help("Distance between hull and obstacle at which obstacles begin to act.")
+    .group(FIELD);
+const TANGENT: ParamSpec = choice("tangent", "Tangent force", &["off", "always", "blocking"], 2)
+    .help(
+        "always: toward the left tangent of everything in range; at a weight of 0.02 it gives the stop printed in the \
+         paper. blocking: round what blocks the way to the goal. off: the classical field.",
+    )
+    .group(FIELD);
+const WEIGHT: ParamSpec = float("tangent_weight", "Weight of the tangent force", "", 0.0, 100.0, 1.0)
+    .help("Tangent force as a multiple of the repulsion gain.")
+    .group(FIELD);
+const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
+    .help("Length of a move when planning; the paper moves 0.01.")
+    .group("Plan");
+const WINDOW: ParamSpec = float("window_m", "Window of oscillation", "m", 0.1, 50.0, 2.0)
+    .help("The field counts as trapped when the last moves of this length lead hardly anywhere.")
+    .group("Plan");
+
+impl Planner for Tapf {
+    const ID: &'static str = "tapf";
+    const NAME: &'static str = "Tangent potential field";
+    const ABOUT: &'static str = "Attraction, repulsion and a tangent force, after Xu et al. 2022; stays in traps that are half closed.";
+    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
+    const PARAMS: &'static [ParamSpec] = &[
+        p::K_ATT,
+        K_REP,
+        RHO_0,
+        TANGENT,
+        WEIGHT,
+        p::WALL_GAIN,
+        STEP,
+        WINDOW,
+        p::GUARD,
+        p::GUARD_SIGMAS,
+        p::SLOW,
+        p::MIN_SHARE,
+        p::STUCK,
+    ];
+
+    fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
+        let law = GoalLaw {
+            pull: Pull::Linear { k: config.float("k_att") },
+            k_rep: config.float("k_rep"),
+            rho_m: config.float("rho_0_m"),
+            tangent: match config.choice("tangent") {
+                "off" => TangentUse::Off,
+                "always" => TangentUse::Always,
+                _ => TangentUse::Blocking,
+            },
+            tangent_weight: config.float("tangent_weight"),
+            wall_gain: config.float("wall_gain"),
+        };
+        Ok(Self {
+            law,
+            step_m: config.float("goto_step_m"),
+            window_m: config.float("window_m"),
+            flight: GoalFlight::new(site, p::flight(config), law.rho_m),
+            sides: Sides::default(),
+        })
+    }
+
+    fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
+        let checked = self.flight.check(request, Self::ID, self.step_m)?;
+        let (law, trip) = (self.law, checked.trip);
+        let (ground, mut nearby) = (&self.flight.ground, self.flight.nearby.clone());
+        let mut sides = Sides::default();
+        let force = |at| law.forces(at, trip.goal, ground, &mut nearby, &mut sides).resultant();
+        let next = goal_walk::descent(&trip, self.step_m, self.window_m, force);
+        let walk = goal_walk::walk(&trip, next, || ctx.check())?;
+        Ok(checked.told(walk, ground, ctx))
+    }
+
+    fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
+        let (law, sides) = (self.law, &mut self.sides);
+        let k_att = law.pull.strength(1.0);
+        self.flight.step(sensed, ctx, k_att, |at, ground, nearby| {
+            law.forces(at, sensed.target, ground, nearby, sides)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

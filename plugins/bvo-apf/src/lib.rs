@@ -1,0 +1,24 @@
+//! The potential field with virtual obstacles of Xu et al. 2022 (BVO-APF), as published and as we would build it.
+//!
+//! In a trap the robot retreats along its own way, closes the mouth with virtual circles and goes round the whole.
+//! Frame: the tank frame, metres, radians. Distances are measured from the hull.
+#![forbid(unsafe_code)]
+
+pub mod clusters;
+pub mod view;
+
+pub mod machine;
+pub mod mouth;
+pub mod settings;
+
+pub mod escape;
+pub mod taut;
+pub mod thought;
+
+mod bvo_apf;
+mod parameters;
+
+pub use machine::{Machine, Next, Phase};
+pub use settings::{Mode, Settings};
+
+planner_api::export_planners!(bvo_apf::BvoApf);

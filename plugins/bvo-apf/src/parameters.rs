@@ -1,0 +1,102 @@
+//! The parameters, and how they become settings.
+
+use crate::settings::{Mode, Settings};
+use field::{GoalLaw, NearLaw, Pull, TangentUse, params as p};
+use planner_api::{Config, ParamSpec, Site, choice, float, int};
+
+const TRAP: &str = "Trap";
+const FIELD: &str = "Field";
+
+const MODE: ParamSpec = choice("mode", "Mode", &["literal", "hull", "rollout", "pre"], 3)
+    .help(
+        "literal: round a circle about the trap, on the left, as published. hull: along the hull of the trap. rollout: \
+         on the side that is shorter when walked in thought. pre: the detour begins before the trap is entered.",
+    )
+    .group(TRAP);
+const M: ParamSpec = float("m", "Pull", "N", 0.001, 1000.0, 10.0)
+    .help("Pull of the goal at the start; the paper's m. Only its ratio to the repulsion gain matters.")
+    .group(FIELD);
+const RHO_1: ParamSpec = float("rho_1_m", "Range of the near law", "m", 0.01, 100.0, 1.0)
+    .help("Distance from the goal at which the near law of the pull takes over.")
+    .group(FIELD);
+const NEAR_LAW: ParamSpec = choice("near_law", "Near law", &["corrected", "printed"], 0)
+    .help("corrected: the pull grows at the goal, as the paper says. printed: it vanishes there, as its formula has it.")
+    .group(FIELD);
+const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 10.0)
+    .help("Push and tangent force of obstacles; the papers' mu.")
+    .group(FIELD);
+const RHO_0: ParamSpec = float("rho_0_m", "Range of obstacles", "m", 0.05, 50.0, 2.0)
+    .help("Distance between hull and obstacle at which obstacles begin to act.")
+    .group(FIELD);
+const TANGENT_WEIGHT: ParamSpec = float("tangent_weight", "Weight of the tangent force", "", 0.0, 100.0, 1.0)
+    .help("Tangent force round what blocks the way to the goal, as a multiple of the repulsion gain; 0 is none.")
+    .group(FIELD);
+const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
+    .help("Length of a move when planning; the paper moves 0.01, its step count fits 0.0071.")
+    .group("Plan");
+const MARGIN: ParamSpec = float("margin_m", "Margin of a detour", "m", 0.02, 5.0, 0.14)
+    .help("Distance kept from what is gone round. Gaps that leave less on both sides of the hull count as closed.")
+    .group(TRAP);
+const TAUT_MARGIN: ParamSpec = float("taut_margin_m", "Margin of a taut path", "m", 0.0, 5.0, 0.05)
+    .help("Mode pre: distance between the hull and what the path is pulled around; at least a little more than the clearance.")
+    .group(TRAP);
+const WINDOW: ParamSpec = float("window_m", "Window of oscillation", "m", 0.1, 50.0, 2.0)
+    .help("The robot counts as trapped when its last moves of this length lead hardly anywhere.")
+    .group(TRAP);
+const ESCAPES: ParamSpec = int("escapes_max", "Escapes at most", "", 1, 1000, 12)
+    .help("After so many escapes the planner gives up.")
+    .group(TRAP);
+
+/// Every parameter of the planner.
+pub const PARAMS: &[ParamSpec] = &[
+    MODE,
+    M,
+    RHO_1,
+    NEAR_LAW,
+    K_REP,
+    RHO_0,
+    TANGENT_WEIGHT,
+    p::WALL_GAIN,
+    STEP,
+    MARGIN,
+    TAUT_MARGIN,
+    WINDOW,
+    ESCAPES,
+    p::GUARD,
+    p::GUARD_SIGMAS,
+    p::SLOW,
+    p::MIN_SHARE,
+    p::STUCK,
+];
+
+/// No step goes nearer to anything than the clearance that is demanded and this, metres.
+const SPARE_M: f64 = 0.02;
+
+/// Settings for a site and a trip of some length from start to goal, metres.
+pub fn settings(config: &Config<'_>, site: &Site<'_>, trip_m: f64) -> Settings {
+    let near = if config.choice("near_law") == "printed" { NearLaw::Printed } else { NearLaw::Corrected };
+    let tangent_weight = config.float("tangent_weight");
+    let keep_m = site.clearance_m + SPARE_M;
+    Settings {
+        mode: match config.choice("mode") {
+            "literal" => Mode::Literal,
+            "hull" => Mode::Hull,
+            "rollout" => Mode::Rollout,
+            _ => Mode::Pre,
+        },
+        law: GoalLaw {
+            pull: Pull::Logarithm { m: config.float("m"), trip_m, rho_1_m: config.float("rho_1_m"), near },
+            k_rep: config.float("k_rep"),
+            rho_m: config.float("rho_0_m"),
+            tangent: if tangent_weight > 0.0 { TangentUse::Blocking } else { TangentUse::Off },
+            tangent_weight,
+            wall_gain: config.float("wall_gain"),
+        },
+        step_m: config.float("goto_step_m"),
+        margin_m: config.float("margin_m").max(keep_m),
+        taut_margin_m: config.float("taut_margin_m").max(keep_m),
+        keep_m,
+        window_m: config.float("window_m"),
+        escapes_max: config.int("escapes_max") as u32,
+    }
+}

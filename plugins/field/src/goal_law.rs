@@ -1,0 +1,178 @@
+//! The field of the goal planners: a pull, Khatib's push, and a tangent force round what stands in the way.
+
+use crate::{
+    contact::{Contact, Source},
+    ground::{Ground, Nearby},
+    law::Forces,
+    laws,
+    pull::Pull,
+    scene::wall_contacts,
+    tangents::{self, Side},
+};
+use world::{Point, Vector};
+
+/// Repulsion never divides by less than this, metres.
+const CLOSEST_M: f64 = 1e-2;
+
+/// When the tangent force acts (Xu et al. 2022 do not say).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TangentUse {
+    /// Never.
+    Off,
+    /// Toward the left tangent of everything in range, always: the only reading that gives the printed stop of the
+    /// tangent field, at a weight of 0.02.
+    Always,
+    /// Round what blocks the way to the goal, on the side where its middle is not.
+    Blocking,
+}
+
+/// Gains and ranges.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GoalLaw {
+    /// The pull of the goal.
+    pub pull: Pull,
+    /// Gain of push and tangent force, the papers' mu or `k_rep`.
+    pub k_rep: f64,
+    /// Distance between hull and outline at which both begin, metres.
+    pub rho_m: f64,
+    /// When the tangent force acts.
+    pub tangent: TangentUse,
+    /// Its weight.
+    pub tangent_weight: f64,
+    /// Push of the wall as a share of `k_rep`, from half the range on; the papers have no wall.
+    pub wall_gain: f64,
+}
+
+/// The side on which each solid is being passed.
+#[derive(Debug, Clone, Default)]
+pub struct Sides {
+    kept: Vec<(usize, Side)>,
+}
+
+impl Sides {
+    /// Forgets every choice.
+    pub fn forget(&mut self) {
+        self.kept.clear();
+    }
+
+    fn of(&mut self, index: usize, choose: impl FnOnce() -> Side) -> Side {
+        if let Some((_, side)) = self.kept.iter().find(|(known, _)| *known == index) {
+            return *side;
+        }
+        let side = choose();
+        self.kept.push((index, side));
+        side
+    }
+
+    fn release(&mut self, index: usize) {
+        if self.kept.is_empty() {
+            return;
+        }
+        self.kept.retain(|(known, _)| *known != index);
+    }
+}
+
+impl GoalLaw {
+    /// The forces on a robot at `at` that is bound for `goal`; `nearby` must reach as far as the law.
+    pub fn forces(
+        &self,
+        at: Point,
+        goal: Point,
+        ground: &Ground,
+        nearby: &mut Nearby,
+        sides: &mut Sides,
+    ) -> Forces {
+        let mut forces = Forces { attraction: self.pull.force(at, goal), ..Forces::default() };
+        for &index in nearby.update(ground, at) {
+            let solid = &ground.solids[index];
+            if solid.is_beyond(at, self.rho_m + ground.hull_m) {
+                sides.release(index);
+                continue;
+            }
+            let (outline_m, away) = solid.distance(at);
+            let distance_m = outline_m - ground.hull_m;
+            if distance_m >= self.rho_m {
+                sides.release(index);
+                continue;
+            }
+            let contact =
+                Contact { source: Source::Obstacle(solid.id), distance_m: distance_m.max(CLOSEST_M), away };
+            forces.repulsion += laws::repulsion(self.k_rep, self.rho_m, &contact);
+            forces.rotation += self.turn(index, at, goal, ground, sides);
+        }
+        if self.wall_gain > 0.0 && nearby.sees_wall() {
+            for contact in wall_contacts(&ground.wall, at, ground.hull_m, self.rho_m / 2.0) {
+                let contact = Contact { distance_m: contact.distance_m.max(CLOSEST_M), ..contact };
+                forces.repulsion += laws::repulsion(self.k_rep * self.wall_gain, self.rho_m / 2.0, &contact);
+            }
+        }
+        forces
+    }
+
+    fn turn(&self, index: usize, at: Point, goal: Point, ground: &Ground, sides: &mut Sides) -> Vector {
+        let solid = &ground.solids[index];
+        let side = match self.tangent {
+            TangentUse::Off => return Vector::zeros(),
+            TangentUse::Always => Side::Left,
+            TangentUse::Blocking => {
+                let (way, there) = (goal - at, solid.center - at);
+                let is_ahead = there.dot(&way) > 0.0;
+                if !is_ahead || solid.segment_distance_m(at, goal, ground.hull_m) >= ground.hull_m {
+                    sides.release(index);
+                    return Vector::zeros();
+                }
+                sides.of(index, || if way.perp(&there) > 0.0 { Side::Right } else { Side::Left })
+            }
+        };
+        let tangent = solid.tangent(at, ground.hull_m, side);
+        tangent.direction * tangents::strength(self.tangent_weight, self.k_rep, tangent.length_m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ground::Solid;
+
+    const LAW: GoalLaw = GoalLaw {
+        pull: Pull::Linear { k: 1.0 },
+        k_rep: 10.0,
+        rho_m: 2.0,
+        tangent: TangentUse::Blocking,
+        tangent_weight: 1.0,
+        wall_gain: 0.0,
+    };
+
+    fn forces(law: &GoalLaw, disc: (f64, f64, f64)) -> Forces {
+        let ground = Ground {
+            solids: vec![Solid::disc(0, Point::new(disc.0, disc.1), disc.2)],
+            wall: world::Boundary::Circle { radius_m: 50.0 },
+            hull_m: 0.3,
+        };
+        let goal = Point::new(10.0, 0.0);
+        law.forces(Point::origin(), goal, &ground, &mut Nearby::new(3.0), &mut Sides::default())
+    }
+
+    #[test]
+    fn what_blocks_is_passed_on_the_side_where_its_middle_is_not() {
+        assert!(forces(&LAW, (2.0, 0.2, 0.5)).rotation.y < 0.0);
+        assert!(forces(&LAW, (2.0, -0.2, 0.5)).rotation.y > 0.0);
+        // A tie goes to the left.
+        assert!(forces(&LAW, (2.0, 0.0, 0.5)).rotation.y > 0.0);
+        assert_eq!(forces(&LAW, (2.0, 1.0, 0.5)).rotation, Vector::zeros());
+        assert_eq!(forces(&LAW, (-2.0, 0.0, 0.5)).rotation, Vector::zeros());
+    }
+
+    #[test]
+    fn always_on_it_turns_left_about_everything_in_range() {
+        let law = GoalLaw { tangent: TangentUse::Always, tangent_weight: 0.02, ..LAW };
+        let forces = forces(&law, (0.0, 2.0, 0.5));
+        assert!(forces.rotation.norm() > 0.0 && forces.rotation.x < 0.0);
+    }
+
+    #[test]
+    fn the_push_is_khatibs_from_the_hull() {
+        let push = forces(&LAW, (2.0, 0.0, 0.7)).repulsion;
+        assert!((push - Vector::new(-10.0 * (1.0 - 0.5), 0.0)).norm() < 1e-9);
+    }
+}

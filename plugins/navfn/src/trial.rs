@@ -1,0 +1,50 @@
+//! Questions to the planners on random traps, for tests.
+
+use field::trial::exact_pose;
+use planner_api::{Obstacle, Plan, PlanRequest, Planner, Point2, Reason, Result, Site, Task, testing::Bench};
+use trials::traps::{HULL_M, Trap};
+use world::polyline;
+
+/// A planner with these parameters, for a site.
+pub fn planner<P: Planner>(values: &[(&str, f64)], site: &Site<'_>) -> P {
+    Bench::new().configure(values, site).expect("the planner takes its own parameters")
+}
+
+/// The planner's plan at a site.
+pub fn plan<P: Planner>(
+    planner: &mut P,
+    from: Point2<f64>,
+    to: Point2<f64>,
+    site: &Site<'_>,
+) -> Result<Plan> {
+    let task = Task::Goto { goal: to, tolerance_m: 0.1 };
+    let request = PlanRequest { reason: &Reason::Start, start: exact_pose(from), task, site, previous: &[] };
+    planner.plan(&request, &Bench::new().ctx())
+}
+
+/// The plan of a new planner that knows the whole trap.
+pub fn plan_trap<P: Planner>(trap: &Trap) -> Result<Plan> {
+    let (corners, obstacles) = (Trap::corners(), trap.obstacles(false));
+    let site = Trap::site(&corners, &obstacles, 6.0);
+    plan(&mut planner::<P>(&[], &site), trap.start, trap.goal, &site)
+}
+
+/// The least distance between the hull and a disc on the way, metres.
+pub fn clearance_m(path: &[Point2<f64>], trap: &Trap) -> f64 {
+    let to_disc = |(at, radius_m): &(Point2<f64>, f64)| polyline::distance_m(path, *at) - radius_m;
+    trap.discs.iter().map(to_disc).fold(f64::INFINITY, f64::min) - HULL_M
+}
+
+/// The discs of which some part is within a range, of those that were not seen before.
+pub fn newly_seen(trap: &Trap, seen: &mut [bool], from: Point2<f64>, range_m: f64) -> bool {
+    let before = seen.iter().filter(|seen| **seen).count();
+    for (seen, (at, radius_m)) in seen.iter_mut().zip(&trap.discs) {
+        *seen |= (at - from).norm() - radius_m <= range_m;
+    }
+    seen.iter().filter(|seen| **seen).count() > before
+}
+
+/// The obstacles that have been seen.
+pub fn known<'a>(all: &[Obstacle<'a>], seen: &[bool]) -> Vec<Obstacle<'a>> {
+    all.iter().zip(seen).filter(|(_, seen)| **seen).map(|(obstacle, _)| *obstacle).collect()
+}
