@@ -14,6 +14,8 @@ const LEAST_SAVING_M: f64 = 0.04;
 /// Length of path that a shortcut may replace, metres: anywhere, and where the path turns back on itself.
 const SHORT_M: f64 = 2.7;
 const LONG_M: f64 = 9.0;
+/// Sides beyond which not every end of a shortcut is tried.
+const FINE: usize = 8;
 /// Turning beyond which longer shortcuts are tried, radians.
 const MUCH_TURN_RAD: f64 = 3.0;
 /// Touch-ups are tied in at path points within this distance, metres.
@@ -33,101 +35,120 @@ pub struct Track<'a> {
     slit: &'a Slit,
     /// Its points.
     pub points: Vec<Point>,
-    /// For every point but the last whether the side to the next one is part of a lane.
-    pub on_lane: Vec<bool>,
+    /// For every point but the last the side to the next one.
+    pub sides: Vec<Side>,
     /// The floor it sweeps.
     pub grid: FloorGrid,
-    /// Cells that only the side from a point to the next one sweeps, about.
-    alone: Vec<u32>,
+}
+
+/// The straight way from a point of a track to the next one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Side {
+    /// Whether it is part of a lane.
+    pub on_lane: bool,
+    ahead: Vector,
+    length_m: f64,
+    /// Turning at its first point, radians.
+    turn_rad: f64,
+    /// Cells that only this side sweeps, about; no more than it really sweeps alone where it is new.
+    alone: u32,
+    /// Whether it was put in since shortcuts were last looked for.
+    is_new: bool,
+    /// Whether shortcuts from its first point have to be looked for.
+    is_open: bool,
 }
 
 impl<'a> Track<'a> {
     /// A track of sides, each of them on a lane or on a way between lanes.
     pub fn new(slit: &'a Slit, pieces: &[crate::scan::Piece], grid: FloorGrid) -> Self {
-        let mut track = Self { slit, points: Vec::new(), on_lane: Vec::new(), grid, alone: Vec::new() };
+        let mut track = Self { slit, points: Vec::new(), sides: Vec::new(), grid };
         for piece in pieces {
-            for pair in piece.points.windows(2) {
-                track.push(pair[0], pair[1], piece.is_lane);
+            let from = track.points.is_empty().then(|| piece.points.first().copied()).flatten();
+            track.points.extend(from);
+            let Some(mut at) = track.points.last().copied() else { continue };
+            for point in piece.points.iter().skip(1) {
+                if (point - at).norm() >= 1e-6 {
+                    divide(at, *point, piece.is_lane, &mut track.points, &mut track.sides);
+                    at = *point;
+                }
             }
         }
+        track.turn(0, track.sides.len());
         track.grid.swept.fill(0);
         track.grid.sweep(&track.points);
+        for k in 0..track.sides.len() {
+            track.sides[k].alone = track.grid.alone(&track.points[k..k + 2]);
+        }
         track
     }
 
-    fn push(&mut self, a: Point, b: Point, is_lane: bool) {
-        if self.points.is_empty() {
-            self.points.push(a);
-        }
-        let from = self.points[self.points.len() - 1];
-        let way = b - from;
-        let length_m = way.norm();
-        if length_m < 1e-6 {
-            return;
-        }
-        let n = (length_m / SIDE_M).ceil().max(1.0) as usize;
-        for k in 1..=n {
-            self.points.push(from + way * (k as f64 / n as f64));
-            self.on_lane.push(is_lane);
+    /// Works out the turning at the first points of some sides.
+    fn turn(&mut self, from: usize, to: usize) {
+        for k in from.max(1)..to.min(self.sides.len()) {
+            self.sides[k].turn_rad = angle_rad(self.sides[k - 1].ahead, self.sides[k].ahead);
         }
     }
 
-    /// Shortens and straightens wherever it pays; returns what was saved, metres.
+    /// Shortens and straightens wherever it pays; returns what was saved, metres. Only what was put in since the last
+    /// time is looked at, and what leads up to it.
     ///
     /// # Errors
     /// When the console wants an end.
     pub fn shorten(&mut self, prices: &Prices, ctx: &Ctx<'_>) -> Result<f64> {
+        let mut since_m = f64::INFINITY;
+        for side in self.sides.iter_mut().rev() {
+            since_m = if side.is_new { 0.0 } else { since_m + side.length_m };
+            side.is_open = since_m <= SHORT_M;
+            side.is_new = false;
+        }
         let mut saved_m = 0.0;
         let mut from = 0;
-        self.alone = self.points.windows(2).map(|side| self.grid.alone(side)).collect();
+        let mut looked_at = 0_u32;
         while from + 2 < self.points.len() {
-            if from % 64 == 0 {
+            if !std::mem::replace(&mut self.sides[from].is_open, false) {
+                from += 1;
+                continue;
+            }
+            looked_at += 1;
+            if looked_at.is_multiple_of(64) {
                 ctx.check()?;
             }
-            match self.best_shortcut(from, prices) {
-                Some(gain_m) => {
-                    saved_m += gain_m;
-                    from = from.saturating_sub(3);
-                }
-                None => from += 1,
+            if let Some(gain_m) = self.best_shortcut(from, prices) {
+                saved_m += gain_m;
+                let first = from.saturating_sub(3);
+                let sides = &mut self.sides[first..];
+                sides.iter_mut().take(from + 1 - first).for_each(|side| side.is_open = true);
+                from = first;
+            } else {
+                from += 1;
             }
         }
+        self.sides.iter_mut().for_each(|side| side.is_new = false);
         Ok(saved_m)
-    }
-
-    fn heading(&self, from: usize) -> Option<Vector> {
-        let (a, b) = (self.points.get(from)?, self.points.get(from + 1)?);
-        (b - a).try_normalize(1e-9)
     }
 
     /// Takes the longest shortcut from a point that pays.
     fn best_shortcut(&mut self, from: usize, prices: &Prices) -> Option<f64> {
-        let before = from.checked_sub(1).and_then(|k| self.heading(k));
         let mut length_m = 0.0;
         let mut turn_rad = 0.0;
-        let mut last = before;
         let mut candidates = Vec::new();
         let mut alone = 0_u32;
         let cell_m2 = self.grid.cell_m * self.grid.cell_m;
         let mut to = from;
-        while to + 1 < self.points.len() {
-            let way = self.points[to + 1] - self.points[to];
-            length_m += way.norm();
-            alone += self.alone[to];
-            let heading = way.try_normalize(1e-9);
-            if let (Some(last), Some(heading)) = (last, heading) {
-                turn_rad += angle_rad(last, heading);
-            }
-            last = heading.or(last);
+        while to < self.sides.len() {
+            let side = &self.sides[to];
+            length_m += side.length_m;
+            alone += side.alone;
+            turn_rad += side.turn_rad;
             to += 1;
             if length_m > LONG_M || (length_m > SHORT_M && turn_rad < MUCH_TURN_RAD) {
                 break;
             }
-            if to < from + 2 {
+            // Far ends are looked at less closely.
+            if to < from + 2 || !(to - from).is_multiple_of(1 + (to - from) / FINE) {
                 continue;
             }
-            let after = self.heading(to);
-            let leaving = if let (Some(a), Some(b)) = (last, after) { angle_rad(a, b) } else { 0.0 };
+            let leaving = self.sides.get(to).map_or(0.0, |next| next.turn_rad);
             let direct_m = (self.points[to] - self.points[from]).norm();
             // The bar cannot sweep more floor than it passes and turns over.
             let least_lost_m2 =
@@ -154,13 +175,19 @@ impl<'a> Track<'a> {
         turn_rad: f64,
         prices: &Prices,
     ) -> Option<f64> {
+        // The straight way, whether open or not, is a quick measure of what can be gained and lost.
+        let straight = [self.points[from], self.points[to]];
+        let most_m = length_m - (straight[1] - straight[0]).norm() + prices.turn_m_per_rad * turn_rad;
+        if self.loses_more(from, to, &straight, 1.3 * most_m / prices.floor_m_per_m2) {
+            return None;
+        }
         let way = self.slit.path(self.points[from], self.points[to])?;
         let (new_m, new_rad) = self.measure(from, to, &way);
         let saving_m = length_m - new_m + prices.turn_m_per_rad * (turn_rad - new_rad);
         if saving_m < LEAST_SAVING_M {
             return None;
         }
-        if prices.floor_m_per_m2 * self.sampled_loss_m2(from, to, &way) > 1.3 * saving_m {
+        if self.loses_more(from, to, &way, 1.3 * saving_m / prices.floor_m_per_m2) {
             return None;
         }
         let (first, last) = (from.saturating_sub(1), (to + 1).min(self.points.len() - 1));
@@ -184,30 +211,35 @@ impl<'a> Track<'a> {
         Some(gain_m)
     }
 
-    /// Floor that another way would lose, from a few samples across every side.
-    fn sampled_loss_m2(&self, from: usize, to: usize, way: &[Point]) -> f64 {
+    /// Whether another way would lose more floor than this, from a few samples across every side.
+    fn loses_more(&self, from: usize, to: usize, way: &[Point], most_m2: f64) -> bool {
         const ACROSS: [f64; 4] = [-0.75, -0.25, 0.25, 0.75];
         let half_m = self.grid.bar_m() / 2.0;
+        let far_m = half_m + self.grid.cell_m;
+        let sides = to - from;
         let mut lost_m2 = 0.0;
-        for side in self.points[from..=to].windows(2) {
-            let along = side[1] - side[0];
-            let length_m = along.norm();
-            let across = Vector::new(-along.y, along.x) * (half_m / length_m.max(1e-9));
-            let middle = side[0] + along / 2.0;
+        // From the middle outward: there the two ways differ most.
+        for k in 0..sides {
+            let at = from + if k % 2 == 0 { sides / 2 + k / 2 } else { sides / 2 - k.div_ceil(2) };
+            let Some(side) = self.sides[..to].get(at) else { continue };
+            let across = Vector::new(-side.ahead.y, side.ahead.x) * half_m;
+            let middle = self.points[at] + side.ahead * (side.length_m / 2.0);
             for share in ACROSS {
-                let at = middle + across * share;
-                if self.grid.is_alone(at) && world::polyline::distance_m(way, at) > half_m + self.grid.cell_m
-                {
-                    lost_m2 += length_m * half_m * 2.0 / ACROSS.len() as f64;
+                let place = middle + across * share;
+                if self.grid.is_alone(place) && !is_near(way, place, far_m) {
+                    lost_m2 += side.length_m * half_m * 2.0 / ACROSS.len() as f64;
                 }
             }
+            if lost_m2 > most_m2 {
+                return true;
+            }
         }
-        lost_m2
+        false
     }
 
     /// Length and turning of another way from one point of the path to another.
     fn measure(&self, from: usize, to: usize, way: &[Point]) -> (f64, f64) {
-        let mut before = from.checked_sub(1).and_then(|k| self.heading(k));
+        let mut before = from.checked_sub(1).map(|k| self.sides[k].ahead);
         let (mut length_m, mut turn_rad) = (0.0, 0.0);
         for leg in way.windows(2).map(|w| w[1] - w[0]) {
             length_m += leg.norm();
@@ -215,29 +247,24 @@ impl<'a> Track<'a> {
             turn_rad += before.map_or(0.0, |b| angle_rad(b, heading));
             before = Some(heading);
         }
-        if let (Some(before), Some(after)) = (before, self.heading(to)) {
-            turn_rad += angle_rad(before, after);
+        if let (Some(before), Some(after)) = (before, self.sides.get(to)) {
+            turn_rad += angle_rad(before, after.ahead);
         }
         (length_m, turn_rad)
     }
 
     /// Puts other lines in place of the sides between two points.
     fn splice(&mut self, from: usize, to: usize, lines: &[(Vec<Point>, bool)]) {
-        let mut points = Vec::new();
-        let mut on_lane = Vec::new();
+        let (mut points, mut sides) = (Vec::new(), Vec::new());
         for (line, is_lane) in lines {
-            for pair in line.windows(2) {
-                let way = pair[1] - pair[0];
-                let n = (way.norm() / SIDE_M).ceil() as usize;
-                for k in 1..=n {
-                    points.push(pair[0] + way * (k as f64 / n as f64));
-                    on_lane.push(*is_lane);
-                }
+            for pair in line.windows(2).filter(|pair| (pair[1] - pair[0]).norm() > 1e-9) {
+                divide(pair[0], pair[1], *is_lane, &mut points, &mut sides);
             }
         }
-        self.alone.splice(from..to, on_lane.iter().map(|_| 0));
+        let past = from + sides.len();
         self.points.splice(from + 1..=to, points);
-        self.on_lane.splice(from..to, on_lane);
+        self.sides.splice(from..to, sides);
+        self.turn(from, past + 1);
     }
 
     /// Ties lanes over missed floor into the path, the most worthwhile first, until the coverage is reached.
@@ -254,7 +281,6 @@ impl<'a> Track<'a> {
         ctx: &Ctx<'_>,
     ) -> Result<usize> {
         let cell_m2 = self.grid.cell_m * self.grid.cell_m;
-        self.alone.resize(self.on_lane.len(), 0);
         let mut offers: Vec<(f64, usize, Lane)> = Vec::new();
         for group in self.grid.missed() {
             if group.len() < 8 {
@@ -342,4 +368,33 @@ impl<'a> Track<'a> {
         let out = self.slit.path(middle[middle.len() - 1], self.points[k + 1]).unwrap_or_default();
         self.splice(k, k + 1, &[(into, false), (middle, true), (out, false)]);
     }
+}
+
+/// Adds a straight way in sides that are short enough, without its first point.
+fn divide(from: Point, to: Point, on_lane: bool, points: &mut Vec<Point>, sides: &mut Vec<Side>) {
+    let way = to - from;
+    let length_m = way.norm();
+    let n = (length_m / SIDE_M).ceil().max(1.0);
+    for k in 1..=n as usize {
+        points.push(from + way * (k as f64 / n));
+        sides.push(Side {
+            on_lane,
+            ahead: way / length_m,
+            length_m: length_m / n,
+            turn_rad: 0.0,
+            alone: 0,
+            is_new: true,
+            is_open: true,
+        });
+    }
+}
+
+/// Whether a place lies within a distance of a line.
+fn is_near(line: &[Point], at: Point, far_m: f64) -> bool {
+    let is_near = |pair: &[Point]| {
+        let (way, offset) = (pair[1] - pair[0], at - pair[0]);
+        let share = (offset.dot(&way) / way.norm_squared().max(1e-18)).clamp(0.0, 1.0);
+        (offset - way * share).norm_squared() <= far_m * far_m
+    };
+    line.windows(2).any(is_near)
 }

@@ -5,7 +5,7 @@ use crate::{
     floor::FloorGrid,
     ground::Ground,
     lanes::{Lane, Pattern, Reach, lanes},
-    polish::{Prices, Track},
+    polish::{Prices, Side, Track},
     slit::Slit,
     touch::touch_up,
     tour::{Effort, Tour, Ways, tour},
@@ -135,17 +135,17 @@ pub fn scan(ground: &Ground, recipe: &Recipe, order: &Order<'_>, ctx: &Ctx<'_>) 
         }
         track.shorten(&careful, ctx)?;
     }
-    let (pieces, grid) = (pieces_of(&track.points, &track.on_lane), track.grid);
+    let (pieces, grid) = (pieces_of(&track.points, &track.sides), track.grid);
     Ok(Some(Scan { pieces, cuts, slit, grid }))
 }
 
 /// Runs of sides of one kind.
-fn pieces_of(points: &[Point], on_lane: &[bool]) -> Vec<Piece> {
+fn pieces_of(points: &[Point], sides: &[Side]) -> Vec<Piece> {
     let mut pieces: Vec<Piece> = Vec::new();
-    for (k, is_lane) in on_lane.iter().enumerate() {
+    for (k, Side { on_lane: is_lane, .. }) in sides.iter().copied().enumerate() {
         match pieces.last_mut() {
-            Some(piece) if piece.is_lane == *is_lane => piece.points.push(points[k + 1]),
-            _ => pieces.push(Piece { points: vec![points[k], points[k + 1]], is_lane: *is_lane }),
+            Some(piece) if piece.is_lane == is_lane => piece.points.push(points[k + 1]),
+            _ => pieces.push(Piece { points: vec![points[k], points[k + 1]], is_lane }),
         }
     }
     for piece in &mut pieces {
