@@ -11,7 +11,11 @@ use crate::{
     tour::{Effort, Tour, Ways, tour},
 };
 use planner_api::{Ctx, Result};
+use std::f64::consts::TAU;
 use world::{Point, Vector, polyline};
+
+/// Path that missed floor costs in touch-ups, as a multiple of its area by the swath.
+const MISSED_SHARE: f64 = 2.5;
 
 /// Everything that makes one candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,56 +91,110 @@ pub struct Order<'a> {
     pub cell_m: f64,
 }
 
-/// Makes a candidate; `None` where the robot has no room at all.
-///
-/// # Errors
-/// When the console wants an end.
-pub fn scan(ground: &Ground, recipe: &Recipe, order: &Order<'_>, ctx: &Ctx<'_>) -> Result<Option<Scan>> {
-    let home = ground.home();
-    let cuts = cuts(ground, &recipe.pattern, &recipe.rule);
-    let lines: Vec<Vec<Point>> = cuts.iter().map(|cut| cut.line.clone()).collect();
-    let Some(slit) = Slit::new(ground, &lines, home) else { return Ok(None) };
-    let mut grid = FloorGrid::new(ground, &slit, order.cell_m);
-    grid.keep_within(order.regions);
-    let all = lanes(ground, &slit, &cuts, &recipe.pattern, &recipe.reach);
-    let in_reach = |at: Point| {
-        order.reel_m.is_infinite() || slit.way_m(home, at).is_some_and(|way_m| way_m <= order.reel_m)
-    };
-    let is_wanted = |at: Point| in_reach(at) && (order.regions.is_empty() || grid.has_reachable_near(at));
-    let wants_all = order.reel_m.is_infinite() && order.regions.is_empty();
-    let wanted = |lanes: Vec<Lane>| {
-        if wants_all { lanes } else { lanes.iter().flat_map(|lane| lane.kept(&is_wanted)).collect() }
-    };
-    let mut lanes = wanted(all);
-    let start = if slit.contains(order.start) { order.start } else { home };
-    let mut pieces = toured(&slit, &lanes, (home, start), &recipe.effort, ctx)?;
-    for _ in 0..recipe.rounds {
-        let mut swept = grid.clone();
-        swept.sweep(&joined(&pieces));
-        let least = (recipe.touch_m2 / (order.cell_m * order.cell_m)) as usize;
-        let missed = swept.missed();
-        let large = missed.iter().take_while(|group| group.len() > least);
-        let fresh: Vec<Lane> =
-            wanted(large.flat_map(|group| touch_up(ground, &slit, &cuts, &swept, group)).collect());
-        if fresh.is_empty() {
-            break;
-        }
-        lanes.extend(fresh);
-        pieces = toured(&slit, &lanes, (home, start), &recipe.effort, ctx)?;
+/// A candidate as far as the first tour: enough to tell what it will be worth, about.
+pub struct Draft<'a> {
+    ground: &'a Ground,
+    order: Order<'a>,
+    recipe: Recipe,
+    cuts: Vec<Cut>,
+    slit: Slit,
+    grid: FloorGrid,
+    lanes: Vec<Lane>,
+    pieces: Vec<Piece>,
+    start: Point,
+}
+
+impl<'a> Draft<'a> {
+    /// The first tour of a candidate; `None` where the robot has no room at all.
+    ///
+    /// # Errors
+    /// When the console wants an end.
+    pub fn new(
+        ground: &'a Ground,
+        recipe: &Recipe,
+        order: &Order<'a>,
+        ctx: &Ctx<'_>,
+    ) -> Result<Option<Self>> {
+        let home = ground.home();
+        let cuts = cuts(ground, &recipe.pattern, &recipe.rule);
+        let lines: Vec<Vec<Point>> = cuts.iter().map(|cut| cut.line.clone()).collect();
+        let Some(slit) = Slit::new(ground, &lines, home) else { return Ok(None) };
+        let mut grid = FloorGrid::new(ground, &slit, order.cell_m);
+        grid.keep_within(order.regions);
+        let start = if slit.contains(order.start) { order.start } else { home };
+        let all = lanes(ground, &slit, &cuts, &recipe.pattern, &recipe.reach);
+        let (lanes, pieces) = (Vec::new(), Vec::new());
+        let (order, recipe) = (*order, *recipe);
+        let mut draft = Self { ground, order, recipe, cuts, slit, grid, lanes, pieces, start };
+        draft.lanes = draft.wanted(all);
+        draft.pieces = draft.toured(ctx)?;
+        draft.grid.sweep(&joined(&draft.pieces));
+        Ok(Some(draft))
     }
-    let prices =
-        Prices { turn_m_per_rad: recipe.effort.turn_m_per_rad, floor_m_per_m2: recipe.floor_m_per_m2 };
-    let careful = Prices { floor_m_per_m2: 1e6, ..prices };
-    let mut track = Track::new(&slit, &pieces, grid);
-    track.shorten(&prices, ctx)?;
-    for _ in 0..3 {
-        if track.touch_up(ground, &cuts, &in_reach, &prices, recipe.enough, ctx)? == 0 {
-            break;
-        }
-        track.shorten(&careful, ctx)?;
+
+    fn toured(&self, ctx: &Ctx<'_>) -> Result<Vec<Piece>> {
+        toured(&self.slit, &self.lanes, (self.ground.home(), self.start), &self.recipe.effort, ctx)
     }
-    let (pieces, grid) = (pieces_of(&track.points, &track.sides), track.grid);
-    Ok(Some(Scan { pieces, cuts, slit, grid }))
+
+    fn is_in_reach(&self, at: Point) -> bool {
+        let order = &self.order;
+        let way_m = || self.slit.way_m(self.ground.home(), at);
+        order.reel_m.is_infinite() || way_m().is_some_and(|way_m| way_m <= order.reel_m)
+    }
+
+    fn wanted(&self, lanes: Vec<Lane>) -> Vec<Lane> {
+        let is_wanted = |at: Point| {
+            self.is_in_reach(at) && (self.order.regions.is_empty() || self.grid.has_reachable_near(at))
+        };
+        if self.order.reel_m.is_infinite() && self.order.regions.is_empty() {
+            return lanes;
+        }
+        lanes.iter().flat_map(|lane| lane.kept(&is_wanted)).collect()
+    }
+
+    /// What the finished path will cost, about, metres: its length, its turns, and what it still has to scan.
+    pub fn estimate_m(&self) -> f64 {
+        let path = joined(&self.pieces);
+        let missed_m2 = (1.0 - self.grid.coverage()) * self.grid.area_m2();
+        let turns_m = self.recipe.effort.turn_m_per_rad * TAU * rotation_turns(&path);
+        polyline::length_m(&path) + turns_m + MISSED_SHARE * missed_m2 / self.ground.swath_m
+    }
+
+    /// The candidate with its touch-ups, shortened wherever that pays.
+    ///
+    /// # Errors
+    /// When the console wants an end.
+    pub fn finished(mut self, ctx: &Ctx<'_>) -> Result<Scan> {
+        for _ in 0..self.recipe.rounds {
+            let least = (self.recipe.touch_m2 / (self.order.cell_m * self.order.cell_m)) as usize;
+            let missed = self.grid.missed();
+            let large = missed.iter().take_while(|group| group.len() > least);
+            let fresh: Vec<Lane> =
+                large.flat_map(|g| touch_up(self.ground, &self.slit, &self.cuts, &self.grid, g)).collect();
+            let fresh = self.wanted(fresh);
+            if fresh.is_empty() {
+                break;
+            }
+            self.lanes.extend(fresh);
+            self.pieces = self.toured(ctx)?;
+            self.grid.swept.fill(0);
+            self.grid.sweep(&joined(&self.pieces));
+        }
+        let turn_m_per_rad = self.recipe.effort.turn_m_per_rad;
+        let prices = Prices { turn_m_per_rad, floor_m_per_m2: self.recipe.floor_m_per_m2 };
+        let careful = Prices { floor_m_per_m2: 1e6, ..prices };
+        let in_reach = |at: Point| self.is_in_reach(at);
+        let mut track = Track::new(&self.slit, &self.pieces, self.grid.clone());
+        track.shorten(&prices, ctx)?;
+        for _ in 0..3 {
+            if track.touch_up(self.ground, &self.cuts, &in_reach, &prices, self.recipe.enough, ctx)? == 0 {
+                break;
+            }
+            track.shorten(&careful, ctx)?;
+        }
+        let (pieces, grid) = (pieces_of(&track.points, &track.sides), track.grid);
+        Ok(Scan { pieces, cuts: self.cuts, slit: self.slit, grid })
+    }
 }
 
 /// Runs of sides of one kind.
@@ -203,7 +261,7 @@ fn assembled(ways: &Ways<'_>, lanes: &[Lane], order: &Tour) -> Vec<Piece> {
 /// Sum of the changes of heading along a path, in whole turns.
 pub fn rotation_turns(path: &[Point]) -> f64 {
     let headings: Vec<Vector> = path.windows(2).filter_map(|w| (w[1] - w[0]).try_normalize(1e-9)).collect();
-    headings.windows(2).map(|w| crate::tour::angle_rad(w[0], w[1])).sum::<f64>() / std::f64::consts::TAU
+    headings.windows(2).map(|w| crate::tour::angle_rad(w[0], w[1])).sum::<f64>() / TAU
 }
 
 /// Length over area by swath.

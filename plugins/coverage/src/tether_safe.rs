@@ -5,7 +5,7 @@ use crate::{
     candidate::{Candidate, Wishes, Worth, candidates, least_cable_m, worth},
     follow::Follow,
     ground::Ground,
-    scan::{Order, Scan, scan},
+    scan::{Draft, Order, Scan},
 };
 use field::params as p;
 use planner_api::{
@@ -17,7 +17,12 @@ use world::{
     tether::{Cable, Limits},
 };
 
-const CHOOSE: ParamSpec = choice("choose", "Candidate", &["shortest", "fewest-turns", "shortest-cable"], 0)
+/// The choice by length and turns; candidates that look worse are not worked out for it.
+const SHORTEST: &str = "shortest";
+/// First tours this much costlier than the best, as a share, never win.
+const HOPELESS: f64 = 0.015;
+
+const CHOOSE: ParamSpec = choice("choose", "Candidate", &[SHORTEST, "fewest-turns", "shortest-cable"], 0)
     .help("Which of the candidates within the limits is flown; the log lists all that are worth it.")
     .group("Plan");
 const PATTERN: ParamSpec = choice("pattern", "Lanes", &["all", "contours", "straight"], 0)
@@ -164,7 +169,7 @@ impl TetherSafe {
             reel_m: if reel_m > least_m * wishes.cable_share { f64::INFINITY } else { reel_m },
             cell_m: self.cell_m,
         };
-        let mut tried = Self::try_all(request.site, ground, wishes, &order, laid.as_ref(), ctx)?;
+        let mut tried = self.try_all(request.site, ground, wishes, &order, laid.as_ref(), ctx)?;
         let mut lead_in: Vec<Point> = Vec::new();
         if (start - home).norm() > task.tolerance_m && tried.iter().all(|t| !t.worth.certificate.certified) {
             // Under way the cable may lie as no cut of the new map allows: take it in first.
@@ -175,7 +180,7 @@ impl TetherSafe {
                 );
                 lead_in = way;
                 let from_home = Order { start: home, ..order };
-                tried = Self::try_all(request.site, ground, wishes, &from_home, None, ctx)?;
+                tried = self.try_all(request.site, ground, wishes, &from_home, None, ctx)?;
             }
         }
         let chosen = self.chosen(tried, wishes, ctx).ok_or_else(|| answer::no_room(ground))?;
@@ -193,8 +198,9 @@ impl TetherSafe {
         Ok(plan)
     }
 
-    /// Every candidate; straighter cuts as well if none keeps the limits.
+    /// The candidates worth working out; straighter cuts as well if none keeps the limits.
     fn try_all(
+        &self,
         site: &Site<'_>,
         ground: &Ground,
         wishes: &Wishes,
@@ -204,12 +210,28 @@ impl TetherSafe {
     ) -> Result<Vec<Tried>> {
         let mut tried: Vec<Tried> = Vec::new();
         for share in [1.0, 0.5, 0.0] {
-            let list = candidates(ground, wishes, wishes.alpha_rad * share);
-            for (done, Candidate { name, recipe }) in list.iter().enumerate() {
-                ctx.scalar("candidates done", (done as f64) / list.len() as f64, "");
-                let Some(scan) = scan(ground, recipe, order, ctx)? else { continue };
+            let mut drafts: Vec<(f64, String, Draft<'_>)> = Vec::new();
+            for Candidate { name, recipe } in candidates(ground, wishes, wishes.alpha_rad * share) {
+                if let Some(draft) = Draft::new(ground, &recipe, order, ctx)? {
+                    drafts.push((draft.estimate_m(), name, draft));
+                }
+            }
+            drafts.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let least_m = drafts.first().map_or(0.0, |draft| draft.0);
+            let n = drafts.len() as f64;
+            for (done, (estimate_m, name, draft)) in drafts.into_iter().enumerate() {
+                ctx.scalar("candidates done", done as f64 / n, "");
+                let is_hopeless = self.choose == SHORTEST && estimate_m > least_m * (1.0 + HOPELESS);
+                if is_hopeless && tried.iter().any(|t| is_within(&t.worth, wishes)) {
+                    ctx.log(
+                        LogLevel::Info,
+                        &format!("{name}: left, it would cost about {:.0} m more", estimate_m - least_m),
+                    );
+                    continue;
+                }
+                let scan = draft.finished(ctx)?;
                 let worth = worth(ground, site, wishes.limits, &scan, laid);
-                tried.push(Tried { name: name.clone(), scan, worth });
+                tried.push(Tried { name, scan, worth });
             }
             if wishes.alpha_rad == 0.0 || tried.iter().any(|t| is_within(&t.worth, wishes)) {
                 break;
