@@ -1,11 +1,10 @@
 //! Candidates of a tether-safe plan: what is tried, what each one is worth, and which are worth showing.
 
 use crate::{
-    cuts::{CutRule, cuts},
+    cuts::{CutRule, domain},
     ground::Ground,
     lanes::{Pattern, Reach},
     scan::{Recipe, Scan, rotation_turns},
-    slit::Slit,
     tour::Effort,
 };
 use planner_api::Site;
@@ -156,10 +155,9 @@ fn cable_m(ground: &Ground, wishes: &Wishes, pattern: &Pattern, alpha_rad: f64) 
     }
     let keeps = |slack: &&f64| {
         let rule = CutRule { alpha_rad, cable_m: with(**slack) };
-        let lines: Vec<Vec<Point>> = cuts(ground, pattern, &rule).into_iter().map(|cut| cut.line).collect();
         let home = ground.home();
-        Slit::new(ground, &lines, home)
-            .is_none_or(|slit| slit.farthest_m(home) <= most_m + AROUND_SHARE * least_m)
+        domain(ground, pattern, &rule, home)
+            .is_none_or(|(_, slit)| slit.farthest_m(home) <= most_m + AROUND_SHARE * least_m)
     };
     with(SLACKS_ALONG.iter().find(keeps).copied().unwrap_or(0.0))
 }

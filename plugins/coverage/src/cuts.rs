@@ -7,6 +7,7 @@
 use crate::{
     ground::{Ground, direction, middle},
     lanes::Pattern,
+    slit::Slit,
 };
 use field::part::{Part, crossing};
 use world::{Boundary, Point, Vector};
@@ -45,18 +46,55 @@ struct Group {
     foot: Point,
     rho_m: f64,
     is_at_wall: bool,
+    /// How far the part at the foot reaches from it, metres.
+    reach_m: f64,
     /// Length from the foot to the wall along the cuts, once they are made.
     chain_m: f64,
 }
 
-/// Makes the cuts of a ground.
-pub fn cuts(ground: &Ground, pattern: &Pattern, rule: &CutRule) -> Vec<Cut> {
+/// A cut that must not be made: the middle of its obstacle, and where it would end.
+type Banned = (Point, Point);
+
+/// Cuts are made anew at most this often because they sealed off floor.
+const TRIES: usize = 12;
+/// Floor that may be sealed off: slivers between a cut and the outline of an obstacle, square metres.
+const SLIVER_M2: f64 = 0.02;
+
+/// Cuts of a ground and the domain that they leave; `None` where there is no room at `home`.
+///
+/// Where cuts seal floor off, the last one made of those around the pocket has to end somewhere else.
+pub fn domain(ground: &Ground, pattern: &Pattern, rule: &CutRule, home: Point) -> Option<(Vec<Cut>, Slit)> {
+    let mut banned: Vec<Banned> = Vec::new();
+    let mut best: Option<(Vec<Cut>, Slit)> = None;
+    for _ in 0..TRIES {
+        let made = cuts(ground, pattern, rule, &banned);
+        let lines: Vec<Vec<Point>> = made.iter().map(|cut| cut.line.clone()).collect();
+        let slit = Slit::new(ground, &lines, home)?;
+        let borders = |cut: &&Cut| {
+            let mut rim = slit.sealed_rim.iter();
+            rim.any(|p| world::polyline::distance_m(&cut.line, *p) < 1e-6)
+        };
+        let guilty = made.iter().rev().find(borders).map(|cut| (cut.line[0], cut.line[cut.line.len() - 1]));
+        if best.as_ref().is_none_or(|(_, other)| slit.sealed_m2 < other.sealed_m2) {
+            best = Some((made, slit));
+        }
+        match guilty {
+            Some(guilty) if best.as_ref().is_some_and(|(_, slit)| slit.sealed_m2 > SLIVER_M2) => {
+                banned.push(guilty);
+            }
+            _ => break,
+        }
+    }
+    best
+}
+
+fn cuts(ground: &Ground, pattern: &Pattern, rule: &CutRule, banned: &[Banned]) -> Vec<Cut> {
     let mut groups = groups(ground);
     let mut order: Vec<usize> = (0..groups.len()).filter(|g| !groups[*g].is_at_wall).collect();
     order.sort_by(|a, b| groups[*b].rho_m.total_cmp(&groups[*a].rho_m).then(a.cmp(b)));
     let mut made: Vec<Cut> = Vec::new();
     for from in order {
-        let (line, chain_m) = best_cut(ground, pattern, rule, &groups, &made, from);
+        let (line, chain_m) = best_cut(ground, pattern, rule, (&groups, &made, banned), from);
         groups[from].chain_m = chain_m;
         made.push(Cut { line, from });
     }
@@ -85,17 +123,20 @@ fn groups(ground: &Ground) -> Vec<Group> {
         let rho = |k: &usize| (middle(&ground.parts[*k]) - ground.anchor).norm();
         let last = parts.iter().copied().max_by(|a, b| rho(a).total_cmp(&rho(b))).expect("not empty");
         let foot = middle(&ground.parts[last]);
-        groups.push(Group { parts, foot, rho_m: rho(&last), is_at_wall, chain_m: 0.0 });
+        let (rho_m, reach_m) = (rho(&last), reach_m(&ground.parts[last]));
+        groups.push(Group { parts, foot, rho_m, is_at_wall, reach_m, chain_m: 0.0 });
     }
     groups
 }
 
 fn are_near(a: &Part, b: &Part, near_m: f64) -> bool {
-    let reach = |part: &Part| {
-        let at = middle(part);
-        part.corners().iter().map(|c| (c.0 - at).norm() + c.1).fold(0.0, f64::max)
-    };
-    (middle(a) - middle(b)).norm() <= reach(a) + reach(b) + near_m && a.gap(b).width_m < near_m
+    (middle(a) - middle(b)).norm() <= reach_m(a) + reach_m(b) + near_m && a.gap(b).width_m < near_m
+}
+
+/// How far a part reaches from its middle, metres.
+fn reach_m(part: &Part) -> f64 {
+    let at = middle(part);
+    part.corners().iter().map(|c| (c.0 - at).norm() + c.1).fold(0.0, f64::max)
 }
 
 fn wall_gap_m(wall: &Boundary, part: &Part) -> f64 {
@@ -118,8 +159,7 @@ fn best_cut(
     ground: &Ground,
     pattern: &Pattern,
     rule: &CutRule,
-    groups: &[Group],
-    made: &[Cut],
+    (groups, made, banned): (&[Group], &[Cut], &[Banned]),
     from: usize,
 ) -> (Vec<Point>, f64) {
     let own = &groups[from];
@@ -131,7 +171,9 @@ fn best_cut(
         let alpha_rad = (rule.alpha_rad + widen_rad).min(std::f64::consts::PI);
         let mut all = wall_ends(ground, own, outward, alpha_rad);
         all.extend(lane_end(ground, pattern, own, outward, alpha_rad));
-        all.extend(group_ends(own, outward, alpha_rad, groups, from));
+        all.extend(group_ends(ground, own, outward, alpha_rad, groups, from));
+        let is_near = |a: Point, b: Point| (a - b).norm() < 0.05;
+        let is_banned = |end: Point| banned.iter().any(|no| is_near(no.0, own.foot) && is_near(no.1, end));
         for candidate in &mut all {
             let excess_m = own.rho_m + candidate.chain_m - rule.cable_m;
             candidate.cost = pattern.broken_lanes(&ground.wall, own.foot, candidate.end, ground.swath_m)
@@ -140,7 +182,8 @@ fn best_cut(
         }
         all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         for candidate in &all {
-            if let Some(line) = line_to(ground, pattern, groups, made, from, candidate, berth_m) {
+            let line = line_to(ground, pattern, groups, made, from, candidate, berth_m);
+            if let Some(line) = line.filter(|line| !is_banned(line[line.len() - 1])) {
                 return (line, candidate.chain_m);
             }
         }
@@ -176,7 +219,15 @@ fn lane_end(
     is_near.then_some(Candidate { end: own.foot + ahead * chain_m, group: None, chain_m, cost: 0.0 })
 }
 
-fn group_ends(own: &Group, outward: Vector, alpha_rad: f64, groups: &[Group], from: usize) -> Vec<Candidate> {
+/// Cuts to other obstacles further out: within the angle, or where a cut along the ray would come too near to them.
+fn group_ends(
+    ground: &Ground,
+    own: &Group,
+    outward: Vector,
+    alpha_rad: f64,
+    groups: &[Group],
+    from: usize,
+) -> Vec<Candidate> {
     let is_further = |(index, g): &(usize, &Group)| *index != from && (g.is_at_wall || g.rho_m > own.rho_m);
     let others = groups.iter().enumerate().filter(is_further);
     others
@@ -184,7 +235,9 @@ fn group_ends(own: &Group, outward: Vector, alpha_rad: f64, groups: &[Group], fr
             let way = group.foot - own.foot;
             let angle = outward.perp(&way).atan2(outward.dot(&way)).abs();
             let chain_m = way.norm() + group.chain_m;
-            (angle <= alpha_rad.max(0.09)).then_some(Candidate {
+            let beside_m = group.reach_m + ground.keep_m + BERTH_M;
+            let in_the_way_rad = (beside_m / way.norm().max(beside_m)).asin();
+            (angle <= alpha_rad.max(in_the_way_rad)).then_some(Candidate {
                 end: group.foot,
                 group: Some(index),
                 chain_m,

@@ -283,7 +283,7 @@ impl<'a> Track<'a> {
         let cell_m2 = self.grid.cell_m * self.grid.cell_m;
         let mut offers: Vec<(f64, usize, Lane)> = Vec::new();
         for group in self.grid.missed() {
-            if group.len() < 8 {
+            if group.len() < 5 {
                 break;
             }
             ctx.check()?;

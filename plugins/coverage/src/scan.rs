@@ -1,7 +1,7 @@
 //! From lanes to a path: tour, touch-ups, and how good the result is.
 
 use crate::{
-    cuts::{Cut, CutRule, cuts},
+    cuts::{Cut, CutRule, domain},
     floor::FloorGrid,
     ground::Ground,
     lanes::{Lane, Pattern, Reach, lanes},
@@ -16,6 +16,9 @@ use world::{Point, Vector, polyline};
 
 /// Path that missed floor costs in touch-ups, as a multiple of its area by the swath.
 const MISSED_SHARE: f64 = 2.5;
+
+/// Rounds in which small touch-ups are tied in.
+const TOUCH_UPS: usize = 6;
 
 /// Everything that makes one candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -116,9 +119,7 @@ impl<'a> Draft<'a> {
         ctx: &Ctx<'_>,
     ) -> Result<Option<Self>> {
         let home = ground.home();
-        let cuts = cuts(ground, &recipe.pattern, &recipe.rule);
-        let lines: Vec<Vec<Point>> = cuts.iter().map(|cut| cut.line.clone()).collect();
-        let Some(slit) = Slit::new(ground, &lines, home) else { return Ok(None) };
+        let Some((cuts, slit)) = domain(ground, &recipe.pattern, &recipe.rule, home) else { return Ok(None) };
         let mut grid = FloorGrid::new(ground, &slit, order.cell_m);
         grid.keep_within(order.regions);
         let start = if slit.contains(order.start) { order.start } else { home };
@@ -186,7 +187,7 @@ impl<'a> Draft<'a> {
         let in_reach = |at: Point| self.is_in_reach(at);
         let mut track = Track::new(&self.slit, &self.pieces, self.grid.clone());
         track.shorten(&prices, ctx)?;
-        for _ in 0..3 {
+        for _ in 0..TOUCH_UPS {
             if track.touch_up(self.ground, &self.cuts, &in_reach, &prices, self.recipe.enough, ctx)? == 0 {
                 break;
             }

@@ -28,6 +28,10 @@ pub struct Slit {
     buckets: Vec<Vec<u32>>,
     /// Whether the domain is simply connected: every way between two places is the same to the tether.
     pub is_simple: bool,
+    /// Floor for the middle of the hull that nothing but cuts keeps out, square metres.
+    pub sealed_m2: f64,
+    /// Middles of the sides of triangles at which cuts keep it out.
+    pub sealed_rim: Vec<Point>,
 }
 
 type Cdt = ConstrainedDelaunayTriangulation<Vertex<f64>>;
@@ -106,6 +110,7 @@ impl Slit {
             // Side k of a face runs from its corner k to the next one.
             .map(|face| faces[*face].adjacent_edges().map(|edge| edge.from().index() as u32))
             .collect::<Vec<[u32; 3]>>();
+        let (sealed_m2, sealed_rim) = sealed(&faces, &index, &free, &number);
         let is_simple = links / 2 + 1 == corners.len();
         let mut slit = Self {
             points,
@@ -117,6 +122,8 @@ impl Slit {
             columns: 0,
             buckets: Vec::new(),
             is_simple,
+            sealed_m2,
+            sealed_rim,
         };
         slit.fill_buckets();
         Some(slit)
@@ -223,6 +230,44 @@ impl Slit {
             })
             .collect()
     }
+}
+
+type Face<'a> = spade::handles::FaceHandle<
+    'a,
+    spade::handles::InnerTag,
+    Vertex<f64>,
+    (),
+    spade::CdtEdge<()>,
+    (),
+>;
+
+/// Area of the free triangles that are reached only across cuts, and where those cuts are.
+fn sealed(
+    faces: &[Face<'_>],
+    index: &BTreeMap<usize, usize>,
+    free: &[bool],
+    number: &[u32],
+) -> (f64, Vec<Point>) {
+    let mut seen: Vec<bool> = number.iter().map(|n| *n != NONE).collect();
+    let mut todo: Vec<usize> = (0..faces.len()).filter(|face| seen[*face]).collect();
+    let (mut area_m2, mut rim) = (0.0, Vec::new());
+    while let Some(face) = todo.pop() {
+        for edge in faces[face].adjacent_edges() {
+            let Some(other) = edge.rev().face().as_inner().map(|f| index[&f.fix().index()]) else { continue };
+            if !free[other] || number[other] != NONE {
+                continue;
+            }
+            if edge.is_constraint_edge() {
+                let [a, b] = edge.positions();
+                rim.push(Point::new(f64::midpoint(a.x, b.x), f64::midpoint(a.y, b.y)));
+            }
+            if !std::mem::replace(&mut seen[other], true) {
+                area_m2 += faces[other].area();
+                todo.push(other);
+            }
+        }
+    }
+    (area_m2, rim)
 }
 
 fn constrain(cdt: &mut Cdt, line: &[Point], is_closed: bool) {
