@@ -35,7 +35,7 @@ pub struct CutRule {
 pub struct Cut {
     /// From the middle of an obstacle to the wall or to the middle of another one.
     pub line: Vec<Point>,
-    /// Obstacle it begins at: an index into the groups of [`Cuts`].
+    /// Obstacle it begins at: an index into the groups of obstacles; no obstacle of its own if there is none of it.
     pub from: usize,
 }
 
@@ -85,7 +85,23 @@ pub fn domain(ground: &Ground, pattern: &Pattern, rule: &CutRule, home: Point) -
             _ => break,
         }
     }
-    best
+    let (mut made, mut slit) = best?;
+    close_up(&mut made, &mut slit);
+    Some((made, slit))
+}
+
+/// Adds cuts until the domain is simply connected.
+pub fn close_up(made: &mut Vec<Cut>, slit: &mut Slit) {
+    made.extend(slit.close_up().into_iter().map(|line| Cut { line, from: usize::MAX }));
+}
+
+/// The pieces of a line between the places where it would cross a cut.
+pub fn between_cuts(line: &[Point], cuts: &[Cut]) -> Vec<Vec<Point>> {
+    let crosses = |a: Point, b: Point| {
+        let mut sides = cuts.iter().flat_map(|cut| cut.line.windows(2));
+        sides.any(|side| crossing(a, b, side[0], side[1]).is_some())
+    };
+    line.chunk_by(|a, b| !crosses(*a, *b)).filter(|run| run.len() > 1).map(<[Point]>::to_vec).collect()
 }
 
 fn cuts(ground: &Ground, pattern: &Pattern, rule: &CutRule, banned: &[Banned]) -> Vec<Cut> {

@@ -2,7 +2,7 @@
 
 use crate::{
     answer::{self, plan_of},
-    cuts::Cut,
+    cuts::{Cut, between_cuts, close_up},
     floor::FloorGrid,
     follow::Follow,
     genetic,
@@ -37,6 +37,8 @@ const STEP_M: f64 = 0.04;
 const SEAM_M: f64 = 0.02;
 /// The outermost lanes stay this far inside the strips of a cell, for rounding, metres.
 const INSIDE_M: f64 = 3e-3;
+/// Floor behind closed gates that is worth a word, square metres.
+const SEALED_M2: f64 = 0.05;
 
 /// The published planner.
 pub struct HullPartition {
@@ -75,13 +77,15 @@ impl Planner for HullPartition {
         }
         let columns: Vec<(Point, f64)> = ground.parts.iter().map(column).collect();
         let home = ground.home();
-        let Division { cells, first, cuts, slit } =
+        let Division { cells, first, mut cuts, mut slit } =
             Division::new(&ground, &columns, self.is_tree, home).ok_or_else(|| answer::no_room(&ground))?;
         if self.is_tree && !slit.is_simple {
             ctx.log(
                 LogLevel::Warn,
-                "columns too near to each other leave a way round: the tether may be left out",
+                "columns too near to each other leave a way round, which the method does not rule out: closed by a cut \
+                 of our own",
             );
+            close_up(&mut cuts, &mut slit);
         }
         let lines: Vec<Vec<Point>> = cuts.iter().map(|cut| cut.line.clone()).collect();
         let grid = FloorGrid::new(&ground, &slit, self.cell_m);
@@ -101,10 +105,11 @@ impl Planner for HullPartition {
         let mut at = start;
         for cell in self.order(&cells, first, request.site.seed) {
             ctx.check()?;
-            for lane in lanes(&cells[cell], &ground, &slit, &is_wanted) {
+            let lanes = lanes(&cells[cell], &ground, &slit, &is_wanted);
+            for lane in lanes.iter().flat_map(|lane| between_cuts(lane, &cuts)) {
                 pieces.push(Piece { points: way(at, lane[0]), is_lane: false });
                 at = lane[lane.len() - 1];
-                pieces.push(Piece { points: lane, is_lane: true });
+                pieces.push(Piece { points: thinned(&lane), is_lane: true });
             }
         }
         pieces.push(Piece { points: way(at, home), is_lane: false });
@@ -112,7 +117,13 @@ impl Planner for HullPartition {
         scan.grid.sweep(&scan.path());
         let order = Order { start, regions: task.regions, reel_m: f64::INFINITY, cell_m: self.cell_m };
         answer::tell_unreachable(&ground, &scan, &order, ctx);
-        let plan = plan_of(&scan, request.start.position, &[]);
+        let mut plan = plan_of(&scan, request.start.position, &[]);
+        plan.cuts.iter_mut().for_each(|cut| trim(cut));
+        if scan.slit.sealed_m2 > SEALED_M2 {
+            plan.complete = false;
+            let sealed_m2 = scan.slit.sealed_m2;
+            ctx.log(LogLevel::Warn, &format!("the cells leave no gate to {sealed_m2:.2} m2; choose tether-safe"));
+        }
         self.follow.keep_off(&plan.cuts);
         Ok(plan)
     }
@@ -204,6 +215,14 @@ fn cuts(cells: &[Cell], borders: &[Border], first: usize) -> Vec<Cut> {
     lines.into_iter().map(cut).collect()
 }
 
+/// Takes the seams off the ends of a cut: ways that bend about an end shall not count as crossing it.
+fn trim(cut: &mut [Point]) {
+    if let [a, b] = cut {
+        let less = (*b - *a) * (1.5 * SEAM_M / (*b - *a).norm().max(1e-9)).min(0.3);
+        (*a, *b) = (*a + less, *b - less);
+    }
+}
+
 /// Two segments on one line that touch, as one.
 fn united(a: (Point, Point), b: (Point, Point)) -> Option<(Point, Point)> {
     let ahead = (a.1 - a.0).normalize();
@@ -269,7 +288,7 @@ fn lanes(cell: &Cell, ground: &Ground, slit: &Slit, is_wanted: &dyn Fn(Point) ->
         let is_open =
             |p: &Point| cell.contains(*p) && ground.is_free(*p) && slit.contains(*p) && is_wanted(*p);
         let mut runs: Vec<Vec<Point>> =
-            line.split(|p| !is_open(p)).filter(|run| run.len() > 2).map(thinned).collect();
+            line.split(|p| !is_open(p)).filter(|run| run.len() > 2).map(<[Point]>::to_vec).collect();
         if k % 2 == 1 {
             runs.reverse();
             for run in &mut runs {

@@ -13,6 +13,9 @@ use world::Point;
 const BUCKET_M: f64 = 0.5;
 /// A point this far outside a triangle still counts as inside, square metres of signed area.
 const NEARLY: f64 = 1e-9;
+/// Corners are moved to multiples of this, so that those of outlines that touch fall together instead of lying a hair
+/// apart, metres.
+const SNAP_M: f64 = 1.0 / 65536.0;
 const NONE: u32 = u32::MAX;
 
 /// Triangles of the domain that can be reached from home.
@@ -149,6 +152,29 @@ impl Slit {
         (self.low, self.columns, self.buckets) = (low, columns, buckets);
     }
 
+    /// Cuts the last ways round obstacles that are left, each where the ways from home on either side meet; returns these
+    /// cuts. No floor is lost by it, and the domain is simply connected then.
+    pub fn close_up(&mut self) -> Vec<Vec<Point>> {
+        let mut cuts = Vec::new();
+        for face in 0..self.corners.len() {
+            for k in 0..3 {
+                let other = self.next[face][k];
+                let is_branch =
+                    other == NONE || self.parent[face] == other || self.parent[other as usize] == face as u32;
+                if is_branch {
+                    continue;
+                }
+                let at = |k: usize| self.points[self.corners[face][k % 3] as usize];
+                cuts.push(vec![at(k), at(k + 1)]);
+                self.next[face][k] = NONE;
+                let back = self.next[other as usize].iter_mut().find(|next| **next == face as u32);
+                back.into_iter().for_each(|next| *next = NONE);
+            }
+        }
+        self.is_simple = true;
+        cuts
+    }
+
     /// The triangles, for filling a grid.
     pub fn triangles(&self) -> impl Iterator<Item = [Point; 3]> + '_ {
         self.corners.iter().map(|corners| corners.map(|k| self.points[k as usize]))
@@ -271,8 +297,9 @@ fn sealed(
 }
 
 fn constrain(cdt: &mut Cdt, line: &[Point], is_closed: bool) {
+    let snapped = |m: f64| (m / SNAP_M).round() * SNAP_M;
     let corners: Vec<FixedVertexHandle> =
-        line.iter().filter_map(|p| cdt.insert(Vertex::new(p.x, p.y)).ok()).collect();
+        line.iter().filter_map(|p| cdt.insert(Vertex::new(snapped(p.x), snapped(p.y))).ok()).collect();
     let ends = corners.iter().zip(corners.iter().cycle().skip(1));
     let n = if is_closed { corners.len() } else { corners.len().saturating_sub(1) };
     for (a, b) in ends.take(n).filter(|(a, b)| a != b) {
