@@ -13,12 +13,31 @@ pub fn plan<P: Planner>(
 ) -> (Result<Plan>, Bench) {
     let bench = Bench::new();
     let obstacles = tank.obstacles();
+    let mut planner: P = bench.configure(values, &tank.site(&obstacles)).unwrap();
+    let plan = ask(&mut planner, tank, tether, &bench);
+    (plan, bench)
+}
+
+/// A planner with its plan of a tank.
+pub fn planned<P: Planner>(tank: &Tank, values: &[(&str, f64)]) -> (P, Plan, Bench) {
+    let bench = Bench::new();
+    let obstacles = tank.obstacles();
+    let mut planner: P = bench.configure(values, &tank.site(&obstacles)).unwrap();
+    let plan = ask(&mut planner, tank, None, &bench).unwrap();
+    (planner, plan, bench)
+}
+
+fn ask<P: Planner>(
+    planner: &mut P,
+    tank: &Tank,
+    tether: Option<TetherLimits>,
+    bench: &Bench,
+) -> Result<Plan> {
+    let obstacles = tank.obstacles();
     let site = tank.site(&obstacles);
-    let mut planner: P = bench.configure(values, &site).unwrap();
     let start =
         PoseEstimate { position: tank.anchor, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
     let task = Task::Cover { anchor: tank.anchor, regions: &[], tether, tolerance_m: 0.3 };
     let request = PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[] };
-    let plan = planner.plan(&request, &bench.ctx());
-    (plan, bench)
+    planner.plan(&request, &bench.ctx())
 }

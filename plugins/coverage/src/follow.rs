@@ -111,3 +111,6 @@ fn aim(at: Point, sensed: &Sensed<'_>) -> Point {
     }
     aim
 }
+
+#[cfg(test)]
+mod tests;

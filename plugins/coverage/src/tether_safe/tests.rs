@@ -1,6 +1,7 @@
 use super::*;
 use crate::bench;
 use planner_api::{Code, testing::Bench};
+use proptest::prelude::*;
 use trials::tanks::{CELL_M, Known, Tank};
 
 fn plan(tank: &Tank, values: &[(&str, f64)], tether: Option<TetherLimits>) -> (Result<Plan>, Bench) {
@@ -75,9 +76,84 @@ fn overlapping_columns_and_gaps_too_narrow_are_told_not_dropped() {
 }
 
 #[test]
+fn cuts_that_would_seal_floor_off_end_somewhere_else() {
+    let tank = Known::E3.tank(200);
+    let plan = plan(&tank, &[("alpha_deg", 0.0), ("pattern", 1.0)], None).0.unwrap();
+    let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
+    assert!(scan.certificate.certified, "{:?}", scan.certificate.reasons);
+}
+
+#[test]
+fn a_swath_wider_than_the_gaps_still_gives_a_certified_plan() {
+    let tank = Known::E1.tank(6);
+    let obstacles = tank.obstacles();
+    let site = Site { swath_m: 1.6, ..tank.site(&obstacles) };
+    let bench = Bench::new();
+    let mut planner: TetherSafe = bench.configure(&[("pattern", 1.0)], &site).unwrap();
+    let start = planner_api::PoseEstimate {
+        position: tank.anchor,
+        heading_rad: 0.0,
+        covariance: nalgebra::Matrix3::zeros(),
+    };
+    let task = planner_api::Task::Cover { anchor: tank.anchor, regions: &[], tether: None, tolerance_m: 0.3 };
+    let reason = planner_api::Reason::Start;
+    let request = PlanRequest { reason: &reason, start, task, site: &site, previous: &[] };
+    let plan = planner.plan(&request, &bench.ctx()).unwrap();
+    let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
+    assert!(scan.certificate.certified, "{:?}", scan.certificate.reasons);
+    assert!(plan.complete, "{:?}", bench.logs());
+}
+
+#[test]
+fn a_reel_with_next_to_nothing_on_it_is_refused_with_what_is_needed() {
+    let tether = TetherLimits { reel_m: 0.2, max_wrap_rad: 9.0, max_sum_wrap_rad: 9.0 };
+    let error = plan(&Known::E1.tank(4), &[], Some(tether)).0.unwrap_err();
+    assert_eq!(error.code, Code::Config);
+    assert!(error.message.contains("9.7 m from the anchor"), "{error}");
+}
+
+#[test]
 fn an_empty_tank_needs_no_cuts() {
     let tank = Tank { columns: Vec::new(), ..Known::E1.tank(0) };
     let plan = plan(&tank, &[], None).0.unwrap();
     assert!(plan.cuts.is_empty());
     assert!(tank.score(&plan.path, &[], CELL_M).unwrap().coverage_reachable > 0.995);
+}
+
+/// Columns anywhere, overlapping or at the wall, but not at the anchor.
+fn any_columns() -> impl Strategy<Value = Vec<(Point, f64)>> {
+    let column = ((-4.6..4.6, -4.6..4.6), 0.1..0.5);
+    let columns = proptest::collection::vec(column, 0..14);
+    columns.prop_map(|all| {
+        let all = all.into_iter().map(|((x, y), radius_m)| (Point::new(x, y), radius_m));
+        all.filter(|(at, radius_m)| at.coords.norm() > radius_m + 0.7).collect()
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn a_small_tank_of_any_make_is_covered_certified_and_without_collision(seed in 0_u64..100_000) {
+        let mut tank = Tank::random(seed);
+        tank.boundary = world::Boundary::Circle { radius_m: 7.0 };
+        tank.anchor = Point::origin();
+        let fits = |(at, r): &(Point, f64)| at.coords.norm() < 7.0 - r - 0.8 && at.coords.norm() > r + 0.8;
+        tank.columns.retain(fits);
+        let plan = plan(&tank, &[], None).0.unwrap();
+        let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
+        prop_assert!(scan.certificate.certified, "{:?}", scan.certificate.reasons);
+        prop_assert_eq!(scan.certificate.collisions, 0);
+        prop_assert!(scan.coverage_reachable >= 0.995, "{}", scan.coverage_reachable);
+    }
+
+    #[test]
+    fn however_the_columns_stand_the_cable_comes_in(columns in any_columns()) {
+        let tank = Tank { boundary: world::Boundary::Circle { radius_m: 5.0 }, columns, anchor: Point::origin() };
+        let plan = plan(&tank, &[("pattern", 1.0), ("kicks", 0.5)], None).0.unwrap();
+        let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
+        prop_assert_eq!(scan.certificate.collisions, 0);
+        prop_assert!(scan.certificate.left_out_m.is_some_and(|m| m < 1e-6), "{:?}", scan.certificate.reasons);
+        prop_assert_eq!(scan.certificate.cut_crossings, 0);
+    }
 }

@@ -1,0 +1,92 @@
+use crate::{bench, tether_safe::TetherSafe};
+use planner_api::{Drive, Obstacle, Outline, Planner, PoseEstimate, Sensed, Status, testing::Bench};
+use trials::tanks::{HULL_M, Known, Tank};
+use world::{Point, Vector};
+
+const TICK_S: f64 = 0.1;
+
+fn sensed<'a>(
+    tick: u64,
+    position: Point,
+    heading_rad: f64,
+    path: &'a [Point],
+    obstacles: &'a [Obstacle<'a>],
+) -> Sensed<'a> {
+    let end = path.len() - 1;
+    Sensed {
+        tick,
+        t_s: tick as f64 * TICK_S,
+        dt_s: TICK_S,
+        pose: PoseEstimate { position, heading_rad, covariance: nalgebra::Matrix3::zeros() },
+        v_m_per_s: 0.0,
+        w_rad_per_s: 0.0,
+        target: path[end],
+        targets_ahead: &path[end..],
+        path_ahead: path,
+        obstacles,
+    }
+}
+
+/// A planner that has made a plan of the tank.
+fn ready(tank: &Tank) -> (TetherSafe, Bench, Vec<Point>, Vec<Vec<Point>>) {
+    let (planner, plan, bench) = bench::planned::<TetherSafe>(tank, &[("pattern", 1.0), ("kicks", 0.0)]);
+    (planner, bench, plan.path, plan.cuts)
+}
+
+#[test]
+fn the_path_is_flown_closely() {
+    let tank = Known::E1.tank(21);
+    let (mut planner, bench, path, _) = ready(&tank);
+    let obstacles = tank.obstacles();
+    let (mut at, mut heading_rad, mut next, mut worst_m) = (tank.anchor, 0.0_f64, 1, 0.0_f64);
+    for tick in 0..3000 {
+        while next + 1 < path.len() && (path[next] - at).norm() < 0.12 {
+            next += 1;
+        }
+        let sensed = sensed(tick, at, heading_rad, &path[next..], &obstacles);
+        let command = planner.step(&sensed, &bench.ctx()).unwrap();
+        let Drive::Velocity(velocity) = command.drive else { panic!("{:?}", command.drive) };
+        assert_ne!(command.status, Status::Stuck, "tick {tick}: {:?}", bench.logs());
+        if velocity.norm() > 1e-6 {
+            heading_rad = velocity.y.atan2(velocity.x);
+        }
+        at += velocity * TICK_S;
+        worst_m = worst_m.max(world::polyline::distance_m(&path[..=next], at));
+    }
+    assert!(next > 20, "it came no further than point {next}");
+    assert!(worst_m < 0.15, "{worst_m}");
+}
+
+#[test]
+fn it_stops_in_front_of_what_stands_on_the_path() {
+    let tank = Known::E1.tank(22);
+    let (mut planner, bench, ..) = ready(&tank);
+    let path = [Point::new(0.1, 0.0), Point::new(0.8, 0.0)];
+    let found = |x: f64| Obstacle {
+        id: 90,
+        outline: Outline::Disc { center: Point::new(x, 0.0), radius_m: 0.1 },
+        discovered: true,
+        velocity_m_per_s: Vector::zeros(),
+    };
+    let status = |planner: &mut TetherSafe, obstacles: &[Obstacle<'_>]| {
+        planner.step(&sensed(0, tank.anchor, 0.0, &path, obstacles), &bench.ctx()).unwrap().status
+    };
+    assert_ne!(status(&mut planner, &[]), Status::Stuck);
+    assert_eq!(status(&mut planner, &[found(0.8 + HULL_M)]), Status::Stuck);
+    assert!(bench.logs().iter().any(|(_, said)| said.contains("obstacle stands on the path")));
+}
+
+#[test]
+fn it_never_goes_back_to_the_path_across_a_cut() {
+    let tank = Known::E1.tank(23);
+    let (mut planner, bench, _, cuts) = ready(&tank);
+    let cut = &cuts[0];
+    let (foot, end) = (cut[cut.len() - 2], cut[cut.len() - 1]);
+    let middle = foot + (end - foot) / 2.0;
+    let ahead = (end - foot).normalize();
+    let aside = Vector::new(-ahead.y, ahead.x) * 0.1;
+    let path = [middle - aside];
+    let command = planner.step(&sensed(0, middle + aside, 0.0, &path, &[]), &bench.ctx()).unwrap();
+    assert_eq!(command.status, Status::Stuck);
+    assert!(bench.logs().iter().any(|(_, said)| said.contains("across a cut")), "{:?}", bench.logs());
+}
