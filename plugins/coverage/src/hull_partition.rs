@@ -122,7 +122,10 @@ impl Planner for HullPartition {
         if scan.slit.sealed_m2 > SEALED_M2 {
             plan.complete = false;
             let sealed_m2 = scan.slit.sealed_m2;
-            ctx.log(LogLevel::Warn, &format!("the cells leave no gate to {sealed_m2:.2} m2; choose tether-safe"));
+            ctx.log(
+                LogLevel::Warn,
+                &format!("the cells leave no gate to {sealed_m2:.2} m2; choose tether-safe"),
+            );
         }
         self.follow.keep_off(&plan.cuts);
         Ok(plan)

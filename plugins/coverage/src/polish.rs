@@ -267,7 +267,8 @@ impl<'a> Track<'a> {
         self.turn(from, past + 1);
     }
 
-    /// Ties lanes over missed floor into the path, the most worthwhile first, until the coverage is reached.
+    /// Ties lanes over missed floor into the path, the most worthwhile first, until the coverage is reached; groups of
+    /// fewer cells than the least are left.
     ///
     /// # Errors
     /// When the console wants an end.
@@ -277,13 +278,13 @@ impl<'a> Track<'a> {
         cuts: &[Cut],
         is_wanted: &dyn Fn(Point) -> bool,
         prices: &Prices,
-        enough: f64,
+        (enough, least): (f64, usize),
         ctx: &Ctx<'_>,
     ) -> Result<usize> {
         let cell_m2 = self.grid.cell_m * self.grid.cell_m;
         let mut offers: Vec<(f64, usize, Lane)> = Vec::new();
         for group in self.grid.missed() {
-            if group.len() < 5 {
+            if group.len() < least {
                 break;
             }
             ctx.check()?;

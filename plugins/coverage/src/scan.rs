@@ -17,8 +17,14 @@ use world::{Point, Vector, polyline};
 /// Path that missed floor costs in touch-ups, as a multiple of its area by the swath.
 const MISSED_SHARE: f64 = 2.5;
 
+/// Share of the search for the order that a draft gets.
+const DRAFT_SHARE: f64 = 0.3;
 /// Rounds in which small touch-ups are tied in.
 const TOUCH_UPS: usize = 6;
+/// Rounds after which a little less is enough, but smaller places count as well.
+const SOON_ENOUGH: usize = 3;
+/// How much less, as a share of the floor.
+const LATE_SHARE: f64 = 0.0008;
 
 /// Everything that makes one candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,13 +134,15 @@ impl<'a> Draft<'a> {
         let (order, recipe) = (*order, *recipe);
         let mut draft = Self { ground, order, recipe, cuts, slit, grid, lanes, pieces, start };
         draft.lanes = draft.wanted(all);
-        draft.pieces = draft.toured(ctx)?;
+        draft.pieces = draft.toured(DRAFT_SHARE, ctx)?;
         draft.grid.sweep(&joined(&draft.pieces));
         Ok(Some(draft))
     }
 
-    fn toured(&self, ctx: &Ctx<'_>) -> Result<Vec<Piece>> {
-        toured(&self.slit, &self.lanes, (self.ground.home(), self.start), &self.recipe.effort, ctx)
+    fn toured(&self, share_of_kicks: f64, ctx: &Ctx<'_>) -> Result<Vec<Piece>> {
+        let effort = self.recipe.effort;
+        let effort = Effort { kicks_per_lane: effort.kicks_per_lane * share_of_kicks, ..effort };
+        toured(&self.slit, &self.lanes, (self.ground.home(), self.start), &effort, ctx)
     }
 
     fn is_in_reach(&self, at: Point) -> bool {
@@ -166,18 +174,19 @@ impl<'a> Draft<'a> {
     /// # Errors
     /// When the console wants an end.
     pub fn finished(mut self, ctx: &Ctx<'_>) -> Result<Scan> {
-        for _ in 0..self.recipe.rounds {
+        for round in 0..self.recipe.rounds {
             let least = (self.recipe.touch_m2 / (self.order.cell_m * self.order.cell_m)) as usize;
             let missed = self.grid.missed();
             let large = missed.iter().take_while(|group| group.len() > least);
             let fresh: Vec<Lane> =
                 large.flat_map(|g| touch_up(self.ground, &self.slit, &self.cuts, &self.grid, g)).collect();
             let fresh = self.wanted(fresh);
-            if fresh.is_empty() {
+            if fresh.is_empty() && round > 0 {
                 break;
             }
             self.lanes.extend(fresh);
-            self.pieces = self.toured(ctx)?;
+            // The draft was quick; from here on the order matters.
+            self.pieces = self.toured(1.0, ctx)?;
             self.grid.swept.fill(0);
             self.grid.sweep(&joined(&self.pieces));
         }
@@ -187,8 +196,11 @@ impl<'a> Draft<'a> {
         let in_reach = |at: Point| self.is_in_reach(at);
         let mut track = Track::new(&self.slit, &self.pieces, self.grid.clone());
         track.shorten(&prices, ctx)?;
-        for _ in 0..TOUCH_UPS {
-            if track.touch_up(self.ground, &self.cuts, &in_reach, &prices, self.recipe.enough, ctx)? == 0 {
+        for round in 0..TOUCH_UPS {
+            let is_late = round >= SOON_ENOUGH;
+            let enough = self.recipe.enough - if is_late { LATE_SHARE } else { 0.0 };
+            let least = if is_late { 5 } else { 8 };
+            if track.touch_up(self.ground, &self.cuts, &in_reach, &prices, (enough, least), ctx)? == 0 {
                 break;
             }
             track.shorten(&careful, ctx)?;

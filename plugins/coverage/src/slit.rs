@@ -16,6 +16,8 @@ const NEARLY: f64 = 1e-9;
 /// Corners are moved to multiples of this, so that those of outlines that touch fall together instead of lying a hair
 /// apart, metres.
 const SNAP_M: f64 = 1.0 / 65536.0;
+/// Sleeves longer than this are rare, triangles.
+const LONG_SLEEVE: u32 = 120;
 const NONE: u32 = u32::MAX;
 
 /// Triangles of the domain that can be reached from home.
@@ -167,8 +169,10 @@ impl Slit {
                 let at = |k: usize| self.points[self.corners[face][k % 3] as usize];
                 cuts.push(vec![at(k), at(k + 1)]);
                 self.next[face][k] = NONE;
-                let back = self.next[other as usize].iter_mut().find(|next| **next == face as u32);
-                back.into_iter().for_each(|next| *next = NONE);
+                let mut back = self.next[other as usize].iter_mut();
+                if let Some(next) = back.find(|next| **next == face as u32) {
+                    *next = NONE;
+                }
             }
         }
         self.is_simple = true;
@@ -210,8 +214,12 @@ impl Slit {
 
     /// The shortest path between two places of the domain, both ends included.
     pub fn path(&self, a: Point, b: Point) -> Option<Vec<Point>> {
-        let (from, to) = (self.locate(a)?, self.locate(b)?);
-        Some(funnel(a, b, &self.sleeve(from, to)))
+        Some(self.path_between((a, self.locate(a)?), (b, self.locate(b)?)))
+    }
+
+    /// The shortest path between two places of which the triangles are known.
+    pub fn path_between(&self, (a, from): (Point, usize), (b, to): (Point, usize)) -> Vec<Point> {
+        if from == to { vec![a, b] } else { funnel(a, b, &self.sleeve(from, to)) }
     }
 
     /// Length of the shortest path between two places of the domain, metres.
@@ -232,7 +240,10 @@ impl Slit {
 
     /// Left and right ends of the sides between two triangles, in order.
     fn sleeve(&self, from: usize, to: usize) -> Vec<(Point, Point)> {
-        let (mut up, mut down) = (vec![from], vec![to]);
+        let room = (self.depth[from] + self.depth[to]).min(LONG_SLEEVE) as usize + 2;
+        let (mut up, mut down) = (Vec::with_capacity(room), Vec::with_capacity(room));
+        up.push(from);
+        down.push(to);
         let (mut a, mut b) = (from, to);
         while a != b {
             if self.depth[a] >= self.depth[b] {
@@ -258,14 +269,8 @@ impl Slit {
     }
 }
 
-type Face<'a> = spade::handles::FaceHandle<
-    'a,
-    spade::handles::InnerTag,
-    Vertex<f64>,
-    (),
-    spade::CdtEdge<()>,
-    (),
->;
+type Face<'a> =
+    spade::handles::FaceHandle<'a, spade::handles::InnerTag, Vertex<f64>, (), spade::CdtEdge<()>, ()>;
 
 /// Area of the free triangles that are reached only across cuts, and where those cuts are.
 fn sealed(
@@ -320,7 +325,8 @@ fn least_side(a: Point, b: Point, c: Point, at: Point) -> f64 {
 
 /// The shortest path through a sleeve.
 fn funnel(start: Point, goal: Point, sleeve: &[(Point, Point)]) -> Vec<Point> {
-    let mut path = vec![start];
+    let mut path = Vec::with_capacity(8);
+    path.push(start);
     let (mut apex, mut left, mut right) = (start, start, start);
     let (mut left_at, mut right_at) = (0, 0);
     let goal_side = (goal, goal);

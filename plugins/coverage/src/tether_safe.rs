@@ -20,7 +20,7 @@ use world::{
 /// The choice by length and turns; candidates that look worse are not worked out for it.
 const SHORTEST: &str = "shortest";
 /// First tours this much costlier than the best, as a share, never win.
-const HOPELESS: f64 = 0.015;
+const HOPELESS: f64 = 0.02;
 
 const CHOOSE: ParamSpec = choice("choose", "Candidate", &[SHORTEST, "fewest-turns", "shortest-cable"], 0)
     .help("Which of the candidates within the limits is flown; the log lists all that are worth it.")
@@ -43,7 +43,7 @@ const WRAP: ParamSpec = float("wrap_deg", "Wrap on one obstacle", "deg", 10.0, 7
 const SUM_WRAP: ParamSpec = float("sum_wrap_deg", "Wrap in sum", "deg", 10.0, 3600.0, 80.0)
     .help("Largest sum of the angles about all obstacles; the mission's limit holds if it is smaller.")
     .group("Tether");
-const TURN: ParamSpec = float("turn_m", "Price of a whole turn", "m", 0.0, 20.0, 1.0)
+const TURN: ParamSpec = float("turn_m", "Price of a whole turn", "m", 0.0, 20.0, 0.7)
     .help("A path may be this much longer for every whole turn that it saves.")
     .group("Plan");
 const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.55)
@@ -52,7 +52,7 @@ const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
     .help("Edge of the cells in which floor is counted.")
     .group("Plan");
-const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 3.0)
+const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 1.5)
     .help("Changes tried per lane in the search for the order of lanes; more takes longer and shortens the path.")
     .group("Plan");
 

@@ -40,6 +40,7 @@ pub type End = usize;
 pub struct Ways<'a> {
     slit: &'a Slit,
     at: Vec<Point>,
+    triangle: Vec<Option<usize>>,
     out: Vec<Option<Vector>>,
     turn_m_per_rad: f64,
     table: RefCell<Vec<f32>>,
@@ -59,7 +60,8 @@ impl<'a> Ways<'a> {
         out.extend([None, None]);
         let n = at.len();
         let table = if n <= TABLE { vec![f32::NAN; n * n] } else { Vec::new() };
-        Self { slit, at, out, turn_m_per_rad, table: RefCell::new(table), map: RefCell::default() }
+        let triangle = at.iter().map(|p| slit.locate(*p)).collect();
+        Self { slit, at, triangle, out, turn_m_per_rad, table: RefCell::new(table), map: RefCell::default() }
     }
 
     fn len(&self) -> usize {
@@ -68,7 +70,11 @@ impl<'a> Ways<'a> {
 
     /// The way from one end to another.
     pub fn path(&self, u: End, v: End) -> Vec<Point> {
-        self.slit.path(self.at[u], self.at[v]).unwrap_or_else(|| vec![self.at[u], self.at[v]])
+        let ends = (self.at[u], self.at[v]);
+        match (self.triangle[u], self.triangle[v]) {
+            (Some(from), Some(to)) => self.slit.path_between((ends.0, from), (ends.1, to)),
+            _ => vec![ends.0, ends.1],
+        }
     }
 
     /// No way is cheaper than this.
