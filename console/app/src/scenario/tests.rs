@@ -102,6 +102,19 @@ fn defaults_are_those_of_the_document() {
 }
 
 #[test]
+fn a_tether_starts_where_the_robot_does_and_preset_points_may_be_written_out() {
+    let text = SMALL
+        .replace("kind = \"goto\"\ngoal_m = [3, 0]", "kind = \"follow\"\npath_m = [[-3, 0], [3, 0]]")
+        .replace("[planner]", "[tether]\nreel_m = 9\n[planner]");
+    let scenario = read(&text);
+    let tether = scenario.mission.tether.expect("it has one");
+    assert_eq!(tether.anchor, Point::new(-3.0, 0.0));
+    assert_eq!(scenario.sim.tether_anchor, Some(tether.anchor));
+    assert!((tether.limits.max_wrap_rad - std::f64::consts::TAU).abs() < 1e-12 && !tether.fly_uncertified);
+    assert!(matches!(&scenario.mission.task, TaskConfig::Follow { path, .. } if path.len() == 2));
+}
+
+#[test]
 fn the_text_of_a_scenario_gives_the_same_scenario_again() {
     let settings = Settings {
         set: ["k_rep=2", "mode=literal", "tank.radius_m=5.5", "obstacles.0.known=false"]
@@ -168,7 +181,18 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     ),
     ("name = \"small\"", "name = \"small\"\nseed = -1", "2:8: seed = -1: must be at least 0"),
     ("name = \"small\"", "name = \"small\"\nseed = 1.5", "2:8: seed = 1.5: must be a whole number"),
-    ("[planner]", "[tether]\nlength_m = 30\n[planner]", "11:2: tether: unknown key"),
+    ("[planner]", "[winch]\nlength_m = 30\n[planner]", "11:2: winch: unknown key"),
+    ("[planner]", "[tether]\nreel_m = 0\n[planner]", "12:10: tether.reel_m = 0: must be greater than 0 m"),
+    (
+        "[planner]",
+        "[tether]\nreel_m = 9\nanchor_m = [0, 7]\n[planner]",
+        "13:12: tether.anchor_m = [0, 7]: lies 2.000 m outside the tank",
+    ),
+    (
+        "[planner]",
+        "[tether]\nreel_m = 1\nanchor_m = [0, 0]\n[planner]",
+        "12:10: tether.reel_m = 1: must be at least 3.00 m, the way from the anchor to the start",
+    ),
     ("kind = \"goto\"", "kind = \"cover\"", "7:8: mission.kind = \"cover\": must be one of goto, follow"),
     ("goal_m = [3, 0]", "goal_m = [6, 0]", "8:10: mission.goal_m = [6, 0]: lies 1.000 m outside the tank"),
     (
