@@ -3,7 +3,8 @@
 use crate::bench::{Bench, scenario, workspace};
 
 fn shipped() -> Vec<std::path::PathBuf> {
-    let entries = std::fs::read_dir(workspace().join("scenarios")).unwrap();
+    let folders = ["scenarios", "scenarios/papers"].map(|folder| workspace().join(folder));
+    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap());
     let mut files: Vec<_> =
         entries.map(|e| e.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "toml")).collect();
     files.sort();

@@ -53,6 +53,16 @@ fn the_scenarios_in_the_box_are_right() {
 }
 
 #[test]
+fn an_amphibious_robot_has_the_papers_limits_and_planners_are_told_the_faster_ones() {
+    let scenario = read(&SMALL.replacen("start_m = [-3, 0]", "start_m = [-3, 0]\nmotion = \"amphibious\"", 1));
+    let amphibious = scenario.sim.robot.amphibious.expect("it walks and swims");
+    assert_eq!((amphibious.land.v_max_m_per_s, amphibious.transition_steps), (0.13, 20));
+    assert!((amphibious.land.w_max_rad_per_s - 0.12).abs() < 1e-3);
+    assert_eq!(scenario.mission.limits.v_max_m_per_s, 0.23);
+    assert_eq!(read(SMALL).sim.robot.amphibious, None);
+}
+
+#[test]
 fn the_demo_has_columns_on_the_drawing_and_surprises() {
     let demo = read(DEMO);
     assert_eq!(demo.sim.world.obstacles.iter().filter(|o| o.known).count(), 8);
@@ -224,6 +234,16 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "start_m = [-3, 0]",
         "start_m = [-3, 0]\nradius_m = 0",
         "11:12: robot.radius_m = 0: must be greater than 0 m; only motion = \"point\" has no hull",
+    ),
+    (
+        "start_m = [-3, 0]",
+        "start_m = [-3, 0]\nmotion = \"amphibious\"\nspeed_max_m_per_s = 1",
+        "12:21: robot.speed_max_m_per_s = 1: means nothing with motion = \"amphibious\"",
+    ),
+    (
+        "start_m = [-3, 0]",
+        "start_m = [-3, 0]\ntransition_ticks = 5",
+        "11:20: robot.transition_ticks = 5: means nothing with motion = \"unicycle\"",
     ),
     (
         "at_m = [0, 5]",
