@@ -42,13 +42,9 @@ impl Mission {
     fn survey(&mut self, shapes: &[Shape]) {
         let (config, world) = (&self.config, self.chart.world());
         let surveyor = self.surveyor.get_or_insert_with(|| {
-            FloorMaker::of(
-                self.coverage.floor(),
-                world,
-                config.room_m(),
-                config.swath_m,
-                config.start.position,
-            )
+            // The floor as it was before anything was found, so that the first one changes it, too.
+            let (room_m, start) = (config.room_m(), config.start.position);
+            FloorMaker::of(self.coverage.floor(), &world.as_drawn(), room_m, config.swath_m, start)
         });
         let changes = surveyor.update(world, self.chart.map(), shapes);
         if !changes.is_empty() {
