@@ -31,6 +31,8 @@ pub enum Command {
     Run(RunArgs),
     /// Plan on the known map without flying.
     Plan(PlanArgs),
+    /// Forecast how well the stations will locate the robot, and advise where they should stand.
+    Accuracy(AccuracyArgs),
     /// List the planners found, and the plugins refused with the reason.
     Planners {
         /// Print JSON.
@@ -242,6 +244,23 @@ pub struct TuneArgs {
     pub json: bool,
 }
 
+#[derive(Debug, Args)]
+pub struct AccuracyArgs {
+    /// Scenario file.
+    pub scenario: PathBuf,
+    #[command(flatten)]
+    pub changes: Changes,
+    /// Print the forecast of every cell as JSON on stdout.
+    #[arg(long)]
+    pub json: bool,
+    /// Draw the forecast into this file.
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// Find the best places on the wall for so many stations, 3 to 32.
+    #[arg(long, value_name = "N")]
+    pub advise: Option<usize>,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -260,6 +279,7 @@ mod tests {
             "console",
             "run",
             "plan",
+            "accuracy",
             "planners",
             "check",
             "reproduce",

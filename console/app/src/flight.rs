@@ -104,7 +104,7 @@ impl Flight {
             Drive::Twist { v_m_per_s, w_rad_per_s } => sim::Drive::Twist { v_m_per_s, w_rad_per_s },
             Drive::Velocity(velocity) => sim::Drive::Velocity(velocity),
         });
-        let mut events = Vec::with_capacity(step.events.len() + 1);
+        let mut events = Vec::with_capacity(step.events.len() + 2);
         events.push(Event {
             tick: self.tick,
             t_s: self.tick as f64 * self.tick_s,
@@ -114,6 +114,16 @@ impl Flight {
                 collided: truth.collided,
             },
         });
+        events.extend(truth.tether.map(|tether| Event {
+            tick: self.tick,
+            t_s: self.tick as f64 * self.tick_s,
+            kind: EventKind::TetherTruth {
+                length_m: tether.length_m,
+                max_wrap_rad: tether.max_wrap_rad,
+                sum_wrap_rad: tether.sum_wrap_rad,
+                detour_m: tether.detour_m,
+            },
+        }));
         events.extend(step.events);
         self.tick += 1;
         events

@@ -1,8 +1,10 @@
 //! tankops: console for robots that inspect the floors of oil storage tanks.
 
+mod accuracy;
 mod again;
 mod cli;
 mod console;
+mod drawing;
 mod failure;
 mod flight;
 mod headless;
@@ -51,6 +53,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         }
         Some(Command::Run(args)) => headless::run(&args, &plugins),
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
+        Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
         Some(Command::Planners { json }) => planners::list(&plugins, json),
         Some(Command::Check { files }) => planners::check(&files, &plugins),
         Some(Command::Reproduce(args)) => reproduce::reproduce(&args, &plugins),

@@ -9,8 +9,8 @@ use crate::{
     scenario::Scenario,
 };
 use anyhow::Context;
-use mission::{Cause, Fault, MissionConfig, Parameters, TaskConfig, preview};
-use planner_api::{Code, Plan, TetherLimits};
+use mission::{Cause, Fault, MissionConfig, Parameters, TaskConfig, preview, tether::judge_from_start};
+use planner_api::{Code, Plan};
 use planner_host::{Host, HostConfig, PluginDirs};
 use serde::Serialize;
 use std::{
@@ -39,7 +39,8 @@ struct Planned {
     complete: bool,
     /// Why it is not complete.
     reason: Option<String>,
-    /// What the path does to a tether that runs from its anchor; absent for missions that are not to cover.
+    /// What the path does to the tether, or, without one, to a tether that would run from the anchor of a coverage
+    /// mission; absent for other missions.
     certificate: Option<Certificate>,
 }
 
@@ -84,13 +85,13 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
         planner: scenario.mission.planner.id.clone(),
         parameters: scenario.mission.planner.parameters.clone(),
         legs: legs(&plan),
-        cuts: plan.cuts,
         length_m: polyline::length_m(&plan.path),
-        path: plan.path,
         plan_time_ms,
         complete: plan.complete,
         reason,
         certificate,
+        cuts: plan.cuts,
+        path: plan.path,
     })
 }
 
@@ -112,12 +113,14 @@ fn partial_plan(fault: &Fault) -> anyhow::Result<Plan> {
     }
 }
 
-/// The judgement of a coverage plan, independent of its planner; without limits where there is no tether.
+/// What the path does to the tether, judged independently of its planner; where there is none, what it would do to one
+/// of any length.
 fn certificate(scenario: &Scenario, plan: &Plan) -> Option<Certificate> {
-    let TaskConfig::Cover { anchor, .. } = &scenario.mission.task else { return None };
     let drawing = scenario.sim.world.as_drawn();
-    let limits = scenario.mission.tether_limits();
-    let or_none = |limit: fn(&TetherLimits) -> f64| limits.as_ref().map_or(f64::INFINITY, limit);
+    if let Some(tether) = &scenario.mission.tether {
+        return Some(judge_from_start(tether, &scenario.mission, &plan.path, &plan.cuts, &drawing));
+    }
+    let TaskConfig::Cover { anchor, .. } = &scenario.mission.task else { return None };
     let case = Case {
         path: &plan.path,
         anchor: *anchor,
@@ -126,9 +129,9 @@ fn certificate(scenario: &Scenario, plan: &Plan) -> Option<Certificate> {
         obstacles: &drawing.obstacles,
         room_m: scenario.mission.room_m(),
         limits: Limits {
-            reel_m: or_none(|limits| limits.reel_m),
-            max_wrap_rad: or_none(|limits| limits.max_wrap_rad),
-            max_sum_wrap_rad: or_none(|limits| limits.max_sum_wrap_rad),
+            reel_m: f64::INFINITY,
+            max_wrap_rad: f64::INFINITY,
+            max_sum_wrap_rad: f64::INFINITY,
         },
         returns: true,
         cuts: &plan.cuts,

@@ -1,7 +1,8 @@
 //! What a mission is to do, and within which limits.
 
-use crate::link::Parameters;
+use crate::{link::Parameters, tether::TetherConfig};
 use planner_api::{Limits, Motion, TetherLimits};
+use positioning::{Aggregation, Forecast, RangeNoise, SolverKind};
 use serde::{Deserialize, Serialize};
 use world::{Point, Pose, coverage::Tool};
 
@@ -45,6 +46,17 @@ pub enum TaskConfig {
     },
 }
 
+impl TaskConfig {
+    /// The last place of the task; `None` for an empty path.
+    pub fn end(&self) -> Option<Point> {
+        match self {
+            Self::Goto { goal, .. } => Some(*goal),
+            Self::Follow { path, .. } => path.last().copied(),
+            Self::Cover { anchor, .. } => Some(*anchor),
+        }
+    }
+}
+
 /// What it takes for floor to count as scanned.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -55,6 +67,37 @@ pub struct ScanConfig {
     /// Half width of the 95 % position error above which nothing counts as scanned, metres; `None` for the limit
     /// above which the position counts as lost.
     pub position_limit_m: Option<f64>,
+}
+
+/// How ranges become a position.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Locating {
+    /// How single ranges scatter; none: normally, by [`MissionConfig::range_sigma_ratio`].
+    pub noise: Option<RangeNoise>,
+    /// How repetitions become one range.
+    pub aggregation: Aggregation,
+    /// How ranges become a fix.
+    pub solver: SolverKind,
+    /// Whether the speed of sound is found out under way.
+    pub calibrates_sound: bool,
+    /// Ranges per station and cycle, as far as forecasts of the accuracy go.
+    pub repetitions: u32,
+    /// Whether a station is of no use where an obstacle hides it.
+    pub needs_sight: bool,
+}
+
+impl Default for Locating {
+    fn default() -> Self {
+        Self {
+            noise: None,
+            aggregation: Aggregation::default(),
+            solver: SolverKind::default(),
+            calibrates_sound: false,
+            repetitions: 20,
+            needs_sight: false,
+        }
+    }
 }
 
 /// A mission as the engine needs it; made and checked by whoever reads the scenario.
@@ -94,9 +137,15 @@ pub struct MissionConfig {
     pub gyro_sigma_rad_per_s: f64,
     /// Standard deviation of a range as a share of the range.
     pub range_sigma_ratio: f64,
+    /// How ranges become a position.
+    #[serde(default)]
+    pub locating: Locating,
     /// What it takes for floor to count as scanned.
     #[serde(default)]
     pub scan: ScanConfig,
+    /// The tether; `None` for a robot without one.
+    #[serde(default)]
+    pub tether: Option<TetherConfig>,
     /// The planner that drives first.
     pub planner: PlannerChoice,
     /// The planner that takes over by itself after a fault, if any.
@@ -132,6 +181,19 @@ impl MissionConfig {
 
     /// What the tether bears, for planners; `None` without one.
     pub fn tether_limits(&self) -> Option<TetherLimits> {
-        None
+        self.tether.as_ref().map(TetherConfig::as_request)
+    }
+}
+
+impl MissionConfig {
+    /// What a forecast of the accuracy has to know, for cells of this edge.
+    pub fn forecast(&self, cell_m: f64) -> Forecast {
+        let normal = RangeNoise::Gaussian { sigma_ratio: self.range_sigma_ratio };
+        Forecast {
+            noise: self.locating.noise.unwrap_or(normal),
+            repetitions: self.locating.repetitions,
+            needs_sight: self.locating.needs_sight,
+            cell_m,
+        }
     }
 }

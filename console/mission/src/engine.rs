@@ -4,18 +4,21 @@ mod driving;
 mod orders;
 mod planning;
 mod scanning;
+mod tethering;
 
 use crate::{
     chart::Chart,
     config::{MissionConfig, PlannerChoice},
-    event::{Event, EventKind, HoldReason, Outcome},
+    event::{Event, EventKind, HoldReason, Outcome, TetherAlarm},
     follower::Follower,
     link::{PlannerInfo, PlannerLink},
     locate::Locator,
     order::Order,
     task::{StuckWatch, Task},
+    tether::Tether,
 };
 use planner_api::{Drive, Reason};
+use tethering::Cuts;
 use world::{CoverageGrid, Floor, FloorMaker, Point, Readings, World};
 
 /// A robot that is stuck again within this distance is stuck in the same place, metres.
@@ -53,6 +56,12 @@ pub struct Mission {
     coverage: CoverageGrid,
     /// Makes the floor anew when an obstacle was found; made for the first one.
     surveyor: Option<FloorMaker>,
+    /// `None` without a tether, or if its anchor cannot be.
+    tether: Option<Tether>,
+    /// What the plan keeps to.
+    cuts: Cuts,
+    /// What the cable reached in this tick.
+    cable_trouble: Option<TetherAlarm>,
     planner: Seat,
     stuck: StuckWatch,
     lost_s: f64,
@@ -91,6 +100,8 @@ struct Seat {
     fit: bool,
     /// Whether the automatic replacement after a fault has been used.
     fallback_used: bool,
+    /// Whether its last plan was refused because of the tether.
+    refused: bool,
     /// Whether its plan is still to be made, or made for a map that has changed since.
     plan_due: Option<Reason>,
 }
@@ -103,8 +114,14 @@ impl Mission {
         let start = config.start.position;
         Self {
             tick: 0,
+            tether: config
+                .tether
+                .as_ref()
+                .and_then(|tether| Tether::new(tether, config.limits.radius_m, &drawing, start).ok()),
+            cuts: Cuts { lines: Vec::new(), beyond: false, seen_at: start },
+            cable_trouble: None,
             phase: Phase::Waiting,
-            locator: Locator::new(&config, &drawing.stations),
+            locator: Locator::new(&config, &drawing),
             chart: Chart::new(drawing, &config, seed),
             task: Task::new(&config.task, start),
             coverage: CoverageGrid::new(floor),
@@ -114,6 +131,7 @@ impl Mission {
                 info: None,
                 fit: false,
                 fallback_used: false,
+                refused: false,
                 plan_due: Some(Reason::Start),
             },
             stuck: StuckWatch::new(config.stuck_s),
@@ -142,8 +160,9 @@ impl Mission {
         let before = self.locator.pose();
         let located = self.locator.take(input.readings);
         self.happened.extend(located);
-        self.look_around(input.readings);
+        let map_changed = self.look_around(input.readings);
         self.scan_from(before);
+        self.drag_tether(map_changed);
         self.apply_rules(input.readings, planner);
         let drive = match self.phase {
             Phase::Running | Phase::Stepping => self.drive(planner),
@@ -185,11 +204,14 @@ impl Mission {
 
     fn watch_moving(&mut self) {
         let here = self.locator.position();
-        self.lost_s = if self.locator.is_lost() { self.lost_s + self.config.tick_s } else { 0.0 };
-        if self.lost_s >= self.config.lost_hold_s {
-            self.hold(HoldReason::PositionLost);
+        let (lost, alarmed) = (self.locator.is_lost(), self.locator.is_alarmed());
+        self.lost_s = if lost || alarmed { self.lost_s + self.config.tick_s } else { 0.0 };
+        if self.lost_s >= self.config.lost_hold_s && (lost || alarmed) {
+            self.hold(if lost { HoldReason::PositionLost } else { HoldReason::PositionAlarmed });
         } else if self.task.is_done(here) {
-            self.end(Outcome::Complete, &self.done_reason());
+            self.end_done();
+        } else if self.watch_tether() {
+            // Told and done.
         } else if self.stuck.is_stuck(&self.task, here, self.config.tick_s) {
             if !self.tries_another_plan(here) {
                 self.stop_stuck(here);
@@ -224,11 +246,19 @@ impl Mission {
 
     fn watch_held(&mut self, reason: &HoldReason, planner: &mut dyn PlannerLink) {
         match reason {
-            HoldReason::PositionLost if !self.locator.is_lost() => self.go_on(Phase::Running),
-            HoldReason::PlannerFault { message } => self.replace_failed_planner(message, planner),
+            HoldReason::PositionLost | HoldReason::PositionAlarmed
+                if !self.locator.is_lost() && !self.locator.is_alarmed() =>
+            {
+                self.go_on(Phase::Running);
+            }
+            HoldReason::PlannerFault { message } | HoldReason::PlanRefused { message } => {
+                self.replace_failed_planner(message, planner);
+            }
             HoldReason::PositionLost
+            | HoldReason::PositionAlarmed
             | HoldReason::Operator
             | HoldReason::Stuck { .. }
+            | HoldReason::Tether { .. }
             | HoldReason::Stepped => {}
         }
     }

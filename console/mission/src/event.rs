@@ -12,6 +12,7 @@ use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, PoseEstimate, Reason}
 use positioning::{Exclusion, Fix, FixError, Ranging};
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use world::tether::Certificate;
 use world::{CellRun, KindRun, Obstacle, ObstacleId, Point, Pose, StationId, World};
 
 /// Version of the journal's form; raised when an old reader could not read a new journal.
@@ -46,6 +47,57 @@ pub enum EventKind {
         order: Order,
         /// Why, and what would be right.
         why: String,
+    },
+    /// How the cable truly lay at the top of this tick; told by the simulator, never known to the mission.
+    TetherTruth {
+        /// Cable between anchor and robot, metres.
+        length_m: f64,
+        /// Largest wrap on one obstacle, radians.
+        max_wrap_rad: f64,
+        /// Sum of all wraps, radians.
+        sum_wrap_rad: f64,
+        /// Cable that is out beyond the straight line from the anchor to the robot, metres.
+        detour_m: f64,
+    },
+    /// How the cable lies, by the estimated pose.
+    Tethered {
+        /// Cable between anchor and robot, metres.
+        length_m: f64,
+        /// What is left on the reel, metres.
+        free_m: f64,
+        /// Where it bears, from the anchor on.
+        contacts: Vec<TetherContact>,
+        /// Largest wrap on one obstacle, radians.
+        max_wrap_rad: f64,
+        /// Sum of all wraps, radians.
+        sum_wrap_rad: f64,
+        /// How many times harder the wraps make it to pull (capstan equation).
+        pull_factor: f64,
+        /// Length of the way back along the cable, metres; absent if the hull does not fit.
+        way_home_m: Option<f64>,
+        /// The cable from the anchor to the robot.
+        line: Vec<Point>,
+    },
+    /// The cable comes near to a limit, or has reached it.
+    TetherAlarmed {
+        /// Which limit.
+        alarm: TetherAlarm,
+        /// Whether it has been reached.
+        reached: bool,
+    },
+    /// The cable is well within a limit again.
+    TetherEased {
+        /// Which limit.
+        alarm: TetherAlarm,
+    },
+    /// A plan was judged for the tether.
+    Certified {
+        /// Whose plan.
+        planner: String,
+        /// Whether it may not be flown.
+        refused: bool,
+        /// The judgement.
+        certificate: Certificate,
     },
     /// Where the robot truly was at the top of this tick; told by the simulator, never known to the mission.
     Truth {
@@ -102,6 +154,15 @@ pub enum EventKind {
         /// Half width of the 95 % error, metres.
         error_m: f64,
     },
+    /// The ranges contradict each other, and leaving out a station does not mend it.
+    PositionAlarmed {
+        /// Sum of the squared residuals over their variances.
+        chi2: f64,
+        /// Stations used minus two.
+        degrees_of_freedom: u32,
+    },
+    /// The ranges agree again.
+    PositionTrusted,
     /// An obstacle that is not on the drawing was seen for the first time.
     ObstacleFound {
         /// Its outline as estimated, tank frame.
@@ -225,6 +286,83 @@ pub enum EventKind {
     },
 }
 
+/// Where the cable bears on an obstacle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TetherContact {
+    /// Name of the obstacle.
+    pub on: String,
+    /// Angle by which the cable turns there, radians, counter-clockwise.
+    pub wrap_rad: f64,
+    /// Last point of contact, seen from the anchor.
+    pub at: Point,
+}
+
+/// What may be wrong with the cable.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TetherAlarm {
+    /// The reel runs out.
+    Reel {
+        /// Cable out, metres.
+        out_m: f64,
+        /// Cable there is, metres.
+        reel_m: f64,
+    },
+    /// The cable wraps one obstacle.
+    Wrap {
+        /// Its name.
+        on: String,
+        /// Angle, radians, without sign.
+        wrap_rad: f64,
+        /// Largest angle allowed, radians.
+        limit_rad: f64,
+    },
+    /// All wraps together.
+    SumOfWraps {
+        /// Their sum, radians.
+        sum_rad: f64,
+        /// Largest sum allowed, radians.
+        limit_rad: f64,
+    },
+    /// The hull does not fit along the cable.
+    NoWayHome,
+    /// The robot has left its plan across a line that the plan never crosses: it is planned anew.
+    Strayed,
+}
+
+impl TetherAlarm {
+    /// The kind in a word.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Reel { .. } => "reel",
+            Self::Wrap { .. } => "wrap",
+            Self::SumOfWraps { .. } => "sum of wraps",
+            Self::NoWayHome => "way home",
+            Self::Strayed => "stray",
+        }
+    }
+}
+
+impl fmt::Display for TetherAlarm {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reel { out_m, reel_m } => {
+                write!(f, "{out_m:.1} m of cable out, the reel holds {reel_m:.1} m")
+            }
+            Self::Wrap { on, wrap_rad, limit_rad } => {
+                let (wrap, limit) = (wrap_rad.to_degrees(), limit_rad.to_degrees());
+                write!(f, "the cable wraps {wrap:.0} deg round {on}, limit {limit:.0} deg")
+            }
+            Self::SumOfWraps { sum_rad, limit_rad } => {
+                let (sum, limit) = (sum_rad.to_degrees(), limit_rad.to_degrees());
+                write!(f, "all wraps together reach {sum:.0} deg, limit {limit:.0} deg")
+            }
+            Self::Strayed => f.write_str("the robot strayed across a cut of its plan; planning anew"),
+            Self::NoWayHome => f.write_str("the hull does not fit back along the cable: no way home"),
+        }
+    }
+}
+
 /// Everything needed to repeat a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunOpened {
@@ -257,6 +395,8 @@ pub enum HoldReason {
     Operator,
     /// The position is lost.
     PositionLost,
+    /// The ranges contradict each other.
+    PositionAlarmed,
     /// The planner failed.
     PlannerFault {
         /// The fault's sentence.
@@ -265,6 +405,16 @@ pub enum HoldReason {
     /// The robot gets nowhere.
     Stuck {
         /// Where, as a sentence.
+        message: String,
+    },
+    /// The cable has reached a limit.
+    Tether {
+        /// Which, as a sentence.
+        message: String,
+    },
+    /// The plan cannot be certified for the tether.
+    PlanRefused {
+        /// Why, as a sentence.
         message: String,
     },
     /// A single step is done.
@@ -276,8 +426,11 @@ impl fmt::Display for HoldReason {
         match self {
             Self::Operator => f.write_str("held by the operator"),
             Self::PositionLost => f.write_str("held because the position is lost"),
+            Self::PositionAlarmed => f.write_str("held because the ranges contradict each other"),
             Self::PlannerFault { message } => write!(f, "held because of the planner: {message}"),
             Self::Stuck { message } => write!(f, "held because the robot is stuck: {message}"),
+            Self::Tether { message } => write!(f, "held because of the tether: {message}"),
+            Self::PlanRefused { message } => write!(f, "held because a plan was refused: {message}"),
             Self::Stepped => f.write_str("held after a single step"),
         }
     }
@@ -295,6 +448,8 @@ pub enum Outcome {
     Collision,
     /// Time is up.
     TimeLimit,
+    /// Back at the anchor with cable left out, or held by the cable with nobody there to help.
+    Entangled,
     /// Ended by the operator, or because nobody was there to help.
     Aborted,
 }
@@ -307,6 +462,7 @@ impl Outcome {
             Self::Stuck => "stuck",
             Self::Collision => "collision",
             Self::TimeLimit => "time_limit",
+            Self::Entangled => "entangled",
             Self::Aborted => "aborted",
         }
     }
@@ -331,7 +487,7 @@ pub enum Severity {
 pub struct LogLine {
     /// How much it asks of the operator.
     pub severity: Severity,
-    /// `cmd`, `ae`, `plan`, `map`, `robot` or `mission`.
+    /// `cmd`, `ae`, `plan`, `map`, `robot`, `tether` or `mission`.
     pub source: &'static str,
     /// One sentence.
     pub text: String,
@@ -371,6 +527,14 @@ impl Event {
             EventKind::PositionRegained { error_m } => {
                 line(Severity::Info, "ae", format!("position regained: 95 % error {error_m:.2} m"))
             }
+            EventKind::PositionAlarmed { chi2, degrees_of_freedom } => line(
+                Severity::Crit,
+                "ae",
+                format!(
+                    "ranges contradict each other: chi-squared {chi2:.0}, {degrees_of_freedom} degrees of freedom"
+                ),
+            ),
+            EventKind::PositionTrusted => line(Severity::Info, "ae", "ranges agree again".into()),
             EventKind::ObstacleFound { obstacle } => {
                 let at = obstacle.shape.center();
                 line(
@@ -407,7 +571,22 @@ impl Event {
                 let severity = if *outcome == Outcome::Complete { Severity::Info } else { Severity::Warn };
                 line(severity, "mission", format!("ended {}: {reason}", outcome.word()))
             }
+            EventKind::TetherAlarmed { alarm, reached } => {
+                let severity = if *reached { Severity::Crit } else { Severity::Warn };
+                let near = if *reached || *alarm == TetherAlarm::Strayed { "" } else { "near a limit: " };
+                line(severity, "tether", format!("{near}{alarm}"))
+            }
+            EventKind::TetherEased { alarm } => {
+                line(Severity::Info, "tether", format!("{} well within its limit again", alarm.word()))
+            }
+            EventKind::Certified { planner, refused, certificate } => line(
+                certificate_severity(*refused, certificate),
+                "tether",
+                certificate_text(planner, *refused, certificate),
+            ),
             EventKind::Truth { .. }
+            | EventKind::TetherTruth { .. }
+            | EventKind::Tethered { .. }
             | EventKind::Ranged { .. }
             | EventKind::Fixed { .. }
             | EventKind::FixFailed { .. }
@@ -427,9 +606,12 @@ impl Event {
 fn hold_severity(by: &HoldReason) -> Severity {
     match by {
         HoldReason::Operator | HoldReason::Stepped => Severity::Info,
-        HoldReason::PositionLost | HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => {
-            Severity::Warn
-        }
+        HoldReason::PositionLost
+        | HoldReason::PositionAlarmed
+        | HoldReason::PlannerFault { .. }
+        | HoldReason::PlanRefused { .. }
+        | HoldReason::Tether { .. }
+        | HoldReason::Stuck { .. } => Severity::Warn,
     }
 }
 
@@ -439,9 +621,34 @@ fn order_text(order: &Order) -> String {
         Order::Hold => "hold".into(),
         Order::Resume => "resume".into(),
         Order::Step => "single step".into(),
+        Order::FlyUncertified => "fly without a certificate".into(),
         Order::Abort => "end the mission".into(),
         Order::ChoosePlanner(choice) => format!("choose planner {}", choice.id),
         Order::SetParameter { key, value } => format!("set {key} = {value}"),
+    }
+}
+
+fn certificate_severity(refused: bool, certificate: &Certificate) -> Severity {
+    match (refused, certificate.certified) {
+        (true, _) => Severity::Crit,
+        (false, true) => Severity::Info,
+        (false, false) => Severity::Warn,
+    }
+}
+
+fn certificate_text(planner: &str, refused: bool, certificate: &Certificate) -> String {
+    let reasons = certificate.reasons.join("; ");
+    match (refused, certificate.certified) {
+        (true, _) => format!("plan of {planner} refused: {reasons}"),
+        (false, false) => format!("plan of {planner} flies without a certificate: {reasons}"),
+        (false, true) => {
+            let left =
+                certificate.left_out_m.map_or_else(String::new, |m| format!(", {m:.1} m left out on return"));
+            format!(
+                "plan of {planner} certified: at most {:.1} m of cable out{left}",
+                certificate.max_cable_m
+            )
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 
 mod chart;
 pub mod config;
+mod drift;
 pub mod drive;
 pub mod engine;
 pub mod event;
@@ -17,8 +18,9 @@ mod locate;
 pub mod order;
 mod preview;
 mod task;
+pub mod tether;
 
-pub use config::{MissionConfig, PlannerChoice, ScanConfig, TaskConfig};
+pub use config::{Locating, MissionConfig, PlannerChoice, ScanConfig, TaskConfig};
 pub use engine::{Input, Mission, Phase, Step};
 pub use event::{Event, EventKind, HoldReason, LogLine, Outcome, RunOpened, Severity};
 pub use link::{
@@ -26,3 +28,4 @@ pub use link::{
 };
 pub use order::Order;
 pub use preview::preview;
+pub use tether::TetherConfig;

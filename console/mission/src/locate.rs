@@ -2,39 +2,51 @@
 
 use crate::{config::MissionConfig, event::EventKind};
 use planner_api::PoseEstimate;
-use positioning::{Exclusion, Fix, MotionNoise, Positioner, PositionerConfig};
-use std::collections::BTreeSet;
-use world::{Point, Pose, Readings, Station, StationId};
+use positioning::{
+    Exclusion, Fix, FixError, Integrity, MotionNoise, Positioner, PositionerConfig, RangeNoise,
+};
+use std::{collections::BTreeMap, mem::discriminant};
+use world::{Point, Pose, Readings, StationId, World};
 
 /// The positioner with its memory of which stations were used and whether the position was good.
 pub struct Locator {
     positioner: Positioner,
     limit_m: f64,
-    left_out: BTreeSet<StationId>,
+    left_out: BTreeMap<StationId, Exclusion>,
     last_cycle_failed: bool,
     lost: bool,
+    alarmed: bool,
 }
 
 impl Locator {
     /// A locator at the surveyed start.
-    pub fn new(config: &MissionConfig, stations: &[Station]) -> Self {
+    pub fn new(config: &MissionConfig, drawing: &World) -> Self {
+        let locating = &config.locating;
+        let normal = RangeNoise::Gaussian { sigma_ratio: config.range_sigma_ratio };
         let positioner = Positioner::new(PositionerConfig {
             start_sigma_m: config.start_sigma_m,
             heading_sigma_rad: config.start_heading_sigma_rad,
-            range_sigma_ratio: config.range_sigma_ratio,
+            noise: locating.noise.unwrap_or(normal),
+            aggregation: locating.aggregation,
+            solver: locating.solver,
+            calibrates_sound: locating.calibrates_sound,
+            boundary: Some(drawing.boundary.clone()),
             odometry: MotionNoise {
                 sigma_per_m: config.odometry_sigma_per_m,
                 turn_sigma_ratio: config.odometry_turn_sigma_per_rad,
                 heading_sigma_per_tick_rad: config.gyro_sigma_rad_per_s * config.tick_s,
+                way_sigma_ratio: 0.0,
+                slip_chance: 0.0,
             },
-            ..PositionerConfig::new(stations.to_vec(), config.start)
+            ..PositionerConfig::new(drawing.stations.clone(), config.start)
         });
         Self {
             positioner,
             limit_m: config.position_limit_m,
-            left_out: BTreeSet::new(),
+            left_out: BTreeMap::new(),
             last_cycle_failed: false,
             lost: false,
+            alarmed: false,
         }
     }
 
@@ -50,6 +62,7 @@ impl Locator {
     fn cycle(&mut self, readings: &Readings) -> Vec<EventKind> {
         let result = self.positioner.cycle(&readings.ranges);
         let mut events = vec![EventKind::Ranged { ranges: result.rangings }];
+        events.extend(self.heed(&result.fix));
         match result.fix {
             Ok(fix) => {
                 events.extend(self.stations_changed(&fix));
@@ -64,15 +77,35 @@ impl Locator {
         events
     }
 
-    fn stations_changed(&mut self, fix: &Fix) -> Vec<EventKind> {
-        let out: BTreeSet<StationId> = fix.excluded.iter().map(|(station, _)| *station).collect();
-        let reason_of = |station: &StationId| {
-            fix.excluded.iter().find(|(id, _)| id == station).map_or(Exclusion::Silent, |(_, reason)| *reason)
+    /// Raises the alarm when ranges contradict each other beyond what leaving out a station mends, and ends it with
+    /// the next fix that holds together. A cycle that tells nothing changes nothing.
+    fn heed(&mut self, fix: &Result<Fix, FixError>) -> Option<EventKind> {
+        let contradiction = match fix {
+            Ok(fix) if fix.integrity == Integrity::Alarm => Some((fix.chi2, fix.degrees_of_freedom)),
+            Ok(_) => None,
+            Err(FixError::Inconsistent { chi2, degrees_of_freedom }) => Some((*chi2, *degrees_of_freedom)),
+            Err(_) => return None,
         };
-        let newly_out = out.difference(&self.left_out);
-        let back = self.left_out.difference(&out);
+        let was_alarmed = std::mem::replace(&mut self.alarmed, contradiction.is_some());
+        match contradiction {
+            Some((chi2, degrees_of_freedom)) if !was_alarmed => {
+                Some(EventKind::PositionAlarmed { chi2, degrees_of_freedom })
+            }
+            None if was_alarmed => Some(EventKind::PositionTrusted),
+            _ => None,
+        }
+    }
+
+    fn stations_changed(&mut self, fix: &Fix) -> Vec<EventKind> {
+        let out: BTreeMap<StationId, Exclusion> = fix.excluded.iter().copied().collect();
+        // A new reason is news, a new number is not.
+        let is_news = |(station, reason): &(&StationId, &Exclusion)| {
+            self.left_out.get(station).is_none_or(|before| discriminant(before) != discriminant(*reason))
+        };
+        let newly_out = out.iter().filter(is_news);
+        let back = self.left_out.keys().filter(|station| !out.contains_key(station));
         let events = newly_out
-            .map(|station| EventKind::StationExcluded { station: *station, reason: reason_of(station) })
+            .map(|(station, reason)| EventKind::StationExcluded { station: *station, reason: *reason })
             .chain(back.map(|station| EventKind::StationRegained { station: *station }))
             .collect();
         self.left_out = out;
@@ -88,6 +121,11 @@ impl Locator {
         } else {
             EventKind::PositionRegained { error_m }
         })
+    }
+
+    /// Whether the ranges contradict each other, so that nobody knows which to believe.
+    pub fn is_alarmed(&self) -> bool {
+        self.alarmed
     }
 
     /// Whether the position error is beyond the limit.

@@ -15,6 +15,8 @@ pub enum Order {
     Resume,
     /// While held: move for one tick.
     Step,
+    /// While held for a plan that was refused because of the tether: fly it, and every later plan.
+    FlyUncertified,
     /// End the mission here.
     Abort,
     /// While held or waiting: another planner takes over.

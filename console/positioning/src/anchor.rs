@@ -32,6 +32,11 @@ pub(crate) struct View {
 }
 
 impl View {
+    /// Residual in its own sigmas.
+    pub fn sigmas(&self) -> f64 {
+        self.residual_m / self.sigma_m
+    }
+
     /// Squared residual in its own sigmas.
     pub fn squared_error(&self) -> f64 {
         (self.residual_m / self.sigma_m).powi(2)

@@ -1,6 +1,6 @@
 //! Seeded truths and noise for the tests of this crate.
 
-use crate::{Aggregation, Ranging};
+use crate::{Aggregation, RangeNoise, Ranging};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use world::{Point, RangeSet, Station, StationId};
@@ -54,11 +54,6 @@ impl Draws {
         Self { ratio, repetitions, rng: Pcg64::seed_from_u64(seed) }
     }
 
-    /// Standard deviation of one range as a share of the range.
-    pub fn sigma_ratio(&self) -> f64 {
-        self.ratio / 3.0_f64.sqrt()
-    }
-
     /// A number evenly between -1 and 1.
     pub fn even(&mut self) -> f64 {
         self.rng.random_range(-1.0..1.0)
@@ -92,20 +87,12 @@ impl Draws {
 
     /// One ranging cycle, aggregated.
     pub fn rangings(&mut self, stations: &[Station], truth: Point, how: Aggregation) -> Vec<Ranging> {
-        let sigma_ratio = self.sigma_ratio();
-        how.aggregate(&self.cycle(stations, truth), sigma_ratio).expect("true distances give usable ranges")
+        let noise = RangeNoise::Uniform { ratio: self.ratio };
+        how.aggregate(&self.cycle(stations, truth), &noise).expect("true distances give usable ranges")
     }
 }
 
 /// Ranges without error and with a sigma of 3 cm.
 pub fn exact(stations: &[Station], truth: Point) -> Vec<Ranging> {
-    stations
-        .iter()
-        .map(|s| Ranging {
-            station: s.id,
-            range_m: (truth - s.position).norm(),
-            sigma_m: 0.03,
-            repetitions: 1,
-        })
-        .collect()
+    stations.iter().map(|s| Ranging::single(s.id, (truth - s.position).norm(), 0.03)).collect()
 }

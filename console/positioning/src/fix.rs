@@ -15,6 +15,17 @@ pub struct Ranging {
     pub sigma_m: f64,
     /// How many repetitions are behind it.
     pub repetitions: u32,
+    /// The shortest repetition, metres.
+    pub least_m: f64,
+    /// The longest repetition, metres.
+    pub most_m: f64,
+}
+
+impl Ranging {
+    /// A range of a single repetition.
+    pub fn single(station: StationId, range_m: f64, sigma_m: f64) -> Self {
+        Self { station, range_m, sigma_m, repetitions: 1, least_m: range_m, most_m: range_m }
+    }
 }
 
 /// How well a station fits the fix.
@@ -57,6 +68,20 @@ pub enum Integrity {
     Alarm,
 }
 
+impl Integrity {
+    /// The one that is trusted less.
+    #[must_use]
+    pub fn min_trust(self, other: Self) -> Self {
+        let doubt = |integrity| match integrity {
+            Self::Ok => 0,
+            Self::Untestable => 1,
+            Self::Suspect => 2,
+            Self::Alarm => 3,
+        };
+        if doubt(other) > doubt(self) { other } else { self }
+    }
+}
+
 /// A position from ranges.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fix {
@@ -80,7 +105,8 @@ pub struct Fix {
     pub conditioning: f64,
     /// The other position that fits nearly as well, if there is one.
     pub mirror: Option<Point>,
-    /// Radius that holds the truth unless an undetected fault is worse than the design case, metres.
+    /// Radius that holds the truth even if any single station used is wrong without showing it, metres; `None` if
+    /// the others alone would give no position.
     pub protection_level_m: Option<f64>,
     /// How far to trust it.
     pub integrity: Integrity,
@@ -157,6 +183,14 @@ pub enum FixError {
     NotConverged {
         /// How many were tried.
         iterations: usize,
+    },
+    /// No place in the tank is within the bounds of all ranges: the noise is not what it was said to be.
+    #[error(
+        "no position is within {:.1} % of all ranges: the bound is too small, or a range is wrong", ratio * 100.0
+    )]
+    EmptySet {
+        /// Largest error that was granted, as a share of the distance.
+        ratio: f64,
     },
     /// The solution lies outside the tank by more than its own uncertainty.
     #[error("the solution lies {by_m:.2} m outside the tank")]

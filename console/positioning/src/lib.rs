@@ -4,12 +4,22 @@
 //! Cost: a fix takes a few microseconds, a step of the filter less than one.
 
 pub mod fix;
+pub mod noise;
 
 pub mod aggregate;
+pub mod bounded;
+pub mod consensus;
 pub mod linear;
 pub mod nonlinear;
+pub mod screened;
+pub mod weighted;
 
+pub mod accuracy;
+
+pub mod calibration;
 pub mod ekf;
+pub mod fixed_lag;
+pub mod particle;
 pub mod positioner;
 
 mod anchor;
@@ -18,9 +28,21 @@ mod draws;
 mod pair;
 mod quality;
 
+pub use accuracy::{
+    Accuracy, AccuracyMap, Forecast,
+    adviser::{Advice, AdviceError, advise},
+};
 pub use aggregate::Aggregation;
+pub use bounded::Bounded;
+pub use calibration::{Calibration, Unknowns};
+pub use consensus::{Consensus, WrongRanges};
 pub use ekf::{Ekf, MotionNoise};
 pub use fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Ranging, Residual};
+pub use fixed_lag::FixedLag;
 pub use linear::LinearLs;
+pub use noise::RangeNoise;
 pub use nonlinear::Nls;
+pub use particle::{Particles, ParticlesConfig};
 pub use positioner::{CycleResult, Estimate, Positioner, PositionerConfig, SolverKind};
+pub use screened::Screened;
+pub use weighted::WeightedLinear;

@@ -30,8 +30,9 @@ const MIRROR_MARGIN: f64 = 9.0;
 /// goes on with Newton steps under Levenberg-Marquardt damping; plain Gauss-Newton steps zigzag on the small range
 /// circle of a station close by. Reaches the Cramér-Rao bound of normal noise.
 ///
-/// Stations on one line, and two stations, need a prior: there is a mirror solution, and the prior chooses. It has no
-/// other influence on the fix.
+/// Stations on one line need a prior: there is a mirror solution, and the prior chooses. Two stations give both
+/// crossings of their circles, one as position and the other as mirror; a prior chooses there too. It has no other
+/// influence on the fix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Nls;
 
@@ -42,17 +43,20 @@ impl PositionSolver for Nls {
         stations: &[Station],
         prior: Option<(Point, Matrix2<f64>)>,
     ) -> Result<Fix, FixError> {
-        let anchors = anchored(ranges, stations)?;
-        let prior =
-            prior.filter(|(at, covariance)| at.iter().chain(covariance.iter()).all(|c| c.is_finite()));
-        match (anchors.as_slice(), prior) {
-            ([first, second], Some((near, _))) => solve_pair(first, second, near),
-            ([] | [_] | [_, _], _) => Err(FixError::TooFewStations {
-                have: anchors.len(),
-                need: if prior.is_some() { 2 } else { 3 },
-            }),
-            _ => solve_many(&anchors, prior),
-        }
+        solve_anchors(&anchored(ranges, stations)?, prior)
+    }
+}
+
+/// The least squares fit to anchors; two of them leave both crossings of their circles, and a prior chooses.
+pub(crate) fn solve_anchors(
+    anchors: &[Anchor],
+    prior: Option<(Point, Matrix2<f64>)>,
+) -> Result<Fix, FixError> {
+    let prior = prior.filter(|(at, covariance)| at.iter().chain(covariance.iter()).all(|c| c.is_finite()));
+    match anchors {
+        [first, second] => solve_pair(first, second, prior.map(|(near, _)| near)),
+        [] | [_] => Err(FixError::TooFewStations { have: anchors.len(), need: 2 }),
+        _ => solve_many(anchors, prior),
     }
 }
 
@@ -75,14 +79,22 @@ fn solve_many(anchors: &[Anchor], prior: Option<(Point, Matrix2<f64>)>) -> Resul
 ///
 /// The valley of such a small circle is narrow and bent, and a descent along it takes hundreds of steps.
 fn around_the_nearest(anchors: &[Anchor], start: Point) -> Point {
-    let longest_m = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
-    let nearest = anchors.iter().min_by(|a, b| a.range_m.total_cmp(&b.range_m));
-    let Some(nearest) = nearest.filter(|n| n.range_m < SHORT_RANGE * longest_m) else { return start };
-    let on_circle = (0..CIRCLE_STARTS)
-        .map(|k| Rotation2::new(TAU * f64::from(k) / f64::from(CIRCLE_STARTS)) * Vector::x())
-        .map(|direction| nearest.at + direction * nearest.range_m);
     let cost = |position: Point| anchors.iter().map(|a| a.view_from(position).squared_error()).sum::<f64>();
-    std::iter::once(start).chain(on_circle).min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(start)
+    std::iter::once(start)
+        .chain(on_near_circle(anchors))
+        .min_by(|a, b| cost(*a).total_cmp(&cost(*b)))
+        .unwrap_or(start)
+}
+
+/// Places on the range circle of a station that is close by; none if there is no such station.
+pub(crate) fn on_near_circle(anchors: &[Anchor]) -> impl Iterator<Item = Point> {
+    let longest_m = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
+    let nearest = anchors.iter().min_by(|a, b| a.range_m.total_cmp(&b.range_m)).copied();
+    nearest.filter(|n| n.range_m < SHORT_RANGE * longest_m).into_iter().flat_map(|nearest| {
+        (0..CIRCLE_STARTS)
+            .map(|k| Rotation2::new(TAU * f64::from(k) / f64::from(CIRCLE_STARTS)) * Vector::x())
+            .map(move |direction| nearest.at + direction * nearest.range_m)
+    })
 }
 
 /// Where a descent ended.
@@ -158,17 +170,17 @@ fn descend(anchors: &[Anchor], start: Point) -> Result<Minimum, FixError> {
 }
 
 /// The cost at a position with its derivatives.
-struct Slope {
-    cost: f64,
-    gradient: Vector,
+pub(crate) struct Slope {
+    pub cost: f64,
+    pub gradient: Vector,
     /// Second derivatives as far as Gauss and Newton take them.
-    curvature: Matrix2<f64>,
+    pub curvature: Matrix2<f64>,
     /// What they leave out: the bend of the range circles, which matters close to a station.
     bend: Matrix2<f64>,
 }
 
 impl Slope {
-    fn at(anchors: &[Anchor], position: Point) -> Self {
+    pub fn at(anchors: &[Anchor], position: Point) -> Self {
         let mut slope = Self {
             cost: 0.0,
             gradient: Vector::zeros(),
@@ -192,7 +204,7 @@ impl Slope {
     /// The damped Newton step downhill; none if the numbers have run away.
     ///
     /// Damping by the trace also holds where the stations see the position from one direction only.
-    fn step(&self, damping: f64) -> Option<Vector> {
+    pub fn step(&self, damping: f64) -> Option<Vector> {
         let least = Matrix2::identity() * (damping * self.curvature.trace());
         let inverse = inverse_of(&(made_positive(self.curvature + self.bend) + least))?;
         Some(-(inverse * self.gradient)).filter(|step| step.iter().all(|c| c.is_finite()))
@@ -210,7 +222,7 @@ fn made_positive(matrix: Matrix2<f64>) -> Matrix2<f64> {
 }
 
 /// Inverse of the covariance: `sum u_i u_i^T / sigma_i^2` with `u_i` the directions from the stations.
-fn information_at(anchors: &[Anchor], position: Point) -> Matrix2<f64> {
+pub(crate) fn information_at(anchors: &[Anchor], position: Point) -> Matrix2<f64> {
     anchors
         .iter()
         .map(|a| a.view_from(position))

@@ -12,11 +12,11 @@ use world::{Point, Vector};
 /// Circles that miss each other by more than this many sigmas contradict each other.
 const GAP_SIGMAS: f64 = 3.0;
 
-/// The crossing of two range circles that is nearer to `near`; the other one is reported as mirror.
+/// The crossing of two range circles that is nearer to `near`, or any one; the other one is reported as mirror.
 ///
 /// Where the circles touch or just miss each other the position is on the line between the stations, and its
 /// uncertainty across that line is the half chord that the range errors can open.
-pub(crate) fn solve_pair(first: &Anchor, second: &Anchor, near: Point) -> Result<Fix, FixError> {
+pub(crate) fn solve_pair(first: &Anchor, second: &Anchor, near: Option<Point>) -> Result<Fix, FixError> {
     let baseline = second.at - first.at;
     let d = baseline.norm();
     if d < 1e-6 {
@@ -42,7 +42,7 @@ pub(crate) fn solve_pair(first: &Anchor, second: &Anchor, near: Point) -> Result
         });
     }
     let y = y2.max(0.0).sqrt();
-    let side = if across.dot(&(near - first.at)) < 0.0 { -1.0 } else { 1.0 };
+    let side = if near.is_some_and(|near| across.dot(&(near - first.at)) < 0.0) { -1.0 } else { 1.0 };
     let crossing = |side: f64| first.at + along * x + across * (side * y);
     let y_by = y2_by * (side / (2.0 * y2.max(y2_sigma).max(1e-12).sqrt()));
     let by_ranges = (along * x_by.transpose() + across * y_by.transpose()) * Matrix2::from_diagonal(&sigma);
@@ -65,7 +65,7 @@ mod tests {
     #[test]
     fn the_prior_chooses_the_crossing_and_the_other_is_the_mirror() {
         let (a, b) = (anchor(1, -4.0, 0.0, 5.0), anchor(2, 4.0, 0.0, 5.0));
-        let fix = solve_pair(&a, &b, Point::new(0.5, -1.0)).unwrap();
+        let fix = solve_pair(&a, &b, Some(Point::new(0.5, -1.0))).unwrap();
         assert!((fix.position - Point::new(0.0, -3.0)).norm() < 1e-9);
         assert!((fix.mirror.unwrap() - Point::new(0.0, 3.0)).norm() < 1e-9);
         assert_eq!(fix.integrity, Integrity::Untestable);
@@ -74,7 +74,7 @@ mod tests {
     #[test]
     fn the_covariance_is_that_of_the_inverse_geometry() {
         let (a, b) = (anchor(1, -4.0, 1.0, 5.0), anchor(2, 3.0, 0.0, 4.0));
-        let fix = solve_pair(&a, &b, Point::new(0.0, 5.0)).unwrap();
+        let fix = solve_pair(&a, &b, Some(Point::new(0.0, 5.0))).unwrap();
         let rows = [a, b].map(|s| (fix.position - s.at).normalize());
         let geometry = Matrix2::from_rows(&[rows[0].transpose(), rows[1].transpose()]);
         let expected = (geometry.transpose() * geometry).try_inverse().unwrap() * 0.03_f64.powi(2);
@@ -83,8 +83,7 @@ mod tests {
 
     #[test]
     fn circles_that_just_miss_give_the_touching_point_with_a_wide_error_across() {
-        let fix =
-            solve_pair(&anchor(1, -4.0, 0.0, 3.98), &anchor(2, 4.0, 0.0, 3.98), Point::origin()).unwrap();
+        let fix = solve_pair(&anchor(1, -4.0, 0.0, 3.98), &anchor(2, 4.0, 0.0, 3.98), None).unwrap();
         assert!(fix.position.coords.norm() < 1e-9);
         assert!(fix.mirror.is_none());
         assert!(fix.covariance[(1, 1)] > 20.0 * fix.covariance[(0, 0)]);
@@ -93,7 +92,7 @@ mod tests {
 
     #[test]
     fn circles_far_apart_contradict_each_other() {
-        let answer = solve_pair(&anchor(1, -4.0, 0.0, 1.0), &anchor(2, 4.0, 0.0, 1.0), Point::origin());
+        let answer = solve_pair(&anchor(1, -4.0, 0.0, 1.0), &anchor(2, 4.0, 0.0, 1.0), None);
         assert!(matches!(answer, Err(FixError::Inconsistent { .. })));
     }
 }

@@ -2,22 +2,25 @@
 
 use crate::{
     aggregate::Aggregation,
+    bounded::Bounded,
+    calibration::{Calibration, Unknowns},
+    consensus::Consensus,
     ekf::{Ekf, MotionNoise},
     fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Ranging},
     linear::LinearLs,
+    noise::RangeNoise,
     nonlinear::Nls,
-    quality::residual_gate_m,
+    screened::Screened,
+    weighted::WeightedLinear,
 };
-use nalgebra::Matrix3;
+use nalgebra::{Matrix2, Matrix3};
 use serde::{Deserialize, Serialize};
-use world::{Odometry, Pose, RangeSet, Station, StationId};
+use world::{Boundary, Odometry, Point, Pose, RangeSet, Station, StationId};
 
 /// So many sound fixes in a row that contradict the filter prove the filter wrong.
 const PATIENCE: u32 = 3;
 /// Doubt about the heading after the filter was proved wrong, radians.
 const RESTART_HEADING_SIGMA_RAD: f64 = 0.3;
-/// Stations needed to find out which one is wrong.
-const NEEDED_TO_EXCLUDE: usize = 5;
 
 /// Which solver turns ranges into fixes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -25,18 +28,47 @@ const NEEDED_TO_EXCLUDE: usize = 5;
 pub enum SolverKind {
     /// [`LinearLs`].
     Linear,
+    /// [`WeightedLinear`].
+    WeightedLinear,
     /// [`Nls`].
     #[default]
     Nls,
+    /// [`Bounded`] by the bound of the noise; [`Nls`] where the noise has none, and, with the fix suspect, where no
+    /// position is left.
+    Bounded,
+    /// [`Consensus`] among late ranges.
+    Consensus,
 }
 
 impl SolverKind {
-    fn solver(self) -> &'static dyn PositionSolver {
-        match self {
-            Self::Linear => &LinearLs,
-            Self::Nls => &Nls,
+    /// Turns ranges into a fix; a single station that contradicts all others is left out.
+    ///
+    /// # Errors
+    /// See [`FixError`].
+    pub fn solve(
+        self,
+        ranges: &[Ranging],
+        stations: &[Station],
+        noise: &RangeNoise,
+        prior: Option<(Point, Matrix2<f64>)>,
+    ) -> Result<Fix, FixError> {
+        match (self, noise.bound_ratio()) {
+            (Self::Linear, _) => Screened(LinearLs).solve(ranges, stations, prior),
+            (Self::WeightedLinear, _) => Screened(WeightedLinear).solve(ranges, stations, prior),
+            (Self::Consensus, _) => Consensus::default().solve(ranges, stations, prior),
+            (Self::Bounded, Some(ratio)) => {
+                Bounded { ratio }.solve(ranges, stations, prior).or_else(|error| match error {
+                    FixError::EmptySet { .. } => doubted(Screened(Nls).solve(ranges, stations, prior)),
+                    other => Err(other),
+                })
+            }
+            (Self::Nls | Self::Bounded, _) => Screened(Nls).solve(ranges, stations, prior),
         }
     }
+}
+
+fn doubted(fix: Result<Fix, FixError>) -> Result<Fix, FixError> {
+    fix.map(|fix| Fix { integrity: fix.integrity.min_trust(Integrity::Suspect), ..fix })
 }
 
 /// What the positioner has to know beforehand.
@@ -50,14 +82,18 @@ pub struct PositionerConfig {
     pub start_sigma_m: f64,
     /// Standard deviation of the start's heading, radians.
     pub heading_sigma_rad: f64,
-    /// Standard deviation of a single range as a share of the range.
-    pub range_sigma_ratio: f64,
+    /// How single ranges scatter.
+    pub noise: RangeNoise,
     /// How odometry errs.
     pub odometry: MotionNoise,
     /// How repetitions become one range.
     pub aggregation: Aggregation,
     /// How ranges become a fix.
     pub solver: SolverKind,
+    /// The wall of the tank: a fix clearly behind it is none.
+    pub boundary: Option<Boundary>,
+    /// Whether the speed of sound is found out under way; needs four stations.
+    pub calibrates_sound: bool,
 }
 
 impl PositionerConfig {
@@ -68,10 +104,12 @@ impl PositionerConfig {
             start,
             start_sigma_m: 0.05,
             heading_sigma_rad: 0.05,
-            range_sigma_ratio: 0.03,
+            noise: RangeNoise::Gaussian { sigma_ratio: 0.03 },
             odometry: MotionNoise::default(),
             aggregation: Aggregation::default(),
             solver: SolverKind::default(),
+            boundary: None,
+            calibrates_sound: false,
         }
     }
 }
@@ -101,6 +139,7 @@ pub struct CycleResult {
 pub struct Positioner {
     config: PositionerConfig,
     filter: Ekf,
+    sound: Calibration,
     refused_in_a_row: u32,
 }
 
@@ -108,7 +147,8 @@ impl Positioner {
     /// A positioner at the surveyed start.
     pub fn new(config: PositionerConfig) -> Self {
         let filter = Ekf::new(config.start, config.start_sigma_m, config.heading_sigma_rad, config.odometry);
-        Self { config, filter, refused_in_a_row: 0 }
+        let sound = Calibration::new(&config.stations, Unknowns::default());
+        Self { config, filter, sound, refused_in_a_row: 0 }
     }
 
     /// Moves the estimate by one tick of odometry.
@@ -121,10 +161,16 @@ impl Positioner {
     /// With one or two stations there is no fix to be had without help: with two the estimate chooses the mirror, with
     /// one the range itself goes into the estimate.
     pub fn cycle(&mut self, sets: &[RangeSet]) -> CycleResult {
-        let rangings = match self.config.aggregation.aggregate(sets, self.config.range_sigma_ratio) {
+        let mut rangings = match self.config.aggregation.aggregate(sets, &self.config.noise) {
             Ok(rangings) => rangings,
             Err(error) => return CycleResult { rangings: Vec::new(), fix: Err(error), accepted: false },
         };
+        if self.config.calibrates_sound {
+            let prior = (self.filter.pose().position, self.filter.position_covariance());
+            // A cycle without a position tells nothing; why there is none, the fix will say.
+            let _ = self.sound.take(&rangings, Some(prior));
+            rangings = self.sound.corrected(&rangings);
+        }
         let mut fix = self.solve(&rangings);
         let accepted = match &mut fix {
             Ok(fix) => self.take_fix(fix, &rangings),
@@ -139,42 +185,27 @@ impl Positioner {
         Estimate { pose: self.filter.pose(), covariance: self.filter.covariance() }
     }
 
+    /// By how much too long all ranges are, as a share, and its standard deviation; if it is being found out.
+    pub fn sound_scale(&self) -> Option<(f64, f64)> {
+        self.config.calibrates_sound.then(|| self.sound.scale())
+    }
+
     /// Longer half axis of the 95 % ellipse of the position, metres.
     pub fn error_95_m(&self) -> f64 {
         self.filter.error_95_m()
     }
 
     fn solve(&self, rangings: &[Ranging]) -> Result<Fix, FixError> {
-        let mut fix = self.solve_with(rangings)?;
-        if fix.integrity == Integrity::Alarm && rangings.len() >= NEEDED_TO_EXCLUDE {
-            fix = self.without_the_worst(rangings).unwrap_or(fix);
+        let prior = (self.filter.pose().position, self.filter.position_covariance());
+        let config = &self.config;
+        let mut fix = config.solver.solve(rangings, &config.stations, &config.noise, Some(prior))?;
+        if let Some(boundary) = &config.boundary {
+            fix.check_inside(boundary)?;
         }
-        let silent = self.config.stations.iter().map(|s| s.id).filter(|id| !is_heard(*id, rangings));
+        let silent = config.stations.iter().map(|s| s.id).filter(|id| !is_heard(*id, rangings));
         fix.excluded.extend(silent.map(|id| (id, Exclusion::Silent)));
         fix.excluded.sort_by_key(|(id, _)| *id);
         Ok(fix)
-    }
-
-    fn solve_with(&self, rangings: &[Ranging]) -> Result<Fix, FixError> {
-        let prior = (self.filter.pose().position, self.filter.position_covariance());
-        self.config.solver.solver().solve(rangings, &self.config.stations, Some(prior))
-    }
-
-    /// The fix without the one station whose absence lets the others agree, if there is such a station.
-    fn without_the_worst(&self, rangings: &[Ranging]) -> Option<Fix> {
-        let leave_out = |left_out: &Ranging| {
-            let others: Vec<Ranging> =
-                rangings.iter().filter(|r| r.station != left_out.station).copied().collect();
-            Some((*left_out, self.solve_with(&others).ok()?))
-        };
-        let (left_out, mut fix) =
-            rangings.iter().filter_map(leave_out).min_by(|a, b| a.1.chi2.total_cmp(&b.1.chi2))?;
-        let station = self.config.stations.iter().find(|s| s.id == left_out.station)?;
-        let distance_m = (fix.position - station.position).norm();
-        let gate_m = residual_gate_m(left_out.sigma_m * distance_m / left_out.range_m);
-        let residual_m = left_out.range_m - distance_m;
-        fix.excluded.push((left_out.station, Exclusion::Residual { residual_m, gate_m }));
-        (fix.integrity == Integrity::Ok && residual_m.abs() > gate_m).then_some(fix)
     }
 
     /// Hands a fix to the filter; a fix that contradicts the filter is suspect.

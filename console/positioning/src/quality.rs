@@ -3,6 +3,7 @@
 use crate::{
     anchor::Anchor,
     fix::{Fix, FixError, Integrity, Residual},
+    nonlinear::on_near_circle,
 };
 use nalgebra::Matrix2;
 use world::Point;
@@ -10,10 +11,17 @@ use world::Point;
 /// Normal quantile beyond which residuals are suspect: one honest fix in 100.
 const SUSPECT_Z: f64 = 2.326_347_874;
 /// Normal quantile beyond which residuals raise an alarm: one honest fix in 1000.
-const ALARM_Z: f64 = 3.090_232_306;
+pub(crate) const ALARM_Z: f64 = 3.090_232_306;
+
+/// Standard deviations that a protection level grants to chance: one position in 3000 lies further off.
+const PROTECTION_SIGMAS: f64 = 4.0;
+/// Where a place this many standard deviations off is not ruled out, errors are no ellipse.
+const BENT_SIGMAS: f64 = 5.0;
+/// A range whose residual keeps a smaller share of its variance than this cannot be checked by the others.
+const LEAST_SPARED: f64 = 1e-6;
 
 /// Stands for an infinite dilution, so that every number stays finite.
-const NO_GEOMETRY: f64 = 1e9;
+pub(crate) const NO_GEOMETRY: f64 = 1e9;
 
 /// Puts a fix together and judges it by its residuals.
 pub(crate) fn assess(
@@ -30,6 +38,11 @@ pub(crate) fn assess(
     if !is_finite {
         return Err(FixError::NotConverged { iterations: 0 });
     }
+    let bent = || has_rival_on_circle(anchors, position, &covariance, chi2);
+    let integrity = match judge(chi2, degrees_of_freedom) {
+        Integrity::Ok if bent() => Integrity::Suspect,
+        judged => judged,
+    };
     Ok(Fix {
         position,
         covariance,
@@ -43,9 +56,46 @@ pub(crate) fn assess(
         gdop: gdop(anchors, position),
         conditioning,
         mirror,
-        protection_level_m: None,
-        integrity: judge(chi2, degrees_of_freedom),
+        protection_level_m: protection_level_m(anchors, position, &covariance),
+        integrity,
     })
+}
+
+/// Whether a place on the range circle of a station close by fits nearly as well and is further off than any ellipse
+/// says: there errors are bent like the circle.
+fn has_rival_on_circle(anchors: &[Anchor], position: Point, covariance: &Matrix2<f64>, chi2: f64) -> bool {
+    let reach_m = BENT_SIGMAS * largest_sigma_m(covariance);
+    let cost = |at: Point| anchors.iter().map(|a| a.view_from(at).squared_error()).sum::<f64>();
+    on_near_circle(anchors)
+        .any(|at| (at - position).norm() > reach_m && cost(at) < chi2 + PROTECTION_SIGMAS.powi(2))
+}
+
+/// Radius that holds the truth even if any one of the ranges is wrong: for each station the distance to the position
+/// of the others and their own uncertainty (solution separation). `None` if some station cannot be spared.
+fn protection_level_m(anchors: &[Anchor], position: Point, covariance: &Matrix2<f64>) -> Option<f64> {
+    let reach_m = |covariance: &Matrix2<f64>| PROTECTION_SIGMAS * largest_sigma_m(covariance);
+    if anchors.len() < 3 {
+        return None;
+    }
+    let mut level_m = reach_m(covariance);
+    for view in anchors.iter().map(|a| a.view_from(position)) {
+        // Taking one range out of a least squares fit (Sherman and Morrison).
+        let pull = covariance * view.direction;
+        let spared = view.sigma_m.powi(2) - view.direction.dot(&pull);
+        let without = covariance + pull * pull.transpose() / spared;
+        let shift_m = (pull * (view.residual_m / spared)).norm();
+        let needed_m = shift_m + reach_m(&without);
+        if spared <= view.sigma_m.powi(2) * LEAST_SPARED || !needed_m.is_finite() {
+            return None;
+        }
+        level_m = level_m.max(needed_m);
+    }
+    Some(level_m)
+}
+
+fn largest_sigma_m(covariance: &Matrix2<f64>) -> f64 {
+    let (a, b, c) = (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]);
+    (f64::midpoint(a, c) + ((a - c) / 2.0).hypot(b)).max(0.0).sqrt()
 }
 
 /// What a sum of squared normalised residuals says.

@@ -1,7 +1,10 @@
 //! Whatever comes in, nothing that is no number comes out, and nothing panics.
 
 use nalgebra::Matrix2;
-use positioning::{Fix, LinearLs, Nls, PositionSolver, Positioner, PositionerConfig, Ranging};
+use positioning::{
+    Bounded, Consensus, Fix, LinearLs, Nls, PositionSolver, Positioner, PositionerConfig, RangeNoise,
+    Ranging, Screened, WeightedLinear,
+};
 use proptest::prelude::*;
 use world::{Odometry, Point, Pose, RangeSet, Station, StationId};
 
@@ -34,12 +37,7 @@ fn rangings() -> impl Strategy<Value = Vec<Ranging>> {
     prop::collection::vec(one, 0..7).prop_map(|numbers| {
         (0..)
             .zip(numbers)
-            .map(|(id, (range_m, sigma_m))| Ranging {
-                station: StationId(id),
-                range_m,
-                sigma_m,
-                repetitions: 1,
-            })
+            .map(|(id, (range_m, sigma_m))| Ranging::single(StationId(id), range_m, sigma_m))
             .collect()
     })
 }
@@ -66,7 +64,10 @@ proptest! {
         prior in prop::option::of((number(), number(), number(), number())),
     ) {
         let prior = prior.map(|(x, y, a, b)| (Point::new(x, y), Matrix2::new(a, b, b, a)));
-        for solver in [&LinearLs as &dyn PositionSolver, &Nls] {
+        for solver in [
+            &LinearLs as &dyn PositionSolver, &Nls, &WeightedLinear, &Bounded { ratio: 0.05 }, &Bounded { ratio: 0.9 },
+            &Consensus::default(), &Screened(Nls),
+        ] {
             match solver.solve(&ranges, &stations, prior) {
                 Ok(fix) => prop_assert!(is_finite(&fix), "{fix:?}"),
                 Err(error) => {
@@ -86,7 +87,7 @@ proptest! {
         ratio in number(),
     ) {
         let config = PositionerConfig {
-            range_sigma_ratio: ratio, ..PositionerConfig::new(stations, Pose::new(0.0, 0.0, 0.0))
+            noise: RangeNoise::Gaussian { sigma_ratio: ratio }, ..PositionerConfig::new(stations, Pose::new(0.0, 0.0, 0.0))
         };
         let mut positioner = Positioner::new(config);
         for (sets, forward_m, turn_rad) in cycles {

@@ -109,7 +109,7 @@ impl Sketch {
         let covered = self.plot("Coverage of the reachable floor [%]", &[paths::COVERED], Some([0.0, 105.0]));
         let speeds = [paths::SPEED, paths::SPEED_SENT, paths::CLEARANCE];
         let motion = self.plot("Speed [m/s] and clearance [m]", &speeds, None);
-        let planning = self.planning(&run.mission.task);
+        let planning = self.planning(&run.mission.task, run.mission.tether.is_some());
         let states = bp::StateTimelineView::new("States")
             .with_origin(format!("/{}", paths::STATE))
             .with_contents(["$origin/**"])
@@ -129,10 +129,17 @@ impl Sketch {
     }
 
     /// How the planner does its work: one plot at a time, the most telling one first.
-    fn planning(&mut self, task: &TaskConfig) -> bp::ContainerLike {
+    fn planning(&mut self, task: &TaskConfig, has_tether: bool) -> bp::ContainerLike {
         let forces = self.plot("Forces [N]", &[paths::FORCE_SIZES], None);
         let figures = self.plot("Planner", &[&format!("{}/**", paths::PLANNER_SCALARS)], None);
         match task {
+            _ if has_tether => {
+                let out = [paths::TETHER_OUT, paths::TETHER_OUT_TRUE, paths::TETHER_HOME];
+                let out = self.plot("Tether [m]", &out, None);
+                let wraps = self.plot("Wraps [deg]", &[paths::TETHER_WRAP, paths::TETHER_SUM], None);
+                let cross_track = self.plot("Cross-track [m]", &[paths::CROSS_TRACK], None);
+                bp::Tabs::new([out, wraps, cross_track, forces, figures]).into()
+            }
             TaskConfig::Follow { .. } | TaskConfig::Cover { .. } => {
                 let cross_track = self.plot("Cross-track [m]", &[paths::CROSS_TRACK], None);
                 bp::Tabs::new([cross_track, forces, figures]).into()

@@ -10,6 +10,7 @@ mod scene;
 mod states;
 pub(crate) mod stream;
 pub(crate) mod style;
+mod tether;
 mod tick;
 
 use crate::{

@@ -43,6 +43,12 @@ pub struct Expect {
     pub in_95_ellipse_min: Option<f64>,
     /// Longest time without a position, seconds.
     pub lost_max_s: Option<f64>,
+    /// Most cable out at any time, metres.
+    pub cable_max_m: Option<f64>,
+    /// Largest wrap of the cable on one obstacle, radians.
+    pub wrap_max_rad: Option<f64>,
+    /// Most cable out at the end, metres.
+    pub left_out_max_m: Option<f64>,
 }
 
 /// A bound that a run did not keep.
@@ -82,6 +88,7 @@ impl Expect {
         use Side::{AtLeast, AtMost};
         let coverage = run.coverage;
         let (tracking, positioning) = (run.tracking, run.positioning);
+        let tether = run.tether;
         let count = |n: Option<u64>| n.map(|n| n as f64);
         let figures = [
             ("collisions_max", AtMost, count(self.collisions_max), count(run.collisions)),
@@ -109,6 +116,14 @@ impl Expect {
             ("mean_error_max_m", AtMost, self.mean_error_max_m, positioning.map(|p| p.mean_error_m)),
             ("p95_error_max_m", AtMost, self.p95_error_max_m, positioning.map(|p| p.p95_m)),
             ("in_95_ellipse_min", AtLeast, self.in_95_ellipse_min, positioning.map(|p| p.in_95_ellipse)),
+            ("cable_max_m", AtMost, self.cable_max_m, tether.map(|t| t.max_length_m)),
+            (
+                "wrap_max_deg",
+                AtMost,
+                self.wrap_max_rad.map(f64::to_degrees),
+                tether.map(|t| t.max_wrap_rad.to_degrees()),
+            ),
+            ("left_out_max_m", AtMost, self.left_out_max_m, tether.map(|t| t.end_length_m)),
             ("lost_max_s", AtMost, self.lost_max_s, positioning.map(|p| p.lost_s)),
         ];
         let misses =

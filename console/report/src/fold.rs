@@ -4,7 +4,8 @@ use crate::{
     account::{Account, Evidence, account},
     accuracy::{Accuracy, Estimate},
     scanned::Scanned,
-    summary::Summary,
+    summary::{Summary, Tether},
+    tethered::Tethered,
     tracking::Tracker,
     turning::Turning,
 };
@@ -23,6 +24,7 @@ pub struct Fold {
     tracker: Option<Tracker>,
     accuracy: Accuracy,
     turning: Turning,
+    tethered: Option<Tethered>,
     pub(crate) run: Option<Box<RunOpened>>,
     pub(crate) evidence: Option<Evidence>,
 }
@@ -42,6 +44,11 @@ impl Fold {
             EventKind::Truth { pose, clearance_m, collided } => {
                 self.accuracy.truth(event.tick, pose.position);
                 self.see_truth(*pose, *clearance_m, *collided);
+            }
+            EventKind::TetherTruth { length_m, max_wrap_rad, sum_wrap_rad, detour_m } => {
+                if let Some(tethered) = &mut self.tethered {
+                    tethered.lie(*length_m, *max_wrap_rad, *sum_wrap_rad, *detour_m);
+                }
             }
             EventKind::Estimated { pose } => {
                 if let Some(evidence) = &mut self.evidence {
@@ -101,6 +108,7 @@ impl Fold {
             floor: self.account(),
             turns: self.known.path_length_m.map(|_| self.turning.turns()),
             rotation_turns: self.known.path_length_m.map(|_| self.turning.rotation_turns()),
+            tether: self.tether(),
             tracking: self.tracker.as_ref().and_then(Tracker::tracking),
             positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
             ..self.known.clone()
@@ -124,6 +132,10 @@ impl Fold {
         Some(account(run, self.scanned.as_ref()?.believed(), self.evidence.as_ref()?))
     }
 
+    fn tether(&self) -> Option<Tether> {
+        self.tethered.as_ref()?.tether(self.truth.map(|pose| pose.position), self.known.outcome)
+    }
+
     fn find(&mut self, obstacle: &Obstacle) {
         if let Some(evidence) = &mut self.evidence {
             evidence.find(obstacle);
@@ -135,6 +147,7 @@ impl Fold {
             self.evidence = Some(Evidence::new(run));
             self.run = Some(Box::new(run.clone()));
         }
+        self.tethered = run.mission.tether.as_ref().map(Tethered::new);
         self.known.scenario = Some(run.scenario.clone());
         self.known.seed = Some(run.seed);
         self.known.planner = Some(run.mission.planner.id.clone());

@@ -12,6 +12,7 @@ pub mod human;
 pub mod merged;
 mod scanned;
 pub mod summary;
+mod tethered;
 mod tracking;
 mod turning;
 

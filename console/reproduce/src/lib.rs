@@ -5,9 +5,12 @@
 #![forbid(unsafe_code)]
 
 mod bench;
+pub mod fields;
 mod planners;
+pub mod positioning;
 mod row;
 mod sample;
+pub mod coverage;
 pub mod spiral;
 mod study;
 pub mod traps;

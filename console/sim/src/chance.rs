@@ -2,13 +2,15 @@
 
 use crate::config::NoiseModel;
 use rand::{Rng, RngExt, SeedableRng};
-use rand_distr::StandardNormal;
+use rand_distr::{Distribution, StandardNormal, StudentT};
 use rand_pcg::Pcg64;
 
 /// Shortest range that is ever told, metres.
 const SHORTEST_M: f64 = 1e-6;
 /// Longest range that is ever told, metres.
 const LONGEST_M: f64 = 1e9;
+/// Degrees of freedom of the heavy-tailed noise: the fewest whole number with a variance.
+const TAIL_FREEDOM: f64 = 3.0;
 
 /// The streams; none of them depends on how much the others were used.
 #[derive(Debug, Clone)]
@@ -21,12 +23,23 @@ pub(crate) struct Chance {
     pub odometry: Pcg64,
     /// How much the tracks slip.
     pub slip: Pcg64,
+    /// What happens to ranges besides their scatter.
+    pub detour: Pcg64,
+    /// Where the stations really are.
+    pub survey: Pcg64,
 }
 
 impl Chance {
     pub fn new(seed: u64) -> Self {
         let stream = |purpose: u64| Pcg64::seed_from_u64(mixed(seed ^ mixed(purpose)));
-        Self { ranging: stream(1), dropout: stream(2), odometry: stream(3), slip: stream(4) }
+        Self {
+            ranging: stream(1),
+            dropout: stream(2),
+            odometry: stream(3),
+            slip: stream(4),
+            detour: stream(5),
+            survey: stream(6),
+        }
     }
 }
 
@@ -44,16 +57,28 @@ pub(crate) fn normal(rng: &mut impl Rng) -> f64 {
 }
 
 impl NoiseModel {
-    /// A range as measured over a true distance, metres; always positive.
-    pub(crate) fn measured_m(&self, distance_m: f64, rng: &mut impl Rng) -> f64 {
-        let error = match *self {
+    /// The error of a range as a share of the distance.
+    pub(crate) fn error_ratio(&self, rng: &mut impl Rng) -> f64 {
+        match *self {
             Self::None => 0.0,
             Self::Uniform { ratio } => ratio * rng.random_range(-1.0..=1.0),
             Self::Gaussian { sigma_ratio } => sigma_ratio * normal(rng),
-        };
-        // A distance so far that the error turns it into nothing is still a distance.
-        (distance_m * (1.0 + error.clamp(-LONGEST_M, LONGEST_M))).clamp(SHORTEST_M, LONGEST_M)
+            Self::Triangular { ratio } => {
+                ratio * (rng.random_range(-0.5..=0.5_f64) + rng.random_range(-0.5..=0.5_f64))
+            }
+            Self::HeavyTailed { sigma_ratio } => {
+                let student = StudentT::new(TAIL_FREEDOM).expect("degrees of freedom are positive");
+                // The variance of Student's distribution is k / (k - 2).
+                sigma_ratio * student.sample(rng) / (TAIL_FREEDOM / (TAIL_FREEDOM - 2.0)).sqrt()
+            }
+        }
     }
+}
+
+/// A distance with its error as a range that can be told, metres; always positive.
+pub(crate) fn told_m(range_m: f64) -> f64 {
+    // A distance so far that the error turns it into nothing is still a distance.
+    if range_m.is_nan() { LONGEST_M } else { range_m.clamp(SHORTEST_M, LONGEST_M) }
 }
 
 #[cfg(test)]
@@ -63,20 +88,22 @@ mod tests {
 
     proptest! {
         #[test]
-        fn uniform_noise_stays_within_its_bounds(
+        fn bounded_noise_stays_within_its_bounds(
             distance in 0.01..30.0_f64, ratio in 0.0..0.5_f64, seed in any::<u64>(),
         ) {
             let mut rng = Pcg64::seed_from_u64(seed);
-            for _ in 0..20 {
-                let range = NoiseModel::Uniform { ratio }.measured_m(distance, &mut rng);
-                prop_assert!((range - distance).abs() <= ratio * distance * (1.0 + 1e-12));
+            for model in [NoiseModel::Uniform { ratio }, NoiseModel::Triangular { ratio }] {
+                for _ in 0..20 {
+                    let range = told_m(distance * (1.0 + model.error_ratio(&mut rng)));
+                    prop_assert!((range - distance).abs() <= ratio * distance * (1.0 + 1e-12));
+                }
             }
         }
     }
 
     fn spread(noise: NoiseModel) -> (f64, f64) {
         let mut rng = Pcg64::seed_from_u64(5);
-        let errors: Vec<f64> = (0..20_000).map(|_| noise.measured_m(10.0, &mut rng) / 10.0 - 1.0).collect();
+        let errors: Vec<f64> = (0..20_000).map(|_| noise.error_ratio(&mut rng)).collect();
         let mean = errors.iter().sum::<f64>() / 20_000.0;
         (mean, (errors.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / 20_000.0).sqrt())
     }
@@ -86,6 +113,7 @@ mod tests {
         for (noise, sigma) in [
             (NoiseModel::Uniform { ratio: 0.05 }, 0.05 / 3.0_f64.sqrt()),
             (NoiseModel::Gaussian { sigma_ratio: 0.02 }, 0.02),
+            (NoiseModel::Triangular { ratio: 0.05 }, 0.05 / 6.0_f64.sqrt()),
         ] {
             let (mean, spread) = spread(noise);
             assert!(mean.abs() < 4.0 * sigma / 20_000.0_f64.sqrt(), "{noise:?}: {mean}");
@@ -95,15 +123,25 @@ mod tests {
     }
 
     #[test]
+    fn heavy_tails_keep_to_the_middle_and_go_far_out() {
+        let (model, mut rng) = (NoiseModel::HeavyTailed { sigma_ratio: 0.03 }, Pcg64::seed_from_u64(8));
+        let errors: Vec<f64> = (0..20_000).map(|_| model.error_ratio(&mut rng).abs()).collect();
+        let beyond = |limit: f64| errors.iter().filter(|e| **e > limit).count() as f64 / 20_000.0;
+        // Half of Student's distribution with 3 degrees of freedom lies within 0.765 of its scale.
+        assert!((beyond(0.765 * 0.03 / 3.0_f64.sqrt()) - 0.5).abs() < 0.02);
+        assert!(beyond(4.0 * 0.03) > 3e-3);
+    }
+
+    #[test]
     fn streams_and_neighbouring_seeds_differ() {
         let (mut a, mut b) = (Chance::new(1), Chance::new(2));
         let mut first: Vec<u64> =
-            [&mut a.ranging, &mut a.dropout, &mut a.odometry, &mut a.slip, &mut b.ranging]
+            [&mut a.ranging, &mut a.dropout, &mut a.odometry, &mut a.slip, &mut a.detour, &mut b.ranging]
                 .into_iter()
                 .map(RngExt::random)
                 .collect();
         first.sort_unstable();
         first.dedup();
-        assert_eq!(first.len(), 5);
+        assert_eq!(first.len(), 6);
     }
 }

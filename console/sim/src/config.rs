@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use world::{Amphibious, Pose, World};
+use world::{Amphibious, ObstacleId, Point, Pose, StationId, World};
 
 /// How ranges scatter about the true distance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -20,6 +20,73 @@ pub enum NoiseModel {
         /// Standard deviation as a share of the distance.
         sigma_ratio: f64,
     },
+    /// True distance times `1 + t`, `t` triangular about 0 with ends at `-ratio` and `ratio`: the mean of two uniform
+    /// errors, as in two-way ranging.
+    Triangular {
+        /// Largest error as a share of the distance.
+        ratio: f64,
+    },
+    /// True distance times `1 + t`, `t` with Student's distribution of 3 degrees of freedom, scaled to the standard
+    /// deviation `sigma_ratio`: now and then a range is far off.
+    HeavyTailed {
+        /// Standard deviation as a share of the distance.
+        sigma_ratio: f64,
+    },
+}
+
+/// What a station hears of a robot that stands behind something solid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BehindColumns {
+    /// The direct sound, as if nothing were there.
+    #[default]
+    Heard,
+    /// The sound that creeps around the column.
+    Creeping,
+    /// The direct sound, later by an exponential delay of mean [`Disturbances::late_mean_m`].
+    Late,
+    /// The shortest echo from the wall.
+    WallEcho,
+    /// Nothing.
+    Silent,
+}
+
+/// One station misbehaves for a while.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StationFault {
+    /// Which station.
+    pub station: StationId,
+    /// Beginning in mission time, seconds.
+    pub from_s: f64,
+    /// End in mission time, seconds.
+    pub to_s: f64,
+    /// Metres that every range is too long by; `None`: the station is silent.
+    pub late_m: Option<f64>,
+}
+
+/// Everything that goes wrong with ranges besides their scatter. The default is nothing.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Disturbances {
+    /// Chance that a single range of a station is missing, 0 to 1.
+    pub ping_dropout: f64,
+    /// Chance that a range scatters [`Self::outlier_factor`] times as far, 0 to 1.
+    pub outlier_chance: f64,
+    /// How much further outliers scatter.
+    pub outlier_factor: f64,
+    /// Chance that a single range comes late, 0 to 1.
+    pub late_ping_chance: f64,
+    /// Chance that all ranges of a station come late in a cycle, because something hides it, 0 to 1.
+    pub nlos_chance: f64,
+    /// Mean of the exponential delay of what is late, metres.
+    pub late_mean_m: f64,
+    /// What is heard of a robot behind a column.
+    pub behind_columns: BehindColumns,
+    /// Standard deviation of the surveyed station places in x and in y, metres; drawn once for a run.
+    pub survey_sigma_m: f64,
+    /// How much too long all ranges are because the sound is slower than was assumed, as a share.
+    pub sound_speed_error_ratio: f64,
+    /// Faults of single stations.
+    pub faults: Vec<StationFault>,
 }
 
 /// Acoustic-emission ranging.
@@ -35,6 +102,8 @@ pub struct AeConfig {
     pub dropout: f64,
     /// Spans of mission time without any answer, seconds: from, to.
     pub outages_s: Vec<(f64, f64)>,
+    /// What else goes wrong.
+    pub disturbances: Disturbances,
 }
 
 /// The robot's body and its errors.
@@ -65,6 +134,33 @@ pub struct RobotConfig {
     pub amphibious: Option<Amphibious>,
 }
 
+/// An obstacle that moves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Mover {
+    /// Which one.
+    pub id: ObstacleId,
+    /// How.
+    pub track: Track,
+}
+
+/// How an obstacle moves; it does not turn, and nothing stops it but the wall.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Track {
+    /// Straight on, and back again from the wall.
+    Straight {
+        /// Metres per second, tank frame.
+        velocity_m_per_s: Vector2<f64>,
+    },
+    /// From where it stands to one place after the other, and back the same way, for ever.
+    Waypoints {
+        /// The places, metres.
+        points: Vec<Point>,
+        /// Metres per second.
+        speed_m_per_s: f64,
+    },
+}
+
 /// Everything that the simulator needs besides the seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SimConfig {
@@ -76,6 +172,12 @@ pub struct SimConfig {
     pub ae: Option<AeConfig>,
     /// Length of a tick, seconds.
     pub tick_s: f64,
+    /// Obstacles that move.
+    #[serde(default)]
+    pub movers: Vec<Mover>,
+    /// Where the tether is made fast, metres; `None` for a robot without one.
+    #[serde(default)]
+    pub tether_anchor: Option<Point>,
 }
 
 /// What the robot is sent.
@@ -101,4 +203,19 @@ pub struct Truth {
     pub clearance_m: f64,
     /// Whether the hull began to touch something in this tick.
     pub collided: bool,
+    /// How the cable lies; `None` without one.
+    pub tether: Option<TetherTruth>,
+}
+
+/// How the cable truly lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TetherTruth {
+    /// Cable between anchor and robot, metres.
+    pub length_m: f64,
+    /// Largest wrap on one obstacle, radians.
+    pub max_wrap_rad: f64,
+    /// Sum of all wraps, radians.
+    pub sum_wrap_rad: f64,
+    /// Cable beyond the straight line from the anchor to the robot, metres.
+    pub detour_m: f64,
 }

@@ -5,14 +5,19 @@
 //! Cost: a tick takes a few distance queries, some microseconds.
 
 pub mod config;
+pub mod ranging;
 pub mod simulator;
 
 mod motion;
+mod movers;
 mod sweep;
 
 mod chance;
-mod ranging;
 mod sight;
 
-pub use config::{AeConfig, Drive, NoiseModel, RobotConfig, SimConfig, Truth};
+pub use config::{
+    AeConfig, BehindColumns, Disturbances, Drive, Mover, NoiseModel, RobotConfig, SimConfig, StationFault,
+    Track, Truth,
+};
+pub use ranging::Sounder;
 pub use simulator::Simulator;

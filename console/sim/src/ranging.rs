@@ -1,67 +1,121 @@
 //! Acoustic-emission ranging: when a cycle ends and what it brings.
 
-use crate::{chance::Chance, config::AeConfig};
+mod path;
+
+use crate::{
+    chance::{Chance, normal, told_m},
+    config::{AeConfig, StationFault},
+};
+use path::Surroundings;
 use rand::RngExt;
-use world::{Point, RangeSet, Station};
+use rand_distr::{Distribution, Exp1};
+use world::{Point, RangeSet, Station, Vector, World};
 
 /// Slack when time is compared with a multiple of the period, as a share of the period.
 const SLACK: f64 = 1e-6;
 
-/// The ranging of a run; counts the cycles that ended.
-#[derive(Debug, Clone)]
-pub(crate) struct Ranging {
+/// The stations of a tank as they really are, and the chance that their ranges are subject to.
+///
+/// The same configuration, tank, seed and places give the same ranges on every machine.
+#[derive(Clone)]
+pub struct Sounder {
     config: AeConfig,
+    /// At their true places.
+    stations: Vec<Station>,
+    around: Surroundings,
+    chance: Chance,
     ended: f64,
 }
 
-impl Ranging {
-    pub fn new(config: AeConfig) -> Self {
-        Self { config, ended: 0.0 }
+impl Sounder {
+    /// The stations of `world`, put where they really are by the survey error of `config`.
+    pub fn new(config: AeConfig, world: &World, seed: u64) -> Self {
+        let mut chance = Chance::new(seed);
+        let mut stations = world.stations.clone();
+        for station in &mut stations {
+            let error = Vector::new(normal(&mut chance.survey), normal(&mut chance.survey));
+            station.position += error * config.disturbances.survey_sigma_m;
+        }
+        let around = Surroundings::new(world);
+        Self { config, stations, around, chance, ended: 0.0 }
     }
 
     /// The ranges of a cycle, if one ends at time `t_s`; empty if no station was heard.
     ///
     /// The first cycle ends after one period. A period shorter than a tick means one cycle in every tick.
-    pub fn cycle(
-        &mut self,
-        t_s: f64,
-        truth: Point,
-        stations: &[Station],
-        chance: &mut Chance,
-    ) -> Option<Vec<RangeSet>> {
+    pub fn due_cycle(&mut self, t_s: f64, truth: Point) -> Option<Vec<RangeSet>> {
         let period_s = self.config.period_s.max(1e-9);
         let cycles = (t_s / period_s + SLACK).floor();
         if cycles <= self.ended {
             return None;
         }
         self.ended = cycles;
-        // The noise is drawn for every station, heard or not, so that a loss leaves all later ranges as they were.
-        let mut sets: Vec<RangeSet> = stations.iter().map(|s| self.measure(s, truth, chance)).collect();
-        sets.retain(|_| chance.dropout.random::<f64>() >= self.config.dropout);
-        if self.is_out(t_s) {
+        Some(self.cycle(t_s, truth))
+    }
+
+    /// The ranges of one cycle that ends at time `t_s`.
+    pub fn cycle(&mut self, t_s: f64, truth: Point) -> Vec<RangeSet> {
+        let Self { config, stations, around, chance, .. } = self;
+        // Chance is drawn for every station, heard or not, so that a loss leaves all later ranges as they were.
+        let mut sets: Vec<RangeSet> =
+            stations.iter().map(|station| measure(config, around, station, truth, chance)).collect();
+        sets.retain(|_| chance.dropout.random::<f64>() >= config.dropout);
+        for fault in config.disturbances.faults.iter().filter(|f| (f.from_s..f.to_s).contains(&t_s)) {
+            sets.iter_mut().filter(|set| set.station == fault.station).for_each(|set| spoil(set, fault));
+        }
+        sets.retain(|set| !set.ranges_m.is_empty());
+        if config.outages_s.iter().any(|(from, to)| (*from..*to).contains(&t_s)) {
             sets.clear();
         }
-        Some(sets)
+        sets
     }
+}
 
-    fn measure(&self, station: &Station, truth: Point, chance: &mut Chance) -> RangeSet {
-        let distance_m = (truth - station.position).norm();
-        let noise = &self.config.noise;
-        let ranges_m =
-            (0..self.config.repetitions).map(|_| noise.measured_m(distance_m, &mut chance.ranging)).collect();
-        RangeSet { station: station.id, ranges_m }
+fn spoil(set: &mut RangeSet, fault: &StationFault) {
+    match fault.late_m {
+        Some(late_m) => set.ranges_m.iter_mut().for_each(|range_m| *range_m = told_m(*range_m + late_m)),
+        None => set.ranges_m.clear(),
     }
+}
 
-    fn is_out(&self, t_s: f64) -> bool {
-        self.config.outages_s.iter().any(|(from, to)| (*from..*to).contains(&t_s))
+fn measure(
+    config: &AeConfig,
+    around: &Surroundings,
+    station: &Station,
+    truth: Point,
+    chance: &mut Chance,
+) -> RangeSet {
+    let what = &config.disturbances;
+    let way = around.way(truth, station.position, what.behind_columns);
+    let is_late = chance.detour.random::<f64>() < what.nlos_chance || way.is_some_and(|way| way.is_late);
+    let late_m = if is_late { what.late_mean_m * exponential(chance) } else { 0.0 };
+    let mut ranges_m = Vec::with_capacity(config.repetitions as usize);
+    for _ in 0..config.repetitions {
+        let mut error = config.noise.error_ratio(&mut chance.ranging);
+        if chance.detour.random::<f64>() < what.outlier_chance {
+            error *= what.outlier_factor;
+        }
+        let is_ping_late = chance.detour.random::<f64>() < what.late_ping_chance;
+        let ping_late_m = if is_ping_late { what.late_mean_m * exponential(chance) } else { 0.0 };
+        let is_heard = chance.detour.random::<f64>() >= what.ping_dropout;
+        if let Some(way) = way.filter(|_| is_heard) {
+            let scale = 1.0 + what.sound_speed_error_ratio;
+            ranges_m.push(told_m(way.length_m * (1.0 + error) * scale + late_m + ping_late_m));
+        }
     }
+    RangeSet { station: station.id, ranges_m }
+}
+
+/// An exponential number with mean 1.
+fn exponential(chance: &mut Chance) -> f64 {
+    Exp1.sample(&mut chance.detour)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::NoiseModel;
-    use world::StationId;
+    use crate::{BehindColumns, Disturbances, NoiseModel};
+    use world::{Boundary, Obstacle, ObstacleId, Shape, StationId};
 
     fn config() -> AeConfig {
         AeConfig {
@@ -70,6 +124,7 @@ mod tests {
             noise: NoiseModel::Uniform { ratio: 0.05 },
             dropout: 0.0,
             outages_s: vec![],
+            disturbances: Disturbances::default(),
         }
     }
 
@@ -83,11 +138,36 @@ mod tests {
             .collect()
     }
 
+    fn tank(columns: &[(f64, f64, f64)]) -> World {
+        let column = |(id, (x, y, radius_m)): (u32, &(f64, f64, f64))| Obstacle {
+            id: ObstacleId(id),
+            name: format!("C{id}"),
+            shape: Shape::Disc { center: Point::new(*x, *y), radius_m: *radius_m },
+            known: true,
+        };
+        World {
+            boundary: Boundary::Circle { radius_m: 10.0 },
+            obstacles: (1..).zip(columns).map(column).collect(),
+            stations: stations(),
+            zones: vec![],
+        }
+    }
+
     fn cycles(config: AeConfig) -> Vec<Option<Vec<RangeSet>>> {
-        let (mut ranging, mut chance) = (Ranging::new(config), Chance::new(3));
-        (0..31)
-            .map(|k| ranging.cycle(f64::from(k) * 0.1, Point::origin(), &stations(), &mut chance))
-            .collect()
+        let mut sounder = Sounder::new(config, &tank(&[]), 3);
+        (0..31).map(|k| sounder.due_cycle(f64::from(k) * 0.1, Point::origin())).collect()
+    }
+
+    /// Exact ranges but for the disturbances, of stations at (1, 5), (2, 5) and (3, 5), from the middle.
+    fn disturbed(disturbances: Disturbances, columns: &[(f64, f64, f64)]) -> Vec<RangeSet> {
+        let config = AeConfig { noise: NoiseModel::None, repetitions: 400, disturbances, ..config() };
+        Sounder::new(config, &tank(columns), 5).cycle(1.0, Point::origin())
+    }
+
+    fn excess(sets: &[RangeSet], station: u32) -> Vec<f64> {
+        let distance = Point::new(f64::from(station), 5.0).coords.norm();
+        let of_station = sets.iter().filter(|set| set.station == StationId(station));
+        of_station.flat_map(|set| set.ranges_m.iter().map(|r| r - distance)).collect()
     }
 
     #[test]
@@ -121,5 +201,85 @@ mod tests {
     fn a_period_shorter_than_a_tick_gives_one_cycle_a_tick() {
         let all = cycles(AeConfig { period_s: 0.0, ..config() });
         assert!(all[0].is_none() && all[1..].iter().all(Option::is_some));
+    }
+
+    #[test]
+    fn without_disturbances_exact_ranges_are_exact() {
+        let sets = disturbed(Disturbances::default(), &[(0.5, 2.5, 0.2)]);
+        assert!(excess(&sets, 1).iter().all(|e| e.abs() < 1e-12), "a column is nothing unless it is said so");
+    }
+
+    #[test]
+    fn a_column_only_ever_makes_ranges_longer() {
+        let column = [(0.5, 2.5, 0.2)];
+        let with = |behind_columns| {
+            let sets = disturbed(
+                Disturbances { behind_columns, late_mean_m: 1.0, ..Disturbances::default() },
+                &column,
+            );
+            assert!(excess(&sets, 3).iter().all(|e| e.abs() < 1e-12), "station 3 is in sight");
+            excess(&sets, 1)
+        };
+        let creeping = with(BehindColumns::Creeping);
+        assert!(creeping[0] > 1e-4 && creeping[0] < 0.1, "{}", creeping[0]);
+        let late = with(BehindColumns::Late);
+        assert!(late[0] > 0.0 && late.iter().all(|e| (e - late[0]).abs() < 1e-12), "the whole cycle is late");
+        // From the middle the only echoes go along the same line, and the column stands on it.
+        assert!(with(BehindColumns::WallEcho).is_empty());
+        assert!(with(BehindColumns::Silent).is_empty());
+    }
+
+    #[test]
+    fn pings_get_lost_late_and_wild_as_often_as_said() {
+        let base = Disturbances { late_mean_m: 1.0, outlier_factor: 10.0, ..Disturbances::default() };
+        let lost = disturbed(Disturbances { ping_dropout: 0.3, ..base.clone() }, &[]);
+        assert!((250..310).contains(&lost[0].ranges_m.len()), "{}", lost[0].ranges_m.len());
+        let late = excess(&disturbed(Disturbances { late_ping_chance: 0.25, ..base.clone() }, &[]), 1);
+        let n_late = late.iter().filter(|e| **e > 1e-9).count();
+        assert!((70..130).contains(&n_late), "{n_late}");
+        assert!((late.iter().sum::<f64>() / n_late as f64 - 1.0).abs() < 0.3);
+        let config = AeConfig {
+            repetitions: 400,
+            disturbances: Disturbances { outlier_chance: 0.1, ..base },
+            ..config()
+        };
+        let wild = excess(&Sounder::new(config, &tank(&[]), 5).cycle(1.0, Point::origin()), 1);
+        let n_wild = wild.iter().filter(|e| e.abs() > 0.06 * 5.1).count();
+        assert!((20..55).contains(&n_wild), "{n_wild}");
+    }
+
+    #[test]
+    fn a_hidden_station_is_late_by_the_same_in_all_its_pings() {
+        let sets =
+            disturbed(Disturbances { nlos_chance: 1.0, late_mean_m: 1.0, ..Disturbances::default() }, &[]);
+        let (first, second) = (excess(&sets, 1), excess(&sets, 2));
+        assert!(first.iter().all(|e| *e > 0.0 && (e - first[0]).abs() < 1e-12));
+        assert!((first[0] - second[0]).abs() > 1e-6, "each station has its own delay");
+    }
+
+    #[test]
+    fn slow_sound_makes_all_ranges_longer_and_a_bad_survey_moves_the_stations() {
+        let slow = disturbed(Disturbances { sound_speed_error_ratio: 0.02, ..Disturbances::default() }, &[]);
+        assert!((excess(&slow, 1)[0] - 0.02 * 26.0_f64.sqrt()).abs() < 1e-12);
+        let moved = disturbed(Disturbances { survey_sigma_m: 0.1, ..Disturbances::default() }, &[]);
+        let errors = [1, 2, 3].map(|station| excess(&moved, station)[0]);
+        assert!(errors.iter().all(|e| e.abs() > 1e-6 && e.abs() < 0.5), "{errors:?}");
+    }
+
+    #[test]
+    fn a_fault_spoils_one_station_for_its_time() {
+        let fault = |late_m| StationFault { station: StationId(2), from_s: 0.5, to_s: 1.0, late_m };
+        let with = |late_m| {
+            let disturbances = Disturbances { faults: vec![fault(late_m)], ..Disturbances::default() };
+            cycles(AeConfig { disturbances, ..config() })
+        };
+        let whole = cycles(config());
+        let heard = |cycles: &[Option<Vec<RangeSet>>], k: usize| cycles[k].as_ref().map(Vec::len);
+        let silent = with(None);
+        assert_eq!((heard(&silent, 3), heard(&silent, 6), heard(&silent, 12)), (Some(3), Some(2), Some(3)));
+        let late = with(Some(1.5));
+        let range = |cycles: &[Option<Vec<RangeSet>>]| cycles[6].as_ref().expect("a cycle")[1].ranges_m[0];
+        assert!((range(&late) - range(&whole) - 1.5).abs() < 1e-12);
+        assert_eq!(late[12..], whole[12..]);
     }
 }

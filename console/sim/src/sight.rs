@@ -50,7 +50,7 @@ fn is_first_hit(map: &ObstacleMap, shape: &Shape, eye: Point, point: Point) -> b
 }
 
 /// Some points of an outline: enough to see an obstacle whose nearest point is hidden.
-fn outline_points(shape: &Shape) -> Vec<Point> {
+pub(crate) fn outline_points(shape: &Shape) -> Vec<Point> {
     match shape {
         Shape::Disc { center, radius_m } => (0..ROUND_POINTS)
             .map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(ROUND_POINTS))

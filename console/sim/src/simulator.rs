@@ -2,13 +2,14 @@
 
 use crate::{
     chance::{Chance, normal},
-    config::{Drive, SimConfig, Truth},
+    config::{Drive, SimConfig, TetherTruth, Truth},
     motion::{Arc, Tracks, bounded},
-    ranging::Ranging,
+    movers::Movers,
+    ranging::Sounder,
     sight::sightings,
     sweep::sweep,
 };
-use world::{Medium, Mode, ObstacleMap, Odometry, Pose, Readings};
+use world::{Medium, Mode, ObstacleMap, Odometry, Pose, Readings, tether::Cable};
 
 /// A hull that touched something keeps touching it until the gap is wider than this, metres.
 const CONTACT_GAP_M: f64 = 1e-3;
@@ -20,11 +21,13 @@ const CONTACT_GAP_M: f64 = 1e-3;
 pub struct Simulator {
     config: SimConfig,
     map: ObstacleMap,
+    movers: Movers,
     chance: Chance,
     tracks: Tracks,
+    sounder: Option<Sounder>,
     mode: Mode,
-    ranging: Option<Ranging>,
     pose: Pose,
+    cable: Option<Cable>,
     odometry: Odometry,
     in_contact: bool,
     collided: bool,
@@ -37,11 +40,13 @@ impl Simulator {
         let map = ObstacleMap::new(&config.world.boundary, &config.world.obstacles);
         let mut simulator = Self {
             map,
+            movers: Movers::new(&config.movers, &config.world.obstacles),
             chance: Chance::new(seed),
             tracks: Tracks::new(&config.robot, config.tick_s),
+            sounder: config.ae.clone().map(|ae| Sounder::new(ae, &config.world, seed)),
             mode: Mode::of(Medium::at(&config.world.zones, config.robot.start.position)),
-            ranging: config.ae.clone().map(Ranging::new),
             pose: config.robot.start,
+            cable: cable(&config),
             odometry: Odometry::default(),
             in_contact: false,
             collided: false,
@@ -57,8 +62,8 @@ impl Simulator {
     pub fn sense(&mut self) -> Readings {
         let world = &self.config.world;
         let t_s = self.tick as f64 * self.config.tick_s.max(0.0);
-        let (at, chance) = (self.pose.position, &mut self.chance);
-        let ranges = self.ranging.as_mut().and_then(|r| r.cycle(t_s, at, &world.stations, chance));
+        let at = self.pose.position;
+        let ranges = self.sounder.as_mut().and_then(|sounder| sounder.due_cycle(t_s, at));
         let robot = &self.config.robot;
         let reach_m = bounded(robot.radius_m.max(0.0) + robot.sensing_range_m.max(0.0));
         Readings {
@@ -79,17 +84,32 @@ impl Simulator {
         self.pose = reached.pose;
         self.odometry = self.measured(&told);
         let touched_before = self.in_contact;
-        self.in_contact = reached.is_blocked || (touched_before && self.clearance_m() < CONTACT_GAP_M);
+        let is_run_into = self.move_obstacles();
+        self.in_contact =
+            reached.is_blocked || is_run_into || (touched_before && self.clearance_m() < CONTACT_GAP_M);
         self.collided = self.in_contact && !touched_before;
         if reached.is_blocked {
             self.tracks.stop();
+        }
+        if let Some(cable) = &mut self.cable {
+            cable.drag_to(self.pose.position);
         }
         self.tick += 1;
     }
 
     /// The truth at the top of this tick.
     pub fn truth(&self) -> Truth {
-        Truth { pose: self.pose, clearance_m: self.clearance_m(), collided: self.collided }
+        Truth {
+            pose: self.pose,
+            clearance_m: self.clearance_m(),
+            collided: self.collided,
+            tether: self.cable.as_ref().map(|cable| TetherTruth {
+                length_m: cable.length_m(),
+                max_wrap_rad: cable.max_wrap_rad(),
+                sum_wrap_rad: cable.sum_wrap_rad(),
+                detour_m: cable.length_m() - (cable.tip() - cable.anchor()).norm(),
+            }),
+        }
     }
 
     /// Number of ticks that have passed.
@@ -103,6 +123,17 @@ impl Simulator {
         let medium = Medium::at(&self.config.world.zones, self.pose.position);
         self.mode = self.mode.toward(medium, amphibious.transition_steps);
         self.tracks.limit(amphibious.pace(self.mode));
+    }
+
+    /// Moves what moves; whether something runs into the hull.
+    fn move_obstacles(&mut self) -> bool {
+        if self.movers.is_empty() {
+            return false;
+        }
+        let world = &mut self.config.world;
+        self.movers.advance(&mut world.obstacles, &world.boundary, self.config.tick_s.max(0.0));
+        self.map = ObstacleMap::new(&world.boundary, &world.obstacles);
+        self.clearance_m() < 0.0
     }
 
     fn radius_m(&self) -> f64 {
@@ -132,6 +163,14 @@ impl Simulator {
             turn_rad: turn_rad * of_turn + bounded(robot.gyro_bias_rad_per_s * self.config.tick_s.max(0.0)),
         }
     }
+}
+
+/// The cable from its anchor straight to the robot; none if the anchor cannot be.
+fn cable(config: &SimConfig) -> Option<Cable> {
+    let shapes: Vec<_> = config.world.obstacles.iter().map(|o| o.shape.clone()).collect();
+    let mut cable = Cable::new(config.tether_anchor?, &config.world.boundary, &shapes).ok()?;
+    cable.drag_to(config.robot.start.position);
+    Some(cable)
 }
 
 #[cfg(test)]

@@ -18,6 +18,8 @@ pub enum ActionId {
     Start,
     /// Go on.
     Resume,
+    /// Fly a plan that was refused because of the tether.
+    FlyUncertified,
     /// Move for one tick.
     Step,
     /// End the mission.
@@ -218,6 +220,7 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Interrupt, "interrupt", "HOLD now; twice: ask to leave", &[Key::Ctrl('c')], &[Context::Anywhere]),
     action(ActionId::Start, "start", "Start the mission", &[Key::Char('S')], &[Context::Mission]).label("start").risk(Risk::Moves),
     action(ActionId::Resume, "resume", "Go on after a hold", &[], &[Context::Mission]).risk(Risk::Moves),
+    action(ActionId::FlyUncertified, "fly-uncertified", "Fly a plan refused because of the tether", &[], &[Context::Mission]).risk(Risk::Moves),
     action(ActionId::Step, "step", "Move for one tick while held", &[Key::Char('.')], &[Context::Mission]).label("step").risk(Risk::Moves),
     action(ActionId::Slower, "slower", "Simulate slower", &[Key::Char('<')], &[Context::Mission]).label("speed").repeats(),
     action(ActionId::Faster, "faster", "Simulate faster", &[Key::Char('>')], &[Context::Mission]).label("speed").repeats(),

@@ -6,6 +6,7 @@ pub mod fold;
 pub mod log;
 pub mod parameter;
 pub mod position;
+pub mod tether;
 pub mod trail;
 pub mod ui;
 
@@ -13,6 +14,7 @@ pub use alarms::{Alarm, Alarms, Cause};
 pub use coverage::Raster;
 pub use log::{Entry, Log};
 pub use position::Position;
+pub use tether::Tether;
 pub use trail::Trail;
 pub use ui::{Overlay, Pane, Ui};
 
@@ -20,6 +22,7 @@ use mission::{
     MissionConfig, Order, Outcome, PlannerChoice, PlannerInfo, Severity, event::HoldReason, link::Fault,
 };
 use planner_api::{Command, Drawing};
+use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
 use world::{Point, World};
 
@@ -43,8 +46,13 @@ pub struct Model {
     pub trail: Trail,
     /// What has been scanned.
     pub coverage: Option<Raster>,
+    /// How well the stations are forecast to locate the robot.
+    pub accuracy: Option<AccuracyMap>,
     /// How far the mission is; `None` before the first step.
     pub progress: Option<Progress>,
+    /// The tether; `None` without one.
+    #[serde(default)]
+    pub tether: Option<Tether>,
     /// The planner and what it last did.
     pub planning: Planning,
     /// What is wrong.
@@ -274,8 +282,10 @@ impl Model {
     /// Whether the robot moves or may begin to move any moment without being told.
     pub fn may_move(&self) -> bool {
         let by_itself = match &self.phase {
-            Phase::Running | Phase::Held(HoldReason::PositionLost) => true,
-            Phase::Held(HoldReason::PlannerFault { .. }) => self.has_fallback(),
+            Phase::Running | Phase::Held(HoldReason::PositionLost | HoldReason::PositionAlarmed) => true,
+            Phase::Held(HoldReason::PlannerFault { .. } | HoldReason::PlanRefused { .. }) => {
+                self.has_fallback()
+            }
             Phase::Idle | Phase::Held(_) | Phase::Ended { .. } => false,
         };
         by_itself || self.console.asked.is_some()

@@ -64,11 +64,13 @@ pub enum Role {
     Drawn,
     /// The robot.
     Robot,
+    /// The tether.
+    Tether,
 }
 
 impl Role {
     /// Every role.
-    pub const ALL: [Self; 29] = [
+    pub const ALL: [Self; 30] = [
         Self::Text,
         Self::Dim,
         Self::Title,
@@ -98,11 +100,12 @@ impl Role {
         Self::Push,
         Self::Drawn,
         Self::Robot,
+        Self::Tether,
     ];
 
     /// One letter for the role, as the stored screens of the tests show it.
     pub fn letter(self) -> char {
-        const LETTERS: &[u8; 29] = b".dTbFkgwWCRH~sc%:o#?z*-px+=D@";
+        const LETTERS: &[u8; 30] = b".dTbFkgwWCRH~sc%:o#?z*-px+=D@t";
         char::from(LETTERS[self as usize])
     }
 }
@@ -183,6 +186,7 @@ fn sixteen(role: Role) -> Option<Color> {
         Role::Partly => Some(Color::DarkGray),
         Role::Obstacle | Role::NoGo => Some(Color::LightRed),
         Role::Found | Role::Drawn => Some(Color::LightMagenta),
+        Role::Tether => Some(Color::White),
         Role::Station | Role::Trail => Some(Color::LightCyan),
         Role::Plan | Role::Target => Some(Color::LightYellow),
         Role::Pull => Some(Color::LightGreen),
@@ -198,6 +202,7 @@ fn rich(role: Role) -> Option<(u8, (u8, u8, u8))> {
         Role::Trail => Some((117, (130, 205, 235))),
         Role::Plan => Some((179, (214, 175, 95))),
         Role::Obstacle => Some((209, (240, 128, 100))),
+        Role::Tether => Some((255, (250, 250, 235))),
         Role::Found => Some((213, (240, 130, 220))),
         _ => None,
     }

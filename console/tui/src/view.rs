@@ -12,6 +12,7 @@ mod planner;
 mod position;
 mod shapes;
 mod strip;
+mod tether;
 mod text;
 mod top;
 
@@ -118,6 +119,7 @@ fn whole(look: &Look, frame: &mut Frame, area: Rect, sizes: &Sizes) {
     map::draw(look, frame, map);
     coverage::draw(look, frame, coverage, sizes.wide);
     position::draw(look, frame, position, sizes.wide);
+    let planner = above_tether(look, frame, planner, sizes.wide);
     planner::draw(look, frame, planner, sizes.wide);
     events::draw(look, frame, events);
     confirm::draw(look, frame, next);
@@ -137,11 +139,26 @@ fn paged(look: &Look, frame: &mut Frame, area: Rect) {
         Pane::Map => map::draw(look, frame, page),
         Pane::Coverage => coverage::draw(look, frame, page, true),
         Pane::Position => position::draw(look, frame, page, true),
-        Pane::Planner => planner::draw(look, frame, page, true),
+        Pane::Planner => {
+            let page = above_tether(look, frame, page, true);
+            planner::draw(look, frame, page, true);
+        }
         Pane::Events => events::draw(look, frame, page),
     }
     confirm::draw(look, frame, next);
     footer::draw(look, frame, keys);
+}
+
+/// Draws the tether at the foot of an area, if there is one; what is left above it.
+fn above_tether(look: &Look, frame: &mut Frame, area: Rect, wide: bool) -> Rect {
+    let rows = if wide { tether::ROWS.0 } else { tether::ROWS.1 };
+    // The planner keeps a row of its own.
+    if look.model.tether.is_none() || area.height < rows + 3 {
+        return area;
+    }
+    let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
+    tether::draw(look, frame, below, wide);
+    above
 }
 
 /// Lines in a pane, cut where it ends.

@@ -65,6 +65,14 @@ impl Part {
         }
     }
 
+    /// A place inside.
+    pub fn middle(&self) -> Point {
+        match self {
+            Self::Capsule { a, b, .. } => nalgebra::center(a, b),
+            Self::Polygon { vertices } => mean(vertices),
+        }
+    }
+
     /// Distance from a segment to the outline, metres; not above zero when they touch.
     pub fn segment_distance_m(&self, a: Point, b: Point) -> f64 {
         if let Self::Capsule { a: center, b: other, half_width_m } = self

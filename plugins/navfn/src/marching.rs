@@ -25,6 +25,8 @@ pub struct Field {
     is_source: Vec<bool>,
     /// Cells that may lower their neighbours, with the distance they had when they came here, by that distance.
     buckets: Vec<Vec<(u32, f32)>>,
+    /// Emptied buckets, to be filled again: only the front of the march takes memory.
+    spare: Vec<Vec<(u32, f32)>>,
     /// No bucket before this one holds anything.
     first: usize,
     n_settled: usize,
@@ -43,6 +45,7 @@ impl Field {
             distance_m: vec![f32::INFINITY; n],
             is_source: vec![false; n],
             buckets: Vec::new(),
+            spare: Vec::new(),
             first: 0,
             n_settled: 0,
         };
@@ -115,7 +118,7 @@ impl Field {
                 }
             }
             if self.buckets[self.first].is_empty() {
-                self.buckets[self.first] = bucket;
+                self.spare.push(bucket);
                 self.first += 1;
             }
         }
@@ -155,6 +158,9 @@ impl Field {
         if let Some(bucket) = self.bucket_of(distance_m) {
             if bucket >= self.buckets.len() {
                 self.buckets.resize_with(bucket + 1, Vec::new);
+            }
+            if self.buckets[bucket].capacity() == 0 {
+                self.buckets[bucket] = self.spare.pop().unwrap_or_default();
             }
             self.buckets[bucket].push((cell as u32, distance_m));
             self.first = self.first.min(bucket);

@@ -1,31 +1,37 @@
 //! Planning by offsets from the course: on it wherever it is free, beside it at the least cost where it is not.
 
 use crate::{
+    band::{Band, Knot, Patience, SPAN_M},
     course::Course,
-    polish::Polish,
-    strip::{End, Found, Station, Strip},
+    strip::{Bar, Station, Strip, Way},
 };
 use field::Room;
 use planner_api::{Ctx, Result};
 use std::{collections::BTreeMap, ops::RangeInclusive};
 use world::{Point, Vector};
 
-/// Distance between the stations of the first search, metres.
-const COARSE_M: f64 = 0.2;
+/// Stations of the first search are at least so far apart, metres.
+const COARSE_M: f64 = 0.15;
 /// Distance between its offsets, metres.
 const CELL_M: f64 = 0.05;
 /// Preset points nearer to each other than this are moved together, metres.
 const FINE_M: f64 = 0.1;
 /// Room before and behind what blocks the course, metres: enough to leave it and to come back.
-const RAMPS_M: [f64; 2] = [1.4, 4.0];
-/// Cells and their number on either side when a way is moved to the points of the course; the first that suffices.
-const REFINEMENTS: [(f64, usize); 2] = [(0.025, 2), (0.025, 4)];
+const RAMPS_M: [f64; 2] = [1.0, 3.0];
+/// Course beside a window over which the heading counts, metres.
+const BESIDE_M: f64 = SPAN_M * 1.3;
+/// What a way passes as near as this to the clearance might be passed on the other side, metres.
+const TOUCH_M: f64 = 0.1;
+/// Other ways are tried up to this many times the cost of the cheapest, and so many of them.
+const MOST_COST: f64 = 2.0;
+const MOST_OTHERS: usize = 2;
+/// Most ways are soon drawn; what is not is worth more.
+const HASTE: Patience = Patience { sets: 40, growth: 1.1, turn_share: 0.95 };
+const PATIENCE: Patience = Patience { sets: 80, growth: 1.2, turn_share: 0.92 };
 /// The last point counts more than any other, so that the path arrives.
 const END_WEIGHT: f64 = 20.0;
 /// A last point inside an obstacle is missed by no more than this beside what it must be, metres.
 const NEARLY_M: f64 = 0.1;
-/// Cells of the passes that polish a way, metres.
-const POLISH_M: [f64; 7] = [0.03, 0.03, 0.02, 0.02, 0.01, 0.01, 0.005];
 /// The course itself may turn faster than the limit; the path may do so a little faster than the course.
 const OWN_TURN: f64 = 1.15;
 
@@ -64,6 +70,18 @@ enum Beside {
     Sharp(Vec<Point>),
     /// None.
     Blocked { station: usize },
+}
+
+/// How a way round is looked for.
+#[derive(Debug, Clone, Copy)]
+struct Attempt {
+    /// Furthest offset, metres.
+    offset_m: f64,
+    /// Turns may be faster than the limit by this factor.
+    sharper: f64,
+    /// Whether the first window begins on the course.
+    begins_on: bool,
+    patience: Patience,
 }
 
 /// One search for a path.
@@ -126,7 +144,9 @@ impl Search<'_> {
             let first = stations_m.partition_point(|s| *s < stations_m[*index] - ramp_m);
             let last = stations_m.partition_point(|s| *s <= stations_m[*index] + ramp_m) - 1;
             let (mut start, mut end) = (first, last);
-            while let Some(window) = windows.pop_if(|window| *window.end() >= start) {
+            while let Some(window) =
+                windows.pop_if(|window| stations_m[*window.end()] + 2.0 * SPAN_M >= stations_m[start])
+            {
                 (start, end) = (start.min(*window.start()), end.max(*window.end()));
             }
             windows.push(start..=end);
@@ -139,21 +159,25 @@ impl Search<'_> {
         let far_m = self.limits.offset_m;
         let mut furthest = *window.start();
         let mut short_of_end = None;
-        let begin = self.enter(*window.start());
+        let begins_on = *window.start() > 0 || self.room.spare_m(self.course.points[0]) >= 0.0;
+        let near = Attempt { offset_m: far_m * 0.6, sharper: 1.0, begins_on, patience: HASTE };
+        let far = Attempt { offset_m: far_m, patience: PATIENCE, ..near };
         let mut attempts = vec![
-            (true, far_m * 0.6, begin),
-            (true, far_m, begin),
-            (false, far_m, begin),
-            (false, far_m * 2.0, begin),
+            near,
+            far,
+            Attempt { offset_m: far_m * 2.0, ..far },
+            Attempt { sharper: 2.0, ..far },
+            Attempt { sharper: f64::INFINITY, ..near },
+            Attempt { sharper: f64::INFINITY, offset_m: far_m * 2.0, ..near },
         ];
-        if begin == End::On {
+        if begins_on && *window.start() == 0 {
             // Where nothing leads on from the start itself the path begins beside it.
-            attempts.push((false, far_m, End::Anywhere));
+            attempts.push(Attempt { sharper: f64::INFINITY, begins_on: false, ..far });
         }
-        for (limits_heading, offset_m, enter) in attempts {
-            match self.within(window, limits_heading, offset_m, enter) {
+        for attempt in attempts {
+            match self.within(window, &attempt) {
                 Ok(points) if !self.arrives(window, &points) => short_of_end = Some(points),
-                Ok(points) if limits_heading => return Beside::Smooth(points),
+                Ok(points) if attempt.sharper <= 1.0 => return Beside::Smooth(points),
                 Ok(points) => return Beside::Sharp(points),
                 Err(station) => furthest = furthest.max(station),
             }
@@ -168,101 +192,135 @@ impl Search<'_> {
         *window.end() < self.course.last() || (points[points.len() - 1] - end).norm() <= allowed_m
     }
 
-    /// A way round within a window, one point for every point of the course; or the point that cannot be passed.
+    /// The best way round within a window, one point for every point of the course; or the point that cannot be
+    /// passed.
     fn within(
         &self,
         window: &RangeInclusive<usize>,
-        limits_heading: bool,
-        offset_m: f64,
-        enter: End,
+        attempt: &Attempt,
     ) -> std::result::Result<Vec<Point>, usize> {
-        let coarse_m = self.coarse_stations(window);
-        let mut stations: Vec<Station> = coarse_m.iter().map(|s| self.station(*s, 1.0)).collect();
-        if let Some(last) = stations.last_mut() {
-            last.weight = END_WEIGHT;
-        }
-        let half = (offset_m / CELL_M).round() as usize;
-        let most_change = if limits_heading { 6 } else { 12 };
+        let indices = self.knots(window, COARSE_M);
+        let mut stations: Vec<Station> =
+            indices.windows(2).map(|pair| self.station(pair[0], (pair[1] - pair[0]) as f64)).collect();
+        stations.push(self.station(*window.end(), END_WEIGHT));
         let strip = Strip {
             stations: &stations,
-            middle_m: &vec![0.0; stations.len()],
             cell_m: CELL_M,
-            half,
-            most_change,
-            limits_heading,
-            enter,
-            leave: self.leave(*window.end()),
+            half: (attempt.offset_m / CELL_M).round() as usize,
+            most_change: 8,
+            on_course: [attempt.begins_on, *window.end() < self.course.last()],
+            bars: &[],
         };
-        match strip.cheapest(self.room) {
-            Found::Blocked { station } => {
-                let index = self.course.stations_m.partition_point(|s| *s < coarse_m[station]);
-                Err(index.min(*window.end()))
-            }
-            Found::Way(offsets_m) => {
-                self.refined(window, (limits_heading, enter), &coarse_m, &offsets_m).ok_or(*window.start())
+        let first = strip.cheapest(self.room).map_err(|station| indices[station])?;
+        let mut best: Option<(f64, Vec<Point>)> = None;
+        let ways = std::iter::once(first.clone()).chain(self.others(&strip, &first));
+        for way in ways {
+            let places: Vec<Point> =
+                stations.iter().zip(&way.offsets_m).map(|(s, n)| s.at + s.left * *n).collect();
+            let rough = filled(&indices, &places);
+            let Some((cost, points)) = self.drawn(window, attempt, &rough) else { continue };
+            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                best = Some((cost, points));
             }
         }
+        best.map(|(_, points)| points).ok_or(*window.start())
     }
 
-    /// The way moved to the points of the course and off the grid of offsets.
-    fn refined(
+    /// Ways that pass one thing on the other side.
+    fn others(&self, strip: &Strip<'_>, way: &Way) -> Vec<Way> {
+        let mut others: Vec<Way> = Vec::new();
+        for bar in self.bars(strip.stations, way) {
+            let other = Strip { bars: &[bar], ..*strip }.cheapest(self.room);
+            others.extend(
+                other.ok().filter(|other| other.cost < way.cost * MOST_COST && !others.contains(other)),
+            );
+        }
+        others.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        others.truncate(MOST_OTHERS);
+        others
+    }
+
+    /// What closes the side on which a way passes each thing that it touches.
+    fn bars(&self, stations: &[Station], way: &Way) -> Vec<Bar> {
+        let mut seen: Vec<Point> = Vec::new();
+        let mut bars = Vec::new();
+        for (station, offset_m) in stations.iter().zip(&way.offsets_m) {
+            let place = station.at + station.left * *offset_m;
+            for (part, keep_m) in self.room.parts_near(place) {
+                let middle = part.middle();
+                if part.distance(place).0 > keep_m + TOUCH_M || seen.contains(&middle) {
+                    continue;
+                }
+                seen.push(middle);
+                let from_m = |k: &usize| (stations[*k].at - middle).norm_squared();
+                let Some(nearest) = (0..stations.len()).min_by(|a, b| from_m(a).total_cmp(&from_m(b))) else {
+                    continue;
+                };
+                let middle_m = stations[nearest].left.dot(&(middle - stations[nearest].at));
+                let (from_m, to_m) = if way.offsets_m[nearest] > middle_m {
+                    (middle_m, f64::INFINITY)
+                } else {
+                    (f64::NEG_INFINITY, middle_m)
+                };
+                bars.push(Bar { station: nearest, from_m, to_m });
+            }
+        }
+        bars
+    }
+
+    /// A rough way moved off its grid: its cost and its points.
+    fn drawn(
         &self,
         window: &RangeInclusive<usize>,
-        (limits_heading, enter): (bool, End),
-        coarse_m: &[f64],
-        offsets_m: &[f64],
-    ) -> Option<Vec<Point>> {
-        let knots = self.knots(window);
-        let stations: Vec<Station> = knots
-            .windows(2)
-            .map(|pair| self.native(pair[0], (pair[1] - pair[0]) as f64))
-            .chain(knots.last().map(|last| self.native(*last, END_WEIGHT)))
-            .collect();
-        let at_m = |index: &usize| interpolated(coarse_m, offsets_m, self.course.stations_m[*index]);
-        let mut middle_m: Vec<f64> = knots.iter().map(at_m).collect();
-        let mut is_way = false;
-        for (cell_m, half) in REFINEMENTS {
-            let strip = Strip {
-                stations: &stations,
-                middle_m: &middle_m,
-                cell_m,
-                half,
-                most_change: 2 * half,
-                limits_heading,
-                enter,
-                leave: self.leave(*window.end()),
-            };
-            if let Found::Way(offsets_m) = strip.cheapest(self.room) {
-                middle_m = offsets_m;
-                is_way = true;
-                break;
+        attempt: &Attempt,
+        rough: &[Point],
+    ) -> Option<(f64, Vec<Point>)> {
+        let around = self.around(window);
+        let indices = self.knots(&around, FINE_M);
+        let last = self.course.last();
+        let is_fixed = |index: usize| {
+            (index <= *window.start() && attempt.begins_on)
+                || (index >= *window.end() && *window.end() < last)
+        };
+        let knot = |(k, index): (usize, &usize)| {
+            let own = self.course.turn_per_m(*index);
+            let own = if own > self.limits.turn_per_m { own * OWN_TURN } else { 0.0 };
+            Knot {
+                at: self.course.points[*index],
+                weight: indices.get(k + 1).map_or(END_WEIGHT, |next| (next - index) as f64),
+                turn_per_m: (self.limits.turn_per_m * attempt.sharper).max(own),
+                fixed: is_fixed(*index),
             }
-        }
-        if !is_way {
-            return None;
-        }
-        let mut places: Vec<Point> =
-            stations.iter().zip(&middle_m).map(|(s, n)| s.at + s.left * *n).collect();
-        let polish = Polish { stations: &stations, limits_heading, enter, leave: self.leave(*window.end()) };
-        for cell_m in POLISH_M {
-            places = polish.pass(self.room, &places, cell_m).unwrap_or(places);
-        }
-        Some(filled(&knots, &places))
+        };
+        let knots: Vec<Knot> = indices.iter().enumerate().map(knot).collect();
+        let place = |index: &usize| {
+            if window.contains(index) { rough[index - window.start()] } else { self.course.points[*index] }
+        };
+        let way: Vec<Point> = indices.iter().map(place).collect();
+        let band = Band { knots: &knots, room: self.room };
+        let (cost, places) = match band.drawn(&way, attempt.patience) {
+            Some(places) => (band.cost(&places), places),
+            None if attempt.sharper.is_finite() && self.limits.turn_per_m.is_finite() => return None,
+            None => return Some((f64::MAX, rough.to_vec())),
+        };
+        let points = filled(&indices, &places);
+        Some((cost, points[window.start() - around.start()..=window.end() - around.start()].to_vec()))
     }
 
-    /// Ways along the course to the stations of the first search, metres.
-    fn coarse_stations(&self, window: &RangeInclusive<usize>) -> Vec<f64> {
-        let (from_m, to_m) = (self.course.stations_m[*window.start()], self.course.stations_m[*window.end()]);
-        let n_pieces = ((to_m - from_m) / COARSE_M).round().max(1.0) as usize;
-        (0..=n_pieces).map(|k| from_m + (to_m - from_m) * (k as f64 / n_pieces as f64)).collect()
+    /// A window and the pieces of course beside it over which its heading counts.
+    fn around(&self, window: &RangeInclusive<usize>) -> RangeInclusive<usize> {
+        let stations_m = &self.course.stations_m;
+        let first = stations_m.partition_point(|s| *s < stations_m[*window.start()] - BESIDE_M);
+        let last = stations_m.partition_point(|s| *s <= stations_m[*window.end()] + BESIDE_M) - 1;
+        first..=last
     }
 
-    /// Points of the course that are moved; those between follow.
-    fn knots(&self, window: &RangeInclusive<usize>) -> Vec<usize> {
+    /// Points of the course so far from each other that are moved; those between follow.
+    fn knots(&self, window: &RangeInclusive<usize>, apart_m: f64) -> Vec<usize> {
         let stations_m = &self.course.stations_m;
         let mut knots = vec![*window.start()];
         for index in window.clone() {
-            if stations_m[index] - stations_m[knots[knots.len() - 1]] >= FINE_M {
+            if stations_m[index] - stations_m[knots[knots.len() - 1]] >= apart_m {
                 knots.push(index);
             }
         }
@@ -272,40 +330,10 @@ impl Search<'_> {
         knots
     }
 
-    fn native(&self, index: usize, weight: f64) -> Station {
-        Station { at: self.course.points[index], ..self.station(self.course.stations_m[index], weight) }
+    fn station(&self, index: usize, weight: f64) -> Station {
+        let direction = self.course.direction(index);
+        Station { at: self.course.points[index], left: Vector::new(-direction.y, direction.x), weight }
     }
-
-    fn station(&self, station_m: f64, weight: f64) -> Station {
-        let (at, direction) = self.course.at_m(station_m);
-        let index = self.course.stations_m.partition_point(|s| *s < station_m).min(self.course.last());
-        let own = self.course.turn_per_m(index) * OWN_TURN;
-        Station {
-            at,
-            left: Vector::new(-direction.y, direction.x),
-            weight,
-            turn_per_m: self.limits.turn_per_m.max(own),
-        }
-    }
-
-    fn enter(&self, index: usize) -> End {
-        match index {
-            0 if self.room.spare_m(self.course.points[0]) >= 0.0 => End::On,
-            0 => End::Anywhere,
-            _ => End::Along(self.course.leg(index - 1)),
-        }
-    }
-
-    fn leave(&self, index: usize) -> End {
-        if index == self.course.last() { End::Anywhere } else { End::Along(self.course.leg(index)) }
-    }
-}
-
-fn interpolated(stations_m: &[f64], offsets_m: &[f64], station_m: f64) -> f64 {
-    let next = stations_m.partition_point(|s| *s <= station_m).clamp(1, stations_m.len() - 1);
-    let (from_m, to_m) = (stations_m[next - 1], stations_m[next]);
-    let share = ((station_m - from_m) / (to_m - from_m)).clamp(0.0, 1.0);
-    offsets_m[next - 1] + (offsets_m[next] - offsets_m[next - 1]) * share
 }
 
 /// A point for every point of the course: on the straight way between those that were moved.

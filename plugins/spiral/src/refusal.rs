@@ -1,73 +1,60 @@
-//! Saying no with a reason: where the way is blocked, and whether that is proved.
+//! Saying no with a reason: where the way is blocked, and by which ring of obstacles, if that is proved.
 
-use crate::course::Course;
+use crate::{
+    course::Course,
+    ring::{self, Ring},
+};
 use field::Room;
-use planner_api::PlannerError;
+use planner_api::{PlannerError, Site};
 use world::Point;
 
-/// Edge of a cell of the flood, metres.
-const CELL_M: f64 = 0.05;
-/// More cells than this are not flooded.
-const MOST_CELLS: usize = 4_000_000;
-
 /// The refusal of a course that is blocked at a point.
-pub fn no_path(course: &Course, room: &Room, station: usize, partial: Vec<Point>) -> PlannerError {
-    let at = course.points[station];
-    let keep_m = room.keep().obstacle_m;
-    let proof = match is_cut_off(course, room, station, &partial) {
-        Some(true) => "proved: what lies behind cannot be reached from the start by any way",
-        _ => "no way round was found beside the preset path",
+pub fn no_path(
+    course: &Course,
+    (site, room): (&Site<'_>, &Room),
+    station: usize,
+    partial: Vec<Point>,
+) -> PlannerError {
+    let (blocked, ring) = match cut_off(course, (site, room), station, &partial) {
+        Some((first, ring)) => (first, Some(ring)),
+        None => (station, None),
     };
+    let at = course.points[blocked];
+    let keep_m = room.keep().obstacle_m;
+    let proof =
+        ring.map_or_else(|| "no way round was found beside the preset path".to_owned(), |ring| told(&ring));
     PlannerError::no_path_but(
         format!(
-            "blocked at station {station} of {}, ({:.2}, {:.2}), {:.1} m along the preset path: hull and clearance \
+            "blocked at station {blocked} of {}, ({:.2}, {:.2}), {:.1} m along the preset path: hull and clearance \
              need {keep_m:.2} m; {proof}",
             course.points.len(),
             at.x,
             at.y,
-            course.stations_m[station],
+            course.stations_m[blocked],
         ),
         partial,
     )
 }
 
-/// Whether no point of the course behind a blocked one, by more than a metre and a half, can be reached from
-/// the path before it: the floor is flooded in cells, and a cell counts as passable if any place in it could be.
-///
-/// `None` where the tank is too large to be flooded.
-fn is_cut_off(course: &Course, room: &Room, station: usize, reached: &[Point]) -> Option<bool> {
-    let (low, high) = room.wall().bounds();
-    let (columns, rows) =
-        (((high.x - low.x) / CELL_M).ceil() as usize, ((high.y - low.y) / CELL_M).ceil() as usize);
-    if columns.saturating_mul(rows) > MOST_CELLS {
-        return None;
-    }
-    let center = |x: usize, y: usize| low + world::Vector::new(x as f64 + 0.5, y as f64 + 0.5) * CELL_M;
-    let half_diagonal_m = CELL_M * std::f64::consts::FRAC_1_SQRT_2;
-    let cell_of = |p: Point| {
-        let x = ((p.x - low.x) / CELL_M).clamp(0.0, columns as f64 - 1.0) as usize;
-        let y = ((p.y - low.y) / CELL_M).clamp(0.0, rows as f64 - 1.0) as usize;
-        y * columns + x
-    };
-    let passable = |cell: usize| room.spare_m(center(cell % columns, cell / columns)) >= -half_diagonal_m;
-    let mut seen = vec![false; columns * rows];
-    let before = reached.iter().map(|p| cell_of(*p)).filter(|cell| passable(*cell));
-    let mut open: Vec<usize> = before.collect();
-    for cell in &open {
-        seen[*cell] = true;
-    }
-    while let Some(cell) = open.pop() {
-        let (x, y) = (cell % columns, cell / columns);
-        for (dx, dy) in [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)] {
-            let (Some(x), Some(y)) = (x.checked_add_signed(dx), y.checked_add_signed(dy)) else { continue };
-            if x < columns && y < rows && !seen[y * columns + x] && passable(y * columns + x) {
-                seen[y * columns + x] = true;
-                open.push(y * columns + x);
-            }
-        }
-    }
-    let behind_m = course.stations_m[station] + 1.5;
-    let behind = course.points.iter().zip(&course.stations_m).filter(|(_, s)| **s > behind_m);
-    let mut free = behind.filter(|(p, _)| room.spare_m(**p) >= 0.0).map(|(p, _)| cell_of(*p));
-    Some(!free.any(|cell| seen[cell]))
+fn told(ring: &Ring) -> String {
+    let ids: Vec<String> = ring.obstacles.iter().map(u32::to_string).collect();
+    let wall = if ring.has_wall { " and the wall" } else { "" };
+    format!("proved: no way leads there, a ring of obstacles {}{wall} closes it off", ids.join(", "))
+}
+
+/// The first free point from the blocked one on that cannot be reached, if the end of the course cannot be either; and
+/// the ring about it.
+fn cut_off(
+    course: &Course,
+    (site, room): (&Site<'_>, &Room),
+    station: usize,
+    reached: &[Point],
+) -> Option<(usize, Ring)> {
+    let is_free = |index: &usize| room.spare_m(course.points[*index]) >= 0.0;
+    let from = *reached.iter().rev().find(|place| room.spare_m(**place) >= 0.0)?;
+    let apart = |index: usize| ring::between(site, room.keep(), from, course.points[index]);
+    let end = (station..course.points.len()).rev().find(is_free)?;
+    let of_end = apart(end)?;
+    let first = (station..end).filter(is_free).find_map(|index| Some((index, apart(index)?)));
+    Some(first.unwrap_or((end, of_end)))
 }

@@ -62,7 +62,9 @@ impl Planner for SpiralLattice {
         course::check_start(request, &course, &room, ctx)?;
         match lattice::plan(&course, &room, self.wishes.limits, ctx)? {
             Ok(path) => Ok(told(path, &course, &room, ctx)),
-            Err(Blocked { station, partial }) => Err(refusal::no_path(&course, &room, station, partial)),
+            Err(Blocked { station, partial }) => {
+                Err(refusal::no_path(&course, (request.site, &room), station, partial))
+            }
         }
     }
 
@@ -72,11 +74,12 @@ impl Planner for SpiralLattice {
 }
 
 fn wishes(config: &Config<'_>) -> Result<Wishes> {
-    let turn_deg = course::finite(config, "turn_deg")?;
+    course::check_numbers(config, SpiralLattice::PARAMS)?;
+    let turn_deg = config.float("turn_deg");
     let turn_per_m = if turn_deg > 0.0 { turn_deg.to_radians() / 0.2 } else { f64::INFINITY };
-    let offset_m = course::finite(config, "max_offset_m")?;
+    let offset_m = config.float("max_offset_m");
     let limits = Limits { offset_m, turn_per_m };
-    Ok(Wishes { clearance_m: course::finite(config, "clearance_m")?, limits })
+    Ok(Wishes { clearance_m: config.float("clearance_m"), limits })
 }
 
 fn told(path: lattice::Path, course: &Course, room: &field::Room, ctx: &Ctx<'_>) -> Plan {
@@ -88,6 +91,14 @@ fn told(path: lattice::Path, course: &Course, room: &field::Room, ctx: &Ctx<'_>)
                 "between ({:.2}, {:.2}) and ({:.2}, {:.2}) the only way turns faster than the turn limit",
                 from.x, from.y, to.x, to.y
             ),
+        );
+    }
+    let (start, begin) = (course.points[0], path.points[0]);
+    if (begin - start).norm() > 1e-6 && room.spare_m(start) >= 0.0 {
+        let beside_m = (begin - start).norm();
+        ctx.log(
+            LogLevel::Warn,
+            &format!("nothing leads on along the preset path from the start; the path begins {beside_m:.2} m beside it"),
         );
     }
     let end = path.points[path.points.len() - 1];

@@ -5,14 +5,15 @@ use super::{
     checks::{Site, check_cells, check_period, check_ticks},
     expect, floor, layout,
     problem::{Complaint, Problem},
+    ranging,
     robot::{self, Robot},
     schema,
     section::Section,
     source::Source,
-    task,
+    task, tether,
 };
-use mission::{MissionConfig, ScanConfig, TaskConfig};
-use sim::{AeConfig, RobotConfig, SimConfig};
+use mission::{Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
+use sim::{AeConfig, Mover, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
 
@@ -42,10 +43,12 @@ struct Sections<'a> {
 struct Floor {
     boundary: Option<Boundary>,
     obstacles: Vec<Obstacle>,
+    movers: Vec<Mover>,
     zones: Vec<world::Zone>,
     robot: Option<Robot>,
     stations: Vec<Station>,
     ae: Option<AeConfig>,
+    locating: Option<Locating>,
 }
 
 fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
@@ -67,15 +70,18 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let start = start(floor.robot.as_ref(), task.as_ref());
     scatter(root, &mut floor, seed, start, task.as_ref());
     check_places(&sections, &floor, start, task.as_ref());
+    let tether = tether_of(root, &floor, start);
+    let task = task.map(|task| back_to_the_anchor(task, tether.as_ref()));
     let planner = root.table("planner").map(|section| (task::planner(&section), task::fallback(&section)));
     let plates = if root.has("plates") { floor::plates(root, floor.boundary.as_ref()) } else { None };
     let expect = expect::expect(root);
     let rest = Rest::read(&sections, &floor);
 
     let (planner, fallback) = planner?;
-    let (robot, rest, start, ae) = (floor.robot?, rest?, start?, floor.ae?);
+    let (robot, rest, start, ae, locating) = (floor.robot?, rest?, start?, floor.ae?, floor.locating?);
     let mission = MissionConfig {
         task: task?,
+        tether,
         start,
         start_sigma_m: robot.start_sigma_m,
         tick_s: rest.tick_s,
@@ -92,19 +98,28 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         odometry_sigma_per_m: robot.odometry_sigma_per_m(),
         odometry_turn_sigma_per_rad: robot.turn_sigma_per_rad(),
         gyro_sigma_rad_per_s: robot.gyro_sigma_rad_per_s(),
-        range_sigma_ratio: robot::range_sigma_ratio(ae.noise),
+        range_sigma_ratio: ranging::range_sigma_ratio(ae.noise),
+        locating,
         planner: planner?,
         fallback,
         // Who flies it knows; a scenario does not.
         attended: false,
     };
+    let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);
     let world = World {
         boundary: floor.boundary?,
         obstacles: floor.obstacles,
         stations: floor.stations,
         zones: floor.zones,
     };
-    let sim = SimConfig { world, robot: truth(&robot, start), ae: Some(ae), tick_s: rest.tick_s };
+    let sim = SimConfig {
+        world,
+        robot: truth(&robot, start),
+        ae: Some(ae),
+        tick_s: rest.tick_s,
+        movers: floor.movers,
+        tether_anchor,
+    };
     Some(Scenario {
         name: name?,
         about: about?,
@@ -122,12 +137,20 @@ impl Floor {
     fn read(sections: &Sections<'_>) -> Self {
         let boundary = floor::tank(sections.root);
         let ae = sections.ae.as_ref();
+        let (obstacles, movers) = floor::obstacles(sections.root, boundary.as_ref());
+        let stations = ae.map(|section| ranging::stations(section, boundary.as_ref())).unwrap_or_default();
+        let mut heard = ae.and_then(ranging::ae);
+        if let (Some(section), Some(heard)) = (ae, &mut heard) {
+            heard.disturbances.faults = ranging::faults(section, &stations);
+        }
         Self {
-            obstacles: floor::obstacles(sections.root, boundary.as_ref()),
+            obstacles,
+            movers,
             zones: floor::zones(sections.root),
             robot: sections.robot.as_ref().and_then(robot::robot),
-            stations: ae.map(|section| robot::stations(section, boundary.as_ref())).unwrap_or_default(),
-            ae: ae.and_then(robot::ae),
+            stations,
+            locating: ae.zip(heard.as_ref()).and_then(|(section, heard)| ranging::locating(section, heard)),
+            ae: heard,
             boundary,
         }
     }
@@ -204,6 +227,31 @@ fn check_places(sections: &Sections<'_>, floor: &Floor, start: Option<Pose>, tas
     }
     if let Some(TaskConfig::Goto { goal, .. }) = task {
         complain(&sections.mission, "goal_m", *goal);
+    }
+}
+
+/// The tether, if there is one; a complaint stands for one that cannot be.
+fn tether_of(root: &Section<'_>, floor: &Floor, start: Option<Pose>) -> Option<TetherConfig> {
+    if !root.has("tether") {
+        return None;
+    }
+    let section = root.table("tether")?;
+    let start = start.map(|pose| pose.position);
+    let tether = tether::tether(&section, start)?;
+    if let (Some(boundary), Some(start)) = (&floor.boundary, start) {
+        let site = Site { boundary, obstacles: &floor.obstacles, zones: &[], radius_m: 0.0 };
+        tether::check(&section, &tether, &site, start);
+    }
+    Some(tether)
+}
+
+/// A robot that scans the floor on a tether comes back to where the tether is made fast.
+fn back_to_the_anchor(task: TaskConfig, tether: Option<&TetherConfig>) -> TaskConfig {
+    match (task, tether) {
+        (TaskConfig::Cover { regions, tolerance_m, .. }, Some(tether)) => {
+            TaskConfig::Cover { anchor: tether.anchor, regions, tolerance_m }
+        }
+        (task, _) => task,
     }
 }
 

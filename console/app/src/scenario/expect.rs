@@ -12,6 +12,7 @@ pub fn expect(root: &Section<'_>) -> Option<Expect> {
         "stuck" => Outcome::Stuck,
         "collision" => Outcome::Collision,
         "time_limit" => Outcome::TimeLimit,
+        "entangled" => Outcome::Entangled,
         _ => Outcome::Aborted,
     });
     Some(Expect {
@@ -32,5 +33,8 @@ pub fn expect(root: &Section<'_>) -> Option<Expect> {
         p95_error_max_m: section.number("p95_error_max_m"),
         in_95_ellipse_min: section.number("in_95_ellipse_min"),
         lost_max_s: section.number("lost_max_s"),
+        cable_max_m: section.number("cable_max_m"),
+        wrap_max_rad: section.number("wrap_max_deg").map(f64::to_radians),
+        left_out_max_m: section.number("left_out_max_m"),
     })
 }

@@ -1,12 +1,8 @@
-//! The robot and its ranging: `[robot]` and `[ae]`.
+//! The robot: `[robot]`.
 
-use super::{floor::Names, problem::Complaint, section::Section};
+use super::{problem::Complaint, section::Section};
 use planner_api::{Limits, Motion};
-use sim::{AeConfig, NoiseModel};
-use world::{Amphibious, Boundary, Pace, Point, Station, StationId};
-
-/// A station may lie this far behind the wall: sensors sit on it, and drawings are rounded to centimetres.
-const ON_WALL_M: f64 = 0.01;
+use world::{Amphibious, Pace, Point};
 
 /// `[robot]` as read; the start may still follow from the mission.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,79 +118,4 @@ fn amphibious(section: &Section<'_>, motion: &str) -> Option<Amphibious> {
 fn pace(section: &Section<'_>, keys: [&'static str; 2]) -> Option<Pace> {
     let (speed, turn_deg) = (section.number(keys[0]), section.number(keys[1]));
     Some(Pace { v_max_m_per_s: speed?, w_max_rad_per_s: turn_deg?.to_radians() })
-}
-
-/// Reads `[ae]` without its stations.
-pub fn ae(section: &Section<'_>) -> Option<AeConfig> {
-    let (period_s, repetitions) = (section.number("period_s"), section.whole("repetitions"));
-    let (noise, dropout) = (noise(section), section.number("dropout"));
-    let outages_s = section.times("outages_s");
-    Some(AeConfig {
-        period_s: period_s?,
-        repetitions: repetitions? as u32,
-        noise: noise?,
-        dropout: dropout?,
-        outages_s: outages_s?,
-    })
-}
-
-fn noise(section: &Section<'_>) -> Option<NoiseModel> {
-    if !section.has("noise") {
-        return Some(NoiseModel::Uniform { ratio: 0.05 });
-    }
-    let noise = section.table("noise")?;
-    let model = noise.word("model")?;
-    let beside = format!("model = \"{model}\"");
-    match model {
-        "uniform" => {
-            noise.refuse(&["sigma_ratio"], &beside);
-            noise.require("ratio", "add ratio = 0.05 for at most 5 % of the distance");
-            Some(NoiseModel::Uniform { ratio: noise.number("ratio")? })
-        }
-        "gaussian" => {
-            noise.refuse(&["ratio"], &beside);
-            noise.require(
-                "sigma_ratio",
-                "add sigma_ratio = 0.03 for a standard deviation of 3 % of the distance",
-            );
-            Some(NoiseModel::Gaussian { sigma_ratio: noise.number("sigma_ratio")? })
-        }
-        _ => {
-            noise.refuse(&["ratio", "sigma_ratio"], &beside);
-            Some(NoiseModel::None)
-        }
-    }
-}
-
-/// Standard deviation of one range as a share of it, as the estimator may expect it; never quite zero.
-pub fn range_sigma_ratio(noise: NoiseModel) -> f64 {
-    const LEAST: f64 = 1e-3;
-    match noise {
-        NoiseModel::None => LEAST,
-        NoiseModel::Uniform { ratio } => (ratio / 3.0_f64.sqrt()).max(LEAST),
-        NoiseModel::Gaussian { sigma_ratio } => sigma_ratio.max(LEAST),
-    }
-}
-
-/// Reads the stations of `[ae]`.
-pub fn stations(section: &Section<'_>, boundary: Option<&Boundary>) -> Vec<Station> {
-    let mut names = Names::default();
-    let mut stations: Vec<Station> = Vec::new();
-    let sections = section.tables("stations");
-    for (i, entry) in sections.iter().enumerate() {
-        let (name, at) = (entry.text("name").and_then(|_| names.of(entry, String::new)), entry.point("at_m"));
-        let Some(position) = at else { continue };
-        if let Some(twin) = stations.iter().find(|other| (other.position - position).norm() < ON_WALL_M) {
-            entry.complain("at_m", Complaint::Duplicate { other: format!("station \"{}\"", twin.name) });
-        }
-        let by_m = boundary.map_or(0.0, |boundary| -boundary.wall_distance_m(position));
-        if by_m > ON_WALL_M {
-            entry.complain("at_m", Complaint::OutsideTank { by_m });
-        }
-        stations.extend(name.map(|name| Station { id: StationId(i as u32 + 1), name, position }));
-    }
-    if section.has("stations") && sections.len() < 2 && section.is_list("stations") {
-        section.complain("stations", Complaint::TooFewStations { have: sections.len() });
-    }
-    stations
 }

@@ -177,14 +177,16 @@ pub static ROOT: &[Key] = &[
     key("plates", "", Kind::Table(PLATES)).or_none("not known"),
     key("robot", "", Kind::Table(ROBOT)).or_none("all defaults"),
     key("ae", "", Kind::Table(AE)),
+    key("tether", "", Kind::Table(TETHER)).or_none("none"),
     key("mission", "", Kind::Table(MISSION)),
     key("planner", "", Kind::Table(PLANNER)),
     key("expect", "", Kind::Table(EXPECT)).or_none("no bounds"),
 ];
 
 static TANK: &[Key] = &[
-    number("radius_m", "m", LENGTH).or_none("this or `vertices_m`"),
-    key("vertices_m", "m", Kind::Points(3)).or_none("this or `radius_m`"),
+    number("radius_m", "m", LENGTH).or_none("this, `vertices_m` or `map`"),
+    key("vertices_m", "m", Kind::Points(3)).or_none("this, `radius_m` or `map`"),
+    key("map", "", Kind::Text).or_none("this, `radius_m` or `vertices_m`"),
 ];
 
 static PLATES: &[Key] = &[
@@ -207,7 +209,10 @@ static OBSTACLES: &[Key] = &[
     key("vertices_m", "m", Kind::Points(3)).or_none(BY_KIND),
     key("points_m", "m", Kind::Points(2)).or_none(BY_KIND),
     number("width_m", "m", LENGTH).or_none(BY_KIND),
-    key("known", "", Kind::Flag).or_flag(true),
+    key("velocity_m_per_s", "m/s", Kind::Pair(at_least(-10.0).up_to(10.0))).or_none("it stands still"),
+    key("waypoints_m", "m", Kind::Points(1)).or_none("it stands still"),
+    number("speed_m_per_s", "m/s", above(0.0).up_to(10.0)).or_none("for `waypoints_m`"),
+    key("known", "", Kind::Flag).or_none("`true`, `false` for what moves"),
 ];
 
 static RANDOM_OBSTACLES: &[Key] = &[
@@ -262,14 +267,43 @@ static AE: &[Key] = &[
     key("noise", "", Kind::Table(NOISE)).or_none("`{ model = \"uniform\", ratio = 0.05 }`"),
     number("dropout", "", SHARE).or(0.0),
     key("outages_s", "s", Kind::Times).or_none("none"),
+    number("ping_dropout", "", SHARE).or(0.0),
+    number("outlier_chance", "", SHARE).or(0.0),
+    number("outlier_factor", "", at_least(1.0).up_to(100.0)).or(10.0),
+    number("nlos_chance", "", SHARE).or(0.0),
+    number("late_ping_chance", "", SHARE).or(0.0),
+    number("late_mean_m", "m", above(0.0).up_to(1000.0)).or(1.0),
+    word("behind_columns", &["heard", "creeping", "late", "wall-echo", "silent"]).or_word("heard"),
+    number("survey_sigma_m", "m", at_least(0.0).up_to(10.0)).or(0.0),
+    number("sound_speed_error_ratio", "", at_least(-0.5).up_to(0.5)).or(0.0),
+    key("faults", "", Kind::Tables(FAULTS)).or_none("none"),
+    word("solver", &["linear", "weighted-linear", "nls", "bounded", "consensus"]).or_word("nls"),
+    word("aggregation", &["mean", "midrange", "trimmed-mean", "posterior"]).or_word("mean"),
+    key("calibrates_sound", "", Kind::Flag).or_flag(false),
+];
+
+static FAULTS: &[Key] = &[
+    key("station", "", Kind::Text),
+    number("from_s", "s", at_least(0.0)),
+    number("to_s", "s", above(0.0)),
+    number("late_m", "m", above(0.0).up_to(1000.0)).or_none("the station is silent"),
+];
+
+static TETHER: &[Key] = &[
+    point("anchor_m").or_none("where the robot starts"),
+    number("reel_m", "m", LENGTH),
+    number("max_wrap_deg", "deg", above(0.0).up_to(3600.0)).or(360.0),
+    number("max_sum_wrap_deg", "deg", above(0.0).up_to(36_000.0)).or(720.0),
+    number("friction", "", at_least(0.0).up_to(2.0)).or(0.3),
+    key("fly_uncertified", "", Kind::Flag).or_flag(false),
 ];
 
 static STATIONS: &[Key] = &[key("name", "", Kind::Text), point("at_m")];
 
 static NOISE: &[Key] = &[
-    word("model", &["none", "uniform", "gaussian"]),
-    number("ratio", "", above(0.0).up_to(0.9)).or_none("for `uniform`"),
-    number("sigma_ratio", "", above(0.0).up_to(0.9)).or_none("for `gaussian`"),
+    word("model", &["none", "uniform", "triangular", "gaussian", "heavy-tailed"]),
+    number("ratio", "", above(0.0).up_to(0.9)).or_none("for `uniform`, `triangular`"),
+    number("sigma_ratio", "", above(0.0).up_to(0.9)).or_none("for `gaussian`, `heavy-tailed`"),
 ];
 
 static MISSION: &[Key] = &[
@@ -310,7 +344,8 @@ static FALLBACK: &[Key] =
 const NO_BOUND: &str = "no bound";
 
 static EXPECT: &[Key] = &[
-    word("outcome", &["complete", "stuck", "collision", "time_limit", "aborted"]).or_none(NO_BOUND),
+    word("outcome", &["complete", "stuck", "collision", "time_limit", "entangled", "aborted"])
+        .or_none(NO_BOUND),
     key("collisions_max", "", Kind::Whole(0, i64::MAX)).or_none(NO_BOUND),
     number("min_clearance_min_m", "m", at_least(-1000.0)).or_none(NO_BOUND),
     number("mission_time_max_s", "s", above(0.0)).or_none(NO_BOUND),
@@ -327,6 +362,9 @@ static EXPECT: &[Key] = &[
     number("p95_error_max_m", "m", above(0.0)).or_none(NO_BOUND),
     number("in_95_ellipse_min", "", SHARE).or_none(NO_BOUND),
     number("lost_max_s", "s", at_least(0.0)).or_none(NO_BOUND),
+    number("cable_max_m", "m", above(0.0)).or_none(NO_BOUND),
+    number("wrap_max_deg", "deg", above(0.0)).or_none(NO_BOUND),
+    number("left_out_max_m", "m", at_least(0.0)).or_none(NO_BOUND),
 ];
 
 /// Every section with its path, the whole file first under the empty path.

@@ -46,6 +46,13 @@ impl Mission {
             }
             (Order::ChoosePlanner(choice), _) => self.choose_by_order(choice, planner),
             (Order::SetParameter { key, value }, _) => self.set_parameter(key, value, planner),
+            (Order::FlyUncertified, Phase::Held(HoldReason::PlanRefused { .. })) => {
+                if let Some(tether) = &mut self.tether {
+                    tether.fly_uncertified();
+                }
+                self.resume(Phase::Running, planner)
+            }
+            (Order::FlyUncertified, _) => Err("no plan has been refused because of the tether".into()),
             (Order::Hold | Order::Resume | Order::Step, Phase::Waiting) => {
                 Err("the mission has not been started".into())
             }
@@ -61,6 +68,9 @@ impl Mission {
 
     /// Lets the robot move again, for good or for one tick.
     fn resume(&mut self, how: Phase, planner: &mut dyn PlannerLink) -> Result<(), String> {
+        if self.locator.is_alarmed() {
+            return Err("the ranges contradict each other; going on needs a fix that holds together".into());
+        }
         if self.locator.is_lost() {
             return Err(format!(
                 "the position is lost: 95 % error {:.2} m, limit {:.2} m",
@@ -83,7 +93,14 @@ impl Mission {
         if self.phase != Phase::Waiting {
             self.planner.plan_due = Some(Reason::Swap { from });
             self.plan_if_due(planner)?;
-            if matches!(self.phase, Phase::Held(HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. })) {
+            if matches!(
+                self.phase,
+                Phase::Held(
+                    HoldReason::PlannerFault { .. }
+                        | HoldReason::PlanRefused { .. }
+                        | HoldReason::Stuck { .. }
+                )
+            ) {
                 // The reason is gone with the planner; now it is the operator who lets the robot go on.
                 self.hold(HoldReason::Operator);
             }

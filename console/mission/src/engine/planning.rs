@@ -43,6 +43,7 @@ impl Mission {
     /// Asks for a plan if one is due.
     pub(super) fn plan_if_due(&mut self, planner: &mut dyn PlannerLink) -> Result<(), String> {
         let Some(reason) = self.planner.plan_due.clone() else { return Ok(()) };
+        self.planner.refused = false;
         let start = self.locator.pose_estimate();
         let regions = self.task.regions_left(&self.coverage, self.config.lane_m());
         let regions: Vec<&[world::Point]> = regions.iter().map(Vec::as_slice).collect();
@@ -52,31 +53,35 @@ impl Mission {
             .chart
             .with_site(|site| planner.plan(&PlanRequest { reason: &reason, start, task, site, previous }));
         match answer {
-            Ok(reply) => {
-                self.accept_plan(reason, reply);
-                Ok(())
-            }
+            Ok(reply) => self.accept_plan(reason, reply),
             Err(fault) => Err(self.note_fault(fault)),
         }
     }
 
-    fn accept_plan(&mut self, reason: Reason, reply: Reply<Plan>) {
-        self.planner.plan_due = None;
-        self.task.take_plan(&reply.value);
-        // What is left is counted anew along the new plan.
-        self.stuck.reset();
+    /// Takes a plan to be flown, unless it cannot be certified for the tether.
+    fn accept_plan(&mut self, reason: Reason, reply: Reply<Plan>) -> Result<(), String> {
         let Plan { path, complete, legs, cuts, .. } = reply.value.clone();
-        self.plan = (!path.is_empty()).then(|| Follower::new(path.clone()));
         self.happened.push(EventKind::Planned {
             planner: self.planner.choice.id.clone(),
             reason,
             length_m: polyline::length_m(&path),
-            path,
+            path: path.clone(),
             complete,
             legs,
-            cuts,
+            cuts: cuts.clone(),
         });
+        let judged = self.judge_plan(&path, &cuts);
+        self.planner.refused = judged.is_err();
+        if judged.is_ok() {
+            self.planner.plan_due = None;
+            self.task.take_plan(&reply.value);
+            // What is left is counted anew along the new plan.
+            self.stuck.reset();
+            self.plan = (!path.is_empty()).then(|| Follower::new(path));
+            self.keep_to(cuts);
+        }
         self.pass_on(reply);
+        judged
     }
 
     /// Tells what the planner drew, reported and said besides its answer.
@@ -125,6 +130,10 @@ impl Mission {
 
     /// Stands still because of the planner.
     pub(super) fn hold_for_planner(&mut self, message: String) {
-        self.hold(HoldReason::PlannerFault { message });
+        self.hold(if self.planner.refused {
+            HoldReason::PlanRefused { message }
+        } else {
+            HoldReason::PlannerFault { message }
+        });
     }
 }

@@ -1,26 +1,33 @@
 //! What one tick of looking around and scanning adds to the map and to the coverage.
 
 use super::{Mission, Phase};
-use crate::{event::EventKind, task::Task};
+use crate::{chart::Seen, event::EventKind, task::Task};
 use planner_api::Reason;
 use world::{CellRun, FloorMaker, Pose, Readings, Shape};
 
 impl Mission {
-    pub(super) fn look_around(&mut self, readings: &Readings) {
+    /// Puts what is seen on the chart; whether the chart has changed.
+    pub(super) fn look_around(&mut self, readings: &Readings) -> bool {
         // A found obstacle is placed by the estimated pose, so a lost robot does not draw maps.
         if self.locator.is_lost() {
-            return;
+            return false;
         }
-        let found = self.chart.see(&readings.sightings, &self.locator.pose());
-        if found.is_empty() {
-            return;
+        let (now_s, pose) = (self.now_s(), self.locator.pose());
+        let Seen { events, changes_plans } = self.chart.see(now_s, &readings.sightings, &pose);
+        if events.is_empty() && !changes_plans {
+            return false;
         }
-        let shapes: Vec<Shape> = found.iter().filter_map(shape_of).collect();
-        if self.planner.plan_due.is_none() && found.iter().any(|event| self.is_in_the_way(event)) {
+        // What moves is no part of the floor.
+        let still = events.iter().filter(|event| !self.chart.moves(event));
+        let shapes: Vec<Shape> = still.filter_map(shape_of).collect();
+        let is_due =
+            changes_plans && (events.is_empty() || events.iter().any(|event| self.is_in_the_way(event)));
+        if self.planner.plan_due.is_none() && is_due {
             self.planner.plan_due = Some(Reason::MapChanged);
         }
-        self.happened.extend(found);
+        self.happened.extend(events);
         self.survey(&shapes);
+        true
     }
 
     /// An obstacle that was found is in the way with the clearance demanded; one that was planned for already and
@@ -42,9 +49,14 @@ impl Mission {
     fn survey(&mut self, shapes: &[Shape]) {
         let (config, world) = (&self.config, self.chart.world());
         let surveyor = self.surveyor.get_or_insert_with(|| {
-            // The floor as it was before anything was found, so that the first one changes it, too.
-            let (room_m, start) = (config.room_m(), config.start.position);
-            FloorMaker::of(self.coverage.floor(), &world.as_drawn(), room_m, config.swath_m, start)
+            FloorMaker::of(
+                self.coverage.floor(),
+                // Before the first find: what is found is told below.
+                &world.as_drawn(),
+                config.room_m(),
+                config.swath_m,
+                config.start.position,
+            )
         });
         let changes = surveyor.update(world, self.chart.map(), shapes);
         if !changes.is_empty() {

@@ -1,6 +1,7 @@
 //! Missions in a perfect little world: exact ranges, a point robot that does what it is told.
 
 mod covering;
+mod tethered;
 
 use super::*;
 use crate::{
@@ -125,8 +126,10 @@ fn config() -> MissionConfig {
         odometry_turn_sigma_per_rad: 0.05,
         gyro_sigma_rad_per_s: 0.001,
         range_sigma_ratio: 0.01,
+        locating: crate::Locating::default(),
         scan: ScanConfig::default(),
         planner: PlannerChoice { id: "straight".into(), parameters: Parameters::new() },
+        tether: None,
         fallback: None,
         attended: true,
     }
@@ -139,6 +142,8 @@ struct Flight {
     pose: Pose,
     moved: Odometry,
     silent: bool,
+    /// Metres by which the ranges of the first stations are too long.
+    late_m: Vec<f64>,
     sightings: Vec<Sighting>,
     events: Vec<Event>,
 }
@@ -155,6 +160,7 @@ impl Flight {
             pose,
             moved: Odometry::default(),
             silent: false,
+            late_m: vec![],
             sightings: vec![],
             events: vec![],
         }
@@ -165,7 +171,11 @@ impl Flight {
             station: station.id,
             ranges_m: vec![(station.position - self.pose.position).norm()],
         };
-        let ranges = if self.silent { vec![] } else { drawing().stations.iter().map(heard).collect() };
+        let mut ranges: Vec<RangeSet> =
+            if self.silent { vec![] } else { drawing().stations.iter().map(heard).collect() };
+        for (set, late_m) in ranges.iter_mut().zip(&self.late_m) {
+            set.ranges_m.iter_mut().for_each(|range_m| *range_m += late_m);
+        }
         let readings = Readings {
             ranges,
             ranging_cycle: true,
@@ -330,6 +340,56 @@ fn a_lost_position_holds_the_robot_and_a_regained_one_lets_it_go_on() {
     flight.silent = false;
     flight.fly(200);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
+}
+
+fn count(flight: &Flight, is: impl Fn(&EventKind) -> bool) -> usize {
+    flight.events.iter().filter(|event| is(&event.kind)).count()
+}
+
+#[test]
+fn contradicting_ranges_hold_the_robot_in_time_and_it_goes_on_when_they_agree() {
+    let mut flight = Flight::new(MissionConfig { lost_hold_s: 2.0, ..config() });
+    flight.tick(&[Order::Start]);
+    flight.fly(10);
+    // Of four stations nobody can say which one is wrong.
+    flight.late_m = vec![1.5];
+    flight.fly(20);
+    assert_eq!(flight.mission.phase(), &Phase::Held(HoldReason::PositionAlarmed), "within 2 s");
+    assert!(refusal(&flight.tick(&[Order::Resume])).is_some_and(|why| why.contains("contradict")));
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PositionAlarmed { .. })), 1);
+    flight.late_m.clear();
+    flight.fly(200);
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PositionTrusted)), 1);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+}
+
+#[test]
+fn a_single_contradicting_cycle_holds_nobody() {
+    let mut flight = Flight::new(config());
+    flight.tick(&[Order::Start]);
+    flight.fly(10);
+    flight.late_m = vec![1.5];
+    flight.fly(1);
+    flight.late_m.clear();
+    flight.fly(200);
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::Held { .. })), 0);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+}
+
+#[test]
+fn every_exclusion_is_told_with_its_reason() {
+    let consensus =
+        crate::Locating { solver: positioning::SolverKind::Consensus, ..crate::Locating::default() };
+    let mut flight = Flight::new(MissionConfig { locating: consensus, ..config() });
+    flight.tick(&[Order::Start]);
+    flight.fly(10);
+    flight.late_m = vec![1.5];
+    flight.fly(5);
+    flight.late_m.clear();
+    flight.fly(5);
+    let late = |kind: &EventKind| matches!(kind, EventKind::StationExcluded { station: StationId(0), reason: positioning::Exclusion::Residual { residual_m, .. } } if *residual_m > 1.0);
+    assert_eq!(count(&flight, late), 1);
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::StationRegained { .. })), 1);
 }
 
 #[test]

@@ -2,14 +2,14 @@
 
 use super::*;
 use crate::{
-    Aggregation,
+    Aggregation, RangeNoise,
     draws::{Draws, exact, paper_stations, ring, skew_stations, stations},
 };
 use proptest::prelude::*;
 use world::StationId;
 
 fn ranging(id: u32, range_m: f64) -> Ranging {
-    Ranging { station: StationId(id), range_m, sigma_m: 0.03, repetitions: 1 }
+    Ranging::single(StationId(id), range_m, 0.03)
 }
 
 /// Eq. 6-9 in the tank frame, by Cramer's rule.
@@ -95,7 +95,8 @@ fn the_mean_of_the_positions_is_the_position_of_the_root_mean_squares() {
     let single =
         |k: usize| as_printed(&stations, [sets[0].ranges_m[k], sets[1].ranges_m[k], sets[2].ranges_m[k]]);
     let mean = (0..20).map(|k| single(k).coords).sum::<Vector>() / 20.0;
-    let rangings = Aggregation::RootMeanSquare.aggregate(&sets, 0.03).unwrap();
+    let rangings =
+        Aggregation::RootMeanSquare.aggregate(&sets, &RangeNoise::Gaussian { sigma_ratio: 0.03 }).unwrap();
     let fix = LinearLs.solve(&rangings, &stations, None).unwrap();
     assert!((fix.position.coords - mean).norm() < 1e-9);
 }

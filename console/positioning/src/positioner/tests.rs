@@ -5,7 +5,7 @@ use crate::draws::{Draws, paper_stations, ring};
 use world::{Boundary, Point};
 
 fn config(stations: Vec<Station>, start: Pose) -> PositionerConfig {
-    PositionerConfig { range_sigma_ratio: 0.05 / 3.0_f64.sqrt(), ..PositionerConfig::new(stations, start) }
+    PositionerConfig { noise: RangeNoise::Uniform { ratio: 0.05 }, ..PositionerConfig::new(stations, start) }
 }
 
 fn at_the_origin(stations: &[Station]) -> Positioner {

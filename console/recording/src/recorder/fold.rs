@@ -9,6 +9,7 @@ use super::{
     states::States,
     stream::{At, Stream},
     style,
+    tether::Tether,
     tick::{Tick, Ticks},
 };
 use crate::{error::RecordingError, layout, rr};
@@ -30,6 +31,7 @@ struct Opened {
     drawings: Drawings,
     raster: Raster,
     states: States,
+    tether: Option<Tether>,
     document: Document,
     target: Option<Point>,
 }
@@ -71,6 +73,9 @@ impl Fold {
     pub(crate) fn send(&mut self, stream: &Stream) -> Done {
         let Some(opened) = &mut self.opened else { return Ok(()) };
         opened.ticks.send(stream)?;
+        if let Some(tether) = &mut opened.tether {
+            tether.send(stream)?;
+        }
         opened.drawings.send(stream)
     }
 }
@@ -93,6 +98,7 @@ impl Opened {
             drawings: Drawings::new((high.x - low.x).min(high.y - low.y)),
             raster: Raster::open(stream, run)?,
             states: States::open(stream, at)?,
+            tether: Tether::open(stream, run)?,
             document,
             target: None,
         };
@@ -102,6 +108,9 @@ impl Opened {
 
     fn apply(&mut self, event: &Event, at: At, stream: &Stream) -> Done {
         self.states.apply(&event.kind, at);
+        if let Some(tether) = &mut self.tether {
+            tether.apply(&event.kind, at);
+        }
         match &event.kind {
             EventKind::Covered { runs } => self.raster.mark(runs),
             EventKind::FloorChanged { changes } => self.raster.change(changes),

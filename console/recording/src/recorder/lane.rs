@@ -153,6 +153,17 @@ impl Row for Lines {
     }
 }
 
+/// Points, any number of them.
+pub(crate) struct Spots(pub Vec<Flat>);
+
+impl Row for Spots {
+    fn columns(rows: &[Self]) -> Result<Vec<rr::SerializedComponentColumn>, rr::SerializationError> {
+        let positions = rows.iter().flat_map(|row| row.0.iter().copied());
+        let points = rr::Points2D::update_fields().with_positions(positions);
+        Ok(points.columns(rows.iter().map(|row| row.0.len()))?.collect())
+    }
+}
+
 /// A path.
 pub(crate) struct Strip(pub Vec<Flat>);
 

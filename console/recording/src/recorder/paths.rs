@@ -30,6 +30,10 @@ pub(crate) const COVARIANCE: &str = "map/world/robot/cov";
 pub(crate) const FORCES: &str = "map/world/forces";
 /// Circles and lines of planners, one entity a layer and kind below it.
 pub(crate) const DRAWN: &str = "map/world/drawn";
+/// The taut cable by the estimate, and where it bears.
+pub(crate) const TETHER: &str = "map/world/tether";
+pub(crate) const TETHER_ANCHOR: &str = "map/world/tether/anchor";
+pub(crate) const TETHER_CONTACTS: &str = "map/world/tether/contacts";
 pub(crate) const COVERAGE: &str = "map/world/coverage";
 
 pub(crate) const SCALARS: &str = "scalars";
@@ -43,6 +47,12 @@ pub(crate) const CROSS_TRACK: &str = "scalars/cross_track";
 pub(crate) const FORCE_SIZES: &str = "scalars/forces";
 /// Figures that planners report, one entity a name below it.
 pub(crate) const PLANNER_SCALARS: &str = "scalars/planner";
+
+pub(crate) const TETHER_OUT: &str = "scalars/tether/out";
+pub(crate) const TETHER_OUT_TRUE: &str = "scalars/tether/out_true";
+pub(crate) const TETHER_HOME: &str = "scalars/tether/way_home";
+pub(crate) const TETHER_WRAP: &str = "scalars/tether_wrap/largest";
+pub(crate) const TETHER_SUM: &str = "scalars/tether_wrap/sum";
 
 /// Lanes of the timeline of states.
 pub(crate) const STATE: &str = "state";

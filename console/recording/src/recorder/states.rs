@@ -19,8 +19,11 @@ const MOVING: &str = "moving";
 const HELD: &str = "held by the operator";
 const STEPPED: &str = "held after a step";
 const HELD_LOST: &str = "held, position lost";
+const HELD_ALARMED: &str = "held, ranges contradict";
 const HELD_FAULT: &str = "held, planner fault";
 const HELD_STUCK: &str = "held, stuck";
+const HELD_TETHER: &str = "held, tether";
+const HELD_REFUSED: &str = "held, plan refused";
 const KNOWN: &str = "known";
 const LOST: &str = "lost";
 
@@ -44,12 +47,16 @@ impl States {
             (HELD, amber),
             (STEPPED, amber),
             (HELD_LOST, red),
+            (HELD_ALARMED, red),
             (HELD_FAULT, red),
             (HELD_STUCK, red),
+            (HELD_TETHER, red),
+            (HELD_REFUSED, red),
             outcome(Outcome::Complete, style::rgb(60, 120, 200)),
             outcome(Outcome::Stuck, amber),
             outcome(Outcome::Collision, red),
             outcome(Outcome::TimeLimit, amber),
+            outcome(Outcome::Entangled, red),
             outcome(Outcome::Aborted, amber),
         ];
         stream.always(paths::STATE_MISSION, &configuration(&mission))?;
@@ -107,8 +114,11 @@ fn held(by: &HoldReason) -> &'static str {
         HoldReason::Operator => HELD,
         HoldReason::Stepped => STEPPED,
         HoldReason::PositionLost => HELD_LOST,
+        HoldReason::PositionAlarmed => HELD_ALARMED,
         HoldReason::PlannerFault { .. } => HELD_FAULT,
         HoldReason::Stuck { .. } => HELD_STUCK,
+        HoldReason::Tether { .. } => HELD_TETHER,
+        HoldReason::PlanRefused { .. } => HELD_REFUSED,
     }
 }
 

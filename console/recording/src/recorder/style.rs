@@ -36,6 +36,9 @@ pub(crate) const FIGURE: [u8; 4] = rgb(120, 200, 255);
 /// A figure that warns.
 pub(crate) const WARNING: [u8; 4] = rgb(255, 160, 60);
 
+/// The tether.
+pub(crate) const TETHER: [u8; 4] = rgb(250, 250, 235);
+
 /// Colours for things that come up on the way, like planners.
 pub(crate) const SERIES: [[u8; 4]; 6] = [
     rgb(70, 130, 200),

@@ -116,6 +116,8 @@ impl Robot {
             range_m: (truth.position - station.position).norm() + error_m,
             sigma_m: 0.05,
             repetitions: 5,
+            least_m: (truth.position - station.position).norm() + error_m,
+            most_m: (truth.position - station.position).norm() + error_m,
         };
         let ranges: Vec<_> = stations.iter().map(|station| ranging(station, 0.05 * self.noise())).collect();
         let bad = (tick / 100) % 4 == 3;
@@ -345,7 +347,9 @@ fn opened() -> RunOpened {
             odometry_turn_sigma_per_rad: 0.02,
             gyro_sigma_rad_per_s: 0.001,
             range_sigma_ratio: 0.01,
+            locating: mission::Locating::default(),
             planner: PlannerChoice { id: "rpf".into(), parameters: Parameters::new() },
+            tether: None,
             fallback: None,
             attended: false,
         },

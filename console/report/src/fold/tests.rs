@@ -8,6 +8,7 @@ use crate::{
     summary::{Logs, PlannerCalls},
 };
 use serde_json::{Value, json};
+use world::Point;
 
 fn event(tick: u64, kind: &Value) -> Event {
     let mut event = json!({ "tick": tick, "t_s": tick as f64 * 0.5 });

@@ -1,5 +1,6 @@
 use super::*;
-use crate::{AeConfig, NoiseModel, RobotConfig};
+use crate::config::{Mover, Track};
+use crate::{AeConfig, Disturbances, NoiseModel, RobotConfig};
 use proptest::prelude::*;
 use world::{
     Amphibious, Boundary, Obstacle, ObstacleId, Point, Shape, Station, StationId, Vector, World, Zone,
@@ -66,8 +67,11 @@ fn config() -> SimConfig {
             noise: NoiseModel::Uniform { ratio: 0.05 },
             dropout: 0.1,
             outages_s: vec![(3.0, 4.0)],
+            disturbances: Disturbances::default(),
         }),
         tick_s: 0.1,
+        movers: vec![],
+        tether_anchor: None,
     }
 }
 
@@ -139,6 +143,10 @@ proptest! {
         config.ae = Some(AeConfig {
             period_s: n(10), repetitions: 2, noise: NoiseModel::Gaussian { sigma_ratio: n(11) }, dropout: n(5),
             outages_s: vec![(n(6), n(7))],
+            disturbances: Disturbances {
+                outlier_chance: n(8), outlier_factor: n(9), late_mean_m: n(10), nlos_chance: n(11),
+                survey_sigma_m: n(3), sound_speed_error_ratio: n(4), ..Disturbances::default()
+            },
         });
         let mut sim = Simulator::new(config, 1);
         for drive in drives {
@@ -311,4 +319,23 @@ fn an_amphibious_robot_swims_faster_than_it_walks_and_brakes_at_the_shore() {
     let ashore_at_once = speeds_across_the_shore(0);
     let first = ashore_at_once.iter().find(|(x, _)| *x > 0.0).map(|(_, speed)| speed - 0.13);
     assert!(first.is_some_and(|over| over > 0.08), "{first:?}");
+}
+
+#[test]
+fn what_runs_into_a_robot_that_stands_still_is_a_collision() {
+    let shape = Shape::Disc { center: Point::new(3.0, 0.0), radius_m: 0.5 };
+    let world = World {
+        obstacles: vec![Obstacle { id: ObstacleId(9), name: "M".into(), shape, known: false }],
+        ..config().world
+    };
+    let track = Track::Straight { velocity_m_per_s: nalgebra::Vector2::new(-0.5, 0.0) };
+    let movers = vec![Mover { id: ObstacleId(9), track }];
+    let robot = RobotConfig { start: Pose::new(0.0, 0.0, 0.0), ..exact(&robot()) };
+    let mut sim = Simulator::new(SimConfig { world, robot, movers, tick_s: 0.1, ..config() }, 1);
+    let collided = (0..80).find(|_| {
+        sim.act(Drive::Twist { v_m_per_s: 0.0, w_rad_per_s: 0.0 });
+        sim.truth().collided
+    });
+    assert!(collided.is_some_and(|tick| (35..60).contains(&tick)), "{collided:?}");
+    assert!(sim.sense().contact && sim.sense().sightings.len() == 1);
 }

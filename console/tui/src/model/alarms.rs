@@ -11,12 +11,18 @@ const MAX_ALARMS: usize = 64;
 pub enum Cause {
     /// The position error is beyond the limit.
     PositionLost,
+    /// The ranges contradict each other.
+    Contradiction,
     /// The ranges give no position.
     NoFix,
     /// A station is left out.
     Station(world::StationId),
     /// An obstacle was found that is not on the drawing.
     Map,
+    /// The cable comes near a limit or has reached it: which one.
+    Tether(String),
+    /// The last plan could not be certified for the tether.
+    Certificate,
     /// The planner failed.
     Planner,
     /// The robot gets nowhere.

@@ -3,18 +3,20 @@
 use super::{Cause, Model, Overlay, Phase, PlanShown, Progress, Raster, Run, Trail};
 use mission::{Event, EventKind, Order, Outcome, Severity, TaskConfig, event::HoldReason, event::RunOpened};
 use planner_api::Drawing;
-use positioning::Exclusion;
+use positioning::{AccuracyMap, Exclusion};
 use world::{Obstacle, ObstacleId, Station, StationId};
 
 /// Most drawings kept of one tick.
 const MAX_DRAWINGS: usize = 512;
+/// Cells of the accuracy forecast along the longer side of the floor.
+const FORECAST_CELLS: f64 = 100.0;
 /// Most figures kept of one tick.
 const MAX_SCALARS: usize = 32;
 
 impl Model {
     /// Takes in one event. What only the simulator can know is left out.
     pub(crate) fn fold(&mut self, event: &Event) {
-        if matches!(event.kind, EventKind::Truth { .. }) {
+        if matches!(event.kind, EventKind::Truth { .. } | EventKind::TetherTruth { .. }) {
             return;
         }
         self.tell_time(event);
@@ -40,7 +42,9 @@ impl Model {
             | EventKind::StationRegained { .. }
             | EventKind::Estimated { .. }
             | EventKind::PositionLost { .. }
-            | EventKind::PositionRegained { .. } => self.locate(event),
+            | EventKind::PositionRegained { .. }
+            | EventKind::PositionAlarmed { .. }
+            | EventKind::PositionTrusted => self.locate(event),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
             EventKind::PlannerChosen { choice, info, .. } => {
@@ -97,6 +101,10 @@ impl Model {
                     covered_whole: *covered_whole,
                 });
             }
+            EventKind::Tethered { .. }
+            | EventKind::TetherAlarmed { .. }
+            | EventKind::TetherEased { .. }
+            | EventKind::Certified { .. } => self.tethered(event),
             EventKind::Held { by } => self.hold(event, by),
             EventKind::Resumed => {
                 self.phase = Phase::Running;
@@ -105,7 +113,33 @@ impl Model {
                 self.planner_works();
             }
             EventKind::Ended { outcome, reason } => self.end(event, *outcome, reason),
-            EventKind::Truth { .. } | EventKind::PlannerSaid { .. } | EventKind::Uncounted { .. } => {}
+            EventKind::Truth { .. }
+            | EventKind::TetherTruth { .. }
+            | EventKind::PlannerSaid { .. }
+            | EventKind::Uncounted { .. } => {}
+        }
+    }
+
+    /// Takes in what is told about the tether.
+    fn tethered(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::TetherAlarmed { alarm, reached } => {
+                let severity = if *reached { Severity::Crit } else { Severity::Warn };
+                self.raise(event, Cause::Tether(alarm.word().to_owned()), severity, alarm.to_string());
+            }
+            EventKind::TetherEased { alarm } => self.alarms.clear(&Cause::Tether(alarm.word().to_owned())),
+            EventKind::Certified { planner, refused, certificate } => {
+                self.tether.get_or_insert_default().certified = Some(certificate.certified);
+                if certificate.certified {
+                    self.alarms.clear(&Cause::Certificate);
+                } else {
+                    let severity = if *refused { Severity::Crit } else { Severity::Warn };
+                    let reasons = certificate.reasons.join("; ");
+                    let text = format!("plan of {planner} not certified: {reasons}");
+                    self.raise(event, Cause::Certificate, severity, text);
+                }
+            }
+            other => self.tether.get_or_insert_default().lie(other),
         }
     }
 
@@ -138,6 +172,16 @@ impl Model {
                 self.position.lost = false;
                 self.alarms.clear(&Cause::PositionLost);
             }
+            EventKind::PositionAlarmed { .. } => {
+                self.raise(
+                    event,
+                    Cause::Contradiction,
+                    Severity::Crit,
+                    "ranges contradict each other".into(),
+                );
+                self.withdraw_question();
+            }
+            EventKind::PositionTrusted => self.alarms.clear(&Cause::Contradiction),
             _ => {}
         }
     }
@@ -164,6 +208,9 @@ impl Model {
             preset_m,
         });
         self.coverage = Some(Raster::new(run.floor.clone()));
+        let (low, high) = run.world.boundary.bounds();
+        let forecast = run.mission.forecast((high - low).amax() / FORECAST_CELLS);
+        self.accuracy = Some(AccuracyMap::new(&run.world.as_drawn(), &forecast));
         self.planning.choice = Some(run.mission.planner.clone());
         self.phase = Phase::Idle;
     }
@@ -248,7 +295,7 @@ impl Model {
         self.withdraw_question();
         let severity = match outcome {
             Outcome::Complete | Outcome::Aborted => return,
-            Outcome::Stuck | Outcome::TimeLimit => Severity::Warn,
+            Outcome::Stuck | Outcome::TimeLimit | Outcome::Entangled => Severity::Warn,
             Outcome::Collision => Severity::Crit,
         };
         self.raise(event, Cause::Ended, severity, format!("ended {}: {reason}", outcome.word()));

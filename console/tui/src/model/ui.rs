@@ -90,11 +90,14 @@ pub enum MapLayer {
     Drawings,
     /// Acoustic-emission stations.
     Stations,
+    /// Where the stations are forecast to locate badly.
+    Accuracy,
 }
 
 impl MapLayer {
     /// Every layer, in the order of the list.
-    pub const ALL: [Self; 5] = [Self::Scanned, Self::Trail, Self::Plan, Self::Drawings, Self::Stations];
+    pub const ALL: [Self; 6] =
+        [Self::Scanned, Self::Trail, Self::Plan, Self::Drawings, Self::Stations, Self::Accuracy];
 
     /// How the list calls it.
     pub fn name(self) -> &'static str {
@@ -104,14 +107,22 @@ impl MapLayer {
             Self::Plan => "plan",
             Self::Drawings => "drawings of the planner",
             Self::Stations => "AE stations",
+            Self::Accuracy => "accuracy forecast",
         }
     }
 }
 
 /// Which parts of the map are hidden.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Layers {
     hidden: [bool; MapLayer::ALL.len()],
+}
+
+impl Default for Layers {
+    /// Everything but the forecast, which is for planning rather than for watching.
+    fn default() -> Self {
+        Self { hidden: MapLayer::ALL.map(|layer| layer == MapLayer::Accuracy) }
+    }
 }
 
 impl Layers {
@@ -175,6 +186,8 @@ pub enum Ask {
     Start,
     /// Go on.
     Resume,
+    /// Fly a plan that was refused because of the tether.
+    FlyUncertified,
     /// End the mission.
     Abort,
     /// Let another planner drive.
@@ -187,6 +200,7 @@ impl Ask {
         match self {
             Self::Start => Order::Start,
             Self::Resume => Order::Resume,
+            Self::FlyUncertified => Order::FlyUncertified,
             Self::Abort => Order::Abort,
             Self::Swap(choice) => Order::ChoosePlanner(choice.clone()),
         }

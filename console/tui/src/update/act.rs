@@ -27,6 +27,7 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Abort => [hold_now(model), ask(model, Ask::Abort)].concat(),
         ActionId::Start => ask(model, Ask::Start),
         ActionId::Resume => ask(model, Ask::Resume),
+        ActionId::FlyUncertified => ask(model, Ask::FlyUncertified),
         ActionId::Step => step(model),
         ActionId::Slower => change_speed(model, false),
         ActionId::Faster => change_speed(model, true),

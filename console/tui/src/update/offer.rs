@@ -2,6 +2,7 @@
 
 use crate::actions::ActionId;
 use crate::model::{Model, Phase, Speed, ui::MAX_ZOOM};
+use mission::HoldReason;
 
 /// Whether an action can be done now.
 ///
@@ -12,6 +13,7 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Hold => hold(model),
         ActionId::Start => start(model),
         ActionId::Resume => held(model, "there is nothing to resume"),
+        ActionId::FlyUncertified => refused(model),
         ActionId::Step => held(model, "a single step needs HOLD first (space)"),
         ActionId::Abort => under_way(model),
         ActionId::ChoosePlanner => swap(model),
@@ -92,6 +94,11 @@ fn held(model: &Model, otherwise: &str) -> Result<(), String> {
         Phase::Running => Err(otherwise.into()),
         Phase::Ended { .. } => Err("the mission has ended".into()),
     }
+}
+
+fn refused(model: &Model) -> Result<(), String> {
+    let is_refused = matches!(model.phase, Phase::Held(HoldReason::PlanRefused { .. }));
+    demand(is_refused, "no plan has been refused because of the tether")
 }
 
 fn under_way(model: &Model) -> Result<(), String> {

@@ -24,7 +24,7 @@ pub(super) fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
 
 /// Sends an order and remembers that an answer is due if it makes the robot move.
 pub(super) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
-    if matches!(order, Order::Start | Order::Resume | Order::Step) {
+    if matches!(order, Order::Start | Order::Resume | Order::FlyUncertified | Order::Step) {
         model.console.asked = Some(order.clone());
     }
     vec![Effect::Order(order)]
@@ -73,6 +73,7 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
     let id = match ask {
         Ask::Start => ActionId::Start,
         Ask::Resume => ActionId::Resume,
+        Ask::FlyUncertified => ActionId::FlyUncertified,
         Ask::Abort => ActionId::Abort,
         Ask::Swap(_) => ActionId::ChoosePlanner,
     };

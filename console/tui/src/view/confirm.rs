@@ -32,6 +32,10 @@ fn question(model: &Model) -> Option<Vec<String>> {
             "RESUME? Enter resumes, Esc stays held.".into(),
             format!("The robot moves, driven by {planner}."),
         ],
+        Overlay::Confirm(Ask::FlyUncertified) => [
+            "FLY WITHOUT CERTIFICATE? Enter flies, Esc stays held.".into(),
+            "The cable may stay out; so fly all later plans.".into(),
+        ],
         Overlay::Confirm(Ask::Abort) => {
             let scanned = format!("{} % of reachable floor scanned.", coverage::shares(model).0);
             ["END HERE? Enter ends it for good, Esc does not.".into(), scanned]

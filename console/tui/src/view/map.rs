@@ -1,6 +1,6 @@
 //! The map: scanned floor below, walls, obstacles, paths and forces above, in one canvas.
 
-use super::shapes::{Filled, Scanned, Stroke, Window, ellipse};
+use super::shapes::{Filled, Forecast, Scanned, Stroke, Window, ellipse};
 use super::{Look, text};
 use crate::caps::{Colours, Glyphs};
 use crate::model::{Model, Pane, position, ui::MapLayer};
@@ -23,7 +23,7 @@ const PASS_COLUMNS: f64 = 2.0;
 /// Length of trail and plan where not all of it is drawn, in columns.
 const REACH_COLUMNS: f64 = 40.0;
 /// Columns and rows of the legend.
-const LEGEND: (u16, u16) = (12, 8);
+const LEGEND: (u16, u16) = (12, 9);
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let block = look.pane(Pane::Map, &title(look.model), keys(area.width));
@@ -78,11 +78,13 @@ fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
     let canvas =
         Canvas::default().marker(Marker::Braille).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
             pen.scanned(ctx);
+            pen.forecast(ctx);
             ctx.marker(Marker::Braille);
             pen.zones(ctx);
             pen.paths(ctx);
             pen.drawings(ctx);
             pen.solid(ctx);
+            pen.tether(ctx);
             pen.robot(ctx);
             ctx.layer();
             pen.labels(ctx);
@@ -136,6 +138,34 @@ impl Pen<'_> {
         } else {
             ctx.marker(Marker::HalfBlock);
             ctx.draw(&dots(2, Some(whole), Some(partly)));
+        }
+        ctx.layer();
+    }
+
+    /// Where the stations are forecast to locate badly: beyond the limit, and beyond half of it.
+    fn forecast(&self, ctx: &mut Context<'_>) {
+        let model = self.model();
+        let shown = model.ui.layers.shows(MapLayer::Accuracy);
+        let (Some(map), Some(run)) = (model.accuracy.as_ref().filter(|_| shown), &model.run) else { return };
+        let (beyond, near) = (self.look.theme.color(Role::Crit), self.look.theme.color(Role::Warn));
+        let plain = self.look.caps.colours == Colours::None || self.look.caps.glyphs == Glyphs::Ascii;
+        let limit_m = run.mission.position_limit_m;
+        let dots = |rows_per_row, beyond, near| Forecast {
+            map,
+            limit_m,
+            window: self.window,
+            rows_per_row,
+            beyond,
+            near,
+        };
+        if plain {
+            ctx.marker(Marker::Custom('%'));
+            ctx.draw(&dots(1, Some(beyond), None));
+            ctx.marker(Marker::Custom(':'));
+            ctx.draw(&dots(1, None, Some(near)));
+        } else {
+            ctx.marker(Marker::HalfBlock);
+            ctx.draw(&dots(2, Some(beyond), Some(near)));
         }
         ctx.layer();
     }
@@ -211,6 +241,14 @@ impl Pen<'_> {
         for obstacle in &run.world.obstacles {
             let color = self.look.theme.color(if obstacle.known { Role::Obstacle } else { Role::Found });
             ctx.draw(&Filled { shape: &obstacle.shape, window: self.window, hatched: false, color });
+        }
+    }
+
+    /// The taut cable, above all else that does not move.
+    fn tether(&self, ctx: &mut Context<'_>) {
+        if let Some(tether) = &self.model().tether {
+            self.take_up(ctx, '~');
+            self.stroke(ctx, &tether.line, Role::Tether, false);
         }
     }
 
@@ -327,8 +365,10 @@ fn draw_legend(look: &Look, frame: &mut Frame, area: Rect) {
     let entries = [
         (layers.shows(MapLayer::Scanned), Role::Scanned, swatch("▒▒"), "scanned"),
         (layers.shows(MapLayer::Scanned), Role::Partly, swatch("░░"), "in part"),
+        (layers.shows(MapLayer::Accuracy), Role::Crit, if plain { "%%" } else { "██" }, "bad fixes"),
         (layers.shows(MapLayer::Trail), Role::Trail, line("⠤⠤", ".."), "trail"),
         (layers.shows(MapLayer::Plan), Role::Plan, line("⠄⠠", ",,"), "plan"),
+        (look.model.tether.is_some(), Role::Tether, line("⠤⠤", "~~"), "tether"),
         (true, Role::Obstacle, "# ", "obstacle"),
         (found, Role::Found, "? ", "found"),
         (layers.shows(MapLayer::Stations), Role::Station, "S ", "station"),

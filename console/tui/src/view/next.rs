@@ -90,11 +90,25 @@ fn held(model: &Model, by: &HoldReason) -> Vec<String> {
         }
         HoldReason::Operator => &["HELD by you.", "space asks to go on.", "P changes the planner."],
         HoldReason::Stepped => &["HELD after a step.", "space asks to go on."],
+        HoldReason::PositionAlarmed => &[
+            "HELD, ranges contradict each other.",
+            "Goes on by itself when they agree.",
+            "space keeps it held.",
+        ],
         HoldReason::PositionLost => {
             &["HELD, position lost.", "Goes on by itself when regained.", "space keeps it held."]
         }
         HoldReason::Stuck { message } => {
             &["HELD, stuck.", "P changes the planner.", "space tries again.", message]
+        }
+        HoldReason::Tether { message } => {
+            &["HELD, tether.", "space goes on, the alarm stays.", "X ends here.", message]
+        }
+        HoldReason::PlanRefused { message } if model.has_fallback() => {
+            &["HELD, plan refused.", "The fallback takes over if it can.", message]
+        }
+        HoldReason::PlanRefused { message } => {
+            &["HELD, plan refused.", "P chooses another.", ":fly-uncertified flies it.", message]
         }
         HoldReason::PlannerFault { message } if model.has_fallback() => {
             &["HELD, planner failed.", "The fallback takes over if it can.", message]

@@ -1,6 +1,7 @@
 //! Shapes that the map draws dot by dot.
 
 use crate::model::Raster;
+use positioning::AccuracyMap;
 use ratatui::style::Color;
 use ratatui::widgets::canvas::{Painter, Shape};
 use world::{Point, Vector};
@@ -91,6 +92,40 @@ impl Shape for Scanned<'_> {
                 if let Some(color) = color {
                     painter.paint(usize::from(column), usize::from(row), color);
                 }
+            }
+        }
+    }
+}
+
+/// Where a forecast is bad, in dots of one or half a character.
+pub(super) struct Forecast<'a> {
+    pub map: &'a AccuracyMap,
+    pub limit_m: f64,
+    pub window: Window,
+    /// Dots per row of characters: 1 or 2.
+    pub rows_per_row: u16,
+    /// Colours of what is beyond the limit and beyond half of it; `None` leaves these dots out.
+    pub beyond: Option<Color>,
+    pub near: Option<Color>,
+}
+
+impl Shape for Forecast<'_> {
+    fn draw(&self, painter: &mut Painter) {
+        let (columns, rows) = (self.window.size.0, self.window.size.1 * self.rows_per_row);
+        let step =
+            |span: [f64; 2], count: u16| (span[1] - span[0]) / f64::from(count.saturating_sub(1).max(1));
+        let (step_x, step_y) = (step(self.window.x, columns), step(self.window.y, rows));
+        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+            let x = self.window.x[0] + f64::from(column) * step_x;
+            let y = self.window.y[1] - f64::from(row) * step_y;
+            let Some(cell) = self.map.at(Point::new(x, y)) else { continue };
+            let color = match cell.error_95_m {
+                Some(error_m) if error_m <= self.limit_m / 2.0 => None,
+                Some(error_m) if error_m <= self.limit_m => self.near,
+                _ => self.beyond,
+            };
+            if let Some(color) = color {
+                painter.paint(usize::from(column), usize::from(row), color);
             }
         }
     }

@@ -44,7 +44,9 @@ pub fn boxes(floor: &Floor, block: usize, is_wanted: impl Fn(usize) -> bool) -> 
         let (mut kept, closed): (Vec<Box2>, Vec<Box2>) =
             open.into_iter().partition(|b| spans.contains(&(b.first, b.end)));
         done.extend(closed);
-        kept.iter_mut().for_each(|b| b.top = row + 1);
+        for b in &mut kept {
+            b.top = row + 1;
+        }
         for (first, end) in spans {
             if !kept.iter().any(|b| b.first == first) {
                 kept.push(Box2 { first, end, bottom: row, top: row + 1 });

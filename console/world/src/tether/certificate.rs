@@ -84,6 +84,26 @@ pub struct Certificate {
     pub sealed_m2: f64,
 }
 
+impl Certificate {
+    /// The judgement of a path that could not even be looked at.
+    pub fn refused(reason: String) -> Self {
+        Self {
+            certified: false,
+            reasons: vec![reason],
+            max_cable_m: 0.0,
+            eccentricity_m: 0.0,
+            max_wrap_rad: 0.0,
+            max_sum_wrap_rad: 0.0,
+            left_out_m: None,
+            crossings_left: 0,
+            collisions: 0,
+            min_clearance_m: 0.0,
+            cut_crossings: 0,
+            sealed_m2: 0.0,
+        }
+    }
+}
+
 /// Judges a path: replays the cable, looks for collisions, crossings of cuts and sealed floor.
 ///
 /// Knows no planner. Without cuts the last two are empty.
@@ -102,7 +122,7 @@ pub fn certify(case: &Case<'_>) -> Result<Certificate, TetherError> {
         certified: false,
         reasons: Vec::new(),
         max_cable_m: replay.max_cable.0,
-        eccentricity_m: Geodesic::new(case.anchor, ground).farthest_m(replay.lengths.iter().copied()),
+        eccentricity_m: replay.eccentricity_m(case.anchor, ground),
         max_wrap_rad: replay.max_wrap.0,
         max_sum_wrap_rad: replay.max_sum.0,
         left_out_m: case.returns.then(|| left.length_m()),
@@ -161,6 +181,15 @@ impl Replay {
         if sum_rad > self.max_sum.0 {
             self.max_sum = (sum_rad, point);
         }
+    }
+
+    /// Between the largest straight distance and the longest cable; searched for only if these differ.
+    fn eccentricity_m(&self, anchor: Point, ground: Arc<Ground>) -> f64 {
+        let straight_m = self.lengths.iter().map(|(point, _)| (point - anchor).norm()).fold(0.0, f64::max);
+        if self.max_cable.0 <= straight_m + 1e-3 {
+            return straight_m;
+        }
+        Geodesic::new(anchor, ground).farthest_m(self.lengths.iter().copied())
     }
 
     fn cable_on_return(&self, anchor: Point) -> Cable {
@@ -303,3 +332,6 @@ impl Reasons<'_> {
 fn place(at: Point) -> String {
     format!("{:.2}, {:.2} m", at.x, at.y)
 }
+
+#[cfg(test)]
+mod tests;

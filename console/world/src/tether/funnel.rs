@@ -54,7 +54,9 @@ impl Funnel {
                 met.push(Portal { edge: edge.as_undirected().fix(), left, right });
             }
         }
-        met.into_iter().for_each(|portal| self.cross(portal));
+        for portal in met {
+            self.cross(portal);
+        }
         self.tip = to;
     }
 
@@ -77,18 +79,20 @@ impl Funnel {
         gates.push((self.tip, self.tip));
         let mut line = vec![self.anchor];
         let (mut apex, mut next) = (self.anchor, 0);
+        #[expect(clippy::mut_range_bound, reason = "the outer loop starts anew with another apex")]
         'from_apex: while next < gates.len() {
             let (mut left, mut right) = gates[next];
             let (mut left_at, mut right_at) = (next, next);
-            for k in next..gates.len() {
+            let first = next;
+            for k in first..gates.len() {
                 let (l, r) = gates[k];
                 if (right - apex).perp(&(r - apex)) >= 0.0 {
                     if right == apex || (left - apex).perp(&(r - apex)) <= 0.0 {
                         (right, right_at) = (r, k);
                     } else {
-                        (apex, next) = (left, left_at + 1);
+                        apex = left;
+                        next = skip(&gates, left_at + 1, apex);
                         line.push(apex);
-                        next = skip(&gates, next, apex);
                         continue 'from_apex;
                     }
                 }
@@ -96,9 +100,9 @@ impl Funnel {
                     if left == apex || (right - apex).perp(&(l - apex)) >= 0.0 {
                         (left, left_at) = (l, k);
                     } else {
-                        (apex, next) = (right, right_at + 1);
+                        apex = right;
+                        next = skip(&gates, right_at + 1, apex);
                         line.push(apex);
-                        next = skip(&gates, next, apex);
                         continue 'from_apex;
                     }
                 }

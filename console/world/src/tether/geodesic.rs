@@ -21,15 +21,27 @@ pub struct Geodesic {
     ground: Arc<Ground>,
     anchor: Point,
     arrivals: Vec<Arrival>,
+    /// Those at each post, by twice its index, plus one for the left-hand side.
+    at_post: Vec<Vec<Arrival>>,
 }
 
 /// A shortest way that has come to touch a post.
 #[derive(Debug, Clone, Copy)]
 struct Arrival {
+    /// Where its last straight piece begins, and where it ends.
+    piece: (Point, Point),
+    /// Index of the arrival that it goes on from.
+    from: Option<usize>,
     post: usize,
     side: f64,
     bearing_rad: f64,
     length_m: f64,
+}
+
+impl Arrival {
+    fn slot(&self) -> usize {
+        2 * self.post + usize::from(self.side > 0.0)
+    }
 }
 
 /// Heap order: by length alone.
@@ -56,60 +68,64 @@ impl Ord for Queued {
 impl Geodesic {
     /// All shortest ways from an anchor; costs about `posts^2` tangents and as many lines of sight.
     pub fn new(anchor: Point, ground: Arc<Ground>) -> Self {
-        let mut found = Self { ground, anchor, arrivals: Vec::new() };
+        let at_post = vec![Vec::new(); 2 * ground.posts.len()];
+        let mut found = Self { ground, anchor, arrivals: Vec::new(), at_post };
         found.search();
         found
     }
 
+    /// Dijkstra's search; whether a tangent is free is looked at only when its turn comes.
     fn search(&mut self) {
-        let n = self.ground.posts.len();
-        let mut queue = BinaryHeap::new();
-        for (post, side) in (0..n).flat_map(|post| [(post, 1.0), (post, -1.0)]) {
-            let target = self.ground.posts[post];
-            let Some(bearing_rad) = tangent((self.anchor, 0.0, 0.0), (target.center, target.radius_m, side))
-            else {
-                continue;
-            };
-            let at = tangent_point(target.center, target.radius_m, side, bearing_rad);
-            if self.sees(self.anchor, at) {
-                let length_m = (at - self.anchor).norm();
-                queue.push(Reverse(Queued(Arrival { post, side, bearing_rad, length_m })));
-            }
-        }
+        let mut queue: BinaryHeap<Reverse<Queued>> = self.onward(None).map(|a| Reverse(Queued(a))).collect();
         while let Some(Reverse(Queued(next))) = queue.pop() {
-            if !self.is_beaten(&next) {
-                self.arrivals.push(next);
-                queue.extend(self.onward(&next).into_iter().map(|a| Reverse(Queued(a))));
+            if self.is_beaten(&next) || !self.is_free(&next) {
+                continue;
             }
+            let index = self.arrivals.len();
+            self.arrivals.push(next);
+            self.at_post[next.slot()].push(next);
+            let onward: Vec<_> =
+                self.onward(Some(index)).filter(|a| !self.is_beaten(a)).map(|a| Reverse(Queued(a))).collect();
+            queue.extend(onward);
         }
     }
 
-    fn onward(&self, from: &Arrival) -> Vec<Arrival> {
-        let posts = &self.ground.posts;
-        let base = posts[from.post];
-        (0..posts.len())
-            .filter(|post| *post != from.post)
+    /// The tangents that go on from an arrival, or from the anchor.
+    fn onward(&self, from: Option<usize>) -> impl Iterator<Item = Arrival> + '_ {
+        let base = from.map(|index| (self.arrivals[index], self.ground.posts[self.arrivals[index].post]));
+        let start = base.map_or((self.anchor, 0.0, 0.0), |(a, post)| (post.center, post.radius_m, a.side));
+        (0..self.ground.posts.len())
+            .filter(move |post| base.is_none_or(|(a, _)| a.post != *post))
             .flat_map(|post| [(post, 1.0), (post, -1.0)])
-            .filter_map(|(post, side)| {
-                let target = posts[post];
-                let ends = (target.center, target.radius_m, side);
-                let bearing_rad = tangent((base.center, base.radius_m, from.side), ends)?;
+            .filter_map(move |(post, side)| {
+                let target = self.ground.posts[post];
+                let bearing_rad = tangent(start, (target.center, target.radius_m, side))?;
                 let at = tangent_point(target.center, target.radius_m, side, bearing_rad);
-                let length_m = self.leave(from, bearing_rad, at)?;
-                let arrival = Arrival { post, side, bearing_rad, length_m };
-                (!self.is_beaten(&arrival) && self.is_clear(from, bearing_rad, at)).then_some(arrival)
+                let leaves = tangent_point(start.0, start.1, start.2, bearing_rad);
+                let before_m = match base {
+                    None => 0.0,
+                    Some((a, here)) => a.length_m + here.radius_m * wrap_of(&a, bearing_rad)?,
+                };
+                let length_m = before_m + (at - leaves).norm();
+                Some(Arrival { piece: (leaves, at), from, post, side, bearing_rad, length_m })
             })
-            .collect()
+    }
+
+    fn is_free(&self, arrival: &Arrival) -> bool {
+        let (leaves, at) = arrival.piece;
+        self.sees(leaves, at)
+            && arrival.from.is_none_or(|index| {
+                let from = &self.arrivals[index];
+                self.arc_is_clear(&self.ground.posts[from.post], from, arrival.bearing_rad)
+            })
     }
 
     /// Whether a way that came to the same post before is as short all the way from there.
     fn is_beaten(&self, by: &Arrival) -> bool {
-        self.arrivals.iter().any(|a| {
-            let post = &self.ground.posts[a.post];
-            a.post == by.post
-                && a.side * by.side > 0.0
-                && wrap_of(a, by.bearing_rad)
-                    .is_some_and(|wrap_rad| a.length_m + post.radius_m * wrap_rad <= by.length_m + SAME_M)
+        let radius_m = self.ground.posts[by.post].radius_m;
+        self.at_post[by.slot()].iter().any(|a| {
+            wrap_of(a, by.bearing_rad)
+                .is_some_and(|wrap_rad| a.length_m + radius_m * wrap_rad <= by.length_m + SAME_M)
         })
     }
 

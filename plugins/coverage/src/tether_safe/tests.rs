@@ -1,20 +1,10 @@
 use super::*;
-use planner_api::{Code, PoseEstimate, Reason, Task, testing::Bench};
+use crate::bench;
+use planner_api::{Code, testing::Bench};
 use trials::tanks::{CELL_M, Known, Tank};
 
-fn request_of<'a>(tank: &Tank, site: &'a Site<'a>, tether: Option<TetherLimits>) -> PlanRequest<'a> {
-    let start = PoseEstimate { position: tank.anchor, heading_rad: 0.0, covariance: Default::default() };
-    let task = Task::Cover { anchor: tank.anchor, regions: &[], tether, tolerance_m: 0.3 };
-    PlanRequest { reason: &Reason::Start, start, task, site, previous: &[] }
-}
-
 fn plan(tank: &Tank, values: &[(&str, f64)], tether: Option<TetherLimits>) -> (Result<Plan>, Bench) {
-    let bench = Bench::new();
-    let obstacles = tank.obstacles();
-    let site = tank.site(&obstacles);
-    let mut planner: TetherSafe = bench.configure(values, &site).unwrap();
-    let plan = planner.plan(&request_of(tank, &site, tether), &bench.ctx());
-    (plan, bench)
+    bench::plan::<TetherSafe>(tank, values, tether)
 }
 
 #[test]
@@ -49,8 +39,7 @@ fn the_same_question_gets_the_same_answer() {
 #[test]
 fn a_short_reel_gives_a_partial_plan_that_says_what_is_left() {
     let tank = Known::E1.tank(4);
-    let tether =
-        TetherLimits { reel_m: 6.0, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY };
+    let tether = TetherLimits { reel_m: 6.0, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY };
     let (plan, bench) = plan(&tank, &[], Some(tether));
     let plan = plan.unwrap();
     let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();

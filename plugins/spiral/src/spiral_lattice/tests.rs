@@ -50,21 +50,9 @@ fn without_a_turn_limit_it_stays_nearer() {
 #[test]
 fn on_layouts_of_the_paper_it_keeps_clear_and_near() {
     for (distribution, rmse_m, precision) in bounds() {
-        let figures = Figures::of::<SpiralLattice>(distribution, 100..110, &[]);
+        let figures = Figures::of::<SpiralLattice>(distribution, 100..120, &[]);
         // Few layouts scatter.
-        hold(&figures, rmse_m * 1.25, precision - 0.01);
-    }
-}
-
-#[test]
-#[ignore = "takes minutes: the figures on a thousand layouts of each distribution"]
-fn on_a_thousand_layouts_it_holds_its_figures() {
-    for (distribution, rmse_m, precision) in bounds() {
-        let figures = Figures::of::<SpiralLattice>(distribution, 1_000_000..1_001_000, &[]);
-        println!("{distribution:?} {}", figures.told());
-        hold(&figures, rmse_m, precision);
-        let free = Figures::of::<SpiralLattice>(distribution, 1_000_000..1_000_200, &[("turn_deg", 0.0)]);
-        println!("{distribution:?} without turn limit {}", free.told());
+        hold(&figures, rmse_m * 1.1, precision - 0.005);
     }
 }
 
@@ -79,6 +67,10 @@ fn hold(figures: &Figures, rmse_m: f64, precision: f64) {
     assert!(figures.least(|s| s.wall_m) >= -1e-6, "{told}");
     assert!(figures.mean(|s| s.rmse_m) <= rmse_m, "{told}");
     assert!(figures.mean(|s| s.precision) >= precision, "{told}");
+    assert!(figures.refusals.iter().all(|(_, reason)| reason.contains("proved")), "{told}");
+    // Here and there the only way turns faster, and the planner says so.
+    let slow = figures.safeties.iter().filter(|s| s.heading_step_rad <= 30.1_f64.to_radians());
+    assert!(slow.count() * 10 >= figures.safeties.len() * 7, "{told}");
 }
 
 #[test]

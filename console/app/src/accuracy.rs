@@ -1,0 +1,156 @@
+//! `tankops accuracy`: how well the stations will locate the robot, place by place, and where they should stand.
+
+mod drawing;
+
+use crate::{
+    cli::AccuracyArgs,
+    failure::{COMPLETE, bad_input},
+    output::{say, say_line},
+    scenario::Scenario,
+};
+use anyhow::Context;
+use positioning::{Accuracy, AccuracyMap, Advice, Forecast, advise};
+use serde::Serialize;
+use std::{fmt::Write, process::ExitCode};
+use world::Point;
+
+/// Cells along the longer side of the floor.
+const CELLS: f64 = 80.0;
+/// Places beyond the limit that people are shown.
+const MOST_SHOWN: usize = 12;
+
+/// A forecast as scripts read it.
+#[derive(Debug, Serialize)]
+struct Told<'a> {
+    scenario: &'a str,
+    limit_m: f64,
+    stations: Vec<Placed<'a>>,
+    mean_error_95_m: Option<f64>,
+    p95_error_95_m: Option<f64>,
+    worst_error_95_m: Option<f64>,
+    blind_share: f64,
+    beyond_limit_share: f64,
+    beyond_limit_area_m2: f64,
+    /// The worst first.
+    beyond_limit: Vec<Place>,
+    map: &'a AccuracyMap,
+    advice: Option<Advice>,
+}
+
+#[derive(Debug, Serialize)]
+struct Placed<'a> {
+    name: &'a str,
+    at: Point,
+}
+
+#[derive(Debug, Serialize)]
+struct Place {
+    at: Point,
+    #[serde(flatten)]
+    accuracy: Accuracy,
+}
+
+/// `tankops accuracy`.
+pub fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
+    let scenario = crate::read_scenario(&args.scenario, &args.changes)?;
+    let drawing = scenario.sim.world.as_drawn();
+    let forecast = forecast(&scenario);
+    let map = AccuracyMap::new(&drawing, &forecast);
+    let advice = args.advise.map(|count| advise(&drawing, count, &forecast)).transpose();
+    let advice = advice.map_err(|error| bad_input(format!("--advise: {error}")))?;
+    let told = told(&scenario, &map, advice);
+    if let Some(file) = &args.svg {
+        let places = told.advice.as_ref().map_or(&[][..], |advice| &advice.places);
+        let picture = drawing::svg(&drawing, &map, told.limit_m, places);
+        std::fs::write(file, picture).map_err(|error| {
+            bad_input(format!("the drawing cannot be written: {error}: {}", file.display()))
+        })?;
+    }
+    if args.json {
+        say_line(&serde_json::to_string(&told).context("writing the forecast as JSON")?)?;
+    } else {
+        say(&words(&told))?;
+    }
+    Ok(ExitCode::from(COMPLETE))
+}
+
+/// What the mission's own estimator may expect of its stations.
+fn forecast(scenario: &Scenario) -> Forecast {
+    let (low, high) = scenario.sim.world.boundary.bounds();
+    scenario.mission.forecast((high - low).amax() / CELLS)
+}
+
+fn told<'a>(scenario: &'a Scenario, map: &'a AccuracyMap, advice: Option<Advice>) -> Told<'a> {
+    let limit_m = scenario.mission.position_limit_m;
+    let mut errors: Vec<f64> = map.floor().filter_map(|(_, cell)| cell.error_95_m).collect();
+    errors.sort_by(f64::total_cmp);
+    let n_floor = map.floor().count().max(1) as f64;
+    let beyond: Vec<Place> =
+        map.beyond(limit_m).into_iter().map(|(at, accuracy)| Place { at, accuracy }).collect();
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    Told {
+        scenario: &scenario.name,
+        limit_m,
+        stations: scenario
+            .sim
+            .world
+            .stations
+            .iter()
+            .map(|station| Placed { name: &station.name, at: station.position })
+            .collect(),
+        mean_error_95_m: (!errors.is_empty()).then_some(mean),
+        p95_error_95_m: errors.get(errors.len() * 95 / 100).copied(),
+        worst_error_95_m: errors.last().copied(),
+        blind_share: 1.0 - errors.len() as f64 / n_floor,
+        beyond_limit_share: beyond.len() as f64 / n_floor,
+        beyond_limit_area_m2: beyond.len() as f64 * map.cell_m * map.cell_m,
+        beyond_limit: beyond,
+        map,
+        advice,
+    }
+}
+
+fn words(told: &Told<'_>) -> String {
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    let metres = |value: Option<f64>| value.map_or("none".into(), |m| format!("{m:.3} m"));
+    let percent = |share: f64| share * 100.0;
+    let _ = writeln!(text, "95 % error of a single fix, by the scatter of the ranges");
+    let _ = writeln!(text, "mean      {}", metres(told.mean_error_95_m));
+    let _ = writeln!(text, "p95       {}", metres(told.p95_error_95_m));
+    let _ = writeln!(text, "worst     {}", metres(told.worst_error_95_m));
+    let _ = writeln!(text, "no fix    {:.1} % of the floor", percent(told.blind_share));
+    let _ = writeln!(
+        text,
+        "beyond    {:.1} % of the floor, {:.1} m2, above the limit of {:.2} m or without a fix",
+        percent(told.beyond_limit_share),
+        told.beyond_limit_area_m2,
+        told.limit_m
+    );
+    for place in told.beyond_limit.iter().take(MOST_SHOWN) {
+        let error = place.accuracy.error_95_m.map_or("no fix".into(), |m| format!("{m:.3} m"));
+        let _ = writeln!(
+            text,
+            "  at {:6.2}, {:6.2} m  {error:9}  {} stations heard",
+            place.at.x, place.at.y, place.accuracy.heard
+        );
+    }
+    let rest = told.beyond_limit.len().saturating_sub(MOST_SHOWN);
+    if rest > 0 {
+        let _ = writeln!(text, "  and {rest} more cells of {:.2} m", told.map.cell_m);
+    }
+    if let Some(advice) = &told.advice {
+        let _ = writeln!(
+            text,
+            "advice    {} stations on the wall: mean {:.3} m, worst {:.3} m, no fix on {:.1} % of the floor",
+            advice.places.len(),
+            advice.mean_error_95_m,
+            advice.worst_error_95_m,
+            percent(advice.blind_share)
+        );
+        for place in &advice.places {
+            let _ = writeln!(text, "  at_m = [{:.3}, {:.3}]", place.x, place.y);
+        }
+    }
+    text
+}

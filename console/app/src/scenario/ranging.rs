@@ -1,0 +1,184 @@
+//! Acoustic-emission ranging: `[ae]`.
+
+use super::{floor::Names, problem::Complaint, section::Section, suggest};
+use mission::Locating;
+use positioning::{Aggregation, RangeNoise, SolverKind};
+use sim::{AeConfig, BehindColumns, Disturbances, NoiseModel, StationFault};
+use world::{Boundary, Station, StationId};
+
+/// A station may lie this far behind the wall: sensors sit on it, and drawings are rounded to centimetres.
+const ON_WALL_M: f64 = 0.01;
+
+/// Reads `[ae]` without its stations.
+pub fn ae(section: &Section<'_>) -> Option<AeConfig> {
+    let (period_s, repetitions) = (section.number("period_s"), section.whole("repetitions"));
+    let (noise, dropout) = (noise(section), section.number("dropout"));
+    let (outages_s, disturbances) = (section.times("outages_s"), disturbances(section));
+    Some(AeConfig {
+        period_s: period_s?,
+        repetitions: repetitions? as u32,
+        noise: noise?,
+        dropout: dropout?,
+        outages_s: outages_s?,
+        disturbances: disturbances?,
+    })
+}
+
+/// How the estimator is to use the ranges; it is told how they scatter, not what goes wrong with them.
+pub fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating> {
+    let (solver, aggregation) = (section.word("solver"), section.word("aggregation"));
+    let calibrates_sound = section.flag("calibrates_sound");
+    let noise = match ae.noise {
+        NoiseModel::None => None,
+        NoiseModel::Uniform { ratio } => Some(RangeNoise::Uniform { ratio }),
+        NoiseModel::Triangular { ratio } => Some(RangeNoise::Triangular { ratio }),
+        NoiseModel::Gaussian { sigma_ratio } => Some(RangeNoise::Gaussian { sigma_ratio }),
+        NoiseModel::HeavyTailed { sigma_ratio } => Some(RangeNoise::HeavyTailed { sigma_ratio }),
+    };
+    if solver == Some("bounded") && noise.is_none_or(|noise| noise.bound_ratio().is_none()) {
+        let must_be = "another solver: only uniform and triangular noise have bounds";
+        section.complain("solver", Complaint::OutOfRange(must_be.into()));
+    }
+    let behind = ae.disturbances.behind_columns;
+    Some(Locating {
+        noise,
+        aggregation: match aggregation? {
+            "midrange" => Aggregation::Midrange,
+            "trimmed-mean" => Aggregation::TrimmedMean,
+            "posterior" => Aggregation::Posterior,
+            _ => Aggregation::Mean,
+        },
+        solver: match solver? {
+            "linear" => SolverKind::Linear,
+            "weighted-linear" => SolverKind::WeightedLinear,
+            "bounded" => SolverKind::Bounded,
+            "consensus" => SolverKind::Consensus,
+            _ => SolverKind::Nls,
+        },
+        calibrates_sound: calibrates_sound?,
+        repetitions: ae.repetitions,
+        needs_sight: !matches!(behind, BehindColumns::Heard | BehindColumns::Creeping),
+    })
+}
+
+/// What goes wrong with ranges besides their scatter, but for the faults of single stations.
+fn disturbances(section: &Section<'_>) -> Option<Disturbances> {
+    let (ping_dropout, nlos_chance) = (section.number("ping_dropout"), section.number("nlos_chance"));
+    let (outlier_chance, outlier_factor) =
+        (section.number("outlier_chance"), section.number("outlier_factor"));
+    let (late_ping_chance, late_mean_m) = (section.number("late_ping_chance"), section.number("late_mean_m"));
+    let behind = section.word("behind_columns");
+    let (survey, sound) = (section.number("survey_sigma_m"), section.number("sound_speed_error_ratio"));
+    Some(Disturbances {
+        ping_dropout: ping_dropout?,
+        outlier_chance: outlier_chance?,
+        outlier_factor: outlier_factor?,
+        late_ping_chance: late_ping_chance?,
+        nlos_chance: nlos_chance?,
+        late_mean_m: late_mean_m?,
+        behind_columns: match behind? {
+            "creeping" => BehindColumns::Creeping,
+            "late" => BehindColumns::Late,
+            "wall-echo" => BehindColumns::WallEcho,
+            "silent" => BehindColumns::Silent,
+            _ => BehindColumns::Heard,
+        },
+        survey_sigma_m: survey?,
+        sound_speed_error_ratio: sound?,
+        faults: Vec::new(),
+    })
+}
+
+/// Reads the faults of single stations.
+pub fn faults(section: &Section<'_>, stations: &[Station]) -> Vec<StationFault> {
+    section.tables("faults").iter().filter_map(|entry| fault(entry, stations)).collect()
+}
+
+fn fault(entry: &Section<'_>, stations: &[Station]) -> Option<StationFault> {
+    let name = entry.text("station");
+    let (from_s, to_s) = (entry.number("from_s"), entry.number("to_s"));
+    let late_m = entry.number("late_m");
+    let name = name?;
+    let station = stations.iter().find(|station| station.name == name);
+    if station.is_none() {
+        let nearest = suggest::nearest(&name, stations.iter().map(|station| station.name.as_str()));
+        let hint = nearest.map(|name| format!("; did you mean \"{name}\"?")).unwrap_or_default();
+        entry.complain("station", Complaint::OutOfRange(format!("the name of a station{hint}")));
+    }
+    if from_s? >= to_s? {
+        entry.complain("to_s", Complaint::OutOfRange(format!("greater than {} s, the beginning", from_s?)));
+    }
+    Some(StationFault { station: station?.id, from_s: from_s?, to_s: to_s?, late_m })
+}
+
+fn noise(section: &Section<'_>) -> Option<NoiseModel> {
+    if !section.has("noise") {
+        return Some(NoiseModel::Uniform { ratio: 0.05 });
+    }
+    let noise = section.table("noise")?;
+    let model = noise.word("model")?;
+    let beside = format!("model = \"{model}\"");
+    match model {
+        "uniform" | "triangular" => {
+            noise.refuse(&["sigma_ratio"], &beside);
+            noise.require("ratio", "add ratio = 0.05 for at most 5 % of the distance");
+            let ratio = noise.number("ratio")?;
+            let is_uniform = model == "uniform";
+            Some(if is_uniform { NoiseModel::Uniform { ratio } } else { NoiseModel::Triangular { ratio } })
+        }
+        "gaussian" | "heavy-tailed" => {
+            noise.refuse(&["ratio"], &beside);
+            noise.require(
+                "sigma_ratio",
+                "add sigma_ratio = 0.03 for a standard deviation of 3 % of the distance",
+            );
+            let sigma_ratio = noise.number("sigma_ratio")?;
+            let is_normal = model == "gaussian";
+            Some(if is_normal {
+                NoiseModel::Gaussian { sigma_ratio }
+            } else {
+                NoiseModel::HeavyTailed { sigma_ratio }
+            })
+        }
+        _ => {
+            noise.refuse(&["ratio", "sigma_ratio"], &beside);
+            Some(NoiseModel::None)
+        }
+    }
+}
+
+/// Standard deviation of one range as a share of it, as the estimator may expect it; never quite zero.
+pub fn range_sigma_ratio(noise: NoiseModel) -> f64 {
+    const LEAST: f64 = 1e-3;
+    match noise {
+        NoiseModel::None => LEAST,
+        NoiseModel::Uniform { ratio } => (ratio / 3.0_f64.sqrt()).max(LEAST),
+        NoiseModel::Triangular { ratio } => (ratio / 6.0_f64.sqrt()).max(LEAST),
+        NoiseModel::Gaussian { sigma_ratio } | NoiseModel::HeavyTailed { sigma_ratio } => {
+            sigma_ratio.max(LEAST)
+        }
+    }
+}
+
+/// Reads the stations of `[ae]`.
+pub fn stations(section: &Section<'_>, boundary: Option<&Boundary>) -> Vec<Station> {
+    let mut names = Names::default();
+    let mut stations: Vec<Station> = Vec::new();
+    let sections = section.tables("stations");
+    for (i, entry) in sections.iter().enumerate() {
+        let (name, at) = (entry.text("name").and_then(|_| names.of(entry, String::new)), entry.point("at_m"));
+        let Some(position) = at else { continue };
+        if let Some(twin) = stations.iter().find(|other| (other.position - position).norm() < ON_WALL_M) {
+            entry.complain("at_m", Complaint::Duplicate { other: format!("station \"{}\"", twin.name) });
+        }
+        let by_m = boundary.map_or(0.0, |boundary| -boundary.wall_distance_m(position));
+        if by_m > ON_WALL_M {
+            entry.complain("at_m", Complaint::OutsideTank { by_m });
+        }
+        stations.extend(name.map(|name| Station { id: StationId(i as u32 + 1), name, position }));
+    }
+    if section.has("stations") && sections.len() < 2 && section.is_list("stations") {
+        section.complain("stations", Complaint::TooFewStations { have: sections.len() });
+    }
+    stations
+}

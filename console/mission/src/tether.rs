@@ -1,0 +1,270 @@
+//! The mission's own tether: the taut cable by the estimated pose, what it asks of the operator, and its judgement of
+//! plans.
+//!
+//! Why the scatter of the estimate winds nothing: a move of the estimate and its way back are undone by each other, and
+//! as long as the estimate strays from the truth by less than column plus hull, the straight line between the two
+//! never passes the middle of a column, so both ways pass every column on the same side (`world::tether`, module
+//! `sidestep`). Beyond that, or while the position counts as lost, the cable is not dragged at all: it takes one straight
+//! move when the position is regained.
+//!
+//! An obstacle found later may lie across the taut line: on which side the cable passes it is then decided by the way
+//! driven, which is kept and driven again in thought among all obstacles known now.
+
+use crate::{
+    config::MissionConfig,
+    event::{EventKind, TetherAlarm, TetherContact},
+};
+use planner_api::TetherLimits;
+use serde::{Deserialize, Serialize};
+use std::{collections::BTreeMap, sync::Arc};
+use world::{
+    ObstacleMap, Point, Shape, World,
+    tether::{Bearing, Cable, Case, Certificate, Ground, Limits, TetherError, capstan_factor, certify},
+};
+
+/// Distance between the points of the way driven that are kept, metres.
+const KEPT_M: f64 = 0.05;
+/// Share of a limit from which the operator is warned.
+const NEAR: f64 = 0.8;
+/// Share of a limit below which an alarm is over.
+const EASED: f64 = 0.75;
+/// Distance from the anchor within which a task ends at it, metres.
+const AT_ANCHOR_M: f64 = 0.3;
+/// Cable beyond the straight line to the robot that counts as left out at the end, metres.
+const LEFT_M: f64 = 0.3;
+
+/// A tether as scenarios describe it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TetherConfig {
+    /// Where the cable comes out: the start, a manhole, the place below a roof hatch; metres.
+    pub anchor: Point,
+    /// What the cable may do.
+    pub limits: Limits,
+    /// Friction of cable on steel, for the pull; the shape of the cable does not depend on it.
+    pub friction: f64,
+    /// Whether plans fly that cannot be certified.
+    #[serde(default)]
+    pub fly_uncertified: bool,
+}
+
+impl TetherConfig {
+    /// The limits as planners read them.
+    pub fn as_request(&self) -> TetherLimits {
+        let Limits { reel_m, max_wrap_rad, max_sum_wrap_rad } = self.limits;
+        TetherLimits { reel_m, max_wrap_rad, max_sum_wrap_rad }
+    }
+}
+
+/// How far an alarm has gone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+enum Level {
+    #[default]
+    Calm,
+    Near,
+    Reached,
+}
+
+/// The tether under way.
+pub struct Tether {
+    config: TetherConfig,
+    hull_m: f64,
+    cable: Cable,
+    /// The ground as the middle of the hull meets it.
+    roomy: Arc<Ground>,
+    driven: Vec<Point>,
+    levels: BTreeMap<&'static str, Level>,
+}
+
+impl Tether {
+    /// The cable from the anchor straight to the start.
+    ///
+    /// # Errors
+    /// The anchor lies in an obstacle of the drawing, or outside the wall.
+    pub fn new(config: &TetherConfig, hull_m: f64, world: &World, start: Point) -> Result<Self, TetherError> {
+        let shapes = shapes(world);
+        let mut cable = Cable::new(config.anchor, &world.boundary, &shapes)?;
+        cable.drag_to(start);
+        Ok(Self {
+            config: config.clone(),
+            hull_m,
+            cable,
+            roomy: Arc::new(Ground::grown(&world.boundary, &shapes, hull_m)),
+            driven: vec![start],
+            levels: BTreeMap::new(),
+        })
+    }
+
+    /// Whether plans fly that cannot be certified.
+    pub fn flies_uncertified(&self) -> bool {
+        self.config.fly_uncertified
+    }
+
+    /// From now on plans fly that cannot be certified: the operator says so.
+    pub fn fly_uncertified(&mut self) {
+        self.config.fly_uncertified = true;
+    }
+
+    /// Puts the cable among the obstacles known now, as the way driven leads.
+    pub fn lay_anew(&mut self, world: &World) {
+        let shapes = shapes(world);
+        let ground = Arc::new(Ground::new(&world.boundary, &shapes));
+        // An obstacle on top of the anchor is an error of the estimate: the cable stays as it was.
+        if let Ok(mut cable) = Cable::on(self.config.anchor, ground) {
+            cable.drag_along(&self.driven);
+            cable.drag_to(self.cable.tip());
+            self.cable = cable;
+            self.roomy = Arc::new(Ground::grown(&world.boundary, &shapes, self.hull_m));
+        }
+    }
+
+    /// Drags the cable to where the robot is believed to be.
+    pub fn drag_to(&mut self, here: Point) {
+        if self.driven.last().is_none_or(|last| (here - last).norm() >= KEPT_M) {
+            self.driven.push(here);
+        }
+        self.cable.drag_to(here);
+    }
+
+    /// How the cable lies, and what is newly wrong or right again.
+    pub fn tell(&mut self, world: &World, map: &ObstacleMap) -> Vec<EventKind> {
+        let way_home = self.cable.way_home(&self.roomy, map, self.hull_m);
+        let way_home_m = way_home.map(|way| world::polyline::length_m(&way));
+        let limits = self.config.limits;
+        let length_m = self.cable.length_m();
+        let sum_wrap_rad = self.cable.sum_wrap_rad();
+        let mut events = vec![EventKind::Tethered {
+            length_m,
+            free_m: limits.reel_m - length_m,
+            contacts: self.contacts(world),
+            max_wrap_rad: self.cable.max_wrap_rad(),
+            sum_wrap_rad,
+            pull_factor: capstan_factor(self.config.friction, sum_wrap_rad),
+            way_home_m,
+            line: self.cable.taut_line(),
+        }];
+        for (alarm, share) in self.alarms(world, way_home_m.is_some()) {
+            events.extend(self.judge(alarm, share));
+        }
+        events
+    }
+
+    fn alarms(&self, world: &World, can_go_home: bool) -> [(TetherAlarm, f64); 4] {
+        let limits = self.config.limits;
+        let contacts = self.cable.contacts();
+        let most = contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()));
+        let on = most.map_or_else(String::new, |contact| name_of(world, contact.on));
+        let (out_m, reel_m) = (self.cable.length_m(), limits.reel_m);
+        let (wrap_rad, sum_rad) = (self.cable.max_wrap_rad(), self.cable.sum_wrap_rad());
+        let (wrap_limit_rad, sum_limit_rad) = (limits.max_wrap_rad, limits.max_sum_wrap_rad);
+        [
+            (TetherAlarm::Reel { out_m, reel_m }, out_m / reel_m),
+            (TetherAlarm::Wrap { on, wrap_rad, limit_rad: wrap_limit_rad }, wrap_rad / wrap_limit_rad),
+            (TetherAlarm::SumOfWraps { sum_rad, limit_rad: sum_limit_rad }, sum_rad / sum_limit_rad),
+            (TetherAlarm::NoWayHome, if can_go_home { 0.0 } else { f64::INFINITY }),
+        ]
+    }
+
+    fn judge(&mut self, alarm: TetherAlarm, share: f64) -> Option<EventKind> {
+        let level = self.levels.entry(alarm.word()).or_default();
+        let now = match share {
+            share if share > 1.0 => Level::Reached,
+            share if share > NEAR => Level::Near,
+            _ => Level::Calm,
+        };
+        if now > *level {
+            *level = now;
+            return Some(EventKind::TetherAlarmed { alarm, reached: now == Level::Reached });
+        }
+        if *level == Level::Reached && share <= 1.0 && share > EASED {
+            // Raised again if the limit is passed again.
+            *level = Level::Near;
+            return Some(EventKind::TetherAlarmed { alarm, reached: false });
+        }
+        let eased = *level > Level::Calm && share <= EASED;
+        eased.then(|| {
+            *level = Level::Calm;
+            EventKind::TetherEased { alarm }
+        })
+    }
+
+    fn contacts(&self, world: &World) -> Vec<TetherContact> {
+        let contacts = self.cable.contacts();
+        let told = contacts.iter().map(|contact| TetherContact {
+            on: name_of(world, contact.on),
+            wrap_rad: contact.wrap_rad,
+            at: contact.last,
+        });
+        told.collect()
+    }
+
+    /// Judges a plan from where the cable lies now; `returns` says whether it has to end with the cable reeled in.
+    pub fn certify(&self, path: &[Point], cuts: &[Vec<Point>], world: &World, returns: bool) -> Certificate {
+        certified(&self.config, self.hull_m, Some(&self.cable), path, cuts, world, returns)
+    }
+
+    /// What keeps the cable out although the robot is back, as a sentence; `None` if all is in.
+    pub fn left_out(&self, world: &World) -> Option<String> {
+        let mut cable = self.cable.clone();
+        cable.drag_to(self.config.anchor);
+        let left_m = cable.length_m();
+        let on: Vec<String> = cable.contacts().iter().map(|c| name_of(world, c.on)).collect();
+        let names = on.first().map_or_else(String::new, |first| format!(", hooked round {first}"));
+        (left_m > LEFT_M).then(|| format!("{left_m:.1} m of cable are left out{names}"))
+    }
+}
+
+/// Judges a plan of a whole mission before anything has moved, on the drawing.
+pub fn judge_from_start(
+    tether: &TetherConfig,
+    config: &MissionConfig,
+    path: &[Point],
+    cuts: &[Vec<Point>],
+    drawing: &World,
+) -> Certificate {
+    let returns = ends_at_anchor(tether, config);
+    certified(tether, config.limits.radius_m, None, path, cuts, drawing, returns)
+}
+
+/// Whether the task ends where the tether is made fast.
+pub(crate) fn ends_at_anchor(tether: &TetherConfig, config: &MissionConfig) -> bool {
+    config.task.end().is_some_and(|end| (end - tether.anchor).norm() <= AT_ANCHOR_M)
+}
+
+fn certified(
+    config: &TetherConfig,
+    hull_m: f64,
+    cable: Option<&Cable>,
+    path: &[Point],
+    cuts: &[Vec<Point>],
+    world: &World,
+    returns: bool,
+) -> Certificate {
+    let case = Case {
+        path,
+        anchor: config.anchor,
+        cable,
+        boundary: &world.boundary,
+        obstacles: &world.obstacles,
+        room_m: hull_m,
+        limits: config.limits,
+        returns,
+        cuts,
+    };
+    if path.is_empty() {
+        return Certificate::refused("the planner tells no path that could be judged".into());
+    }
+    certify(&case).unwrap_or_else(|error| Certificate::refused(error.to_string()))
+}
+
+fn shapes(world: &World) -> Vec<Shape> {
+    world.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect()
+}
+
+fn name_of(world: &World, on: Bearing) -> String {
+    match on {
+        Bearing::Obstacle(index) => {
+            world.obstacles.get(index).map_or_else(|| format!("obstacle {index}"), |o| o.name.clone())
+        }
+        Bearing::Wall => "a corner of the wall".into(),
+    }
+}

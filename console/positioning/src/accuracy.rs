@@ -1,0 +1,189 @@
+//! How well a layout of stations will locate a robot, place by place, before anything moves.
+
+pub mod adviser;
+
+use crate::{
+    fix::ellipse_95,
+    noise::RangeNoise,
+    quality::{NO_GEOMETRY, inverse_of},
+};
+use nalgebra::Matrix2;
+use serde::{Deserialize, Serialize};
+use world::{ObstacleMap, Point, Station, World};
+
+/// No station is nearer than this, metres: no direction can be told from there.
+const NEAREST_M: f64 = 0.05;
+/// Cells along the longer side that a map may have.
+const MOST_CELLS: usize = 400;
+/// A ray that ends this near to a station has reached it, metres: stations may sit on a column.
+const REACHED_M: f64 = 1e-3;
+
+/// What a forecast has to know.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Forecast {
+    /// How single ranges scatter.
+    pub noise: RangeNoise,
+    /// Ranges per station and cycle.
+    pub repetitions: u32,
+    /// Whether a station is of no use where an obstacle hides it.
+    pub needs_sight: bool,
+    /// Edge of a cell, metres.
+    pub cell_m: f64,
+}
+
+/// What is forecast for one place.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Accuracy {
+    /// Longer half axis of the 95 % ellipse of a single fix, metres; `None` where there is no fix without help.
+    pub error_95_m: Option<f64>,
+    /// Geometric dilution of precision; `None` where there is no fix without help.
+    pub gdop: Option<f64>,
+    /// Stations heard.
+    pub heard: u32,
+}
+
+/// The forecast for every cell of the floor, row by row from the south west corner.
+///
+/// It is the Cramér-Rao bound of a single cycle of normal noise: least squares reach it, filters do better under way.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AccuracyMap {
+    /// South west corner of cell 0, metres.
+    pub origin: Point,
+    /// Edge of a cell, metres.
+    pub cell_m: f64,
+    /// Cells from west to east.
+    pub width: usize,
+    /// Cells from south to north.
+    pub height: usize,
+    /// One for each cell; `None` where there is no floor.
+    pub cells: Vec<Option<Accuracy>>,
+}
+
+impl AccuracyMap {
+    /// The forecast for a tank as drawn. Costs a ray for each cell and station.
+    pub fn new(drawing: &World, forecast: &Forecast) -> Self {
+        let grid = Grid::of(drawing, forecast.cell_m);
+        let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
+        let cells = (0..grid.width * grid.height)
+            .map(|index| grid.center(index))
+            .map(|at| (map.clearance_m(at) >= 0.0).then(|| forecast.at(at, &drawing.stations, &map)))
+            .collect();
+        Self { origin: grid.origin, cell_m: grid.cell_m, width: grid.width, height: grid.height, cells }
+    }
+
+    /// Middle of a cell, metres.
+    pub fn center(&self, index: usize) -> Point {
+        let Self { origin, cell_m, width, height, .. } = *self;
+        Grid { origin, cell_m, width, height }.center(index)
+    }
+
+    /// The forecast for a place; `None` where there is no floor.
+    pub fn at(&self, place: Point) -> Option<Accuracy> {
+        let offset = (place - self.origin) / self.cell_m;
+        let is_inside = offset.x >= 0.0 && offset.y >= 0.0 && offset.x < self.width as f64;
+        let index = offset.y as usize * self.width + offset.x as usize;
+        self.cells.get(index).copied().flatten().filter(|_| is_inside)
+    }
+
+    /// Middles of the floor's cells with their forecasts.
+    pub fn floor(&self) -> impl Iterator<Item = (Point, Accuracy)> + '_ {
+        self.cells.iter().enumerate().filter_map(|(index, cell)| Some((self.center(index), (*cell)?)))
+    }
+
+    /// The places where the error exceeds a limit or there is no fix, the worst first.
+    pub fn beyond(&self, limit_m: f64) -> Vec<(Point, Accuracy)> {
+        let error_m = |cell: &Accuracy| cell.error_95_m.unwrap_or(f64::INFINITY);
+        let mut places: Vec<_> = self.floor().filter(|(_, cell)| error_m(cell) > limit_m).collect();
+        places.sort_by(|a, b| error_m(&b.1).total_cmp(&error_m(&a.1)));
+        places
+    }
+}
+
+impl Forecast {
+    /// The forecast for one place.
+    pub fn at(&self, place: Point, stations: &[Station], map: &ObstacleMap) -> Accuracy {
+        let heard = stations.iter().filter(|s| !self.needs_sight || is_in_sight(map, place, s.position));
+        let mut sum = Seen::default();
+        heard.for_each(|station| sum.add(&self.seen(place, station.position)));
+        let covariance = sum.covariance();
+        Accuracy {
+            error_95_m: covariance.map(|covariance| ellipse_95(&covariance).0),
+            gdop: covariance.and_then(|_| sum.gdop()),
+            heard: sum.heard,
+        }
+    }
+
+    /// What one station tells of a place.
+    fn seen(&self, place: Point, station: Point) -> Seen {
+        let away = place - station;
+        let distance_m = away.norm().max(NEAREST_M);
+        let direction = away / distance_m;
+        let square = direction * direction.transpose();
+        let repetitions = f64::from(self.repetitions.max(1));
+        let sigma_m =
+            (self.noise.sigma_ratio() * distance_m / repetitions.sqrt()).max(crate::aggregate::SIGMA_FLOOR_M);
+        Seen { heard: 1, geometry: square, information: square / sigma_m.powi(2) }
+    }
+}
+
+/// What some stations tell of a place together.
+#[derive(Debug, Clone, Copy, Default)]
+struct Seen {
+    heard: u32,
+    geometry: Matrix2<f64>,
+    information: Matrix2<f64>,
+}
+
+impl Seen {
+    fn add(&mut self, other: &Self) {
+        self.heard += other.heard;
+        self.geometry += other.geometry;
+        self.information += other.information;
+    }
+
+    /// Covariance of a fix; fewer than three stations leave a mirror position.
+    fn covariance(&self) -> Option<Matrix2<f64>> {
+        inverse_of(&self.information).filter(|covariance| self.heard >= 3 && covariance.trace().is_finite())
+    }
+
+    fn gdop(&self) -> Option<f64> {
+        Some(inverse_of(&self.geometry)?.trace().max(0.0).sqrt()).filter(|gdop| *gdop < NO_GEOMETRY)
+    }
+}
+
+fn is_in_sight(map: &ObstacleMap, from: Point, to: Point) -> bool {
+    let way = to - from;
+    let distance_m = way.norm();
+    distance_m <= REACHED_M
+        || map.ray_m(from, way / distance_m, distance_m).is_none_or(|hit_m| hit_m >= distance_m - REACHED_M)
+}
+
+/// Square cells over the box around a tank.
+struct Grid {
+    origin: Point,
+    cell_m: f64,
+    width: usize,
+    height: usize,
+}
+
+impl Grid {
+    /// Cells of this edge, or larger ones where there would be too many.
+    fn of(world: &World, cell_m: f64) -> Self {
+        let (low, high) = world.boundary.bounds();
+        let span = high - low;
+        let least_m = span.amax() / MOST_CELLS as f64;
+        // `max` also turns what is no number into the least.
+        let cell_m = cell_m.max(least_m).max(1e-6);
+        let count = |span_m: f64| ((span_m / cell_m).ceil().max(1.0) as usize).min(MOST_CELLS + 1);
+        Self { origin: low, cell_m, width: count(span.x), height: count(span.y) }
+    }
+
+    fn center(&self, index: usize) -> Point {
+        let (row, column) = (index / self.width, index % self.width);
+        let middle = |k: usize| (k as f64 + 0.5) * self.cell_m;
+        self.origin + world::Vector::new(middle(column), middle(row))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,111 @@
+//! Positions that lie within the bounds of every range.
+
+mod region;
+
+use crate::{
+    anchor::{Anchor, anchored},
+    fix::{Fix, FixError, PositionSolver, Ranging},
+    linear::conditioning,
+    nonlinear::solve_anchors,
+    quality::assess,
+};
+use nalgebra::Matrix2;
+use region::{Annulus, Region};
+use world::{Point, Station};
+
+/// Shorter than this no bound is worth having, metres.
+const THINNEST_M: f64 = 1e-6;
+
+/// The mean of all positions that explain every single range with an error of at most `ratio` of the distance.
+///
+/// Each station leaves an annulus about itself, from its longest range over `1 + ratio` to its shortest over
+/// `1 - ratio`; the positions left are where all annuli overlap. Uniform noise makes a position `prod l_i^-n_i` times
+/// as likely as its neighbour, so the weighted centroid is the exact mean of the posterior. With uniform noise its
+/// error falls with the number of repetitions, not with their root.
+///
+/// To be used only where the bound is known to hold: with any other noise the set soon is empty, which
+/// [`FixError::EmptySet`] tells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounded {
+    /// Largest error of a single range as a share of the distance, below 1.
+    pub ratio: f64,
+}
+
+impl PositionSolver for Bounded {
+    fn solve(
+        &self,
+        ranges: &[Ranging],
+        stations: &[Station],
+        prior: Option<(Point, Matrix2<f64>)>,
+    ) -> Result<Fix, FixError> {
+        let anchors = anchored(ranges, stations)?;
+        let annuli = anchors.iter().map(|a| self.annulus(a, ranges)).collect::<Option<Vec<_>>>();
+        let empty = FixError::EmptySet { ratio: self.told_ratio() };
+        let annuli = annuli.ok_or(empty.clone())?;
+        // The middle of each annulus is the best single range; it gives the place to look at.
+        let middles: Vec<Anchor> = anchors
+            .iter()
+            .zip(&annuli)
+            .map(|(anchor, annulus)| Anchor {
+                range_m: annulus.middle_m(),
+                sigma_m: annulus.width_m().max(THINNEST_M) / 12.0_f64.sqrt(),
+                ..*anchor
+            })
+            .collect();
+        let near = solve_anchors(&middles, prior)?;
+        let region = Region::around(&annuli, near.position).ok_or(empty)?;
+        let floor = Matrix2::identity() * THINNEST_M.powi(2);
+        let mut fix =
+            assess(&middles, region.mean, region.covariance + floor, conditioning(&middles), near.mirror)?;
+        // The residuals are within their bounds by construction and cannot raise an alarm.
+        fix.integrity = near.integrity.min_trust(fix.integrity);
+        Ok(fix)
+    }
+}
+
+/// How likely positions are by bounded ranges.
+#[derive(Debug, Clone)]
+pub(crate) struct Likelihood(Vec<Annulus>);
+
+impl Likelihood {
+    /// Likelihood of a position up to a factor; 0 where some range cannot be.
+    pub fn at(&self, position: Point) -> f64 {
+        region::weight_at(&self.0, position)
+    }
+}
+
+impl Bounded {
+    /// The likelihood of these ranges.
+    pub(crate) fn likelihood(
+        &self,
+        ranges: &[Ranging],
+        stations: &[Station],
+    ) -> Result<Likelihood, FixError> {
+        let anchors = anchored(ranges, stations)?;
+        let annuli = anchors.iter().map(|a| self.annulus(a, ranges)).collect::<Option<Vec<_>>>();
+        annuli.map(Likelihood).ok_or(FixError::EmptySet { ratio: self.told_ratio() })
+    }
+
+    fn told_ratio(&self) -> f64 {
+        if self.ratio.is_finite() { self.ratio } else { 0.0 }
+    }
+
+    fn annulus(&self, anchor: &Anchor, ranges: &[Ranging]) -> Option<Annulus> {
+        let ranging = ranges.iter().find(|r| r.station == anchor.station)?;
+        let is_usable = (0.0..1.0).contains(&self.ratio);
+        // A range outside its own extremes has been tampered with; the extremes are what counts.
+        let (least_m, most_m) = (ranging.least_m, ranging.most_m);
+        let annulus = Annulus {
+            at: anchor.at,
+            inner_m: most_m / (1.0 + self.ratio),
+            outer_m: least_m / (1.0 - self.ratio),
+            repetitions: ranging.repetitions.clamp(1, 10_000) as i32,
+        };
+        let is_sound =
+            annulus.inner_m > 0.0 && annulus.outer_m.is_finite() && annulus.outer_m >= annulus.inner_m;
+        (is_usable && is_sound).then_some(annulus)
+    }
+}
+
+#[cfg(test)]
+mod tests;

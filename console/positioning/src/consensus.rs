@@ -1,0 +1,177 @@
+//! The position that most stations agree on.
+
+use crate::{
+    anchor::{Anchor, anchored},
+    fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Ranging},
+    linear::solve_linear,
+    nonlinear::{Slope, on_near_circle, solve_anchors},
+};
+use nalgebra::Matrix2;
+use world::{Point, Station};
+
+/// A residual of more sigmas than this speaks for a wrong range.
+const CUT_SIGMAS: f64 = 3.0;
+/// Newton steps on a subset of three; the linear start is near.
+const SUBSET_STEPS: usize = 2;
+/// Subsets looked at before some are skipped: all of up to ten stations.
+const MOST_SUBSETS: usize = 120;
+/// Best groups of agreeing stations that are refined.
+const REFINED: usize = 8;
+/// Rounds of choosing the agreeing stations anew.
+const ROUNDS: usize = 6;
+/// A second answer whose cost is larger by less than this is as good as the first.
+const MARGIN: f64 = 16.0;
+/// Fewer agreeing stations than this cannot show that they agree.
+const NEEDED: usize = 4;
+
+/// Which way wrong ranges are wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum WrongRanges {
+    /// Always too long, as sound that takes a detour: a range that is too short is believed.
+    #[default]
+    Late,
+    /// Either way.
+    Any,
+}
+
+/// Fits all subsets of three stations, keeps the position that leaves the fewest stations in disagreement, and fits
+/// again to those that agree.
+///
+/// With fewer than four stations it is [`crate::Nls`]. Six to eight stations bear one in five hidden behind something.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Consensus {
+    /// Which ranges are doubted.
+    pub wrong: WrongRanges,
+}
+
+impl PositionSolver for Consensus {
+    fn solve(
+        &self,
+        ranges: &[Ranging],
+        stations: &[Station],
+        prior: Option<(Point, Matrix2<f64>)>,
+    ) -> Result<Fix, FixError> {
+        let anchors = anchored(ranges, stations)?;
+        if anchors.len() < NEEDED {
+            return solve_anchors(&anchors, prior);
+        }
+        let answers = self.answers(&anchors, prior);
+        let Some(best) = answers.first() else { return solve_anchors(&anchors, prior) };
+        let fix = best.fix.clone();
+        let rival = answers.iter().skip(1).find(|other| best.is_contested_by(other));
+        Ok(self.judged(fix, &anchors, rival))
+    }
+}
+
+/// A position with the stations that agree on it.
+#[derive(Debug, Clone)]
+struct Answer {
+    fix: Fix,
+    cost: f64,
+}
+
+impl Answer {
+    /// Whether another answer is nearly as good and not where this one lies by its own account.
+    fn is_contested_by(&self, other: &Self) -> bool {
+        let apart_m = (self.fix.position - other.fix.position).norm();
+        other.cost < self.cost + MARGIN && apart_m > self.fix.ellipse_95().0
+    }
+}
+
+impl Consensus {
+    /// The best answers, the best first.
+    fn answers(self, anchors: &[Anchor], prior: Option<(Point, Matrix2<f64>)>) -> Vec<Answer> {
+        let mut tries: Vec<(f64, Point)> = subsets(anchors.len())
+            .filter_map(|[i, j, k]| fit_three(&[anchors[i], anchors[j], anchors[k]]))
+            .chain(on_near_circle(anchors))
+            .map(|position| (self.cost_at(anchors, position), position))
+            .collect();
+        tries.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut answers: Vec<Answer> = Vec::new();
+        let mut seen: Vec<Vec<bool>> = Vec::new();
+        for (_, position) in tries {
+            let agreeing = self.agreeing(anchors, position);
+            if seen.len() < REFINED && !seen.contains(&agreeing) {
+                seen.push(agreeing);
+                answers.extend(self.refined(anchors, position, prior));
+            }
+        }
+        answers.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        answers
+    }
+
+    /// Fits to the agreeing stations until they no longer change.
+    fn refined(
+        self,
+        anchors: &[Anchor],
+        start: Point,
+        prior: Option<(Point, Matrix2<f64>)>,
+    ) -> Option<Answer> {
+        let mut agreeing = self.agreeing(anchors, start);
+        let mut answer = None;
+        for _ in 0..ROUNDS {
+            let chosen: Vec<Anchor> =
+                anchors.iter().zip(&agreeing).filter(|(_, agrees)| **agrees).map(|(a, _)| *a).collect();
+            if chosen.len() < 3 {
+                return answer;
+            }
+            let fix = solve_anchors(&chosen, prior).ok()?;
+            let now = self.agreeing(anchors, fix.position);
+            answer = Some(Answer { cost: self.cost_at(anchors, fix.position), fix });
+            if now == agreeing {
+                break;
+            }
+            agreeing = now;
+        }
+        answer
+    }
+
+    fn agreeing(self, anchors: &[Anchor], position: Point) -> Vec<bool> {
+        anchors.iter().map(|a| !self.is_wrong(a.view_from(position).sigmas())).collect()
+    }
+
+    fn is_wrong(self, sigmas: f64) -> bool {
+        sigmas > CUT_SIGMAS || (self.wrong == WrongRanges::Any && sigmas < -CUT_SIGMAS)
+    }
+
+    /// Squared residuals, cut off for what may be wrong.
+    fn cost_at(self, anchors: &[Anchor], position: Point) -> f64 {
+        let cost = |sigmas: f64| if self.is_wrong(sigmas) { CUT_SIGMAS.powi(2) } else { sigmas * sigmas };
+        anchors.iter().map(|a| cost(a.view_from(position).sigmas())).sum()
+    }
+
+    fn judged(self, mut fix: Fix, anchors: &[Anchor], rival: Option<&Answer>) -> Fix {
+        for anchor in anchors.iter().filter(|a| !fix.used.contains(&a.station)) {
+            let view = anchor.view_from(fix.position);
+            let gate_m = CUT_SIGMAS * view.sigma_m;
+            fix.excluded.push((anchor.station, Exclusion::Residual { residual_m: view.residual_m, gate_m }));
+        }
+        let too_few = fix.used.len() < NEEDED || 2 * fix.excluded.len() >= anchors.len();
+        if rival.is_some() || (too_few && !fix.excluded.is_empty()) {
+            fix.integrity = fix.integrity.min_trust(Integrity::Suspect);
+        }
+        if let Some(rival) = rival {
+            fix.mirror = fix.mirror.or(Some(rival.fix.position));
+        }
+        fix
+    }
+}
+
+/// Subsets of three out of `n`, at most about [`MOST_SUBSETS`] of them, evenly over all.
+fn subsets(n: usize) -> impl Iterator<Item = [usize; 3]> {
+    let all = n * n.saturating_sub(1) * n.saturating_sub(2) / 6;
+    let every = (all / MOST_SUBSETS).max(1);
+    (0..n).flat_map(move |i| (i + 1..n).flat_map(move |j| (j + 1..n).map(move |k| [i, j, k]))).step_by(every)
+}
+
+/// The position of three stations, if they are no line.
+fn fit_three(three: &[Anchor; 3]) -> Option<Point> {
+    let mut position = solve_linear(three).ok()?.position;
+    for _ in 0..SUBSET_STEPS {
+        position += Slope::at(three, position).step(1e-6)?;
+    }
+    position.iter().all(|c| c.is_finite()).then_some(position)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,92 @@
+//! Potential fields toward a goal: Xu et al. 2022 (virtual obstacles) and Yang et al. 2021 (virtual goals, dynamic
+//! window).
+//!
+//! Of all layouts the papers print only one obstacle; the others are reconstructed so that the printed stops and
+//! lengths come out, so agreement there shows consistency and no more. The notes say where a paper's formula is wrong.
+
+mod scene;
+mod shores;
+mod xu;
+mod yang;
+
+use crate::study::Study;
+use mission::{ParamValue, Parameters};
+
+/// The studies.
+pub const STUDIES: &[Study] = &[
+    Study {
+        name: "xu-table1",
+        about: "Xu et al. 2022, Table 1: a goal behind an obstacle that pushes the robot past it",
+        layouts: 1,
+        run: xu::table1,
+    },
+    Study {
+        name: "xu-traps",
+        about: "Xu et al. 2022, Figs 2, 11, 12: an obstacle on the line, a triangle and a U in the way",
+        layouts: 1,
+        run: xu::traps,
+    },
+    Study {
+        name: "xu-table2",
+        about: "Xu et al. 2022, Table 2: a U in the way and obstacles round the goal",
+        layouts: 1,
+        run: xu::table2,
+    },
+    Study {
+        name: "yang-table3",
+        about: "Yang et al. 2021, Table 3: a free way and two goals with an obstacle behind them",
+        layouts: 1,
+        run: yang::table3,
+    },
+    Study {
+        name: "yang-table4",
+        about: "Yang et al. 2021, Table 4: two minima before obstacles",
+        layouts: 1,
+        run: yang::table4,
+    },
+    Study {
+        name: "yang-hybrid",
+        about: "Yang et al. 2021, Figs 12 to 15: from water to land among ten obstacles, with 0, 20 and 60 steps of transition",
+        layouts: 200,
+        run: shores::hybrid,
+    },
+];
+
+/// A planner set up for a study.
+#[derive(Debug, Clone, PartialEq)]
+struct Method {
+    /// Id in rows.
+    id: &'static str,
+    /// Id of the planner.
+    planner: &'static str,
+    /// Values that differ from its defaults.
+    parameters: Parameters,
+    /// What a reader must know.
+    note: &'static str,
+}
+
+impl Method {
+    fn new(id: &'static str, planner: &'static str, note: &'static str) -> Self {
+        Self { id, planner, parameters: Parameters::new(), note }
+    }
+
+    fn number(mut self, key: &str, value: f64) -> Self {
+        self.parameters.insert(key.to_owned(), ParamValue::Float(value));
+        self
+    }
+
+    fn word(mut self, key: &str, value: &str) -> Self {
+        self.parameters.insert(key.to_owned(), ParamValue::Word(value.to_owned()));
+        self
+    }
+
+    fn int(mut self, key: &str, value: i64) -> Self {
+        self.parameters.insert(key.to_owned(), ParamValue::Int(value));
+        self
+    }
+
+    fn flag(mut self, key: &str, value: bool) -> Self {
+        self.parameters.insert(key.to_owned(), ParamValue::Flag(value));
+        self
+    }
+}

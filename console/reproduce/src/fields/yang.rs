@@ -1,0 +1,161 @@
+//! Yang et al. 2021, Tables 3 and 4: the field with virtual goals.
+
+use super::{
+    Method,
+    scene::{Scene, Walk},
+};
+use crate::{
+    bench::Bench,
+    row::Row,
+    study::{Options, Problem, Study},
+};
+use world::Point;
+
+/// The last step of a walk goes onto the goal, metres.
+const TOLERANCE_M: f64 = 1e-6;
+/// Iterations of the paper.
+const STEPS: i64 = 200;
+/// Plans are timed so often, and the best counts.
+const TIMED: usize = 5;
+
+const TRADITIONAL: &str = "linear pull, no virtual goals; steps proportional to the force up to 0.1 m: the printed lengths \
+                           of runs that fail fit neither this nor fixed steps, which give 20 m always";
+const IMPROVED: &str = "gains and ranges of the paper's Table 2. Read as: eq. 15 pushing away (as stored it attracts), \
+                        eq. 17c with the constant pull k d_0 (its potential has no slope), eq. 18 with the second vector \
+                        reversed (as printed the blocked direction scores best), \"F = 0\" as a force below k_att / 2 or \
+                        six steps that lead nowhere";
+const TUNED: &str = "layout not printed: start, goal and obstacles tuned to the printed length";
+const DERIVED: &str = "layout not printed: any free way from (0, 0) to (10, 10) gives this length";
+
+/// A case and what is printed of it.
+struct Case {
+    scene: Scene,
+    note: &'static str,
+    /// Distance of the virtual goals from the goal, metres: not printed.
+    square_m: f64,
+    /// Length and time of the traditional and of the improved field, metres and seconds; whether the former arrives.
+    traditional: (f64, f64, bool),
+    improved: (f64, f64),
+}
+
+fn scene(id: &'static str, goal: (f64, f64), points: &[(f64, f64)]) -> Scene {
+    Scene {
+        id,
+        start: Point::origin(),
+        goal: Point::new(goal.0, goal.1),
+        discs: points.iter().map(|(x, y)| (Point::new(*x, *y), 0.0)).collect(),
+        hull_m: 0.0,
+        tolerance_m: TOLERANCE_M,
+    }
+}
+
+fn cases_of_table3() -> Vec<Case> {
+    vec![
+        Case {
+            scene: scene("case1", (10.0, 10.0), &[(3.0, 5.0), (6.0, 3.0), (8.0, 6.0)]),
+            note: DERIVED,
+            square_m: 2.0,
+            traditional: (14.1421, 0.8230, true),
+            improved: (14.1421, 0.7910),
+        },
+        Case {
+            scene: scene("case2", (6.904, 6.904), &[(7.3, 7.3), (3.0, 4.5)]),
+            note: TUNED,
+            square_m: 2.0,
+            traditional: (11.0143, 0.7760, false),
+            improved: (9.7637, 0.6930),
+        },
+        Case {
+            scene: scene("case3", (6.2973, 6.2973), &[(6.69, 6.69)]),
+            note: TUNED,
+            square_m: 2.0,
+            traditional: (17.8513, 0.7990, false),
+            improved: (8.9057, 0.5430),
+        },
+    ]
+}
+
+fn cases_of_table4() -> Vec<Case> {
+    vec![
+        Case {
+            scene: scene("case4", (3.55, 0.0), &[(0.9, 0.0)]),
+            note: TUNED,
+            square_m: 2.0,
+            traditional: (2.6717, 0.7830, false),
+            improved: (4.1231, 0.8030),
+        },
+        Case {
+            scene: scene("case5", (3.6, 0.0), &[(0.8, 0.22), (0.8, -0.2)]),
+            note: TUNED,
+            square_m: 1.0,
+            traditional: (1.3853, 0.7770, false),
+            improved: (4.4283, 0.7940),
+        },
+    ]
+}
+
+fn methods(case: &Case) -> [Method; 2] {
+    let with = |id, note| {
+        Method::new(id, "apf-virtual-goals", note)
+            .number("square_m", case.square_m)
+            .number("wall_gain", 0.0)
+            .int("steps_max", STEPS)
+    };
+    [
+        with("apf-virtual-goals/traditional", TRADITIONAL).flag("improved", false),
+        with("apf-virtual-goals", IMPROVED),
+    ]
+}
+
+/// Table 3.
+pub fn table3(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
+    rows(study, bench, options, &cases_of_table3())
+}
+
+/// Table 4.
+pub fn table4(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
+    rows(study, bench, options, &cases_of_table4())
+}
+
+fn rows(study: &Study, bench: &Bench<'_>, options: &Options, cases: &[Case]) -> Result<Vec<Row>, Problem> {
+    let asked = cases.iter().filter(|case| options.has_case(case.scene.id));
+    let runs: Vec<(&Case, Method)> = asked
+        .flat_map(|case| methods(case).into_iter().map(move |method| (case, method)))
+        .filter(|(_, method)| options.has_method(method.id))
+        .collect();
+    if runs.is_empty() {
+        return Err(Problem::Nothing("no case or method of that name is left".into()));
+    }
+    let walks = bench.map(&runs, |planners, (case, method)| case.scene.walk(planners, method, TIMED))?;
+    Ok(runs
+        .iter()
+        .zip(&walks)
+        .flat_map(|((case, method), walk)| case.rows(study.name, method, walk))
+        .collect())
+}
+
+impl Case {
+    fn rows(&self, table: &str, method: &Method, walk: &Walk) -> Vec<Row> {
+        let (length_m, time_s, arrives) = if method.id == "apf-virtual-goals" {
+            (self.improved.0, self.improved.1, true)
+        } else {
+            self.traditional
+        };
+        let mut rows = walk.rows(table, self.scene.id, method);
+        let displacement_m = walk.stop().map(|stop| (stop - self.scene.start).norm());
+        rows.push(Row::new(table, self.scene.id, method.id, "displacement_m", displacement_m, "m").note(
+            "start to end: 4.1231 and 14.1421 are roots of 17 and 200, so the paper may have meant this",
+        ));
+        rows.into_iter()
+            .map(|row| match row.metric.as_str() {
+                "length_m" => {
+                    let note = format!("{}. {}", self.note, row.note);
+                    row.printed(length_m).note(note)
+                }
+                "success_rate" => row.printed(f64::from(u8::from(arrives))),
+                "plan_time_ms" => row.printed(1e3 * time_s),
+                _ => row,
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,197 @@
+//! Which way the sound takes from the robot to a station.
+
+use crate::{config::BehindColumns, sight::outline_points};
+use std::f64::consts::TAU;
+use world::{Boundary, Obstacle, ObstacleMap, Point, Vector, World};
+
+/// A ray that ends this near to a station has reached it, metres: stations may sit on a column.
+const REACHED_M: f64 = 1e-3;
+/// Points of a round wall that are tried for an echo.
+const WALL_POINTS: u32 = 720;
+/// An echo from nearer to the station than this is the direct sound, metres.
+const OWN_WALL_M: f64 = 0.1;
+
+/// The way of a sound.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Way {
+    /// Its length, metres.
+    pub length_m: f64,
+    /// Whether the sound is late besides.
+    pub is_late: bool,
+}
+
+/// Everything that sound meets.
+#[derive(Clone)]
+pub(crate) struct Surroundings {
+    boundary: Boundary,
+    all: ObstacleMap,
+    /// Each obstacle alone, with points of its outline.
+    single: Vec<(ObstacleMap, Vec<Point>)>,
+}
+
+impl Surroundings {
+    pub fn new(world: &World) -> Self {
+        let map = |obstacles: &[Obstacle]| ObstacleMap::new(&world.boundary, obstacles);
+        let alone = |o: &Obstacle| (map(std::slice::from_ref(o)), outline_points(&o.shape));
+        Self {
+            boundary: world.boundary.clone(),
+            all: map(&world.obstacles),
+            single: world.obstacles.iter().map(alone).collect(),
+        }
+    }
+
+    /// The way from a robot to a station; `None` if nothing is heard.
+    pub fn way(&self, from: Point, to: Point, behind: BehindColumns) -> Option<Way> {
+        let direct_m = (to - from).norm();
+        if behind == BehindColumns::Heard || !is_blocked(&self.all, from, to) {
+            return Some(Way { length_m: direct_m, is_late: false });
+        }
+        let (length_m, is_late) = match behind {
+            BehindColumns::Silent => return None,
+            BehindColumns::WallEcho => (self.echo_m(from, to)?, false),
+            BehindColumns::Creeping => (self.creeping_m(from, to), false),
+            BehindColumns::Late | BehindColumns::Heard => (direct_m, true),
+        };
+        Some(Way { length_m, is_late })
+    }
+
+    /// Length of a taut line around everything in the way, on the shorter side.
+    fn creeping_m(&self, from: Point, to: Point) -> f64 {
+        let direct = to - from;
+        let outline: Vec<Point> = self
+            .single
+            .iter()
+            .filter(|(map, _)| is_blocked(map, from, to))
+            .flat_map(|(_, outline)| outline.iter().copied())
+            .collect();
+        let side = |sign: f64| {
+            let beside = |p: &Point| direct.perp(&(p - from)) * sign > 0.0;
+            taut_m(from, to, outline.iter().copied().filter(beside).collect(), sign)
+        };
+        side(1.0).min(side(-1.0))
+    }
+
+    /// Length of the shortest echo from the wall that is not blocked itself.
+    fn echo_m(&self, from: Point, to: Point) -> Option<f64> {
+        let mut echoes: Vec<(f64, Point)> = match &self.boundary {
+            Boundary::Circle { radius_m } => round_echoes(*radius_m, from, to),
+            Boundary::Polygon { vertices } => straight_echoes(vertices, from, to),
+        };
+        echoes.retain(|(_, at)| (at - to).norm() > OWN_WALL_M);
+        echoes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let is_free = |at: Point| !is_blocked(&self.all, from, at) && !is_blocked(&self.all, at, to);
+        echoes.into_iter().find(|(_, at)| is_free(*at)).map(|(length_m, _)| length_m)
+    }
+}
+
+fn is_blocked(map: &ObstacleMap, from: Point, to: Point) -> bool {
+    let way = to - from;
+    let distance_m = way.norm();
+    distance_m > REACHED_M
+        && map.ray_m(from, way / distance_m, distance_m).is_some_and(|hit_m| hit_m < distance_m - REACHED_M)
+}
+
+/// Length of a string from `from` to `to` around points that lie on one side of it: a chain of the convex hull.
+fn taut_m(from: Point, to: Point, mut around: Vec<Point>, sign: f64) -> f64 {
+    let direct = to - from;
+    around.push(to);
+    around.sort_by(|a, b| (a - from).dot(&direct).total_cmp(&(b - from).dot(&direct)));
+    let mut chain = vec![from];
+    for point in around {
+        while let [.., before, last] = chain[..]
+            && (last - before).perp(&(point - last)) * sign >= 0.0
+        {
+            chain.pop();
+        }
+        chain.push(point);
+    }
+    chain.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
+}
+
+/// Where the way over a round wall is shorter or longer than over the wall beside: there sound is reflected.
+fn round_echoes(radius_m: f64, from: Point, to: Point) -> Vec<(f64, Point)> {
+    let at = |k: u32| {
+        let angle = TAU * f64::from(k) / f64::from(WALL_POINTS);
+        Point::from(Vector::new(angle.cos(), angle.sin()) * radius_m)
+    };
+    let length_m = |p: Point| (p - from).norm() + (to - p).norm();
+    (0..WALL_POINTS)
+        .map(|k| (k + WALL_POINTS - 1, k, k + 1))
+        .filter(|(before, here, after)| {
+            let [a, b, c] = [*before, *here, *after].map(|k| length_m(at(k % WALL_POINTS)));
+            (b - a) * (c - b) <= 0.0
+        })
+        .map(|(_, here, _)| (length_m(at(here)), at(here)))
+        .collect()
+}
+
+/// Echoes of straight walls by their mirror images.
+fn straight_echoes(vertices: &[Point], from: Point, to: Point) -> Vec<(f64, Point)> {
+    let ends = vertices.iter().zip(vertices.iter().cycle().skip(1));
+    ends.filter_map(|(a, b)| {
+        let along = (b - a).try_normalize(1e-9)?;
+        let across = Vector::new(-along.y, along.x);
+        let (d1, d2) = (across.dot(&(from - a)), across.dot(&(to - a)));
+        let share = d1 / (d1 + d2);
+        let foot = |p: Point| along.dot(&(p - a));
+        let s = foot(from) + (foot(to) - foot(from)) * share;
+        let is_on_wall = d1 * d2 > 0.0 && (0.0..=(b - a).norm()).contains(&s);
+        let at = a + along * s;
+        is_on_wall.then(|| ((at - from).norm() + (to - at).norm(), at))
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use world::{ObstacleId, Shape};
+
+    fn around(boundary: Boundary, shapes: Vec<Shape>) -> Surroundings {
+        let obstacle = |(id, shape)| Obstacle { id: ObstacleId(id), name: String::new(), shape, known: true };
+        let obstacles = (1..).zip(shapes).map(obstacle).collect();
+        Surroundings::new(&World { boundary, obstacles, stations: vec![], zones: vec![] })
+    }
+
+    fn column(radius_m: f64) -> Vec<Shape> {
+        vec![Shape::Disc { center: Point::origin(), radius_m }]
+    }
+
+    const ROUND: Boundary = Boundary::Circle { radius_m: 10.0 };
+
+    #[test]
+    fn sound_creeps_around_a_column_by_tangents_and_an_arc() {
+        let around = around(ROUND, column(1.0));
+        let way = around.way(Point::new(-5.0, 0.0), Point::new(5.0, 0.0), BehindColumns::Creeping);
+        let touch = (1.0_f64 / 5.0).asin();
+        let expected = 2.0 * (24.0_f64.sqrt() + touch);
+        let length_m = way.expect("heard").length_m;
+        assert!((length_m / expected - 1.0).abs() < 3e-3, "{length_m} for {expected}");
+        assert!(length_m > 10.0);
+    }
+
+    #[test]
+    fn the_echo_in_a_round_tank_is_a_reflection() {
+        let around = around(ROUND, column(1.0));
+        let length_m = around.echo_m(Point::new(-3.0, 0.0), Point::new(3.0, 0.0)).expect("an echo");
+        // Over the wall abeam: the way over the wall ahead is blocked.
+        assert!((length_m - 2.0 * 109.0_f64.sqrt()).abs() < 1e-3, "{length_m}");
+    }
+
+    #[test]
+    fn the_echo_of_a_straight_wall_comes_from_the_mirror_image() {
+        let corner = |x: f64, y: f64| Point::new(x, y);
+        let vertices = vec![corner(-5.0, -4.0), corner(5.0, -4.0), corner(5.0, 4.0), corner(-5.0, 4.0)];
+        let around = around(Boundary::Polygon { vertices }, column(0.5));
+        let length_m = around.echo_m(Point::new(-3.0, 0.0), Point::new(3.0, 0.0)).expect("an echo");
+        assert!((length_m - 10.0).abs() < 1e-9, "{length_m}");
+    }
+
+    #[test]
+    fn a_station_on_a_column_hears_its_own_side() {
+        let around = around(ROUND, column(1.0));
+        let hears = |from: Point| around.way(from, Point::new(1.0, 0.0), BehindColumns::Silent).is_some();
+        assert!(hears(Point::new(5.0, 0.5)));
+        assert!(!hears(Point::new(-5.0, 0.5)));
+    }
+}

@@ -1,0 +1,47 @@
+//! The tether as the screen knows it.
+
+use mission::{EventKind, event::TetherContact};
+use serde::{Deserialize, Serialize};
+use world::Point;
+
+/// How the cable lies, and what was last judged of a plan.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Tether {
+    /// Cable between anchor and robot, metres.
+    pub length_m: f64,
+    /// What is left on the reel, metres.
+    pub free_m: f64,
+    /// Where it bears.
+    pub contacts: Vec<TetherContact>,
+    /// Sum of all wraps, radians.
+    pub sum_wrap_rad: f64,
+    /// How many times harder the wraps make it to pull.
+    pub pull_factor: f64,
+    /// Length of the way back along the cable, metres; `None` if there is none.
+    pub way_home_m: Option<f64>,
+    /// The cable from the anchor to the robot.
+    pub line: Vec<Point>,
+    /// Whether the last plan was certified; `None` before the first.
+    pub certified: Option<bool>,
+}
+
+impl Tether {
+    /// Takes in how the cable lies now.
+    pub(crate) fn lie(&mut self, event: &EventKind) {
+        if let EventKind::Tethered {
+            length_m,
+            free_m,
+            contacts,
+            sum_wrap_rad,
+            pull_factor,
+            way_home_m,
+            line,
+            ..
+        } = event
+        {
+            (self.length_m, self.free_m, self.sum_wrap_rad) = (*length_m, *free_m, *sum_wrap_rad);
+            (self.pull_factor, self.way_home_m) = (*pull_factor, *way_home_m);
+            (self.contacts, self.line) = (contacts.clone(), line.clone());
+        }
+    }
+}

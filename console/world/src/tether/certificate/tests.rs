@@ -1,0 +1,133 @@
+use super::*;
+use crate::{shape::Shape, tank::ObstacleId};
+use proptest::prelude::*;
+use std::f64::consts::TAU;
+
+const WALL: Boundary = Boundary::Circle { radius_m: 10.0 };
+
+fn column(index: u32, x: f64, y: f64) -> Obstacle {
+    let shape = Shape::Disc { center: Point::new(x, y), radius_m: 0.3 };
+    Obstacle { id: ObstacleId(index), name: format!("C{index}"), shape, known: true }
+}
+
+fn points(of: &[(f64, f64)]) -> Vec<Point> {
+    of.iter().map(|(x, y)| Point::new(*x, *y)).collect()
+}
+
+fn case<'a>(path: &'a [Point], obstacles: &'a [Obstacle], cuts: &'a [Vec<Point>]) -> Case<'a> {
+    Case {
+        path,
+        anchor: Point::origin(),
+        cable: None,
+        boundary: &WALL,
+        obstacles,
+        room_m: 0.3,
+        limits: Limits { reel_m: 12.0, max_wrap_rad: 2.0, max_sum_wrap_rad: 3.0 },
+        returns: true,
+        cuts,
+    }
+}
+
+#[test]
+fn a_path_out_and_back_on_one_side_of_a_column_is_certified() {
+    let columns = [column(0, 4.0, 0.0)];
+    let cuts = [points(&[(4.0, 0.0), (10.0, 0.0)])];
+    let path = points(&[(0., 0.), (4., 3.), (8., 2.), (8., 0.5), (4., 3.), (0., 0.)]);
+    let judged = certify(&case(&path, &columns, &cuts)).unwrap();
+    assert!(judged.certified, "{:?}", judged.reasons);
+    assert_eq!((judged.left_out_m, judged.cut_crossings, judged.collisions), (Some(0.0), 0, 0));
+    assert!((judged.eccentricity_m - 68.0_f64.sqrt()).abs() < 1e-2, "{}", judged.eccentricity_m);
+}
+
+#[test]
+fn a_path_round_a_column_is_refused_with_its_name() {
+    let columns = [column(0, 4.0, 0.0)];
+    let path = points(&[(0., 0.), (4., 3.), (8., 0.), (4., -3.), (0., 0.)]);
+    let cuts = [points(&[(4.0, 0.0), (10.0, 0.0)])];
+    let judged = certify(&case(&path, &columns, &cuts)).unwrap();
+    assert!(!judged.certified && judged.cut_crossings == 1 && judged.crossings_left == 1);
+    assert!(judged.left_out_m.is_some_and(|left_m| left_m > 7.9));
+    let words = judged.reasons.join("; ");
+    assert!(
+        words.contains("stay out on return, hooked round C0") && words.contains("crosses cuts 1"),
+        "{words}"
+    );
+    // A mission that need not return is not refused for that.
+    let judged = certify(&Case { returns: false, cuts: &[], ..case(&path, &columns, &[]) }).unwrap();
+    assert_eq!((judged.left_out_m, judged.cut_crossings), (None, 0));
+}
+
+#[test]
+fn limits_and_collisions_are_told_with_place_and_figure() {
+    let columns = [column(0, 4.0, 0.0), column(1, -4.0, 0.0)];
+    let path = points(&[(0., 0.), (4., 0.5), (9.0, 0.0), (-9.5, 3.0), (-4.0, -0.8), (0.0, 0.0)]);
+    let limits = Limits { reel_m: 9.0, max_wrap_rad: 0.1, max_sum_wrap_rad: 0.2 };
+    let judged = certify(&Case { limits, ..case(&path, &columns, &[]) }).unwrap();
+    let words = judged.reasons.join("; ");
+    for part in ["by C0", "the reel holds 9.0 m", "round C", "all wraps together"] {
+        assert!(words.contains(part), "{part}: {words}");
+    }
+}
+
+#[test]
+fn a_path_that_does_not_come_back_or_is_no_path_is_refused() {
+    let away = certify(&case(&points(&[(0., 0.), (5., 0.)]), &[], &[])).unwrap();
+    assert!(away.reasons[0].contains("ends 5.00 m away from the anchor"), "{:?}", away.reasons);
+    assert!(!certify(&case(&[], &[], &[])).unwrap().certified);
+    let broken = certify(&case(&points(&[(0., 0.), (f64::NAN, 0.)]), &[], &[])).unwrap();
+    assert!(broken.reasons.iter().any(|r| r.contains("not a finite number")), "{:?}", broken.reasons);
+}
+
+#[test]
+fn cuts_that_close_a_pocket_are_found_unless_the_path_has_been_inside() {
+    let ring: Vec<Point> =
+        (0..=8).map(|k| TAU * f64::from(k) / 8.0).map(|a| Point::new(5.0 + a.cos(), a.sin())).collect();
+    let path = points(&[(0., 0.), (0., 5.), (0., 0.)]);
+    let cuts = [ring];
+    let judged = certify(&case(&path, &[], &cuts)).unwrap();
+    assert!((judged.sealed_m2 - 2.83).abs() < 0.1, "{}", judged.sealed_m2);
+    assert!(judged.reasons[0].contains("seal off"), "{:?}", judged.reasons);
+    let open = [cuts[0][1..].to_vec()];
+    assert!(certify(&case(&path, &[], &open)).unwrap().sealed_m2.abs() < 1e-9);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    #[test]
+    fn a_path_that_crosses_no_radial_cut_comes_back_with_an_empty_cable(
+        bearings in prop::collection::vec(0.0..TAU, 1..10),
+        goals in prop::collection::vec((-9.5..9.5_f64, -9.5..9.5_f64), 1..60),
+    ) {
+        let columns: Vec<Obstacle> = bearings
+            .iter()
+            .enumerate()
+            .map(|(k, b)| column(k as u32, (2.0 + 0.7 * k as f64) * b.cos(), (2.0 + 0.7 * k as f64) * b.sin()))
+            .collect();
+        let cuts: Vec<Vec<Point>> = columns
+            .iter()
+            .map(|c| vec![c.shape.center(), Point::from(c.shape.center().coords.normalize() * 10.0)])
+            .collect();
+        let shapes: Vec<Shape> = columns.iter().map(|c| c.shape.clone()).collect();
+        let ground = Ground::grown(&WALL, &shapes, 0.3);
+        let mut path = vec![Point::origin()];
+        for (x, y) in goals.into_iter().chain([(0.0, 0.0)]) {
+            let next = Point::new(x, y);
+            let last = path[path.len() - 1];
+            if next.coords.norm() < 9.7 && ground.is_open(last, next) && cuts::crossings(&[last, next], &cuts) == 0 {
+                path.push(next);
+            }
+        }
+        // Home as the cable leads: it never crosses a cut either.
+        let mut cable = Cable::new(Point::origin(), &WALL, &shapes).unwrap();
+        cable.drag_along(&path);
+        let home: Vec<Point> = cable.taut_line().into_iter().rev().collect();
+        prop_assert_eq!(cuts::crossings(&home, &cuts), 0);
+        path.extend(home);
+        let judged = certify(&Case { room_m: 0.0, ..case(&path, &columns, &cuts) }).unwrap();
+        // A cut may lead by another column too closely for the hull; that is all that can be wrong.
+        prop_assert!(judged.reasons.iter().all(|r| r.contains("seal off")), "{:?}", judged.reasons);
+        prop_assert_eq!((judged.left_out_m, judged.crossings_left), (Some(0.0), 0));
+        prop_assert!(judged.max_cable_m >= judged.eccentricity_m - 1e-6);
+    }
+}

@@ -1,0 +1,134 @@
+//! The limits of a band: linear combinations of its points and where they have to be.
+
+use field::part::Part;
+use world::{Point, Vector, polyline};
+
+/// Penalties of solids and of turns.
+const SOLID_PENALTY: f64 = 1.0;
+const TURN_PENALTY: f64 = 15.0;
+/// Solids nearer to a piece than this beside their clearance have a row, metres.
+const REACH_M: f64 = 0.25;
+
+/// Where a combination of points has to be.
+#[derive(Debug, Clone, Copy)]
+pub enum Limit<'a> {
+    /// No further to either side in a direction than this.
+    Across(Vector, f64),
+    /// So far from the origin in a direction.
+    Beyond(Vector, f64),
+    /// This far from a part.
+    Beside(&'a Part, f64),
+    /// Within a circle about the origin.
+    Within(f64),
+}
+
+/// A linear combination of neighbouring points with its limit and multiplier.
+#[derive(Debug, Clone)]
+pub struct Row<'a> {
+    /// Which limit of which place it is, so that the multiplier survives.
+    pub key: (u32, u32),
+    /// Index of the first point.
+    pub first: usize,
+    /// Factors of it and of those after it.
+    pub factors: Vec<f64>,
+    /// Where the combination has to be.
+    pub limit: Limit<'a>,
+    /// Weight of the squared distance to the target.
+    pub penalty: f64,
+    /// Multiplier by penalty.
+    pub multiplier: Vector,
+    /// A vector within the limit.
+    pub target: Vector,
+}
+
+impl<'a> Row<'a> {
+    /// A row whose multiplier is zero and whose target is the origin.
+    pub fn new(key: (u32, u32), first: usize, factors: Vec<f64>, limit: Limit<'a>) -> Self {
+        let penalty = if matches!(limit, Limit::Across(..)) { TURN_PENALTY } else { SOLID_PENALTY };
+        Row { key, first, factors, limit, penalty, multiplier: Vector::zeros(), target: Vector::zeros() }
+    }
+
+    /// The combination of these vectors.
+    pub fn of(&self, vector: impl Fn(usize) -> Vector) -> Vector {
+        self.factors.iter().enumerate().map(|(k, factor)| vector(self.first + k) * *factor).sum()
+    }
+
+    /// The combination of the points of a way.
+    pub fn value(&self, way: &[Point]) -> Vector {
+        self.of(|index| way[index].coords)
+    }
+}
+
+impl Limit<'_> {
+    /// The nearest vector that keeps the limit.
+    pub fn nearest(&self, value: Vector) -> Vector {
+        match *self {
+            Self::Across(direction, most_m) => {
+                let across_m = direction.dot(&value);
+                value + direction * (across_m.clamp(-most_m, most_m) - across_m)
+            }
+            Self::Within(most_m) => value.cap_magnitude(most_m),
+            Self::Beyond(direction, least_m) => {
+                value + direction * (least_m - direction.dot(&value)).max(0.0)
+            }
+            Self::Beside(part, keep_m) => {
+                let (distance_m, away) = part.distance(Point::from(value));
+                value + away * (keep_m - distance_m).max(0.0)
+            }
+        }
+    }
+}
+
+/// What keeps a way away from a part.
+#[derive(Debug, Clone, Copy)]
+pub enum Solid<'a> {
+    /// A circle that no piece of the way may enter.
+    Circle(Point, f64),
+    /// Straight sides, from which the ends of its pieces keep this far.
+    Sides(&'a Part, f64),
+}
+
+/// What keeps a way this far from a part: its corners from all of the way, its sides from the ends of its pieces.
+pub fn solids_of(part: &Part, keep_m: f64) -> Vec<Solid<'_>> {
+    match part {
+        Part::Capsule { a, b, half_width_m } if a == b => vec![Solid::Circle(*a, keep_m + half_width_m)],
+        Part::Capsule { a, b, half_width_m } => {
+            let radius_m = keep_m + half_width_m;
+            vec![Solid::Circle(*a, radius_m), Solid::Circle(*b, radius_m), Solid::Sides(part, keep_m)]
+        }
+        Part::Polygon { vertices } => {
+            let corners = vertices.iter().map(|corner| Solid::Circle(*corner, keep_m));
+            corners.chain([Solid::Sides(part, keep_m)]).collect()
+        }
+    }
+}
+
+impl<'a> Solid<'a> {
+    /// The rows of everything of a way that is near.
+    ///
+    /// A piece that lies beyond a tangent keeps out of a circle. Which tangent is told by the middle of the piece: by
+    /// its nearest point two pieces that meet on the circle would hold each other straight.
+    pub fn rows(&self, kind: u32, way: &[Point], rows: &mut Vec<Row<'a>>) {
+        match *self {
+            Self::Circle(center, radius_m) => {
+                for (index, w) in way.windows(2).enumerate() {
+                    let nearest = polyline::nearest_on_segment(w[0], w[1], center);
+                    if (nearest - center).norm_squared() > (radius_m + REACH_M).powi(2) {
+                        continue;
+                    }
+                    let away = w[0].lerp(&w[1], 0.5) - center;
+                    let Some(away) = away.try_normalize(1e-9) else { continue };
+                    let limit = Limit::Beyond(away, away.dot(&center.coords) + radius_m);
+                    let first = 2 * index as u32;
+                    rows.push(Row::new((kind, first), index, vec![1.0], limit));
+                    rows.push(Row::new((kind, first + 1), index + 1, vec![1.0], limit));
+                }
+            }
+            Self::Sides(part, keep_m) => {
+                let near = (0..way.len()).filter(|index| part.distance(way[*index]).0 < keep_m + REACH_M);
+                let limit = Limit::Beside(part, keep_m);
+                rows.extend(near.map(|index| Row::new((kind, index as u32), index, vec![1.0], limit)));
+            }
+        }
+    }
+}
