@@ -17,7 +17,10 @@ use std::{
     process::ExitCode,
     time::{Duration, Instant},
 };
-use world::{Point, polyline, tether::Certificate};
+use world::{
+    Point, polyline,
+    tether::{Case, Certificate, Limits, certify},
+};
 
 /// Time that a planner may take for a plan of the whole floor.
 const COVER_WITHIN: Duration = Duration::from_secs(60);
@@ -36,7 +39,8 @@ struct Planned {
     complete: bool,
     /// Why it is not complete.
     reason: Option<String>,
-    /// Proof about the tether; absent without one.
+    /// What the path does to the tether, or, without one, to a tether that would run from the anchor of a coverage
+    /// mission; absent for other missions.
     certificate: Option<Certificate>,
 }
 
@@ -76,6 +80,7 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
         }
         Err(fault) => (partial_plan(&fault)?, Some(fault.message)),
     };
+    let certificate = certificate(scenario, &plan);
     Ok(Planned {
         planner: scenario.mission.planner.id.clone(),
         parameters: scenario.mission.planner.parameters.clone(),
@@ -84,16 +89,10 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
         plan_time_ms,
         complete: plan.complete,
         reason,
-        certificate: certificate(scenario, &plan.path, &plan.cuts),
+        certificate,
         cuts: plan.cuts,
         path: plan.path,
     })
-}
-
-/// What the plan does to the tether, judged on its path alone.
-fn certificate(scenario: &Scenario, path: &[Point], cuts: &[Vec<Point>]) -> Option<Certificate> {
-    let tether = scenario.mission.tether.as_ref()?;
-    Some(judge_from_start(tether, &scenario.mission, path, cuts, &scenario.sim.world.as_drawn()))
 }
 
 /// A plan for a whole floor takes longer than a way to a point.
@@ -112,6 +111,32 @@ fn partial_plan(fault: &Fault) -> anyhow::Result<Plan> {
         }
         _ => Err(bad_input(fault.message.clone())),
     }
+}
+
+/// What the path does to the tether, judged independently of its planner; where there is none, what it would do to one
+/// of any length.
+fn certificate(scenario: &Scenario, plan: &Plan) -> Option<Certificate> {
+    let drawing = scenario.sim.world.as_drawn();
+    if let Some(tether) = &scenario.mission.tether {
+        return Some(judge_from_start(tether, &scenario.mission, &plan.path, &plan.cuts, &drawing));
+    }
+    let TaskConfig::Cover { anchor, .. } = &scenario.mission.task else { return None };
+    let case = Case {
+        path: &plan.path,
+        anchor: *anchor,
+        cable: None,
+        boundary: &drawing.boundary,
+        obstacles: &drawing.obstacles,
+        room_m: scenario.mission.room_m(),
+        limits: Limits {
+            reel_m: f64::INFINITY,
+            max_wrap_rad: f64::INFINITY,
+            max_sum_wrap_rad: f64::INFINITY,
+        },
+        returns: true,
+        cuts: &plan.cuts,
+    };
+    certify(&case).ok()
 }
 
 /// The legs as the planner told them; a planner that told none has a single one.
@@ -139,12 +164,15 @@ fn lengths(planned: &Planned) -> String {
     if parts.is_empty() { String::new() } else { format!("legs      {}\n", parts.join(", ")) }
 }
 
-fn tether_line(certificate: &Certificate) -> String {
-    let Certificate { max_cable_m, max_wrap_rad, .. } = certificate;
-    let wrap_deg = max_wrap_rad.to_degrees();
-    let verdict = if certificate.certified { "certified".to_owned() } else { certificate.reasons.join("; ") };
+/// The certificate, for people.
+fn certified(certificate: &Certificate) -> String {
+    let Certificate { max_cable_m, eccentricity_m, max_wrap_rad, max_sum_wrap_rad, .. } = certificate;
+    let reasons: String = certificate.reasons.iter().map(|why| format!("          {why}\n")).collect();
     format!(
-        "tether    {verdict}\ncable     {max_cable_m:.1} m at most, {wrap_deg:.0} deg round one obstacle at most\n"
+        "tether    {}, cable {max_cable_m:.2} m at most ({eccentricity_m:.2} m the least possible), wrap {:.0} deg on one obstacle, {:.0} deg in sum\n{reasons}",
+        if certificate.certified { "certified" } else { "NOT certified" },
+        max_wrap_rad.to_degrees(),
+        max_sum_wrap_rad.to_degrees(),
     )
 }
 
@@ -153,14 +181,14 @@ fn tell(planned: &Planned, json: bool) -> anyhow::Result<()> {
         return say_line(&serde_json::to_string(planned).context("writing the plan as JSON")?);
     }
     let reason = planned.reason.as_ref().map(|reason| format!("reason    {reason}\n")).unwrap_or_default();
-    let tether = planned.certificate.as_ref().map(tether_line).unwrap_or_default();
     say(&format!(
-        "planner   {}\nlength    {:.2} m, {} points\n{}time      {:.2} ms\ncomplete  {}\n{reason}{tether}",
+        "planner   {}\nlength    {:.2} m, {} points\n{}time      {:.2} ms\ncomplete  {}\n{reason}{}",
         planned.planner,
         planned.length_m,
         planned.path.len(),
         lengths(planned),
         planned.plan_time_ms,
         if planned.complete { "yes" } else { "no" },
+        planned.certificate.as_ref().map(certified).unwrap_or_default(),
     ))
 }

@@ -326,6 +326,8 @@ pub enum TetherAlarm {
     },
     /// The hull does not fit along the cable.
     NoWayHome,
+    /// The robot has left its plan across a line that the plan never crosses: it is planned anew.
+    Strayed,
 }
 
 impl TetherAlarm {
@@ -336,6 +338,7 @@ impl TetherAlarm {
             Self::Wrap { .. } => "wrap",
             Self::SumOfWraps { .. } => "sum of wraps",
             Self::NoWayHome => "way home",
+            Self::Strayed => "stray",
         }
     }
 }
@@ -354,6 +357,7 @@ impl fmt::Display for TetherAlarm {
                 let (sum, limit) = (sum_rad.to_degrees(), limit_rad.to_degrees());
                 write!(f, "all wraps together reach {sum:.0} deg, limit {limit:.0} deg")
             }
+            Self::Strayed => f.write_str("the robot strayed across a cut of its plan; planning anew"),
             Self::NoWayHome => f.write_str("the hull does not fit back along the cable: no way home"),
         }
     }
@@ -569,7 +573,7 @@ impl Event {
             }
             EventKind::TetherAlarmed { alarm, reached } => {
                 let severity = if *reached { Severity::Crit } else { Severity::Warn };
-                let near = if *reached { "" } else { "near a limit: " };
+                let near = if *reached || *alarm == TetherAlarm::Strayed { "" } else { "near a limit: " };
                 line(severity, "tether", format!("{near}{alarm}"))
             }
             EventKind::TetherEased { alarm } => {

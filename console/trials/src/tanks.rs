@@ -58,9 +58,7 @@ impl Known {
         let (boundary, n) = match self {
             Self::E1 => (Boundary::Circle { radius_m: 10.0 }, 14),
             Self::E2 => (Boundary::Circle { radius_m: 10.0 }, 28),
-            Self::E3 => {
-                (Boundary::Polygon { vertices: square.map(|(x, y)| Point::new(x, y)).to_vec() }, 18)
-            }
+            Self::E3 => (Boundary::Polygon { vertices: square.map(|(x, y)| Point::new(x, y)).to_vec() }, 18),
         };
         Tank::drawn(boundary, Point::origin(), n, &mut rng)
     }

@@ -96,7 +96,7 @@ struct Sizes {
     wide: bool,
 }
 
-const WIDE: Sizes = Sizes { side: 44, events: 6, panes: [9, 8], wide: true };
+const WIDE: Sizes = Sizes { side: 44, events: 6, panes: [10, 8], wide: true };
 const NARROW: Sizes = Sizes { side: 30, events: 4, panes: [6, 5], wide: false };
 
 fn whole(look: &Look, frame: &mut Frame, area: Rect, sizes: &Sizes) {

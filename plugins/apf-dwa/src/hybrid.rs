@@ -103,7 +103,7 @@ impl Hybrid {
         let reference = forces.resultant().try_normalize(1e-9).unwrap_or(goal - at);
         let fastest = ground.solids.iter().map(|s| velocity_of(s.id).norm()).fold(0.0, f64::max);
         let near = NearThings::of(ground, at, window.reach_m(pace, fastest), velocity_of);
-        let drivable = Pace { v_max_m_per_s: self.drivable(state, goal, pace), ..pace };
+        let drivable = Pace { v_max_m_per_s: drivable(state, goal, pace), ..pace };
         let twist = window.choose(&state.pose, state.twist, drivable, reference, &near);
         Decision { twist, forces, pace, distances_m: distances_m(ground, at) }
     }
@@ -117,22 +117,22 @@ impl Hybrid {
         self.mode = Some(mode);
         robot.pace(mode)
     }
+}
 
-    /// The largest speed at which an arc at the largest turn rate still reaches the goal, when the goal is near: a
-    /// robot that is faster circles round it for ever.
-    fn drivable(&self, state: &State, goal: Point, pace: Pace) -> f64 {
-        let way = goal - state.pose.position;
-        let missing_m = way.norm();
-        if missing_m > TURNING_M {
-            return pace.v_max_m_per_s;
-        }
-        let off_rad = state.pose.direction().angle(&way);
-        let bend = 2.0 * off_rad.min(std::f64::consts::FRAC_PI_2).sin() / missing_m.max(1e-3);
-        let turning = 0.8 * pace.w_max_rad_per_s / bend.max(1e-6);
-        let speed = if off_rad > std::f64::consts::FRAC_PI_2 { 0.0 } else { turning };
-        let slow = if off_rad > ASIDE_RAD { speed } else { speed.max(SLOWEST_M_PER_S) };
-        slow.min(pace.v_max_m_per_s)
+/// The largest speed at which an arc at the largest turn rate still reaches the goal, when the goal is near: a
+/// robot that is faster circles round it for ever.
+fn drivable(state: &State, goal: Point, pace: Pace) -> f64 {
+    let way = goal - state.pose.position;
+    let missing_m = way.norm();
+    if missing_m > TURNING_M {
+        return pace.v_max_m_per_s;
     }
+    let off_rad = state.pose.direction().angle(&way);
+    let bend = 2.0 * off_rad.min(std::f64::consts::FRAC_PI_2).sin() / missing_m.max(1e-3);
+    let turning = 0.8 * pace.w_max_rad_per_s / bend.max(1e-6);
+    let speed = if off_rad > std::f64::consts::FRAC_PI_2 { 0.0 } else { turning };
+    let slow = if off_rad > ASIDE_RAD { speed } else { speed.max(SLOWEST_M_PER_S) };
+    slow.min(pace.v_max_m_per_s)
 }
 
 fn distances_m(ground: &Ground, at: Point) -> Vec<f64> {

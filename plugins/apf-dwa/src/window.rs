@@ -85,8 +85,7 @@ impl Window {
                 }
             }
         }
-        self.best(&candidates)
-            .unwrap_or_else(|| self.turned_on_the_spot(pose, speeds, turns, pace, reference))
+        self.best(&candidates).unwrap_or_else(|| turned_on_the_spot(pose, speeds, turns, pace, reference))
     }
 
     /// Whether it can stop in time. A robot that is too near already may move where it does not get nearer.
@@ -95,7 +94,6 @@ impl Window {
             return distance_m >= here_m - 1e-9;
         }
         distance_m >= 0.0 && v_m_per_s * v_m_per_s <= 2.0 * distance_m * self.acceleration_m_per_s2
-            || v_m_per_s <= 0.0 && distance_m >= 0.0
     }
 
     fn best(&self, candidates: &[Candidate]) -> Option<Twist> {
@@ -124,19 +122,19 @@ impl Window {
         let low = (now.w_rad_per_s - change).max(-most).min(now.w_rad_per_s + change);
         (low, (now.w_rad_per_s + change).min(most).max(low))
     }
+}
 
-    fn turned_on_the_spot(
-        &self,
-        pose: &Pose,
-        speeds: (f64, f64),
-        turns: (f64, f64),
-        pace: Pace,
-        reference: Vector,
-    ) -> Twist {
-        let side = pose.direction().perp(&reference);
-        let wanted = TURN_SHARE * pace.w_max_rad_per_s * if side >= 0.0 { 1.0 } else { -1.0 };
-        Twist { v_m_per_s: speeds.0, w_rad_per_s: wanted.clamp(turns.0, turns.1) }
-    }
+/// Braking, and turning slowly toward the reference.
+fn turned_on_the_spot(
+    pose: &Pose,
+    speeds: (f64, f64),
+    turns: (f64, f64),
+    pace: Pace,
+    reference: Vector,
+) -> Twist {
+    let side = pose.direction().perp(&reference);
+    let wanted = TURN_SHARE * pace.w_max_rad_per_s * if side >= 0.0 { 1.0 } else { -1.0 };
+    Twist { v_m_per_s: speeds.0, w_rad_per_s: wanted.clamp(turns.0, turns.1) }
 }
 
 /// Numbers from the first to the last, evenly.

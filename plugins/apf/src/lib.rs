@@ -1,7 +1,7 @@
 //! Artificial potential field planners: the classical one, the tangent field and the field with virtual goals.
 #![forbid(unsafe_code)]
 
-mod apf;
+pub mod apf;
 mod apf_virtual_goals;
 mod goal_flight;
 mod tapf;

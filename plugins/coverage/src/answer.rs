@@ -5,9 +5,14 @@ use crate::{
     ground::Ground,
     scan::{Order, Scan},
 };
-use planner_api::{Code, Ctx, Leg, LegTag, LogLevel, Plan, PlanRequest, PlannerError, Result, Site, Task, TetherLimits};
+use planner_api::{
+    Code, Ctx, Leg, LegTag, LogLevel, Plan, PlanRequest, PlannerError, Result, Site, Task, TetherLimits,
+};
 use std::sync::Arc;
-use world::{ObstacleMap, Point, Shape, polyline, tether::{self, Cable}};
+use world::{
+    ObstacleMap, Point, Shape, polyline,
+    tether::{self, Cable},
+};
 
 /// Floor out of reach below this is not worth a line, square metres.
 const LEAST_M2: f64 = 0.05;
@@ -37,7 +42,9 @@ pub fn cover<'a>(request: &PlanRequest<'a>, id: &str) -> Result<Cover<'a>> {
         return Err(PlannerError::new(Code::Invalid, "the start is not a number"));
     }
     match request.task {
-        Task::Cover { anchor, regions, tether, tolerance_m } => Ok(Cover { anchor, regions, tether, tolerance_m }),
+        Task::Cover { anchor, regions, tether, tolerance_m } => {
+            Ok(Cover { anchor, regions, tether, tolerance_m })
+        }
         _ => Err(PlannerError::new(
             Code::Unsupported,
             format!("{id} covers floors; for this mission choose a planner for goals or preset paths"),
@@ -102,9 +109,8 @@ pub fn tell_unreachable(ground: &Ground, scan: &Scan, order: &Order<'_>, ctx: &C
     let cell_m2 = grid.cell_m * grid.cell_m;
     let mut closed = grid.clone();
     for cell in 0..closed.reachable.len() {
-        closed.reachable[cell] = !grid.reachable[cell]
-            && order.regions.is_empty()
-            && ground.is_floor(grid.center(cell));
+        closed.reachable[cell] =
+            !grid.reachable[cell] && order.regions.is_empty() && ground.is_floor(grid.center(cell));
     }
     closed.swept.fill(0);
     tell(&closed, cell_m2, "cannot be reached: gaps are narrower than hull and clearance need", ground, ctx);
@@ -141,6 +147,9 @@ fn tell(grid: &FloorGrid, cell_m2: f64, why: &str, ground: &Ground, ctx: &Ctx<'_
     if worth.len() > MOST_PLACES {
         let rest: usize = worth[MOST_PLACES..].iter().map(|g| g.len()).sum();
         let count = worth.len() - MOST_PLACES;
-        ctx.log(LogLevel::Warn, &format!("{count} more places, {:.2} m2 together, {why}", rest as f64 * cell_m2));
+        ctx.log(
+            LogLevel::Warn,
+            &format!("{count} more places, {:.2} m2 together, {why}", rest as f64 * cell_m2),
+        );
     }
 }

@@ -65,7 +65,8 @@ pub struct Worth {
 impl Worth {
     /// Whether another is no worse in anything and better in something.
     pub fn is_beaten_by(&self, other: &Self) -> bool {
-        let figures = |w: &Self| [w.length_m, w.turns, w.certificate.max_cable_m, w.certificate.max_sum_wrap_rad];
+        let figures =
+            |w: &Self| [w.length_m, w.turns, w.certificate.max_cable_m, w.certificate.max_sum_wrap_rad];
         let pairs = || figures(self).into_iter().zip(figures(other));
         pairs().all(|(own, theirs)| theirs <= own) && pairs().any(|(own, theirs)| theirs < own)
     }
@@ -133,12 +134,8 @@ pub fn candidates(ground: &Ground, wishes: &Wishes, alpha_rad: f64) -> Vec<Candi
     }
     for k in 0..wishes.directions {
         let angle_rad = main_direction(ground) + PI * k as f64 / wishes.directions as f64;
-        let pattern = Pattern::Straight {
-            angle_rad,
-            shift_m: 0.0,
-            spacing_m: ground.swath_m * 0.997,
-            laps: 1,
-        };
+        let pattern =
+            Pattern::Straight { angle_rad, shift_m: 0.0, spacing_m: ground.swath_m * 0.997, laps: 1 };
         all.push(make(format!("straight lanes at {:.0} deg", angle_rad.to_degrees()), pattern, 0.08));
     }
     all
@@ -203,7 +200,12 @@ pub fn certificate(
 pub fn solids(site: &Site<'_>) -> Vec<Obstacle> {
     site.obstacles
         .iter()
-        .map(|o| Obstacle { id: ObstacleId(o.id), name: format!("obstacle {}", o.id), shape: shape(&o.outline), known: true })
+        .map(|o| Obstacle {
+            id: ObstacleId(o.id),
+            name: format!("obstacle {}", o.id),
+            shape: shape(&o.outline),
+            known: true,
+        })
         .collect()
 }
 
@@ -212,6 +214,8 @@ fn shape(outline: &planner_api::Outline<'_>) -> Shape {
     match *outline {
         Outline::Disc { center, radius_m } => Shape::Disc { center, radius_m },
         Outline::Polygon { vertices } => Shape::Polygon { vertices: vertices.to_vec() },
-        Outline::Polyline { points, half_width_m } => Shape::Polyline { points: points.to_vec(), half_width_m },
+        Outline::Polyline { points, half_width_m } => {
+            Shape::Polyline { points: points.to_vec(), half_width_m }
+        }
     }
 }

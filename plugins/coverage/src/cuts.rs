@@ -4,7 +4,10 @@
 //! A robot that never crosses a cut can take its tether back from anywhere by the way it came or by any other: they
 //! are the same to the tether. The cuts form a forest that is rooted at the wall.
 
-use crate::{ground::{Ground, direction, middle}, lanes::Pattern};
+use crate::{
+    ground::{Ground, direction, middle},
+    lanes::Pattern,
+};
 use field::part::{Part, crossing};
 use world::{Boundary, Point, Vector};
 
@@ -122,7 +125,9 @@ fn best_cut(
     let own = &groups[from];
     let outward = (own.foot - ground.anchor).try_normalize(1e-9).unwrap_or_else(Vector::x);
     // Wider and wider, until something goes: a cut there must be.
-    for (widen_rad, berth_m) in [(0.0, BERTH_M), (0.0, 0.0), (0.5, 0.0), (1.2, -ground.keep_m), (4.0, -ground.keep_m)] {
+    for (widen_rad, berth_m) in
+        [(0.0, BERTH_M), (0.0, 0.0), (0.5, 0.0), (1.2, -ground.keep_m), (4.0, -ground.keep_m)]
+    {
         let alpha_rad = (rule.alpha_rad + widen_rad).min(std::f64::consts::PI);
         let mut all = wall_ends(ground, own, outward, alpha_rad);
         all.extend(lane_end(ground, pattern, own, outward, alpha_rad));
@@ -157,7 +162,13 @@ fn wall_ends(ground: &Ground, own: &Group, outward: Vector, alpha_rad: f64) -> V
 }
 
 /// The cut along the lanes.
-fn lane_end(ground: &Ground, pattern: &Pattern, own: &Group, outward: Vector, alpha_rad: f64) -> Option<Candidate> {
+fn lane_end(
+    ground: &Ground,
+    pattern: &Pattern,
+    own: &Group,
+    outward: Vector,
+    alpha_rad: f64,
+) -> Option<Candidate> {
     let lane = pattern.ahead()?;
     let ahead = if lane.dot(&outward) < 0.0 { -lane } else { lane };
     let chain_m = to_wall_m(&ground.wall, own.foot, ahead);
@@ -173,7 +184,12 @@ fn group_ends(own: &Group, outward: Vector, alpha_rad: f64, groups: &[Group], fr
             let way = group.foot - own.foot;
             let angle = outward.perp(&way).atan2(outward.dot(&way)).abs();
             let chain_m = way.norm() + group.chain_m;
-            (angle <= alpha_rad.max(0.09)).then_some(Candidate { end: group.foot, group: Some(index), chain_m, cost: 0.0 })
+            (angle <= alpha_rad.max(0.09)).then_some(Candidate {
+                end: group.foot,
+                group: Some(index),
+                chain_m,
+                cost: 0.0,
+            })
         })
         .collect()
 }
@@ -201,7 +217,8 @@ fn line_to(
     let others = groups.iter().enumerate().filter(|(index, _)| !joined(*index)).flat_map(|(_, g)| &g.parts);
     let parts: Vec<&Part> = others.map(|k| &ground.parts[*k]).collect();
     let keep_m = ground.keep_m + berth_m;
-    let is_clear = |pair: &[Point]| parts.iter().all(|part| part.segment_distance_m(pair[0], pair[1]) > keep_m);
+    let is_clear =
+        |pair: &[Point]| parts.iter().all(|part| part.segment_distance_m(pair[0], pair[1]) > keep_m);
     let crosses = |pair: &[Point]| {
         made.iter().filter(|cut| Some(cut.from) != to.group).any(|cut| {
             cut.line.windows(2).any(|other| crossing(pair[0], pair[1], other[0], other[1]).is_some())

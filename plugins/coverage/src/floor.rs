@@ -252,7 +252,8 @@ impl FloorGrid {
                 }
             }
             let column_of = |x: f64| (x - self.low.x) / self.cell_m - 0.5;
-            let (left, past) = (index_from(column_of(from)), index_from(column_of(to) + NEXT).min(self.columns));
+            let (left, past) =
+                (index_from(column_of(from)), index_from(column_of(to) + NEXT).min(self.columns));
             for column in left..past {
                 visit(row * self.columns + column);
             }
@@ -277,7 +278,8 @@ impl FloorGrid {
 
     /// Groups of neighbouring cells that the tool could reach and has not swept, largest first.
     pub fn missed(&self) -> Vec<Vec<usize>> {
-        let mut open: Vec<bool> = self.reachable.iter().zip(&self.swept).map(|(r, s)| *r && *s == 0).collect();
+        let mut open: Vec<bool> =
+            self.reachable.iter().zip(&self.swept).map(|(r, s)| *r && *s == 0).collect();
         let mut groups = Vec::new();
         for first in 0..open.len() {
             if !std::mem::replace(&mut open[first], false) {
@@ -289,10 +291,13 @@ impl FloorGrid {
                 let (column, row) = (group[next] % self.columns, group[next] / self.columns);
                 next += 1;
                 for (dx, dy) in [(-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (1, 1), (-1, 1), (1, -1)] {
-                    let (Some(x), Some(y)) = (column.checked_add_signed(dx), row.checked_add_signed(dy)) else {
+                    let (Some(x), Some(y)) = (column.checked_add_signed(dx), row.checked_add_signed(dy))
+                    else {
                         continue;
                     };
-                    if x < self.columns && y < self.rows && std::mem::replace(&mut open[y * self.columns + x], false)
+                    if x < self.columns
+                        && y < self.rows
+                        && std::mem::replace(&mut open[y * self.columns + x], false)
                     {
                         group.push(y * self.columns + x);
                     }

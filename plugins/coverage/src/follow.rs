@@ -50,7 +50,9 @@ impl Follow {
         let bodies = self.pilot.bodies(sensed);
         let is_blocked = |p: &Point| {
             self.wall.wall_distance_m(*p) < self.keep_m
-                || bodies.iter().any(|body| body.contacts(*p, 0.0).any(|contact| contact.distance_m < self.keep_m))
+                || bodies
+                    .iter()
+                    .any(|body| body.contacts(*p, 0.0).any(|contact| contact.distance_m < self.keep_m))
         };
         let way: Vec<Point> = std::iter::once(at).chain(sensed.path_ahead.iter().copied()).collect();
         let near = polyline::resampled(&within(&way, WATCH_M), 0.1);
@@ -59,8 +61,10 @@ impl Follow {
             return Ok(self.stopped(ctx, "an obstacle stands on the path; the plan has to be made anew"));
         }
         let target = aim(at, sensed);
-        if self.cuts.iter().flat_map(|cut| cut.windows(2)).any(|w| crossing(at, target, w[0], w[1]).is_some()) {
-            return Ok(self.stopped(ctx, "the way back to the path leads across a cut; the plan has to be made anew"));
+        if self.cuts.iter().flat_map(|cut| cut.windows(2)).any(|w| crossing(at, target, w[0], w[1]).is_some())
+        {
+            return Ok(self
+                .stopped(ctx, "the way back to the path leads across a cut; the plan has to be made anew"));
         }
         let is_last = sensed.targets_ahead.len() <= 1 && sensed.path_ahead.len() <= 1;
         let tick = Tick { t_s: sensed.t_s, pose: sensed.pose, target, is_last, bodies: &bodies };

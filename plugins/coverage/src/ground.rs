@@ -104,7 +104,8 @@ impl Ground {
 
     /// Whether a place is floor: inside the wall and outside everything solid.
     pub fn is_floor(&self, at: Point) -> bool {
-        self.wall.wall_distance_m(at) >= 0.0 && self.room.parts_near(at).all(|(part, _)| part.distance(at).0 >= 0.0)
+        self.wall.wall_distance_m(at) >= 0.0
+            && self.room.parts_near(at).all(|(part, _)| part.distance(at).0 >= 0.0)
     }
 
     /// Where the anchor lets the robot be: the anchor itself, or the nearest place with room beside it.

@@ -105,17 +105,12 @@ impl Pattern {
 }
 
 /// The lanes of a pattern, broken where there is no room and at the cuts.
-pub fn lanes(
-    ground: &Ground,
-    slit: &Slit,
-    cuts: &[Cut],
-    pattern: &Pattern,
-    reach: &Reach,
-) -> Vec<Lane> {
+pub fn lanes(ground: &Ground, slit: &Slit, cuts: &[Cut], pattern: &Pattern, reach: &Reach) -> Vec<Lane> {
     let mut lanes = Vec::new();
     let sides = if *pattern == Pattern::Contours { corridors(ground, cuts) } else { Vec::new() };
     for k in 0..sides.len() {
-        let fence = Fence { cuts, cut_m: 0.45 * ground.swath_m, sides: &sides[..k], side_m: 0.25 * ground.swath_m };
+        let fence =
+            Fence { cuts, cut_m: 0.45 * ground.swath_m, sides: &sides[..k], side_m: 0.25 * ground.swath_m };
         clip(ground, slit, &fence, &sides[k], reach, &mut lanes);
     }
     let fence = Fence { cuts, cut_m: reach.cut_m, sides: &sides, side_m: 0.5 * ground.swath_m };
@@ -171,11 +166,8 @@ fn lines(ground: &Ground, pattern: &Pattern, reach: &Reach) -> Vec<Vec<Point>> {
         Pattern::Contours => contours(ground, start_m, usize::MAX),
         Pattern::Straight { angle_rad, shift_m, spacing_m, laps } => {
             let mut lines = contours(ground, start_m, laps);
-            let edge_m = if laps == 0 {
-                start_m
-            } else {
-                start_m + (laps as f64 - reach.lap_share) * ground.swath_m
-            };
+            let edge_m =
+                if laps == 0 { start_m } else { start_m + (laps as f64 - reach.lap_share) * ground.swath_m };
             lines.extend(straight(ground, angle_rad, shift_m, spacing_m, edge_m));
             lines
         }
@@ -190,9 +182,7 @@ fn contours(ground: &Ground, start_m: f64, most: usize) -> Vec<Vec<Point>> {
             let radii = offsets.map(|offset| radius_m - offset).take_while(|r| *r > -0.3 * ground.swath_m);
             radii.map(|r| circle(r.max(0.08))).collect()
         }
-        Boundary::Polygon { vertices } => {
-            offsets.map_while(|offset| inset(vertices, offset)).collect()
-        }
+        Boundary::Polygon { vertices } => offsets.map_while(|offset| inset(vertices, offset)).collect(),
     }
 }
 
@@ -248,7 +238,14 @@ fn halfway(a: Point, b: Point) -> Point {
 }
 
 /// Adds the pieces of a line that can be driven.
-fn clip(ground: &Ground, slit: &Slit, fence: &Fence<'_>, line: &[Point], reach: &Reach, lanes: &mut Vec<Lane>) {
+fn clip(
+    ground: &Ground,
+    slit: &Slit,
+    fence: &Fence<'_>,
+    line: &[Point],
+    reach: &Reach,
+    lanes: &mut Vec<Lane>,
+) {
     let near = fence.near(line);
     let is_open = |at: Point| {
         near.iter().all(|(cut, far_m)| polyline::distance_m(cut, at) >= *far_m)
@@ -261,7 +258,8 @@ fn clip(ground: &Ground, slit: &Slit, fence: &Fence<'_>, line: &[Point], reach: 
     let n = fine.len();
     // A ring begins behind a break, so that no lane is broken where the ring was closed.
     let start = if is_loop { (0..n - 1).find(|k| !open[*k]).unwrap_or(0) } else { 0 };
-    let around: Vec<usize> = if is_loop { (0..n).map(|k| (start + k) % (n - 1)).collect() } else { (0..n).collect() };
+    let around: Vec<usize> =
+        if is_loop { (0..n).map(|k| (start + k) % (n - 1)).collect() } else { (0..n).collect() };
     for run in around.split(|k| !open[*k]).filter(|run| !run.is_empty()) {
         let mut points: Vec<Point> = run.iter().map(|k| fine[*k]).collect();
         let beyond = |k: usize, step: isize| {

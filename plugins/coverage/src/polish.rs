@@ -2,13 +2,7 @@
 //! swept here, and what was missed is worth a detour only if it is large enough.
 
 use crate::{
-    cuts::Cut,
-    floor::FloorGrid,
-    ground::Ground,
-    lanes::Lane,
-    slit::Slit,
-    tour::angle_rad,
-    touch::touch_up,
+    cuts::Cut, floor::FloorGrid, ground::Ground, lanes::Lane, slit::Slit, touch::touch_up, tour::angle_rad,
 };
 use planner_api::{Ctx, Result};
 use world::{Point, Vector};
@@ -136,7 +130,8 @@ impl<'a> Track<'a> {
             let leaving = if let (Some(a), Some(b)) = (last, after) { angle_rad(a, b) } else { 0.0 };
             let direct_m = (self.points[to] - self.points[from]).norm();
             // The bar cannot sweep more floor than it passes and turns over.
-            let least_lost_m2 = f64::from(alone) * cell_m2 - self.grid.bar_m() * (direct_m + self.grid.bar_m());
+            let least_lost_m2 =
+                f64::from(alone) * cell_m2 - self.grid.bar_m() * (direct_m + self.grid.bar_m());
             let most_m = length_m - direct_m + prices.turn_m_per_rad * (turn_rad + leaving)
                 - prices.floor_m_per_m2 * least_lost_m2.max(0.0);
             if most_m > LEAST_SAVING_M {
@@ -201,7 +196,8 @@ impl<'a> Track<'a> {
             let middle = side[0] + along / 2.0;
             for share in ACROSS {
                 let at = middle + across * share;
-                if self.grid.is_alone(at) && world::polyline::distance_m(way, at) > half_m + self.grid.cell_m {
+                if self.grid.is_alone(at) && world::polyline::distance_m(way, at) > half_m + self.grid.cell_m
+                {
                     lost_m2 += length_m * half_m * 2.0 / ACROSS.len() as f64;
                 }
             }

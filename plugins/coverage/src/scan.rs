@@ -7,8 +7,8 @@ use crate::{
     lanes::{Lane, Pattern, Reach, lanes},
     polish::{Prices, Track},
     slit::Slit,
-    tour::{Effort, Tour, Ways, tour},
     touch::touch_up,
+    tour::{Effort, Tour, Ways, tour},
 };
 use planner_api::{Ctx, Result};
 use world::{Point, Vector, polyline};
@@ -99,11 +99,10 @@ pub fn scan(ground: &Ground, recipe: &Recipe, order: &Order<'_>, ctx: &Ctx<'_>) 
     let mut grid = FloorGrid::new(ground, &slit, order.cell_m);
     grid.keep_within(order.regions);
     let all = lanes(ground, &slit, &cuts, &recipe.pattern, &recipe.reach);
-    let in_reach =
-        |at: Point| order.reel_m.is_infinite() || slit.way_m(home, at).is_some_and(|way_m| way_m <= order.reel_m);
-    let is_wanted = |at: Point| {
-        in_reach(at) && (order.regions.is_empty() || grid.has_reachable_near(at))
+    let in_reach = |at: Point| {
+        order.reel_m.is_infinite() || slit.way_m(home, at).is_some_and(|way_m| way_m <= order.reel_m)
     };
+    let is_wanted = |at: Point| in_reach(at) && (order.regions.is_empty() || grid.has_reachable_near(at));
     let wants_all = order.reel_m.is_infinite() && order.regions.is_empty();
     let wanted = |lanes: Vec<Lane>| {
         if wants_all { lanes } else { lanes.iter().flat_map(|lane| lane.kept(&is_wanted)).collect() }
@@ -125,7 +124,8 @@ pub fn scan(ground: &Ground, recipe: &Recipe, order: &Order<'_>, ctx: &Ctx<'_>) 
         lanes.extend(fresh);
         pieces = toured(&slit, &lanes, (home, start), &recipe.effort, ctx)?;
     }
-    let prices = Prices { turn_m_per_rad: recipe.effort.turn_m_per_rad, floor_m_per_m2: recipe.floor_m_per_m2 };
+    let prices =
+        Prices { turn_m_per_rad: recipe.effort.turn_m_per_rad, floor_m_per_m2: recipe.floor_m_per_m2 };
     let careful = Prices { floor_m_per_m2: 1e6, ..prices };
     let mut track = Track::new(&slit, &pieces, grid);
     track.shorten(&prices, ctx)?;

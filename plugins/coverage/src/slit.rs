@@ -47,7 +47,8 @@ impl Slit {
             constrain(&mut cdt, cut, false);
         }
         let is_free = |at: Point| {
-            ground.wall.wall_distance_m(at) >= ground.keep_m && !outlines.iter().any(|ring| is_inside(ring, at))
+            ground.wall.wall_distance_m(at) >= ground.keep_m
+                && !outlines.iter().any(|ring| is_inside(ring, at))
         };
         Self::reached(&cdt, &is_free, home)
     }
@@ -62,7 +63,8 @@ impl Slit {
                 is_free(Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0))
             })
             .collect();
-        let index: BTreeMap<usize, usize> = faces.iter().enumerate().map(|(i, f)| (f.fix().index(), i)).collect();
+        let index: BTreeMap<usize, usize> =
+            faces.iter().enumerate().map(|(i, f)| (f.fix().index(), i)).collect();
         let contains = |face: usize| {
             let corner = |k: usize| points[faces[face].vertices()[k].index()];
             let (a, b, c) = (corner(0), corner(1), corner(2));
@@ -79,7 +81,9 @@ impl Slit {
             let own = number[face];
             let mut beside = [usize::MAX; 3];
             for (k, edge) in faces[face].adjacent_edges().into_iter().enumerate() {
-                let Some(other) = edge.rev().face().as_inner().map(|f| index[&f.fix().index()]) else { continue };
+                let Some(other) = edge.rev().face().as_inner().map(|f| index[&f.fix().index()]) else {
+                    continue;
+                };
                 if !free[other] || edge.is_constraint_edge() {
                     continue;
                 }
@@ -95,7 +99,8 @@ impl Slit {
             }
             next.push(beside);
         }
-        let next = next.iter().map(|b| b.map(|o: usize| if o == usize::MAX { NONE } else { number[o] })).collect();
+        let next =
+            next.iter().map(|b| b.map(|o: usize| if o == usize::MAX { NONE } else { number[o] })).collect();
         let corners = order
             .iter()
             // Side k of a face runs from its corner k to the next one.
@@ -183,9 +188,7 @@ impl Slit {
 
     /// Whether the straight way between two places stays in the domain.
     pub fn sees(&self, a: Point, b: Point) -> bool {
-        self.path(a, b).is_some_and(|path| {
-            world::polyline::length_m(&path) <= (b - a).norm() + 1e-9
-        })
+        self.path(a, b).is_some_and(|path| world::polyline::length_m(&path) <= (b - a).norm() + 1e-9)
     }
 
     /// Left and right ends of the sides between two triangles, in order.
@@ -205,7 +208,9 @@ impl Slit {
         up.extend(down.into_iter().rev());
         up.windows(2)
             .map(|pair| {
-                let side = (0..3).find(|k| self.next[pair[0]][*k] == pair[1] as u32).expect("neighbours share a side");
+                let side = (0..3)
+                    .find(|k| self.next[pair[0]][*k] == pair[1] as u32)
+                    .expect("neighbours share a side");
                 let at = |k: usize| self.points[self.corners[pair[0]][k % 3] as usize];
                 // The corners run counter-clockwise, so a side seen from inside runs from right to left.
                 (at(side + 1), at(side))

@@ -9,10 +9,13 @@ use crate::{
 };
 use field::params as p;
 use planner_api::{
-    Caps, Command, Config, Ctx, Layer, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result, Sensed,
-    Site, TetherLimits, choice, float, int,
+    Caps, Command, Config, Ctx, Layer, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result,
+    Sensed, Site, TetherLimits, choice, float, int,
 };
-use world::{Point, Shape, tether::{Cable, Limits}};
+use world::{
+    Point, Shape,
+    tether::{Cable, Limits},
+};
 
 const CHOOSE: ParamSpec = choice("choose", "Candidate", &["shortest", "fewest-turns", "shortest-cable"], 0)
     .help("Which of the candidates within the limits is flown; the log lists all that are worth it.")
@@ -70,8 +73,22 @@ impl Planner for TetherSafe {
                                  lanes of a simply connected domain, toured by local search, with a certificate.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE);
     const PARAMS: &'static [ParamSpec] = &[
-        CHOOSE, PATTERN, DIRECTIONS, ALPHA, CABLE, WRAP, SUM_WRAP, TURN, ENOUGH, CELL, KICKS, p::GUARD, p::GUARD_SIGMAS,
-        p::SLOW, p::MIN_SHARE, p::STUCK,
+        CHOOSE,
+        PATTERN,
+        DIRECTIONS,
+        ALPHA,
+        CABLE,
+        WRAP,
+        SUM_WRAP,
+        TURN,
+        ENOUGH,
+        CELL,
+        KICKS,
+        p::GUARD,
+        p::GUARD_SIGMAS,
+        p::SLOW,
+        p::MIN_SHARE,
+        p::STUCK,
     ];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
@@ -133,7 +150,9 @@ impl TetherSafe {
         if reel_m < ground.swath_m {
             return Err(PlannerError::new(
                 planner_api::Code::Config,
-                format!("the reel holds {reel_m:.2} m of cable; the farthest floor is {least_m:.1} m from the anchor"),
+                format!(
+                    "the reel holds {reel_m:.2} m of cable; the farthest floor is {least_m:.1} m from the anchor"
+                ),
             ));
         }
         let home = ground.home();
@@ -150,7 +169,10 @@ impl TetherSafe {
         if (start - home).norm() > task.tolerance_m && tried.iter().all(|t| !t.worth.certificate.certified) {
             // Under way the cable may lie as no cut of the new map allows: take it in first.
             if let Some(way) = laid.as_ref().and_then(|cable| answer::way_home(ground, request.site, cable)) {
-                ctx.log(LogLevel::Warn, "the cable lies across a cut of the new plan: back along the cable first");
+                ctx.log(
+                    LogLevel::Warn,
+                    "the cable lies across a cut of the new plan: back along the cable first",
+                );
                 lead_in = way;
                 let from_home = Order { start: home, ..order };
                 tried = self.try_all(request.site, ground, wishes, &from_home, None, ctx)?;

@@ -35,9 +35,12 @@ pub fn touch_up(ground: &Ground, slit: &Slit, cuts: &[Cut], grid: &FloorGrid, gr
             places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| (low.min(s), high.max(s)));
         let (a, b) = if own_from <= own_to { (own_from, own_to) } else { (from, to) };
         let grow = (0.06 - (b - a)).max(0.0) / 2.0;
-        let line = [middle + across * offset + along * (a - grow), middle + across * offset + along * (b + grow)];
-        let pushed: Vec<Point> =
-            polyline::resampled(&line, STEP_M).iter().filter_map(|p| pushed(ground, slit, cuts, *p)).collect();
+        let line =
+            [middle + across * offset + along * (a - grow), middle + across * offset + along * (b + grow)];
+        let pushed: Vec<Point> = polyline::resampled(&line, STEP_M)
+            .iter()
+            .filter_map(|p| pushed(ground, slit, cuts, *p))
+            .collect();
         lanes.extend(runs(slit, cuts, &pushed));
     }
     lanes
@@ -97,7 +100,9 @@ fn runs(slit: &Slit, cuts: &[Cut], points: &[Point]) -> Vec<Lane> {
         let current = lanes.last_mut().expect("there is always one");
         match current.last() {
             Some(last) if (p - last).norm() < 1e-3 => {}
-            Some(last) if (p - last).norm() > 3.0 * STEP_M || crosses(cuts, *last, *p) || !slit.sees(*last, *p) => {
+            Some(last)
+                if (p - last).norm() > 3.0 * STEP_M || crosses(cuts, *last, *p) || !slit.sees(*last, *p) =>
+            {
                 lanes.push(vec![*p]);
             }
             _ => current.push(*p),

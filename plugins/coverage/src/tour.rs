@@ -155,7 +155,9 @@ fn neighbours(ways: &Ways<'_>, ctx: &Ctx<'_>) -> Result<Vec<Vec<End>>> {
             found.clear();
             for dx in -ring..=ring {
                 for dy in -ring..=ring {
-                    found.extend(cells.get(&(x + dx, y + dy)).into_iter().flatten().filter(|v| **v / 2 != u / 2));
+                    found.extend(
+                        cells.get(&(x + dx, y + dy)).into_iter().flatten().filter(|v| **v / 2 != u / 2),
+                    );
                 }
             }
             ring += 1;
@@ -174,7 +176,9 @@ fn greedy(ways: &Ways<'_>, near: &[Vec<End>]) -> Tour {
     let n = ways.len();
     let mut pairs: Vec<(f64, End, End)> = Vec::new();
     for (u, list) in near.iter().enumerate() {
-        pairs.extend(list.iter().filter(|v| u < **v || !near[**v].contains(&u)).map(|v| (ways.cost(u, *v), u, *v)));
+        pairs.extend(
+            list.iter().filter(|v| u < **v || !near[**v].contains(&u)).map(|v| (ways.cost(u, *v), u, *v)),
+        );
     }
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut joined: Vec<Option<End>> = vec![None; n];
@@ -234,7 +238,13 @@ struct Search<'a> {
     place: Vec<usize>,
 }
 
-fn improved(ways: &Ways<'_>, near: &[Vec<End>], entries: Tour, effort: &Effort, ctx: &Ctx<'_>) -> Result<Tour> {
+fn improved(
+    ways: &Ways<'_>,
+    near: &[Vec<End>],
+    entries: Tour,
+    effort: &Effort,
+    ctx: &Ctx<'_>,
+) -> Result<Tour> {
     let mut search = Search { ways, near, place: vec![0; entries.len()], entries };
     search.number(0, search.entries.len());
     let all: Vec<End> = (0..ways.len()).collect();
@@ -391,7 +401,8 @@ impl Search<'_> {
             let tail = if is_exit { self.entries[far] } else { self.entries[far] ^ 1 };
             let before = self.entries[(first + n - 1) % n] ^ 1;
             let after = self.entries[(last + 1) % n];
-            let removed = ways.cost(before, self.entries[first]) + ways.cost(self.entries[last] ^ 1, after) + other;
+            let removed =
+                ways.cost(before, self.entries[first]) + ways.cost(self.entries[last] ^ 1, after) + other;
             let most = removed - new;
             if most - ways.least(tail, pv) - ways.least(before, after) <= 1e-6 {
                 continue;
@@ -434,14 +445,10 @@ impl Search<'_> {
         let mut steps = [0; 2];
         steps.iter_mut().for_each(|s| *s = 1 + random.random_range(0..reach / 2));
         let (b, c) = (a + steps[0], a + steps[0] + steps[1]);
-        let ends: Vec<End> = [a, b, c]
-            .iter()
-            .flat_map(|k| [self.entries[*k] ^ 1, self.entries[(*k + 1) % n]])
-            .collect();
-        let before: f64 = [a, b, c]
-            .iter()
-            .map(|k| self.ways.cost(self.entries[*k] ^ 1, self.entries[(*k + 1) % n]))
-            .sum();
+        let ends: Vec<End> =
+            [a, b, c].iter().flat_map(|k| [self.entries[*k] ^ 1, self.entries[(*k + 1) % n]]).collect();
+        let before: f64 =
+            [a, b, c].iter().map(|k| self.ways.cost(self.entries[*k] ^ 1, self.entries[(*k + 1) % n])).sum();
         self.entries[a + 1..=c].rotate_left(steps[0]);
         self.number(a + 1, c + 1);
         let middle = a + steps[1];

@@ -1,5 +1,6 @@
 //! The floor of a request, grown for the robot, and how it refuses.
 
+use crate::evade;
 use planner_api::{
     Code, Ctx, Outline, Plan, PlanRequest, PlannerError, Reason, Result, Site, Task, ZoneKind,
 };
@@ -111,7 +112,12 @@ fn refused(site: &Site<'_>, at: Point, distance_m: f64, what: &str) -> PlannerEr
 
 /// Obstacles and no-go zones with what they are called.
 fn shapes<'a>(site: &'a Site<'_>) -> impl Iterator<Item = (String, Shape)> + 'a {
-    let obstacles = site.obstacles.iter().map(|o| (format!("obstacle {}", o.id), shape_of(&o.outline)));
+    // What moves is left to the flight: by the time the robot is there it will be gone.
+    let obstacles = site
+        .obstacles
+        .iter()
+        .filter(|o| !evade::moves(o))
+        .map(|o| (format!("obstacle {}", o.id), shape_of(&o.outline)));
     let zones = site.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
     obstacles.chain(zones.map(|zone| ("a no-go zone".to_owned(), shape_of(&zone.outline))))
 }

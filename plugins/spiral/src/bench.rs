@@ -121,3 +121,53 @@ impl Figures {
         )
     }
 }
+
+/// Every planner on a preset path refuses input that makes no sense, with a reason.
+mod bad_input {
+    use super::*;
+    use crate::{
+        escapes::{Iapf, Vt},
+        rpf::Rpf,
+        spiral_lattice::SpiralLattice,
+        spiral_tangent::SpiralTangent,
+    };
+    use planner_api::Code;
+    use world::{Point, Vector};
+
+    fn empty() -> Layout {
+        Layout { columns: Vec::new(), clearance_m: CLEARANCE_M, ..Layout::of_the_paper(0, 0, false) }
+    }
+
+    fn code<P: Planner>(layout: &Layout, values: &[(&str, f64)]) -> Option<Code> {
+        let refused = plan::<P>(layout, values).err();
+        refused.inspect(|error| assert!(error.message.len() > 10)).map(|error| error.code)
+    }
+
+    fn refuses_all_of_it<P: Planner>() {
+        let start = empty().path[0];
+        let on_start = Layout { columns: vec![(start - Vector::new(0.2, 0.0), 0.3)], ..empty() };
+        assert_eq!(code::<P>(&on_start, &[]), Some(Code::StartOccupied), "{}", P::ID);
+        let angles = (0..2000).map(|k| 0.02 * f64::from(k));
+        let no_pitch = angles.map(|a| Point::new(5.0 * a.cos(), 5.0 * a.sin())).collect();
+        let no_number = vec![Point::new(9.0, 0.0), Point::new(f64::NAN, 0.0)];
+        for path in [no_pitch, no_number, vec![start; 40]] {
+            assert_eq!(code::<P>(&Layout { path, ..empty() }, &[]), Some(Code::Invalid), "{}", P::ID);
+        }
+        assert_eq!(code::<P>(&Layout { clearance_m: 1.4, ..empty() }, &[]), Some(Code::Config), "{}", P::ID);
+        for spec in P::PARAMS {
+            for value in [f64::NAN, f64::INFINITY, -1.0] {
+                let refused = code::<P>(&empty(), &[(spec.key, value)]);
+                assert_eq!(refused, Some(Code::Config), "{} {} {value}", P::ID, spec.key);
+            }
+        }
+    }
+
+    #[test]
+    fn is_refused_by_every_planner() {
+        refuses_all_of_it::<SpiralLattice>();
+        refuses_all_of_it::<SpiralTangent>();
+        refuses_all_of_it::<Rpf>();
+        refuses_all_of_it::<Vt>();
+        refuses_all_of_it::<Iapf>();
+    }
+}

@@ -1,7 +1,7 @@
 //! The course to follow: preset points with stations and directions, checked once.
 
 use field::{Keep, Room};
-use planner_api::{Code, Config, Ctx, LogLevel, PlanRequest, PlannerError, Result, Site, Task};
+use planner_api::{Code, Config, Ctx, LogLevel, ParamSpec, PlanRequest, PlannerError, Result, Site, Task};
 use std::f64::consts::TAU;
 use world::{Point, Vector, geometry::wrap_angle_rad, polyline};
 
@@ -42,21 +42,11 @@ impl Course {
                 return Err(PlannerError::new(Code::Unsupported, message));
             }
         };
-        let Some(&first) = targets.first() else { return Err(invalid("there is no preset point to follow")) };
-        if let Some(at) = targets.iter().position(|p| !p.x.is_finite() || !p.y.is_finite()) {
-            return Err(invalid(format!("preset point {at} is not a number")));
-        }
+        check_targets(&targets)?;
         if !start.x.is_finite() || !start.y.is_finite() {
             return Err(invalid("the start is not a number"));
         }
-        if let Some(at) = targets.windows(2).position(|w| (w[1] - w[0]).norm() < 1e-9) {
-            return Err(invalid(format!("preset points {at} and {} coincide; give each point once", at + 1)));
-        }
-        if let Some(pitch_m) = pitch_m(&targets).filter(|pitch_m| *pitch_m < LEAST_PITCH_M) {
-            return Err(invalid(format!(
-                "the turns of the preset path are {pitch_m:.3} m apart; give it a pitch"
-            )));
-        }
+        let first = targets[0];
         let mut points = if (first - start).norm() > ON_COURSE_M { vec![start] } else { Vec::new() };
         points.extend(targets);
         let split = polyline::length_m(&points) / SPACING_M + points.len() as f64;
@@ -108,13 +98,7 @@ impl Course {
 pub fn room(site: &Site<'_>, clearance_m: f64, course: &Course) -> Result<Room> {
     let hull_m = site.limits.radius_m;
     let obstacle_m = hull_m + site.clearance_m.max(clearance_m);
-    if let Some(pitch_m) = pitch_m(&course.points).filter(|pitch_m| obstacle_m > *pitch_m) {
-        let message = format!(
-            "hull and clearance need {obstacle_m:.2} m, but the turns of the preset path are {pitch_m:.2} m apart; \
-             ask for less clearance or a wider pitch"
-        );
-        return Err(PlannerError::new(Code::Config, message));
-    }
+    check_pitch(obstacle_m, &course.points)?;
     let wall = field::scene::wall_of(&site.boundary);
     let nearest_m = course.points.iter().map(|p| wall.wall_distance_m(*p)).fold(f64::INFINITY, f64::min);
     let wall_m = (hull_m + site.clearance_m).min(nearest_m.max(hull_m));
@@ -169,16 +153,50 @@ pub fn check_start(request: &PlanRequest<'_>, course: &Course, room: &Room, ctx:
     Ok(())
 }
 
-/// A parameter that has to be a number.
+/// Refuses preset points that are missing or no numbers, and turns on top of each other.
 ///
 /// # Errors
-/// [`Code::Config`] if it is none.
-pub fn finite(config: &Config<'_>, key: &str) -> Result<f64> {
-    let value = config.float(key);
-    if value.is_finite() && value >= 0.0 {
-        return Ok(value);
+/// [`Code::Invalid`].
+pub fn check_targets(targets: &[Point]) -> Result<()> {
+    if targets.is_empty() {
+        return Err(invalid("there is no preset point to follow"));
     }
-    Err(PlannerError::new(Code::Config, format!("{key} is {value}; give a number from 0 on")))
+    if let Some(at) = targets.iter().position(|p| !p.x.is_finite() || !p.y.is_finite()) {
+        return Err(invalid(format!("preset point {at} is not a number")));
+    }
+    if let Some(at) = targets.windows(2).position(|w| (w[1] - w[0]).norm() < 1e-9) {
+        return Err(invalid(format!("preset points {at} and {} coincide; give each point once", at + 1)));
+    }
+    if let Some(pitch_m) = pitch_m(targets).filter(|pitch_m| *pitch_m < LEAST_PITCH_M) {
+        return Err(invalid(format!(
+            "the turns of the preset path are {pitch_m:.3} m apart; give it a pitch"
+        )));
+    }
+    Ok(())
+}
+
+/// Refuses a hull and a clearance that together are wider than the distance between the turns.
+///
+/// # Errors
+/// [`Code::Config`].
+pub fn check_pitch(keep_m: f64, points: &[Point]) -> Result<()> {
+    let Some(pitch_m) = pitch_m(points).filter(|pitch_m| keep_m > *pitch_m) else { return Ok(()) };
+    let message = format!(
+        "hull and clearance need {keep_m:.2} m, but the turns of the preset path are {pitch_m:.2} m apart; \
+         ask for less clearance or a wider pitch"
+    );
+    Err(PlannerError::new(Code::Config, message))
+}
+
+/// Refuses parameters that are no numbers from 0 on; none of ours may be negative.
+///
+/// # Errors
+/// [`Code::Config`].
+pub fn check_numbers(config: &Config<'_>, specs: &[ParamSpec]) -> Result<()> {
+    let is_number = |value: f64| value.is_finite() && value >= 0.0;
+    let Some(spec) = specs.iter().find(|spec| !is_number(config.float(spec.key))) else { return Ok(()) };
+    let value = config.float(spec.key);
+    Err(PlannerError::new(Code::Config, format!("{} is {value}; give a number from 0 on", spec.key)))
 }
 
 /// Where a path along a course can begin: its first point, or the nearest free place about it.

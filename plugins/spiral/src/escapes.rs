@@ -1,7 +1,8 @@
 //! The two potential fields that the rotating one is compared with: a virtual target, and a push out of the trap.
 
-use field::{Escape, Pilot, Settings, offline, params as p};
-use planner_api::{Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site};
+use crate::potential::{Kind, Potential};
+use field::{Escape, Settings, params as p};
+use planner_api::{Config, ParamSpec};
 
 const PARAMS: &[ParamSpec] = &[
     p::K_ATT,
@@ -23,75 +24,39 @@ const PARAMS: &[ParamSpec] = &[
 ];
 
 /// A potential field that leaves traps by a virtual target beside the obstacle; Yang 2018, reconstructed.
-pub struct Vt {
-    settings: Settings,
-    pilot: Pilot,
-}
+pub type Vt = Potential<VirtualTarget>;
 
 /// A potential field that leaves traps by a push to the side; Zhao 2022, reconstructed.
-pub struct Iapf {
-    settings: Settings,
-    pilot: Pilot,
-}
+pub type Iapf = Potential<Push>;
 
-impl Planner for Vt {
+/// The law of [`Vt`].
+pub enum VirtualTarget {}
+
+/// The law of [`Iapf`].
+pub enum Push {}
+
+impl Kind for VirtualTarget {
     const ID: &'static str = "vt";
     const NAME: &'static str = "Virtual target";
     const ABOUT: &'static str = "Potential field that leaves traps by a virtual target; reconstructed from what Wang et al. \
                                  2023 tell of Yang 2018.";
-    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] = PARAMS;
 
-    fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
-        let settings = settings(config, Escape::VirtualTarget);
-        Ok(Self { settings, pilot: Pilot::new(&settings, site) })
-    }
-
-    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
-        self.settings = settings(config, Escape::VirtualTarget);
-        self.pilot.reset(&self.settings);
-        Ok(())
-    }
-
-    fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
-        offline::plan(&self.settings, request, ctx)
-    }
-
-    fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
-        self.pilot.step(&self.settings, sensed, ctx)
+    fn settings(config: &Config<'_>) -> Settings {
+        Settings { escape: Escape::VirtualTarget, ..p::settings(config) }
     }
 }
 
-impl Planner for Iapf {
+impl Kind for Push {
     const ID: &'static str = "iapf";
     const NAME: &'static str = "Improved potential field";
     const ABOUT: &'static str = "Potential field that leaves traps by a push to the side; reconstructed from what Wang et \
                                  al. 2023 tell of Zhao 2022.";
-    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] = PARAMS;
 
-    fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
-        let settings = settings(config, Escape::Push);
-        Ok(Self { settings, pilot: Pilot::new(&settings, site) })
+    fn settings(config: &Config<'_>) -> Settings {
+        Settings { escape: Escape::Push, ..p::settings(config) }
     }
-
-    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
-        self.settings = settings(config, Escape::Push);
-        self.pilot.reset(&self.settings);
-        Ok(())
-    }
-
-    fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
-        offline::plan(&self.settings, request, ctx)
-    }
-
-    fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
-        self.pilot.step(&self.settings, sensed, ctx)
-    }
-}
-
-fn settings(config: &Config<'_>, escape: Escape) -> Settings {
-    Settings { escape, ..p::settings(config) }
 }
 
 #[cfg(test)]
@@ -99,7 +64,7 @@ mod tests {
     use super::*;
     use crate::bench::plan;
     use field::trial::{Robot, fly};
-    use planner_api::Motion;
+    use planner_api::{Motion, Planner};
     use trials::{Distribution, Layout, Sampling, score};
 
     /// Wang et al. 2023, first distribution.

@@ -1,10 +1,12 @@
 //! Planners for the preset spiral.
 #![forbid(unsafe_code)]
 
-mod escapes;
-mod rpf;
-mod spiral_lattice;
-mod spiral_tangent;
+pub mod potential;
+
+pub mod escapes;
+pub mod rpf;
+pub mod spiral_lattice;
+pub mod spiral_tangent;
 
 mod band;
 mod course;

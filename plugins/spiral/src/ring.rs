@@ -251,14 +251,16 @@ mod tests {
         #[test]
         fn it_agrees_with_a_flood_of_small_cells(
             columns in prop::collection::vec((-2.0..2.0_f64, -2.0..2.0_f64), 8..30),
-            at in (-1.5..1.5_f64, -1.5..1.5_f64),
+            at in (-1.3..1.3_f64, -1.3..1.3_f64),
         ) {
             let tank = Layout { radius_m: 2.0, ..layout(columns.iter().map(|(x, y)| (Point::new(*x, *y), 0.0)).collect()) };
             let at = Point::new(at.0, at.1);
             // For some clearances in between the cells are too coarse to tell.
             let (reached_wide, reached_narrow) = (flood(&tank, 0.33, at), flood(&tank, 0.22, at));
             for (goal, wide, narrow) in reached_wide.into_iter().zip(reached_narrow).map(|((p, w), (_, n))| (p, w, n)) {
-                if clear_m(&tank, goal) < 0.33 || clear_m(&tank, at) < 0.33 { continue; }
+                let least_m = clear_m(&tank, goal).min(clear_m(&tank, at));
+                if least_m < 0.33 || goal.coords.norm() > tank.radius_m {
+                    continue; }
                 let apart = between_in(&tank, at, goal).is_some();
                 prop_assert!(!(wide && apart), "{goal} can be reached");
                 prop_assert!(narrow || apart, "{goal} cannot be reached");
@@ -287,6 +289,6 @@ mod tests {
             }
         }
         let goals = (-10..10).flat_map(|x| (-10..10).map(move |y| (x * 10, y * 10)));
-        goals.filter(|cell| is_free(*cell)).map(|cell| (place(cell), seen.contains(&cell))).collect()
+        goals.map(|cell| (place(cell), seen.contains(&cell))).collect()
     }
 }

@@ -1,24 +1,24 @@
 //! The rotating potential field.
 
-use field::{Pilot, Settings, offline, params as p};
-use planner_api::{Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site};
+use crate::potential::{Kind, Potential};
+use field::{Settings, params as p};
+use planner_api::{Config, ParamSpec};
 
 /// The rotating potential field of Wang et al. 2023, in both readings.
 ///
 /// For a point robot planning walks the law in lock step as the paper does; for one with a hull that fails nearly
 /// always, so there the known map is flown in thought. In flight the rotating force is, unless set otherwise, used
 /// about whatever blocks the way and on the side of the smaller detour: as printed it gets stuck.
-pub struct Rpf {
-    settings: Settings,
-    pilot: Pilot,
-}
+pub type Rpf = Potential<Rotating>;
 
-impl Planner for Rpf {
+/// The law of [`Rpf`].
+pub enum Rotating {}
+
+impl Kind for Rotating {
     const ID: &'static str = "rpf";
     const NAME: &'static str = "Rotating potential field";
     const ABOUT: &'static str = "Potential field with a rotating force about obstacles, along a preset spiral, after \
                                  Wang et al. 2023.";
-    const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] = &[
         p::READING,
         p::SENSE,
@@ -44,23 +44,8 @@ impl Planner for Rpf {
         p::STUCK,
     ];
 
-    fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
-        let settings = p::rotating_settings(config);
-        Ok(Self { settings, pilot: Pilot::new(&settings, site) })
-    }
-
-    fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {
-        self.settings = p::rotating_settings(config);
-        self.pilot.reset(&self.settings);
-        Ok(())
-    }
-
-    fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
-        offline::plan(&self.settings, request, ctx)
-    }
-
-    fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
-        self.pilot.step(&self.settings, sensed, ctx)
+    fn settings(config: &Config<'_>) -> Settings {
+        p::rotating_settings(config)
     }
 }
 

@@ -74,11 +74,12 @@ impl Planner for SpiralLattice {
 }
 
 fn wishes(config: &Config<'_>) -> Result<Wishes> {
-    let turn_deg = course::finite(config, "turn_deg")?;
+    course::check_numbers(config, SpiralLattice::PARAMS)?;
+    let turn_deg = config.float("turn_deg");
     let turn_per_m = if turn_deg > 0.0 { turn_deg.to_radians() / 0.2 } else { f64::INFINITY };
-    let offset_m = course::finite(config, "max_offset_m")?;
+    let offset_m = config.float("max_offset_m");
     let limits = Limits { offset_m, turn_per_m };
-    Ok(Wishes { clearance_m: course::finite(config, "clearance_m")?, limits })
+    Ok(Wishes { clearance_m: config.float("clearance_m"), limits })
 }
 
 fn told(path: lattice::Path, course: &Course, room: &field::Room, ctx: &Ctx<'_>) -> Plan {

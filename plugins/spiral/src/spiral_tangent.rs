@@ -52,20 +52,22 @@ impl Planner for SpiralTangent {
         &[p::CLEARANCE, RANGE, STEP, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
-        let clearance_m = course::finite(config, "clearance_m")?;
+        course::check_numbers(config, Self::PARAMS)?;
+        let clearance_m = config.float("clearance_m");
         let hull_m = site.limits.radius_m;
-        let range_m = course::finite(config, "range_m")?.min(site.limits.sensing_range_m + hull_m);
+        let range_m = config.float("range_m").min(site.limits.sensing_range_m + hull_m);
         let least_m = hull_m + clearance_m.max(site.clearance_m) + LEAST_SIGHT_M;
         if range_m < least_m {
             let message = format!(
-                "a range of {range_m:.2} m is too short for hull and clearance; {least_m:.2} m are needed"
+                "a range of {range_m:.2} m is too short for hull and clearance; {least_m:.2} m are needed, or less \
+                 clearance"
             );
             return Err(PlannerError::new(Code::Config, message));
         }
         Ok(Self {
             clearance_m,
             range_m,
-            step_m: course::finite(config, "step_m")?.max(0.005),
+            step_m: config.float("step_m").max(0.005),
             pursuit: Pursuit::new(p::flight(config), clearance_m, site),
         })
     }

@@ -121,13 +121,14 @@ impl Strip<'_> {
         let mut came_from = vec![NOWHERE; self.width()];
         for offset in (0..self.width()).filter(|offset| front.cost[*offset].is_finite()) {
             let last = (offset + self.most_change).min(self.width() - 1);
-            for reached in offset.saturating_sub(self.most_change)..=last {
+            let first = offset.saturating_sub(self.most_change);
+            for (reached, came) in came_from.iter_mut().enumerate().take(last + 1).skip(first) {
                 let offset_m = self.offset_m(reached);
                 let moved_m = (reached as f64 - offset as f64) * self.cell_m;
                 let price = weight * (offset_m * offset_m + SLOPE_WEIGHT * moved_m * moved_m);
                 let cost = front.cost[offset] + price;
                 if cost < next.cost[reached] && leads(room, (front, offset), (next, reached)) {
-                    (next.cost[reached], came_from[reached]) = (cost, offset as u8);
+                    (next.cost[reached], *came) = (cost, offset as u8);
                 }
             }
         }

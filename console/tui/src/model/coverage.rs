@@ -1,7 +1,7 @@
 //! What has been scanned, kept ready for drawing at any zoom.
 
 use serde::{Deserialize, Serialize};
-use world::{CellRun, CoverageGrid, Floor, KindRun, Point, coverage::Counts};
+use world::{Cell, CellRun, CoverageGrid, Floor, KindRun, Point, coverage::Counts};
 
 /// Blocks of cells at one zoom: how many of their cells are floor, and how many of these have been scanned.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -20,6 +20,21 @@ pub struct Raster {
     grid: CoverageGrid,
     /// The first one halves the grid.
     levels: Vec<Level>,
+    /// Cells along the shell that are out of reach and have not been scanned.
+    n_margin: usize,
+}
+
+/// How the whole floor divides. Shares, 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Division {
+    /// Scanned.
+    pub scanned: f64,
+    /// In reach and not scanned: to do, or missed when the mission has ended.
+    pub to_do: f64,
+    /// Out of reach along the shell.
+    pub margin: f64,
+    /// Out of reach elsewhere.
+    pub unreachable: f64,
 }
 
 impl Raster {
@@ -29,7 +44,9 @@ impl Raster {
     }
 
     fn of(grid: CoverageGrid) -> Self {
-        let mut raster = Self { grid, levels: Vec::new() };
+        let is_margin = |index: &usize| grid.floor().kind(*index) == Cell::Margin && !grid.is_covered(*index);
+        let n_margin = (0..grid.floor().len()).filter(is_margin).count();
+        let mut raster = Self { grid, levels: Vec::new(), n_margin };
         raster.levels = (1..).map_while(|shift| raster.level(shift)).collect();
         for index in 0..raster.grid.floor().len() {
             if raster.grid.floor().is_floor(index) {
@@ -56,11 +73,12 @@ impl Raster {
             let end = (run.0 as usize).saturating_add(run.1 as usize).min(self.grid.floor().len());
             for index in (run.0 as usize)..end {
                 if !self.grid.is_covered(index) && self.grid.floor().is_floor(index) {
+                    self.n_margin -= usize::from(self.grid.floor().kind(index) == Cell::Margin);
                     self.count(index, |level, block| level.scanned[block] += 1);
                 }
             }
+            self.grid.apply(std::slice::from_ref(run));
         }
-        self.grid.apply(runs);
     }
 
     /// Scanned share of the floor in a square of some edge about a point; `None` where there is no floor.
@@ -90,10 +108,17 @@ impl Raster {
         self.counts().covered as f64 * self.grid.floor().cell_m.powi(2)
     }
 
-    /// Share of the whole floor that the tool cannot reach, 0 to 1.
-    pub fn unreachable_share(&self) -> f64 {
+    /// How the whole floor divides; the shares sum to 1.
+    pub fn division(&self) -> Division {
         let counts = self.counts();
-        if counts.floor == 0 { 0.0 } else { 1.0 - counts.reachable as f64 / counts.floor as f64 }
+        let share = |cells: usize| if counts.floor == 0 { 0.0 } else { cells as f64 / counts.floor as f64 };
+        let out_of_reach = counts.floor - counts.reachable - (counts.covered - counts.covered_reachable);
+        Division {
+            scanned: share(counts.covered),
+            to_do: share(counts.reachable - counts.covered_reachable),
+            margin: share(self.n_margin.min(out_of_reach)),
+            unreachable: share(out_of_reach.saturating_sub(self.n_margin)),
+        }
     }
 
     fn level(&self, shift: u32) -> Option<Level> {
@@ -158,6 +183,21 @@ mod tests {
             assert_eq!((south, north), (Some(1.0), Some(0.0)), "edge {edge_m} m");
         }
         assert_eq!(raster.scanned_share(Point::new(4.0, 4.0), 8.0), Some(0.5));
+    }
+
+    #[test]
+    fn the_whole_floor_divides_into_shares_that_sum_to_one() {
+        let vertices =
+            vec![Point::new(0.0, 0.0), Point::new(8.0, 0.0), Point::new(8.0, 8.0), Point::new(0.0, 8.0)];
+        let boundary = Boundary::Polygon { vertices };
+        let world = World { boundary, obstacles: Vec::new(), stations: Vec::new(), zones: Vec::new() };
+        let mut raster = Raster::new(Floor::new(&world, 0.5, 1.2, 0.4, Point::new(4.0, 4.0)));
+        for runs in [vec![], vec![CellRun(0, 40)], vec![CellRun(30, 90)]] {
+            raster.apply(&runs);
+            let Division { scanned, to_do, margin, unreachable } = raster.division();
+            assert!((scanned + to_do + margin + unreachable - 1.0).abs() < 1e-12);
+            assert!(margin > 0.1 && unreachable.abs() < 1e-12, "{:?}", raster.division());
+        }
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! The coverage pane: how much has been scanned, of which floor, and what is left.
 
 use super::{Look, fill, text};
-use crate::model::{Model, Pane, Speed};
+use crate::model::coverage::Division;
+use crate::model::{Model, Pane, Progress, Speed};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -22,7 +23,18 @@ fn wide_lines(look: &Look, width: u16) -> Vec<Line<'static>> {
         row("scanned", format!("{reachable:>5} % of reachable floor")),
         row("", format!("{whole:>5} % of whole floor")),
         look.line([(Role::Good, format!(" {}", bar(model, width)))]),
-        row("unreachable", format!("{:>5} % of whole floor", unreachable(model))),
+        row(
+            to_do_label(model),
+            format!("{:>5} % reach, {} % whole", to_do_reachable(model), share(model, |d| d.to_do)),
+        ),
+        row(
+            "no reach",
+            format!(
+                "{:>5} % whole, {} % margin",
+                share(model, |d| d.unreachable),
+                share(model, |d| d.margin)
+            ),
+        ),
         row("rate", format!("{}   {}", rate(model), area(model))),
         row(way_label(model), way(model)),
         row("left", left(model, true)),
@@ -33,11 +45,16 @@ fn narrow_lines(look: &Look, width: u16) -> Vec<Line<'static>> {
     let model = look.model;
     let (reachable, whole) = shares(model);
     let text = |value: String| look.line([(Role::Text, format!(" {value}"))]);
+    let left_or_missed = if model.has_ended() {
+        format!("missed {} % of reach", to_do_reachable(model))
+    } else {
+        format!("left {}", left(model, false))
+    };
     vec![
         text(format!("{reachable} % reach  {whole} % whole")),
         look.line([(Role::Good, format!(" {}", bar(model, width)))]),
         text(format!("{} {}", way_label(model), way(model))),
-        text(format!("left {}", left(model, false))),
+        text(left_or_missed),
     ]
 }
 
@@ -54,8 +71,20 @@ fn bar(model: &Model, width: u16) -> String {
     text::bar(share, usize::from(width).saturating_sub(4))
 }
 
-fn unreachable(model: &Model) -> String {
-    model.coverage.as_ref().map_or_else(|| "-".into(), |raster| text::percent(raster.unreachable_share()))
+/// A share of the whole floor.
+fn share(model: &Model, of: impl Fn(Division) -> f64) -> String {
+    model.coverage.as_ref().map_or_else(|| "-".into(), |raster| text::percent(of(raster.division())))
+}
+
+/// What is not scanned is still to do, and missed when the mission has ended.
+fn to_do_label(model: &Model) -> &'static str {
+    if model.has_ended() { "missed" } else { "to do" }
+}
+
+/// The same of the reachable floor.
+fn to_do_reachable(model: &Model) -> String {
+    let share = |progress: &Progress| text::percent(1.0 - progress.covered_reachable);
+    model.progress.as_ref().map_or_else(|| "-".into(), share)
 }
 
 fn rate(model: &Model) -> String {

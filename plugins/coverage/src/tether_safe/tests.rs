@@ -49,8 +49,7 @@ fn the_same_question_gets_the_same_answer() {
 #[test]
 fn a_short_reel_gives_a_partial_plan_that_says_what_is_left() {
     let tank = Known::E1.tank(4);
-    let tether =
-        TetherLimits { reel_m: 6.0, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY };
+    let tether = TetherLimits { reel_m: 6.0, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY };
     let (plan, bench) = plan(&tank, &[], Some(tether));
     let plan = plan.unwrap();
     let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();

@@ -77,7 +77,9 @@ mod tests {
             (1, vec![-1.0, 0.3, 2.0]),
         ];
         let mut matrix = Banded::new(4, 3);
-        rows.iter().for_each(|(first, factors)| matrix.add(*first, factors, 1.5));
+        for (first, factors) in &rows {
+            matrix.add(*first, factors, 1.5);
+        }
         matrix.factorise();
         let right =
             [Vector::new(1.0, 0.0), Vector::new(-2.0, 1.0), Vector::new(0.5, 3.0), Vector::new(0.0, -1.0)];
@@ -87,7 +89,9 @@ mod tests {
         for (first, factors) in &rows {
             let value: Vector =
                 factors.iter().enumerate().map(|(k, factor)| solution[first + k] * *factor).sum();
-            factors.iter().enumerate().for_each(|(k, factor)| back[first + k] += value * (factor * 1.5));
+            for (k, factor) in factors.iter().enumerate() {
+                back[first + k] += value * (factor * 1.5);
+            }
         }
         assert!(back.iter().zip(&right).all(|(a, b)| (a - b).norm() < 1e-9), "{back:?}");
     }

@@ -3,7 +3,9 @@
 use super::*;
 use field::trial::{Outcome, Robot, exact_pose, fly, sensed_at_rest};
 use planner_api::testing::Bench;
-use planner_api::{Drawing, Drive, Layer, Motion, Obstacle, Outline, Reason, Task};
+use planner_api::{
+    Drawing, Drive, Layer, Motion, Obstacle, Outline, Plan, PlanRequest, Planner, Reason, Task,
+};
 use proptest::prelude::*;
 use trials::{Layout, Score, score};
 use world::{Point, polyline, spiral::Spiral};
@@ -133,16 +135,16 @@ fn a_plan_for_a_robot_with_a_hull_is_complete_and_clear() {
 
 fn flights(values: &[(&str, f64)], motion: Motion) -> Vec<Outcome> {
     let robot = Robot { motion, sigma_m: 0.03 };
-    (0..50).map(|seed| fly::<Rpf>(values, &Layout::random(seed), robot, seed).unwrap()).collect()
+    (0..16).map(|seed| fly::<Rpf>(values, &Layout::random(seed), robot, seed).unwrap()).collect()
 }
 
 #[test]
-fn in_fifty_random_tanks_it_touches_nothing_and_nearly_always_arrives() {
+fn in_random_tanks_it_touches_nothing_and_nearly_always_arrives() {
     for motion in [Motion::Point, Motion::Unicycle] {
         let flights = flights(&[], motion);
         assert!(flights.iter().all(|flight| flight.clearance_m > 0.0));
         let arrived = flights.iter().filter(|flight| flight.completed);
-        assert!(arrived.clone().count() >= 47, "{}", arrived.count());
+        assert!(arrived.clone().count() >= 15, "{}", arrived.count());
         // Preset points in niches between columns and wall are passed further off.
         for flight in arrived {
             assert!(flight.passed > 0.85 && flight.cross_track_m < 0.4, "{flight:?}");
@@ -154,7 +156,7 @@ fn in_fifty_random_tanks_it_touches_nothing_and_nearly_always_arrives() {
 fn as_printed_it_touches_nothing_either_but_gets_stuck() {
     let flights = flights(&with(&LITERAL, &[("steering", 0.0)]), Motion::Point);
     assert!(flights.iter().all(|flight| flight.clearance_m > 0.0));
-    assert!(flights.iter().filter(|flight| flight.completed).count() < 45);
+    assert!(flights.iter().filter(|flight| flight.completed).count() < 15);
 }
 
 #[test]

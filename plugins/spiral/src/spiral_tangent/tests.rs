@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::bench::{CLEARANCE_M, Figures, plan};
+use crate::spiral_lattice::SpiralLattice;
 use field::Keep;
 use field::trial::{Outcome, Robot, exact_pose, fly};
 use planner_api::{Drive, Motion, Obstacle, Outline, testing::Bench};
@@ -83,18 +84,17 @@ fn a_range_shorter_than_the_clearance_is_refused() {
 
 fn flights(motion: Motion) -> Vec<Outcome> {
     let robot = Robot { motion, sigma_m: 0.03 };
-    (0..50).map(|seed| fly::<SpiralTangent>(&[], &Layout::random(seed), robot, seed).unwrap()).collect()
+    (0..16).map(|seed| fly::<SpiralTangent>(&[], &Layout::random(seed), robot, seed).unwrap()).collect()
 }
 
 #[test]
-fn in_fifty_random_tanks_it_touches_nothing_and_nearly_always_arrives() {
+fn in_random_tanks_it_touches_nothing_and_nearly_always_arrives() {
     for motion in [Motion::Point, Motion::Unicycle] {
         let flights = flights(motion);
         let arrived = flights.iter().filter(|flight| flight.completed).count();
         let least_m = flights.iter().map(|flight| flight.clearance_m).fold(f64::INFINITY, f64::min);
-        println!("{motion:?} arrived {arrived} clearance {least_m:.3}");
         assert!(least_m > 0.0, "{least_m}");
-        assert!(arrived >= 47, "{arrived}");
+        assert!(arrived >= 15, "{arrived}");
     }
 }
 
@@ -125,6 +125,30 @@ fn a_plan_is_followed_round_an_obstacle_that_it_does_not_know() {
     }
     assert!(at.x > 3.0 && at.y.abs() < 0.1, "{at}");
     assert!(least_m >= layout.clearance_m, "{least_m}");
+}
+
+/// Flights along plans of the lattice that know two of three columns.
+fn flights_along_plans(motion: Motion, seeds: std::ops::Range<u64>) -> Vec<Outcome> {
+    let robot = Robot { motion, sigma_m: 0.03 };
+    let mut flights = Vec::new();
+    for seed in seeds {
+        let layout = Layout::random(seed);
+        let known = layout.columns.iter().enumerate().filter(|(k, _)| k % 3 != 0).map(|(_, column)| *column);
+        let known = Layout { columns: known.collect(), ..layout.clone() };
+        let Ok(path) = plan::<SpiralLattice>(&known, &[]).map(|plan| plan.path) else { continue };
+        flights.push(fly::<SpiralTangent>(&[], &Layout { path, ..layout }, robot, seed).unwrap());
+    }
+    flights
+}
+
+#[test]
+fn plans_that_do_not_know_every_third_column_are_flown_without_touching_any() {
+    for motion in [Motion::Point, Motion::Unicycle] {
+        let flights = flights_along_plans(motion, 300..312);
+        let arrived = flights.iter().filter(|flight| flight.completed).count();
+        assert!(flights.iter().all(|flight| flight.clearance_m > 0.0));
+        assert!(flights.len() >= 11 && arrived + 1 >= flights.len(), "{arrived} of {}", flights.len());
+    }
 }
 
 proptest! {
