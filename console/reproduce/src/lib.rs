@@ -10,6 +10,7 @@ mod planners;
 pub mod positioning;
 mod row;
 mod sample;
+pub mod coverage;
 pub mod spiral;
 mod study;
 pub mod traps;

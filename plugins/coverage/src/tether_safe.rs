@@ -41,7 +41,7 @@ const SUM_WRAP: ParamSpec = float("sum_wrap_deg", "Wrap in sum", "deg", 10.0, 36
 const TURN: ParamSpec = float("turn_m", "Price of a whole turn", "m", 0.0, 20.0, 1.0)
     .help("A path may be this much longer for every whole turn that it saves.")
     .group("Plan");
-const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.6)
+const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.55)
     .help("Touch-ups are added until this share of the floor in reach is scanned.")
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)

@@ -1,20 +1,10 @@
 use super::*;
-use planner_api::{Code, PoseEstimate, Reason, Task, testing::Bench};
+use crate::bench;
+use planner_api::{Code, testing::Bench};
 use trials::tanks::{CELL_M, Known, Tank};
 
-fn request_of<'a>(tank: &Tank, site: &'a Site<'a>, tether: Option<TetherLimits>) -> PlanRequest<'a> {
-    let start = PoseEstimate { position: tank.anchor, heading_rad: 0.0, covariance: Default::default() };
-    let task = Task::Cover { anchor: tank.anchor, regions: &[], tether, tolerance_m: 0.3 };
-    PlanRequest { reason: &Reason::Start, start, task, site, previous: &[] }
-}
-
 fn plan(tank: &Tank, values: &[(&str, f64)], tether: Option<TetherLimits>) -> (Result<Plan>, Bench) {
-    let bench = Bench::new();
-    let obstacles = tank.obstacles();
-    let site = tank.site(&obstacles);
-    let mut planner: TetherSafe = bench.configure(values, &site).unwrap();
-    let plan = planner.plan(&request_of(tank, &site, tether), &bench.ctx());
-    (plan, bench)
+    bench::plan::<TetherSafe>(tank, values, tether)
 }
 
 #[test]
