@@ -10,10 +10,10 @@ use world::Vector;
 /// Ranges of a cycle with sound that is 2 % slower than assumed.
 fn slow(draws: &mut Draws, stations: &[Station], truth: Point) -> Vec<Ranging> {
     let mut ranges = draws.rangings(stations, truth, Aggregation::Mean);
-    ranges.iter_mut().for_each(|r| {
+    for r in &mut ranges {
         r.range_m *= 1.02;
         r.sigma_m *= 1.02;
-    });
+    }
     ranges
 }
 
@@ -120,7 +120,7 @@ fn three_stations_tell_nothing_and_nonsense_is_refused() {
     assert_eq!(calibration.take(&draws.rangings(&stations, truth, Aggregation::Mean), None), Ok(false));
     let nonsense = [Ranging::single(world::StationId(1), f64::NAN, 0.1)];
     assert!(matches!(calibration.take(&nonsense, None), Err(FixError::BadRange { .. })));
-    assert_eq!(calibration.scale().0, 0.0);
+    assert!(calibration.scale().0.abs() < 1e-12);
 }
 
 #[test]

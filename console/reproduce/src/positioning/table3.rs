@@ -144,7 +144,8 @@ fn cells(case: Case) -> [Cell; 5] {
 fn printed(environment: &str, statistic: &str, nu: f64) -> Option<f64> {
     PRINTED.lines().find_map(|line| {
         let [name, what, level, value] = line.split(',').collect::<Vec<_>>()[..] else { return None };
-        let is_it = name == environment && what == statistic && level.parse::<f64>().ok()? == nu;
+        let is_it =
+            name == environment && what == statistic && (level.parse::<f64>().ok()? - nu).abs() < 1e-9;
         is_it.then(|| value.parse().ok()).flatten()
     })
 }
