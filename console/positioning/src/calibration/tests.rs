@@ -80,7 +80,9 @@ fn a_session_finds_where_the_stations_are() {
     let surveyed = ring(6, 7.5);
     let mut draws = Draws::new(0.05, 20, 7);
     let mut real = surveyed.clone();
-    real.iter_mut().for_each(|s| s.position += Vector::new(draws.bell(), draws.bell()) * 0.1);
+    for station in &mut real {
+        station.position += Vector::new(draws.bell(), draws.bell()) * 0.1;
+    }
     let mut calibration =
         // With the speed of sound free as well nobody could tell a large array from slow sound.
         Calibration::new(&surveyed, Unknowns { survey_sigma_m: 0.1, sound_sigma_ratio: 0.0 });
