@@ -10,6 +10,8 @@ mod checks;
 mod expect;
 mod floor;
 mod layout;
+mod map;
+mod occupancy;
 mod outline;
 mod planner_keys;
 mod problem;
@@ -68,7 +70,9 @@ impl Scenario {
     pub fn read_with(path: &Path, settings: &Settings) -> Result<Self, ScenarioErrors> {
         let shown_name = path.display().to_string();
         let text = read_text(path).map_err(|what| ScenarioErrors::of_file(&shown_name, what))?;
-        Self::parse_with(&text, &shown_name, settings)
+        let (text, shown_name) = with_settings(&text, &shown_name, settings)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse(&map::put_in(&text, &shown_name, folder)?, &shown_name)
     }
 
     /// Reads a scenario from its text; `shown_name` is what messages call it.
@@ -92,13 +96,23 @@ impl Scenario {
     /// # Errors
     /// Everything that is wrong with it or with the settings.
     pub fn parse_with(text: &str, shown_name: &str, settings: &Settings) -> Result<Self, ScenarioErrors> {
-        if settings.is_empty() {
-            return Self::parse(text, shown_name);
-        }
-        DeTable::parse(text).map_err(|error| syntax_error(text, shown_name, &error))?;
-        let changed = settings.put_into(text).map_err(|what| ScenarioErrors::of_file(shown_name, what))?;
-        Self::parse(&changed, &format!("{shown_name} with {settings}"))
+        let (text, shown_name) = with_settings(text, shown_name, settings)?;
+        Self::parse(&text, &shown_name)
     }
+}
+
+/// The text with the settings in it, and what messages call it.
+fn with_settings(
+    text: &str,
+    shown_name: &str,
+    settings: &Settings,
+) -> Result<(String, String), ScenarioErrors> {
+    if settings.is_empty() {
+        return Ok((text.to_owned(), shown_name.to_owned()));
+    }
+    DeTable::parse(text).map_err(|error| syntax_error(text, shown_name, &error))?;
+    let changed = settings.put_into(text).map_err(|what| ScenarioErrors::of_file(shown_name, what))?;
+    Ok((changed, format!("{shown_name} with {settings}")))
 }
 
 fn read_text(path: &Path) -> Result<String, Complaint> {

@@ -1,6 +1,6 @@
 //! The mission's own map: the drawing, and what was found on the way.
 
-use crate::{config::MissionConfig, event::EventKind};
+use crate::{config::MissionConfig, drift::Drift, event::EventKind};
 use nalgebra::{Isometry2, Translation2};
 use planner_api as api;
 use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, World, ZoneKind};
@@ -9,6 +9,8 @@ use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, Wor
 const MOVED_M: f64 = 0.05;
 /// Sightings that count in the running mean of a found obstacle's place.
 const MEMORY: f64 = 50.0;
+/// What moves is forgotten when it was out of sight for this long, seconds.
+const OUT_OF_SIGHT_S: f64 = 2.0;
 
 /// Drawing and found obstacles, with an index for queries.
 pub struct Chart {
@@ -20,6 +22,7 @@ pub struct Chart {
     swath_m: f64,
     clearance_m: f64,
     seed: u64,
+    now_s: f64,
 }
 
 struct Found {
@@ -28,6 +31,15 @@ struct Found {
     index: usize,
     sightings: f64,
     told_at: Point,
+    drift: Drift,
+}
+
+/// What sightings changed on the chart.
+pub struct Seen {
+    /// What is new.
+    pub events: Vec<EventKind>,
+    /// Whether a plan may no longer be right; what merely goes on moving is left to the next steps.
+    pub changes_plans: bool,
 }
 
 impl Chart {
@@ -43,6 +55,7 @@ impl Chart {
             swath_m: config.lane_m(),
             clearance_m: config.clearance_m,
             seed,
+            now_s: 0.0,
         }
     }
 
@@ -56,29 +69,41 @@ impl Chart {
         &self.map
     }
 
-    /// Puts sightings on the chart, seen from an estimated pose; tells what is new.
+    /// Puts sightings on the chart, seen at a time, in seconds, from an estimated pose; tells what is new.
     ///
     /// The obstacle tracker knows the columns of the drawing again, so only others are put in.
-    pub fn see(&mut self, sightings: &[Sighting], from: &Pose) -> Vec<EventKind> {
+    pub fn see(&mut self, now_s: f64, sightings: &[Sighting], from: &Pose) -> Seen {
+        self.now_s = now_s;
         let mut events = Vec::new();
+        let mut changes_plans = false;
         for sighting in sightings {
             let on_drawing = self.world.obstacles.iter().any(|o| o.known && o.id == sighting.id);
             if !on_drawing {
                 let shape = sighting.shape_in_robot.transformed(&from.tank_from_robot());
-                events.extend(self.place(sighting.id, shape));
+                let did_move = self.velocity(sighting.id).is_some();
+                let event = self.place(sighting.id, shape);
+                let moves = self.velocity(sighting.id).is_some();
+                changes_plans |= did_move != moves || (event.is_some() && !moves);
+                events.extend(event);
             }
         }
         if !events.is_empty() {
             self.revision += 1;
             self.map = ObstacleMap::new(&self.world.boundary, &self.world.obstacles);
         }
-        events
+        Seen { events, changes_plans }
     }
 
     fn place(&mut self, id: ObstacleId, shape: Shape) -> Option<EventKind> {
+        let now_s = self.now_s;
         let Some(found) = self.found.iter_mut().find(|found| found.id == id) else {
             return Some(self.add(id, shape));
         };
+        found.drift.see(now_s, shape.center());
+        if found.drift.velocity().is_some() {
+            // A mean of places would lag behind.
+            found.sightings = 0.0;
+        }
         let obstacle = &mut self.world.obstacles[found.index];
         let center = obstacle.shape.center();
         let mean = center + (shape.center() - center) / (found.sightings + 1.0);
@@ -94,7 +119,9 @@ impl Chart {
     fn add(&mut self, id: ObstacleId, shape: Shape) -> EventKind {
         let name = format!("found {}", self.found.len() + 1);
         let told_at = shape.center();
-        self.found.push(Found { id, index: self.world.obstacles.len(), sightings: 1.0, told_at });
+        let mut drift = Drift::default();
+        drift.see(self.now_s, told_at);
+        self.found.push(Found { id, index: self.world.obstacles.len(), sightings: 1.0, told_at, drift });
         let obstacle = Obstacle { id, name, shape, known: false };
         self.world.obstacles.push(obstacle.clone());
         EventKind::ObstacleFound { obstacle }
@@ -102,7 +129,8 @@ impl Chart {
 
     /// Calls `ask` with the whole chart in the form that planners read.
     pub fn with_site<R>(&self, ask: impl FnOnce(&api::Site<'_>) -> R) -> R {
-        let obstacles: Vec<api::Obstacle<'_>> = self.world.obstacles.iter().map(obstacle_of).collect();
+        let obstacles: Vec<api::Obstacle<'_>> =
+            (0..self.world.obstacles.len()).filter_map(|index| self.told(index)).collect();
         let zones: Vec<api::Zone<'_>> = self
             .world
             .zones
@@ -124,11 +152,30 @@ impl Chart {
     /// The obstacles within sensing range of a point, in the form that planners read.
     pub fn near(&self, point: Point) -> Vec<api::Obstacle<'_>> {
         let reach_m = self.limits.sensing_range_m + self.limits.radius_m;
-        self.map
-            .within(point, reach_m)
-            .iter()
-            .map(|near| obstacle_of(&self.world.obstacles[near.index]))
-            .collect()
+        self.map.within(point, reach_m).iter().filter_map(|near| self.told(near.index)).collect()
+    }
+
+    /// An obstacle in the form that planners read; none for one that moved away out of sight.
+    fn told(&self, index: usize) -> Option<api::Obstacle<'_>> {
+        let obstacle = obstacle_of(&self.world.obstacles[index]);
+        let Some(found) = self.found.iter().find(|found| found.index == index) else { return Some(obstacle) };
+        let Some(velocity_m_per_s) = found.drift.velocity() else { return Some(obstacle) };
+        let in_sight = self.now_s - found.drift.seen_s() <= OUT_OF_SIGHT_S;
+        in_sight.then_some(api::Obstacle { velocity_m_per_s, ..obstacle })
+    }
+
+    /// Whether an event tells of something that moves.
+    pub fn moves(&self, event: &EventKind) -> bool {
+        match event {
+            EventKind::ObstacleFound { obstacle } | EventKind::ObstacleMoved { obstacle, .. } => {
+                self.velocity(obstacle.id).is_some()
+            }
+            _ => false,
+        }
+    }
+
+    fn velocity(&self, id: ObstacleId) -> Option<world::Vector> {
+        self.found.iter().find(|found| found.id == id)?.drift.velocity()
     }
 }
 

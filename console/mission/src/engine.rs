@@ -18,7 +18,11 @@ use crate::{
     tether::Tether,
 };
 use planner_api::{Drive, Reason};
+use tethering::Cuts;
 use world::{CoverageGrid, Floor, FloorMaker, Point, Readings, World};
+
+/// A robot that is stuck again within this distance is stuck in the same place, metres.
+const SAME_PLACE_M: f64 = 1.0;
 
 /// What enters the engine in one tick.
 #[derive(Debug, Clone, Copy)]
@@ -54,11 +58,17 @@ pub struct Mission {
     surveyor: Option<FloorMaker>,
     /// `None` without a tether, or if its anchor cannot be.
     tether: Option<Tether>,
+    /// What the plan keeps to.
+    cuts: Cuts,
     /// What the cable reached in this tick.
     cable_trouble: Option<TetherAlarm>,
     planner: Seat,
     stuck: StuckWatch,
     lost_s: f64,
+    /// For how long the planner has said that it is stuck, seconds.
+    blocked_s: f64,
+    /// Where the robot was stuck last and got another plan.
+    replanned_at: Option<Point>,
     trail: Vec<Point>,
     plan: Option<Follower>,
     last_drive: Drive,
@@ -108,6 +118,7 @@ impl Mission {
                 .tether
                 .as_ref()
                 .and_then(|tether| Tether::new(tether, config.limits.radius_m, &drawing, start).ok()),
+            cuts: Cuts { lines: Vec::new(), beyond: false, seen_at: start },
             cable_trouble: None,
             phase: Phase::Waiting,
             locator: Locator::new(&config, &drawing),
@@ -125,6 +136,8 @@ impl Mission {
             },
             stuck: StuckWatch::new(config.stuck_s),
             lost_s: 0.0,
+            blocked_s: 0.0,
+            replanned_at: None,
             trail: vec![start],
             plan: None,
             last_drive: Drive::STILL,
@@ -200,8 +213,24 @@ impl Mission {
         } else if self.watch_tether() {
             // Told and done.
         } else if self.stuck.is_stuck(&self.task, here, self.config.tick_s) {
-            self.stop_stuck(here);
+            if !self.tries_another_plan(here) {
+                self.stop_stuck(here);
+            }
+        } else {
+            self.task.wait(self.config.tick_s);
         }
+    }
+
+    /// A robot that is stuck in its lanes gets another plan from where it stands, once at each place.
+    fn tries_another_plan(&mut self, here: Point) -> bool {
+        let tried = self.replanned_at.is_some_and(|at| (here - at).norm() < SAME_PLACE_M);
+        if tried || !matches!(self.task, Task::Cover(_)) {
+            return false;
+        }
+        self.replanned_at = Some(here);
+        self.planner.plan_due.get_or_insert(Reason::Blocked);
+        self.stuck.reset();
+        true
     }
 
     /// An operator may know a way on; without one the mission is over.

@@ -74,6 +74,16 @@ impl Follower {
             .min(self.next_corner());
     }
 
+    /// Distance to the next corner, metres; `None` without one.
+    pub fn corner_m(&self, position: Point) -> Option<f64> {
+        self.corners.front().map(|corner| (self.path[*corner] - position).norm())
+    }
+
+    /// Counts the next corner as reached: the robot cannot come nearer.
+    pub fn give_up_corner(&mut self) {
+        self.nearest = self.corners.pop_front().unwrap_or(self.nearest);
+    }
+
     /// The next corner, or the end of the path.
     fn next_corner(&self) -> usize {
         self.corners.front().copied().unwrap_or(self.path.len() - 1)

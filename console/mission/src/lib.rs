@@ -8,6 +8,7 @@
 
 mod chart;
 pub mod config;
+mod drift;
 pub mod drive;
 pub mod engine;
 pub mod event;

@@ -78,6 +78,13 @@ impl Task {
         }
     }
 
+    /// Takes some time of moving.
+    pub fn wait(&mut self, passed_s: f64) {
+        if let Self::Cover(cover) = self {
+            cover.wait(passed_s);
+        }
+    }
+
     /// Takes a plan that was made for what is left of the task.
     pub fn take_plan(&mut self, plan: &api::Plan) {
         if let Self::Cover(cover) = self {

@@ -1,9 +1,11 @@
-//! Time of one fix from 60 ranges and of one step of the filter.
+//! Times of fixes from 60 ranges, of eight stations with liars among them, and of steps of the filters.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Matrix2;
 use positioning::{
-    Aggregation, Ekf, LinearLs, MotionNoise, Nls, PositionSolver, Positioner, PositionerConfig, RangeNoise,
+    Aggregation, Bounded, Calibration, Consensus, Ekf, FixedLag, LinearLs, MotionNoise, Nls, Particles,
+    ParticlesConfig, PositionSolver, Positioner, PositionerConfig, RangeNoise, Screened, Unknowns,
+    WeightedLinear,
 };
 use rand::{RngExt, SeedableRng};
 use std::hint::black_box;
@@ -29,15 +31,33 @@ fn cycle(stations: &[Station]) -> Vec<RangeSet> {
     stations.iter().map(set).collect()
 }
 
+fn ring(n: u32) -> Vec<Station> {
+    let angle = |k: u32| std::f64::consts::TAU * f64::from(k) / f64::from(n);
+    (0..n)
+        .map(|k| Station {
+            id: StationId(k + 1),
+            name: format!("S{k}"),
+            position: Point::new(7.5 * angle(k).cos(), 7.5 * angle(k).sin()),
+        })
+        .collect()
+}
+
 fn fixes(criterion: &mut Criterion) {
     let stations = stations();
     let sets = cycle(&stations);
-    let solve = |solver: &dyn PositionSolver| {
-        let rangings = Aggregation::Mean.aggregate(black_box(&sets), &NOISE).expect("usable ranges");
+    let solve = |how: Aggregation, solver: &dyn PositionSolver| {
+        let rangings = how.aggregate(black_box(&sets), &NOISE).expect("usable ranges");
         solver.solve(&rangings, &stations, None).expect("a fix")
     };
-    criterion.bench_function("fix of 60 ranges, linear", |b| b.iter(|| solve(&LinearLs)));
-    criterion.bench_function("fix of 60 ranges, nls", |b| b.iter(|| solve(&Nls)));
+    let mut bench = |name: &str, how: Aggregation, solver: &dyn PositionSolver| {
+        criterion.bench_function(&format!("fix of 60 ranges, {name}"), |b| b.iter(|| solve(how, solver)));
+    };
+    bench("linear", Aggregation::Mean, &LinearLs);
+    bench("weighted linear", Aggregation::Mean, &WeightedLinear);
+    bench("nls", Aggregation::Mean, &Nls);
+    bench("nls on trimmed means", Aggregation::TrimmedMean, &Nls);
+    bench("nls on posterior means", Aggregation::Posterior, &Nls);
+    bench("bounded", Aggregation::Mean, &Bounded { ratio: 0.05 });
     let start = Pose { position: TRUTH, heading_rad: 0.0 };
     let mut positioner = Positioner::new(PositionerConfig::new(stations.clone(), start));
     criterion.bench_function("cycle of 60 ranges, nls and filter", |b| {
@@ -45,17 +65,68 @@ fn fixes(criterion: &mut Criterion) {
     });
 }
 
+/// Eight stations, of which two hear the robot late.
+fn eight_stations(criterion: &mut Criterion) {
+    let stations = ring(8);
+    let mut sets = cycle(&stations);
+    for late in [2, 5] {
+        sets[late].ranges_m.iter_mut().for_each(|range_m| *range_m += 1.0);
+    }
+    let solve = |solver: &dyn PositionSolver| {
+        let rangings = Aggregation::Mean.aggregate(black_box(&sets), &NOISE).expect("usable ranges");
+        solver.solve(&rangings, &stations, None).expect("a fix")
+    };
+    criterion.bench_function("8 stations, consensus", |b| b.iter(|| solve(&Consensus::default())));
+    criterion.bench_function("8 stations, screened nls", |b| b.iter(|| solve(&Screened(Nls))));
+    let mut calibration = Calibration::new(&stations, Unknowns::default());
+    let rangings = Aggregation::Mean.aggregate(&cycle(&stations), &NOISE).expect("usable ranges");
+    criterion.bench_function("8 stations, cycle into the calibration", |b| {
+        b.iter(|| calibration.take(black_box(&rangings), None));
+    });
+}
+
 fn filter(criterion: &mut Criterion) {
     let odometry = Odometry { forward_m: 0.03, sideways_m: 0.0, turn_rad: 0.01 };
     let covariance = Matrix2::identity() * 0.0025;
-    let mut ekf = Ekf::new(Pose::new(0.0, 0.0, 0.0), 0.05, 0.05, MotionNoise::default());
+    let fresh = || Ekf::new(Pose::new(3.0, -4.0, 0.0), 0.05, 0.05, MotionNoise::default());
+    let mut ekf = fresh();
     criterion.bench_function("filter step: predict and update", |b| {
         b.iter(|| {
             ekf.predict(black_box(&odometry));
             ekf.update_position(ekf.pose().position, &covariance)
         });
     });
+    let stations = stations();
+    let ranges = Aggregation::Mean.aggregate(&cycle(&stations), &NOISE).expect("usable ranges");
+    let begun = fresh();
+    criterion.bench_function("filter step: predict and update by 3 ranges", |b| {
+        b.iter(|| {
+            let mut ekf = begun.clone();
+            ekf.predict(black_box(&odometry));
+            ekf.update_ranges(&ranges, &stations)
+        });
+    });
+    let mut smoother = FixedLag::new(fresh(), 10);
+    (0..10).for_each(|_| smoother.predict(&odometry));
+    criterion.bench_function("look back over 10 motions", |b| b.iter(|| black_box(&smoother).oldest()));
+    let config = ParticlesConfig {
+        count: 2000,
+        ratio: 0.05,
+        odometry: MotionNoise::default(),
+        slip_chance: 0.02,
+        seed: 1,
+    };
+    let particles = Particles::new(Pose::new(3.0, -4.0, 0.0), 0.05, 0.05, config);
+    criterion.bench_function("2000 particles: predict, update, renew", |b| {
+        b.iter(|| {
+            let mut particles = particles.clone();
+            particles.predict(black_box(&odometry));
+            particles.update(&ranges, &stations).expect("bounds hold");
+            particles.renew(&ranges, &stations);
+            particles
+        });
+    });
 }
 
-criterion_group!(benches, fixes, filter);
+criterion_group!(benches, fixes, eight_stations, filter);
 criterion_main!(benches);

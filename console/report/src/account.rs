@@ -266,7 +266,7 @@ fn critical_zone(run: &RunOpened, grid: &CoverageGrid) -> CriticalZone {
     let why = match scanned {
         _ if done => None,
         None => Some(format!("cells of {} m are too coarse to see it", floor.cell_m)),
-        Some(_) if gap_m > 0.0 => Some(format!("the tool ends {gap_m:.3} m before the shell")),
+        Some(_) if gap_m > 1e-3 => Some(format!("the tool ends {gap_m:.3} m before the shell")),
         Some(share) => Some(format!("{:.1} % of it scanned", 100.0 * share)),
     };
     CriticalZone { width_m: CRITICAL_ZONE_M, scanned, done, why }

@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod bench;
+pub mod coverage;
 pub mod fields;
 mod planners;
 pub mod positioning;

@@ -1,6 +1,6 @@
 //! What can be reproduced.
 
-use crate::{bench::Bench, fields, positioning, row::Row, spiral, traps};
+use crate::{bench::Bench, coverage, fields, positioning, row::Row, spiral, traps};
 use mission::Fault;
 
 /// What a study is asked for.
@@ -68,7 +68,8 @@ pub struct Study {
 }
 
 /// Every study.
-pub const STUDIES: &[&[Study]] = &[spiral::STUDIES, traps::STUDIES, fields::STUDIES, positioning::STUDIES];
+pub const STUDIES: &[&[Study]] =
+    &[spiral::STUDIES, traps::STUDIES, fields::STUDIES, positioning::STUDIES, coverage::STUDIES];
 
 /// The study of this name.
 pub fn study(name: &str) -> Option<&'static Study> {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use world::{Amphibious, Point, Pose, StationId, World};
+use world::{Amphibious, ObstacleId, Point, Pose, StationId, World};
 
 /// How ranges scatter about the true distance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -134,6 +134,33 @@ pub struct RobotConfig {
     pub amphibious: Option<Amphibious>,
 }
 
+/// An obstacle that moves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Mover {
+    /// Which one.
+    pub id: ObstacleId,
+    /// How.
+    pub track: Track,
+}
+
+/// How an obstacle moves; it does not turn, and nothing stops it but the wall.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Track {
+    /// Straight on, and back again from the wall.
+    Straight {
+        /// Metres per second, tank frame.
+        velocity_m_per_s: Vector2<f64>,
+    },
+    /// From where it stands to one place after the other, and back the same way, for ever.
+    Waypoints {
+        /// The places, metres.
+        points: Vec<Point>,
+        /// Metres per second.
+        speed_m_per_s: f64,
+    },
+}
+
 /// Everything that the simulator needs besides the seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SimConfig {
@@ -145,6 +172,9 @@ pub struct SimConfig {
     pub ae: Option<AeConfig>,
     /// Length of a tick, seconds.
     pub tick_s: f64,
+    /// Obstacles that move.
+    #[serde(default)]
+    pub movers: Vec<Mover>,
     /// Where the tether is made fast, metres; `None` for a robot without one.
     #[serde(default)]
     pub tether_anchor: Option<Point>,

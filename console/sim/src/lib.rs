@@ -9,13 +9,15 @@ pub mod ranging;
 pub mod simulator;
 
 mod motion;
+mod movers;
 mod sweep;
 
 mod chance;
 mod sight;
 
 pub use config::{
-    AeConfig, BehindColumns, Disturbances, Drive, NoiseModel, RobotConfig, SimConfig, StationFault, Truth,
+    AeConfig, BehindColumns, Disturbances, Drive, Mover, NoiseModel, RobotConfig, SimConfig, StationFault,
+    Track, Truth,
 };
 pub use ranging::Sounder;
 pub use simulator::Simulator;

@@ -4,6 +4,7 @@ use crate::{
     chance::{Chance, normal},
     config::{Drive, SimConfig, TetherTruth, Truth},
     motion::{Arc, Tracks, bounded},
+    movers::Movers,
     ranging::Sounder,
     sight::sightings,
     sweep::sweep,
@@ -20,6 +21,7 @@ const CONTACT_GAP_M: f64 = 1e-3;
 pub struct Simulator {
     config: SimConfig,
     map: ObstacleMap,
+    movers: Movers,
     chance: Chance,
     tracks: Tracks,
     sounder: Option<Sounder>,
@@ -38,6 +40,7 @@ impl Simulator {
         let map = ObstacleMap::new(&config.world.boundary, &config.world.obstacles);
         let mut simulator = Self {
             map,
+            movers: Movers::new(&config.movers, &config.world.obstacles),
             chance: Chance::new(seed),
             tracks: Tracks::new(&config.robot, config.tick_s),
             sounder: config.ae.clone().map(|ae| Sounder::new(ae, &config.world, seed)),
@@ -81,7 +84,9 @@ impl Simulator {
         self.pose = reached.pose;
         self.odometry = self.measured(&told);
         let touched_before = self.in_contact;
-        self.in_contact = reached.is_blocked || (touched_before && self.clearance_m() < CONTACT_GAP_M);
+        let is_run_into = self.move_obstacles();
+        self.in_contact =
+            reached.is_blocked || is_run_into || (touched_before && self.clearance_m() < CONTACT_GAP_M);
         self.collided = self.in_contact && !touched_before;
         if reached.is_blocked {
             self.tracks.stop();
@@ -118,6 +123,17 @@ impl Simulator {
         let medium = Medium::at(&self.config.world.zones, self.pose.position);
         self.mode = self.mode.toward(medium, amphibious.transition_steps);
         self.tracks.limit(amphibious.pace(self.mode));
+    }
+
+    /// Moves what moves; whether something runs into the hull.
+    fn move_obstacles(&mut self) -> bool {
+        if self.movers.is_empty() {
+            return false;
+        }
+        let world = &mut self.config.world;
+        self.movers.advance(&mut world.obstacles, &world.boundary, self.config.tick_s.max(0.0));
+        self.map = ObstacleMap::new(&world.boundary, &world.obstacles);
+        self.clearance_m() < 0.0
     }
 
     fn radius_m(&self) -> f64 {

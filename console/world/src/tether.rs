@@ -26,5 +26,6 @@ mod tests;
 
 pub use cable::{Bearing, Cable, Contact, TetherError, capstan_factor};
 pub use certificate::{Case, Certificate, Limits, certify};
+pub use cuts::crossings;
 pub use ground::Ground;
 pub use word::Word;

@@ -70,7 +70,8 @@ impl Planner for ApfDwa {
         let at = run.path[run.path.len() - 1];
         let missing_m = (goal - at).norm();
         let shortfall = (!run.arrived).then_some(judge::Shortfall::Short { missing_m, at });
-        Ok(offline::told(judge::Walk { path: run.path, shortfall }, &scene, site.clearance_m, ctx))
+        let clearance_m = self.ground.path_clearance_m(&run.path, site.clearance_m + 1.0);
+        Ok(offline::told(judge::Walk { path: run.path, shortfall }, clearance_m, site.clearance_m, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

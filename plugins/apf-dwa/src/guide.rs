@@ -17,8 +17,13 @@ const PASSED_M: f64 = 0.35;
 const ROOM_M: f64 = 0.25;
 /// Attempts with less and less room.
 const ATTEMPTS: u32 = 6;
-/// The way is looked for anew after so many steps, and whenever the map changes.
-const FRESH_STEPS: usize = 20;
+/// Whether the way is still free is looked at after so many steps; it is looked for anew when it is not, and whenever
+/// the map changes.
+const LOOK_STEPS: usize = 20;
+/// It is looked for anew after so many steps anyway: the robot has moved aside.
+const FRESH_STEPS: usize = 40;
+/// A way counts as free with this much less room than the window keeps, metres.
+const SLACK_M: f64 = 0.03;
 
 /// Where virtual goals come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -119,10 +124,20 @@ impl Guide {
 
     /// Toward the first corner of the shortest way that is not passed yet, as strongly as toward a goal.
     fn toward_corner(&mut self, field: &Field, ground: &Ground, at: Point, goal: Point) -> Vector {
-        self.age = self.age.saturating_add(1);
-        if self.age > FRESH_STEPS {
-            self.way = shortest_way(ground, at, goal, field.keep_m);
-            self.age = 0;
+        let leads_elsewhere = self.way.last().is_none_or(|end| (end - goal).norm() > 1e-6);
+        if self.age == usize::MAX || leads_elsewhere {
+            self.find_way(field, ground, at, goal);
+        }
+        self.age += 1;
+        if self.age.is_multiple_of(LOOK_STEPS) {
+            let margin_m = field.keep_m - ground.hull_m - SLACK_M;
+            while self.way.len() > 1 && ground.is_free(at, self.way[1], margin_m + SLACK_M + ROOM_M / 2.0) {
+                self.way.remove(0);
+            }
+            let corner = self.way.first().copied().unwrap_or(goal);
+            if self.age >= FRESH_STEPS || !ground.is_free(at, corner, margin_m) {
+                self.find_way(field, ground, at, goal);
+            }
         }
         while self.way.len() > 1 && (self.way[0] - at).norm() < PASSED_M {
             self.way.remove(0);
@@ -130,6 +145,11 @@ impl Guide {
         let corner = self.way.first().copied().unwrap_or(goal);
         let pull = field.square.attraction(at, goal, None).norm().max(field.square.k_att);
         (corner - at).try_normalize(1e-9).unwrap_or_else(Vector::zeros) * pull
+    }
+
+    fn find_way(&mut self, field: &Field, ground: &Ground, at: Point, goal: Point) {
+        self.way = shortest_way(ground, at, goal, field.keep_m);
+        self.age = 0;
     }
 
     fn stalled(&mut self, at: Point) -> bool {

@@ -14,6 +14,34 @@ pub struct Disc {
     pub velocity: Vector,
 }
 
+/// A straight bar, perhaps moving: a piece of a pipe, or of a straight wall.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bar {
+    from: Point,
+    along: Vector,
+    /// One over its squared length; 0 for a bar without length.
+    inverse: f64,
+    half_width_m: f64,
+    velocity: Vector,
+}
+
+impl Bar {
+    /// Everything within a distance of a segment.
+    pub fn new(a: Point, b: Point, half_width_m: f64, velocity: Vector) -> Self {
+        let along = b - a;
+        let squared = along.norm_squared();
+        let inverse = if squared > 1e-18 { 1.0 / squared } else { 0.0 };
+        Self { from: a, along, inverse, half_width_m, velocity }
+    }
+
+    /// Squared distance of a point from its middle line, once the bar has moved by `moved`.
+    fn squared(&self, point: Point, moved: Vector) -> f64 {
+        let off = point - self.from - moved;
+        let share = (off.dot(&self.along) * self.inverse).clamp(0.0, 1.0);
+        (off - self.along * share).norm_squared()
+    }
+}
+
 /// A thing of any other form, perhaps moving.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Other {
@@ -28,7 +56,9 @@ pub struct Other {
 pub struct NearThings {
     /// Round ones.
     pub discs: Vec<Disc>,
-    /// Others, pieces of a straight wall among them.
+    /// Straight ones, pieces of a straight wall among them.
+    pub bars: Vec<Bar>,
+    /// Others.
     pub others: Vec<Other>,
     /// Radius of a round wall, metres, if it is near.
     pub round_wall_m: Option<f64>,
@@ -47,19 +77,20 @@ impl NearThings {
             }
             Boundary::Polygon { vertices } => {
                 let edges = vertices.iter().zip(vertices.iter().cycle().skip(1));
-                let parts = edges.map(|(a, b)| Part::Capsule { a: *a, b: *b, half_width_m: 0.0 });
-                let near_parts = parts.filter(|part| part.distance(at).0 < reach_m);
-                near.others.extend(near_parts.map(|part| Other { part, velocity: Vector::zeros() }));
+                let bars = edges.map(|(a, b)| Bar::new(*a, *b, 0.0, Vector::zeros()));
+                near.bars.extend(bars.filter(|bar| bar.squared(at, Vector::zeros()) < reach_m * reach_m));
             }
         }
         near
     }
 
     fn add(&mut self, solid: &Solid, velocity: Vector) {
-        if solid.corners().len() == 1 {
-            self.discs.push(Disc { center: solid.center, radius_m: solid.radius_m, velocity });
-        } else {
-            self.others.push(Other { part: solid.part.clone(), velocity });
+        match &solid.part {
+            _ if solid.corners().len() == 1 => {
+                self.discs.push(Disc { center: solid.center, radius_m: solid.radius_m, velocity });
+            }
+            Part::Capsule { a, b, half_width_m } => self.bars.push(Bar::new(*a, *b, *half_width_m, velocity)),
+            part @ Part::Polygon { .. } => self.others.push(Other { part: part.clone(), velocity }),
         }
     }
 
@@ -67,7 +98,15 @@ impl NearThings {
     /// `cap_m`. The first point is reached after `dt_s`.
     pub fn distance_m(&self, points: &[Point], dt_s: f64, cap_m: f64) -> f64 {
         let mut least = cap_m;
+        let Some(first) = points.first() else { return least };
+        let span_m = points.iter().map(|p| (p - first).norm_squared()).fold(0.0, f64::max).sqrt();
+        let last_s = dt_s * points.len() as f64;
         for disc in &self.discs {
+            // Nothing that is too far from the first point for the others to come near.
+            let reach_m = least + span_m + disc.radius_m + disc.velocity.norm() * last_s;
+            if (first - disc.center).norm_squared() > reach_m * reach_m {
+                continue;
+            }
             let step = disc.velocity * dt_s;
             let mut center = disc.center;
             let mut squared = f64::INFINITY;
@@ -76,6 +115,20 @@ impl NearThings {
                 squared = squared.min((point - center).norm_squared());
             }
             least = least.min(squared.sqrt() - disc.radius_m);
+        }
+        for bar in &self.bars {
+            let reach_m = least + span_m + bar.half_width_m + bar.velocity.norm() * last_s;
+            if bar.squared(*first, Vector::zeros()) > reach_m * reach_m {
+                continue;
+            }
+            let step = bar.velocity * dt_s;
+            let mut moved = Vector::zeros();
+            let mut squared = f64::INFINITY;
+            for point in points {
+                moved += step;
+                squared = squared.min(bar.squared(*point, moved));
+            }
+            least = least.min(squared.sqrt() - bar.half_width_m);
         }
         for other in &self.others {
             let step = other.velocity * dt_s;

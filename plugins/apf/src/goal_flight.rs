@@ -27,8 +27,7 @@ pub struct GoalFlight {
 pub struct Checked {
     /// From where to where.
     pub trip: Trip,
-    scene: Scene,
-    clearance_m: f64,
+    demanded_m: f64,
 }
 
 impl GoalFlight {
@@ -55,7 +54,7 @@ impl GoalFlight {
         self.nearby.forget();
         let steps_max = (DETOUR * (goal - start).norm() / step_m) as usize + SPARE_STEPS;
         let trip = Trip { start, goal, tolerance_m, steps_max };
-        Ok(Checked { trip, scene, clearance_m: request.site.clearance_m })
+        Ok(Checked { trip, demanded_m: request.site.clearance_m })
     }
 
     /// Takes what is sensed, and flies along the force that `force` gives for the place and the map.
@@ -100,7 +99,8 @@ impl GoalFlight {
 
 impl Checked {
     /// A walk as a plan; what is wrong with it is said in the log.
-    pub fn told(&self, walk: Walk, ctx: &Ctx<'_>) -> Plan {
-        offline::told(walk, &self.scene, self.clearance_m, ctx)
+    pub fn told(&self, walk: Walk, ground: &Ground, ctx: &Ctx<'_>) -> Plan {
+        let clearance_m = ground.path_clearance_m(&walk.path, self.demanded_m + 1.0);
+        offline::told(walk, clearance_m, self.demanded_m, ctx)
     }
 }

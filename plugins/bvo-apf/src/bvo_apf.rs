@@ -71,7 +71,7 @@ impl Planner for BvoApf {
         show_virtual(&machine, ctx);
         ctx.scalar("retreats", f64::from(machine.retreats), "");
         ctx.scalar("virtual_circles", machine.virtual_circles().count() as f64, "");
-        Ok(judged(walked, &machine, &scene, goal, request.site.clearance_m, ctx))
+        Ok(judged(walked, &machine, &self.ground, goal, request.site.clearance_m, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
@@ -224,7 +224,7 @@ fn show_virtual(machine: &Machine, ctx: &Ctx<'_>) {
 fn judged(
     walked: Walked,
     machine: &Machine,
-    scene: &Scene,
+    ground: &Ground,
     goal: Point,
     demanded_m: f64,
     ctx: &Ctx<'_>,
@@ -235,7 +235,8 @@ fn judged(
         _ => judge::Shortfall::Short { missing_m: (goal - end).norm(), at: end },
     });
     let walk = judge::Walk { path: walked.path, shortfall };
-    offline::told(walk, scene, demanded_m, ctx)
+    let clearance_m = ground.path_clearance_m(&walk.path, demanded_m + 1.0);
+    offline::told(walk, clearance_m, demanded_m, ctx)
 }
 
 #[cfg(test)]

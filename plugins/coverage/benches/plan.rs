@@ -9,7 +9,8 @@ fn plan(tank: &Tank) -> Plan {
     let (bench, obstacles) = (Bench::new(), tank.obstacles());
     let site = tank.site(&obstacles);
     let mut planner: TetherSafe = bench.configure(&[], &site).expect("the defaults fit");
-    let start = PoseEstimate { position: tank.anchor, heading_rad: 0.0, covariance: Default::default() };
+    let start =
+        PoseEstimate { position: tank.anchor, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
     let task = Task::Cover { anchor: tank.anchor, regions: &[], tether: None, tolerance_m: 0.3 };
     let request = PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[] };
     planner.plan(&request, &bench.ctx()).expect("there is a plan")

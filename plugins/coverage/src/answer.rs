@@ -64,9 +64,9 @@ pub fn no_room(ground: &Ground) -> PlannerError {
 }
 
 /// Path, legs and cuts of a scan, from where the robot is, after a way on which the cable is taken in.
-pub fn plan_of(scan: &Scan, start: Point, retract: Vec<Point>) -> Plan {
+pub fn plan_of(scan: &Scan, start: Point, retract: &[Point]) -> Plan {
     let mut plan = Plan { path: vec![start], complete: true, ..Plan::default() };
-    add_leg(&mut plan, LegTag::Retract, &retract);
+    add_leg(&mut plan, LegTag::Retract, retract);
     let last = scan.pieces.len().saturating_sub(1);
     for (k, piece) in scan.pieces.iter().enumerate() {
         let tag = match (piece.is_lane, k == 0 || k == last) {

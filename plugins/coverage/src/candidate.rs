@@ -1,10 +1,11 @@
 //! Candidates of a tether-safe plan: what is tried, what each one is worth, and which are worth showing.
 
 use crate::{
-    cuts::CutRule,
+    cuts::{CutRule, cuts},
     ground::Ground,
     lanes::{Pattern, Reach},
     scan::{Recipe, Scan, rotation_turns},
+    slit::Slit,
     tour::Effort,
 };
 use planner_api::Site;
@@ -14,8 +15,14 @@ use world::{
     tether::{Cable, Case, Certificate, Limits, certify},
 };
 
-/// Part of the cable's slack that the cuts may use up; the rest is for what they do not foresee.
-const SLACK_SHARE: f64 = 0.8;
+/// Share of the cable's slack by which cuts across the lanes may lengthen the way to their far end; more gains nothing.
+const SLACK_ACROSS: f64 = 0.8;
+/// The same for cuts along straight lanes, tried in this order until the cable keeps its limit: it seldom gets as long
+/// as a single cut makes one fear.
+const SLACKS_ALONG: [f64; 7] = [3.0, 2.2, 1.7, 1.3, 1.0, 0.8, 0.5];
+
+/// The hull goes round a column further out than the cable does; by about this share of the least cable.
+const AROUND_SHARE: f64 = 0.018;
 
 /// What the operator sets.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,15 +114,12 @@ pub fn least_cable_m(ground: &Ground) -> f64 {
 
 /// Candidates with cuts up to `alpha_rad` off the ray.
 pub fn candidates(ground: &Ground, wishes: &Wishes, alpha_rad: f64) -> Vec<Candidate> {
-    let slack = (wishes.cable_share - 1.0) * SLACK_SHARE;
-    let cable_m = (least_cable_m(ground) * (1.0 + slack)).min(wishes.limits.reel_m);
-    let rule = CutRule { alpha_rad, cable_m };
     let angle = format!("cuts within {:.0} deg", alpha_rad.to_degrees());
     let make = |name: String, pattern: Pattern, cut_share: f64| Candidate {
         name: format!("{name}, {angle}"),
         recipe: Recipe {
             pattern,
-            rule,
+            rule: CutRule { alpha_rad, cable_m: cable_m(ground, wishes, &pattern, alpha_rad) },
             reach: Reach { cut_m: cut_share * ground.swath_m, lap_share: 0.5, least_m: ground.swath_m / 3.0 },
             effort: Effort {
                 turn_m_per_rad: wishes.turn_m / TAU,
@@ -134,11 +138,55 @@ pub fn candidates(ground: &Ground, wishes: &Wishes, alpha_rad: f64) -> Vec<Candi
     }
     for k in 0..wishes.directions {
         let angle_rad = main_direction(ground) + PI * k as f64 / wishes.directions as f64;
-        let pattern =
-            Pattern::Straight { angle_rad, shift_m: 0.0, spacing_m: ground.swath_m * 0.997, laps: 1 };
+        let (shift_m, spacing_m) = rows(ground, angle_rad);
+        let pattern = Pattern::Straight { angle_rad, shift_m, spacing_m, laps: 1 };
         all.push(make(format!("straight lanes at {:.0} deg", angle_rad.to_degrees()), pattern, 0.08));
     }
     all
+}
+
+/// How long a cut may make the way to its far end, metres.
+fn cable_m(ground: &Ground, wishes: &Wishes, pattern: &Pattern, alpha_rad: f64) -> f64 {
+    let least_m = least_cable_m(ground);
+    let most_m = (least_m * wishes.cable_share).min(wishes.limits.reel_m);
+    let with =
+        |slack: f64| (least_m + (least_m * wishes.cable_share - least_m) * slack).min(wishes.limits.reel_m);
+    if *pattern == Pattern::Contours {
+        return with(SLACK_ACROSS);
+    }
+    let keeps = |slack: &&f64| {
+        let rule = CutRule { alpha_rad, cable_m: with(**slack) };
+        let lines: Vec<Vec<Point>> = cuts(ground, pattern, &rule).into_iter().map(|cut| cut.line).collect();
+        let home = ground.home();
+        Slit::new(ground, &lines, home)
+            .is_none_or(|slit| slit.farthest_m(home) <= most_m + AROUND_SHARE * least_m)
+    };
+    with(SLACKS_ALONG.iter().find(keeps).copied().unwrap_or(0.0))
+}
+
+/// Place of the first lane across a direction, and the distance between lanes: even between straight walls.
+fn rows(ground: &Ground, angle_rad: f64) -> (f64, f64) {
+    if matches!(ground.wall, Boundary::Circle { .. }) {
+        (0.0, ground.swath_m * 0.997)
+    } else {
+        even_rows(ground, angle_rad)
+    }
+}
+
+/// Place of the first lane across a direction, and an even distance between lanes from wall to wall.
+pub fn even_rows(ground: &Ground, angle_rad: f64) -> (f64, f64) {
+    let side = crate::ground::direction(angle_rad + PI / 2.0);
+    let (low, high) = match &ground.wall {
+        Boundary::Circle { radius_m } => (-radius_m, *radius_m),
+        Boundary::Polygon { vertices } => {
+            let places = vertices.iter().map(|v| v.coords.dot(&side));
+            places.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), s| (l.min(s), h.max(s)))
+        }
+    };
+    let margin_m = ground.keep_m + crate::ground::SLACK_M;
+    let width_m = (high - low - 2.0 * margin_m).max(ground.swath_m);
+    let n = (width_m / ground.swath_m - 0.02).ceil().max(1.0);
+    (low + margin_m, width_m / n)
 }
 
 /// The direction of the longest wall; east in a round tank.

@@ -57,7 +57,7 @@ impl Follow {
         let way: Vec<Point> = std::iter::once(at).chain(sensed.path_ahead.iter().copied()).collect();
         let near = polyline::resampled(&within(&way, WATCH_M), 0.1);
         // Where the robot stands it stands, however near.
-        if near.iter().skip(1).filter(|p| (*p - at).norm() > 0.2).any(|p| is_blocked(p)) {
+        if near.iter().skip(1).filter(|p| (*p - at).norm() > 0.2).any(is_blocked) {
             return Ok(self.stopped(ctx, "an obstacle stands on the path; the plan has to be made anew"));
         }
         let target = aim(at, sensed);

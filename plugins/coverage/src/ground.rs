@@ -143,10 +143,10 @@ fn around(corners: &[Point], radius_m: f64) -> Vec<Point> {
         (-along.x).atan2(along.y)
     };
     let mut ring = Vec::new();
-    for k in 0..n {
+    for (k, corner) in corners.iter().enumerate() {
         let before = normal(k + n - 1);
         let turn = (normal(k) - before).rem_euclid(TAU);
-        ring.extend(arc(corners[k], before, turn, radius_m));
+        ring.extend(arc(*corner, before, turn, radius_m));
     }
     ring
 }

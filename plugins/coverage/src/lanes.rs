@@ -226,7 +226,8 @@ fn straight(ground: &Ground, angle_rad: f64, shift_m: f64, spacing_m: f64, edge_
         let foot = Point::from(side * (shift_m + k as f64 * spacing_m) + ahead * middle.coords.dot(&ahead));
         let ends = [foot - ahead * reach_m / 2.0, foot + ahead * reach_m / 2.0];
         let line = polyline::resampled(&ends, STEP_M);
-        for run in line.split(|p| ground.wall.wall_distance_m(*p) < edge_m).filter(|run| run.len() > 1) {
+        for run in line.split(|p| ground.wall.wall_distance_m(*p) < edge_m - 1e-6).filter(|run| run.len() > 1)
+        {
             lines.push(vec![run[0], run[run.len() - 1]]);
         }
     }

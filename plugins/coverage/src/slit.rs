@@ -186,6 +186,12 @@ impl Slit {
         self.path(a, b).map(|path| world::polyline::length_m(&path))
     }
 
+    /// The longest of the shortest paths from a place to any corner of the domain, metres.
+    pub fn farthest_m(&self, from: Point) -> f64 {
+        let ways = self.triangles().flatten().filter_map(|corner| self.way_m(from, corner));
+        ways.fold(0.0, f64::max)
+    }
+
     /// Whether the straight way between two places stays in the domain.
     pub fn sees(&self, a: Point, b: Point) -> bool {
         self.path(a, b).is_some_and(|path| world::polyline::length_m(&path) <= (b - a).norm() + 1e-9)

@@ -41,7 +41,7 @@ const SUM_WRAP: ParamSpec = float("sum_wrap_deg", "Wrap in sum", "deg", 10.0, 36
 const TURN: ParamSpec = float("turn_m", "Price of a whole turn", "m", 0.0, 20.0, 1.0)
     .help("A path may be this much longer for every whole turn that it saves.")
     .group("Plan");
-const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.6)
+const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.55)
     .help("Touch-ups are added until this share of the floor in reach is scanned.")
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
@@ -164,7 +164,7 @@ impl TetherSafe {
             reel_m: if reel_m > least_m * wishes.cable_share { f64::INFINITY } else { reel_m },
             cell_m: self.cell_m,
         };
-        let mut tried = self.try_all(request.site, ground, wishes, &order, laid.as_ref(), ctx)?;
+        let mut tried = Self::try_all(request.site, ground, wishes, &order, laid.as_ref(), ctx)?;
         let mut lead_in: Vec<Point> = Vec::new();
         if (start - home).norm() > task.tolerance_m && tried.iter().all(|t| !t.worth.certificate.certified) {
             // Under way the cable may lie as no cut of the new map allows: take it in first.
@@ -175,7 +175,7 @@ impl TetherSafe {
                 );
                 lead_in = way;
                 let from_home = Order { start: home, ..order };
-                tried = self.try_all(request.site, ground, wishes, &from_home, None, ctx)?;
+                tried = Self::try_all(request.site, ground, wishes, &from_home, None, ctx)?;
             }
         }
         let chosen = self.chosen(tried, wishes, ctx).ok_or_else(|| answer::no_room(ground))?;
@@ -183,7 +183,7 @@ impl TetherSafe {
         if ctx.wants_drawing() {
             chosen.scan.cuts.iter().for_each(|cut| ctx.polyline(Layer::Tether, &cut.line));
         }
-        let mut plan = plan_of(&chosen.scan, start, lead_in);
+        let mut plan = plan_of(&chosen.scan, start, &lead_in);
         let reachable = chosen.worth.coverage >= wishes.enough.min(0.99);
         plan.complete = reachable && order.reel_m.is_infinite();
         if !chosen.worth.certificate.certified {
@@ -195,7 +195,6 @@ impl TetherSafe {
 
     /// Every candidate; straighter cuts as well if none keeps the limits.
     fn try_all(
-        &self,
         site: &Site<'_>,
         ground: &Ground,
         wishes: &Wishes,

@@ -171,6 +171,15 @@ fn neighbours(ways: &Ways<'_>, ctx: &Ctx<'_>) -> Result<Vec<Vec<End>>> {
     Ok(all)
 }
 
+/// The chain that a lane belongs to.
+fn root(chain: &mut [usize], mut k: usize) -> usize {
+    while chain[k] != k {
+        chain[k] = chain[chain[k]];
+        k = chain[k];
+    }
+    k
+}
+
 /// Joins the cheapest pairs of ends first.
 fn greedy(ways: &Ways<'_>, near: &[Vec<End>]) -> Tour {
     let n = ways.len();
@@ -183,13 +192,6 @@ fn greedy(ways: &Ways<'_>, near: &[Vec<End>]) -> Tour {
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut joined: Vec<Option<End>> = vec![None; n];
     let mut chain: Vec<usize> = (0..n / 2).collect();
-    fn root(chain: &mut [usize], mut k: usize) -> usize {
-        while chain[k] != k {
-            chain[k] = chain[chain[k]];
-            k = chain[k];
-        }
-        k
-    }
     let mut join = |u: End, v: End, joined: &mut Vec<Option<End>>| {
         let (a, b) = (root(&mut chain, u / 2), root(&mut chain, v / 2));
         if joined[u].is_none() && joined[v].is_none() && a != b {
@@ -251,7 +253,7 @@ fn improved(
     search.descend(all, ctx)?;
     let n = search.entries.len();
     if n < 8 {
-        return Ok(search.from_home());
+        return Ok(search.into_tour());
     }
     let mut random = Pcg64Mcg::seed_from_u64(effort.seed);
     let kicks = (effort.kicks_per_lane * n as f64) as usize;
@@ -267,7 +269,7 @@ fn improved(
             search.number(0, n);
         }
     }
-    Ok(search.from_home())
+    Ok(search.into_tour())
 }
 
 impl Search<'_> {
@@ -277,7 +279,7 @@ impl Search<'_> {
         }
     }
 
-    fn from_home(mut self) -> Tour {
+    fn into_tour(mut self) -> Tour {
         let home = self.ways.len() / 2 - 1;
         let at = self.place[home];
         self.entries.rotate_left(at);
@@ -303,13 +305,15 @@ impl Search<'_> {
     fn descend(&mut self, ends: Vec<End>, ctx: &Ctx<'_>) -> Result<f64> {
         let mut waiting = vec![false; self.ways.len()];
         let mut queue: std::collections::VecDeque<End> = ends.into();
-        queue.iter().for_each(|u| waiting[*u] = true);
+        for u in &queue {
+            waiting[*u] = true;
+        }
         let mut gained = 0.0;
         let mut rounds = 0_u32;
         while let Some(u) = queue.pop_front() {
             waiting[u] = false;
             rounds += 1;
-            if rounds % 256 == 0 {
+            if rounds.is_multiple_of(256) {
                 ctx.check()?;
             }
             if let Some((gain, touched)) = self.improve(u) {
@@ -427,7 +431,9 @@ impl Search<'_> {
         // Behind an exit the run begins with `u`; before an entry it ends with it.
         if v_is_exit != u_is_entry {
             taken.reverse();
-            taken.iter_mut().for_each(|e| *e ^= 1);
+            for entry in &mut taken {
+                *entry ^= 1;
+            }
         }
         let cut = if v_is_exit { at + 1 } else { at };
         self.entries.clear();
@@ -443,7 +449,9 @@ impl Search<'_> {
         let reach = 30.min(n - 3);
         let a = random.random_range(0..n - reach - 1);
         let mut steps = [0; 2];
-        steps.iter_mut().for_each(|s| *s = 1 + random.random_range(0..reach / 2));
+        for step in &mut steps {
+            *step = 1 + random.random_range(0..reach / 2);
+        }
         let (b, c) = (a + steps[0], a + steps[0] + steps[1]);
         let ends: Vec<End> =
             [a, b, c].iter().flat_map(|k| [self.entries[*k] ^ 1, self.entries[(*k + 1) % n]]).collect();

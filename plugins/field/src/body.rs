@@ -23,6 +23,13 @@ impl Body {
         (!parts.is_empty()).then_some(Self { id, parts })
     }
 
+    /// A point that stands for the whole: the mean of what its parts are made about.
+    pub fn center(&self) -> Point {
+        let corners: Vec<Point> = self.parts.iter().flat_map(Part::corners).map(|(at, _)| at).collect();
+        let sum: world::Vector = corners.iter().map(|at| at.coords).sum();
+        Point::from(sum / corners.len().max(1) as f64)
+    }
+
     /// Distance from a hull at a place to the outline, metres.
     pub fn hull_distance_m(&self, at: Point, hull_m: f64) -> f64 {
         self.parts.iter().map(|part| part.distance(at).0).fold(f64::INFINITY, f64::min) - hull_m

@@ -129,6 +129,33 @@ impl Ground {
             && self.wall_distance_m(a, b, keep_m) >= keep_m
     }
 
+    /// The least distance between hull and anything solid along a path, metres; of a distance that is larger than
+    /// `enough_m` only that it is.
+    pub fn path_clearance_m(&self, path: &[Point], enough_m: f64) -> f64 {
+        let reach_m = enough_m + self.hull_m;
+        let mut nearby = Nearby::new(reach_m);
+        let mut least_m = path.first().map_or(reach_m, |start| self.clearance_m(*start) + self.hull_m);
+        for pair in path.windows(2) {
+            let long_m = (pair[1] - pair[0]).norm();
+            if long_m > SLACK_M {
+                // Things near its middle may not be near its beginning.
+                nearby.forget();
+                let free = self.solids.iter().map(|s| s.segment_distance_m(pair[0], pair[1], least_m));
+                least_m = free.fold(least_m, f64::min);
+            }
+            for &index in nearby.update(self, pair[0]) {
+                let solid = &self.solids[index];
+                if !solid.is_beyond(pair[0], least_m + long_m) {
+                    least_m = least_m.min(solid.segment_distance_m(pair[0], pair[1], least_m));
+                }
+            }
+            if nearby.sees_wall() || long_m > SLACK_M {
+                least_m = least_m.min(self.wall_distance_m(pair[0], pair[1], least_m));
+            }
+        }
+        least_m - self.hull_m
+    }
+
     /// Distance from the wall to a segment, metres; negative outside, and exact only below `enough_m`.
     fn wall_distance_m(&self, a: Point, b: Point, enough_m: f64) -> f64 {
         let ends_m = self.wall.wall_distance_m(a).min(self.wall.wall_distance_m(b));
@@ -235,6 +262,18 @@ mod tests {
         assert!(ground.learn(std::slice::from_ref(&moved)));
         assert!(!ground.learn(&[moved]));
         assert!((ground.clearance_m(Point::new(-1.0, 0.0)) - 1.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_clearance_of_a_path_is_that_of_its_nearest_place_however_long_its_pieces() {
+        let ground = ground();
+        let long = [Point::new(0.0, -6.0), Point::new(0.0, 6.0), Point::new(-9.0, 3.0)];
+        let fine = world::polyline::resampled(&long, 0.01);
+        let truth = fine.iter().map(|p| ground.clearance_m(*p)).fold(f64::INFINITY, f64::min);
+        for path in [&long[..], &fine] {
+            assert!((ground.path_clearance_m(path, 5.0) - truth).abs() < 1e-3, "{truth}");
+        }
+        assert!(ground.path_clearance_m(&long[..2], 1.0) >= 1.0);
     }
 
     #[test]

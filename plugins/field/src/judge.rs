@@ -1,6 +1,5 @@
 //! Whether a walk achieves its task, and if not, why.
 
-use crate::scene::Scene;
 use std::fmt;
 use world::Point;
 
@@ -75,9 +74,8 @@ impl fmt::Display for Shortfall {
     }
 }
 
-/// What is wrong with a walk, its clearance included; the first of several.
-pub fn judge(walk: &Walk, scene: &Scene, demanded_m: f64) -> Option<Shortfall> {
-    let clearance_m = scene.path_clearance_m(&walk.path);
+/// What is wrong with a walk whose least clearance is known; the first of several.
+pub fn judge(walk: &Walk, clearance_m: f64, demanded_m: f64) -> Option<Shortfall> {
     let close =
         (clearance_m < demanded_m - ROUNDING_M).then_some(Shortfall::Close { clearance_m, demanded_m });
     walk.shortfall.or(close)

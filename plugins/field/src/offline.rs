@@ -40,7 +40,8 @@ pub fn plan(settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Re
     } else {
         walked(&scene, settings, request, ctx)?
     };
-    Ok(told(walk, &scene, request.site.clearance_m, ctx))
+    let clearance_m = scene.path_clearance_m(&walk.path);
+    Ok(told(walk, clearance_m, request.site.clearance_m, ctx))
 }
 
 fn is_flown(planning: Planning, radius_m: f64) -> bool {
@@ -128,9 +129,10 @@ pub fn check_goal(scene: &Scene, goal: Point, tolerance_m: f64) -> Result<()> {
     Ok(())
 }
 
-/// A walk as a plan; what is wrong with it is said in the log.
-pub fn told(walk: Walk, scene: &Scene, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
-    let shortfall = judge(&walk, scene, demanded_m);
+/// A walk as a plan, with its least distance between hull and anything solid and that demanded, metres; what is wrong
+/// with it is said in the log.
+pub fn told(walk: Walk, clearance_m: f64, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
+    let shortfall = judge(&walk, clearance_m, demanded_m);
     if let Some(reason) = shortfall {
         ctx.log(LogLevel::Warn, &format!("the plan is not complete: {reason}"));
     }

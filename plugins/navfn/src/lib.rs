@@ -4,6 +4,7 @@
 pub mod navfn;
 pub mod shortest;
 
+mod evade;
 mod flight;
 mod ground;
 pub mod marching;

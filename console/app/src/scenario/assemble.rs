@@ -13,7 +13,7 @@ use super::{
     task, tether,
 };
 use mission::{Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
-use sim::{AeConfig, RobotConfig, SimConfig};
+use sim::{AeConfig, Mover, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
 
@@ -43,6 +43,7 @@ struct Sections<'a> {
 struct Floor {
     boundary: Option<Boundary>,
     obstacles: Vec<Obstacle>,
+    movers: Vec<Mover>,
     zones: Vec<world::Zone>,
     robot: Option<Robot>,
     stations: Vec<Station>,
@@ -111,8 +112,14 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         stations: floor.stations,
         zones: floor.zones,
     };
-    let sim =
-        SimConfig { world, robot: truth(&robot, start), ae: Some(ae), tick_s: rest.tick_s, tether_anchor };
+    let sim = SimConfig {
+        world,
+        robot: truth(&robot, start),
+        ae: Some(ae),
+        tick_s: rest.tick_s,
+        movers: floor.movers,
+        tether_anchor,
+    };
     Some(Scenario {
         name: name?,
         about: about?,
@@ -130,13 +137,15 @@ impl Floor {
     fn read(sections: &Sections<'_>) -> Self {
         let boundary = floor::tank(sections.root);
         let ae = sections.ae.as_ref();
+        let (obstacles, movers) = floor::obstacles(sections.root, boundary.as_ref());
         let stations = ae.map(|section| ranging::stations(section, boundary.as_ref())).unwrap_or_default();
         let mut heard = ae.and_then(ranging::ae);
         if let (Some(section), Some(heard)) = (ae, &mut heard) {
             heard.disturbances.faults = ranging::faults(section, &stations);
         }
         Self {
-            obstacles: floor::obstacles(sections.root, boundary.as_ref()),
+            obstacles,
+            movers,
             zones: floor::zones(sections.root),
             robot: sections.robot.as_ref().and_then(robot::robot),
             stations,

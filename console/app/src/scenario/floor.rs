@@ -5,12 +5,18 @@ use super::{
     problem::Complaint,
     section::{Place, Section},
 };
+use sim::{Mover, Track};
 use std::collections::BTreeMap;
-use world::{Boundary, Obstacle, ObstacleId, PlateLayout, Shape, Zone, ZoneKind};
+use world::{Boundary, Obstacle, ObstacleId, PlateLayout, Shape, Vector, Zone, ZoneKind};
 
 /// Reads `[tank]`.
 pub fn tank(root: &Section<'_>) -> Option<Boundary> {
     let section = root.table("tank")?;
+    if section.has("map") {
+        section.text("map")?;
+        section.complain("map", Complaint::Map("maps are read from scenario files only".into()));
+        return None;
+    }
     if section.has("radius_m") {
         section.refuse(&["vertices_m"], "radius_m");
         return Some(Boundary::Circle { radius_m: section.number("radius_m")? });
@@ -38,20 +44,46 @@ pub fn plates(root: &Section<'_>, boundary: Option<&Boundary>) -> Option<PlateLa
     Some(PlateLayout { annular_m, n_annular, length_m, width_m })
 }
 
-/// Reads `[[obstacles]]`; those that are wrong are left out.
-pub fn obstacles(root: &Section<'_>, boundary: Option<&Boundary>) -> Vec<Obstacle> {
+/// Reads `[[obstacles]]` and how they move; those that are wrong are left out.
+pub fn obstacles(root: &Section<'_>, boundary: Option<&Boundary>) -> (Vec<Obstacle>, Vec<Mover>) {
+    let mut movers = Vec::new();
     let mut names = Names::default();
     let sections = root.tables("obstacles");
-    let read = |(i, section): (usize, &Section<'_>)| {
+    let mut read = |(i, section): (usize, &Section<'_>)| {
         let name = names.of(section, || format!("obstacle {}", i + 1));
-        let (shape, known) = (outline(section, "kind"), section.flag("known"));
+        let id = ObstacleId(i as u32 + 1);
+        let shape = outline(section, "kind");
+        let track = track(section);
+        // What moves cannot stand on a drawing.
+        let known = if section.has("known") { section.flag("known") } else { Some(track.is_none()) };
         let shape = shape?;
+        movers.extend(track.map(|track| Mover { id, track }));
         if boundary.is_some_and(|boundary| is_wholly_outside(boundary, &shape)) {
             section.complain_whole(Complaint::WhollyOutside);
         }
-        Some(Obstacle { id: ObstacleId(i as u32 + 1), name: name?, shape, known: known? })
+        Some(Obstacle { id, name: name?, shape, known: known? })
     };
-    sections.iter().enumerate().filter_map(read).collect()
+    let obstacles = sections.iter().enumerate().filter_map(&mut read).collect();
+    (obstacles, movers)
+}
+
+/// How an obstacle moves, if it does.
+fn track(section: &Section<'_>) -> Option<Track> {
+    if section.has("velocity_m_per_s") {
+        section.refuse(&["waypoints_m", "speed_m_per_s", "known"], "velocity_m_per_s");
+        let [x, y] = section.pair("velocity_m_per_s")?;
+        return Some(Track::Straight { velocity_m_per_s: Vector::new(x, y) });
+    }
+    if section.has("waypoints_m") {
+        section.refuse(&["known"], "waypoints_m");
+        let (points, speed) = (section.points("waypoints_m"), section.number("speed_m_per_s"));
+        return Some(Track::Waypoints { points: points?, speed_m_per_s: speed? });
+    }
+    if section.has("speed_m_per_s") {
+        section
+            .require("waypoints_m", "add waypoints_m = [[x, y], ...], the places it goes to and back from");
+    }
+    None
 }
 
 /// Reads `[[zones]]`; those that are wrong are left out.

@@ -221,6 +221,9 @@ pub enum Complaint {
     /// A planner that does not exist, or that refuses a value.
     #[error("{0}")]
     Planner(String),
+    /// An occupancy map that cannot be taken.
+    #[error("{0}")]
+    Map(String),
     /// Random obstacles that do not fit.
     #[error("only {placed} of them found room")]
     NoRoom {
@@ -266,6 +269,7 @@ impl Complaint {
             Self::Unreadable(_)
             | Self::BadSetting(_)
             | Self::Planner(_)
+            | Self::Map(_)
             | Self::NotFinite
             | Self::OutOfRange(_)
             | Self::UnknownWord { nearest: None, .. }

@@ -184,8 +184,9 @@ pub static ROOT: &[Key] = &[
 ];
 
 static TANK: &[Key] = &[
-    number("radius_m", "m", LENGTH).or_none("this or `vertices_m`"),
-    key("vertices_m", "m", Kind::Points(3)).or_none("this or `radius_m`"),
+    number("radius_m", "m", LENGTH).or_none("this, `vertices_m` or `map`"),
+    key("vertices_m", "m", Kind::Points(3)).or_none("this, `radius_m` or `map`"),
+    key("map", "", Kind::Text).or_none("this, `radius_m` or `vertices_m`"),
 ];
 
 static PLATES: &[Key] = &[
@@ -208,7 +209,10 @@ static OBSTACLES: &[Key] = &[
     key("vertices_m", "m", Kind::Points(3)).or_none(BY_KIND),
     key("points_m", "m", Kind::Points(2)).or_none(BY_KIND),
     number("width_m", "m", LENGTH).or_none(BY_KIND),
-    key("known", "", Kind::Flag).or_flag(true),
+    key("velocity_m_per_s", "m/s", Kind::Pair(at_least(-10.0).up_to(10.0))).or_none("it stands still"),
+    key("waypoints_m", "m", Kind::Points(1)).or_none("it stands still"),
+    number("speed_m_per_s", "m/s", above(0.0).up_to(10.0)).or_none("for `waypoints_m`"),
+    key("known", "", Kind::Flag).or_none("`true`, `false` for what moves"),
 ];
 
 static RANDOM_OBSTACLES: &[Key] = &[

@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn a_section_of_the_future_gets_the_list() {
         assert!(
-            remedy("", keys(""), "tether", None)
+            remedy("", keys(""), "winch", None)
                 .starts_with("a scenario has the keys name, about, seed, tank")
         );
     }

@@ -48,7 +48,10 @@ fn preset_path(
         return spiral(&section.table("spiral")?, walls);
     }
     let remedy = "add spiral = { outer_radius_m = ..., pitch_m = ... }, or path_m = [[x, y], ...]";
-    section.require("spiral or path_m", remedy).then_some(())?;
+    if !section.has("path_m") {
+        section.require("spiral or path_m", remedy);
+        return None;
+    }
     let path = section.points("path_m")?;
     if path.len() as u64 > MOST_POINTS {
         let points = path.len() as u64;

@@ -53,6 +53,17 @@ fn the_scenarios_in_the_box_are_right() {
 }
 
 #[test]
+fn an_amphibious_robot_has_the_papers_limits_and_planners_are_told_the_faster_ones() {
+    let scenario =
+        read(&SMALL.replacen("start_m = [-3, 0]", "start_m = [-3, 0]\nmotion = \"amphibious\"", 1));
+    let amphibious = scenario.sim.robot.amphibious.expect("it walks and swims");
+    assert_eq!((amphibious.land.v_max_m_per_s, amphibious.transition_steps), (0.13, 20));
+    assert!((amphibious.land.w_max_rad_per_s - 0.12).abs() < 1e-3);
+    assert!((scenario.mission.limits.v_max_m_per_s - 0.23).abs() < 1e-12);
+    assert_eq!(read(SMALL).sim.robot.amphibious, None);
+}
+
+#[test]
 fn the_demo_has_columns_on_the_drawing_and_surprises() {
     let demo = read(DEMO);
     assert_eq!(demo.sim.world.obstacles.iter().filter(|o| o.known).count(), 8);
@@ -89,6 +100,19 @@ fn defaults_are_those_of_the_document() {
     assert!((small.mission.range_sigma_ratio - 0.05 / 3.0_f64.sqrt()).abs() < 1e-12);
     assert!(small.mission.start.heading_rad.abs() < 1e-12, "it looks towards the goal");
     assert_eq!(small.expect, Expect::default());
+}
+
+#[test]
+fn a_tether_starts_where_the_robot_does_and_preset_points_may_be_written_out() {
+    let text = SMALL
+        .replace("kind = \"goto\"\ngoal_m = [3, 0]", "kind = \"follow\"\npath_m = [[-3, 0], [3, 0]]")
+        .replace("[planner]", "[tether]\nreel_m = 9\n[planner]");
+    let scenario = read(&text);
+    let tether = scenario.mission.tether.expect("it has one");
+    assert_eq!(tether.anchor, Point::new(-3.0, 0.0));
+    assert_eq!(scenario.sim.tether_anchor, Some(tether.anchor));
+    assert!((tether.limits.max_wrap_rad - std::f64::consts::TAU).abs() < 1e-12 && !tether.fly_uncertified);
+    assert!(matches!(&scenario.mission.task, TaskConfig::Follow { path, .. } if path.len() == 2));
 }
 
 #[test]
@@ -158,7 +182,18 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     ),
     ("name = \"small\"", "name = \"small\"\nseed = -1", "2:8: seed = -1: must be at least 0"),
     ("name = \"small\"", "name = \"small\"\nseed = 1.5", "2:8: seed = 1.5: must be a whole number"),
-    ("[planner]", "[tether]\nlength_m = 30\n[planner]", "11:2: tether: unknown key"),
+    ("[planner]", "[winch]\nlength_m = 30\n[planner]", "11:2: winch: unknown key"),
+    ("[planner]", "[tether]\nreel_m = 0\n[planner]", "12:10: tether.reel_m = 0: must be greater than 0 m"),
+    (
+        "[planner]",
+        "[tether]\nreel_m = 9\nanchor_m = [0, 7]\n[planner]",
+        "13:12: tether.anchor_m = [0, 7]: lies 2.000 m outside the tank",
+    ),
+    (
+        "[planner]",
+        "[tether]\nreel_m = 1\nanchor_m = [0, 0]\n[planner]",
+        "12:10: tether.reel_m = 1: must be at least 3.00 m, the way from the anchor to the start",
+    ),
     ("kind = \"goto\"", "kind = \"cover\"", "7:8: mission.kind = \"cover\": must be one of goto, follow"),
     ("goal_m = [3, 0]", "goal_m = [6, 0]", "8:10: mission.goal_m = [6, 0]: lies 1.000 m outside the tank"),
     (
@@ -200,6 +235,16 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "start_m = [-3, 0]",
         "start_m = [-3, 0]\nradius_m = 0",
         "11:12: robot.radius_m = 0: must be greater than 0 m; only motion = \"point\" has no hull",
+    ),
+    (
+        "start_m = [-3, 0]",
+        "start_m = [-3, 0]\nmotion = \"amphibious\"\nspeed_max_m_per_s = 1",
+        "12:21: robot.speed_max_m_per_s = 1: means nothing with motion = \"amphibious\"",
+    ),
+    (
+        "start_m = [-3, 0]",
+        "start_m = [-3, 0]\ntransition_ticks = 5",
+        "11:20: robot.transition_ticks = 5: means nothing with motion = \"unicycle\"",
     ),
     (
         "at_m = [0, 5]",
@@ -439,7 +484,7 @@ fn survives(text: &str) -> Result<(), TestCaseError> {
         Err(errors) => prop_assert!(errors.render().starts_with("error: x.toml")),
         Ok(scenario) => {
             prop_assert!(scenario.mission.start.position.coords.iter().all(|number| number.is_finite()));
-            prop_assert_eq!(&Scenario::parse(&scenario.text, "y.toml"), &Ok(scenario.clone()));
+            prop_assert_eq!(&Scenario::parse(&scenario.text, &scenario.shown_name), &Ok(scenario.clone()));
         }
     }
     prop_assert!(begun.elapsed().as_secs() < 5, "took {:?}", begun.elapsed());

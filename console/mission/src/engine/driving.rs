@@ -7,10 +7,13 @@ use crate::{
     link::PlannerLink,
     task::Task,
 };
-use planner_api::{Command, Drive, Sensed};
+use planner_api::{Command, Drive, Reason, Sensed, Status};
+use world::Point;
 
 /// How much of the targets and of the plan a planner sees ahead, metres.
 const AHEAD_M: f64 = 4.0;
+/// A planner that has been stuck in its lanes for this long is asked for new ones, seconds.
+const BLOCKED_S: f64 = 1.0;
 /// Distance between the points of the path flown that are kept for planners, metres.
 const TRAIL_M: f64 = 0.1;
 
@@ -18,11 +21,32 @@ impl Mission {
     pub(super) fn drive(&mut self, planner: &mut dyn PlannerLink) -> Drive {
         let command = self.plan_if_due(planner).and_then(|()| self.ask_for_command(planner));
         match command {
-            Ok(command) => self.send(command),
+            Ok(command) => {
+                self.replan_if_blocked(command.status);
+                self.send(command)
+            }
             Err(message) => {
                 self.hold_for_planner(message);
                 Drive::STILL
             }
+        }
+    }
+
+    /// The plan from here on. Lanes are followed by the task itself, which knows how far it is.
+    fn path_ahead(&self) -> &[Point] {
+        match &self.task {
+            Task::Cover(_) => self.task.targets_ahead(AHEAD_M),
+            Task::Goto(_) | Task::Follow { .. } => self.plan.as_ref().map_or(&[], |plan| plan.ahead(AHEAD_M)),
+        }
+    }
+
+    /// A planner that cannot go on along its lanes is asked for new ones from where the robot stands; not at once again,
+    /// for the robot may have to turn or to be seen better first.
+    fn replan_if_blocked(&mut self, status: Status) {
+        self.blocked_s = if status == Status::Stuck { self.blocked_s + self.config.tick_s } else { 0.0 };
+        if self.blocked_s >= BLOCKED_S && matches!(self.task, Task::Cover(_)) {
+            self.blocked_s = 0.0;
+            self.planner.plan_due.get_or_insert(Reason::Blocked);
         }
     }
 
@@ -47,7 +71,7 @@ impl Mission {
             w_rad_per_s,
             target: self.task.target(),
             targets_ahead: self.task.targets_ahead(AHEAD_M),
-            path_ahead: self.plan.as_ref().map_or(&[], |plan| plan.ahead(AHEAD_M)),
+            path_ahead: self.path_ahead(),
             obstacles: &obstacles,
         });
         drop(obstacles);

@@ -78,6 +78,7 @@ impl Mission {
             // What is left is counted anew along the new plan.
             self.stuck.reset();
             self.plan = (!path.is_empty()).then(|| Follower::new(path));
+            self.keep_to(cuts);
         }
         self.pass_on(reply);
         judged

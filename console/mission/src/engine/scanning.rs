@@ -1,7 +1,7 @@
 //! What one tick of looking around and scanning adds to the map and to the coverage.
 
 use super::{Mission, Phase};
-use crate::{event::EventKind, task::Task};
+use crate::{chart::Seen, event::EventKind, task::Task};
 use planner_api::Reason;
 use world::{CellRun, FloorMaker, Pose, Readings, Shape};
 
@@ -12,15 +12,20 @@ impl Mission {
         if self.locator.is_lost() {
             return false;
         }
-        let found = self.chart.see(&readings.sightings, &self.locator.pose());
-        if found.is_empty() {
+        let (now_s, pose) = (self.now_s(), self.locator.pose());
+        let Seen { events, changes_plans } = self.chart.see(now_s, &readings.sightings, &pose);
+        if events.is_empty() && !changes_plans {
             return false;
         }
-        let shapes: Vec<Shape> = found.iter().filter_map(shape_of).collect();
-        if self.planner.plan_due.is_none() && found.iter().any(|event| self.is_in_the_way(event)) {
+        // What moves is no part of the floor.
+        let still = events.iter().filter(|event| !self.chart.moves(event));
+        let shapes: Vec<Shape> = still.filter_map(shape_of).collect();
+        let is_due =
+            changes_plans && (events.is_empty() || events.iter().any(|event| self.is_in_the_way(event)));
+        if self.planner.plan_due.is_none() && is_due {
             self.planner.plan_due = Some(Reason::MapChanged);
         }
-        self.happened.extend(found);
+        self.happened.extend(events);
         self.survey(&shapes);
         true
     }
@@ -46,7 +51,8 @@ impl Mission {
         let surveyor = self.surveyor.get_or_insert_with(|| {
             FloorMaker::of(
                 self.coverage.floor(),
-                world,
+                // Before the first find: what is found is told below.
+                &world.as_drawn(),
                 config.room_m(),
                 config.swath_m,
                 config.start.position,

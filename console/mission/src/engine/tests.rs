@@ -1,6 +1,7 @@
 //! Missions in a perfect little world: exact ranges, a point robot that does what it is told.
 
 mod covering;
+mod tethered;
 
 use super::*;
 use crate::{

@@ -5,7 +5,15 @@ use crate::{
     event::{EventKind, HoldReason, Outcome, TetherAlarm},
     tether::ends_at_anchor,
 };
-use world::Point;
+use planner_api::Reason;
+use world::{Point, polyline, tether::crossings};
+
+/// The lines that the plan never crosses, and whether the robot has.
+pub(super) struct Cuts {
+    pub lines: Vec<Vec<Point>>,
+    pub beyond: bool,
+    pub seen_at: Point,
+}
 
 impl Mission {
     /// Drags the cable along, and holds the robot when it may go no further.
@@ -25,6 +33,35 @@ impl Mission {
             _ => None,
         });
         self.happened.extend(told);
+        self.watch_cuts();
+    }
+
+    /// A robot that has come off its plan across a cut would wind the cable on its way back to it: it is planned anew,
+    /// from the cable as it lies. On the line itself the estimate may scatter from side to side.
+    fn watch_cuts(&mut self) {
+        if self.locator.is_lost() {
+            return;
+        }
+        let here = self.locator.position();
+        let crossed = crossings(&[self.cuts.seen_at, here], &self.cuts.lines);
+        self.cuts.seen_at = here;
+        self.cuts.beyond ^= crossed % 2 == 1;
+        let clear_m =
+            self.cuts.lines.iter().map(|cut| polyline::distance_m(cut, here)).fold(f64::INFINITY, f64::min);
+        if self.cuts.beyond && clear_m > self.config.limits.radius_m && self.planner.plan_due.is_none() {
+            self.happened.push(EventKind::TetherAlarmed { alarm: TetherAlarm::Strayed, reached: false });
+            self.planner.plan_due = Some(Reason::MapChanged);
+            self.cuts.lines.clear();
+            self.cuts.beyond = false;
+        }
+    }
+
+    /// Keeps the cuts of a plan that flies.
+    pub(super) fn keep_to(&mut self, cuts: Vec<Vec<Point>>) {
+        self.cuts = Cuts { lines: cuts, beyond: false, seen_at: self.locator.position() };
+        if self.tether.is_none() {
+            self.cuts.lines.clear();
+        }
     }
 
     /// The tether's rule for a moving robot: whether it was held or the mission ended.
@@ -36,9 +73,10 @@ impl Mission {
         } else {
             let outcome = match alarm {
                 TetherAlarm::Reel { .. } => Outcome::Aborted,
-                TetherAlarm::Wrap { .. } | TetherAlarm::SumOfWraps { .. } | TetherAlarm::NoWayHome => {
-                    Outcome::Entangled
-                }
+                TetherAlarm::Wrap { .. }
+                | TetherAlarm::SumOfWraps { .. }
+                | TetherAlarm::NoWayHome
+                | TetherAlarm::Strayed => Outcome::Entangled,
             };
             self.end(outcome, &format!("nobody attended the hold: {message}"));
         }

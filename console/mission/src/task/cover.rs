@@ -7,6 +7,13 @@ use world::{CoverageGrid, ObstacleMap, Point, Shape, coverage::regions, polyline
 /// Blocks of floor handed to planners are this share of a lane wide.
 const BLOCK_LANES: f64 = 0.25;
 
+/// A corner that is nearer than this and does not come nearer is given up after a while, metres.
+const NEAR_CORNER_M: f64 = 0.3;
+/// That while, seconds: longer than a turn on the spot takes.
+const CORNER_PATIENCE_S: f64 = 6.0;
+/// What counts as coming nearer, metres.
+const NEARER_M: f64 = 0.01;
+
 /// Progress of a coverage mission. What is scanned is kept by the mission's grid, so any planner can go on from here.
 pub struct Cover {
     anchor: Point,
@@ -17,6 +24,8 @@ pub struct Cover {
     lanes: Option<Lanes>,
     /// Way along the plans before this one, metres.
     before_m: f64,
+    /// Least distance from the corner ahead, metres, and the time since then, seconds.
+    at_corner: (f64, f64),
 }
 
 /// A plan under way.
@@ -29,7 +38,15 @@ struct Lanes {
 impl Cover {
     /// Nothing is planned yet.
     pub fn new(anchor: Point, regions: Vec<Vec<Point>>, tolerance_m: f64, start: Point) -> Self {
-        Self { anchor, regions, tolerance_m, position: start, lanes: None, before_m: 0.0 }
+        Self {
+            anchor,
+            regions,
+            tolerance_m,
+            position: start,
+            lanes: None,
+            before_m: 0.0,
+            at_corner: (f64::INFINITY, 0.0),
+        }
     }
 
     /// Takes a plan for what is left.
@@ -45,6 +62,22 @@ impl Cover {
         self.position = position;
         if let Some(lanes) = &mut self.lanes {
             lanes.follower.advance(position, map, 0.0);
+        }
+    }
+
+    /// Takes some time of moving: a corner that something keeps the robot away from is given up.
+    pub fn wait(&mut self, passed_s: f64) {
+        let Some(lanes) = &mut self.lanes else { return };
+        let corner_m = lanes.follower.corner_m(self.position).filter(|corner_m| *corner_m < NEAR_CORNER_M);
+        let (least_m, waited_s) = self.at_corner;
+        self.at_corner = match corner_m {
+            None => (f64::INFINITY, 0.0),
+            Some(corner_m) if corner_m < least_m - NEARER_M => (corner_m, 0.0),
+            Some(_) => (least_m, waited_s + passed_s),
+        };
+        if self.at_corner.1 > CORNER_PATIENCE_S {
+            lanes.follower.give_up_corner();
+            self.at_corner = (f64::INFINITY, 0.0);
         }
     }
 
@@ -188,6 +221,22 @@ mod tests {
         let words = ["swath", "swath", "connector", "connector", "travel", "travel", "travel"];
         assert_eq!(legs, words.map(Some));
         assert!(cover.is_done(Point::origin()) && cover.done() > 0.99);
+    }
+
+    #[test]
+    fn a_corner_that_cannot_be_reached_is_given_up_after_a_while() {
+        let map = ObstacleMap::new(&Boundary::Circle { radius_m: 3.0 }, &[]);
+        let mut cover = Cover::new(Point::origin(), vec![], 0.2, Point::origin());
+        cover.take_plan(&plan());
+        for x in [0.0, 0.7, 1.4, 1.9] {
+            cover.advance(Point::new(x, 0.0), &map);
+        }
+        let given_up = (0..100).find(|_| {
+            cover.wait(0.1);
+            cover.advance(Point::new(1.9, 0.0), &map);
+            cover.target().y > 0.1
+        });
+        assert!(given_up.is_some_and(|tick| (55..65).contains(&tick)), "{given_up:?}");
     }
 
     #[test]

@@ -66,6 +66,56 @@ fn every_tick_has_its_row_of_truth_estimate_and_figures() {
 }
 
 #[test]
+fn a_tethered_run_has_the_cable_and_its_figures_in_every_tick() {
+    let mut events = events(20);
+    let limits = world::tether::Limits { reel_m: 30.0, max_wrap_rad: 3.0, max_sum_wrap_rad: 6.0 };
+    let anchor = world::Point::origin();
+    let tether = mission::TetherConfig { anchor, limits, friction: 0.3, fly_uncertified: false };
+    if let EventKind::RunOpened(run) = &mut events[0].kind {
+        run.mission.tether = Some(tether);
+    }
+    let told: Vec<Event> = events
+        .iter()
+        .filter_map(|event| match &event.kind {
+            EventKind::Truth { pose, .. } => Some((event.clone(), pose.position)),
+            _ => None,
+        })
+        .flat_map(|(event, at)| {
+            let length_m = (at - anchor).norm();
+            // Every other tick there is no way home and nothing is touched.
+            let bears = event.tick % 2 == 0;
+            let contact = mission::event::TetherContact { on: "C1".into(), wrap_rad: 1.0, at };
+            let kind = EventKind::Tethered {
+                length_m,
+                free_m: 30.0 - length_m,
+                contacts: if bears { vec![contact] } else { vec![] },
+                max_wrap_rad: 1.0,
+                sum_wrap_rad: 1.0,
+                pull_factor: 1.3,
+                way_home_m: bears.then_some(length_m),
+                line: vec![anchor, at],
+            };
+            let truth =
+                EventKind::TetherTruth { length_m, max_wrap_rad: 1.0, sum_wrap_rad: 1.0, detour_m: 0.0 };
+            [Event { kind: truth, ..event.clone() }, Event { kind, ..event }]
+        })
+        .collect();
+    events.extend(told);
+    events.sort_by_key(|event| event.tick);
+    let content = recorded(&events);
+    for (entity, component, wanted) in [
+        ("map/world/tether", "LineStrips2D:strips", 20),
+        ("map/world/tether/contacts", "Points2D:positions", 20),
+        ("scalars/tether/out", "Scalars:scalars", 20),
+        ("scalars/tether/out_true", "Scalars:scalars", 20),
+        ("scalars/tether/way_home", "Scalars:scalars", 10),
+        ("scalars/tether_wrap/largest", "Scalars:scalars", 20),
+    ] {
+        assert_eq!(rows(&content, entity, component).len(), wanted, "{entity}");
+    }
+}
+
+#[test]
 fn the_last_row_is_the_last_tick_on_both_timelines() {
     let events = events(TICKS);
     let content = recorded(&events);

@@ -36,7 +36,7 @@ fn shares(shares: &Shares) -> String {
     let told = classes
         .iter()
         .zip(rounded)
-        .filter(|((name, share), _)| *share > 0.0 || matches!(*name, "scanned" | "missed"))
+        .filter(|((name, _), percent)| *percent > 0.0 || matches!(*name, "scanned" | "missed"))
         .map(|((name, _), percent)| format!("{percent:.1} % {name}"));
     format!("{:.1} m²: {}", shares.area_m2, told.collect::<Vec<_>>().join(", "))
 }

@@ -62,7 +62,7 @@ fn methods(gains: Gains) -> Vec<Method> {
         with(Method::new("tapf", "tapf", ALWAYS)).word("tangent", "always").number("tangent_weight", 0.02),
         with(Method::new("tapf/blocking", "tapf", BLOCKING)).word("tangent", "blocking"),
         bvo("bvo-apf/literal", "literal", LITERAL),
-        bvo("bvo-apf/printed", "literal", PRINTED).word("near_law", "printed"),
+        bvo("bvo-apf/printed", "literal", PRINTED).word("near_law", "printed").int("escapes_max", 1),
         bvo("bvo-apf/hull", "hull", OURS),
         bvo("bvo-apf/rollout", "rollout", OURS),
         bvo("bvo-apf/pre", "pre", OURS),

@@ -1,4 +1,5 @@
 use super::*;
+use crate::config::{Mover, Track};
 use crate::{AeConfig, Disturbances, NoiseModel, RobotConfig};
 use proptest::prelude::*;
 use world::{
@@ -69,6 +70,7 @@ fn config() -> SimConfig {
             disturbances: Disturbances::default(),
         }),
         tick_s: 0.1,
+        movers: vec![],
         tether_anchor: None,
     }
 }
@@ -317,4 +319,23 @@ fn an_amphibious_robot_swims_faster_than_it_walks_and_brakes_at_the_shore() {
     let ashore_at_once = speeds_across_the_shore(0);
     let first = ashore_at_once.iter().find(|(x, _)| *x > 0.0).map(|(_, speed)| speed - 0.13);
     assert!(first.is_some_and(|over| over > 0.08), "{first:?}");
+}
+
+#[test]
+fn what_runs_into_a_robot_that_stands_still_is_a_collision() {
+    let shape = Shape::Disc { center: Point::new(3.0, 0.0), radius_m: 0.5 };
+    let world = World {
+        obstacles: vec![Obstacle { id: ObstacleId(9), name: "M".into(), shape, known: false }],
+        ..config().world
+    };
+    let track = Track::Straight { velocity_m_per_s: nalgebra::Vector2::new(-0.5, 0.0) };
+    let movers = vec![Mover { id: ObstacleId(9), track }];
+    let robot = RobotConfig { start: Pose::new(0.0, 0.0, 0.0), ..exact(&robot()) };
+    let mut sim = Simulator::new(SimConfig { world, robot, movers, tick_s: 0.1, ..config() }, 1);
+    let collided = (0..80).find(|_| {
+        sim.act(Drive::Twist { v_m_per_s: 0.0, w_rad_per_s: 0.0 });
+        sim.truth().collided
+    });
+    assert!(collided.is_some_and(|tick| (35..60).contains(&tick)), "{collided:?}");
+    assert!(sim.sense().contact && sim.sense().sightings.len() == 1);
 }

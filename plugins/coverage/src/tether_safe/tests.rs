@@ -1,27 +1,17 @@
 use super::*;
-use planner_api::{Code, PoseEstimate, Reason, Task, testing::Bench};
+use crate::bench;
+use planner_api::{Code, testing::Bench};
 use trials::tanks::{CELL_M, Known, Tank};
 
-fn request_of<'a>(tank: &Tank, site: &'a Site<'a>, tether: Option<TetherLimits>) -> PlanRequest<'a> {
-    let start = PoseEstimate { position: tank.anchor, heading_rad: 0.0, covariance: Default::default() };
-    let task = Task::Cover { anchor: tank.anchor, regions: &[], tether, tolerance_m: 0.3 };
-    PlanRequest { reason: &Reason::Start, start, task, site, previous: &[] }
-}
-
 fn plan(tank: &Tank, values: &[(&str, f64)], tether: Option<TetherLimits>) -> (Result<Plan>, Bench) {
-    let bench = Bench::new();
-    let obstacles = tank.obstacles();
-    let site = tank.site(&obstacles);
-    let mut planner: TetherSafe = bench.configure(values, &site).unwrap();
-    let plan = planner.plan(&request_of(tank, &site, tether), &bench.ctx());
-    (plan, bench)
+    bench::plan::<TetherSafe>(tank, values, tether)
 }
 
 #[test]
 fn every_known_tank_is_covered_and_the_cable_comes_in() {
     for known in Known::ALL {
         let tank = known.tank(11);
-        let (plan, bench) = plan(&tank, &[], None);
+        let (plan, bench) = plan(&tank, &[("pattern", 1.0)], None);
         let plan = plan.unwrap();
         let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
         assert!(scan.certificate.certified, "{}: {:?}", known.id(), scan.certificate.reasons);
@@ -33,7 +23,7 @@ fn every_known_tank_is_covered_and_the_cable_comes_in() {
 
 #[test]
 fn legs_name_the_whole_path_in_order() {
-    let (plan, _) = plan(&Known::E1.tank(3), &[("directions", 1.0)], None);
+    let (plan, _) = plan(&Known::E1.tank(3), &[("pattern", 1.0), ("kicks", 1.0)], None);
     let plan = plan.unwrap();
     assert_eq!(plan.legs.first().map(|leg| leg.first), Some(0));
     assert_eq!(plan.legs.last().map(|leg| leg.last), Some(plan.path.len() - 1));
@@ -43,7 +33,8 @@ fn legs_name_the_whole_path_in_order() {
 #[test]
 fn the_same_question_gets_the_same_answer() {
     let tank = Known::E3.tank(5);
-    assert_eq!(plan(&tank, &[], None).0, plan(&tank, &[], None).0);
+    let quick = [("pattern", 1.0), ("kicks", 1.0)];
+    assert_eq!(plan(&tank, &quick, None).0, plan(&tank, &quick, None).0);
 }
 
 #[test]

@@ -102,7 +102,8 @@ fn a_column_found_on_the_way_is_planned_around_and_what_is_scanned_stays_scanned
     let mut flight = Flight::new(covering());
     flight.tick(&[Order::Start]);
     for _ in 0..8000 {
-        let relative = Point::from(Point::new(0.0, 1.0) - flight.pose.position);
+        let relative = flight.pose.tank_from_robot().inverse() * Point::new(0.0, 1.0);
+        flight.sightings.clear();
         if relative.coords.norm() < 2.0 {
             let shape_in_robot = Shape::Disc { center: relative, radius_m: 0.3 };
             flight.sightings = vec![Sighting { id: ObstacleId(7), shape_in_robot }];

@@ -1,0 +1,134 @@
+//! The tether in flight: plans are judged, limits hold the robot, what is found is wound round as driven.
+
+use super::*;
+use crate::{
+    event::TetherAlarm,
+    tether::{Tether, TetherConfig},
+};
+use world::{Obstacle, ObstacleId, Shape, tether::Limits};
+
+fn tethered(reel_m: f64) -> MissionConfig {
+    let limits = Limits { reel_m, max_wrap_rad: 1.0, max_sum_wrap_rad: 2.0 };
+    let tether = TetherConfig { anchor: Point::new(-3.0, 0.0), limits, friction: 0.3, fly_uncertified: true };
+    MissionConfig { tether: Some(tether), ..config() }
+}
+
+fn lengths(flight: &Flight) -> Vec<f64> {
+    let length = |event: &Event| match event.kind {
+        EventKind::Tethered { length_m, .. } => Some(length_m),
+        _ => None,
+    };
+    flight.events.iter().filter_map(length).collect()
+}
+
+#[test]
+fn the_cable_is_told_every_tick_and_grows_with_the_way() {
+    let mut flight = Flight::new(tethered(20.0));
+    flight.tick(&[Order::Start]);
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+    let lengths = lengths(&flight);
+    assert!(lengths.len() > 100 && lengths[0] < 0.1);
+    assert!((lengths.last().unwrap() - 5.9).abs() < 0.3, "{:?}", lengths.last());
+}
+
+#[test]
+fn the_end_of_the_reel_warns_then_holds_and_the_operator_may_go_on() {
+    let mut flight = Flight::new(tethered(3.0));
+    flight.tick(&[Order::Start]);
+    flight.fly(200);
+    let reel = |reached| {
+        flight.events.iter().filter(move |event| {
+            matches!(&event.kind, EventKind::TetherAlarmed { alarm: TetherAlarm::Reel { .. }, reached: r } if *r == reached)
+        })
+    };
+    assert!(reel(false).count() >= 1 && reel(true).count() == 1);
+    assert!(matches!(flight.mission.phase(), Phase::Held(HoldReason::Tether { .. })));
+    flight.tick(&[Order::Resume]);
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+}
+
+#[test]
+fn with_nobody_there_the_end_of_the_reel_ends_the_mission() {
+    let mut flight = Flight::new(MissionConfig { attended: false, ..tethered(3.0) });
+    flight.tick(&[Order::Start]);
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Aborted));
+}
+
+#[test]
+fn a_plan_that_cannot_be_certified_is_refused_until_the_operator_says_otherwise() {
+    let mut config = tethered(20.0);
+    config.tether.as_mut().unwrap().fly_uncertified = false;
+    config.tether.as_mut().unwrap().limits.reel_m = 0.001;
+    // The planner of these tests tells a path of one point; beyond this reel it is not safe.
+    config.start = Pose::new(-2.0, 0.0, 0.0);
+    let mut flight = Flight::new(config.clone());
+    let told = flight.tick(&[Order::Start]);
+    let why = told.iter().find_map(|kind| match kind {
+        EventKind::Certified { refused: true, certificate, .. } => Some(certificate.reasons.join("; ")),
+        _ => None,
+    });
+    assert!(why.as_ref().is_some_and(|why| why.contains("the reel holds 0.0 m")), "{why:?}");
+    let here = flight.pose;
+    flight.fly(20);
+    assert_eq!(flight.pose, here);
+    assert!(matches!(flight.mission.phase(), Phase::Held(HoldReason::PlanRefused { .. })));
+    let events = flight.tick(&[Order::FlyUncertified]);
+    assert!(
+        events.iter().any(|kind| matches!(kind, EventKind::Certified { refused: false, .. })),
+        "{events:?}"
+    );
+    assert!(refusal(&flight.tick(&[Order::FlyUncertified])).is_some_and(|why| why.contains("no plan")));
+    let mut flight = Flight::new(MissionConfig { attended: false, ..config });
+    flight.tick(&[Order::Start]);
+    flight.fly(5);
+    assert_eq!(flight.ended(), Some(Outcome::Aborted));
+}
+
+#[test]
+fn an_obstacle_found_across_the_cable_is_passed_on_the_side_that_was_driven() {
+    let column = |y: f64| Obstacle {
+        id: ObstacleId(7),
+        name: "found".into(),
+        shape: Shape::Disc { center: Point::new(0.0, y), radius_m: 0.2 },
+        known: false,
+    };
+    for (side, sign) in [(1.0, -1.0), (-1.0, 1.0)] {
+        let config = tethered(20.0).tether.unwrap();
+        let mut world = drawing();
+        let mut tether = Tether::new(&config, 0.25, &world, Point::new(-3.0, 0.0)).unwrap();
+        for way in [(-1.0, 1.0), (0.0, 1.5), (1.0, 1.0), (3.0, 0.0)] {
+            tether.drag_to(Point::new(way.0, way.1 * side));
+        }
+        // The taut line lies right over it; the way driven knows better.
+        world.obstacles.push(column(0.05 * side));
+        tether.lay_anew(&world);
+        let map = world::ObstacleMap::new(&world.boundary, &world.obstacles);
+        let told = tether.tell(&world, &map);
+        let EventKind::Tethered { contacts, way_home_m, .. } = &told[0] else { panic!("{told:?}") };
+        assert!(contacts.len() == 1 && contacts[0].wrap_rad * sign > 0.0, "{contacts:?}");
+        assert!(way_home_m.is_some_and(|way_m| way_m > 6.0));
+    }
+}
+
+#[test]
+fn a_robot_back_at_the_anchor_with_cable_left_out_is_entangled() {
+    let config = tethered(30.0);
+    let mut world = drawing();
+    world.obstacles.push(Obstacle {
+        id: ObstacleId(1),
+        name: "C1".into(),
+        shape: Shape::Disc { center: Point::origin(), radius_m: 0.3 },
+        known: true,
+    });
+    let tether = config.tether.unwrap();
+    let mut lie = Tether::new(&tether, 0.25, &world, Point::new(-3.0, 0.0)).unwrap();
+    assert_eq!(lie.left_out(&world), None);
+    for (x, y) in [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-3.0, 0.0)] {
+        lie.drag_to(Point::new(x, y));
+    }
+    let why = lie.left_out(&world).unwrap();
+    assert!(why.contains("of cable are left out, hooked round C1"), "{why}");
+}

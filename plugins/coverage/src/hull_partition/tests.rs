@@ -1,0 +1,34 @@
+use super::*;
+use crate::bench;
+use trials::tanks::{CELL_M, Known};
+
+#[test]
+fn with_backtracking_through_the_tree_the_cable_comes_in() {
+    for known in [Known::E1, Known::E3] {
+        let tank = known.tank(6);
+        let plan = bench::plan::<HullPartition>(&tank, &[], None).0.unwrap();
+        let scan = tank.score(&plan.path, &[], CELL_M).unwrap();
+        assert_eq!(scan.certificate.collisions, 0, "{}: {:?}", known.id(), scan.certificate.reasons);
+        assert!(scan.certificate.left_out_m.unwrap() < 0.5, "{}: {:?}", known.id(), scan.certificate.reasons);
+        assert!(scan.coverage_reachable > 0.88, "{}: {}", known.id(), scan.coverage_reachable);
+    }
+}
+
+#[test]
+fn moved_directly_from_cell_to_cell_the_way_is_shorter_and_the_cable_is_not() {
+    let tank = Known::E2.tank(1);
+    let [tree, direct] = [0.0, 1.0].map(|reading| {
+        let plan = bench::plan::<HullPartition>(&tank, &[("backtracking", reading)], None).0.unwrap();
+        tank.score(&plan.path, &[], CELL_M).unwrap()
+    });
+    assert!(direct.length_m < tree.length_m, "{} {}", direct.length_m, tree.length_m);
+    assert!(direct.certificate.max_cable_m > tree.certificate.max_cable_m);
+}
+
+#[test]
+fn a_floor_without_columns_is_one_cell() {
+    let tank = trials::tanks::Tank { columns: Vec::new(), ..Known::E3.tank(0) };
+    let plan = bench::plan::<HullPartition>(&tank, &[], None).0.unwrap();
+    assert!(plan.cuts.is_empty());
+    assert!(tank.score(&plan.path, &[], CELL_M).unwrap().coverage_reachable > 0.98);
+}

@@ -1,0 +1,219 @@
+//! Keeping out of the way of what moves.
+//!
+//! Every tick some velocities are flown in thought, with the robot's own way of turning into them, among movers that go
+//! on as they are seen to go. Of those that stay clear the one nearest to the wish is taken; a little more room is
+//! preferred, for what moves may turn. After the velocity obstacles of Fiorini and Shiller 1998 and the dynamic window of
+//! Fox et al. 1997.
+
+use field::body::Body;
+use planner_api::{Limits, Motion, Obstacle, PoseEstimate};
+use world::{Boundary, Point, Vector, geometry::wrap_angle_rad};
+
+/// Slower than this an obstacle stands still, metres per second.
+const STILL_M_PER_S: f64 = 0.02;
+/// Movers are looked at this far ahead in time, seconds, in steps of so much.
+const HORIZON_S: f64 = 5.0;
+const STEP_S: f64 = 0.2;
+/// What stands still is looked at this far ahead, seconds: the wish itself keeps clear of it beyond.
+const STANDING_S: f64 = 1.6;
+/// Headings that are tried, and shares of the largest speed.
+const HEADINGS: u32 = 24;
+const SHARES: [f64; 3] = [1.0, 0.6, 0.3];
+/// Room to a mover that is kept if it can be, beyond the clearance, metres, and that is liked.
+const ROOM_M: f64 = 0.1;
+const LIKED_M: f64 = 0.8;
+/// The place of a mover is less sure by this much each second, metres.
+const DOUBT_M_PER_S: f64 = 0.04;
+/// What a metre of missing room is worth in metres per second of deviation from the wish.
+const WORTH_PER_S: f64 = 0.25;
+/// As the console turns a robot: gain of the turn rate, and the error beyond which it turns on the spot.
+const TURN_GAIN_PER_S: f64 = 2.5;
+const TURN_FIRST_RAD: f64 = 1.0;
+
+/// Whether an obstacle moves.
+pub fn moves(obstacle: &Obstacle<'_>) -> bool {
+    obstacle.velocity_m_per_s.norm() > STILL_M_PER_S
+}
+
+/// Something that moves.
+#[derive(Debug, Clone)]
+pub struct Mover {
+    /// As it is now.
+    pub body: Body,
+    /// Its velocity, metres per second.
+    pub velocity: Vector,
+}
+
+/// What a robot has to keep clear of.
+#[derive(Debug, Clone, Copy)]
+pub struct Around<'a> {
+    /// What moves.
+    pub movers: &'a [Mover],
+    /// What stands still.
+    pub standing: &'a [Body],
+    /// The wall.
+    pub wall: &'a Boundary,
+    /// What the robot can do.
+    pub limits: &'a Limits,
+    /// Distance to keep between hull and anything, metres.
+    pub clearance_m: f64,
+}
+
+/// How a velocity turns out.
+#[derive(Debug, Clone, Copy)]
+struct Outlook {
+    /// When it comes too near to something, seconds; the horizon if it does not.
+    until_s: f64,
+    /// The least distance between the hull and a mover, metres.
+    room_m: f64,
+}
+
+/// The velocity to take instead of the one wished for.
+pub fn evade(wish: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Vector {
+    let v_max = around.limits.v_max_m_per_s;
+    let headings = (0..HEADINGS).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(HEADINGS));
+    let grid =
+        headings.flat_map(|rad| SHARES.map(|share| Vector::new(rad.cos(), rad.sin()) * (v_max * share)));
+    let slower = [1.0, 0.5].map(|share| wish * share);
+    let all = slower.into_iter().chain([Vector::zeros()]).chain(grid);
+    let judged: Vec<(Vector, Outlook)> =
+        all.map(|velocity| (velocity, outlook(velocity, pose, around))).collect();
+    let cost = |(velocity, outlook): &(Vector, Outlook)| {
+        let missing_m = (LIKED_M - outlook.room_m).max(0.0);
+        (velocity - wish).norm() + WORTH_PER_S * missing_m * v_max.max(0.1) / 0.4
+    };
+    let clear = judged.iter().filter(|(_, outlook)| outlook.until_s >= HORIZON_S);
+    let best = clear.min_by(|a, b| cost(a).total_cmp(&cost(b)));
+    let last = || {
+        let later =
+            |a: &Outlook, b: &Outlook| a.until_s.total_cmp(&b.until_s).then(a.room_m.total_cmp(&b.room_m));
+        judged.iter().max_by(|a, b| later(&a.1, &b.1))
+    };
+    best.or_else(last).map_or(wish, |(velocity, _)| *velocity)
+}
+
+/// Flies a velocity in thought.
+fn outlook(velocity: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Outlook {
+    let hull_m = around.limits.radius_m;
+    let (mut at, mut heading_rad) = (pose.position, pose.heading_rad);
+    let standing_m = |at: Point| {
+        let bodies = around.standing.iter().map(|body| body.hull_distance_m(at, hull_m));
+        bodies.fold(around.wall.wall_distance_m(at) - hull_m, f64::min)
+    };
+    // What is too near already must at least not come nearer.
+    let keep_m = around.clearance_m.min(standing_m(at) - 1e-6);
+    let mut room_m = f64::INFINITY;
+    let n_steps = (HORIZON_S / STEP_S).round() as u32;
+    for step in 1..=n_steps {
+        let t_s = f64::from(step) * STEP_S;
+        (at, heading_rad) = moved(at, heading_rad, velocity, around.limits);
+        let to_mover = |mover: &Mover| {
+            mover.body.hull_distance_m(at - mover.velocity * t_s, hull_m) - DOUBT_M_PER_S * t_s
+        };
+        room_m = around.movers.iter().map(to_mover).fold(room_m, f64::min);
+        if room_m < around.clearance_m + ROOM_M || (t_s <= STANDING_S && standing_m(at) < keep_m) {
+            return Outlook { until_s: t_s, room_m };
+        }
+    }
+    Outlook { until_s: HORIZON_S, room_m }
+}
+
+/// Place and heading a step later, with the console's way of turning a robot into a velocity.
+fn moved(at: Point, heading_rad: f64, velocity: Vector, limits: &Limits) -> (Point, f64) {
+    if limits.motion == Motion::Point {
+        return (at + velocity * STEP_S, heading_rad);
+    }
+    let speed = velocity.norm();
+    if speed < 1e-9 {
+        return (at, heading_rad);
+    }
+    let error_rad = wrap_angle_rad(velocity.y.atan2(velocity.x) - heading_rad);
+    let ahead = if error_rad.abs() > TURN_FIRST_RAD { 0.0 } else { speed * error_rad.cos() };
+    let turn_rad =
+        (TURN_GAIN_PER_S * error_rad).clamp(-limits.w_max_rad_per_s, limits.w_max_rad_per_s) * STEP_S;
+    // No further than the error: a step is long.
+    let turn_rad = if turn_rad.abs() > error_rad.abs() { error_rad } else { turn_rad };
+    let middle_rad = heading_rad + turn_rad / 2.0;
+    (at + Vector::new(middle_rad.cos(), middle_rad.sin()) * (ahead * STEP_S), heading_rad + turn_rad)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use field::trial::exact_pose;
+    use planner_api::Outline;
+
+    const LIMITS: Limits = Limits {
+        motion: Motion::Unicycle,
+        v_max_m_per_s: 0.4,
+        w_max_rad_per_s: 1.0,
+        radius_m: 0.25,
+        sensing_range_m: 3.0,
+    };
+
+    fn disc(at: Point, radius_m: f64) -> Body {
+        Body::new(1, &Outline::Disc { center: at, radius_m }).unwrap()
+    }
+
+    /// Flies to the east among movers that start within sight; the least distance to them, and how far it got.
+    fn flown(movers: &[(Point, Vector)], limits: Limits) -> (f64, Point) {
+        let mut pose = exact_pose(Point::origin());
+        let mut least_m = f64::INFINITY;
+        for tick in 0..250 {
+            let t_s = f64::from(tick) * 0.1;
+            let now: Vec<Mover> = movers
+                .iter()
+                .map(|(at, velocity)| Mover { body: disc(at + velocity * t_s, 0.4), velocity: *velocity })
+                .filter(|mover| mover.body.hull_distance_m(pose.position, 0.0) < 3.0)
+                .collect();
+            let around = Around {
+                movers: &now,
+                standing: &[],
+                wall: &Boundary::Circle { radius_m: 20.0 },
+                limits: &limits,
+                clearance_m: 0.1,
+            };
+            let wish = Vector::new(0.4, 0.0);
+            let velocity = if now.is_empty() { wish } else { evade(wish, &pose, &around) };
+            let half = moved(pose.position, pose.heading_rad, velocity, &limits);
+            // A tick is half a step long.
+            pose.position = nalgebra::center(&pose.position, &half.0);
+            pose.heading_rad += wrap_angle_rad(half.1 - pose.heading_rad) / 2.0;
+            let to =
+                movers.iter().map(|(at, v)| (pose.position - (at + v * (t_s + 0.1))).norm() - 0.4 - 0.25);
+            least_m = to.fold(least_m, f64::min);
+        }
+        (least_m, pose.position)
+    }
+
+    #[test]
+    fn it_lets_pass_what_comes_from_anywhere_as_fast_as_itself() {
+        for limits in [LIMITS, Limits { motion: Motion::Point, ..LIMITS }] {
+            for k in 0..24 {
+                let bearing = std::f64::consts::TAU * f64::from(k) / 24.0;
+                let towards = Vector::new(bearing.cos(), bearing.sin());
+                // It would meet the robot on its straight way after ten seconds.
+                let meeting = Point::new(4.0, 0.0);
+                let (least_m, end) = flown(&[(meeting - towards * 4.0, towards * 0.4)], limits);
+                if (meeting - towards * 4.0).coords.norm() > 1.5 {
+                    assert!(least_m > 0.0, "{k} {:?} {least_m}", limits.motion);
+                    assert!(end.x > 4.0, "{k} {:?} ends at {end}", limits.motion);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn without_danger_the_wish_is_done() {
+        let mover = Mover { body: disc(Point::new(0.0, 2.5), 0.3), velocity: Vector::new(0.0, 0.3) };
+        let around = Around {
+            movers: &[mover],
+            standing: &[],
+            wall: &Boundary::Circle { radius_m: 20.0 },
+            limits: &LIMITS,
+            clearance_m: 0.1,
+        };
+        let wish = Vector::new(0.4, 0.0);
+        assert!((evade(wish, &exact_pose(Point::origin()), &around) - wish).norm() < 1e-12);
+    }
+}
