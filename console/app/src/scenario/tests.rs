@@ -129,7 +129,7 @@ fn the_text_of_a_scenario_gives_the_same_scenario_again() {
     assert_eq!(scenario.mission.planner.parameters["k_rep"], ParamValue::Int(2));
     assert_eq!(scenario.mission.planner.parameters["mode"], ParamValue::Word("literal".into()));
     assert!(!scenario.sim.world.obstacles[0].known);
-    assert_eq!(Scenario::parse(&scenario.text, "journal").expect("right"), scenario);
+    assert_eq!(Scenario::parse(&scenario.text, &scenario.shown_name).expect("right"), scenario);
 }
 
 #[test]
@@ -194,7 +194,11 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "[tether]\nreel_m = 1\nanchor_m = [0, 0]\n[planner]",
         "12:10: tether.reel_m = 1: must be at least 3.00 m, the way from the anchor to the start",
     ),
-    ("kind = \"goto\"", "kind = \"cover\"", "7:8: mission.kind = \"cover\": must be one of goto, follow"),
+    (
+        "kind = \"goto\"",
+        "kind = \"hover\"",
+        "7:8: mission.kind = \"hover\": must be one of goto, follow, cover",
+    ),
     ("goal_m = [3, 0]", "goal_m = [6, 0]", "8:10: mission.goal_m = [6, 0]: lies 1.000 m outside the tank"),
     (
         "goal_m = [3, 0]",
@@ -275,7 +279,7 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     (
         "id = \"apf\"",
         "id = \"apf\"\n[expect]\noutcome = \"compete\"",
-        "14:11: expect.outcome = \"compete\": must be one of complete, stuck, collision, time_limit, aborted",
+        "14:11: expect.outcome = \"compete\": must be one of complete, stuck, collision, time_limit, aborted, entangled",
     ),
 ];
 
@@ -540,7 +544,7 @@ proptest! {
     fn any_setting_is_put_in_or_refused(key in "[a-z_.0-9]{0,30}", value in values(), planner in "[a-z\"\\\\\n]{0,6}") {
         let settings = Settings { set: vec![format!("{key}={value}")], planner: Some(planner), seed: None };
         match Scenario::parse_with(DEMO, "x.toml", &settings) {
-            Ok(scenario) => prop_assert_eq!(&Scenario::parse(&scenario.text, "y"), &Ok(scenario.clone())),
+            Ok(scenario) => prop_assert_eq!(&Scenario::parse(&scenario.text, &scenario.shown_name), &Ok(scenario.clone())),
             Err(errors) => prop_assert!(errors.render().starts_with("error: x.toml")),
         }
     }
