@@ -279,7 +279,7 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     (
         "id = \"apf\"",
         "id = \"apf\"\n[expect]\noutcome = \"compete\"",
-        "14:11: expect.outcome = \"compete\": must be one of complete, stuck, collision, time_limit, aborted, entangled",
+        "14:11: expect.outcome = \"compete\": must be one of complete, stuck, collision, time_limit, entangled, aborted",
     ),
 ];
 
