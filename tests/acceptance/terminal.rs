@@ -93,7 +93,7 @@ impl Session {
     /// Goes down an open list to an entry and takes it.
     fn choose(&mut self, entry: &str) {
         let chosen = format!(">{entry} ");
-        for _ in 0..20 {
+        for _ in 0..60 {
             if self.text().contains(&chosen) {
                 break;
             }

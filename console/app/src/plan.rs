@@ -23,7 +23,7 @@ use world::{
 };
 
 /// Time that a planner may take for a plan of the whole floor.
-const COVER_WITHIN: Duration = Duration::from_secs(60);
+const COVER_WITHIN: Duration = Duration::from_mins(1);
 
 /// A plan as scripts read it.
 #[derive(Debug, Serialize)]
@@ -167,12 +167,13 @@ fn lengths(planned: &Planned) -> String {
 /// The certificate, for people.
 fn certified(certificate: &Certificate) -> String {
     let Certificate { max_cable_m, eccentricity_m, max_wrap_rad, max_sum_wrap_rad, .. } = certificate;
-    let reasons: String = certificate.reasons.iter().map(|why| format!("          {why}\n")).collect();
+    let reasons: Vec<String> = certificate.reasons.iter().map(|why| format!("          {why}\n")).collect();
     format!(
-        "tether    {}, cable {max_cable_m:.2} m at most ({eccentricity_m:.2} m the least possible), wrap {:.0} deg on one obstacle, {:.0} deg in sum\n{reasons}",
+        "tether    {}, cable {max_cable_m:.2} m at most ({eccentricity_m:.2} m the least possible), wrap {:.0} deg on one obstacle, {:.0} deg in sum\n{}",
         if certificate.certified { "certified" } else { "NOT certified" },
         max_wrap_rad.to_degrees(),
         max_sum_wrap_rad.to_degrees(),
+        reasons.concat(),
     )
 }
 

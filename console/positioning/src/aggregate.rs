@@ -82,7 +82,8 @@ impl Aggregation {
         };
         let repetitions = u32::try_from(ranges_m.len()).unwrap_or(u32::MAX);
         // `max` also turns what is no number into the floor.
-        let sigma_m = sigma_m.max(SIGMA_FLOOR_M).min(RANGE_LIMIT_M);
+        let at_least_m = sigma_m.max(SIGMA_FLOOR_M);
+        let sigma_m = at_least_m.min(RANGE_LIMIT_M);
         Ok(Ranging { station: set.station, range_m, sigma_m, repetitions, least_m, most_m })
     }
 }
@@ -123,7 +124,7 @@ fn posterior(ranges_m: &[f64], (least_m, most_m): (f64, f64), noise: &RangeNoise
             return Some((mean, noise.sigma_ratio() * mean / n.sqrt()));
         }
     };
-    if !(low < high) {
+    if low >= high {
         return None;
     }
     let width = (high - low) / f64::from(NODES);

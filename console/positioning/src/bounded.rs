@@ -76,21 +76,17 @@ impl Likelihood {
 
 impl Bounded {
     /// The likelihood of these ranges.
-    pub(crate) fn likelihood(
-        &self,
-        ranges: &[Ranging],
-        stations: &[Station],
-    ) -> Result<Likelihood, FixError> {
+    pub(crate) fn likelihood(self, ranges: &[Ranging], stations: &[Station]) -> Result<Likelihood, FixError> {
         let anchors = anchored(ranges, stations)?;
         let annuli = anchors.iter().map(|a| self.annulus(a, ranges)).collect::<Option<Vec<_>>>();
         annuli.map(Likelihood).ok_or(FixError::EmptySet { ratio: self.told_ratio() })
     }
 
-    fn told_ratio(&self) -> f64 {
+    fn told_ratio(self) -> f64 {
         if self.ratio.is_finite() { self.ratio } else { 0.0 }
     }
 
-    fn annulus(&self, anchor: &Anchor, ranges: &[Ranging]) -> Option<Annulus> {
+    fn annulus(self, anchor: &Anchor, ranges: &[Ranging]) -> Option<Annulus> {
         let ranging = ranges.iter().find(|r| r.station == anchor.station)?;
         let is_usable = (0.0..1.0).contains(&self.ratio);
         // A range outside its own extremes has been tampered with; the extremes are what counts.

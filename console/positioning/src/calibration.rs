@@ -54,7 +54,8 @@ impl Calibration {
         let surveys = unknowns.survey_sigma_m > 0.0 && unknowns.survey_sigma_m.is_finite();
         let n = 1 + if surveys { 2 * stations.len() } else { 0 };
         // `max` also turns what is no number into the least.
-        let sound = unknowns.sound_sigma_ratio.max(1e-6).min(1.0);
+        let at_least = unknowns.sound_sigma_ratio.max(1e-6);
+        let sound = at_least.min(1.0);
         let mut information = DMatrix::from_diagonal_element(n, n, unknowns.survey_sigma_m.powi(-2));
         information[(0, 0)] = sound.powi(-2);
         Self {

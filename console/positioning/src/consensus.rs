@@ -59,7 +59,7 @@ impl PositionSolver for Consensus {
         let Some(best) = answers.first() else { return solve_anchors(&anchors, prior) };
         let fix = best.fix.clone();
         let rival = answers.iter().skip(1).find(|other| best.is_contested_by(other));
-        Ok(self.judged(fix, &anchors, rival))
+        Ok(judged(fix, &anchors, rival))
     }
 }
 
@@ -139,22 +139,23 @@ impl Consensus {
         let cost = |sigmas: f64| if self.is_wrong(sigmas) { CUT_SIGMAS.powi(2) } else { sigmas * sigmas };
         anchors.iter().map(|a| cost(a.view_from(position).sigmas())).sum()
     }
+}
 
-    fn judged(self, mut fix: Fix, anchors: &[Anchor], rival: Option<&Answer>) -> Fix {
-        for anchor in anchors.iter().filter(|a| !fix.used.contains(&a.station)) {
-            let view = anchor.view_from(fix.position);
-            let gate_m = CUT_SIGMAS * view.sigma_m;
-            fix.excluded.push((anchor.station, Exclusion::Residual { residual_m: view.residual_m, gate_m }));
-        }
-        let too_few = fix.used.len() < NEEDED || 2 * fix.excluded.len() >= anchors.len();
-        if rival.is_some() || (too_few && !fix.excluded.is_empty()) {
-            fix.integrity = fix.integrity.min_trust(Integrity::Suspect);
-        }
-        if let Some(rival) = rival {
-            fix.mirror = fix.mirror.or(Some(rival.fix.position));
-        }
-        fix
+/// The fix with what was left out, and the trust that is left.
+fn judged(mut fix: Fix, anchors: &[Anchor], rival: Option<&Answer>) -> Fix {
+    for anchor in anchors.iter().filter(|a| !fix.used.contains(&a.station)) {
+        let view = anchor.view_from(fix.position);
+        let gate_m = CUT_SIGMAS * view.sigma_m;
+        fix.excluded.push((anchor.station, Exclusion::Residual { residual_m: view.residual_m, gate_m }));
     }
+    let too_few = fix.used.len() < NEEDED || 2 * fix.excluded.len() >= anchors.len();
+    if rival.is_some() || (too_few && !fix.excluded.is_empty()) {
+        fix.integrity = fix.integrity.min_trust(Integrity::Suspect);
+    }
+    if let Some(rival) = rival {
+        fix.mirror = fix.mirror.or(Some(rival.fix.position));
+    }
+    fix
 }
 
 /// Subsets of three out of `n`, at most about [`MOST_SUBSETS`] of them, evenly over all.

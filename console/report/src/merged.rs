@@ -109,7 +109,9 @@ mod tests {
             EventKind::RunOpened(Box::new(round_tank(cell_m))),
             EventKind::Covered { runs: vec![CellRun(first, count)] },
         ];
-        kinds.into_iter().for_each(|kind| fold.apply(&Event { tick: 0, t_s: 0.0, kind }));
+        for kind in kinds {
+            fold.apply(&Event { tick: 0, t_s: 0.0, kind });
+        }
         let recording = Some(format!("logs/{name}/recording.rrd"));
         (name.into(), Logs { journal: None, recording, error: None }, fold)
     }

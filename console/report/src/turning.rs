@@ -19,7 +19,7 @@ pub struct Turning {
     way_m: f64,
     heading_rad: f64,
     turned_rad: f64,
-    is_turning: bool,
+    in_turn: bool,
     turns: u64,
 }
 
@@ -38,11 +38,11 @@ impl Turning {
         let headings = || self.lately.iter().map(|(_, heading_rad)| *heading_rad);
         let span_rad =
             headings().fold(f64::NEG_INFINITY, f64::max) - headings().fold(f64::INFINITY, f64::min);
-        if !self.is_turning && span_rad > TURN_RAD {
-            self.is_turning = true;
+        if !self.in_turn && span_rad > TURN_RAD {
+            self.in_turn = true;
             self.turns += 1;
-        } else if self.is_turning && span_rad < STRAIGHT_RAD {
-            self.is_turning = false;
+        } else if self.in_turn && span_rad < STRAIGHT_RAD {
+            self.in_turn = false;
         }
     }
 

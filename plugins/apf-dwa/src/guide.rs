@@ -129,7 +129,7 @@ impl Guide {
             self.find_way(field, ground, at, goal);
         }
         self.age += 1;
-        if self.age % LOOK_STEPS == 0 {
+        if self.age.is_multiple_of(LOOK_STEPS) {
             let margin_m = field.keep_m - ground.hull_m - SLACK_M;
             while self.way.len() > 1 && ground.is_free(at, self.way[1], margin_m + SLACK_M + ROOM_M / 2.0) {
                 self.way.remove(0);

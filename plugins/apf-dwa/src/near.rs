@@ -98,7 +98,15 @@ impl NearThings {
     /// `cap_m`. The first point is reached after `dt_s`.
     pub fn distance_m(&self, points: &[Point], dt_s: f64, cap_m: f64) -> f64 {
         let mut least = cap_m;
+        let Some(first) = points.first() else { return least };
+        let span_m = points.iter().map(|p| (p - first).norm_squared()).fold(0.0, f64::max).sqrt();
+        let last_s = dt_s * points.len() as f64;
         for disc in &self.discs {
+            // Nothing that is too far from the first point for the others to come near.
+            let reach_m = least + span_m + disc.radius_m + disc.velocity.norm() * last_s;
+            if (first - disc.center).norm_squared() > reach_m * reach_m {
+                continue;
+            }
             let step = disc.velocity * dt_s;
             let mut center = disc.center;
             let mut squared = f64::INFINITY;
@@ -109,6 +117,10 @@ impl NearThings {
             least = least.min(squared.sqrt() - disc.radius_m);
         }
         for bar in &self.bars {
+            let reach_m = least + span_m + bar.half_width_m + bar.velocity.norm() * last_s;
+            if bar.squared(*first, Vector::zeros()) > reach_m * reach_m {
+                continue;
+            }
             let step = bar.velocity * dt_s;
             let mut moved = Vector::zeros();
             let mut squared = f64::INFINITY;

@@ -2,7 +2,7 @@
 
 use crate::evade;
 use planner_api::{
-    Code, Ctx, Outline, Plan, PlanRequest, PlannerError, Reason, Result, Site, Task, ZoneKind,
+    Code, Ctx, LogLevel, Outline, Plan, PlanRequest, PlannerError, Reason, Result, Site, Task, ZoneKind,
 };
 use world::{
     Boundary, Point, Shape, polyline,
@@ -39,6 +39,8 @@ pub struct Ground {
     pub wall_keep_m: f64,
     /// Obstacles and no-go zones.
     pub solids: Vec<Solid>,
+    /// What was discovered on the goal, if anything; the way leads there all the same.
+    pub covers_goal: Option<String>,
 }
 
 impl Ground {
@@ -71,13 +73,33 @@ impl Ground {
                 })
         };
         let wall_keep_m = keep_m(&|at| boundary.wall_distance_m(at), "the wall")?;
+        // What is discovered on the goal may be on its way: when it was seen for a while, it will be known.
+        let mut covers_goal = None;
+        let under_way = *request.reason != Reason::Start;
         let solids = shapes(site)
-            .map(|(name, shape)| {
+            .filter(|(name, discovered, shape)| {
+                let covers = under_way && *discovered && shape.distance_m(goal) < hull_m;
+                if covers {
+                    covers_goal = Some(name.clone());
+                }
+                !covers
+            })
+            .map(|(name, _, shape)| {
                 let keep_m = keep_m(&|at| shape.distance_m(at), &name)?;
                 Ok(Solid { shape, keep_m })
             })
             .collect::<Result<Vec<Solid>>>()?;
-        Ok(Self { start, goal, boundary, wall_keep_m, solids })
+        Ok(Self { start, goal, boundary, wall_keep_m, solids, covers_goal })
+    }
+
+    /// Says what was discovered on the goal.
+    pub fn tell(&self, ctx: &Ctx<'_>) {
+        if let Some(name) = &self.covers_goal {
+            ctx.log(
+                LogLevel::Warn,
+                &format!("{name} is on the goal; the robot goes on in case it moves away"),
+            );
+        }
     }
 
     /// The floor on which the robot is a point.
@@ -110,16 +132,16 @@ fn refused(site: &Site<'_>, at: Point, distance_m: f64, what: &str) -> PlannerEr
     PlannerError::new(code, message)
 }
 
-/// Obstacles and no-go zones with what they are called.
-fn shapes<'a>(site: &'a Site<'_>) -> impl Iterator<Item = (String, Shape)> + 'a {
+/// Obstacles and no-go zones with what they are called and whether they were discovered.
+fn shapes<'a>(site: &'a Site<'_>) -> impl Iterator<Item = (String, bool, Shape)> + 'a {
     // What moves is left to the flight: by the time the robot is there it will be gone.
     let obstacles = site
         .obstacles
         .iter()
         .filter(|o| !evade::moves(o))
-        .map(|o| (format!("obstacle {}", o.id), shape_of(&o.outline)));
+        .map(|o| (format!("obstacle {}", o.id), o.discovered, shape_of(&o.outline)));
     let zones = site.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
-    obstacles.chain(zones.map(|zone| ("a no-go zone".to_owned(), shape_of(&zone.outline))))
+    obstacles.chain(zones.map(|zone| ("a no-go zone".to_owned(), false, shape_of(&zone.outline))))
 }
 
 fn shape_of(outline: &Outline<'_>) -> Shape {

@@ -56,6 +56,7 @@ impl Planner for Navfn {
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
         let ground = Ground::new(request, self.clearance_m)?;
+        ground.tell(ctx);
         let floor = ground.grown();
         self.way(&ground, &floor, ctx).map(|way| plan_of(&way)).map_err(|no_way| refusal(no_way, ctx))
     }

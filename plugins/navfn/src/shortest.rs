@@ -35,6 +35,7 @@ impl Planner for Shortest {
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
         let ground = Ground::new(request, self.clearance_m)?;
+        ground.tell(ctx);
         let way = ground.grown().shortest(ground.start, ground.goal, &mut || ctx.check().is_ok());
         way.map(|way| plan_of(&way)).map_err(|no_way| refusal(no_way, ctx))
     }

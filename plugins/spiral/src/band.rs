@@ -16,8 +16,6 @@ use world::{Boundary, Point, Vector, polyline};
 
 /// Length of path over which a change of heading is measured, metres.
 pub const SPAN_M: f64 = 0.2;
-/// Chords are laid along the way from places so far apart, metres.
-const MARK_M: f64 = 0.03;
 /// Once a way is found this share of the turn limit is aimed at.
 const TURN_SHARE: f64 = 0.985;
 /// Clearances are kept with this much to spare, metres.
@@ -124,9 +122,9 @@ impl<'a> Band<'a> {
     fn turns_slowly(&self, way: &[Point]) -> bool {
         let stations_m = polyline::stations_m(way);
         let length_m = stations_m[way.len() - 1];
-        let n_marks = ((length_m - 2.0 * SPAN_M) / MARK_M).max(0.0) as usize;
-        let marks_m = (0..=n_marks).map(|k| SPAN_M + k as f64 * MARK_M);
-        marks_m.take_while(|s_m| s_m + SPAN_M <= length_m).all(|s_m| {
+        // As the chords slide along the way they turn most where one of their ends meets a point of it.
+        let marks_m = stations_m.iter().flat_map(|s_m| [s_m - SPAN_M, *s_m, s_m + SPAN_M]);
+        marks_m.filter(|s_m| *s_m >= SPAN_M && s_m + SPAN_M <= length_m).all(|s_m| {
             let (index, share) = piece(&stations_m, s_m);
             let most_rad = self.knots[index].turn_per_m.max(self.knots[index + 1].turn_per_m) * SPAN_M;
             if most_rad >= PI {

@@ -1,6 +1,6 @@
 //! The course to follow: preset points with stations and directions, checked once.
 
-use field::{Keep, Room};
+use field::{Keep, Room, part::parts_of, scene::solids};
 use planner_api::{Code, Config, Ctx, LogLevel, ParamSpec, PlanRequest, PlannerError, Result, Site, Task};
 use std::f64::consts::TAU;
 use world::{Point, Vector, geometry::wrap_angle_rad, polyline};
@@ -137,9 +137,9 @@ pub fn check_start(request: &PlanRequest<'_>, course: &Course, room: &Room, ctx:
     if room.wall().wall_distance_m(start) < -ROUNDING_M {
         return Err(PlannerError::new(Code::StartOutside, format!("{place} lies outside the tank")));
     }
-    let bare = Room::new(request.site, Keep { obstacle_m: 0.0, wall_m: f64::NEG_INFINITY });
     // The estimated start may be off a little: only a hull that is half inside is refused.
-    let outline_m = bare.spare_m(start);
+    let parts = solids(request.site).flat_map(|(_, outline)| parts_of(&outline));
+    let outline_m = parts.map(|part| part.distance(start).0).fold(f64::INFINITY, f64::min);
     if outline_m < hull_m / 2.0 || outline_m <= 0.0 {
         let message = format!("at {place} the hull is {:.2} m inside an obstacle", hull_m - outline_m);
         return Err(PlannerError::new(Code::StartOccupied, message));

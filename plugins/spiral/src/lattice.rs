@@ -16,15 +16,17 @@ const COARSE_M: f64 = 0.15;
 const CELL_M: f64 = 0.05;
 /// Preset points nearer to each other than this are moved together, metres.
 const FINE_M: f64 = 0.1;
+/// And so near where no smooth way is found else, metres.
+const FINEST_M: f64 = 0.05;
 /// Room before and behind what blocks the course, metres: enough to leave it and to come back.
 const RAMPS_M: [f64; 2] = [1.0, 3.0];
 /// Course beside a window over which the heading counts, metres.
 const BESIDE_M: f64 = SPAN_M * 1.3;
 /// What a way passes as near as this to the clearance might be passed on the other side, metres.
 const TOUCH_M: f64 = 0.1;
-/// Other ways are tried up to this many times the cost of the cheapest, and so many of them.
-const MOST_COST: f64 = 2.0;
-const MOST_OTHERS: usize = 2;
+/// Few other ways are tried at first, many where none of them is smooth.
+const FEW: Others = Others { cost: 2.0, number: 2 };
+const MANY: Others = Others { cost: 6.0, number: 8 };
 /// Most ways are soon drawn; what is not is worth more.
 const HASTE: Patience = Patience { sets: 40, growth: 1.1, turn_share: 0.95 };
 const PATIENCE: Patience = Patience { sets: 80, growth: 1.2, turn_share: 0.92 };
@@ -72,6 +74,15 @@ enum Beside {
     Blocked { station: usize },
 }
 
+/// Which other ways are tried beside the cheapest.
+#[derive(Debug, Clone, Copy)]
+struct Others {
+    /// Up to this many times its cost.
+    cost: f64,
+    /// No more than so many.
+    number: usize,
+}
+
 /// How a way round is looked for.
 #[derive(Debug, Clone, Copy)]
 struct Attempt {
@@ -82,6 +93,9 @@ struct Attempt {
     /// Whether the first window begins on the course.
     begins_on: bool,
     patience: Patience,
+    others: Others,
+    /// Points of the course nearer to each other than this are moved together, metres.
+    fine_m: f64,
 }
 
 /// One search for a path.
@@ -110,7 +124,7 @@ pub fn plan(
         let windows = search.windows(&blocked, &ramps_m);
         for window in &windows {
             ctx.check()?;
-            let found = known.entry(ends(window)).or_insert_with(|| search.beside(window));
+            let found = known.entry(ends(window)).or_insert_with(|| search.beside(window, wider));
             if !matches!(found, Beside::Smooth(_)) {
                 let inside = blocked.iter().zip(&mut ramps_m).filter(|(index, _)| window.contains(index));
                 inside.for_each(|(_, ramp)| *ramp = RAMPS_M[1]);
@@ -155,21 +169,30 @@ impl Search<'_> {
     }
 
     /// A way round within a window: as smooth as demanded if there is one, else any.
-    fn beside(&self, window: &RangeInclusive<usize>) -> Beside {
+    fn beside(&self, window: &RangeInclusive<usize>, is_wide: bool) -> Beside {
         let far_m = self.limits.offset_m;
         let mut furthest = *window.start();
         let mut short_of_end = None;
         let begins_on = *window.start() > 0 || self.room.spare_m(self.course.points[0]) >= 0.0;
-        let near = Attempt { offset_m: far_m * 0.6, sharper: 1.0, begins_on, patience: HASTE };
+        let near = Attempt {
+            offset_m: far_m * 0.6,
+            sharper: 1.0,
+            begins_on,
+            patience: HASTE,
+            others: FEW,
+            fine_m: FINE_M,
+        };
         let far = Attempt { offset_m: far_m, patience: PATIENCE, ..near };
-        let mut attempts = vec![
-            near,
-            far,
-            Attempt { offset_m: far_m * 2.0, ..far },
+        let mut attempts = vec![near, far, Attempt { offset_m: far_m * 2.0, ..far }];
+        if is_wide {
+            attempts.push(Attempt { others: MANY, ..near });
+            attempts.push(Attempt { others: MANY, fine_m: FINEST_M, ..far });
+        }
+        attempts.extend([
             Attempt { sharper: 2.0, ..far },
             Attempt { sharper: f64::INFINITY, ..near },
             Attempt { sharper: f64::INFINITY, offset_m: far_m * 2.0, ..near },
-        ];
+        ]);
         if begins_on && *window.start() == 0 {
             // Where nothing leads on from the start itself the path begins beside it.
             attempts.push(Attempt { sharper: f64::INFINITY, begins_on: false, ..far });
@@ -213,7 +236,7 @@ impl Search<'_> {
         };
         let first = strip.cheapest(self.room).map_err(|station| indices[station])?;
         let mut best: Option<(f64, Vec<Point>)> = None;
-        let ways = std::iter::once(first.clone()).chain(self.others(&strip, &first));
+        let ways = std::iter::once(first.clone()).chain(self.others(&strip, &first, attempt.others));
         for way in ways {
             let places: Vec<Point> =
                 stations.iter().zip(&way.offsets_m).map(|(s, n)| s.at + s.left * *n).collect();
@@ -227,16 +250,16 @@ impl Search<'_> {
     }
 
     /// Ways that pass one thing on the other side.
-    fn others(&self, strip: &Strip<'_>, way: &Way) -> Vec<Way> {
+    fn others(&self, strip: &Strip<'_>, way: &Way, most: Others) -> Vec<Way> {
         let mut others: Vec<Way> = Vec::new();
         for bar in self.bars(strip.stations, way) {
             let other = Strip { bars: &[bar], ..*strip }.cheapest(self.room);
             others.extend(
-                other.ok().filter(|other| other.cost < way.cost * MOST_COST && !others.contains(other)),
+                other.ok().filter(|other| other.cost < way.cost * most.cost && !others.contains(other)),
             );
         }
         others.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        others.truncate(MOST_OTHERS);
+        others.truncate(most.number);
         others
     }
 
@@ -276,7 +299,7 @@ impl Search<'_> {
         rough: &[Point],
     ) -> Option<(f64, Vec<Point>)> {
         let around = self.around(window);
-        let indices = self.knots(&around, FINE_M);
+        let indices = self.knots(&around, attempt.fine_m);
         let last = self.course.last();
         let is_fixed = |index: usize| {
             (index <= *window.start() && attempt.begins_on)

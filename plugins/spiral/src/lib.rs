@@ -16,6 +16,8 @@ mod refusal;
 mod ring;
 mod strip;
 mod tangent;
+mod walk;
+mod way_out;
 
 #[cfg(test)]
 mod bench;

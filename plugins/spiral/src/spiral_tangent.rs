@@ -4,10 +4,10 @@ use crate::{
     course::{self, Course},
     pursuit::Pursuit,
     refusal,
-    tangent::{Around, Follower, Stuck, Track},
+    walk::Walk,
 };
 use field::{
-    Room, params as p,
+    params as p,
     part::{Part, parts_of},
     scene::solids,
 };
@@ -15,14 +15,10 @@ use planner_api::{
     Caps, Code, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result,
     Sensed, Site, float,
 };
-use world::{Point, polyline};
+use world::polyline;
 
-/// What is sensed is looked up anew after this way, metres.
-const LOOK_M: f64 = 0.2;
 /// Beyond clearance the robot has to see at least this far, metres.
 const LEAST_SIGHT_M: f64 = 0.5;
-/// Moves allowed, as a multiple of those of the course.
-const DETOUR: f64 = 4.0;
 
 const RANGE: ParamSpec = float("range_m", "Sensing range", "m", 0.5, 10.0, 1.2)
     .help("Obstacles further from the middle of the robot are not taken into account; never more than it senses.")
@@ -34,7 +30,8 @@ const STEP: ParamSpec = float("step_m", "Longest move", "m", 0.01, 0.3, 0.1)
 /// Follows a preset path, or a plan of another planner, by what the robot senses.
 ///
 /// Straight to the next free point; past what is in the way along the tangent of the headings it blocks, on the side
-/// that misses less floor. It never goes where hull and clearance have no room.
+/// that misses less floor. Where neither side leads on, in a pocket, it goes the shortest way back to the course among
+/// all that it has sensed so far. It never goes where hull and clearance have no room.
 pub struct SpiralTangent {
     clearance_m: f64,
     range_m: f64,
@@ -77,7 +74,7 @@ impl Planner for SpiralTangent {
         let room = course::room(request.site, self.clearance_m, &course)?;
         course::check_start(request, &course, &room, ctx)?;
         let parts: Vec<Part> = solids(request.site).flat_map(|(_, outline)| parts_of(&outline)).collect();
-        let (path, end) = self.walked(&course, &room, &parts, ctx)?;
+        let (path, end) = Walk::new(&course, &room, &parts, (self.range_m, self.step_m)).walked(ctx)?;
         match end {
             Ok(()) => {
                 let last = path[path.len() - 1];
@@ -94,53 +91,6 @@ impl Planner for SpiralTangent {
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         self.pursuit.step(sensed, ctx)
-    }
-}
-
-impl SpiralTangent {
-    /// The path of a follower that senses no further than its range; or the station where it is stuck.
-    fn walked(
-        &self,
-        course: &Course,
-        room: &Room,
-        parts: &[Part],
-        ctx: &Ctx<'_>,
-    ) -> Result<(Vec<Point>, std::result::Result<(), usize>)> {
-        let track = Track { points: &course.points, stations_m: &course.stations_m };
-        let mut around = Around { wall: room.wall(), parts: Vec::new(), keep: room.keep() };
-        let mut follower = Follower::new(course::nearest_free(course, room), 0);
-        let mut path = vec![follower.at];
-        let mut looked = None;
-        let most = (DETOUR * course.stations_m[course.last()] / self.step_m) as usize
-            + DETOUR as usize * path.len()
-            + 4000;
-        for _ in 0..most + course.points.len() {
-            ctx.check()?;
-            let before = follower.at;
-            if looked.is_none_or(|from: Point| (before - from).norm() > LOOK_M) {
-                around.parts = parts.iter().filter(|part| part.distance(before).0 < self.range_m).collect();
-                looked = Some(before);
-            }
-            if follower.is_done(&track, 1e-9) {
-                return Ok((path, Ok(())));
-            }
-            let ended = self.ends_here(&follower, course, room);
-            if ended || follower.advance(&track, &around, self.step_m) == Err(Stuck) {
-                let end = if ended { Ok(()) } else { Err(follower.nearest) };
-                return Ok((path, end));
-            }
-            if (follower.at - before).norm() > 1e-9 {
-                path.push(follower.at);
-            }
-        }
-        Ok((path, Err(follower.nearest)))
-    }
-
-    /// The last point lies in an obstacle, and the follower has come as near as it can.
-    fn ends_here(&self, follower: &Follower, course: &Course, room: &Room) -> bool {
-        let last = course.points[course.last()];
-        let near_m = (last - follower.at).norm();
-        room.spare_m(last) < 0.0 && near_m < -room.spare_m(last) + self.step_m
     }
 }
 

@@ -2,7 +2,7 @@
 //! tangents of the headings that it blocks.
 
 use field::{Keep, Sense, part::Part};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use world::{Boundary, Point, Vector, geometry::wrap_angle_rad};
 
 /// The nearest point of the course is looked for this far ahead, metres.
@@ -13,12 +13,10 @@ const ON_COURSE_M: f64 = 0.01;
 const MARGIN_RAD: f64 = 1e-6;
 /// A way round is thought through for this many moves.
 const THOUGHT_MOVES: usize = 120;
-/// Without getting on along the course for this many moves the other side is tried.
-const PATIENCE_MOVES: usize = 120;
-/// As many changes of side as are borne without getting on.
-const MOST_CHANGES: usize = 3;
-/// What is not left behind in thought costs this much for every metre that is missing.
-const UNFINISHED: f64 = 1.0;
+/// Without getting on along the course for this many moves it is stuck.
+const PATIENCE_MOVES: usize = 40;
+/// Nearer by no more than this is rounding, metres.
+const ROUNDING_M: f64 = 1e-7;
 
 /// A course with the way along it.
 #[derive(Debug, Clone, Copy)]
@@ -58,10 +56,9 @@ pub struct Follower {
     pub side: Option<Sense>,
     best: usize,
     idle: usize,
-    changes: usize,
 }
 
-/// No way on.
+/// What is in range leads on neither side back to the course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stuck;
 
@@ -76,6 +73,15 @@ impl Around<'_> {
     pub fn is_free(&self, a: Point, b: Point) -> bool {
         self.wall.wall_distance_m(b) >= self.keep.wall_m - 1e-9
             && self.parts.iter().all(|part| part.segment_distance_m(a, b) >= self.keep.obstacle_m)
+    }
+
+    /// Whether the middle of the hull may go straight from one place to another, touching what it likes.
+    pub fn is_nearly_free(&self, a: Point, b: Point) -> bool {
+        self.wall.wall_distance_m(b) >= self.keep.wall_m - ROUNDING_M
+            && self
+                .parts
+                .iter()
+                .all(|part| part.segment_distance_m(a, b) >= self.keep.obstacle_m - ROUNDING_M)
     }
 
     /// Headings in which a move of this length would come too near to something.
@@ -145,7 +151,7 @@ fn round_wall(radius_m: f64, at: Point, reach_m: f64) -> Option<Interval> {
 impl Follower {
     /// A follower at a place near a point of its course.
     pub fn new(at: Point, nearest: usize) -> Self {
-        Self { at, nearest, side: None, best: nearest, idle: 0, changes: 0 }
+        Self { at, nearest, side: None, best: nearest, idle: 0 }
     }
 
     /// Makes one move of at most this length.
@@ -154,7 +160,10 @@ impl Follower {
     /// [`Stuck`] when nothing leads on.
     pub fn advance(&mut self, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> Result<(), Stuck> {
         self.note_progress(track);
-        let Some(aim) = self.aim(track, around) else { return Err(Stuck) };
+        if self.idle > PATIENCE_MOVES {
+            return Err(Stuck);
+        }
+        let aim = self.aim(track, around);
         let length_m = step_m.min((aim - self.at).norm());
         let Some(wanted) = (aim - self.at).try_normalize(1e-12) else {
             self.nearest = (self.nearest + 1).min(track.points.len() - 1);
@@ -164,7 +173,7 @@ impl Follower {
             self.at += wanted * length_m;
             return Ok(());
         }
-        let side = self.side.unwrap_or_else(|| self.better_side(track, around, step_m));
+        let side = self.side.or_else(|| self.better_side(track, around, step_m)).ok_or(Stuck)?;
         self.side = Some(side);
         let heading = around.tangent(self.at, wanted, step_m, side).ok_or(Stuck)?;
         self.at += heading * step_m;
@@ -210,52 +219,41 @@ impl Follower {
         self.idle = if got_on { 0 } else { self.idle + 1 };
         self.best = self.best.max(self.nearest);
         if got_on && self.side.is_some() && self.is_on(track) {
-            (self.side, self.changes) = (None, 0);
+            self.side = None;
         }
     }
 
     /// The first point of the course that is ahead and free, as far as is known.
-    fn aim(&mut self, track: &Track<'_>, around: &Around<'_>) -> Option<Point> {
-        if self.idle > PATIENCE_MOVES {
-            self.changes += 1;
-            self.idle = 0;
-            self.side = self.side.map(Sense::reversed);
-            if self.changes > MOST_CHANGES {
-                return None;
-            }
-        }
+    fn aim(&self, track: &Track<'_>, around: &Around<'_>) -> Point {
         let off_m = self.off_m(track);
         let lead_m = if off_m < ON_COURSE_M { 1e-6 } else { 0.05 + 0.5 * off_m };
         let from_m = track.stations_m[self.nearest] + lead_m;
         let ahead = (self.nearest..track.points.len()).filter(|index| track.stations_m[*index] >= from_m);
         let mut free = ahead.filter(|index| around.spare_m(track.points[*index]) >= 0.0);
         let last = track.points[track.points.len() - 1];
-        Some(free.next().map_or(last, |index| track.points[index]))
+        free.next().map_or(last, |index| track.points[index])
     }
 
-    /// The side on which less floor is missed, as far as is known: both are gone in thought.
-    fn better_side(&self, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> Sense {
-        let cost = |side: Sense| self.cost_of(side, track, around, step_m);
-        if cost(Sense::Clockwise) <= cost(Sense::CounterClockwise) {
-            Sense::Clockwise
-        } else {
-            Sense::CounterClockwise
-        }
+    /// The side on which less floor is missed, as far as is known: both are gone in thought. `None` if neither leads
+    /// back to the course.
+    fn better_side(&self, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> Option<Sense> {
+        let cost = |side: Sense| self.cost_of(side, track, around, step_m).map(|cost| (cost, side));
+        let (left, right) = (cost(Sense::Clockwise), cost(Sense::CounterClockwise));
+        let both = left.into_iter().chain(right);
+        both.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, side)| side)
     }
 
-    fn cost_of(&self, side: Sense, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> f64 {
-        let mut thought = Self { side: Some(side), idle: 0, changes: 0, ..*self };
+    fn cost_of(&self, side: Sense, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> Option<f64> {
+        let mut thought = Self { side: Some(side), idle: 0, ..*self };
         let mut cost = 0.0;
         for _ in 0..THOUGHT_MOVES {
             let (before, nearest) = (thought.at, thought.nearest);
-            if thought.advance(track, around, step_m).is_err() {
-                return f64::INFINITY;
-            }
+            thought.advance(track, around, step_m).ok()?;
             if thought.side.is_none() && thought.is_on(track) && nearest > self.nearest {
-                return cost;
+                return Some(cost);
             }
             cost += (thought.at - before).norm() * thought.off_m(track).powi(2);
         }
-        cost + UNFINISHED + thought.off_m(track) * PI
+        None
     }
 }

@@ -19,9 +19,9 @@ impl<'a> Source<'a> {
         Self { text, problems: RefCell::default() }
     }
 
-    /// Notes a problem, unless there are more than anyone will read.
+    /// Notes a problem once, however many readers look at its key, unless there are more than anyone will read.
     pub fn note(&self, problem: Problem) {
-        if !self.is_full() {
+        if !self.is_full() && !self.problems.borrow().contains(&problem) {
             self.problems.borrow_mut().push(problem);
         }
     }

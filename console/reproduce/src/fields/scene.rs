@@ -94,7 +94,7 @@ impl Scene {
         let length_m = polyline::length_m(path);
         let arrived = (self.goal - end).norm() <= self.tolerance_m + 1e-6 && clearance_m >= 0.0;
         let ratio = length_m / self.shortest_m()?;
-        Ok(Walk { arrived, clearance_m, length_m, ratio, planned })
+        Ok(Walk { planned, arrived, clearance_m, length_m, ratio })
     }
 
     /// Length of the shortest way, metres.

@@ -192,7 +192,7 @@ fn differences(table: &str, group: Group, methods: [&Method; 2], ran: [&[Ran]; 2
             Some(_) => "an effect",
             None => "nothing to compare",
         };
-        let claim = "the paper claims one from one picture";
+        let claim = "the paper claims one from one picture. A longer transition leaves the robot faster on land for longer";
         let note = format!("mean of paired differences, 95 % interval +-{within:.3}: {verdict}; {claim}");
         Row::new(table, group.id(), &id, metric, mean, unit).of(sample.len()).note(note)
     };

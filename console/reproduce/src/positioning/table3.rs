@@ -88,13 +88,12 @@ fn run(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, 
                     let case = format!("{name}/nu-{nu}/{}", profile.id());
                     rows.push(row(study, &case, metric, ours, values.len()).printed(paper));
                 }
-                let mean = |pick: fn(&(Option<f64>, Option<f64>)) -> Option<f64>| {
-                    columns.iter().filter_map(pick).collect::<Sample>().mean()
-                };
+                let mean_printed = columns.iter().filter_map(|column| column.0).collect::<Sample>().mean();
+                let mean_ours = columns.iter().filter_map(|column| column.1).collect::<Sample>().mean();
                 if metric != "p_value" {
                     let case = format!("all/nu-{nu}/{}", profile.id());
                     let n = cases.len() / profiles.len();
-                    rows.push(row(study, &case, metric, mean(|c| c.1), n).printed(mean(|c| c.0)));
+                    rows.push(row(study, &case, metric, mean_ours, n).printed(mean_printed));
                 }
             }
         }
@@ -144,7 +143,8 @@ fn cells(case: Case) -> [Cell; 5] {
 fn printed(environment: &str, statistic: &str, nu: f64) -> Option<f64> {
     PRINTED.lines().find_map(|line| {
         let [name, what, level, value] = line.split(',').collect::<Vec<_>>()[..] else { return None };
-        let is_it = name == environment && what == statistic && level.parse::<f64>().ok()? == nu;
+        let is_it =
+            name == environment && what == statistic && (level.parse::<f64>().ok()? - nu).abs() < 1e-9;
         is_it.then(|| value.parse().ok()).flatten()
     })
 }

@@ -1,7 +1,10 @@
 //! Events into the model.
 
 use super::{Cause, Model, Overlay, Phase, PlanShown, Progress, Raster, Run, Trail};
-use mission::{Event, EventKind, Order, Outcome, Severity, TaskConfig, event::HoldReason, event::RunOpened};
+use mission::{
+    Event, EventKind, Order, Outcome, PlannerChoice, PlannerInfo, Severity, TaskConfig, event::HoldReason,
+    event::RunOpened,
+};
 use planner_api::Drawing;
 use positioning::{AccuracyMap, Exclusion};
 use world::{Obstacle, ObstacleId, Station, StationId};
@@ -47,12 +50,7 @@ impl Model {
             | EventKind::PositionTrusted => self.locate(event),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
-            EventKind::PlannerChosen { choice, info, .. } => {
-                (self.planning.choice, self.planning.info) = (Some(choice.clone()), Some((**info).clone()));
-                self.planning.scalars.clear();
-                self.planning.drawings.clear();
-                self.planner_works();
-            }
+            EventKind::PlannerChosen { choice, info, .. } => self.seat(choice, info),
             EventKind::ParametersChanged { choice } => self.planning.choice = Some(choice.clone()),
             EventKind::Planned { path, length_m, complete, .. } => {
                 let path = Trail::thinned(path);
@@ -118,6 +116,14 @@ impl Model {
             | EventKind::PlannerSaid { .. }
             | EventKind::Uncounted { .. } => {}
         }
+    }
+
+    /// Another planner drives.
+    fn seat(&mut self, choice: &PlannerChoice, info: &PlannerInfo) {
+        (self.planning.choice, self.planning.info) = (Some(choice.clone()), Some(info.clone()));
+        self.planning.scalars.clear();
+        self.planning.drawings.clear();
+        self.planner_works();
     }
 
     /// Takes in what is told about the tether.

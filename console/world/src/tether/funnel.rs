@@ -79,7 +79,6 @@ impl Funnel {
         gates.push((self.tip, self.tip));
         let mut line = vec![self.anchor];
         let (mut apex, mut next) = (self.anchor, 0);
-        #[expect(clippy::mut_range_bound, reason = "the outer loop starts anew with another apex")]
         'from_apex: while next < gates.len() {
             let (mut left, mut right) = gates[next];
             let (mut left_at, mut right_at) = (next, next);

@@ -1,6 +1,10 @@
 use super::*;
 use crate::trial::{clearance_m, plan, plan_trap, planner};
-use planner_api::{Boundary, Code, Limits, Motion, Obstacle, Outline, Point2, Vector2, Zone, ZoneKind};
+use field::trial::exact_pose;
+use planner_api::{
+    Boundary, Code, Limits, Motion, Obstacle, Outline, Point2, Reason, Task, Vector2, Zone, ZoneKind,
+    testing::Bench,
+};
 use trials::traps::{Kind, Trap};
 use world::polyline;
 
@@ -91,4 +95,21 @@ fn a_closed_ring_is_proved_to_be_closed() {
     let error = asked((-6.0, 0.0), (0.0, 0.0), &site(&obstacles, &[])).unwrap_err();
     assert_eq!(error.code, Code::NoPath);
     assert!(error.message.starts_with("proved: there is no way"), "{}", error.message);
+}
+
+#[test]
+fn what_is_discovered_on_the_goal_under_way_is_no_reason_to_stop() {
+    let obstacles = [Obstacle { discovered: true, ..disc(5.0, 0.2, 0.4) }];
+    let site = site(&obstacles, &[]);
+    let mut planner = planner::<Shortest>(&[], &site);
+    let bench = Bench::new();
+    let task = Task::Goto { goal: Point2::new(5.0, 0.0), tolerance_m: 0.1 };
+    let start = exact_pose(Point2::new(-5.0, 0.0));
+    let mut ask = |reason| {
+        let request = PlanRequest { reason: &reason, start, task, site: &site, previous: &[] };
+        planner.plan(&request, &bench.ctx())
+    };
+    assert!(ask(Reason::MapChanged).unwrap().complete);
+    assert_eq!(ask(Reason::Start).unwrap_err().code, Code::GoalOccupied);
+    assert_eq!(bench.logs()[0].1, "obstacle 7 is on the goal; the robot goes on in case it moves away");
 }

@@ -70,7 +70,7 @@ fn hold(figures: &Figures, rmse_m: f64, precision: f64) {
     assert!(figures.refusals.iter().all(|(_, reason)| reason.contains("proved")), "{told}");
     // Here and there the only way turns faster, and the planner says so.
     let slow = figures.safeties.iter().filter(|s| s.heading_step_rad <= 30.1_f64.to_radians());
-    assert!(slow.count() * 10 >= figures.safeties.len() * 7, "{told}");
+    assert!(slow.count() * 10 >= figures.safeties.len() * 9, "{told}");
 }
 
 #[test]
@@ -124,23 +124,23 @@ fn a_robot_off_its_path_is_led_back_to_it() {
 
 #[test]
 fn a_plan_for_a_robot_with_a_hull_keeps_the_mission_clearance() {
-    let complete = (0..20).filter(|seed| {
+    let complete = (0..10).filter(|seed| {
         let layout = Layout::random(*seed);
         let Ok(plan) = plan::<SpiralLattice>(&layout, &[]) else { return false };
         let clear_m = plan.path.iter().map(|p| layout.hull_clearance_m(*p)).fold(f64::INFINITY, f64::min);
         assert!(clear_m >= layout.clearance_m - 1e-6, "{seed} {clear_m}");
         plan.complete
     });
-    assert!(complete.count() >= 17);
+    assert!(complete.count() >= 8);
 }
 
 #[test]
 fn without_a_plan_it_arrives_by_what_it_senses() {
     let robot = Robot { motion: Motion::Unicycle, sigma_m: 0.03 };
-    let flights = (0..20).map(|seed| fly::<SpiralLattice>(&[], &Layout::random(seed), robot, seed).unwrap());
+    let flights = (0..6).map(|seed| fly::<SpiralLattice>(&[], &Layout::random(seed), robot, seed).unwrap());
     let arrived =
         flights.inspect(|flight| assert!(flight.clearance_m > 0.0)).filter(|flight| flight.completed);
-    assert!(arrived.count() >= 18);
+    assert!(arrived.count() >= 5);
 }
 
 proptest! {

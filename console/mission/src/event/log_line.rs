@@ -1,0 +1,213 @@
+//! Events as lines for people: the screen's log, the recording and the command line read the same words.
+
+use super::{Event, EventKind, HoldReason, Outcome, TetherAlarm};
+use crate::order::Order;
+use planner_api::LogLevel;
+use positioning::Exclusion;
+use serde::{Deserialize, Serialize};
+use world::tether::Certificate;
+
+/// How much an event asks of the operator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Severity {
+    /// Worth knowing.
+    Info,
+    /// Worth watching.
+    Watch,
+    /// Needs attention.
+    Warn,
+    /// Needs action now.
+    Crit,
+}
+
+/// A line of the event log: how much it matters, who speaks, what.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LogLine {
+    /// How much it asks of the operator.
+    pub severity: Severity,
+    /// `cmd`, `ae`, `plan`, `map`, `robot`, `tether` or `mission`.
+    pub source: &'static str,
+    /// One sentence.
+    pub text: String,
+}
+
+impl Event {
+    /// The event as a line for people, in the screen's log, the recording and on the command line alike; `None` for
+    /// what happens every tick.
+    pub fn log_line(&self) -> Option<LogLine> {
+        Some(match &self.kind {
+            EventKind::RunOpened(run) => line(
+                Severity::Info,
+                "mission",
+                format!("run opened: scenario {}, seed {}", run.scenario, run.seed),
+            ),
+            EventKind::Ordered { order } => line(Severity::Info, "cmd", order_text(order)),
+            EventKind::OrderRefused { order, why } => {
+                line(Severity::Warn, "cmd", format!("{} refused: {why}", order_text(order)))
+            }
+            EventKind::FixFailed { error, repeated: false } => {
+                line(Severity::Watch, "ae", format!("no fix: {error}"))
+            }
+            EventKind::StationExcluded { station, reason } => line(
+                Severity::Watch,
+                "ae",
+                format!("station {} left out: {}", station.0, exclusion_text(reason)),
+            ),
+            EventKind::StationRegained { station } => {
+                line(Severity::Info, "ae", format!("station {} used again", station.0))
+            }
+            EventKind::PositionLost { error_m, limit_m } => line(
+                Severity::Crit,
+                "ae",
+                format!("position lost: 95 % error {error_m:.2} m, limit {limit_m:.2} m"),
+            ),
+            EventKind::PositionRegained { error_m } => {
+                line(Severity::Info, "ae", format!("position regained: 95 % error {error_m:.2} m"))
+            }
+            EventKind::PositionAlarmed { chi2, degrees_of_freedom } => line(
+                Severity::Crit,
+                "ae",
+                format!(
+                    "ranges contradict each other: chi-squared {chi2:.0}, {degrees_of_freedom} degrees of freedom"
+                ),
+            ),
+            EventKind::PositionTrusted => line(Severity::Info, "ae", "ranges agree again".into()),
+            EventKind::ObstacleFound { obstacle } => {
+                let at = obstacle.shape.center();
+                line(
+                    Severity::Watch,
+                    "map",
+                    format!("obstacle not on the drawing at {:.2}, {:.2} m", at.x, at.y),
+                )
+            }
+            EventKind::PlannerChosen { choice, info, from } => {
+                let before = from.as_ref().map(|id| format!(", took over from {id}")).unwrap_or_default();
+                line(Severity::Info, "plan", format!("planner {} {} drives{before}", choice.id, info.version))
+            }
+            EventKind::ParametersChanged { choice } => {
+                line(Severity::Info, "plan", format!("parameters of {} changed", choice.id))
+            }
+            EventKind::Planned { planner, length_m, complete, .. } => {
+                let part = if *complete { "" } else { ", only part of the way" };
+                line(Severity::Info, "plan", format!("{planner} planned {length_m:.1} m{part}"))
+            }
+            EventKind::PlannerSaid { planner, level, message } => match level {
+                LogLevel::Debug => return None,
+                LogLevel::Info => line(Severity::Info, "plan", format!("{planner}: {message}")),
+                LogLevel::Warn => line(Severity::Watch, "plan", format!("{planner}: {message}")),
+            },
+            EventKind::PlannerFailed { fault } => line(Severity::Crit, "plan", fault.message.clone()),
+            EventKind::Truth { collided: true, pose, .. } => line(
+                Severity::Crit,
+                "robot",
+                format!("collision at {:.2}, {:.2} m", pose.position.x, pose.position.y),
+            ),
+            EventKind::Held { by } => line(hold_severity(by), "mission", by.to_string()),
+            EventKind::Resumed => line(Severity::Info, "mission", "moving again".into()),
+            EventKind::Ended { outcome, reason } => {
+                let severity = if *outcome == Outcome::Complete { Severity::Info } else { Severity::Warn };
+                line(severity, "mission", format!("ended {}: {reason}", outcome.word()))
+            }
+            EventKind::TetherAlarmed { .. } | EventKind::TetherEased { .. } | EventKind::Certified { .. } => {
+                of_tether(&self.kind)?
+            }
+            EventKind::Truth { .. }
+            | EventKind::TetherTruth { .. }
+            | EventKind::Tethered { .. }
+            | EventKind::Ranged { .. }
+            | EventKind::Fixed { .. }
+            | EventKind::FixFailed { .. }
+            | EventKind::Estimated { .. }
+            | EventKind::ObstacleMoved { .. }
+            | EventKind::Commanded { .. }
+            | EventKind::Drawn { .. }
+            | EventKind::Scalars { .. }
+            | EventKind::Covered { .. }
+            | EventKind::Uncounted { .. }
+            | EventKind::FloorChanged { .. }
+            | EventKind::Progressed { .. } => return None,
+        })
+    }
+}
+
+fn line(severity: Severity, source: &'static str, text: String) -> LogLine {
+    LogLine { severity, source, text }
+}
+
+fn of_tether(kind: &EventKind) -> Option<LogLine> {
+    Some(match kind {
+        EventKind::TetherAlarmed { alarm, reached } => {
+            let severity = if *reached { Severity::Crit } else { Severity::Warn };
+            let near = if *reached || *alarm == TetherAlarm::Strayed { "" } else { "near a limit: " };
+            line(severity, "tether", format!("{near}{alarm}"))
+        }
+        EventKind::TetherEased { alarm } => {
+            line(Severity::Info, "tether", format!("{} well within its limit again", alarm.word()))
+        }
+        EventKind::Certified { planner, refused, certificate } => line(
+            certificate_severity(*refused, certificate),
+            "tether",
+            certificate_text(planner, *refused, certificate),
+        ),
+        _ => return None,
+    })
+}
+
+fn hold_severity(by: &HoldReason) -> Severity {
+    match by {
+        HoldReason::Operator | HoldReason::Stepped => Severity::Info,
+        HoldReason::PositionLost
+        | HoldReason::PositionAlarmed
+        | HoldReason::PlannerFault { .. }
+        | HoldReason::PlanRefused { .. }
+        | HoldReason::Tether { .. }
+        | HoldReason::Stuck { .. } => Severity::Warn,
+    }
+}
+
+fn order_text(order: &Order) -> String {
+    match order {
+        Order::Start => "start".into(),
+        Order::Hold => "hold".into(),
+        Order::Resume => "resume".into(),
+        Order::Step => "single step".into(),
+        Order::FlyUncertified => "fly without a certificate".into(),
+        Order::Abort => "end the mission".into(),
+        Order::ChoosePlanner(choice) => format!("choose planner {}", choice.id),
+        Order::SetParameter { key, value } => format!("set {key} = {value}"),
+    }
+}
+
+fn certificate_severity(refused: bool, certificate: &Certificate) -> Severity {
+    match (refused, certificate.certified) {
+        (true, _) => Severity::Crit,
+        (false, true) => Severity::Info,
+        (false, false) => Severity::Warn,
+    }
+}
+
+fn certificate_text(planner: &str, refused: bool, certificate: &Certificate) -> String {
+    let reasons = certificate.reasons.join("; ");
+    match (refused, certificate.certified) {
+        (true, _) => format!("plan of {planner} refused: {reasons}"),
+        (false, false) => format!("plan of {planner} flies without a certificate: {reasons}"),
+        (false, true) => {
+            let left =
+                certificate.left_out_m.map_or_else(String::new, |m| format!(", {m:.1} m left out on return"));
+            format!(
+                "plan of {planner} certified: at most {:.1} m of cable out{left}",
+                certificate.max_cable_m
+            )
+        }
+    }
+}
+
+fn exclusion_text(reason: &Exclusion) -> String {
+    match reason {
+        Exclusion::Silent => "not heard".into(),
+        Exclusion::Residual { residual_m, gate_m } => {
+            format!("residual {residual_m:.2} m, gate {gate_m:.2} m")
+        }
+    }
+}
