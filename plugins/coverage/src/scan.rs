@@ -20,11 +20,14 @@ const MISSED_SHARE: f64 = 2.5;
 /// Share of the search for the order that a draft gets.
 const DRAFT_SHARE: f64 = 0.3;
 /// Rounds in which small touch-ups are tied in.
-const TOUCH_UPS: usize = 6;
+const TOUCH_UPS: usize = 8;
 /// Rounds after which a little less is enough, but smaller places count as well.
 const SOON_ENOUGH: usize = 3;
+/// Cells of the smallest group that gets a touch-up, and of the smallest one late.
+const CELLS: usize = 8;
+const LATE_CELLS: usize = 4;
 /// How much less, as a share of the floor.
-const LATE_SHARE: f64 = 0.0008;
+const LATE_SHARE: f64 = 0.0004;
 
 /// Everything that makes one candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -196,12 +199,16 @@ impl<'a> Draft<'a> {
         let in_reach = |at: Point| self.is_in_reach(at);
         let mut track = Track::new(&self.slit, &self.pieces, self.grid.clone());
         track.shorten(&prices, ctx)?;
+        let mut is_late = false;
         for round in 0..TOUCH_UPS {
-            let is_late = round >= SOON_ENOUGH;
+            is_late |= round >= SOON_ENOUGH;
             let enough = self.recipe.enough - if is_late { LATE_SHARE } else { 0.0 };
-            let least = if is_late { 5 } else { 8 };
+            let least = if is_late { LATE_CELLS } else { CELLS };
             if track.touch_up(self.ground, &self.cuts, &in_reach, &prices, (enough, least), ctx)? == 0 {
-                break;
+                if std::mem::replace(&mut is_late, true) {
+                    break;
+                }
+                continue;
             }
             track.shorten(&careful, ctx)?;
         }

@@ -15,6 +15,16 @@ fn with_backtracking_through_the_tree_the_cable_comes_in() {
 }
 
 #[test]
+fn a_way_round_a_column_that_the_cells_leave_is_closed() {
+    let tank = Known::E2.tank(6);
+    let (plan, bench) = bench::plan::<HullPartition>(&tank, &[], None);
+    let plan = plan.unwrap();
+    let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
+    assert!(scan.certificate.certified, "{:?}", scan.certificate.reasons);
+    assert!(bench.logs().iter().any(|(_, said)| said.contains("closed by a cut")), "{:?}", bench.logs());
+}
+
+#[test]
 fn moved_directly_from_cell_to_cell_the_way_is_shorter_and_the_cable_is_not() {
     let tank = Known::E2.tank(1);
     let [tree, direct] = [0.0, 1.0].map(|reading| {
