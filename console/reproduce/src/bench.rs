@@ -5,6 +5,9 @@ use planner_host::PluginDirs;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// More threads than this help nobody, and each starts planners of its own.
+const MOST_THREADS: usize = 256;
+
 /// Who runs the cases of a study.
 pub struct Bench<'a> {
     planners: Planners,
@@ -17,12 +20,17 @@ impl<'a> Bench<'a> {
     /// many cases of how many are done.
     ///
     /// # Errors
-    /// The threads cannot be started.
+    /// So many threads are of no use, or cannot be started.
     pub fn new(
         dirs: &PluginDirs,
         n_threads: usize,
         progress: &'a (dyn Fn(usize, usize) + Sync),
     ) -> Result<Self, Problem> {
+        if n_threads > MOST_THREADS {
+            return Err(Problem::Nothing(format!(
+                "--threads {n_threads}: at most {MOST_THREADS}; 0 is one for each core"
+            )));
+        }
         let threads = rayon::ThreadPoolBuilder::new()
             .num_threads(n_threads)
             .build()
