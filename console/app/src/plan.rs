@@ -63,7 +63,14 @@ pub fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
             bad_input(format!("the drawing cannot be written: {error}: {}", file.display()))
         })?;
     }
-    Ok(ExitCode::from(if planned.complete { COMPLETE } else { ENDED_OTHERWISE }))
+    let flies = planned.complete && !is_refused(&scenario, planned.certificate.as_ref());
+    Ok(ExitCode::from(if flies { COMPLETE } else { ENDED_OTHERWISE }))
+}
+
+/// Whether a mission would refuse the plan for what it does to the tether.
+fn is_refused(scenario: &Scenario, certificate: Option<&Certificate>) -> bool {
+    let must_be_certified = scenario.mission.tether.as_ref().is_some_and(|tether| !tether.fly_uncertified);
+    must_be_certified && certificate.is_none_or(|certificate| !certificate.certified)
 }
 
 fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planned> {
@@ -116,6 +123,9 @@ fn partial_plan(fault: &Fault) -> anyhow::Result<Plan> {
 /// What the path does to the tether, judged independently of its planner; where there is none, what it would do to one
 /// of any length.
 fn certificate(scenario: &Scenario, plan: &Plan) -> Option<Certificate> {
+    if plan.path.is_empty() {
+        return None;
+    }
     let drawing = scenario.sim.world.as_drawn();
     if let Some(tether) = &scenario.mission.tether {
         return Some(judge_from_start(tether, &scenario.mission, &plan.path, &plan.cuts, &drawing));

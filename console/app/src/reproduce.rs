@@ -45,7 +45,10 @@ pub fn reproduce(args: &ReproduceArgs, plugins: &PluginDirs) -> anyhow::Result<E
 }
 
 fn explained(study: &Study, problem: &Problem) -> anyhow::Error {
-    bad_input(format!("{}: {problem}", study.name))
+    match problem {
+        Problem::Planner { .. } => bad_input(format!("{}: {problem}", study.name)),
+        Problem::Nothing(why) => bad_input(why.clone()),
+    }
 }
 
 fn studies() -> impl Iterator<Item = &'static Study> {

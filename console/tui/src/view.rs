@@ -149,13 +149,17 @@ fn paged(look: &Look, frame: &mut Frame, area: Rect) {
     footer::draw(look, frame, keys);
 }
 
-/// Draws the tether at the foot of an area, if there is one; what is left above it.
+/// Draws the tether at the foot of an area, if there is one, in as many words as fit; what is left above it.
+///
+/// Where there is no room for both, the tether takes it: what it shows can end a mission.
 fn above_tether(look: &Look, frame: &mut Frame, area: Rect, wide: bool) -> Rect {
-    let rows = if wide { tether::ROWS.0 } else { tether::ROWS.1 };
-    // The planner keeps a row of its own.
-    if look.model.tether.is_none() || area.height < rows + 3 {
+    if look.model.tether.is_none() {
         return area;
     }
+    // The planner keeps a row of its own.
+    let wide = wide && area.height >= tether::ROWS.0 + 3;
+    let rows = if wide { tether::ROWS.0 } else { tether::ROWS.1 };
+    let rows = if area.height >= rows + 3 { rows } else { area.height };
     let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
     tether::draw(look, frame, below, wide);
     above

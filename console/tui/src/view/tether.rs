@@ -30,7 +30,7 @@ fn cut(look: &Look, parts: Parts, columns: usize) -> Line<'static> {
 fn note(look: &Look) -> &'static str {
     match look.model.tether.as_ref().and_then(|tether| tether.certified) {
         Some(true) => "plan certified",
-        Some(false) => "plan NOT certified",
+        Some(false) => "NOT certified",
         None => "",
     }
 }

@@ -1,18 +1,19 @@
 //! A spiral mission in a tank with columns, told as events without any engine.
 
-use mission::event::{HoldReason, JOURNAL_VERSION, RunOpened};
+use mission::event::{HoldReason, JOURNAL_VERSION, RunOpened, TetherContact};
 use mission::link::{Cause, During, Fault};
 use mission::{
     Event, EventKind, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters, PlannerChoice,
-    PlannerInfo, ScanConfig, TaskConfig,
+    PlannerInfo, ScanConfig, TaskConfig, TetherConfig,
 };
 use nalgebra::{Matrix2, Matrix3};
 use planner_api::{Command, Drawing, Layer, Limits, Motion, PoseEstimate, Reason};
 use positioning::{Exclusion, Fix, Integrity, Ranging, Residual};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::OnceLock;
 use tui::{Caps, Colours, Glyphs, Health, Model, Msg, Recording, Refused, Times, update};
 use world::spiral::Spiral;
+use world::tether::{Bearing, Cable, Certificate, Contact, capstan_factor};
 use world::{
     Boundary, CoverageGrid, Floor, Obstacle, ObstacleId, Point, Pose, Shape, Station, StationId, Vector,
     World,
@@ -97,6 +98,12 @@ pub fn config() -> MissionConfig {
         fallback: None,
         attended: true,
     }
+}
+
+/// A tether from the eastern shell.
+pub fn tether() -> TetherConfig {
+    let limits = world::tether::Limits { reel_m: 30.0, max_wrap_rad: PI, max_sum_wrap_rad: TAU };
+    TetherConfig { anchor: Point::new(9.4, 0.0), limits, friction: 0.3, fly_uncertified: false }
 }
 
 /// A planner with nothing set by hand.
@@ -367,6 +374,47 @@ impl Telling {
         vec![self.now(EventKind::PlannerFailed { fault }), self.held(HoldReason::PlannerFault { message })]
     }
 
+    /// How the cable lies between an anchor at the eastern shell and the robot.
+    pub fn cable(&self) -> Event {
+        let (world, config) = (world().as_drawn(), tether());
+        let shapes: Vec<Shape> = world.obstacles.iter().map(|o| o.shape.clone()).collect();
+        let mut cable = Cable::new(config.anchor, &world.boundary, &shapes).unwrap();
+        cable.drag_along(&[Point::new(4.0, 6.0), Point::new(-4.0, 6.0), self.path[self.at]]);
+        let name = |on| match on {
+            Bearing::Obstacle(index) => world.obstacles[index].name.clone(),
+            Bearing::Wall => "wall".into(),
+        };
+        let contacts = cable.contacts();
+        let told = |c: &Contact| TetherContact { on: name(c.on), wrap_rad: c.wrap_rad, at: c.last };
+        self.now(EventKind::Tethered {
+            length_m: cable.length_m(),
+            free_m: config.limits.reel_m - cable.length_m(),
+            contacts: contacts.iter().map(told).collect(),
+            max_wrap_rad: cable.max_wrap_rad(),
+            sum_wrap_rad: cable.sum_wrap_rad(),
+            pull_factor: capstan_factor(config.friction, cable.sum_wrap_rad()),
+            way_home_m: Some(cable.length_m() + 0.4),
+            line: cable.taut_line(),
+        })
+    }
+
+    /// A judgement of a plan.
+    pub fn certified(&self, reasons: &[&str]) -> Event {
+        let certificate = Certificate {
+            certified: reasons.is_empty(),
+            reasons: reasons.iter().map(|reason| (*reason).to_owned()).collect(),
+            ..Certificate::refused(String::new())
+        };
+        self.now(EventKind::Certified { planner: "rpf".into(), refused: !reasons.is_empty(), certificate })
+    }
+
+    /// A plan cannot be certified and the robot is held.
+    pub fn plan_refused(&self) -> Vec<Event> {
+        let reason = "31.4 m of cable stay out on return, hooked round C3";
+        let message = format!("the plan of rpf is not safe for the tether: {reason}");
+        vec![self.certified(&[reason]), self.held(HoldReason::PlanRefused { message })]
+    }
+
     /// The end.
     pub fn ended(&self, outcome: Outcome, reason: &str) -> Event {
         self.now(EventKind::Ended { outcome, reason: reason.into() })
@@ -419,6 +467,17 @@ impl Screen {
         events.extend(screen.telling.drive(700));
         events.push(screen.telling.excluded());
         events.extend(screen.telling.drive(35));
+        screen.tell(Msg::Events(events));
+        screen
+    }
+
+    /// The same on a tether.
+    pub fn tethered() -> Self {
+        let mut screen = Self::running();
+        if let Some(run) = &mut screen.model.run {
+            run.mission.tether = Some(tether());
+        }
+        let events = vec![screen.telling.certified(&[]), screen.telling.cable()];
         screen.tell(Msg::Events(events));
         screen
     }

@@ -99,6 +99,20 @@ fn position_lost() {
 }
 
 #[test]
+fn tethered() {
+    let mut screen = Screen::tethered();
+    store("tethered", &mut screen);
+}
+
+#[test]
+fn plan_refused() {
+    let mut screen = Screen::tethered();
+    let events = screen.telling.plan_refused();
+    screen.tell(Msg::Events(events));
+    store("refused", &mut screen);
+}
+
+#[test]
 fn planner_fault() {
     let mut screen = Screen::running();
     let events = screen.telling.planner_fails();
