@@ -90,6 +90,16 @@ impl Session {
         self.keys.flush().unwrap();
     }
 
+    /// Presses a key until the screen shows a word; on a busy machine the planners are still being looked for.
+    fn press_until(&mut self, key: &str, word: &str) {
+        let until = Instant::now() + PATIENCE;
+        while !self.text().contains(word) && Instant::now() < until {
+            self.press(key);
+            std::thread::sleep(Duration::from_millis(500));
+        }
+        self.see(word);
+    }
+
     /// Goes down an open list to an entry and takes it.
     fn choose(&mut self, entry: &str) {
         let chosen = format!(">{entry} ");
@@ -153,8 +163,7 @@ fn a_mission_is_flown_held_swapped_and_finished_by_hand() {
     session.see("▶ RUN");
     session.press(" ");
     session.see("‖ HOLD");
-    session.press("P");
-    session.see("What was scanned stays");
+    session.press_until("P", "What was scanned stays");
     session.choose("rpf");
     session.see("CHANGE TO rpf?");
     session.press("\r");

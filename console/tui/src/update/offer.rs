@@ -115,7 +115,7 @@ fn swap(model: &Model) -> Result<(), String> {
         Phase::Running if !model.console.hold_asked => Err("another planner needs HOLD first (space)".into()),
         Phase::Ended { .. } => Err("the mission has ended; no planner drives any more".into()),
         Phase::Idle | Phase::Running | Phase::Held(_) => {
-            demand(!model.console.planners.is_empty(), "no planner was found")
+            demand(!model.console.planners.is_empty(), "no planner was found yet")
         }
     }
 }

@@ -109,7 +109,7 @@ fn plan_refused() {
     let mut screen = Screen::tethered();
     let events = screen.telling.plan_refused();
     screen.tell(Msg::Events(events));
-    store("refused", &mut screen);
+    store("plan_refused", &mut screen);
 }
 
 #[test]
