@@ -378,7 +378,7 @@ impl Telling {
     pub fn cable(&self) -> Event {
         let (world, config) = (world().as_drawn(), tether());
         let shapes: Vec<Shape> = world.obstacles.iter().map(|o| o.shape.clone()).collect();
-        let mut cable = Cable::new(config.anchor, &world.boundary, &shapes).unwrap();
+        let mut cable = Cable::new(config.anchor, &world.boundary, &shapes).expect("an anchor on the floor");
         cable.drag_along(&[Point::new(4.0, 6.0), Point::new(-4.0, 6.0), self.path[self.at]]);
         let name = |on| match on {
             Bearing::Obstacle(index) => world.obstacles[index].name.clone(),
