@@ -48,6 +48,32 @@ fn names_and_cases_that_do_not_exist_are_answered_with_what_does() {
 }
 
 #[test]
+fn every_coverage_planner_has_every_figure_of_its_tether_and_is_drawn() {
+    let bench = Bench::new();
+    let folder = bench.path().join("plans");
+    let asked = ["pan-maps", "--layouts", "1", "--first-seed", "31", "--case", "E3", "--svg", "plans"];
+    let rows = rows(&bench, &asked);
+    let of = |method: &str, metric: &str| {
+        let row = rows.iter().find(|row| row["method"] == method && row["metric"] == metric).unwrap();
+        row["ours"].as_f64().unwrap()
+    };
+    assert!(of("boustrophedon", "left_out_m") > 20.0 && of("boustrophedon", "hook_share") > 0.1);
+    for method in ["hull-partition/tree", "tether-safe", "tether-safe/alpha-0"] {
+        assert!(of(method, "reeled_in_rate") == 1.0 && of(method, "certified_rate") == 1.0, "{method}");
+    }
+    assert!(of("tether-safe", "coverage_goal_rate") == 1.0 && of("tether-safe", "max_excess_m") < 4.0);
+    let drawn = std::fs::read_to_string(folder.join("E3-square-18-31-tether-safe.svg")).unwrap();
+    for class in ["swath", "connector", "cut", "cable", "anchor"] {
+        assert!(drawn.contains(&format!(r#"class="{class}""#)), "{class}");
+    }
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 6);
+    let none = bench.tankops(&["reproduce", "pan-maps", "--case", "nope"]);
+    assert!(none.code == Some(2) && none.err.contains("known are E1-circle-14"), "{none:?}");
+    let nothing = bench.tankops(&["reproduce", "wang-table1", "--svg", "plans"]);
+    assert!(nothing.code == Some(2) && nothing.err.contains("coverage-suite"), "{nothing:?}");
+}
+
+#[test]
 fn tuning_repeats_and_is_judged_on_other_layouts() {
     let bench = Bench::new();
     let asked = "tune --planner rpf --on wang-d3 --tune k_rep --tune rho_0_m --set wall_gain=0 --layouts 3 \

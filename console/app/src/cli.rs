@@ -196,6 +196,10 @@ pub struct ReproduceArgs {
     /// Threads to work with; 0 is one for each core. Figures do not depend on it, times do.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
+    /// Folder to draw every plan into, one file for each layout and method; it is made if it does not exist. Only
+    /// for studies of whole floors.
+    #[arg(long, value_name = "DIR")]
+    pub svg: Option<PathBuf>,
     /// Print an array of rows as JSON on stdout.
     #[arg(long)]
     pub json: bool,

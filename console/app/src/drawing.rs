@@ -1,5 +1,7 @@
 //! Tanks as pictures for people: SVG with the tank frame's x to the right and y up.
 
+pub mod planned;
+
 use std::fmt::Write;
 use world::{Boundary, Point, Shape};
 

@@ -1,9 +1,8 @@
 //! `tankops plan`: a plan on the known map, without flying.
 
-mod drawing;
-
 use crate::{
     cli::PlanArgs,
+    drawing::planned::{Drawn, svg},
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
     output::{say, say_line},
     scenario::Scenario,
@@ -18,8 +17,8 @@ use std::{
     time::{Duration, Instant},
 };
 use world::{
-    Point, polyline,
-    tether::{Case, Certificate, Limits, certify},
+    Point, Shape, World, polyline,
+    tether::{Cable, Case, Certificate, Limits, certify},
 };
 
 /// Time that a planner may take for a plan of the whole floor.
@@ -47,9 +46,12 @@ struct Planned {
 /// Some points of the path that serve one purpose: index of the first and of the last.
 #[derive(Debug, Serialize)]
 pub struct Leg {
-    tag: &'static str,
-    first: usize,
-    last: usize,
+    /// What the stretch is for.
+    pub tag: &'static str,
+    /// Index of its first point.
+    pub first: usize,
+    /// Index of its last point.
+    pub last: usize,
 }
 
 /// `tankops plan`.
@@ -58,8 +60,7 @@ pub fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let planned = make_plan(&scenario, plugins)?;
     tell(&planned, args.json)?;
     if let Some(file) = &args.svg {
-        let picture = drawing::svg(&scenario, &planned.path, &planned.legs, &planned.cuts);
-        std::fs::write(file, picture).map_err(|error| {
+        std::fs::write(file, picture(&scenario, &planned)).map_err(|error| {
             bad_input(format!("the drawing cannot be written: {error}: {}", file.display()))
         })?;
     }
@@ -149,8 +150,44 @@ fn certificate(scenario: &Scenario, plan: &Plan) -> Option<Certificate> {
     certify(&case).ok()
 }
 
+fn picture(scenario: &Scenario, planned: &Planned) -> String {
+    let world = scenario.sim.world.as_drawn();
+    let preset = match &scenario.mission.task {
+        TaskConfig::Follow { path, .. } => Some(path.as_slice()),
+        TaskConfig::Cover { .. } | TaskConfig::Goto { .. } => None,
+    };
+    let anchor = anchor(&scenario.mission);
+    let cable = anchor.and_then(|anchor| longest_cable(anchor, &world, &planned.path)).unwrap_or_default();
+    svg(&Drawn {
+        world: &world,
+        room_m: scenario.mission.room_m(),
+        swath_m: scenario.mission.swath_m,
+        preset,
+        anchor,
+        path: &planned.path,
+        legs: &planned.legs,
+        cuts: &planned.cuts,
+        cable: &cable,
+    })
+}
+
+/// Where the tether comes in, or would.
+fn anchor(mission: &MissionConfig) -> Option<Point> {
+    match (&mission.tether, &mission.task) {
+        (Some(tether), _) => Some(tether.anchor),
+        (None, TaskConfig::Cover { anchor, .. }) => Some(*anchor),
+        (None, TaskConfig::Goto { .. } | TaskConfig::Follow { .. }) => None,
+    }
+}
+
+fn longest_cable(anchor: Point, world: &World, path: &[Point]) -> Option<Vec<Point>> {
+    let shapes: Vec<Shape> = world.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect();
+    let cable = Cable::new(anchor, &world.boundary, &shapes).ok()?;
+    Some(cable.at_longest(path).taut_line())
+}
+
 /// The legs as the planner told them; a planner that told none has a single one.
-fn legs(plan: &Plan) -> Vec<Leg> {
+pub fn legs(plan: &Plan) -> Vec<Leg> {
     let told = plan.legs.iter().map(|leg| Leg { tag: leg.tag.word(), first: leg.first, last: leg.last });
     match plan.path.len() {
         0 => vec![],

@@ -1,12 +1,15 @@
 //! `tankops reproduce`: the papers' tables, ours beside the printed values.
 
+mod gallery;
+
 use crate::{
     cli::ReproduceArgs,
     failure::{COMPLETE, bad_input},
     output::{say, say_line},
 };
-use ::reproduce::{Bench, Options, Problem, Row, STUDIES, Study};
+use ::reproduce::{Bench, Options, Picture, Problem, Row, STUDIES, Study};
 use anyhow::Context;
+use gallery::Gallery;
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_host::PluginDirs;
 use std::{fmt::Write, io::IsTerminal, process::ExitCode};
@@ -27,15 +30,22 @@ pub fn reproduce(args: &ReproduceArgs, plugins: &PluginDirs) -> anyhow::Result<E
         cases: args.case.clone(),
         methods: args.method.clone(),
     };
-    let bar = progress_bar(study.name, args.json);
+    let gallery = args.svg.as_ref().map(|folder| Gallery::new(study, folder)).transpose()?;
+    let show = |picture: &Picture<'_>| gallery.iter().for_each(|gallery| gallery.hang(picture));
+    let bar = progress_bar(study.name);
     let progress = |done: usize, of: usize| {
         bar.set_length(of as u64);
         bar.set_position(done as u64);
     };
     let rows = Bench::new(plugins, args.threads, &progress)
-        .and_then(|bench| (study.run)(study, &bench, &options))
-        .map_err(|problem| explained(study, &problem))?;
+        .and_then(|bench| {
+            let bench = if gallery.is_some() { bench.with_gallery(&show) } else { bench };
+            (study.run)(study, &bench, &options)
+        })
+        .map_err(|problem| explained(study, &problem));
     bar.finish_and_clear();
+    let rows = rows?;
+    gallery.map_or(Ok(()), Gallery::close)?;
     if args.json {
         say_line(&serde_json::to_string(&rows).context("writing the rows as JSON")?)?;
     } else {
@@ -75,8 +85,9 @@ fn list(json: bool) -> anyhow::Result<()> {
     say(&format!("{lines}\nIn brackets: layouts or draws of each case unless --layouts says otherwise.\n"))
 }
 
-fn progress_bar(name: &'static str, json: bool) -> ProgressBar {
-    if json || !std::io::stderr().is_terminal() {
+/// The bar is on stderr: rows on stdout, for people or as JSON, do not suffer from it.
+fn progress_bar(name: &'static str) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
     let style =
@@ -101,11 +112,11 @@ pub fn table(rows: &[Row]) -> String {
     for block in rows.chunk_by(|a, b| (&a.case, &a.method) == (&b.case, &b.method)) {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{}  {}", block[0].case, block[0].method);
-        let _ = writeln!(text, "  {:<28} {:>12} {:>12}  {:<8} {:>6}", "", "paper", "ours", "", "n");
+        let _ = writeln!(text, "  {:<32} {:>12} {:>12}  {:<8} {:>6}", "", "paper", "ours", "", "n");
         for row in block {
             let (paper, ours) = (number(row.paper), number(row.ours));
             let _ =
-                writeln!(text, "  {:<28} {paper:>12} {ours:>12}  {:<8} {:>6}", row.metric, row.unit, row.n);
+                writeln!(text, "  {:<32} {paper:>12} {ours:>12}  {:<8} {:>6}", row.metric, row.unit, row.n);
         }
         for note in notes(block) {
             let _ = writeln!(text, "  {note}");

@@ -1,6 +1,6 @@
 //! Runs cases on all cores.
 
-use crate::{planners::Planners, study::Problem};
+use crate::{coverage::Picture, planners::Planners, study::Problem};
 use planner_host::PluginDirs;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -13,6 +13,7 @@ pub struct Bench<'a> {
     planners: Planners,
     threads: rayon::ThreadPool,
     progress: &'a (dyn Fn(usize, usize) + Sync),
+    gallery: Option<&'a (dyn Fn(&Picture<'_>) + Sync)>,
 }
 
 impl<'a> Bench<'a> {
@@ -35,7 +36,18 @@ impl<'a> Bench<'a> {
             .num_threads(n_threads)
             .build()
             .map_err(|error| Problem::Nothing(format!("the threads cannot be started: {error}")))?;
-        Ok(Self { planners: Planners::new(dirs), threads, progress })
+        Ok(Self { planners: Planners::new(dirs), threads, progress, gallery: None })
+    }
+
+    /// The same, showing every plan to whoever draws; only some studies have plans to show.
+    #[must_use]
+    pub fn with_gallery(self, show: &'a (dyn Fn(&Picture<'_>) + Sync)) -> Self {
+        Self { gallery: Some(show), ..self }
+    }
+
+    /// Who draws.
+    pub(crate) fn gallery(&self) -> Option<&'a (dyn Fn(&Picture<'_>) + Sync)> {
+        self.gallery
     }
 
     /// Computes every case; the answers keep the order of the cases, whoever computed them.

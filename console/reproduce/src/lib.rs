@@ -17,6 +17,7 @@ pub mod traps;
 pub mod tune;
 
 pub use bench::Bench;
+pub use coverage::Picture;
 pub use planners::{Planned, Planners};
 pub use row::Row;
 pub use sample::Sample;

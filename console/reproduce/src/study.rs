@@ -32,6 +32,20 @@ impl Options {
         let first = self.first_seed;
         (0..self.layouts.unwrap_or(default) as u64).map(move |k| first.wrapping_add(k))
     }
+
+    /// Why a study has nothing to do: no case or no method begins as asked.
+    pub fn nothing_left(&self, study: &Study, cases: &[&str], methods: &[&str]) -> Problem {
+        let unknown = |option: &str, asked: &[String], known: &[&str]| {
+            let is_left = known.iter().any(|id| is_asked(asked, id));
+            let asked = asked.join(", ");
+            let plural = option.trim_start_matches('-');
+            (!is_left)
+                .then(|| format!("no {plural} begins with {option} {asked}; known are {}", known.join(", ")))
+        };
+        let reasons = [unknown("--case", &self.cases, cases), unknown("--method", &self.methods, methods)];
+        let reasons: Vec<String> = reasons.into_iter().flatten().collect();
+        Problem::Nothing(format!("{}: {}", study.name, reasons.join("; ")))
+    }
 }
 
 fn is_asked(asked: &[String], id: &str) -> bool {
@@ -67,6 +81,13 @@ pub struct Study {
     pub run: fn(&Study, &Bench<'_>, &Options) -> Result<Vec<Row>, Problem>,
 }
 
+impl Study {
+    /// Whether its plans can be drawn.
+    pub fn has_pictures(&self) -> bool {
+        coverage::STUDIES.iter().any(|study| study.name == self.name)
+    }
+}
+
 /// Every study.
 pub const STUDIES: &[&[Study]] =
     &[spiral::STUDIES, traps::STUDIES, fields::STUDIES, positioning::STUDIES, coverage::STUDIES];
@@ -86,6 +107,17 @@ mod tests {
         let names: Vec<&str> = STUDIES.iter().flat_map(|s| s.iter()).map(|study| study.name).collect();
         assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
         assert!(names.iter().all(|name| study(name).is_some()));
+    }
+
+    #[test]
+    fn a_prefix_that_fits_nothing_is_answered_with_what_there_is() {
+        let study = study("pan-maps").unwrap();
+        let options = Options { cases: vec!["nope".into()], ..Options::default() };
+        let told = options.nothing_left(study, &["E1", "E2"], &["a", "b"]).to_string();
+        assert_eq!(told, "pan-maps: no case begins with --case nope; known are E1, E2");
+        let options = Options { methods: vec!["c".into(), "d".into()], ..Options::default() };
+        let told = options.nothing_left(study, &["E1", "E2"], &["a", "b"]).to_string();
+        assert_eq!(told, "pan-maps: no method begins with --method c, d; known are a, b");
     }
 
     #[test]

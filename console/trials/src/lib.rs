@@ -6,6 +6,7 @@
 //! Frame: the tank frame, metres, radians.
 #![forbid(unsafe_code)]
 
+pub mod haul;
 pub mod paper;
 pub mod score;
 pub mod shore;
@@ -14,6 +15,7 @@ pub mod tanks;
 pub mod traps;
 pub mod verdict;
 
+pub use haul::Haul;
 pub use paper::{Distribution, Sampling};
 pub use score::{Safety, Score, floor_rmse_m, precision_recall, safety, score};
 pub use shore::Shore;

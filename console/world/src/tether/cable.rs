@@ -150,6 +150,21 @@ impl Cable {
         }
     }
 
+    /// The cable as it lies when it is longest on a way.
+    ///
+    /// Along a straight move its length is convex, so it is longest at a corner of the way.
+    #[must_use]
+    pub fn at_longest(mut self, way: &[Point]) -> Self {
+        let mut longest = self.clone();
+        for point in way {
+            self.drag_to(*point);
+            if self.length_m() > longest.length_m() {
+                longest.clone_from(&self);
+            }
+        }
+        longest
+    }
+
     /// Where the cable begins.
     pub fn anchor(&self) -> Point {
         self.anchor

@@ -147,6 +147,13 @@ fn two_columns_that_overlap_are_bridged() {
 }
 
 #[test]
+fn the_longest_cable_is_the_one_at_the_corner_farthest_out() {
+    let way = [Point::new(-1.0, 2.0), Point::new(3.0, 1.0), Point::new(3.0, -1.0), Point::new(-2.0, 0.0)];
+    let longest = cable(Point::new(-3.0, 0.0), &[disc(0.0, 0.0, 0.5)]).at_longest(&way);
+    assert!((longest.tip() - way[2]).norm() < 1e-12 && longest.contacts().len() == 1);
+}
+
+#[test]
 fn an_anchor_must_stand_on_free_floor() {
     let inside = Cable::new(Point::new(2.1, 0.0), &WALL, &[disc(2.0, 0.0, 0.5)]).unwrap_err();
     assert!(inside.to_string().contains("inside an obstacle"), "{inside}");
