@@ -58,7 +58,7 @@ fn one_tick(c: &mut Criterion) {
 fn certificate(c: &mut Criterion) {
     let boundary = Boundary::Circle { radius_m: RADIUS_M };
     for count in [0, 16, 120] {
-        let (obstacles, path) = (columns(count), lanes(0.6, 1.0));
+        let (obstacles, path) = (columns(count), lanes(0.6, 0.4));
         let anchor = Point::new(0.0, 0.05);
         let cuts: Vec<Vec<Point>> = obstacles
             .iter()

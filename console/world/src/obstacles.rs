@@ -4,6 +4,10 @@
 //! Cost: every query descends a bounding volume hierarchy, so it grows with the logarithm of the obstacle count
 //! plus the number of obstacles actually near.
 
+mod boxes;
+
+pub(crate) use boxes::Boxes;
+
 use crate::{
     geometry::{Point, Vector},
     polyline::nearest_on_segment,

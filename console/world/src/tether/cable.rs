@@ -296,7 +296,7 @@ impl Cable {
         if from == to {
             return;
         }
-        self.word.go(from, to, &self.ground.hearts);
+        self.word.go(from, to, &self.ground.rays);
         if self.bends.is_empty() && (from - self.anchor).norm() <= SLACK_M {
             // Without length the cable has no bearing: it takes the one of the move.
             self.start_rad = self.base().bearing_to(to).unwrap_or(self.start_rad);
@@ -322,7 +322,7 @@ impl Cable {
     fn advance(&mut self, from: Point, to: Point, let_go: &mut Vec<usize>) -> ControlFlow<()> {
         let base = self.base();
         let turn_rad = base.turn_to(from, to);
-        match next_event(&self.ground.posts, &base, from, to, turn_rad, let_go) {
+        match next_event(&self.ground, &base, from, to, turn_rad, let_go) {
             Event::Arrive => {
                 self.turn_base_to(base.out_rad + turn_rad);
                 return ControlFlow::Break(());

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     geometry::Point,
-    obstacles::wall_clearance_m,
+    obstacles::{Boxes, wall_clearance_m},
     tank::{Boundary, Obstacle},
 };
 use serde::{Deserialize, Serialize};
@@ -212,15 +212,15 @@ fn clearance(case: &Case<'_>) -> Clearance {
         .enumerate()
         .flat_map(|(k, o)| solids_of(&o.shape, 0.0).into_iter().map(move |solid| (k, solid)))
         .collect();
+    let boxes = Boxes::new(solids.iter().map(|(_, solid)| solid.bounds()));
     let mut found = Clearance { collisions: 0, least_m: case.room_m, first: None };
     for pair in pieces(case.path) {
-        let (mut least_m, mut by) = (wall_clearance_m(case.boundary, pair.0, pair.1), None);
-        for (k, solid) in &solids {
-            if !solid.is_far_from(pair.0, pair.1, case.room_m) {
-                let distance_m = solid.distance_m(pair.0, pair.1);
-                (least_m, by) = if distance_m < least_m { (distance_m, Some(*k)) } else { (least_m, by) };
-            }
-        }
+        let near = boxes.near(pair.0, pair.1, case.room_m).map(|index| &solids[index]);
+        let nearest = near
+            .map(|(k, solid)| (solid.distance_m(pair.0, pair.1), Some(*k)))
+            .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let wall = (wall_clearance_m(case.boundary, pair.0, pair.1), None);
+        let (least_m, by) = nearest.filter(|(distance_m, _)| *distance_m < wall.0).unwrap_or(wall);
         found.least_m = found.least_m.min(least_m);
         if least_m < case.room_m - SPARE_M {
             found.collisions += 1;
@@ -254,6 +254,15 @@ impl Reasons<'_> {
         }
         if self.case.path.iter().any(|p| !(p.x.is_finite() && p.y.is_finite())) {
             reasons.push("the path has a coordinate that is not a finite number".into());
+        }
+        if self.case.cuts.iter().flatten().any(|p| !(p.x.is_finite() && p.y.is_finite())) {
+            reasons.push("a cut has a coordinate that is not a finite number".into());
+        }
+        if [self.case.room_m, limits.reel_m, limits.max_wrap_rad, limits.max_sum_wrap_rad]
+            .iter()
+            .any(|m| m.is_nan())
+        {
+            reasons.push("the room that the hull needs, or a limit of the tether, is not a number".into());
         }
         reasons.extend(self.collision(certificate));
         if certificate.max_cable_m > limits.reel_m {

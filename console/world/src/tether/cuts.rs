@@ -1,15 +1,26 @@
 //! Crossings of cuts: lines that a tethered robot never crosses.
 
-use crate::geometry::Point;
+use crate::{
+    geometry::{Point, Vector},
+    obstacles::Boxes,
+};
 
 /// How often a path crosses some lines; touching a line without changing sides is no crossing.
 pub fn crossings(path: &[Point], cuts: &[Vec<Point>]) -> usize {
     let pieces: Vec<(Point, Point)> =
         cuts.iter().flat_map(|cut| cut.windows(2).map(|pair| (pair[0], pair[1]))).collect();
-    path.windows(2).map(|pair| pieces.iter().filter(|(p, q)| cross(pair[0], pair[1], *p, *q)).count()).sum()
+    let boxes = Boxes::new(pieces.iter().map(|(p, q)| (p.inf(q), p.sup(q))));
+    let crossed = |a: Point, b: Point| {
+        let near = boxes.near(a, b, 0.0).map(|k| pieces[k]);
+        near.filter(|(p, q)| cross(a, b, *p, *q)).count()
+    };
+    path.windows(2).map(|pair| crossed(pair[0], pair[1])).sum()
 }
 
-/// Points on a line count as left of it, so each change of sides counts once.
+/// Whether a piece of the path crosses a piece of a cut.
+///
+/// The path counts as shifted by a hair, the same for all of it (Edelsbrunner and Mücke 1990): so each change of sides
+/// counts once, also through corners and along pieces of a cut.
 fn cross(a: Point, b: Point, p: Point, q: Point) -> bool {
     let apart = |low: f64, high: f64, from: f64, to: f64| low.max(high) < from.min(to);
     if apart(a.x, b.x, p.x, q.x)
@@ -19,8 +30,16 @@ fn cross(a: Point, b: Point, p: Point, q: Point) -> bool {
     {
         return false;
     }
-    let is_left = |o: Point, to: Point, x: Point| (to - o).perp(&(x - o)) >= 0.0;
-    is_left(p, q, a) != is_left(p, q, b) && is_left(a, b, p) != is_left(a, b, q)
+    let shift_of_path = |p: Point, q: Point, x: Point| is_left(q - p, x - p, 1.0);
+    let shift_of_cut = |a: Point, b: Point, x: Point| is_left(b - a, x - a, -1.0);
+    shift_of_path(p, q, a) != shift_of_path(p, q, b) && shift_of_cut(a, b, p) != shift_of_cut(a, b, q)
+}
+
+/// Whether a place is left of a line through the origin; one on the line counts as shifted to the east or west by a hair,
+/// and by a hair of that to the north or south.
+fn is_left(along: Vector, at: Vector, shift: f64) -> bool {
+    let sides = [along.perp(&at), -along.y * shift, along.x * shift];
+    sides.into_iter().find(|side| *side != 0.0).is_some_and(|side| side > 0.0)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::{
     cable::tangent_point,
     ground::{Ground, Post},
+    sweep::direction,
 };
 use crate::geometry::{Point, wrap_angle_rad};
 use std::{
@@ -44,24 +45,41 @@ impl Arrival {
     }
 }
 
-/// Heap order: by length alone.
-struct Queued(Arrival);
+/// Ways to posts that wait for their turn, the shortest first.
+#[derive(Default)]
+struct Waiting {
+    ways: Vec<Arrival>,
+    queue: BinaryHeap<Reverse<Turn>>,
+}
 
-impl PartialEq for Queued {
+/// The length of a waiting way, what breaks ties, and its index.
+struct Turn(f64, (usize, bool), usize);
+
+impl PartialEq for Turn {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
-impl Eq for Queued {}
-impl PartialOrd for Queued {
+impl Eq for Turn {}
+impl PartialOrd for Turn {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
-impl Ord for Queued {
+impl Ord for Turn {
     fn cmp(&self, other: &Self) -> Ordering {
-        let key = |a: &Arrival| (a.post, a.side > 0.0);
-        self.0.length_m.total_cmp(&other.0.length_m).then_with(|| key(&self.0).cmp(&key(&other.0)))
+        self.0.total_cmp(&other.0).then_with(|| (self.1, self.2).cmp(&(other.1, other.2)))
+    }
+}
+
+impl Waiting {
+    fn add(&mut self, way: Arrival) {
+        self.queue.push(Reverse(Turn(way.length_m, (way.post, way.side > 0.0), self.ways.len())));
+        self.ways.push(way);
+    }
+
+    fn shortest(&mut self) -> Option<Arrival> {
+        self.queue.pop().map(|Reverse(Turn(_, _, index))| self.ways[index])
     }
 }
 
@@ -76,18 +94,45 @@ impl Geodesic {
 
     /// Dijkstra's search; whether a tangent is free is looked at only when its turn comes.
     fn search(&mut self) {
-        let mut queue: BinaryHeap<Reverse<Queued>> = self.onward(None).map(|a| Reverse(Queued(a))).collect();
-        while let Some(Reverse(Queued(next))) = queue.pop() {
+        let in_sight: Vec<bool> = self.ground.posts.iter().map(|post| self.is_in_plain_sight(post)).collect();
+        let mut waiting = Waiting::default();
+        self.onward(None).for_each(|way| waiting.add(way));
+        while let Some(next) = waiting.shortest() {
             if self.is_beaten(&next) || !self.is_free(&next) {
                 continue;
             }
             let index = self.arrivals.len();
             self.arrivals.push(next);
             self.at_post[next.slot()].push(next);
-            let onward: Vec<_> =
-                self.onward(Some(index)).filter(|a| !self.is_beaten(a)).map(|a| Reverse(Queued(a))).collect();
-            queue.extend(onward);
+            for way in self.onward(Some(index)).filter(|way| !in_sight[way.post] && !self.is_beaten(way)) {
+                waiting.add(way);
+            }
         }
+    }
+
+    /// Whether nothing stands between the anchor and a round post, nor touches it: then the shortest way to any point of
+    /// its outline is straight, or straight to a tangent and along the outline, and no way leads there round another post.
+    fn is_in_plain_sight(&self, post: &Post) -> bool {
+        let way = post.center - self.anchor;
+        let far = way.norm();
+        if post.radius_m <= 0.0
+            || far <= post.radius_m
+            || !self.ground.sidestep.is_alone(post.center, post.radius_m)
+        {
+            return false;
+        }
+        let target = |side: f64| (post.center, post.radius_m, side);
+        let rays = [1.0, -1.0].map(|side| tangent((self.anchor, 0.0, 0.0), target(side)));
+        let [Some(right), Some(left)] = rays else { return false };
+        let is_open = |side: f64, bearing_rad: f64| {
+            self.sees(self.anchor, tangent_point(post.center, post.radius_m, side, bearing_rad))
+        };
+        let (low, high) = (direction(right), direction(left));
+        let is_between = |other: &Post| {
+            let at = other.center - self.anchor;
+            low.perp(&at) >= 0.0 && high.perp(&at) <= 0.0 && at.norm() < far
+        };
+        is_open(1.0, right) && is_open(-1.0, left) && !self.ground.posts.iter().any(is_between)
     }
 
     /// The tangents that go on from an arrival, or from the anchor.

@@ -7,9 +7,10 @@
 //! so the cable bridges the notch from one to the other and each contact is named for the one that bears it.
 //! A post inside another one can bear nothing and is left out.
 
-use super::{cable::Bearing, sidestep::Sidestep, solid::Solid};
+use super::{cable::Bearing, sidestep::Sidestep, solid::Solid, word::Rays};
 use crate::{
-    geometry::Point,
+    geometry::{Point, Vector},
+    obstacles::Boxes,
     shape::{Shape, edges, ring_area_m2},
     tank::Boundary,
 };
@@ -26,9 +27,10 @@ pub struct Post {
 #[derive(Debug, Clone)]
 pub struct Ground {
     pub(super) posts: Vec<Post>,
+    boxes: Boxes,
     pub(super) sidestep: Sidestep,
-    /// One point within each obstacle, for the crossing word.
-    pub(super) hearts: Vec<Point>,
+    /// A ray from each obstacle, for the crossing word.
+    pub(super) rays: Rays,
     /// Edges of a wall with inward corners; other walls are in nobody's way.
     walls: Vec<(Point, Point)>,
 }
@@ -50,21 +52,30 @@ impl Ground {
             .collect();
         posts.extend(wall_posts(boundary));
         let solids = shapes.iter().flat_map(|shape| solids_of(shape, margin_m)).collect();
+        let posts = without_hidden(&posts);
+        let around = |post: &Post| {
+            let far = Vector::new(post.radius_m, post.radius_m);
+            (post.center - far, post.center + far)
+        };
         Self {
-            posts: without_hidden(&posts),
+            boxes: Boxes::new(posts.iter().map(around)),
+            posts,
             sidestep: Sidestep::new(solids),
-            hearts: shapes.iter().map(heart_of).collect(),
+            rays: Rays::new(&shapes.iter().map(heart_of).collect::<Vec<_>>()),
             walls: walls_in_the_way(boundary),
         }
+    }
+
+    /// Posts that come within `room_m` of a segment, perhaps some more, in no order.
+    pub(super) fn near(&self, a: Point, b: Point, room_m: f64) -> impl Iterator<Item = usize> + '_ {
+        self.boxes.near(a, b, room_m)
     }
 
     /// Whether a straight line enters no obstacle and does not leave the floor.
     pub fn is_open(&self, from: Point, to: Point) -> bool {
         let crosses = |(p, q): &(Point, Point)| {
             let (u, v) = (to - from, q - p);
-            let apart = |d: crate::geometry::Vector, s: f64, t: f64| {
-                s * t < 0.0 && s.abs().min(t.abs()) > 1e-9 * d.norm()
-            };
+            let apart = |d: Vector, s: f64, t: f64| s * t < 0.0 && s.abs().min(t.abs()) > 1e-9 * d.norm();
             apart(u, u.perp(&(p - from)), u.perp(&(q - from)))
                 && apart(v, v.perp(&(from - p)), v.perp(&(to - p)))
         };

@@ -1,7 +1,8 @@
 //! Pockets: floor that cuts seal off.
 
 use super::certificate::Case;
-use crate::geometry::Point;
+use crate::{geometry::Point, tank::Boundary};
+use std::ops::Range;
 
 /// Smallest edge of a cell, metres, and most cells along one side.
 const CELL_M: f64 = 0.05;
@@ -22,26 +23,42 @@ pub struct Sealed {
 /// no cells but block the step between the middles of two neighbours, so they take no floor away.
 pub fn sealed(case: &Case<'_>) -> Option<Sealed> {
     let grid = Grid::new(case);
-    let seeds: Vec<usize> =
-        std::iter::once(&case.anchor).chain(case.path).filter_map(|point| grid.cell(*point)).collect();
-    let open = grid.flood(&seeds, |_, _| false);
-    let (east, north) = grid.walls(case.cuts);
-    let blocked = |cell: usize, is_east: bool| if is_east { east[cell] } else { north[cell] };
-    let mut seen = grid.flood(&seeds, blocked);
+    let walls = grid.walls(case.cuts);
+    let seeds = std::iter::once(&case.anchor).chain(case.path).filter_map(|point| grid.cell(*point));
+    let mut seen = vec![false; grid.free.len()];
+    grid.flood(&mut seen, seeds.collect(), &walls);
+    let is_shut = |cell: usize, seen: &[bool]| grid.free[cell] && !seen[cell];
+    // What is left and lies beside what was reached lies behind a cut, and so does what lies beside that.
+    let rim = |cell: &usize| is_shut(*cell, &seen) && grid.beside(*cell).any(|other| seen[other]);
+    let mut behind: Vec<usize> = (0..seen.len()).filter(rim).collect();
+    behind.reverse();
     let mut all = Sealed { area_m2: 0.0, at: case.anchor };
     let mut largest = 0;
-    for cell in 0..open.len() {
-        if open[cell] && !seen[cell] {
-            let pocket = grid.flood_into(&mut seen, &[cell], blocked);
-            let area_m2 = pocket as f64 * grid.cell_m * grid.cell_m;
-            if area_m2 >= LEAST_M2 {
-                all.area_m2 += area_m2;
-                (largest, all.at) =
-                    if pocket > largest { (pocket, grid.middle(cell)) } else { (largest, all.at) };
+    while let Some(cell) = behind.pop() {
+        if seen[cell] {
+            continue;
+        }
+        let pocket = grid.flood(&mut seen, vec![cell], &walls);
+        let count: usize = pocket.iter().map(Range::len).sum();
+        let area_m2 = count as f64 * grid.cell_m * grid.cell_m;
+        let more = pocket.iter().cloned().flatten().flat_map(|cell| grid.beside(cell));
+        behind.extend(more.filter(|other| is_shut(*other, &seen)));
+        if area_m2 >= LEAST_M2 {
+            all.area_m2 += area_m2;
+            if count > largest {
+                (largest, all.at) = (count, grid.middle(cell));
             }
         }
     }
     (all.area_m2 > 0.0).then_some(all)
+}
+
+/// Steps between neighbours that cross a cut.
+struct Walls {
+    /// To the eastern neighbour, for every cell.
+    east: Vec<bool>,
+    /// To the northern neighbour.
+    north: Vec<bool>,
 }
 
 struct Grid {
@@ -59,10 +76,10 @@ impl Grid {
         let cell_m = CELL_M.max(extent.max() / MOST_CELLS);
         let count = |size_m: f64| (size_m / cell_m).ceil().max(1.0) as usize;
         let (width, height) = (count(extent.x), count(extent.y));
-        let mut grid = Self { low, cell_m, width, height, free: Vec::new() };
-        grid.free = (0..width * height)
-            .map(|c| case.boundary.wall_distance_m(grid.middle(c)) >= case.room_m)
-            .collect();
+        let mut grid = Self { low, cell_m, width, height, free: vec![false; width * height] };
+        for row in 0..height {
+            grid.clear_row(row, case);
+        }
         for obstacle in case.obstacles {
             let (from, to) = obstacle.shape.bounds();
             let (i, j) = grid.place(from.map(|v| v - case.room_m));
@@ -72,6 +89,33 @@ impl Grid {
             }
         }
         grid
+    }
+
+    /// Marks what the wall leaves free of a row.
+    fn clear_row(&mut self, row: usize, case: &Case<'_>) {
+        let cells = row * self.width..(row + 1) * self.width;
+        let Boundary::Circle { radius_m } = case.boundary else {
+            for cell in cells {
+                self.free[cell] = case.boundary.wall_distance_m(self.middle(cell)) >= case.room_m;
+            }
+            return;
+        };
+        let (reach_m, y) = (radius_m - case.room_m, self.middle(cells.start).y);
+        if reach_m > y.abs() {
+            let half_m = (reach_m * reach_m - y * y).sqrt();
+            let column = |x: f64| ((x - self.low.x) / self.cell_m - 0.5).max(0.0);
+            let (first, last) = (column(-half_m).ceil() as usize, column(half_m).floor() as usize);
+            self.free[cells.start + first..(cells.start + last + 1).min(cells.end)].fill(true);
+        }
+    }
+
+    /// The four neighbours of a cell, as far as there are such.
+    fn beside(&self, cell: usize) -> impl Iterator<Item = usize> + use<> {
+        let (column, width, end) = (cell % self.width, self.width, self.free.len());
+        let west = (column > 0).then(|| cell - 1);
+        let east = (column + 1 < width).then_some(cell + 1);
+        let (south, north) = (cell.checked_sub(width), Some(cell + width).filter(|cell| *cell < end));
+        [west, east, south, north].into_iter().flatten()
     }
 
     fn middle(&self, cell: usize) -> Point {
@@ -90,22 +134,22 @@ impl Grid {
         Some(row * self.width + column).filter(|cell| self.free[*cell])
     }
 
-    /// Which steps to the eastern and to the northern neighbour cross a cut.
-    fn walls(&self, cuts: &[Vec<Point>]) -> (Vec<bool>, Vec<bool>) {
+    /// Which steps cross a cut.
+    fn walls(&self, cuts: &[Vec<Point>]) -> Walls {
         let mut east = vec![false; self.free.len()];
         let mut north = east.clone();
         for pair in cuts.iter().flat_map(|cut| cut.windows(2)) {
             // In units of cells, with the middles of cells at whole numbers.
             let to_cells = |p: Point| (p - self.low) / self.cell_m - crate::geometry::Vector::new(0.5, 0.5);
             let (a, b) = (to_cells(pair[0]), to_cells(pair[1]));
-            for (column, row) in steps_crossed(a.y, b.y, a.x, b.x).map(|(row, column)| (column, row)) {
+            for (row, column) in steps_crossed(a.y, b.y, a.x, b.x, self.height) {
                 self.block(&mut east, column, row);
             }
-            for (column, row) in steps_crossed(a.x, b.x, a.y, b.y) {
+            for (column, row) in steps_crossed(a.x, b.x, a.y, b.y, self.width) {
                 self.block(&mut north, column, row);
             }
         }
-        (east, north)
+        Walls { east, north }
     }
 
     fn block(&self, steps: &mut [bool], column: i64, row: i64) {
@@ -114,49 +158,70 @@ impl Grid {
         }
     }
 
-    fn flood(&self, seeds: &[usize], blocked: impl Fn(usize, bool) -> bool) -> Vec<bool> {
-        let mut seen = vec![false; self.free.len()];
-        self.flood_into(&mut seen, seeds, blocked);
-        seen
+    /// Marks what can be reached from some cells without crossing a cut, and gives what is new, in runs of one row.
+    fn flood(&self, seen: &mut [bool], mut todo: Vec<usize>, walls: &Walls) -> Vec<Range<usize>> {
+        let mut runs = Vec::new();
+        while let Some(cell) = todo.pop() {
+            if !self.is_new(seen, cell) {
+                continue;
+            }
+            let row = cell / self.width * self.width..(cell / self.width + 1) * self.width;
+            let (mut low, mut high) = (cell, cell + 1);
+            while low > row.start && self.is_new(seen, low - 1) && !walls.east[low - 1] {
+                low -= 1;
+            }
+            while high < row.end && self.is_new(seen, high) && !walls.east[high - 1] {
+                high += 1;
+            }
+            seen[low..high].fill(true);
+            if row.start > 0 {
+                self.step_over(low..high, false, seen, walls, &mut todo);
+            }
+            if row.end < self.free.len() {
+                self.step_over(low..high, true, seen, walls, &mut todo);
+            }
+            runs.push(low..high);
+        }
+        runs
     }
 
-    /// Marks what can be reached from some cells; tells how many cells are new.
-    fn flood_into(&self, seen: &mut [bool], seeds: &[usize], blocked: impl Fn(usize, bool) -> bool) -> usize {
-        let mut todo: Vec<usize> = Vec::new();
-        let mut count = 0;
-        let mut visit = |cell: usize, todo: &mut Vec<usize>, seen: &mut [bool]| {
-            if self.free[cell] && !seen[cell] {
-                seen[cell] = true;
-                count += 1;
-                todo.push(cell);
+    /// The northern or southern neighbours of a run to go on from: the first of each stretch.
+    fn step_over(
+        &self,
+        run: Range<usize>,
+        is_north: bool,
+        seen: &[bool],
+        walls: &Walls,
+        todo: &mut Vec<usize>,
+    ) {
+        let mut is_joined = false;
+        for cell in run {
+            let other = if is_north { cell + self.width } else { cell - self.width };
+            let is_open = !walls.north[cell.min(other)] && self.is_new(seen, other);
+            if is_open && (!is_joined || walls.east[other - 1]) {
+                todo.push(other);
             }
-        };
-        for seed in seeds {
-            visit(*seed, &mut todo, seen);
+            is_joined = is_open;
         }
-        while let Some(cell) = todo.pop() {
-            let (column, row) = (cell % self.width, cell / self.width);
-            if column + 1 < self.width && !blocked(cell, true) {
-                visit(cell + 1, &mut todo, seen);
-            }
-            if column > 0 && !blocked(cell - 1, true) {
-                visit(cell - 1, &mut todo, seen);
-            }
-            if row + 1 < self.height && !blocked(cell, false) {
-                visit(cell + self.width, &mut todo, seen);
-            }
-            if row > 0 && !blocked(cell - self.width, false) {
-                visit(cell - self.width, &mut todo, seen);
-            }
-        }
-        count
+    }
+
+    fn is_new(&self, seen: &[bool], cell: usize) -> bool {
+        self.free[cell] && !seen[cell]
     }
 }
 
-/// The whole numbers between `from` and `to`, each with the whole number below the line's other coordinate there.
-fn steps_crossed(from: f64, to: f64, other_from: f64, other_to: f64) -> impl Iterator<Item = (i64, i64)> {
-    let (low, high) = (from.min(to).ceil() as i64, from.max(to).ceil() as i64);
-    (low..high).map(move |line| {
+/// The whole numbers below `count` between `from` and `to`, each with the whole number below the line's other coordinate
+/// there.
+fn steps_crossed(
+    from: f64,
+    to: f64,
+    other_from: f64,
+    other_to: f64,
+    count: usize,
+) -> impl Iterator<Item = (i64, i64)> {
+    // A line may come from very far away.
+    let line = |m: f64| m.ceil().clamp(0.0, count as f64) as i64;
+    (line(from.min(to))..line(from.max(to))).map(move |line| {
         let share = (line as f64 - from) / (to - from);
         (line, (other_from + (other_to - other_from) * share).floor() as i64)
     })

@@ -7,7 +7,7 @@
 //! side of every column.
 
 use super::solid::Solid;
-use crate::geometry::Point;
+use crate::{geometry::Point, obstacles::Boxes};
 
 /// Depth to which touching is not entering, metres.
 const TOUCH_M: f64 = 1e-9;
@@ -20,20 +20,23 @@ const DEEPEST: usize = 6;
 #[derive(Debug, Clone)]
 pub struct Sidestep {
     solids: Vec<Solid>,
+    boxes: Boxes,
 }
 
 impl Sidestep {
     /// Sidesteps round these solids.
     pub fn new(solids: Vec<Solid>) -> Self {
-        Self { solids }
+        let boxes = Boxes::new(solids.iter().map(Solid::bounds));
+        Self { solids, boxes }
     }
 
     /// The nearest point that lies in no solid, as far as a few steps find one.
     pub fn outside(&self, point: Point) -> Point {
         let mut at = point;
         for _ in 0..DEEPEST {
-            match self.solids.iter().find_map(|solid| solid.pushed_out(at, TOUCH_M)) {
-                Some(next) => at = next,
+            let pushed = self.near(at, at).filter_map(|(k, solid)| Some((k, solid.pushed_out(at, TOUCH_M)?)));
+            match pushed.min_by_key(|(k, _)| *k) {
+                Some((_, next)) => at = next,
                 None => break,
             }
         }
@@ -42,12 +45,17 @@ impl Sidestep {
 
     /// Whether a point lies in a solid.
     pub fn holds(&self, point: Point) -> bool {
-        self.solids.iter().any(|solid| solid.pushed_out(point, TOUCH_M).is_some())
+        self.near(point, point).any(|(_, solid)| solid.pushed_out(point, TOUCH_M).is_some())
     }
 
     /// Whether a segment enters no solid.
     pub fn is_open(&self, from: Point, to: Point) -> bool {
-        !self.solids.iter().any(|solid| solid.is_entered_by(from, to, TOUCH_M))
+        !self.near(from, to).any(|(_, solid)| solid.is_entered_by(from, to, TOUCH_M))
+    }
+
+    /// Whether at most one solid comes near to a disc.
+    pub fn is_alone(&self, center: Point, radius_m: f64) -> bool {
+        self.boxes.near(center, center, radius_m + TOUCH_M).nth(1).is_none()
     }
 
     /// Calls `go` with the ends of the straight pieces that lead from one point to another round every solid.
@@ -85,13 +93,13 @@ impl Sidestep {
     }
 
     fn first_entered(&self, from: Point, to: Point) -> Option<&Solid> {
-        let mut entered = self.solids.iter().filter(|solid| solid.is_entered_by(from, to, TOUCH_M));
-        let first = entered.next()?;
-        Some(entered.fold(
-            first,
-            |best, solid| {
-                if solid.met_at(from, to) < best.met_at(from, to) { solid } else { best }
-            },
-        ))
+        let entered = self.near(from, to).filter(|(_, solid)| solid.is_entered_by(from, to, TOUCH_M));
+        let met = entered.map(|(k, solid)| (solid.met_at(from, to), k, solid));
+        met.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, _, solid)| solid)
+    }
+
+    /// Solids that a segment may meet, with their index, in no order.
+    fn near(&self, from: Point, to: Point) -> impl Iterator<Item = (usize, &Solid)> {
+        self.boxes.near(from, to, TOUCH_M).map(|k| (k, &self.solids[k]))
     }
 }

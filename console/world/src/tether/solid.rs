@@ -35,6 +35,15 @@ impl Solid {
         Self { core, radius_m, middle, reach_m, outline }
     }
 
+    /// Lowest and highest corner of the box around it.
+    pub fn bounds(&self) -> (Point, Point) {
+        let far = Vector::new(self.radius_m, self.radius_m);
+        let first = self.core[0];
+        let low = self.core.iter().fold(first, |low, p| low.inf(p));
+        let high = self.core.iter().fold(first, |high, p| high.sup(p));
+        (low - far, high + far)
+    }
+
     /// Whether a segment surely stays further away than `room_m`.
     pub fn is_far_from(&self, a: Point, b: Point, room_m: f64) -> bool {
         let nearest = nearest_on_segment(a, b, self.middle);

@@ -2,7 +2,7 @@
 
 use super::{
     cable::{SLACK_M, tangent_point},
-    ground::Post,
+    ground::{Ground, Post},
 };
 use crate::geometry::{Point, Vector, wrap_angle_rad};
 
@@ -65,7 +65,7 @@ pub fn direction(bearing_rad: f64) -> Vector {
 ///
 /// `let_go` are posts that this very move has wound off: a straight move cannot meet them again.
 pub fn next_event(
-    posts: &[Post],
+    ground: &Ground,
     base: &Base,
     from: Point,
     to: Point,
@@ -77,7 +77,7 @@ pub fn next_event(
     let left_over_rad = base.wrap_rad - turn_rad.abs();
     let lets_go = sense * base.side < 0.0 && left_over_rad * (to - end).norm() < -SLACK_M;
     let sweep = Sweep::new(base, from, to, turn_rad, sense);
-    let touched = sweep.first_touched(posts, |k| base.post == Some(k) || let_go.contains(&k));
+    let touched = sweep.first_touched(ground, |k| base.post == Some(k) || let_go.contains(&k));
     match touched {
         Some(touch) if !lets_go || touch.after_rad < base.wrap_rad => Event::Touch {
             post: touch.post,
@@ -134,22 +134,18 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    fn first_touched(&self, posts: &[Post], is_out: impl Fn(usize) -> bool) -> Option<Touch> {
-        let mut first: Option<Touch> = None;
-        for (k, post) in posts.iter().enumerate() {
-            if !self.may_touch(post) || is_out(k) {
-                continue;
-            }
-            let Some(touch) = self.touch(k, post) else { continue };
-            let is_first = first.as_ref().is_none_or(|best| {
-                let same = (touch.after_rad - best.after_rad).abs() <= self.early_rad;
-                if same { touch.far_m < best.far_m } else { touch.after_rad < best.after_rad }
-            });
-            if is_first {
-                first = Some(touch);
-            }
-        }
-        first
+    fn first_touched(&self, ground: &Ground, is_out: impl Fn(usize) -> bool) -> Option<Touch> {
+        // Nothing swept is further from the first position of the free piece than its ends move.
+        let room_m = (self.to - self.from).norm() + 2.0 * self.base.radius_m + 2.0 * SLACK_M;
+        let near = ground.near(self.start.0, self.from, room_m);
+        let may_touch = near.filter(|k| self.may_touch(&ground.posts[*k]) && !is_out(*k));
+        let mut touches: Vec<Touch> = may_touch.filter_map(|k| self.touch(k, &ground.posts[k])).collect();
+        touches.sort_unstable_by_key(|touch| touch.post);
+        touches.into_iter().reduce(|best, touch| {
+            let same = (touch.after_rad - best.after_rad).abs() <= self.early_rad;
+            let is_first = if same { touch.far_m < best.far_m } else { touch.after_rad < best.after_rad };
+            if is_first { touch } else { best }
+        })
     }
 
     /// Cheap test: the post reaches into the cone of the sweep, on the near side of the move.

@@ -148,7 +148,7 @@ fn two_columns_that_overlap_are_bridged() {
 
 #[test]
 fn the_longest_cable_is_the_one_at_the_corner_farthest_out() {
-    let way = [Point::new(-1.0, 2.0), Point::new(3.0, 1.0), Point::new(3.0, -1.0), Point::new(-2.0, 0.0)];
+    let way = [Point::new(-1.0, 2.0), Point::new(3.0, 1.0), Point::new(3.0, -1.0), Point::new(3.0, 1.0)];
     let longest = cable(Point::new(-3.0, 0.0), &[disc(0.0, 0.0, 0.5)]).at_longest(&way);
     assert!((longest.tip() - way[2]).norm() < 1e-12 && longest.contacts().len() == 1);
 }

@@ -24,29 +24,48 @@ pub struct Word {
     letters: Vec<Letter>,
 }
 
+/// One point within each obstacle, from which its ray leaves, ready to be asked which rays a move crosses.
+#[derive(Debug, Clone)]
+pub struct Rays {
+    ray: Vector,
+    /// How far clockwise of the ray through the origin each lies, least first; with its obstacle.
+    sorted: Vec<(f64, usize, Point)>,
+}
+
+impl Rays {
+    /// Rays from these points; the obstacles are their indices.
+    pub fn new(hearts: &[Point]) -> Self {
+        let ray = Vector::new(BEARING_RAD.cos(), BEARING_RAD.sin());
+        let mut sorted: Vec<(f64, usize, Point)> =
+            hearts.iter().enumerate().map(|(k, heart)| (-ray.perp(&heart.coords), k, *heart)).collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self { ray, sorted }
+    }
+
+    fn aside(&self, point: Point) -> f64 {
+        -self.ray.perp(&point.coords)
+    }
+}
+
 impl Word {
     /// The word of a whole way.
-    pub fn of(way: &[Point], hearts: &[Point]) -> Self {
+    pub fn of(way: &[Point], rays: &Rays) -> Self {
         let mut word = Self::default();
-        way.windows(2).for_each(|pair| word.go(pair[0], pair[1], hearts));
+        way.windows(2).for_each(|pair| word.go(pair[0], pair[1], rays));
         word
     }
 
-    /// Takes one straight piece of the way; `hearts` are the points that the rays leave.
-    pub fn go(&mut self, from: Point, to: Point, hearts: &[Point]) {
-        let ray = Vector::new(BEARING_RAD.cos(), BEARING_RAD.sin());
-        // How far clockwise of the ray through the origin a point lies.
-        let aside = |p: &Point| -ray.perp(&p.coords);
-        let (start, end) = (aside(&from), aside(&to));
+    /// Takes one straight piece of the way.
+    pub fn go(&mut self, from: Point, to: Point, rays: &Rays) {
+        let (start, end) = (rays.aside(from), rays.aside(to));
+        let first = rays.sorted.partition_point(|(here, ..)| *here < start.min(end));
         let mut crossed: Vec<(f64, Letter)> = Vec::new();
-        for (obstacle, heart) in hearts.iter().enumerate() {
-            let here = aside(heart);
-            if (start <= here) == (end <= here) {
-                continue;
-            }
+        for (here, obstacle, heart) in
+            rays.sorted[first..].iter().take_while(|(here, ..)| *here < start.max(end))
+        {
             let share = (here - start) / (end - start);
-            if ray.dot(&(from + (to - from) * share - heart)) > 0.0 {
-                crossed.push((share, Letter { obstacle, ccw: end < start }));
+            if rays.ray.dot(&(from + (to - from) * share - heart)) > 0.0 {
+                crossed.push((share, Letter { obstacle: *obstacle, ccw: end < start }));
             }
         }
         crossed.sort_by(|a, b| a.0.total_cmp(&b.0));

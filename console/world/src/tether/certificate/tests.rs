@@ -1,3 +1,5 @@
+mod hostile;
+
 use super::*;
 use crate::{shape::Shape, tank::ObstacleId};
 use proptest::prelude::*;
