@@ -37,6 +37,8 @@ const STEP_M: f64 = 0.04;
 const SEAM_M: f64 = 0.02;
 /// The outermost lanes stay this far inside the strips of a cell, for rounding, metres.
 const INSIDE_M: f64 = 3e-3;
+/// A border is at the rim of sealed floor within this, metres.
+const RIM_M: f64 = 0.01;
 /// Floor behind closed gates that is worth a word, square metres.
 const SEALED_M2: f64 = 0.05;
 
@@ -163,11 +165,56 @@ impl Division {
     ) -> Option<Self> {
         let first = (0..cells.len()).find(|k| cells[*k].contains(home)).unwrap_or(0);
         let borders = borders(&cells, ground, columns);
-        let cuts = if is_tree { cuts(&cells, &borders, first) } else { Vec::new() };
-        let lines: Vec<Vec<Point>> = cuts.iter().map(|cut| cut.line.clone()).collect();
-        let slit = Slit::new(ground, &lines, home)?;
+        if !is_tree {
+            let slit = Slit::new(ground, &[], home)?;
+            return Some(Self { cells, first, cuts: Vec::new(), slit });
+        }
+        let mut gates = tree(&cells, &borders, first);
+        let (mut cuts, mut slit) = slit_by(ground, &borders, &gates, home)?;
+        while slit.sealed_m2 > SEALED_M2 {
+            let Some(opened) = one_more_gate(ground, &borders, &gates, &slit, home) else { break };
+            (gates, cuts, slit) = opened;
+        }
         Some(Self { cells, first, cuts, slit })
     }
+}
+
+/// The cuts that leave these gates, and what is left of the floor.
+fn slit_by(ground: &Ground, borders: &[Border], gates: &[usize], home: Point) -> Option<(Vec<Cut>, Slit)> {
+    let cuts = cuts(borders, gates);
+    let lines: Vec<Vec<Point>> = cuts.iter().map(|cut| cut.line.clone()).collect();
+    let slit = Slit::new(ground, &lines, home)?;
+    Some((cuts, slit))
+}
+
+/// One gate more, where discs divide a cell so that the tree of cells leaves a part of it without any.
+///
+/// The widest border at the rim of what is sealed off that lets the robot in: it joins what was apart, so it makes no way
+/// round a column.
+fn one_more_gate(
+    ground: &Ground,
+    borders: &[Border],
+    gates: &[usize],
+    slit: &Slit,
+    home: Point,
+) -> Option<(Vec<usize>, Vec<Cut>, Slit)> {
+    let is_at_rim = |border: &Border| {
+        let line = [border.ends.0, border.ends.1];
+        slit.sealed_rim.iter().any(|at| polyline::distance_m(&line, *at) < RIM_M)
+    };
+    let width_m = |k: &usize| (borders[*k].ends.1 - borders[*k].ends.0).norm();
+    let mut closed: Vec<usize> = (0..borders.len())
+        .filter(|k| borders[*k].is_open && !gates.contains(k) && is_at_rim(&borders[*k]))
+        .filter(|k| width_m(k) > 3.0 * SEAM_M)
+        .collect();
+    closed.sort_by(|a, b| width_m(b).total_cmp(&width_m(a)));
+    closed.into_iter().find_map(|gate| {
+        let gates: Vec<usize> = gates.iter().copied().chain([gate]).collect();
+        let (cuts, opened) = slit_by(ground, borders, &gates, home)?;
+        let is_gain =
+            opened.sealed_m2 < slit.sealed_m2 - SEALED_M2 / 2.0 && opened.is_simple == slit.is_simple;
+        is_gain.then_some((gates, cuts, opened))
+    })
 }
 
 impl HullPartition {
@@ -197,9 +244,8 @@ fn is_convex(wall: &Boundary) -> bool {
     })
 }
 
-/// Every border but one gate for each branch of the tree of cells is a cut.
-fn cuts(cells: &[Cell], borders: &[Border], first: usize) -> Vec<Cut> {
-    let gates = tree(cells, borders, first);
+/// Every border that is no gate is a cut.
+fn cuts(borders: &[Border], gates: &[usize]) -> Vec<Cut> {
     // Pieces under the discs need no cut.
     let closed = borders.iter().enumerate().filter(|(k, border)| border.is_open && !gates.contains(k));
     let mut lines: Vec<(Point, Point)> = Vec::new();

@@ -8,6 +8,8 @@ use world::{Point, Shape, shortest::GrownFloor};
 /// The floor of a robot that may go anywhere.
 pub struct Roam {
     floor: GrownFloor,
+    /// The same without spare room, for ends that have none.
+    tight: GrownFloor,
 }
 
 impl Roam {
@@ -18,18 +20,20 @@ impl Roam {
     pub fn new(ground: &Ground, ctx: &Ctx<'_>) -> Result<Self> {
         ctx.check()?;
         let shapes: Vec<Shape> = ground.parts.iter().map(shape).collect();
-        let keep_m = ground.keep_m + SLACK_M / 4.0;
-        let solids = shapes.iter().map(|shape| (shape, keep_m));
-        Ok(Self { floor: GrownFloor::new(&ground.wall, keep_m, solids) })
+        let floor =
+            |keep_m: f64| GrownFloor::new(&ground.wall, keep_m, shapes.iter().map(|shape| (shape, keep_m)));
+        Ok(Self { floor: floor(ground.keep_m + SLACK_M / 4.0), tight: floor(ground.keep_m - SLACK_M / 4.0) })
     }
 
     /// The shortest way; straight where an end is too near to something for any.
     pub fn way(&self, from: Point, to: Point) -> Vec<Point> {
-        if self.floor.is_free(from, to) {
-            return vec![from, to];
-        }
-        let way = self.floor.shortest(from, to, &mut || true);
-        way.map_or_else(|_| vec![from, to], |way| way.points())
+        let way = |floor: &GrownFloor| {
+            if floor.is_free(from, to) {
+                return Some(vec![from, to]);
+            }
+            floor.shortest(from, to, &mut || true).ok().map(|way| way.points())
+        };
+        way(&self.floor).or_else(|| way(&self.tight)).unwrap_or_else(|| vec![from, to])
     }
 }
 

@@ -25,6 +25,26 @@ fn a_way_round_a_column_that_the_cells_leave_is_closed() {
 }
 
 #[test]
+fn a_part_of_a_cell_that_discs_cut_off_gets_a_gate_of_its_own() {
+    for (known, seed) in [(Known::E2, 901), (Known::E2, 7), (Known::E1, 907), (Known::E3, 907)] {
+        let tank = known.tank(seed);
+        let (plan, bench) = bench::plan::<HullPartition>(&tank, &[], None);
+        let plan = plan.unwrap();
+        let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
+        assert!(plan.complete, "{} {seed}: {:?}", known.id(), bench.logs());
+        assert!(scan.certificate.certified, "{} {seed}: {:?}", known.id(), scan.certificate.reasons);
+        assert!(scan.coverage_reachable > 0.88, "{} {seed}: {}", known.id(), scan.coverage_reachable);
+    }
+}
+
+#[test]
+fn a_way_from_where_there_is_no_room_to_spare_leads_through_no_column() {
+    let tank = Known::E2.tank(922);
+    let plan = bench::plan::<HullPartition>(&tank, &[("backtracking", 1.0)], None).0.unwrap();
+    assert_eq!(tank.score(&plan.path, &[], CELL_M).unwrap().certificate.collisions, 0);
+}
+
+#[test]
 fn moved_directly_from_cell_to_cell_the_way_is_shorter_and_the_cable_is_not() {
     let tank = Known::E2.tank(1);
     let [tree, direct] = [0.0, 1.0].map(|reading| {
