@@ -21,8 +21,19 @@ pub struct Sealed {
 ///
 /// Flood fill from the anchor and from the path: where a path that crosses no cut has been, nothing is sealed. Cuts are
 /// no cells but block the step between the middles of two neighbours, so they take no floor away.
+///
+/// A gate narrower than a cell can look shut: what seems to be sealed is looked at again with finer cells.
 pub fn sealed(case: &Case<'_>) -> Option<Sealed> {
-    let grid = Grid::new(case);
+    let (low, high) = case.boundary.bounds();
+    let cell_m = CELL_M.max((high - low).max() / MOST_CELLS);
+    let mut sealed = sealed_in(case, &Grid::new(case, cell_m))?;
+    for finer in [2.0, 4.0] {
+        sealed = sealed_in(case, &Grid::new(case, cell_m / finer))?;
+    }
+    Some(sealed)
+}
+
+fn sealed_in(case: &Case<'_>, grid: &Grid) -> Option<Sealed> {
     let walls = grid.walls(case.cuts);
     let seeds = std::iter::once(&case.anchor).chain(case.path).filter_map(|point| grid.cell(*point));
     let mut seen = vec![false; grid.free.len()];
@@ -70,10 +81,9 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(case: &Case<'_>) -> Self {
+    fn new(case: &Case<'_>, cell_m: f64) -> Self {
         let (low, high) = case.boundary.bounds();
         let extent = high - low;
-        let cell_m = CELL_M.max(extent.max() / MOST_CELLS);
         let count = |size_m: f64| (size_m / cell_m).ceil().max(1.0) as usize;
         let (width, height) = (count(extent.x), count(extent.y));
         let mut grid = Self { low, cell_m, width, height, free: vec![false; width * height] };

@@ -186,6 +186,16 @@ fn a_path_that_ends_beside_the_anchor_is_judged_with_the_cable_taken_in() {
     assert!(!judged.certified && judged.crossings_left == 1, "{judged:?}");
 }
 
+#[test]
+fn a_gate_narrower_than_a_cell_is_no_seal() {
+    let chamber = points(&[(3.0, 3.02), (3.0, 5.0), (5.0, 5.0), (5.0, 3.0), (3.0, 3.0)]);
+    let path = points(&[(0., 0.), (0., 5.), (0., 0.)]);
+    let judged = |cuts: &[Vec<Point>]| certify(&Case { cuts, ..lenient(&path, &[]) }).unwrap();
+    let shut = [points(&[(3.0, 3.0), (3.0, 5.0), (5.0, 5.0), (5.0, 3.0), (3.0, 3.0)])];
+    assert!((judged(&shut).sealed_m2 - 4.0).abs() < 0.2);
+    assert!(judged(&[chamber]).certified);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
