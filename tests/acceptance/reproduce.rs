@@ -53,15 +53,16 @@ fn every_coverage_planner_has_every_figure_of_its_tether_and_is_drawn() {
     let folder = bench.path().join("plans");
     let asked = ["pan-maps", "--layouts", "1", "--first-seed", "31", "--case", "E3", "--svg", "plans"];
     let rows = rows(&bench, &asked);
+    assert!(rows.iter().all(|row| row["case"] == "E3-square-18" && row["n"] == 1), "{rows:?}");
     let of = |method: &str, metric: &str| {
         let row = rows.iter().find(|row| row["method"] == method && row["metric"] == metric).unwrap();
         row["ours"].as_f64().unwrap()
     };
-    assert!(of("boustrophedon", "left_out_m") > 20.0 && of("boustrophedon", "hook_share") > 0.1);
+    assert!(of("boustrophedon", "left_out_m") > 20.0 && of("boustrophedon", "hook_share") > 0.02);
     for method in ["hull-partition/tree", "tether-safe", "tether-safe/alpha-0"] {
-        assert!(of(method, "reeled_in_rate") == 1.0 && of(method, "certified_rate") == 1.0, "{method}");
+        assert!(of(method, "reeled_in_rate") > 0.99 && of(method, "certified_rate") > 0.99, "{method}");
     }
-    assert!(of("tether-safe", "coverage_goal_rate") == 1.0 && of("tether-safe", "max_excess_m") < 4.0);
+    assert!(of("tether-safe", "coverage_goal_rate") > 0.99 && of("tether-safe", "max_excess_m") < 4.0);
     let drawn = std::fs::read_to_string(folder.join("E3-square-18-31-tether-safe.svg")).unwrap();
     for class in ["swath", "connector", "cut", "cable", "anchor"] {
         assert!(drawn.contains(&format!(r#"class="{class}""#)), "{class}");

@@ -9,7 +9,7 @@ use crate::{
 };
 use anyhow::Context;
 use mission::{Cause, Fault, MissionConfig, Parameters, TaskConfig, preview, tether::judge_from_start};
-use planner_api::{Code, Plan};
+use planner_api::{Code, LogLevel, Plan};
 use planner_host::{Host, HostConfig, PluginDirs};
 use serde::Serialize;
 use std::{
@@ -23,6 +23,8 @@ use world::{
 
 /// Time that a planner may take for a plan of the whole floor.
 const COVER_WITHIN: Duration = Duration::from_mins(1);
+/// Memory that it may use for it: large floors have many cells.
+const COVER_MEMORY_BYTES: u64 = 1 << 30;
 
 /// A plan as scripts read it.
 #[derive(Debug, Serialize)]
@@ -38,6 +40,8 @@ struct Planned {
     complete: bool,
     /// Why it is not complete.
     reason: Option<String>,
+    /// What the planner warned of: floor that it leaves out and why, ways of its own where the method has none.
+    warnings: Vec<String>,
     /// What the path does to the tether, or, without one, to a tether that would run from the anchor of a coverage
     /// mission; absent for other missions.
     certificate: Option<Certificate>,
@@ -79,8 +83,11 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
     let began = Instant::now();
     let answer = preview(&scenario.mission, &scenario.sim.world.as_drawn(), scenario.seed, &mut host);
     let plan_time_ms = host.stats().plan.p50_us.unwrap_or(began.elapsed().as_secs_f64() * 1e6) / 1e3;
+    let mut warnings = Vec::new();
     let (plan, reason) = match answer {
         Ok((_, reply)) => {
+            let is_warning = |(level, _): &&(LogLevel, String)| matches!(level, LogLevel::Warn);
+            warnings.extend(reply.logs.iter().filter(is_warning).map(|(_, message)| message.clone()));
             let said = reply.logs.into_iter().map(|(_, message)| message).next_back();
             let reason =
                 (!reply.value.complete).then(|| said.unwrap_or_else(|| "the planner did not say why".into()));
@@ -97,16 +104,19 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
         plan_time_ms,
         complete: plan.complete,
         reason,
+        warnings,
         certificate,
         cuts: plan.cuts,
         path: plan.path,
     })
 }
 
-/// A plan for a whole floor takes longer than a way to a point.
+/// A plan for a whole floor takes longer than a way to a point, and more memory.
 pub fn patient(config: HostConfig, mission: &MissionConfig) -> HostConfig {
     match mission.task {
-        TaskConfig::Cover { .. } => HostConfig { plan_deadline: COVER_WITHIN, ..config },
+        TaskConfig::Cover { .. } => {
+            HostConfig { plan_deadline: COVER_WITHIN, memory_limit_bytes: COVER_MEMORY_BYTES, ..config }
+        }
         TaskConfig::Goto { .. } | TaskConfig::Follow { .. } => config,
     }
 }
@@ -211,6 +221,12 @@ fn lengths(planned: &Planned) -> String {
     if parts.is_empty() { String::new() } else { format!("legs      {}\n", parts.join(", ")) }
 }
 
+/// What was warned of, for people, without the reason that is told already.
+fn warnings(planned: &Planned) -> String {
+    let fresh = planned.warnings.iter().filter(|warning| Some(*warning) != planned.reason.as_ref());
+    fresh.map(|warning| format!("warning   {warning}\n")).collect::<Vec<_>>().concat()
+}
+
 /// The certificate, for people.
 fn certified(certificate: &Certificate) -> String {
     let Certificate { max_cable_m, eccentricity_m, max_wrap_rad, max_sum_wrap_rad, .. } = certificate;
@@ -230,13 +246,14 @@ fn tell(planned: &Planned, json: bool) -> anyhow::Result<()> {
     }
     let reason = planned.reason.as_ref().map(|reason| format!("reason    {reason}\n")).unwrap_or_default();
     say(&format!(
-        "planner   {}\nlength    {:.2} m, {} points\n{}time      {:.2} ms\ncomplete  {}\n{reason}{}",
+        "planner   {}\nlength    {:.2} m, {} points\n{}time      {:.2} ms\ncomplete  {}\n{reason}{}{}",
         planned.planner,
         planned.length_m,
         planned.path.len(),
         lengths(planned),
         planned.plan_time_ms,
         if planned.complete { "yes" } else { "no" },
+        warnings(planned),
         planned.certificate.as_ref().map(certified).unwrap_or_default(),
     ))
 }

@@ -13,7 +13,7 @@ use std::time::Duration;
 /// A library that does not load and describe itself within this time is refused.
 pub(crate) const LOAD_WITHIN: Duration = Duration::from_secs(2);
 /// Address space of a worker unless something else is said, bytes.
-pub(crate) const MEMORY_LIMIT: u64 = 1 << 30;
+pub(crate) const MEMORY_LIMIT: u64 = 256 << 20;
 
 /// Every plugin file, in the order in which they are searched.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]

@@ -133,6 +133,7 @@ fn measured(
         let both = trials.iter().zip(&all).filter(|(trial, _)| is_meant(trial));
         both.map(|(trial, measured)| (trial.seed, measured)).collect()
     };
-    let blocks = cases.iter().flat_map(|case| methods.iter().map(move |method| (*case, method.id)));
+    let cases = cases.iter().filter(|case| options.has_case(case));
+    let blocks = cases.flat_map(|case| methods.iter().map(move |method| (*case, method.id)));
     Ok(blocks.flat_map(|(case, method)| rows::rows(study.name, case, method, &of(case, method))).collect())
 }

@@ -10,6 +10,9 @@ use world::Point;
 /// A study waits this long for a plan.
 const PLAN_WITHIN: Duration = Duration::from_mins(5);
 
+/// And lets a planner use so much memory, as much as a mission over a whole floor does.
+const MEMORY_BYTES: u64 = 1 << 30;
+
 /// A planner's answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Planned {
@@ -46,6 +49,7 @@ impl Planners {
     pub fn seat(&self, id: &str, parameters: &Parameters, site: &Site<'_>) -> Result<Host, Problem> {
         let config = HostConfig {
             plan_deadline: PLAN_WITHIN,
+            memory_limit_bytes: MEMORY_BYTES,
             wants_drawing: false,
             ..HostConfig::new(Duration::from_secs(1))
         };
