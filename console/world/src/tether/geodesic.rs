@@ -96,7 +96,7 @@ impl Geodesic {
     fn search(&mut self) {
         let in_sight: Vec<bool> = self.ground.posts.iter().map(|post| self.is_in_plain_sight(post)).collect();
         let mut waiting = Waiting::default();
-        self.onward(None).for_each(|way| waiting.add(way));
+        self.onward(None, |_| true).for_each(|way| waiting.add(way));
         while let Some(next) = waiting.shortest() {
             if self.is_beaten(&next) || !self.is_free(&next) {
                 continue;
@@ -104,7 +104,7 @@ impl Geodesic {
             let index = self.arrivals.len();
             self.arrivals.push(next);
             self.at_post[next.slot()].push(next);
-            for way in self.onward(Some(index)).filter(|way| !in_sight[way.post] && !self.is_beaten(way)) {
+            for way in self.onward(Some(index), |post| !in_sight[post]).filter(|way| !self.is_beaten(way)) {
                 waiting.add(way);
             }
         }
@@ -135,12 +135,12 @@ impl Geodesic {
         is_open(1.0, right) && is_open(-1.0, left) && !self.ground.posts.iter().any(is_between)
     }
 
-    /// The tangents that go on from an arrival, or from the anchor.
-    fn onward(&self, from: Option<usize>) -> impl Iterator<Item = Arrival> + '_ {
+    /// The tangents that go on from an arrival, or from the anchor, to some of the posts.
+    fn onward(&self, from: Option<usize>, is_meant: impl Fn(usize) -> bool) -> impl Iterator<Item = Arrival> {
         let base = from.map(|index| (self.arrivals[index], self.ground.posts[self.arrivals[index].post]));
         let start = base.map_or((self.anchor, 0.0, 0.0), |(a, post)| (post.center, post.radius_m, a.side));
         (0..self.ground.posts.len())
-            .filter(move |post| base.is_none_or(|(a, _)| a.post != *post))
+            .filter(move |post| base.is_none_or(|(a, _)| a.post != *post) && is_meant(*post))
             .flat_map(|post| [(post, 1.0), (post, -1.0)])
             .filter_map(move |(post, side)| {
                 let target = self.ground.posts[post];
