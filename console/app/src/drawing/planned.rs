@@ -40,7 +40,8 @@ pub fn svg(drawn: &Drawn<'_>) -> String {
     if let Some(path) = drawn.preset {
         polyline(&mut body, path, "preset");
     }
-    for leg in legs.iter().filter(|leg| leg.tag == "swath") {
+    // The tool also scans on the way from lane to lane.
+    for leg in legs.iter().filter(|leg| leg.tag != "path") {
         let style = format!(r#"class="band" style="stroke-width:{swath_m}""#);
         line(&mut body, &path[leg.first..=leg.last], &style);
     }
