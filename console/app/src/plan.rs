@@ -5,7 +5,9 @@ mod drawing;
 use crate::{
     cli::PlanArgs,
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
+    flight::Planning,
     output::{say, say_line},
+    progress,
     scenario::Scenario,
 };
 use anyhow::Context;
@@ -75,8 +77,13 @@ fn is_refused(scenario: &Scenario, certificate: Option<&Certificate>) -> bool {
 
 fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planned> {
     let mut host = Host::new(plugins, patient(HostConfig::new(Duration::from_secs(1)), &scenario.mission));
+    let spinner = progress::spinner(&Planning {
+        work: format!("{} plans", scenario.mission.planner.id),
+        within: patience(&scenario.mission),
+    });
     let began = Instant::now();
     let answer = preview(&scenario.mission, &scenario.sim.world.as_drawn(), scenario.seed, &mut host);
+    spinner.finish_and_clear();
     let plan_time_ms = host.stats().plan.p50_us.unwrap_or(began.elapsed().as_secs_f64() * 1e6) / 1e3;
     let (plan, reason) = match answer {
         Ok((_, reply)) => {
@@ -102,10 +109,15 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
     })
 }
 
+/// How long a plan for a mission may take.
+fn patience(mission: &MissionConfig) -> Duration {
+    patient(HostConfig::new(Duration::from_secs(1)), mission).plan_deadline
+}
+
 /// A plan for a whole floor takes longer than a way to a point.
 pub fn patient(config: HostConfig, mission: &MissionConfig) -> HostConfig {
     match mission.task {
-        TaskConfig::Cover { .. } => HostConfig { plan_deadline: COVER_WITHIN, ..config },
+        TaskConfig::Cover { .. } => HostConfig { plan_deadline: COVER_WITHIN, must_cover: true, ..config },
         TaskConfig::Goto { .. } | TaskConfig::Follow { .. } => config,
     }
 }

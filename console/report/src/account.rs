@@ -169,6 +169,14 @@ pub enum OutOfReach {
     ClosedOff,
 }
 
+impl<R: fmt::Display> fmt::Display for Area<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { at, area_m2, plate, reason, .. } = self;
+        let plate = plate.as_ref().map(|name| format!(", plate {name}")).unwrap_or_default();
+        write!(f, "{area_m2:.2} m² at {:.1}, {:.1} m{plate}: {reason}", at.x, at.y)
+    }
+}
+
 impl fmt::Display for MissReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

@@ -56,15 +56,10 @@ fn slivers(slivers: Slivers) -> Option<String> {
 }
 
 fn areas<R: Display>(areas: &[Area<R>]) -> Vec<String> {
-    let mut lines: Vec<String> = areas.iter().take(MOST_AREAS).map(area).collect();
+    let mut lines: Vec<String> = areas.iter().take(MOST_AREAS).map(ToString::to_string).collect();
     if let Some(rest) = areas.get(MOST_AREAS..).filter(|rest| !rest.is_empty()) {
         let area_m2: f64 = rest.iter().map(|area| area.area_m2).sum();
         lines.push(format!("{area_m2:.2} m² in {} more places", rest.len()));
     }
     lines
-}
-
-fn area<R: Display>(area: &Area<R>) -> String {
-    let plate = area.plate.as_ref().map(|name| format!(", plate {name}")).unwrap_or_default();
-    format!("{:.2} m² at {:.1}, {:.1} m{plate}: {}", area.area_m2, area.at.x, area.at.y, area.reason)
 }
