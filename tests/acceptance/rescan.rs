@@ -5,10 +5,13 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
+/// Straight lanes, whose plan is made in no time.
+const LANES: [&str; 2] = ["--planner", "boustrophedon"];
+
 /// Flies the round tank as far as it gets in some time.
 fn half_a_scan(bench: &Bench) -> PathBuf {
     let cover = scenario("cover-circle.toml");
-    let flown = bench.fly(&cover, &["--set", "mission.time_limit_s=300"]);
+    let flown = bench.fly(&cover, &[&LANES[..], &["--set", "mission.time_limit_s=300"]].concat());
     assert_eq!((flown.code, &flown.json()["outcome"]), (Some(1), &"time_limit".into()), "{flown:?}");
     bench.runs().pop().unwrap()
 }
@@ -37,7 +40,10 @@ fn what_a_mission_missed_is_planned_flown_and_told_together_with_it() {
     let more = ["--set", "mission.time_limit_s=3600"];
     let planned = bench.tankops(&[&["plan", "again.toml", "--json"][..], &more].concat());
     let plan = planned.json();
-    assert!(planned.code == Some(0) && plan["certificate"]["max_cable_m"].is_number(), "{planned:?}");
+    assert!(
+        plan["certificate"]["max_cable_m"].is_number() && plan["length_m"].as_f64() > Some(50.0),
+        "{plan}"
+    );
     let flown = bench.fly(Path::new("again.toml"), &more).json();
     assert_eq!((&flown["outcome"], &flown["collisions"]), (&"complete".into(), &0.into()), "{flown}");
     let second = bench.runs().into_iter().find(|run| *run != first).unwrap();
@@ -53,7 +59,7 @@ fn what_a_mission_missed_is_planned_flown_and_told_together_with_it() {
     let share = |coverage: &Value| coverage["reachable"].as_f64().unwrap();
     let alone: Vec<f64> = (0..2).map(|k| share(&merged["runs"][k]["summary"]["coverage"])).collect();
     let both = share(&merged["coverage"]);
-    assert!(alone.iter().all(|share| *share < 0.9) && both > 0.97, "{alone:?} make {both}");
+    assert!(alone.iter().all(|share| *share < 0.9) && both > 0.93, "{alone:?} make {both}");
     let floor = &merged["floor"];
     let plates = floor["plates"].as_array().unwrap();
     assert!(plates.len() > 10);
@@ -134,6 +140,7 @@ fn a_swath_or_a_box_that_cannot_be_is_refused_when_the_scenario_is_read() {
         assert!(answer.code == Some(2) && answer.err.contains(why), "{answer:?}");
     };
     refused("thin.toml", "overlap_m = 0.1", "overlap_m = 0.597", "lanes side by side");
-    let (cells, outside) = ("cell_m = 0.05", "boxes_m = [[0.0, 0.0, 1.0, 1.0], [7.0, 0.0, 8.0, 1.0]]\ncell_m = 0.05");
+    let (cells, outside) =
+        ("cell_m = 0.05", "boxes_m = [[0.0, 0.0, 1.0, 1.0], [7.0, 0.0, 8.0, 1.0]]\ncell_m = 0.05");
     refused("outside.toml", cells, outside, "box 2 lies outside the tank");
 }

@@ -1,10 +1,12 @@
 //! The account of the floor as lines for people.
 
-use crate::account::{Account, Area, Percent, Shares, Slivers};
+use crate::account::{Account, Area, Percent, PlateAccount, Shares, Slivers};
 use std::fmt::Display;
 
 /// Areas that are listed; the report as JSON has all of them.
 const MOST_AREAS: usize = 10;
+/// Plates that are listed one by one.
+const MOST_PLATES: usize = 30;
 
 /// Lines with their labels; every percentage names its floor, and those of one floor sum to 100.0 %.
 pub fn lines(account: &Account) -> Vec<(&'static str, String)> {
@@ -18,8 +20,30 @@ pub fn lines(account: &Account) -> Vec<(&'static str, String)> {
     lines.extend(slivers(account.slivers).into_iter().map(|line| ("missed", line)));
     lines.extend(areas(&account.unreachable).into_iter().map(|line| ("out of reach", line)));
     lines.extend(slivers(account.unreachable_slivers).into_iter().map(|line| ("out of reach", line)));
-    let plates = account.plates.iter().map(|plate| format!("{} {}", plate.name, shares(&plate.shares)));
-    lines.extend(plates.map(|line| ("plates", line)));
+    lines.extend(plates(&account.plates).into_iter().map(|line| ("plates", line)));
+    lines
+}
+
+/// Every plate in its order; of many only those with most floor missed.
+fn plates(plates: &[PlateAccount]) -> Vec<String> {
+    let line = |plate: &PlateAccount| format!("{} {}", plate.name, shares(&plate.shares));
+    if plates.len() <= MOST_PLATES {
+        return plates.iter().map(line).collect();
+    }
+    let whole = plates.iter().filter(|plate| plate.shares.percent.missed <= 0.0).count();
+    let missed_m2 = |index: &usize| plates[*index].shares.missed * plates[*index].shares.area_m2;
+    let mut worst: Vec<usize> =
+        (0..plates.len()).filter(|index| plates[*index].shares.percent.missed > 0.0).collect();
+    worst.sort_by(|a, b| missed_m2(b).total_cmp(&missed_m2(a)));
+    let left = worst.split_off(worst.len().min(MOST_PLATES));
+    worst.sort_unstable();
+    let mut lines =
+        vec![format!("{whole} of {} with nothing missed; the report as JSON has all", plates.len())];
+    lines.extend(worst.into_iter().map(|index| line(&plates[index])));
+    if !left.is_empty() {
+        let area_m2: f64 = left.iter().map(missed_m2).sum();
+        lines.push(format!("{} more with less missed each, {area_m2:.2} m² in all", left.len()));
+    }
     lines
 }
 
@@ -62,4 +86,28 @@ fn areas<R: Display>(areas: &[Area<R>]) -> Vec<String> {
         lines.push(format!("{area_m2:.2} m² in {} more places", rest.len()));
     }
     lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use world::PlateKind;
+
+    #[test]
+    fn of_many_plates_those_with_most_missed_are_listed_in_their_order() {
+        let plate = |k: usize| {
+            let missed = if k % 2 == 0 { 0.0 } else { k as f64 / 100.0 };
+            let percent =
+                Percent { scanned: 100.0 - 100.0 * missed, missed: 100.0 * missed, ..Percent::default() };
+            let shares = Shares { area_m2: 1.0, scanned: 1.0 - missed, missed, percent, ..Shares::default() };
+            PlateAccount { name: format!("R-{k:02}"), kind: PlateKind::Rectangular, shares }
+        };
+        let few: Vec<PlateAccount> = (0..30).map(plate).collect();
+        assert_eq!(plates(&few).len(), 30);
+        let many: Vec<PlateAccount> = (0..90).map(plate).collect();
+        let lines = plates(&many);
+        assert!(lines.len() == 32 && lines[0].starts_with("45 of 90 with nothing missed"), "{lines:?}");
+        assert!(lines[1].starts_with("R-31") && lines[30].starts_with("R-89"), "{lines:?}");
+        assert!(lines[31].starts_with("15 more with less missed each, 2.25 m²"), "{lines:?}");
+    }
 }

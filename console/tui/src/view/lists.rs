@@ -15,6 +15,8 @@ use std::ops::Range;
 
 /// Widest list.
 const WIDTH: u16 = 78;
+/// Columns of the keys of a command.
+const KEYS: usize = 12;
 
 type Row = Vec<(Role, String)>;
 
@@ -94,8 +96,8 @@ fn commands(look: &Look, help: bool, filter: &str, selected: usize, columns: u16
     let found = actions::listed(filter, look.model.ui.pane);
     // Name and description where there is room, else the description, else the name.
     let (name, about) = match columns {
-        74.. => (16, usize::from(columns) - 2 - 1 - 16 - 14 - 6),
-        58.. => (0, usize::from(columns) - 2 - 1 - 14 - 6),
+        74.. => (16, usize::from(columns) - 2 - 1 - 16 - KEYS - 6),
+        58.. => (0, usize::from(columns) - 2 - 1 - KEYS - 6),
         _ => (16, 0),
     };
     let rows = found.iter().map(|action| {
@@ -110,7 +112,7 @@ fn commands(look: &Look, help: bool, filter: &str, selected: usize, columns: u16
         vec![
             (Role::Key, text::column(action.name, name)),
             (role, text::column(action.about, about)),
-            (Role::Key, text::column(&action.keys_text(), 14)),
+            (Role::Key, text::column(&action.keys_text(), KEYS)),
             (role, risk.into()),
         ]
     });
