@@ -16,7 +16,7 @@ use std::ops::Range;
 /// Widest list.
 const WIDTH: u16 = 78;
 /// Columns of the keys of a command.
-const KEYS: usize = 12;
+const KEYS: usize = 10;
 
 type Row = Vec<(Role, String)>;
 
