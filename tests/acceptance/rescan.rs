@@ -22,7 +22,8 @@ fn rescan(bench: &Bench, runs: &[&Path], output: &str) -> Ended {
 }
 
 fn digest(file: &Path) -> String {
-    Sha256::digest(std::fs::read(file).unwrap()).iter().map(|byte| format!("{byte:02x}")).collect()
+    let bytes = std::fs::read(file).unwrap();
+    Sha256::digest(bytes).iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
 }
 
 fn tenths(percent: &Value) -> i64 {

@@ -53,7 +53,9 @@ pub fn rescan(runs: &[PastRun], least_m2: f64, most: usize) -> Result<Rescan, St
             left.push(area);
         } else {
             areas.push(area);
-            cells.iter().for_each(|index| taken[*index] = true);
+            for index in cells {
+                taken[index] = true;
+            }
         }
     }
     for list in [&mut areas, &mut left] {

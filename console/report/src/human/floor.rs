@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn of_many_plates_those_with_most_missed_are_listed_in_their_order() {
         let plate = |k: usize| {
-            let missed = if k % 2 == 0 { 0.0 } else { k as f64 / 100.0 };
+            let missed = if k.is_multiple_of(2) { 0.0 } else { k as f64 / 100.0 };
             let percent =
                 Percent { scanned: 100.0 - 100.0 * missed, missed: 100.0 * missed, ..Percent::default() };
             let shares = Shares { area_m2: 1.0, scanned: 1.0 - missed, missed, percent, ..Shares::default() };

@@ -76,9 +76,9 @@ impl ShellZone {
             columns,
         };
         for (index, place) in (0..).zip(&zone.places) {
-            let (column, row) = (zone.bucket(place.at.x - low.x), zone.bucket(place.at.y - low.y));
-            let bucket = row.min(rows - 1) * columns + column.min(columns - 1);
-            zone.buckets[bucket].push(index);
+            let (column, row) = (bucket(place.at.x - low.x), bucket(place.at.y - low.y));
+            let square = row.min(rows - 1) * columns + column.min(columns - 1);
+            zone.buckets[square].push(index);
         }
         zone
     }
@@ -88,10 +88,6 @@ impl ShellZone {
         let (low, high) = shape.bounds();
         let reach_m = (high - low).norm() / 2.0 + self.width_m;
         self.boundary.wall_distance_m(nalgebra::center(&low, &high)) <= reach_m
-    }
-
-    fn bucket(&self, offset_m: f64) -> usize {
-        (offset_m / BUCKET_M).max(0.0) as usize
     }
 
     /// A tool went from `a` to `b`.
@@ -106,8 +102,8 @@ impl ShellZone {
         let margin = Vector::new(self.width_m, self.width_m);
         let (first, last) = (low - margin - self.origin, high + margin - self.origin);
         let rows = self.buckets.len() / self.columns;
-        for row in self.bucket(first.y)..=self.bucket(last.y).min(rows - 1) {
-            for column in self.bucket(first.x)..=self.bucket(last.x).min(self.columns - 1) {
+        for row in bucket(first.y)..=bucket(last.y).min(rows - 1) {
+            for column in bucket(first.x)..=bucket(last.x).min(self.columns - 1) {
                 for index in &self.buckets[row * self.columns + column] {
                     let place = &mut self.places[*index as usize];
                     let passed = |layer: &usize| passage.contains(place.in_layer(*layer));
@@ -157,6 +153,11 @@ impl Place {
     fn in_layer(&self, layer: usize) -> Point {
         self.at + self.step * (layer as f64 + 0.5)
     }
+}
+
+/// The column or row of squares at some distance from the first one's edge.
+fn bucket(offset_m: f64) -> usize {
+    (offset_m / BUCKET_M).max(0.0) as usize
 }
 
 fn places(boundary: &Boundary, width_m: f64) -> Vec<Place> {
