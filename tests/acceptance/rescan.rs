@@ -60,7 +60,8 @@ fn what_a_mission_missed_is_planned_flown_and_told_together_with_it() {
     let share = |coverage: &Value| coverage["reachable"].as_f64().unwrap();
     let alone: Vec<f64> = (0..2).map(|k| share(&merged["runs"][k]["summary"]["coverage"])).collect();
     let both = share(&merged["coverage"]);
-    assert!(alone.iter().all(|share| *share < 0.9) && both > 0.93, "{alone:?} make {both}");
+    let gained = alone[0] < 0.5 && both > alone[1] + 0.005 && both > 0.93;
+    assert!(gained, "{alone:?} make {both}");
     let floor = &merged["floor"];
     let plates = floor["plates"].as_array().unwrap();
     assert!(plates.len() > 10);
