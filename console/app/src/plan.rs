@@ -109,15 +109,24 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
     })
 }
 
+/// How much more memory a planner of whole floors may take than others: the grid of a tank of 100 m has millions of
+/// cells.
+const COVER_MEMORY: u64 = 4;
+
 /// How long a plan for a mission may take.
 fn patience(mission: &MissionConfig) -> Duration {
     patient(HostConfig::new(Duration::from_secs(1)), mission).plan_deadline
 }
 
-/// A plan for a whole floor takes longer than a way to a point.
+/// A plan for a whole floor takes longer than a way to a point, and more memory.
 pub fn patient(config: HostConfig, mission: &MissionConfig) -> HostConfig {
     match mission.task {
-        TaskConfig::Cover { .. } => HostConfig { plan_deadline: COVER_WITHIN, must_cover: true, ..config },
+        TaskConfig::Cover { .. } => HostConfig {
+            plan_deadline: COVER_WITHIN,
+            must_cover: true,
+            memory_limit_bytes: COVER_MEMORY * config.memory_limit_bytes,
+            ..config
+        },
         TaskConfig::Goto { .. } | TaskConfig::Follow { .. } => config,
     }
 }
