@@ -15,6 +15,8 @@ mod killed;
 mod replay;
 #[path = "acceptance/reproduce.rs"]
 mod reproduce;
+#[path = "acceptance/rescan.rs"]
+mod rescan;
 #[path = "acceptance/scenarios.rs"]
 mod scenarios;
 #[cfg(unix)]

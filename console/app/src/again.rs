@@ -1,7 +1,7 @@
 //! `tankops report` and `tankops rescan`: what a run scanned, and a mission for what it missed.
 
 use crate::{
-    cli::LogsArg,
+    cli::{LogsArg, RescanArgs},
     failure::{COMPLETE, bad_input},
     output::{say, say_line},
     run_folder,
@@ -11,24 +11,25 @@ use crate::{
 use anyhow::Context;
 use mission::{Event, EventKind};
 use recording::{JOURNAL_FILE, RECORDING_FILE, read_journal};
-use report::{Fold, Logs, Summary, human, merged};
+use report::{Fold, Logs, Summary, account::Area, human, merged, merged::PastRun};
 use std::{
     collections::BTreeSet,
+    fmt::Display,
     fs,
     path::{Path, PathBuf},
     process::ExitCode,
 };
-use toml_edit::{Array, DocumentMut, Item, Table, Value, value};
+use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value, value};
 
 /// Boxes in a scenario for a re-scan; more are joined into coarser ones.
 const MOST_BOXES: usize = 4000;
+/// Areas that are told one by one.
+const MOST_TOLD: usize = 10;
 
 /// A past run, read again.
 struct Past {
-    name: String,
-    logs: Logs,
+    run: PastRun,
     events: Vec<Event>,
-    fold: Fold,
 }
 
 impl Past {
@@ -40,13 +41,24 @@ impl Past {
         opened(&journal.events)?;
         let mut fold = Fold::new();
         journal.events.iter().for_each(|event| fold.apply(event));
-        let shown = |path: PathBuf| path.exists().then(|| path.display().to_string());
-        Ok(Self {
+        let recording = folder.join(RECORDING_FILE);
+        let shown = |path: &Path| path.exists().then(|| path.display().to_string());
+        let digest = |path: &Path| run_folder::sha256(path).ok();
+        let journal_sha256 = digest(&path);
+        let error = run_folder::journal_doubt(&folder, journal_sha256.as_deref()).or(journal.truncated);
+        let run = PastRun {
             name: folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-            logs: Logs { journal: shown(path), recording: shown(folder.join(RECORDING_FILE)), error: None },
-            events: journal.events,
+            logs: Logs { journal: shown(&path), recording: shown(&recording), error },
+            recording_sha256: digest(&recording),
+            journal_sha256,
             fold,
-        })
+        };
+        Ok(Self { run, events: journal.events })
+    }
+
+    fn read_all(runs: &[PathBuf], logs: &LogsArg) -> anyhow::Result<(Vec<PastRun>, Vec<Vec<Event>>)> {
+        let past = runs.iter().map(|run| Self::read(run, logs)).collect::<anyhow::Result<Vec<_>>>()?;
+        Ok(past.into_iter().map(|past| (past.run, past.events)).unzip())
     }
 }
 
@@ -57,12 +69,11 @@ pub fn report(
     json: bool,
     output: Option<&Path>,
 ) -> anyhow::Result<ExitCode> {
-    let mut past = runs.iter().map(|run| Past::read(run, logs)).collect::<anyhow::Result<Vec<_>>>()?;
-    let text = if let [only] = &mut past[..] {
-        one(only, json)?
+    let (past, events) = Past::read_all(runs, logs)?;
+    let text = if let ([only], [events]) = (&past[..], &events[..]) {
+        one(only, events, json)?
     } else {
-        let runs: Vec<_> = past.into_iter().map(|run| (run.name, run.logs, run.fold)).collect();
-        let merged = merged(&runs).map_err(bad_input)?;
+        let merged = merged(&past).map_err(bad_input)?;
         if json { to_json(&merged)? } else { merged.human() }
     };
     match output {
@@ -74,10 +85,10 @@ pub fn report(
     Ok(ExitCode::from(COMPLETE))
 }
 
-fn one(run: &mut Past, json: bool) -> anyhow::Result<String> {
-    let scenario = scenario_of(run)?;
-    let summary = Summary { logs: Some(run.logs.clone()), ..run.fold.summary() };
-    let summary = scenario.expect.judged(summary);
+fn one(run: &PastRun, events: &[Event], json: bool) -> anyhow::Result<String> {
+    let scenario = scenario_of(events)?;
+    let (logs, events_sha256) = (Some(run.logs.clone()), run.journal_sha256.clone());
+    let summary = scenario.expect.judged(Summary { logs, events_sha256, ..run.fold.summary() });
     if json { to_json(&summary) } else { Ok(human(&summary)) }
 }
 
@@ -85,46 +96,86 @@ fn to_json(what: &impl serde::Serialize) -> anyhow::Result<String> {
     Ok(serde_json::to_string_pretty(what).context("writing the report as JSON")? + "\n")
 }
 
-fn scenario_of(run: &Past) -> anyhow::Result<Scenario> {
-    let text = &opened(&run.events)?.scenario_toml;
+fn scenario_of(events: &[Event]) -> anyhow::Result<Scenario> {
+    let text = &opened(events)?.scenario_toml;
     Scenario::parse(text, "the scenario in the journal").map_err(|errors| bad_input(errors.render()))
 }
 
-/// `tankops rescan RUN -o SCENARIO`.
-pub fn rescan(run: &Path, logs: &LogsArg, output: &Path) -> anyhow::Result<ExitCode> {
+/// `tankops rescan RUN... -o SCENARIO`.
+pub fn rescan(args: &RescanArgs) -> anyhow::Result<ExitCode> {
+    let output = &args.output;
     if output.exists() {
         return Err(bad_input(format!("{} exists already; choose another name", output.display())));
     }
-    let past = Past::read(run, logs)?;
-    let boxes = past.fold.missed_boxes(MOST_BOXES).ok_or_else(|| {
-        bad_input(
-            "this run did not scan a floor: its mission leads to a point, so there is nothing to re-scan",
-        )
-    })?;
-    if boxes.is_empty() {
-        return Err(bad_input("nothing was missed that is large enough to be scanned again"));
+    if !(args.least_m2.is_finite() && args.least_m2 >= 0.0) {
+        return Err(bad_input(format!("--least-m2 {}: must be an area of 0 m² or more", args.least_m2)));
     }
-    let text = scenario_for(&past, &boxes)?;
+    let (past, events) = Past::read_all(&args.runs, &args.logs)?;
+    let again = report::rescan(&past, args.least_m2, MOST_BOXES).map_err(bad_input)?;
+    if again.boxes.is_empty() {
+        let left_m2: f64 = again.left.iter().map(|area| area.area_m2).sum();
+        return Err(bad_input(format!(
+            "nothing was missed that is worth another scan: {} places smaller than {} m² are left, {left_m2:.2} m² together; --least-m2 sets the limit",
+            again.left.len(),
+            args.least_m2
+        )));
+    }
+    let names: Vec<&str> = past.iter().map(|run| run.name.as_str()).collect();
+    let text = scenario_for(&events, &names, &again.boxes)?;
     Scenario::parse(&text, &output.display().to_string()).map_err(|errors| bad_input(errors.render()))?;
     fs::write(output, &text).map_err(|error| {
         bad_input(format!("the scenario cannot be written: {error}: {}", output.display()))
     })?;
-    let area_m2: f64 = boxes.iter().map(|[low, high]| (high.x - low.x) * (high.y - low.y)).sum();
-    say_line(&format!(
-        "{}: {area_m2:.2} m² in {} boxes to scan again; afterwards `tankops report {} RUN` tells both together",
-        output.display(),
-        boxes.len(),
-        past.name
-    ))?;
+    tell(&again, args, &names)?;
     Ok(ExitCode::from(COMPLETE))
 }
 
-/// The scenario of a run, changed into a mission for some boxes; what was found on the way is on the drawing now.
-fn scenario_for(past: &Past, boxes: &[[world::Point; 2]]) -> anyhow::Result<String> {
-    let opened = opened(&past.events)?;
+fn tell(again: &report::Rescan, args: &RescanArgs, names: &[&str]) -> anyhow::Result<()> {
+    let missed_m2: f64 = again.areas.iter().map(|area| area.area_m2).sum();
+    let boxes_m2: f64 = again.boxes.iter().map(|[low, high]| (high.x - low.x) * (high.y - low.y)).sum();
+    say_line(&format!(
+        "{}: {missed_m2:.2} m² missed in {} areas to scan again, {boxes_m2:.2} m² with the floor around them, in {} boxes",
+        args.output.display(),
+        again.areas.len(),
+        again.boxes.len(),
+    ))?;
+    tell_areas("again", &again.areas)?;
+    tell_areas(&format!("left, smaller than {} m²", args.least_m2), &again.left)?;
+    if again.not_asked_m2 > 0.0 {
+        say_line(&format!("left: {:.2} m² that no mission was to scan", again.not_asked_m2))?;
+    }
+    say_line(&format!(
+        "fly it with `tankops run {}`; then `tankops report {} RUN` tells all of them together",
+        args.output.display(),
+        names.join(" ")
+    ))
+}
+
+fn tell_areas<R: Display>(label: &str, areas: &[Area<R>]) -> anyhow::Result<()> {
+    for area in areas.iter().take(MOST_TOLD) {
+        say_line(&format!("{label}: {area}"))?;
+    }
+    let rest = areas.get(MOST_TOLD..).unwrap_or_default();
+    if !rest.is_empty() {
+        let area_m2: f64 = rest.iter().map(|area| area.area_m2).sum();
+        say_line(&format!("{label}: {area_m2:.2} m² in {} more places", rest.len()))?;
+    }
+    Ok(())
+}
+
+/// The scenario of the last run, changed into a mission for some boxes; what was found on the way is on the drawing
+/// now.
+fn scenario_for(
+    events: &[Vec<Event>],
+    names: &[&str],
+    boxes: &[[world::Point; 2]],
+) -> anyhow::Result<String> {
+    let last = events.last().context("there is no run")?;
+    let opened = opened(last)?;
     let mut document: DocumentMut = opened.scenario_toml.parse().context("reading the scenario again")?;
-    document["name"] = value(format!("{}-rescan", opened.scenario));
-    document["about"] = value(format!("What run {} missed", past.name));
+    let first_name = opened.scenario.strip_suffix("-rescan").unwrap_or(&opened.scenario);
+    document["name"] = value(format!("{first_name}-rescan"));
+    document["about"] = value(format!("What {} missed", names.join(" and ")));
     document.remove("expect");
     let start = opened.mission.start;
     if document.get("robot").is_none() {
@@ -137,26 +188,39 @@ fn scenario_for(past: &Past, boxes: &[[world::Point; 2]]) -> anyhow::Result<Stri
     }
     mission["kind"] = value("cover");
     mission["boxes_m"] = value(boxes.iter().map(numbers).collect::<Array>());
-    put_on_drawing(&mut document, past);
+    put_on_drawing(&mut document, events);
     Ok(document.to_string())
 }
 
 /// Obstacles that stand in the scenario and were found are known from now on.
-fn put_on_drawing(document: &mut DocumentMut, past: &Past) {
-    let found: BTreeSet<u32> = past
-        .events
+fn put_on_drawing(document: &mut DocumentMut, events: &[Vec<Event>]) {
+    let found: BTreeSet<u32> = events
         .iter()
+        .flatten()
         .filter_map(|event| match &event.kind {
             EventKind::ObstacleFound { obstacle } => Some(obstacle.id.0),
             _ => None,
         })
         .collect();
-    let listed = document.get_mut("obstacles").and_then(Item::as_array_of_tables_mut);
-    for (index, table) in listed.into_iter().flat_map(|list| list.iter_mut()).enumerate() {
+    let know = |index: usize, table: &mut dyn TableLike| {
         // Obstacles are numbered from 1 in the order of the file.
         if found.contains(&(index as u32 + 1)) {
             table.remove("known");
         }
+    };
+    match document.get_mut("obstacles") {
+        Some(Item::ArrayOfTables(tables)) => {
+            tables.iter_mut().enumerate().for_each(|(index, table)| know(index, table));
+        }
+        Some(Item::Value(Value::Array(list))) => {
+            let tables = list.iter_mut().map(Value::as_inline_table_mut).enumerate();
+            tables.for_each(|(index, table)| {
+                if let Some(table) = table {
+                    know(index, table);
+                }
+            });
+        }
+        _ => {}
     }
 }
 

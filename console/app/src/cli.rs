@@ -88,19 +88,26 @@ pub enum Command {
         #[command(flatten)]
         logs: LogsArg,
     },
-    /// Make a scenario that scans what a past run missed, with a plan of its own.
-    Rescan {
-        /// Folder of the run, or its name within the logs.
-        run: PathBuf,
-        /// Scenario file to write; must not exist.
-        #[arg(short = 'o', long, value_name = "SCENARIO")]
-        output: PathBuf,
-        #[command(flatten)]
-        logs: LogsArg,
-    },
+    /// Make a scenario that scans what a past run, or several together, missed, with a plan of its own.
+    Rescan(RescanArgs),
     /// A planner's own process; started by the console.
     #[command(hide = true)]
     Worker,
+}
+
+#[derive(Debug, Args)]
+pub struct RescanArgs {
+    /// Folders of runs, or their names within the logs: a scan and the re-scans that were flown already.
+    #[arg(required = true, value_name = "RUN")]
+    pub runs: Vec<PathBuf>,
+    /// Scenario file to write; must not exist.
+    #[arg(short = 'o', long, value_name = "SCENARIO")]
+    pub output: PathBuf,
+    /// Missed areas smaller than this, with what lies closely beside them, are left, in square metres.
+    #[arg(long, value_name = "AREA", default_value_t = 0.05)]
+    pub least_m2: f64,
+    #[command(flatten)]
+    pub logs: LogsArg,
 }
 
 /// Where runs are kept.

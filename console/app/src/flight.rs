@@ -2,13 +2,18 @@
 
 use crate::{plan::patient, scenario::Scenario};
 use mission::{
-    Event, EventKind, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION,
+    Event, EventKind, Fault, Input, Mission, MissionConfig, Order, Parameters, Phase, PlannerInfo, RunOpened,
+    event::JOURNAL_VERSION,
+    link::{PlannerLink, Reply},
 };
-use planner_api::Drive;
+use planner_api::{Command, Drive, Plan, PlanRequest, Sensed, Site};
 use planner_host::{Host, HostConfig, PluginDirs};
 use report::PlannerCalls;
 use sim::Simulator;
-use std::time::Duration;
+use std::{
+    sync::{Arc, atomic::AtomicBool},
+    time::Duration,
+};
 use world::Floor;
 
 /// How patient the host is with a planner's step.
@@ -37,6 +42,53 @@ pub struct Flight {
     tick: u64,
     tick_s: f64,
     opened: RunOpened,
+    plan_within: Duration,
+    on_plan: Option<OnPlan>,
+}
+
+/// A plan that is being made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planning {
+    /// Who makes it, as words: `tether-safe plans`.
+    pub work: String,
+    /// How long it may take.
+    pub within: Duration,
+}
+
+/// Who is told when a plan is begun, and when it is done.
+pub type OnPlan = Box<dyn Fn(Option<Planning>) + Send>;
+
+/// The host, with somebody who is told of plans.
+struct Told<'a> {
+    host: &'a mut Host,
+    within: Duration,
+    on_plan: Option<&'a OnPlan>,
+}
+
+impl PlannerLink for Told<'_> {
+    fn choose(&mut self, id: &str, parameters: &Parameters, site: &Site<'_>) -> Result<PlannerInfo, Fault> {
+        self.host.choose(id, parameters, site)
+    }
+
+    fn reconfigure(&mut self, parameters: &Parameters) -> Result<(), Fault> {
+        self.host.reconfigure(parameters)
+    }
+
+    fn plan(&mut self, request: &PlanRequest<'_>) -> Result<Reply<Plan>, Fault> {
+        if let Some(tell) = self.on_plan {
+            let work = format!("{} plans", self.host.planner_id().unwrap_or("the planner"));
+            tell(Some(Planning { work, within: self.within }));
+        }
+        let answer = self.host.plan(request);
+        if let Some(tell) = self.on_plan {
+            tell(None);
+        }
+        answer
+    }
+
+    fn step(&mut self, sensed: &Sensed<'_>) -> Result<Reply<Command>, Fault> {
+        self.host.step(sensed)
+    }
 }
 
 impl Flight {
@@ -58,6 +110,7 @@ impl Flight {
             plates: scenario.plates,
         };
         let host_config = patient(HostConfig::new(pace.step_deadline(config.tick_s)), &config);
+        let plan_within = host_config.plan_deadline;
         Self {
             simulator: Simulator::new(scenario.sim.clone(), scenario.seed),
             host: Host::new(plugins, host_config),
@@ -65,7 +118,19 @@ impl Flight {
             tick_s: config.tick_s,
             mission: Mission::new(config, drawing, floor, scenario.seed),
             opened,
+            plan_within,
+            on_plan: None,
         }
+    }
+
+    /// Somebody is told when a plan is begun, and when it is done.
+    pub fn tell_plans(&mut self, on_plan: OnPlan) {
+        self.on_plan = Some(on_plan);
+    }
+
+    /// From now on a plan is given up when this is set, and no other is begun.
+    pub fn stop_planning_on(&mut self, stop: Arc<AtomicBool>) {
+        self.host.stop_planning_on(stop);
     }
 
     /// The first event of the run.
@@ -99,7 +164,9 @@ impl Flight {
     pub fn tick(&mut self, orders: &[Order]) -> Vec<Event> {
         let readings = self.simulator.sense();
         let truth = self.simulator.truth();
-        let step = self.mission.step(&Input { readings: &readings, orders }, &mut self.host);
+        let mut link =
+            Told { host: &mut self.host, within: self.plan_within, on_plan: self.on_plan.as_ref() };
+        let step = self.mission.step(&Input { readings: &readings, orders }, &mut link);
         self.simulator.act(match step.drive {
             Drive::Twist { v_m_per_s, w_rad_per_s } => sim::Drive::Twist { v_m_per_s, w_rad_per_s },
             Drive::Velocity(velocity) => sim::Drive::Velocity(velocity),

@@ -5,6 +5,7 @@ use crate::{
     failure::{COMPLETE, ENDED_OTHERWISE},
     flight::{Flight, Pace},
     output::{say, say_line},
+    progress,
     run_folder::RunFolder,
     scenario::Scenario,
     stop_signal,
@@ -48,7 +49,7 @@ pub fn fly(
 ) -> anyhow::Result<ExitCode> {
     crate::planners::check_choices(scenario, plugins)?;
     let began = Instant::now();
-    let flight = Flight::prepare(scenario, false, plugins, Pace::Batch);
+    let mut flight = Flight::prepare(scenario, false, plugins, Pace::Batch);
     let folder = telling
         .record
         .then(|| RunFolder::create(&logs.logs, &scenario.name, &scenario.mission.planner.id, scenario.seed))
@@ -58,6 +59,8 @@ pub fn fly(
         None => RunRecorder::spawn(JournalWriter::unwritten(began), None)?,
     };
     let bar = progress_bar(scenario, telling);
+    let planning_bar = bar.clone();
+    flight.tell_plans(Box::new(move |planning| progress::show(&planning_bar, planning.as_ref())));
     let (flight, fold) = fly_to_end(flight, &recorder, &bar);
     bar.finish_and_clear();
     let finished = recorder.finish(CLOSE_TIMEOUT);
@@ -81,6 +84,7 @@ pub fn fly(
 
 fn fly_to_end(mut flight: Flight, recorder: &RunRecorder, bar: &ProgressBar) -> (Flight, Fold) {
     let stop = stop_signal::listen();
+    flight.stop_planning_on(stop.flag());
     let mut fold = Fold::new();
     let mut take = |events: Vec<Event>| {
         for event in &events {

@@ -12,6 +12,7 @@ mod output;
 mod past_runs;
 mod plan;
 mod planners;
+mod progress;
 mod reproduce;
 mod run_folder;
 mod scenario;
@@ -64,7 +65,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Report { runs, json, output, logs }) => {
             again::report(&runs, &logs, json, output.as_deref())
         }
-        Some(Command::Rescan { run, output, logs }) => again::rescan(&run, &logs, &output),
+        Some(Command::Rescan(args)) => again::rescan(&args),
         Some(Command::Worker) => Ok(planner_host::worker_main()),
     }
 }

@@ -76,7 +76,9 @@ fn look_at(folder: &Path) -> Listed {
     match run_folder::standing(folder) {
         Standing::Ended(summary) => {
             let end = summary.outcome.map_or("unknown", mission::Outcome::word).to_owned();
-            let note = summary.logs.as_ref().and_then(|logs| logs.error.clone());
+            let sha256 = run_folder::sha256(&folder.join(JOURNAL_FILE)).ok();
+            let doubt = run_folder::journal_doubt(folder, sha256.as_deref());
+            let note = doubt.or_else(|| summary.logs.as_ref().and_then(|logs| logs.error.clone()));
             from(end, Some(*summary), note)
         }
         Standing::Running => from("RUNNING".into(), None, None),
@@ -120,6 +122,10 @@ pub fn export(run: &Path, rrd: &Path, logs: &LogsArg) -> anyhow::Result<ExitCode
     if made.is_err() {
         // What was begun must not stand in the way of the next try.
         let _ = std::fs::remove_file(rrd);
+    }
+    let sha256 = run_folder::sha256(&path).ok();
+    if let Some(doubt) = run_folder::journal_doubt(&folder, sha256.as_deref()) {
+        say_line(&format!("note: {doubt}; the recording holds what it holds"))?;
     }
     if let Some(damage) = made.context("making the recording anew")? {
         say_line(&format!("note: the journal stops early ({damage}); the recording holds what it holds"))?;

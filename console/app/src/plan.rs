@@ -4,7 +4,9 @@ use crate::{
     cli::PlanArgs,
     drawing::planned::{Drawn, svg},
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
+    flight::Planning,
     output::{say, say_line},
+    progress,
     scenario::Scenario,
 };
 use anyhow::Context;
@@ -80,8 +82,13 @@ fn is_refused(scenario: &Scenario, certificate: Option<&Certificate>) -> bool {
 
 fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planned> {
     let mut host = Host::new(plugins, patient(HostConfig::new(Duration::from_secs(1)), &scenario.mission));
+    let spinner = progress::spinner(&Planning {
+        work: format!("{} plans", scenario.mission.planner.id),
+        within: patience(&scenario.mission),
+    });
     let began = Instant::now();
     let answer = preview(&scenario.mission, &scenario.sim.world.as_drawn(), scenario.seed, &mut host);
+    spinner.finish_and_clear();
     let plan_time_ms = host.stats().plan.p50_us.unwrap_or(began.elapsed().as_secs_f64() * 1e6) / 1e3;
     let mut warnings = Vec::new();
     let (plan, reason) = match answer {
@@ -111,12 +118,20 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
     })
 }
 
+/// How long a plan for a mission may take.
+fn patience(mission: &MissionConfig) -> Duration {
+    patient(HostConfig::new(Duration::from_secs(1)), mission).plan_deadline
+}
+
 /// A plan for a whole floor takes longer than a way to a point, and more memory.
 pub fn patient(config: HostConfig, mission: &MissionConfig) -> HostConfig {
     match mission.task {
-        TaskConfig::Cover { .. } => {
-            HostConfig { plan_deadline: COVER_WITHIN, memory_limit_bytes: COVER_MEMORY_BYTES, ..config }
-        }
+        TaskConfig::Cover { .. } => HostConfig {
+            plan_deadline: COVER_WITHIN,
+            memory_limit_bytes: COVER_MEMORY_BYTES,
+            must_cover: true,
+            ..config
+        },
         TaskConfig::Goto { .. } | TaskConfig::Follow { .. } => config,
     }
 }

@@ -6,7 +6,7 @@ use crate::{
     scenario::{Scenario, Settings},
 };
 use anyhow::Context;
-use mission::{ParamInfo, ParamKind, PlannerChoice, PlannerInfo};
+use mission::{ParamInfo, ParamKind, PlannerChoice, PlannerInfo, TaskConfig};
 use planner_host::{PluginDirs, Survey, SurveyedPlugin, WorkerCommand, parameter_problems, survey};
 use std::{
     path::{Path, PathBuf},
@@ -35,15 +35,31 @@ pub fn check_choices(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Resul
     let mission = &scenario.mission;
     let fallback = mission.fallback.iter().map(|choice| ("planner.fallback", choice));
     let choices = std::iter::once(("planner", &mission.planner)).chain(fallback);
+    let must_cover = matches!(mission.task, TaskConfig::Cover { .. });
     let objections: Vec<_> =
-        choices.flat_map(|(section, choice)| objections(section, choice, &known)).collect();
+        choices.flat_map(|(section, choice)| objections(section, choice, &known, must_cover)).collect();
     if objections.is_empty() { Ok(()) } else { Err(bad_input(scenario.refused(objections).render())) }
 }
 
-fn objections(section: &str, choice: &PlannerChoice, known: &[PlannerInfo]) -> Vec<(String, String)> {
+fn objections(
+    section: &str,
+    choice: &PlannerChoice,
+    known: &[PlannerInfo],
+    must_cover: bool,
+) -> Vec<(String, String)> {
     let at = |key: String| format!("{section}.parameters.{key}");
     match choice_of(&choice.id, known) {
         Err(message) => vec![(format!("{section}.id"), message)],
+        Ok(info) if must_cover && !info.covers => {
+            let ids: Vec<&str> =
+                known.iter().filter(|info| info.covers).map(|info| info.id.as_str()).collect();
+            let who = if ids.is_empty() {
+                "none that was found does".into()
+            } else {
+                format!("these do: {}", ids.join(", "))
+            };
+            vec![(format!("{section}.id"), format!("planner `{}` covers no floor; {who}", info.id))]
+        }
         Ok(info) => {
             let problems = parameter_problems(info, &choice.parameters);
             problems.into_iter().map(|(key, message)| (at(key), message)).collect()

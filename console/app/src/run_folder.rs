@@ -4,9 +4,11 @@ use crate::failure::bad_input;
 use anyhow::Context;
 use recording::JOURNAL_FILE;
 use report::Summary;
+use sha2::{Digest, Sha256};
 use std::{
+    fmt::Write as _,
     fs::{self, File, TryLockError},
-    io::Write,
+    io::{self, Read, Write},
     path::{Path, PathBuf},
 };
 
@@ -33,7 +35,7 @@ impl RunFolder {
         let name = format!("{now}-{}-{}-{seed}", plain(scenario), plain(planner));
         let path = fresh_folder(logs, &name)?;
         let lock = File::create_new(path.join(LOCK_FILE)).with_context(|| locking(&path))?;
-        lock.try_lock().map_err(std::io::Error::from).with_context(|| locking(&path))?;
+        lock.try_lock().map_err(io::Error::from).with_context(|| locking(&path))?;
         Ok(Self { path, _lock: lock })
     }
 
@@ -64,7 +66,7 @@ fn fresh_folder(logs: &Path, name: &str) -> anyhow::Result<PathBuf> {
         let path = logs.join(numbered);
         match fs::create_dir(&path) {
             Ok(()) => return Ok(path),
-            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error).with_context(|| format!("making the folder {}", path.display())),
         }
     }
@@ -100,6 +102,32 @@ pub fn standing(folder: &Path) -> Standing {
     let locked = File::open(folder.join(LOCK_FILE))
         .map(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)));
     if locked.unwrap_or(false) { Standing::Running } else { Standing::Crashed }
+}
+
+/// SHA-256 of a file, hexadecimal.
+pub fn sha256(path: &Path) -> io::Result<String> {
+    let (mut file, mut hasher, mut chunk) = (File::open(path)?, Sha256::new(), vec![0; 1 << 18]);
+    loop {
+        match file.read(&mut chunk)? {
+            0 => break,
+            length => hasher.update(&chunk[..length]),
+        }
+    }
+    Ok(hasher.finalize().iter().fold(String::with_capacity(64), |mut text, byte| {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
+}
+
+/// What speaks against the journal of a run whose digest is this: its report names another one.
+pub fn journal_doubt(folder: &Path, sha256: Option<&str>) -> Option<String> {
+    let report: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.join(REPORT_FILE)).ok()?).ok()?;
+    let then = report.get("events_sha256")?.as_str()?;
+    (then != sha256?).then(|| {
+        "the journal is not the one that was written: it does not have the SHA-256 of the report".to_owned()
+    })
 }
 
 /// Folders of past runs, oldest first.

@@ -10,6 +10,11 @@ use std::sync::{
 pub struct StopSignal(Arc<AtomicBool>);
 
 impl StopSignal {
+    /// What is set when a signal comes.
+    pub fn flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.0)
+    }
+
     /// Whether a signal has come since listening began.
     pub fn requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)

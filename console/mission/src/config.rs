@@ -111,7 +111,7 @@ pub struct MissionConfig {
     pub start_sigma_m: f64,
     /// Length of a tick, seconds.
     pub tick_s: f64,
-    /// The mission ends unfinished after this time, seconds.
+    /// The mission ends unfinished after this time, seconds; while it is held and attended, no time counts.
     pub time_limit_s: f64,
     /// What the robot can do.
     pub limits: Limits,

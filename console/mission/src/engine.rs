@@ -67,6 +67,10 @@ pub struct Mission {
     lost_s: f64,
     /// For how long the planner has said that it is stuck, seconds.
     blocked_s: f64,
+    /// For how long an operator has let the mission wait, seconds.
+    waited_s: f64,
+    /// Where a planner could not go on along its lanes, and how often it was asked for new ones there.
+    blocked_at: Option<(Point, u32)>,
     /// Where the robot was stuck last and got another plan.
     replanned_at: Option<Point>,
     trail: Vec<Point>,
@@ -137,6 +141,8 @@ impl Mission {
             stuck: StuckWatch::new(config.stuck_s),
             lost_s: 0.0,
             blocked_s: 0.0,
+            waited_s: 0.0,
+            blocked_at: None,
             replanned_at: None,
             trail: vec![start],
             plan: None,
@@ -190,10 +196,14 @@ impl Mission {
 
     /// The rules that hold the robot, let it go on, or end the mission.
     fn apply_rules(&mut self, readings: &Readings, planner: &mut dyn PlannerLink) {
+        // While somebody looks after a mission that is held, its time does not run out.
+        if self.config.attended && matches!(self.phase, Phase::Held(_)) {
+            self.waited_s += self.config.tick_s;
+        }
         match self.phase.clone() {
             Phase::Waiting | Phase::Ended(_) => {}
             _ if readings.contact => self.end(Outcome::Collision, "the bumper touched something"),
-            _ if self.now_s() >= self.config.time_limit_s => {
+            _ if self.now_s() - self.waited_s >= self.config.time_limit_s => {
                 let reason = format!("time is up after {:.0} s", self.config.time_limit_s);
                 self.end(Outcome::TimeLimit, &reason);
             }

@@ -106,6 +106,9 @@ pub struct PlannerInfo {
     pub sha256: String,
     /// Planner ABI it was built for, as `major.minor`.
     pub abi: String,
+    /// Whether it covers floor.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub covers: bool,
     /// Its parameters.
     pub parameters: Vec<ParamInfo>,
 }

@@ -10,11 +10,12 @@ use crate::quarantine::{MOST_FAULTS, Quarantine, WINDOW_S};
 use crate::stats::{Durations, HostStats};
 use crate::supervisor::WorkerCommand;
 use crate::survey::{LOAD_WITHIN, MEMORY_LIMIT};
-use driving::{Driving, Saved};
+use driving::{Driving, Saved, must_cover};
 use fault::Phase;
 use find::Catalog;
 use mission::link::{Cause, During, Fault, Parameters, PlannerInfo, PlannerLink, Reply};
 use planner_api::{Command, LogLevel, Plan, PlanRequest, Sensed, Site};
+use std::sync::{Arc, atomic::AtomicBool};
 use std::time::{Duration, Instant};
 
 /// Deadlines and limits of planners.
@@ -36,6 +37,8 @@ pub struct HostConfig {
     pub memory_limit_bytes: u64,
     /// Whether anyone looks at drawings.
     pub wants_drawing: bool,
+    /// Whether the mission covers floor, so that planners that cannot are refused when they are chosen.
+    pub must_cover: bool,
 }
 
 impl HostConfig {
@@ -50,6 +53,7 @@ impl HostConfig {
             state_deadline: Duration::from_millis(100),
             memory_limit_bytes: MEMORY_LIMIT,
             wants_drawing: true,
+            must_cover: false,
         }
     }
 }
@@ -77,6 +81,7 @@ pub struct Host {
     plan_times: Durations,
     step_times: Durations,
     n_faults: u64,
+    stop: Option<Arc<AtomicBool>>,
 }
 
 impl Host {
@@ -93,7 +98,18 @@ impl Host {
             plan_times: Durations::default(),
             step_times: Durations::default(),
             n_faults: 0,
+            stop: None,
         }
+    }
+
+    /// From now on a plan is given up when this is set, and no other is begun.
+    pub fn stop_planning_on(&mut self, stop: Arc<AtomicBool>) {
+        self.stop = Some(stop);
+    }
+
+    /// The planner that drives.
+    pub fn planner_id(&self) -> Option<&str> {
+        self.driving.as_ref().map(|driving| driving.info.id.as_str())
     }
 
     /// Calls, wall times and faults so far.
@@ -130,8 +146,14 @@ impl Host {
         let sha256 = found.info.sha256.clone();
         let made = self
             .refuse_quarantined(id, &sha256)
+            .and_then(|()| {
+                if self.config.must_cover { must_cover(&found.info, During::Configure) } else { Ok(()) }
+            })
             .and_then(|()| Driving::configure(found, parameters, site, &self.config));
         let (mut driving, said) = made.map_err(|fault| (fault, sha256.clone()))?;
+        if let Some(stop) = &self.stop {
+            driving.stop_on(Arc::clone(stop));
+        }
         self.unheard.extend(said.logs);
         self.save_state_of_the_same(&driving.info);
         if let Some(saved) = self.saved.as_ref().filter(|saved| saved.fits(&driving)) {

@@ -131,6 +131,7 @@ mod tests {
             plugin: String::new(),
             sha256: String::new(),
             abi: String::new(),
+            covers: false,
             parameters: vec![
                 param("k_rep", "m3/s", ParamKind::Float { min: 0.0, max: 10.0, default: 0.4 }),
                 param("n", "", ParamKind::Int { min: 0, max: 4, default: 2 }),

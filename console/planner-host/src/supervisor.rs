@@ -72,6 +72,8 @@ pub(crate) enum Failure {
     },
     /// No answer within deadline and grace; the process was killed.
     Hung,
+    /// Nobody wants the plan any more.
+    Stopped,
     /// An answer, but only within the grace.
     Late,
     /// An answer that is none; the process was killed.

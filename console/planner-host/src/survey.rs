@@ -7,6 +7,7 @@ use crate::wire::answer::{Described, Loaded, loaded_of};
 use crate::wire::body::Writer;
 use crate::wire::{self, kind};
 use mission::PlannerInfo;
+use planner_api::Caps;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -112,6 +113,7 @@ pub(crate) fn info(planner: &Described, loaded: &Loaded, plugin: &str) -> Planne
         plugin: plugin.to_owned(),
         sha256: loaded.sha256.clone(),
         abi: Abi { major: loaded.abi_major, minor: loaded.abi_minor }.to_string(),
+        covers: Caps(planner.caps).has(Caps::COVERAGE),
         parameters: planner.parameters.clone(),
     }
 }
@@ -124,7 +126,9 @@ pub(crate) fn refusal_text(failure: &Failure) -> String {
         Failure::Died { how, last_output } => {
             format!("{how} while it was loaded; last output: {last_output}")
         }
-        Failure::Hung | Failure::Late => "did not load in time; its process was stopped".to_owned(),
+        Failure::Hung | Failure::Late | Failure::Stopped => {
+            "did not load in time; its process was stopped".to_owned()
+        }
         Failure::Planner(_) | Failure::Protocol | Failure::Gone => {
             "sent something that is no answer while it was loaded".to_owned()
         }

@@ -1,6 +1,6 @@
 //! The floor as an inspector accounts for it: what was scanned, what was missed and why, what nobody could reach.
 
-mod areas;
+pub(crate) mod areas;
 mod evidence;
 
 pub use evidence::Evidence;
@@ -9,11 +9,11 @@ use areas::areas;
 use mission::event::RunOpened;
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use world::{Cell, CoverageGrid, PlateKind, PlateMap, Point};
+use world::{Cell, CoverageGrid, PlateKind, PlateMap, Point, ShellFigures, coverage::percents};
 
 /// Width of the critical zone along the shell, metres (API 653: 3 inches).
 pub const CRITICAL_ZONE_M: f64 = 0.075;
-/// Share of the critical zone above which it counts as done.
+/// Share of the shell along which the whole zone is scanned when it counts as done.
 const CRITICAL_DONE: f64 = 0.995;
 
 /// The account of a floor, by the estimated position: a cell counts as scanned where the position error was within
@@ -40,6 +40,9 @@ pub struct Account {
     pub slivers: Slivers,
     /// Floor that the tool cannot reach, the largest area first.
     pub unreachable: Vec<Area<OutOfReach>>,
+    /// Areas out of reach that are too small to be listed.
+    #[serde(default)]
+    pub unreachable_slivers: Slivers,
 }
 
 /// How a floor divides. The shares are of its area and sum to 1.
@@ -55,6 +58,22 @@ pub struct Shares {
     pub unreachable: f64,
     /// Out of reach because the robot keeps its distance from the shell.
     pub margin: f64,
+    /// The same shares as they are printed.
+    #[serde(default)]
+    pub percent: Percent,
+}
+
+/// Shares in per cent, rounded to one decimal so that they sum to 100.0; all 0 of an empty floor.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Percent {
+    /// Scanned.
+    pub scanned: f64,
+    /// In reach of the tool, but not scanned.
+    pub missed: f64,
+    /// Out of reach.
+    pub unreachable: f64,
+    /// Out of reach along the shell.
+    pub margin: f64,
 }
 
 /// The zone along the shell, where the floor plate meets it.
@@ -62,9 +81,19 @@ pub struct Shares {
 pub struct CriticalZone {
     /// Its width, metres.
     pub width_m: f64,
-    /// Scanned share of it, 0 to 1; absent if no cell of the grid lies in it.
+    /// Length of the shell beside free floor, metres.
+    #[serde(default)]
+    pub length_m: f64,
+    /// Length along which its whole width was scanned, metres.
+    #[serde(default)]
+    pub done_m: f64,
+    /// Scanned share of its area, 0 to 1; absent if there is no free floor at the shell.
     pub scanned: Option<f64>,
-    /// Whether it was scanned.
+    /// Distance from the shell to where the scanned floor begins, the median along the shell where the zone is not
+    /// done, metres; its width if nothing of it was scanned.
+    #[serde(default)]
+    pub gap_m: f64,
+    /// Whether it was scanned: its whole width along 99.5 % of the shell.
     pub done: bool,
     /// Why not, as a sentence; absent if it was.
     pub why: Option<String>,
@@ -140,6 +169,14 @@ pub enum OutOfReach {
     ClosedOff,
 }
 
+impl<R: fmt::Display> fmt::Display for Area<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { at, area_m2, plate, reason, .. } = self;
+        let plate = plate.as_ref().map(|name| format!(", plate {name}")).unwrap_or_default();
+        write!(f, "{area_m2:.2} m² at {:.1}, {:.1} m{plate}: {reason}", at.x, at.y)
+    }
+}
+
 impl fmt::Display for MissReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -187,13 +224,11 @@ impl Tally {
     fn shares(self, cell_m2: f64) -> Shares {
         let cells = self.scanned + self.missed + self.unreachable + self.margin;
         let share = |part: usize| if cells == 0 { 0.0 } else { part as f64 / cells as f64 };
-        Shares {
-            area_m2: cells as f64 * cell_m2,
-            scanned: share(self.scanned),
-            missed: share(self.missed),
-            unreachable: share(self.unreachable),
-            margin: share(self.margin),
-        }
+        let shares = [self.scanned, self.missed, self.unreachable, self.margin].map(share);
+        let [scanned, missed, unreachable, margin] = percents(shares);
+        let percent = Percent { scanned, missed, unreachable, margin };
+        let [scanned, missed, unreachable, margin] = shares;
+        Shares { area_m2: cells as f64 * cell_m2, scanned, missed, unreachable, margin, percent }
     }
 }
 
@@ -218,18 +253,19 @@ pub fn account(run: &RunOpened, grid: &CoverageGrid, evidence: &Evidence) -> Acc
     };
     let why_out = |index: usize| if grid.is_covered(index) { None } else { out_of_reach(floor.kind(index)) };
     let (missed, slivers) = areas(floor, plates.as_ref(), why_missed);
-    let (unreachable, _) = areas(floor, plates.as_ref(), why_out);
+    let (unreachable, unreachable_slivers) = areas(floor, plates.as_ref(), why_out);
     Account {
         cell_m: floor.cell_m,
         swath_m: run.mission.swath_m,
         position_limit_m: run.mission.scan_limit_m(),
         whole: whole.shares(floor.cell_m2()),
         reachable: reachable.shares(floor.cell_m2()),
-        critical_zone: critical_zone(run, grid),
+        critical_zone: critical_zone(evidence.shell()),
         plates: plates.map_or_else(Vec::new, |map| plate_accounts(&map, &by_plate, floor.cell_m2())),
         missed,
         slivers,
         unreachable,
+        unreachable_slivers,
     }
 }
 
@@ -253,23 +289,25 @@ fn out_of_reach(kind: Cell) -> Option<OutOfReach> {
     }
 }
 
-fn critical_zone(run: &RunOpened, grid: &CoverageGrid) -> CriticalZone {
-    let floor = grid.floor();
-    let in_zone = |index: &usize| {
-        floor.is_floor(*index) && run.world.boundary.wall_distance_m(floor.center(*index)) <= CRITICAL_ZONE_M
-    };
-    let zone: Vec<usize> = (0..floor.len()).filter(in_zone).collect();
-    let covered = zone.iter().filter(|index| grid.is_covered(**index)).count();
-    let scanned = (!zone.is_empty()).then(|| covered as f64 / zone.len() as f64);
-    let done = scanned.is_some_and(|share| share >= CRITICAL_DONE);
-    let gap_m = run.mission.room_m() - run.mission.swath_m / 2.0;
-    let why = match scanned {
+fn critical_zone(shell: ShellFigures) -> CriticalZone {
+    let ShellFigures { length_m, done_m, scanned, gap_m } = shell;
+    let has_floor = length_m > 0.0;
+    let done = has_floor && done_m >= CRITICAL_DONE * length_m;
+    let why = match gap_m {
         _ if done => None,
-        None => Some(format!("cells of {} m are too coarse to see it", floor.cell_m)),
-        Some(_) if gap_m > 1e-3 => Some(format!("the tool ends {gap_m:.3} m before the shell")),
-        Some(share) => Some(format!("{:.1} % of it scanned", 100.0 * share)),
+        _ if !has_floor => Some("there is no free floor at the shell".to_owned()),
+        _ if scanned <= 0.0 => Some("nothing of it was scanned".to_owned()),
+        gap_m => {
+            let rest = if gap_m >= CRITICAL_ZONE_M - 1e-9 {
+                "not at all on most of the rest".to_owned()
+            } else {
+                format!("from {:.0} mm off the shell on the rest (median)", 1000.0 * gap_m)
+            };
+            Some(format!("whole on {done_m:.1} of {length_m:.1} m, {rest}"))
+        }
     };
-    CriticalZone { width_m: CRITICAL_ZONE_M, scanned, done, why }
+    let scanned = has_floor.then_some(scanned);
+    CriticalZone { width_m: CRITICAL_ZONE_M, length_m, done_m, scanned, gap_m, done, why }
 }
 
 #[cfg(test)]

@@ -15,6 +15,15 @@ pub struct Estimate {
     pub covariance_m2: [f64; 3],
 }
 
+impl Estimate {
+    /// Longer half axis of the 95 % ellipse, metres.
+    pub fn error_95_m(&self) -> f64 {
+        let [a, b, c] = self.covariance_m2;
+        let largest = f64::midpoint(a, c) + (((a - c) / 2.0).powi(2) + b * b).sqrt();
+        (CHI2_95 * largest.max(0.0)).sqrt()
+    }
+}
+
 /// Errors so far; truth and estimate of a tick are paired in whichever order they come.
 #[derive(Debug, Default)]
 pub struct Accuracy {

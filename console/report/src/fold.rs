@@ -13,7 +13,7 @@ use mission::{
     Event, EventKind, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, TaskConfig,
     event::RunOpened,
 };
-use world::{Obstacle, Point, Pose, coverage::regions};
+use world::{Obstacle, Pose};
 
 /// What is known of a run from the events so far.
 #[derive(Debug, Default)]
@@ -51,11 +51,13 @@ impl Fold {
                 }
             }
             EventKind::Estimated { pose } => {
-                if let Some(evidence) = &mut self.evidence {
-                    evidence.visit(pose.position);
-                }
                 let covariance_m2 = [(0, 0), (0, 1), (1, 1)].map(|at| pose.covariance[at]);
-                self.accuracy.estimate(event.tick, Estimate { position: pose.position, covariance_m2 });
+                let estimate = Estimate { position: pose.position, covariance_m2 };
+                if let (Some(evidence), Some(run)) = (&mut self.evidence, &self.run) {
+                    let here = Pose { position: pose.position, heading_rad: pose.heading_rad };
+                    evidence.visit(here, estimate.error_95_m() <= run.mission.scan_limit_m());
+                }
+                self.accuracy.estimate(event.tick, estimate);
             }
             EventKind::PositionLost { .. } => self.accuracy.lost(event.t_s),
             EventKind::PositionRegained { .. } => self.accuracy.regained(event.t_s),
@@ -113,17 +115,6 @@ impl Fold {
             positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
             ..self.known.clone()
         }
-    }
-
-    /// What is to be scanned again, as boxes of no more than `most` (the fewer, the coarser): south west and north east
-    /// corners. Slivers thinner than a block of cells are left out. None for missions that are not there to scan.
-    pub fn missed_boxes(&self, most: usize) -> Option<Vec<[Point; 2]>> {
-        self.evidence.as_ref()?;
-        let grid = self.scanned.as_ref()?.believed();
-        let is_missed = |index: usize| grid.floor().is_reachable(index) && !grid.is_covered(index);
-        let boxes = |block| regions::boxes(grid.floor(), block, is_missed);
-        let missed = (1..8).map(|fold| boxes(1 << fold)).find(|boxes| boxes.len() <= most)?;
-        Some(missed.iter().map(|corners| [corners[0], corners[2]]).collect())
     }
 
     /// The account of the floor; none for missions that are not there to scan it.

@@ -78,7 +78,10 @@ fn title(run: &Summary) -> String {
 fn warnings(run: &Summary) -> Vec<String> {
     let mut found = Vec::new();
     match run.outcome {
-        None => found.push("the run was cut off: the figures end where the journal does".to_owned()),
+        None => found.push(
+            "the run was cut off: the figures end where the journal does and are compared with no bounds"
+                .to_owned(),
+        ),
         Some(Outcome::Complete) => {}
         Some(other) => found.push(format!("the mission is not complete: {}", other.word())),
     }
@@ -106,6 +109,7 @@ fn warnings(run: &Summary) -> Vec<String> {
             percent(coverage.reachable)
         ));
     }
+    found.extend(run.logs.as_ref().and_then(|logs| logs.error.clone()));
     found.extend(run.unmet.iter().flatten().map(|miss| format!("not as expected: {miss}")));
     found
 }

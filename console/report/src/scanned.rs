@@ -48,11 +48,14 @@ impl Scanned {
 
     /// Takes in what another run scanned of the same floor.
     pub fn join(&mut self, other: &Self) {
+        let is_in_both = |index: &usize| self.truth.is_covered(*index) && other.truth.is_covered(*index);
+        let in_both = (0..self.truth.floor().len().min(other.truth.floor().len())).filter(is_in_both).count();
+        // What both scanned, one of them scanned again.
+        self.cells = (self.cells + other.cells).saturating_sub(in_both);
+        self.cells_again += other.cells_again + in_both;
         self.believed.join(&other.believed);
         self.truth.join(&other.truth);
         self.has_truth &= other.has_truth;
-        // How often floor was scanned again is a figure of one way.
-        self.cells = 0;
     }
 
     /// The robot truly went from `a` to `b`.

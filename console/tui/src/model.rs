@@ -19,7 +19,8 @@ pub use trail::Trail;
 pub use ui::{Overlay, Pane, Ui};
 
 use mission::{
-    MissionConfig, Order, Outcome, PlannerChoice, PlannerInfo, Severity, event::HoldReason, link::Fault,
+    MissionConfig, Order, Outcome, PlannerChoice, PlannerInfo, Severity, TaskConfig, event::HoldReason,
+    link::Fault,
 };
 use planner_api::{Command, Drawing};
 use positioning::AccuracyMap;
@@ -253,6 +254,17 @@ pub struct Notice {
     pub until_mono_s: f64,
 }
 
+/// What keeps the engine busy.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Busy {
+    /// What it is, as words that read on after "BUSY:".
+    pub work: String,
+    /// How long it may take, seconds; not known for what is short.
+    pub within_s: Option<f64>,
+    /// When it began, on the console's own clock, seconds.
+    pub since_mono_s: f64,
+}
+
 /// The console itself.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Console {
@@ -267,7 +279,7 @@ pub struct Console {
     /// Plugins that cannot be chosen.
     pub refused: Vec<Refused>,
     /// What the engine is busy with while it sends no events.
-    pub busy: Option<String>,
+    pub busy: Option<Busy>,
     /// What was last said to the operator.
     pub notice: Option<Notice>,
     /// An order that makes the robot move and was not answered yet.
@@ -294,6 +306,13 @@ impl Model {
     /// Whether another planner may take over by itself after a fault.
     pub fn has_fallback(&self) -> bool {
         self.run.as_ref().is_some_and(|run| run.mission.fallback.is_some())
+    }
+
+    /// Why a planner cannot fly this mission, if it cannot.
+    pub fn cannot_fly(&self, planner: &PlannerInfo) -> Option<String> {
+        let covers =
+            self.run.as_ref().is_some_and(|run| matches!(run.mission.task, TaskConfig::Cover { .. }));
+        (covers && !planner.covers).then(|| "covers no floor".into())
     }
 
     /// What is known of the planner that drives, or that will drive first.
@@ -332,7 +351,9 @@ impl Model {
             None => self.clock.heard_mono_s + SILENCE_S,
             Some(_) => self.console.now.mono_s + 1.0,
         });
-        notice.into_iter().chain(silence).reduce(f64::min)
+        // What takes long shows how long it has taken, second by second.
+        let busy = self.console.busy.as_ref().map(|_| self.console.now.mono_s + 1.0);
+        notice.into_iter().chain(silence).chain(busy).reduce(f64::min)
     }
 
     /// Mission time still to go at the pace so far, seconds.

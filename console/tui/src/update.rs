@@ -9,7 +9,9 @@ pub use offer::offered;
 
 use crate::actions::{self, ActionId};
 use crate::keys::{Key, KeyPress};
-use crate::model::{Cause, Health, Model, Overlay, Pane, Recording, Refused, Speed, Times, ui::Arrangement};
+use crate::model::{
+    Busy, Cause, Health, Model, Overlay, Pane, Recording, Refused, Speed, Times, ui::Arrangement,
+};
 use mission::{Event, Order, PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
 
@@ -47,8 +49,9 @@ pub enum Msg {
         /// What, as a sentence.
         text: String,
     },
-    /// What the engine is busy with while it sends no events (`planning`); `None` when it is done.
-    Busy(Option<String>),
+    /// What the engine is busy with while it sends no events (`rpf plans`), and how long that may take, seconds;
+    /// `None` when it is done.
+    Busy(Option<(String, Option<f64>)>),
     /// The process was sent a signal.
     Signal(Signal),
     /// A thread of the console panicked.
@@ -118,7 +121,8 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Planners { found, refused } => take_planners(model, found, refused),
         Msg::Notice { severity, text } => news(model, Cause::Console, severity, text),
         Msg::Busy(work) => {
-            model.console.busy = work;
+            let since_mono_s = model.console.now.mono_s;
+            model.console.busy = work.map(|(work, within_s)| Busy { work, within_s, since_mono_s });
             // The engine speaks through this message while it sends no events.
             model.clock.heard_mono_s = model.console.now.mono_s;
             Vec::new()

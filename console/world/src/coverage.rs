@@ -2,11 +2,15 @@
 
 mod floor;
 mod making;
+mod percents;
 pub mod regions;
+mod shell;
 mod tool;
 
 pub use floor::{Cell, CellRun, Floor, KindRun};
 pub use making::FloorMaker;
+pub use percents::percents;
+pub use shell::{ShellFigures, ShellZone};
 pub use tool::Tool;
 
 use crate::geometry::{Point, Pose};

@@ -17,7 +17,9 @@ pub mod spiral;
 pub mod tank;
 pub mod tether;
 
-pub use coverage::{Cell, CellRun, Counts, CoverageGrid, Floor, FloorMaker, KindRun, Tool};
+pub use coverage::{
+    Cell, CellRun, Counts, CoverageGrid, Floor, FloorMaker, KindRun, ShellFigures, ShellZone, Tool,
+};
 pub use geometry::{Point, Pose, Vector};
 pub use medium::{Amphibious, Medium, Mode, Pace};
 pub use obstacles::{Near, ObstacleMap};

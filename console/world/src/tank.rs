@@ -44,6 +44,29 @@ impl Boundary {
         }
     }
 
+    /// Whether a box, told by its south west and north east corners, holds some of the floor.
+    pub fn meets_box(&self, low: Point, high: Point) -> bool {
+        let in_box = |p: &Point| low.x < p.x && p.x < high.x && low.y < p.y && p.y < high.y;
+        match self {
+            Self::Circle { radius_m } => {
+                let nearest = Point::origin().sup(&low).inf(&high);
+                nearest.coords.norm() < *radius_m
+            }
+            Self::Polygon { vertices } => {
+                let corners = crate::coverage::regions::rectangle(low, high);
+                let middle = nalgebra::center(&low, &high);
+                let enters = |(a, b): (&Point, &Point)| {
+                    let size = (high - low).min();
+                    let steps = ((b - a).norm() / size * 2.0).ceil().clamp(1.0, 1e4) as usize;
+                    (0..=steps).any(|k| in_box(&(a + (b - a) * (k as f64 / steps as f64))))
+                };
+                let sides = vertices.iter().zip(vertices.iter().cycle().skip(1));
+                corners.iter().chain([&middle]).any(|p| crate::shape::ring_contains(vertices, *p))
+                    || sides.into_iter().any(enters)
+            }
+        }
+    }
+
     /// Area of the whole floor, square metres.
     pub fn area_m2(&self) -> f64 {
         match self {

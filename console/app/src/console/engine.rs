@@ -13,7 +13,11 @@ use recording::{Options, RunRecorder};
 use report::{Fold, Logs, Summary};
 use std::{
     path::{Path, PathBuf},
-    sync::mpsc::{self, Receiver, RecvTimeoutError, Sender, SyncSender},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{self, Receiver, RecvTimeoutError, Sender, SyncSender},
+    },
     thread::{self, JoinHandle},
     time::{Duration, Instant},
 };
@@ -40,6 +44,8 @@ enum Request {
 pub struct Engine {
     requests: Sender<Request>,
     thread: JoinHandle<anyhow::Result<Option<Ended>>>,
+    /// Set when no plan is wanted any more: the mission is to end.
+    stop_planning: Arc<AtomicBool>,
 }
 
 /// A run that was flown.
@@ -60,7 +66,15 @@ impl Engine {
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
         let (requests, asked) = mpsc::channel();
-        let flight = Flight::prepare(scenario, true, plugins, Pace::Live);
+        let mut flight = Flight::prepare(scenario, true, plugins, Pace::Live);
+        let stop_planning = Arc::new(AtomicBool::new(false));
+        flight.stop_planning_on(Arc::clone(&stop_planning));
+        let screen = tell.clone();
+        flight.tell_plans(Box::new(move |planning| {
+            let busy = planning.map(|planning| (planning.work, Some(planning.within.as_secs_f64())));
+            // A screen that is gone needs no news.
+            let _ = screen.send(Msg::Busy(busy));
+        }));
         let cockpit = Cockpit {
             scenario: scenario.clone(),
             logs: logs.to_path_buf(),
@@ -72,11 +86,14 @@ impl Engine {
             drill,
         };
         let thread = thread::Builder::new().name("engine".into()).spawn(move || cockpit.fly())?;
-        Ok(Self { requests, thread })
+        Ok(Self { requests, thread, stop_planning })
     }
 
     /// Hands an order to the mission; it enters with the next tick.
     pub fn order(&self, order: Order) {
+        if order == Order::Abort {
+            self.stop_planning.store(true, Ordering::Relaxed);
+        }
         // An engine that has ended has told the screen why.
         let _ = self.requests.send(Request::Order(order));
     }
@@ -88,6 +105,7 @@ impl Engine {
 
     /// Ends the run, closes its files and waits for that; a process that was told to end by a signal hurries.
     pub fn close(self, signal: Option<Signal>) -> anyhow::Result<Option<Ended>> {
+        self.stop_planning.store(true, Ordering::Relaxed);
         let within = if signal.is_some() { HURRY } else { CLOSE_TIMEOUT };
         let _ = self.requests.send(Request::Close { within });
         self.thread
@@ -190,7 +208,7 @@ impl Cockpit {
         }
         let slow = orders.iter().any(may_take_long);
         if slow {
-            self.say(Msg::Busy(Some("planning".into())));
+            self.say(Msg::Busy(Some(("starting".into(), None))));
         }
         let events = self.flight.tick(orders);
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);

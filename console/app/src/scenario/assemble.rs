@@ -2,7 +2,7 @@
 
 use super::{
     Scenario,
-    checks::{Site, check_cells, check_period, check_ticks},
+    checks::{Site, check_cells, check_lanes, check_period, check_ticks},
     expect, floor, layout,
     problem::{Complaint, Problem},
     ranging,
@@ -285,6 +285,11 @@ impl Rest {
         let (swath_m, clearance_m) = (mission.number("swath_m"), mission.number("clearance_m"));
         let position_limit_m = mission.number("position_limit_m");
         let scan = scan(mission, swath_m);
+        if let (Some(boundary), Some(swath_m), Some(scan), Some("cover")) =
+            (&floor.boundary, swath_m, &scan, mission.word("kind"))
+        {
+            check_lanes(mission, boundary, swath_m, scan.overlap_m);
+        }
         let (lost_hold_s, stuck_s) = (mission.number("lost_hold_s"), mission.number("stuck_s"));
         Some(Self {
             tick_s: tick?,

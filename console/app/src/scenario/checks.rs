@@ -6,6 +6,9 @@ use world::{Boundary, Obstacle, Point, Zone, ZoneKind};
 /// Cells that a coverage grid may have.
 pub const MOST_CELLS: f64 = 4e6;
 
+/// Lanes side by side that a floor may take.
+pub const MOST_LANES: f64 = 600.0;
+
 /// Ticks that a run may last.
 pub const MOST_TICKS: f64 = 1e7;
 
@@ -71,6 +74,23 @@ pub fn check_cells(mission: &Section<'_>, boundary: &Boundary, cell_m: f64) {
         let fits_m = ((size.x * size.y / MOST_CELLS).sqrt() * 1010.0).ceil() / 1000.0;
         let what = Complaint::TooManyCells { cells: cells as u64, limit: MOST_CELLS as u64, fits_m };
         mission.complain("cell_m", what);
+    }
+}
+
+/// Complains about a swath that is so narrow, without the overlap, that the floor takes too many lanes.
+pub fn check_lanes(mission: &Section<'_>, boundary: &Boundary, swath_m: f64, overlap_m: f64) {
+    let (low, high) = boundary.bounds();
+    let across_m = (high - low).min();
+    let lanes = across_m / (swath_m - overlap_m);
+    if lanes > MOST_LANES {
+        // Rounded up to millimetres, so that the number offered is accepted.
+        let fits_m = ((across_m / MOST_LANES + overlap_m) * 1000.0).ceil() / 1000.0;
+        let of = if overlap_m > 0.0 { format!(" with overlap_m = {overlap_m}") } else { String::new() };
+        let must_be = format!(
+            "at least {fits_m} m{of}, for no more than {MOST_LANES} lanes side by side (now {})",
+            lanes as u64
+        );
+        mission.complain("swath_m", Complaint::OutOfRange(must_be));
     }
 }
 

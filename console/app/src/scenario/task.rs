@@ -29,12 +29,22 @@ pub fn task(
     if kind == "cover" {
         section.refuse(&["spiral", "path_m", "goal_m"], &beside);
         let boxes = if section.has("boxes_m") { section.boxes("boxes_m")? } else { Vec::new() };
+        complain_of_boxes_outside(section, boundary, &boxes);
         let regions = boxes.iter().map(|[low, high]| regions::rectangle(*low, *high)).collect();
         return Some(TaskConfig::Cover { anchor: start?, regions, tolerance_m: tolerance_m? });
     }
     section.refuse(&["goal_m", "boxes_m"], &beside);
     let path = preset_path(section, boundary, radius_m)?;
     Some(TaskConfig::Follow { path, tolerance_m: tolerance_m? })
+}
+
+/// A box that holds no floor is a slip of the pen.
+fn complain_of_boxes_outside(section: &Section<'_>, boundary: Option<&Boundary>, boxes: &[[Point; 2]]) {
+    let outside = |[low, high]: &[Point; 2]| boundary.is_some_and(|wall| !wall.meets_box(*low, *high));
+    if let Some(index) = boxes.iter().position(outside) {
+        let must_be = format!("boxes that hold some of the floor; box {} lies outside the tank", index + 1);
+        section.complain("boxes_m", Complaint::OutOfRange(must_be));
+    }
 }
 
 fn preset_path(

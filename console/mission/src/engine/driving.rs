@@ -1,6 +1,6 @@
 //! One tick of moving: ask the planner, send the robot its answer.
 
-use super::Mission;
+use super::{Mission, SAME_PLACE_M};
 use crate::{
     drive::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD, drive_for},
     event::EventKind,
@@ -14,6 +14,8 @@ use world::Point;
 const AHEAD_M: f64 = 4.0;
 /// A planner that has been stuck in its lanes for this long is asked for new ones, seconds.
 const BLOCKED_S: f64 = 1.0;
+/// So often it is asked at one place; then the robot counts as stuck when it has not come on for a while.
+const BLOCKED_TRIES: u32 = 3;
 /// Distance between the points of the path flown that are kept for planners, metres.
 const TRAIL_M: f64 = 0.1;
 
@@ -44,8 +46,17 @@ impl Mission {
     /// for the robot may have to turn or to be seen better first.
     fn replan_if_blocked(&mut self, status: Status) {
         self.blocked_s = if status == Status::Stuck { self.blocked_s + self.config.tick_s } else { 0.0 };
-        if self.blocked_s >= BLOCKED_S && matches!(self.task, Task::Cover(_)) {
-            self.blocked_s = 0.0;
+        if self.blocked_s < BLOCKED_S || !matches!(self.task, Task::Cover(_)) {
+            return;
+        }
+        self.blocked_s = 0.0;
+        let here = self.locator.position();
+        let (at, tries) = match self.blocked_at {
+            Some((at, tries)) if (here - at).norm() < SAME_PLACE_M => (at, tries + 1),
+            _ => (here, 1),
+        };
+        self.blocked_at = Some((at, tries));
+        if tries <= BLOCKED_TRIES {
             self.planner.plan_due.get_or_insert(Reason::Blocked);
         }
     }

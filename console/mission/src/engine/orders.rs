@@ -89,7 +89,7 @@ impl Mission {
         planner: &mut dyn PlannerLink,
     ) -> Result<(), String> {
         let from = self.planner.choice.id.clone();
-        self.seat(choice.clone(), planner)?;
+        self.seat_by_order(choice, planner)?;
         if self.phase != Phase::Waiting {
             self.planner.plan_due = Some(Reason::Swap { from });
             self.plan_if_due(planner)?;

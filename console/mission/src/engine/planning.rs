@@ -29,6 +29,22 @@ impl Mission {
         }
     }
 
+    /// Loads and configures a planner that the operator wants. One that is refused has not failed: the refusal of
+    /// the order tells all there is.
+    pub(super) fn seat_by_order(
+        &mut self,
+        choice: &PlannerChoice,
+        planner: &mut dyn PlannerLink,
+    ) -> Result<(), String> {
+        let told = self.happened.len();
+        let seated = self.seat(choice.clone(), planner);
+        let is_refusal = |kind: &EventKind| matches!(kind, EventKind::PlannerFailed { fault } if fault.cause == Cause::Refused);
+        if seated.is_err() && self.happened.last().is_some_and(is_refusal) {
+            self.happened.truncate(told);
+        }
+        seated
+    }
+
     /// Makes sure that a planner is there and has planned.
     pub(super) fn make_planner_fit(&mut self, planner: &mut dyn PlannerLink) -> Result<(), String> {
         if !self.planner.fit {

@@ -16,6 +16,8 @@ use world::{Boundary, Obstacle, ObstacleId, Odometry, Pose, RangeSet, Shape, Sig
 struct Straight {
     fail_at_tick: Option<u64>,
     refuse: Vec<&'static str>,
+    /// From this tick on it says that it cannot go on.
+    stuck_from_tick: Option<u64>,
     chosen: Vec<String>,
     plans: usize,
     /// Area of the regions of every request to cover, square metres.
@@ -56,6 +58,7 @@ impl PlannerLink for Straight {
             plugin: text(),
             sha256: text(),
             abi: text(),
+            covers: false,
             parameters: vec![],
         })
     }
@@ -76,6 +79,9 @@ impl PlannerLink for Straight {
     fn step(&mut self, sensed: &Sensed<'_>) -> Result<Reply<Command>, Fault> {
         if self.fail_at_tick == Some(sensed.tick) {
             return Err(self.fault(During::Step, Cause::Panic));
+        }
+        if self.stuck_from_tick.is_some_and(|tick| sensed.tick >= tick) {
+            return Ok(reply(Command::still(Status::Stuck)));
         }
         let way = sensed.target - sensed.pose.position;
         Ok(reply(if way.norm() > 0.0 {
@@ -326,6 +332,36 @@ fn a_planner_is_not_swapped_while_the_robot_moves() {
     flight.tick(&[Order::Start]);
     let swap = Order::ChoosePlanner(PlannerChoice { id: "other".into(), parameters: Parameters::new() });
     assert!(refusal(&flight.tick(&[swap])).is_some_and(|why| why.contains("held")));
+}
+
+#[test]
+fn a_planner_that_is_refused_has_not_failed() {
+    let mut flight = Flight::new(config());
+    flight.planner.refuse = vec!["other"];
+    flight.tick(&[Order::Start]);
+    flight.fly(10);
+    flight.tick(&[Order::Hold]);
+    let events = flight
+        .tick(&[Order::ChoosePlanner(PlannerChoice { id: "other".into(), parameters: Parameters::new() })]);
+    assert!(refusal(&events).is_some_and(|why| why.contains("there is no planner other")), "{events:?}");
+    assert!(!events.iter().any(|kind| matches!(kind, EventKind::PlannerFailed { .. })), "{events:?}");
+    flight.tick(&[Order::Resume]);
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Complete), "the one before drives on");
+}
+
+#[test]
+fn the_time_of_a_mission_that_an_operator_holds_does_not_run_out() {
+    for (attended, ended) in [(true, Outcome::Complete), (false, Outcome::TimeLimit)] {
+        let mut flight = Flight::new(MissionConfig { attended, ..config() });
+        flight.tick(&[Order::Start]);
+        flight.fly(10);
+        flight.tick(&[Order::Hold]);
+        flight.fly(1000);
+        flight.tick(&[Order::Resume]);
+        flight.fly(200);
+        assert_eq!(flight.ended(), Some(ended), "attended: {attended}");
+    }
 }
 
 #[test]

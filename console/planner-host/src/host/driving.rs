@@ -9,6 +9,7 @@ use crate::wire::kind;
 use crate::{checks, parameters};
 use mission::link::{Cause, During, Parameters, PlannerInfo};
 use planner_api::{Caps, Code, Command, Limits, Plan, PlanRequest, Sensed, Site, Task};
+use std::sync::{Arc, atomic::AtomicBool};
 
 /// Private state is saved this often, seconds of mission time.
 const SAVE_EVERY_S: f64 = 1.0;
@@ -19,7 +20,6 @@ pub(super) struct Driving {
     pub(super) info: PlannerInfo,
     parameters: Parameters,
     limits: Limits,
-    covers: bool,
     saves_state: bool,
     state_version: u32,
     saved_at_s: Option<f64>,
@@ -56,7 +56,6 @@ impl Driving {
             info: found.info,
             parameters: parameters.clone(),
             limits: site.limits,
-            covers: Caps(found.caps).has(Caps::COVERAGE),
             saves_state: Caps(found.caps).has(Caps::SNAPSHOT),
             state_version: found.state_version,
             saved_at_s: None,
@@ -67,6 +66,11 @@ impl Driving {
         let answer = driving.worker.ask(kind::CONFIGURE, config.configure_deadline, write, said_of);
         let said = driving.judged(answer, Phase::Configure)?;
         Ok((driving, said))
+    }
+
+    /// From now on a plan is given up when this is set.
+    pub(super) fn stop_on(&mut self, stop: Arc<AtomicBool>) {
+        self.worker.stop_on(stop);
     }
 
     /// Whether this is the same planner of the same file.
@@ -107,10 +111,8 @@ impl Driving {
         request: &PlanRequest<'_>,
         config: &HostConfig,
     ) -> Result<(Plan, Said), Fault> {
-        if matches!(request.task, Task::Cover { .. }) && !self.covers {
-            let id = &self.info.id;
-            let message = format!("planner {id} covers no floor: choose one that offers coverage");
-            return Err(fault::new(id, During::Plan, Cause::Refused, message));
+        if matches!(request.task, Task::Cover { .. }) {
+            must_cover(&self.info, During::Plan)?;
         }
         let write = |w: &mut Writer| {
             w.flag(config.wants_drawing).request(request);
@@ -190,6 +192,15 @@ impl Driving {
             fault::of(failure, &self.info.id, phase)
         })
     }
+}
+
+/// Refuses a planner that covers no floor.
+pub(super) fn must_cover(info: &PlannerInfo, during: During) -> Result<(), Fault> {
+    let refused = || {
+        let message = format!("planner {} covers no floor: choose one that offers coverage", info.id);
+        fault::new(&info.id, during, Cause::Refused, message)
+    };
+    if info.covers { Ok(()) } else { Err(refused()) }
 }
 
 fn is_unusable_after(failure: &Failure) -> bool {

@@ -70,6 +70,7 @@ pub(super) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
                 "planner {planner} did not answer {phase} in time and ignored the request to stop; its process was killed"
             ),
         ),
+        Failure::Stopped => fault(Cause::Late, format!("planner {planner} was stopped during {phase}")),
         Failure::Late => {
             fault(Cause::Late, format!("planner {planner} was too slow: it missed the deadline of {phase}"))
         }

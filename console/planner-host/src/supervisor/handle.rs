@@ -8,10 +8,16 @@ use crate::wire::kind;
 use std::io::Write;
 use std::net::Shutdown;
 use std::os::unix::net::UnixStream;
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+};
 use std::time::{Duration, Instant};
 
 /// A worker that does not read for this long is stuck.
 const WRITE_WITHIN: Duration = Duration::from_millis(500);
+/// How often somebody who may want a plan no more is looked at.
+const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 /// A worker process, its socket and its output.
 pub(crate) struct Worker {
@@ -21,6 +27,8 @@ pub(crate) struct Worker {
     writer: Writer,
     sequence: u32,
     is_gone: bool,
+    /// Set when no plan is wanted any more.
+    stop: Option<Arc<AtomicBool>>,
 }
 
 impl Worker {
@@ -35,7 +43,17 @@ impl Worker {
             Failure::Console(format!("cannot be run, no worker process could be started: {error}"))
         })?;
         let (incoming, writer) = (Incoming::default(), Writer::default());
-        Ok(Self { child, socket, incoming, writer, sequence: 0, is_gone: false })
+        Ok(Self { child, socket, incoming, writer, sequence: 0, is_gone: false, stop: None })
+    }
+
+    /// From now on a plan is given up when this is set.
+    pub(crate) fn stop_on(&mut self, stop: Arc<AtomicBool>) {
+        self.stop = Some(stop);
+    }
+
+    /// Whether a plan is wanted no more.
+    fn is_stopped(&self, kind: u8) -> bool {
+        kind == kind::PLAN && self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
     }
 
     /// Whether the process has ended or was killed.
@@ -54,18 +72,35 @@ impl Worker {
         if self.is_gone {
             return Err(Failure::Gone);
         }
+        if self.is_stopped(kind) {
+            return Err(Failure::Stopped);
+        }
         let until = Instant::now() + deadline;
         self.send(kind, soft(deadline), write)?;
-        let in_time = match self.incoming.receive(&mut self.socket, Some(until)) {
+        let in_time = match self.receive(kind, until) {
             Received::Late => {
                 self.send_cancel();
-                self.arrived(Instant::now() + GRACE)?;
-                false
+                let arrived = self.arrived(Instant::now() + GRACE);
+                if self.is_stopped(kind) {
+                    return Err(Failure::Stopped);
+                }
+                arrived.map(|()| false)?
             }
             other => self.expect_frame(&other).map(|()| true)?,
         };
         let answer = self.answer(read);
         if in_time { answer } else { Err(Failure::Late) }
+    }
+
+    /// Waits for a frame to a deadline, or until a plan is wanted no more.
+    fn receive(&mut self, kind: u8, until: Instant) -> Received {
+        loop {
+            let next = if self.stop.is_some() { until.min(Instant::now() + LOOK_EVERY) } else { until };
+            match self.incoming.receive(&mut self.socket, Some(next)) {
+                Received::Late if next < until && !self.is_stopped(kind) => {}
+                other => return other,
+            }
+        }
     }
 
     fn send(&mut self, kind: u8, soft: Duration, write: impl FnOnce(&mut Writer)) -> Result<(), Failure> {

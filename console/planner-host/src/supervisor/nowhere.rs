@@ -2,6 +2,7 @@
 
 use super::{Failure, WorkerCommand};
 use crate::wire::body::{Body, Read, Writer};
+use std::sync::{Arc, atomic::AtomicBool};
 use std::time::Duration;
 
 /// Never made.
@@ -23,6 +24,10 @@ impl Worker {
         _: impl FnOnce(&mut Writer),
         _: impl FnOnce(&mut Body<'_>) -> Read<T>,
     ) -> Result<T, Failure> {
+        match *self {}
+    }
+
+    pub(crate) fn stop_on(&mut self, _: Arc<AtomicBool>) {
         match *self {}
     }
 

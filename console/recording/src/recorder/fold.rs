@@ -34,6 +34,8 @@ struct Opened {
     tether: Option<Tether>,
     document: Document,
     target: Option<Point>,
+    /// Whether the plan before had lines that are never crossed.
+    has_cuts: bool,
 }
 
 impl Fold {
@@ -101,6 +103,7 @@ impl Opened {
             tether: Tether::open(stream, run)?,
             document,
             target: None,
+            has_cuts: false,
         };
         opened.write_document(stream, at)?;
         Ok(opened)
@@ -114,10 +117,16 @@ impl Opened {
         match &event.kind {
             EventKind::Covered { runs } => self.raster.mark(runs),
             EventKind::FloorChanged { changes } => self.raster.change(changes),
-            EventKind::Planned { path, .. } => {
-                let strip = path.iter().map(|point| super::lane::flat(*point));
-                let path = rr::LineStrips2D::update_fields().with_strips([rr::LineStrip2D::from_iter(strip)]);
-                stream.once(paths::PLANNED, at, &path)?;
+            EventKind::Planned { path, cuts, .. } => {
+                let strip = |points: &Vec<Point>| {
+                    rr::LineStrip2D::from_iter(points.iter().map(|point| super::lane::flat(*point)))
+                };
+                let strips = |lines| rr::LineStrips2D::update_fields().with_strips(lines);
+                stream.once(paths::PLANNED, at, &strips(vec![strip(path)]))?;
+                if !cuts.is_empty() || self.has_cuts {
+                    self.has_cuts = !cuts.is_empty();
+                    stream.once(paths::CUTS, at, &strips(cuts.iter().map(strip).collect()))?;
+                }
             }
             EventKind::ObstacleFound { obstacle } | EventKind::ObstacleMoved { obstacle, .. } => {
                 draw_found(stream, at, obstacle)?;

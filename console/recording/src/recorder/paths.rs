@@ -16,6 +16,7 @@ pub(crate) const FIX: &str = "map/world/ae/fix";
 pub(crate) const PRESET: &str = "map/world/path/preset";
 pub(crate) const GOAL: &str = "map/world/path/goal";
 pub(crate) const PLANNED: &str = "map/world/path/planned";
+pub(crate) const CUTS: &str = "map/world/path/cuts";
 pub(crate) const TARGET: &str = "map/world/path/target";
 pub(crate) const WAY_TRUE: &str = "map/world/way/true";
 pub(crate) const WAY_ESTIMATE: &str = "map/world/way/est";

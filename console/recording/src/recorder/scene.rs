@@ -18,6 +18,9 @@ const MOST_LABELS: usize = 12;
 /// Half the size of the cross that stands for an obstacle without extent, metres.
 const CROSS_M: f64 = 0.08;
 
+/// Places nearer to each other than this share a label, metres.
+const LABEL_M: f64 = 0.5;
+
 /// Draws everything that stands still.
 pub(crate) fn draw(stream: &Stream, run: &RunOpened) -> Done {
     // The viewer draws y downwards in two dimensions. The picture is turned over once, here; the data stays true.
@@ -29,10 +32,14 @@ pub(crate) fn draw(stream: &Stream, run: &RunOpened) -> Done {
     draw_obstacles(stream, paths::OBSTACLES_HIDDEN, &hidden, style::HIDDEN, 1.0)?;
     draw_zones(stream, run)?;
     draw_stations(stream, run)?;
-    draw_task(stream, &run.mission.task)?;
-    let start =
-        rr::Points2D::new([flat(run.mission.start.position)]).with_colors([style::color(style::WALL)]);
-    stream.always(paths::START, &start.with_radii([style::on_screen(3.0)]).with_labels(["start"]))?;
+    draw_task(stream, run)?;
+    let at = run.mission.start.position;
+    // A coverage mission ends where it starts: two labels at one place cannot be read.
+    let ends_here =
+        matches!(&run.mission.task, TaskConfig::Cover { anchor, .. } if (anchor - at).norm() < LABEL_M);
+    let start = rr::Points2D::new([flat(at)]).with_colors([style::color(style::WALL)]);
+    let label = if ends_here { "start and anchor" } else { "start" };
+    stream.always(paths::START, &start.with_radii([style::on_screen(3.0)]).with_labels([label]))?;
     style_moving(stream, run)
 }
 
@@ -85,20 +92,23 @@ fn draw_stations(stream: &Stream, run: &RunOpened) -> Done {
     stream.always(paths::STATIONS, &drawn)
 }
 
-fn draw_task(stream: &Stream, task: &TaskConfig) -> Done {
-    match task {
+fn draw_task(stream: &Stream, run: &RunOpened) -> Done {
+    match &run.mission.task {
         TaskConfig::Follow { path, .. } => {
             let preset = path.iter().map(|point| flat(*point)).collect();
             stream.always(paths::PRESET, &lines([preset], style::PRESET, 0.8))
         }
-        TaskConfig::Goto { goal, .. } => draw_end(stream, *goal, "goal"),
-        TaskConfig::Cover { anchor, .. } => draw_end(stream, *anchor, "anchor"),
+        TaskConfig::Goto { goal, .. } => draw_end(stream, *goal, Some("goal")),
+        TaskConfig::Cover { anchor, .. } => {
+            let is_apart = (anchor - run.mission.start.position).norm() >= LABEL_M;
+            draw_end(stream, *anchor, is_apart.then_some("anchor"))
+        }
     }
 }
 
-fn draw_end(stream: &Stream, at: Point, label: &str) -> Done {
+fn draw_end(stream: &Stream, at: Point, label: Option<&str>) -> Done {
     let end = rr::Points2D::new([flat(at)]).with_colors([style::color(style::PLAN)]);
-    stream.always(paths::GOAL, &end.with_radii([style::on_screen(6.0)]).with_labels([label]))
+    stream.always(paths::GOAL, &end.with_radii([style::on_screen(6.0)]).with_labels(label))
 }
 
 /// Colours and widths of what moves, and the shapes that move with the robot; the stream then carries places only.
@@ -123,7 +133,10 @@ fn style_moving(stream: &Stream, run: &RunOpened) -> Done {
     stream.always(paths::FIX, &dots(style::STATION, 2.5))?;
     let covariance = rr::Ellipses2D::update_fields().with_colors([style::color(style::ESTIMATE)]);
     stream.always(paths::COVARIANCE, &covariance.with_line_radii([style::on_screen(1.2)]))?;
-    stream.always(paths::PLANNED, &line_style(style::PLAN, 1.5))?;
+    stream.always(paths::PLANNED, &line_style(style::PLAN, 1.0))?;
+    if matches!(run.mission.task, TaskConfig::Cover { .. }) {
+        stream.always(paths::CUTS, &line_style(style::WARNING, 1.2))?;
+    }
     stream.always(paths::WAY_TRUE, &line_style([90, 220, 130, 130], 1.0))?;
     stream.always(paths::WAY_ESTIMATE, &line_style([255, 120, 220, 110], 0.8))?;
     stream.always(paths::RANGES, &rr::LineStrips2D::update_fields().with_radii([style::on_screen(0.7)]))

@@ -298,6 +298,7 @@ fn chosen(id: &str, from: Option<String>) -> EventKind {
         plugin: "libtest.so".into(),
         sha256: "9f2c1a".repeat(10),
         abi: "1.0".into(),
+        covers: false,
         parameters: vec![parameter],
     };
     let parameters = [("k_rep".to_owned(), ParamValue::Float(0.6))].into();

@@ -57,7 +57,8 @@ fn take_together<R: Copy + PartialEq>(
     Some((reason, queue))
 }
 
-fn area_of<R>(floor: &Floor, plate: Option<String>, reason: R, cells: &[usize]) -> Area<R> {
+/// Some cells as an area.
+pub fn area_of<R>(floor: &Floor, plate: Option<String>, reason: R, cells: &[usize]) -> Area<R> {
     let centers = || cells.iter().map(|index| floor.center(*index));
     let half = Vector::new(floor.cell_m, floor.cell_m) / 2.0;
     let start = floor.center(cells[0]);

@@ -1,8 +1,8 @@
 //! What tells why floor was missed: where plans led, where the robot went, where its position was uncertain.
 
-use super::MissReason;
+use super::{CRITICAL_ZONE_M, MissReason};
 use mission::{TaskConfig, event::RunOpened};
-use world::{CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, Tool};
+use world::{CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, ShellFigures, ShellZone, Tool};
 
 /// Plans are laid out on the floor in pieces no longer than this, metres.
 const PIECE_M: f64 = 0.5;
@@ -21,7 +21,10 @@ pub struct Evidence {
     /// What was to be scanned; `None` for everything.
     asked: Option<Vec<bool>>,
     found: Vec<(ObstacleId, Shape)>,
-    last: Option<Point>,
+    /// What the drawing shows, for the zone along the shell.
+    drawn: Vec<Shape>,
+    shell: ShellZone,
+    last: Pose,
 }
 
 impl Evidence {
@@ -37,7 +40,9 @@ impl Evidence {
             uncertain: none,
             asked: asked(run),
             found: Vec::new(),
-            last: None,
+            drawn: run.world.obstacles.iter().filter(|o| o.known).map(|o| o.shape.clone()).collect(),
+            shell: ShellZone::new(&run.world.boundary, CRITICAL_ZONE_M),
+            last: run.mission.start,
         }
     }
 
@@ -53,12 +58,22 @@ impl Evidence {
         }
     }
 
-    /// The robot believed to be here.
-    pub fn visit(&mut self, here: Point) {
-        let before = self.last.replace(here).unwrap_or(here);
-        for index in self.grid.cells_near(before, here, self.tool.swath_m()) {
+    /// The robot believed to be here, and what its tool passed since the last time counts or does not.
+    pub fn visit(&mut self, here: Pose, counts: bool) {
+        let before = std::mem::replace(&mut self.last, here);
+        for index in self.grid.cells_near(before.position, here.position, self.tool.swath_m()) {
             self.visited[index] = true;
         }
+        if counts {
+            self.shell.pass(self.tool, before, here);
+        }
+    }
+
+    /// How much of the zone along the shell was scanned.
+    pub fn shell(&self) -> ShellFigures {
+        let all = self.drawn.iter().chain(self.found.iter().map(|(_, shape)| shape));
+        let solid: Vec<&Shape> = all.filter(|shape| self.shell.is_beside(shape)).collect();
+        self.shell.figures(|point| solid.iter().any(|shape| shape.distance_m(point) < 0.0))
     }
 
     /// The tool passed, but nothing counted.
@@ -90,6 +105,17 @@ impl Evidence {
             _ => None,
         };
         self.found.extend(other.found.iter().cloned());
+        self.shell.join(&other.shell);
+    }
+
+    /// What was found on the way.
+    pub fn found(&self) -> impl Iterator<Item = &(ObstacleId, Shape)> {
+        self.found.iter()
+    }
+
+    /// Whether a cell was to be scanned at all.
+    pub fn is_asked(&self, index: usize) -> bool {
+        self.asked.as_ref().is_none_or(|asked| asked[index])
     }
 
     /// Why a cell was missed.
@@ -99,7 +125,7 @@ impl Evidence {
             MissReason::PositionUncertain
         } else if self.found.iter().any(|(_, shape)| shape.distance_m(center) <= self.beside_m) {
             MissReason::FoundObstacle
-        } else if self.asked.as_ref().is_some_and(|asked| !asked[index]) {
+        } else if !self.is_asked(index) {
             MissReason::NotAsked
         } else if !self.planned[index] {
             MissReason::NotPlanned

@@ -1,10 +1,12 @@
 //! The account of the floor as lines for people.
 
-use crate::account::{Account, Area, Shares};
+use crate::account::{Account, Area, Percent, PlateAccount, Shares, Slivers};
 use std::fmt::Display;
 
 /// Areas that are listed; the report as JSON has all of them.
 const MOST_AREAS: usize = 10;
+/// Plates that are listed one by one.
+const MOST_PLATES: usize = 30;
 
 /// Lines with their labels; every percentage names its floor, and those of one floor sum to 100.0 %.
 pub fn lines(account: &Account) -> Vec<(&'static str, String)> {
@@ -15,42 +17,45 @@ pub fn lines(account: &Account) -> Vec<(&'static str, String)> {
         ("floor", basis(account)),
     ];
     lines.extend(areas(&account.missed).into_iter().map(|line| ("missed", line)));
-    if account.slivers.count > 0 {
-        let (count, area_m2) = (account.slivers.count, account.slivers.area_m2);
-        lines.push(("missed", format!("{area_m2:.2} m² in {count} places too small to be listed")));
-    }
+    lines.extend(slivers(account.slivers).into_iter().map(|line| ("missed", line)));
     lines.extend(areas(&account.unreachable).into_iter().map(|line| ("out of reach", line)));
-    let plates = account.plates.iter().map(|plate| format!("{} {}", plate.name, shares(&plate.shares)));
-    lines.extend(plates.map(|line| ("plates", line)));
+    lines.extend(slivers(account.unreachable_slivers).into_iter().map(|line| ("out of reach", line)));
+    lines.extend(plates(&account.plates).into_iter().map(|line| ("plates", line)));
+    lines
+}
+
+/// Every plate in its order; of many only those with most floor missed.
+fn plates(plates: &[PlateAccount]) -> Vec<String> {
+    let line = |plate: &PlateAccount| format!("{} {}", plate.name, shares(&plate.shares));
+    if plates.len() <= MOST_PLATES {
+        return plates.iter().map(line).collect();
+    }
+    let whole = plates.iter().filter(|plate| plate.shares.percent.missed <= 0.0).count();
+    let missed_m2 = |index: &usize| plates[*index].shares.missed * plates[*index].shares.area_m2;
+    let mut worst: Vec<usize> =
+        (0..plates.len()).filter(|index| plates[*index].shares.percent.missed > 0.0).collect();
+    worst.sort_by(|a, b| missed_m2(b).total_cmp(&missed_m2(a)));
+    let left = worst.split_off(worst.len().min(MOST_PLATES));
+    worst.sort_unstable();
+    let mut lines =
+        vec![format!("{whole} of {} with nothing missed; the report as JSON has all", plates.len())];
+    lines.extend(worst.into_iter().map(|index| line(&plates[index])));
+    if !left.is_empty() {
+        let area_m2: f64 = left.iter().map(missed_m2).sum();
+        lines.push(format!("{} more with less missed each, {area_m2:.2} m² in all", left.len()));
+    }
     lines
 }
 
 fn shares(shares: &Shares) -> String {
-    let classes = [
-        ("scanned", shares.scanned),
-        ("missed", shares.missed),
-        ("unreachable", shares.unreachable),
-        ("shell margin", shares.margin),
-    ];
-    let rounded = percents(&classes.map(|(_, share)| share));
+    let Percent { scanned, missed, unreachable, margin } = shares.percent;
+    let classes =
+        [("scanned", scanned), ("missed", missed), ("unreachable", unreachable), ("shell margin", margin)];
     let told = classes
         .iter()
-        .zip(rounded)
-        .filter(|((name, _), percent)| *percent > 0.0 || matches!(*name, "scanned" | "missed"))
-        .map(|((name, _), percent)| format!("{percent:.1} % {name}"));
+        .filter(|(name, percent)| *percent > 0.0 || matches!(*name, "scanned" | "missed"))
+        .map(|(name, percent)| format!("{percent:.1} % {name}"));
     format!("{:.1} m²: {}", shares.area_m2, told.collect::<Vec<_>>().join(", "))
-}
-
-/// Shares as per cent with one decimal that sum to 100.0 if the shares sum to 1: what rounding down leaves goes to
-/// those that it hurt most.
-pub fn percents(shares: &[f64]) -> Vec<f64> {
-    let exact: Vec<f64> = shares.iter().map(|share| share * 1000.0).collect();
-    let mut parts: Vec<f64> = exact.iter().map(|part| (part + 1e-9).floor()).collect();
-    let lacking = (exact.iter().sum::<f64>().round() - parts.iter().sum::<f64>()).max(0.0) as usize;
-    let mut order: Vec<usize> = (0..shares.len()).collect();
-    order.sort_by(|a, b| (exact[*b] - parts[*b]).total_cmp(&(exact[*a] - parts[*a])));
-    order.into_iter().take(lacking).for_each(|index| parts[index] += 1.0);
-    parts.iter().map(|part| part / 10.0).collect()
 }
 
 fn critical_zone(account: &Account) -> String {
@@ -69,8 +74,13 @@ fn basis(account: &Account) -> String {
     )
 }
 
+fn slivers(slivers: Slivers) -> Option<String> {
+    let Slivers { count, area_m2 } = slivers;
+    (count > 0).then(|| format!("{area_m2:.2} m² in {count} places too small to be listed"))
+}
+
 fn areas<R: Display>(areas: &[Area<R>]) -> Vec<String> {
-    let mut lines: Vec<String> = areas.iter().take(MOST_AREAS).map(area).collect();
+    let mut lines: Vec<String> = areas.iter().take(MOST_AREAS).map(ToString::to_string).collect();
     if let Some(rest) = areas.get(MOST_AREAS..).filter(|rest| !rest.is_empty()) {
         let area_m2: f64 = rest.iter().map(|area| area.area_m2).sum();
         lines.push(format!("{area_m2:.2} m² in {} more places", rest.len()));
@@ -78,34 +88,26 @@ fn areas<R: Display>(areas: &[Area<R>]) -> Vec<String> {
     lines
 }
 
-fn area<R: Display>(area: &Area<R>) -> String {
-    let plate = area.plate.as_ref().map(|name| format!(", plate {name}")).unwrap_or_default();
-    format!("{:.2} m² at {:.1}, {:.1} m{plate}: {}", area.area_m2, area.at.x, area.at.y, area.reason)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use world::PlateKind;
 
     #[test]
-    fn thirds_sum_to_a_hundred() {
-        let rounded = percents(&[1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0]);
-        assert!((rounded.iter().sum::<f64>() - 100.0).abs() < 1e-9, "{rounded:?}");
-        assert!(percents(&[1.0, 0.0]).iter().zip([100.0, 0.0]).all(|(a, b)| (a - b).abs() < 1e-9));
-    }
-
-    proptest! {
-        #[test]
-        fn whatever_is_divided_sums_to_a_hundred(parts in prop::collection::vec(0_u32..5000, 2..6)) {
-            let whole: u32 = parts.iter().sum();
-            prop_assume!(whole > 0);
-            let shares: Vec<f64> = parts.iter().map(|part| f64::from(*part) / f64::from(whole)).collect();
-            let rounded = percents(&shares);
-            prop_assert!((rounded.iter().sum::<f64>() - 100.0).abs() < 1e-6, "{:?}", rounded);
-            for (share, percent) in shares.iter().zip(&rounded) {
-                prop_assert!((percent - 100.0 * share).abs() < 0.1 + 1e-6);
-            }
-        }
+    fn of_many_plates_those_with_most_missed_are_listed_in_their_order() {
+        let plate = |k: usize| {
+            let missed = if k.is_multiple_of(2) { 0.0 } else { k as f64 / 100.0 };
+            let percent =
+                Percent { scanned: 100.0 - 100.0 * missed, missed: 100.0 * missed, ..Percent::default() };
+            let shares = Shares { area_m2: 1.0, scanned: 1.0 - missed, missed, percent, ..Shares::default() };
+            PlateAccount { name: format!("R-{k:02}"), kind: PlateKind::Rectangular, shares }
+        };
+        let few: Vec<PlateAccount> = (0..30).map(plate).collect();
+        assert_eq!(plates(&few).len(), 30);
+        let many: Vec<PlateAccount> = (0..90).map(plate).collect();
+        let lines = plates(&many);
+        assert!(lines.len() == 32 && lines[0].starts_with("45 of 90 with nothing missed"), "{lines:?}");
+        assert!(lines[1].starts_with("R-31") && lines[30].starts_with("R-89"), "{lines:?}");
+        assert!(lines[31].starts_with("15 more with less missed each, 2.25 m²"), "{lines:?}");
     }
 }

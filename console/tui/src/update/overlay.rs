@@ -105,6 +105,11 @@ fn run_command(model: &mut Model, filter: &str, selected: usize) -> Vec<Effect> 
 
 fn choose_planner(model: &mut Model, selected: usize) -> Vec<Effect> {
     let Some(planner) = model.console.planners.get(selected) else { return Vec::new() };
+    if let Some(why) = model.cannot_fly(planner) {
+        let told = format!("{} cannot fly this mission: it {why}", planner.id);
+        model.say(Severity::Watch, told);
+        return Vec::new();
+    }
     let choice = PlannerChoice { id: planner.id.clone(), parameters: mission::Parameters::new() };
     ask(model, Ask::Swap(choice))
 }

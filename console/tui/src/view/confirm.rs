@@ -52,6 +52,9 @@ fn question(model: &Model) -> Option<Vec<String>> {
             ]
         }
         Overlay::Quit => match model.phase {
+            Phase::Idle if model.console.busy.is_some() => {
+                ["LEAVE? Enter leaves, Esc stays.".into(), "The plan in the making is given up.".into()]
+            }
             Phase::Idle | Phase::Ended { .. } => {
                 ["LEAVE? Enter leaves, Esc stays.".into(), "Nothing is under way.".into()]
             }

@@ -2,11 +2,12 @@
 
 use super::{Look, fill, text};
 use crate::model::coverage::Division;
-use crate::model::{Model, Pane, Progress, Speed};
+use crate::model::{Model, Pane, Speed};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
+use world::coverage::percents;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
     let block = look.pane(Pane::Coverage, "Coverage", "");
@@ -17,24 +18,15 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
 fn wide_lines(look: &Look, width: u16) -> Vec<Line<'static>> {
     let model = look.model;
     let (reachable, whole) = shares(model);
+    let [_, to_do, margin, unreachable] = division(model);
     let row =
         |label: &str, value: String| look.line([(Role::Dim, format!(" {label:<12}")), (Role::Text, value)]);
     vec![
         row("scanned", format!("{reachable:>5} % of reachable floor")),
         row("", format!("{whole:>5} % of whole floor")),
         look.line([(Role::Good, format!(" {}", bar(model, width)))]),
-        row(
-            to_do_label(model),
-            format!("{:>5} % reach, {} % whole", to_do_reachable(model), share(model, |d| d.to_do)),
-        ),
-        row(
-            "no reach",
-            format!(
-                "{:>5} % whole, {} % margin",
-                share(model, |d| d.unreachable),
-                share(model, |d| d.margin)
-            ),
-        ),
+        row(to_do_label(model), format!("{:>5} % reach, {to_do} % whole", to_do_reachable(model))),
+        row("no reach", format!("{unreachable:>5} % whole, {margin} % margin")),
         row("rate", format!("{}   {}", rate(model), area(model))),
         row(way_label(model), way(model)),
         row("left", left(model, true)),
@@ -71,9 +63,11 @@ fn bar(model: &Model, width: u16) -> String {
     text::bar(share, usize::from(width).saturating_sub(4))
 }
 
-/// A share of the whole floor.
-fn share(model: &Model, of: impl Fn(Division) -> f64) -> String {
-    model.coverage.as_ref().map_or_else(|| "-".into(), |raster| text::percent(of(raster.division())))
+/// How the whole floor divides, in per cent that sum to 100.0: scanned, to do, shell margin, out of reach elsewhere.
+fn division(model: &Model) -> [String; 4] {
+    let Some(raster) = &model.coverage else { return [(); 4].map(|()| "-".into()) };
+    let Division { scanned, to_do, margin, unreachable } = raster.division();
+    percents([scanned, to_do, margin, unreachable]).map(|percent| text::number(percent, 1))
 }
 
 /// What is not scanned is still to do, and missed when the mission has ended.
@@ -83,8 +77,8 @@ fn to_do_label(model: &Model) -> &'static str {
 
 /// The same of the reachable floor.
 fn to_do_reachable(model: &Model) -> String {
-    let share = |progress: &Progress| text::percent(1.0 - progress.covered_reachable);
-    model.progress.as_ref().map_or_else(|| "-".into(), share)
+    let scanned = model.progress.as_ref().map(|progress| progress.covered_reachable);
+    scanned.map_or_else(|| "-".into(), |scanned| text::number(percents([scanned, 1.0 - scanned])[1], 1))
 }
 
 fn rate(model: &Model) -> String {

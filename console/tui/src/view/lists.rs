@@ -15,6 +15,8 @@ use std::ops::Range;
 
 /// Widest list.
 const WIDTH: u16 = 78;
+/// Columns of the keys of a command.
+const KEYS: usize = 10;
 
 type Row = Vec<(Role, String)>;
 
@@ -94,9 +96,9 @@ fn commands(look: &Look, help: bool, filter: &str, selected: usize, columns: u16
     let found = actions::listed(filter, look.model.ui.pane);
     // Name and description where there is room, else the description, else the name.
     let (name, about) = match columns {
-        74.. => (15, usize::from(columns) - 2 - 1 - 15 - 14 - 6),
-        58.. => (0, usize::from(columns) - 2 - 1 - 14 - 6),
-        _ => (15, 0),
+        74.. => (16, usize::from(columns) - 2 - 1 - 16 - KEYS - 6),
+        58.. => (0, usize::from(columns) - 2 - 1 - KEYS - 6),
+        _ => (16, 0),
     };
     let rows = found.iter().map(|action| {
         let now = offered(look.model, action.id).is_ok();
@@ -110,7 +112,7 @@ fn commands(look: &Look, help: bool, filter: &str, selected: usize, columns: u16
         vec![
             (Role::Key, text::column(action.name, name)),
             (role, text::column(action.about, about)),
-            (Role::Key, text::column(&action.keys_text(), 14)),
+            (Role::Key, text::column(&action.keys_text(), KEYS)),
             (role, risk.into()),
         ]
     });
@@ -166,7 +168,11 @@ fn planners(look: &Look, selected: usize, columns: u16) -> List {
         vec![
             (Role::Title, text::column(&planner.id, 18)),
             (Role::Text, text::column(&planner.version, 8)),
-            (Role::Good, if drives { "drives" } else { "" }.into()),
+            match look.model.cannot_fly(planner) {
+                _ if drives => (Role::Good, "drives".into()),
+                Some(why) => (Role::Dim, why),
+                None => (Role::Good, String::new()),
+            },
         ]
     });
     let room = usize::from(columns).saturating_sub(2 + 1);

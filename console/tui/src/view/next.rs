@@ -1,7 +1,7 @@
 //! The line that says what comes next and whether anybody is needed.
 
 use super::{events, text};
-use crate::model::{Model, Phase};
+use crate::model::{Busy, Model, Phase};
 use crate::theme::Role;
 use mission::{Order, Outcome, Severity, event::HoldReason};
 
@@ -20,10 +20,13 @@ pub(super) fn clauses(model: &Model) -> Clauses {
         return (Role::Stale, vec![news, "space asks for HOLD.".into()]);
     }
     if model.console.hold_asked {
-        return (Role::Hold, vec!["HOLD is on its way.".into()]);
+        let mut told = vec!["HOLD is on its way.".into()];
+        told.extend(model.console.busy.as_ref().map(|busy| waits_for(model, busy)));
+        return (Role::Hold, told);
     }
     if let Some(work) = &model.console.busy {
-        return (Role::Watch, vec![format!("BUSY: {work}."), "space holds as soon as it is done.".into()]);
+        let told = waits_for(model, work);
+        return (Role::Watch, vec![told, "space holds when it is done.".into(), "X, q stop it.".into()]);
     }
     match (&model.console.asked, &model.phase) {
         (Some(Order::Start), _) => (Role::Title, vec!["The start is on its way.".into()]),
@@ -38,6 +41,15 @@ pub(super) fn clauses(model: &Model) -> Clauses {
         (None, Phase::Ended { outcome, reason }) => {
             (Role::Warn, vec![format!("ENDED {}: {reason}.", outcome.word()), "q leaves.".into()])
         }
+    }
+}
+
+/// What the engine is busy with, for how long already and at most.
+fn waits_for(model: &Model, busy: &Busy) -> String {
+    let passed_s = (model.console.now.mono_s - busy.since_mono_s).max(0.0) as u64;
+    match busy.within_s {
+        Some(within_s) => format!("BUSY: {}, {passed_s} s of {} s at most.", busy.work, within_s as u64),
+        None => format!("BUSY: {}.", busy.work),
     }
 }
 

@@ -11,6 +11,9 @@ use world::Boundary;
 
 type Parts = Vec<(Role, String)>;
 
+/// The name of the screen, at the right end.
+const SCREEN: &str = "Mission ";
+
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let arrangement = Arrangement::of(frame.area().width, frame.area().height);
     let wide = arrangement == Arrangement::Wide;
@@ -21,13 +24,18 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let fixed: usize =
         [&state, &time, &alarms].into_iter().flatten().map(|(_, text)| text::width(text)).sum();
     // Names take what the rest leaves; the tank goes first, for the planner can change.
-    let room = usize::from(area.width).saturating_sub(fixed + 1 + 3 * gap.len());
+    let screen = if wide { text::width(SCREEN) + gap.len() } else { 0 };
+    let room = usize::from(area.width).saturating_sub(fixed + 1 + 3 * gap.len() + screen);
     let names = names(look.model, wide, gap, room);
     let blank = || vec![(Role::Text, gap.to_owned())];
     let left = [vec![(Role::Text, " ".into())], state, blank(), names, time, blank(), alarms].concat();
     frame.render_widget(look.line(left), area);
     if wide {
-        frame.render_widget(Line::from(look.span(Role::Dim, "Mission ")).right_aligned(), right_of(area, 9));
+        let used = fixed + 1 + 2 * gap.len();
+        if used + screen <= usize::from(area.width) {
+            let line = Line::from(look.span(Role::Dim, SCREEN)).right_aligned();
+            frame.render_widget(line, right_of(area, text::width(SCREEN) as u16));
+        }
     }
 }
 

@@ -62,7 +62,7 @@ fn msg() -> impl Strategy<Value = Msg> {
         1 => (recording, prop::option::of(any::<f64>()))
             .prop_map(|(recording, reached_speed)| Msg::Health(Health { recording, reached_speed })),
         1 => "\\PC{0,90}".prop_map(|text| Msg::Notice { severity: Severity::Crit, text }),
-        1 => prop::option::of("[a-z]{0,9}").prop_map(Msg::Busy),
+        1 => prop::option::of(("[a-z]{0,9}", prop::option::of(0.0..99.0_f64))).prop_map(Msg::Busy),
         1 => signal.prop_map(Msg::Signal),
     ]
 }

@@ -1,6 +1,7 @@
 //! Whole missions as scripts of messages: what the operator does, and what follows.
 
-use crate::fixture::{Screen, choice};
+use crate::fixture::{RICH, Screen, choice};
+use crate::screens::{drawn, text};
 use mission::event::HoldReason;
 use mission::{EventKind, Order, Outcome, ParamValue, Severity};
 use tui::model::{Overlay, Pane, Phase};
@@ -14,6 +15,10 @@ fn order(order: Order) -> Effect {
 
 fn notice(screen: &Screen) -> &str {
     screen.model.notice().map_or("", |notice| notice.text.as_str())
+}
+
+fn shown(screen: &Screen) -> String {
+    text(&drawn(&screen.model, RICH, (120, 36)))
 }
 
 fn told(screen: &mut Screen, kind: EventKind) -> Vec<Effect> {
@@ -138,6 +143,34 @@ fn another_planner_drives_only_when_held_and_agreed() {
     assert_eq!(screen.model.ui.overlay, Overlay::Planners { selected: 1 }, "the one that drives is selected");
     assert_eq!(screen.press([Key::Down, Key::Enter]), []);
     assert_eq!(screen.press([Key::Enter]), [order(Order::ChoosePlanner(choice("spiral-tangent")))]);
+}
+
+#[test]
+fn a_planner_that_covers_no_floor_is_marked_and_not_asked_to() {
+    let mut screen = Screen::held();
+    let run = screen.model.run.as_mut().unwrap();
+    run.mission.task =
+        mission::TaskConfig::Cover { anchor: world::Point::origin(), regions: Vec::new(), tolerance_m: 0.2 };
+    let planners = screen.model.console.planners.clone();
+    assert_eq!(screen.model.cannot_fly(&planners[0]).as_deref(), Some("covers no floor"));
+    screen.press([Key::Char('P'), Key::Up, Key::Up, Key::Up, Key::Enter]);
+    assert_eq!(notice(&screen), format!("{} cannot fly this mission: it covers no floor", planners[0].id));
+    assert!(matches!(screen.model.ui.overlay, Overlay::Planners { .. }), "no question is asked");
+    screen.model.console.planners[0].covers = true;
+    screen.press([Key::Enter]);
+    assert!(matches!(screen.model.ui.overlay, Overlay::Confirm(_)));
+}
+
+#[test]
+fn a_plan_in_the_making_is_told_with_the_time_it_has_taken() {
+    let mut screen = Screen::idle();
+    screen.tell(Msg::Busy(Some(("rpf plans".into(), Some(60.0)))));
+    assert!(screen.model.wakes_at_mono_s().is_some(), "the seconds go on");
+    screen.pass(7.0);
+    assert!(shown(&screen).contains("BUSY: rpf plans, 7 s of 60 s at most."), "{}", shown(&screen));
+    screen.press([Key::Char('q')]);
+    screen.tell(Msg::Busy(None));
+    assert!(!shown(&screen).contains("BUSY"));
 }
 
 #[test]

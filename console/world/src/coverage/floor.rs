@@ -111,6 +111,18 @@ impl Floor {
         }
     }
 
+    /// All of it as runs of equal cells: what [`Floor::change`] makes it of any floor with the same cells.
+    pub fn kinds(&self) -> Vec<KindRun> {
+        let mut runs: Vec<KindRun> = Vec::new();
+        for (index, cell) in self.cells.iter().enumerate() {
+            match runs.last_mut() {
+                Some(KindRun(kind, _, count)) if kind == cell => *count += 1,
+                _ => runs.push(KindRun(*cell, index as u32, 1)),
+            }
+        }
+        runs
+    }
+
     /// How many cells the grid has.
     pub fn len(&self) -> usize {
         self.cells.len()
@@ -143,14 +155,9 @@ impl Floor {
 
     /// Cells whose centre comes under a tool on its way from `a` to `b`, in order of their index.
     pub fn cells_under(&self, tool: Tool, a: Pose, b: Pose) -> Vec<usize> {
-        match tool {
-            Tool::Disc { swath_m } => self.cells_near(a.position, b.position, swath_m / 2.0),
-            Tool::Bar { swath_m } => {
-                let swept = super::tool::Swept::new(swath_m, a, b);
-                let (low, high) = swept.bounds();
-                self.cells_in(low, high).filter(|index| swept.contains(self.center(*index))).collect()
-            }
-        }
+        let passage = tool.passage(a, b);
+        let (low, high) = passage.bounds();
+        self.cells_in(low, high).filter(|index| passage.contains(self.center(*index))).collect()
     }
 
     /// The cells of a box and perhaps some beside it, in order of their index.

@@ -94,7 +94,10 @@ impl FloorMaker {
             return Cell::NoGo;
         }
         let wall_m = world.boundary.wall_distance_m(center);
-        if wall_m <= f64::from(self.clearance_m[index]) + ROUNDING_M { Cell::Margin } else { Cell::Beside }
+        // So far from the shell the tool ends in a tank with nothing in it; the rest is up to what stands there.
+        let margin_m = (self.room_m - self.swath_m / 2.0).max(0.0) + self.floor.cell_m;
+        let is_wall_nearest = wall_m <= f64::from(self.clearance_m[index]) + ROUNDING_M;
+        if is_wall_nearest && wall_m <= margin_m { Cell::Margin } else { Cell::Beside }
     }
 
     /// Cells to which the robot's centre can drive from the start: a flood fill over cells with room for it, from the
@@ -187,6 +190,14 @@ mod tests {
         assert_eq!(kind(&floor, 2.0, 0.0), Cell::Outside);
         assert_eq!(kind(&floor, -2.0, 0.0), Cell::NoGo);
         assert_eq!(kind(&floor, 0.0, 0.0), Cell::Reachable);
+    }
+
+    #[test]
+    fn a_gap_at_the_shell_that_is_too_narrow_is_beside_the_column_and_no_margin() {
+        let floor = Floor::new(&tank(&[(4.1, 0.0, 0.3)]), 0.05, 0.5, 0.6, Point::origin());
+        assert_eq!(kind(&floor, 4.72, 0.02), Cell::Beside);
+        assert_eq!(kind(&floor, 4.92, 0.02), Cell::Margin);
+        assert_eq!(kind(&floor, -4.72, 0.02), Cell::Reachable);
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! The scanning tool and the floor that it passes.
 
-use crate::geometry::{Point, Pose, Vector};
+use crate::{
+    geometry::{Point, Pose, Vector},
+    polyline::nearest_on_segment,
+};
 use serde::{Deserialize, Serialize};
 
 /// What the robot scans with.
@@ -26,6 +29,44 @@ impl Tool {
             Self::Bar { swath_m } | Self::Disc { swath_m } => swath_m,
         }
     }
+
+    /// What it passes on its way between two poses that are close together.
+    pub(super) fn passage(self, from: Pose, to: Pose) -> Passage {
+        match self {
+            Self::Bar { swath_m } => Passage::Bar(Swept::new(swath_m, from, to)),
+            Self::Disc { swath_m } => {
+                Passage::Disc { from: from.position, to: to.position, reach_m: swath_m / 2.0 }
+            }
+        }
+    }
+}
+
+/// What a tool passes.
+pub(super) enum Passage {
+    Bar(Swept),
+    Disc { from: Point, to: Point, reach_m: f64 },
+}
+
+impl Passage {
+    /// South west and north east corners of the box around it.
+    pub(super) fn bounds(&self) -> (Point, Point) {
+        match self {
+            Self::Bar(swept) => swept.bounds(),
+            Self::Disc { from, to, reach_m } => {
+                let reach = Vector::new(*reach_m, *reach_m);
+                (from.inf(to) - reach, from.sup(to) + reach)
+            }
+        }
+    }
+
+    pub(super) fn contains(&self, point: Point) -> bool {
+        match self {
+            Self::Bar(swept) => swept.contains(point),
+            Self::Disc { from, to, reach_m } => {
+                (point - nearest_on_segment(*from, *to, point)).norm() <= *reach_m
+            }
+        }
+    }
 }
 
 /// What a bar passes on its way between two poses that are close together: two triangles for each half.
@@ -35,7 +76,7 @@ pub(super) struct Swept([[Point; 3]; 4]);
 const SEAM_M: f64 = 1e-9;
 
 impl Swept {
-    pub(super) fn new(swath_m: f64, from: Pose, to: Pose) -> Self {
+    fn new(swath_m: f64, from: Pose, to: Pose) -> Self {
         let half =
             |pose: Pose| Vector::new(-pose.heading_rad.sin(), pose.heading_rad.cos()) * (swath_m / 2.0);
         let (a, b) = (from.position, to.position);
@@ -43,12 +84,12 @@ impl Swept {
         Self([[a, a_left, b_left], [a, b_left, b], [a, a_right, b_right], [a, b_right, b]])
     }
 
-    pub(super) fn bounds(&self) -> (Point, Point) {
+    fn bounds(&self) -> (Point, Point) {
         let corners = self.0.iter().flatten();
         corners.fold((self.0[0][0], self.0[0][0]), |(low, high), p| (low.inf(p), high.sup(p)))
     }
 
-    pub(super) fn contains(&self, point: Point) -> bool {
+    fn contains(&self, point: Point) -> bool {
         self.0.iter().any(|[a, b, c]| {
             let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(from, to)| (to - from).perp(&(point - from)));
             let area = (b - a).perp(&(c - a));

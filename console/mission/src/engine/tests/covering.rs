@@ -149,6 +149,16 @@ fn floor_passed_with_an_uncertain_position_does_not_count() {
 }
 
 #[test]
+fn a_planner_that_cannot_go_on_is_asked_some_times_and_then_the_robot_is_stuck() {
+    let mut flight = Flight::new(MissionConfig { attended: false, ..covering() });
+    flight.planner.stuck_from_tick = Some(100);
+    flight.tick(&[Order::Start]);
+    flight.fly(3000);
+    assert_eq!(flight.ended(), Some(Outcome::Stuck));
+    assert!((2..8).contains(&flight.planner.plans), "{} plans", flight.planner.plans);
+}
+
+#[test]
 fn lanes_are_planned_closer_together_than_the_swath_is_wide() {
     let scan = ScanConfig { overlap_m: 0.1, ..ScanConfig::default() };
     let plans = |scan| {

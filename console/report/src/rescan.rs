@@ -1,0 +1,206 @@
+//! What of a floor is worth being scanned again after one run or several.
+
+use crate::{
+    account::{Area, MissReason, areas::area_of},
+    merged::{Joined, PastRun, joined},
+};
+use std::collections::VecDeque;
+use world::{Floor, Point, coverage::regions};
+
+/// Missed floor this near to other missed floor belongs to it, as a share of the swath.
+const TOGETHER_SWATHS: f64 = 0.5;
+/// Floor around what was missed that is scanned again with it, as a share of the swath: a robot cannot aim at less.
+const AROUND_SWATHS: f64 = 0.25;
+/// Boxes are made of blocks this wide, as a share of the swath.
+const BLOCK_SWATHS: f64 = 0.2;
+
+/// What is to be scanned again, and what is not worth it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rescan {
+    /// Floor to be scanned, south west and north east corners, metres.
+    pub boxes: Vec<[Point; 2]>,
+    /// The missed areas in it, the largest first.
+    pub areas: Vec<Area<MissReason>>,
+    /// Missed areas that are left, the largest first: too small.
+    pub left: Vec<Area<MissReason>>,
+    /// Missed floor that none of the runs was asked to scan, square metres.
+    pub not_asked_m2: f64,
+}
+
+/// Finds what is to be scanned again.
+///
+/// Missed floor that lies closely together is taken together and grown by what a robot can aim at. What is then
+/// smaller than `least_m2` is left. There are no more than `most` boxes; the fewer, the coarser.
+///
+/// # Errors
+/// As [`crate::merged`].
+pub fn rescan(runs: &[PastRun], least_m2: f64, most: usize) -> Result<Rescan, String> {
+    let Joined { run, scanned, evidence } = joined(runs)?;
+    let grid = scanned.believed();
+    let floor = grid.floor();
+    let is_missed = |index: usize| floor.is_reachable(index) && !grid.is_covered(index);
+    let is_wanted = |index: usize| is_missed(index) && evidence.is_asked(index);
+    let not_asked = (0..floor.len()).filter(|index| is_missed(*index) && !evidence.is_asked(*index)).count();
+    let plates = run.plates.map(|layout| layout.map(&run.world.boundary, floor));
+    let swath_m = run.mission.swath_m;
+    let (mut taken, mut areas, mut left) = (vec![false; floor.len()], Vec::new(), Vec::new());
+    for cells in clusters(floor, TOGETHER_SWATHS * swath_m, is_wanted) {
+        let reason = most_frequent(cells.iter().map(|index| evidence.why_missed(floor, *index)));
+        let mut area = area_of(floor, None, reason, &cells);
+        let plate = floor.cell_at(area.at).and_then(|index| plates.as_ref()?.plate_of(index));
+        area.plate = plates.as_ref().zip(plate).map(|(map, plate)| map.plates[plate].name.clone());
+        if area.area_m2 < least_m2 {
+            left.push(area);
+        } else {
+            areas.push(area);
+            for index in cells {
+                taken[index] = true;
+            }
+        }
+    }
+    for list in [&mut areas, &mut left] {
+        list.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));
+    }
+    let around = around(floor, &taken, AROUND_SWATHS * swath_m);
+    let is_in = |index: usize| around[index] && floor.is_reachable(index);
+    let finest = ((BLOCK_SWATHS * swath_m / floor.cell_m).round() as usize).max(1);
+    let boxes = (0..8).map(|fold| regions::boxes(floor, finest << fold, is_in));
+    let boxes = boxes.into_iter().find(|boxes| boxes.len() <= most).unwrap_or_default();
+    Ok(Rescan {
+        boxes: boxes.iter().map(|corners| [corners[0], corners[2]]).collect(),
+        areas,
+        left,
+        not_asked_m2: not_asked as f64 * floor.cell_m2(),
+    })
+}
+
+/// Wanted cells in groups: a cell belongs to all that are within some distance of it. In order of their first cell.
+fn clusters(floor: &Floor, within_m: f64, is_wanted: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
+    let mut open: Vec<bool> = (0..floor.len()).map(is_wanted).collect();
+    let mut found = Vec::new();
+    for first in 0..floor.len() {
+        if !open[first] {
+            continue;
+        }
+        open[first] = false;
+        let (mut cells, mut queue) = (Vec::new(), VecDeque::from([first]));
+        while let Some(index) = queue.pop_front() {
+            cells.push(index);
+            let center = floor.center(index);
+            for near in floor.cells_near(center, center, within_m) {
+                if std::mem::take(&mut open[near]) {
+                    queue.push_back(near);
+                }
+            }
+        }
+        cells.sort_unstable();
+        found.push(cells);
+    }
+    found
+}
+
+/// Cells within some distance of taken ones.
+fn around(floor: &Floor, taken: &[bool], within_m: f64) -> Vec<bool> {
+    let mut around = taken.to_vec();
+    let width = floor.width;
+    let is_inner = |index: usize| {
+        let (column, row) = (index % width, index / width);
+        let inside = column > 0 && column + 1 < width && row > 0 && row + 1 < floor.height;
+        inside && [index - 1, index + 1, index - width, index + width].iter().all(|next| taken[*next])
+    };
+    for index in (0..floor.len()).filter(|index| taken[*index] && !is_inner(*index)) {
+        let center = floor.center(index);
+        floor.cells_near(center, center, within_m).into_iter().for_each(|near| around[near] = true);
+    }
+    around
+}
+
+/// The reason that most cells have; of equal ones the first in their order.
+fn most_frequent(reasons: impl Iterator<Item = MissReason>) -> MissReason {
+    let mut counts = std::collections::BTreeMap::new();
+    for reason in reasons {
+        *counts.entry(reason).or_insert(0_usize) += 1;
+    }
+    let first = |most: Option<(MissReason, usize)>, (reason, count): (MissReason, usize)| match most {
+        Some((_, many)) if many >= count => most,
+        _ => Some((reason, count)),
+    };
+    counts.into_iter().fold(None, first).map_or(MissReason::NotReached, |(reason, _)| reason)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+    use crate::{
+        fold::{Fold, tests::round_tank},
+        summary::Logs,
+    };
+    use mission::{Event, EventKind};
+    use world::{CellRun, coverage::runs_of};
+
+    /// A run that scanned everything but some places, each with a radius.
+    fn all_but(missed: &[(f64, f64, f64)]) -> PastRun {
+        let run = round_tank(0.05);
+        let is_scanned = |index: &usize| {
+            let center = run.floor.center(*index);
+            missed.iter().all(|(x, y, radius_m)| (center - Point::new(*x, *y)).norm() > *radius_m)
+        };
+        let runs = runs_of((0..run.floor.len()).filter(is_scanned));
+        with(run, runs)
+    }
+
+    fn with(run: mission::RunOpened, runs: Vec<CellRun>) -> PastRun {
+        let mut fold = Fold::new();
+        for kind in [EventKind::RunOpened(Box::new(run)), EventKind::Covered { runs }] {
+            fold.apply(&Event { tick: 0, t_s: 0.0, kind });
+        }
+        let logs = Logs { journal: None, recording: None, error: None };
+        PastRun { name: "a".into(), logs, journal_sha256: None, recording_sha256: None, fold }
+    }
+
+    fn holds(rescan: &Rescan, x: f64, y: f64) -> bool {
+        let inside = |[low, high]: &[Point; 2]| low.x <= x && x <= high.x && low.y <= y && y <= high.y;
+        rescan.boxes.iter().any(inside)
+    }
+
+    #[test]
+    fn a_gap_is_grown_to_what_a_robot_can_aim_at() {
+        let rescan = rescan(&[all_but(&[(1.0, -1.0, 0.3)])], 0.05, 1000).unwrap();
+        assert!(rescan.areas.len() == 1 && rescan.left.is_empty(), "{rescan:?}");
+        assert!(holds(&rescan, 1.0, -1.0) && holds(&rescan, 1.35, -1.0) && !holds(&rescan, 1.7, -1.0));
+        assert_eq!(rescan.areas[0].plate.as_deref().map(|name| &name[..1]), Some("R"));
+    }
+
+    #[test]
+    fn slivers_beside_each_other_are_one_area_and_a_lone_speck_is_left_with_its_reason() {
+        let slivers: Vec<_> = (0..8).map(|k| (-1.0 + 0.2 * f64::from(k), -1.0, 0.06)).collect();
+        let speck = [(2.0, 1.0, 0.06)];
+        let rescan = rescan(&[all_but(&[&slivers[..], &speck[..]].concat())], 0.05, 1000).unwrap();
+        assert!(rescan.areas.len() == 1 && rescan.left.len() == 1, "{rescan:?}");
+        assert!((rescan.left[0].at - Point::new(2.0, 1.0)).norm() < 0.06 && !holds(&rescan, 2.0, 1.0));
+        assert!(rescan.areas[0].area_m2 > 0.05 && holds(&rescan, -0.1, -1.0), "{rescan:?}");
+    }
+
+    #[test]
+    fn nothing_is_to_be_done_where_nothing_was_missed_and_boxes_are_never_too_many() {
+        let none = rescan(&[all_but(&[])], 0.05, 1000).unwrap();
+        assert!(none.boxes.is_empty() && none.areas.is_empty() && none.left.is_empty());
+        let half = rescan(&[with(round_tank(0.05), vec![CellRun(0, 200 * 100)])], 0.05, 20).unwrap();
+        assert!((1..=20).contains(&half.boxes.len()), "{}", half.boxes.len());
+    }
+
+    #[test]
+    fn what_nobody_asked_for_is_not_scanned_again() {
+        let mut run = round_tank(0.05);
+        run.mission.task = mission::TaskConfig::Cover {
+            anchor: Point::origin(),
+            regions: vec![regions::square(Point::new(0.0, -2.0), 1.0)],
+            tolerance_m: 0.2,
+        };
+        let rescan = rescan(&[with(run, vec![])], 0.05, 1000).unwrap();
+        assert!(holds(&rescan, 0.0, -2.0) && !holds(&rescan, 0.0, 2.0));
+        assert!(rescan.not_asked_m2 > 60.0 && rescan.areas.len() == 1, "{rescan:?}");
+    }
+}

@@ -1,0 +1,60 @@
+//! Shares as people read them.
+
+/// Shares as per cent with one decimal that sum to 100.0 if the shares sum to 1.
+///
+/// The first share is rounded as usual, so that it reads the same wherever it stands alone; what rounding down takes
+/// from the others goes to those that it hurts most.
+pub fn percents<const N: usize>(shares: [f64; N]) -> [f64; N] {
+    let exact = shares.map(|share| share * 1000.0);
+    let mut parts = exact.map(|part| (part + 1e-9).floor());
+    let Some(first) = parts.first_mut() else { return shares };
+    *first = (exact[0] + 1e-9).round();
+    let lacking = (exact.iter().sum::<f64>().round() - parts.iter().sum::<f64>()).max(0.0) as usize;
+    let mut order: Vec<usize> = (1..N).collect();
+    order.sort_by(|a, b| (exact[*b] - parts[*b]).total_cmp(&(exact[*a] - parts[*a])));
+    order.into_iter().take(lacking).for_each(|index| parts[index] += 1.0);
+    parts.map(|part| part / 10.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn tenths(percents: &[f64]) -> u32 {
+        percents
+            .iter()
+            .map(|percent| format!("{percent:.1}").replace('.', "").parse::<u32>().expect("a number"))
+            .sum()
+    }
+
+    #[test]
+    fn thirds_sum_to_a_hundred() {
+        assert_eq!(tenths(&percents([1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0])), 1000);
+        assert_eq!(percents([1.0, 0.0]).map(|percent| percent as u32), [100, 0]);
+    }
+
+    proptest! {
+        #[test]
+        fn whatever_is_divided_sums_to_a_hundred_as_it_is_printed(
+            parts in prop::array::uniform4(0_u32..50_000), many in 0_u32..5_000_000,
+        ) {
+            let parts = [parts[0] + many, parts[1], parts[2], parts[3]];
+            let whole: u32 = parts.iter().sum();
+            prop_assume!(whole > 0);
+            let shares = parts.map(|part| f64::from(part) / f64::from(whole));
+            let rounded = percents(shares);
+            prop_assert_eq!(tenths(&rounded), 1000, "{:?}", rounded);
+            prop_assert!((rounded[0] - 100.0 * shares[0]).abs() < 0.05 + 1e-6);
+            for (share, percent) in shares.iter().zip(&rounded) {
+                prop_assert!(*percent >= 0.0 && (percent - 100.0 * share).abs() < 0.1 + 1e-6);
+            }
+        }
+
+        #[test]
+        fn scanned_and_missed_sum_to_a_hundred(part in 0_u32..1_000_001) {
+            let share = f64::from(part) / 1e6;
+            prop_assert_eq!(tenths(&percents([share, 1.0 - share])), 1000);
+        }
+    }
+}

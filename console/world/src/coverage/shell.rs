@@ -1,0 +1,276 @@
+//! The zone along the shell, where the floor plate meets it: too narrow for the cells of a floor, so it is looked at
+//! by itself, place by place along the wall.
+
+use super::Tool;
+use crate::{
+    geometry::{Point, Pose, Vector},
+    shape::Shape,
+    tank::Boundary,
+};
+use std::f64::consts::TAU;
+
+/// Distance between two places along the wall, metres; more where the wall is so long that it takes too many.
+const SPACING_M: f64 = 0.025;
+/// Most places along the wall.
+const MOST_PLACES: f64 = 20_000.0;
+/// Layers into which the zone is divided from the shell inwards.
+const LAYERS: usize = 15;
+/// Edge of the squares by which places are found, metres.
+const BUCKET_M: f64 = 0.5;
+
+/// The zone along the shell with what a tool has passed of it.
+///
+/// Passes that come nowhere near the wall cost two distances; the others one look at each place beside them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShellZone {
+    boundary: Boundary,
+    width_m: f64,
+    places: Vec<Place>,
+    /// Which places lie in which square, row by row from the south west corner.
+    buckets: Vec<Vec<u32>>,
+    origin: Point,
+    columns: usize,
+}
+
+/// A short stretch of the wall and the floor before it.
+#[derive(Debug, Clone, PartialEq)]
+struct Place {
+    /// On the wall, metres.
+    at: Point,
+    /// Across the zone, a layer long, metres.
+    step: Vector,
+    /// Length of the stretch, metres.
+    length_m: f64,
+    /// Layers that lie in the tank.
+    inside: u32,
+    /// Layers that were passed.
+    passed: u32,
+}
+
+/// How much of the zone was scanned.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ShellFigures {
+    /// Length of the shell beside free floor, metres.
+    pub length_m: f64,
+    /// Length along which the whole width of the zone was scanned, metres.
+    pub done_m: f64,
+    /// Scanned share of the zone's area, 0 to 1.
+    pub scanned: f64,
+    /// Distance from the shell to where the scanned floor begins, the median along the shell where the zone is not
+    /// done, metres; the zone's width where nothing of it was scanned, 0 if all of it is done.
+    pub gap_m: f64,
+}
+
+impl ShellZone {
+    /// The zone of some width along a wall, of which nothing was scanned yet.
+    pub fn new(boundary: &Boundary, width_m: f64) -> Self {
+        let (low, high) = boundary.bounds();
+        let count = |span_m: f64| (span_m / BUCKET_M).ceil().max(1.0) as usize + 1;
+        let (columns, rows) = (count(high.x - low.x), count(high.y - low.y));
+        let mut zone = Self {
+            boundary: boundary.clone(),
+            width_m,
+            places: places(boundary, width_m),
+            buckets: vec![Vec::new(); columns * rows],
+            origin: low,
+            columns,
+        };
+        for (index, place) in (0..).zip(&zone.places) {
+            let (column, row) = (bucket(place.at.x - low.x), bucket(place.at.y - low.y));
+            let square = row.min(rows - 1) * columns + column.min(columns - 1);
+            zone.buckets[square].push(index);
+        }
+        zone
+    }
+
+    /// Whether an outline may reach into the zone.
+    pub fn is_beside(&self, shape: &Shape) -> bool {
+        let (low, high) = shape.bounds();
+        let reach_m = (high - low).norm() / 2.0 + self.width_m;
+        self.boundary.wall_distance_m(nalgebra::center(&low, &high)) <= reach_m
+    }
+
+    /// A tool went from `a` to `b`.
+    pub fn pass(&mut self, tool: Tool, a: Pose, b: Pose) {
+        let reach_m = tool.swath_m() / 2.0 + self.width_m;
+        let wall_m = |pose: Pose| self.boundary.wall_distance_m(pose.position);
+        if wall_m(a).min(wall_m(b)) > reach_m + (b.position - a.position).norm() {
+            return;
+        }
+        let passage = tool.passage(a, b);
+        let (low, high) = passage.bounds();
+        let margin = Vector::new(self.width_m, self.width_m);
+        let (first, last) = (low - margin - self.origin, high + margin - self.origin);
+        let rows = self.buckets.len() / self.columns;
+        for row in bucket(first.y)..=bucket(last.y).min(rows - 1) {
+            for column in bucket(first.x)..=bucket(last.x).min(self.columns - 1) {
+                for index in &self.buckets[row * self.columns + column] {
+                    let place = &mut self.places[*index as usize];
+                    let passed = |layer: &usize| passage.contains(place.in_layer(*layer));
+                    place.passed |= (0..LAYERS).filter(passed).fold(0, |bits, layer| bits | 1 << layer);
+                }
+            }
+        }
+    }
+
+    /// Takes in what was passed on another way along the same wall.
+    pub fn join(&mut self, other: &Self) {
+        for (own, other) in self.places.iter_mut().zip(&other.places) {
+            own.passed |= other.passed;
+        }
+    }
+
+    /// The figures, without what lies in something solid.
+    pub fn figures(&self, is_solid: impl Fn(Point) -> bool) -> ShellFigures {
+        let mut figures = ShellFigures::default();
+        let (mut of_m, mut scanned_m) = (0.0, 0.0);
+        let mut gaps: Vec<(f64, f64)> = Vec::new();
+        for place in &self.places {
+            let is_free = |layer: &usize| place.inside & 1 << layer != 0 && !is_solid(place.in_layer(*layer));
+            let free = (0..LAYERS).filter(is_free).fold(0_u32, |bits, layer| bits | 1 << layer);
+            if free == 0 {
+                continue;
+            }
+            let passed = place.passed & free;
+            figures.length_m += place.length_m;
+            of_m += place.length_m * f64::from(free.count_ones());
+            scanned_m += place.length_m * f64::from(passed.count_ones());
+            if passed == free {
+                figures.done_m += place.length_m;
+            } else {
+                let layers = passed.trailing_zeros().min(LAYERS as u32);
+                gaps.push((f64::from(layers) / LAYERS as f64 * self.width_m, place.length_m));
+            }
+        }
+        figures.scanned = if of_m > 0.0 { scanned_m / of_m } else { 0.0 };
+        figures.gap_m = median(gaps);
+        figures
+    }
+}
+
+impl Place {
+    /// The middle of a layer; the first one lies along the shell.
+    fn in_layer(&self, layer: usize) -> Point {
+        self.at + self.step * (layer as f64 + 0.5)
+    }
+}
+
+/// The column or row of squares at some distance from the first one's edge.
+fn bucket(offset_m: f64) -> usize {
+    (offset_m / BUCKET_M).max(0.0) as usize
+}
+
+fn places(boundary: &Boundary, width_m: f64) -> Vec<Place> {
+    let place = |at: Point, inward: Vector, length_m: f64| {
+        let mut place =
+            Place { at, step: inward * (width_m / LAYERS as f64), length_m, inside: 0, passed: 0 };
+        let is_inside = |layer: &usize| boundary.contains(place.in_layer(*layer));
+        place.inside = (0..LAYERS).filter(is_inside).fold(0, |bits, layer| bits | 1 << layer);
+        place
+    };
+    match boundary {
+        Boundary::Circle { radius_m } => {
+            let length_m = TAU * radius_m;
+            let count = (length_m / SPACING_M).min(MOST_PLACES).ceil().max(1.0);
+            let outward = |k: usize| {
+                let angle = TAU * (k as f64 + 0.5) / count;
+                Vector::new(angle.cos(), angle.sin())
+            };
+            let at = |k| Point::from(outward(k) * *radius_m);
+            (0..count as usize).map(|k| place(at(k), -outward(k), length_m / count)).collect()
+        }
+        Boundary::Polygon { vertices } => {
+            let sides = || vertices.iter().zip(vertices.iter().cycle().skip(1));
+            let length_m: f64 = sides().map(|(a, b)| (b - a).norm()).sum();
+            let spacing_m = SPACING_M.max(length_m / MOST_PLACES);
+            let along = |(a, b): (&Point, &Point)| {
+                let side_m = (b - a).norm();
+                let (count, way) = ((side_m / spacing_m).ceil(), b - a);
+                let inward = Vector::new(-way.y, way.x) / side_m.max(f64::MIN_POSITIVE);
+                let start = *a;
+                (0..count as usize)
+                    .map(move |k| (start + way * ((k as f64 + 0.5) / count), inward, side_m / count))
+            };
+            sides().flat_map(along).map(|(at, inward, length_m)| place(at, inward, length_m)).collect()
+        }
+    }
+}
+
+/// The middle of some values with their weights; 0 for none.
+fn median(mut values: Vec<(f64, f64)>) -> f64 {
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = values.iter().map(|(_, weight)| weight).sum::<f64>() / 2.0;
+    let mut before = 0.0;
+    let middle = values.iter().find(|(_, weight)| {
+        before += weight;
+        before >= half
+    });
+    middle.map_or(0.0, |(value, _)| *value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    const BAR: Tool = Tool::Bar { swath_m: 0.6 };
+
+    /// Once round a tank of 5 m, the robot's centre so far from the wall.
+    fn round(distance_m: f64, share: f64) -> ShellZone {
+        let mut zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
+        let radius_m = 5.0 - distance_m;
+        let pose = |k: i32| {
+            let angle = share * TAU * f64::from(k) / 2000.0;
+            Pose::new(radius_m * angle.cos(), radius_m * angle.sin(), angle + FRAC_PI_2)
+        };
+        (0..2000).for_each(|k| zone.pass(BAR, pose(k), pose(k + 1)));
+        zone
+    }
+
+    fn near(value: f64, expected: f64, by: f64) -> bool {
+        (value - expected).abs() <= by
+    }
+
+    #[test]
+    fn a_tool_that_touches_the_shell_all_round_does_the_zone() {
+        let figures = round(0.3, 1.0).figures(|_| false);
+        assert!(near(figures.length_m, TAU * 5.0, 1e-9) && near(figures.done_m, figures.length_m, 1e-9));
+        assert!(near(figures.scanned, 1.0, 1e-12) && near(figures.gap_m, 0.0, 1e-12), "{figures:?}");
+    }
+
+    #[test]
+    fn a_tool_that_ends_before_the_shell_says_by_how_much() {
+        let figures = round(0.32, 1.0).figures(|_| false);
+        assert!(near(figures.done_m, 0.0, 1e-9) && near(figures.gap_m, 0.02, 1e-9), "{figures:?}");
+        assert!(near(figures.scanned, 55.0 / 75.0, 0.01), "{figures:?}");
+        assert!(near(round(0.5, 1.0).figures(|_| false).gap_m, 0.075, 1e-9));
+    }
+
+    #[test]
+    fn half_way_round_is_half_the_length_and_two_halves_are_all_of_it() {
+        let mut half = round(0.3, 0.5);
+        let figures = half.figures(|_| false);
+        assert!(near(figures.done_m / figures.length_m, 0.5, 0.003), "{figures:?}");
+        half.join(&round(0.3, -0.5));
+        let figures = half.figures(|_| false);
+        assert!(near(figures.done_m, figures.length_m, 1e-9));
+    }
+
+    #[test]
+    fn what_something_stands_on_is_no_zone() {
+        let figures = round(0.3, 0.5).figures(|point| point.y < 0.0);
+        assert!(near(figures.length_m, 5.0 * FRAC_PI_2 * 2.0, 0.03) && near(figures.scanned, 1.0, 0.01));
+    }
+
+    #[test]
+    fn straight_walls_have_a_zone_too_and_corners_are_in_it_once() {
+        let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 2.0), (0.0, 2.0)];
+        let vertices = corners.map(|(x, y)| Point::new(x, y)).to_vec();
+        let mut zone = ShellZone::new(&Boundary::Polygon { vertices }, 0.075);
+        zone.pass(BAR, Pose::new(0.0, 0.3, 0.0), Pose::new(4.0, 0.3, 0.0));
+        let figures = zone.figures(|_| false);
+        assert!(near(figures.length_m, 12.0, 1e-9));
+        // The south wall, and 0.6 m of the walls beside it.
+        assert!(near(figures.done_m, 5.2, 0.06), "{figures:?}");
+    }
+}
