@@ -14,14 +14,17 @@ use world::{
     tether::{Cable, Case, Certificate, Limits, certify},
 };
 
-/// Share of the cable's slack by which cuts across the lanes may lengthen the way to their far end; more gains nothing.
-const SLACK_ACROSS: f64 = 0.8;
-/// The same for cuts along straight lanes, tried in this order until the cable keeps its limit: it seldom gets as long
-/// as a single cut makes one fear.
+/// Shares of the cable's slack by which a cut may lengthen the way to its far end, tried in this order until the cable
+/// keeps its limits: cuts across the lanes, and cuts along them. The cable seldom gets as long as a single cut makes
+/// one fear.
+const SLACKS_ACROSS: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
 const SLACKS_ALONG: [f64; 7] = [3.0, 2.2, 1.7, 1.3, 1.0, 0.8, 0.5];
 
 /// The hull goes round a column further out than the cable does; by about this share of the least cable.
-const AROUND_SHARE: f64 = 0.018;
+const AROUND_SHARE: f64 = 0.026;
+
+/// What floor is worth when the path is shortened, as a multiple of the path that sweeps it.
+const FLOOR_SHARE: f64 = 9.0;
 
 /// What the operator sets.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,10 +33,14 @@ pub struct Wishes {
     pub alpha_rad: f64,
     /// Longest cable, as a multiple of the least that can do.
     pub cable_share: f64,
-    /// Reel and wraps.
+    /// Reel and wraps that are wanted.
     pub limits: Limits,
-    /// Price of a whole turn, metres.
+    /// Reel and wraps that the mission demands.
+    pub demanded: Limits,
+    /// Price of a whole turn in the search, metres.
     pub turn_m: f64,
+    /// Price of a whole turn in the choice among candidates, metres.
+    pub choice_turn_m: f64,
     /// Coverage that is enough.
     pub enough: f64,
     /// Directions of straight lanes that are tried; none if 0.
@@ -127,7 +134,7 @@ pub fn candidates(ground: &Ground, wishes: &Wishes, alpha_rad: f64) -> Vec<Candi
             },
             touch_m2: 0.55 * ground.swath_m * ground.swath_m,
             rounds: 1,
-            floor_m_per_m2: 30.0 / ground.swath_m,
+            floor_m_per_m2: FLOOR_SHARE / ground.swath_m,
             enough: wishes.enough,
         },
     };
@@ -150,16 +157,14 @@ fn cable_m(ground: &Ground, wishes: &Wishes, pattern: &Pattern, alpha_rad: f64) 
     let most_m = (least_m * wishes.cable_share).min(wishes.limits.reel_m);
     let with =
         |slack: f64| (least_m + (least_m * wishes.cable_share - least_m) * slack).min(wishes.limits.reel_m);
-    if *pattern == Pattern::Contours {
-        return with(SLACK_ACROSS);
-    }
+    let home = ground.home();
     let keeps = |slack: &&f64| {
         let rule = CutRule { alpha_rad, cable_m: with(**slack) };
-        let home = ground.home();
         domain(ground, pattern, &rule, home)
             .is_none_or(|(_, slit)| slit.farthest_m(home) <= most_m + AROUND_SHARE * least_m)
     };
-    with(SLACKS_ALONG.iter().find(keeps).copied().unwrap_or(0.0))
+    let slacks: &[f64] = if *pattern == Pattern::Contours { &SLACKS_ACROSS } else { &SLACKS_ALONG };
+    with(slacks.iter().find(keeps).copied().unwrap_or(0.0))
 }
 
 /// Place of the first lane across a direction, and the distance between lanes: even between straight walls.

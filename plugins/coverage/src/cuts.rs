@@ -48,8 +48,8 @@ struct Group {
     is_at_wall: bool,
     /// How far the part at the foot reaches from it, metres.
     reach_m: f64,
-    /// Length from the foot to the wall along the cuts, once they are made.
-    chain_m: f64,
+    /// From the foot to the wall along the cuts, once they are made.
+    chain: Vec<Point>,
 }
 
 /// A cut that must not be made: the middle of its obstacle, and where it would end.
@@ -110,8 +110,10 @@ fn cuts(ground: &Ground, pattern: &Pattern, rule: &CutRule, banned: &[Banned]) -
     order.sort_by(|a, b| groups[*b].rho_m.total_cmp(&groups[*a].rho_m).then(a.cmp(b)));
     let mut made: Vec<Cut> = Vec::new();
     for from in order {
-        let (line, chain_m) = best_cut(ground, pattern, rule, (&groups, &made, banned), from);
-        groups[from].chain_m = chain_m;
+        let (line, to) = best_cut(ground, pattern, rule, (&groups, &made, banned), from);
+        let mut chain = line.clone();
+        chain.extend(to.iter().flat_map(|to| groups[*to].chain.iter().skip(1)));
+        groups[from].chain = chain;
         made.push(Cut { line, from });
     }
     made
@@ -140,7 +142,7 @@ fn groups(ground: &Ground) -> Vec<Group> {
         let last = parts.iter().copied().max_by(|a, b| rho(a).total_cmp(&rho(b))).expect("not empty");
         let foot = middle(&ground.parts[last]);
         let (rho_m, reach_m) = (rho(&last), reach_m(&ground.parts[last]));
-        groups.push(Group { parts, foot, rho_m, is_at_wall, reach_m, chain_m: 0.0 });
+        groups.push(Group { parts, foot, rho_m, is_at_wall, reach_m, chain: vec![foot] });
     }
     groups
 }
@@ -167,7 +169,6 @@ fn wall_gap_m(wall: &Boundary, part: &Part) -> f64 {
 struct Candidate {
     end: Point,
     group: Option<usize>,
-    chain_m: f64,
     cost: f64,
 }
 
@@ -177,7 +178,7 @@ fn best_cut(
     rule: &CutRule,
     (groups, made, banned): (&[Group], &[Cut], &[Banned]),
     from: usize,
-) -> (Vec<Point>, f64) {
+) -> (Vec<Point>, Option<usize>) {
     let own = &groups[from];
     let outward = (own.foot - ground.anchor).try_normalize(1e-9).unwrap_or_else(Vector::x);
     // Wider and wider, until something goes: a cut there must be.
@@ -191,21 +192,43 @@ fn best_cut(
         let is_near = |a: Point, b: Point| (a - b).norm() < 0.05;
         let is_banned = |end: Point| banned.iter().any(|no| is_near(no.0, own.foot) && is_near(no.1, end));
         for candidate in &mut all {
-            let excess_m = own.rho_m + candidate.chain_m - rule.cable_m;
+            let beyond = candidate.group.map_or(&[][..], |to| &groups[to].chain[1..]);
+            let chain: Vec<Point> =
+                [own.foot, candidate.end].into_iter().chain(beyond.iter().copied()).collect();
+            let excess_m = taut_m(ground.anchor, &chain) - ground.keep_m - rule.cable_m;
             candidate.cost = pattern.broken_lanes(&ground.wall, own.foot, candidate.end, ground.swath_m)
-                + COST_PER_M * candidate.chain_m
+                + COST_PER_M * world::polyline::length_m(&chain)
                 + 1e3 * excess_m.max(0.0);
         }
         all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         for candidate in &all {
             let line = line_to(ground, pattern, groups, made, from, candidate, berth_m);
             if let Some(line) = line.filter(|line| !is_banned(line[line.len() - 1])) {
-                return (line, candidate.chain_m);
+                return (line, candidate.group);
             }
         }
     }
     let end = own.foot + outward * to_wall_m(&ground.wall, own.foot, outward);
-    (vec![own.foot, end], (end - own.foot).norm())
+    (vec![own.foot, end], None)
+}
+
+/// Length of a taut cable to the far end of a chain of cuts, on the side of the chain where it is longer, metres.
+fn taut_m(anchor: Point, chain: &[Point]) -> f64 {
+    let along = |side: f64| {
+        let mut path = vec![anchor];
+        for next in chain {
+            // The cable bears on what it leaves on its other side only.
+            while let [.., before, last] = path[..] {
+                if (last - before).perp(&(next - last)) * side > 0.0 {
+                    break;
+                }
+                path.pop();
+            }
+            path.push(*next);
+        }
+        world::polyline::length_m(&path)
+    };
+    along(1.0).max(along(-1.0))
 }
 
 fn wall_ends(ground: &Ground, own: &Group, outward: Vector, alpha_rad: f64) -> Vec<Candidate> {
@@ -215,7 +238,7 @@ fn wall_ends(ground: &Ground, own: &Group, outward: Vector, alpha_rad: f64) -> V
             let angle = alpha_rad * f64::from(k) / f64::from(rays.max(1));
             let ahead = direction(outward.y.atan2(outward.x) + angle);
             let chain_m = to_wall_m(&ground.wall, own.foot, ahead);
-            Candidate { end: own.foot + ahead * chain_m, group: None, chain_m, cost: 0.0 }
+            Candidate { end: own.foot + ahead * chain_m, group: None, cost: 0.0 }
         })
         .collect()
 }
@@ -232,7 +255,7 @@ fn lane_end(
     let ahead = if lane.dot(&outward) < 0.0 { -lane } else { lane };
     let chain_m = to_wall_m(&ground.wall, own.foot, ahead);
     let is_near = outward.perp(&ahead).atan2(outward.dot(&ahead)).abs() <= alpha_rad;
-    is_near.then_some(Candidate { end: own.foot + ahead * chain_m, group: None, chain_m, cost: 0.0 })
+    is_near.then_some(Candidate { end: own.foot + ahead * chain_m, group: None, cost: 0.0 })
 }
 
 /// Cuts to other obstacles further out: within the angle, or where a cut along the ray would come too near to them.
@@ -250,13 +273,11 @@ fn group_ends(
         .filter_map(|(index, group)| {
             let way = group.foot - own.foot;
             let angle = outward.perp(&way).atan2(outward.dot(&way)).abs();
-            let chain_m = way.norm() + group.chain_m;
             let beside_m = group.reach_m + ground.keep_m + BERTH_M;
             let in_the_way_rad = (beside_m / way.norm().max(beside_m)).asin();
             (angle <= alpha_rad.max(in_the_way_rad)).then_some(Candidate {
                 end: group.foot,
                 group: Some(index),
-                chain_m,
                 cost: 0.0,
             })
         })

@@ -2,12 +2,15 @@
 //! robot turns in place.
 
 use crate::{ground::Ground, slit::Slit};
+use std::ops::Range;
 use world::{Point, Vector};
 
 /// Turns smaller than this leave no gap worth filling, radians.
 const SMALL_TURN_RAD: f64 = 2e-3;
 /// A turn is drawn in wedges of this angle, radians.
 const WEDGE_RAD: f64 = 0.35;
+/// Corners of the largest fan of wedges: half a turn, and the middle.
+const FAN: usize = 11;
 
 /// The end of a closed range as the start of what lies behind it.
 const NEXT: f64 = 1e-9;
@@ -59,15 +62,18 @@ impl FloorGrid {
             stamp: Vec::new(),
             epoch: 0,
         };
-        let mut reachable = std::mem::take(&mut grid.reachable);
+        let mut free = vec![false; columns * rows];
         for triangle in slit.triangles() {
-            grid.fill(&triangle, |cell| reachable[cell] = true);
+            grid.fill(&triangle, |cells| free[cells].fill(true));
         }
-        // What the tool reaches beyond the middle of the hull lies along the rim.
-        for (a, b) in slit.rim() {
-            grid.near(a, b, grid.half_m, |cell, at| {
-                if !reachable[cell] && ground.is_floor(at) {
-                    reachable[cell] = true;
+        let mut reachable = free.clone();
+        // What the tool reaches beyond the middle of the hull lies within half a swath of the last free cells, as it
+        // does when the mission counts.
+        for cell in (0..free.len()).filter(|cell| free[*cell] && grid.is_at_edge(&free, *cell)) {
+            let center = grid.center(cell);
+            grid.near(center, center, grid.half_m, |other, at| {
+                if !reachable[other] && ground.is_floor(at) {
+                    reachable[other] = true;
                 }
             });
         }
@@ -76,6 +82,15 @@ impl FloorGrid {
         grid.stamp = vec![0; reachable.len()];
         grid.reachable = reachable;
         grid
+    }
+
+    /// Whether a cell has a neighbour, north, south, east or west, that is not free.
+    fn is_at_edge(&self, free: &[bool], cell: usize) -> bool {
+        let column = cell % self.columns;
+        let is_free = |other: Option<usize>| other.is_some_and(|other| free.get(other) == Some(&true));
+        let west = if column > 0 { Some(cell - 1) } else { None };
+        let east = if column + 1 < self.columns { Some(cell + 1) } else { None };
+        ![west, east, cell.checked_sub(self.columns), Some(cell + self.columns)].into_iter().all(is_free)
     }
 
     /// Leaves out what lies outside some polygons; without polygons nothing is left out.
@@ -117,14 +132,7 @@ impl FloorGrid {
     /// Sweeps along a path.
     pub fn sweep(&mut self, path: &[Point]) {
         let mut swept = std::mem::take(&mut self.swept);
-        self.along(path, |cell| swept[cell] = swept[cell].saturating_add(1));
-        self.swept = swept;
-    }
-
-    /// Takes a path back that was swept before.
-    pub fn unsweep(&mut self, path: &[Point]) {
-        let mut swept = std::mem::take(&mut self.swept);
-        self.along(path, |cell| swept[cell] = swept[cell].saturating_sub(1));
+        self.along(path, |cells| swept[cells].iter_mut().for_each(|n| *n = n.saturating_add(1)));
         self.swept = swept;
     }
 
@@ -133,13 +141,21 @@ impl FloorGrid {
         let mut swept = std::mem::take(&mut self.swept);
         let mut lost = 0_i64;
         let reachable = &self.reachable;
-        self.along(new, |cell| {
-            lost -= i64::from(swept[cell] == 0 && reachable[cell]);
-            swept[cell] = swept[cell].saturating_add(1);
+        self.along(new, |cells| {
+            let mut won = 0_u16;
+            for (n, reachable) in swept[cells.clone()].iter_mut().zip(&reachable[cells]) {
+                won += u16::from(*n == 0 && *reachable);
+                *n = n.saturating_add(1);
+            }
+            lost -= i64::from(won);
         });
-        self.along(old, |cell| {
-            swept[cell] = swept[cell].saturating_sub(1);
-            lost += i64::from(swept[cell] == 0 && reachable[cell]);
+        self.along(old, |cells| {
+            let mut left = 0_u16;
+            for (n, reachable) in swept[cells.clone()].iter_mut().zip(&reachable[cells]) {
+                *n = n.saturating_sub(1);
+                left += u16::from(*n == 0 && *reachable);
+            }
+            lost += i64::from(left);
         });
         self.swept = swept;
         lost
@@ -152,17 +168,22 @@ impl FloorGrid {
         let mut stamp = std::mem::take(&mut self.stamp);
         let epoch = self.epoch;
         let mut lost = 0_i64;
-        self.along(new, |cell| {
-            lost -= i64::from(self.swept[cell] == 0 && stamp[cell] != epoch && self.reachable[cell]);
-            stamp[cell] = epoch;
+        self.along(new, |cells| {
+            for cell in cells {
+                lost -= i64::from(self.swept[cell] == 0 && stamp[cell] != epoch && self.reachable[cell]);
+                stamp[cell] = epoch;
+            }
         });
         let sides = old.len() - 1;
         // From the middle outward: there the two paths differ most.
         for k in 0..sides {
             let side = if k % 2 == 0 { sides / 2 + k / 2 } else { sides / 2 - k.div_ceil(2) };
             if side < sides {
-                self.along(&old[side..=side + 1], |cell| {
-                    lost += i64::from(self.swept[cell] == 1 && stamp[cell] != epoch && self.reachable[cell]);
+                self.along(&old[side..=side + 1], |cells| {
+                    for cell in cells {
+                        lost +=
+                            i64::from(self.swept[cell] == 1 && stamp[cell] != epoch && self.reachable[cell]);
+                    }
                 });
             }
             if lost > most {
@@ -191,23 +212,24 @@ impl FloorGrid {
     /// Number of reachable cells that nothing but this part of the path sweeps.
     pub fn alone(&self, path: &[Point]) -> u32 {
         let mut count = 0;
-        self.along(path, |cell| count += u32::from(self.swept[cell] == 1 && self.reachable[cell]));
+        self.along(path, |cells| {
+            let both = self.swept[cells.clone()].iter().zip(&self.reachable[cells]);
+            count += both.map(|(n, reachable)| u32::from(*n == 1 && *reachable)).sum::<u32>();
+        });
         count
     }
 
     /// Number of reachable cells that a path would sweep for the first time.
     pub fn would_gain(&self, path: &[Point]) -> usize {
         let mut seen = std::collections::BTreeSet::new();
-        self.along(path, |cell| {
-            if self.swept[cell] == 0 && self.reachable[cell] {
-                seen.insert(cell);
-            }
+        self.along(path, |cells| {
+            seen.extend(cells.filter(|cell| self.swept[*cell] == 0 && self.reachable[*cell]));
         });
         seen.len()
     }
 
-    /// Every cell under the bar on its way along a path; a cell may come several times.
-    pub fn along(&self, path: &[Point], mut visit: impl FnMut(usize)) {
+    /// Every cell under the bar on its way along a path, in runs of one row each; a cell may come several times.
+    pub fn along(&self, path: &[Point], mut visit: impl FnMut(Range<usize>)) {
         let mut before: Option<Vector> = None;
         for pair in path.windows(2) {
             let Some(ahead) = (pair[1] - pair[0]).try_normalize(1e-9) else { continue };
@@ -220,42 +242,47 @@ impl FloorGrid {
         }
     }
 
-    fn turn(&self, at: Point, from: Vector, to: Vector, visit: &mut impl FnMut(usize)) {
-        let turn = from.perp(&to).atan2(from.dot(&to));
-        if turn.abs() < SMALL_TURN_RAD {
+    fn turn(&self, at: Point, from: Vector, to: Vector, visit: &mut impl FnMut(Range<usize>)) {
+        let (across, along) = (from.perp(&to), from.dot(&to));
+        if across.abs() < SMALL_TURN_RAD && along > 0.0 {
             return;
         }
+        let turn = across.atan2(along);
         let n = (turn.abs() / WEDGE_RAD).ceil();
-        let first = from.y.atan2(from.x) + std::f64::consts::FRAC_PI_2;
-        for side in [0.0, std::f64::consts::PI] {
-            let rim = (0..=n as i32)
-                .map(|k| at + crate::ground::direction(first + side + turn * f64::from(k) / n) * self.half_m);
-            let fan: Vec<Point> = std::iter::once(at).chain(rim).collect();
-            self.fill(&fan, &mut *visit);
+        let (sin, cos) = (turn / n).sin_cos();
+        let mut rim = Vector::new(-from.y, from.x) * self.half_m;
+        let mut fans = [[at; FAN]; 2];
+        for k in 0..=n as usize {
+            (fans[0][k + 1], fans[1][k + 1]) = (at + rim, at - rim);
+            rim = Vector::new(rim.x * cos - rim.y * sin, rim.x * sin + rim.y * cos);
+        }
+        for fan in fans {
+            self.fill(&fan[..n as usize + 2], &mut *visit);
         }
     }
 
-    /// Every cell whose centre lies in a convex polygon, in either sense.
-    fn fill(&self, polygon: &[Point], mut visit: impl FnMut(usize)) {
+    /// Every cell whose centre lies in a convex polygon, in either sense, row by row.
+    fn fill(&self, polygon: &[Point], mut visit: impl FnMut(Range<usize>)) {
         let low = polygon.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
         let high = polygon.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
         let row_of = |y: f64| (y - self.low.y) / self.cell_m - 0.5;
+        let column_of = |x: f64| (x - self.low.x) / self.cell_m - 0.5;
         let (first, past) = (index_from(row_of(low)), index_from(row_of(high) + NEXT).min(self.rows));
         for row in first..past {
             let y = self.low.y + (row as f64 + 0.5) * self.cell_m;
             let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
-            for (k, a) in polygon.iter().enumerate() {
-                let b = polygon[(k + 1) % polygon.len()];
+            let mut a = polygon[polygon.len() - 1];
+            for b in polygon {
                 if (a.y <= y) != (b.y <= y) {
                     let x = a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y));
                     (from, to) = (from.min(x), to.max(x));
                 }
+                a = *b;
             }
-            let column_of = |x: f64| (x - self.low.x) / self.cell_m - 0.5;
             let (left, past) =
                 (index_from(column_of(from)), index_from(column_of(to) + NEXT).min(self.columns));
-            for column in left..past {
-                visit(row * self.columns + column);
+            if left < past {
+                visit(row * self.columns + left..row * self.columns + past);
             }
         }
     }

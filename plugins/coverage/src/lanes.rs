@@ -13,6 +13,9 @@ const STEP_M: f64 = 0.04;
 /// Chord of a lane along a round wall, metres.
 const CHORD_M: f64 = 0.15;
 
+/// Sine of the angle from which on a cut lies across straight lanes.
+const ACROSS: f64 = 0.6;
+
 /// How lanes lie on the floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Pattern {
@@ -107,7 +110,7 @@ impl Pattern {
 /// The lanes of a pattern, broken where there is no room and at the cuts.
 pub fn lanes(ground: &Ground, slit: &Slit, cuts: &[Cut], pattern: &Pattern, reach: &Reach) -> Vec<Lane> {
     let mut lanes = Vec::new();
-    let sides = if *pattern == Pattern::Contours { corridors(ground, cuts) } else { Vec::new() };
+    let sides = corridors(ground, cuts, pattern);
     for k in 0..sides.len() {
         let fence =
             Fence { cuts, cut_m: 0.45 * ground.swath_m, sides: &sides[..k], side_m: 0.25 * ground.swath_m };
@@ -148,13 +151,15 @@ fn bounds(line: &[Point]) -> (Point, Point) {
     line.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)))
 }
 
-/// Lines along one side of every cut, the same side everywhere, so that what was swept outward is left inward.
-fn corridors(ground: &Ground, cuts: &[Cut]) -> Vec<Vec<Point>> {
+/// Lines along one side of every cut across the lanes, the same side everywhere, so that what was swept outward is left
+/// inward. Beside a cut along the lanes there is a lane anyway.
+fn corridors(ground: &Ground, cuts: &[Cut], pattern: &Pattern) -> Vec<Vec<Point>> {
     let last_side = |cut: &Cut| {
         let (a, b) = (cut.line[cut.line.len() - 2], cut.line[cut.line.len() - 1]);
         let ahead = (b - a).try_normalize(1e-9)?;
+        let is_across = pattern.ahead().is_none_or(|lane| lane.perp(&ahead).abs() >= ACROSS);
         let aside = Vector::new(-ahead.y, ahead.x) * (ground.swath_m / 2.0);
-        Some(vec![a + aside, b + aside])
+        is_across.then(|| vec![a + aside, b + aside])
     };
     cuts.iter().filter_map(last_side).collect()
 }

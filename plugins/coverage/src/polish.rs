@@ -5,6 +5,8 @@ use crate::{
     cuts::Cut, floor::FloorGrid, ground::Ground, lanes::Lane, slit::Slit, touch::touch_up, tour::angle_rad,
 };
 use planner_api::{Ctx, Result};
+
+mod bend;
 use world::{Point, Vector};
 
 /// Longest side of a path under polish, metres.

@@ -19,6 +19,12 @@ const MISSED_SHARE: f64 = 2.5;
 
 /// Share of the search for the order that a draft gets.
 const DRAFT_SHARE: f64 = 0.3;
+/// Rounds in which the path is bent to missed floor.
+const BENDS: usize = 5;
+/// Path and turning that such floor may cost, as a multiple of its area by the swath.
+const BEND_SHARE: f64 = 24.0;
+/// Cells of the smallest group that the path is bent to.
+const BEND_CELLS: usize = 3;
 /// Rounds in which small touch-ups are tied in.
 const TOUCH_UPS: usize = 8;
 /// Rounds after which a little less is enough, but smaller places count as well.
@@ -27,7 +33,7 @@ const SOON_ENOUGH: usize = 3;
 const CELLS: usize = 8;
 const LATE_CELLS: usize = 4;
 /// How much less, as a share of the floor.
-const LATE_SHARE: f64 = 0.0004;
+const LATE_SHARE: f64 = 0.0001;
 
 /// Everything that makes one candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,10 +116,12 @@ pub struct Draft<'a> {
     recipe: Recipe,
     cuts: Vec<Cut>,
     slit: Slit,
-    grid: FloorGrid,
     lanes: Vec<Lane>,
     pieces: Vec<Piece>,
     start: Point,
+    /// Length, with what is still to scan, metres.
+    length_m: f64,
+    turns: f64,
 }
 
 impl<'a> Draft<'a> {
@@ -129,17 +137,32 @@ impl<'a> Draft<'a> {
     ) -> Result<Option<Self>> {
         let home = ground.home();
         let Some((cuts, slit)) = domain(ground, &recipe.pattern, &recipe.rule, home) else { return Ok(None) };
-        let mut grid = FloorGrid::new(ground, &slit, order.cell_m);
-        grid.keep_within(order.regions);
         let start = if slit.contains(order.start) { order.start } else { home };
         let all = lanes(ground, &slit, &cuts, &recipe.pattern, &recipe.reach);
-        let (lanes, pieces) = (Vec::new(), Vec::new());
-        let (order, recipe) = (*order, *recipe);
-        let mut draft = Self { ground, order, recipe, cuts, slit, grid, lanes, pieces, start };
-        draft.lanes = draft.wanted(all);
+        let (order, recipe, lanes, pieces) = (*order, *recipe, Vec::new(), Vec::new());
+        let (length_m, turns) = (0.0, 0.0);
+        let mut draft = Self { ground, order, recipe, cuts, slit, lanes, pieces, start, length_m, turns };
+        let mut grid = draft.unswept();
+        draft.lanes = draft.wanted(&grid, all);
         draft.pieces = draft.toured(DRAFT_SHARE, ctx)?;
-        draft.grid.sweep(&joined(&draft.pieces));
+        let path = joined(&draft.pieces);
+        grid.sweep(&path);
+        let missed_m2 = (1.0 - grid.coverage()) * grid.area_m2();
+        draft.length_m = polyline::length_m(&path) + MISSED_SHARE * missed_m2 / ground.swath_m;
+        draft.turns = rotation_turns(&path);
         Ok(Some(draft))
+    }
+
+    /// What the finished path will cost, about, metres, at this price of a whole turn.
+    pub fn estimate_m(&self, turn_m: f64) -> f64 {
+        self.length_m + turn_m * self.turns
+    }
+
+    /// The floor to scan. A large one takes megabytes, so that a draft does without.
+    fn unswept(&self) -> FloorGrid {
+        let mut grid = FloorGrid::new(self.ground, &self.slit, self.order.cell_m);
+        grid.keep_within(self.order.regions);
+        grid
     }
 
     fn toured(&self, share_of_kicks: f64, ctx: &Ctx<'_>) -> Result<Vec<Piece>> {
@@ -154,9 +177,9 @@ impl<'a> Draft<'a> {
         order.reel_m.is_infinite() || way_m().is_some_and(|way_m| way_m <= order.reel_m)
     }
 
-    fn wanted(&self, lanes: Vec<Lane>) -> Vec<Lane> {
+    fn wanted(&self, grid: &FloorGrid, lanes: Vec<Lane>) -> Vec<Lane> {
         let is_wanted = |at: Point| {
-            self.is_in_reach(at) && (self.order.regions.is_empty() || self.grid.has_reachable_near(at))
+            self.is_in_reach(at) && (self.order.regions.is_empty() || grid.has_reachable_near(at))
         };
         if self.order.reel_m.is_infinite() && self.order.regions.is_empty() {
             return lanes;
@@ -164,45 +187,53 @@ impl<'a> Draft<'a> {
         lanes.iter().flat_map(|lane| lane.kept(&is_wanted)).collect()
     }
 
-    /// What the finished path will cost, about, metres: its length, its turns, and what it still has to scan.
-    pub fn estimate_m(&self) -> f64 {
-        let path = joined(&self.pieces);
-        let missed_m2 = (1.0 - self.grid.coverage()) * self.grid.area_m2();
-        let turns_m = self.recipe.effort.turn_m_per_rad * TAU * rotation_turns(&path);
-        polyline::length_m(&path) + turns_m + MISSED_SHARE * missed_m2 / self.ground.swath_m
-    }
-
     /// The candidate with its touch-ups, shortened wherever that pays.
     ///
     /// # Errors
     /// When the console wants an end.
     pub fn finished(mut self, ctx: &Ctx<'_>) -> Result<Scan> {
+        let mut grid = self.unswept();
+        let mut pieces = std::mem::take(&mut self.pieces);
         for round in 0..self.recipe.rounds {
+            grid.swept.fill(0);
+            grid.sweep(&joined(&pieces));
             let least = (self.recipe.touch_m2 / (self.order.cell_m * self.order.cell_m)) as usize;
-            let missed = self.grid.missed();
+            let missed = grid.missed();
             let large = missed.iter().take_while(|group| group.len() > least);
             let fresh: Vec<Lane> =
-                large.flat_map(|g| touch_up(self.ground, &self.slit, &self.cuts, &self.grid, g)).collect();
-            let fresh = self.wanted(fresh);
+                large.flat_map(|g| touch_up(self.ground, &self.slit, &self.cuts, &grid, g)).collect();
+            let fresh = self.wanted(&grid, fresh);
             if fresh.is_empty() && round > 0 {
                 break;
             }
             self.lanes.extend(fresh);
             // The draft was quick; from here on the order matters.
-            self.pieces = self.toured(1.0, ctx)?;
-            self.grid.swept.fill(0);
-            self.grid.sweep(&joined(&self.pieces));
+            pieces = self.toured(1.0, ctx)?;
         }
-        let turn_m_per_rad = self.recipe.effort.turn_m_per_rad;
-        let prices = Prices { turn_m_per_rad, floor_m_per_m2: self.recipe.floor_m_per_m2 };
+        let mut track = Track::new(&self.slit, &pieces, grid);
+        self.polish(&mut track, ctx)?;
+        let (pieces, grid) = (pieces_of(&track.points, &track.sides), track.grid);
+        Ok(Scan { pieces, cuts: self.cuts, slit: self.slit, grid })
+    }
+
+    /// Shortens the path, bends it to floor that it misses, and ties in short lanes where that is not enough.
+    fn polish(&self, track: &mut Track<'_>, ctx: &Ctx<'_>) -> Result<()> {
+        let Recipe { floor_m_per_m2, enough, effort, .. } = self.recipe;
+        let prices = Prices { turn_m_per_rad: effort.turn_m_per_rad, floor_m_per_m2 };
         let careful = Prices { floor_m_per_m2: 1e6, ..prices };
         let in_reach = |at: Point| self.is_in_reach(at);
-        let mut track = Track::new(&self.slit, &self.pieces, self.grid.clone());
         track.shorten(&prices, ctx)?;
+        for _ in 0..BENDS {
+            let most_m_per_m2 = BEND_SHARE / self.ground.swath_m;
+            if track.bend(&in_reach, &prices, (enough, BEND_CELLS), most_m_per_m2, ctx)? == 0 {
+                break;
+            }
+            track.shorten(&careful, ctx)?;
+        }
         let mut is_late = false;
         for round in 0..TOUCH_UPS {
             is_late |= round >= SOON_ENOUGH;
-            let enough = self.recipe.enough - if is_late { LATE_SHARE } else { 0.0 };
+            let enough = enough - if is_late { LATE_SHARE } else { 0.0 };
             let least = if is_late { LATE_CELLS } else { CELLS };
             if track.touch_up(self.ground, &self.cuts, &in_reach, &prices, (enough, least), ctx)? == 0 {
                 if std::mem::replace(&mut is_late, true) {
@@ -212,8 +243,7 @@ impl<'a> Draft<'a> {
             }
             track.shorten(&careful, ctx)?;
         }
-        let (pieces, grid) = (pieces_of(&track.points, &track.sides), track.grid);
-        Ok(Scan { pieces, cuts: self.cuts, slit: self.slit, grid })
+        Ok(())
     }
 }
 

@@ -229,8 +229,18 @@ impl Slit {
 
     /// The longest of the shortest paths from a place to any corner of the domain, metres.
     pub fn farthest_m(&self, from: Point) -> f64 {
-        let ways = self.triangles().flatten().filter_map(|corner| self.way_m(from, corner));
-        ways.fold(0.0, f64::max)
+        let Some(start) = self.locate(from) else { return 0.0 };
+        let mut seen = vec![false; self.points.len()];
+        let mut longest_m = 0.0_f64;
+        for (triangle, corners) in self.corners.iter().enumerate() {
+            for corner in corners {
+                if !std::mem::replace(&mut seen[*corner as usize], true) {
+                    let way = self.path_between((from, start), (self.points[*corner as usize], triangle));
+                    longest_m = longest_m.max(world::polyline::length_m(&way));
+                }
+            }
+        }
+        longest_m
     }
 
     /// Whether the straight way between two places stays in the domain.

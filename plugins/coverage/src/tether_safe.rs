@@ -14,11 +14,13 @@ use planner_api::{
 };
 use world::{
     Point, Shape,
-    tether::{Cable, Limits},
+    tether::{Cable, Certificate, Limits},
 };
 
 /// The choice by length and turns; candidates that look worse are not worked out for it.
 const SHORTEST: &str = "shortest";
+const UNLIMITED: Limits =
+    Limits { reel_m: f64::INFINITY, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY };
 /// First tours this much costlier than the best, as a share, never win.
 const HOPELESS: f64 = 0.02;
 
@@ -35,24 +37,27 @@ const ALPHA: ParamSpec = float("alpha_deg", "Angle of cuts", "deg", 0.0, 80.0, 5
     .help("Largest angle between a cut and the ray from the anchor: 0 gives the shortest cable, more a shorter path.")
     .group("Tether");
 const CABLE: ParamSpec = float("cable_share", "Cable over least", "", 1.0, 10.0, 1.04)
-    .help("Longest cable that a plan may need, as a multiple of the least that can do.")
+    .help("Longest cable, as a multiple of the least that can do, if any candidate keeps it; the reel always limits it.")
     .group("Tether");
 const WRAP: ParamSpec = float("wrap_deg", "Wrap on one obstacle", "deg", 10.0, 720.0, 75.0)
-    .help("Largest angle of the cable about one obstacle; the mission's limit holds if it is smaller.")
+    .help("Largest angle of the cable about one obstacle, if any candidate keeps it; the mission's limit always holds.")
     .group("Tether");
 const SUM_WRAP: ParamSpec = float("sum_wrap_deg", "Wrap in sum", "deg", 10.0, 3600.0, 80.0)
-    .help("Largest sum of the angles about all obstacles; the mission's limit holds if it is smaller.")
+    .help("Largest sum of the angles about all obstacles, if any candidate keeps it; the mission's limit always holds.")
     .group("Tether");
-const TURN: ParamSpec = float("turn_m", "Price of a whole turn", "m", 0.0, 20.0, 0.7)
-    .help("A path may be this much longer for every whole turn that it saves.")
+const TURN: ParamSpec = float("turn_m", "Turn in the search", "m", 0.0, 20.0, 1.0)
+    .help("While a path is sought it may get this much longer for every whole turn saved; more leaves more floor to touch-ups.")
     .group("Plan");
-const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.55)
+const CHOICE_TURN: ParamSpec = float("choice_turn_m", "Turn in the choice", "m", 0.0, 20.0, 4.0)
+    .help("Among candidates one may be this much longer for every whole turn that it saves.")
+    .group("Plan");
+const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.54)
     .help("Touch-ups are added until this share of the floor in reach is scanned.")
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
     .help("Edge of the cells in which floor is counted.")
     .group("Plan");
-const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 1.5)
+const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 5.0)
     .help("Changes tried per lane in the search for the order of lanes; more takes longer and shortens the path.")
     .group("Plan");
 
@@ -67,7 +72,8 @@ pub struct TetherSafe {
 /// A candidate with what came of it.
 struct Tried {
     name: String,
-    scan: Scan,
+    /// Left out once another candidate is better: the floor of a large tank takes megabytes.
+    scan: Option<Scan>,
     worth: Worth,
 }
 
@@ -86,6 +92,7 @@ impl Planner for TetherSafe {
         WRAP,
         SUM_WRAP,
         TURN,
+        CHOICE_TURN,
         ENOUGH,
         CELL,
         KICKS,
@@ -101,12 +108,14 @@ impl Planner for TetherSafe {
         let wishes = Wishes {
             alpha_rad: config.float("alpha_deg").to_radians(),
             cable_share: config.float("cable_share"),
+            demanded: UNLIMITED,
             limits: Limits {
                 reel_m: f64::INFINITY,
                 max_wrap_rad: config.float("wrap_deg").to_radians(),
                 max_sum_wrap_rad: config.float("sum_wrap_deg").to_radians(),
             },
             turn_m: config.float("turn_m"),
+            choice_turn_m: config.float("choice_turn_m"),
             enough: config.float("coverage_pct") / 100.0,
             directions: if pattern == "contours" { 0 } else { config.int("directions") as usize },
             contours: pattern != "straight",
@@ -120,7 +129,8 @@ impl Planner for TetherSafe {
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
         let task = answer::cover(request, Self::ID)?;
         let ground = Ground::new(request.site, task.anchor)?;
-        let wishes = Wishes { limits: within(self.wishes.limits, task.tether), ..self.wishes };
+        let demanded = demanded(task.tether);
+        let wishes = Wishes { limits: stricter(self.wishes.limits, demanded), demanded, ..self.wishes };
         let plan = self.planned(request, &task, &ground, &wishes, ctx)?;
         self.follow.keep_off(&plan.cuts);
         Ok(plan)
@@ -131,13 +141,20 @@ impl Planner for TetherSafe {
     }
 }
 
-/// The stricter of the operator's and the mission's limits.
-fn within(own: Limits, task: Option<TetherLimits>) -> Limits {
-    let Some(task) = task else { return own };
+/// What the mission demands: nothing of a robot without a tether.
+fn demanded(task: Option<TetherLimits>) -> Limits {
+    task.map_or(UNLIMITED, |task| Limits {
+        reel_m: task.reel_m,
+        max_wrap_rad: task.max_wrap_rad,
+        max_sum_wrap_rad: task.max_sum_wrap_rad,
+    })
+}
+
+fn stricter(a: Limits, b: Limits) -> Limits {
     Limits {
-        reel_m: own.reel_m.min(task.reel_m),
-        max_wrap_rad: own.max_wrap_rad.min(task.max_wrap_rad),
-        max_sum_wrap_rad: own.max_sum_wrap_rad.min(task.max_sum_wrap_rad),
+        reel_m: a.reel_m.min(b.reel_m),
+        max_wrap_rad: a.max_wrap_rad.min(b.max_wrap_rad),
+        max_sum_wrap_rad: a.max_sum_wrap_rad.min(b.max_sum_wrap_rad),
     }
 }
 
@@ -183,16 +200,22 @@ impl TetherSafe {
                 tried = self.try_all(request.site, ground, wishes, &from_home, None, ctx)?;
             }
         }
-        let chosen = self.chosen(tried, wishes, ctx).ok_or_else(|| answer::no_room(ground))?;
-        answer::tell_unreachable(ground, &chosen.scan, &order, ctx);
+        let (worth, scan) = Self::told(tried, ctx).ok_or_else(|| answer::no_room(ground))?;
+        answer::tell_unreachable(ground, &scan, &order, ctx);
         if ctx.wants_drawing() {
-            chosen.scan.cuts.iter().for_each(|cut| ctx.polyline(Layer::Tether, &cut.line));
+            scan.cuts.iter().for_each(|cut| ctx.polyline(Layer::Tether, &cut.line));
         }
-        let mut plan = plan_of(&chosen.scan, start, &lead_in);
-        let reachable = chosen.worth.coverage >= wishes.enough.min(0.99);
+        let mut plan = plan_of(&scan, start, &lead_in);
+        let reachable = worth.coverage >= wishes.enough.min(0.99);
         plan.complete = reachable && order.reel_m.is_infinite();
-        if !chosen.worth.certificate.certified {
-            let why = chosen.worth.certificate.reasons.join("; ");
+        if !is_within(&worth, wishes) && worth.certificate.certified {
+            ctx.log(
+                LogLevel::Warn,
+                "no candidate keeps the cable as short and straight as the parameters ask",
+            );
+        }
+        if !worth.certificate.certified {
+            let why = worth.certificate.reasons.join("; ");
             ctx.log(LogLevel::Warn, &format!("not certified: {why}"));
         }
         Ok(plan)
@@ -213,7 +236,7 @@ impl TetherSafe {
             let mut drafts: Vec<(f64, String, Draft<'_>)> = Vec::new();
             for Candidate { name, recipe } in candidates(ground, wishes, wishes.alpha_rad * share) {
                 if let Some(draft) = Draft::new(ground, &recipe, order, ctx)? {
-                    drafts.push((draft.estimate_m(), name, draft));
+                    drafts.push((draft.estimate_m(wishes.choice_turn_m), name, draft));
                 }
             }
             drafts.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -230,8 +253,9 @@ impl TetherSafe {
                     continue;
                 }
                 let scan = draft.finished(ctx)?;
-                let worth = worth(ground, site, wishes.limits, &scan, laid);
-                tried.push(Tried { name, scan, worth });
+                let worth = worth(ground, site, wishes.demanded, &scan, laid);
+                tried.push(Tried { name, scan: Some(scan), worth });
+                self.keep_best(&mut tried, wishes);
             }
             if wishes.alpha_rad == 0.0 || tried.iter().any(|t| is_within(&t.worth, wishes)) {
                 break;
@@ -240,25 +264,44 @@ impl TetherSafe {
         Ok(tried)
     }
 
-    /// The candidate that the operator wants among those within the limits, with the others told.
-    fn chosen(&self, tried: Vec<Tried>, wishes: &Wishes, ctx: &Ctx<'_>) -> Option<Tried> {
+    /// The candidate that was kept; all that are worth it are told.
+    fn told(tried: Vec<Tried>, ctx: &Ctx<'_>) -> Option<(Worth, Scan)> {
         for t in &tried {
             if !tried.iter().any(|other| t.worth.is_beaten_by(&other.worth)) {
                 ctx.log(LogLevel::Info, &t.worth.told(&t.name));
             }
         }
+        tried.into_iter().find_map(|t| t.scan.map(|scan| (t.worth, scan)))
+    }
+
+    /// Leaves the scan of the best candidate only.
+    fn keep_best(&self, tried: &mut [Tried], wishes: &Wishes) {
         let figure = |t: &Tried| match self.choose {
             "fewest-turns" => t.worth.turns,
             "shortest-cable" => t.worth.certificate.max_cable_m,
-            _ => t.worth.length_m + wishes.turn_m * t.worth.turns,
+            _ => t.worth.length_m + wishes.choice_turn_m * t.worth.turns,
         };
         let rank = |t: &Tried| (!t.worth.certificate.certified, !is_within(&t.worth, wishes));
-        tried.into_iter().min_by(|a, b| rank(a).cmp(&rank(b)).then(figure(a).total_cmp(&figure(b))))
+        let places = 0..tried.len();
+        let best = places.min_by(|a, b| {
+            let (a, b) = (&tried[*a], &tried[*b]);
+            rank(a).cmp(&rank(b)).then(figure(a).total_cmp(&figure(b)))
+        });
+        for (place, other) in tried.iter_mut().enumerate() {
+            if Some(place) != best {
+                other.scan = None;
+            }
+        }
     }
 }
 
+/// Whether a candidate is certified and keeps what the operator wants of the cable as well.
 fn is_within(worth: &Worth, wishes: &Wishes) -> bool {
-    worth.certificate.certified && worth.cable_share() <= wishes.cable_share + 1e-6
+    let Certificate { certified, max_wrap_rad, max_sum_wrap_rad, .. } = worth.certificate;
+    certified
+        && worth.cable_share() <= wishes.cable_share + 1e-6
+        && max_wrap_rad <= wishes.limits.max_wrap_rad
+        && max_sum_wrap_rad <= wishes.limits.max_sum_wrap_rad
 }
 
 /// The cable as it lies after the path flown so far; none at the anchor.

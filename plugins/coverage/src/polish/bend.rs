@@ -1,0 +1,141 @@
+//! Bends: the path goes a little aside to where it would miss floor, wherever that is cheaper than a lane of its own.
+
+use super::{Prices, Track};
+use planner_api::{Ctx, Result};
+use world::{Point, Vector};
+
+/// Bends are tried at path points within this distance of missed floor, metres.
+const NEAR_M: f64 = 0.75;
+/// So many of them.
+const PLACES: usize = 5;
+/// Sides of the path that a bend replaces on either side of its point.
+const BASES: [usize; 3] = [1, 2, 4];
+/// How far a bend goes aside, as a share of the swath.
+const ASIDE: [f64; 4] = [0.1, 0.2, 0.35, 0.55];
+
+/// A bend that may pay.
+struct Offer {
+    /// Metres of path and turning for a square metre of floor.
+    rate: f64,
+    at: Point,
+    base: usize,
+    to: Point,
+}
+
+impl Track<'_> {
+    /// Bends the path to missed floor until the coverage is reached, as long as a square metre costs no more than
+    /// `most_m_per_m2`; groups of fewer cells than the least are left. Tells the number of bends.
+    ///
+    /// # Errors
+    /// When the console wants an end.
+    pub fn bend(
+        &mut self,
+        is_wanted: &dyn Fn(Point) -> bool,
+        prices: &Prices,
+        (enough, least): (f64, usize),
+        most_m_per_m2: f64,
+        ctx: &Ctx<'_>,
+    ) -> Result<usize> {
+        let mut offers: Vec<Offer> = Vec::new();
+        for group in self.grid.missed() {
+            if group.len() < least {
+                break;
+            }
+            ctx.check()?;
+            offers.extend(self.best_bend(&group, is_wanted, prices, most_m_per_m2));
+        }
+        offers.sort_by(|a, b| a.rate.total_cmp(&b.rate));
+        let mut made = 0;
+        for Offer { at, base, to, .. } in offers {
+            if self.grid.coverage() >= enough {
+                break;
+            }
+            let Some(k) = self.points.iter().position(|p| *p == at) else { continue };
+            let still = self.rate(k, base, to, prices, f64::INFINITY);
+            if still.is_some_and(|rate| rate <= most_m_per_m2) {
+                self.make(k, base, to);
+                made += 1;
+            }
+        }
+        Ok(made)
+    }
+
+    fn best_bend(
+        &mut self,
+        group: &[usize],
+        is_wanted: &dyn Fn(Point) -> bool,
+        prices: &Prices,
+        most_m_per_m2: f64,
+    ) -> Option<Offer> {
+        let cells: Vec<Vector> = group.iter().map(|cell| self.grid.center(*cell).coords).collect();
+        let middle = Point::from(cells.iter().sum::<Vector>() / cells.len() as f64);
+        let mut near: Vec<(f64, usize)> = (1..self.points.len() - 1)
+            .map(|k| ((self.points[k] - middle).norm(), k))
+            .filter(|(d, _)| *d < NEAR_M)
+            .collect();
+        near.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+        let bar_m = self.grid.bar_m();
+        let mut best: Option<Offer> = None;
+        for (_, k) in near.into_iter().take(PLACES) {
+            let at = self.points[k];
+            let Some(aside) = (middle - at).try_normalize(1e-6) else { continue };
+            for share in ASIDE {
+                let to = at + aside * (share * bar_m);
+                if !is_wanted(to) {
+                    continue;
+                }
+                for base in BASES {
+                    let most = best.as_ref().map_or(most_m_per_m2, |b| b.rate);
+                    if let Some(rate) = self.rate(k, base, to, prices, most * group.len() as f64)
+                        && rate < most
+                    {
+                        best = Some(Offer { rate, at, base, to });
+                    }
+                }
+            }
+        }
+        best
+    }
+
+    /// What a square metre of floor would cost, metres; `None` where the way is barred, nothing is gained, or it costs
+    /// more than so many metres by cell.
+    fn rate(&mut self, k: usize, base: usize, to: Point, prices: &Prices, most: f64) -> Option<f64> {
+        let (from, past) = (k.checked_sub(base)?, k + base);
+        if past >= self.points.len() {
+            return None;
+        }
+        let (a, b) = (self.points[from], self.points[past]);
+        let way = [a, to, b];
+        let (new_m, new_rad) = self.measure(from, past, &way);
+        let (old_m, old_rad) = self.measure(from, past, &self.points[from..=past]);
+        let cost_m = new_m - old_m + prices.turn_m_per_rad * (new_rad - old_rad);
+        let cell_m2 = self.grid.cell_m * self.grid.cell_m;
+        if cost_m > most * cell_m2 || !(self.slit.sees(a, to) && self.slit.sees(to, b)) {
+            return None;
+        }
+        let (old, new) = self.before_and_after(from, past, &way);
+        let gained = -self.grid.exchange(&old, &new);
+        self.grid.exchange(&new, &old);
+        (gained > 0).then(|| cost_m / (gained as f64 * cell_m2))
+    }
+
+    fn make(&mut self, k: usize, base: usize, to: Point) {
+        let (from, past) = (k - base, k + base);
+        let way = vec![self.points[from], to, self.points[past]];
+        let (old, new) = self.before_and_after(from, past, &way);
+        self.grid.exchange(&old, &new);
+        let on_lane = self.sides[k].on_lane;
+        self.splice(from, past, &[(way, on_lane)]);
+    }
+
+    /// The path between two points with a side before and behind, as it is and with another way.
+    fn before_and_after(&self, from: usize, past: usize, way: &[Point]) -> (Vec<Point>, Vec<Point>) {
+        let (first, last) = (from.saturating_sub(1), (past + 1).min(self.points.len() - 1));
+        let old = self.points[first..=last].to_vec();
+        let mut new = Vec::with_capacity(way.len() + 2);
+        new.extend((first < from).then(|| self.points[first]));
+        new.extend(way);
+        new.extend((last > past).then(|| self.points[last]));
+        (old, new)
+    }
+}
