@@ -62,6 +62,8 @@ pub struct Mission {
     cuts: Cuts,
     /// What the cable reached in this tick.
     cable_trouble: Option<TetherAlarm>,
+    /// For how long the robot has been held because it has no way home, seconds; `None` if that is not why.
+    waits_for_home_s: Option<f64>,
     planner: Seat,
     stuck: StuckWatch,
     lost_s: f64,
@@ -120,6 +122,7 @@ impl Mission {
                 .and_then(|tether| Tether::new(tether, config.limits.radius_m, &drawing, start).ok()),
             cuts: Cuts { lines: Vec::new(), beyond: false, seen_at: start },
             cable_trouble: None,
+            waits_for_home_s: None,
             phase: Phase::Waiting,
             locator: Locator::new(&config, &drawing),
             chart: Chart::new(drawing, &config, seed),
@@ -258,18 +261,22 @@ impl Mission {
             | HoldReason::PositionAlarmed
             | HoldReason::Operator
             | HoldReason::Stuck { .. }
-            | HoldReason::Tether { .. }
             | HoldReason::Stepped => {}
+            HoldReason::Tether { .. } => self.watch_way_home(),
         }
     }
 
     fn hold(&mut self, by: HoldReason) {
+        if !matches!(by, HoldReason::Tether { .. }) {
+            self.waits_for_home_s = None;
+        }
         self.happened.push(EventKind::Held { by: by.clone() });
         self.phase = Phase::Held(by);
     }
 
     fn go_on(&mut self, how: Phase) {
         self.lost_s = 0.0;
+        self.waits_for_home_s = None;
         self.stuck.reset();
         self.happened.push(EventKind::Resumed);
         self.phase = how;

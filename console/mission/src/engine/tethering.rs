@@ -1,12 +1,15 @@
 //! What one tick does to the tether, and what the tether does to the mission.
 
-use super::Mission;
+use super::{Mission, Phase};
 use crate::{
     event::{EventKind, HoldReason, Outcome, TetherAlarm},
-    tether::ends_at_anchor,
+    tether::{Tether, ends_at_anchor},
 };
 use planner_api::Reason;
 use world::{Point, polyline, tether::crossings};
+
+/// A robot without a way home that nobody attends waits this long for one, seconds.
+const WAIT_FOR_HOME_S: f64 = 30.0;
 
 /// The lines that the plan never crosses, and whether the robot has.
 pub(super) struct Cuts {
@@ -27,7 +30,7 @@ impl Mission {
         if !self.locator.is_lost() {
             tether.drag_to(self.locator.position());
         }
-        let told = tether.tell(world, self.chart.map());
+        let told = tether.tell(world, self.chart.map(), self.config.tick_s);
         self.cable_trouble = told.iter().find_map(|event| match event {
             EventKind::TetherAlarmed { alarm, reached: true } => Some(alarm.clone()),
             _ => None,
@@ -68,19 +71,36 @@ impl Mission {
     pub(super) fn watch_tether(&mut self) -> bool {
         let Some(alarm) = self.cable_trouble.take() else { return false };
         let message = alarm.to_string();
+        let outcome = match alarm {
+            TetherAlarm::Reel { .. } => Outcome::Aborted,
+            TetherAlarm::Wrap { .. } | TetherAlarm::SumOfWraps { .. } => Outcome::Entangled,
+            // What closed the way may move on.
+            TetherAlarm::NoWayHome | TetherAlarm::Strayed => {
+                self.waits_for_home_s = Some(0.0);
+                self.hold(HoldReason::Tether { message });
+                return true;
+            }
+        };
         if self.config.attended {
             self.hold(HoldReason::Tether { message });
         } else {
-            let outcome = match alarm {
-                TetherAlarm::Reel { .. } => Outcome::Aborted,
-                TetherAlarm::Wrap { .. }
-                | TetherAlarm::SumOfWraps { .. }
-                | TetherAlarm::NoWayHome
-                | TetherAlarm::Strayed => Outcome::Entangled,
-            };
             self.end(outcome, &format!("nobody attended the hold: {message}"));
         }
         true
+    }
+
+    /// A robot that is held because it had no way home goes on when there is one; with nobody there to help the mission
+    /// ends after a while.
+    pub(super) fn watch_way_home(&mut self) {
+        let Some(waited_s) = self.waits_for_home_s else { return };
+        if self.tether.as_ref().is_none_or(Tether::can_go_home) {
+            self.go_on(Phase::Running);
+        } else if !self.config.attended && waited_s >= WAIT_FOR_HOME_S {
+            let message = TetherAlarm::NoWayHome.to_string();
+            self.end(Outcome::Entangled, &format!("nobody attended the hold: {message}"));
+        } else {
+            self.waits_for_home_s = Some(waited_s + self.config.tick_s);
+        }
     }
 
     /// How a task that is done ends: with the robot back at the anchor and cable left out it is entangled.

@@ -50,6 +50,11 @@ impl Sidestep {
         !self.solids.iter().any(|solid| solid.is_entered_by(from, to, TOUCH_M))
     }
 
+    /// The parts of a segment that lie in solids or touch them, as shares of its length.
+    pub fn inside(&self, from: Point, to: Point) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.solids.iter().filter_map(move |solid| solid.inside(from, to))
+    }
+
     /// Calls `go` with the ends of the straight pieces that lead from one point to another round every solid.
     pub fn along(&self, from: Point, to: Point, mut go: impl FnMut(Point)) {
         let to = self.outside(to);
