@@ -120,7 +120,7 @@ impl Mission {
                 .tether
                 .as_ref()
                 .and_then(|tether| Tether::new(tether, config.limits.radius_m, &drawing, start).ok()),
-            cuts: Cuts { lines: Vec::new(), beyond: false, seen_at: start },
+            cuts: Cuts::default(),
             cable_trouble: None,
             waits_for_home_s: None,
             phase: Phase::Waiting,

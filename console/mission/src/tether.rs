@@ -14,7 +14,7 @@ use crate::{
     config::MissionConfig,
     event::{EventKind, TetherAlarm, TetherContact},
 };
-use planner_api::TetherLimits;
+use planner_api::{LegTag, Plan, TetherLimits};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, sync::Arc};
 use world::{
@@ -210,9 +210,35 @@ impl Tether {
         told.collect()
     }
 
+    /// Where the cable is made fast.
+    pub fn anchor(&self) -> Point {
+        self.config.anchor
+    }
+
+    /// The way back along the cable with some room for the middle of the hull, metres, from the robot to the anchor.
+    pub fn way_home(&self, world: &World, map: &ObstacleMap, room_m: f64) -> Option<Vec<Point>> {
+        let roomy = Arc::new(Ground::grown(&world.boundary, &shapes(world), room_m));
+        self.cable.way_home(&roomy, map, room_m)
+    }
+
     /// Judges a plan from where the cable lies now; `returns` says whether it has to end with the cable reeled in.
-    pub fn certify(&self, path: &[Point], cuts: &[Vec<Point>], world: &World, returns: bool) -> Certificate {
-        certified(&self.config, self.hull_m, Some(&self.cable), path, cuts, world, returns)
+    ///
+    /// The cuts of a plan that first goes home along the cable hold from there on.
+    pub fn certify(&self, plan: &Plan, world: &World, returns: bool) -> Certificate {
+        let judge = |cable, path, cuts: &[Vec<Point>]| {
+            certified(&self.config, self.hull_m, cable, path, cuts, world, returns)
+        };
+        let home = way_home_ends(plan);
+        if home == 0 {
+            return judge(Some(&self.cable), &plan.path, &plan.cuts);
+        }
+        let mut whole = judge(Some(&self.cable), &plan.path, &[]);
+        let rest = judge(None, &plan.path[home..], &plan.cuts);
+        (whole.cut_crossings, whole.sealed_m2) = (rest.cut_crossings, rest.sealed_m2);
+        let more: Vec<String> = rest.reasons.into_iter().filter(|why| !whole.reasons.contains(why)).collect();
+        whole.reasons.extend(more);
+        whole.certified = whole.reasons.is_empty();
+        whole
     }
 
     /// What keeps the cable out although the robot is back, as a sentence; `None` if all is in.
@@ -236,6 +262,12 @@ pub fn judge_from_start(
 ) -> Certificate {
     let returns = ends_at_anchor(tether, config);
     certified(tether, config.limits.radius_m, None, path, cuts, drawing, returns)
+}
+
+/// Index of the point of a plan's path at which a way home along the cable ends; 0 without one.
+pub(crate) fn way_home_ends(plan: &Plan) -> usize {
+    let first = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract && leg.first == 0);
+    first.map_or(0, |leg| leg.last.min(plan.path.len().saturating_sub(1)))
 }
 
 /// Whether the task ends where the tether is made fast.

@@ -122,7 +122,7 @@ impl Planner for TetherSafe {
         let ground = Ground::new(request.site, task.anchor)?;
         let wishes = Wishes { limits: within(self.wishes.limits, task.tether), ..self.wishes };
         let plan = self.planned(request, &task, &ground, &wishes, ctx)?;
-        self.follow.keep_off(&plan.cuts);
+        self.follow.take(&plan);
         Ok(plan)
     }
 

@@ -3,19 +3,25 @@
 use super::{Mission, Phase};
 use crate::{
     event::{EventKind, HoldReason, Outcome, TetherAlarm},
-    tether::{Tether, ends_at_anchor},
+    tether::{Tether, ends_at_anchor, way_home_ends},
 };
-use planner_api::Reason;
+use planner_api::{Plan, Reason};
 use world::{Point, polyline, tether::crossings};
 
 /// A robot without a way home that nobody attends waits this long for one, seconds.
 const WAIT_FOR_HOME_S: f64 = 30.0;
 
+/// A robot this near to the anchor needs no way home, metres.
+const HOME_M: f64 = 0.3;
+
 /// The lines that the plan never crosses, and whether the robot has.
+#[derive(Default)]
 pub(super) struct Cuts {
-    pub lines: Vec<Vec<Point>>,
-    pub beyond: bool,
-    pub seen_at: Point,
+    /// Each with whether the robot is beyond it.
+    lines: Vec<(Vec<Point>, bool)>,
+    /// Where the plan is bound to them from, after a way home; `None` once the robot has been there.
+    from: Option<Point>,
+    seen_at: Point,
 }
 
 impl Mission {
@@ -46,25 +52,43 @@ impl Mission {
             return;
         }
         let here = self.locator.position();
-        let crossed = crossings(&[self.cuts.seen_at, here], &self.cuts.lines);
-        self.cuts.seen_at = here;
-        self.cuts.beyond ^= crossed % 2 == 1;
-        let clear_m =
-            self.cuts.lines.iter().map(|cut| polyline::distance_m(cut, here)).fold(f64::INFINITY, f64::min);
-        if self.cuts.beyond && clear_m > self.config.limits.radius_m && self.planner.plan_due.is_none() {
+        let before = std::mem::replace(&mut self.cuts.seen_at, here);
+        if self.cuts.from.is_some_and(|from| (here - from).norm() > HOME_M) {
+            return;
+        }
+        self.cuts.from = None;
+        for (line, is_beyond) in &mut self.cuts.lines {
+            *is_beyond ^= crossings(&[before, here], std::slice::from_ref(line)) % 2 == 1;
+        }
+        let radius_m = self.config.limits.radius_m;
+        let has_strayed = |(line, is_beyond): &(Vec<Point>, bool)| {
+            *is_beyond && polyline::distance_m(line, here) > radius_m
+        };
+        if self.planner.plan_due.is_none() && self.cuts.lines.iter().any(has_strayed) {
             self.happened.push(EventKind::TetherAlarmed { alarm: TetherAlarm::Strayed, reached: false });
             self.planner.plan_due = Some(Reason::MapChanged);
             self.cuts.lines.clear();
-            self.cuts.beyond = false;
         }
     }
 
     /// Keeps the cuts of a plan that flies.
-    pub(super) fn keep_to(&mut self, cuts: Vec<Vec<Point>>) {
-        self.cuts = Cuts { lines: cuts, beyond: false, seen_at: self.locator.position() };
-        if self.tether.is_none() {
-            self.cuts.lines.clear();
-        }
+    pub(super) fn keep_to(&mut self, plan: &Plan) {
+        let lines = if self.tether.is_some() { plan.cuts.as_slice() } else { &[] };
+        self.cuts = Cuts {
+            lines: lines.iter().map(|line| (line.clone(), false)).collect(),
+            from: plan.path.get(way_home_ends(plan)).copied(),
+            seen_at: self.locator.position(),
+        };
+    }
+
+    /// The way back along the cable, as wide as possible; `None` at the anchor, or if there is none.
+    pub(super) fn way_to_anchor(&self) -> Option<Vec<Point>> {
+        let (here, tether) = (self.locator.position(), self.tether.as_ref()?);
+        let is_out = self.task_ends_at_anchor() && (here - tether.anchor()).norm() > HOME_M;
+        let rooms =
+            [1.0, 0.5, 0.0].map(|share| share * self.config.clearance_m + self.config.limits.radius_m);
+        let world = self.chart.world();
+        rooms.iter().filter(|_| is_out).find_map(|room_m| tether.way_home(world, self.chart.map(), *room_m))
     }
 
     /// The tether's rule for a moving robot: whether it was held or the mission ended.
@@ -114,10 +138,10 @@ impl Mission {
     }
 
     /// Judges a plan; tells the judgement, and why the plan does not fly if it does not.
-    pub(super) fn judge_plan(&mut self, path: &[Point], cuts: &[Vec<Point>]) -> Result<(), String> {
+    pub(super) fn judge_plan(&mut self, plan: &Plan) -> Result<(), String> {
         let returns = self.task_ends_at_anchor();
         let Some(tether) = &self.tether else { return Ok(()) };
-        let certificate = tether.certify(path, cuts, self.chart.world(), returns);
+        let certificate = tether.certify(plan, self.chart.world(), returns);
         let refused = !certificate.certified && !tether.flies_uncertified();
         let why = certificate.reasons.join("; ");
         let planner = self.planner.choice.id.clone();
