@@ -6,7 +6,7 @@
 
 use field::{Flight, Pilot, params as p, pilot::Tick, scene::wall_of};
 use planner_api::{
-    Command, Config, Ctx, Drive, LegTag, LogLevel, ParamSpec, Plan, Result, Sensed, Site, Status,
+    Command, Config, Ctx, Drive, LegTag, LogLevel, ParamSpec, Plan, Result, Sensed, Site, Status, float,
 };
 use world::{Boundary, Point, polyline, tether::crossings};
 
@@ -16,8 +16,19 @@ const LOOK_M: f64 = 0.25;
 const WATCH_M: f64 = 1.0;
 /// Distance at which the robot has come to where the cuts hold from, metres.
 const THERE_M: f64 = 0.3;
+/// Largest share of the mission's clearance that the guard keeps: a path is planned with all of it, and a guard that
+/// asks for as much pushes the robot off lanes beside walls and columns.
+const GUARD_SHARE: f64 = 0.5;
+/// What a pilot adds to the clearance, metres.
+const PILOT_SPARE_M: f64 = 0.02;
+
+/// How near the robot goes when it comes off its path.
+pub const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
+    .help("Hull distance below which no motion toward an obstacle is allowed; never more than half of the mission's clearance.")
+    .group("Flight")
+    .live();
 /// Steering parameters that every coverage planner has.
-pub const PARAMS: [ParamSpec; 5] = [p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
+pub const PARAMS: [ParamSpec; 5] = [GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
 
 /// Follows the path ahead; stops in front of what was discovered on it, so that the mission plans anew.
 pub struct Follow {
@@ -49,9 +60,11 @@ impl Cut {
 impl Follow {
     /// A follower for a site.
     pub fn new(config: &Config<'_>, site: &Site<'_>) -> Self {
+        let flight = p::flight(config);
+        let guard_m = flight.guard_m.min(GUARD_SHARE * site.clearance_m);
         Self {
-            flight: p::flight(config),
-            pilot: Pilot::pursuing(site),
+            flight: Flight { guard_m, ..flight },
+            pilot: Pilot::pursuing(&Site { clearance_m: guard_m - PILOT_SPARE_M, ..*site }),
             wall: wall_of(&site.boundary),
             keep_m: site.limits.radius_m,
             cuts: Vec::new(),

@@ -3,7 +3,7 @@
 use crate::{
     answer::{self, plan_of},
     candidate::{Candidate, Wishes, Worth, candidates, least_cable_m, worth},
-    follow::Follow,
+    follow::{Follow, GUARD},
     ground::Ground,
     scan::{Draft, Order, Scan},
 };
@@ -89,7 +89,7 @@ impl Planner for TetherSafe {
         ENOUGH,
         CELL,
         KICKS,
-        p::GUARD,
+        GUARD,
         p::GUARD_SIGMAS,
         p::SLOW,
         p::MIN_SHARE,

@@ -213,7 +213,7 @@ mod tests {
         let mut cover = Cover::new(Point::origin(), vec![], 0.2, Point::origin());
         cover.take_plan(&plan());
         let mut legs = Vec::new();
-        let flown = [(0.0, 0.0), (0.9, 0.0), (1.9, 0.0), (2.0, 0.3), (2.0, 0.98), (1.2, 0.6), (0.1, 0.05)];
+        let flown = [(0.0, 0.0), (0.9, 0.0), (1.9, 0.0), (2.0, 0.3), (2.0, 0.98), (1.2, 0.6), (0.3, 0.15)];
         let flown = flown.map(|(x, y)| Point::new(x, y));
         for at in polyline::resampled(&flown, 0.1) {
             assert!(!cover.is_done(at));
