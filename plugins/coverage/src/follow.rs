@@ -4,9 +4,12 @@
 //! nothing as long as it comes back the way it went: what counts is not whether the line to the path crosses a cut but
 //! whether it ends on the side on which the path is.
 
+mod steer;
+
 use field::{Flight, Pilot, params as p, pilot::Tick, scene::wall_of};
 use planner_api::{
-    Command, Config, Ctx, Drive, LegTag, LogLevel, ParamSpec, Plan, Result, Sensed, Site, Status, float,
+    Command, Config, Ctx, Drive, LegTag, LogLevel, Motion, ParamSpec, Plan, Result, Sensed, Site, Status,
+    float,
 };
 use world::{Boundary, Point, polyline, tether::crossings};
 
@@ -135,7 +138,13 @@ impl Follow {
         let is_last = sensed.targets_ahead.len() <= 1 && sensed.path_ahead.len() <= 1;
         let tick = Tick { t_s: sensed.t_s, pose: sensed.pose, target, is_last, bodies: &bodies };
         let decision = self.pilot.pursue(&self.flight, &tick, target);
-        Ok(Command { drive: Drive::Velocity(decision.velocity), status: decision.status })
+        let wanted = decision.velocity.cap_magnitude(steer::corner_speed(at, sensed.path_ahead));
+        let limits = self.pilot.limits();
+        let drive = match limits.motion {
+            Motion::Unicycle => steer::twist(wanted, sensed.pose.heading_rad, (target - at).norm(), limits),
+            Motion::Point => Drive::Velocity(wanted),
+        };
+        Ok(Command { drive, status: decision.status })
     }
 
     fn stopped(&mut self, ctx: &Ctx<'_>, why: &str) -> Command {
