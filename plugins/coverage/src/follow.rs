@@ -21,7 +21,7 @@ const WATCH_M: f64 = 1.0;
 const THERE_M: f64 = 0.3;
 /// Largest share of the mission's clearance that the guard keeps: a path is planned with all of it, and a guard that
 /// asks for as much pushes the robot off lanes beside walls and columns.
-const GUARD_SHARE: f64 = 0.5;
+const GUARD_SHARE: f64 = 0.75;
 /// What a pilot adds to the clearance, metres.
 const PILOT_SPARE_M: f64 = 0.02;
 
