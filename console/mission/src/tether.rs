@@ -216,9 +216,9 @@ impl Tether {
     }
 
     /// The way back along the cable with some room for the middle of the hull, metres, from the robot to the anchor.
-    pub fn way_home(&self, world: &World, map: &ObstacleMap, room_m: f64) -> Option<Vec<Point>> {
+    pub fn way_home(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
         let roomy = Arc::new(Ground::grown(&world.boundary, &shapes(world), room_m));
-        self.cable.way_home(&roomy, map, room_m)
+        self.cable.way_home(&roomy, &ObstacleMap::new(&world.boundary, &world.obstacles), room_m)
     }
 
     /// Judges a plan from where the cable lies now; `returns` says whether it has to end with the cable reeled in.

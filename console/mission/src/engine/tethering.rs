@@ -88,7 +88,7 @@ impl Mission {
         let rooms =
             [1.0, 0.5, 0.0].map(|share| share * self.config.clearance_m + self.config.limits.radius_m);
         let world = self.chart.world();
-        rooms.iter().filter(|_| is_out).find_map(|room_m| tether.way_home(world, self.chart.map(), *room_m))
+        rooms.iter().filter(|_| is_out).find_map(|room_m| tether.way_home(world, *room_m))
     }
 
     /// The tether's rule for a moving robot: whether it was held or the mission ended.
