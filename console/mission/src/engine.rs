@@ -69,6 +69,8 @@ pub struct Mission {
     lost_s: f64,
     /// For how long the planner has said that it is stuck, seconds.
     blocked_s: f64,
+    /// Where it said so last, and how often there.
+    blocked_at: Option<(Point, usize)>,
     /// Where the robot was stuck last and got another plan.
     replanned_at: Option<Point>,
     trail: Vec<Point>,
@@ -140,6 +142,7 @@ impl Mission {
             stuck: StuckWatch::new(config.stuck_s),
             lost_s: 0.0,
             blocked_s: 0.0,
+            blocked_at: None,
             replanned_at: None,
             trail: vec![start],
             plan: None,

@@ -14,6 +14,10 @@ use world::Point;
 const AHEAD_M: f64 = 4.0;
 /// A planner that has been stuck in its lanes for this long is asked for new ones, seconds.
 const BLOCKED_S: f64 = 1.0;
+/// So many plans are asked for in one place.
+const MOST_PLANS: usize = 4;
+/// A robot that is blocked further away than this is blocked in another place, metres.
+const MOVED_ON_M: f64 = 0.3;
 /// Distance between the points of the path flown that are kept for planners, metres.
 const TRAIL_M: f64 = 0.1;
 
@@ -44,8 +48,16 @@ impl Mission {
     /// for the robot may have to turn or to be seen better first.
     fn replan_if_blocked(&mut self, status: Status) {
         self.blocked_s = if status == Status::Stuck { self.blocked_s + self.config.tick_s } else { 0.0 };
-        if self.blocked_s >= BLOCKED_S && matches!(self.task, Task::Cover(_)) {
-            self.blocked_s = 0.0;
+        if self.blocked_s < BLOCKED_S || !matches!(self.task, Task::Cover(_)) {
+            return;
+        }
+        self.blocked_s = 0.0;
+        let here = self.locator.position();
+        let (at, times) =
+            self.blocked_at.filter(|(at, _)| (here - at).norm() < MOVED_ON_M).unwrap_or((here, 0));
+        self.blocked_at = Some((at, times + 1));
+        // Plans that all begin with the same obstacle do not help: the rule for a robot that is stuck takes over.
+        if times < MOST_PLANS {
             self.planner.plan_due.get_or_insert(Reason::Blocked);
         }
     }

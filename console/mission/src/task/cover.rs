@@ -222,7 +222,7 @@ mod tests {
         }
         legs.dedup();
         assert_eq!(legs, ["swath", "connector", "travel"]);
-        cover.advance(Point::new(0.1, 0.05), &map);
+        cover.advance(Point::new(0.02, 0.0), &map);
         assert!(cover.is_done(Point::origin()) && cover.done() > 0.99);
     }
 

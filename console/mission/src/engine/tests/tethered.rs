@@ -5,6 +5,7 @@ use crate::{
     event::TetherAlarm,
     tether::{Tether, TetherConfig},
 };
+use planner_api::LegTag;
 use world::{Obstacle, ObstacleId, Shape, tether::Limits};
 
 fn tethered(reel_m: f64) -> MissionConfig {
@@ -174,6 +175,33 @@ fn with_nobody_there_a_robot_that_stays_without_a_way_home_is_entangled() {
     flight.fly(60);
     fly_before_barrier(&mut flight, 400, |_| 0.0);
     assert_eq!((holds(&flight), flight.ended()), (1, Some(Outcome::Entangled)));
+}
+
+#[test]
+fn a_plan_that_is_refused_under_way_is_asked_for_again_after_a_way_home() {
+    let config = covering::covering();
+    let limits = Limits { reel_m: 50.0, max_wrap_rad: 50.0, max_sum_wrap_rad: 50.0 };
+    let anchor = config.start.position;
+    let tether = TetherConfig { anchor, limits, friction: 0.3, fly_uncertified: false };
+    let mut flight = Flight::new(MissionConfig { tether: Some(tether), ..config });
+    flight.tick(&[Order::Start]);
+    flight.fly(900);
+    assert!((flight.pose.position - anchor).norm() > 1.0);
+    // The next plan keeps to a cut right before the robot, across its cable.
+    flight.planner.cut = Some(vec![Point::new(-1.0, -4.1), Point::new(1.0, -4.1)]);
+    let here = flight.pose.position;
+    flight.tick(&[Order::Hold]);
+    let other = PlannerChoice { id: "other".into(), parameters: Parameters::new() };
+    let told = flight.tick(&[Order::ChoosePlanner(other)]);
+    let plans: Vec<(Point, Option<LegTag>)> = told
+        .iter()
+        .filter_map(|kind| match kind {
+            EventKind::Planned { path, legs, .. } => Some((path[0], legs.first().map(|leg| leg.tag))),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(plans.len(), 2, "{plans:?}");
+    assert!((plans[1].0 - here).norm() < 0.1 && plans[1].1 == Some(LegTag::Retract), "{plans:?}");
 }
 
 #[test]
