@@ -35,7 +35,9 @@ impl Floor {
     }
 
     fn drag(mut self, way: &[(f64, f64)]) -> Self {
-        way.iter().for_each(|(x, y)| self.cable.drag_to(Point::new(*x, *y)));
+        for (x, y) in way {
+            self.cable.drag_to(Point::new(*x, *y));
+        }
         self
     }
 
