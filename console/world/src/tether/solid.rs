@@ -101,10 +101,6 @@ impl Solid {
         let mut right = self.corners(to, from);
         right.reverse();
         let shorter = if way_m(enter, &left, leave) <= way_m(enter, &right, leave) { left } else { right };
-        if first == 0.0 {
-            // From one place beside the solid to another: chords of its outline.
-            return shorter;
-        }
         let mut way = vec![enter];
         way.extend(shorter);
         way.push(leave);
