@@ -62,6 +62,8 @@ pub struct Mission {
     cuts: Cuts,
     /// What the cable reached in this tick.
     cable_trouble: Option<TetherAlarm>,
+    /// For how long the robot has been held because it has no way home, seconds; `None` if that is not why.
+    waits_for_home_s: Option<f64>,
     planner: Seat,
     stuck: StuckWatch,
     lost_s: f64,
@@ -69,8 +71,8 @@ pub struct Mission {
     blocked_s: f64,
     /// For how long an operator has let the mission wait, seconds.
     waited_s: f64,
-    /// Where a planner could not go on along its lanes, and how often it was asked for new ones there.
-    blocked_at: Option<(Point, u32)>,
+    /// Where it said so last, and how often there.
+    blocked_at: Option<(Point, usize)>,
     /// Where the robot was stuck last and got another plan.
     replanned_at: Option<Point>,
     trail: Vec<Point>,
@@ -122,8 +124,9 @@ impl Mission {
                 .tether
                 .as_ref()
                 .and_then(|tether| Tether::new(tether, config.limits.radius_m, &drawing, start).ok()),
-            cuts: Cuts { lines: Vec::new(), beyond: false, seen_at: start },
+            cuts: Cuts::default(),
             cable_trouble: None,
+            waits_for_home_s: None,
             phase: Phase::Waiting,
             locator: Locator::new(&config, &drawing),
             chart: Chart::new(drawing, &config, seed),
@@ -268,18 +271,22 @@ impl Mission {
             | HoldReason::PositionAlarmed
             | HoldReason::Operator
             | HoldReason::Stuck { .. }
-            | HoldReason::Tether { .. }
             | HoldReason::Stepped => {}
+            HoldReason::Tether { .. } => self.watch_way_home(),
         }
     }
 
     fn hold(&mut self, by: HoldReason) {
+        if !matches!(by, HoldReason::Tether { .. }) {
+            self.waits_for_home_s = None;
+        }
         self.happened.push(EventKind::Held { by: by.clone() });
         self.phase = Phase::Held(by);
     }
 
     fn go_on(&mut self, how: Phase) {
         self.lost_s = 0.0;
+        self.waits_for_home_s = None;
         self.stuck.reset();
         self.happened.push(EventKind::Resumed);
         self.phase = how;

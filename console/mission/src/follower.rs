@@ -17,6 +17,8 @@ const CORNER_M: f64 = 0.05;
 const BESIDE_CORNER_M: f64 = 0.4;
 /// Length of path that is searched for the nearest point, metres; shorter than one turn of any useful spiral.
 const WINDOW_M: f64 = 1.5;
+/// The same along a path that is to be followed exactly, metres: shorter than a lap of the smallest ring worth scanning.
+const EXACT_WINDOW_M: f64 = 0.6;
 
 /// Progress along a path that only grows (nearest point, searched forward).
 #[derive(Debug, Clone)]
@@ -28,6 +30,7 @@ pub struct Follower {
     /// Last point that the robot can stand on; later ones lie in obstacles.
     last: usize,
     lookahead_m: f64,
+    window_m: f64,
     /// Points that are reached before the path beyond them is looked at, the next one first; empty when corners may
     /// be cut.
     corners: VecDeque<usize>,
@@ -39,7 +42,8 @@ impl Follower {
         let stations_m = polyline::stations_m(&path);
         let last = path.len().saturating_sub(1);
         let corners = VecDeque::new();
-        Self { path, stations_m, nearest: 0, target: 0, last, lookahead_m: LOOKAHEAD_M, corners }
+        let (lookahead_m, window_m) = (LOOKAHEAD_M, WINDOW_M);
+        Self { path, stations_m, nearest: 0, target: 0, last, lookahead_m, window_m, corners }
     }
 
     /// A follower that goes to every corner of a path before it turns, so that no lane is cut short and no lane is
@@ -49,7 +53,7 @@ impl Follower {
         path.dedup_by(|next, before| (*next - *before).norm() < 1e-6);
         let follower = Self::new(polyline::resampled(&path, EXACT_SPACING_M));
         let corners = corners(&follower.path);
-        Self { lookahead_m: EXACT_LOOKAHEAD_M, corners, ..follower }
+        Self { lookahead_m: EXACT_LOOKAHEAD_M, window_m: EXACT_WINDOW_M, corners, ..follower }
     }
 
     /// Takes the robot's position: moves on along the path and chooses the next target.
@@ -58,7 +62,7 @@ impl Follower {
     /// so is the way to them.
     pub fn advance(&mut self, position: Point, map: &ObstacleMap, room_m: f64) {
         let free = |index: &usize| map.clearance_m(self.path[*index]) >= room_m;
-        let window_end_m = (self.stations_m[self.nearest] + WINDOW_M).max(self.stations_m[self.target]);
+        let window_end_m = (self.stations_m[self.nearest] + self.window_m).max(self.stations_m[self.target]);
         self.nearest = (self.nearest..=self.next_corner())
             .take_while(|index| self.stations_m[*index] <= window_end_m)
             .min_by(|a, b| (self.path[*a] - position).norm().total_cmp(&(self.path[*b] - position).norm()))
@@ -89,8 +93,12 @@ impl Follower {
         self.corners.front().copied().unwrap_or(self.path.len() - 1)
     }
 
-    /// Whether a position is at a corner, or a little beside it and past it.
+    /// Whether a position is at a corner, or a little beside it and past it. One that lies further along the path is not
+    /// reached by passing it on the way.
     fn has_reached(&self, corner: usize, position: Point) -> bool {
+        if self.stations_m[corner] - self.stations_m[self.nearest] > self.window_m {
+            return false;
+        }
         let off = position - self.path[corner];
         let into = self.path[corner] - self.path[corner - 1];
         off.norm() <= CORNER_M || (off.norm() <= BESIDE_CORNER_M && off.dot(&into) >= 0.0)
@@ -188,6 +196,23 @@ mod tests {
         follower.advance(Point::new(5.0, 0.39), &map(&[]), 0.0);
         assert!(follower.target().x < 4.9, "{}", follower.target());
         assert!(!follower.is_done(Point::new(0.0, 0.4), 0.2));
+    }
+
+    #[test]
+    fn an_exact_follower_goes_all_the_way_round_a_small_ring() {
+        let ring = |k: i32| {
+            let angle = std::f64::consts::TAU * f64::from(k) / 40.0;
+            Point::new(0.25 * angle.cos(), 0.25 * angle.sin())
+        };
+        let path: Vec<Point> = (0..=40).map(ring).chain([Point::new(1.0, 0.0)]).collect();
+        let mut follower = Follower::exact(&path);
+        // The position is off by up to 10 cm.
+        for k in 0..=36 {
+            let off = world::Vector::new(0.1, 0.0) * f64::from(k % 3 - 1);
+            follower.advance(ring(k) + off, &map(&[]), 0.0);
+            let along_m = 0.25 * std::f64::consts::TAU * f64::from(k) / 40.0;
+            assert!((follower.along_m() - along_m).abs() < 0.35, "{k}: {} of {along_m}", follower.along_m());
+        }
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::{
     config::MissionConfig,
     event::{EventKind, TetherAlarm, TetherContact},
 };
-use planner_api::TetherLimits;
+use planner_api::{LegTag, Plan, TetherLimits};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, sync::Arc};
 use world::{
@@ -30,6 +30,10 @@ const NEAR: f64 = 0.8;
 const EASED: f64 = 0.75;
 /// Distance from the anchor within which a task ends at it, metres.
 const AT_ANCHOR_M: f64 = 0.3;
+/// Room that a way home may lack beside what is on the chart, metres: found obstacles are placed about this well.
+const CHART_M: f64 = 0.05;
+/// The hull has to find no way home for this long before that is an alarm, seconds.
+const NO_HOME_S: f64 = 3.0;
 /// Cable beyond the straight line to the robot that counts as left out at the end, metres.
 const LEFT_M: f64 = 0.3;
 
@@ -69,8 +73,10 @@ pub struct Tether {
     config: TetherConfig,
     hull_m: f64,
     cable: Cable,
-    /// The ground as the middle of the hull meets it.
+    /// The ground as the middle of the hull meets it on its way home.
     roomy: Arc<Ground>,
+    /// For how long there has been no way home, seconds.
+    without_home_s: f64,
     driven: Vec<Point>,
     levels: BTreeMap<&'static str, Level>,
 }
@@ -88,7 +94,8 @@ impl Tether {
             config: config.clone(),
             hull_m,
             cable,
-            roomy: Arc::new(Ground::grown(&world.boundary, &shapes, hull_m)),
+            roomy: Arc::new(Ground::grown(&world.boundary, &shapes, home_room_m(hull_m))),
+            without_home_s: 0.0,
             driven: vec![start],
             levels: BTreeMap::new(),
         })
@@ -113,7 +120,7 @@ impl Tether {
             cable.drag_along(&self.driven);
             cable.drag_to(self.cable.tip());
             self.cable = cable;
-            self.roomy = Arc::new(Ground::grown(&world.boundary, &shapes, self.hull_m));
+            self.roomy = Arc::new(Ground::grown(&world.boundary, &shapes, home_room_m(self.hull_m)));
         }
     }
 
@@ -125,10 +132,11 @@ impl Tether {
         self.cable.drag_to(here);
     }
 
-    /// How the cable lies, and what is newly wrong or right again.
-    pub fn tell(&mut self, world: &World, map: &ObstacleMap) -> Vec<EventKind> {
-        let way_home = self.cable.way_home(&self.roomy, map, self.hull_m);
+    /// How the cable lies after some time, and what is newly wrong or right again.
+    pub fn tell(&mut self, world: &World, map: &ObstacleMap, passed_s: f64) -> Vec<EventKind> {
+        let way_home = self.cable.way_home(&self.roomy, map, home_room_m(self.hull_m));
         let way_home_m = way_home.map(|way| world::polyline::length_m(&way));
+        self.without_home_s = if way_home_m.is_some() { 0.0 } else { self.without_home_s + passed_s };
         let limits = self.config.limits;
         let length_m = self.cable.length_m();
         let sum_wrap_rad = self.cable.sum_wrap_rad();
@@ -142,13 +150,18 @@ impl Tether {
             way_home_m,
             line: self.cable.taut_line(),
         }];
-        for (alarm, share) in self.alarms(world, way_home_m.is_some()) {
+        for (alarm, share) in self.alarms(world) {
             events.extend(self.judge(alarm, share));
         }
         events
     }
 
-    fn alarms(&self, world: &World, can_go_home: bool) -> [(TetherAlarm, f64); 4] {
+    /// Whether there is a way back for the hull that reels the cable in.
+    pub fn can_go_home(&self) -> bool {
+        self.without_home_s == 0.0
+    }
+
+    fn alarms(&self, world: &World) -> [(TetherAlarm, f64); 4] {
         let limits = self.config.limits;
         let contacts = self.cable.contacts();
         let most = contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()));
@@ -160,7 +173,7 @@ impl Tether {
             (TetherAlarm::Reel { out_m, reel_m }, out_m / reel_m),
             (TetherAlarm::Wrap { on, wrap_rad, limit_rad: wrap_limit_rad }, wrap_rad / wrap_limit_rad),
             (TetherAlarm::SumOfWraps { sum_rad, limit_rad: sum_limit_rad }, sum_rad / sum_limit_rad),
-            (TetherAlarm::NoWayHome, if can_go_home { 0.0 } else { f64::INFINITY }),
+            (TetherAlarm::NoWayHome, self.without_home_s / NO_HOME_S),
         ]
     }
 
@@ -197,9 +210,35 @@ impl Tether {
         told.collect()
     }
 
+    /// Where the cable is made fast.
+    pub fn anchor(&self) -> Point {
+        self.config.anchor
+    }
+
+    /// The way back along the cable with some room for the middle of the hull, metres, from the robot to the anchor.
+    pub fn way_home(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
+        let roomy = Arc::new(Ground::grown(&world.boundary, &shapes(world), room_m));
+        self.cable.way_home(&roomy, &ObstacleMap::new(&world.boundary, &world.obstacles), room_m)
+    }
+
     /// Judges a plan from where the cable lies now; `returns` says whether it has to end with the cable reeled in.
-    pub fn certify(&self, path: &[Point], cuts: &[Vec<Point>], world: &World, returns: bool) -> Certificate {
-        certified(&self.config, self.hull_m, Some(&self.cable), path, cuts, world, returns)
+    ///
+    /// The cuts of a plan that first goes home along the cable hold from there on.
+    pub fn certify(&self, plan: &Plan, world: &World, returns: bool) -> Certificate {
+        let judge = |cable, path, cuts: &[Vec<Point>]| {
+            certified(&self.config, self.hull_m, cable, path, cuts, world, returns)
+        };
+        let home = way_home_ends(plan);
+        if home == 0 {
+            return judge(Some(&self.cable), &plan.path, &plan.cuts);
+        }
+        let mut whole = judge(Some(&self.cable), &plan.path, &[]);
+        let rest = judge(None, &plan.path[home..], &plan.cuts);
+        (whole.cut_crossings, whole.sealed_m2) = (rest.cut_crossings, rest.sealed_m2);
+        let more: Vec<String> = rest.reasons.into_iter().filter(|why| !whole.reasons.contains(why)).collect();
+        whole.reasons.extend(more);
+        whole.certified = whole.reasons.is_empty();
+        whole
     }
 
     /// What keeps the cable out although the robot is back, as a sentence; `None` if all is in.
@@ -223,6 +262,12 @@ pub fn judge_from_start(
 ) -> Certificate {
     let returns = ends_at_anchor(tether, config);
     certified(tether, config.limits.radius_m, None, path, cuts, drawing, returns)
+}
+
+/// Index of the point of a plan's path at which a way home along the cable ends; 0 without one.
+pub(crate) fn way_home_ends(plan: &Plan) -> usize {
+    let first = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract && leg.first == 0);
+    first.map_or(0, |leg| leg.last.min(plan.path.len().saturating_sub(1)))
 }
 
 /// Whether the task ends where the tether is made fast.
@@ -254,6 +299,11 @@ fn certified(
         return Certificate::refused("the planner tells no path that could be judged".into());
     }
     certify(&case).unwrap_or_else(|error| Certificate::refused(error.to_string()))
+}
+
+/// Room for the middle of the hull on a way home, metres.
+fn home_room_m(hull_m: f64) -> f64 {
+    (hull_m - CHART_M).max(0.5 * hull_m)
 }
 
 fn shapes(world: &World) -> Vec<Shape> {

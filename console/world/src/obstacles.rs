@@ -89,6 +89,11 @@ impl ObstacleMap {
         self.nearest(point).map_or(f64::INFINITY, |near| near.distance_m)
     }
 
+    /// The wall around them.
+    pub fn boundary(&self) -> &Boundary {
+        &self.boundary
+    }
+
     /// The nearest obstacle.
     pub fn nearest(&self, point: Point) -> Option<Near> {
         let at: DVec2 = point.into();
@@ -127,14 +132,18 @@ impl ObstacleMap {
 
     /// Smallest distance from any point of a segment to an obstacle or the wall, metres; not above zero if it touches.
     pub fn segment_clearance_m(&self, a: Point, b: Point) -> f64 {
+        self.obstacle_clearance_m(a, b).min(wall_clearance_m(&self.boundary, a, b))
+    }
+
+    /// The same to obstacles alone; infinite without any.
+    pub fn obstacle_clearance_m(&self, a: Point, b: Point) -> f64 {
         let around = segment_box(a, b);
-        let obstacles = self.tree.find_best(
+        let nearest = self.tree.find_best(
             f64::MAX,
             |node, _| box_gap(&node.aabb(), &around),
             |leaf, _| Some(self.pieces[leaf as usize].geometry.segment_distance_m(a, b)),
         );
-        let wall = wall_clearance_m(&self.boundary, a, b);
-        obstacles.map_or(wall, |(_, distance)| distance.min(wall))
+        nearest.map_or(f64::INFINITY, |(_, distance)| distance)
     }
 
     fn near(&self, leaf: u32, point: Point) -> Near {

@@ -49,6 +49,23 @@ pub fn stations_m(path: &[Point]) -> Vec<f64> {
         .collect()
 }
 
+/// The path without its first and last metres; empty if there is nothing between.
+pub fn without_ends(path: &[Point], end_m: f64) -> Vec<Point> {
+    let stations_m = stations_m(path);
+    let (first_m, last_m) = (end_m, stations_m.last().copied().unwrap_or(0.0) - end_m);
+    if first_m >= last_m {
+        return Vec::new();
+    }
+    let at = |along_m: f64| {
+        let next = stations_m.partition_point(|s| *s <= along_m).clamp(1, path.len() - 1);
+        let piece_m = stations_m[next] - stations_m[next - 1];
+        path[next - 1] + (path[next] - path[next - 1]) * ((along_m - stations_m[next - 1]) / piece_m)
+    };
+    let between =
+        path.iter().zip(&stations_m).filter(|(_, s)| **s > first_m && **s < last_m).map(|(p, _)| *p);
+    std::iter::once(at(first_m)).chain(between).chain(std::iter::once(at(last_m))).collect()
+}
+
 /// The path with straight pieces split so that no two neighbours are further apart than `spacing_m`.
 pub fn resampled(path: &[Point], spacing_m: f64) -> Vec<Point> {
     let mut points: Vec<Point> = path.first().copied().into_iter().collect();
@@ -67,6 +84,16 @@ mod tests {
 
     fn points() -> impl Strategy<Value = Vec<Point>> {
         prop::collection::vec((-50.0..50.0_f64, -50.0..50.0_f64).prop_map(|(x, y)| Point::new(x, y)), 2..12)
+    }
+
+    #[test]
+    fn a_path_without_its_ends_is_shorter_by_both_and_may_be_gone() {
+        let path = [(0.0, 0.0), (0.05, 0.0), (2.0, 0.0), (2.0, 1.0)].map(|(x, y)| Point::new(x, y));
+        let inner = without_ends(&path, 0.2);
+        assert!((length_m(&inner) - (length_m(&path) - 0.4)).abs() < 1e-12);
+        assert!((inner[0] - Point::new(0.2, 0.0)).norm() < 1e-12 && inner.len() == 3);
+        assert!(without_ends(&path, 1.5).is_empty() && without_ends(&path[..1], 0.1).is_empty());
+        assert!(without_ends(&[], 0.1).is_empty());
     }
 
     proptest! {

@@ -81,8 +81,9 @@ impl Planner for Boustrophedon {
         scan.grid.sweep(&scan.path());
         let order = Order { start, regions: task.regions, reel_m: f64::INFINITY, cell_m: self.cell_m };
         answer::tell_unreachable(&ground, &scan, &order, ctx);
-        self.follow.keep_off(&[]);
-        Ok(plan_of(&scan, request.start.position, &[]))
+        let plan = plan_of(&scan, request.start.position, &[]);
+        self.follow.take(&plan);
+        Ok(plan)
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

@@ -1,15 +1,37 @@
 //! Flying a plan: straight along it, slower where it bends, and never across a cut.
+//!
+//! Lanes end at cuts, so the scatter of the position shows the robot a little beyond one every now and then. That winds
+//! nothing as long as it comes back the way it went: what counts is not whether the line to the path crosses a cut but
+//! whether it ends on the side on which the path is.
 
-use field::{Flight, Pilot, params as p, part::crossing, pilot::Tick, scene::wall_of};
-use planner_api::{Command, Config, Ctx, Drive, LogLevel, ParamSpec, Point2, Result, Sensed, Site, Status};
-use world::{Boundary, Point, polyline};
+mod steer;
+
+use field::{Flight, Pilot, params as p, pilot::Tick, scene::wall_of};
+use planner_api::{
+    Command, Config, Ctx, Drive, LegTag, LogLevel, Motion, ParamSpec, Plan, Result, Sensed, Site, Status,
+    float,
+};
+use world::{Boundary, Point, polyline, tether::crossings};
 
 /// How far ahead on the path the robot aims, metres.
 const LOOK_M: f64 = 0.25;
 /// The path is looked at this far for obstacles, metres.
 const WATCH_M: f64 = 1.0;
+/// Distance at which the robot has come to where the cuts hold from, metres.
+const THERE_M: f64 = 0.3;
+/// Largest share of the mission's clearance that the guard keeps: a path is planned with all of it, and a guard that
+/// asks for as much pushes the robot off lanes beside walls and columns.
+const GUARD_SHARE: f64 = 0.75;
+/// What a pilot adds to the clearance, metres.
+const PILOT_SPARE_M: f64 = 0.02;
+
+/// How near the robot goes when it comes off its path.
+pub const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
+    .help("Hull distance below which no motion toward an obstacle is allowed; never more than half of the mission's clearance.")
+    .group("Flight")
+    .live();
 /// Steering parameters that every coverage planner has.
-pub const PARAMS: [ParamSpec; 5] = [p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
+pub const PARAMS: [ParamSpec; 5] = [GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
 
 /// Follows the path ahead; stops in front of what was discovered on it, so that the mission plans anew.
 pub struct Follow {
@@ -17,27 +39,72 @@ pub struct Follow {
     pilot: Pilot,
     wall: Boundary,
     keep_m: f64,
-    cuts: Vec<Vec<Point2<f64>>>,
+    cuts: Vec<Cut>,
+    /// Where the path is bound to the cuts from; `None` once the robot has been there.
+    from: Option<Point>,
+    seen_at: Option<Point>,
     has_told: bool,
+}
+
+/// A line that the path does not cross.
+struct Cut {
+    line: Vec<Point>,
+    /// Whether the robot has come to its other side.
+    is_beyond: bool,
+}
+
+impl Cut {
+    /// Whether a straight move ends on the other side of the line from where it began.
+    fn is_crossed(&self, from: Point, to: Point) -> bool {
+        crossings(&[from, to], std::slice::from_ref(&self.line)) % 2 == 1
+    }
 }
 
 impl Follow {
     /// A follower for a site.
     pub fn new(config: &Config<'_>, site: &Site<'_>) -> Self {
+        let flight = p::flight(config);
+        let guard_m = flight.guard_m.min(GUARD_SHARE * site.clearance_m);
         Self {
-            flight: p::flight(config),
-            pilot: Pilot::pursuing(site),
+            flight: Flight { guard_m, ..flight },
+            pilot: Pilot::pursuing(&Site { clearance_m: guard_m - PILOT_SPARE_M, ..*site }),
             wall: wall_of(&site.boundary),
             keep_m: site.limits.radius_m,
             cuts: Vec::new(),
+            from: None,
+            seen_at: None,
             has_told: false,
         }
     }
 
-    /// Takes over the cuts of a new plan.
-    pub fn keep_off(&mut self, cuts: &[Vec<Point2<f64>>]) {
-        self.cuts = cuts.to_vec();
+    /// Takes over the cuts of a new plan; they hold from the end of its way home on, if it begins with one.
+    pub fn take(&mut self, plan: &Plan) {
+        self.cuts = plan.cuts.iter().map(|line| Cut { line: line.clone(), is_beyond: false }).collect();
+        let way_home = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract);
+        self.from = plan.path.get(way_home.map_or(0, |leg| leg.last)).copied();
+        self.seen_at = None;
         self.has_told = false;
+    }
+
+    /// Keeps account of the side of every cut on which the robot is.
+    fn look(&mut self, at: Point) {
+        let before = self.seen_at.replace(at);
+        if self.from.is_some_and(|from| (at - from).norm() > THERE_M) {
+            return;
+        }
+        // On the way there the cuts meant nothing.
+        let Some(before) = before.filter(|_| self.from.is_none()) else {
+            self.from = None;
+            return;
+        };
+        for cut in &mut self.cuts {
+            cut.is_beyond ^= cut.is_crossed(before, at);
+        }
+    }
+
+    /// Whether a straight move ends on the sides of all cuts on which the path is.
+    fn comes_right(&self, at: Point, target: Point) -> bool {
+        self.from.is_some() || self.cuts.iter().all(|cut| cut.is_beyond == cut.is_crossed(at, target))
     }
 
     /// The velocity until the next tick.
@@ -47,6 +114,7 @@ impl Follow {
     pub fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
         let at = sensed.pose.position;
+        self.look(at);
         let bodies = self.pilot.bodies(sensed);
         let is_blocked = |p: &Point| {
             self.wall.wall_distance_m(*p) < self.keep_m
@@ -60,16 +128,23 @@ impl Follow {
         if near.iter().skip(1).filter(|p| (*p - at).norm() > 0.2).any(is_blocked) {
             return Ok(self.stopped(ctx, "an obstacle stands on the path; the plan has to be made anew"));
         }
-        let target = aim(at, sensed);
-        if self.cuts.iter().flat_map(|cut| cut.windows(2)).any(|w| crossing(at, target, w[0], w[1]).is_some())
-        {
+        let wanted = aim(at, sensed);
+        let nearer = sensed.path_ahead.first().copied();
+        let Some(target) = std::iter::once(wanted).chain(nearer).find(|aim| self.comes_right(at, *aim))
+        else {
             return Ok(self
                 .stopped(ctx, "the way back to the path leads across a cut; the plan has to be made anew"));
-        }
+        };
         let is_last = sensed.targets_ahead.len() <= 1 && sensed.path_ahead.len() <= 1;
         let tick = Tick { t_s: sensed.t_s, pose: sensed.pose, target, is_last, bodies: &bodies };
         let decision = self.pilot.pursue(&self.flight, &tick, target);
-        Ok(Command { drive: Drive::Velocity(decision.velocity), status: decision.status })
+        let wanted = decision.velocity.cap_magnitude(steer::corner_speed(at, sensed.path_ahead));
+        let limits = self.pilot.limits();
+        let drive = match limits.motion {
+            Motion::Unicycle => steer::twist(wanted, sensed.pose.heading_rad, (target - at).norm(), limits),
+            Motion::Point => Drive::Velocity(wanted),
+        };
+        Ok(Command { drive, status: decision.status })
     }
 
     fn stopped(&mut self, ctx: &Ctx<'_>, why: &str) -> Command {

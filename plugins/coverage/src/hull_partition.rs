@@ -129,7 +129,7 @@ impl Planner for HullPartition {
                 &format!("the cells leave no gate to {sealed_m2:.2} m2; choose tether-safe"),
             );
         }
-        self.follow.keep_off(&plan.cuts);
+        self.follow.take(&plan);
         Ok(plan)
     }
 

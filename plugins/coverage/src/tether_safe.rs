@@ -3,7 +3,7 @@
 use crate::{
     answer::{self, plan_of},
     candidate::{Candidate, Wishes, Worth, candidates, least_cable_m, worth},
-    follow::Follow,
+    follow::{Follow, GUARD},
     ground::Ground,
     scan::{Draft, Order, Scan},
 };
@@ -96,7 +96,7 @@ impl Planner for TetherSafe {
         ENOUGH,
         CELL,
         KICKS,
-        p::GUARD,
+        GUARD,
         p::GUARD_SIGMAS,
         p::SLOW,
         p::MIN_SHARE,
@@ -132,7 +132,7 @@ impl Planner for TetherSafe {
         let demanded = demanded(task.tether);
         let wishes = Wishes { limits: stricter(self.wishes.limits, demanded), demanded, ..self.wishes };
         let plan = self.planned(request, &task, &ground, &wishes, ctx)?;
-        self.follow.keep_off(&plan.cuts);
+        self.follow.take(&plan);
         Ok(plan)
     }
 

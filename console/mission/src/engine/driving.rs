@@ -1,6 +1,6 @@
 //! One tick of moving: ask the planner, send the robot its answer.
 
-use super::{Mission, SAME_PLACE_M};
+use super::Mission;
 use crate::{
     drive::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD, drive_for},
     event::EventKind,
@@ -14,8 +14,10 @@ use world::Point;
 const AHEAD_M: f64 = 4.0;
 /// A planner that has been stuck in its lanes for this long is asked for new ones, seconds.
 const BLOCKED_S: f64 = 1.0;
-/// So often it is asked at one place; then the robot counts as stuck when it has not come on for a while.
-const BLOCKED_TRIES: u32 = 3;
+/// So many plans are asked for in one place.
+const MOST_PLANS: usize = 4;
+/// A robot that is blocked further away than this is blocked in another place, metres.
+const MOVED_ON_M: f64 = 0.3;
 /// Distance between the points of the path flown that are kept for planners, metres.
 const TRAIL_M: f64 = 0.1;
 
@@ -51,12 +53,11 @@ impl Mission {
         }
         self.blocked_s = 0.0;
         let here = self.locator.position();
-        let (at, tries) = match self.blocked_at {
-            Some((at, tries)) if (here - at).norm() < SAME_PLACE_M => (at, tries + 1),
-            _ => (here, 1),
-        };
-        self.blocked_at = Some((at, tries));
-        if tries <= BLOCKED_TRIES {
+        let (at, times) =
+            self.blocked_at.filter(|(at, _)| (here - at).norm() < MOVED_ON_M).unwrap_or((here, 0));
+        self.blocked_at = Some((at, times + 1));
+        // Plans that all begin with the same obstacle do not help: the rule for a robot that is stuck takes over.
+        if times < MOST_PLANS {
             self.planner.plan_due.get_or_insert(Reason::Blocked);
         }
     }

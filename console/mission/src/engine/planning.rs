@@ -7,8 +7,8 @@ use crate::{
     follower::Follower,
     link::{Cause, Fault, PlannerLink, Reply},
 };
-use planner_api::{Plan, PlanRequest, Reason};
-use world::polyline;
+use planner_api::{Leg, LegTag, Plan, PlanRequest, PoseEstimate, Reason};
+use world::{Point, polyline};
 
 impl Mission {
     /// Loads and configures a planner; on a fault the one before stays.
@@ -57,44 +57,60 @@ impl Mission {
     }
 
     /// Asks for a plan if one is due.
+    ///
+    /// A plan that is refused because of the cable out there is asked for once more from the anchor, after a way back
+    /// along the cable: no planner has to know how the cable lies.
     pub(super) fn plan_if_due(&mut self, planner: &mut dyn PlannerLink) -> Result<(), String> {
         let Some(reason) = self.planner.plan_due.clone() else { return Ok(()) };
         self.planner.refused = false;
-        let start = self.locator.pose_estimate();
+        let from_here = self.ask_for_plan(&reason, &[], planner);
+        let way_home = if self.planner.refused { self.way_to_anchor() } else { None };
+        way_home.map_or(from_here, |way| self.ask_for_plan(&reason, &way, planner))
+    }
+
+    /// Asks for a plan from the end of a way home, or from where the robot stands.
+    fn ask_for_plan(
+        &mut self,
+        reason: &Reason,
+        way_home: &[Point],
+        planner: &mut dyn PlannerLink,
+    ) -> Result<(), String> {
+        let here = self.locator.pose_estimate();
+        let start = way_home.last().map_or(here, |home| PoseEstimate { position: *home, ..here });
         let regions = self.task.regions_left(&self.coverage, self.config.lane_m());
-        let regions: Vec<&[world::Point]> = regions.iter().map(Vec::as_slice).collect();
+        let regions: Vec<&[Point]> = regions.iter().map(Vec::as_slice).collect();
         let task = self.task.as_request(&regions, self.config.tether_limits());
-        let previous = &self.trail;
+        let previous: Vec<Point> = self.trail.iter().chain(way_home).copied().collect();
         let answer = self
             .chart
-            .with_site(|site| planner.plan(&PlanRequest { reason: &reason, start, task, site, previous }));
+            .with_site(|site| planner.plan(&PlanRequest { reason, start, task, site, previous: &previous }));
         match answer {
-            Ok(reply) => self.accept_plan(reason, reply),
+            Ok(reply) => self.accept_plan(reason.clone(), after(way_home, reply)),
             Err(fault) => Err(self.note_fault(fault)),
         }
     }
 
     /// Takes a plan to be flown, unless it cannot be certified for the tether.
     fn accept_plan(&mut self, reason: Reason, reply: Reply<Plan>) -> Result<(), String> {
-        let Plan { path, complete, legs, cuts, .. } = reply.value.clone();
+        let plan = reply.value.clone();
         self.happened.push(EventKind::Planned {
             planner: self.planner.choice.id.clone(),
             reason,
-            length_m: polyline::length_m(&path),
-            path: path.clone(),
-            complete,
-            legs,
-            cuts: cuts.clone(),
+            length_m: polyline::length_m(&plan.path),
+            path: plan.path.clone(),
+            complete: plan.complete,
+            legs: plan.legs.clone(),
+            cuts: plan.cuts.clone(),
         });
-        let judged = self.judge_plan(&path, &cuts);
+        let judged = self.judge_plan(&plan);
         self.planner.refused = judged.is_err();
         if judged.is_ok() {
             self.planner.plan_due = None;
-            self.task.take_plan(&reply.value);
+            self.task.take_plan(&plan);
             // What is left is counted anew along the new plan.
             self.stuck.reset();
-            self.plan = (!path.is_empty()).then(|| Follower::new(path));
-            self.keep_to(cuts);
+            self.keep_to(&plan);
+            self.plan = (!plan.path.is_empty()).then(|| Follower::new(plan.path));
         }
         self.pass_on(reply);
         judged
@@ -152,4 +168,15 @@ impl Mission {
             HoldReason::PlannerFault { message }
         });
     }
+}
+
+/// A plan with a way home before it.
+fn after(way_home: &[Point], mut reply: Reply<Plan>) -> Reply<Plan> {
+    let Some(last) = way_home.len().checked_sub(1) else { return reply };
+    let plan = &mut reply.value;
+    let shifted = |leg: &Leg| Leg { first: leg.first + last + 1, last: leg.last + last + 1, ..*leg };
+    let retract = Leg { tag: LegTag::Retract, first: 0, last };
+    plan.legs = std::iter::once(retract).chain(plan.legs.iter().map(shifted)).collect();
+    plan.path.splice(0..0, way_home.iter().copied());
+    reply
 }

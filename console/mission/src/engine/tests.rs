@@ -22,6 +22,8 @@ struct Straight {
     plans: usize,
     /// Area of the regions of every request to cover, square metres.
     regions_m2: Vec<f64>,
+    /// What plans to cover keep to.
+    cut: Option<Vec<Point>>,
 }
 
 impl Straight {
@@ -71,7 +73,8 @@ impl PlannerLink for Straight {
         self.plans += 1;
         if let api::Task::Cover { anchor, regions, .. } = request.task {
             self.regions_m2.push(regions.iter().map(|r| world::shape::ring_area_m2(r)).sum());
-            return Ok(reply(covering::lanes(request, anchor)));
+            let cuts = self.cut.iter().cloned().collect();
+            return Ok(reply(Plan { cuts, ..covering::lanes(request, anchor) }));
         }
         Ok(reply(Plan { path: vec![request.start.position], complete: true, ..Plan::default() }))
     }

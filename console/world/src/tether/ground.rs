@@ -41,17 +41,21 @@ impl Ground {
         Self::grown(boundary, shapes, 0.0)
     }
 
-    /// The same with every obstacle grown by a margin, metres, as the middle of a robot's hull meets it.
+    /// The same with every obstacle and inward corner grown by a margin, metres, as the middle of a robot's hull meets it.
     ///
-    /// The wall is not grown: a cable bears on its inward corners alone.
+    /// The rest of the wall is not grown: no taut line bears on it.
     pub fn grown(boundary: &Boundary, shapes: &[Shape], margin_m: f64) -> Self {
         let mut posts: Vec<Post> = shapes
             .iter()
             .enumerate()
             .flat_map(|(index, shape)| posts_of(shape, margin_m, Bearing::Obstacle(index)))
             .collect();
-        posts.extend(wall_posts(boundary));
-        let solids = shapes.iter().flat_map(|shape| solids_of(shape, margin_m)).collect();
+        let corners = wall_posts(boundary, margin_m);
+        let mut solids: Vec<Solid> = shapes.iter().flat_map(|shape| solids_of(shape, margin_m)).collect();
+        if margin_m > 0.0 {
+            solids.extend(corners.iter().map(|corner| Solid::new(vec![corner.center], margin_m)));
+        }
+        posts.extend(corners);
         let posts = without_hidden(&posts);
         let around = |post: &Post| {
             let far = Vector::new(post.radius_m, post.radius_m);
@@ -69,6 +73,30 @@ impl Ground {
     /// Posts that come within `room_m` of a segment, perhaps some more, in no order.
     pub(super) fn near(&self, a: Point, b: Point, room_m: f64) -> impl Iterator<Item = usize> + '_ {
         self.boxes.near(a, b, room_m)
+    }
+
+    /// The nearest place that lies in no obstacle, as far as a few steps find one.
+    pub(super) fn outside(&self, point: Point) -> Point {
+        self.sidestep.outside(point)
+    }
+
+    /// A straight move, with stops wherever it leads through an obstacle: its end last, its beginning left out.
+    pub(super) fn with_stops_inside(&self, from: Point, to: Point, apart_m: f64) -> Vec<Point> {
+        let length_m = (to - from).norm();
+        let mut shares: Vec<f64> = vec![1.0];
+        for (first, last) in self.sidestep.inside(from, to) {
+            let steps = ((last - first) * length_m / apart_m).ceil().max(1.0);
+            shares.extend((0..=steps as usize).map(|k| first + (last - first) * k as f64 / steps));
+        }
+        shares.sort_by(f64::total_cmp);
+        shares.dedup();
+        shares.into_iter().map(|share| from + (to - from) * share).collect()
+    }
+
+    /// The bends of a straight move that goes round every obstacle in its way.
+    #[cfg(test)]
+    pub(super) fn go_round(&self, from: Point, to: Point, way: &mut Vec<Point>) {
+        self.sidestep.along(from, to, |next| way.push(next));
     }
 
     /// Whether a straight line enters no obstacle and does not leave the floor.
@@ -111,7 +139,7 @@ fn heart_of(shape: &Shape) -> Point {
 }
 
 /// The corners at which a wall turns away from the floor.
-fn wall_posts(boundary: &Boundary) -> Vec<Post> {
+fn wall_posts(boundary: &Boundary, margin_m: f64) -> Vec<Post> {
     let Boundary::Polygon { vertices } = boundary else { return Vec::new() };
     let n = vertices.len();
     let turning = ring_area_m2(vertices).signum();
@@ -120,13 +148,13 @@ fn wall_posts(boundary: &Boundary) -> Vec<Post> {
             let (before, here, after) = (vertices[(k + n - 1) % n], vertices[k], vertices[(k + 1) % n]);
             turning * (here - before).perp(&(after - here)) < 0.0
         })
-        .map(|k| Post { center: vertices[k], radius_m: 0.0, of: Bearing::Wall })
+        .map(|k| Post { center: vertices[k], radius_m: margin_m, of: Bearing::Wall })
         .collect()
 }
 
 fn walls_in_the_way(boundary: &Boundary) -> Vec<(Point, Point)> {
     match boundary {
-        Boundary::Polygon { vertices } if !wall_posts(boundary).is_empty() => edges(vertices).collect(),
+        Boundary::Polygon { vertices } if !wall_posts(boundary, 0.0).is_empty() => edges(vertices).collect(),
         Boundary::Polygon { .. } | Boundary::Circle { .. } => Vec::new(),
     }
 }

@@ -58,6 +58,11 @@ impl Sidestep {
         self.boxes.near(center, center, radius_m + TOUCH_M).nth(1).is_none()
     }
 
+    /// The parts of a segment that lie in solids or touch them, as shares of its length.
+    pub fn inside(&self, from: Point, to: Point) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.solids.iter().filter_map(move |solid| solid.inside(from, to))
+    }
+
     /// Calls `go` with the ends of the straight pieces that lead from one point to another round every solid.
     pub fn along(&self, from: Point, to: Point, mut go: impl FnMut(Point)) {
         let to = self.outside(to);

@@ -73,6 +73,11 @@ impl Solid {
         self.core.len() > 2 && clip(&self.core, a, b, slack_m).is_some()
     }
 
+    /// The part of a segment within the outline, as shares of its length.
+    pub fn inside(&self, a: Point, b: Point) -> Option<(f64, f64)> {
+        if self.is_far_from(a, b, 0.0) { None } else { clip(&self.outline, a, b, 0.0) }
+    }
+
     /// Share of the segment at which it comes near; for sorting.
     pub fn met_at(&self, a: Point, b: Point) -> f64 {
         clip(&self.outline, a, b, 0.0).map_or(0.0, |(first, _)| first)
@@ -94,14 +99,21 @@ impl Solid {
     }
 
     /// Corners of the shorter way round, for a segment that goes through.
+    ///
+    /// An end between solid and outline is led out to the outline first: from there the way beside the solid is clear,
+    /// while the last corner may see the end only through the solid.
     pub fn way_round(&self, a: Point, b: Point) -> Vec<Point> {
         let Some((first, last)) = clip(&self.outline, a, b, 0.0) else { return Vec::new() };
-        let (enter, leave) = (a + (b - a) * first, a + (b - a) * last);
-        let (from, to) = (self.nearest_edge(enter), self.nearest_edge(leave));
+        let (from, enter) = self.on_outline(a + (b - a) * first);
+        let (to, leave) = self.on_outline(a + (b - a) * last);
         let left = self.corners(from, to);
         let mut right = self.corners(to, from);
         right.reverse();
-        if way_m(enter, &left, leave) <= way_m(enter, &right, leave) { left } else { right }
+        let shorter = if way_m(enter, &left, leave) <= way_m(enter, &right, leave) { left } else { right };
+        let mut way = vec![enter];
+        way.extend(shorter);
+        way.push(leave);
+        way
     }
 
     /// Corners passed when walking counter-clockwise from one edge of the outline to another.
@@ -111,14 +123,11 @@ impl Solid {
         (1..=steps).map(|k| self.outline[(from + k) % n]).collect()
     }
 
-    fn nearest_edge(&self, point: Point) -> usize {
-        edges(&self.outline)
-            .enumerate()
-            .min_by(|(_, (p, q)), (_, (r, s))| {
-                let here = (nearest_on_segment(*p, *q, point) - point).norm_squared();
-                here.total_cmp(&(nearest_on_segment(*r, *s, point) - point).norm_squared())
-            })
-            .map_or(0, |(index, _)| index)
+    /// The nearest edge of the outline, and the nearest point on it.
+    fn on_outline(&self, point: Point) -> (usize, Point) {
+        let feet = edges(&self.outline).map(|(p, q)| nearest_on_segment(p, q, point)).enumerate();
+        feet.min_by(|(_, p), (_, q)| (p - point).norm_squared().total_cmp(&(q - point).norm_squared()))
+            .unwrap_or((0, point))
     }
 
     fn core_edges(&self) -> impl Iterator<Item = (Point, Point)> + '_ {
@@ -210,6 +219,21 @@ mod tests {
         assert!(disc.is_entered_by(a, b, 1e-9));
         let way = disc.way_round(a, b);
         assert!(way.len() > 4 && way.iter().all(|p| p.y > 0.0 && p.coords.norm() >= 0.5), "{way:?}");
+    }
+
+    #[test]
+    fn the_way_to_a_point_just_behind_a_disc_does_not_cut_into_it() {
+        let disc = Solid::new(vec![Point::origin()], 0.4);
+        let from = Point::new(-5.0, 0.4);
+        for step in 1..60 {
+            // Points on the disc behind the one where the line of sight touches it.
+            let angle = 0.5 * std::f64::consts::PI - 0.02 * f64::from(step);
+            let to = Point::new(angle.cos(), angle.sin()) * 0.4;
+            let mut way = vec![from];
+            way.extend(disc.way_round(from, to));
+            way.push(to);
+            assert!(way.windows(2).all(|w| disc.distance_m(w[0], w[1]) > -1e-9), "{angle}: {way:?}");
+        }
     }
 
     #[test]

@@ -173,31 +173,6 @@ fn a_move_through_a_column_passes_it_on_the_side_of_its_centre() {
     }
 }
 
-#[test]
-fn the_way_home_keeps_the_hull_off_the_column_and_is_none_where_the_hull_does_not_fit() {
-    let column = |x: f64, y: f64| crate::Obstacle {
-        id: crate::ObstacleId(0),
-        name: String::new(),
-        shape: disc(x, y, 0.3),
-        known: true,
-    };
-    let home = |columns: &[crate::Obstacle]| {
-        let shapes: Vec<Shape> = columns.iter().map(|c| c.shape.clone()).collect();
-        let mut cable = cable(Point::new(-3.0, 0.0), &shapes);
-        cable.drag_along(&[Point::new(0.0, 0.5), Point::new(3.0, -1.0)]);
-        let map = crate::ObstacleMap::new(&WALL, columns);
-        cable.way_home(&std::sync::Arc::new(Ground::grown(&WALL, &shapes, 0.4)), &map, 0.4)
-    };
-    let way = home(&[column(0.0, 0.0)]).unwrap();
-    assert!((way[0] - Point::new(3.0, -1.0)).norm() < 1e-9);
-    assert!((way.last().unwrap() - Point::new(-3.0, 0.0)).norm() < 1e-9);
-    assert!(
-        way.windows(2)
-            .all(|w| (crate::polyline::nearest_on_segment(w[0], w[1], Point::origin()).coords).norm() > 0.68)
-    );
-    assert_eq!(home(&[column(0.0, 0.0), column(0.0, 1.2)]), None);
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 

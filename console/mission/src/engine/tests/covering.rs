@@ -52,7 +52,7 @@ fn beside(request: &PlanRequest<'_>, point: Point, room_m: f64) -> Point {
     point
 }
 
-fn covering() -> MissionConfig {
+pub fn covering() -> MissionConfig {
     let start = Pose::new(0.0, -4.4, 0.0);
     let task = TaskConfig::Cover { anchor: start.position, regions: vec![], tolerance_m: 0.2 };
     MissionConfig { task, start, time_limit_s: 1000.0, ..config() }

@@ -5,6 +5,7 @@ use crate::{
     event::TetherAlarm,
     tether::{Tether, TetherConfig},
 };
+use planner_api::LegTag;
 use world::{Obstacle, ObstacleId, Shape, tether::Limits};
 
 fn tethered(reel_m: f64) -> MissionConfig {
@@ -106,11 +107,101 @@ fn an_obstacle_found_across_the_cable_is_passed_on_the_side_that_was_driven() {
         world.obstacles.push(column(0.05 * side));
         tether.lay_anew(&world);
         let map = world::ObstacleMap::new(&world.boundary, &world.obstacles);
-        let told = tether.tell(&world, &map);
+        let told = tether.tell(&world, &map, 0.1);
         let EventKind::Tethered { contacts, way_home_m, .. } = &told[0] else { panic!("{told:?}") };
         assert!(contacts.len() == 1 && contacts[0].wrap_rad * sign > 0.0, "{contacts:?}");
         assert!(way_home_m.is_some_and(|way_m| way_m > 6.0));
     }
+}
+
+/// Any wrap and length will do.
+fn loosely_tethered() -> MissionConfig {
+    let mut config = MissionConfig { attended: false, ..tethered(99.0) };
+    let limits = &mut config.tether.as_mut().unwrap().limits;
+    (limits.max_wrap_rad, limits.max_sum_wrap_rad) = (99.0, 99.0);
+    config
+}
+
+/// Flies with a barrier across the tank behind the robot, shifted north by some metres.
+fn fly_before_barrier(flight: &mut Flight, ticks: usize, shift_m: impl Fn(usize) -> f64) {
+    for tick in 0..ticks {
+        let ends = [-6.0, 6.0].map(|y| Point::new(-1.5, y + shift_m(tick)) - flight.pose.position);
+        let points = ends.map(Point::from).to_vec();
+        let shape_in_robot = Shape::Polyline { points, half_width_m: 0.1 };
+        flight.sightings = vec![Sighting { id: ObstacleId(9), shape_in_robot }];
+        flight.tick(&[]);
+    }
+}
+
+fn holds(flight: &Flight) -> usize {
+    let is_hold = |event: &&Event| matches!(event.kind, EventKind::Held { by: HoldReason::Tether { .. } });
+    flight.events.iter().filter(is_hold).count()
+}
+
+#[test]
+fn a_way_home_that_is_closed_for_a_moment_is_no_alarm() {
+    let mut flight = Flight::new(loosely_tethered());
+    flight.tick(&[Order::Start]);
+    flight.fly(60);
+    fly_before_barrier(&mut flight, 40, |tick| if tick < 20 { 0.0 } else { 7.0 + 0.1 * tick as f64 });
+    let without_home = flight
+        .events
+        .iter()
+        .filter(|event| matches!(event.kind, EventKind::Tethered { way_home_m: None, .. }));
+    assert!(without_home.count() > 10);
+    flight.fly(100);
+    assert_eq!((holds(&flight), flight.ended()), (0, Some(Outcome::Complete)));
+}
+
+#[test]
+fn a_robot_without_a_way_home_is_held_until_there_is_one() {
+    let mut flight = Flight::new(loosely_tethered());
+    flight.tick(&[Order::Start]);
+    flight.fly(60);
+    fly_before_barrier(&mut flight, 40, |_| 0.0);
+    assert_eq!(holds(&flight), 1);
+    let here = flight.pose;
+    fly_before_barrier(&mut flight, 100, |_| 0.0);
+    assert_eq!((flight.pose, flight.ended()), (here, None));
+    fly_before_barrier(&mut flight, 100, |tick| 0.1 * tick as f64);
+    flight.fly(100);
+    assert_eq!((holds(&flight), flight.ended()), (1, Some(Outcome::Complete)));
+}
+
+#[test]
+fn with_nobody_there_a_robot_that_stays_without_a_way_home_is_entangled() {
+    let mut flight = Flight::new(loosely_tethered());
+    flight.tick(&[Order::Start]);
+    flight.fly(60);
+    fly_before_barrier(&mut flight, 400, |_| 0.0);
+    assert_eq!((holds(&flight), flight.ended()), (1, Some(Outcome::Entangled)));
+}
+
+#[test]
+fn a_plan_that_is_refused_under_way_is_asked_for_again_after_a_way_home() {
+    let config = covering::covering();
+    let limits = Limits { reel_m: 50.0, max_wrap_rad: 50.0, max_sum_wrap_rad: 50.0 };
+    let anchor = config.start.position;
+    let tether = TetherConfig { anchor, limits, friction: 0.3, fly_uncertified: false };
+    let mut flight = Flight::new(MissionConfig { tether: Some(tether), ..config });
+    flight.tick(&[Order::Start]);
+    flight.fly(900);
+    assert!((flight.pose.position - anchor).norm() > 1.0);
+    // The next plan keeps to a cut right before the robot, across its cable.
+    flight.planner.cut = Some(vec![Point::new(-1.0, -4.1), Point::new(1.0, -4.1)]);
+    let here = flight.pose.position;
+    flight.tick(&[Order::Hold]);
+    let other = PlannerChoice { id: "other".into(), parameters: Parameters::new() };
+    let told = flight.tick(&[Order::ChoosePlanner(other)]);
+    let plans: Vec<(Point, Option<LegTag>)> = told
+        .iter()
+        .filter_map(|kind| match kind {
+            EventKind::Planned { path, legs, .. } => Some((path[0], legs.first().map(|leg| leg.tag))),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(plans.len(), 2, "{plans:?}");
+    assert!((plans[1].0 - here).norm() < 0.1 && plans[1].1 == Some(LegTag::Retract), "{plans:?}");
 }
 
 #[test]

@@ -1,0 +1,148 @@
+use super::*;
+use crate::{
+    geometry::Vector,
+    polyline,
+    shape::Shape,
+    tank::{Boundary, Obstacle, ObstacleId},
+};
+use proptest::prelude::*;
+
+const WALL: Boundary = Boundary::Circle { radius_m: 6.0 };
+const HULL_M: f64 = 0.25;
+
+/// A floor with columns, a cable on it, and the same floor as a hull meets it.
+struct Floor {
+    cable: Cable,
+    roomy: Arc<Ground>,
+    map: ObstacleMap,
+}
+
+impl Floor {
+    fn new(boundary: &Boundary, anchor: Point, columns: &[(f64, f64, f64)], room_m: f64) -> Self {
+        let shapes: Vec<Shape> = columns.iter().map(|(x, y, r)| disc(*x, *y, *r)).collect();
+        let obstacle = |shape: &Shape| Obstacle {
+            id: ObstacleId(0),
+            name: String::new(),
+            shape: shape.clone(),
+            known: true,
+        };
+        let obstacles: Vec<Obstacle> = shapes.iter().map(obstacle).collect();
+        Self {
+            cable: Cable::new(anchor, boundary, &shapes).unwrap(),
+            roomy: Arc::new(Ground::grown(boundary, &shapes, room_m)),
+            map: ObstacleMap::new(boundary, &obstacles),
+        }
+    }
+
+    fn drag(mut self, way: &[(f64, f64)]) -> Self {
+        for (x, y) in way {
+            self.cable.drag_to(Point::new(*x, *y));
+        }
+        self
+    }
+
+    fn home(&self, room_m: f64) -> Option<Vec<Point>> {
+        self.cable.way_home(&self.roomy, &self.map, room_m)
+    }
+}
+
+fn disc(x: f64, y: f64, radius_m: f64) -> Shape {
+    Shape::Disc { center: Point::new(x, y), radius_m }
+}
+
+#[test]
+fn the_way_home_keeps_the_hull_off_the_column_and_is_none_where_the_hull_does_not_fit() {
+    let home = |columns: &[(f64, f64, f64)]| {
+        let floor = Floor::new(&WALL, Point::new(-3.0, 0.0), columns, 0.4);
+        floor.drag(&[(0.0, 0.5), (3.0, -1.0)]).home(0.4)
+    };
+    let way = home(&[(0.0, 0.0, 0.3)]).unwrap();
+    assert!((way[0] - Point::new(3.0, -1.0)).norm() < 1e-9);
+    assert!((way.last().unwrap() - Point::new(-3.0, 0.0)).norm() < 1e-9);
+    assert!(polyline::distance_m(&way, Point::origin()) > 0.69);
+    assert_eq!(home(&[(0.0, 0.0, 0.3), (0.0, 1.2, 0.3)]), None);
+}
+
+#[test]
+fn a_cable_that_only_just_bears_on_a_column_leaves_the_hull_a_way_home() {
+    let columns = [(0.3, 3.1, 0.2), (3.0, 0.8, 0.2), (1.2, -3.0, 0.2), (-3.2, -0.6, 0.2), (-0.4, 0.5, 0.25)];
+    let floor = Floor::new(&WALL, Point::new(0.0, -5.4), &columns, 0.2);
+    let way =
+        [(-3.272_348_201_103_527, -0.056_393_239_078_822), (-3.301_148_122_138_845, -0.063_203_685_744_23)];
+    assert!(floor.drag(&way).home(0.2).is_some());
+}
+
+#[test]
+fn a_robot_beside_a_column_or_at_a_manhole_in_the_shell_steps_away_first() {
+    let floor = Floor::new(&WALL, Point::new(-5.95, 0.0), &[(0.0, 0.0, 0.3)], HULL_M).drag(&[(0.0, 0.4)]);
+    let way = floor.home(HULL_M).unwrap();
+    assert!((way[0] - Point::new(0.0, 0.4)).norm() < 1e-9 && (way[1] - Point::new(0.0, 0.55)).norm() < 1e-3);
+}
+
+#[test]
+fn a_way_home_round_an_inward_corner_of_the_wall_keeps_the_hull_off_it() {
+    let corners = [(-4.0, -4.0), (4.0, -4.0), (4.0, 4.0), (0.0, 4.0), (0.0, 0.0), (-4.0, 0.0)];
+    let wall = Boundary::Polygon { vertices: corners.map(|(x, y)| Point::new(x, y)).to_vec() };
+    let floor = Floor::new(&wall, Point::new(-3.0, -0.5), &[], HULL_M).drag(&[(0.5, -0.5), (0.5, 3.0)]);
+    let way = floor.home(HULL_M).unwrap();
+    assert!((polyline::distance_m(&way, Point::origin()) - HULL_M).abs() < 0.01, "{way:?}");
+}
+
+#[test]
+fn a_cable_in_a_closed_gap_has_no_way_home_on_the_other_side_of_it() {
+    // The gap is 0.4 m wide; there is room enough beyond either column.
+    let columns = [(0.0, 0.5, 0.3), (0.0, -0.5, 0.3)];
+    let floor = Floor::new(&WALL, Point::new(-3.0, 0.0), &columns, HULL_M).drag(&[(3.0, 0.0)]);
+    assert_eq!(floor.home(HULL_M), None);
+    let narrow = Floor::new(&WALL, Point::new(-3.0, 0.0), &columns, 0.19).drag(&[(3.0, 0.0)]);
+    assert!(narrow.home(0.19).is_some());
+}
+
+#[test]
+fn a_cable_that_passes_close_by_a_column_after_another_keeps_its_side_of_both() {
+    let columns = [(-1.0765, 1.1354, 0.1), (-1.8657, 0.0, 0.1)];
+    let floor = Floor::new(&WALL, Point::new(0.0, -5.4), &columns, HULL_M);
+    let floor = floor.drag(&[(-3.3, 0.0), (-1.4, 0.6), (-0.5, 0.9), (0.0, 2.08)]);
+    let way = floor.home(HULL_M).unwrap();
+    assert!(way.iter().all(|p| p.x < -1.5 || p.y < 1.2 || p.x > -1e-9), "{way:?}");
+}
+
+/// The way of a hull among columns, off by some noise: every place is free for the hull, what is told of it is not.
+fn driven(floor: &Floor, goals: &[(f64, f64)], noise: &[(f64, f64)]) -> Vec<Point> {
+    let mut at = floor.roomy.outside(floor.cable.anchor());
+    let mut way = vec![at];
+    for (x, y) in goals {
+        let mut pieces = vec![at];
+        floor.roomy.go_round(at, Point::new(*x, *y), &mut pieces);
+        let is_free = pieces.windows(2).all(|w| floor.map.obstacle_clearance_m(w[0], w[1]) > HULL_M - 1e-6);
+        if is_free {
+            at = pieces[pieces.len() - 1];
+            way.extend(polyline::resampled(&pieces, 0.08));
+        }
+    }
+    let off = noise.iter().cycle().map(|(x, y)| Vector::new(*x, *y));
+    way.iter().zip(off).map(|(p, off)| p + off).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn wherever_a_hull_has_driven_there_is_a_way_home_however_its_position_is_off(
+        columns in proptest::collection::vec((-4.5..4.5_f64, -4.5..4.5_f64, 0.1..0.4_f64), 1..14),
+        goals in proptest::collection::vec((-3.8..3.8_f64, -3.8..3.8_f64), 1..16),
+        noise in proptest::collection::vec((-0.08..0.08_f64, -0.08..0.08_f64), 40..60),
+    ) {
+        let anchor = Point::new(0.0, -5.4);
+        let free: Vec<_> =
+            columns.into_iter().filter(|(x, y, r)| x.hypot(*y) < 4.8 && (Point::new(*x, *y) - anchor).norm() > r + HULL_M).collect();
+        let mut floor = Floor::new(&WALL, anchor, &free, HULL_M);
+        for at in driven(&floor, &goals, &noise) {
+            floor.cable.drag_to(at);
+            let way = floor.home(HULL_M);
+            prop_assert!(way.is_some(), "at {at}: {:?}", floor.cable.taut_line());
+            let (way_m, cable_m) = (polyline::length_m(&way.unwrap()), floor.cable.length_m());
+            prop_assert!(way_m > cable_m - 0.02, "{way_m} of {cable_m}");
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! How a robot with tracks is steered along a path: on circular arcs that end on the path, slower where it bends.
+//!
+//! Pure pursuit proper: the one arc that leaves along the heading and meets the aim. On a path of even curvature it
+//! follows without an offset, which a robot that merely turns toward its aim does not: round a column that one cuts
+//! inside.
+
+use planner_api::{Drive, Limits};
+use world::{Point, Vector, geometry::wrap_angle_rad};
+
+/// Angle to the aim beyond which the robot turns on the spot, radians.
+const TURN_FIRST_RAD: f64 = 0.5;
+/// Turn rate per angle on the spot, 1/s.
+const TURN_GAIN_PER_S: f64 = 2.5;
+/// Nearer aims make the arc no tighter, metres.
+const LEAST_REACH_M: f64 = 0.15;
+/// Share of the turn rate that an arc may take; the rest is for corrections.
+const TURN_SHARE: f64 = 0.9;
+/// Turn of a path that makes a corner, radians.
+const CORNER_RAD: f64 = 0.5;
+/// Nearer than this the robot is at a corner, metres.
+const AT_CORNER_M: f64 = 0.05;
+/// A corner is approached no faster than would reach it in this time, seconds.
+const CORNER_S: f64 = 0.6;
+/// A robot does not slow down below this before corners, metres per second.
+const LEAST_M_PER_S: f64 = 0.08;
+
+/// The twist along the arc that leaves along the heading and ends at the aim, with the speed of a wanted velocity.
+pub fn twist(wanted: Vector, heading_rad: f64, reach_m: f64, limits: &Limits) -> Drive {
+    let speed = wanted.norm();
+    if speed < 1e-9 {
+        return Drive::STILL;
+    }
+    let off_rad = wrap_angle_rad(wanted.y.atan2(wanted.x) - heading_rad);
+    if off_rad.abs() > TURN_FIRST_RAD {
+        let w_rad_per_s = (TURN_GAIN_PER_S * off_rad).clamp(-limits.w_max_rad_per_s, limits.w_max_rad_per_s);
+        return Drive::Twist { v_m_per_s: 0.0, w_rad_per_s };
+    }
+    let curvature = 2.0 * off_rad.sin() / reach_m.max(LEAST_REACH_M);
+    let fastest = TURN_SHARE * limits.w_max_rad_per_s / curvature.abs().max(1e-9);
+    let v_m_per_s = speed.min(fastest);
+    Drive::Twist { v_m_per_s, w_rad_per_s: v_m_per_s * curvature }
+}
+
+/// The speed at which a corner ahead can still be turned at, metres per second; infinite without one in sight.
+pub fn corner_speed(at: Point, ahead: &[Point]) -> f64 {
+    let mut along_m = 0.0;
+    let mut from = at;
+    for (k, point) in ahead.iter().enumerate() {
+        let into = point - from;
+        along_m += into.norm();
+        if let Some(next) = ahead.get(k + 1) {
+            let onward = next - point;
+            let turn_rad = if into.norm() > AT_CORNER_M { into.angle(&onward) } else { 0.0 };
+            if turn_rad > CORNER_RAD {
+                return (along_m / CORNER_S).max(LEAST_M_PER_S);
+            }
+        }
+        from = *point;
+    }
+    f64::INFINITY
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use planner_api::Motion;
+    use proptest::prelude::*;
+    use std::f64::consts::PI;
+
+    const LIMITS: Limits = Limits {
+        motion: Motion::Unicycle,
+        v_max_m_per_s: 0.4,
+        w_max_rad_per_s: 1.0,
+        radius_m: 0.2,
+        sensing_range_m: 2.0,
+    };
+
+    #[test]
+    fn an_aim_behind_is_turned_to_on_the_spot_and_none_is_none() {
+        let Drive::Twist { v_m_per_s, w_rad_per_s } = twist(Vector::new(-0.4, 0.1), 0.0, 0.3, &LIMITS) else {
+            panic!("tracks take twists")
+        };
+        assert!(v_m_per_s.abs() < 1e-12 && (w_rad_per_s - 1.0).abs() < 1e-12);
+        assert_eq!(twist(Vector::zeros(), 1.0, 0.3, &LIMITS), Drive::STILL);
+    }
+
+    #[test]
+    fn a_corner_slows_down_and_a_bend_does_not() {
+        let at = Point::origin();
+        let straight: Vec<Point> = (1..9).map(|k| Point::new(0.1 * f64::from(k), 0.0)).collect();
+        assert!(corner_speed(at, &straight).is_infinite());
+        let mut corner = straight[..3].to_vec();
+        corner.push(Point::new(0.3, 0.1));
+        assert!((corner_speed(at, &corner) - 0.5).abs() < 1e-9);
+        assert!((corner_speed(Point::new(0.24, 0.0), &corner[2..]) - 0.1).abs() < 1e-9);
+        let bend: Vec<Point> = (1..9)
+            .map(|k| Point::new((0.2 * f64::from(k)).sin() * 0.5, 0.5 - (0.2 * f64::from(k)).cos() * 0.5))
+            .collect();
+        assert!(corner_speed(at, &bend).is_infinite());
+    }
+
+    proptest! {
+        #[test]
+        fn the_arc_meets_the_aim(reach in 0.2..1.0_f64, off in -0.45..0.45_f64, heading in -PI..PI, speed in 0.05..0.4_f64) {
+            let direction = Vector::new((heading + off).cos(), (heading + off).sin());
+            let Drive::Twist { v_m_per_s, w_rad_per_s } = twist(direction * speed, heading, reach, &LIMITS) else {
+                panic!("tracks take twists")
+            };
+            prop_assert!(w_rad_per_s.abs() <= 1.0 && v_m_per_s <= speed + 1e-12);
+            // Along the arc to where the heading has turned by twice the angle to the aim.
+            let (turn, ahead) = (2.0 * off, Vector::new(heading.cos(), heading.sin()));
+            let left = Vector::new(-ahead.y, ahead.x);
+            let radius = v_m_per_s / w_rad_per_s;
+            let end = ahead * (radius * turn.sin()) + left * (radius * (1.0 - turn.cos()));
+            prop_assert!(off.abs() < 1e-3 || (end - direction * reach).norm() < 1e-6, "{end} {}", direction * reach);
+        }
+    }
+}
