@@ -64,7 +64,7 @@ impl Ground {
         Self {
             boxes: Boxes::new(posts.iter().map(around)),
             posts,
-            sidestep: Sidestep::new(solids),
+            sidestep: Sidestep::new(solids, margin_m > 0.0),
             rays: Rays::new(&shapes.iter().map(heart_of).collect::<Vec<_>>()),
             walls: walls_in_the_way(boundary),
         }

@@ -21,13 +21,18 @@ const DEEPEST: usize = 6;
 pub struct Sidestep {
     solids: Vec<Solid>,
     boxes: Boxes,
+    /// Whether the ends of a way round are led out to the outline first.
+    leads_out: bool,
 }
 
 impl Sidestep {
     /// Sidesteps round these solids.
-    pub fn new(solids: Vec<Solid>) -> Self {
+    ///
+    /// With `leads_out` a move between two places at a solid keeps off it: right where solids are grown, so that robots
+    /// stand in them. Without, such a move is a chord of the solid, as a taut cable drawn with chords is.
+    pub fn new(solids: Vec<Solid>, leads_out: bool) -> Self {
         let boxes = Boxes::new(solids.iter().map(Solid::bounds));
-        Self { solids, boxes }
+        Self { solids, boxes, leads_out }
     }
 
     /// The nearest point that lies in no solid, as far as a few steps find one.
@@ -80,7 +85,9 @@ impl Sidestep {
             return way.push(to);
         };
         let mut at = from;
-        for corner in solid.way_round(from, to) {
+        let round =
+            if self.leads_out { solid.way_round_outside(from, to) } else { solid.way_round(from, to) };
+        for corner in round {
             let corner = self.outside(corner);
             self.bend(at, corner, depth + 1, way);
             at = corner;

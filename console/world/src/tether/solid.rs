@@ -99,21 +99,29 @@ impl Solid {
     }
 
     /// Corners of the shorter way round, for a segment that goes through.
-    ///
-    /// An end between solid and outline is led out to the outline first: from there the way beside the solid is clear,
-    /// while the last corner may see the end only through the solid.
     pub fn way_round(&self, a: Point, b: Point) -> Vec<Point> {
-        let Some((first, last)) = clip(&self.outline, a, b, 0.0) else { return Vec::new() };
+        self.way_between_feet(a, b).map_or_else(Vec::new, |(_, way, _)| way)
+    }
+
+    /// The shorter way round with both ends led out to the outline first: from there the way beside the solid is clear,
+    /// while the last corner may see an end between solid and outline only through the solid.
+    pub fn way_round_outside(&self, a: Point, b: Point) -> Vec<Point> {
+        let Some((enter, mut way, leave)) = self.way_between_feet(a, b) else { return Vec::new() };
+        way.insert(0, enter);
+        way.push(leave);
+        way
+    }
+
+    /// Where a segment comes to the outline and leaves it, and the corners of the shorter way in between.
+    fn way_between_feet(&self, a: Point, b: Point) -> Option<(Point, Vec<Point>, Point)> {
+        let (first, last) = clip(&self.outline, a, b, 0.0)?;
         let (from, enter) = self.on_outline(a + (b - a) * first);
         let (to, leave) = self.on_outline(a + (b - a) * last);
         let left = self.corners(from, to);
         let mut right = self.corners(to, from);
         right.reverse();
-        let shorter = if way_m(enter, &left, leave) <= way_m(enter, &right, leave) { left } else { right };
-        let mut way = vec![enter];
-        way.extend(shorter);
-        way.push(leave);
-        way
+        let is_left = way_m(enter, &left, leave) <= way_m(enter, &right, leave);
+        Some((enter, if is_left { left } else { right }, leave))
     }
 
     /// Corners passed when walking counter-clockwise from one edge of the outline to another.
@@ -230,7 +238,7 @@ mod tests {
             let angle = 0.5 * std::f64::consts::PI - 0.02 * f64::from(step);
             let to = Point::new(angle.cos(), angle.sin()) * 0.4;
             let mut way = vec![from];
-            way.extend(disc.way_round(from, to));
+            way.extend(disc.way_round_outside(from, to));
             way.push(to);
             assert!(way.windows(2).all(|w| disc.distance_m(w[0], w[1]) > -1e-9), "{angle}: {way:?}");
         }
