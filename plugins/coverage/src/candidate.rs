@@ -58,8 +58,9 @@ pub struct Wishes {
 pub struct Candidate {
     /// What the operator calls it.
     pub name: String,
-    /// How it is made.
-    pub recipe: Recipe,
+    pattern: Pattern,
+    /// Distance between lanes and cuts, as a share of the swath.
+    cut_share: f64,
 }
 
 /// What a candidate is worth.
@@ -118,25 +119,13 @@ pub fn least_cable_m(ground: &Ground) -> f64 {
     }
 }
 
-/// Candidates with cuts up to `alpha_rad` off the ray.
+/// What is tried, with cuts up to `alpha_rad` off the ray.
 pub fn candidates(ground: &Ground, wishes: &Wishes, alpha_rad: f64) -> Vec<Candidate> {
     let angle = format!("cuts within {:.0} deg", alpha_rad.to_degrees());
     let make = |name: String, pattern: Pattern, cut_share: f64| Candidate {
         name: format!("{name}, {angle}"),
-        recipe: Recipe {
-            pattern,
-            rule: CutRule { alpha_rad, cable_m: cable_m(ground, wishes, &pattern, alpha_rad) },
-            reach: Reach { cut_m: cut_share * ground.swath_m, lap_share: 0.5, least_m: ground.swath_m / 3.0 },
-            effort: Effort {
-                turn_m_per_rad: wishes.turn_m / TAU,
-                kicks_per_lane: wishes.kicks_per_lane,
-                seed: wishes.seed,
-            },
-            touch_m2: 0.55 * ground.swath_m * ground.swath_m,
-            rounds: 1,
-            floor_m_per_m2: FLOOR_SHARE / ground.swath_m,
-            enough: wishes.enough,
-        },
+        pattern,
+        cut_share,
     };
     let mut all = Vec::new();
     if wishes.contours {
@@ -149,6 +138,27 @@ pub fn candidates(ground: &Ground, wishes: &Wishes, alpha_rad: f64) -> Vec<Candi
         all.push(make(format!("straight lanes at {:.0} deg", angle_rad.to_degrees()), pattern, 0.08));
     }
     all
+}
+
+impl Candidate {
+    /// How it is made: costs a few slit domains, to find how far cuts may go.
+    pub fn recipe(&self, ground: &Ground, wishes: &Wishes, alpha_rad: f64) -> Recipe {
+        let Self { pattern, cut_share, .. } = *self;
+        Recipe {
+            pattern,
+            rule: CutRule { alpha_rad, cable_m: cable_m(ground, wishes, &pattern, alpha_rad) },
+            reach: Reach { cut_m: cut_share * ground.swath_m, lap_share: 0.5, least_m: ground.swath_m / 3.0 },
+            effort: Effort {
+                turn_m_per_rad: wishes.turn_m / TAU,
+                kicks_per_lane: wishes.kicks_per_lane,
+                seed: wishes.seed,
+            },
+            touch_m2: 0.55 * ground.swath_m * ground.swath_m,
+            rounds: 1,
+            floor_m_per_m2: FLOOR_SHARE / ground.swath_m,
+            enough: wishes.enough,
+        }
+    }
 }
 
 /// How long a cut may make the way to its far end, metres.

@@ -334,3 +334,23 @@ pub fn to_wall_m(wall: &Boundary, from: Point, ahead: Vector) -> f64 {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cable_to_the_end_of_a_straight_chain_is_as_long_as_the_way_there() {
+        let chain = [Point::new(3.0, 0.0), Point::new(6.0, 0.0), Point::new(10.0, 0.0)];
+        assert!((taut_m(Point::origin(), &chain) - 10.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_cable_bears_on_the_inner_obstacle_only_where_the_chain_bends_once() {
+        let chain = [Point::new(3.0, 0.0), Point::new(4.0, 2.0), Point::new(8.0, 6.0)];
+        let expected = 3.0 + 5.0_f64.sqrt() + 32.0_f64.sqrt();
+        assert!(taut_m(Point::origin(), &chain) <= expected);
+        let straight = 3.0 + (chain[2] - chain[0]).norm();
+        assert!((taut_m(Point::origin(), &chain) - straight).abs() < 1e-9);
+    }
+}

@@ -219,6 +219,16 @@ impl FloorGrid {
         count
     }
 
+    /// Number of reachable cells that a path would sweep for the first time, or more: some may count twice.
+    pub fn missed_under(&self, path: &[Point]) -> u32 {
+        let mut count = 0;
+        self.along(path, |cells| {
+            let both = self.swept[cells.clone()].iter().zip(&self.reachable[cells]);
+            count += both.map(|(n, reachable)| u32::from(*n == 0 && *reachable)).sum::<u32>();
+        });
+        count
+    }
+
     /// Number of reachable cells that a path would sweep for the first time.
     pub fn would_gain(&self, path: &[Point]) -> usize {
         let mut seen = std::collections::BTreeSet::new();

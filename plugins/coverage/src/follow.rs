@@ -27,7 +27,7 @@ const PILOT_SPARE_M: f64 = 0.02;
 
 /// How near the robot goes when it comes off its path.
 pub const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
-    .help("Hull distance below which no motion toward an obstacle is allowed; never more than half of the mission's clearance.")
+    .help("Hull distance below which no motion toward an obstacle is allowed; never more than three quarters of the mission's clearance.")
     .group("Flight")
     .live();
 /// Steering parameters that every coverage planner has.

@@ -17,6 +17,7 @@ pub mod partition;
 pub mod polish;
 pub mod roam;
 pub mod scan;
+pub mod side_by_side;
 pub mod slit;
 pub mod touch;
 pub mod tour;

@@ -2,9 +2,10 @@
 //! swept here, and what was missed is worth a detour only if it is large enough.
 
 use crate::{
-    cuts::Cut, floor::FloorGrid, ground::Ground, lanes::Lane, slit::Slit, touch::touch_up, tour::angle_rad,
+    cuts::Cut, floor::FloorGrid, ground::Ground, lanes::Lane, side_by_side::Stop, slit::Slit,
+    touch::touch_up, tour::angle_rad,
 };
-use planner_api::{Ctx, Result};
+use planner_api::Result;
 
 mod bend;
 use world::{Point, Vector};
@@ -96,7 +97,7 @@ impl<'a> Track<'a> {
     ///
     /// # Errors
     /// When the console wants an end.
-    pub fn shorten(&mut self, prices: &Prices, ctx: &Ctx<'_>) -> Result<f64> {
+    pub fn shorten(&mut self, prices: &Prices, stop: &Stop) -> Result<f64> {
         let mut since_m = f64::INFINITY;
         for side in self.sides.iter_mut().rev() {
             since_m = if side.is_new { 0.0 } else { since_m + side.length_m };
@@ -113,7 +114,7 @@ impl<'a> Track<'a> {
             }
             looked_at += 1;
             if looked_at.is_multiple_of(64) {
-                ctx.check()?;
+                stop.check()?;
             }
             if let Some(gain_m) = self.best_shortcut(from, prices) {
                 saved_m += gain_m;
@@ -281,7 +282,7 @@ impl<'a> Track<'a> {
         is_wanted: &dyn Fn(Point) -> bool,
         prices: &Prices,
         (enough, least): (f64, usize),
-        ctx: &Ctx<'_>,
+        stop: &Stop,
     ) -> Result<usize> {
         let cell_m2 = self.grid.cell_m * self.grid.cell_m;
         let mut offers: Vec<(f64, usize, Lane)> = Vec::new();
@@ -289,7 +290,7 @@ impl<'a> Track<'a> {
             if group.len() < least {
                 break;
             }
-            ctx.check()?;
+            stop.check()?;
             for lane in touch_up(ground, self.slit, cuts, &self.grid, &group) {
                 if !lane.points.iter().all(|p| is_wanted(*p)) {
                     continue;

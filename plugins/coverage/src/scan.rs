@@ -6,11 +6,12 @@ use crate::{
     ground::Ground,
     lanes::{Lane, Pattern, Reach, lanes},
     polish::{Prices, Side, Track},
+    side_by_side::Stop,
     slit::Slit,
     touch::touch_up,
     tour::{Effort, Tour, Ways, tour},
 };
-use planner_api::{Ctx, Result};
+use planner_api::Result;
 use std::f64::consts::TAU;
 use world::{Point, Vector, polyline};
 
@@ -129,12 +130,7 @@ impl<'a> Draft<'a> {
     ///
     /// # Errors
     /// When the console wants an end.
-    pub fn new(
-        ground: &'a Ground,
-        recipe: &Recipe,
-        order: &Order<'a>,
-        ctx: &Ctx<'_>,
-    ) -> Result<Option<Self>> {
+    pub fn new(ground: &'a Ground, recipe: &Recipe, order: &Order<'a>, stop: &Stop) -> Result<Option<Self>> {
         let home = ground.home();
         let Some((cuts, slit)) = domain(ground, &recipe.pattern, &recipe.rule, home) else { return Ok(None) };
         let start = if slit.contains(order.start) { order.start } else { home };
@@ -144,7 +140,7 @@ impl<'a> Draft<'a> {
         let mut draft = Self { ground, order, recipe, cuts, slit, lanes, pieces, start, length_m, turns };
         let mut grid = draft.unswept();
         draft.lanes = draft.wanted(&grid, all);
-        draft.pieces = draft.toured(DRAFT_SHARE, ctx)?;
+        draft.pieces = draft.toured(DRAFT_SHARE, stop)?;
         let path = joined(&draft.pieces);
         grid.sweep(&path);
         let missed_m2 = (1.0 - grid.coverage()) * grid.area_m2();
@@ -165,10 +161,10 @@ impl<'a> Draft<'a> {
         grid
     }
 
-    fn toured(&self, share_of_kicks: f64, ctx: &Ctx<'_>) -> Result<Vec<Piece>> {
+    fn toured(&self, share_of_kicks: f64, stop: &Stop) -> Result<Vec<Piece>> {
         let effort = self.recipe.effort;
         let effort = Effort { kicks_per_lane: effort.kicks_per_lane * share_of_kicks, ..effort };
-        toured(&self.slit, &self.lanes, (self.ground.home(), self.start), &effort, ctx)
+        toured(&self.slit, &self.lanes, (self.ground.home(), self.start), &effort, stop)
     }
 
     fn is_in_reach(&self, at: Point) -> bool {
@@ -191,7 +187,7 @@ impl<'a> Draft<'a> {
     ///
     /// # Errors
     /// When the console wants an end.
-    pub fn finished(mut self, ctx: &Ctx<'_>) -> Result<Scan> {
+    pub fn finished(mut self, stop: &Stop) -> Result<Scan> {
         let mut grid = self.unswept();
         let mut pieces = std::mem::take(&mut self.pieces);
         for round in 0..self.recipe.rounds {
@@ -208,40 +204,40 @@ impl<'a> Draft<'a> {
             }
             self.lanes.extend(fresh);
             // The draft was quick; from here on the order matters.
-            pieces = self.toured(1.0, ctx)?;
+            pieces = self.toured(1.0, stop)?;
         }
         let mut track = Track::new(&self.slit, &pieces, grid);
-        self.polish(&mut track, ctx)?;
+        self.polish(&mut track, stop)?;
         let (pieces, grid) = (pieces_of(&track.points, &track.sides), track.grid);
         Ok(Scan { pieces, cuts: self.cuts, slit: self.slit, grid })
     }
 
     /// Shortens the path, bends it to floor that it misses, and ties in short lanes where that is not enough.
-    fn polish(&self, track: &mut Track<'_>, ctx: &Ctx<'_>) -> Result<()> {
+    fn polish(&self, track: &mut Track<'_>, stop: &Stop) -> Result<()> {
         let Recipe { floor_m_per_m2, enough, effort, .. } = self.recipe;
         let prices = Prices { turn_m_per_rad: effort.turn_m_per_rad, floor_m_per_m2 };
         let careful = Prices { floor_m_per_m2: 1e6, ..prices };
         let in_reach = |at: Point| self.is_in_reach(at);
-        track.shorten(&prices, ctx)?;
+        track.shorten(&prices, stop)?;
         for _ in 0..BENDS {
             let most_m_per_m2 = BEND_SHARE / self.ground.swath_m;
-            if track.bend(&in_reach, &prices, (enough, BEND_CELLS), most_m_per_m2, ctx)? == 0 {
+            if track.bend(&in_reach, &prices, (enough, BEND_CELLS), most_m_per_m2, stop)? == 0 {
                 break;
             }
-            track.shorten(&careful, ctx)?;
+            track.shorten(&careful, stop)?;
         }
         let mut is_late = false;
         for round in 0..TOUCH_UPS {
             is_late |= round >= SOON_ENOUGH;
             let enough = enough - if is_late { LATE_SHARE } else { 0.0 };
             let least = if is_late { LATE_CELLS } else { CELLS };
-            if track.touch_up(self.ground, &self.cuts, &in_reach, &prices, (enough, least), ctx)? == 0 {
+            if track.touch_up(self.ground, &self.cuts, &in_reach, &prices, (enough, least), stop)? == 0 {
                 if std::mem::replace(&mut is_late, true) {
                     break;
                 }
                 continue;
             }
-            track.shorten(&careful, ctx)?;
+            track.shorten(&careful, stop)?;
         }
         Ok(())
     }
@@ -285,10 +281,10 @@ fn toured(
     lanes: &[Lane],
     (home, start): (Point, Point),
     effort: &Effort,
-    ctx: &Ctx<'_>,
+    stop: &Stop,
 ) -> Result<Vec<Piece>> {
     let ways = Ways::new(slit, lanes, home, start, effort.turn_m_per_rad);
-    let order = tour(&ways, effort, ctx)?;
+    let order = tour(&ways, effort, stop)?;
     Ok(assembled(&ways, lanes, &order))
 }
 

@@ -2,10 +2,11 @@
 
 use crate::{
     answer::{self, plan_of},
-    candidate::{Candidate, Wishes, Worth, candidates, least_cable_m, worth},
+    candidate::{Wishes, Worth, candidates, least_cable_m, worth},
     follow::{Follow, GUARD},
     ground::Ground,
     scan::{Draft, Order, Scan},
+    side_by_side::side_by_side,
 };
 use field::params as p;
 use planner_api::{
@@ -57,7 +58,7 @@ const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
     .help("Edge of the cells in which floor is counted.")
     .group("Plan");
-const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 5.0)
+const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 3.0)
     .help("Changes tried per lane in the search for the order of lanes; more takes longer and shortens the path.")
     .group("Plan");
 
@@ -233,28 +234,36 @@ impl TetherSafe {
     ) -> Result<Vec<Tried>> {
         let mut tried: Vec<Tried> = Vec::new();
         for share in [1.0, 0.5, 0.0] {
-            let mut drafts: Vec<(f64, String, Draft<'_>)> = Vec::new();
-            for Candidate { name, recipe } in candidates(ground, wishes, wishes.alpha_rad * share) {
-                if let Some(draft) = Draft::new(ground, &recipe, order, ctx)? {
-                    drafts.push((draft.estimate_m(wishes.choice_turn_m), name, draft));
-                }
-            }
+            let alpha_rad = wishes.alpha_rad * share;
+            let drafted = side_by_side(candidates(ground, wishes, alpha_rad), ctx, |candidate, stop| {
+                let recipe = candidate.recipe(ground, wishes, alpha_rad);
+                let draft = Draft::new(ground, &recipe, order, stop)?;
+                Ok(draft.map(|draft| (draft.estimate_m(wishes.choice_turn_m), candidate.name, draft)))
+            })?;
+            let mut drafts: Vec<(f64, String, Draft<'_>)> = drafted.into_iter().flatten().collect();
             drafts.sort_by(|a, b| a.0.total_cmp(&b.0));
             let least_m = drafts.first().map_or(0.0, |draft| draft.0);
-            let n = drafts.len() as f64;
-            for (done, (estimate_m, name, draft)) in drafts.into_iter().enumerate() {
-                ctx.scalar("candidates done", done as f64 / n, "");
-                let is_hopeless = self.choose == SHORTEST && estimate_m > least_m * (1.0 + HOPELESS);
-                if is_hopeless && tried.iter().any(|t| is_within(&t.worth, wishes)) {
-                    ctx.log(
-                        LogLevel::Info,
-                        &format!("{name}: left, it would cost about {:.0} m more", estimate_m - least_m),
-                    );
-                    continue;
+            let is_worth_it = |draft: &(f64, String, Draft<'_>)| {
+                self.choose != SHORTEST || draft.0 <= least_m * (1.0 + HOPELESS)
+            };
+            let (good, hopeless): (Vec<_>, Vec<_>) = drafts.into_iter().partition(is_worth_it);
+            ctx.scalar("candidates worked out", good.len() as f64, "");
+            for drafts in [good, hopeless] {
+                if tried.iter().any(|t| is_within(&t.worth, wishes)) {
+                    for (estimate_m, name, _) in &drafts {
+                        let more_m = estimate_m - least_m;
+                        ctx.log(
+                            LogLevel::Info,
+                            &format!("{name}: left, it would cost about {more_m:.0} m more"),
+                        );
+                    }
+                    break;
                 }
-                let scan = draft.finished(ctx)?;
-                let worth = worth(ground, site, wishes.demanded, &scan, laid);
-                tried.push(Tried { name, scan: Some(scan), worth });
+                tried.extend(side_by_side(drafts, ctx, |(_, name, draft), stop| {
+                    let scan = draft.finished(stop)?;
+                    let worth = worth(ground, site, wishes.demanded, &scan, laid);
+                    Ok(Tried { name, scan: Some(scan), worth })
+                })?);
                 self.keep_best(&mut tried, wishes);
             }
             if wishes.alpha_rad == 0.0 || tried.iter().any(|t| is_within(&t.worth, wishes)) {

@@ -4,8 +4,8 @@
 //! metres. Greedy joining first, then 2-opt and Or-opt over neighbour lists, then small kicks that are kept when they
 //! help. Any order is safe for the tether; only length and turns depend on it.
 
-use crate::{lanes::Lane, slit::Slit};
-use planner_api::{Ctx, Result};
+use crate::{lanes::Lane, side_by_side::Stop, slit::Slit};
+use planner_api::Result;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::cell::RefCell;
@@ -135,13 +135,13 @@ pub type Tour = Vec<End>;
 ///
 /// # Errors
 /// When the console wants an end.
-pub fn tour(ways: &Ways<'_>, effort: &Effort, ctx: &Ctx<'_>) -> Result<Tour> {
-    let near = neighbours(ways, ctx)?;
+pub fn tour(ways: &Ways<'_>, effort: &Effort, stop: &Stop) -> Result<Tour> {
+    let near = neighbours(ways, stop)?;
     let entries = greedy(ways, &near);
-    improved(ways, &near, entries, effort, ctx)
+    improved(ways, &near, entries, effort, stop)
 }
 
-fn neighbours(ways: &Ways<'_>, ctx: &Ctx<'_>) -> Result<Vec<Vec<End>>> {
+fn neighbours(ways: &Ways<'_>, stop: &Stop) -> Result<Vec<Vec<End>>> {
     let n = ways.len();
     let cell_m = 1.0;
     let key = |p: Point| ((p.x / cell_m).floor() as i64, (p.y / cell_m).floor() as i64);
@@ -152,7 +152,7 @@ fn neighbours(ways: &Ways<'_>, ctx: &Ctx<'_>) -> Result<Vec<Vec<End>>> {
     let mut all = Vec::with_capacity(n);
     for u in 0..n {
         if u % 64 == 0 {
-            ctx.check()?;
+            stop.check()?;
         }
         let (x, y) = key(ways.at[u]);
         let mut found: Vec<End> = Vec::new();
@@ -246,17 +246,11 @@ struct Search<'a> {
     place: Vec<usize>,
 }
 
-fn improved(
-    ways: &Ways<'_>,
-    near: &[Vec<End>],
-    entries: Tour,
-    effort: &Effort,
-    ctx: &Ctx<'_>,
-) -> Result<Tour> {
+fn improved(ways: &Ways<'_>, near: &[Vec<End>], entries: Tour, effort: &Effort, stop: &Stop) -> Result<Tour> {
     let mut search = Search { ways, near, place: vec![0; entries.len()], entries };
     search.number(0, search.entries.len());
     let all: Vec<End> = (0..ways.len()).collect();
-    search.descend(all, ctx)?;
+    search.descend(all, stop)?;
     let n = search.entries.len();
     if n < 8 {
         return Ok(search.into_tour());
@@ -265,11 +259,11 @@ fn improved(
     let kicks = (effort.kicks_per_lane * n as f64) as usize;
     for kick in 0..kicks {
         if kick % 32 == 0 {
-            ctx.check()?;
+            stop.check()?;
         }
         let before = search.entries.clone();
         let (gain, touched) = search.kick(&mut random);
-        let total = gain + search.descend(touched, ctx)?;
+        let total = gain + search.descend(touched, stop)?;
         if total < -1e-9 {
             search.entries = before;
             search.number(0, n);
@@ -308,7 +302,7 @@ impl Search<'_> {
     }
 
     /// Improves until nothing near the given ends gets better; returns what was gained.
-    fn descend(&mut self, ends: Vec<End>, ctx: &Ctx<'_>) -> Result<f64> {
+    fn descend(&mut self, ends: Vec<End>, stop: &Stop) -> Result<f64> {
         let mut waiting = vec![false; self.ways.len()];
         let mut queue: std::collections::VecDeque<End> = ends.into();
         for u in &queue {
@@ -320,7 +314,7 @@ impl Search<'_> {
             waiting[u] = false;
             rounds += 1;
             if rounds.is_multiple_of(256) {
-                ctx.check()?;
+                stop.check()?;
             }
             if let Some((gain, touched)) = self.improve(u) {
                 gained += gain;

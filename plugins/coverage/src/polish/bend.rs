@@ -1,7 +1,8 @@
 //! Bends: the path goes a little aside to where it would miss floor, wherever that is cheaper than a lane of its own.
 
 use super::{Prices, Track};
-use planner_api::{Ctx, Result};
+use crate::side_by_side::Stop;
+use planner_api::Result;
 use world::{Point, Vector};
 
 /// Bends are tried at path points within this distance of missed floor, metres.
@@ -34,14 +35,14 @@ impl Track<'_> {
         prices: &Prices,
         (enough, least): (f64, usize),
         most_m_per_m2: f64,
-        ctx: &Ctx<'_>,
+        stop: &Stop,
     ) -> Result<usize> {
         let mut offers: Vec<Offer> = Vec::new();
         for group in self.grid.missed() {
             if group.len() < least {
                 break;
             }
-            ctx.check()?;
+            stop.check()?;
             offers.extend(self.best_bend(&group, is_wanted, prices, most_m_per_m2));
         }
         offers.sort_by(|a, b| a.rate.total_cmp(&b.rate));
@@ -86,7 +87,7 @@ impl Track<'_> {
                 }
                 for base in BASES {
                     let most = best.as_ref().map_or(most_m_per_m2, |b| b.rate);
-                    if let Some(rate) = self.rate(k, base, to, prices, most * group.len() as f64)
+                    if let Some(rate) = self.rate(k, base, to, prices, most)
                         && rate < most
                     {
                         best = Some(Offer { rate, at, base, to });
@@ -97,9 +98,9 @@ impl Track<'_> {
         best
     }
 
-    /// What a square metre of floor would cost, metres; `None` where the way is barred, nothing is gained, or it costs
-    /// more than so many metres by cell.
-    fn rate(&mut self, k: usize, base: usize, to: Point, prices: &Prices, most: f64) -> Option<f64> {
+    /// What a square metre of floor would cost, metres; `None` where the way is barred, nothing is gained, or it surely
+    /// costs more than so much.
+    fn rate(&mut self, k: usize, base: usize, to: Point, prices: &Prices, most_m_per_m2: f64) -> Option<f64> {
         let (from, past) = (k.checked_sub(base)?, k + base);
         if past >= self.points.len() {
             return None;
@@ -110,10 +111,12 @@ impl Track<'_> {
         let (old_m, old_rad) = self.measure(from, past, &self.points[from..=past]);
         let cost_m = new_m - old_m + prices.turn_m_per_rad * (new_rad - old_rad);
         let cell_m2 = self.grid.cell_m * self.grid.cell_m;
-        if cost_m > most * cell_m2 || !(self.slit.sees(a, to) && self.slit.sees(to, b)) {
+        let (old, new) = self.before_and_after(from, past, &way);
+        // A quick look at what the new way sweeps first.
+        let most_gained = f64::from(self.grid.missed_under(&new)) * cell_m2;
+        if cost_m > most_m_per_m2 * most_gained || !(self.slit.sees(a, to) && self.slit.sees(to, b)) {
             return None;
         }
-        let (old, new) = self.before_and_after(from, past, &way);
         let gained = -self.grid.exchange(&old, &new);
         self.grid.exchange(&new, &old);
         (gained > 0).then(|| cost_m / (gained as f64 * cell_m2))
@@ -137,5 +140,42 @@ impl Track<'_> {
         new.extend(way);
         new.extend((last > past).then(|| self.points[last]));
         (old, new)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{floor::FloorGrid, ground::Ground, scan::Piece, side_by_side::Stop, slit::Slit};
+    use trials::tanks::{Known, Tank};
+
+    /// A straight lane through an empty tank with a notch of missed floor beside it.
+    fn lane() -> (Ground, Slit) {
+        let tank = Tank { columns: Vec::new(), ..Known::E1.tank(0) };
+        let ground = Ground::new(&tank.site(&[]), tank.anchor).unwrap();
+        let slit = Slit::new(&ground, &[], ground.home()).unwrap();
+        (ground, slit)
+    }
+
+    #[test]
+    fn a_lane_bends_to_a_strip_beside_it_and_only_as_far_as_it_pays() {
+        let (ground, slit) = lane();
+        let mut grid = FloorGrid::new(&ground, &slit, 0.05);
+        let strip =
+            [Point::new(-1.0, 0.3), Point::new(1.0, 0.3), Point::new(1.0, 0.36), Point::new(-1.0, 0.36)];
+        grid.keep_within(&[&strip]);
+        let points = vec![Point::new(-3.0, 0.0), Point::new(3.0, 0.0)];
+        let prices = Prices { turn_m_per_rad: 0.1, floor_m_per_m2: 15.0 };
+        let bent = |most_m_per_m2: f64| {
+            let mut track =
+                Track::new(&slit, &[Piece { points: points.clone(), is_lane: true }], grid.clone());
+            let before = track.grid.coverage();
+            let n = track.bend(&|_| true, &prices, (1.0, 1), most_m_per_m2, &Stop::default()).unwrap();
+            (n, track.grid.coverage() - before, track.points)
+        };
+        let (n, gained, points) = bent(40.0);
+        assert!(n > 0 && gained > 0.3, "{n} bends gained {gained}");
+        assert!(points.iter().all(|p| p.y.abs() < 0.4) && points.windows(2).all(|w| w[1].x > w[0].x));
+        assert_eq!(bent(0.001).0, 0, "nothing is that cheap");
     }
 }
