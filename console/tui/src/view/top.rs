@@ -29,13 +29,11 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let names = names(look.model, wide, gap, room);
     let blank = || vec![(Role::Text, gap.to_owned())];
     let left = [vec![(Role::Text, " ".into())], state, blank(), names, time, blank(), alarms].concat();
+    let used: usize = left.iter().map(|(_, text)| text::width(text)).sum();
     frame.render_widget(look.line(left), area);
-    if wide {
-        let used = fixed + 1 + 2 * gap.len();
-        if used + screen <= usize::from(area.width) {
-            let line = Line::from(look.span(Role::Dim, SCREEN)).right_aligned();
-            frame.render_widget(line, right_of(area, text::width(SCREEN) as u16));
-        }
+    if wide && used + screen <= usize::from(area.width) {
+        let line = Line::from(look.span(Role::Dim, SCREEN)).right_aligned();
+        frame.render_widget(line, right_of(area, text::width(SCREEN) as u16));
     }
 }
 
