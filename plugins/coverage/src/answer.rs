@@ -2,13 +2,13 @@
 
 use crate::{
     floor::FloorGrid,
-    ground::Ground,
+    ground::{Ground, direction},
     scan::{Order, Scan},
 };
 use planner_api::{
     Code, Ctx, Leg, LegTag, LogLevel, Plan, PlanRequest, PlannerError, Result, Site, Task, TetherLimits,
 };
-use std::sync::Arc;
+use std::{f64::consts::TAU, sync::Arc};
 use world::{
     ObstacleMap, Point, Shape, polyline,
     tether::{self, Cable},
@@ -18,6 +18,12 @@ use world::{
 const LEAST_M2: f64 = 0.05;
 /// Places told one by one.
 const MOST_PLACES: usize = 8;
+
+/// Bearings in which floor in reach is looked for beside floor at the wall.
+const MARGIN_BEARINGS: u32 = 24;
+/// Why floor is not scanned.
+const SHELL_MARGIN: &str = "is shell margin: the tool does not reach it from where the hull fits";
+const NARROW_GAPS: &str = "cannot be reached: gaps are narrower than hull and clearance need";
 
 /// A task to cover.
 #[derive(Debug, Clone, Copy)]
@@ -107,13 +113,18 @@ pub fn way_home(ground: &Ground, site: &Site<'_>, cable: &Cable) -> Option<Vec<P
 pub fn tell_unreachable(ground: &Ground, scan: &Scan, order: &Order<'_>, ctx: &Ctx<'_>) {
     let grid = &scan.grid;
     let cell_m2 = grid.cell_m * grid.cell_m;
-    let mut closed = grid.clone();
-    for cell in 0..closed.reachable.len() {
-        closed.reachable[cell] =
-            !grid.reachable[cell] && order.regions.is_empty() && ground.is_floor(grid.center(cell));
+    for (is_margin, why) in [(true, SHELL_MARGIN), (false, NARROW_GAPS)] {
+        let mut closed = grid.clone();
+        for cell in 0..closed.reachable.len() {
+            let at = grid.center(cell);
+            closed.reachable[cell] = !grid.reachable[cell]
+                && order.regions.is_empty()
+                && ground.is_floor(at)
+                && is_shell_margin(ground, grid, at) == is_margin;
+        }
+        closed.swept.fill(0);
+        tell(&closed, cell_m2, why, ground, ctx);
     }
-    closed.swept.fill(0);
-    tell(&closed, cell_m2, "cannot be reached: gaps are narrower than hull and clearance need", ground, ctx);
     if order.reel_m.is_finite() {
         let mut far = grid.clone();
         let home = ground.home();
@@ -126,6 +137,19 @@ pub fn tell_unreachable(ground: &Ground, scan: &Scan, order: &Order<'_>, ctx: &C
         far.swept.fill(0);
         tell(&far, cell_m2, &format!("is beyond the reel of {:.1} m", order.reel_m), ground, ctx);
     }
+}
+
+/// Whether floor that is not in reach lies along the wall, beside floor that is, with no gap between wall and obstacle.
+fn is_shell_margin(ground: &Ground, grid: &FloorGrid, at: Point) -> bool {
+    let edge_m = ground.wall.wall_distance_m(at);
+    let is_gap = || ground.parts.iter().any(|part| part.distance(at).0 + edge_m < 2.0 * ground.keep_m);
+    let is_beside = || {
+        (0..MARGIN_BEARINGS).any(|k| {
+            let toward = direction(TAU * f64::from(k) / f64::from(MARGIN_BEARINGS));
+            grid.has_reachable_near(at + toward * ground.keep_m)
+        })
+    };
+    edge_m < ground.keep_m + ground.swath_m / 2.0 && !is_gap() && is_beside()
 }
 
 fn tell(grid: &FloorGrid, cell_m2: f64, why: &str, ground: &Ground, ctx: &Ctx<'_>) {

@@ -151,6 +151,26 @@ fn demanded(task: Option<TetherLimits>) -> Limits {
     })
 }
 
+/// Why not even one lane can be planned, if so: the swath is wider than the floor, or the reel does not reach one.
+fn no_lane(ground: &Ground, reel_m: f64, home: Point) -> Option<String> {
+    let (low, high) = ground.wall.bounds();
+    let (swath_m, floor_m) = (ground.swath_m, (high.x - low.x).min(high.y - low.y));
+    if swath_m > floor_m {
+        return Some(format!(
+            "the swath of {swath_m:.2} m is wider than the floor of {floor_m:.2} m; it must be narrower"
+        ));
+    }
+    // The nearest lane that is not at the anchor itself lies a swath away; a robot beside the anchor is out already.
+    let needed_m = (home - ground.anchor).norm() + swath_m.min(least_cable_m(ground));
+    (reel_m < needed_m).then(|| {
+        let farthest_m = least_cable_m(ground);
+        format!(
+            "the reel holds {reel_m:.2} m of cable; the nearest lanes need {needed_m:.2} m, the farthest floor is \
+             {farthest_m:.1} m from the anchor"
+        )
+    })
+}
+
 fn stricter(a: Limits, b: Limits) -> Limits {
     Limits {
         reel_m: a.reel_m.min(b.reel_m),
@@ -170,15 +190,10 @@ impl TetherSafe {
     ) -> Result<Plan> {
         let least_m = least_cable_m(ground);
         let reel_m = wishes.limits.reel_m;
-        if reel_m < ground.swath_m {
-            return Err(PlannerError::new(
-                planner_api::Code::Config,
-                format!(
-                    "the reel holds {reel_m:.2} m of cable; the farthest floor is {least_m:.1} m from the anchor"
-                ),
-            ));
-        }
         let home = ground.home();
+        if let Some(why) = no_lane(ground, reel_m, home) {
+            return Err(PlannerError::new(planner_api::Code::Config, why));
+        }
         let start = request.start.position;
         let laid = laid_cable(ground, request);
         let order = Order {

@@ -21,6 +21,9 @@ const SPARE_M: f64 = 0.005;
 /// Distance from the anchor at which a path has come back, metres.
 const BACK_M: f64 = 0.3;
 
+/// Steps in which a piece of a path is searched for its narrowest place.
+const NARROW_STEPS: u32 = 200;
+
 /// What a cable may do.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
@@ -202,6 +205,7 @@ impl Replay {
 struct Clearance {
     collisions: usize,
     least_m: f64,
+    /// Where the first piece without room is nearest to something, and to what.
     first: Option<(Point, String)>,
 }
 
@@ -225,10 +229,25 @@ fn clearance(case: &Case<'_>) -> Clearance {
         if least_m < case.room_m - SPARE_M {
             found.collisions += 1;
             let name = by.map_or_else(|| "the wall".to_owned(), |k| case.obstacles[k].name.clone());
-            found.first.get_or_insert((pair.0, name));
+            found.first.get_or_insert_with(|| (narrowest(case, &solids, pair, by), name));
         }
     }
     found
+}
+
+/// The place on a piece of the path that is nearest to an obstacle, or to the wall.
+///
+/// Pieces lead past long walls and through solids, so the least distance is looked for in even steps.
+fn narrowest(case: &Case<'_>, solids: &[(usize, Solid)], (a, b): (Point, Point), by: Option<usize>) -> Point {
+    let distance_m = |at: Point| match by {
+        Some(k) => {
+            let of_it = solids.iter().filter(|(index, _)| *index == k);
+            of_it.map(|(_, solid)| solid.distance_m(at, at)).fold(f64::INFINITY, f64::min)
+        }
+        None => wall_clearance_m(case.boundary, at, at),
+    };
+    let places = (0..=NARROW_STEPS).map(|k| a + (b - a) * (f64::from(k) / f64::from(NARROW_STEPS)));
+    places.min_by(|p, q| distance_m(*p).total_cmp(&distance_m(*q))).unwrap_or(a)
 }
 
 fn pieces(path: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
@@ -298,9 +317,12 @@ impl Reasons<'_> {
 
     fn collision(&self, certificate: &Certificate) -> Option<String> {
         let (at, name) = self.clearance.first.as_ref()?;
+        let lack = match certificate.collisions {
+            1 => "1 piece of the path lacks room,".to_owned(),
+            n => format!("{n} pieces of the path lack room, the first"),
+        };
         Some(format!(
-            "{} pieces of the path lack room, the first at {} by {name}: least room {:.3} m, needed {:.3} m",
-            certificate.collisions,
+            "{lack} at {} by {name}: least room {:.3} m, needed {:.3} m",
             place(*at),
             certificate.min_clearance_m,
             self.case.room_m

@@ -76,6 +76,46 @@ fn overlapping_columns_and_gaps_too_narrow_are_told_not_dropped() {
 }
 
 #[test]
+fn the_ring_along_the_shell_that_the_tool_does_not_reach_is_margin_and_no_gap() {
+    let tank = Tank { columns: Vec::new(), ..Known::E1.tank(4) };
+    let obstacles = tank.obstacles();
+    let site = tank.site(&obstacles);
+    let site = Site { swath_m: 1.4 * (site.clearance_m + site.limits.radius_m), ..site };
+    let bench = Bench::new();
+    let mut planner: TetherSafe = bench.configure(&[("pattern", 1.0), ("kicks", 0.0)], &site).unwrap();
+    let start = planner_api::PoseEstimate {
+        position: tank.anchor,
+        heading_rad: 0.0,
+        covariance: nalgebra::Matrix3::zeros(),
+    };
+    let task = planner_api::Task::Cover { anchor: tank.anchor, regions: &[], tether: None, tolerance_m: 0.3 };
+    let reason = planner_api::Reason::Start;
+    planner
+        .plan(&PlanRequest { reason: &reason, start, task, site: &site, previous: &[] }, &bench.ctx())
+        .unwrap();
+    let logs = bench.logs();
+    let said: Vec<&String> = logs.iter().map(|(_, said)| said).collect();
+    assert!(said.iter().any(|said| said.contains("is shell margin")), "{said:?}");
+    assert!(!said.iter().any(|said| said.contains("gaps")), "{said:?}");
+}
+
+#[test]
+fn a_swath_wider_than_the_floor_and_a_reel_too_short_for_a_lane_are_told_apart() {
+    let ground = |swath_m: f64| {
+        let tank = Known::E1.tank(4);
+        let obstacles = tank.obstacles();
+        Ground::new(&Site { swath_m, ..tank.site(&obstacles) }, tank.anchor).unwrap()
+    };
+    let why = |swath_m: f64, reel_m: f64| {
+        let ground = ground(swath_m);
+        no_lane(&ground, reel_m, ground.home())
+    };
+    assert!(why(50.0, 13.0).is_some_and(|why| why.contains("the swath of 50.00 m is wider than the floor")));
+    assert!(why(0.6, 0.5).is_some_and(|why| why.contains("need 0.60 m")));
+    assert_eq!(why(0.6, 13.0), None);
+}
+
+#[test]
 fn cuts_that_would_seal_floor_off_end_somewhere_else() {
     let tank = Known::E3.tank(200);
     let plan = plan(&tank, &[("alpha_deg", 0.0), ("pattern", 1.0)], None).0.unwrap();

@@ -72,6 +72,21 @@ fn limits_and_collisions_are_told_with_place_and_figure() {
 }
 
 #[test]
+fn a_collision_is_told_where_the_path_is_narrowest_and_by_what() {
+    let words = |path: &[(f64, f64)], columns: &[Obstacle]| {
+        certify(&case(&points(path), columns, &[])).unwrap().reasons.join("; ")
+    };
+    // Far from where the piece begins.
+    let by_the_wall = words(&[(0., 0.), (9.9, 0.), (0., 0.)], &[]);
+    assert!(
+        by_the_wall.contains("2 pieces of the path lack room, the first at 9.90, 0.00 m by the wall"),
+        "{by_the_wall}"
+    );
+    let past = words(&[(0., 0.), (0., 0.5), (8., 0.5), (9., 2.), (0., 2.), (0., 0.)], &[column(0, 4.0, 0.0)]);
+    assert!(past.contains("1 piece of the path lacks room, at 4.00, 0.50 m by C0"), "{past}");
+}
+
+#[test]
 fn a_path_that_does_not_come_back_or_is_no_path_is_refused() {
     let away = certify(&case(&points(&[(0., 0.), (5., 0.)]), &[], &[])).unwrap();
     assert!(away.reasons[0].contains("ends 5.00 m away from the anchor"), "{:?}", away.reasons);
