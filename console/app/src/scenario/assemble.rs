@@ -70,7 +70,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let start = start(floor.robot.as_ref(), task.as_ref());
     scatter(root, &mut floor, seed, start, task.as_ref());
     check_places(&sections, &floor, start, task.as_ref());
-    let tether = tether_of(root, &floor, start);
+    let tether = tether_of(&sections, &floor, start, task.as_ref());
     let task = task.map(|task| back_to_the_anchor(task, tether.as_ref()));
     let planner = root.table("planner").map(|section| (task::planner(&section), task::fallback(&section)));
     let plates = if root.has("plates") { floor::plates(root, floor.boundary.as_ref()) } else { None };
@@ -231,16 +231,29 @@ fn check_places(sections: &Sections<'_>, floor: &Floor, start: Option<Pose>, tas
 }
 
 /// The tether, if there is one; a complaint stands for one that cannot be.
-fn tether_of(root: &Section<'_>, floor: &Floor, start: Option<Pose>) -> Option<TetherConfig> {
-    if !root.has("tether") {
+fn tether_of(
+    sections: &Sections<'_>,
+    floor: &Floor,
+    start: Option<Pose>,
+    task: Option<&TaskConfig>,
+) -> Option<TetherConfig> {
+    if !sections.root.has("tether") {
         return None;
     }
-    let section = root.table("tether")?;
+    let section = sections.root.table("tether")?;
     let start = start.map(|pose| pose.position);
     let tether = tether::tether(&section, start)?;
-    if let (Some(boundary), Some(start)) = (&floor.boundary, start) {
-        let site = Site { boundary, obstacles: &floor.obstacles, zones: &[], radius_m: 0.0 };
+    let Some(boundary) = &floor.boundary else { return Some(tether) };
+    let site = Site { boundary, obstacles: &floor.obstacles, zones: &[], radius_m: 0.0 };
+    if let Some(start) = start {
         tether::check(&section, &tether, &site, start);
+    }
+    let clearance_m = sections.mission.as_ref().and_then(|mission| mission.number("clearance_m"));
+    if let (Some(TaskConfig::Cover { .. }), Some(robot), Some(clearance_m)) =
+        (task, &floor.robot, clearance_m)
+    {
+        let site = Site { radius_m: robot.limits.radius_m, ..site };
+        tether::check_room(&section, &tether, &site, clearance_m);
     }
     Some(tether)
 }

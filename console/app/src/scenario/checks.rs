@@ -13,7 +13,7 @@ pub const MOST_LANES: f64 = 600.0;
 pub const MOST_TICKS: f64 = 1e7;
 
 /// Slack for numbers that were written down rounded, metres.
-const ROUNDING_M: f64 = 1e-6;
+pub const ROUNDING_M: f64 = 1e-6;
 
 /// What a robot of some radius may run into.
 pub struct Site<'a> {

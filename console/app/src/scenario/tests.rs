@@ -116,6 +116,26 @@ fn a_tether_starts_where_the_robot_does_and_preset_points_may_be_written_out() {
 }
 
 #[test]
+fn a_robot_that_comes_back_to_the_anchor_has_room_there() {
+    let with = |anchor: &str| {
+        let text = SMALL
+            .replace("kind = \"goto\"\ngoal_m = [3, 0]", "kind = \"cover\"\nclearance_m = 0.1")
+            .replace("[planner]", &format!("[tether]\nreel_m = 20\nanchor_m = {anchor}\n[planner]"));
+        Scenario::parse(&text, "x.toml").map_err(|errors| errors.render())
+    };
+    // Hull radius 0.25 m, clearance 0.1 m.
+    assert!(with("[0, -4.65]").is_ok());
+    for (anchor, away) in [("[0, -4.7]", "0.300"), ("[0, -5.0]", "0.000")] {
+        let said = with(anchor).expect_err("too near to the wall");
+        let must_be = format!("tether.anchor_m = {anchor}: must be at least 0.350 m away from the wall");
+        assert!(said.contains(&must_be) && said.contains(&format!("this is {away} m")), "{said}");
+    }
+    // A mission that ends elsewhere may have its anchor in the shell.
+    let elsewhere = SMALL.replace("[planner]", "[tether]\nreel_m = 20\nanchor_m = [0, -5]\n[planner]");
+    assert!(Scenario::parse(&elsewhere, "x.toml").is_ok());
+}
+
+#[test]
 fn the_text_of_a_scenario_gives_the_same_scenario_again() {
     let settings = Settings {
         set: ["k_rep=2", "mode=literal", "tank.radius_m=5.5", "obstacles.0.known=false"]

@@ -1,6 +1,10 @@
 //! The tether: `[tether]`.
 
-use super::{checks::Site, problem::Complaint, section::Section};
+use super::{
+    checks::{ROUNDING_M, Site},
+    problem::Complaint,
+    section::Section,
+};
 use mission::TetherConfig;
 use world::{Point, tether::Limits};
 
@@ -29,5 +33,25 @@ pub fn check(section: &Section<'_>, tether: &TetherConfig, site: &Site<'_>, star
     if way_m > tether.limits.reel_m {
         let must_be = format!("at least {way_m:.2} m, the way from the anchor to the start");
         section.complain("reel_m", Complaint::OutOfRange(must_be));
+    }
+}
+
+/// Complains about an anchor at which a robot that comes back to it has no room for hull and clearance.
+pub fn check_room(section: &Section<'_>, tether: &TetherConfig, site: &Site<'_>, clearance_m: f64) {
+    let wall = (site.boundary.wall_distance_m(tether.anchor), "the wall".to_owned());
+    let obstacles = site.obstacles.iter().map(|o| {
+        let name = format!("obstacle \"{}\"", o.name);
+        (o.shape.distance_m(tether.anchor), name)
+    });
+    let nearest = obstacles.chain([wall]).min_by(|a, b| a.0.total_cmp(&b.0));
+    let need_m = site.radius_m + clearance_m;
+    let Some((away_m, from)) = nearest.filter(|(away_m, _)| *away_m < need_m - ROUNDING_M) else { return };
+    // A place outside the tank or within something solid is complained about as such.
+    if section.has("anchor_m") && away_m >= 0.0 {
+        let must_be = format!(
+            "at least {need_m:.3} m away from {from}, hull radius plus clearance, as the robot comes back to it; this is \
+             {away_m:.3} m"
+        );
+        section.complain("anchor_m", Complaint::OutOfRange(must_be));
     }
 }
