@@ -36,8 +36,7 @@ impl Past {
     fn read(run: &Path, logs: &LogsArg) -> anyhow::Result<Self> {
         let folder = run_folder::find(run, &logs.logs)?;
         let path = folder.join(JOURNAL_FILE);
-        let journal =
-            read_journal(&path).map_err(|error| bad_input(format!("{error}: {}", path.display())))?;
+        let journal = read_journal(&path).map_err(|error| bad_input(error.to_string()))?;
         opened(&journal.events)?;
         let mut fold = Fold::new();
         journal.events.iter().for_each(|event| fold.apply(event));
@@ -111,12 +110,13 @@ pub fn rescan(args: &RescanArgs) -> anyhow::Result<ExitCode> {
         return Err(bad_input(format!("--least-m2 {}: must be an area of 0 m² or more", args.least_m2)));
     }
     let (past, events) = Past::read_all(&args.runs, &args.logs)?;
+    tell_doubts(&past, &events)?;
     let again = report::rescan(&past, args.least_m2, MOST_BOXES).map_err(bad_input)?;
     if again.boxes.is_empty() {
         let left_m2: f64 = again.left.iter().map(|area| area.area_m2).sum();
         return Err(bad_input(format!(
-            "nothing was missed that is worth another scan: {} places smaller than {} m² are left, {left_m2:.2} m² together; --least-m2 sets the limit",
-            again.left.len(),
+            "nothing was missed that is worth another scan: {} smaller than {} m² left, {left_m2:.2} m² together; --least-m2 sets the limit",
+            counted(again.left.len(), "place", "places"),
             args.least_m2
         )));
     }
@@ -134,10 +134,10 @@ fn tell(again: &report::Rescan, args: &RescanArgs, names: &[&str]) -> anyhow::Re
     let missed_m2: f64 = again.areas.iter().map(|area| area.area_m2).sum();
     let boxes_m2: f64 = again.boxes.iter().map(|[low, high]| (high.x - low.x) * (high.y - low.y)).sum();
     say_line(&format!(
-        "{}: {missed_m2:.2} m² missed in {} areas to scan again, {boxes_m2:.2} m² with the floor around them, in {} boxes",
+        "{}: {missed_m2:.2} m² missed in {} to scan again, {boxes_m2:.2} m² with the floor around, in {}",
         args.output.display(),
-        again.areas.len(),
-        again.boxes.len(),
+        counted(again.areas.len(), "area", "areas"),
+        counted(again.boxes.len(), "box", "boxes"),
     ))?;
     tell_areas("again", &again.areas)?;
     tell_areas(&format!("left, smaller than {} m²", args.least_m2), &again.left)?;
@@ -145,10 +145,38 @@ fn tell(again: &report::Rescan, args: &RescanArgs, names: &[&str]) -> anyhow::Re
         say_line(&format!("left: {:.2} m² that no mission was to scan", again.not_asked_m2))?;
     }
     say_line(&format!(
-        "fly it with `tankops run {}`; then `tankops report {} RUN` tells all of them together",
+        "fly it with `tankops run {logs} {}`; then `tankops report {logs} {} RUN` tells all of them together",
         args.output.display(),
-        names.join(" ")
+        names.join(" "),
+        logs = format_args!("--logs {}", args.logs.logs.display()),
     ))
+}
+
+/// A number of things.
+fn counted(number: usize, one: &str, more: &str) -> String {
+    format!("{number} {}", if number == 1 { one } else { more })
+}
+
+/// Says of each journal that was changed that it was, and refuses one that scanned where no cell is.
+fn tell_doubts(past: &[PastRun], events: &[Vec<Event>]) -> anyhow::Result<()> {
+    for (run, events) in past.iter().zip(events) {
+        let cells = opened(events)?.floor.len() as u64;
+        let is_beyond = |run: &world::CellRun| u64::from(run.0) + u64::from(run.1) > cells;
+        let beyond = events.iter().find(|event| match &event.kind {
+            EventKind::Covered { runs } | EventKind::Uncounted { runs } => runs.iter().any(is_beyond),
+            _ => false,
+        });
+        if let Some(event) = beyond {
+            return Err(bad_input(format!(
+                "run {}: its journal was changed: an event of tick {} names cells beyond the {cells} of the floor",
+                run.name, event.tick
+            )));
+        }
+        if let Some(doubt) = &run.logs.error {
+            say_line(&format!("note: run {}: {doubt}", run.name))?;
+        }
+    }
+    Ok(())
 }
 
 fn tell_areas<R: Display>(label: &str, areas: &[Area<R>]) -> anyhow::Result<()> {
@@ -158,7 +186,10 @@ fn tell_areas<R: Display>(label: &str, areas: &[Area<R>]) -> anyhow::Result<()> 
     let rest = areas.get(MOST_TOLD..).unwrap_or_default();
     if !rest.is_empty() {
         let area_m2: f64 = rest.iter().map(|area| area.area_m2).sum();
-        say_line(&format!("{label}: {area_m2:.2} m² in {} more places", rest.len()))?;
+        say_line(&format!(
+            "{label}: {area_m2:.2} m² in {}",
+            counted(rest.len(), "more place", "more places")
+        ))?;
     }
     Ok(())
 }

@@ -100,6 +100,14 @@ impl Task {
         }
     }
 
+    /// Reachable floor that is left to scan, square metres; none unless the task is to cover.
+    pub fn floor_left_m2(&self, coverage: &CoverageGrid) -> f64 {
+        match self {
+            Self::Cover(cover) => cover.floor_left_m2(coverage),
+            Self::Goto(_) | Self::Follow { .. } => 0.0,
+        }
+    }
+
     /// What the stretch of the plan under the robot is for, if the planner told.
     pub fn leg(&self) -> Option<api::LegTag> {
         match self {

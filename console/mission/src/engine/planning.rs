@@ -10,6 +10,9 @@ use crate::{
 use planner_api::{Leg, LegTag, Plan, PlanRequest, PoseEstimate, Reason};
 use world::{Point, polyline};
 
+/// A plan shorter than this leads nowhere, metres.
+const NO_WAY_M: f64 = 0.01;
+
 impl Mission {
     /// Loads and configures a planner; on a fault the one before stays.
     pub(super) fn seat(
@@ -102,7 +105,7 @@ impl Mission {
             legs: plan.legs.clone(),
             cuts: plan.cuts.clone(),
         });
-        let judged = self.judge_plan(&plan);
+        let judged = self.judge_plan(&plan).and_then(|()| self.judge_way(&plan));
         self.planner.refused = judged.is_err();
         if judged.is_ok() {
             self.planner.plan_due = None;
@@ -114,6 +117,21 @@ impl Mission {
         }
         self.pass_on(reply);
         judged
+    }
+
+    /// Refuses a plan that leads nowhere while there is floor to scan and none of it has been scanned: the robot would
+    /// be back at the anchor at once, and the mission complete.
+    fn judge_way(&self, plan: &Plan) -> Result<(), String> {
+        let leads_nowhere = polyline::length_m(&plan.path) < NO_WAY_M;
+        let has_scanned = self.coverage.counts().covered > 0;
+        match self.task.floor_left_m2(&self.coverage) {
+            left_m2 if leads_nowhere && !has_scanned && left_m2 > 0.0 => Err(format!(
+                "the plan of {} scans nothing of the {left_m2:.2} m² to be scanned: no lane reaches them; another planner, less \
+                 mission.overlap_m or other mission.boxes_m may",
+                self.planner.choice.id
+            )),
+            _ => Ok(()),
+        }
     }
 
     /// Tells what the planner drew, reported and said besides its answer.

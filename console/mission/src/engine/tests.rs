@@ -24,6 +24,8 @@ struct Straight {
     regions_m2: Vec<f64>,
     /// What plans to cover keep to.
     cut: Option<Vec<Point>>,
+    /// Its coverage plans are a single point.
+    leads_nowhere: bool,
 }
 
 impl Straight {
@@ -74,6 +76,9 @@ impl PlannerLink for Straight {
         if let api::Task::Cover { anchor, regions, .. } = request.task {
             self.regions_m2.push(regions.iter().map(|r| world::shape::ring_area_m2(r)).sum());
             let cuts = self.cut.iter().cloned().collect();
+            if self.leads_nowhere {
+                return Ok(reply(Plan { path: vec![anchor], ..Plan::default() }));
+            }
             return Ok(reply(Plan { cuts, ..covering::lanes(request, anchor) }));
         }
         Ok(reply(Plan { path: vec![request.start.position], complete: true, ..Plan::default() }))

@@ -172,3 +172,15 @@ fn lanes_are_planned_closer_together_than_the_swath_is_wide() {
     };
     assert!(plans(scan) > 1.15 * plans(ScanConfig::default()));
 }
+
+#[test]
+fn a_plan_that_scans_nothing_of_what_is_asked_is_refused_with_the_reason() {
+    let mut flight = Flight::new(MissionConfig { attended: true, ..covering() });
+    flight.planner.leads_nowhere = true;
+    flight.tick(&[Order::Start]);
+    flight.fly(5);
+    let Phase::Held(HoldReason::PlanRefused { message }) = flight.mission.phase() else {
+        panic!("{:?}", flight.mission.phase())
+    };
+    assert!(message.contains("scans nothing"), "{message}");
+}
