@@ -26,7 +26,7 @@ const UNLIMITED: Limits =
 const HOPELESS: f64 = 0.02;
 
 const CHOOSE: ParamSpec = choice("choose", "Candidate", &[SHORTEST, "fewest-turns", "shortest-cable"], 0)
-    .help("Which of the candidates within the limits is flown; the log lists all that are worth it.")
+    .help("Which of the candidates within the limits is flown, shortest by length and turns; the log lists all that are worth it.")
     .group("Plan");
 const PATTERN: ParamSpec = choice("pattern", "Lanes", &["all", "contours", "straight"], 0)
     .help("Lanes along the wall, straight lanes within a lap along the wall, or whichever is better.")
