@@ -191,7 +191,7 @@ impl<'a> Draft<'a> {
         let mut grid = self.unswept();
         let mut pieces = std::mem::take(&mut self.pieces);
         for round in 0..self.recipe.rounds {
-            grid.swept.fill(0);
+            grid.clear();
             grid.sweep(&joined(&pieces));
             let least = (self.recipe.touch_m2 / (self.order.cell_m * self.order.cell_m)) as usize;
             let missed = grid.missed();
