@@ -29,6 +29,8 @@ pub struct FloorGrid {
     half_m: f64,
     stamp: Vec<u32>,
     epoch: u32,
+    /// Number of exchanges so far.
+    pub changes: u32,
 }
 
 impl FloorGrid {
@@ -49,6 +51,7 @@ impl FloorGrid {
             half_m: ground.swath_m / 2.0,
             stamp: Vec::new(),
             epoch: 0,
+            changes: 0,
         };
         let mut free = vec![false; columns * rows];
         for triangle in slit.triangles() {
@@ -59,11 +62,12 @@ impl FloorGrid {
         // does when the mission counts.
         for cell in (0..free.len()).filter(|cell| free[*cell] && grid.is_at_edge(&free, *cell)) {
             let center = grid.center(cell);
-            grid.near(center, center, grid.half_m, |other, at| {
-                if !reachable[other] && ground.is_floor(at) {
-                    reachable[other] = true;
-                }
+            let mut fresh = Vec::new();
+            let is_open = |other: usize| !reachable[other];
+            grid.near(center, grid.half_m, is_open, |other, at| {
+                fresh.extend(ground.is_floor(at).then_some(other));
             });
+            fresh.into_iter().for_each(|other| reachable[other] = true);
         }
         grid.n_reachable = reachable.iter().filter(|r| **r).count();
         grid.swept = vec![0; reachable.len()];
@@ -96,7 +100,7 @@ impl FloorGrid {
     /// Whether there is floor to scan within half a swath of a place.
     pub fn has_reachable_near(&self, at: Point) -> bool {
         let mut found = false;
-        self.near(at, at, self.half_m, |cell, _| found |= self.reachable[cell]);
+        self.near(at, self.half_m, |cell| self.reachable[cell], |_, _| found = true);
         found
     }
 
@@ -114,6 +118,23 @@ impl FloorGrid {
     pub fn center(&self, cell: usize) -> Point {
         let (column, row) = (cell % self.columns, cell / self.columns);
         self.low + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m
+    }
+
+    /// The floor alone, without room for sweeps.
+    pub fn without_sweeps(&self) -> Self {
+        Self { swept: Vec::new(), stamp: Vec::new(), reachable: self.reachable.clone(), ..*self }
+    }
+
+    /// The same floor with nothing swept.
+    pub fn unswept(&self) -> Self {
+        let cells = self.reachable.len();
+        Self {
+            swept: vec![0; cells],
+            stamp: vec![0; cells],
+            reachable: self.reachable.clone(),
+            n_swept: 0,
+            ..*self
+        }
     }
 
     /// Forgets what was swept.
@@ -137,8 +158,33 @@ impl FloorGrid {
         runs
     }
 
+    /// What [`Self::exchange`] would lose: it is made and taken back.
+    pub fn lost_by(&mut self, old: &[Run], new: &[Run]) -> i64 {
+        let before = self.n_swept;
+        let (lost, is_sound) = self.exchanged(old, new);
+        if !is_sound {
+            // More was taken back than there was: so much for the quick way.
+            self.exchanged(new, old);
+            return lost;
+        }
+        for run in old {
+            self.swept[run.cells()].iter_mut().for_each(|n| *n = n.saturating_add(1));
+        }
+        for run in new {
+            self.swept[run.cells()].iter_mut().for_each(|n| *n = n.saturating_sub(1));
+        }
+        self.n_swept = before;
+        lost
+    }
+
     /// Takes one sweep back and makes another; the number of reachable cells that are lost, net.
     pub fn exchange(&mut self, old: &[Run], new: &[Run]) -> i64 {
+        self.exchanged(old, new).0
+    }
+
+    /// The same, and whether every reachable cell was swept whenever that was taken back.
+    fn exchanged(&mut self, old: &[Run], new: &[Run]) -> (i64, bool) {
+        self.changes += 1;
         let (mut won, mut left, mut unswept) = (0_usize, 0_usize, 0_usize);
         for cells in new.iter().map(|run| run.cells()) {
             let mut fresh = 0_u16;
@@ -159,7 +205,7 @@ impl FloorGrid {
             unswept += usize::from(empty - was_empty);
         }
         self.n_swept = self.n_swept + won - unswept;
-        left as i64 - won as i64
+        (left as i64 - won as i64, left == unswept)
     }
 
     /// Whether one sweep in place of another certainly loses more than so many reachable cells, net: a quick look that
@@ -173,13 +219,18 @@ impl FloorGrid {
         self.epoch += 1;
         let epoch = self.epoch;
         let mut lost = 0_i64;
-        for cell in new.iter().flat_map(|run| run.cells()) {
-            lost -= i64::from(self.swept[cell] == 0 && self.stamp[cell] != epoch && self.reachable[cell]);
-            self.stamp[cell] = epoch;
+        for run in new {
+            for cell in run.cells() {
+                lost -= i64::from(self.swept[cell] == 0 && self.stamp[cell] != epoch && self.reachable[cell]);
+                self.stamp[cell] = epoch;
+            }
         }
         old.into_iter().any(|side| {
-            for cell in side.iter().flat_map(|run| run.cells()) {
-                lost += i64::from(self.swept[cell] == 1 && self.stamp[cell] != epoch && self.reachable[cell]);
+            for run in side {
+                for cell in run.cells() {
+                    let is_alone = self.swept[cell] == 1 && self.stamp[cell] != epoch;
+                    lost += i64::from(is_alone && self.reachable[cell]);
+                }
             }
             lost > most
         }) || lost > most
@@ -227,17 +278,25 @@ impl FloorGrid {
         seen.len()
     }
 
-    /// Every cell whose centre lies within a distance of a segment.
-    pub fn near(&self, a: Point, b: Point, reach_m: f64, mut visit: impl FnMut(usize, Point)) {
+    /// Those of the meant cells whose centres lie within a distance of a place.
+    fn near(
+        &self,
+        place: Point,
+        reach_m: f64,
+        is_meant: impl Fn(usize) -> bool,
+        mut visit: impl FnMut(usize, Point),
+    ) {
         let reach = Vector::new(reach_m, reach_m);
-        let (from, to) = (a.inf(&b) - reach - self.low, a.sup(&b) + reach - self.low);
+        let (from, to) = (place - reach - self.low, place + reach - self.low);
         let index = |m: f64, most: usize| (m / self.cell_m).floor().clamp(0.0, most as f64 - 1.0) as usize;
         for row in index(from.y, self.rows)..=index(to.y, self.rows) {
             for column in index(from.x, self.columns)..=index(to.x, self.columns) {
                 let cell = row * self.columns + column;
-                let at = self.center(cell);
-                if (at - world::polyline::nearest_on_segment(a, b, at)).norm() <= reach_m {
-                    visit(cell, at);
+                if is_meant(cell) {
+                    let at = self.center(cell);
+                    if (at - place).norm() <= reach_m {
+                        visit(cell, at);
+                    }
                 }
             }
         }

@@ -33,6 +33,9 @@ const MUCH_TURN_RAD: f64 = 3.0;
 /// Touch-ups are tied in at path points within this distance, metres.
 const TIE_M: f64 = 2.0;
 
+/// Places across a side at which a quick look is taken, as shares of half the bar.
+const ACROSS: [f64; 4] = [-0.75, -0.25, 0.25, 0.75];
+
 /// What things are worth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prices {
@@ -79,6 +82,14 @@ struct Bar {
     turn: Vec<Run>,
     /// On the side itself.
     side: Vec<Run>,
+    samples: Samples,
+}
+
+/// Which of the samples across a side are swept by nothing else, and after how many changes of the floor that was so.
+#[derive(Debug, Clone, Copy, Default)]
+struct Samples {
+    alone: [bool; ACROSS.len()],
+    changes: Option<u32>,
 }
 
 impl<'a> Track<'a> {
@@ -109,13 +120,33 @@ impl<'a> Track<'a> {
     fn bar(&self, side: usize) -> Bar {
         let before = side.checked_sub(1).map(|k| self.points[k]);
         let (turn, side) = self.grid.turn_and_side(before, self.points[side], self.points[side + 1]);
-        Bar { turn, side }
+        Bar { turn, side, samples: Samples::default() }
+    }
+
+    /// Where a sample across a side lies.
+    fn sample(&self, side: usize, share: f64) -> Point {
+        let Side { ahead, length_m, .. } = self.sides[side];
+        let across = Vector::new(-ahead.y, ahead.x) * (self.grid.bar_m() / 2.0);
+        let middle = self.points[side] + ahead * (length_m / 2.0);
+        middle + across * share
+    }
+
+    /// Which samples across a side nothing else sweeps. Many ways are tried between two changes of the floor.
+    fn alone(&mut self, side: usize) -> [bool; ACROSS.len()] {
+        let known = self.bars[side].samples;
+        if known.changes == Some(self.grid.changes) {
+            return known.alone;
+        }
+        let alone = ACROSS.map(|share| self.grid.is_alone(self.sample(side, share)));
+        self.bars[side].samples = Samples { alone, changes: Some(self.grid.changes) };
+        alone
     }
 
     /// What the path sweeps on some sides, without the turn into the first one.
     fn swept_by(&self, sides: Range<usize>) -> Vec<Run> {
-        let mut runs = Vec::new();
-        for (k, bar) in self.bars[sides].iter().enumerate() {
+        let bars = &self.bars[sides];
+        let mut runs = Vec::with_capacity(bars.iter().map(|bar| bar.turn.len() + bar.side.len()).sum());
+        for (k, bar) in bars.iter().enumerate() {
             if k > 0 {
                 runs.extend(&bar.turn);
             }
@@ -277,19 +308,15 @@ impl<'a> Track<'a> {
     }
 
     /// Whether another way would lose more floor than this, from a few samples across every side.
-    fn loses_more(&self, from: usize, to: usize, way: &[Point], most_m2: f64) -> bool {
-        const ACROSS: [f64; 4] = [-0.75, -0.25, 0.25, 0.75];
+    fn loses_more(&mut self, from: usize, to: usize, way: &[Point], most_m2: f64) -> bool {
         let half_m = self.grid.bar_m() / 2.0;
         let far_m = half_m + self.grid.cell_m;
         let mut lost_m2 = 0.0;
         for at in from_the_middle(from..to) {
-            let side = &self.sides[at];
-            let across = Vector::new(-side.ahead.y, side.ahead.x) * half_m;
-            let middle = self.points[at] + side.ahead * (side.length_m / 2.0);
-            for share in ACROSS {
-                let place = middle + across * share;
-                if self.grid.is_alone(place) && !is_near(way, place, far_m) {
-                    lost_m2 += side.length_m * half_m * 2.0 / ACROSS.len() as f64;
+            let length_m = self.sides[at].length_m;
+            for (share, is_alone) in ACROSS.into_iter().zip(self.alone(at)) {
+                if is_alone && !is_near(way, self.sample(at, share), far_m) {
+                    lost_m2 += length_m * half_m * 2.0 / ACROSS.len() as f64;
                 }
             }
             if lost_m2 > most_m2 {

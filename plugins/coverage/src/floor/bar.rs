@@ -69,7 +69,7 @@ impl FloorGrid {
     /// Cells under the bar from one point to the next, and before them those of the turn into this heading.
     pub fn turn_and_side(&self, before: Option<Point>, from: Point, to: Point) -> (Vec<Run>, Vec<Run>) {
         let heading = |a: Point, b: Point| (b - a).try_normalize(LEAST_SIDE_M);
-        let (mut turn, mut side) = (Vec::new(), Vec::new());
+        let (mut turn, mut side) = (Vec::new(), Vec::with_capacity(16));
         if let Some(ahead) = heading(from, to) {
             if let Some(before) = before.and_then(|before| heading(before, from)) {
                 self.turn(from, before, ahead, &mut |cells| turn.push(Run::from(cells)));
@@ -127,8 +127,8 @@ impl FloorGrid {
                     (corner_rows[k].min(corner_rows[next]), corner_rows[k].max(corner_rows[next]));
                 for row in from.max(band.start)..past.min(band.end) {
                     let x = a.x + (b.x - a.x) * ((self.row_y(row) - a.y) / (b.y - a.y));
-                    let span = &mut spans[row - start];
-                    *span = (span.0.min(x), span.1.max(x));
+                    let (from, to) = &mut spans[row - start];
+                    (*from, *to) = (if x < *from { x } else { *from }, if x > *to { x } else { *to });
                 }
                 k = next;
             }

@@ -1,7 +1,7 @@
 //! Bends: the path goes a little aside to where it would miss floor, wherever that is cheaper than a lane of its own.
 
 use super::{Places, Prices, Track};
-use crate::{floor::Run, side_by_side::Stop};
+use crate::{floor::Run, side_by_side::Stop, slit::Spot};
 use planner_api::Result;
 use world::{Point, Vector};
 
@@ -29,6 +29,9 @@ struct Stretch {
     past: usize,
     length_m: f64,
     turn_rad: f64,
+    /// Its ends.
+    a: Spot,
+    b: Spot,
     /// What it sweeps, with a side before and behind.
     swept: Vec<Run>,
 }
@@ -64,7 +67,8 @@ impl Track<'_> {
             }
             let Some(k) = self.points.iter().position(|p| *p == at) else { continue };
             let Some(stretch) = self.stretch(k, base) else { continue };
-            let still = self.rate(&stretch, to, prices, f64::INFINITY);
+            let Some(spot) = self.slit.spot(to) else { continue };
+            let still = self.rate(&stretch, spot, prices, f64::INFINITY);
             if still.is_some_and(|rate| rate <= most_m_per_m2) {
                 self.make(k, &stretch, to);
                 made += 1;
@@ -101,10 +105,11 @@ impl Track<'_> {
                 if !is_wanted(to) {
                     continue;
                 }
+                let Some(spot) = self.slit.spot(to) else { continue };
                 for (base, stretch) in BASES.into_iter().zip(&stretches) {
                     let Some(stretch) = stretch else { continue };
                     let most = best.as_ref().map_or(most_m_per_m2, |b| b.rate);
-                    if let Some(rate) = self.rate(stretch, to, prices, most)
+                    if let Some(rate) = self.rate(stretch, spot, prices, most)
                         && rate < most
                     {
                         best = Some(Offer { rate, at, base, to });
@@ -121,20 +126,21 @@ impl Track<'_> {
         if past >= self.points.len() {
             return None;
         }
+        let (a, b) = (self.slit.spot(self.points[from])?, self.slit.spot(self.points[past])?);
         let (length_m, turn_rad) = self.measure(from, past, &self.points[from..=past]);
-        Some(Stretch { from, past, length_m, turn_rad, swept: self.swept_by(self.around(from, past)) })
+        let swept = self.swept_by(self.around(from, past));
+        Some(Stretch { from, past, length_m, turn_rad, a, b, swept })
     }
 
     /// What a square metre of floor would cost, metres; `None` where the way is barred, nothing is gained, or it surely
     /// costs more than so much.
-    fn rate(&mut self, old: &Stretch, to: Point, prices: &Prices, most_m_per_m2: f64) -> Option<f64> {
-        let (a, b) = (self.points[old.from], self.points[old.past]);
-        let way = [a, to, b];
-        let (new_m, new_rad) = self.measure(old.from, old.past, &way);
-        let cost_m = new_m - old.length_m + prices.turn_m_per_rad * (new_rad - old.turn_rad);
-        if !(self.slit.sees(a, to) && self.slit.sees(to, b)) {
+    fn rate(&mut self, old: &Stretch, to: Spot, prices: &Prices, most_m_per_m2: f64) -> Option<f64> {
+        if !(self.slit.sees_between(old.a, to) && self.slit.sees_between(to, old.b)) {
             return None;
         }
+        let way = [old.a.0, to.0, old.b.0];
+        let (new_m, new_rad) = self.measure(old.from, old.past, &way);
+        let cost_m = new_m - old.length_m + prices.turn_m_per_rad * (new_rad - old.turn_rad);
         let cell_m2 = self.grid.cell_m * self.grid.cell_m;
         let swept = self.swept_with(old.from, old.past, &way);
         // A quick look at what the new way sweeps first.
@@ -142,8 +148,7 @@ impl Track<'_> {
         if cost_m > most_m_per_m2 * most_gained {
             return None;
         }
-        let gained = -self.grid.exchange(&old.swept, &swept);
-        self.grid.exchange(&swept, &old.swept);
+        let gained = -self.grid.lost_by(&old.swept, &swept);
         (gained > 0).then(|| cost_m / (gained as f64 * cell_m2))
     }
 
