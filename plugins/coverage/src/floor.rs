@@ -67,7 +67,9 @@ impl FloorGrid {
             grid.near(center, grid.half_m, is_open, |other, at| {
                 fresh.extend(ground.is_floor(at).then_some(other));
             });
-            fresh.into_iter().for_each(|other| reachable[other] = true);
+            for other in fresh {
+                reachable[other] = true;
+            }
         }
         grid.n_reachable = reachable.iter().filter(|r| **r).count();
         grid.swept = vec![0; reachable.len()];
@@ -121,11 +123,13 @@ impl FloorGrid {
     }
 
     /// The floor alone, without room for sweeps.
+    #[must_use]
     pub fn without_sweeps(&self) -> Self {
         Self { swept: Vec::new(), stamp: Vec::new(), reachable: self.reachable.clone(), ..*self }
     }
 
     /// The same floor with nothing swept.
+    #[must_use]
     pub fn unswept(&self) -> Self {
         let cells = self.reachable.len();
         Self {
@@ -342,4 +346,70 @@ fn ring_contains(ring: &[Point], at: Point) -> bool {
         let crosses = (a.y > at.y) != (b.y > at.y) && at.x < (b.x - a.x) * (at.y - a.y) / (b.y - a.y) + a.x;
         inside != crosses
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use trials::tanks::{Known, Tank};
+
+    fn empty() -> FloorGrid {
+        let tank = Tank { columns: Vec::new(), ..Known::E1.tank(0) };
+        let ground = Ground::new(&tank.site(&[]), tank.anchor).unwrap();
+        let slit = Slit::new(&ground, &[], ground.home()).unwrap();
+        FloorGrid::new(&ground, &slit, 0.1)
+    }
+
+    fn path() -> impl Strategy<Value = Vec<Point>> {
+        prop::collection::vec((-9.0..9.0_f64, -9.0..9.0_f64).prop_map(|(x, y)| Point::new(x, y)), 2..6)
+    }
+
+    proptest! {
+        #[test]
+        fn a_straight_way_sweeps_what_lies_within_half_a_swath_beside_it(
+            a in (-9.0..9.0_f64, -9.0..9.0_f64),
+            b in (-9.0..9.0_f64, -9.0..9.0_f64),
+        ) {
+            let (a, b) = (Point::new(a.0, a.1), Point::new(b.0, b.1));
+            prop_assume!((b - a).norm() > 0.01);
+            let mut grid = empty();
+            grid.sweep(&[a, b]);
+            let ahead = (b - a).normalize();
+            for cell in 0..grid.swept.len() {
+                let offset = grid.center(cell) - a;
+                let (along, beside) = (ahead.dot(&offset), ahead.perp(&offset).abs());
+                let depth = along.min((b - a).norm() - along).min(grid.half_m - beside);
+                prop_assert!(depth.abs() < 1e-6 || (depth > 0.0) == (grid.swept[cell] == 1));
+            }
+        }
+
+        #[test]
+        fn an_exchange_of_ways_is_counted_as_it_is_made_and_can_be_asked_for_first(
+            ways in prop::collection::vec(path(), 1..4),
+            new in path(),
+        ) {
+            let mut grid = empty();
+            ways.iter().for_each(|way| grid.sweep(way));
+            let (old, new) = (grid.runs(&ways[0]), grid.runs(&new));
+            let (before, coverage) = (grid.swept.clone(), grid.coverage());
+            let asked = grid.lost_by(&old, &new);
+            prop_assert!(grid.swept == before && grid.coverage().to_bits() == coverage.to_bits());
+            prop_assert_eq!(grid.exchange(&old, &new), asked);
+            let lost = (coverage - grid.coverage()) * grid.n_reachable as f64;
+            prop_assert!((lost - asked as f64).abs() < 1e-6);
+            let count = grid.swept.iter().zip(&grid.reachable).filter(|(n, r)| **n > 0 && **r).count();
+            prop_assert_eq!(count, grid.n_swept);
+            prop_assert!(!grid.loses_more([&old[..]], &new, i64::MAX - 1));
+        }
+
+        #[test]
+        fn taking_back_what_was_not_swept_is_noticed(way in path()) {
+            let mut grid = empty();
+            let runs = grid.runs(&way);
+            let (lost, is_sound) = grid.exchanged(&runs, &[]);
+            prop_assert_eq!(grid.n_swept, 0);
+            prop_assert_eq!(lost == 0, is_sound);
+        }
+    }
 }

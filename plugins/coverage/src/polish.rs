@@ -490,7 +490,8 @@ impl<'a> Track<'a> {
 /// Places of a range from its middle outward: there two ways between the same ends differ most.
 fn from_the_middle(range: Range<usize>) -> impl Iterator<Item = usize> {
     let n = range.len();
-    let at = move |k: usize| range.start + if k % 2 == 0 { n / 2 + k / 2 } else { n / 2 - k.div_ceil(2) };
+    let at =
+        move |k: usize| range.start + if k.is_multiple_of(2) { n / 2 + k / 2 } else { n / 2 - k.div_ceil(2) };
     (0..n).map(at)
 }
 

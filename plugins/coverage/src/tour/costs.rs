@@ -21,6 +21,7 @@ pub struct Costs {
 
 impl Costs {
     /// The same costs with so many ends, no fewer than now: new ones come before home and start.
+    #[must_use]
     pub fn with_ends(self, ends: usize) -> Self {
         if self.ends == ends {
             return self;
@@ -70,7 +71,9 @@ impl Hasher for Mixer {
     }
 
     fn write(&mut self, bytes: &[u8]) {
-        bytes.iter().for_each(|byte| self.write_u64(u64::from(*byte)));
+        for byte in bytes {
+            self.write_u64(u64::from(*byte));
+        }
     }
 
     fn write_u64(&mut self, number: u64) {
