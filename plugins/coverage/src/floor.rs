@@ -390,7 +390,9 @@ mod tests {
             new in path(),
         ) {
             let mut grid = empty();
-            ways.iter().for_each(|way| grid.sweep(way));
+            for way in &ways {
+                grid.sweep(way);
+            }
             let (old, new) = (grid.runs(&ways[0]), grid.runs(&new));
             let (before, coverage) = (grid.swept.clone(), grid.coverage());
             let asked = grid.lost_by(&old, &new);
