@@ -71,7 +71,11 @@ mod tests {
             let cut = [scaled(&[(-7., 3.), (9., 3.)])];
             assert_eq!(crossings(&scaled(&[(1., -4.), (1., 3.), (1., 5.)]), &cut), 1, "{unit} cm");
             assert_eq!(crossings(&scaled(&[(1., -4.), (1., 3.), (5., 3.), (6., 8.)]), &cut), 1, "{unit} cm");
-            assert_eq!(crossings(&scaled(&[(1., -4.), (1., 3.), (5., 3.), (6., 1.)]), &cut) % 2, 0, "{unit} cm");
+            assert_eq!(
+                crossings(&scaled(&[(1., -4.), (1., 3.), (5., 3.), (6., 1.)]), &cut) % 2,
+                0,
+                "{unit} cm"
+            );
         }
     }
 

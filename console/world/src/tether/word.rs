@@ -99,7 +99,8 @@ mod tests {
 
     #[test]
     fn there_and_back_is_the_empty_word_also_where_obstacles_share_their_middle() {
-        let hearts = [Point::new(1.0, 2.0), Point::new(1.0, 2.0), Point::new(-1.0, 0.5), Point::new(1.0, 2.0)];
+        let hearts =
+            [Point::new(1.0, 2.0), Point::new(1.0, 2.0), Point::new(-1.0, 0.5), Point::new(1.0, 2.0)];
         let rays = Rays::new(&hearts);
         let way = [Point::new(-6.0, 4.0), Point::new(9.0, 6.0), Point::new(9.0, -5.0), Point::new(-6.0, 4.5)];
         assert!(Word::of(&way[..2], &rays).letters().len() >= 3);
