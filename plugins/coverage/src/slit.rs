@@ -16,6 +16,8 @@ const NEARLY: f64 = 1e-9;
 /// Corners are moved to multiples of this, so that those of outlines that touch fall together instead of lying a hair
 /// apart, metres.
 const SNAP_M: f64 = 1.0 / 65536.0;
+/// What was snapped lies at most this far from where it was, and so do the pieces of lines that were split, metres.
+pub const SNAPPED_M: f64 = 8.0 * SNAP_M;
 /// Sleeves longer than this are rare, triangles.
 const LONG_SLEEVE: u32 = 120;
 const NONE: u32 = u32::MAX;
