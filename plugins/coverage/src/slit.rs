@@ -16,6 +16,8 @@ const NEARLY: f64 = 1e-9;
 /// Corners are moved to multiples of this, so that those of outlines that touch fall together instead of lying a hair
 /// apart, metres.
 const SNAP_M: f64 = 1.0 / 65536.0;
+/// What was snapped lies at most this far from where it was, and so do the pieces of lines that were split, metres.
+pub const SNAPPED_M: f64 = 8.0 * SNAP_M;
 /// Sleeves longer than this are rare, triangles.
 const LONG_SLEEVE: u32 = 120;
 const NONE: u32 = u32::MAX;
@@ -184,14 +186,6 @@ impl Slit {
         self.corners.iter().map(|corners| corners.map(|k| self.points[k as usize]))
     }
 
-    /// Sides of triangles that bound the domain.
-    pub fn rim(&self) -> impl Iterator<Item = (Point, Point)> + '_ {
-        self.corners.iter().zip(&self.next).flat_map(move |(corners, next)| {
-            let at = move |k: usize| self.points[corners[k % 3] as usize];
-            (0..3).filter(move |k| next[*k] == NONE).map(move |k| (at(k), at(k + 1)))
-        })
-    }
-
     /// The triangle at a place.
     pub fn locate(&self, at: Point) -> Option<usize> {
         let (x, y) = ((at.x - self.low.x) / BUCKET_M, (at.y - self.low.y) / BUCKET_M);
@@ -230,17 +224,15 @@ impl Slit {
     /// The longest of the shortest paths from a place to any corner of the domain, metres.
     pub fn farthest_m(&self, from: Point) -> f64 {
         let Some(start) = self.locate(from) else { return 0.0 };
-        let mut seen = vec![false; self.points.len()];
-        let mut longest_m = 0.0_f64;
-        for (triangle, corners) in self.corners.iter().enumerate() {
-            for corner in corners {
-                if !std::mem::replace(&mut seen[*corner as usize], true) {
-                    let way = self.path_between((from, start), (self.points[*corner as usize], triangle));
-                    longest_m = longest_m.max(world::polyline::length_m(&way));
-                }
-            }
-        }
-        longest_m
+        // Each side of the rim begins at another corner, and those of a cut at one for either side of it.
+        let sides = self.next.iter().enumerate().flat_map(|(triangle, next)| {
+            (0..3).filter(|side| next[*side] == NONE).map(move |side| (triangle, side))
+        });
+        let way_m = |(triangle, side): (usize, usize)| {
+            let corner = self.points[self.corners[triangle][side] as usize];
+            world::polyline::length_m(&self.path_between((from, start), (corner, triangle)))
+        };
+        sides.map(way_m).fold(0.0, f64::max)
     }
 
     /// Whether the straight way between two places stays in the domain.
@@ -375,4 +367,26 @@ fn funnel(start: Point, goal: Point, sleeve: &[(Point, Point)]) -> Vec<Point> {
         path.push(goal);
     }
     path
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trials::tanks::{Known, Tank};
+
+    #[test]
+    fn the_farthest_corner_counts_from_either_side_of_a_cut() {
+        let tank = Tank { columns: Vec::new(), ..Known::E1.tank(1) };
+        let obstacles = tank.obstacles();
+        let ground = Ground::new(&tank.site(&obstacles), tank.anchor).unwrap();
+        // Where the cut meets the wall is near on one side; on the other the way there leads round its other end.
+        let (wall, tip) = (Point::new(10.0, 0.0), Point::new(-5.0, 0.0));
+        for y in [0.4, -0.4] {
+            let home = Point::new(6.0, y);
+            let slit = Slit::new(&ground, &[vec![tip, wall]], home).unwrap();
+            let round_m = (tip - home).norm() + 15.0 - ground.keep_m;
+            let farthest_m = slit.farthest_m(home);
+            assert!((farthest_m - round_m).abs() < 0.01, "{farthest_m} {round_m}");
+        }
+    }
 }
