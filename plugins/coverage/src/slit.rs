@@ -16,6 +16,8 @@ const NEARLY: f64 = 1e-9;
 /// Corners are moved to multiples of this, so that those of outlines that touch fall together instead of lying a hair
 /// apart, metres.
 const SNAP_M: f64 = 1.0 / 65536.0;
+/// What was snapped lies at most this far from where it was, and so do the pieces of lines that were split, metres.
+pub const SNAPPED_M: f64 = 8.0 * SNAP_M;
 const NONE: u32 = u32::MAX;
 
 /// Triangles of the domain that can be reached from home.
@@ -198,14 +200,6 @@ impl Slit {
         self.corners.iter().map(|corners| corners.map(|k| self.points[k as usize]))
     }
 
-    /// Sides of triangles that bound the domain.
-    pub fn rim(&self) -> impl Iterator<Item = (Point, Point)> + '_ {
-        self.corners.iter().zip(&self.next).flat_map(move |(corners, next)| {
-            let at = move |k: usize| self.points[corners[k % 3] as usize];
-            (0..3).filter(move |k| next[*k] == NONE).map(move |k| (at(k), at(k + 1)))
-        })
-    }
-
     /// The triangle at a place.
     pub fn locate(&self, at: Point) -> Option<usize> {
         let (x, y) = ((at.x - self.low.x) / BUCKET_M, (at.y - self.low.y) / BUCKET_M);
@@ -257,6 +251,9 @@ impl Slit {
     }
 
     /// Whether no corner of the domain is further from a place than this, on the shortest path, metres.
+    ///
+    /// A corner of a cut has a way on either side; the one met first counts. That is a mild measure: of whole paths flown
+    /// along cuts, few ever go to the far side of the last corner, and what they do to the cable is certified anyway.
     pub fn is_all_within(&self, from: Point, most_m: f64) -> bool {
         let Some(start) = self.locate(from) else { return most_m >= 0.0 };
         let mut seen = vec![false; self.points.len()];
