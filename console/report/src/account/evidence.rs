@@ -6,6 +6,8 @@ use world::{CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, ShellFigur
 
 /// Plans are laid out on the floor in pieces no longer than this, metres.
 const PIECE_M: f64 = 0.5;
+/// Ways along a plan that differ by less are the same, metres.
+const NEARLY_M: f64 = 0.01;
 
 /// What was planned and done, cell by cell.
 #[derive(Debug, Clone)]
@@ -14,9 +16,12 @@ pub struct Evidence {
     tool: Tool,
     /// Distance from a found obstacle within which it is to blame, metres.
     beside_m: f64,
-    planned: Vec<bool>,
-    /// Within a swath of where the robot believed to be: it was there, if not above it.
-    visited: Vec<bool>,
+    /// The plan under way.
+    plan: Planned,
+    /// The plan before the one that was made last, until that one is flown: it may be refused.
+    before: Option<Box<Planned>>,
+    /// A plan led there, and was flown past there.
+    passed: Vec<bool>,
     uncertain: Vec<bool>,
     /// What was to be scanned; `None` for everything.
     asked: Option<Vec<bool>>,
@@ -35,8 +40,9 @@ impl Evidence {
             grid: run.floor.clone(),
             tool: run.mission.tool(),
             beside_m: run.mission.room_m() + run.mission.swath_m / 2.0,
-            planned: none.clone(),
-            visited: none.clone(),
+            plan: Planned::none(run.floor.len()),
+            before: None,
+            passed: none.clone(),
             uncertain: none,
             asked: asked(run),
             found: Vec::new(),
@@ -46,24 +52,52 @@ impl Evidence {
         }
     }
 
-    /// A plan was made.
+    /// A plan was made for what is left; it takes the place of the one before.
     pub fn plan(&mut self, path: &[Point]) {
+        self.leave_behind();
         let path = world::polyline::resampled(path, PIECE_M);
-        for pair in path.windows(2).filter(|pair| pair[0] != pair[1]) {
+        let stations_m = world::polyline::stations_m(&path);
+        let mut plan = Planned { flown_m: self.plan.flown_m + self.plan.along_m, ..Planned::none(self.grid.len()) };
+        plan.length_m = stations_m.last().copied().unwrap_or(0.0);
+        for (pair, end_m) in path.windows(2).zip(&stations_m[1..]).filter(|(pair, _)| pair[0] != pair[1]) {
             let ahead = pair[1] - pair[0];
             let at = |position| Pose { position, heading_rad: ahead.y.atan2(ahead.x) };
             for index in self.grid.cells_under(self.tool, at(pair[0]), at(pair[1])) {
-                self.planned[index] = true;
+                plan.due_m[index] = Some(*end_m as f32);
             }
+        }
+        self.before = Some(Box::new(std::mem::replace(&mut self.plan, plan)));
+    }
+
+    /// The plan that was made last does not fly: the one before still holds.
+    pub fn refuse_plan(&mut self) {
+        if let Some(before) = self.before.take() {
+            self.plan = *before;
+        }
+    }
+
+    /// The robot is this far along the plan, metres.
+    pub fn fly(&mut self, along_m: f64) {
+        self.before = None;
+        self.plan.along_m = self.plan.along_m.max(along_m);
+    }
+
+    /// So much of the way is flown, as a share of the way flown before this plan and the whole of this plan.
+    pub fn fly_share(&mut self, done: f64) {
+        let Planned { length_m, flown_m, .. } = self.plan;
+        self.fly(done * (flown_m + length_m) - flown_m);
+    }
+
+    /// What the plan was flown past stays so when another plan is made.
+    fn leave_behind(&mut self) {
+        for (passed, due_m) in self.passed.iter_mut().zip(&self.plan.due_m) {
+            *passed |= due_m.is_some_and(|due_m| self.plan.is_past(due_m));
         }
     }
 
     /// The robot believed to be here, and what its tool passed since the last time counts or does not.
     pub fn visit(&mut self, here: Pose, counts: bool) {
         let before = std::mem::replace(&mut self.last, here);
-        for index in self.grid.cells_near(before.position, here.position, self.tool.swath_m()) {
-            self.visited[index] = true;
-        }
         if counts {
             self.shell.pass(self.tool, before, here);
         }
@@ -94,8 +128,12 @@ impl Evidence {
     /// Takes in what another run on the same floor planned and did.
     pub fn join(&mut self, other: &Self) {
         let or = |own: &mut [bool], others: &[bool]| own.iter_mut().zip(others).for_each(|(a, b)| *a |= b);
-        or(&mut self.planned, &other.planned);
-        or(&mut self.visited, &other.visited);
+        for (index, due_m) in self.plan.due_m.iter_mut().enumerate() {
+            self.passed[index] |= other.is_passed(index);
+            if due_m.is_none() && other.is_ahead(index) {
+                *due_m = Some(f32::INFINITY);
+            }
+        }
         or(&mut self.uncertain, &other.uncertain);
         self.asked = match (self.asked.take(), &other.asked) {
             (Some(mut asked), Some(others)) => {
@@ -127,13 +165,46 @@ impl Evidence {
             MissReason::FoundObstacle
         } else if !self.is_asked(index) {
             MissReason::NotAsked
-        } else if !self.planned[index] {
-            MissReason::NotPlanned
-        } else if self.visited[index] {
+        } else if self.is_passed(index) {
             MissReason::PassedBeside
-        } else {
+        } else if self.is_ahead(index) {
             MissReason::NotReached
+        } else {
+            MissReason::NotPlanned
         }
+    }
+
+    /// Whether a plan led to a cell and was flown past there.
+    fn is_passed(&self, index: usize) -> bool {
+        self.passed[index] || self.plan.due_m[index].is_some_and(|due_m| self.plan.is_past(due_m))
+    }
+
+    /// Whether the plan leads to a cell further on than it was flown.
+    fn is_ahead(&self, index: usize) -> bool {
+        self.plan.due_m[index].is_some_and(|due_m| !self.plan.is_past(due_m))
+    }
+}
+
+/// A plan, and how far it was flown.
+#[derive(Debug, Clone)]
+struct Planned {
+    /// Way along the plan by which it has led over each cell for the last time, metres; `None` where it leads nowhere near.
+    due_m: Vec<Option<f32>>,
+    /// Its length, metres.
+    length_m: f64,
+    /// How far it was flown, metres.
+    along_m: f64,
+    /// Way flown along the plans before, metres.
+    flown_m: f64,
+}
+
+impl Planned {
+    fn none(cells: usize) -> Self {
+        Self { due_m: vec![None; cells], length_m: 0.0, along_m: 0.0, flown_m: 0.0 }
+    }
+
+    fn is_past(&self, due_m: f32) -> bool {
+        f64::from(due_m) <= self.along_m + NEARLY_M
     }
 }
 
