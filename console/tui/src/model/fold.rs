@@ -58,7 +58,13 @@ impl Model {
                 self.planning.plan = Some(plan);
                 self.planner_works();
             }
-            EventKind::Commanded { command } => self.planning.command = Some((event.t_s, *command)),
+            EventKind::Commanded { command } => {
+                // It was late once, and goes on.
+                if self.planning.fault.is_some() {
+                    self.planner_works();
+                }
+                self.planning.command = Some((event.t_s, *command));
+            }
             EventKind::Drawn { drawings } => self.draw(event.tick, drawings),
             EventKind::Scalars { scalars } => {
                 self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
@@ -68,7 +74,7 @@ impl Model {
                 if self.planner_id() == Some(fault.planner.as_str()) {
                     self.planning.fault = Some(fault.clone());
                 }
-                self.raise(event, Cause::Planner, Severity::Crit, fault.message.clone());
+                self.raise(event, Cause::Planner, fault.severity(), fault.message.clone());
                 self.withdraw_question();
             }
             EventKind::Covered { runs } => {
