@@ -66,9 +66,9 @@ impl Fold {
                     scanned.believe(runs);
                 }
             }
-            EventKind::Planned { path, .. } if !self.is_preset() => {
+            EventKind::Planned { path, complete, .. } if !self.is_preset() => {
                 if let Some(evidence) = &mut self.evidence {
-                    evidence.plan(path);
+                    evidence.plan(path, *complete);
                 }
             }
             EventKind::Certified { refused: true, .. } => {
@@ -164,7 +164,7 @@ impl Fold {
         self.tracker = match &run.mission.task {
             TaskConfig::Follow { path, .. } => {
                 if let Some(evidence) = &mut self.evidence {
-                    evidence.plan(path);
+                    evidence.plan(path, true);
                 }
                 Some(Tracker::new(path))
             }

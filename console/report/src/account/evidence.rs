@@ -2,7 +2,9 @@
 
 use super::{CRITICAL_ZONE_M, MissReason};
 use mission::{TaskConfig, event::RunOpened};
-use world::{CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, ShellFigures, ShellZone, Tool};
+use world::{
+    CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, ShellFigures, ShellZone, Tool, tether::Reach,
+};
 
 /// Plans are laid out on the floor in pieces no longer than this, metres.
 const PIECE_M: f64 = 0.5;
@@ -53,12 +55,16 @@ impl Evidence {
     }
 
     /// A plan was made for what is left; it takes the place of the one before.
-    pub fn plan(&mut self, path: &[Point]) {
+    pub fn plan(&mut self, path: &[Point], is_whole: bool) {
         self.leave_behind();
         let path = world::polyline::resampled(path, PIECE_M);
         let stations_m = world::polyline::stations_m(&path);
-        let mut plan = Planned { flown_m: self.plan.flown_m + self.plan.along_m, ..Planned::none(self.grid.len()) };
-        plan.length_m = stations_m.last().copied().unwrap_or(0.0);
+        let mut plan = Planned {
+            length_m: stations_m.last().copied().unwrap_or(0.0),
+            flown_m: self.plan.flown_m + self.plan.along_m,
+            is_whole,
+            ..Planned::none(self.grid.len())
+        };
         for (pair, end_m) in path.windows(2).zip(&stations_m[1..]).filter(|(pair, _)| pair[0] != pair[1]) {
             let ahead = pair[1] - pair[0];
             let at = |position| Pose { position, heading_rad: ahead.y.atan2(ahead.x) };
@@ -134,6 +140,7 @@ impl Evidence {
                 *due_m = Some(f32::INFINITY);
             }
         }
+        self.plan.is_whole &= other.plan.is_whole;
         or(&mut self.uncertain, &other.uncertain);
         self.asked = match (self.asked.take(), &other.asked) {
             (Some(mut asked), Some(others)) => {
@@ -156,22 +163,15 @@ impl Evidence {
         self.asked.as_ref().is_none_or(|asked| asked[index])
     }
 
-    /// Why a cell was missed.
-    pub fn why_missed(&self, floor: &Floor, index: usize) -> MissReason {
-        let center = floor.center(index);
-        if self.uncertain[index] {
-            MissReason::PositionUncertain
-        } else if self.found.iter().any(|(_, shape)| shape.distance_m(center) <= self.beside_m) {
-            MissReason::FoundObstacle
-        } else if !self.is_asked(index) {
-            MissReason::NotAsked
-        } else if self.is_passed(index) {
-            MissReason::PassedBeside
-        } else if self.is_ahead(index) {
-            MissReason::NotReached
-        } else {
-            MissReason::NotPlanned
-        }
+    /// Why cells were missed in this run.
+    pub fn reasons(&self, run: &RunOpened) -> Reasons<'_> {
+        let cable = run.mission.cable_reach().filter(|_| !self.plan.is_whole);
+        let reach = cable.map(|(anchor, reach_m)| {
+            let found = self.found.iter().map(|(_, shape)| shape);
+            let shapes: Vec<Shape> = self.drawn.iter().chain(found).cloned().collect();
+            Reach::new(anchor, &run.world.boundary, &shapes, reach_m)
+        });
+        Reasons { evidence: self, reach }
     }
 
     /// Whether a plan led to a cell and was flown past there.
@@ -182,6 +182,42 @@ impl Evidence {
     /// Whether the plan leads to a cell further on than it was flown.
     fn is_ahead(&self, index: usize) -> bool {
         self.plan.due_m[index].is_some_and(|due_m| !self.plan.is_past(due_m))
+    }
+}
+
+/// Why floor was missed.
+pub struct Reasons<'a> {
+    evidence: &'a Evidence,
+    /// Where the cable leads; `None` if no plan left floor out because of it.
+    reach: Option<Reach>,
+}
+
+impl Reasons<'_> {
+    /// Why a cell was missed.
+    pub fn why_missed(&self, floor: &Floor, index: usize) -> MissReason {
+        let (evidence, center) = (self.evidence, floor.center(index));
+        if evidence.uncertain[index] {
+            MissReason::PositionUncertain
+        } else if self.is_left_beyond_reel(index, center) {
+            MissReason::BeyondReel
+        } else if evidence.found.iter().any(|(_, shape)| shape.distance_m(center) <= evidence.beside_m) {
+            MissReason::FoundObstacle
+        } else if !evidence.is_asked(index) {
+            MissReason::NotAsked
+        } else if evidence.is_passed(index) {
+            MissReason::PassedBeside
+        } else if evidence.is_ahead(index) {
+            MissReason::NotReached
+        } else {
+            MissReason::NotPlanned
+        }
+    }
+
+    /// Whether a cell was to be scanned, and no plan led there, because the cable does not.
+    fn is_left_beyond_reel(&self, index: usize, center: Point) -> bool {
+        let evidence = self.evidence;
+        let is_left = evidence.is_asked(index) && !evidence.is_passed(index) && !evidence.is_ahead(index);
+        is_left && self.reach.as_ref().is_some_and(|reach| reach.is_beyond(center))
     }
 }
 
@@ -196,11 +232,13 @@ struct Planned {
     along_m: f64,
     /// Way flown along the plans before, metres.
     flown_m: f64,
+    /// Whether it was for everything that was left.
+    is_whole: bool,
 }
 
 impl Planned {
     fn none(cells: usize) -> Self {
-        Self { due_m: vec![None; cells], length_m: 0.0, along_m: 0.0, flown_m: 0.0 }
+        Self { due_m: vec![None; cells], length_m: 0.0, along_m: 0.0, flown_m: 0.0, is_whole: true }
     }
 
     fn is_past(&self, due_m: f32) -> bool {
