@@ -75,6 +75,8 @@ pub struct Mission {
     waited_s: f64,
     /// Where it said so last, and how often there.
     blocked_at: Option<(Point, usize)>,
+    /// Where the cable was found caught last, and how often there.
+    caught_at: Option<(Point, usize)>,
     /// Where the robot was stuck last and got another plan.
     replanned_at: Option<Point>,
     trail: Vec<Point>,
@@ -151,6 +153,7 @@ impl Mission {
             blocked_s: 0.0,
             waited_s: 0.0,
             blocked_at: None,
+            caught_at: None,
             replanned_at: None,
             trail: vec![start],
             plan: None,
@@ -177,7 +180,7 @@ impl Mission {
         self.happened.extend(located);
         let map_changed = self.look_around(input.readings);
         self.scan_from(before);
-        self.drag_tether(map_changed);
+        self.drag_tether(map_changed, input.readings.paid_out_m);
         self.apply_rules(input.readings, planner);
         let drive = match self.phase {
             Phase::Running | Phase::Stepping => self.drive(planner),

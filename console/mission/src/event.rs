@@ -65,9 +65,12 @@ pub enum EventKind {
     },
     /// How the cable lies, by the estimated pose.
     Tethered {
-        /// Cable between anchor and robot, metres.
+        /// Cable between anchor and robot as the map explains it, metres.
         length_m: f64,
-        /// What is left on the reel, metres.
+        /// What the reel has paid out, as its encoder tells, metres; absent without one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        paid_out_m: Option<f64>,
+        /// What is left on the reel, metres: the less by the two.
         free_m: f64,
         /// Where it bears, from the anchor on.
         contacts: Vec<TetherContact>,
@@ -328,6 +331,13 @@ pub enum TetherAlarm {
         /// Largest sum allowed, radians.
         limit_rad: f64,
     },
+    /// The reel has paid out more than the cable needs among all obstacles on the map.
+    Snag {
+        /// Cable paid out, metres.
+        paid_out_m: f64,
+        /// Cable that the map explains, metres.
+        explained_m: f64,
+    },
     /// The hull does not fit along the cable.
     NoWayHome,
     /// The robot has left its plan across a line that the plan never crosses: it is planned anew.
@@ -341,6 +351,7 @@ impl TetherAlarm {
             Self::Reel { .. } => "reel",
             Self::Wrap { .. } => "wrap",
             Self::SumOfWraps { .. } => "sum of wraps",
+            Self::Snag { .. } => "snag",
             Self::NoWayHome => "way home",
             Self::Strayed => "stray",
         }
@@ -361,6 +372,11 @@ impl fmt::Display for TetherAlarm {
                 let (sum, limit) = (sum_rad.to_degrees(), limit_rad.to_degrees());
                 write!(f, "all wraps together reach {sum:.0} deg, limit {limit:.0} deg")
             }
+            Self::Snag { paid_out_m, explained_m } => write!(
+                f,
+                "the reel has paid out {paid_out_m:.1} m, the map explains {explained_m:.1} m: the cable has caught on \
+                 something that is not on the map"
+            ),
             Self::Strayed => f.write_str("the robot strayed across a cut of its plan; planning anew"),
             Self::NoWayHome => f.write_str("the hull does not fit back along the cable: no way home"),
         }

@@ -108,6 +108,14 @@ impl Task {
         }
     }
 
+    /// What is left of the lanes, from the point nearest to the robot on; `None` unless there are any.
+    pub fn lanes_left(&self) -> Option<&[Point]> {
+        match self {
+            Self::Cover(cover) => cover.lanes_left(),
+            Self::Goto(_) | Self::Follow { .. } => None,
+        }
+    }
+
     /// What the stretch of the plan under the robot is for, if the planner told.
     pub fn leg(&self) -> Option<api::LegTag> {
         match self {

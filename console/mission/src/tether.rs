@@ -10,10 +10,13 @@
 //! An obstacle found later may lie across the taut line: on which side the cable passes it is then decided by the way
 //! driven, which is kept and driven again in thought among all obstacles known now.
 
+mod payout;
+
 use crate::{
     config::MissionConfig,
     event::{EventKind, TetherAlarm, TetherContact},
 };
+use payout::{Explained, Payout};
 use planner_api::{LegTag, Plan, TetherLimits};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, sync::Arc};
@@ -77,6 +80,7 @@ pub struct Tether {
     roomy: Arc<Ground>,
     /// For how long there has been no way home, seconds.
     without_home_s: f64,
+    payout: Payout,
     driven: Vec<Point>,
     levels: BTreeMap<&'static str, Level>,
 }
@@ -96,6 +100,7 @@ impl Tether {
             cable,
             roomy: Arc::new(Ground::grown(&world.boundary, &shapes, home_room_m(hull_m))),
             without_home_s: 0.0,
+            payout: Payout::default(),
             driven: vec![start],
             levels: BTreeMap::new(),
         })
@@ -106,9 +111,9 @@ impl Tether {
         self.config.fly_uncertified
     }
 
-    /// From now on plans fly that cannot be certified: the operator says so.
-    pub fn fly_uncertified(&mut self) {
-        self.config.fly_uncertified = true;
+    /// From now on plans fly that cannot be certified, or do not: the operator says so.
+    pub fn fly_uncertified(&mut self, fly: bool) {
+        self.config.fly_uncertified = fly;
     }
 
     /// Puts the cable among the obstacles known now, as the way driven leads.
@@ -132,6 +137,31 @@ impl Tether {
         self.cable.drag_to(here);
     }
 
+    /// Takes in what the reel has paid out, metres, after some time; `error_m` is the error of the position by which the
+    /// cable lies, metres, `None` while that position is lost.
+    pub fn measure(&mut self, paid_out_m: Option<f64>, error_m: Option<f64>, passed_s: f64) {
+        let (length_m, points) = (self.cable.length_m(), self.driven.len());
+        let explained = error_m.map(|error_m| Explained { length_m, error_m, points });
+        self.payout.take(paid_out_m, explained, passed_s);
+    }
+
+    /// Whether more cable is out than the map explains: it has caught on something unknown.
+    pub fn is_caught(&self) -> bool {
+        self.payout.is_caught()
+    }
+
+    /// The way that frees a caught cable and reels it in, from the robot to the anchor: back the way driven to where
+    /// the map explained all cable, and from there home along it with some room for the middle of the hull, metres.
+    /// What the cable had caught on lies beside that second piece.
+    pub fn way_out(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
+        let first = self.payout.points_to_go_back_to().min(self.driven.len());
+        let mut way: Vec<Point> = self.driven[first..].iter().rev().copied().collect();
+        let mut freed = self.cable.clone();
+        freed.drag_along(&way);
+        way.extend(way_along(&freed, world, room_m)?);
+        Some(way)
+    }
+
     /// How the cable lies after some time, and what is newly wrong or right again.
     pub fn tell(&mut self, world: &World, map: &ObstacleMap, passed_s: f64) -> Vec<EventKind> {
         let way_home = self.cable.way_home(&self.roomy, map, home_room_m(self.hull_m));
@@ -142,7 +172,8 @@ impl Tether {
         let sum_wrap_rad = self.cable.sum_wrap_rad();
         let mut events = vec![EventKind::Tethered {
             length_m,
-            free_m: limits.reel_m - length_m,
+            free_m: limits.reel_m - self.payout.at_least_m(length_m),
+            paid_out_m: self.payout.measured_m(),
             contacts: self.contacts(world),
             max_wrap_rad: self.cable.max_wrap_rad(),
             sum_wrap_rad,
@@ -161,12 +192,13 @@ impl Tether {
         self.without_home_s == 0.0
     }
 
-    fn alarms(&self, world: &World) -> [(TetherAlarm, f64); 4] {
+    fn alarms(&self, world: &World) -> [(TetherAlarm, f64); 5] {
         let limits = self.config.limits;
         let contacts = self.cable.contacts();
         let most = contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()));
         let on = most.map_or_else(String::new, |contact| name_of(world, contact.on));
-        let (out_m, reel_m) = (self.cable.length_m(), limits.reel_m);
+        let explained_m = self.cable.length_m();
+        let (out_m, reel_m) = (self.payout.at_least_m(explained_m), limits.reel_m);
         let (wrap_rad, sum_rad) = (self.cable.max_wrap_rad(), self.cable.sum_wrap_rad());
         let (wrap_limit_rad, sum_limit_rad) = (limits.max_wrap_rad, limits.max_sum_wrap_rad);
         [
@@ -174,6 +206,8 @@ impl Tether {
             (TetherAlarm::Wrap { on, wrap_rad, limit_rad: wrap_limit_rad }, wrap_rad / wrap_limit_rad),
             (TetherAlarm::SumOfWraps { sum_rad, limit_rad: sum_limit_rad }, sum_rad / sum_limit_rad),
             (TetherAlarm::NoWayHome, self.without_home_s / NO_HOME_S),
+            // There is no such thing as nearly caught.
+            (TetherAlarm::Snag { paid_out_m: out_m, explained_m }, if self.is_caught() { 2.0 } else { 0.0 }),
         ]
     }
 
@@ -217,8 +251,12 @@ impl Tether {
 
     /// The way back along the cable with some room for the middle of the hull, metres, from the robot to the anchor.
     pub fn way_home(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
-        let roomy = Arc::new(Ground::grown(&world.boundary, &shapes(world), room_m));
-        self.cable.way_home(&roomy, &ObstacleMap::new(&world.boundary, &world.obstacles), room_m)
+        way_along(&self.cable, world, room_m)
+    }
+
+    /// Whether the rest of a plan still reels the cable in within its limits, now that more is known of the tank.
+    pub fn bears(&self, rest: &[Point], world: &World, returns: bool) -> bool {
+        certified(&self.config, 0.0, Some(&self.cable), rest, &[], world, returns).certified
     }
 
     /// Judges a plan from where the cable lies now; `returns` says whether it has to end with the cable reeled in.
@@ -228,7 +266,7 @@ impl Tether {
         let judge = |cable, path, cuts: &[Vec<Point>]| {
             certified(&self.config, self.hull_m, cable, path, cuts, world, returns)
         };
-        let home = way_home_ends(plan);
+        let home = way_home_ends(plan, self.config.anchor);
         if home == 0 {
             return judge(Some(&self.cable), &plan.path, &plan.cuts);
         }
@@ -264,10 +302,12 @@ pub fn judge_from_start(
     certified(tether, config.limits.radius_m, None, path, cuts, drawing, returns)
 }
 
-/// Index of the point of a plan's path at which a way home along the cable ends; 0 without one.
-pub(crate) fn way_home_ends(plan: &Plan) -> usize {
+/// Index of the point of a plan's path at which a way home along the cable ends; 0 without one. A way that ends away
+/// from the anchor is none, whatever the planner calls it.
+pub(crate) fn way_home_ends(plan: &Plan, anchor: Point) -> usize {
+    let is_home = |last: usize| plan.path.get(last).is_some_and(|end| (end - anchor).norm() <= AT_ANCHOR_M);
     let first = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract && leg.first == 0);
-    first.map_or(0, |leg| leg.last.min(plan.path.len().saturating_sub(1)))
+    first.map(|leg| leg.last).filter(|last| is_home(*last)).unwrap_or(0)
 }
 
 /// Whether the task ends where the tether is made fast.
@@ -299,6 +339,12 @@ fn certified(
         return Certificate::refused("the planner tells no path that could be judged".into());
     }
     certify(&case).unwrap_or_else(|error| Certificate::refused(error.to_string()))
+}
+
+/// The way along a cable to its anchor with some room for the middle of the hull, metres.
+fn way_along(cable: &Cable, world: &World, room_m: f64) -> Option<Vec<Point>> {
+    let roomy = Arc::new(Ground::grown(&world.boundary, &shapes(world), room_m));
+    cable.way_home(&roomy, &ObstacleMap::new(&world.boundary, &world.obstacles), room_m)
 }
 
 /// Room for the middle of the hull on a way home, metres.

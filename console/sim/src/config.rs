@@ -178,6 +178,9 @@ pub struct SimConfig {
     /// Where the tether is made fast, metres; `None` for a robot without one.
     #[serde(default)]
     pub tether_anchor: Option<Point>,
+    /// Cable on the reel, metres; `None` for an endless one. A robot at its end pulls in vain.
+    #[serde(default)]
+    pub reel_m: Option<f64>,
 }
 
 /// What the robot is sent.

@@ -9,7 +9,7 @@ use crate::{
     sight::sightings,
     sweep::sweep,
 };
-use world::{Medium, Mode, ObstacleMap, Odometry, Pose, Readings, tether::Cable};
+use world::{Medium, Mode, ObstacleMap, Odometry, Point, Pose, Readings, tether::Cable};
 
 /// A hull that touched something keeps touching it until the gap is wider than this, metres.
 const CONTACT_GAP_M: f64 = 1e-3;
@@ -72,6 +72,7 @@ impl Simulator {
             odometry: self.odometry,
             sightings: sightings(&self.map, &world.boundary, &world.obstacles, &self.pose, reach_m),
             contact: self.in_contact,
+            paid_out_m: self.cable.as_ref().map(Cable::length_m),
         }
     }
 
@@ -81,18 +82,22 @@ impl Simulator {
         let told = self.tracks.drive(drive, &self.pose);
         let driven = Arc { way_m: told.way_m * (1.0 - self.draw_slip()), ..told };
         let reached = sweep(&self.map, self.radius_m(), &self.pose, &driven);
-        self.pose = reached.pose;
+        let cable = self.cable.as_ref().map(|cable| dragged(cable, reached.pose.position));
+        let is_at_its_end = self.is_at_its_end(cable.as_ref());
+        self.pose = if is_at_its_end {
+            Pose { heading_rad: reached.pose.heading_rad, ..self.pose }
+        } else {
+            self.cable = cable;
+            reached.pose
+        };
         self.odometry = self.measured(&told);
         let touched_before = self.in_contact;
         let is_run_into = self.move_obstacles();
         self.in_contact =
             reached.is_blocked || is_run_into || (touched_before && self.clearance_m() < CONTACT_GAP_M);
         self.collided = self.in_contact && !touched_before;
-        if reached.is_blocked {
+        if reached.is_blocked || is_at_its_end {
             self.tracks.stop();
-        }
-        if let Some(cable) = &mut self.cable {
-            cable.drag_to(self.pose.position);
         }
         self.tick += 1;
     }
@@ -136,6 +141,14 @@ impl Simulator {
         self.clearance_m() < 0.0
     }
 
+    /// Whether the reel does not hold the cable that a move asks for. The robot can always come back.
+    fn is_at_its_end(&self, moved: Option<&Cable>) -> bool {
+        let (Some(reel_m), Some(before), Some(after)) = (self.config.reel_m, &self.cable, moved) else {
+            return false;
+        };
+        after.length_m() > reel_m && after.length_m() > before.length_m()
+    }
+
     fn radius_m(&self) -> f64 {
         self.config.robot.radius_m.max(0.0)
     }
@@ -163,6 +176,12 @@ impl Simulator {
             turn_rad: turn_rad * of_turn + bounded(robot.gyro_bias_rad_per_s * self.config.tick_s.max(0.0)),
         }
     }
+}
+
+fn dragged(cable: &Cable, to: Point) -> Cable {
+    let mut cable = cable.clone();
+    cable.drag_to(to);
+    cable
 }
 
 /// The cable from its anchor straight to the robot; none if the anchor cannot be.

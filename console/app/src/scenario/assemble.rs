@@ -106,6 +106,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         attended: false,
     };
     let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);
+    let reel_m = mission.tether.as_ref().map(|tether| tether.limits.reel_m);
     let world = World {
         boundary: floor.boundary?,
         obstacles: floor.obstacles,
@@ -119,6 +120,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         tick_s: rest.tick_s,
         movers: floor.movers,
         tether_anchor,
+        reel_m,
     };
     Some(Scenario {
         name: name?,

@@ -4,10 +4,10 @@ use super::{Mission, Phase};
 use crate::{
     config::PlannerChoice,
     event::{EventKind, HoldReason, Outcome},
-    link::{ParamValue, PlannerLink},
+    link::{Cause, ParamValue, PlannerLink},
     order::Order,
 };
-use planner_api::Reason;
+use planner_api::{Code, Reason};
 
 impl Mission {
     pub(super) fn obey(&mut self, order: &Order, planner: &mut dyn PlannerLink) {
@@ -47,15 +47,19 @@ impl Mission {
             (Order::ChoosePlanner(choice), _) => self.choose_by_order(choice, planner),
             (Order::SetParameter { key, value }, _) => self.set_parameter(key, value, planner),
             (Order::FlyUncertified, Phase::Held(HoldReason::PlanRefused { .. })) => {
-                if let Some(tether) = &mut self.tether {
-                    tether.fly_uncertified();
-                }
-                self.resume(Phase::Running, planner)
+                self.fly_uncertified(true);
+                self.resume(Phase::Running, planner).inspect_err(|_| self.fly_uncertified(false))
             }
             (Order::FlyUncertified, _) => Err("no plan has been refused because of the tether".into()),
             (Order::Hold | Order::Resume | Order::Step, Phase::Waiting) => {
                 Err("the mission has not been started".into())
             }
+        }
+    }
+
+    fn fly_uncertified(&mut self, fly: bool) {
+        if let Some(tether) = &mut self.tether {
+            tether.fly_uncertified(fly);
         }
     }
 
@@ -122,10 +126,16 @@ impl Mission {
             .as_ref()
             .is_some_and(|info| info.parameters.iter().any(|p| p.key == key && p.live));
         if live && self.planner.fit {
-            planner.reconfigure(&choice.parameters).map_err(|fault| fault.message)?;
-            self.planner.choice = choice.clone();
-            self.happened.push(EventKind::ParametersChanged { choice });
-            return Ok(());
+            match planner.reconfigure(&choice.parameters) {
+                Ok(()) => {
+                    self.planner.choice = choice.clone();
+                    self.happened.push(EventKind::ParametersChanged { choice });
+                    return Ok(());
+                }
+                // It takes them as a new instance, like those that are not live.
+                Err(fault) if fault.cause == Cause::Planner(Code::Unsupported) => {}
+                Err(fault) => return Err(fault.message),
+            }
         }
         if self.phase == Phase::Running {
             return Err(format!("`{key}` cannot change while the robot moves: hold first"));

@@ -62,10 +62,13 @@ impl Mission {
     /// Asks for a plan if one is due.
     ///
     /// A plan that is refused because of the cable out there is asked for once more from the anchor, after a way back
-    /// along the cable: no planner has to know how the cable lies.
+    /// along the cable: no planner has to know how the cable lies. A cable that is caught is freed first.
     pub(super) fn plan_if_due(&mut self, planner: &mut dyn PlannerLink) -> Result<(), String> {
         let Some(reason) = self.planner.plan_due.clone() else { return Ok(()) };
         self.planner.refused = false;
+        if let Some(way_out) = self.way_out() {
+            return self.ask_for_plan(&reason, &way_out, planner);
+        }
         let from_here = self.ask_for_plan(&reason, &[], planner);
         let way_home = if self.planner.refused { self.way_to_anchor() } else { None };
         way_home.map_or(from_here, |way| self.ask_for_plan(&reason, &way, planner))
@@ -89,7 +92,10 @@ impl Mission {
             .with_site(|site| planner.plan(&PlanRequest { reason, start, task, site, previous: &previous }));
         match answer {
             Ok(reply) => self.accept_plan(reason.clone(), after(way_home, reply)),
-            Err(fault) => Err(self.note_fault(fault)),
+            Err(fault) => {
+                self.planner.refused = false;
+                Err(self.note_fault(fault))
+            }
         }
     }
 
@@ -105,8 +111,9 @@ impl Mission {
             legs: plan.legs.clone(),
             cuts: plan.cuts.clone(),
         });
-        let judged = self.judge_plan(&plan).and_then(|()| self.judge_way(&plan));
-        self.planner.refused = judged.is_err();
+        let safe = self.judge_plan(&plan);
+        self.planner.refused = safe.is_err();
+        let judged = safe.and_then(|()| self.judge_way(&plan));
         if judged.is_ok() {
             self.planner.plan_due = None;
             self.task.take_plan(&plan);

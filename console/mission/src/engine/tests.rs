@@ -1,14 +1,16 @@
 //! Missions in a perfect little world: exact ranges, a point robot that does what it is told.
 
+mod caught;
 mod covering;
 mod tethered;
 
 use super::*;
 use crate::{
     config::{ScanConfig, TaskConfig},
-    link::{Cause, During, Fault, Parameters, Reply},
+    link::{Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, Reply},
 };
 use planner_api::{self as api, Command, Limits, Motion, Plan, PlanRequest, Sensed, Site, Status};
+use world::tether::Cable;
 use world::{Boundary, Obstacle, ObstacleId, Odometry, Pose, RangeSet, Shape, Sighting, Station, StationId};
 
 /// A planner that drives straight to its target, and does as told by the test otherwise.
@@ -28,6 +30,8 @@ struct Straight {
     cut: Option<Vec<Point>>,
     /// Its coverage plans are a single point.
     leads_nowhere: bool,
+    /// It has a live parameter `gain` that it cannot change under way.
+    has_stiff_gain: bool,
 }
 
 impl Straight {
@@ -56,6 +60,15 @@ impl PlannerLink for Straight {
         }
         self.chosen.push(id.into());
         let text = String::new;
+        let gain = ParamInfo {
+            key: "gain".into(),
+            label: text(),
+            unit: text(),
+            help: text(),
+            group: text(),
+            kind: ParamKind::Float { min: 0.0, max: 9.0, default: 1.0 },
+            live: true,
+        };
         Ok(PlannerInfo {
             id: id.into(),
             name: text(),
@@ -65,12 +78,13 @@ impl PlannerLink for Straight {
             sha256: text(),
             abi: text(),
             covers: false,
-            parameters: vec![],
+            parameters: if self.has_stiff_gain { vec![gain] } else { vec![] },
         })
     }
 
     fn reconfigure(&mut self, _: &Parameters) -> Result<(), Fault> {
-        Ok(())
+        let cause = Cause::Planner(api::Code::Unsupported);
+        if self.has_stiff_gain { Err(self.fault(During::Configure, cause)) } else { Ok(()) }
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>) -> Result<Reply<Plan>, Fault> {
@@ -163,6 +177,10 @@ struct Flight {
     silent: bool,
     /// Metres by which the ranges of the first stations are too long.
     late_m: Vec<f64>,
+    /// The true cable, among what stands there unseen; `None` without an encoder.
+    reel: Option<Cable>,
+    /// Metres that the reel has paid out beyond that.
+    caught_m: f64,
     sightings: Vec<Sighting>,
     events: Vec<Event>,
 }
@@ -180,6 +198,8 @@ impl Flight {
             moved: Odometry::default(),
             silent: false,
             late_m: vec![],
+            reel: None,
+            caught_m: 0.0,
             sightings: vec![],
             events: vec![],
         }
@@ -201,6 +221,7 @@ impl Flight {
             odometry: self.moved,
             sightings: std::mem::take(&mut self.sightings),
             contact: false,
+            paid_out_m: self.reel.as_ref().map(|cable| cable.length_m() + self.caught_m),
         };
         let step = self.mission.step(&Input { readings: &readings, orders }, &mut self.planner);
         let Drive::Velocity(velocity) = step.drive else {
@@ -210,6 +231,9 @@ impl Flight {
         };
         // The heading stays: the odometry of a point robot tells both components.
         self.pose.position += velocity * 0.1;
+        if let Some(cable) = &mut self.reel {
+            cable.drag_to(self.pose.position);
+        }
         self.moved = Odometry { forward_m: velocity.x * 0.1, sideways_m: velocity.y * 0.1, turn_rad: 0.0 };
         self.events.extend(step.events.clone());
         step.events.into_iter().map(|event| event.kind).collect()
@@ -539,4 +563,16 @@ fn two_flights_with_the_same_orders_tell_the_same() {
     assert_eq!(told, fly());
     let back: Vec<Event> = serde_json::from_str(&told).unwrap();
     assert_eq!(serde_json::to_string(&back).unwrap(), told);
+}
+
+#[test]
+fn a_live_parameter_that_the_planner_cannot_change_under_way_makes_a_new_instance_while_held() {
+    let mut flight = Flight::new(config());
+    flight.planner.has_stiff_gain = true;
+    flight.tick(&[Order::Start]);
+    let gain = || Order::SetParameter { key: "gain".into(), value: ParamValue::Float(2.0) };
+    assert!(refusal(&flight.tick(&[gain()])).is_some_and(|why| why.contains("hold first")));
+    flight.tick(&[Order::Hold]);
+    assert_eq!(refusal(&flight.tick(&[gain()])), None);
+    assert_eq!((flight.planner.chosen.len(), flight.planner.plans), (2, 2));
 }

@@ -1,12 +1,16 @@
 //! What one tick does to the tether, and what the tether does to the mission.
 
-use super::{Mission, Phase};
+use super::{Mission, Phase, SAME_PLACE_M};
 use crate::{
     event::{EventKind, HoldReason, Outcome, TetherAlarm},
+    task::Task,
     tether::{Tether, ends_at_anchor, way_home_ends},
 };
 use planner_api::{Plan, Reason};
 use world::{Point, polyline, tether::crossings};
+
+/// So often a cable is eased by itself that holds the robot in one place.
+const MOST_TIMES_CAUGHT: usize = 2;
 
 /// A robot without a way home that nobody attends waits this long for one, seconds.
 const WAIT_FOR_HOME_S: f64 = 30.0;
@@ -26,23 +30,37 @@ pub(super) struct Cuts {
 
 impl Mission {
     /// Drags the cable along, and holds the robot when it may go no further.
-    pub(super) fn drag_tether(&mut self, map_changed: bool) {
+    pub(super) fn drag_tether(&mut self, map_changed: bool, paid_out_m: Option<f64>) {
         let Some(tether) = &mut self.tether else { return };
         let world = self.chart.world();
         if map_changed {
             tether.lay_anew(world);
         }
         // A lost position would wind the cable round whatever the estimate strays past.
-        if !self.locator.is_lost() {
+        let error_m = (!self.locator.is_lost()).then(|| self.locator.error_95_m());
+        if error_m.is_some() {
             tether.drag_to(self.locator.position());
         }
+        tether.measure(paid_out_m, error_m, self.config.tick_s);
         let told = tether.tell(world, self.chart.map(), self.config.tick_s);
         self.cable_trouble = told.iter().find_map(|event| match event {
             EventKind::TetherAlarmed { alarm, reached: true } => Some(alarm.clone()),
             _ => None,
         });
         self.happened.extend(told);
+        if map_changed {
+            self.doubt_plan();
+        }
         self.watch_cuts();
+    }
+
+    /// What was found may stand beside the rest of the plan and yet in the way of its cable: then it is planned anew.
+    fn doubt_plan(&mut self) {
+        let Some(tether) = self.tether.as_ref().filter(|tether| !tether.flies_uncertified()) else { return };
+        let Some(rest) = self.task.lanes_left().filter(|_| self.planner.plan_due.is_none()) else { return };
+        if !tether.bears(rest, self.chart.world(), self.task_ends_at_anchor()) {
+            self.planner.plan_due = Some(Reason::MapChanged);
+        }
     }
 
     /// A robot that has come off its plan across a cut would wind the cable on its way back to it: it is planned anew,
@@ -73,10 +91,12 @@ impl Mission {
 
     /// Keeps the cuts of a plan that flies.
     pub(super) fn keep_to(&mut self, plan: &Plan) {
-        let lines = if self.tether.is_some() { plan.cuts.as_slice() } else { &[] };
+        let anchor = self.tether.as_ref().map(Tether::anchor);
+        let lines = if anchor.is_some() { plan.cuts.as_slice() } else { &[] };
+        let from = anchor.map_or(0, |anchor| way_home_ends(plan, anchor));
         self.cuts = Cuts {
             lines: lines.iter().map(|line| (line.clone(), false)).collect(),
-            from: plan.path.get(way_home_ends(plan)).copied(),
+            from: plan.path.get(from).copied(),
             seen_at: self.locator.position(),
         };
     }
@@ -85,32 +105,66 @@ impl Mission {
     pub(super) fn way_to_anchor(&self) -> Option<Vec<Point>> {
         let (here, tether) = (self.locator.position(), self.tether.as_ref()?);
         let is_out = self.task_ends_at_anchor() && (here - tether.anchor()).norm() > HOME_M;
+        if is_out { self.widest(|room_m| tether.way_home(self.chart.world(), room_m)) } else { None }
+    }
+
+    /// The way that frees a caught cable and reels it in, as wide as possible; `None` unless it is caught.
+    pub(super) fn way_out(&self) -> Option<Vec<Point>> {
+        let tether = self.tether.as_ref().filter(|tether| tether.is_caught())?;
+        if self.plans_ways_home() {
+            self.widest(|room_m| tether.way_out(self.chart.world(), room_m))
+        } else {
+            None
+        }
+    }
+
+    /// The first way there is with less and less room beside the hull.
+    fn widest(&self, way: impl Fn(f64) -> Option<Vec<Point>>) -> Option<Vec<Point>> {
         let rooms =
             [1.0, 0.5, 0.0].map(|share| share * self.config.clearance_m + self.config.limits.radius_m);
-        let world = self.chart.world();
-        rooms.iter().filter(|_| is_out).find_map(|room_m| tether.way_home(world, *room_m))
+        rooms.into_iter().find_map(way)
+    }
+
+    /// Whether the mission puts ways home along the cable before plans.
+    fn plans_ways_home(&self) -> bool {
+        matches!(self.task, Task::Cover(_)) && self.task_ends_at_anchor()
     }
 
     /// The tether's rule for a moving robot: whether it was held or the mission ended.
     pub(super) fn watch_tether(&mut self) -> bool {
         let Some(alarm) = self.cable_trouble.take() else { return false };
         let message = alarm.to_string();
-        let outcome = match alarm {
-            TetherAlarm::Reel { .. } => Outcome::Aborted,
-            TetherAlarm::Wrap { .. } | TetherAlarm::SumOfWraps { .. } => Outcome::Entangled,
+        match alarm {
+            TetherAlarm::Reel { .. } => self.hold_by_cable(message, Outcome::Aborted),
+            TetherAlarm::Wrap { .. } | TetherAlarm::SumOfWraps { .. } | TetherAlarm::Snag { .. } => {
+                self.hold_by_cable(message, Outcome::Entangled);
+            }
             // What closed the way may move on.
             TetherAlarm::NoWayHome | TetherAlarm::Strayed => {
                 self.waits_for_home_s = Some(0.0);
                 self.hold(HoldReason::Tether { message });
-                return true;
             }
-        };
-        if self.config.attended {
+        }
+        true
+    }
+
+    /// A cable at its limits, or caught, holds the robot. Lanes are planned anew from there, after a way that eases the
+    /// cable; with nobody there this is tried a few times in one place, and else the mission ends.
+    fn hold_by_cable(&mut self, message: String, outcome: Outcome) {
+        let here = self.locator.position();
+        let (at, times) =
+            self.caught_at.filter(|(at, _)| (here - at).norm() < SAME_PLACE_M).unwrap_or((here, 0));
+        self.caught_at = Some((at, times + 1));
+        let plans_anew = self.plans_ways_home() && times < MOST_TIMES_CAUGHT;
+        if plans_anew {
+            self.planner.plan_due.get_or_insert(Reason::Blocked);
+        }
+        if plans_anew || self.config.attended {
+            self.waits_for_home_s = (!self.config.attended).then_some(0.0);
             self.hold(HoldReason::Tether { message });
         } else {
             self.end(outcome, &format!("nobody attended the hold: {message}"));
         }
-        true
     }
 
     /// A robot that is held because it had no way home goes on when there is one; with nobody there to help the mission

@@ -92,6 +92,11 @@ impl Cover {
         self.lanes.as_ref().map_or_else(home, |lanes| lanes.follower.ahead(length_m))
     }
 
+    /// What is left of the plan, from the point nearest to the robot on.
+    pub fn lanes_left(&self) -> Option<&[Point]> {
+        self.lanes.as_ref().map(|lanes| lanes.follower.remaining())
+    }
+
     /// What the stretch under the robot is for.
     pub fn leg(&self) -> Option<LegTag> {
         let lanes = self.lanes.as_ref()?;

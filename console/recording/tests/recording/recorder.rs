@@ -87,6 +87,7 @@ fn a_tethered_run_has_the_cable_and_its_figures_in_every_tick() {
             let contact = mission::event::TetherContact { on: "C1".into(), wrap_rad: 1.0, at };
             let kind = EventKind::Tethered {
                 length_m,
+                paid_out_m: None,
                 free_m: 30.0 - length_m,
                 contacts: if bears { vec![contact] } else { vec![] },
                 max_wrap_rad: 1.0,

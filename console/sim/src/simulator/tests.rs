@@ -72,6 +72,7 @@ fn config() -> SimConfig {
         tick_s: 0.1,
         movers: vec![],
         tether_anchor: None,
+        reel_m: None,
     }
 }
 
@@ -338,4 +339,36 @@ fn what_runs_into_a_robot_that_stands_still_is_a_collision() {
     });
     assert!(collided.is_some_and(|tick| (35..60).contains(&tick)), "{collided:?}");
     assert!(sim.sense().contact && sim.sense().sightings.len() == 1);
+}
+
+/// A robot on a tether from (-6, 0), in a tank without columns.
+fn tethered(reel_m: f64) -> Simulator {
+    let mut config = config();
+    config.world.obstacles.clear();
+    config.robot.start = Pose::new(-6.0, 0.0, 0.0);
+    (config.tether_anchor, config.reel_m) = (Some(Point::new(-6.0, 0.0)), Some(reel_m));
+    Simulator::new(config, 1)
+}
+
+#[test]
+fn the_reel_tells_what_it_has_paid_out() {
+    let mut sim = tethered(9.0);
+    for _ in 0..50 {
+        sim.act(ahead(0.4));
+        let out_m = (sim.truth().pose.position - Point::new(-6.0, 0.0)).norm();
+        assert!(sim.sense().paid_out_m.is_some_and(|told_m| (told_m - out_m).abs() < 1e-9));
+    }
+    assert_eq!(Simulator::new(config(), 1).sense().paid_out_m, None);
+}
+
+#[test]
+fn at_the_end_of_the_reel_a_robot_pulls_in_vain_but_can_turn_and_come_back() {
+    let mut sim = tethered(1.0);
+    (0..100).for_each(|_| sim.act(ahead(0.4)));
+    let end = sim.truth();
+    assert!((end.pose.position.x + 5.0).abs() < 0.06 && !end.collided, "{end:?}");
+    (0..20).for_each(|_| sim.act(Drive::Twist { v_m_per_s: 0.0, w_rad_per_s: 0.5 }));
+    assert!((sim.truth().pose.heading_rad - end.pose.heading_rad).abs() > 0.5);
+    (0..20).for_each(|_| sim.act(ahead(-0.4)));
+    assert!((sim.truth().pose.position - end.pose.position).norm() > 0.2);
 }

@@ -7,7 +7,7 @@ use world::Point;
 /// How the cable lies, and what was last judged of a plan.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tether {
-    /// Cable between anchor and robot, metres.
+    /// Cable that is out, metres: what the reel has paid out, without an encoder what the map explains.
     pub length_m: f64,
     /// What is left on the reel, metres.
     pub free_m: f64,
@@ -30,6 +30,7 @@ impl Tether {
     pub(crate) fn lie(&mut self, event: &EventKind) {
         if let EventKind::Tethered {
             length_m,
+            paid_out_m,
             free_m,
             contacts,
             sum_wrap_rad,
@@ -39,7 +40,8 @@ impl Tether {
             ..
         } = event
         {
-            (self.length_m, self.free_m, self.sum_wrap_rad) = (*length_m, *free_m, *sum_wrap_rad);
+            self.length_m = paid_out_m.unwrap_or(*length_m);
+            (self.free_m, self.sum_wrap_rad) = (*free_m, *sum_wrap_rad);
             (self.pull_factor, self.way_home_m) = (*pull_factor, *way_home_m);
             (self.contacts, self.line) = (contacts.clone(), line.clone());
         }

@@ -389,6 +389,7 @@ impl Telling {
         let told = |c: &Contact| TetherContact { on: name(c.on), wrap_rad: c.wrap_rad, at: c.last };
         self.now(EventKind::Tethered {
             length_m: cable.length_m(),
+            paid_out_m: None,
             free_m: config.limits.reel_m - cable.length_m(),
             contacts: contacts.iter().map(told).collect(),
             max_wrap_rad: cable.max_wrap_rad(),

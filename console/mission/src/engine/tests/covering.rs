@@ -179,8 +179,10 @@ fn a_plan_that_scans_nothing_of_what_is_asked_is_refused_with_the_reason() {
     flight.planner.leads_nowhere = true;
     flight.tick(&[Order::Start]);
     flight.fly(5);
-    let Phase::Held(HoldReason::PlanRefused { message }) = flight.mission.phase() else {
+    // No matter of the tether: flying it all the same would be no remedy.
+    let Phase::Held(HoldReason::PlannerFault { message }) = flight.mission.phase() else {
         panic!("{:?}", flight.mission.phase())
     };
     assert!(message.contains("scans nothing"), "{message}");
+    assert!(refusal(&flight.tick(&[Order::FlyUncertified])).is_some());
 }

@@ -3,12 +3,12 @@
 use super::*;
 use crate::{
     event::TetherAlarm,
-    tether::{Tether, TetherConfig},
+    tether::{Tether, TetherConfig, way_home_ends},
 };
-use planner_api::LegTag;
+use planner_api::{Leg, LegTag};
 use world::{Obstacle, ObstacleId, Shape, tether::Limits};
 
-fn tethered(reel_m: f64) -> MissionConfig {
+pub fn tethered(reel_m: f64) -> MissionConfig {
     let limits = Limits { reel_m, max_wrap_rad: 1.0, max_sum_wrap_rad: 2.0 };
     let tether = TetherConfig { anchor: Point::new(-3.0, 0.0), limits, friction: 0.3, fly_uncertified: true };
     MissionConfig { tether: Some(tether), ..config() }
@@ -115,7 +115,7 @@ fn an_obstacle_found_across_the_cable_is_passed_on_the_side_that_was_driven() {
 }
 
 /// Any wrap and length will do.
-fn loosely_tethered() -> MissionConfig {
+pub fn loosely_tethered() -> MissionConfig {
     let mut config = MissionConfig { attended: false, ..tethered(99.0) };
     let limits = &mut config.tether.as_mut().unwrap().limits;
     (limits.max_wrap_rad, limits.max_sum_wrap_rad) = (99.0, 99.0);
@@ -133,7 +133,7 @@ fn fly_before_barrier(flight: &mut Flight, ticks: usize, shift_m: impl Fn(usize)
     }
 }
 
-fn holds(flight: &Flight) -> usize {
+pub fn holds(flight: &Flight) -> usize {
     let is_hold = |event: &&Event| matches!(event.kind, EventKind::Held { by: HoldReason::Tether { .. } });
     flight.events.iter().filter(is_hold).count()
 }
@@ -222,4 +222,14 @@ fn a_robot_back_at_the_anchor_with_cable_left_out_is_entangled() {
     }
     let why = lie.left_out(&world).unwrap();
     assert!(why.contains("of cable are left out, hooked round C1"), "{why}");
+}
+
+#[test]
+fn only_a_way_that_ends_at_the_anchor_is_a_way_home() {
+    let path = vec![Point::new(1.0, 0.0), Point::new(0.1, 0.0), Point::new(2.0, 0.0)];
+    let tagged = |last| {
+        let legs = vec![Leg { tag: LegTag::Retract, first: 0, last }];
+        way_home_ends(&Plan { path: path.clone(), legs, ..Plan::default() }, Point::origin())
+    };
+    assert_eq!([tagged(1), tagged(2), tagged(9)], [1, 0, 0]);
 }

@@ -1,0 +1,158 @@
+//! A cable that catches on what nobody has drawn or seen: the reel tells, and the robot goes back and frees it.
+
+use super::{
+    covering::covering,
+    tethered::{holds, loosely_tethered, tethered},
+    *,
+};
+use crate::{event::TetherAlarm, tether::TetherConfig};
+use planner_api::LegTag;
+use world::{Shape, tether};
+
+/// Stands between two lanes.
+const UNSEEN: Shape = Shape::Disc { center: Point::new(0.0, 2.05), radius_m: 0.05 };
+
+fn snags(flight: &Flight) -> Vec<String> {
+    let snag = |event: &Event| match &event.kind {
+        EventKind::TetherAlarmed { alarm: alarm @ TetherAlarm::Snag { .. }, reached: true } => {
+            Some(alarm.to_string())
+        }
+        _ => None,
+    };
+    flight.events.iter().filter_map(snag).collect()
+}
+
+fn eased(flight: &Flight) -> usize {
+    let is_eased =
+        |event: &&Event| matches!(&event.kind, EventKind::TetherEased { alarm: TetherAlarm::Snag { .. } });
+    flight.events.iter().filter(is_eased).count()
+}
+
+fn cable(anchor: Point, unseen: &[Shape]) -> Option<Cable> {
+    Cable::new(anchor, &drawing().boundary, unseen).ok()
+}
+
+/// A flight of which the reel pays out so much more than the map explains, for some ticks.
+fn caught(config: MissionConfig, more_m: f64, ticks: usize) -> Flight {
+    let mut flight = Flight::new(config);
+    flight.reel = cable(Point::new(-3.0, 0.0), &[]);
+    flight.tick(&[Order::Start]);
+    flight.fly(30);
+    flight.caught_m = more_m;
+    flight.fly(ticks);
+    flight.caught_m = 0.0;
+    flight
+}
+
+#[test]
+fn cable_that_the_map_does_not_explain_holds_until_the_operator_goes_on() {
+    let mut flight = caught(tethered(20.0), 1.5, 40);
+    let told = snags(&flight);
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].starts_with("the reel has paid out ") && told[0].contains("has caught on"), "{told:?}");
+    flight.fly(100);
+    assert!(matches!(flight.mission.phase(), Phase::Held(HoldReason::Tether { .. })));
+    flight.tick(&[Order::Resume]);
+    flight.fly(200);
+    assert_eq!((holds(&flight), flight.ended()), (1, Some(Outcome::Complete)));
+}
+
+#[test]
+fn little_cable_too_much_or_for_a_moment_is_no_snag() {
+    for (more_m, ticks) in [(0.15, 40), (1.5, 25)] {
+        let mut flight = caught(tethered(20.0), more_m, ticks);
+        flight.fly(200);
+        assert_eq!((snags(&flight).len(), flight.ended()), (0, Some(Outcome::Complete)), "{more_m} m");
+    }
+}
+
+#[test]
+fn with_nobody_there_a_robot_that_cannot_go_back_by_itself_is_entangled() {
+    let mut flight = caught(loosely_tethered(), 1.5, 40);
+    flight.fly(200);
+    assert_eq!((snags(&flight).len(), flight.ended()), (1, Some(Outcome::Entangled)));
+}
+
+#[test]
+fn the_reel_ends_by_what_it_has_paid_out() {
+    let flight = caught(MissionConfig { attended: false, ..tethered(7.0) }, 9.0, 5);
+    assert_eq!(flight.ended(), Some(Outcome::Aborted));
+    let free_m = flight.events.iter().filter_map(|event| match event.kind {
+        EventKind::Tethered { free_m, .. } => Some(free_m),
+        _ => None,
+    });
+    assert!(free_m.fold(f64::INFINITY, f64::min) < 0.0);
+}
+
+/// Scans the floor with a column on it that is seen within some metres once the cable has caught on it.
+fn scan_round_unseen_column(seen_m: f64) -> Flight {
+    let anchor = covering().start.position;
+    let limits = tether::Limits { reel_m: 50.0, max_wrap_rad: 50.0, max_sum_wrap_rad: 50.0 };
+    let config = TetherConfig { anchor, limits, friction: 0.3, fly_uncertified: false };
+    let mut flight = Flight::new(MissionConfig { tether: Some(config), attended: false, ..covering() });
+    flight.reel = cable(anchor, &[UNSEEN]);
+    flight.tick(&[Order::Start]);
+    for _ in 0..9000 {
+        let is_seen = !snags(&flight).is_empty() && UNSEEN.distance_m(flight.pose.position) < seen_m;
+        let shape_in_robot = UNSEEN.transformed(&flight.pose.tank_from_robot().inverse());
+        flight.sightings =
+            if is_seen { vec![Sighting { id: ObstacleId(7), shape_in_robot }] } else { vec![] };
+        flight.tick(&[]);
+        if flight.ended().is_some() {
+            break;
+        }
+    }
+    flight
+}
+
+#[test]
+fn a_caught_cable_is_freed_on_the_way_back() {
+    let flight = scan_round_unseen_column(0.0);
+    let legs = flight.events.iter().filter_map(|event| match &event.kind {
+        EventKind::Planned { reason: Reason::Blocked, legs, .. } => legs.first().map(|leg| leg.tag),
+        _ => None,
+    });
+    assert_eq!(legs.collect::<Vec<_>>(), [LegTag::Retract; 2]);
+    // Caught for the third time in one place, with nobody there to look after it.
+    assert_eq!((snags(&flight).len(), eased(&flight), flight.ended()), (3, 2, Some(Outcome::Entangled)));
+}
+
+#[test]
+fn what_the_cable_has_caught_on_is_planned_for_once_it_is_seen() {
+    let flight = scan_round_unseen_column(1.5);
+    assert_eq!((snags(&flight).len(), eased(&flight)), (1, 1));
+    let anew = |event: &Event| {
+        matches!(event.kind, EventKind::Planned { reason: Reason::MapChanged, .. }) && event.t_s > 300.0
+    };
+    assert!(flight.events.iter().any(anew));
+}
+
+/// The reasons for plans after a column is found across the cable, far from the lanes that are left.
+fn plans_for_column_across_cable(max_wrap_rad: f64) -> Vec<Reason> {
+    let anchor = covering().start.position;
+    let limits = tether::Limits { reel_m: 50.0, max_wrap_rad, max_sum_wrap_rad: 50.0 };
+    let config = TetherConfig { anchor, limits, friction: 0.3, fly_uncertified: false };
+    let mut flight = Flight::new(MissionConfig { tether: Some(config), attended: false, ..covering() });
+    flight.tick(&[Order::Start]);
+    while flight.pose.position.y < 0.5 {
+        flight.tick(&[]);
+    }
+    let column = Shape::Disc { center: Point::new(0.0, -2.45), radius_m: 0.05 };
+    let shape_in_robot = column.transformed(&flight.pose.tank_from_robot().inverse());
+    flight.sightings = vec![Sighting { id: ObstacleId(7), shape_in_robot }];
+    flight.events.clear();
+    flight.fly(3);
+    assert!(flight.events.iter().any(|event| matches!(event.kind, EventKind::ObstacleFound { .. })));
+    let reason = |event: &Event| match &event.kind {
+        EventKind::Planned { reason, .. } => Some(reason.clone()),
+        _ => None,
+    };
+    flight.events.iter().filter_map(reason).collect()
+}
+
+#[test]
+fn a_column_found_beside_the_lanes_is_planned_for_if_the_cable_will_not_bear_it() {
+    let first = |max_wrap_rad| plans_for_column_across_cable(max_wrap_rad).first().cloned();
+    // The lanes to come wind the cable round it by about 55 degrees.
+    assert_eq!((first(0.5), first(1.5)), (Some(Reason::MapChanged), None));
+}
