@@ -9,21 +9,21 @@ use std::sync::Arc;
 pub struct Reach {
     anchor: Point,
     ways: Geodesic,
-    reach_m: f64,
+    within_m: f64,
 }
 
 impl Reach {
-    /// The floor within `reach_m` of the anchor among obstacles of these outlines.
-    pub fn new(anchor: Point, boundary: &Boundary, shapes: &[Shape], reach_m: f64) -> Self {
+    /// The floor within `within_m` of the anchor among obstacles of these outlines.
+    pub fn new(anchor: Point, boundary: &Boundary, shapes: &[Shape], within_m: f64) -> Self {
         let ways = Geodesic::new(anchor, Arc::new(Ground::new(boundary, shapes)));
-        Self { anchor, ways, reach_m }
+        Self { anchor, ways, within_m }
     }
 
     /// Whether the shortest way to a place is longer than the cable; a place without any way is no matter of the cable.
     pub fn is_beyond(&self, place: Point) -> bool {
         let straight_m = (place - self.anchor).norm();
         let way_m = self.ways.distance_m(place);
-        way_m.is_finite() && (straight_m > self.reach_m || way_m > self.reach_m)
+        way_m.is_finite() && (straight_m > self.within_m || way_m > self.within_m)
     }
 }
 
