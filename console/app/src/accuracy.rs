@@ -9,6 +9,7 @@ use crate::{
     scenario::Scenario,
 };
 use anyhow::Context;
+use mission::TaskConfig;
 use positioning::{Accuracy, AccuracyMap, Advice, Forecast, advise};
 use serde::Serialize;
 use std::{fmt::Write, process::ExitCode};
@@ -16,6 +17,8 @@ use world::Point;
 
 /// Cells along the longer side of the floor.
 const CELLS: f64 = 80.0;
+/// Share of a single fix's error that is left once fixes and odometry are filtered, as measured in flights.
+const FILTERED: f64 = 0.5;
 /// Places beyond the limit that people are shown.
 const MOST_SHOWN: usize = 12;
 
@@ -72,6 +75,23 @@ pub fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
         say(&words(&told))?;
     }
     Ok(ExitCode::from(COMPLETE))
+}
+
+/// A sentence for scans with so little clearance that the position error may use it up. The robot sees how far off columns
+/// are, but not walls.
+///
+/// Costs as much as the map: one forecast for each of some thousand places.
+pub fn clearance_warning(scenario: &Scenario) -> Option<String> {
+    let clearance_m = scenario.mission.clearance_m;
+    let map = AccuracyMap::new(&scenario.sim.world.as_drawn(), &forecast(scenario));
+    let expected_m = FILTERED * told(scenario, &map, None).p95_error_95_m?;
+    let is_scan = matches!(scenario.mission.task, TaskConfig::Cover { .. });
+    (is_scan && clearance_m < expected_m).then(|| {
+        format!(
+            "mission.clearance_m is {clearance_m:.2} m, and the position will be off by up to about {expected_m:.2} m: the \
+             hull may touch a wall; more clearance or better stations are right (`tankops accuracy`)"
+        )
+    })
 }
 
 /// What the mission's own estimator may expect of its stations.

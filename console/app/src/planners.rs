@@ -1,6 +1,7 @@
 //! `tankops planners` and `tankops check`: what was found, and what is wrong with it.
 
 use crate::{
+    accuracy::clearance_warning,
     failure::{BAD_INPUT, COMPLETE, bad_input},
     output::{say, say_line},
     scenario::{Scenario, Settings},
@@ -155,6 +156,9 @@ fn check_file(file: &Path, plugins: &PluginDirs) -> Result<String, String> {
     }
     let scenario = Scenario::read_with(file, &Settings::default()).map_err(|errors| errors.render())?;
     check_choices(&scenario, plugins).map_err(|error| error.to_string())?;
+    if let Some(warning) = clearance_warning(&scenario) {
+        eprintln!("warning: {}: {warning}", file.display());
+    }
     Ok(format!("scenario {}, planner {}", scenario.name, scenario.mission.planner.id))
 }
 

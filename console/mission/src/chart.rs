@@ -16,6 +16,8 @@ const OUT_OF_SIGHT_S: f64 = 2.0;
 pub struct Chart {
     world: World,
     found: Vec<Found>,
+    /// What is in sight now, where it stands by the pose that is believed in now.
+    in_sight: Vec<(ObstacleId, Shape)>,
     map: ObstacleMap,
     revision: u32,
     limits: api::Limits,
@@ -49,6 +51,7 @@ impl Chart {
         Self {
             world: drawing,
             found: Vec::new(),
+            in_sight: Vec::new(),
             map,
             revision: 0,
             limits: config.limits,
@@ -67,6 +70,15 @@ impl Chart {
     /// Distances and neighbours on the chart.
     pub fn map(&self) -> &ObstacleMap {
         &self.map
+    }
+
+    /// Takes in what is seen from an estimated pose.
+    ///
+    /// A robot that is wrong about its position sees all the same how far off an obstacle is: what planners steer
+    /// round stands where it is seen, not where the chart has it.
+    pub fn sight(&mut self, sightings: &[Sighting], from: &Pose) {
+        let seen = |s: &Sighting| (s.id, s.shape_in_robot.transformed(&from.tank_from_robot()));
+        self.in_sight = sightings.iter().map(seen).collect();
     }
 
     /// Puts sightings on the chart, seen at a time, in seconds, from an estimated pose; tells what is new.
@@ -149,10 +161,17 @@ impl Chart {
         })
     }
 
-    /// The obstacles within sensing range of a point, in the form that planners read.
+    /// The obstacles within sensing range of a point, in the form that planners read: where they are seen now, and where
+    /// the chart has them while they are not.
     pub fn near(&self, point: Point) -> Vec<api::Obstacle<'_>> {
         let reach_m = self.limits.sensing_range_m + self.limits.radius_m;
-        self.map.within(point, reach_m).iter().filter_map(|near| self.told(near.index)).collect()
+        let near = self.map.within(point, reach_m);
+        near.iter().filter_map(|near| self.told(near.index)).map(|told| self.as_seen(told)).collect()
+    }
+
+    fn as_seen<'a>(&'a self, told: api::Obstacle<'a>) -> api::Obstacle<'a> {
+        let seen = self.in_sight.iter().find(|(id, _)| id.0 == told.id);
+        seen.map_or(told, |(_, shape)| api::Obstacle { outline: outline_of(shape), ..told })
     }
 
     /// An obstacle in the form that planners read; none for one that moved away out of sight.

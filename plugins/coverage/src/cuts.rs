@@ -7,7 +7,7 @@
 use crate::{
     ground::{Ground, direction, middle},
     lanes::Pattern,
-    slit::Slit,
+    slit::{SNAPPED_M, Slit},
 };
 use field::part::{Part, crossing};
 use world::{Boundary, Point, Vector};
@@ -60,21 +60,20 @@ const TRIES: usize = 12;
 /// Floor that may be sealed off: slivers between a cut and the outline of an obstacle, square metres.
 const SLIVER_M2: f64 = 0.02;
 
+/// Cuts and what they leave.
+pub type Domain = (Vec<Cut>, Slit);
+
 /// Cuts of a ground and the domain that they leave; `None` where there is no room at `home`.
 ///
 /// Where cuts seal floor off, the last one made of those around the pocket has to end somewhere else.
-pub fn domain(ground: &Ground, pattern: &Pattern, rule: &CutRule, home: Point) -> Option<(Vec<Cut>, Slit)> {
+pub fn domain(ground: &Ground, pattern: &Pattern, rule: &CutRule, home: Point) -> Option<Domain> {
     let mut banned: Vec<Banned> = Vec::new();
-    let mut best: Option<(Vec<Cut>, Slit)> = None;
+    let mut best: Option<Domain> = None;
     for _ in 0..TRIES {
         let made = cuts(ground, pattern, rule, &banned);
         let lines: Vec<Vec<Point>> = made.iter().map(|cut| cut.line.clone()).collect();
         let slit = Slit::new(ground, &lines, home)?;
-        let borders = |cut: &&Cut| {
-            let mut rim = slit.sealed_rim.iter();
-            rim.any(|p| world::polyline::distance_m(&cut.line, *p) < 1e-6)
-        };
-        let guilty = made.iter().rev().find(borders).map(|cut| (cut.line[0], cut.line[cut.line.len() - 1]));
+        let guilty = last_at_rim(&made, &slit).map(|cut| (cut.line[0], cut.line[cut.line.len() - 1]));
         if best.as_ref().is_none_or(|(_, other)| slit.sealed_m2 < other.sealed_m2) {
             best = Some((made, slit));
         }
@@ -88,6 +87,15 @@ pub fn domain(ground: &Ground, pattern: &Pattern, rule: &CutRule, home: Point) -
     let (mut made, mut slit) = best?;
     close_up(&mut made, &mut slit);
     Some((made, slit))
+}
+
+/// The last cut made of those that keep the robot out of sealed floor.
+fn last_at_rim<'a>(made: &'a [Cut], slit: &Slit) -> Option<&'a Cut> {
+    let is_at_rim = |cut: &&Cut| {
+        let mut rim = slit.sealed_rim.iter();
+        rim.any(|p| world::polyline::distance_m(&cut.line, *p) < SNAPPED_M)
+    };
+    made.iter().rev().find(is_at_rim)
 }
 
 /// Adds cuts until the domain is simply connected.
@@ -338,11 +346,70 @@ pub fn to_wall_m(wall: &Boundary, from: Point, ahead: Vector) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::{RngExt, SeedableRng};
+    use trials::tanks::{Known, Tank};
 
     #[test]
     fn a_cable_to_the_end_of_a_straight_chain_is_as_long_as_the_way_there() {
         let chain = [Point::new(3.0, 0.0), Point::new(6.0, 0.0), Point::new(10.0, 0.0)];
         assert!((taut_m(Point::origin(), &chain) - 10.0).abs() < 1e-12);
+    }
+
+    /// A round tank without columns, home at its middle.
+    fn empty_tank() -> Ground {
+        let tank = Tank { columns: Vec::new(), ..Known::E1.tank(1) };
+        let obstacles = tank.obstacles();
+        Ground::new(&tank.site(&obstacles), Point::origin()).unwrap()
+    }
+
+    #[test]
+    fn the_cut_that_seals_floor_off_is_found_wherever_it_runs() {
+        let ground = empty_tank();
+        for k in 0..40 {
+            let ahead = direction(0.157 * f64::from(k));
+            let across = |at_m: f64| {
+                let foot = Point::origin() + ahead * at_m;
+                let side = direction(0.157 * f64::from(k) + 1.5);
+                Cut { line: vec![foot - side * 30.0, foot + side * 30.0], from: 0 }
+            };
+            // The one further out keeps nothing out that the first one lets in.
+            let made = [across(1.0 + 0.07 * f64::from(k)), across(5.5)];
+            let slit = Slit::new(&ground, &[made[0].line.clone()], Point::origin()).unwrap();
+            assert!(slit.sealed_m2 > 1.0 && !slit.sealed_rim.is_empty());
+            assert_eq!(last_at_rim(&made, &slit), Some(&made[0]), "cut {k}");
+        }
+    }
+
+    /// Columns in rows, each a little out of place: few gaps are wide enough for the robot.
+    fn crowded_tank(seed: u64) -> Tank {
+        let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(seed);
+        let places = (-7..=7).flat_map(|row: i32| (-7..=7).map(move |column: i32| (row, column)));
+        let at = |(row, column): (i32, i32)| {
+            let across_m = (f64::from(column) + 0.5 * f64::from(row % 2)) * 1.2;
+            let mut aside_m = || rng.random_range(-0.2..0.2);
+            Point::new(across_m + aside_m(), f64::from(row) * 0.87 * 1.2 + aside_m())
+        };
+        let is_clear = |at: &Point| (0.6..4.1).contains(&at.coords.norm());
+        let columns = places.map(at).filter(is_clear).map(|at| (at, 0.2)).collect();
+        Tank { boundary: Boundary::Circle { radius_m: 5.0 }, columns, anchor: Point::origin() }
+    }
+
+    #[test]
+    fn cuts_that_seal_floor_off_are_made_anew_until_they_do_not() {
+        for (seed, alpha_rad, cable_m) in
+            [(7, 0.0, 1e3), (9, 0.0, 1e3), (11, 0.0, 1e3), (5, 0.9, 7.0), (8, 0.9, 7.0)]
+        {
+            let tank = crowded_tank(seed);
+            let obstacles = tank.obstacles();
+            let ground = Ground::new(&tank.site(&obstacles), tank.anchor).unwrap();
+            let (pattern, rule) = (Pattern::Contours, CutRule { alpha_rad, cable_m });
+            let made = cuts(&ground, &pattern, &rule, &[]);
+            let lines: Vec<Vec<Point>> = made.into_iter().map(|cut| cut.line).collect();
+            let first = Slit::new(&ground, &lines, ground.home()).unwrap();
+            let (_, last) = domain(&ground, &pattern, &rule, ground.home()).unwrap();
+            assert!(first.sealed_m2 > SLIVER_M2, "{seed}: {}", first.sealed_m2);
+            assert!(last.sealed_m2 <= SLIVER_M2, "{seed}: {}", last.sealed_m2);
+        }
     }
 
     #[test]

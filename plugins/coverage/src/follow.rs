@@ -6,7 +6,11 @@
 
 mod steer;
 
-use field::{Flight, Pilot, params as p, pilot::Tick, scene::wall_of};
+use field::{
+    Flight, Pilot, params as p,
+    pilot::{Tick, position_sigma_m},
+    scene::wall_of,
+};
 use planner_api::{
     Command, Config, Ctx, Drive, LegTag, LogLevel, Motion, ParamSpec, Plan, Result, Sensed, Site, Status,
     float,
@@ -17,6 +21,8 @@ use world::{Boundary, Point, polyline, tether::crossings};
 const LOOK_M: f64 = 0.25;
 /// The path is looked at this far for obstacles, metres.
 const WATCH_M: f64 = 1.0;
+/// An obstacle counts as standing on the path if it does with the path off by so many standard deviations.
+const PATH_SIGMAS: f64 = 2.0;
 /// Distance at which the robot has come to where the cuts hold from, metres.
 const THERE_M: f64 = 0.3;
 /// Largest share of the mission's clearance that the guard keeps: a path is planned with all of it, and a guard that
@@ -116,11 +122,12 @@ impl Follow {
         let at = sensed.pose.position;
         self.look(at);
         let bodies = self.pilot.bodies(sensed);
+        // What is seen stands right beside the robot, but the path is off by the position error.
+        let off_m = (PATH_SIGMAS * position_sigma_m(&sensed.pose)).min(0.5 * self.keep_m);
         let is_blocked = |p: &Point| {
+            let too_near_m = self.keep_m - off_m;
             self.wall.wall_distance_m(*p) < self.keep_m
-                || bodies
-                    .iter()
-                    .any(|body| body.contacts(*p, 0.0).any(|contact| contact.distance_m < self.keep_m))
+                || bodies.iter().any(|body| body.contacts(*p, 0.0).any(|c| c.distance_m < too_near_m))
         };
         let way: Vec<Point> = std::iter::once(at).chain(sensed.path_ahead.iter().copied()).collect();
         let near = polyline::resampled(&within(&way, WATCH_M), 0.1);

@@ -258,9 +258,10 @@ impl TetherSafe {
         for share in [1.0, 0.5, 0.0] {
             let alpha_rad = wishes.alpha_rad * share;
             let drafted = side_by_side(candidates(ground, wishes, alpha_rad), ctx, |candidate, stop| {
-                let recipe = candidate.recipe(ground, wishes, alpha_rad);
-                let draft = Draft::new(ground, &recipe, order, stop)?;
-                Ok(draft.map(|draft| (draft.estimate_m(wishes.choice_turn_m), candidate.name, draft)))
+                let (recipe, domain) = candidate.recipe(ground, wishes, alpha_rad);
+                let Some(domain) = domain else { return Ok(None) };
+                let draft = Draft::new(ground, &recipe, domain, order, stop)?;
+                Ok(Some((draft.estimate_m(wishes.choice_turn_m), candidate.name, draft)))
             })?;
             let mut drafts: Vec<(f64, String, Draft<'_>)> = drafted.into_iter().flatten().collect();
             drafts.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -196,9 +196,7 @@ impl Pilot {
 
     /// Distance the guard keeps between hull and anything solid, metres.
     pub fn keep_m(&self, flight: &Flight, pose: &PoseEstimate) -> f64 {
-        let position = pose.covariance.fixed_view::<2, 2>(0, 0).into_owned();
-        let sigma_m = position.symmetric_eigenvalues().max().max(0.0).sqrt();
-        let widening_m = (flight.guard_sigmas * sigma_m).min(MOST_WIDENING_M);
+        let widening_m = (flight.guard_sigmas * position_sigma_m(pose)).min(MOST_WIDENING_M);
         flight.guard_m.max(self.clearance_m + SPARE_M) + if widening_m.is_finite() { widening_m } else { 0.0 }
     }
 
@@ -360,4 +358,10 @@ fn show_detour(ctx: &Ctx<'_>, detour: Option<&Detour>) {
             ctx.polyline(Layer::Virtual, &[a, b]);
         }
     }
+}
+
+/// Standard deviation of the position in the direction in which it is largest, metres.
+pub fn position_sigma_m(pose: &PoseEstimate) -> f64 {
+    let position = pose.covariance.fixed_view::<2, 2>(0, 0).into_owned();
+    position.symmetric_eigenvalues().max().max(0.0).sqrt()
 }

@@ -178,6 +178,7 @@ pub struct Sensed<'a> {
     pub targets_ahead: &'a [Point2<f64>],
     /// The plan from here on, a few metres of it.
     pub path_ahead: &'a [Point2<f64>],
-    /// Known and discovered obstacles within the robot's sensing range.
+    /// Known and discovered obstacles within the robot's sensing range: as they are seen now, so that their distance from
+    /// `pose` is right even where the position is not, and as the chart has them while they are out of sight.
     pub obstacles: &'a [Obstacle<'a>],
 }

@@ -11,11 +11,12 @@ const WORTH_TELLING_M2: f64 = 0.05;
 impl Mission {
     /// Puts what is seen on the chart; whether the chart has changed.
     pub(super) fn look_around(&mut self, readings: &Readings) -> bool {
+        let (now_s, pose) = (self.now_s(), self.locator.pose());
+        self.chart.sight(&readings.sightings, &pose);
         // A found obstacle is placed by the estimated pose, so a lost robot does not draw maps.
         if self.locator.is_lost() {
             return false;
         }
-        let (now_s, pose) = (self.now_s(), self.locator.pose());
         let Seen { events, changes_plans } = self.chart.see(now_s, &readings.sightings, &pose);
         if events.is_empty() && !changes_plans {
             return false;

@@ -7,6 +7,9 @@ use parry2d_f64::{
     partitioning::{Bvh, BvhBuildStrategy},
 };
 
+/// What rounding may take off in any test, metres and square metres: a segment that only touches a box meets it.
+const SLACK: f64 = 1e-9;
+
 /// Boxes in a tree; a query costs the logarithm of their number plus what it finds.
 #[derive(Debug, Clone)]
 pub struct Boxes {
@@ -32,9 +35,9 @@ impl Boxes {
                 ((around.mins + around.maxs) / 2.0 - middle, (around.maxs - around.mins) / 2.0);
             let (gap, wide) = (from.abs(), extent + DVec2::splat(room_m));
             let along = half.abs();
-            gap.x <= extent.x + reach.x
-                && gap.y <= extent.y + reach.y
-                && half.perp_dot(from).abs() <= wide.x * along.y + wide.y * along.x + 1e-9
+            gap.x <= extent.x + reach.x + SLACK
+                && gap.y <= extent.y + reach.y + SLACK
+                && half.perp_dot(from).abs() <= wide.x * along.y + wide.y * along.x + SLACK
         });
         leaves.map(|leaf| leaf as usize)
     }
@@ -69,6 +72,23 @@ mod tests {
                 prop_assert!(!is_met || found.binary_search(&k).is_ok());
             }
             prop_assert!(found.windows(2).all(|w| w[0] < w[1]));
+        }
+
+        #[test]
+        fn no_box_that_a_segment_only_touches_is_left_out(
+            corners in prop::collection::vec((-20..20_i32, -20..20_i32, 0..8_i32, 0..8_i32), 1..20),
+            ends in [-20..20_i32, -20..20_i32, -20..20_i32, -20..20_i32],
+            step_cm in 1..100_i32,
+        ) {
+            let at = |x: i32, y: i32| Point::new(f64::from(x), f64::from(y)) * (f64::from(step_cm) / 100.0);
+            let boxes: Vec<(Point, Point)> =
+                corners.iter().map(|(x, y, w, h)| (at(*x, *y), at(x + w, y + h))).collect();
+            let (a, b) = (at(ends[0], ends[1]), at(ends[2], ends[3]));
+            let found: Vec<usize> = Boxes::new(boxes.clone()).near(a, b, 0.0).collect();
+            for (k, (low, high)) in boxes.iter().enumerate() {
+                let is_met = [a, b].iter().any(|end| end.sup(low).inf(high) == *end);
+                prop_assert!(!is_met || found.contains(&k));
+            }
         }
     }
 

@@ -45,6 +45,7 @@ fn is_left(along: Vector, at: Vector, shift: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     fn points(of: &[(f64, f64)]) -> Vec<Point> {
         of.iter().map(|(x, y)| Point::new(*x, *y)).collect()
@@ -57,5 +58,42 @@ mod tests {
         assert_eq!(crossings(&points(&[(1., 0.), (0., 0.), (-1., 0.)]), &cuts), 1);
         assert_eq!(crossings(&points(&[(-1., 0.), (0., 0.), (-1., 0.5)]), &cuts) % 2, 0);
         assert_eq!(crossings(&points(&[(1., 2.), (-1., 2.)]), &cuts), 0);
+    }
+
+    #[test]
+    fn a_path_with_a_corner_on_a_cut_crosses_it_once_in_any_unit() {
+        let path = points(&[(4., 1.11), (4., 2.36), (4., 3.61)]);
+        assert_eq!(crossings(&path, &[points(&[(2.01, 2.36), (6.23, 2.36)])]), 1);
+        for unit in 1..200 {
+            let scaled = |of: &[(f64, f64)]| -> Vec<Point> {
+                points(of).iter().map(|p| p * (f64::from(unit) / 100.0)).collect()
+            };
+            let cut = [scaled(&[(-7., 3.), (9., 3.)])];
+            assert_eq!(crossings(&scaled(&[(1., -4.), (1., 3.), (1., 5.)]), &cut), 1, "{unit} cm");
+            assert_eq!(crossings(&scaled(&[(1., -4.), (1., 3.), (5., 3.), (6., 8.)]), &cut), 1, "{unit} cm");
+            assert_eq!(
+                crossings(&scaled(&[(1., -4.), (1., 3.), (5., 3.), (6., 1.)]), &cut) % 2,
+                0,
+                "{unit} cm"
+            );
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn looking_only_at_what_is_near_leaves_no_crossing_out(
+            path in prop::collection::vec((-20..20_i32, -20..20_i32), 2..12),
+            cuts in prop::collection::vec(prop::collection::vec((-20..20_i32, -20..20_i32), 2..4), 1..8),
+            unit_cm in 1..100_i32,
+        ) {
+            let line = |of: &[(i32, i32)]| -> Vec<Point> {
+                let at = |x: i32| f64::from(x * unit_cm) / 100.0;
+                of.iter().map(|(x, y)| Point::new(at(*x), at(*y))).collect()
+            };
+            let (path, cuts) = (line(&path), cuts.iter().map(|cut| line(cut)).collect::<Vec<_>>());
+            let all = || cuts.iter().flat_map(|cut| cut.windows(2));
+            let of = |way: &[Point]| all().filter(|cut| cross(way[0], way[1], cut[0], cut[1])).count();
+            prop_assert_eq!(crossings(&path, &cuts), path.windows(2).map(of).sum::<usize>());
+        }
     }
 }

@@ -58,19 +58,18 @@ impl Word {
     /// Takes one straight piece of the way.
     pub fn go(&mut self, from: Point, to: Point, rays: &Rays) {
         let (start, end) = (rays.aside(from), rays.aside(to));
-        let first = rays.sorted.partition_point(|(here, ..)| *here < start.min(end));
-        let mut crossed: Vec<(f64, Letter)> = Vec::new();
-        for (here, obstacle, heart) in
-            rays.sorted[first..].iter().take_while(|(here, ..)| *here < start.max(end))
-        {
+        let until = |bound: f64| rays.sorted.partition_point(|(here, ..)| *here < bound);
+        let passed = &rays.sorted[until(start.min(end))..until(start.max(end))];
+        let cross = |(here, obstacle, heart): &(f64, usize, Point)| {
             let share = (here - start) / (end - start);
-            if rays.ray.dot(&(from + (to - from) * share - heart)) > 0.0 {
-                crossed.push((share, Letter { obstacle: *obstacle, ccw: end < start }));
-            }
-        }
-        crossed.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (_, letter) in crossed {
-            self.append(letter);
+            let is_crossed = rays.ray.dot(&(from + (to - from) * share - heart)) > 0.0;
+            is_crossed.then_some(Letter { obstacle: *obstacle, ccw: end < start })
+        };
+        // The way back meets the rays in exactly the other order, those that lie on each other too: all is undone.
+        if end < start {
+            passed.iter().rev().filter_map(cross).for_each(|letter| self.append(letter));
+        } else {
+            passed.iter().filter_map(cross).for_each(|letter| self.append(letter));
         }
     }
 
@@ -91,5 +90,22 @@ impl Word {
     /// Whether everything crossed has been undone.
     pub fn is_empty(&self) -> bool {
         self.letters.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_and_back_is_the_empty_word_also_where_obstacles_share_their_middle() {
+        let hearts =
+            [Point::new(1.0, 2.0), Point::new(1.0, 2.0), Point::new(-1.0, 0.5), Point::new(1.0, 2.0)];
+        let rays = Rays::new(&hearts);
+        let way = [Point::new(-6.0, 4.0), Point::new(9.0, 6.0), Point::new(9.0, -5.0), Point::new(-6.0, 4.5)];
+        assert!(Word::of(&way[..2], &rays).letters().len() >= 3);
+        let back = way.iter().rev().skip(1);
+        let there_and_back: Vec<Point> = way.iter().chain(back).copied().collect();
+        assert!(Word::of(&there_and_back, &rays).is_empty());
     }
 }
