@@ -46,6 +46,7 @@ pub struct Prices {
 }
 
 /// A path with what it sweeps.
+#[derive(Clone)]
 pub struct Track<'a> {
     slit: &'a Slit,
     /// Its points.

@@ -26,6 +26,8 @@ const BENDS: usize = 5;
 const BEND_SHARE: f64 = 24.0;
 /// Cells of the smallest group that the path is bent to.
 const BEND_CELLS: usize = 3;
+/// Share of the floor scanned so far that has to be left when the path is shortened, if only some floor is asked for.
+const KEPT: f64 = 0.9;
 /// Rounds in which small touch-ups are tied in.
 const TOUCH_UPS: usize = 8;
 /// Rounds after which a little less is enough, but smaller places count as well.
@@ -229,7 +231,13 @@ impl<'a> Draft<'a> {
         let prices = Prices { turn_m_per_rad: effort.turn_m_per_rad, floor_m_per_m2 };
         let careful = Prices { floor_m_per_m2: 1e6, ..prices };
         let in_reach = |at: Point| self.is_in_reach(at);
+        let asked_for = (!self.order.regions.is_empty()).then(|| track.clone());
         track.shorten(&prices, stop)?;
+        if let Some(whole) = asked_for.filter(|whole| track.grid.coverage() < KEPT * whole.grid.coverage()) {
+            // A little floor far away is not worth its way, but nothing else was asked for.
+            *track = whole;
+            track.shorten(&careful, stop)?;
+        }
         for _ in 0..BENDS {
             let most_m_per_m2 = BEND_SHARE / self.ground.swath_m;
             if track.bend(&in_reach, &prices, (enough, BEND_CELLS), most_m_per_m2, stop)? == 0 {

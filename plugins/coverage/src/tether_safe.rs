@@ -218,12 +218,19 @@ impl TetherSafe {
         }
         let (worth, scan) = Self::told(tried, ctx).ok_or_else(|| answer::no_room(ground))?;
         answer::tell_unreachable(ground, &scan, &order, ctx);
+        let is_whole = worth.coverage >= wishes.enough.min(0.99);
+        if !is_whole && order.reel_m.is_infinite() {
+            let share = 100.0 * worth.coverage;
+            ctx.log(
+                LogLevel::Warn,
+                &format!("the plan scans {share:.1} % of the floor that is to be scanned"),
+            );
+        }
         if ctx.wants_drawing() {
             scan.cuts.iter().for_each(|cut| ctx.polyline(Layer::Tether, &cut.line));
         }
         let mut plan = plan_of(&scan, start, &lead_in);
-        let reachable = worth.coverage >= wishes.enough.min(0.99);
-        plan.complete = reachable && order.reel_m.is_infinite();
+        plan.complete = is_whole && order.reel_m.is_infinite();
         if !is_within(&worth, wishes) && worth.certificate.certified {
             ctx.log(
                 LogLevel::Warn,
