@@ -124,6 +124,19 @@ fn check_refuses_a_planner_that_is_not_there() {
 }
 
 #[test]
+fn check_warns_of_a_clearance_within_the_position_error() {
+    let bench = Bench::new();
+    let scan = std::fs::read_to_string(scenario("cover-circle.toml")).unwrap();
+    assert!(scan.contains("clearance_m = 0.1"));
+    for (clearance, is_warned) in [("clearance_m = 0.1", false), ("clearance_m = 0.02", true)] {
+        let file = bench.file("scan.toml", scan.replace("clearance_m = 0.1", clearance));
+        let checked = bench.tankops(&["check", file.to_str().unwrap()]);
+        assert_eq!(checked.code, Some(0), "{checked:?}");
+        assert_eq!(checked.err.contains("mission.clearance_m is 0.02 m"), is_warned, "{checked:?}");
+    }
+}
+
+#[test]
 fn every_objection_of_a_planner_is_told_at_its_line() {
     let demo = std::fs::read_to_string(scenario("demo.toml")).unwrap();
     let bench = Bench::new();

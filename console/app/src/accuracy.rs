@@ -77,11 +77,18 @@ pub fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(COMPLETE))
 }
 
-/// A sentence for scans with so little clearance that the position error may use it up. The robot sees how far off columns
-/// are, but not walls.
+/// Warns of a scan with so little clearance that the position error may use it up.
 ///
 /// Costs as much as the map: one forecast for each of some thousand places.
-pub fn clearance_warning(scenario: &Scenario) -> Option<String> {
+#[expect(clippy::print_stderr, reason = "this is where warnings reach the user")]
+pub fn warn_of_clearance(scenario: &Scenario) {
+    if let Some(warning) = clearance_warning(scenario) {
+        eprintln!("warning: {}: {warning}", scenario.shown_name);
+    }
+}
+
+/// The robot sees how far off columns are, but not walls.
+fn clearance_warning(scenario: &Scenario) -> Option<String> {
     let clearance_m = scenario.mission.clearance_m;
     let map = AccuracyMap::new(&scenario.sim.world.as_drawn(), &forecast(scenario));
     let expected_m = FILTERED * told(scenario, &map, None).p95_error_95_m?;

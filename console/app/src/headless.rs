@@ -1,7 +1,7 @@
 //! Flying a mission without a terminal: `tankops run`, and `tankops` where there is no terminal.
 
 use crate::{
-    accuracy::clearance_warning,
+    accuracy::warn_of_clearance,
     cli::{LogsArg, RunArgs},
     failure::{COMPLETE, ENDED_OTHERWISE},
     flight::{Flight, Pace},
@@ -49,9 +49,7 @@ pub fn fly(
     telling: Telling,
 ) -> anyhow::Result<ExitCode> {
     crate::planners::check_choices(scenario, plugins)?;
-    if let Some(warning) = clearance_warning(scenario) {
-        eprintln!("warning: {warning}");
-    }
+    warn_of_clearance(scenario);
     let began = Instant::now();
     let mut flight = Flight::prepare(scenario, false, plugins, Pace::Batch);
     let folder = telling

@@ -1,7 +1,7 @@
 //! `tankops planners` and `tankops check`: what was found, and what is wrong with it.
 
 use crate::{
-    accuracy::clearance_warning,
+    accuracy::warn_of_clearance,
     failure::{BAD_INPUT, COMPLETE, bad_input},
     output::{say, say_line},
     scenario::{Scenario, Settings},
@@ -156,9 +156,7 @@ fn check_file(file: &Path, plugins: &PluginDirs) -> Result<String, String> {
     }
     let scenario = Scenario::read_with(file, &Settings::default()).map_err(|errors| errors.render())?;
     check_choices(&scenario, plugins).map_err(|error| error.to_string())?;
-    if let Some(warning) = clearance_warning(&scenario) {
-        eprintln!("warning: {}: {warning}", file.display());
-    }
+    warn_of_clearance(&scenario);
     Ok(format!("scenario {}, planner {}", scenario.name, scenario.mission.planner.id))
 }
 

@@ -115,7 +115,7 @@ fn held(model: &Model, by: &HoldReason) -> Vec<String> {
             &["HELD, stuck.", "P changes the planner.", "space tries again.", message]
         }
         HoldReason::Tether { message } => {
-            &["HELD, tether.", "space goes on, the alarm stays.", "X ends here.", message]
+            &["HELD, tether.", "space goes on; a scan eases the cable first.", "X ends here.", message]
         }
         HoldReason::PlanRefused { message } if model.has_fallback() => {
             &["HELD, plan refused.", "The fallback takes over if it can.", message]

@@ -186,3 +186,22 @@ fn a_plan_that_scans_nothing_of_what_is_asked_is_refused_with_the_reason() {
     assert!(message.contains("scans nothing"), "{message}");
     assert!(refusal(&flight.tick(&[Order::FlyUncertified])).is_some());
 }
+
+#[test]
+fn planners_steer_round_obstacles_where_they_are_seen_not_where_the_chart_has_them() {
+    let column = |x| Shape::Disc { center: Point::new(x, -4.0), radius_m: 0.2 };
+    let known = Obstacle { id: ObstacleId(3), name: "C".into(), shape: column(1.0), known: true };
+    let world = World { obstacles: vec![known], ..drawing() };
+    let mut chart = crate::chart::Chart::new(world, &covering(), 1);
+    let pose = covering().start;
+    let shown = |chart: &crate::chart::Chart| match chart.near(pose.position)[0].outline {
+        api::Outline::Disc { center, .. } => center.x,
+        _ => f64::NAN,
+    };
+    assert!((shown(&chart) - 1.0).abs() < 1e-9);
+    let shape_in_robot = column(0.93).transformed(&pose.tank_from_robot().inverse());
+    chart.sight(&[Sighting { id: ObstacleId(3), shape_in_robot }], &pose);
+    assert!((shown(&chart) - 0.93).abs() < 1e-9);
+    chart.sight(&[], &pose);
+    assert!((shown(&chart) - 1.0).abs() < 1e-9, "out of sight it is where the drawing has it");
+}
