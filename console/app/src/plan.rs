@@ -95,7 +95,7 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
         Ok((_, reply)) => {
             let is_warning = |(level, _): &&(LogLevel, String)| matches!(level, LogLevel::Warn);
             warnings.extend(reply.logs.iter().filter(is_warning).map(|(_, message)| message.clone()));
-            let said = reply.logs.into_iter().map(|(_, message)| message).next_back();
+            let said = warnings.last().cloned();
             let reason =
                 (!reply.value.complete).then(|| said.unwrap_or_else(|| "the planner did not say why".into()));
             (reply.value, reason)
