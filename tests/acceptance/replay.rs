@@ -16,6 +16,8 @@ fn a_run_is_listed_verified_and_exported() {
     let verified = bench.tankops(&["verify", name]);
     assert_eq!(verified.code, Some(0), "{verified:?}");
     assert!(verified.out.starts_with("equal: "), "{verified:?}");
+    let ticks = bench.tankops(&["report", name, "--json"]).json()["ticks"].as_u64().unwrap();
+    assert!(verified.out.contains(&format!("from tick 0 to tick {ticks}\n")), "{verified:?}");
 
     let exported = bench.tankops(&["export", name, "--rrd", "again.rrd"]);
     assert_eq!(exported.code, Some(0), "{exported:?}");
@@ -64,5 +66,9 @@ fn an_export_that_fails_leaves_nothing_behind() {
     let exported = bench.tankops(&["export", run.to_str().unwrap(), "--rrd", "again.rrd"]);
     assert_eq!(exported.code, Some(2), "{exported:?}");
     assert!(exported.err.contains("301"), "{exported:?}");
+    for command in [vec!["verify"], vec!["report"], vec!["export", "--rrd", "again.rrd"]] {
+        let told = bench.tankops(&[&command[..], &[run.to_str().unwrap()]].concat());
+        assert_eq!(told.err.matches("events.jsonl").count(), 1, "{command:?}: {told:?}");
+    }
     assert!(!bench.path().join("again.rrd").exists());
 }

@@ -114,10 +114,13 @@ pub fn rescan(args: &RescanArgs) -> anyhow::Result<ExitCode> {
     let again = report::rescan(&past, args.least_m2, MOST_BOXES).map_err(bad_input)?;
     if again.boxes.is_empty() {
         let left_m2: f64 = again.left.iter().map(|area| area.area_m2).sum();
+        tell_areas("out of reach", &again.out_of_reach)?;
         return Err(bad_input(format!(
-            "nothing was missed that is worth another scan: {} smaller than {} m² left, {left_m2:.2} m² together; --least-m2 sets the limit",
+            "nothing was missed that is worth another scan: {} smaller than {} m² left, {left_m2:.2} m² together, and {} out of reach; \
+             --least-m2 sets the limit",
             counted(again.left.len(), "place", "places"),
-            args.least_m2
+            args.least_m2,
+            counted(again.out_of_reach.len(), "place", "places"),
         )));
     }
     let names: Vec<&str> = past.iter().map(|run| run.name.as_str()).collect();
@@ -141,6 +144,7 @@ fn tell(again: &report::Rescan, args: &RescanArgs, names: &[&str]) -> anyhow::Re
     ))?;
     tell_areas("again", &again.areas)?;
     tell_areas(&format!("left, smaller than {} m²", args.least_m2), &again.left)?;
+    tell_areas("left, out of reach", &again.out_of_reach)?;
     if again.not_asked_m2 > 0.0 {
         say_line(&format!("left: {:.2} m² that no mission was to scan", again.not_asked_m2))?;
     }

@@ -116,7 +116,7 @@ pub fn export(run: &Path, rrd: &Path, logs: &LogsArg) -> anyhow::Result<ExitCode
         return Err(bad_input(format!("{} exists already; recordings are never overwritten", rrd.display())));
     }
     let path = folder.join(JOURNAL_FILE);
-    let journal = read_journal(&path).map_err(|error| bad_input(format!("{error}: {}", path.display())))?;
+    let journal = read_journal(&path).map_err(|error| bad_input(error.to_string()))?;
     crate::verify::opened(&journal.events)?;
     let made = recording::export(&path, rrd);
     if made.is_err() {

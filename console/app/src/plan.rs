@@ -19,7 +19,7 @@ use std::{
     time::{Duration, Instant},
 };
 use world::{
-    Point, Shape, World, polyline,
+    Cell, Floor, Point, Shape, World, polyline,
     tether::{Cable, Case, Certificate, Limits, certify},
 };
 
@@ -44,9 +44,22 @@ struct Planned {
     reason: Option<String>,
     /// What the planner warned of: floor that it leaves out and why, ways of its own where the method has none.
     warnings: Vec<String>,
+    /// The floor that is to be scanned as reports count it; absent for other missions.
+    floor: Option<PlannedFloor>,
     /// What the path does to the tether, or, without one, to a tether that would run from the anchor of a coverage
     /// mission; absent for other missions.
     certificate: Option<Certificate>,
+}
+
+/// A floor as reports count it: by the whole swath, what lanes overlap included.
+#[derive(Debug, Serialize)]
+struct PlannedFloor {
+    /// Width of floor scanned in one pass, metres.
+    swath_m: f64,
+    /// Floor that the tool can reach, square metres.
+    reachable_m2: f64,
+    /// Floor along the shell that it cannot reach, square metres.
+    shell_margin_m2: f64,
 }
 
 /// Some points of the path that serve one purpose: index of the first and of the last.
@@ -95,7 +108,10 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
         Ok((_, reply)) => {
             let is_warning = |(level, _): &&(LogLevel, String)| matches!(level, LogLevel::Warn);
             warnings.extend(reply.logs.iter().filter(is_warning).map(|(_, message)| message.clone()));
-            let said = warnings.last().cloned();
+            let said = warnings
+                .last()
+                .cloned()
+                .or_else(|| reply.logs.into_iter().map(|(_, message)| message).next_back());
             let reason =
                 (!reply.value.complete).then(|| said.unwrap_or_else(|| "the planner did not say why".into()));
             (reply.value, reason)
@@ -112,10 +128,22 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
         complete: plan.complete,
         reason,
         warnings,
+        floor: planned_floor(&scenario.mission, &scenario.sim.world.as_drawn()),
         certificate,
         cuts: plan.cuts,
         path: plan.path,
     })
+}
+
+fn planned_floor(mission: &MissionConfig, drawing: &World) -> Option<PlannedFloor> {
+    let TaskConfig::Cover { .. } = &mission.task else { return None };
+    let (start, swath_m) = (mission.start.position, mission.swath_m);
+    let floor = Floor::new(drawing, mission.cell_m, mission.room_m(), swath_m, start);
+    let area_m2 = |kind: Cell| {
+        (0..floor.len()).filter(|index| floor.kind(*index) == kind).count() as f64 * floor.cell_m2()
+    };
+    let (reachable_m2, shell_margin_m2) = (area_m2(Cell::Reachable), area_m2(Cell::Margin));
+    Some(PlannedFloor { swath_m, reachable_m2, shell_margin_m2 })
 }
 
 /// How long a plan for a mission may take.
@@ -242,6 +270,14 @@ fn warnings(planned: &Planned) -> String {
     fresh.map(|warning| format!("warning   {warning}\n")).collect::<Vec<_>>().concat()
 }
 
+/// The floor, for people.
+fn floor(floor: &PlannedFloor) -> String {
+    let PlannedFloor { swath_m, reachable_m2, shell_margin_m2 } = floor;
+    format!(
+        "floor     {reachable_m2:.1} m² reachable, {shell_margin_m2:.2} m² shell margin by the whole swath of {swath_m} m, as reports count\n"
+    )
+}
+
 /// The certificate, for people.
 fn certified(certificate: &Certificate) -> String {
     let Certificate { max_cable_m, eccentricity_m, max_wrap_rad, max_sum_wrap_rad, .. } = certificate;
@@ -261,7 +297,7 @@ fn tell(planned: &Planned, json: bool) -> anyhow::Result<()> {
     }
     let reason = planned.reason.as_ref().map(|reason| format!("reason    {reason}\n")).unwrap_or_default();
     say(&format!(
-        "planner   {}\nlength    {:.2} m, {} points\n{}time      {:.2} ms\ncomplete  {}\n{reason}{}{}",
+        "planner   {}\nlength    {:.2} m, {} points\n{}time      {:.2} ms\ncomplete  {}\n{reason}{}{}{}",
         planned.planner,
         planned.length_m,
         planned.path.len(),
@@ -269,6 +305,7 @@ fn tell(planned: &Planned, json: bool) -> anyhow::Result<()> {
         planned.plan_time_ms,
         if planned.complete { "yes" } else { "no" },
         warnings(planned),
+        planned.floor.as_ref().map(floor).unwrap_or_default(),
         planned.certificate.as_ref().map(certified).unwrap_or_default(),
     ))
 }

@@ -17,7 +17,7 @@ use std::{collections::BTreeMap, path::Path, process::ExitCode};
 /// What a comparison found.
 #[derive(Debug, Clone, PartialEq)]
 enum Verdict {
-    Equal { events: usize, ticks: u64 },
+    Equal { events: usize, last_tick: u64 },
     Different { tick: u64, recorded: String, computed: String },
 }
 
@@ -25,13 +25,16 @@ enum Verdict {
 pub fn verify(run: &Path, logs: &LogsArg, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let folder = run_folder::find(run, &logs.logs)?;
     let path = folder.join(JOURNAL_FILE);
-    let journal = read_journal(&path).map_err(|error| bad_input(format!("{error}: {}", path.display())))?;
+    let journal = read_journal(&path).map_err(|error| bad_input(error.to_string()))?;
     if let Some(damage) = &journal.truncated {
         say_line(&format!("note: the journal stops early ({damage}); what it holds is compared"))?;
     }
     match compare(&journal.events, plugins)? {
-        Verdict::Equal { events, ticks } => {
-            say_line(&format!("equal: {events} events of {ticks} ticks computed again, byte for byte"))?;
+        Verdict::Equal { events, last_tick } => {
+            // A report counts the ticks that passed since the first one, which has the number 0.
+            say_line(&format!(
+                "equal: {events} events computed again, byte for byte, from tick 0 to tick {last_tick}"
+            ))?;
             Ok(ExitCode::from(COMPLETE))
         }
         Verdict::Different { tick, recorded, computed } => {
@@ -78,7 +81,7 @@ fn compare(recorded: &[Event], plugins: &PluginDirs) -> anyhow::Result<Verdict> 
         let (tick, recorded) = (recorded[position].tick, line(&recorded[position])?);
         return Ok(Verdict::Different { tick, recorded, computed: "nothing more".into() });
     }
-    Ok(Verdict::Equal { events: position, ticks: last_tick + 1 })
+    Ok(Verdict::Equal { events: position, last_tick })
 }
 
 /// How the run was opened; a journal without that tells nothing.

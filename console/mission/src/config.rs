@@ -179,6 +179,12 @@ impl MissionConfig {
         self.scan.position_limit_m.unwrap_or(self.position_limit_m)
     }
 
+    /// Length of the shortest way from the anchor up to which planners lay lanes, and the anchor; `None` without a tether.
+    /// Floor further off lies beyond the reel: the outermost lane runs up to a swath before the end of the cable.
+    pub fn cable_reach(&self) -> Option<(Point, f64)> {
+        self.tether.as_ref().map(|tether| (tether.anchor, tether.limits.reel_m - self.swath_m))
+    }
+
     /// What the tether bears, for planners; `None` without one.
     pub fn tether_limits(&self) -> Option<TetherLimits> {
         self.tether.as_ref().map(TetherConfig::as_request)

@@ -65,6 +65,8 @@ pub struct Mission {
     /// For how long the robot has been held because it has no way home, seconds; `None` if that is not why.
     waits_for_home_s: Option<f64>,
     planner: Seat,
+    /// When the planner answered a step too late the last time, seconds.
+    late_at_s: Option<f64>,
     stuck: StuckWatch,
     lost_s: f64,
     /// For how long the planner has said that it is stuck, seconds.
@@ -79,6 +81,8 @@ pub struct Mission {
     replanned_at: Option<Point>,
     trail: Vec<Point>,
     plan: Option<Follower>,
+    /// Whether the plan under way was for all that is left of the task.
+    plan_is_whole: bool,
     last_drive: Drive,
     happened: Vec<EventKind>,
     /// Told when everything else of the tick has been told.
@@ -143,6 +147,7 @@ impl Mission {
                 refused: false,
                 plan_due: Some(Reason::Start),
             },
+            late_at_s: None,
             stuck: StuckWatch::new(config.stuck_s),
             lost_s: 0.0,
             blocked_s: 0.0,
@@ -152,6 +157,7 @@ impl Mission {
             replanned_at: None,
             trail: vec![start],
             plan: None,
+            plan_is_whole: true,
             last_drive: Drive::STILL,
             happened: Vec::new(),
             ending: None,

@@ -1,5 +1,6 @@
 //! The port to planners: what the mission asks of whoever runs them.
 
+use crate::event::Severity;
 use planner_api::{Command, Drawing, LogLevel, Plan, PlanRequest, Sensed, Site};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -180,6 +181,13 @@ pub struct Fault {
     /// For a plan that got only part of the way: that part.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub partial: Vec<world::Point>,
+}
+
+impl Fault {
+    /// How much it asks of the operator: a late answer from a process that is well may be the machine's doing.
+    pub fn severity(&self) -> Severity {
+        if self.cause == Cause::Late { Severity::Warn } else { Severity::Crit }
+    }
 }
 
 /// An answer with everything the planner drew and said on the way.

@@ -100,11 +100,11 @@ impl Task {
         }
     }
 
-    /// Reachable floor that is left to scan, square metres; none unless the task is to cover.
-    pub fn floor_left_m2(&self, coverage: &CoverageGrid) -> f64 {
+    /// Reachable cells that are left to scan; none unless the task is to cover.
+    pub fn floor_left(&self, coverage: &CoverageGrid) -> Vec<usize> {
         match self {
-            Self::Cover(cover) => cover.floor_left_m2(coverage),
-            Self::Goto(_) | Self::Follow { .. } => 0.0,
+            Self::Cover(cover) => cover.floor_left(coverage),
+            Self::Goto(_) | Self::Follow { .. } => Vec::new(),
         }
     }
 

@@ -3,7 +3,7 @@
 pub(crate) mod areas;
 mod evidence;
 
-pub use evidence::Evidence;
+pub use evidence::{Evidence, Reasons};
 
 use areas::areas;
 use mission::event::RunOpened;
@@ -149,6 +149,8 @@ pub enum MissReason {
     NotAsked,
     /// No plan led there.
     NotPlanned,
+    /// No plan led there, because the cable does not.
+    BeyondReel,
     /// A plan led there, but the mission ended before.
     NotReached,
     /// A plan led there, but the robot passed beside it.
@@ -184,6 +186,7 @@ impl fmt::Display for MissReason {
             Self::FoundObstacle => "beside an obstacle that was found on the way",
             Self::NotAsked => "not among the areas to be scanned",
             Self::NotPlanned => "left out of the plan",
+            Self::BeyondReel => "left out of the plan, beyond the reel",
             Self::NotReached => "planned, but the mission ended before",
             Self::PassedBeside => "planned, but the robot passed beside it",
         })
@@ -248,8 +251,9 @@ pub fn account(run: &RunOpened, grid: &CoverageGrid, evidence: &Evidence) -> Acc
             by_plate[plate].count(kind, is_scanned);
         }
     }
+    let reasons = evidence.reasons(run);
     let why_missed = |index: usize| {
-        (floor.is_reachable(index) && !grid.is_covered(index)).then(|| evidence.why_missed(floor, index))
+        (floor.is_reachable(index) && !grid.is_covered(index)).then(|| reasons.why_missed(floor, index))
     };
     let why_out = |index: usize| if grid.is_covered(index) { None } else { out_of_reach(floor.kind(index)) };
     let (missed, slivers) = areas(floor, plates.as_ref(), why_missed);

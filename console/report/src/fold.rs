@@ -66,9 +66,14 @@ impl Fold {
                     scanned.believe(runs);
                 }
             }
-            EventKind::Planned { path, .. } => {
+            EventKind::Planned { path, complete, .. } if !self.is_preset() => {
                 if let Some(evidence) = &mut self.evidence {
-                    evidence.plan(path);
+                    evidence.plan(path, *complete);
+                }
+            }
+            EventKind::Certified { refused: true, .. } => {
+                if let Some(evidence) = &mut self.evidence {
+                    evidence.refuse_plan();
                 }
             }
             EventKind::Uncounted { runs } => {
@@ -82,11 +87,7 @@ impl Fold {
                     scanned.change(changes);
                 }
             }
-            EventKind::Progressed { along_m: Some(along_m), .. } => {
-                if let Some(tracker) = &mut self.tracker {
-                    tracker.progress(*along_m);
-                }
-            }
+            EventKind::Progressed { done, along_m, .. } => self.progress(*done, *along_m),
             EventKind::PlannerChosen { choice, info, .. } => self.choose(choice, info),
             EventKind::ParametersChanged { choice } => self.set_parameters(choice),
             EventKind::ObstacleFound { obstacle } => {
@@ -127,6 +128,22 @@ impl Fold {
         self.tethered.as_ref()?.tether(self.truth.map(|pose| pose.position), self.known.outcome)
     }
 
+    /// Whether the way is preset: what planners plan then only leads along it.
+    fn is_preset(&self) -> bool {
+        self.tracker.is_some()
+    }
+
+    fn progress(&mut self, done: f64, along_m: Option<f64>) {
+        if let (Some(tracker), Some(along_m)) = (&mut self.tracker, along_m) {
+            tracker.progress(along_m);
+        }
+        match (&mut self.evidence, along_m) {
+            (Some(evidence), Some(along_m)) => evidence.fly(along_m),
+            (Some(evidence), None) => evidence.fly_share(done),
+            (None, _) => {}
+        }
+    }
+
     fn find(&mut self, obstacle: &Obstacle) {
         if let Some(evidence) = &mut self.evidence {
             evidence.find(obstacle);
@@ -147,7 +164,7 @@ impl Fold {
         self.tracker = match &run.mission.task {
             TaskConfig::Follow { path, .. } => {
                 if let Some(evidence) = &mut self.evidence {
-                    evidence.plan(path);
+                    evidence.plan(path, true);
                 }
                 Some(Tracker::new(path))
             }

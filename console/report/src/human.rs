@@ -4,7 +4,10 @@ mod floor;
 
 pub(crate) use floor::lines as floor_lines;
 
-use crate::summary::{Coverage, PlannerCalls, Positioning, Summary, Tether, Tracking};
+use crate::{
+    account::{Account, MissReason, Shares},
+    summary::{Coverage, PlannerCalls, Positioning, Summary, Tether, Tracking},
+};
 use mission::Outcome;
 use std::fmt::{Display, Write};
 
@@ -85,6 +88,7 @@ fn warnings(run: &Summary) -> Vec<String> {
         Some(Outcome::Complete) => {}
         Some(other) => found.push(format!("the mission is not complete: {}", other.word())),
     }
+    found.extend(run.floor.as_ref().and_then(beyond_reel));
     if let Some(n @ 1..) = run.collisions {
         found.push(counted(n, "collision"));
     }
@@ -112,6 +116,18 @@ fn warnings(run: &Summary) -> Vec<String> {
     found.extend(run.logs.as_ref().and_then(|logs| logs.error.clone()));
     found.extend(run.unmet.iter().flatten().map(|miss| format!("not as expected: {miss}")));
     found
+}
+
+/// That floor was left out because the cable does not lead there.
+fn beyond_reel(floor: &Account) -> Option<String> {
+    let is_beyond = floor.missed.iter().any(|area| area.reason == MissReason::BeyondReel);
+    let Shares { area_m2, percent, .. } = floor.reachable;
+    is_beyond.then(|| {
+        format!(
+            "not all of the reachable floor is scanned, but {:.1} % of its {area_m2:.1} m²: some lies beyond the reel",
+            percent.scanned
+        )
+    })
 }
 
 fn outcome(run: &Summary) -> String {

@@ -22,5 +22,5 @@ pub use expect::{Expect, Miss};
 pub use fold::Fold;
 pub use human::human;
 pub use merged::{Merged, MergedRun, PastRun, merged};
-pub use rescan::{Rescan, rescan};
+pub use rescan::{NoLane, Rescan, rescan};
 pub use summary::{Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Summary, Tether, Tracking};

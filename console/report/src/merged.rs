@@ -113,7 +113,7 @@ pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
         evidence.found().filter(|(id, _)| !known.contains(id)).map(|(_, shape)| shape.clone()).collect();
     if !more.is_empty() {
         // What only the other runs found is no floor either.
-        scanned.change(&anew(run, scanned.believed().floor(), &evidence).kinds());
+        scanned.change(&anew(run, scanned.believed().floor(), &evidence, run.mission.swath_m).kinds());
     }
     Ok(Joined { run, scanned, evidence })
 }
@@ -161,14 +161,14 @@ fn fit_together(
 }
 
 /// The floor with everything that any of the runs found.
-fn anew(run: &RunOpened, grid: &Floor, evidence: &Evidence) -> Floor {
+pub(crate) fn anew(run: &RunOpened, grid: &Floor, evidence: &Evidence, swath_m: f64) -> Floor {
     let mut world = run.world.as_drawn();
     let drawn: BTreeSet<ObstacleId> = world.obstacles.iter().map(|obstacle| obstacle.id).collect();
     for (id, shape) in evidence.found().filter(|(id, _)| !drawn.contains(id)) {
         world.obstacles.push(Obstacle { id: *id, name: String::new(), shape: shape.clone(), known: true });
     }
     let mission = &run.mission;
-    FloorMaker::of(grid, &world, mission.room_m(), mission.swath_m, mission.start.position).into_floor()
+    FloorMaker::of(grid, &world, mission.room_m(), swath_m, mission.start.position).into_floor()
 }
 
 impl Merged {

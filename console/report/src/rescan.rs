@@ -1,10 +1,13 @@
 //! What of a floor is worth being scanned again after one run or several.
 
 use crate::{
-    account::{Area, MissReason, areas::area_of},
-    merged::{Joined, PastRun, joined},
+    account::{
+        Area, MissReason,
+        areas::{area_of, areas as areas_of},
+    },
+    merged::{Joined, PastRun, anew, joined},
 };
-use std::collections::VecDeque;
+use std::{collections::VecDeque, fmt};
 use world::{Floor, Point, coverage::regions};
 
 /// Missed floor this near to other missed floor belongs to it, as a share of the swath.
@@ -23,14 +26,34 @@ pub struct Rescan {
     pub areas: Vec<Area<MissReason>>,
     /// Missed areas that are left, the largest first: too small.
     pub left: Vec<Area<MissReason>>,
+    /// Missed areas that no lane leads to, the largest first: another scan would miss them as well.
+    pub out_of_reach: Vec<Area<NoLane>>,
     /// Missed floor that none of the runs was asked to scan, square metres.
     pub not_asked_m2: f64,
 }
 
+/// Why no lane leads to floor that was missed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoLane {
+    /// Lanes are laid for the swath less the overlap, which does not reach as far as the whole swath.
+    Narrow,
+    /// The cable does not lead there.
+    Reel,
+}
+
+impl fmt::Display for NoLane {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Narrow => "lanes are laid for the swath less the overlap, which does not reach there",
+            Self::Reel => "beyond the reel",
+        })
+    }
+}
+
 /// Finds what is to be scanned again.
 ///
-/// Missed floor that lies closely together is taken together and grown by what a robot can aim at. What is then
-/// smaller than `least_m2` is left. There are no more than `most` boxes; the fewer, the coarser.
+/// Missed floor to which no lane leads is told apart. The rest that lies closely together is taken together and grown by
+/// what a robot can aim at. What is then smaller than `least_m2` is left. There are no more than `most` boxes; the fewer, the coarser.
 ///
 /// # Errors
 /// As [`crate::merged`].
@@ -39,13 +62,26 @@ pub fn rescan(runs: &[PastRun], least_m2: f64, most: usize) -> Result<Rescan, St
     let grid = scanned.believed();
     let floor = grid.floor();
     let is_missed = |index: usize| floor.is_reachable(index) && !grid.is_covered(index);
-    let is_wanted = |index: usize| is_missed(index) && evidence.is_asked(index);
+    let lanes = anew(run, floor, &evidence, run.mission.lane_m());
+    let (swath_m, reasons) = (run.mission.swath_m, evidence.reasons(run));
+    let is_asked = |index: usize| is_missed(index) && evidence.is_asked(index);
+    let no_lane: Vec<Option<NoLane>> = (0..floor.len())
+        .map(|index| {
+            let is_beyond = || reasons.why_missed(floor, index) == MissReason::BeyondReel;
+            match () {
+                () if !is_asked(index) => None,
+                () if !lanes.is_reachable(index) => Some(NoLane::Narrow),
+                () => is_beyond().then_some(NoLane::Reel),
+            }
+        })
+        .collect();
+    let is_wanted = |index: usize| is_asked(index) && no_lane[index].is_none();
     let not_asked = (0..floor.len()).filter(|index| is_missed(*index) && !evidence.is_asked(*index)).count();
     let plates = run.plates.map(|layout| layout.map(&run.world.boundary, floor));
-    let swath_m = run.mission.swath_m;
+    let (out_of_reach, _) = areas_of(floor, plates.as_ref(), |index| no_lane[index]);
     let (mut taken, mut areas, mut left) = (vec![false; floor.len()], Vec::new(), Vec::new());
     for cells in clusters(floor, TOGETHER_SWATHS * swath_m, is_wanted) {
-        let reason = most_frequent(cells.iter().map(|index| evidence.why_missed(floor, *index)));
+        let reason = most_frequent(cells.iter().map(|index| reasons.why_missed(floor, *index)));
         let mut area = area_of(floor, None, reason, &cells);
         let plate = floor.cell_at(area.at).and_then(|index| plates.as_ref()?.plate_of(index));
         area.plate = plates.as_ref().zip(plate).map(|(map, plate)| map.plates[plate].name.clone());
@@ -70,6 +106,7 @@ pub fn rescan(runs: &[PastRun], least_m2: f64, most: usize) -> Result<Rescan, St
         boxes: boxes.iter().map(|corners| [corners[0], corners[2]]).collect(),
         areas,
         left,
+        out_of_reach,
         not_asked_m2: not_asked as f64 * floor.cell_m2(),
     })
 }
@@ -189,6 +226,27 @@ mod tests {
         assert!(none.boxes.is_empty() && none.areas.is_empty() && none.left.is_empty());
         let half = rescan(&[with(round_tank(0.05), vec![CellRun(0, 200 * 100)])], 0.05, 20).unwrap();
         assert!((1..=20).contains(&half.boxes.len()), "{}", half.boxes.len());
+    }
+
+    #[test]
+    fn specks_that_lanes_less_the_overlap_do_not_reach_are_told_and_not_offered() {
+        let mut run = round_tank(0.05);
+        run.mission.scan.overlap_m = 0.2;
+        // The hull keeps 0.45 m from the shell, so that a bar of 0.4 m ends 0.25 m from it, and one of 0.6 m 0.15 m.
+        let is_missed = |index: &usize| {
+            let center = run.floor.center(*index);
+            let beside_shell = center.x > 4.6 && center.y.abs() < 1.0 && center.coords.norm() > 4.78;
+            beside_shell || (center - Point::new(1.0, -1.0)).norm() < 0.2
+        };
+        let runs = runs_of((0..run.floor.len()).filter(|index| !is_missed(index)));
+        let rescan = rescan(&[with(run, runs)], 0.05, 1000).unwrap();
+        assert!(
+            rescan.areas.len() == 1 && holds(&rescan, 1.0, -1.0) && !holds(&rescan, 4.8, 0.0),
+            "{rescan:?}"
+        );
+        let told: Vec<NoLane> = rescan.out_of_reach.iter().map(|area| area.reason).collect();
+        assert!(!told.is_empty() && told.iter().all(|why| *why == NoLane::Narrow), "{rescan:?}");
+        assert!(rescan.out_of_reach[0].at.x > 4.6, "{rescan:?}");
     }
 
     #[test]

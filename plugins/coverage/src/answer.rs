@@ -22,7 +22,6 @@ const MOST_PLACES: usize = 8;
 /// Bearings in which floor in reach is looked for beside floor at the wall.
 const MARGIN_BEARINGS: u32 = 24;
 /// Why floor is not scanned.
-const SHELL_MARGIN: &str = "is shell margin: the tool does not reach it from where the hull fits";
 const NARROW_GAPS: &str = "cannot be reached: gaps are narrower than hull and clearance need";
 
 /// A task to cover.
@@ -113,7 +112,11 @@ pub fn way_home(ground: &Ground, site: &Site<'_>, cable: &Cable) -> Option<Vec<P
 pub fn tell_unreachable(ground: &Ground, scan: &Scan, order: &Order<'_>, ctx: &Ctx<'_>) {
     let grid = &scan.grid;
     let cell_m2 = grid.cell_m * grid.cell_m;
-    for (is_margin, why) in [(true, SHELL_MARGIN), (false, NARROW_GAPS)] {
+    let margin = format!(
+        "along the shell is beyond lanes of {:.2} m, the swath less the overlap, from where the hull fits",
+        ground.swath_m
+    );
+    for (is_margin, why) in [(true, margin.as_str()), (false, NARROW_GAPS)] {
         let mut closed = grid.clone();
         for cell in 0..closed.reachable.len() {
             let at = grid.center(cell);
@@ -170,10 +173,10 @@ fn tell(grid: &FloorGrid, cell_m2: f64, why: &str, ground: &Ground, ctx: &Ctx<'_
     }
     if worth.len() > MOST_PLACES {
         let rest: usize = worth[MOST_PLACES..].iter().map(|g| g.len()).sum();
-        let count = worth.len() - MOST_PLACES;
-        ctx.log(
-            LogLevel::Warn,
-            &format!("{count} more places, {:.2} m2 together, {why}", rest as f64 * cell_m2),
-        );
+        let places = match worth.len() - MOST_PLACES {
+            1 => "1 more place".to_owned(),
+            count => format!("{count} more places"),
+        };
+        ctx.log(LogLevel::Warn, &format!("{places}, {:.2} m2 together, {why}", rest as f64 * cell_m2));
     }
 }

@@ -1,7 +1,7 @@
 //! Candidates of a tether-safe plan: what is tried, what each one is worth, and which are worth showing.
 
 use crate::{
-    cuts::{CutRule, domain},
+    cuts::{CutRule, Domain, domain},
     ground::Ground,
     lanes::{Pattern, Reach},
     scan::{Recipe, Scan, rotation_turns},
@@ -141,12 +141,13 @@ pub fn candidates(ground: &Ground, wishes: &Wishes, alpha_rad: f64) -> Vec<Candi
 }
 
 impl Candidate {
-    /// How it is made: costs a few slit domains, to find how far cuts may go.
-    pub fn recipe(&self, ground: &Ground, wishes: &Wishes, alpha_rad: f64) -> Recipe {
+    /// How it is made, and its domain unless there is no room: costs a few domains, to find how far cuts may go.
+    pub fn recipe(&self, ground: &Ground, wishes: &Wishes, alpha_rad: f64) -> (Recipe, Option<Domain>) {
         let Self { pattern, cut_share, .. } = *self;
-        Recipe {
+        let (rule, domain) = cut_domain(ground, wishes, &pattern, alpha_rad);
+        let recipe = Recipe {
             pattern,
-            rule: CutRule { alpha_rad, cable_m: cable_m(ground, wishes, &pattern, alpha_rad) },
+            rule,
             reach: Reach { cut_m: cut_share * ground.swath_m, lap_share: 0.5, least_m: ground.swath_m / 3.0 },
             effort: Effort {
                 turn_m_per_rad: wishes.turn_m / TAU,
@@ -157,24 +158,33 @@ impl Candidate {
             rounds: 1,
             floor_m_per_m2: FLOOR_SHARE / ground.swath_m,
             enough: wishes.enough,
-        }
+        };
+        (recipe, domain)
     }
 }
 
-/// How long a cut may make the way to its far end, metres.
-fn cable_m(ground: &Ground, wishes: &Wishes, pattern: &Pattern, alpha_rad: f64) -> f64 {
+/// How far cuts may go, and the domain that they leave.
+fn cut_domain(
+    ground: &Ground,
+    wishes: &Wishes,
+    pattern: &Pattern,
+    alpha_rad: f64,
+) -> (CutRule, Option<Domain>) {
     let least_m = least_cable_m(ground);
     let most_m = (least_m * wishes.cable_share).min(wishes.limits.reel_m);
     let with =
         |slack: f64| (least_m + (least_m * wishes.cable_share - least_m) * slack).min(wishes.limits.reel_m);
     let home = ground.home();
-    let keeps = |slack: &&f64| {
-        let rule = CutRule { alpha_rad, cable_m: with(**slack) };
-        domain(ground, pattern, &rule, home)
-            .is_none_or(|(_, slit)| slit.farthest_m(home) <= most_m + AROUND_SHARE * least_m)
+    let made = |slack: f64| {
+        let rule = CutRule { alpha_rad, cable_m: with(slack) };
+        (rule, domain(ground, pattern, &rule, home))
+    };
+    let keeps = |(_, domain): &(CutRule, Option<Domain>)| {
+        let is_short = |(_, slit): &Domain| slit.is_all_within(home, most_m + AROUND_SHARE * least_m);
+        domain.as_ref().is_none_or(is_short)
     };
     let slacks: &[f64] = if *pattern == Pattern::Contours { &SLACKS_ACROSS } else { &SLACKS_ALONG };
-    with(slacks.iter().find(keeps).copied().unwrap_or(0.0))
+    slacks.iter().map(|slack| made(*slack)).find(keeps).unwrap_or_else(|| made(0.0))
 }
 
 /// Place of the first lane across a direction, and the distance between lanes: even between straight walls.

@@ -60,12 +60,15 @@ const TRIES: usize = 12;
 /// Floor that may be sealed off: slivers between a cut and the outline of an obstacle, square metres.
 const SLIVER_M2: f64 = 0.02;
 
+/// Cuts and what they leave.
+pub type Domain = (Vec<Cut>, Slit);
+
 /// Cuts of a ground and the domain that they leave; `None` where there is no room at `home`.
 ///
 /// Where cuts seal floor off, the last one made of those around the pocket has to end somewhere else.
-pub fn domain(ground: &Ground, pattern: &Pattern, rule: &CutRule, home: Point) -> Option<(Vec<Cut>, Slit)> {
+pub fn domain(ground: &Ground, pattern: &Pattern, rule: &CutRule, home: Point) -> Option<Domain> {
     let mut banned: Vec<Banned> = Vec::new();
-    let mut best: Option<(Vec<Cut>, Slit)> = None;
+    let mut best: Option<Domain> = None;
     for _ in 0..TRIES {
         let made = cuts(ground, pattern, rule, &banned);
         let lines: Vec<Vec<Point>> = made.iter().map(|cut| cut.line.clone()).collect();

@@ -2,25 +2,10 @@
 //! robot turns in place.
 
 use crate::{ground::Ground, slit::Slit};
-use std::ops::Range;
 use world::{Point, Vector};
 
-/// Turns smaller than this leave no gap worth filling, radians.
-const SMALL_TURN_RAD: f64 = 2e-3;
-/// A turn is drawn in wedges of this angle, radians.
-const WEDGE_RAD: f64 = 0.35;
-/// Corners of the largest fan of wedges: half a turn, and the middle.
-const FAN: usize = 11;
-
-/// The end of a closed range as the start of what lies behind it.
-const NEXT: f64 = 1e-9;
-
-/// The first index that is not below a place.
-fn index_from(place: f64) -> usize {
-    // Truncation is quicker than rounding up, and negative places become 0.
-    let below = place as usize;
-    below + usize::from(place > below as f64)
-}
+mod bar;
+pub use bar::Run;
 
 /// A grid over the floor with the number of times that each cell was swept.
 #[derive(Debug, Clone)]
@@ -39,9 +24,13 @@ pub struct FloorGrid {
     pub swept: Vec<u16>,
     /// Number of cells that the tool can reach.
     pub n_reachable: usize,
+    /// Number of cells that the tool can reach and that were swept.
+    n_swept: usize,
     half_m: f64,
     stamp: Vec<u32>,
     epoch: u32,
+    /// Number of exchanges so far.
+    pub changes: u32,
 }
 
 impl FloorGrid {
@@ -58,9 +47,11 @@ impl FloorGrid {
             reachable: vec![false; columns * rows],
             swept: Vec::new(),
             n_reachable: 0,
+            n_swept: 0,
             half_m: ground.swath_m / 2.0,
             stamp: Vec::new(),
             epoch: 0,
+            changes: 0,
         };
         let mut free = vec![false; columns * rows];
         for triangle in slit.triangles() {
@@ -71,11 +62,14 @@ impl FloorGrid {
         // does when the mission counts.
         for cell in (0..free.len()).filter(|cell| free[*cell] && grid.is_at_edge(&free, *cell)) {
             let center = grid.center(cell);
-            grid.near(center, center, grid.half_m, |other, at| {
-                if !reachable[other] && ground.is_floor(at) {
-                    reachable[other] = true;
-                }
+            let mut fresh = Vec::new();
+            let is_open = |other: usize| !reachable[other];
+            grid.near(center, grid.half_m, is_open, |other, at| {
+                fresh.extend(ground.is_floor(at).then_some(other));
             });
+            for other in fresh {
+                reachable[other] = true;
+            }
         }
         grid.n_reachable = reachable.iter().filter(|r| **r).count();
         grid.swept = vec![0; reachable.len()];
@@ -108,7 +102,7 @@ impl FloorGrid {
     /// Whether there is floor to scan within half a swath of a place.
     pub fn has_reachable_near(&self, at: Point) -> bool {
         let mut found = false;
-        self.near(at, at, self.half_m, |cell, _| found |= self.reachable[cell]);
+        self.near(at, self.half_m, |cell| self.reachable[cell], |_, _| found = true);
         found
     }
 
@@ -119,8 +113,7 @@ impl FloorGrid {
 
     /// Share of the reachable floor that was swept.
     pub fn coverage(&self) -> f64 {
-        let swept = self.swept.iter().zip(&self.reachable).filter(|(s, r)| **s > 0 && **r).count();
-        swept as f64 / self.n_reachable.max(1) as f64
+        self.n_swept as f64 / self.n_reachable.max(1) as f64
     }
 
     /// Centre of a cell.
@@ -129,69 +122,122 @@ impl FloorGrid {
         self.low + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m
     }
 
+    /// The floor alone, without room for sweeps.
+    #[must_use]
+    pub fn without_sweeps(&self) -> Self {
+        Self { swept: Vec::new(), stamp: Vec::new(), reachable: self.reachable.clone(), ..*self }
+    }
+
+    /// The same floor with nothing swept.
+    #[must_use]
+    pub fn unswept(&self) -> Self {
+        let cells = self.reachable.len();
+        Self {
+            swept: vec![0; cells],
+            stamp: vec![0; cells],
+            reachable: self.reachable.clone(),
+            n_swept: 0,
+            ..*self
+        }
+    }
+
+    /// Forgets what was swept.
+    pub fn clear(&mut self) {
+        self.swept.fill(0);
+        self.n_swept = 0;
+    }
+
     /// Sweeps along a path.
     pub fn sweep(&mut self, path: &[Point]) {
         let mut swept = std::mem::take(&mut self.swept);
         self.along(path, |cells| swept[cells].iter_mut().for_each(|n| *n = n.saturating_add(1)));
+        self.n_swept = swept.iter().zip(&self.reachable).filter(|(n, r)| **n > 0 && **r).count();
         self.swept = swept;
     }
 
-    /// Takes one path back and sweeps another; the number of reachable cells that are lost, net.
-    pub fn exchange(&mut self, old: &[Point], new: &[Point]) -> i64 {
-        let mut swept = std::mem::take(&mut self.swept);
-        let mut lost = 0_i64;
-        let reachable = &self.reachable;
-        self.along(new, |cells| {
-            let mut won = 0_u16;
-            for (n, reachable) in swept[cells.clone()].iter_mut().zip(&reachable[cells]) {
-                won += u16::from(*n == 0 && *reachable);
-                *n = n.saturating_add(1);
-            }
-            lost -= i64::from(won);
-        });
-        self.along(old, |cells| {
-            let mut left = 0_u16;
-            for (n, reachable) in swept[cells.clone()].iter_mut().zip(&reachable[cells]) {
-                *n = n.saturating_sub(1);
-                left += u16::from(*n == 0 && *reachable);
-            }
-            lost += i64::from(left);
-        });
-        self.swept = swept;
+    /// Cells under the bar on its way along a path; some may come several times.
+    pub fn runs(&self, path: &[Point]) -> Vec<Run> {
+        let mut runs = Vec::new();
+        self.along(path, |cells| runs.push(Run::from(cells)));
+        runs
+    }
+
+    /// What [`Self::exchange`] would lose: it is made and taken back.
+    pub fn lost_by(&mut self, old: &[Run], new: &[Run]) -> i64 {
+        let before = self.n_swept;
+        let (lost, is_sound) = self.exchanged(old, new);
+        if !is_sound {
+            // More was taken back than there was: so much for the quick way.
+            self.exchanged(new, old);
+            return lost;
+        }
+        for run in old {
+            self.swept[run.cells()].iter_mut().for_each(|n| *n = n.saturating_add(1));
+        }
+        for run in new {
+            self.swept[run.cells()].iter_mut().for_each(|n| *n = n.saturating_sub(1));
+        }
+        self.n_swept = before;
         lost
     }
 
-    /// Whether one path in place of another certainly loses more than so many reachable cells, net: a quick look that
-    /// stops as soon as it is sure.
-    pub fn loses_more(&mut self, old: &[Point], new: &[Point], most: i64) -> bool {
+    /// Takes one sweep back and makes another; the number of reachable cells that are lost, net.
+    pub fn exchange(&mut self, old: &[Run], new: &[Run]) -> i64 {
+        self.exchanged(old, new).0
+    }
+
+    /// The same, and whether every reachable cell was swept whenever that was taken back.
+    fn exchanged(&mut self, old: &[Run], new: &[Run]) -> (i64, bool) {
+        self.changes += 1;
+        let (mut won, mut left, mut unswept) = (0_usize, 0_usize, 0_usize);
+        for cells in new.iter().map(|run| run.cells()) {
+            let mut fresh = 0_u16;
+            for (n, reachable) in self.swept[cells.clone()].iter_mut().zip(&self.reachable[cells]) {
+                fresh += u16::from(*n == 0 && *reachable);
+                *n = n.saturating_add(1);
+            }
+            won += usize::from(fresh);
+        }
+        for cells in old.iter().map(|run| run.cells()) {
+            let (mut empty, mut was_empty) = (0_u16, 0_u16);
+            for (n, reachable) in self.swept[cells.clone()].iter_mut().zip(&self.reachable[cells]) {
+                was_empty += u16::from(*n == 0 && *reachable);
+                *n = n.saturating_sub(1);
+                empty += u16::from(*n == 0 && *reachable);
+            }
+            left += usize::from(empty);
+            unswept += usize::from(empty - was_empty);
+        }
+        self.n_swept = self.n_swept + won - unswept;
+        (left as i64 - won as i64, left == unswept)
+    }
+
+    /// Whether one sweep in place of another certainly loses more than so many reachable cells, net: a quick look that
+    /// stops as soon as it is sure. The old one comes side by side.
+    pub fn loses_more<'a>(
+        &mut self,
+        old: impl IntoIterator<Item = &'a [Run]>,
+        new: &[Run],
+        most: i64,
+    ) -> bool {
         self.epoch += 1;
-        let mut stamp = std::mem::take(&mut self.stamp);
         let epoch = self.epoch;
         let mut lost = 0_i64;
-        self.along(new, |cells| {
-            for cell in cells {
-                lost -= i64::from(self.swept[cell] == 0 && stamp[cell] != epoch && self.reachable[cell]);
-                stamp[cell] = epoch;
-            }
-        });
-        let sides = old.len() - 1;
-        // From the middle outward: there the two paths differ most.
-        for k in 0..sides {
-            let side = if k % 2 == 0 { sides / 2 + k / 2 } else { sides / 2 - k.div_ceil(2) };
-            if side < sides {
-                self.along(&old[side..=side + 1], |cells| {
-                    for cell in cells {
-                        lost +=
-                            i64::from(self.swept[cell] == 1 && stamp[cell] != epoch && self.reachable[cell]);
-                    }
-                });
-            }
-            if lost > most {
-                break;
+        for run in new {
+            for cell in run.cells() {
+                lost -= i64::from(self.swept[cell] == 0 && self.stamp[cell] != epoch && self.reachable[cell]);
+                self.stamp[cell] = epoch;
             }
         }
-        self.stamp = stamp;
-        lost > most
+        old.into_iter().any(|side| {
+            for run in side {
+                for cell in run.cells() {
+                    let is_alone = self.swept[cell] == 1 && self.stamp[cell] != epoch;
+                    lost += i64::from(is_alone && self.reachable[cell]);
+                }
+            }
+            lost > most
+        }) || lost > most
     }
 
     /// Width of the bar, metres.
@@ -209,24 +255,22 @@ impl FloorGrid {
         self.swept[cell] == 1 && self.reachable[cell]
     }
 
-    /// Number of reachable cells that nothing but this part of the path sweeps.
-    pub fn alone(&self, path: &[Point]) -> u32 {
-        let mut count = 0;
-        self.along(path, |cells| {
-            let both = self.swept[cells.clone()].iter().zip(&self.reachable[cells]);
-            count += both.map(|(n, reachable)| u32::from(*n == 1 && *reachable)).sum::<u32>();
-        });
-        count
+    /// Number of reachable cells that nothing but these runs sweeps.
+    pub fn alone(&self, runs: &[Run]) -> u32 {
+        self.swept_so_often(1, runs)
     }
 
-    /// Number of reachable cells that a path would sweep for the first time, or more: some may count twice.
-    pub fn missed_under(&self, path: &[Point]) -> u32 {
-        let mut count = 0;
-        self.along(path, |cells| {
+    /// Number of reachable cells that these runs would sweep for the first time, or more: some may count twice.
+    pub fn missed_under(&self, runs: &[Run]) -> u32 {
+        self.swept_so_often(0, runs)
+    }
+
+    fn swept_so_often(&self, often: u16, runs: &[Run]) -> u32 {
+        let count = |cells: std::ops::Range<usize>| {
             let both = self.swept[cells.clone()].iter().zip(&self.reachable[cells]);
-            count += both.map(|(n, reachable)| u32::from(*n == 0 && *reachable)).sum::<u32>();
-        });
-        count
+            both.map(|(n, reachable)| u16::from(*n == often && *reachable)).sum::<u16>()
+        };
+        runs.iter().map(|run| u32::from(count(run.cells()))).sum()
     }
 
     /// Number of reachable cells that a path would sweep for the first time.
@@ -238,76 +282,25 @@ impl FloorGrid {
         seen.len()
     }
 
-    /// Every cell under the bar on its way along a path, in runs of one row each; a cell may come several times.
-    pub fn along(&self, path: &[Point], mut visit: impl FnMut(Range<usize>)) {
-        let mut before: Option<Vector> = None;
-        for pair in path.windows(2) {
-            let Some(ahead) = (pair[1] - pair[0]).try_normalize(1e-9) else { continue };
-            if let Some(before) = before {
-                self.turn(pair[0], before, ahead, &mut visit);
-            }
-            let side = Vector::new(-ahead.y, ahead.x) * self.half_m;
-            self.fill(&[pair[0] - side, pair[1] - side, pair[1] + side, pair[0] + side], &mut visit);
-            before = Some(ahead);
-        }
-    }
-
-    fn turn(&self, at: Point, from: Vector, to: Vector, visit: &mut impl FnMut(Range<usize>)) {
-        let (across, along) = (from.perp(&to), from.dot(&to));
-        if across.abs() < SMALL_TURN_RAD && along > 0.0 {
-            return;
-        }
-        let turn = across.atan2(along);
-        let n = (turn.abs() / WEDGE_RAD).ceil();
-        let (sin, cos) = (turn / n).sin_cos();
-        let mut rim = Vector::new(-from.y, from.x) * self.half_m;
-        let mut fans = [[at; FAN]; 2];
-        for k in 0..=n as usize {
-            (fans[0][k + 1], fans[1][k + 1]) = (at + rim, at - rim);
-            rim = Vector::new(rim.x * cos - rim.y * sin, rim.x * sin + rim.y * cos);
-        }
-        for fan in fans {
-            self.fill(&fan[..n as usize + 2], &mut *visit);
-        }
-    }
-
-    /// Every cell whose centre lies in a convex polygon, in either sense, row by row.
-    fn fill(&self, polygon: &[Point], mut visit: impl FnMut(Range<usize>)) {
-        let low = polygon.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
-        let high = polygon.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
-        let row_of = |y: f64| (y - self.low.y) / self.cell_m - 0.5;
-        let column_of = |x: f64| (x - self.low.x) / self.cell_m - 0.5;
-        let (first, past) = (index_from(row_of(low)), index_from(row_of(high) + NEXT).min(self.rows));
-        for row in first..past {
-            let y = self.low.y + (row as f64 + 0.5) * self.cell_m;
-            let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
-            let mut a = polygon[polygon.len() - 1];
-            for b in polygon {
-                if (a.y <= y) != (b.y <= y) {
-                    let x = a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y));
-                    (from, to) = (from.min(x), to.max(x));
-                }
-                a = *b;
-            }
-            let (left, past) =
-                (index_from(column_of(from)), index_from(column_of(to) + NEXT).min(self.columns));
-            if left < past {
-                visit(row * self.columns + left..row * self.columns + past);
-            }
-        }
-    }
-
-    /// Every cell whose centre lies within a distance of a segment.
-    pub fn near(&self, a: Point, b: Point, reach_m: f64, mut visit: impl FnMut(usize, Point)) {
+    /// Those of the meant cells whose centres lie within a distance of a place.
+    fn near(
+        &self,
+        place: Point,
+        reach_m: f64,
+        is_meant: impl Fn(usize) -> bool,
+        mut visit: impl FnMut(usize, Point),
+    ) {
         let reach = Vector::new(reach_m, reach_m);
-        let (from, to) = (a.inf(&b) - reach - self.low, a.sup(&b) + reach - self.low);
+        let (from, to) = (place - reach - self.low, place + reach - self.low);
         let index = |m: f64, most: usize| (m / self.cell_m).floor().clamp(0.0, most as f64 - 1.0) as usize;
         for row in index(from.y, self.rows)..=index(to.y, self.rows) {
             for column in index(from.x, self.columns)..=index(to.x, self.columns) {
                 let cell = row * self.columns + column;
-                let at = self.center(cell);
-                if (at - world::polyline::nearest_on_segment(a, b, at)).norm() <= reach_m {
-                    visit(cell, at);
+                if is_meant(cell) {
+                    let at = self.center(cell);
+                    if (at - place).norm() <= reach_m {
+                        visit(cell, at);
+                    }
                 }
             }
         }
@@ -353,4 +346,72 @@ fn ring_contains(ring: &[Point], at: Point) -> bool {
         let crosses = (a.y > at.y) != (b.y > at.y) && at.x < (b.x - a.x) * (at.y - a.y) / (b.y - a.y) + a.x;
         inside != crosses
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use trials::tanks::{Known, Tank};
+
+    fn empty() -> FloorGrid {
+        let tank = Tank { columns: Vec::new(), ..Known::E1.tank(0) };
+        let ground = Ground::new(&tank.site(&[]), tank.anchor).unwrap();
+        let slit = Slit::new(&ground, &[], ground.home()).unwrap();
+        FloorGrid::new(&ground, &slit, 0.1)
+    }
+
+    fn path() -> impl Strategy<Value = Vec<Point>> {
+        prop::collection::vec((-9.0..9.0_f64, -9.0..9.0_f64).prop_map(|(x, y)| Point::new(x, y)), 2..6)
+    }
+
+    proptest! {
+        #[test]
+        fn a_straight_way_sweeps_what_lies_within_half_a_swath_beside_it(
+            a in (-9.0..9.0_f64, -9.0..9.0_f64),
+            b in (-9.0..9.0_f64, -9.0..9.0_f64),
+        ) {
+            let (a, b) = (Point::new(a.0, a.1), Point::new(b.0, b.1));
+            prop_assume!((b - a).norm() > 0.01);
+            let mut grid = empty();
+            grid.sweep(&[a, b]);
+            let ahead = (b - a).normalize();
+            for cell in 0..grid.swept.len() {
+                let offset = grid.center(cell) - a;
+                let (along, beside) = (ahead.dot(&offset), ahead.perp(&offset).abs());
+                let depth = along.min((b - a).norm() - along).min(grid.half_m - beside);
+                prop_assert!(depth.abs() < 1e-6 || (depth > 0.0) == (grid.swept[cell] == 1));
+            }
+        }
+
+        #[test]
+        fn an_exchange_of_ways_is_counted_as_it_is_made_and_can_be_asked_for_first(
+            ways in prop::collection::vec(path(), 1..4),
+            new in path(),
+        ) {
+            let mut grid = empty();
+            for way in &ways {
+                grid.sweep(way);
+            }
+            let (old, new) = (grid.runs(&ways[0]), grid.runs(&new));
+            let (before, coverage) = (grid.swept.clone(), grid.coverage());
+            let asked = grid.lost_by(&old, &new);
+            prop_assert!(grid.swept == before && grid.coverage().to_bits() == coverage.to_bits());
+            prop_assert_eq!(grid.exchange(&old, &new), asked);
+            let lost = (coverage - grid.coverage()) * grid.n_reachable as f64;
+            prop_assert!((lost - asked as f64).abs() < 1e-6);
+            let count = grid.swept.iter().zip(&grid.reachable).filter(|(n, r)| **n > 0 && **r).count();
+            prop_assert_eq!(count, grid.n_swept);
+            prop_assert!(!grid.loses_more([&old[..]], &new, i64::MAX - 1));
+        }
+
+        #[test]
+        fn taking_back_what_was_not_swept_is_noticed(way in path()) {
+            let mut grid = empty();
+            let runs = grid.runs(&way);
+            let (lost, is_sound) = grid.exchanged(&runs, &[]);
+            prop_assert_eq!(grid.n_swept, 0);
+            prop_assert_eq!(lost == 0, is_sound);
+        }
+    }
 }

@@ -1,12 +1,13 @@
 //! The floor as a coverage planner sees it: wall, solid parts, and where the middle of the hull may be.
 
+use crate::slit::Bare;
 use field::{
     Keep, Room,
     part::{Part, parts_of},
     scene::{solids, wall_of},
 };
 use planner_api::{Code, PlannerError, Result, Site};
-use std::f64::consts::TAU;
+use std::{f64::consts::TAU, sync::OnceLock};
 use world::{Boundary, Point, Vector};
 
 /// Slack between what is planned and what the mission demands, metres.
@@ -31,6 +32,8 @@ pub struct Ground {
     pub anchor: Point,
     /// Exact distances.
     pub room: Room,
+    /// Its triangles, once they were asked for.
+    pub bare: OnceLock<Bare>,
 }
 
 impl Ground {
@@ -67,7 +70,8 @@ impl Ground {
             );
         }
         let room = Room::new(site, Keep { obstacle_m: keep_m, wall_m: keep_m });
-        Ok(Self { wall, parts, keep_m, swath_m: site.swath_m, anchor, room })
+        let bare = OnceLock::new();
+        Ok(Self { wall, parts, keep_m, swath_m: site.swath_m, anchor, room, bare })
     }
 
     /// Outline of the floor that the middle of the hull may use, obstacles left out: rings of points.

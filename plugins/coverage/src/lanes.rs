@@ -134,15 +134,36 @@ struct Fence<'a> {
 
 impl<'a> Fence<'a> {
     /// Cuts and corridors whose boxes a lane comes near.
-    fn near(&self, line: &[Point]) -> Vec<(&'a [Point], f64)> {
+    fn near(&self, line: &[Point]) -> Vec<Rail<'a>> {
         let (low, high) = bounds(line);
-        let cuts = self.cuts.iter().map(|cut| (&cut.line[..], self.cut_m));
-        let sides = self.sides.iter().map(|side| (&side[..], self.side_m));
-        let is_near = |(other, far_m): &(&[Point], f64)| {
-            let (from, to) = bounds(other);
-            from.x - far_m < high.x && to.x + far_m > low.x && from.y - far_m < high.y && to.y + far_m > low.y
-        };
-        cuts.chain(sides).filter(is_near).collect()
+        let cuts = self.cuts.iter().map(|cut| Rail::new(&cut.line, self.cut_m));
+        let sides = self.sides.iter().map(|side| Rail::new(side, self.side_m));
+        cuts.chain(sides).filter(|rail| rail.may_bar(low, high)).collect()
+    }
+}
+
+/// A line with the distance to keep from it, and the box of what may be too near.
+struct Rail<'a> {
+    line: &'a [Point],
+    far_m: f64,
+    low: Point,
+    high: Point,
+}
+
+impl<'a> Rail<'a> {
+    fn new(line: &'a [Point], far_m: f64) -> Self {
+        let (low, high) = bounds(line);
+        let far = Vector::new(far_m, far_m).add_scalar(1e-9);
+        Self { line, far_m, low: low - far, high: high + far }
+    }
+
+    /// Whether anything within a box may be too near.
+    fn may_bar(&self, low: Point, high: Point) -> bool {
+        self.low.x < high.x && self.high.x > low.x && self.low.y < high.y && self.high.y > low.y
+    }
+
+    fn bars(&self, at: Point) -> bool {
+        self.may_bar(at, at) && polyline::distance_m(self.line, at) < self.far_m
     }
 }
 
@@ -254,7 +275,7 @@ fn clip(
 ) {
     let near = fence.near(line);
     let is_open = |at: Point| {
-        near.iter().all(|(cut, far_m)| polyline::distance_m(cut, at) >= *far_m)
+        !near.iter().any(|rail| rail.bars(at))
             && ground.room.spare_m(at) >= crate::ground::SLACK_M / 2.0
             && slit.contains(at)
     };

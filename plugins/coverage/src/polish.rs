@@ -2,13 +2,22 @@
 //! swept here, and what was missed is worth a detour only if it is large enough.
 
 use crate::{
-    cuts::Cut, floor::FloorGrid, ground::Ground, lanes::Lane, side_by_side::Stop, slit::Slit,
-    touch::touch_up, tour::angle_rad,
+    cuts::Cut,
+    floor::{FloorGrid, Run},
+    ground::Ground,
+    lanes::Lane,
+    side_by_side::Stop,
+    slit::Slit,
+    touch::touch_up,
+    tour::angle_rad,
 };
 use planner_api::Result;
+use std::ops::Range;
+use world::{Point, Vector};
 
 mod bend;
-use world::{Point, Vector};
+mod places;
+use places::Places;
 
 /// Longest side of a path under polish, metres.
 const SIDE_M: f64 = 0.3;
@@ -24,6 +33,9 @@ const MUCH_TURN_RAD: f64 = 3.0;
 /// Touch-ups are tied in at path points within this distance, metres.
 const TIE_M: f64 = 2.0;
 
+/// Places across a side at which a quick look is taken, as shares of half the bar.
+const ACROSS: [f64; 4] = [-0.75, -0.25, 0.25, 0.75];
+
 /// What things are worth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prices {
@@ -34,12 +46,15 @@ pub struct Prices {
 }
 
 /// A path with what it sweeps.
+#[derive(Clone)]
 pub struct Track<'a> {
     slit: &'a Slit,
     /// Its points.
     pub points: Vec<Point>,
     /// For every point but the last the side to the next one.
     pub sides: Vec<Side>,
+    /// What every side sweeps: asked for again and again while the path around it changes.
+    bars: Vec<Bar>,
     /// The floor it sweeps.
     pub grid: FloorGrid,
 }
@@ -61,10 +76,27 @@ pub struct Side {
     is_open: bool,
 }
 
+/// Cells under the bar along a side.
+#[derive(Debug, Clone)]
+struct Bar {
+    /// While it turns into the side.
+    turn: Vec<Run>,
+    /// On the side itself.
+    side: Vec<Run>,
+    samples: Samples,
+}
+
+/// Which of the samples across a side are swept by nothing else, and after how many changes of the floor that was so.
+#[derive(Debug, Clone, Copy, Default)]
+struct Samples {
+    alone: [bool; ACROSS.len()],
+    changes: Option<u32>,
+}
+
 impl<'a> Track<'a> {
     /// A track of sides, each of them on a lane or on a way between lanes.
     pub fn new(slit: &'a Slit, pieces: &[crate::scan::Piece], grid: FloorGrid) -> Self {
-        let mut track = Self { slit, points: Vec::new(), sides: Vec::new(), grid };
+        let mut track = Self { slit, points: Vec::new(), sides: Vec::new(), bars: Vec::new(), grid };
         for piece in pieces {
             let from = track.points.is_empty().then(|| piece.points.first().copied()).flatten();
             track.points.extend(from);
@@ -77,12 +109,77 @@ impl<'a> Track<'a> {
             }
         }
         track.turn(0, track.sides.len());
-        track.grid.swept.fill(0);
+        track.grid.clear();
         track.grid.sweep(&track.points);
-        for k in 0..track.sides.len() {
-            track.sides[k].alone = track.grid.alone(&track.points[k..k + 2]);
+        track.bars = (0..track.sides.len()).map(|side| track.bar(side)).collect();
+        for (side, bar) in track.sides.iter_mut().zip(&track.bars) {
+            side.alone = track.grid.alone(&bar.side);
         }
         track
+    }
+
+    fn bar(&self, side: usize) -> Bar {
+        let before = side.checked_sub(1).map(|k| self.points[k]);
+        let (turn, side) = self.grid.turn_and_side(before, self.points[side], self.points[side + 1]);
+        Bar { turn, side, samples: Samples::default() }
+    }
+
+    /// Where a sample across a side lies.
+    fn sample(&self, side: usize, share: f64) -> Point {
+        let Side { ahead, length_m, .. } = self.sides[side];
+        let across = Vector::new(-ahead.y, ahead.x) * (self.grid.bar_m() / 2.0);
+        let middle = self.points[side] + ahead * (length_m / 2.0);
+        middle + across * share
+    }
+
+    /// Which samples across a side nothing else sweeps. Many ways are tried between two changes of the floor.
+    fn alone(&mut self, side: usize) -> [bool; ACROSS.len()] {
+        let known = self.bars[side].samples;
+        if known.changes == Some(self.grid.changes) {
+            return known.alone;
+        }
+        let alone = ACROSS.map(|share| self.grid.is_alone(self.sample(side, share)));
+        self.bars[side].samples = Samples { alone, changes: Some(self.grid.changes) };
+        alone
+    }
+
+    /// What the path sweeps on some sides, without the turn into the first one.
+    fn swept_by(&self, sides: Range<usize>) -> Vec<Run> {
+        let bars = &self.bars[sides];
+        let mut runs = Vec::with_capacity(bars.iter().map(|bar| bar.turn.len() + bar.side.len()).sum());
+        for (k, bar) in bars.iter().enumerate() {
+            if k > 0 {
+                runs.extend(&bar.turn);
+            }
+            runs.extend(&bar.side);
+        }
+        runs
+    }
+
+    /// Sides between two points with one before and one behind, as far as there are such.
+    fn around(&self, from: usize, to: usize) -> Range<usize> {
+        from.saturating_sub(1)..(to + 1).min(self.sides.len())
+    }
+
+    /// What the path would sweep on the same sides with another way from one point to another.
+    fn swept_with(&self, from: usize, to: usize, way: &[Point]) -> Vec<Run> {
+        let (sides, mut runs) = (self.around(from, to), Vec::with_capacity(128));
+        let mut path = Vec::with_capacity(way.len() + 2);
+        path.extend((sides.start < from).then(|| self.points[sides.start]));
+        path.extend(way);
+        path.extend((sides.end > to).then(|| self.points[sides.end]));
+        let mut fresh = 0..path.len() - 1;
+        // Sides that stay are known.
+        if sides.start < from && way[0] == self.points[from] {
+            fresh.start += 1;
+            runs.extend(&self.bars[sides.start].side);
+        }
+        if sides.end > to && way[way.len() - 1] == self.points[to] {
+            fresh.end -= 1;
+            runs.extend(&self.bars[to].side);
+        }
+        self.grid.along_some(&path, fresh, |cells| runs.push(cells.into()));
+        runs
     }
 
     /// Works out the turning at the first points of some sides.
@@ -193,17 +290,14 @@ impl<'a> Track<'a> {
         if self.loses_more(from, to, &way, 1.3 * saving_m / prices.floor_m_per_m2) {
             return None;
         }
-        let (first, last) = (from.saturating_sub(1), (to + 1).min(self.points.len() - 1));
-        let old: Vec<Point> = self.points[first..=last].to_vec();
-        let mut new: Vec<Point> = Vec::with_capacity(way.len() + 2);
-        new.extend((first < from).then(|| self.points[first]));
-        new.extend(&way);
-        new.extend((last > to).then(|| self.points[last]));
+        let (sides, new) = (self.around(from, to), self.swept_with(from, to, &way));
         let cell_m2 = self.grid.cell_m * self.grid.cell_m;
         let most_lost = ((saving_m - LEAST_SAVING_M) / (prices.floor_m_per_m2 * cell_m2)).floor() as i64;
-        if self.grid.loses_more(&old, &new, most_lost) {
+        let old = from_the_middle(sides.clone()).map(|side| &self.bars[side].side[..]);
+        if self.grid.loses_more(old, &new, most_lost) {
             return None;
         }
+        let old = self.swept_by(sides);
         let lost_m2 = self.grid.exchange(&old, &new) as f64 * cell_m2;
         let gain_m = saving_m - prices.floor_m_per_m2 * lost_m2;
         if gain_m < LEAST_SAVING_M {
@@ -215,22 +309,15 @@ impl<'a> Track<'a> {
     }
 
     /// Whether another way would lose more floor than this, from a few samples across every side.
-    fn loses_more(&self, from: usize, to: usize, way: &[Point], most_m2: f64) -> bool {
-        const ACROSS: [f64; 4] = [-0.75, -0.25, 0.25, 0.75];
+    fn loses_more(&mut self, from: usize, to: usize, way: &[Point], most_m2: f64) -> bool {
         let half_m = self.grid.bar_m() / 2.0;
         let far_m = half_m + self.grid.cell_m;
-        let sides = to - from;
         let mut lost_m2 = 0.0;
-        // From the middle outward: there the two ways differ most.
-        for k in 0..sides {
-            let at = from + if k % 2 == 0 { sides / 2 + k / 2 } else { sides / 2 - k.div_ceil(2) };
-            let Some(side) = self.sides[..to].get(at) else { continue };
-            let across = Vector::new(-side.ahead.y, side.ahead.x) * half_m;
-            let middle = self.points[at] + side.ahead * (side.length_m / 2.0);
-            for share in ACROSS {
-                let place = middle + across * share;
-                if self.grid.is_alone(place) && !is_near(way, place, far_m) {
-                    lost_m2 += side.length_m * half_m * 2.0 / ACROSS.len() as f64;
+        for at in from_the_middle(from..to) {
+            let length_m = self.sides[at].length_m;
+            for (share, is_alone) in ACROSS.into_iter().zip(self.alone(at)) {
+                if is_alone && !is_near(way, self.sample(at, share), far_m) {
+                    lost_m2 += length_m * half_m * 2.0 / ACROSS.len() as f64;
                 }
             }
             if lost_m2 > most_m2 {
@@ -268,6 +355,11 @@ impl<'a> Track<'a> {
         self.points.splice(from + 1..=to, points);
         self.sides.splice(from..to, sides);
         self.turn(from, past + 1);
+        let bars: Vec<Bar> = (from..past).map(|side| self.bar(side)).collect();
+        self.bars.splice(from..to, bars);
+        if past < self.bars.len() {
+            self.bars[past].turn = self.bar(past).turn;
+        }
     }
 
     /// Ties lanes over missed floor into the path, the most worthwhile first, until the coverage is reached; groups of
@@ -286,6 +378,7 @@ impl<'a> Track<'a> {
     ) -> Result<usize> {
         let cell_m2 = self.grid.cell_m * self.grid.cell_m;
         let mut offers: Vec<(f64, usize, Lane)> = Vec::new();
+        let places = Places::new(&self.points);
         for group in self.grid.missed() {
             if group.len() < least {
                 break;
@@ -295,7 +388,8 @@ impl<'a> Track<'a> {
                 if !lane.points.iter().all(|p| is_wanted(*p)) {
                     continue;
                 }
-                if let Some((cost_m, _, _)) = self.best_tie(&lane, prices) {
+                let sides = self.sides_near(&places, &lane);
+                if let Some((cost_m, _, _)) = self.best_tie(&lane, prices, sides) {
                     let gained = self.grid.would_gain(&lane.points);
                     offers.push((cost_m / (gained as f64 * cell_m2).max(1e-9), gained, lane));
                 }
@@ -307,7 +401,8 @@ impl<'a> Track<'a> {
             if self.grid.coverage() >= enough {
                 break;
             }
-            let Some((_, at, is_reversed)) = self.best_tie(&lane, prices) else { continue };
+            let all = 0..self.sides.len();
+            let Some((_, at, is_reversed)) = self.best_tie(&lane, prices, all) else { continue };
             if self.grid.would_gain(&lane.points) < 4 {
                 continue;
             }
@@ -317,22 +412,46 @@ impl<'a> Track<'a> {
         Ok(made)
     }
 
-    /// Where a lane is best tied in: cost in metres, side of the path, and whether it runs the other way round.
-    fn best_tie(&self, lane: &Lane, prices: &Prices) -> Option<(f64, usize, bool)> {
+    /// Sides with an end near an end of a lane, and some more.
+    fn sides_near(&self, places: &Places, lane: &Lane) -> Vec<usize> {
+        let ends = [lane.points[0], lane.points[lane.points.len() - 1]];
+        let points = ends.iter().flat_map(|end| places.near(*end, TIE_M));
+        let mut sides: Vec<usize> = points.flat_map(|k| k.saturating_sub(1)..=k).collect();
+        sides.retain(|side| *side < self.sides.len());
+        sides.sort_unstable();
+        sides.dedup();
+        sides
+    }
+
+    /// Where among some sides a lane is best tied in: cost in metres, side of the path, and whether it runs the other way
+    /// round.
+    fn best_tie(
+        &self,
+        lane: &Lane,
+        prices: &Prices,
+        among: impl IntoIterator<Item = usize>,
+    ) -> Option<(f64, usize, bool)> {
         let (a, b) = (lane.points[0], lane.points[lane.points.len() - 1]);
         let length_m = world::polyline::length_m(&lane.points);
-        let near = |p: &Point| (p - a).norm().min((p - b).norm());
-        let mut sides: Vec<(f64, usize)> = (0..self.points.len() - 1)
+        // A look at the box around both ends leaves few points to measure.
+        let reach = Vector::new(TIE_M, TIE_M) * 1.001;
+        let (low, high) = (a.inf(&b) - reach, a.sup(&b) + reach);
+        let near = |p: &Point| {
+            let is_near = low.x < p.x && p.x < high.x && low.y < p.y && p.y < high.y;
+            if is_near { (p - a).norm().min((p - b).norm()) } else { f64::INFINITY }
+        };
+        let mut sides: Vec<(f64, usize)> = among
+            .into_iter()
             .map(|k| (near(&self.points[k]).min(near(&self.points[k + 1])), k))
             .filter(|(d, _)| *d < TIE_M)
             .collect();
         sides.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
         let mut best: Option<(f64, usize, bool)> = None;
         for (_, k) in sides.into_iter().take(10) {
+            let (old_m, old_rad) = self.measure(k, k + 1, &self.points[k..k + 2]);
             for is_reversed in [false, true] {
                 let way = self.tied(k, lane, is_reversed)?;
                 let (new_m, new_rad) = self.measure(k, k + 1, &way);
-                let (old_m, old_rad) = self.measure(k, k + 1, &[self.points[k], self.points[k + 1]]);
                 let cost_m = new_m - old_m + prices.turn_m_per_rad * (new_rad - old_rad);
                 if best.is_none_or(|b| cost_m < b.0) {
                     best = Some((cost_m, k, is_reversed));
@@ -357,12 +476,7 @@ impl<'a> Track<'a> {
 
     fn tie(&mut self, k: usize, lane: &Lane, is_reversed: bool) {
         let Some(way) = self.tied(k, lane, is_reversed) else { return };
-        let (first, last) = (k.saturating_sub(1), (k + 2).min(self.points.len() - 1));
-        let old: Vec<Point> = self.points[first..=last].to_vec();
-        let mut new: Vec<Point> = Vec::new();
-        new.extend((first < k).then(|| self.points[first]));
-        new.extend(&way);
-        new.extend((last > k + 1).then(|| self.points[last]));
+        let (old, new) = (self.swept_by(self.around(k, k + 1)), self.swept_with(k, k + 1, &way));
         self.grid.exchange(&old, &new);
         let mut middle = lane.points.clone();
         if is_reversed {
@@ -372,6 +486,14 @@ impl<'a> Track<'a> {
         let out = self.slit.path(middle[middle.len() - 1], self.points[k + 1]).unwrap_or_default();
         self.splice(k, k + 1, &[(into, false), (middle, true), (out, false)]);
     }
+}
+
+/// Places of a range from its middle outward: there two ways between the same ends differ most.
+fn from_the_middle(range: Range<usize>) -> impl Iterator<Item = usize> {
+    let n = range.len();
+    let at =
+        move |k: usize| range.start + if k.is_multiple_of(2) { n / 2 + k / 2 } else { n / 2 - k.div_ceil(2) };
+    (0..n).map(at)
 }
 
 /// Adds a straight way in sides that are short enough, without its first point.

@@ -1,7 +1,7 @@
 //! From lanes to a path: tour, touch-ups, and how good the result is.
 
 use crate::{
-    cuts::{Cut, CutRule, domain},
+    cuts::{Cut, CutRule, Domain},
     floor::FloorGrid,
     ground::Ground,
     lanes::{Lane, Pattern, Reach, lanes},
@@ -9,7 +9,7 @@ use crate::{
     side_by_side::Stop,
     slit::Slit,
     touch::touch_up,
-    tour::{Effort, Tour, Ways, tour},
+    tour::{Costs, Effort, Tour, Ways, tour},
 };
 use planner_api::Result;
 use std::f64::consts::TAU;
@@ -26,6 +26,8 @@ const BENDS: usize = 5;
 const BEND_SHARE: f64 = 24.0;
 /// Cells of the smallest group that the path is bent to.
 const BEND_CELLS: usize = 3;
+/// Share of the floor scanned so far that has to be left when the path is shortened, if only some floor is asked for.
+const KEPT: f64 = 0.9;
 /// Rounds in which small touch-ups are tied in.
 const TOUCH_UPS: usize = 8;
 /// Rounds after which a little less is enough, but smaller places count as well.
@@ -117,7 +119,11 @@ pub struct Draft<'a> {
     recipe: Recipe,
     cuts: Vec<Cut>,
     slit: Slit,
+    /// The floor to scan, without room for sweeps: with it a large one takes many megabytes.
+    floor: FloorGrid,
     lanes: Vec<Lane>,
+    /// What ways between their ends cost, as far as it is known.
+    costs: Costs,
     pieces: Vec<Piece>,
     start: Point,
     /// Length, with what is still to scan, metres.
@@ -126,19 +132,27 @@ pub struct Draft<'a> {
 }
 
 impl<'a> Draft<'a> {
-    /// The first tour of a candidate; `None` where the robot has no room at all.
+    /// The first tour of a candidate.
     ///
     /// # Errors
     /// When the console wants an end.
-    pub fn new(ground: &'a Ground, recipe: &Recipe, order: &Order<'a>, stop: &Stop) -> Result<Option<Self>> {
+    pub fn new(
+        ground: &'a Ground,
+        recipe: &Recipe,
+        (cuts, slit): Domain,
+        order: &Order<'a>,
+        stop: &Stop,
+    ) -> Result<Self> {
         let home = ground.home();
-        let Some((cuts, slit)) = domain(ground, &recipe.pattern, &recipe.rule, home) else { return Ok(None) };
         let start = if slit.contains(order.start) { order.start } else { home };
         let all = lanes(ground, &slit, &cuts, &recipe.pattern, &recipe.reach);
         let (order, recipe, lanes, pieces) = (*order, *recipe, Vec::new(), Vec::new());
         let (length_m, turns) = (0.0, 0.0);
-        let mut draft = Self { ground, order, recipe, cuts, slit, lanes, pieces, start, length_m, turns };
-        let mut grid = draft.unswept();
+        let mut grid = FloorGrid::new(ground, &slit, order.cell_m);
+        grid.keep_within(order.regions);
+        let (floor, costs) = (grid.without_sweeps(), Costs::default());
+        let mut draft =
+            Self { ground, order, recipe, cuts, slit, floor, lanes, costs, pieces, start, length_m, turns };
         draft.lanes = draft.wanted(&grid, all);
         draft.pieces = draft.toured(DRAFT_SHARE, stop)?;
         let path = joined(&draft.pieces);
@@ -146,7 +160,7 @@ impl<'a> Draft<'a> {
         let missed_m2 = (1.0 - grid.coverage()) * grid.area_m2();
         draft.length_m = polyline::length_m(&path) + MISSED_SHARE * missed_m2 / ground.swath_m;
         draft.turns = rotation_turns(&path);
-        Ok(Some(draft))
+        Ok(draft)
     }
 
     /// What the finished path will cost, about, metres, at this price of a whole turn.
@@ -154,17 +168,16 @@ impl<'a> Draft<'a> {
         self.length_m + turn_m * self.turns
     }
 
-    /// The floor to scan. A large one takes megabytes, so that a draft does without.
-    fn unswept(&self) -> FloorGrid {
-        let mut grid = FloorGrid::new(self.ground, &self.slit, self.order.cell_m);
-        grid.keep_within(self.order.regions);
-        grid
-    }
-
-    fn toured(&self, share_of_kicks: f64, stop: &Stop) -> Result<Vec<Piece>> {
+    fn toured(&mut self, share_of_kicks: f64, stop: &Stop) -> Result<Vec<Piece>> {
         let effort = self.recipe.effort;
         let effort = Effort { kicks_per_lane: effort.kicks_per_lane * share_of_kicks, ..effort };
-        toured(&self.slit, &self.lanes, (self.ground.home(), self.start), &effort, stop)
+        let costs = std::mem::take(&mut self.costs);
+        let ends = (self.ground.home(), self.start);
+        let ways = Ways::new(&self.slit, &self.lanes, ends, effort.turn_m_per_rad, costs);
+        let order = tour(&ways, &effort, stop)?;
+        let pieces = assembled(&ways, &self.lanes, &order);
+        self.costs = ways.into_costs();
+        Ok(pieces)
     }
 
     fn is_in_reach(&self, at: Point) -> bool {
@@ -188,10 +201,10 @@ impl<'a> Draft<'a> {
     /// # Errors
     /// When the console wants an end.
     pub fn finished(mut self, stop: &Stop) -> Result<Scan> {
-        let mut grid = self.unswept();
+        let mut grid = self.floor.unswept();
         let mut pieces = std::mem::take(&mut self.pieces);
         for round in 0..self.recipe.rounds {
-            grid.swept.fill(0);
+            grid.clear();
             grid.sweep(&joined(&pieces));
             let least = (self.recipe.touch_m2 / (self.order.cell_m * self.order.cell_m)) as usize;
             let missed = grid.missed();
@@ -218,7 +231,13 @@ impl<'a> Draft<'a> {
         let prices = Prices { turn_m_per_rad: effort.turn_m_per_rad, floor_m_per_m2 };
         let careful = Prices { floor_m_per_m2: 1e6, ..prices };
         let in_reach = |at: Point| self.is_in_reach(at);
+        let asked_for = (!self.order.regions.is_empty()).then(|| track.clone());
         track.shorten(&prices, stop)?;
+        if let Some(whole) = asked_for.filter(|whole| track.grid.coverage() < KEPT * whole.grid.coverage()) {
+            // A little floor far away is not worth its way, but nothing else was asked for.
+            *track = whole;
+            track.shorten(&careful, stop)?;
+        }
         for _ in 0..BENDS {
             let most_m_per_m2 = BEND_SHARE / self.ground.swath_m;
             if track.bend(&in_reach, &prices, (enough, BEND_CELLS), most_m_per_m2, stop)? == 0 {
@@ -274,18 +293,6 @@ fn straightened(points: &[Point]) -> Vec<Point> {
 
 fn joined(pieces: &[Piece]) -> Vec<Point> {
     pieces.iter().flat_map(|piece| piece.points.iter().copied()).collect()
-}
-
-fn toured(
-    slit: &Slit,
-    lanes: &[Lane],
-    (home, start): (Point, Point),
-    effort: &Effort,
-    stop: &Stop,
-) -> Result<Vec<Piece>> {
-    let ways = Ways::new(slit, lanes, home, start, effort.turn_m_per_rad);
-    let order = tour(&ways, effort, stop)?;
-    Ok(assembled(&ways, lanes, &order))
 }
 
 fn assembled(ways: &Ways<'_>, lanes: &[Lane], order: &Tour) -> Vec<Piece> {

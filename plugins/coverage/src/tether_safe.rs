@@ -219,12 +219,19 @@ impl TetherSafe {
         }
         let (worth, scan) = Self::told(tried, ctx).ok_or_else(|| answer::no_room(ground))?;
         answer::tell_unreachable(ground, &scan, &order, ctx);
+        let is_whole = worth.coverage >= wishes.enough.min(0.99);
+        if !is_whole && order.reel_m.is_infinite() {
+            let share = 100.0 * worth.coverage;
+            ctx.log(
+                LogLevel::Warn,
+                &format!("the plan scans {share:.1} % of the floor that is to be scanned"),
+            );
+        }
         if ctx.wants_drawing() {
             scan.cuts.iter().for_each(|cut| ctx.polyline(Layer::Tether, &cut.line));
         }
         let mut plan = plan_of(&scan, start, &lead_in);
-        let reachable = worth.coverage >= wishes.enough.min(0.99);
-        plan.complete = reachable && order.reel_m.is_infinite();
+        plan.complete = is_whole && order.reel_m.is_infinite();
         if !is_within(&worth, wishes) && worth.certificate.certified {
             ctx.log(
                 LogLevel::Warn,
@@ -255,9 +262,10 @@ impl TetherSafe {
         for share in [1.0, 0.5, 0.0] {
             let alpha_rad = wishes.alpha_rad * share;
             let drafted = side_by_side(candidates(ground, wishes, alpha_rad), ctx, |candidate, stop| {
-                let recipe = candidate.recipe(ground, wishes, alpha_rad);
-                let draft = Draft::new(ground, &recipe, order, stop)?;
-                Ok(draft.map(|draft| (draft.estimate_m(wishes.choice_turn_m), candidate.name, draft)))
+                let (recipe, domain) = candidate.recipe(ground, wishes, alpha_rad);
+                let Some(domain) = domain else { return Ok(None) };
+                let draft = Draft::new(ground, &recipe, domain, order, stop)?;
+                Ok(Some((draft.estimate_m(wishes.choice_turn_m), candidate.name, draft)))
             })?;
             let mut drafts: Vec<(f64, String, Draft<'_>)> = drafted.into_iter().flatten().collect();
             drafts.sort_by(|a, b| a.0.total_cmp(&b.0));

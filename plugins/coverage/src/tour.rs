@@ -8,9 +8,11 @@ use crate::{lanes::Lane, side_by_side::Stop, slit::Slit};
 use planner_api::Result;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use std::cell::RefCell;
-use std::collections::HashMap;
+use std::{cell::RefCell, collections::HashMap};
 use world::{Point, Vector};
+
+mod costs;
+pub use costs::Costs;
 
 /// Nearest ends whose way is worked out for the lists.
 const LOOKED_AT: usize = 18;
@@ -18,8 +20,8 @@ const LOOKED_AT: usize = 18;
 const NEIGHBOURS: usize = 8;
 /// Longest run of lanes that is moved as one.
 const RUN: usize = 3;
-/// Ends up to which all ways fit into a table.
-const TABLE: usize = 1600;
+/// Share of a cost that rounding may take away.
+const ROUNDING: f64 = 1e-6;
 
 /// How hard to try, and what turns cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,13 +45,19 @@ pub struct Ways<'a> {
     triangle: Vec<Option<usize>>,
     out: Vec<Option<Vector>>,
     turn_m_per_rad: f64,
-    table: RefCell<Vec<f32>>,
-    map: RefCell<HashMap<u64, f32>>,
+    costs: RefCell<Costs>,
 }
 
 impl<'a> Ways<'a> {
-    /// Ways between the ends of some lanes, home and start.
-    pub fn new(slit: &'a Slit, lanes: &[Lane], home: Point, start: Point, turn_m_per_rad: f64) -> Self {
+    /// Ways between the ends of some lanes, home and start; what is known of them may come from ways between the first of
+    /// these lanes, home and start.
+    pub fn new(
+        slit: &'a Slit,
+        lanes: &[Lane],
+        (home, start): (Point, Point),
+        turn_m_per_rad: f64,
+        known: Costs,
+    ) -> Self {
         let (mut at, mut out) = (Vec::new(), Vec::new());
         for lane in lanes {
             let (p, n) = (&lane.points, lane.points.len());
@@ -58,10 +66,14 @@ impl<'a> Ways<'a> {
         }
         at.extend([home, start]);
         out.extend([None, None]);
-        let n = at.len();
-        let table = if n <= TABLE { vec![f32::NAN; n * n] } else { Vec::new() };
         let triangle = at.iter().map(|p| slit.locate(*p)).collect();
-        Self { slit, at, triangle, out, turn_m_per_rad, table: RefCell::new(table), map: RefCell::default() }
+        let costs = RefCell::new(known.with_ends(at.len()));
+        Self { slit, at, triangle, out, turn_m_per_rad, costs }
+    }
+
+    /// What is known by now.
+    pub fn into_costs(self) -> Costs {
+        self.costs.into_inner()
     }
 
     fn len(&self) -> usize {
@@ -85,23 +97,12 @@ impl<'a> Ways<'a> {
     /// What leaving a lane at `u` and entering another at `v` costs; the same in both directions.
     pub fn cost(&self, u: End, v: End) -> f64 {
         let (u, v) = (u.min(v), u.max(v));
-        let n = self.len();
-        if !self.table.borrow().is_empty() {
-            let known = self.table.borrow()[u * n + v];
-            if known.is_nan() {
-                let cost = self.worked_out(u, v);
-                self.table.borrow_mut()[u * n + v] = cost as f32;
-                return f64::from(cost as f32);
-            }
-            return f64::from(known);
-        }
-        let key = (u as u64) << 32 | v as u64;
-        if let Some(known) = self.map.borrow().get(&key) {
-            return f64::from(*known);
-        }
-        let cost = self.worked_out(u, v) as f32;
-        self.map.borrow_mut().insert(key, cost);
-        f64::from(cost)
+        let known = self.costs.borrow().get(u, v);
+        f64::from(known.unwrap_or_else(|| {
+            let cost = self.worked_out(u, v) as f32;
+            self.costs.borrow_mut().set(u, v, cost);
+            cost
+        }))
     }
 
     fn worked_out(&self, u: End, v: End) -> f64 {
@@ -170,9 +171,18 @@ fn neighbours(ways: &Ways<'_>, stop: &Stop) -> Result<Vec<Vec<End>>> {
         }
         found.sort_by(|a, b| ways.least(u, *a).total_cmp(&ways.least(u, *b)).then(a.cmp(b)));
         found.truncate(LOOKED_AT);
-        let mut priced: Vec<(f64, End)> = found.iter().map(|v| (ways.cost(u, *v), *v)).collect();
-        priced.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        all.push(priced.into_iter().take(NEIGHBOURS).map(|(_, v)| v).collect());
+        let mut priced: Vec<(f64, End)> = Vec::with_capacity(NEIGHBOURS + 1);
+        for v in found {
+            // The rest are further away than the last in the list, and no way is shorter than the straight one.
+            if priced.len() == NEIGHBOURS && priced[NEIGHBOURS - 1].0 < ways.least(u, v) * (1.0 - ROUNDING) {
+                break;
+            }
+            let cost = ways.cost(u, v);
+            let is_before = |other: &(f64, End)| other.0.total_cmp(&cost).then(other.1.cmp(&v)).is_lt();
+            priced.insert(priced.partition_point(is_before), (cost, v));
+            priced.truncate(NEIGHBOURS);
+        }
+        all.push(priced.into_iter().map(|(_, v)| v).collect());
     }
     Ok(all)
 }
@@ -411,7 +421,11 @@ impl Search<'_> {
             if most - ways.least(tail, pv) - ways.least(before, after) <= 1e-6 {
                 continue;
             }
-            let gain = most - ways.cost(tail, pv) - ways.cost(before, after);
+            let most = most - ways.cost(tail, pv);
+            if most - ways.least(before, after) * (1.0 - ROUNDING) <= 1e-6 {
+                continue;
+            }
+            let gain = most - ways.cost(before, after);
             if gain > 1e-6 {
                 self.relink(first, run, u, v);
                 return Some((gain, vec![u, v, pv, tail, before, after]));

@@ -11,16 +11,18 @@ pub struct Span {
     low: f64,
     low_is_open: bool,
     high: f64,
+    /// Why nothing less will do, where that is not plain.
+    why: Option<&'static str>,
 }
 
 /// Every number greater than `low`.
 pub const fn above(low: f64) -> Span {
-    Span { low, low_is_open: true, high: f64::INFINITY }
+    Span { low, low_is_open: true, high: f64::INFINITY, why: None }
 }
 
 /// Every number from `low` on.
 pub const fn at_least(low: f64) -> Span {
-    Span { low, low_is_open: false, high: f64::INFINITY }
+    Span { low, low_is_open: false, high: f64::INFINITY, why: None }
 }
 
 impl Span {
@@ -29,13 +31,19 @@ impl Span {
         Self { high, ..self }
     }
 
+    /// The same, with the reason why nothing less will do: reads on after the bound and a colon.
+    pub const fn because(self, why: &'static str) -> Self {
+        Self { why: Some(why), ..self }
+    }
+
     /// What a number must be instead, if it is not accepted: reads on after "must be".
     pub fn complaint(&self, number: f64, unit: &str) -> Option<String> {
         let gap = if unit.is_empty() { "" } else { " " };
         if self.low_is_open && number <= self.low {
             Some(format!("greater than {}{gap}{unit}", self.low))
         } else if number < self.low {
-            Some(format!("at least {}{gap}{unit}", self.low))
+            let why = self.why.map(|why| format!(": {why}")).unwrap_or_default();
+            Some(format!("at least {}{gap}{unit}{why}", self.low))
         } else if number > self.high {
             Some(format!("at most {}{gap}{unit}", self.high))
         } else {
@@ -306,13 +314,16 @@ static NOISE: &[Key] = &[
     number("sigma_ratio", "", above(0.0).up_to(0.9)).or_none("for `gaussian`, `heavy-tailed`"),
 ];
 
+/// Why a goal is not reached more closely.
+const TOO_NEAR: &str = "a robot that is steered once a tick does not stop nearer to a place";
+
 static MISSION: &[Key] = &[
     word("kind", &["goto", "follow", "cover"]),
     point("goal_m").or_none("for `goto`"),
     key("spiral", "", Kind::Table(SPIRAL)).or_none("for `follow`: this or `path_m`"),
     key("path_m", "m", Kind::Points(2)).or_none("for `follow`: this or `spiral`"),
     key("boxes_m", "m", Kind::Boxes).or_none("for `cover`: all floor that can be reached"),
-    number("tolerance_m", "m", above(0.0).up_to(100.0)).or(0.2),
+    number("tolerance_m", "m", at_least(0.01).up_to(100.0).because(TOO_NEAR)).or(0.2),
     number("tick_s", "s", at_least(0.001).up_to(10.0)).or(0.1),
     number("time_limit_s", "s", above(0.0)).or(600.0),
     number("swath_m", "m", above(0.0).up_to(100.0)).or(0.5),

@@ -241,6 +241,11 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "goal_m = [3, 0]\ntime_limit_s = 1e7",
         "9:16: mission.time_limit_s = 1e7: 100000000 ticks of 0.1 s; at most 10000000",
     ),
+    (
+        "goal_m = [3, 0]",
+        "goal_m = [3, 0]\ntolerance_m = 0.001",
+        "9:15: mission.tolerance_m = 0.001: must be at least 0.01 m: a robot that is steered once a tick does not stop nearer to a place",
+    ),
     ("goal_m = [3, 0]", "goal_m = [3, 0]\ntick_s = 0", "9:10: mission.tick_s = 0: must be at least 0.001 s"),
     ("goal_m = [3, 0]", "goal_m = [3, 0]\ntick_s = 2", "4:1: ae.period_s: must be at least one tick, 2 s"),
     ("goal_m = [3, 0]", "", "6:1: mission.goal_m: missing"),

@@ -4,7 +4,7 @@ use super::Mission;
 use crate::{
     drive::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD, drive_for},
     event::EventKind,
-    link::PlannerLink,
+    link::{Cause, Fault, PlannerLink},
     task::Task,
 };
 use planner_api::{Command, Drive, Reason, Sensed, Status};
@@ -18,6 +18,8 @@ const BLOCKED_S: f64 = 1.0;
 const MOST_PLANS: usize = 4;
 /// A robot that is blocked further away than this is blocked in another place, metres.
 const MOVED_ON_M: f64 = 0.3;
+/// A planner that answers too late again within this time holds the robot, seconds.
+const LATE_AGAIN_S: f64 = 60.0;
 /// Distance between the points of the path flown that are kept for planners, metres.
 const TRAIL_M: f64 = 0.1;
 
@@ -25,10 +27,11 @@ impl Mission {
     pub(super) fn drive(&mut self, planner: &mut dyn PlannerLink) -> Drive {
         let command = self.plan_if_due(planner).and_then(|()| self.ask_for_command(planner));
         match command {
-            Ok(command) => {
+            Ok(Some(command)) => {
                 self.replan_if_blocked(command.status);
                 self.send(command)
             }
+            Ok(None) => Drive::STILL,
             Err(message) => {
                 self.hold_for_planner(message);
                 Drive::STILL
@@ -62,7 +65,8 @@ impl Mission {
         }
     }
 
-    fn ask_for_command(&mut self, planner: &mut dyn PlannerLink) -> Result<Command, String> {
+    /// What the planner commands; nothing for this tick when its answer came too late once.
+    fn ask_for_command(&mut self, planner: &mut dyn PlannerLink) -> Result<Option<Command>, String> {
         let pose = self.locator.pose_estimate();
         let here = pose.position;
         self.keep_trail();
@@ -91,10 +95,26 @@ impl Mission {
             Ok(reply) => {
                 let command = reply.value;
                 self.pass_on(reply);
-                Ok(command)
+                Ok(Some(command))
+            }
+            Err(fault) if self.is_late_once(&fault) => {
+                let message = format!("{}; the robot stood still for that tick", fault.message);
+                self.happened.push(EventKind::PlannerFailed { fault: Fault { message, ..fault } });
+                Ok(None)
             }
             Err(fault) => Err(self.note_fault(fault)),
         }
+    }
+
+    /// Whether a planner whose process is well answered too late, and not so before in a while: a busy machine costs a
+    /// tick, not the mission.
+    fn is_late_once(&mut self, fault: &Fault) -> bool {
+        if fault.cause != Cause::Late {
+            return false;
+        }
+        let now_s = self.now_s();
+        let before_s = self.late_at_s.replace(now_s);
+        before_s.is_none_or(|before_s| now_s - before_s > LATE_AGAIN_S)
     }
 
     fn send(&mut self, command: Command) -> Drive {

@@ -117,6 +117,7 @@ impl Mission {
         if judged.is_ok() {
             self.planner.plan_due = None;
             self.task.take_plan(&plan);
+            self.plan_is_whole = plan.complete;
             // What is left is counted anew along the new plan.
             self.stuck.reset();
             self.keep_to(&plan);
@@ -131,7 +132,8 @@ impl Mission {
     fn judge_way(&self, plan: &Plan) -> Result<(), String> {
         let leads_nowhere = polyline::length_m(&plan.path) < NO_WAY_M;
         let has_scanned = self.coverage.counts().covered > 0;
-        match self.task.floor_left_m2(&self.coverage) {
+        let left = self.task.floor_left(&self.coverage).len();
+        match left as f64 * self.coverage.floor().cell_m2() {
             left_m2 if leads_nowhere && !has_scanned && left_m2 > 0.0 => Err(format!(
                 "the plan of {} scans nothing of the {left_m2:.2} m² to be scanned: no lane reaches them; another planner, less \
                  mission.overlap_m or other mission.boxes_m may",

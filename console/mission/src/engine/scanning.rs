@@ -3,7 +3,10 @@
 use super::{Mission, Phase};
 use crate::{chart::Seen, event::EventKind, task::Task};
 use planner_api::Reason;
-use world::{CellRun, FloorMaker, Pose, Readings, Shape};
+use world::{CellRun, FloorMaker, Pose, Readings, Shape, tether::Reach};
+
+/// Floor left out below this is not worth a word at the end, square metres.
+const WORTH_TELLING_M2: f64 = 0.05;
 
 impl Mission {
     /// Puts what is seen on the chart; whether the chart has changed.
@@ -106,9 +109,31 @@ impl Mission {
             Task::Goto(_) | Task::Follow { .. } => "the task is done".into(),
             Task::Cover(_) => {
                 let share = 100.0 * self.coverage.fraction_reachable();
-                format!("back at the anchor, {share:.1} % of the reachable floor scanned")
+                let base_m2 = self.coverage.counts().reachable as f64 * self.coverage.floor().cell_m2();
+                let scanned = format!(
+                    "back at the anchor, {share:.1} % of the {base_m2:.1} m² of reachable floor scanned"
+                );
+                scanned + &self.left_beyond_reel().map(|why| format!("; {why}")).unwrap_or_default()
             }
         }
+    }
+
+    /// What the plan left out because the cable does not lead there, as a sentence.
+    fn left_beyond_reel(&self) -> Option<String> {
+        let (anchor, reach_m) = self.config.cable_reach().filter(|_| !self.plan_is_whole)?;
+        let world = self.chart.world();
+        let shapes: Vec<Shape> = world.obstacles.iter().map(|o| o.shape.clone()).collect();
+        let reach = Reach::new(anchor, &world.boundary, &shapes, reach_m);
+        let floor = self.coverage.floor();
+        let left = self.task.floor_left(&self.coverage);
+        let beyond = left.iter().filter(|index| reach.is_beyond(floor.center(**index))).count();
+        let beyond_m2 = beyond as f64 * floor.cell_m2();
+        let reel_m = self.config.tether.as_ref()?.limits.reel_m;
+        (beyond_m2 > WORTH_TELLING_M2).then(|| {
+            format!(
+                "NOT all of it: {beyond_m2:.1} m² beyond the reel of {reel_m} m were left out of the plan"
+            )
+        })
     }
 }
 

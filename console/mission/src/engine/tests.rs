@@ -17,6 +17,8 @@ use world::{Boundary, Obstacle, ObstacleId, Odometry, Pose, RangeSet, Shape, Sig
 #[derive(Default)]
 struct Straight {
     fail_at_tick: Option<u64>,
+    /// At these ticks its answer comes too late.
+    late_at_ticks: Vec<u64>,
     refuse: Vec<&'static str>,
     /// From this tick on it says that it cannot go on.
     stuck_from_tick: Option<u64>,
@@ -101,6 +103,9 @@ impl PlannerLink for Straight {
     fn step(&mut self, sensed: &Sensed<'_>) -> Result<Reply<Command>, Fault> {
         if self.fail_at_tick == Some(sensed.tick) {
             return Err(self.fault(During::Step, Cause::Panic));
+        }
+        if self.late_at_ticks.contains(&sensed.tick) {
+            return Err(self.fault(During::Step, Cause::Late));
         }
         if self.stuck_from_tick.is_some_and(|tick| sensed.tick >= tick) {
             return Ok(reply(Command::still(Status::Stuck)));
@@ -323,6 +328,48 @@ fn a_planner_that_fails_holds_the_robot_in_the_same_tick() {
     flight.fly(200);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
     assert_eq!(flight.planner.chosen, ["straight", "other"]);
+}
+
+#[test]
+fn an_answer_that_comes_late_once_costs_a_tick_and_one_more_holds_the_robot() {
+    let mut flight = Flight::new(config());
+    flight.planner.late_at_ticks = vec![30, 50];
+    flight.tick(&[Order::Start]);
+    flight.fly(29);
+    let before = flight.pose;
+    let events = flight.tick(&[]);
+    assert_eq!(flight.pose, before);
+    let told = |events: &[EventKind]| {
+        events.iter().find_map(|kind| match kind {
+            EventKind::PlannerFailed { fault } => Some(fault.message.clone()),
+            _ => None,
+        })
+    };
+    assert!(
+        told(&events).is_some_and(|message| message.ends_with("stood still for that tick")),
+        "{events:?}"
+    );
+    assert!(!events.iter().any(|kind| matches!(kind, EventKind::Held { .. })), "{events:?}");
+    flight.tick(&[]);
+    assert!(flight.pose != before && flight.mission.phase() == &Phase::Running);
+    flight.fly(19);
+    assert!(matches!(flight.mission.phase(), Phase::Held(HoldReason::PlannerFault { .. })));
+    flight.tick(&[Order::Resume]);
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+}
+
+#[test]
+fn answers_that_come_late_far_apart_hold_nothing() {
+    let mut flight = Flight::new(config());
+    flight.planner.late_at_ticks = vec![30];
+    flight.tick(&[Order::Start]);
+    // A minute and a little before tick 30.
+    flight.mission.late_at_s = Some(-58.0);
+    flight.fly(30);
+    assert_eq!(flight.mission.phase(), &Phase::Running);
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
 }
 
 #[test]

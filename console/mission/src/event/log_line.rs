@@ -97,7 +97,7 @@ impl Event {
                 LogLevel::Info => line(Severity::Info, "plan", format!("{planner}: {message}")),
                 LogLevel::Warn => line(Severity::Watch, "plan", format!("{planner}: {message}")),
             },
-            EventKind::PlannerFailed { fault } => line(Severity::Crit, "plan", fault.message.clone()),
+            EventKind::PlannerFailed { fault } => line(fault.severity(), "plan", fault.message.clone()),
             EventKind::Truth { collided: true, pose, .. } => line(
                 Severity::Crit,
                 "robot",

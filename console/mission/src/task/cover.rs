@@ -133,14 +133,14 @@ impl Cover {
         if left.is_empty() { vec![regions::square(self.anchor, floor.cell_m)] } else { left }
     }
 
-    /// Reachable floor that is left to scan, square metres.
-    pub fn floor_left_m2(&self, coverage: &CoverageGrid) -> f64 {
+    /// Reachable cells that are left to scan.
+    pub fn floor_left(&self, coverage: &CoverageGrid) -> Vec<usize> {
         let floor = coverage.floor();
         let wanted = regions::cells_within(floor, &self.regions);
         let is_wanted = |index: usize| wanted.as_ref().is_none_or(|w| w[index]);
-        let left = (0..floor.len())
-            .filter(|index| floor.is_reachable(*index) && !coverage.is_covered(*index) && is_wanted(*index));
-        left.count() as f64 * floor.cell_m2()
+        (0..floor.len())
+            .filter(|index| floor.is_reachable(*index) && !coverage.is_covered(*index) && is_wanted(*index))
+            .collect()
     }
 
     /// What is left, as planners read it.

@@ -5,22 +5,31 @@ use crate::fold::tests::round_tank;
 use proptest::prelude::*;
 use world::{CellRun, Pose, Tool};
 
-/// Lanes from west to east, of which `lanes` were flown.
-fn scanned(run: &RunOpened, lanes: usize) -> (CoverageGrid, Evidence) {
-    let (mut grid, mut evidence) = (CoverageGrid::new(run.floor.clone()), Evidence::new(run));
-    for lane in 0..14 {
-        let y = -3.9 + 0.6 * lane as f64;
+/// Lanes from west to east and back, as a plan.
+fn lanes() -> Vec<Point> {
+    let lane = |k: usize| {
+        let y = -3.9 + 0.6 * k as f64;
         let half_m = (4.5_f64.powi(2) - y * y).max(0.0).sqrt();
-        let ends = [Point::new(-half_m, y), Point::new(half_m, y)];
-        evidence.plan(&ends);
-        if lane < lanes {
-            let [west, east] = ends.map(|position| Pose { position, heading_rad: 0.0 });
-            grid.mark(Tool::Bar { swath_m: 0.6 }, west, east);
-            for k in 0..=100 {
-                let position = ends[0] + (ends[1] - ends[0]) * f64::from(k) / 100.0;
-                evidence.visit(Pose { position, heading_rad: 0.0 }, k > 0);
-            }
+        let east_m = if k.is_multiple_of(2) { half_m } else { -half_m };
+        [Point::new(-east_m, y), Point::new(east_m, y)]
+    };
+    (0..14).flat_map(lane).collect()
+}
+
+/// All lanes were planned and the first `lanes` of them flown.
+fn scanned(run: &RunOpened, flown: usize) -> (CoverageGrid, Evidence) {
+    let (mut grid, mut evidence) = (CoverageGrid::new(run.floor.clone()), Evidence::new(run));
+    let path = lanes();
+    evidence.plan(&path, true);
+    for (k, lane) in path.chunks(2).take(flown).enumerate() {
+        let heading_rad = if k.is_multiple_of(2) { 0.0 } else { std::f64::consts::PI };
+        let [from, to] = [lane[0], lane[1]].map(|position| Pose { position, heading_rad });
+        grid.mark(Tool::Bar { swath_m: 0.6 }, from, to);
+        for k in 0..=100 {
+            let position = lane[0] + (lane[1] - lane[0]) * f64::from(k) / 100.0;
+            evidence.visit(Pose { position, heading_rad }, k > 0);
         }
+        evidence.fly(world::polyline::length_m(&path[..2 * k + 2]));
     }
     (grid, evidence)
 }
@@ -61,6 +70,77 @@ fn lanes_that_were_not_flown_are_told_with_place_plate_and_reason() {
         !corners.is_empty() && corners.iter().all(|area| area.area_m2 < 3.0 && area.at.coords.norm() > 4.0),
         "{corners:?}"
     );
+}
+
+fn why_missed(evidence: &Evidence, run: &RunOpened, x: f64, y: f64) -> MissReason {
+    let index = run.floor.cell_at(Point::new(x, y)).expect("a place on the floor");
+    evidence.reasons(run).why_missed(&run.floor, index)
+}
+
+#[test]
+fn floor_ahead_of_a_run_that_was_cut_short_was_not_passed_however_near_the_robot_came() {
+    let run = round_tank(0.05);
+    let (grid, evidence) = scanned(&run, 1);
+    let account = account(&run, &grid, &evidence);
+    assert!(
+        account.missed.iter().all(|area| area.reason != MissReason::PassedBeside),
+        "{:?}",
+        account.missed
+    );
+    // The lane beside the only one flown, half a swath away.
+    assert_eq!(why_missed(&evidence, &run, 0.0, -3.45), MissReason::NotReached);
+}
+
+#[test]
+fn a_lane_that_was_flown_beside_its_place_is_told_as_passed_and_those_ahead_are_not() {
+    let run = round_tank(0.05);
+    let mut evidence = Evidence::new(&run);
+    evidence.plan(&lanes(), true);
+    evidence.fly(world::polyline::length_m(&lanes()[..2]));
+    assert_eq!(why_missed(&evidence, &run, 0.0, -4.15), MissReason::PassedBeside);
+    assert_eq!(why_missed(&evidence, &run, 0.0, -3.45), MissReason::NotReached);
+}
+
+#[test]
+fn a_new_plan_takes_the_place_of_the_one_before_unless_it_is_refused() {
+    let run = round_tank(0.05);
+    let path = lanes();
+    let [first_m, second_m] = [&path[..2], &path[2..8]].map(world::polyline::length_m);
+    for (is_refused, north) in [(false, MissReason::NotPlanned), (true, MissReason::NotReached)] {
+        let mut evidence = Evidence::new(&run);
+        evidence.plan(&path, true);
+        evidence.fly(first_m);
+        evidence.plan(&path[2..8], true);
+        if is_refused {
+            evidence.refuse_plan();
+        }
+        let why = |evidence: &Evidence, x, y| why_missed(evidence, &run, x, y);
+        assert_eq!(why(&evidence, 0.0, -3.9), MissReason::PassedBeside);
+        assert_eq!(why(&evidence, 0.0, -2.7), MissReason::NotReached);
+        assert_eq!(why(&evidence, 2.0, 2.1), north, "refused: {is_refused}");
+        if !is_refused {
+            evidence.fly_share((first_m + 0.999 * second_m) / (first_m + second_m));
+            assert_eq!(why(&evidence, 0.0, -2.7), MissReason::PassedBeside);
+        }
+    }
+}
+
+#[test]
+fn floor_that_the_cable_does_not_lead_to_is_told_as_beyond_the_reel_only_if_the_plan_left_it_out() {
+    let mut run = round_tank(0.05);
+    run.mission.tether = Some(mission::TetherConfig {
+        anchor: Point::new(0.0, -4.5),
+        limits: world::tether::Limits { reel_m: 6.6, max_wrap_rad: 9.0, max_sum_wrap_rad: 9.0 },
+        friction: 0.3,
+        fly_uncertified: false,
+    });
+    for (is_whole, north) in [(true, MissReason::NotPlanned), (false, MissReason::BeyondReel)] {
+        let mut evidence = Evidence::new(&run);
+        evidence.plan(&lanes()[..16], is_whole);
+        assert_eq!(why_missed(&evidence, &run, 0.0, 2.0), north);
+        assert_eq!(why_missed(&evidence, &run, 0.0, 1.0), MissReason::NotPlanned, "5.5 m from the anchor");
+        assert_eq!(why_missed(&evidence, &run, 0.0, -3.0), MissReason::NotReached);
+    }
 }
 
 #[test]

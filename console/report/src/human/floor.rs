@@ -1,5 +1,6 @@
 //! The account of the floor as lines for people.
 
+use super::counted;
 use crate::account::{Account, Area, Percent, PlateAccount, Shares, Slivers};
 use std::fmt::Display;
 
@@ -76,14 +77,15 @@ fn basis(account: &Account) -> String {
 
 fn slivers(slivers: Slivers) -> Option<String> {
     let Slivers { count, area_m2 } = slivers;
-    (count > 0).then(|| format!("{area_m2:.2} m² in {count} places too small to be listed"))
+    (count > 0)
+        .then(|| format!("{area_m2:.2} m² in {} too small to be listed", counted(count as u64, "place")))
 }
 
 fn areas<R: Display>(areas: &[Area<R>]) -> Vec<String> {
     let mut lines: Vec<String> = areas.iter().take(MOST_AREAS).map(ToString::to_string).collect();
     if let Some(rest) = areas.get(MOST_AREAS..).filter(|rest| !rest.is_empty()) {
         let area_m2: f64 = rest.iter().map(|area| area.area_m2).sum();
-        lines.push(format!("{area_m2:.2} m² in {} more places", rest.len()));
+        lines.push(format!("{area_m2:.2} m² in {}", counted(rest.len() as u64, "more place")));
     }
     lines
 }
@@ -92,6 +94,23 @@ fn areas<R: Display>(areas: &[Area<R>]) -> Vec<String> {
 mod tests {
     use super::*;
     use world::PlateKind;
+
+    #[test]
+    fn one_place_more_is_one_place() {
+        let area = || Area {
+            at: world::Point::origin(),
+            low: world::Point::origin(),
+            high: world::Point::origin(),
+            area_m2: 0.02,
+            plate: None,
+            reason: "so",
+        };
+        let told = |count: usize| areas(&(0..count).map(|_| area()).collect::<Vec<_>>()).pop();
+        assert_eq!(told(11).as_deref(), Some("0.02 m² in 1 more place"));
+        assert_eq!(told(12).as_deref(), Some("0.04 m² in 2 more places"));
+        let sliver = slivers(Slivers { count: 1, area_m2: 0.001 });
+        assert_eq!(sliver.as_deref(), Some("0.00 m² in 1 place too small to be listed"));
+    }
 
     #[test]
     fn of_many_plates_those_with_most_missed_are_listed_in_their_order() {

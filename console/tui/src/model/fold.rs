@@ -5,7 +5,7 @@ use mission::{
     Event, EventKind, Order, Outcome, PlannerChoice, PlannerInfo, Severity, TaskConfig, event::HoldReason,
     event::RunOpened,
 };
-use planner_api::Drawing;
+use planner_api::{Command, Drawing};
 use positioning::{AccuracyMap, Exclusion};
 use world::{Obstacle, ObstacleId, Station, StationId};
 
@@ -58,7 +58,7 @@ impl Model {
                 self.planning.plan = Some(plan);
                 self.planner_works();
             }
-            EventKind::Commanded { command } => self.planning.command = Some((event.t_s, *command)),
+            EventKind::Commanded { command } => self.command(event.t_s, *command),
             EventKind::Drawn { drawings } => self.draw(event.tick, drawings),
             EventKind::Scalars { scalars } => {
                 self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
@@ -68,7 +68,7 @@ impl Model {
                 if self.planner_id() == Some(fault.planner.as_str()) {
                     self.planning.fault = Some(fault.clone());
                 }
-                self.raise(event, Cause::Planner, Severity::Crit, fault.message.clone());
+                self.raise(event, Cause::Planner, fault.severity(), fault.message.clone());
                 self.withdraw_question();
             }
             EventKind::Covered { runs } => {
@@ -275,6 +275,14 @@ impl Model {
         self.planning.drawings_tick = tick;
         let room = MAX_DRAWINGS.saturating_sub(self.planning.drawings.len());
         self.planning.drawings.extend(drawings.iter().take(room).copied());
+    }
+
+    fn command(&mut self, t_s: f64, command: Command) {
+        // It was late once, and goes on.
+        if self.planning.fault.is_some() {
+            self.planner_works();
+        }
+        self.planning.command = Some((t_s, command));
     }
 
     fn planner_works(&mut self) {

@@ -84,7 +84,8 @@ fn running(model: &Model) -> Clauses {
     }
     let open = model.alarms.worst().filter(|alarm| !alarm.acknowledged && alarm.severity >= Severity::Warn);
     if let Some(alarm) = open {
-        return (events::role(alarm.severity), vec![format!("a acknowledges: {}", alarm.text)]);
+        let over = if alarm.active { "" } else { " (over by now)" };
+        return (events::role(alarm.severity), vec![format!("a acknowledges{over}: {}", alarm.text)]);
     }
     let calm = "Nothing needs you now.".to_owned();
     let Some(progress) = &model.progress else {

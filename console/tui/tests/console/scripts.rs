@@ -345,6 +345,17 @@ fn a_critical_alarm_rings_and_waits_for_the_operator() {
 }
 
 #[test]
+fn an_alarm_whose_cause_is_gone_says_so_until_the_operator_has_seen_it() {
+    let mut screen = Screen::running();
+    told(&mut screen, EventKind::PositionAlarmed { chi2: 90.0, degrees_of_freedom: 2 });
+    let open = shown(&screen);
+    assert!(open.contains("a acknowledges: ") && !open.contains("over by now"), "{open}");
+    told(&mut screen, EventKind::PositionTrusted);
+    let over = shown(&screen);
+    assert!(over.contains("a acknowledges (over by now): "), "{over}");
+}
+
+#[test]
 fn a_stuck_robot_is_held_with_an_alarm_until_it_goes_on_and_the_operator_knows() {
     let mut screen = Screen::running();
     told(&mut screen, EventKind::Held { by: HoldReason::Stuck { message: "no progress".into() } });

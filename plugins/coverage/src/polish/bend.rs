@@ -1,7 +1,7 @@
 //! Bends: the path goes a little aside to where it would miss floor, wherever that is cheaper than a lane of its own.
 
-use super::{Prices, Track};
-use crate::side_by_side::Stop;
+use super::{Places, Prices, Track};
+use crate::{floor::Run, side_by_side::Stop, slit::Spot};
 use planner_api::Result;
 use world::{Point, Vector};
 
@@ -23,6 +23,19 @@ struct Offer {
     to: Point,
 }
 
+/// A stretch of the path that a bend may replace.
+struct Stretch {
+    from: usize,
+    past: usize,
+    length_m: f64,
+    turn_rad: f64,
+    /// Its ends.
+    a: Spot,
+    b: Spot,
+    /// What it sweeps, with a side before and behind.
+    swept: Vec<Run>,
+}
+
 impl Track<'_> {
     /// Bends the path to missed floor until the coverage is reached, as long as a square metre costs no more than
     /// `most_m_per_m2`; groups of fewer cells than the least are left. Tells the number of bends.
@@ -38,12 +51,13 @@ impl Track<'_> {
         stop: &Stop,
     ) -> Result<usize> {
         let mut offers: Vec<Offer> = Vec::new();
+        let places = Places::new(&self.points);
         for group in self.grid.missed() {
             if group.len() < least {
                 break;
             }
             stop.check()?;
-            offers.extend(self.best_bend(&group, is_wanted, prices, most_m_per_m2));
+            offers.extend(self.best_bend(&group, &places, is_wanted, prices, most_m_per_m2));
         }
         offers.sort_by(|a, b| a.rate.total_cmp(&b.rate));
         let mut made = 0;
@@ -52,9 +66,11 @@ impl Track<'_> {
                 break;
             }
             let Some(k) = self.points.iter().position(|p| *p == at) else { continue };
-            let still = self.rate(k, base, to, prices, f64::INFINITY);
+            let Some(stretch) = self.stretch(k, base) else { continue };
+            let Some(spot) = self.slit.spot(to) else { continue };
+            let still = self.rate(&stretch, spot, prices, f64::INFINITY);
             if still.is_some_and(|rate| rate <= most_m_per_m2) {
-                self.make(k, base, to);
+                self.make(k, &stretch, to);
                 made += 1;
             }
         }
@@ -64,13 +80,16 @@ impl Track<'_> {
     fn best_bend(
         &mut self,
         group: &[usize],
+        places: &Places,
         is_wanted: &dyn Fn(Point) -> bool,
         prices: &Prices,
         most_m_per_m2: f64,
     ) -> Option<Offer> {
         let cells: Vec<Vector> = group.iter().map(|cell| self.grid.center(*cell).coords).collect();
         let middle = Point::from(cells.iter().sum::<Vector>() / cells.len() as f64);
-        let mut near: Vec<(f64, usize)> = (1..self.points.len() - 1)
+        let mut near: Vec<(f64, usize)> = places
+            .near(middle, NEAR_M)
+            .filter(|k| (1..self.points.len() - 1).contains(k))
             .map(|k| ((self.points[k] - middle).norm(), k))
             .filter(|(d, _)| *d < NEAR_M)
             .collect();
@@ -80,14 +99,17 @@ impl Track<'_> {
         for (_, k) in near.into_iter().take(PLACES) {
             let at = self.points[k];
             let Some(aside) = (middle - at).try_normalize(1e-6) else { continue };
+            let stretches = BASES.map(|base| self.stretch(k, base));
             for share in ASIDE {
                 let to = at + aside * (share * bar_m);
                 if !is_wanted(to) {
                     continue;
                 }
-                for base in BASES {
+                let Some(spot) = self.slit.spot(to) else { continue };
+                for (base, stretch) in BASES.into_iter().zip(&stretches) {
+                    let Some(stretch) = stretch else { continue };
                     let most = best.as_ref().map_or(most_m_per_m2, |b| b.rate);
-                    if let Some(rate) = self.rate(k, base, to, prices, most)
+                    if let Some(rate) = self.rate(stretch, spot, prices, most)
                         && rate < most
                     {
                         best = Some(Offer { rate, at, base, to });
@@ -98,48 +120,44 @@ impl Track<'_> {
         best
     }
 
-    /// What a square metre of floor would cost, metres; `None` where the way is barred, nothing is gained, or it surely
-    /// costs more than so much.
-    fn rate(&mut self, k: usize, base: usize, to: Point, prices: &Prices, most_m_per_m2: f64) -> Option<f64> {
+    /// So many sides of the path on either side of a point.
+    fn stretch(&self, k: usize, base: usize) -> Option<Stretch> {
         let (from, past) = (k.checked_sub(base)?, k + base);
         if past >= self.points.len() {
             return None;
         }
-        let (a, b) = (self.points[from], self.points[past]);
-        let way = [a, to, b];
-        let (new_m, new_rad) = self.measure(from, past, &way);
-        let (old_m, old_rad) = self.measure(from, past, &self.points[from..=past]);
-        let cost_m = new_m - old_m + prices.turn_m_per_rad * (new_rad - old_rad);
-        let cell_m2 = self.grid.cell_m * self.grid.cell_m;
-        let (old, new) = self.before_and_after(from, past, &way);
-        // A quick look at what the new way sweeps first.
-        let most_gained = f64::from(self.grid.missed_under(&new)) * cell_m2;
-        if cost_m > most_m_per_m2 * most_gained || !(self.slit.sees(a, to) && self.slit.sees(to, b)) {
+        let (a, b) = (self.slit.spot(self.points[from])?, self.slit.spot(self.points[past])?);
+        let (length_m, turn_rad) = self.measure(from, past, &self.points[from..=past]);
+        let swept = self.swept_by(self.around(from, past));
+        Some(Stretch { from, past, length_m, turn_rad, a, b, swept })
+    }
+
+    /// What a square metre of floor would cost, metres; `None` where the way is barred, nothing is gained, or it surely
+    /// costs more than so much.
+    fn rate(&mut self, old: &Stretch, to: Spot, prices: &Prices, most_m_per_m2: f64) -> Option<f64> {
+        if !(self.slit.sees_between(old.a, to) && self.slit.sees_between(to, old.b)) {
             return None;
         }
-        let gained = -self.grid.exchange(&old, &new);
-        self.grid.exchange(&new, &old);
+        let way = [old.a.0, to.0, old.b.0];
+        let (new_m, new_rad) = self.measure(old.from, old.past, &way);
+        let cost_m = new_m - old.length_m + prices.turn_m_per_rad * (new_rad - old.turn_rad);
+        let cell_m2 = self.grid.cell_m * self.grid.cell_m;
+        let swept = self.swept_with(old.from, old.past, &way);
+        // A quick look at what the new way sweeps first.
+        let most_gained = f64::from(self.grid.missed_under(&swept)) * cell_m2;
+        if cost_m > most_m_per_m2 * most_gained {
+            return None;
+        }
+        let gained = -self.grid.lost_by(&old.swept, &swept);
         (gained > 0).then(|| cost_m / (gained as f64 * cell_m2))
     }
 
-    fn make(&mut self, k: usize, base: usize, to: Point) {
-        let (from, past) = (k - base, k + base);
-        let way = vec![self.points[from], to, self.points[past]];
-        let (old, new) = self.before_and_after(from, past, &way);
-        self.grid.exchange(&old, &new);
+    fn make(&mut self, k: usize, old: &Stretch, to: Point) {
+        let way = vec![self.points[old.from], to, self.points[old.past]];
+        let swept = self.swept_with(old.from, old.past, &way);
+        self.grid.exchange(&old.swept, &swept);
         let on_lane = self.sides[k].on_lane;
-        self.splice(from, past, &[(way, on_lane)]);
-    }
-
-    /// The path between two points with a side before and behind, as it is and with another way.
-    fn before_and_after(&self, from: usize, past: usize, way: &[Point]) -> (Vec<Point>, Vec<Point>) {
-        let (first, last) = (from.saturating_sub(1), (past + 1).min(self.points.len() - 1));
-        let old = self.points[first..=last].to_vec();
-        let mut new = Vec::with_capacity(way.len() + 2);
-        new.extend((first < from).then(|| self.points[first]));
-        new.extend(way);
-        new.extend((last > past).then(|| self.points[last]));
-        (old, new)
+        self.splice(old.from, old.past, &[(way, on_lane)]);
     }
 }
 

@@ -79,6 +79,28 @@ fn overlapping_columns_and_gaps_too_narrow_are_told_not_dropped() {
 }
 
 #[test]
+fn a_little_floor_far_away_is_scanned_if_nothing_else_is_asked_for() {
+    let tank = Known::E1.tank(4);
+    let (whole, _) = plan(&tank, &[("pattern", 1.0), ("kicks", 0.0)], None);
+    let off_m = |point: &Point| (point - tank.anchor).norm();
+    let farthest = whole.unwrap().path.into_iter().max_by(|a, b| off_m(a).total_cmp(&off_m(b))).unwrap();
+    let obstacles = tank.obstacles();
+    let site = tank.site(&obstacles);
+    let bench = Bench::new();
+    let mut planner: TetherSafe = bench.configure(&[("pattern", 1.0), ("kicks", 0.0)], &site).unwrap();
+    let (position, covariance) = (tank.anchor, nalgebra::Matrix3::zeros());
+    let start = planner_api::PoseEstimate { position, heading_rad: 0.0, covariance };
+    let little = world::coverage::regions::square(farthest, 0.2);
+    let task =
+        planner_api::Task::Cover { anchor: tank.anchor, regions: &[&little], tether: None, tolerance_m: 0.3 };
+    let reason = planner_api::Reason::Start;
+    let request = PlanRequest { reason: &reason, start, task, site: &site, previous: &[] };
+    let path = planner.plan(&request, &bench.ctx()).unwrap().path;
+    let nearest_m = world::polyline::distance_m(&path, farthest);
+    assert!(nearest_m < site.swath_m / 2.0, "{nearest_m} m off, {} m from the anchor", off_m(&farthest));
+}
+
+#[test]
 fn the_ring_along_the_shell_that_the_tool_does_not_reach_is_margin_and_no_gap() {
     let tank = Tank { columns: Vec::new(), ..Known::E1.tank(4) };
     let obstacles = tank.obstacles();
@@ -98,7 +120,7 @@ fn the_ring_along_the_shell_that_the_tool_does_not_reach_is_margin_and_no_gap() 
         .unwrap();
     let logs = bench.logs();
     let said: Vec<&String> = logs.iter().map(|(_, said)| said).collect();
-    assert!(said.iter().any(|said| said.contains("is shell margin")), "{said:?}");
+    assert!(said.iter().any(|said| said.contains("along the shell is beyond lanes of")), "{said:?}");
     assert!(!said.iter().any(|said| said.contains("gaps")), "{said:?}");
 }
 

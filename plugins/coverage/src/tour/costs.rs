@@ -1,0 +1,103 @@
+//! What ways between ends of lanes cost, as far as it was worked out.
+
+use super::End;
+use std::{
+    collections::HashMap,
+    hash::{BuildHasherDefault, Hasher},
+};
+
+/// Ends up to which all costs fit into a table.
+const TABLE: usize = 1600;
+
+/// Costs by pairs of ends, the smaller end first; the last two ends are home and start.
+#[derive(Debug, Clone, Default)]
+pub struct Costs {
+    ends: usize,
+    /// All pairs, not a number where the cost is not known; empty where there are too many ends.
+    table: Vec<f32>,
+    /// The known pairs otherwise.
+    map: HashMap<u64, f32, BuildHasherDefault<Mixer>>,
+}
+
+impl Costs {
+    /// The same costs with so many ends, no fewer than now: new ones come before home and start.
+    #[must_use]
+    pub fn with_ends(self, ends: usize) -> Self {
+        if self.ends == ends {
+            return self;
+        }
+        let table = if ends <= TABLE { vec![f32::NAN; ends * ends] } else { Vec::new() };
+        let mut costs = Self { ends, table, map: HashMap::default() };
+        let moved = |end: End| if end + 2 < self.ends { end } else { end + ends - self.ends };
+        for (place, cost) in self.table.iter().enumerate().filter(|(_, cost)| !cost.is_nan()) {
+            costs.set(moved(place / self.ends), moved(place % self.ends), *cost);
+        }
+        for (pair, cost) in &self.map {
+            costs.set(moved((pair >> 32) as End), moved((pair & u64::from(u32::MAX)) as End), *cost);
+        }
+        costs
+    }
+
+    /// The cost of a way, if it is known.
+    pub fn get(&self, u: End, v: End) -> Option<f32> {
+        if self.table.is_empty() {
+            self.map.get(&pair(u, v)).copied()
+        } else {
+            Some(self.table[u * self.ends + v]).filter(|cost| !cost.is_nan())
+        }
+    }
+
+    /// Keeps the cost of a way.
+    pub fn set(&mut self, u: End, v: End, cost: f32) {
+        if self.table.is_empty() {
+            self.map.insert(pair(u, v), cost);
+        } else {
+            self.table[u * self.ends + v] = cost;
+        }
+    }
+}
+
+fn pair(u: End, v: End) -> u64 {
+    (u as u64) << 32 | v as u64
+}
+
+/// Spreads pairs of ends, which nobody makes up to do harm, over a map: one multiplication in place of a safe hash.
+#[derive(Debug, Clone, Default)]
+struct Mixer(u64);
+
+impl Hasher for Mixer {
+    fn finish(&self) -> u64 {
+        self.0 ^ self.0 >> 32
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.write_u64(u64::from(*byte));
+        }
+    }
+
+    fn write_u64(&mut self, number: u64) {
+        self.0 = (self.0 ^ number).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn costs_stay_with_their_ends_when_lanes_are_added() {
+        for (before, after) in [(6, 10), (TABLE - 2, TABLE + 4), (TABLE + 2, TABLE + 8)] {
+            let mut costs = Costs::default().with_ends(before);
+            let (home, start) = (before - 2, before - 1);
+            costs.set(1, 3, 4.5);
+            costs.set(0, home, 2.0);
+            costs.set(home, start, 7.0);
+            let costs = costs.with_ends(after);
+            assert_eq!(costs.get(1, 3), Some(4.5));
+            assert_eq!(costs.get(0, after - 2), Some(2.0));
+            assert_eq!(costs.get(after - 2, after - 1), Some(7.0));
+            assert_eq!(costs.get(0, home), None);
+        }
+    }
+}
