@@ -1,6 +1,6 @@
 //! Independent work on all cores that the console can end. What comes out does not depend on the number of cores.
 
-use planner_api::{Ctx, PlannerError, Result};
+use planner_api::{Ctx, PlannerError, Result, on_own_thread};
 use std::{
     collections::VecDeque,
     sync::{
@@ -49,7 +49,7 @@ pub fn side_by_side<T: Send, R: Send>(
             let (sender, stop, work, next) = (sender.clone(), &stop, &work, &next);
             let toil = move || {
                 while let Some((place, item)) = next() {
-                    if sender.send((place, work(item, stop))).is_err() {
+                    if sender.send((place, on_own_thread(|| work(item, stop)))).is_err() {
                         break;
                     }
                 }
@@ -90,6 +90,14 @@ mod tests {
         };
         let squares = side_by_side((0..10).collect(), &bench.ctx(), work).unwrap();
         assert_eq!(squares, (0..10).map(|k| k * k).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_panic_of_one_item_is_an_error_with_its_text() {
+        let bench = Bench::new();
+        let work = |k: i32, _: &Stop| if k == 2 { panic!("item {k} is odd") } else { Ok(k) };
+        let error = side_by_side((0..8).collect(), &bench.ctx(), work).unwrap_err();
+        assert!(error.code == Code::Panic && error.message.ends_with("item 2 is odd"), "{error}");
     }
 
     #[test]

@@ -26,7 +26,8 @@ const UNLIMITED: Limits =
 const HOPELESS: f64 = 0.02;
 
 const CHOOSE: ParamSpec = choice("choose", "Candidate", &[SHORTEST, "fewest-turns", "shortest-cable"], 0)
-    .help("Which of the candidates within the limits is flown, shortest by length and turns; the log lists all that are worth it.")
+    .help("Which of the candidates within the limits is flown, shortest by length and turns. The log lists those that no other \
+           beats in length, turns and cable; those that would cost over 2 % more are left and listed with an estimate.")
     .group("Plan");
 const PATTERN: ParamSpec = choice("pattern", "Lanes", &["all", "contours", "straight"], 0)
     .help("Lanes along the wall, straight lanes within a lap along the wall, or whichever is better.")
@@ -241,6 +242,9 @@ impl TetherSafe {
             let why = worth.certificate.reasons.join("; ");
             ctx.log(LogLevel::Warn, &format!("not certified: {why}"));
         }
+        if !plan.complete {
+            ctx.log(LogLevel::Warn, &why_incomplete(worth.coverage, &order));
+        }
         Ok(plan)
     }
 
@@ -343,6 +347,16 @@ fn laid_cable(ground: &Ground, request: &PlanRequest<'_>) -> Option<Cable> {
     cable.drag_along(request.previous);
     cable.drag_to(request.start.position);
     (!request.previous.is_empty()).then_some(cable)
+}
+
+/// Why a plan that scans this share of the floor in reach is not complete; told last, for it is the reason given.
+fn why_incomplete(coverage: f64, order: &Order<'_>) -> String {
+    let scanned = format!("the plan scans {:.1} % of the floor in reach", 100.0 * coverage);
+    if order.reel_m.is_finite() {
+        format!("{scanned} of a reel of {:.1} m, which is too short for all of it", order.reel_m)
+    } else {
+        format!("{scanned}: the rest is left out")
+    }
 }
 
 #[cfg(test)]

@@ -39,8 +39,8 @@ pub struct Ground {
     pub wall_keep_m: f64,
     /// Obstacles and no-go zones.
     pub solids: Vec<Solid>,
-    /// What was discovered on the goal, if anything; the way leads there all the same.
-    pub covers_goal: Option<String>,
+    /// What was discovered on the goal, with its name; the way leads there all the same.
+    pub on_goal: Vec<(String, Solid)>,
 }
 
 impl Ground {
@@ -74,32 +74,45 @@ impl Ground {
         };
         let wall_keep_m = keep_m(&|at| boundary.wall_distance_m(at), "the wall")?;
         // What is discovered on the goal may be on its way: when it was seen for a while, it will be known.
-        let mut covers_goal = None;
-        let under_way = *request.reason != Reason::Start;
-        let solids = shapes(site)
-            .filter(|(name, discovered, shape)| {
-                let covers = under_way && *discovered && shape.distance_m(goal) < hull_m;
-                if covers {
-                    covers_goal = Some(name.clone());
-                }
-                !covers
-            })
+        let is_on_goal = |(_, discovered, shape): &(String, bool, Shape)| {
+            *request.reason != Reason::Start && *discovered && shape.distance_m(goal) < hull_m
+        };
+        let (on_goal, others): (Vec<_>, Vec<_>) = shapes(site).partition(is_on_goal);
+        let before = |(name, _, shape): (String, bool, Shape)| {
+            let keep_m = wanted_m.min(shape.distance_m(start));
+            (name, Solid { shape, keep_m })
+        };
+        let on_goal = on_goal.into_iter().map(before).collect();
+        let solids = others
+            .into_iter()
             .map(|(name, _, shape)| {
                 let keep_m = keep_m(&|at| shape.distance_m(at), &name)?;
                 Ok(Solid { shape, keep_m })
             })
             .collect::<Result<Vec<Solid>>>()?;
-        Ok(Self { start, goal, boundary, wall_keep_m, solids, covers_goal })
+        Ok(Self { start, goal, boundary, wall_keep_m, solids, on_goal })
     }
 
-    /// Says what was discovered on the goal.
-    pub fn tell(&self, ctx: &Ctx<'_>) {
-        if let Some(name) = &self.covers_goal {
-            ctx.log(
-                LogLevel::Warn,
-                &format!("{name} is on the goal; the robot goes on in case it moves away"),
-            );
+    /// A way as a plan; it says so where something was discovered on the goal.
+    ///
+    /// Up to a disc the robot goes on: what moves is seen as one, and the console plans anew only for what comes into the
+    /// way. Before anything else the plan ends.
+    pub fn plan_of(&self, way: &Way, ctx: &Ctx<'_>) -> Plan {
+        let mut path = polyline::resampled(&way.points(), SPACING_M);
+        for (name, solid) in &self.on_goal {
+            let what = if matches!(solid.shape, Shape::Disc { .. }) {
+                "the robot goes on in case it moves away"
+            } else {
+                let is_free = |at: &&Point| solid.shape.distance_m(**at) >= solid.keep_m - ROUNDING_M;
+                let clear = path.iter().take_while(is_free).count();
+                path.truncate(clear.max(1));
+                "the plan ends before it"
+            };
+            ctx.log(LogLevel::Warn, &format!("{name} is on the goal; {what}"));
         }
+        let complete = self.on_goal.is_empty();
+        let cost = if complete { way.length_m } else { polyline::length_m(&path) };
+        Plan { path, cost, complete, ..Plan::default() }
     }
 
     /// The floor on which the robot is a point.
@@ -152,12 +165,6 @@ fn shape_of(outline: &Outline<'_>) -> Shape {
             Shape::Polyline { points: points.to_vec(), half_width_m }
         }
     }
-}
-
-/// A way as a plan.
-pub fn plan_of(way: &Way) -> Plan {
-    let path = polyline::resampled(&way.points(), SPACING_M);
-    Plan { path, cost: way.length_m, complete: true, ..Plan::default() }
 }
 
 /// Why there is no way, for the console.

@@ -2,7 +2,7 @@
 
 use crate::{
     flight::Flyer,
-    ground::{Ground, plan_of, refusal},
+    ground::{Ground, refusal},
     navigation::Navigation,
 };
 use field::params as p;
@@ -56,9 +56,10 @@ impl Planner for Navfn {
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
         let ground = Ground::new(request, self.clearance_m)?;
-        ground.tell(ctx);
         let floor = ground.grown();
-        self.way(&ground, &floor, ctx).map(|way| plan_of(&way)).map_err(|no_way| refusal(no_way, ctx))
+        self.way(&ground, &floor, ctx)
+            .map(|way| ground.plan_of(&way, ctx))
+            .map_err(|no_way| refusal(no_way, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

@@ -2,7 +2,7 @@
 
 use crate::{
     flight::Flyer,
-    ground::{Ground, plan_of, refusal},
+    ground::{Ground, refusal},
 };
 use field::params as p;
 use planner_api::{Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site};
@@ -35,9 +35,8 @@ impl Planner for Shortest {
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
         let ground = Ground::new(request, self.clearance_m)?;
-        ground.tell(ctx);
         let way = ground.grown().shortest(ground.start, ground.goal, &mut || ctx.check().is_ok());
-        way.map(|way| plan_of(&way)).map_err(|no_way| refusal(no_way, ctx))
+        way.map(|way| ground.plan_of(&way, ctx)).map_err(|no_way| refusal(no_way, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

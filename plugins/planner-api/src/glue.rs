@@ -9,6 +9,7 @@ mod services;
 
 use crate::abi::{self, Str, output};
 use crate::{Code, Config, Ctx, Kind, ParamSpec, Planner, PlannerError, Result, Stopping, params};
+pub use guard::on_own_thread;
 use guard::{quietly, run};
 use inputs::{SensedParts, SiteParts, config_values, plan_request, regions_of, task_of};
 use services::HostServices;

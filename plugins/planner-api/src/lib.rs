@@ -25,6 +25,7 @@ pub use command::{Command, Drive, Status, Stopping};
 pub use ctx::{Ctx, LogLevel, Services, StopReason};
 pub use drawing::{Drawing, Layer};
 pub use error::{Code, PlannerError};
+pub use glue::on_own_thread;
 pub use nalgebra::{Point2, Vector2};
 pub use params::{Config, Kind, ParamSpec, Value, choice, flag, float, int};
 pub use planner::{Caps, Planner};

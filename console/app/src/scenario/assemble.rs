@@ -251,11 +251,14 @@ fn tether_of(
         tether::check(&section, &tether, &site, start);
     }
     let clearance_m = sections.mission.as_ref().and_then(|mission| mission.number("clearance_m"));
-    if let (Some(TaskConfig::Cover { .. }), Some(robot), Some(clearance_m)) =
+    if let (Some(TaskConfig::Cover { tolerance_m, .. }), Some(robot), Some(clearance_m)) =
         (task, &floor.robot, clearance_m)
     {
         let site = Site { radius_m: robot.limits.radius_m, ..site };
-        tether::check_room(&section, &tether, &site, clearance_m);
+        // Without a place of its own the anchor is where the robot starts.
+        let place = sections.robot.as_ref().filter(|_| !section.has("anchor_m"));
+        let place = place.map_or((&section, "anchor_m"), |robot| (robot, "start_m"));
+        tether::check_room(place, &tether, &site, (clearance_m, *tolerance_m));
     }
     Some(tether)
 }

@@ -117,19 +117,24 @@ fn a_tether_starts_where_the_robot_does_and_preset_points_may_be_written_out() {
 
 #[test]
 fn a_robot_that_comes_back_to_the_anchor_has_room_there() {
-    let with = |anchor: &str| {
+    let cover = |start: &str, mission: &str, anchor: &str| {
         let text = SMALL
-            .replace("kind = \"goto\"\ngoal_m = [3, 0]", "kind = \"cover\"\nclearance_m = 0.1")
-            .replace("[planner]", &format!("[tether]\nreel_m = 20\nanchor_m = {anchor}\n[planner]"));
+            .replace("start_m = [-3, 0]", &format!("start_m = {start}"))
+            .replace("kind = \"goto\"\ngoal_m = [3, 0]", &format!("kind = \"cover\"\n{mission}"))
+            .replace("[planner]", &format!("[tether]\nreel_m = 20\n{anchor}\n[planner]"));
         Scenario::parse(&text, "x.toml").map_err(|errors| errors.render())
     };
-    // Hull radius 0.25 m, clearance 0.1 m.
-    assert!(with("[0, -4.65]").is_ok());
-    for (anchor, away) in [("[0, -4.7]", "0.300"), ("[0, -5.0]", "0.000")] {
-        let said = with(anchor).expect_err("too near to the wall");
-        let must_be = format!("tether.anchor_m = {anchor}: must be at least 0.350 m away from the wall");
+    let with = |anchor: &str, more: &str| cover("[-3, 0]", &format!("clearance_m = 0.1\n{more}"), anchor);
+    // Hull radius 0.25 m, clearance 0.1 m, and back at the anchor within 0.2 m: plans end 0.1 m beside it at most.
+    assert!(with("anchor_m = [0, -4.65]", "").is_ok() && with("anchor_m = [0, -4.74]", "").is_ok());
+    assert!(with("anchor_m = [0, -4.74]", "tolerance_m = 0.1").is_err());
+    for (anchor, away) in [("[0, -4.8]", "0.200"), ("[0, -5.0]", "0.000")] {
+        let said = with(&format!("anchor_m = {anchor}"), "").expect_err("too near to the wall");
+        let must_be = format!("tether.anchor_m = {anchor}: must be at least 0.250 m away from the wall");
         assert!(said.contains(&must_be) && said.contains(&format!("this is {away} m")), "{said}");
     }
+    let at_start = cover("[-4.6, 0]", "clearance_m = 0.3", "").expect_err("too near to the wall");
+    assert!(at_start.contains("robot.start_m = [-4.6, 0]: must be at least 0.450 m away"), "{at_start}");
     // A mission that ends elsewhere may have its anchor in the shell.
     let elsewhere = SMALL.replace("[planner]", "[tether]\nreel_m = 20\nanchor_m = [0, -5]\n[planner]");
     assert!(Scenario::parse(&elsewhere, "x.toml").is_ok());

@@ -36,22 +36,34 @@ pub fn check(section: &Section<'_>, tether: &TetherConfig, site: &Site<'_>, star
     }
 }
 
-/// Complains about an anchor at which a robot that comes back to it has no room for hull and clearance.
-pub fn check_room(section: &Section<'_>, tether: &TetherConfig, site: &Site<'_>, clearance_m: f64) {
+/// As far from the anchor the robot counts as back for the certificate of a plan, metres; nearer if the mission says so.
+const BACK_M: f64 = 0.3;
+/// Share of that by which the place with room for hull and clearance may lie beside the anchor.
+const ASIDE: f64 = 0.5;
+
+/// Complains about an anchor at which a robot that comes back to it has no room: its hull must fit, and all of the
+/// clearance a little beside it.
+pub fn check_room(
+    (section, key): (&Section<'_>, &str),
+    tether: &TetherConfig,
+    site: &Site<'_>,
+    (clearance_m, tolerance_m): (f64, f64),
+) {
     let wall = (site.boundary.wall_distance_m(tether.anchor), "the wall".to_owned());
     let obstacles = site.obstacles.iter().map(|o| {
         let name = format!("obstacle \"{}\"", o.name);
         (o.shape.distance_m(tether.anchor), name)
     });
     let nearest = obstacles.chain([wall]).min_by(|a, b| a.0.total_cmp(&b.0));
-    let need_m = site.radius_m + clearance_m;
+    let aside_m = ASIDE * tolerance_m.min(BACK_M);
+    let need_m = site.radius_m + (clearance_m - aside_m).max(0.0);
     let Some((away_m, from)) = nearest.filter(|(away_m, _)| *away_m < need_m - ROUNDING_M) else { return };
     // A place outside the tank or within something solid is complained about as such.
-    if section.has("anchor_m") && away_m >= 0.0 {
+    if section.has(key) && away_m >= 0.0 {
         let must_be = format!(
-            "at least {need_m:.3} m away from {from}, hull radius plus clearance, as the robot comes back to it; this is \
-             {away_m:.3} m"
+            "at least {need_m:.3} m away from {from}, for the robot comes back to it: its hull must fit, and its clearance \
+             {aside_m:.3} m beside it; this is {away_m:.3} m"
         );
-        section.complain("anchor_m", Complaint::OutOfRange(must_be));
+        section.complain(key, Complaint::OutOfRange(must_be));
     }
 }

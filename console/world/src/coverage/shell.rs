@@ -7,7 +7,7 @@ use crate::{
     shape::Shape,
     tank::Boundary,
 };
-use std::f64::consts::TAU;
+use std::{collections::BTreeMap, f64::consts::TAU};
 
 /// Distance between two places along the wall, metres; more where the wall is so long that it takes too many.
 const SPACING_M: f64 = 0.025;
@@ -26,10 +26,10 @@ pub struct ShellZone {
     boundary: Boundary,
     width_m: f64,
     places: Vec<Place>,
-    /// Which places lie in which square, row by row from the south west corner.
-    buckets: Vec<Vec<u32>>,
+    /// Which places lie in which square, by row and column from the south west corner; squares without any are left
+    /// out, so a tank costs by its shell and not by its area.
+    squares: BTreeMap<(usize, usize), Vec<u32>>,
     origin: Point,
-    columns: usize,
 }
 
 /// A short stretch of the wall and the floor before it.
@@ -64,23 +64,14 @@ pub struct ShellFigures {
 impl ShellZone {
     /// The zone of some width along a wall, of which nothing was scanned yet.
     pub fn new(boundary: &Boundary, width_m: f64) -> Self {
-        let (low, high) = boundary.bounds();
-        let count = |span_m: f64| (span_m / BUCKET_M).ceil().max(1.0) as usize + 1;
-        let (columns, rows) = (count(high.x - low.x), count(high.y - low.y));
-        let mut zone = Self {
-            boundary: boundary.clone(),
-            width_m,
-            places: places(boundary, width_m),
-            buckets: vec![Vec::new(); columns * rows],
-            origin: low,
-            columns,
-        };
-        for (index, place) in (0..).zip(&zone.places) {
-            let (column, row) = (bucket(place.at.x - low.x), bucket(place.at.y - low.y));
-            let square = row.min(rows - 1) * columns + column.min(columns - 1);
-            zone.buckets[square].push(index);
+        let (origin, _) = boundary.bounds();
+        let places = places(boundary, width_m);
+        let mut squares: BTreeMap<(usize, usize), Vec<u32>> = BTreeMap::new();
+        for (index, place) in (0..).zip(&places) {
+            let square = (bucket(place.at.y - origin.y), bucket(place.at.x - origin.x));
+            squares.entry(square).or_default().push(index);
         }
-        zone
+        Self { boundary: boundary.clone(), width_m, places, squares, origin }
     }
 
     /// Whether an outline may reach into the zone.
@@ -101,14 +92,13 @@ impl ShellZone {
         let (low, high) = passage.bounds();
         let margin = Vector::new(self.width_m, self.width_m);
         let (first, last) = (low - margin - self.origin, high + margin - self.origin);
-        let rows = self.buckets.len() / self.columns;
-        for row in bucket(first.y)..=bucket(last.y).min(rows - 1) {
-            for column in bucket(first.x)..=bucket(last.x).min(self.columns - 1) {
-                for index in &self.buckets[row * self.columns + column] {
-                    let place = &mut self.places[*index as usize];
-                    let passed = |layer: &usize| passage.contains(place.in_layer(*layer));
-                    place.passed |= (0..LAYERS).filter(passed).fold(0, |bits, layer| bits | 1 << layer);
-                }
+        let (west, east) = (bucket(first.x), bucket(last.x));
+        let north = self.squares.last_key_value().map_or(0, |((row, _), _)| *row);
+        for row in bucket(first.y)..=bucket(last.y).min(north) {
+            for index in self.squares.range((row, west)..=(row, east)).flat_map(|(_, places)| places) {
+                let place = &mut self.places[*index as usize];
+                let passed = |layer: &usize| passage.contains(place.in_layer(*layer));
+                place.passed |= (0..LAYERS).filter(passed).fold(0, |bits, layer| bits | 1 << layer);
             }
         }
     }
@@ -260,6 +250,17 @@ mod tests {
     fn what_something_stands_on_is_no_zone() {
         let figures = round(0.3, 0.5).figures(|point| point.y < 0.0);
         assert!(near(figures.length_m, 5.0 * FRAC_PI_2 * 2.0, 0.03) && near(figures.scanned, 1.0, 0.01));
+    }
+
+    #[test]
+    fn a_huge_tank_costs_by_its_shell_and_not_by_its_area() {
+        let radius_m = 1e5;
+        let mut zone = ShellZone::new(&Boundary::Circle { radius_m }, 0.075);
+        assert!(zone.squares.len() <= zone.places.len());
+        let (place_m, east_m) = (zone.places[0].length_m, radius_m - 0.3);
+        zone.pass(BAR, Pose::new(east_m, 0.0, FRAC_PI_2), Pose::new(east_m, place_m, FRAC_PI_2));
+        let figures = zone.figures(|_| false);
+        assert!(figures.scanned > 0.0 && near(figures.length_m, TAU * radius_m, 1e-3), "{figures:?}");
     }
 
     #[test]

@@ -47,6 +47,9 @@ fn a_short_reel_gives_a_partial_plan_that_says_what_is_left() {
     let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
     assert!(!plan.complete && scan.certificate.max_cable_m <= 6.0, "{}", scan.certificate.max_cable_m);
     assert!(bench.logs().iter().any(|(_, said)| said.contains("beyond the reel")), "{:?}", bench.logs());
+    let logs = bench.logs();
+    let (_, why) = logs.iter().rfind(|(level, _)| matches!(level, LogLevel::Warn)).unwrap();
+    assert!(why.contains("reel of 6.0 m, which is too short"), "{why}");
 }
 
 #[test]

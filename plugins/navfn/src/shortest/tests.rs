@@ -109,7 +109,24 @@ fn what_is_discovered_on_the_goal_under_way_is_no_reason_to_stop() {
         let request = PlanRequest { reason: &reason, start, task, site: &site, previous: &[] };
         planner.plan(&request, &bench.ctx())
     };
-    assert!(ask(Reason::MapChanged).unwrap().complete);
+    let plan = ask(Reason::MapChanged).unwrap();
+    assert!(!plan.complete && plan.path[plan.path.len() - 1] == Point2::new(5.0, 0.0));
     assert_eq!(ask(Reason::Start).unwrap_err().code, Code::GoalOccupied);
     assert_eq!(bench.logs()[0].1, "obstacle 7 is on the goal; the robot goes on in case it moves away");
+}
+
+#[test]
+fn a_long_obstacle_discovered_on_the_goal_is_not_planned_through() {
+    let points =
+        [Point2::new(3.0, -4.0), Point2::new(3.0, 4.0), Point2::new(5.0, 4.0), Point2::new(5.0, 0.0)];
+    let outline = Outline::Polyline { points: &points, half_width_m: 0.1 };
+    let obstacles = [Obstacle { id: 8, outline, discovered: true, velocity_m_per_s: Vector2::zeros() }];
+    let site = site(&obstacles, &[]);
+    let task = Task::Goto { goal: Point2::new(5.0, 0.0), tolerance_m: 0.1 };
+    for from_m in [-5.0, 2.8] {
+        let start = exact_pose(Point2::new(from_m, 0.0));
+        let request = PlanRequest { reason: &Reason::MapChanged, start, task, site: &site, previous: &[] };
+        let plan = planner::<Shortest>(&[], &site).plan(&request, &Bench::new().ctx()).unwrap();
+        assert!(!plan.complete && plan.path.iter().all(|at| at.x < 2.9), "{:?}", plan.path);
+    }
 }

@@ -1,7 +1,7 @@
 //! Panics end here: caught, told, forgotten.
 
 use super::services::HostServices;
-use crate::{Code, Result};
+use crate::{Code, PlannerError, Result};
 use std::any::Any;
 use std::cell::RefCell;
 use std::io::Write;
@@ -40,8 +40,22 @@ pub(super) fn quietly(call: impl FnOnce()) {
     let _ = caught(call);
 }
 
+/// Work on a thread that a planner started: a panic comes back as the error of the call that waits for it, so that the
+/// console is told its place and text as of any other. A panic that only ends its thread would lose both.
+///
+/// # Errors
+/// What the work returns, or [`Code::Panic`] with `file:line: payload`.
+pub fn on_own_thread<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
+    told(work).unwrap_or_else(|sentence| Err(PlannerError::new(Code::Panic, sentence)))
+}
+
 fn caught<T>(call: impl FnOnce() -> T) -> std::result::Result<T, String> {
     HOOK.call_once(|| std::panic::set_hook(Box::new(note)));
+    told(call)
+}
+
+/// The place is known once a call of the console has set the hook; tests that call planners directly keep theirs.
+fn told<T>(call: impl FnOnce() -> T) -> std::result::Result<T, String> {
     catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
         let place = WHERE.with_borrow(Clone::clone);
         let sentence = format!("{place}: {}", text_of(&*payload));

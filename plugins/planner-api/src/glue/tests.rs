@@ -28,7 +28,7 @@ impl Planner for Probe {
     const CAPS: Caps = Caps::LOCAL;
     const PARAMS: &'static [ParamSpec] = &[
         float("gain", "Gain", "1/s", 0.0, 2.0, 0.5).live(),
-        choice("act", "Act", &["well", "panic", "refuse", "drop", "partial"], 0),
+        choice("act", "Act", &["well", "panic", "refuse", "drop", "partial", "panic elsewhere"], 0),
     ];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
@@ -60,6 +60,10 @@ impl Planner for Probe {
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         match self.act {
             "panic" => panic!("no such thing"),
+            "panic elsewhere" => std::thread::scope(|scope| {
+                let elsewhere = scope.spawn(|| on_own_thread(|| panic!("no such item")));
+                elsewhere.join().unwrap()
+            }),
             "refuse" => Err(PlannerError::new(Code::Stuck, "a local minimum")),
             _ => {
                 ctx.check()?;
@@ -238,7 +242,7 @@ fn do_step(sink: &mut Sink, planner: *mut c_void, sensed: &Sensed<'_>) -> (i32, 
 fn parameters_are_declared_with_their_words() {
     let mut sink = Sink::default();
     assert_eq!(unsafe { describe::<Probe>(&host(&mut sink)) }, 0);
-    assert_eq!(sink.keys, ["gain=", "act=well|panic|refuse|drop|partial"]);
+    assert_eq!(sink.keys, ["gain=", "act=well|panic|refuse|drop|partial|panic elsewhere"]);
 }
 
 #[test]
@@ -355,6 +359,20 @@ fn a_plan_that_got_part_of_the_way_hands_that_part_over() {
     let code =
         unsafe { plan::<Probe>(planner, &host(&mut sink), &lend::plan(&request, &raw, &[]), &mut out) };
     assert_eq!((code, sink.error.as_str(), sink.points.len()), (Code::NoPath as i32, "walled in", 2));
+    unsafe { destroy::<Probe>(planner) };
+}
+
+#[test]
+fn a_panic_on_a_thread_of_the_planner_is_told_with_its_place_too() {
+    let mut sink = Sink::default();
+    let planner = instance(&mut sink, 5.0);
+    assert_eq!(do_step(&mut sink, planner, &sensed(&[])).0, Code::Panic as i32);
+    assert!(
+        sink.error.contains("glue/tests.rs:") && sink.error.ends_with(": no such item"),
+        "{}",
+        sink.error
+    );
+    assert_eq!(do_step(&mut sink, planner, &sensed(&[])).0, Code::Poisoned as i32);
     unsafe { destroy::<Probe>(planner) };
 }
 

@@ -139,12 +139,12 @@ fn flights(values: &[(&str, f64)], motion: Motion) -> Vec<Outcome> {
 }
 
 #[test]
-fn in_random_tanks_it_touches_nothing_and_nearly_always_arrives() {
+fn in_random_tanks_it_touches_nothing_and_arrives() {
     for motion in [Motion::Point, Motion::Unicycle] {
         let flights = flights(&[], motion);
         assert!(flights.iter().all(|flight| flight.clearance_m > 0.0));
         let arrived = flights.iter().filter(|flight| flight.completed);
-        assert!(arrived.clone().count() >= 5, "{}", arrived.count());
+        assert!(arrived.clone().count() == 6, "{}", arrived.count());
         // Preset points in niches between columns and wall are passed further off.
         for flight in arrived {
             assert!(flight.passed > 0.85 && flight.cross_track_m < 0.4, "{flight:?}");

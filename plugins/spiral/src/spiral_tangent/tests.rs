@@ -112,13 +112,13 @@ fn flights(motion: Motion) -> Vec<Outcome> {
 }
 
 #[test]
-fn in_random_tanks_it_touches_nothing_and_nearly_always_arrives() {
+fn in_random_tanks_it_touches_nothing_and_arrives() {
     for motion in [Motion::Point, Motion::Unicycle] {
         let flights = flights(motion);
         let arrived = flights.iter().filter(|flight| flight.completed).count();
         let least_m = flights.iter().map(|flight| flight.clearance_m).fold(f64::INFINITY, f64::min);
         assert!(least_m > 0.0, "{least_m}");
-        assert!(arrived >= 5, "{arrived}");
+        assert!(arrived == 6, "{arrived}");
     }
 }
 
