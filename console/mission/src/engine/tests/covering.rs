@@ -192,9 +192,9 @@ fn planners_steer_round_obstacles_where_they_are_seen_not_where_the_chart_has_th
     let column = |x| Shape::Disc { center: Point::new(x, -4.0), radius_m: 0.2 };
     let known = Obstacle { id: ObstacleId(3), name: "C".into(), shape: column(1.0), known: true };
     let world = World { obstacles: vec![known], ..drawing() };
-    let mut chart = crate::chart::Chart::new(world, &covering(), 1);
+    let mut chart = Chart::new(world, &covering(), 1);
     let pose = covering().start;
-    let shown = |chart: &crate::chart::Chart| match chart.near(pose.position)[0].outline {
+    let shown = |chart: &Chart| match chart.near(pose.position)[0].outline {
         api::Outline::Disc { center, .. } => center.x,
         _ => f64::NAN,
     };
