@@ -17,8 +17,9 @@ use world::Point;
 
 /// Cells along the longer side of the floor.
 const CELLS: f64 = 80.0;
-/// Share of a single fix's error that is left once fixes and odometry are filtered, as measured in flights.
-const FILTERED: f64 = 0.5;
+/// The largest error of a whole scan, fixes and odometry filtered, as a share of a single fix's 95 % error; as measured in
+/// flights.
+const FILTERED: f64 = 0.65;
 /// Places beyond the limit that people are shown.
 const MOST_SHOWN: usize = 12;
 

@@ -2,8 +2,9 @@
 
 use super::{Cause, Model, Overlay, Phase, PlanShown, Progress, Raster, Run, Trail};
 use mission::{
-    Event, EventKind, Order, Outcome, PlannerChoice, PlannerInfo, Severity, TaskConfig, event::HoldReason,
-    event::RunOpened,
+    Event, EventKind, Order, Outcome, PlannerChoice, PlannerInfo, Severity, TaskConfig,
+    event::HoldReason,
+    event::{RunOpened, TetherAlarm},
 };
 use planner_api::{Command, Drawing};
 use positioning::{AccuracyMap, Exclusion};
@@ -130,10 +131,18 @@ impl Model {
     fn tethered(&mut self, event: &Event) {
         match &event.kind {
             EventKind::TetherAlarmed { alarm, reached } => {
+                if matches!(alarm, TetherAlarm::Snag { .. }) {
+                    self.tether.get_or_insert_default().is_caught = true;
+                }
                 let severity = if *reached { Severity::Crit } else { Severity::Warn };
                 self.raise(event, Cause::Tether(alarm.word().to_owned()), severity, alarm.to_string());
             }
-            EventKind::TetherEased { alarm } => self.alarms.clear(&Cause::Tether(alarm.word().to_owned())),
+            EventKind::TetherEased { alarm } => {
+                if matches!(alarm, TetherAlarm::Snag { .. }) {
+                    self.tether.get_or_insert_default().is_caught = false;
+                }
+                self.alarms.clear(&Cause::Tether(alarm.word().to_owned()));
+            }
             EventKind::Certified { planner, refused, certificate } => {
                 self.tether.get_or_insert_default().certified = Some(certificate.certified);
                 if certificate.certified {

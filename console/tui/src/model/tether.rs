@@ -19,6 +19,8 @@ pub struct Tether {
     pub pull_factor: f64,
     /// Length of the way back along the cable, metres; `None` if there is none.
     pub way_home_m: Option<f64>,
+    /// Whether the reel has paid out more than the map explains: how the cable lies is not known then.
+    pub is_caught: bool,
     /// The cable from the anchor to the robot.
     pub line: Vec<Point>,
     /// Whether the last plan was certified; `None` before the first.

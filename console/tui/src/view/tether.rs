@@ -115,6 +115,8 @@ fn contacts(tether: &Tether) -> String {
 
 fn home(tether: &Tether, wide: bool) -> (Role, String) {
     match tether.way_home_m {
+        _ if tether.is_caught && wide => (Role::Crit, "UNKNOWN: the cable has caught".into()),
+        _ if tether.is_caught => (Role::Crit, "UNKNOWN, caught".into()),
         Some(way_m) if wide => (Role::Good, format!("{} m, along the cable: YES", text::number(way_m, 1))),
         Some(way_m) => (Role::Good, format!("{} m  YES", text::number(way_m, 1))),
         None => (Role::Crit, "NO: the hull does not fit".into()),

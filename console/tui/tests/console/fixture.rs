@@ -1,6 +1,6 @@
 //! A spiral mission in a tank with columns, told as events without any engine.
 
-use mission::event::{HoldReason, JOURNAL_VERSION, RunOpened, TetherContact};
+use mission::event::{HoldReason, JOURNAL_VERSION, RunOpened, TetherAlarm, TetherContact};
 use mission::link::{Cause, During, Fault};
 use mission::{
     Event, EventKind, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters, PlannerChoice,
@@ -398,6 +398,18 @@ impl Telling {
             way_home_m: Some(cable.length_m() + 0.4),
             line: cable.taut_line(),
         })
+    }
+
+    /// The reel has paid out more than the map explains, and the robot is held.
+    pub fn caught(&mut self) -> Vec<Event> {
+        let alarm = TetherAlarm::Snag { paid_out_m: 14.2, explained_m: 12.6 };
+        let message = alarm.to_string();
+        let mut cable = self.cable();
+        if let EventKind::Tethered { paid_out_m, free_m, .. } = &mut cable.kind {
+            (*paid_out_m, *free_m) = (Some(14.2), tether().limits.reel_m - 14.2);
+        }
+        let alarmed = self.now(EventKind::TetherAlarmed { alarm, reached: true });
+        vec![cable, alarmed, self.held(HoldReason::Tether { message })]
     }
 
     /// A judgement of a plan.

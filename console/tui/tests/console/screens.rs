@@ -105,6 +105,14 @@ fn tethered() {
 }
 
 #[test]
+fn caught() {
+    let mut screen = Screen::tethered();
+    let events = screen.telling.caught();
+    screen.tell(Msg::Events(events));
+    store("caught", &mut screen);
+}
+
+#[test]
 fn plan_refused() {
     let mut screen = Screen::tethered();
     let events = screen.telling.plan_refused();
