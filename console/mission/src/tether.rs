@@ -154,7 +154,7 @@ impl Tether {
     /// the map explained all cable, and from there home along it with some room for the middle of the hull, metres.
     /// What the cable had caught on lies beside that second piece.
     pub fn way_out(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
-        let first = self.payout.points_to_go_back_to().min(self.driven.len());
+        let first = self.payout.points_to_go_back_to(self.driven.len());
         let mut way: Vec<Point> = self.driven[first..].iter().rev().copied().collect();
         let mut freed = self.cable.clone();
         freed.drag_along(&way);

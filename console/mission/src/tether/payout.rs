@@ -14,7 +14,7 @@ const SLACK_SHARE: f64 = 0.02;
 const SNAG_S: f64 = 3.0;
 /// Share of the slack below which all cable counts as explained.
 const EXPLAINED: f64 = 0.25;
-/// A caught cable is free for certain this much way before the place where the map last explained all of it, metres.
+/// A caught cable is free at least this much way before the place where the map last explained all of it, metres.
 const FURTHER_BACK_M: f64 = 0.5;
 
 /// What the map makes of the cable.
@@ -70,9 +70,14 @@ impl Payout {
         self.beyond_s > SNAG_S
     }
 
-    /// Points of the way driven to go back to, so that a caught cable comes free: driving back undoes whatever driving
-    /// on has done to it, among obstacles known and unknown.
-    pub(super) fn points_to_go_back_to(&self) -> usize {
-        self.free_points.saturating_sub((FURTHER_BACK_M / KEPT_M) as usize)
+    /// Points of the way driven, of so many, to go back to, so that a caught cable comes free: driving back undoes whatever
+    /// driving on has done to it, among obstacles known and unknown.
+    ///
+    /// The excess grows with the square of the way since the cable touched: where it is small enough to count as
+    /// explained the cable may have been caught for as long again. Beyond that the cable comes off on the side on which it
+    /// belongs, and the way home along it is clear.
+    pub(super) fn points_to_go_back_to(&self, points: usize) -> usize {
+        let caught = points.saturating_sub(self.free_points);
+        self.free_points.saturating_sub(caught + (FURTHER_BACK_M / KEPT_M) as usize)
     }
 }

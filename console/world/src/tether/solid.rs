@@ -9,6 +9,8 @@ use std::f64::consts::TAU;
 
 /// Directions of the tangents that make the outline of a round solid.
 const TANGENTS: u32 = 24;
+/// Distance from an edge below which its direction is rounding, metres.
+const ON_EDGE_M: f64 = 1e-9;
 
 /// All points within a radius of a point, a segment or a convex polygon.
 #[derive(Debug, Clone)]
@@ -93,7 +95,9 @@ impl Solid {
             .core_edges()
             .map(|(p, q)| (nearest_on_segment(p, q, point), Vector::new(q.y - p.y, p.x - q.x)))
             .min_by(|(p, _), (q, _)| (p - point).norm_squared().total_cmp(&(q - point).norm_squared()))?;
-        let away = if inside_core { normal } else { point - nearest };
+        // On the edge itself the way from it would be nothing but rounding.
+        let off = point - nearest;
+        let away = if inside_core || off.norm() < ON_EDGE_M { normal } else { off };
         let away = away.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector::x);
         Some(nearest + away * (self.radius_m + 2.0 * slack_m))
     }

@@ -146,3 +146,24 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_cable_that_lies_flat_along_a_box_has_a_way_home() {
+    let (boundary, middle) = (Boundary::Circle { radius_m: 8.0 }, Point::new(0.96, -5.3));
+    for heading_deg in [0.0, 20.0, 44.0, 45.0, 46.0, 50.0, 90.0] {
+        let heading = nalgebra::Rotation2::new(f64::to_radians(heading_deg));
+        let corner = |(x, y)| middle + heading * Vector::new(x, y);
+        let corners = [(-0.31, -0.075), (0.31, -0.075), (0.31, 0.075), (-0.31, 0.075)];
+        let shape = Shape::Polygon { vertices: corners.map(corner).to_vec() };
+        let mut cable = Cable::new(Point::new(0.0, -6.9), &boundary, std::slice::from_ref(&shape)).unwrap();
+        let roomy = Arc::new(Ground::grown(&boundary, std::slice::from_ref(&shape), 0.15));
+        let obstacle = Obstacle { id: ObstacleId(0), name: String::new(), shape, known: true };
+        let map = ObstacleMap::new(&boundary, &[obstacle]);
+        let way = [(0.0, -6.9), (0.0, -5.5), (0.5, -4.5), (4.0, 3.0), (5.7, -0.3), (5.6, -1.0), (5.0, -2.0)];
+        for at in polyline::resampled(&way.map(|(x, y)| Point::new(x, y)), 0.02) {
+            cable.drag_to(at);
+            let home = cable.way_home(&roomy, &map, 0.15);
+            assert!(home.is_some(), "{heading_deg} deg at {at}: {:?}", cable.taut_line());
+        }
+    }
+}
