@@ -18,7 +18,7 @@ use crate::{
     tether::Tether,
 };
 use planner_api::{Drive, Reason};
-use tethering::Cuts;
+use tethering::{Caught, Cuts};
 use world::{CoverageGrid, Floor, FloorMaker, Point, Readings, World};
 
 /// A robot that is stuck again within this distance is stuck in the same place, metres.
@@ -75,8 +75,8 @@ pub struct Mission {
     waited_s: f64,
     /// Where it said so last, and how often there.
     blocked_at: Option<(Point, usize)>,
-    /// Where the cable was found caught last, and how often there.
-    caught_at: Option<(Point, usize)>,
+    /// Where the cable held the robot last.
+    caught: Option<Caught>,
     /// Where the robot was stuck last and got another plan.
     replanned_at: Option<Point>,
     trail: Vec<Point>,
@@ -153,7 +153,7 @@ impl Mission {
             blocked_s: 0.0,
             waited_s: 0.0,
             blocked_at: None,
-            caught_at: None,
+            caught: None,
             replanned_at: None,
             trail: vec![start],
             plan: None,

@@ -27,6 +27,9 @@ use world::{
 
 /// Distance between the points of the way driven that are kept, metres.
 const KEPT_M: f64 = 0.05;
+/// Coming this near to the point before the last one undoes the last step, metres: no obstacle stands in so small a loop of
+/// the hull.
+const UNDONE_M: f64 = 0.08;
 /// Share of a limit from which the operator is warned.
 const NEAR: f64 = 0.8;
 /// Share of a limit below which an alarm is over.
@@ -131,10 +134,22 @@ impl Tether {
 
     /// Drags the cable to where the robot is believed to be.
     pub fn drag_to(&mut self, here: Point) {
-        if self.driven.last().is_none_or(|last| (here - last).norm() >= KEPT_M) {
-            self.driven.push(here);
-        }
+        self.keep(here);
         self.cable.drag_to(here);
+    }
+
+    /// Keeps the way driven. A step back over the last one undoes it: what is left is the way without its there-and-back.
+    fn keep(&mut self, here: Point) {
+        let far_from =
+            |point: Option<&Point>, apart_m: f64| point.is_none_or(|p| (here - p).norm() >= apart_m);
+        if far_from(self.driven.last(), KEPT_M) {
+            let before = self.driven.len().checked_sub(2).and_then(|k| self.driven.get(k));
+            if far_from(before, UNDONE_M) {
+                self.driven.push(here);
+            } else {
+                self.driven.pop();
+            }
+        }
     }
 
     /// Takes in what the reel has paid out, metres, after some time; `error_m` is the error of the position by which the
@@ -142,7 +157,7 @@ impl Tether {
     pub fn measure(&mut self, paid_out_m: Option<f64>, error_m: Option<f64>, passed_s: f64) {
         let (length_m, points) = (self.cable.length_m(), self.driven.len());
         let explained = error_m.map(|error_m| Explained { length_m, error_m, points });
-        self.payout.take(paid_out_m, explained, passed_s);
+        self.payout.take(paid_out_m, explained, self.config.limits.reel_m, passed_s);
     }
 
     /// Whether more cable is out than the map explains: it has caught on something unknown.

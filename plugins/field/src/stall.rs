@@ -10,6 +10,8 @@ const GAIN_M: f64 = 0.1;
 const OTHER_TARGET_M: f64 = 0.2;
 /// Going about without coming nearer is borne this many times as long as standing still.
 const PATIENCE: f64 = 3.0;
+/// Ticks further apart than this have a hold between them, seconds; what was held could not get on.
+const HELD_S: f64 = 1.0;
 
 /// Remembers when the robot last moved and when it last came nearer to its target.
 #[derive(Debug, Clone, Default)]
@@ -24,14 +26,20 @@ struct Memory {
     target: Point,
     best_m: f64,
     gained_s: f64,
+    seen_s: f64,
 }
 
 impl Stall {
     /// Takes a tick; returns for how long nothing has come of it, seconds.
     pub fn update(&mut self, t_s: f64, at: Point, target: Point) -> f64 {
         let missing_m = (target - at).norm();
-        let fresh = Memory { anchor: at, moved_s: t_s, target, best_m: missing_m, gained_s: t_s };
+        let fresh =
+            Memory { anchor: at, moved_s: t_s, target, best_m: missing_m, gained_s: t_s, seen_s: t_s };
         let memory = self.memory.get_or_insert(fresh);
+        if t_s - memory.seen_s > HELD_S {
+            *memory = fresh;
+        }
+        memory.seen_s = t_s;
         if (target - memory.target).norm() > OTHER_TARGET_M {
             (memory.target, memory.best_m, memory.gained_s) = (target, missing_m, t_s);
         }
@@ -82,6 +90,15 @@ mod tests {
         (0..=300)
             .map(|k| stall.update(f64::from(k) * 0.1, path(f64::from(k) * 0.1), Point::new(50.0, 0.0)))
             .fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn time_spent_held_does_not_count() {
+        let mut stall = Stall::default();
+        let goal = Point::new(50.0, 0.0);
+        assert!(stall.update(0.0, Point::origin(), goal).abs() < 1e-9);
+        assert!(stall.update(500.0, Point::origin(), goal).abs() < 1e-9);
+        assert!((stall.update(500.1, Point::origin(), goal) - 0.1).abs() < 1e-9);
     }
 
     #[test]

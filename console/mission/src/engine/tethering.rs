@@ -9,14 +9,25 @@ use crate::{
 use planner_api::{Plan, Reason};
 use world::{Point, polyline, tether::crossings};
 
-/// So often a cable is eased by itself that holds the robot in one place.
+/// So often a cable is eased by itself that holds the robot in one place while little is scanned.
 const MOST_TIMES_CAUGHT: usize = 2;
+/// Share of the reachable floor that is worth another try.
+const WORTH_IT: f64 = 0.01;
 
 /// A robot without a way home that nobody attends waits this long for one, seconds.
 const WAIT_FOR_HOME_S: f64 = 30.0;
 
 /// A robot this near to the anchor needs no way home, metres.
 const HOME_M: f64 = 0.3;
+
+/// The cable held the robot.
+#[derive(Clone, Copy)]
+pub(super) struct Caught {
+    at: Point,
+    /// Share of the reachable floor scanned when it first did so there.
+    scanned: f64,
+    times: usize,
+}
 
 /// The lines that the plan never crosses, and whether the robot has.
 #[derive(Default)]
@@ -149,12 +160,15 @@ impl Mission {
     }
 
     /// A cable at its limits, or caught, holds the robot. Lanes are planned anew from there, after a way that eases the
-    /// cable; with nobody there this is tried a few times in one place, and else the mission ends.
+    /// cable; with nobody there this is tried a few times in one place, and more often while floor is scanned in between; else
+    /// the mission ends.
     fn hold_by_cable(&mut self, message: String, outcome: Outcome) {
-        let here = self.locator.position();
-        let (at, times) =
-            self.caught_at.filter(|(at, _)| (here - at).norm() < SAME_PLACE_M).unwrap_or((here, 0));
-        self.caught_at = Some((at, times + 1));
+        let (at, scanned) = (self.locator.position(), self.coverage.fraction_reachable());
+        let again = self
+            .caught
+            .filter(|last| (at - last.at).norm() < SAME_PLACE_M && scanned - last.scanned < WORTH_IT);
+        let times = again.map_or(0, |last| last.times);
+        self.caught = Some(Caught { times: times + 1, ..again.unwrap_or(Caught { at, scanned, times }) });
         let plans_anew = self.plans_ways_home() && times < MOST_TIMES_CAUGHT;
         if plans_anew {
             self.planner.plan_due.get_or_insert(Reason::Blocked);

@@ -96,6 +96,9 @@ fn wrap_role(look: &Look, tether: &Tether) -> Role {
 
 /// The largest wrap and where it is.
 fn worst(look: &Look, tether: &Tether, wide: bool) -> String {
+    if tether.is_caught {
+        return "unknown, the cable has caught".into();
+    }
     let Some(most) = tether.contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()))
     else {
         return "none, the cable is straight".into();
