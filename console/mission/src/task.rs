@@ -108,6 +108,11 @@ impl Task {
         }
     }
 
+    /// Whether only some of the floor is to be scanned.
+    pub fn is_in_part(&self) -> bool {
+        matches!(self, Self::Cover(cover) if cover.is_in_part())
+    }
+
     /// What is left of the lanes, from the point nearest to the robot on; `None` unless there are any.
     pub fn lanes_left(&self) -> Option<&[Point]> {
         match self {

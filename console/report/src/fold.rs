@@ -11,7 +11,7 @@ use crate::{
 };
 use mission::{
     Event, EventKind, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, TaskConfig,
-    event::RunOpened,
+    event::{RunOpened, TetherAlarm},
 };
 use world::{Obstacle, Pose};
 
@@ -45,6 +45,8 @@ impl Fold {
                 self.accuracy.truth(event.tick, pose.position);
                 self.see_truth(*pose, *clearance_m, *collided);
             }
+            EventKind::TetherAlarmed { alarm: TetherAlarm::Snag { .. }, .. } => self.catch(true),
+            EventKind::TetherEased { alarm: TetherAlarm::Snag { .. } } => self.catch(false),
             EventKind::TetherTruth { length_m, max_wrap_rad, sum_wrap_rad, detour_m } => {
                 if let Some(tethered) = &mut self.tethered {
                     tethered.lie(*length_m, *max_wrap_rad, *sum_wrap_rad, *detour_m);
@@ -101,6 +103,12 @@ impl Fold {
                 self.known.reason = Some(reason.clone());
             }
             _ => {}
+        }
+    }
+
+    fn catch(&mut self, caught: bool) {
+        if let Some(tethered) = &mut self.tethered {
+            tethered.catch(caught);
         }
     }
 

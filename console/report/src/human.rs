@@ -196,9 +196,18 @@ fn positioning(positioning: &Positioning) -> Vec<String> {
 }
 
 fn tether(tether: &Tether) -> String {
-    let state = if tether.entangled { "ENTANGLED" } else { "free" };
+    let state = match tether {
+        Tether { entangled: true, .. } => "ENTANGLED",
+        Tether { caught: true, .. } => "CAUGHT",
+        _ => "free",
+    };
+    let caught = match tether.catches {
+        0 => String::new(),
+        1 => ", caught once on something unseen".into(),
+        n => format!(", caught {n} times on something unseen"),
+    };
     format!(
-        "{state}, {:.1} m out at the end, {:.1} m at most, wrapped {:.0} deg about one obstacle at most, {}",
+        "{state}, {:.1} m out at the end, {:.1} m at most, wrapped {:.0} deg about one obstacle at most, {}{caught}",
         tether.end_length_m,
         tether.max_length_m,
         tether.max_wrap_rad.to_degrees(),

@@ -149,6 +149,12 @@ pub struct Tether {
     pub end_length_m: f64,
     /// Whether it could not be pulled in.
     pub entangled: bool,
+    /// How often the mission found that it had caught on something unseen.
+    #[serde(default)]
+    pub catches: u64,
+    /// Whether it had when the run ended.
+    #[serde(default)]
+    pub caught: bool,
 }
 
 /// How long planners took to answer.

@@ -16,12 +16,14 @@ pub struct Tethered {
     anchor: Point,
     known: Option<Tether>,
     detour_m: f64,
+    catches: u64,
+    caught: bool,
 }
 
 impl Tethered {
     /// A run with this tether.
     pub fn new(config: &TetherConfig) -> Self {
-        Self { anchor: config.anchor, known: None, detour_m: 0.0 }
+        Self { anchor: config.anchor, known: None, detour_m: 0.0, catches: 0, caught: false }
     }
 
     /// Takes in how the cable lies in one tick.
@@ -36,14 +38,23 @@ impl Tethered {
             loops: (max_wrap_rad / TAU) as u64,
             end_length_m: length_m,
             entangled: false,
+            catches: 0,
+            caught: false,
         });
+    }
+
+    /// Takes in that the mission found the cable caught on something unseen, or free of it again.
+    pub fn catch(&mut self, caught: bool) {
+        self.catches += u64::from(caught);
+        self.caught = caught;
     }
 
     /// The figures: entangled is a cable that holds the mission up, or stays out though the robot is back.
     pub fn tether(&self, robot: Option<Point>, outcome: Option<Outcome>) -> Option<Tether> {
         let is_back = robot.is_some_and(|robot| (robot - self.anchor).norm() <= BACK_M);
         let entangled = outcome == Some(Outcome::Entangled) || (is_back && self.detour_m > LEFT_M);
-        self.known.map(|known| Tether { entangled, ..known })
+        let (catches, caught) = (self.catches, self.caught);
+        self.known.map(|known| Tether { entangled, catches, caught, ..known })
     }
 }
 
@@ -64,5 +75,8 @@ mod tests {
         assert_eq!((at(0.1).max_length_m, at(0.1).end_length_m, at(0.1).loops), (7.0, 5.0, 1));
         assert!(at(0.1).entangled && !at(3.0).entangled);
         assert!(tethered.tether(None, Some(Outcome::Entangled)).unwrap().entangled);
+        let catches = |tethered: &Tethered| tethered.tether(None, None).map(|t| (t.catches, t.caught));
+        [true, false, true].into_iter().for_each(|caught| tethered.catch(caught));
+        assert_eq!(catches(&tethered), Some((2, true)));
     }
 }

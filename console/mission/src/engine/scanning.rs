@@ -113,7 +113,14 @@ impl Mission {
                 let scanned = format!(
                     "back at the anchor, {share:.1} % of the {base_m2:.1} m² of reachable floor scanned"
                 );
-                scanned + &self.left_beyond_reel().map(|why| format!("; {why}")).unwrap_or_default()
+                let asked = if self.task.is_in_part() {
+                    let n_left = self.task.floor_left(&self.coverage).len();
+                    let left_m2 = n_left as f64 * self.coverage.floor().cell_m2();
+                    format!(", all but {left_m2:.2} m² of what was asked for")
+                } else {
+                    String::new()
+                };
+                scanned + &asked + &self.left_beyond_reel().map(|why| format!("; {why}")).unwrap_or_default()
             }
         }
     }

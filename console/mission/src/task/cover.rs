@@ -92,6 +92,11 @@ impl Cover {
         self.lanes.as_ref().map_or_else(home, |lanes| lanes.follower.ahead(length_m))
     }
 
+    /// Whether only some of the floor is to be scanned.
+    pub fn is_in_part(&self) -> bool {
+        !self.regions.is_empty()
+    }
+
     /// What is left of the plan, from the point nearest to the robot on.
     pub fn lanes_left(&self) -> Option<&[Point]> {
         self.lanes.as_ref().map(|lanes| lanes.follower.remaining())
