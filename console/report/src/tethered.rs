@@ -76,7 +76,9 @@ mod tests {
         assert!(at(0.1).entangled && !at(3.0).entangled);
         assert!(tethered.tether(None, Some(Outcome::Entangled)).unwrap().entangled);
         let catches = |tethered: &Tethered| tethered.tether(None, None).map(|t| (t.catches, t.caught));
-        [true, false, true].into_iter().for_each(|caught| tethered.catch(caught));
+        for caught in [true, false, true] {
+            tethered.catch(caught);
+        }
         assert_eq!(catches(&tethered), Some((2, true)));
     }
 }
