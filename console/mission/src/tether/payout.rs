@@ -85,8 +85,10 @@ impl Payout {
     /// explained the cable may have been caught for as long again. Beyond that the cable comes off on the side on which it
     /// belongs, and the way home along it is clear.
     pub(super) fn points_to_go_back_to(&self, points: usize) -> usize {
-        let caught = points.saturating_sub(self.free_points);
-        self.free_points.saturating_sub(caught + (FURTHER_BACK_M / KEPT_M) as usize)
+        // On the way back there are fewer again.
+        let free = self.free_points.min(points);
+        let caught = points - free;
+        free.saturating_sub(caught + (FURTHER_BACK_M / KEPT_M) as usize)
     }
 }
 
@@ -119,6 +121,7 @@ mod tests {
         taken(&mut payout, 21.0, 240);
         assert!(payout.is_caught());
         assert_eq!(payout.points_to_go_back_to(240), 200 - 40 - 10);
+        assert_eq!(payout.points_to_go_back_to(100), 100 - 10, "already on the way back, further than that");
         taken(&mut payout, 20.05, 150);
         assert!(!payout.is_caught());
     }
