@@ -15,12 +15,26 @@ use crate::{
     tank::Boundary,
 };
 
+/// Sine of the angle up to which a line along an edge does not enter the solid.
+const ALONG_EDGE: f64 = 1e-6;
+
 /// A disc that a cable can bear on; radius 0 is a corner.
 #[derive(Debug, Clone, Copy)]
 pub struct Post {
     pub(super) center: Point,
     pub(super) radius_m: f64,
     pub(super) of: Bearing,
+    /// Unit vectors along the edges that meet at a corner; zero where there are none.
+    edges: [Vector; 2],
+}
+
+impl Post {
+    /// Whether a line of this direction may bear on the post with the post's solid on its left (`side` 1) or right (-1).
+    ///
+    /// A round post lies on the side that the line touches it from; of a corner only its edges tell.
+    pub(super) fn lies_on(&self, side: f64, line: Vector) -> bool {
+        self.radius_m > 0.0 || self.edges.iter().all(|edge| side * line.perp(edge) >= -ALONG_EDGE)
+    }
 }
 
 /// Obstacles and wall as a cable meets them; made once, shared by cables.
@@ -112,12 +126,26 @@ impl Ground {
 }
 
 fn posts_of(shape: &Shape, margin_m: f64, of: Bearing) -> Vec<Post> {
-    let post = |center: &Point, radius_m: f64| Post { center: *center, radius_m: radius_m + margin_m, of };
+    let post = |center: &Point, radius_m: f64| Post {
+        center: *center,
+        radius_m: radius_m + margin_m,
+        of,
+        edges: [Vector::zeros(); 2],
+    };
     match shape {
         Shape::Disc { center, radius_m } => vec![post(center, *radius_m)],
-        Shape::Polygon { vertices } => vertices.iter().map(|p| post(p, 0.0)).collect(),
+        Shape::Polygon { vertices } => (0..vertices.len())
+            .map(|k| Post { edges: edges_at(vertices, k), ..post(&vertices[k], 0.0) })
+            .collect(),
         Shape::Polyline { points, half_width_m } => points.iter().map(|p| post(p, *half_width_m)).collect(),
     }
+}
+
+/// Unit vectors from a corner of a ring to the corners beside it.
+fn edges_at(ring: &[Point], k: usize) -> [Vector; 2] {
+    let n = ring.len();
+    [ring[(k + n - 1) % n], ring[(k + 1) % n]]
+        .map(|beside| (beside - ring[k]).try_normalize(0.0).unwrap_or_else(Vector::zeros))
 }
 
 /// The convex solids that make an obstacle.
@@ -148,7 +176,12 @@ fn wall_posts(boundary: &Boundary, margin_m: f64) -> Vec<Post> {
             let (before, here, after) = (vertices[(k + n - 1) % n], vertices[k], vertices[(k + 1) % n]);
             turning * (here - before).perp(&(after - here)) < 0.0
         })
-        .map(|k| Post { center: vertices[k], radius_m: margin_m, of: Bearing::Wall })
+        .map(|k| Post {
+            center: vertices[k],
+            radius_m: margin_m,
+            of: Bearing::Wall,
+            edges: edges_at(vertices, k),
+        })
         .collect()
 }
 

@@ -45,15 +45,33 @@ impl Base {
 
     /// Angle by which the free piece turns until its end is at `to`, radians, on a move from `from`.
     pub fn turn_to(&self, from: Point, to: Point) -> f64 {
-        let Some(bearing_rad) = self.bearing_to(to) else { return 0.0 };
+        let Some(bearing_rad) = self.bearing_to(to) else { return self.turn_to_end_here() };
         let turn = wrap_angle_rad(bearing_rad - self.out_rad);
         // Seen from close by, a move can turn it by nearly half a turn; the sense is that of the motion.
-        let sense = direction(self.out_rad).perp(&(to - from));
-        if turn.abs() > 3.0 && turn * sense < 0.0 {
+        if turn.abs() > 3.0 && turn * self.sense_of(from, to) < 0.0 {
             turn - std::f64::consts::TAU.copysign(turn)
         } else {
             turn
         }
+    }
+
+    /// The turn that leaves the cable ending at the base: all that it was bent there is gone.
+    fn turn_to_end_here(&self) -> f64 {
+        if self.post.is_some() { -self.side * self.wrap_rad } else { 0.0 }
+    }
+
+    /// 1 if a move passes the base counter-clockwise, -1 if clockwise.
+    ///
+    /// What passes no farther from it than rounding errors came back along the cable, and winds off.
+    fn sense_of(&self, from: Point, to: Point) -> f64 {
+        let along = to - from;
+        // From the corner itself no side can be told by where the corner lies; the cable's bearing still tells it.
+        let passed_m = if from == self.center || self.radius_m == 0.0 {
+            direction(self.out_rad).perp(&along)
+        } else {
+            (from - self.center).perp(&along)
+        } / along.norm();
+        if passed_m.abs() <= SLACK_M && self.side != 0.0 { -self.side } else { passed_m }
     }
 }
 
@@ -102,9 +120,9 @@ struct Sweep<'a> {
     /// First and last position of the free piece: where it begins, its direction.
     start: (Point, Vector),
     end: (Point, Vector),
-    /// How far before the start and beyond the end a tangent may lie and still count, radians.
-    early_rad: f64,
-    late_rad: f64,
+    /// Length of the free piece at the start and at the end, metres.
+    start_m: f64,
+    end_m: f64,
 }
 
 struct Touch {
@@ -119,7 +137,6 @@ impl<'a> Sweep<'a> {
         let out_rad = base.out_rad + turn_rad;
         let start = (base.leaves_at(base.out_rad), direction(base.out_rad));
         let end = (base.leaves_at(out_rad), direction(out_rad));
-        let reach_m = |at: Point, from: Point| (at - from).norm().max(SLACK_M);
         Self {
             base,
             sense,
@@ -127,8 +144,8 @@ impl<'a> Sweep<'a> {
             from,
             to,
             along: (to - from).normalize(),
-            early_rad: 0.25 * SLACK_M / reach_m(from, start.0),
-            late_rad: 0.5 * SLACK_M / reach_m(to, end.0),
+            start_m: (from - start.0).norm(),
+            end_m: (to - end.0).norm(),
             start,
             end,
         }
@@ -142,10 +159,34 @@ impl<'a> Sweep<'a> {
         let mut touches: Vec<Touch> = may_touch.filter_map(|k| self.touch(k, &ground.posts[k])).collect();
         touches.sort_unstable_by_key(|touch| touch.post);
         touches.into_iter().reduce(|best, touch| {
-            let same = (touch.after_rad - best.after_rad).abs() <= self.early_rad;
+            let same =
+                (touch.after_rad - best.after_rad).abs() <= self.early_rad(touch.far_m.max(best.far_m));
             let is_first = if same { touch.far_m < best.far_m } else { touch.after_rad < best.after_rad };
             if is_first { touch } else { best }
         })
+    }
+
+    /// How far before the start a tangent may lie and still count, radians, for a post so far from the base.
+    fn early_rad(&self, far_m: f64) -> f64 {
+        0.25 * SLACK_M / self.start_m.max(far_m).max(SLACK_M)
+    }
+
+    /// The same beyond the end.
+    fn late_rad(&self, far_m: f64) -> f64 {
+        0.5 * SLACK_M / self.end_m.max(far_m).max(SLACK_M)
+    }
+
+    /// Whether the free piece passes through a round post at the start, with its middle on the side it turns to.
+    ///
+    /// So it lies after a move along a chord of the post that led past its tangent point, where an arc would have
+    /// turned it back and forth.
+    fn starts_through(&self, post: &Post, far_m: f64) -> bool {
+        let aside_m = |point: Point| self.sense * self.start.1.perp(&(point - self.start.0));
+        // Later in a move the free piece no longer ends where the move began.
+        let is_first = aside_m(self.from).abs() <= SLACK_M;
+        let is_ahead = far_m < self.start_m && self.start.1.dot(&(post.center - self.start.0)) > 0.0;
+        let middle_m = aside_m(post.center);
+        is_first && is_ahead && middle_m > 0.0 && middle_m < post.radius_m - SLACK_M
     }
 
     /// Cheap test: the post reaches into the cone of the sweep, on the near side of the move.
@@ -169,21 +210,22 @@ impl<'a> Sweep<'a> {
         }
         let bearing_rad = way.y.atan2(way.x) - (offset / far).clamp(-1.0, 1.0).asin();
         let after_rad = self.sense * wrap_angle_rad(bearing_rad - self.base.out_rad);
-        if after_rad < -self.early_rad || after_rad > self.turn_rad.abs() + self.late_rad {
+        let far_m = (far * far - offset * offset).max(0.0).sqrt();
+        let is_early = after_rad < -self.early_rad(far_m) && !self.starts_through(post, far_m);
+        if is_early || after_rad > self.turn_rad.abs() + self.late_rad(far_m) {
             return None;
         }
         let at = tangent_point(post.center, post.radius_m, self.sense, bearing_rad);
-        let leaves = self.base.leaves_at(bearing_rad);
-        let (far_m, free) = ((at - leaves).norm(), direction(bearing_rad));
+        let (leaves, free) = (self.base.leaves_at(bearing_rad), direction(bearing_rad));
         let across = free.perp(&self.along);
+        let reaches = |end: Point| far_m <= (end - leaves).norm() + SLACK_M;
         // Beyond the line of the move the end passes before the post.
         let is_near = if across.abs() > 1e-9 {
-            self.sense * self.along.perp(&(at - self.from)) >= 0.0
+            self.sense * self.along.perp(&(at - self.from)) >= 0.0 && (reaches(self.from) || reaches(self.to))
         } else {
             // The move leads along the free piece itself: away from the base, or towards and past it.
-            let end = if free.dot(&self.along) > 0.0 { self.to } else { self.from };
-            far_m <= (end - leaves).norm() + SLACK_M
+            reaches(if free.dot(&self.along) > 0.0 { self.to } else { self.from })
         };
-        is_near.then_some(Touch { post: k, after_rad, far_m, at })
+        (is_near && post.lies_on(self.sense, free)).then_some(Touch { post: k, after_rad, far_m, at })
     }
 }

@@ -173,6 +173,26 @@ fn a_move_through_a_column_passes_it_on_the_side_of_its_centre() {
     }
 }
 
+#[test]
+fn a_tip_on_the_last_contact_goes_back_the_way_it_came() {
+    // Every bearing, as the last digit of the tangent decides which way half a turn seems to lead.
+    for shape in [disc(2.0, 0.0, 0.3), square(2.0, 0.0, 0.3)] {
+        for k in 0..720 {
+            let out = |bearing_rad: f64, far_m: f64| {
+                Point::new(2.0 + far_m * bearing_rad.cos(), far_m * bearing_rad.sin())
+            };
+            let around_rad = PI * (1.0 - f64::from(k) / 720.0);
+            let anchor = out(around_rad + PI / 2.0, 3.0);
+            let mut cable = cable(anchor, std::slice::from_ref(&shape));
+            cable.drag_along(&[out(around_rad, 3.0), out(around_rad - PI / 2.0, 3.0)]);
+            let home: Vec<Point> = cable.taut_line().into_iter().rev().collect();
+            assert!(cable.sum_wrap_rad() > 0.1, "{k}: the way must bend");
+            cable.drag_along(&home);
+            assert!(cable.length_m() < 1e-9, "{k}: {:?}", cable.contacts());
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
@@ -209,6 +229,29 @@ proptest! {
             funnel.drag_to(point + aside);
             prop_assert!((cable.length_m() - funnel.length_m()).abs() < 1e-6, "{} {}", cable.length_m(), funnel.length_m());
         }
+    }
+
+    #[test]
+    fn a_robot_that_drives_home_along_its_own_cable_reels_it_all_in(
+        at in prop::collection::vec((-5..5_i32, -5..5_i32, any::<bool>()), 1..12),
+        goals in prop::collection::vec((-6..6_i32, -6..6_i32), 1..40),
+    ) {
+        let anchor = Point::origin();
+        let shape = |(x, y, is_box): (i32, i32, bool)| {
+            let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+            if is_box { square(x, y, 0.25) } else { disc(x, y, 0.25) }
+        };
+        let shapes = apart(at.into_iter().map(shape).collect(), anchor, 0.1);
+        let goals: Vec<(f64, f64)> = goals.iter().map(|(x, y)| (f64::from(*x) * 0.5, f64::from(*y) * 0.5)).collect();
+        let mut cable = cable(anchor, &shapes);
+        cable.drag_along(&walk(anchor, &goals, &shapes, 0.01));
+        let home: Vec<Point> = cable.taut_line().into_iter().rev().collect();
+        for point in home {
+            let before_m = cable.length_m();
+            cable.drag_to(point);
+            prop_assert!(cable.length_m() < before_m + 1e-6, "{} {before_m}", cable.length_m());
+        }
+        prop_assert!(cable.length_m() < 1e-6 && cable.word().letters().is_empty(), "{:?}", cable.contacts());
     }
 
     #[test]
