@@ -7,7 +7,7 @@ use mission::{
     link::{PlannerLink, Reply},
 };
 use planner_api::{Command, Drive, Plan, PlanRequest, Sensed, Site};
-use planner_host::{Host, HostConfig, PluginDirs};
+use planner_host::{Host, HostConfig, PluginDirs, Progress};
 use report::PlannerCalls;
 use sim::Simulator;
 use std::{
@@ -55,8 +55,19 @@ pub struct Planning {
     pub within: Duration,
 }
 
-/// Who is told when a plan is begun, and when it is done.
-pub type OnPlan = Box<dyn Fn(Option<Planning>) + Send>;
+/// News of a plan that is being made. All of it depends on the clock on the wall: it is shown, and never written down.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PlanNews {
+    /// It is begun.
+    Begun(Planning),
+    /// It is so far.
+    Progress(Progress),
+    /// It is done, or given up.
+    Done,
+}
+
+/// Who is told of plans that are being made. The flight waits meanwhile.
+pub type OnPlan = Arc<dyn Fn(PlanNews) + Send + Sync>;
 
 /// The host, with somebody who is told of plans.
 struct Told<'a> {
@@ -77,11 +88,11 @@ impl PlannerLink for Told<'_> {
     fn plan(&mut self, request: &PlanRequest<'_>) -> Result<Reply<Plan>, Fault> {
         if let Some(tell) = self.on_plan {
             let work = format!("{} plans", self.host.planner_id().unwrap_or("the planner"));
-            tell(Some(Planning { work, within: self.within }));
+            tell(PlanNews::Begun(Planning { work, within: self.within }));
         }
         let answer = self.host.plan(request);
         if let Some(tell) = self.on_plan {
-            tell(None);
+            tell(PlanNews::Done);
         }
         answer
     }
@@ -123,8 +134,10 @@ impl Flight {
         }
     }
 
-    /// Somebody is told when a plan is begun, and when it is done.
+    /// Somebody is told when a plan is begun, how far it is, and when it is done.
     pub fn tell_plans(&mut self, on_plan: OnPlan) {
+        let tell = Arc::clone(&on_plan);
+        self.host.tell_progress(Arc::new(move |progress| tell(PlanNews::Progress(progress.clone()))));
         self.on_plan = Some(on_plan);
     }
 

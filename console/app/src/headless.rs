@@ -61,8 +61,7 @@ pub fn fly(
         None => RunRecorder::spawn(JournalWriter::unwritten(began), None)?,
     };
     let bar = progress_bar(scenario, telling);
-    let planning_bar = bar.clone();
-    flight.tell_plans(Box::new(move |planning| progress::show(&planning_bar, planning.as_ref())));
+    flight.tell_plans(progress::shown_in(&bar));
     let (flight, fold) = fly_to_end(flight, &recorder, &bar);
     bar.finish_and_clear();
     let finished = recorder.finish(CLOSE_TIMEOUT);

@@ -16,6 +16,7 @@ use planner_host::{Host, HostConfig, PluginDirs};
 use serde::Serialize;
 use std::{
     process::ExitCode,
+    sync::Arc,
     time::{Duration, Instant},
 };
 use world::{
@@ -95,10 +96,13 @@ fn is_refused(scenario: &Scenario, certificate: Option<&Certificate>) -> bool {
 
 fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planned> {
     let mut host = Host::new(plugins, patient(HostConfig::new(Duration::from_secs(1)), &scenario.mission));
-    let spinner = progress::spinner(&Planning {
+    let planning = Planning {
         work: format!("{} plans", scenario.mission.planner.id),
         within: patience(&scenario.mission),
-    });
+    };
+    let spinner = progress::spinner(&planning);
+    let shown = spinner.clone();
+    host.tell_progress(Arc::new(move |progress| progress::show_share(&shown, &planning, progress)));
     let began = Instant::now();
     let answer = preview(&scenario.mission, &scenario.sim.world.as_drawn(), scenario.seed, &mut host);
     spinner.finish_and_clear();

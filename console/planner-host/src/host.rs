@@ -4,6 +4,7 @@ mod driving;
 mod fault;
 mod find;
 
+use crate::OnProgress;
 use crate::discovery::PluginDirs;
 use crate::parameters;
 use crate::quarantine::{MOST_FAULTS, Quarantine, WINDOW_S};
@@ -82,6 +83,7 @@ pub struct Host {
     step_times: Durations,
     n_faults: u64,
     stop: Option<Arc<AtomicBool>>,
+    on_progress: Option<OnProgress>,
 }
 
 impl Host {
@@ -99,12 +101,18 @@ impl Host {
             step_times: Durations::default(),
             n_faults: 0,
             stop: None,
+            on_progress: None,
         }
     }
 
     /// From now on a plan is given up when this is set, and no other is begun.
     pub fn stop_planning_on(&mut self, stop: Arc<AtomicBool>) {
         self.stop = Some(stop);
+    }
+
+    /// From now on somebody is told how far a plan is while it is being made.
+    pub fn tell_progress(&mut self, on_progress: OnProgress) {
+        self.on_progress = Some(on_progress);
     }
 
     /// The planner that drives.
@@ -153,6 +161,9 @@ impl Host {
         let (mut driving, said) = made.map_err(|fault| (fault, sha256.clone()))?;
         if let Some(stop) = &self.stop {
             driving.stop_on(Arc::clone(stop));
+        }
+        if let Some(tell) = &self.on_progress {
+            driving.tell_progress(Arc::clone(tell));
         }
         self.unheard.extend(said.logs);
         self.save_state_of_the_same(&driving.info);

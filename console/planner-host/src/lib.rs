@@ -17,6 +17,7 @@ mod host;
 #[cfg(unix)]
 mod loader;
 mod parameters;
+mod progress;
 mod quarantine;
 pub mod stamp;
 mod stats;
@@ -29,6 +30,7 @@ mod worker;
 pub use discovery::PluginDirs;
 pub use host::{Host, HostConfig};
 pub use parameters::{check_parameters, parameter_problems};
+pub use progress::{OnProgress, Progress};
 pub use stats::{CallStats, HostStats};
 pub use supervisor::WorkerCommand;
 pub use survey::{Survey, SurveyedPlugin, check_plugin, survey};

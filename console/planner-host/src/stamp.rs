@@ -152,12 +152,12 @@ mod tests {
         let newer = accept(Abi { major: 9, minor: 0 }).map_err(|error| error.to_string());
         assert_eq!(
             newer,
-            Err("built for planner ABI 9.0, this console speaks 1.1: update the console".into())
+            Err("built for planner ABI 9.0, this console speaks 1.2: update the console".into())
         );
         let older = accept(Abi { major: 0, minor: 3 }).map_err(|error| error.to_string());
         assert_eq!(
             older,
-            Err("built for planner ABI 0.3, this console speaks 1.1: rebuild the plugin".into())
+            Err("built for planner ABI 0.3, this console speaks 1.2: rebuild the plugin".into())
         );
         assert!(accept(Abi { major: 1, minor: 99 }).is_ok(), "a newer minor version is accepted");
     }

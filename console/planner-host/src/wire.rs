@@ -2,7 +2,8 @@
 //!
 //! A frame is `u32 length | u8 kind | u32 sequence | u32 soft deadline | body`, little-endian; the length counts
 //! everything after itself, the soft deadline is in microseconds and zero for none. One request, one answer with the
-//! request's sequence number; a CANCEL may follow a request and is never answered.
+//! request's sequence number; a CANCEL may follow a request and is never answered. Any number of PROGRESS frames with the
+//! request's sequence number may come before the answer to a PLAN, and nowhere else; they are never answered either.
 
 pub(crate) mod answer;
 pub(crate) mod body;
@@ -12,7 +13,7 @@ pub(crate) mod input;
 pub(crate) mod owned;
 
 /// Raised whenever a frame changes its form: console and worker must be of one build.
-pub(crate) const VERSION: u32 = 2;
+pub(crate) const VERSION: u32 = 3;
 /// Longest frame, bytes.
 pub(crate) const LONGEST: usize = 16 << 20;
 
@@ -32,4 +33,6 @@ pub(crate) mod kind {
     pub(crate) const FAILED: u8 = 0x81;
     /// The loader refused.
     pub(crate) const REFUSED: u8 = 0x82;
+    /// How far a plan is; the answer follows.
+    pub(crate) const PROGRESS: u8 = 0x83;
 }

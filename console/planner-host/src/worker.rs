@@ -3,6 +3,7 @@
 mod confine;
 mod patience;
 mod session;
+mod telling;
 
 use crate::wire::frame::{Incoming, Received};
 use crate::wire::{answer::BAD_OUTPUT, answer::Refusal, body::Writer, kind};
@@ -28,7 +29,7 @@ fn serve(socket: &OwnedFd) -> std::io::Result<()> {
     confine::confine();
     confine::die_with_the_console(socket.try_clone()?)?;
     let mut stream = UnixStream::from(socket.try_clone()?);
-    let patience = Patience::new(socket.try_clone()?);
+    let patience = Patience::new(socket.try_clone()?)?;
     let (mut incoming, mut writer, mut session) =
         (Incoming::default(), Writer::default(), Session::new(&patience));
     loop {
@@ -38,7 +39,7 @@ fn serve(socket: &OwnedFd) -> std::io::Result<()> {
             Received::Late | Received::Broken => return Err(std::io::ErrorKind::InvalidData.into()),
         }
         if incoming.kind() != kind::CANCEL {
-            patience.begin(incoming.soft_deadline(), incoming.has_more());
+            patience.begin(&incoming);
             answer(&mut session, &incoming, &mut writer)?;
             stream.write_all(finished(&mut writer, incoming.sequence()))?;
         }

@@ -263,6 +263,9 @@ pub struct Busy {
     pub within_s: Option<f64>,
     /// When it began, on the console's own clock, seconds.
     pub since_mono_s: f64,
+    /// How far it is: the share done, 0 to 1, and what is being done; `None` if nobody tells.
+    #[serde(default)]
+    pub at: Option<(f64, String)>,
 }
 
 /// The console itself.

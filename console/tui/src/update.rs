@@ -52,6 +52,13 @@ pub enum Msg {
     /// What the engine is busy with while it sends no events (`rpf plans`), and how long that may take, seconds;
     /// `None` when it is done.
     Busy(Option<(String, Option<f64>)>),
+    /// How far that is.
+    BusyAt {
+        /// Share done, 0 to 1.
+        share: f64,
+        /// What is being done, a few words; may be empty.
+        what: String,
+    },
     /// The process was sent a signal.
     Signal(Signal),
     /// A thread of the console panicked.
@@ -122,8 +129,16 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Notice { severity, text } => news(model, Cause::Console, severity, text),
         Msg::Busy(work) => {
             let since_mono_s = model.console.now.mono_s;
-            model.console.busy = work.map(|(work, within_s)| Busy { work, within_s, since_mono_s });
+            model.console.busy = work.map(|(work, within_s)| Busy { work, within_s, since_mono_s, at: None });
             // The engine speaks through this message while it sends no events.
+            model.clock.heard_mono_s = model.console.now.mono_s;
+            Vec::new()
+        }
+        Msg::BusyAt { share, what } => {
+            // What was told too late, when all is done, is of no interest.
+            if let Some(busy) = &mut model.console.busy {
+                busy.at = Some((share, what));
+            }
             model.clock.heard_mono_s = model.console.now.mono_s;
             Vec::new()
         }

@@ -32,6 +32,7 @@ pub(crate) const FAULTS: &[&str] = &[
     "configure_hang",
     "plan_panic",
     "plan_hang",
+    "plan_progress",
 ];
 
 /// Does what the word says; returns when the fault is one that can be survived.
@@ -55,6 +56,7 @@ pub(crate) fn commit(kind: &str, ctx: &Ctx<'_>) -> Result<()> {
         "slow" => return work_politely(ctx),
         "draw_flood" => draw_flood(ctx),
         "print_flood" => print_flood(),
+        "progress" => tell_progress_for_ever(ctx),
         "close_fds" => process::close_everything(),
         _ => {}
     }
@@ -104,6 +106,12 @@ fn draw_flood(ctx: &Ctx<'_>) {
     let line = vec![Point2::origin(); 1001];
     for _ in 0..100 {
         ctx.polyline(Layer::Other, &line);
+    }
+}
+
+fn tell_progress_for_ever(ctx: &Ctx<'_>) {
+    for round in 0_u64.. {
+        ctx.progress(0.999, &format!("almost done, round {round}"));
     }
 }
 

@@ -33,7 +33,7 @@ extern "C" {
 #endif
 
 #define TP_ABI_MAJOR 1u /* libraries of another major version are refused */
-#define TP_ABI_MINOR 1u /* raised when something is added at the end of a struct */
+#define TP_ABI_MINOR 2u /* raised when something is added at the end of a struct */
 
 /* ---- numbers that cross the boundary ------------------------------------------------------------------------- */
 
@@ -196,6 +196,9 @@ typedef struct tp_host {    /* the first argument is always host->ctx */
   /* since 1.1: ask TP_HOST_HAS first */
   void (*legs)(void *ctx, const tp_leg *legs, size_t n);     /* in plan: what stretches of the path are for, in order */
   void (*cut)(void *ctx, const tp_vec2 *points, size_t n);   /* in plan: one line that the robot never crosses */
+  /* since 1.2: ask TP_HOST_HAS first */
+  void (*progress)(void *ctx, double share, const char *what, size_t len); /* in plan: how far it is, 0 to 1, and a few
+                    words on what is being done; shown while the plan is made and kept nowhere. Call it freely. */
 } tp_host;
 
 typedef struct tp_planner { /* the first five functions are required, the others may be null */
@@ -281,7 +284,8 @@ TP_ASSERT(sizeof(tp_step_in) == 176 && offsetof(tp_step_in, target) == 120, "lay
 TP_ASSERT(offsetof(tp_step_in, targets_ahead) == 136 && offsetof(tp_step_in, obstacles) == 160, "layout");
 TP_ASSERT(sizeof(tp_plan_out) == 16 && sizeof(tp_step_out) == 32 && sizeof(tp_draw) == 48, "layout");
 TP_ASSERT(sizeof(tp_param) == 136 && offsetof(tp_param, min) == 112 && sizeof(tp_value) == 24, "layout");
-TP_ASSERT(sizeof(tp_host) == 112 && offsetof(tp_host, scalar) == 80 && offsetof(tp_host, legs) == 96, "layout");
+TP_ASSERT(sizeof(tp_host) == 120 && offsetof(tp_host, scalar) == 80 && offsetof(tp_host, legs) == 96, "layout");
+TP_ASSERT(offsetof(tp_host, progress) == 112, "layout");
 TP_ASSERT(sizeof(tp_leg) == 16, "layout");
 TP_ASSERT(sizeof(tp_planner) == 160 && offsetof(tp_planner, describe) == 80, "layout");
 TP_ASSERT(sizeof(tp_entry) == 48 && offsetof(tp_entry, planners) == 24 && sizeof(tp_stamp) == 16, "layout");

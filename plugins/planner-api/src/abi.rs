@@ -19,7 +19,7 @@ pub const MAGIC: [u8; 8] = *b"TANKPLAN";
 /// Libraries of another major version are refused.
 pub const MAJOR: u32 = 1;
 /// Raised when something is added at the end of a struct.
-pub const MINOR: u32 = 1;
+pub const MINOR: u32 = 2;
 /// The one symbol that a library exports.
 pub const SYMBOL: &str = "tank_planner_entry";
 /// Section of the stamp as file readers name it, on Linux, on macOS and on Windows.
@@ -151,7 +151,8 @@ const _: () = {
     assert!(offset_of!(StepIn, targets_ahead) == 136 && offset_of!(StepIn, obstacles) == 160);
     assert!(size_of::<PlanOut>() == 16 && size_of::<StepOut>() == 32 && size_of::<Draw>() == 48);
     assert!(size_of::<Param>() == 136 && offset_of!(Param, min) == 112 && size_of::<Value>() == 24);
-    assert!(size_of::<Host>() == 112 && offset_of!(Host, scalar) == 80 && offset_of!(Host, legs) == 96);
+    assert!(size_of::<Host>() == 120 && offset_of!(Host, scalar) == 80 && offset_of!(Host, legs) == 96);
+    assert!(offset_of!(Host, progress) == 112);
     assert!(size_of::<Leg>() == 16);
     assert!(size_of::<Planner>() == 160 && offset_of!(Planner, describe) == 80);
     assert!(size_of::<Entry>() == 48 && offset_of!(Entry, planners) == 24 && size_of::<Stamp>() == 16);

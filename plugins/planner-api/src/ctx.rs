@@ -1,4 +1,4 @@
-//! What a planner may call while it works: deadline, drawing, scalars, log.
+//! What a planner may call while it works: deadline, progress, drawing, scalars, log.
 
 use crate::{Code, Drawing, Layer, PlannerError, Result};
 use nalgebra::{Point2, Vector2};
@@ -38,6 +38,8 @@ pub trait Services {
     fn draw(&self, drawings: &[Drawing]);
     /// Takes a named figure of this tick.
     fn scalar(&self, name: &str, value: f64, unit: &str);
+    /// Takes how far a plan is, and what is being done.
+    fn progress(&self, share: f64, what: &str);
     /// Takes a message.
     fn log(&self, level: LogLevel, message: &str);
 }
@@ -98,6 +100,13 @@ impl<'a> Ctx<'a> {
     /// Reports a named figure of this tick; the console plots it.
     pub fn scalar(&self, name: &str, value: f64, unit: &str) {
         self.services.scalar(name, value, unit);
+    }
+
+    /// Tells how far a plan is while it is being made: the share done, 0 to 1, about in proportion to time, and what is
+    /// being done in a few plain words (`candidate 3 of 8`). The console shows it while it waits and keeps none of it;
+    /// outside of `plan` it goes nowhere. Call it as often as you like: what comes faster than it can be read is left out.
+    pub fn progress(&self, share: f64, what: &str) {
+        self.services.progress(share, what);
     }
 
     /// Says something to the operator's event log.

@@ -21,6 +21,7 @@ pub struct Bench {
     watched: Cell<bool>,
     drawings: RefCell<Vec<Drawing>>,
     scalars: RefCell<Vec<(String, f64, String)>>,
+    progress: RefCell<Vec<(f64, String)>>,
     logs: RefCell<Vec<(LogLevel, String)>>,
 }
 
@@ -31,6 +32,7 @@ impl Default for Bench {
             watched: Cell::new(true),
             drawings: RefCell::default(),
             scalars: RefCell::default(),
+            progress: RefCell::default(),
             logs: RefCell::default(),
         }
     }
@@ -82,6 +84,11 @@ impl Bench {
         self.scalars.borrow().iter().rev().find(|(known, ..)| known == name).map(|(_, value, _)| *value)
     }
 
+    /// How far a plan was told to be since the last [`Bench::clear`]: share, and what was being done.
+    pub fn progress(&self) -> Vec<(f64, String)> {
+        self.progress.borrow().clone()
+    }
+
     /// What was said since the last [`Bench::clear`].
     pub fn logs(&self) -> Vec<(LogLevel, String)> {
         self.logs.borrow().clone()
@@ -91,6 +98,7 @@ impl Bench {
     pub fn clear(&self) {
         self.drawings.borrow_mut().clear();
         self.scalars.borrow_mut().clear();
+        self.progress.borrow_mut().clear();
         self.logs.borrow_mut().clear();
     }
 }
@@ -116,6 +124,10 @@ impl Services for Bench {
         self.scalars.borrow_mut().push((name.to_owned(), value, unit.to_owned()));
     }
 
+    fn progress(&self, share: f64, what: &str) {
+        self.progress.borrow_mut().push((share, what.to_owned()));
+    }
+
     fn log(&self, level: LogLevel, message: &str) {
         self.logs.borrow_mut().push((level, message.to_owned()));
     }
@@ -135,10 +147,13 @@ mod tests {
         ctx.scalar("u", 1.0, "J");
         ctx.scalar("u", 2.0, "J");
         ctx.log(LogLevel::Warn, "narrow");
+        ctx.progress(0.5, "half way");
         assert_eq!((bench.drawings().len(), bench.scalar("u")), (1, Some(2.0)));
         assert_eq!(bench.logs(), [(LogLevel::Warn, "narrow".to_owned())]);
+        assert_eq!(bench.progress(), [(0.5, "half way".to_owned())]);
         bench.clear();
         assert!(bench.drawings().is_empty() && bench.scalars().is_empty() && bench.logs().is_empty());
+        assert!(bench.progress().is_empty());
     }
 
     #[test]

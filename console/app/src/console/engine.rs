@@ -2,13 +2,13 @@
 
 use crate::{
     cli::Drill,
-    flight::{Flight, Pace},
+    flight::{Flight, Pace, PlanNews},
     headless::CLOSE_TIMEOUT,
     run_folder::RunFolder,
     scenario::Scenario,
 };
 use mission::{Event, Order, Phase};
-use planner_host::PluginDirs;
+use planner_host::{PluginDirs, Progress};
 use recording::{Options, RunRecorder};
 use report::{Fold, Logs, Summary};
 use std::{
@@ -70,11 +70,7 @@ impl Engine {
         let stop_planning = Arc::new(AtomicBool::new(false));
         flight.stop_planning_on(Arc::clone(&stop_planning));
         let screen = tell.clone();
-        flight.tell_plans(Box::new(move |planning| {
-            let busy = planning.map(|planning| (planning.work, Some(planning.within.as_secs_f64())));
-            // A screen that is gone needs no news.
-            let _ = screen.send(Msg::Busy(busy));
-        }));
+        flight.tell_plans(Arc::new(move |news| tell_plan(&screen, news)));
         let cockpit = Cockpit {
             scenario: scenario.clone(),
             logs: logs.to_path_buf(),
@@ -306,6 +302,18 @@ impl Cockpit {
         // A screen that is gone needs no news.
         let _ = self.tell.send(message);
     }
+}
+
+/// Tells the screen of a plan that is being made.
+fn tell_plan(screen: &SyncSender<Msg>, news: PlanNews) {
+    // A screen that is gone needs no news, and one that is slow can do without some of the progress: the plan waits.
+    let _ = match news {
+        PlanNews::Begun(planning) => {
+            screen.send(Msg::Busy(Some((planning.work, Some(planning.within.as_secs_f64()))))).is_ok()
+        }
+        PlanNews::Progress(Progress { share, what }) => screen.try_send(Msg::BusyAt { share, what }).is_ok(),
+        PlanNews::Done => screen.send(Msg::Busy(None)).is_ok(),
+    };
 }
 
 fn may_take_long(order: &Order) -> bool {

@@ -2,6 +2,7 @@
 
 use super::find::Found;
 use super::{Fault, HostConfig, fault, fault::Phase, numbers};
+use crate::OnProgress;
 use crate::supervisor::{Failure, Worker};
 use crate::wire::answer::{BAD_OUTPUT, Said, said_of};
 use crate::wire::body::{Body, Writer};
@@ -71,6 +72,11 @@ impl Driving {
     /// From now on a plan is given up when this is set.
     pub(super) fn stop_on(&mut self, stop: Arc<AtomicBool>) {
         self.worker.stop_on(stop);
+    }
+
+    /// From now on somebody is told how far a plan is.
+    pub(super) fn tell_progress(&mut self, on_progress: OnProgress) {
+        self.worker.tell_progress(on_progress);
     }
 
     /// Whether this is the same planner of the same file.

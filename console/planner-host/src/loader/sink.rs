@@ -1,5 +1,6 @@
 //! The console's services in the worker: copies what a planner hands over, up to a limit.
 
+use crate::Progress;
 use crate::wire::answer::{Said, log_level};
 use mission::{ParamInfo, ParamKind};
 use nalgebra::Point2;
@@ -25,6 +26,8 @@ pub(crate) trait Watch {
     fn time_left_s(&self) -> f64;
     /// Whether anyone looks at drawings.
     fn wants_drawing(&self) -> bool;
+    /// Takes how far a plan is, as soon as it is told.
+    fn take_progress(&self, progress: Progress);
 }
 
 /// What a planner hands over during one call.
@@ -76,6 +79,7 @@ impl<'a> Sink<'a> {
             bytes: Some(take_bytes),
             legs: Some(take_legs),
             cut: Some(take_cut),
+            progress: Some(take_progress),
         };
         call(&raw const host)
     }
@@ -192,6 +196,15 @@ unsafe extern "C" fn take_scalar(ctx: *mut c_void, name: Str, value: f64, unit: 
         sink.said.scalars.push((plain(name, 64), value, plain(unit, 64)));
     } else {
         sink.n_dropped += 1;
+    }
+}
+
+unsafe extern "C" fn take_progress(ctx: *mut c_void, share: f64, ptr: *const u8, len: usize) {
+    // A share that is no number tells nothing.
+    if share.is_finite() {
+        let what = plain(Str { ptr, len }, Progress::LONGEST);
+        // SAFETY: as above.
+        unsafe { sink(ctx) }.watch.take_progress(Progress { share: share.clamp(0.0, 1.0), what });
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::child::Supervised;
 use super::{Failure, GRACE, WorkerCommand, soft};
+use crate::OnProgress;
 use crate::wire::body::{Body, Malformed, Read, Writer};
 use crate::wire::frame::{Incoming, Received};
 use crate::wire::kind;
@@ -18,6 +19,10 @@ use std::time::{Duration, Instant};
 const WRITE_WITHIN: Duration = Duration::from_millis(500);
 /// How often somebody who may want a plan no more is looked at.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
+/// Progress of a plan is passed on this often, per second, with so much over at first; the rest of a flood is left out. A
+/// worker that is well tells 20 a second.
+const MOST_PER_S: f64 = 40.0;
+const MOST_AT_FIRST: f64 = 20.0;
 
 /// A worker process, its socket and its output.
 pub(crate) struct Worker {
@@ -29,6 +34,10 @@ pub(crate) struct Worker {
     is_gone: bool,
     /// Set when no plan is wanted any more.
     stop: Option<Arc<AtomicBool>>,
+    /// Who is told how far a plan is.
+    on_progress: Option<OnProgress>,
+    /// When the request at hand was asked, and how often its progress was passed on.
+    passed_on: (Instant, u32),
 }
 
 impl Worker {
@@ -43,12 +52,27 @@ impl Worker {
             Failure::Console(format!("cannot be run, no worker process could be started: {error}"))
         })?;
         let (incoming, writer) = (Incoming::default(), Writer::default());
-        Ok(Self { child, socket, incoming, writer, sequence: 0, is_gone: false, stop: None })
+        Ok(Self {
+            child,
+            socket,
+            incoming,
+            writer,
+            sequence: 0,
+            is_gone: false,
+            stop: None,
+            on_progress: None,
+            passed_on: (Instant::now(), 0),
+        })
     }
 
     /// From now on a plan is given up when this is set.
     pub(crate) fn stop_on(&mut self, stop: Arc<AtomicBool>) {
         self.stop = Some(stop);
+    }
+
+    /// From now on somebody is told how far a plan is.
+    pub(crate) fn tell_progress(&mut self, on_progress: OnProgress) {
+        self.on_progress = Some(on_progress);
     }
 
     /// Whether a plan is wanted no more.
@@ -75,12 +99,15 @@ impl Worker {
         if self.is_stopped(kind) {
             return Err(Failure::Stopped);
         }
-        let until = Instant::now() + deadline;
+        let asked = Instant::now();
+        let until = asked + deadline;
+        self.passed_on = (asked, 0);
         self.send(kind, soft(deadline), write)?;
         let in_time = match self.receive(kind, until) {
             Received::Late => {
                 self.send_cancel();
-                let arrived = self.arrived(Instant::now() + GRACE);
+                let received = self.await_answer(kind, Instant::now() + GRACE);
+                let arrived = self.expect_frame(&received);
                 if self.is_stopped(kind) {
                     return Err(Failure::Stopped);
                 }
@@ -92,15 +119,48 @@ impl Worker {
         if in_time { answer } else { Err(Failure::Late) }
     }
 
-    /// Waits for a frame to a deadline, or until a plan is wanted no more.
+    /// Waits for the answer to a deadline, or until a plan is wanted no more.
     fn receive(&mut self, kind: u8, until: Instant) -> Received {
         loop {
             let next = if self.stop.is_some() { until.min(Instant::now() + LOOK_EVERY) } else { until };
-            match self.incoming.receive(&mut self.socket, Some(next)) {
+            match self.await_answer(kind, next) {
                 Received::Late if next < until && !self.is_stopped(kind) => {}
                 other => return other,
             }
         }
+    }
+
+    /// Waits for the answer to a moment; what a planner tells before of its progress is passed on and gains it no time.
+    fn await_answer(&mut self, kind: u8, until: Instant) -> Received {
+        loop {
+            let received = self.incoming.receive(&mut self.socket, Some(until));
+            if received != Received::Frame || self.incoming.kind() != kind::PROGRESS {
+                return received;
+            }
+            if self.pass_on(kind) == Err(Malformed) {
+                return Received::Broken;
+            }
+            if Instant::now() >= until {
+                return Received::Late;
+            }
+        }
+    }
+
+    /// Tells how far the plan is, unless it was told too often.
+    fn pass_on(&mut self, kind: u8) -> Read<()> {
+        if kind != kind::PLAN || self.incoming.sequence() != self.sequence {
+            return Err(Malformed);
+        }
+        let mut body = self.incoming.body();
+        let progress = body.progress()?;
+        body.end()?;
+        let (asked, times) = &mut self.passed_on;
+        let most = MOST_AT_FIRST + MOST_PER_S * asked.elapsed().as_secs_f64();
+        if let Some(tell) = self.on_progress.as_ref().filter(|_| f64::from(*times) < most) {
+            *times += 1;
+            tell(&progress);
+        }
+        Ok(())
     }
 
     fn send(&mut self, kind: u8, soft: Duration, write: impl FnOnce(&mut Writer)) -> Result<(), Failure> {
@@ -118,11 +178,6 @@ impl Worker {
             // If it cannot be written, waiting for the answer tells why.
             let _ = self.socket.write_all(frame);
         }
-    }
-
-    fn arrived(&mut self, until: Instant) -> Result<(), Failure> {
-        let received = self.incoming.receive(&mut self.socket, Some(until));
-        self.expect_frame(&received)
     }
 
     fn expect_frame(&mut self, received: &Received) -> Result<(), Failure> {
@@ -192,3 +247,6 @@ impl Drop for Worker {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,6 @@
 //! Systems without Unix sockets have no workers.
 
+use crate::OnProgress;
 use super::{Failure, WorkerCommand};
 use crate::wire::body::{Body, Read, Writer};
 use std::sync::{Arc, atomic::AtomicBool};
@@ -28,6 +29,10 @@ impl Worker {
     }
 
     pub(crate) fn stop_on(&mut self, _: Arc<AtomicBool>) {
+        match *self {}
+    }
+
+    pub(crate) fn tell_progress(&mut self, _: OnProgress) {
         match *self {}
     }
 

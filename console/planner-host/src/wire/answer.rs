@@ -1,6 +1,7 @@
-//! Answers: what a library holds, what a planner said, a plan, a command, a refusal.
+//! Answers: what a library holds, what a planner said, a plan, how far it is, a command, a refusal.
 
 use super::body::{Body, Malformed, Read, Writer};
+use crate::Progress;
 use mission::{ParamInfo, ParamKind};
 use nalgebra::Point2;
 use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, Plan, abi};
@@ -102,6 +103,10 @@ impl Writer {
         })
     }
 
+    pub(crate) fn progress(&mut self, progress: &Progress) -> &mut Self {
+        self.f64(progress.share).text(&progress.what)
+    }
+
     pub(crate) fn command(&mut self, command: Command) -> &mut Self {
         let mut raw = abi::StepOut::UNSET;
         raw.set(command);
@@ -187,6 +192,14 @@ impl Body<'_> {
     fn leg(&mut self) -> Read<Leg> {
         let tag = LegTag::from_number(self.u32()?).ok_or(Malformed)?;
         Ok(Leg { tag, first: self.u32()? as usize, last: self.u32()? as usize })
+    }
+
+    /// A worker tells only what can be shown as it is.
+    pub(crate) fn progress(&mut self) -> Read<Progress> {
+        let progress = Progress { share: self.f64()?, what: self.text()? };
+        let is_short = progress.what.chars().count() <= Progress::LONGEST;
+        let is_plain = is_short && !progress.what.contains(char::is_control);
+        if is_plain && (0.0..=1.0).contains(&progress.share) { Ok(progress) } else { Err(Malformed) }
     }
 
     pub(crate) fn command(&mut self) -> Read<Command> {

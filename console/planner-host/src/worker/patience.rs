@@ -1,7 +1,9 @@
 //! How long the console waits for the request at hand.
 
+use super::telling::Telling;
+use crate::Progress;
 use crate::loader::Watch;
-use crate::wire::frame::KIND_AT;
+use crate::wire::frame::{Incoming, KIND_AT};
 use crate::wire::kind;
 use rustix::net::{RecvFlags, recv};
 use std::cell::Cell;
@@ -18,26 +20,33 @@ pub(super) struct Patience {
     peeked: Cell<Instant>,
     cancelled: Cell<bool>,
     watched: Cell<bool>,
+    telling: Telling,
 }
 
 impl Patience {
     /// No request yet.
-    pub(super) fn new(socket: OwnedFd) -> Self {
-        Self {
+    ///
+    /// # Errors
+    /// When the socket cannot be had twice.
+    pub(super) fn new(socket: OwnedFd) -> std::io::Result<Self> {
+        let telling = Telling::new(socket.try_clone()?);
+        Ok(Self {
             socket,
             deadline: Cell::new(None),
             peeked: Cell::new(Instant::now()),
             cancelled: Cell::new(false),
             watched: Cell::new(false),
-        }
+            telling,
+        })
     }
 
-    /// A request arrived with this soft deadline; only a CANCEL can have arrived behind it.
-    pub(super) fn begin(&self, soft_deadline: Option<Duration>, is_cancelled: bool) {
+    /// A request arrived; only a CANCEL can have arrived behind it.
+    pub(super) fn begin(&self, request: &Incoming) {
         let now = Instant::now();
-        self.deadline.set(soft_deadline.and_then(|within| now.checked_add(within)));
+        self.deadline.set(request.soft_deadline().and_then(|within| now.checked_add(within)));
         self.peeked.set(now);
-        self.cancelled.set(is_cancelled);
+        self.cancelled.set(request.has_more());
+        self.telling.begin(request.kind(), request.sequence());
     }
 
     /// Whether anyone looks at drawings of this request.
@@ -62,6 +71,7 @@ impl Watch for Patience {
             return 1;
         }
         let now = Instant::now();
+        self.telling.catch_up(now);
         if self.deadline.get().is_some_and(|deadline| now >= deadline) {
             return 2;
         }
@@ -79,5 +89,9 @@ impl Watch for Patience {
 
     fn wants_drawing(&self) -> bool {
         self.watched.get()
+    }
+
+    fn take_progress(&self, progress: Progress) {
+        self.telling.take(progress);
     }
 }

@@ -5,5 +5,6 @@
 mod faults;
 mod files;
 mod in_c;
+mod progress;
 mod stand;
 mod state;

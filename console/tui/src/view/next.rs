@@ -21,12 +21,13 @@ pub(super) fn clauses(model: &Model) -> Clauses {
     }
     if model.console.hold_asked {
         let mut told = vec!["HOLD is on its way.".into()];
-        told.extend(model.console.busy.as_ref().map(|busy| waits_for(model, busy)));
+        told.extend(model.console.busy.iter().flat_map(|busy| waits_for(model, busy)));
         return (Role::Hold, told);
     }
     if let Some(work) = &model.console.busy {
-        let told = waits_for(model, work);
-        return (Role::Watch, vec![told, "space holds when it is done.".into(), "X, q stop it.".into()]);
+        let mut told = waits_for(model, work);
+        told.extend(["space holds when it is done.".into(), "X, q stop it.".into()]);
+        return (Role::Watch, told);
     }
     match (&model.console.asked, &model.phase) {
         (Some(Order::Start), _) => (Role::Title, vec!["The start is on its way.".into()]),
@@ -44,13 +45,20 @@ pub(super) fn clauses(model: &Model) -> Clauses {
     }
 }
 
-/// What the engine is busy with, for how long already and at most.
-fn waits_for(model: &Model, busy: &Busy) -> String {
+/// What the engine is busy with and how far, for how long already and at most, and what it is doing.
+fn waits_for(model: &Model, busy: &Busy) -> Vec<String> {
     let passed_s = (model.console.now.mono_s - busy.since_mono_s).max(0.0) as u64;
-    match busy.within_s {
-        Some(within_s) => format!("BUSY: {}, {passed_s} s of {} s at most.", busy.work, within_s as u64),
-        None => format!("BUSY: {}.", busy.work),
+    let mut first = format!("BUSY: {}", busy.work);
+    if let Some((share, _)) = &busy.at {
+        // Only the end makes it whole.
+        first.push_str(&format!(", {} %", (100.0 * share).floor().clamp(0.0, 99.0)));
     }
+    if let Some(within_s) = busy.within_s {
+        first.push_str(&format!(", {passed_s} s of {} s at most", within_s as u64));
+    }
+    first.push('.');
+    let what = busy.at.iter().filter(|(_, what)| !what.is_empty()).map(|(_, what)| format!("{what}."));
+    std::iter::once(first).chain(what).collect()
 }
 
 /// As many clauses as fit into some columns; the first one is cut if need be.

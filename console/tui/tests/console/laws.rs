@@ -63,6 +63,7 @@ fn msg() -> impl Strategy<Value = Msg> {
             .prop_map(|(recording, reached_speed)| Msg::Health(Health { recording, reached_speed })),
         1 => "\\PC{0,90}".prop_map(|text| Msg::Notice { severity: Severity::Crit, text }),
         1 => prop::option::of(("[a-z]{0,9}", prop::option::of(0.0..99.0_f64))).prop_map(Msg::Busy),
+        1 => (any::<f64>(), "\\PC{0,90}").prop_map(|(share, what)| Msg::BusyAt { share, what }),
         1 => signal.prop_map(Msg::Signal),
     ]
 }

@@ -57,6 +57,15 @@ fn idle() {
 }
 
 #[test]
+fn planning() {
+    let mut screen = Screen::idle();
+    screen.tell(Msg::Busy(Some(("tether-safe plans".into(), Some(60.0)))));
+    screen.pass(7.0);
+    screen.tell(Msg::BusyAt { share: 0.42, what: "candidate 2 of 3".into() });
+    store("planning", &mut screen);
+}
+
+#[test]
 fn running() {
     store("running", &mut Screen::running());
 }

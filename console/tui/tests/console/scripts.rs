@@ -168,9 +168,15 @@ fn a_plan_in_the_making_is_told_with_the_time_it_has_taken() {
     assert!(screen.model.wakes_at_mono_s().is_some(), "the seconds go on");
     screen.pass(7.0);
     assert!(shown(&screen).contains("BUSY: rpf plans, 7 s of 60 s at most."), "{}", shown(&screen));
+    screen.tell(Msg::BusyAt { share: 0.419, what: "candidate 2 of 3".into() });
+    assert!(shown(&screen).contains("BUSY: rpf plans, 41 %, 7 s of 60 s at most."), "{}", shown(&screen));
+    screen.tell(Msg::BusyAt { share: 1.0, what: String::new() });
+    assert!(shown(&screen).contains("rpf plans, 99 %, 7 s"), "only its end makes it whole: {}", shown(&screen));
     screen.press([Key::Char('q')]);
     screen.tell(Msg::Busy(None));
     assert!(!shown(&screen).contains("BUSY"));
+    screen.tell(Msg::BusyAt { share: 0.5, what: "late".into() });
+    assert!(!shown(&screen).contains("BUSY"), "what is told too late begins nothing");
 }
 
 #[test]

@@ -14,6 +14,7 @@ pub type TakePoints = unsafe extern "C" fn(*mut c_void, *const Vec2, usize);
 pub type TakeLegs = unsafe extern "C" fn(*mut c_void, *const Leg, usize);
 pub type TakeDraws = unsafe extern "C" fn(*mut c_void, *const Draw, usize);
 pub type TakeScalar = unsafe extern "C" fn(*mut c_void, Str, f64, Str);
+pub type TakeProgress = unsafe extern "C" fn(*mut c_void, f64, *const u8, usize);
 
 /// What the console offers during a call.
 #[repr(C)]
@@ -35,6 +36,8 @@ pub struct Host {
     // Since 1.1.
     pub legs: Option<TakeLegs>,
     pub cut: Option<TakePoints>,
+    // Since 1.2.
+    pub progress: Option<TakeProgress>,
 }
 
 /// Signatures of a planner's functions; all return 0 or a [`crate::Code`].

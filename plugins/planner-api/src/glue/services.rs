@@ -109,6 +109,13 @@ impl Services for HostServices {
         }
     }
 
+    fn progress(&self, share: f64, what: &str) {
+        if let Some(take) = self.0.progress {
+            // SAFETY: copied before it returns.
+            unsafe { take(self.0.ctx, share, what.as_ptr(), what.len()) }
+        }
+    }
+
     fn log(&self, level: LogLevel, message: &str) {
         if let Some(take) = self.0.log {
             // SAFETY: copied before it returns.

@@ -46,6 +46,7 @@ impl Planner for Probe {
         if self.act == "partial" {
             return Err(PlannerError::no_path_but("walled in", path));
         }
+        ctx.progress(0.25, "candidate 1 of 4");
         ctx.log(crate::LogLevel::Info, &format!("{request:?}"));
         let legs = vec![Leg { tag: LegTag::Swath, first: 0, last: 1 }];
         Ok(Plan {
@@ -100,6 +101,7 @@ struct Sink {
     cuts: Vec<usize>,
     draws: Vec<Draw>,
     scalars: Vec<(String, f64)>,
+    progress: Vec<(f64, String)>,
     bytes: Vec<u8>,
 }
 
@@ -141,6 +143,9 @@ unsafe extern "C" fn draw(ctx: *mut c_void, ptr: *const Draw, n: usize) {
 unsafe extern "C" fn scalar(ctx: *mut c_void, name: Str, value: f64, _: Str) {
     unsafe { sink(ctx).scalars.push((name.to_text(99), value)) }
 }
+unsafe extern "C" fn progress(ctx: *mut c_void, share: f64, ptr: *const u8, len: usize) {
+    unsafe { sink(ctx).progress.push((share, text(ptr, len))) }
+}
 unsafe extern "C" fn bytes(ctx: *mut c_void, ptr: *const u8, n: usize) {
     unsafe { sink(ctx).bytes.extend_from_slice(abi::slice(ptr, n)) }
 }
@@ -162,6 +167,7 @@ fn host(sink: &mut Sink) -> Host {
         bytes: Some(bytes),
         legs: Some(legs),
         cut: Some(cut),
+        progress: Some(progress),
     }
 }
 
@@ -289,6 +295,7 @@ fn a_request_for_a_plan_arrives_whole() {
     assert_eq!(sink.points, [Vec2 { x: 0.5, y: -0.5 }, Vec2 { x: 9.0, y: 9.0 }]);
     assert_eq!(sink.legs, [abi::Leg { tag: 0, first: 0, last: 1, reserved: 0 }]);
     assert_eq!(sink.cuts, [3, 2]);
+    assert_eq!(sink.progress, [(0.25, "candidate 1 of 4".to_owned())]);
     assert_eq!(sink.logs, [format!("{request:?}")]);
     unsafe { destroy::<Probe>(planner) };
 }
@@ -344,6 +351,22 @@ fn a_console_of_version_1_0_gets_a_plan_without_legs_and_cuts() {
     let code = unsafe { plan::<Probe>(planner, &older, &input, &mut { PlanOut::UNSET }) };
     assert_eq!((code, sink.points.len(), sink.legs.len(), sink.cuts.len()), (0, 2, 0, 0));
     assert_eq!(sink.logs, [format!("{request:?}")]);
+    unsafe { destroy::<Probe>(planner) };
+}
+
+#[test]
+fn a_console_of_version_1_1_gets_the_same_plan_and_no_progress() {
+    let mut sink = Sink::default();
+    let planner = instance(&mut sink, 0.0);
+    let site = site(&[], &[]);
+    let raw = lend::site(&site, &[], &[]);
+    let task = Task::Goto { goal: CORNERS[1], tolerance_m: 0.2 };
+    let request = PlanRequest { reason: &Reason::Start, start: pose(), task, site: &site, previous: &[] };
+    let older = Host { size: std::mem::offset_of!(Host, progress) as u32, ..host(&mut sink) };
+    let input = lend::plan(&request, &raw, &[]);
+    let code = unsafe { plan::<Probe>(planner, &older, &input, &mut { PlanOut::UNSET }) };
+    assert_eq!((code, sink.points.len(), sink.legs.len(), sink.cuts.len()), (0, 2, 1, 2));
+    assert_eq!(sink.progress, []);
     unsafe { destroy::<Probe>(planner) };
 }
 
