@@ -9,6 +9,7 @@ use crate::{
     roam::Roam,
     scan::{Order, Piece, Scan},
     slit::Slit,
+    stages::{Part, Stages},
 };
 use field::params as p;
 use planner_api::{
@@ -23,6 +24,10 @@ const DIRECTION: ParamSpec = float("direction_deg", "Direction of lanes", "deg",
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
     .help("Edge of the cells in which floor is counted, to tell what cannot be reached.")
     .group("Plan");
+
+/// What stages take of the time that is left, about: lanes, and the ways between them.
+const LANES: f64 = 0.5;
+const WAYS: f64 = 0.25;
 
 /// Lanes to and fro.
 pub struct Boustrophedon {
@@ -52,6 +57,8 @@ impl Planner for Boustrophedon {
         let task = answer::cover(request, Self::ID)?;
         let ground = Ground::new(request.site, task.anchor)?;
         let home = ground.home();
+        let mut stages = Stages::new(ctx);
+        stages.next(LANES, "lanes").begin();
         let slit = Slit::new(&ground, &[], home).ok_or_else(|| answer::no_room(&ground))?;
         let grid = FloorGrid::new(&ground, &slit, self.cell_m);
         let (shift_m, spacing_m) = crate::candidate::even_rows(&ground, self.direction_rad);
@@ -76,7 +83,9 @@ impl Planner for Boustrophedon {
         }
         let start = if slit.contains(request.start.position) { request.start.position } else { home };
         let roam = Roam::new(&ground, ctx)?;
-        let pieces = in_order(&roam, &wanted, self.direction_rad, start, home, ctx)?;
+        let part = stages.next(WAYS, "ways between lanes");
+        let pieces = in_order(&roam, &wanted, self.direction_rad, start, home, &part)?;
+        stages.next(1.0, "floor out of reach").begin();
         let mut scan = Scan { pieces, cuts: Vec::new(), slit, grid };
         scan.grid.sweep(&scan.path());
         let order = Order { start, regions: task.regions, reel_m: f64::INFINITY, cell_m: self.cell_m };
@@ -98,7 +107,7 @@ fn in_order(
     direction_rad: f64,
     start: Point,
     home: Point,
-    ctx: &Ctx<'_>,
+    part: &Part<'_>,
 ) -> Result<Vec<Piece>> {
     let ahead = crate::ground::direction(direction_rad);
     let row = |lane: &Lane| (ahead.perp(&lane.points[0].coords) * 1e3).round() as i64;
@@ -109,7 +118,8 @@ fn in_order(
     let mut pieces = Vec::new();
     let mut at = start;
     for (k, row) in rows.iter().enumerate() {
-        ctx.check()?;
+        part.ctx.check()?;
+        part.reached(k as f64 / rows.len() as f64);
         let mut row: Vec<Lane> = row.iter().map(|lane| (*lane).clone()).collect();
         if k % 2 == 1 {
             row.reverse();

@@ -12,6 +12,7 @@ use crate::{
     roam::Roam,
     scan::{Order, Piece, Scan},
     slit::Slit,
+    stages::{Part, Stages},
 };
 use field::params as p;
 use planner_api::{
@@ -30,6 +31,10 @@ const ORDER: ParamSpec = choice("order", "Order of cells", &["genetic", "exact"]
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
     .help("Edge of the cells in which floor is counted, to tell what cannot be reached.")
     .group("Plan");
+/// What stages take of the time that is left, about: division, order of cells, lanes.
+const DIVISION: f64 = 0.1;
+const ORDERING: f64 = 0.1;
+const LANES: f64 = 0.88;
 /// Lanes are looked at this closely, metres.
 const STEP_M: f64 = 0.04;
 
@@ -79,6 +84,8 @@ impl Planner for HullPartition {
         }
         let columns: Vec<(Point, f64)> = ground.parts.iter().map(column).collect();
         let home = ground.home();
+        let mut stages = Stages::new(ctx);
+        stages.next(DIVISION, "cells").begin();
         let Division { cells, first, mut cuts, mut slit } =
             Division::new(&ground, &columns, self.is_tree, home).ok_or_else(|| answer::no_room(&ground))?;
         if self.is_tree && !slit.is_simple {
@@ -105,8 +112,12 @@ impl Planner for HullPartition {
             |at: Point| is_off_cuts(at) && (task.regions.is_empty() || within.has_reachable_near(at));
         let mut pieces = Vec::new();
         let mut at = start;
-        for cell in self.order(&cells, first, request.site.seed) {
+        let cells_in_order =
+            self.order(&cells, first, request.site.seed, &stages.next(ORDERING, "order of cells"));
+        let part = stages.next(LANES, "lanes of cells");
+        for (k, cell) in cells_in_order.into_iter().enumerate() {
             ctx.check()?;
+            part.tell(k as f64 / cells.len() as f64, k, cells.len());
             let lanes = lanes(&cells[cell], &ground, &slit, &is_wanted);
             for lane in lanes.iter().flat_map(|lane| between_cuts(lane, &cuts)) {
                 pieces.push(Piece { points: way(at, lane[0]), is_lane: false });
@@ -116,6 +127,7 @@ impl Planner for HullPartition {
         }
         pieces.push(Piece { points: way(at, home), is_lane: false });
         let mut scan = Scan { pieces, cuts, slit, grid };
+        stages.next(1.0, "floor out of reach").begin();
         scan.grid.sweep(&scan.path());
         let order = Order { start, regions: task.regions, reel_m: f64::INFINITY, cell_m: self.cell_m };
         answer::tell_unreachable(&ground, &scan, &order, ctx);
@@ -218,14 +230,18 @@ fn one_more_gate(
 }
 
 impl HullPartition {
-    fn order(&self, cells: &[Cell], first: usize, seed: u64) -> Vec<usize> {
+    fn order(&self, cells: &[Cell], first: usize, seed: u64, part: &Part<'_>) -> Vec<usize> {
         let names: Vec<usize> =
             std::iter::once(first).chain((0..cells.len()).filter(|k| *k != first)).collect();
         let centers: Vec<Point> = names.iter().map(|k| cells[*k].center()).collect();
         let distance: Vec<Vec<f64>> =
             centers.iter().map(|a| centers.iter().map(|b| (a - b).norm()).collect()).collect();
-        let order =
-            if self.is_exact { genetic::exact(&distance, seed) } else { genetic::evolved(&distance, seed) };
+        let tell = |share: f64| part.reached(share);
+        let order = if self.is_exact {
+            genetic::exact(&distance, seed, &tell)
+        } else {
+            genetic::evolved(&distance, seed, &tell)
+        };
         order.into_iter().map(|k| names[k]).collect()
     }
 }

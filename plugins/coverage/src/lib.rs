@@ -19,6 +19,7 @@ pub mod roam;
 pub mod scan;
 pub mod side_by_side;
 pub mod slit;
+pub mod stages;
 pub mod touch;
 pub mod tour;
 

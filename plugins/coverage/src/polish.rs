@@ -212,6 +212,7 @@ impl<'a> Track<'a> {
             looked_at += 1;
             if looked_at.is_multiple_of(64) {
                 stop.check()?;
+                stop.reached(from as f64 / self.points.len() as f64);
             }
             if let Some(gain_m) = self.best_shortcut(from, prices) {
                 saved_m += gain_m;
@@ -379,12 +380,14 @@ impl<'a> Track<'a> {
         let cell_m2 = self.grid.cell_m * self.grid.cell_m;
         let mut offers: Vec<(f64, usize, Lane)> = Vec::new();
         let places = Places::new(&self.points);
-        for group in self.grid.missed() {
+        let missed = self.grid.missed();
+        for (k, group) in missed.iter().enumerate() {
             if group.len() < least {
                 break;
             }
             stop.check()?;
-            for lane in touch_up(ground, self.slit, cuts, &self.grid, &group) {
+            stop.reached(k as f64 / missed.len() as f64);
+            for lane in touch_up(ground, self.slit, cuts, &self.grid, group) {
                 if !lane.points.iter().all(|p| is_wanted(*p)) {
                     continue;
                 }

@@ -38,6 +38,15 @@ const LATE_CELLS: usize = 4;
 /// How much less, as a share of the floor.
 const LATE_SHARE: f64 = 0.0001;
 
+/// How far a candidate is after its tour, when what it sweeps is known, when it is shortened and when it is bent, as shares
+/// of the time that finishing it takes, about.
+const TOURED: f64 = 0.27;
+const TRACKED: f64 = 0.32;
+const SHORTENED: f64 = 0.63;
+const BENT: f64 = 0.92;
+/// What the first half of a round of bends takes of the time left for bends.
+const HALF_A_BEND: f64 = 0.35;
+
 /// Everything that makes one candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recipe {
@@ -143,6 +152,7 @@ impl<'a> Draft<'a> {
         order: &Order<'a>,
         stop: &Stop,
     ) -> Result<Self> {
+        stop.stage(0.5);
         let home = ground.home();
         let start = if slit.contains(order.start) { order.start } else { home };
         let all = lanes(ground, &slit, &cuts, &recipe.pattern, &recipe.reach);
@@ -154,7 +164,9 @@ impl<'a> Draft<'a> {
         let mut draft =
             Self { ground, order, recipe, cuts, slit, floor, lanes, costs, pieces, start, length_m, turns };
         draft.lanes = draft.wanted(&grid, all);
+        stop.stage(0.95);
         draft.pieces = draft.toured(DRAFT_SHARE, stop)?;
+        stop.stage(1.0);
         let path = joined(&draft.pieces);
         grid.sweep(&path);
         let missed_m2 = (1.0 - grid.coverage()) * grid.area_m2();
@@ -201,6 +213,7 @@ impl<'a> Draft<'a> {
     /// # Errors
     /// When the console wants an end.
     pub fn finished(mut self, stop: &Stop) -> Result<Scan> {
+        stop.stage(0.02);
         let mut grid = self.floor.unswept();
         let mut pieces = std::mem::take(&mut self.pieces);
         for round in 0..self.recipe.rounds {
@@ -217,8 +230,10 @@ impl<'a> Draft<'a> {
             }
             self.lanes.extend(fresh);
             // The draft was quick; from here on the order matters.
+            stop.stage(TOURED);
             pieces = self.toured(1.0, stop)?;
         }
+        stop.stage(TRACKED);
         let mut track = Track::new(&self.slit, &pieces, grid);
         self.polish(&mut track, stop)?;
         let (pieces, grid) = (pieces_of(&track.points, &track.sides), track.grid);
@@ -232,22 +247,31 @@ impl<'a> Draft<'a> {
         let careful = Prices { floor_m_per_m2: 1e6, ..prices };
         let in_reach = |at: Point| self.is_in_reach(at);
         let asked_for = (!self.order.regions.is_empty()).then(|| track.clone());
+        stop.stage(SHORTENED);
         track.shorten(&prices, stop)?;
         if let Some(whole) = asked_for.filter(|whole| track.grid.coverage() < KEPT * whole.grid.coverage()) {
             // A little floor far away is not worth its way, but nothing else was asked for.
             *track = whole;
             track.shorten(&careful, stop)?;
         }
+        let mut at = SHORTENED;
         for _ in 0..BENDS {
+            at += (BENT - at) * HALF_A_BEND;
+            stop.stage(at);
             let most_m_per_m2 = BEND_SHARE / self.ground.swath_m;
             if track.bend(&in_reach, &prices, (enough, BEND_CELLS), most_m_per_m2, stop)? == 0 {
                 break;
             }
+            at += (BENT - at) * HALF_A_BEND;
+            stop.stage(at);
             track.shorten(&careful, stop)?;
         }
+        at = BENT;
         let mut is_late = false;
         for round in 0..TOUCH_UPS {
             is_late |= round >= SOON_ENOUGH;
+            at += (1.0 - at) / 2.0;
+            stop.stage(at);
             let enough = enough - if is_late { LATE_SHARE } else { 0.0 };
             let least = if is_late { LATE_CELLS } else { CELLS };
             if track.touch_up(self.ground, &self.cuts, &in_reach, &prices, (enough, least), stop)? == 0 {

@@ -1,10 +1,12 @@
 //! Independent work on all cores that the console can end. What comes out does not depend on the number of cores.
 
-use planner_api::{Ctx, PlannerError, Result, on_own_thread};
+use crate::stages::Part;
+use planner_api::{PlannerError, Result, on_own_thread};
 use std::{
     collections::VecDeque,
     sync::{
         Mutex, OnceLock,
+        atomic::{AtomicU64, Ordering},
         mpsc::{RecvTimeoutError, channel},
     },
     thread,
@@ -14,9 +16,15 @@ use std::{
 /// How often the console is asked whether it wants an end.
 const ASK: Duration = Duration::from_millis(2);
 
-/// Whether the console wants an end, for threads that cannot ask it themselves.
+/// One item's line to the console, for threads that have none themselves: whether it wants an end, and how far the item is.
 #[derive(Debug, Default)]
-pub struct Stop(OnceLock<PlannerError>);
+pub struct Stop {
+    end: OnceLock<PlannerError>,
+    /// Shares of the item, as bits: where the stage at hand begins, where it ends, and how far all is.
+    from: AtomicU64,
+    to: AtomicU64,
+    at: AtomicU64,
+}
 
 impl Stop {
     /// Call it in every loop.
@@ -24,32 +32,59 @@ impl Stop {
     /// # Errors
     /// When the console wants an end.
     pub fn check(&self) -> Result<()> {
-        self.0.get().map_or(Ok(()), |error| Err(error.clone()))
+        self.end.get().map_or(Ok(()), |error| Err(error.clone()))
+    }
+
+    /// The stage before is done, and what follows leads up to this share of the item.
+    pub fn stage(&self, to: f64) {
+        self.reached(1.0);
+        self.from.store(self.to.load(Ordering::Relaxed), Ordering::Relaxed);
+        self.to.store(to.to_bits(), Ordering::Relaxed);
+    }
+
+    /// So much of the stage at hand is done, 0 to 1. The item never goes back.
+    pub fn reached(&self, share: f64) {
+        let [from, to, at] =
+            [&self.from, &self.to, &self.at].map(|bits| f64::from_bits(bits.load(Ordering::Relaxed)));
+        let now = at.max(from + (to - from) * share.clamp(0.0, 1.0));
+        self.at.store(now.to_bits(), Ordering::Relaxed);
+    }
+
+    /// How far the item is, 0 to 1.
+    fn at(&self) -> f64 {
+        f64::from_bits(self.at.load(Ordering::Relaxed))
     }
 }
 
-/// Works on all items, as many at a time as there are cores; the results are in the order of the items.
+/// Works on all items, as many at a time as there are cores; the results are in the order of the items. Tells meanwhile
+/// how far they are, as a part of the plan.
 ///
 /// # Errors
 /// The first error of any item, in their order.
 pub fn side_by_side<T: Send, R: Send>(
     items: Vec<T>,
-    ctx: &Ctx<'_>,
+    part: &Part<'_>,
     work: impl Fn(T, &Stop) -> Result<R> + Sync,
 ) -> Result<Vec<R>> {
-    let n = items.len();
-    let stop = Stop::default();
+    let (n, ctx) = (items.len(), &part.ctx);
+    let stops: Vec<Stop> = (0..n).map(|_| Stop::default()).collect();
     let waiting: Mutex<VecDeque<(usize, T)>> = Mutex::new(items.into_iter().enumerate().collect());
     let next = || waiting.lock().ok()?.pop_front();
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let mut results: Vec<Option<Result<R>>> = (0..n).map(|_| None).collect();
+    let tell = |results: &[Option<Result<R>>]| {
+        let shares =
+            results.iter().zip(&stops).map(|(result, stop)| if result.is_some() { 1.0 } else { stop.at() });
+        let n_done = results.iter().flatten().count();
+        part.tell(shares.sum::<f64>() / n as f64, n_done, n);
+    };
     thread::scope(|scope| {
         let (sender, receiver) = channel();
         for _ in 0..cores.min(n) {
-            let (sender, stop, work, next) = (sender.clone(), &stop, &work, &next);
+            let (sender, stops, work, next) = (sender.clone(), &stops, &work, &next);
             let toil = move || {
                 while let Some((place, item)) = next() {
-                    if sender.send((place, on_own_thread(|| work(item, stop)))).is_err() {
+                    if sender.send((place, on_own_thread(|| work(item, &stops[place])))).is_err() {
                         break;
                     }
                 }
@@ -63,14 +98,16 @@ pub fn side_by_side<T: Send, R: Send>(
                 Ok((place, result)) => results[place] = Some(result),
                 Err(RecvTimeoutError::Timeout) => {
                     if let Err(error) = ctx.check() {
-                        let _ = stop.0.set(error);
+                        stops.iter().for_each(|stop| drop(stop.end.set(error.clone())));
                     }
                 }
                 Err(RecvTimeoutError::Disconnected) => break,
             }
+            tell(&results);
         }
         while let Some((place, item)) = next() {
-            results[place] = Some(ctx.check().and_then(|()| work(item, &stop)));
+            results[place] = Some(ctx.check().and_then(|()| work(item, &stops[place])));
+            tell(&results);
         }
     });
     results.into_iter().flatten().collect()
@@ -79,7 +116,45 @@ pub fn side_by_side<T: Send, R: Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stages::Stages;
     use planner_api::{Code, testing::Bench};
+
+    fn part(bench: &Bench) -> Part<'_> {
+        Stages::new(&bench.ctx()).next(0.5, "items")
+    }
+
+    #[test]
+    fn what_is_told_rises_to_the_end_of_the_part() {
+        let bench = Bench::new();
+        let work = |_: u64, stop: &Stop| {
+            stop.stage(0.5);
+            for k in 0..10 {
+                stop.reached(f64::from(k) / 10.0);
+                thread::sleep(Duration::from_millis(1));
+            }
+            stop.stage(1.0);
+            Ok(thread::sleep(Duration::from_millis(10)))
+        };
+        side_by_side(vec![0; 3], &part(&bench), work).unwrap();
+        let told = bench.progress();
+        assert!(told.len() > 3 && told.windows(2).all(|pair| pair[0].0 <= pair[1].0), "{told:?}");
+        assert_eq!(told.last(), Some(&(0.5, "items, 3 of 3 done".to_owned())));
+        assert!(told.iter().any(|(share, _)| *share > 0.0 && *share < 0.5), "{told:?}");
+    }
+
+    #[test]
+    fn an_item_goes_through_its_stages_and_never_back() {
+        let stop = Stop::default();
+        stop.stage(0.4);
+        assert_eq!(stop.at(), 0.0);
+        stop.reached(0.5);
+        assert_eq!(stop.at(), 0.2);
+        stop.reached(0.1);
+        stop.stage(0.8);
+        assert_eq!(stop.at(), 0.4);
+        stop.reached(7.0);
+        assert_eq!(stop.at(), 0.8);
+    }
 
     #[test]
     fn results_come_in_the_order_of_the_items() {
@@ -88,7 +163,7 @@ mod tests {
             thread::sleep(Duration::from_millis(20 - 2 * k));
             Ok(k * k)
         };
-        let squares = side_by_side((0..10).collect(), &bench.ctx(), work).unwrap();
+        let squares = side_by_side((0..10).collect(), &part(&bench), work).unwrap();
         assert_eq!(squares, (0..10).map(|k| k * k).collect::<Vec<_>>());
     }
 
@@ -96,7 +171,7 @@ mod tests {
     fn a_panic_of_one_item_is_an_error_with_its_text() {
         let bench = Bench::new();
         let work = |k: i32, _: &Stop| if k == 2 { panic!("item {k} is odd") } else { Ok(k) };
-        let error = side_by_side((0..8).collect(), &bench.ctx(), work).unwrap_err();
+        let error = side_by_side((0..8).collect(), &part(&bench), work).unwrap_err();
         assert!(error.code == Code::Panic && error.message.ends_with("item 2 is odd"), "{error}");
     }
 
@@ -106,7 +181,7 @@ mod tests {
         let work = |k: i32, _: &Stop| {
             if k < 3 { Ok(k) } else { Err(PlannerError::new(Code::Invalid, format!("item {k}"))) }
         };
-        let error = side_by_side((0..8).collect(), &bench.ctx(), work).unwrap_err();
+        let error = side_by_side((0..8).collect(), &part(&bench), work).unwrap_err();
         assert_eq!(error.message, "item 3");
     }
 }

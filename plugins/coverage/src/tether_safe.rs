@@ -7,6 +7,7 @@ use crate::{
     ground::Ground,
     scan::{Draft, Order, Scan},
     side_by_side::side_by_side,
+    stages::Stages,
 };
 use field::params as p;
 use planner_api::{
@@ -24,6 +25,13 @@ const UNLIMITED: Limits =
     Limits { reel_m: f64::INFINITY, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY };
 /// First tours this much costlier than the best, as a share, never win.
 const HOPELESS: f64 = 0.02;
+/// How far a plan is when all candidates are tried, and when those of one angle are: about half of all tanks need
+/// straighter cuts as well, nobody knows before.
+const ALL_TRIED: f64 = 0.98;
+const ONE_ANGLE: f64 = 0.7;
+/// Share of the time for one angle that first tours take, and share of these that cuts take.
+const FIRST_TOURS: f64 = 0.25;
+const CUTS: f64 = 0.25;
 
 const CHOOSE: ParamSpec = choice("choose", "Candidate", &[SHORTEST, "fewest-turns", "shortest-cable"], 0)
     .help("Which of the candidates within the limits is flown, shortest by length and turns. The log lists those that no other \
@@ -189,6 +197,7 @@ impl TetherSafe {
         wishes: &Wishes,
         ctx: &Ctx<'_>,
     ) -> Result<Plan> {
+        let mut stages = Stages::new(ctx);
         let least_m = least_cable_m(ground);
         let reel_m = wishes.limits.reel_m;
         let home = ground.home();
@@ -203,7 +212,9 @@ impl TetherSafe {
             reel_m: if reel_m > least_m * wishes.cable_share { f64::INFINITY } else { reel_m },
             cell_m: self.cell_m,
         };
-        let mut tried = self.try_all(request.site, ground, wishes, &order, laid.as_ref(), ctx)?;
+        // A cable that is out may have to come in first, and then all is tried again.
+        stages.until(if laid.is_some() { ALL_TRIED / 2.0 } else { ALL_TRIED });
+        let mut tried = self.try_all(request.site, ground, wishes, &order, laid.as_ref(), &mut stages)?;
         let mut lead_in: Vec<Point> = Vec::new();
         if (start - home).norm() > task.tolerance_m && tried.iter().all(|t| !t.worth.certificate.certified) {
             // Under way the cable may lie as no cut of the new map allows: take it in first.
@@ -214,10 +225,13 @@ impl TetherSafe {
                 );
                 lead_in = way;
                 let from_home = Order { start: home, ..order };
-                tried = self.try_all(request.site, ground, wishes, &from_home, None, ctx)?;
+                stages.until(ALL_TRIED);
+                tried = self.try_all(request.site, ground, wishes, &from_home, None, &mut stages)?;
             }
         }
         let (worth, scan) = Self::told(tried, ctx).ok_or_else(|| answer::no_room(ground))?;
+        stages.until(1.0);
+        stages.next(1.0, "floor out of reach").begin();
         answer::tell_unreachable(ground, &scan, &order, ctx);
         let is_whole = worth.coverage >= wishes.enough.min(0.99);
         if !is_whole && order.reel_m.is_infinite() {
@@ -256,12 +270,18 @@ impl TetherSafe {
         wishes: &Wishes,
         order: &Order<'_>,
         laid: Option<&Cable>,
-        ctx: &Ctx<'_>,
+        stages: &mut Stages<'_>,
     ) -> Result<Vec<Tried>> {
+        let (ctx, end) = (stages.ctx(), stages.end());
         let mut tried: Vec<Tried> = Vec::new();
         for share in [1.0, 0.5, 0.0] {
             let alpha_rad = wishes.alpha_rad * share;
-            let drafted = side_by_side(candidates(ground, wishes, alpha_rad), ctx, |candidate, stop| {
+            let is_first = share == 1.0;
+            stages.until(stages.toward(end, ONE_ANGLE));
+            let part = stages
+                .next(FIRST_TOURS, if is_first { "first tours" } else { "first tours, straighter cuts" });
+            let drafted = side_by_side(candidates(ground, wishes, alpha_rad), &part, |candidate, stop| {
+                stop.stage(CUTS);
                 let (recipe, domain) = candidate.recipe(ground, wishes, alpha_rad);
                 let Some(domain) = domain else { return Ok(None) };
                 let draft = Draft::new(ground, &recipe, domain, order, stop)?;
@@ -275,6 +295,7 @@ impl TetherSafe {
             };
             let (good, hopeless): (Vec<_>, Vec<_>) = drafts.into_iter().partition(is_worth_it);
             ctx.scalar("candidates worked out", good.len() as f64, "");
+            let mut n_to_come = hopeless.len();
             for drafts in [good, hopeless] {
                 if tried.iter().any(|t| is_within(&t.worth, wishes)) {
                     for (estimate_m, name, _) in &drafts {
@@ -286,8 +307,15 @@ impl TetherSafe {
                     }
                     break;
                 }
-                tried.extend(side_by_side(drafts, ctx, |(_, name, draft), stop| {
+                let n_left = drafts.len() + n_to_come;
+                n_to_come = 0;
+                let part = stages.next(
+                    drafts.len() as f64 / n_left.max(1) as f64,
+                    if is_first { "candidates" } else { "candidates, straighter cuts" },
+                );
+                tried.extend(side_by_side(drafts, &part, |(_, name, draft), stop| {
                     let scan = draft.finished(stop)?;
+                    stop.stage(1.0);
                     let worth = worth(ground, site, wishes.demanded, &scan, laid);
                     Ok(Tried { name, scan: Some(scan), worth })
                 })?);

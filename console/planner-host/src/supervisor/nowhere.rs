@@ -1,7 +1,7 @@
 //! Systems without Unix sockets have no workers.
 
-use crate::OnProgress;
 use super::{Failure, WorkerCommand};
+use crate::OnProgress;
 use crate::wire::body::{Body, Read, Writer};
 use std::sync::{Arc, atomic::AtomicBool};
 use std::time::Duration;

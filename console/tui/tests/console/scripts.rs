@@ -171,7 +171,11 @@ fn a_plan_in_the_making_is_told_with_the_time_it_has_taken() {
     screen.tell(Msg::BusyAt { share: 0.419, what: "candidate 2 of 3".into() });
     assert!(shown(&screen).contains("BUSY: rpf plans, 41 %, 7 s of 60 s at most."), "{}", shown(&screen));
     screen.tell(Msg::BusyAt { share: 1.0, what: String::new() });
-    assert!(shown(&screen).contains("rpf plans, 99 %, 7 s"), "only its end makes it whole: {}", shown(&screen));
+    assert!(
+        shown(&screen).contains("rpf plans, 99 %, 7 s"),
+        "only its end makes it whole: {}",
+        shown(&screen)
+    );
     screen.press([Key::Char('q')]);
     screen.tell(Msg::Busy(None));
     assert!(!shown(&screen).contains("BUSY"));

@@ -14,6 +14,11 @@ fn the_traditional_way_covers_most_and_leaves_the_cable_entangled() {
 }
 
 #[test]
+fn a_plan_tells_how_far_it_is_and_never_goes_back() {
+    bench::assert_progress_rises(&bench::plan::<Boustrophedon>(&Known::E1.tank(2), &[], None).1);
+}
+
+#[test]
 fn an_empty_square_is_swept_row_by_row() {
     let tank = trials::tanks::Tank { columns: Vec::new(), ..Known::E3.tank(0) };
     let plan = bench::plan::<Boustrophedon>(&tank, &[], None).0.unwrap();

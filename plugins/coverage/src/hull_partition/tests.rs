@@ -15,6 +15,11 @@ fn with_backtracking_through_the_tree_the_cable_comes_in() {
 }
 
 #[test]
+fn a_plan_tells_how_far_it_is_and_never_goes_back() {
+    bench::assert_progress_rises(&bench::plan::<HullPartition>(&Known::E2.tank(6), &[], None).1);
+}
+
+#[test]
 fn a_way_round_a_column_that_the_cells_leave_is_closed() {
     let tank = Known::E2.tank(6);
     let (plan, bench) = bench::plan::<HullPartition>(&tank, &[], None);

@@ -52,12 +52,14 @@ impl Track<'_> {
     ) -> Result<usize> {
         let mut offers: Vec<Offer> = Vec::new();
         let places = Places::new(&self.points);
-        for group in self.grid.missed() {
+        let missed = self.grid.missed();
+        for (k, group) in missed.iter().enumerate() {
             if group.len() < least {
                 break;
             }
             stop.check()?;
-            offers.extend(self.best_bend(&group, &places, is_wanted, prices, most_m_per_m2));
+            stop.reached(k as f64 / missed.len() as f64);
+            offers.extend(self.best_bend(group, &places, is_wanted, prices, most_m_per_m2));
         }
         offers.sort_by(|a, b| a.rate.total_cmp(&b.rate));
         let mut made = 0;

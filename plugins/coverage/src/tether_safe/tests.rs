@@ -32,6 +32,15 @@ fn legs_name_the_whole_path_in_order() {
 }
 
 #[test]
+fn a_plan_tells_how_far_it_is_and_never_goes_back() {
+    for tank in [Known::E2.tank(3), Tank { columns: Vec::new(), ..Known::E3.tank(0) }] {
+        let bench = plan(&tank, &[], None).1;
+        bench::assert_progress_rises(&bench);
+        assert_eq!(bench.progress().last().map(|(_, what)| what.as_str()), Some("floor out of reach"));
+    }
+}
+
+#[test]
 fn the_same_question_gets_the_same_answer() {
     let tank = Known::E3.tank(5);
     let quick = [("pattern", 1.0), ("kicks", 1.0)];
