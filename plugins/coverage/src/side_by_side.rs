@@ -98,7 +98,9 @@ pub fn side_by_side<T: Send, R: Send>(
                 Ok((place, result)) => results[place] = Some(result),
                 Err(RecvTimeoutError::Timeout) => {
                     if let Err(error) = ctx.check() {
-                        stops.iter().for_each(|stop| drop(stop.end.set(error.clone())));
+                        for stop in &stops {
+                            let _ = stop.end.set(error.clone());
+                        }
                     }
                 }
                 Err(RecvTimeoutError::Disconnected) => break,

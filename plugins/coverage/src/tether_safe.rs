@@ -213,10 +213,11 @@ impl TetherSafe {
             cell_m: self.cell_m,
         };
         // A cable that is out may have to come in first, and then all is tried again.
-        stages.until(if laid.is_some() { ALL_TRIED / 2.0 } else { ALL_TRIED });
+        let is_away = (start - home).norm() > task.tolerance_m;
+        stages.until(if is_away && laid.is_some() { ALL_TRIED / 2.0 } else { ALL_TRIED });
         let mut tried = self.try_all(request.site, ground, wishes, &order, laid.as_ref(), &mut stages)?;
         let mut lead_in: Vec<Point> = Vec::new();
-        if (start - home).norm() > task.tolerance_m && tried.iter().all(|t| !t.worth.certificate.certified) {
+        if is_away && tried.iter().all(|t| !t.worth.certificate.certified) {
             // Under way the cable may lie as no cut of the new map allows: take it in first.
             if let Some(way) = laid.as_ref().and_then(|cable| answer::way_home(ground, request.site, cable)) {
                 ctx.log(
@@ -276,7 +277,7 @@ impl TetherSafe {
         let mut tried: Vec<Tried> = Vec::new();
         for share in [1.0, 0.5, 0.0] {
             let alpha_rad = wishes.alpha_rad * share;
-            let is_first = share == 1.0;
+            let is_first = share > 0.99;
             stages.until(stages.toward(end, ONE_ANGLE));
             let part = stages
                 .next(FIRST_TOURS, if is_first { "first tours" } else { "first tours, straighter cuts" });
@@ -307,12 +308,11 @@ impl TetherSafe {
                     }
                     break;
                 }
-                let n_left = drafts.len() + n_to_come;
+                // It is even whether those that look worse are worked out as well.
+                let n_left = drafts.len() as f64 + n_to_come as f64 / 2.0;
                 n_to_come = 0;
-                let part = stages.next(
-                    drafts.len() as f64 / n_left.max(1) as f64,
-                    if is_first { "candidates" } else { "candidates, straighter cuts" },
-                );
+                let what = if is_first { "candidates" } else { "candidates, straighter cuts" };
+                let part = stages.next(drafts.len() as f64 / n_left.max(1.0), what);
                 tried.extend(side_by_side(drafts, &part, |(_, name, draft), stop| {
                     let scan = draft.finished(stop)?;
                     stop.stage(1.0);
