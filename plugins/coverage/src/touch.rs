@@ -160,7 +160,9 @@ mod tests {
         grid.sweep(&[Point::new(-5.0, 0.0), Point::new(-0.6, 0.0)]);
         let missed = grid.missed();
         let lanes = touch_up(&ground, &slit, &cuts, &grid, &missed[0]);
-        lanes.iter().for_each(|lane| grid.sweep(&lane.points));
+        for lane in &lanes {
+            grid.sweep(&lane.points);
+        }
         let left = grid.missed().concat().into_iter().filter(|cell| grid.center(*cell).y.abs() < 0.3).count();
         assert!(
             missed[0].len() > 500 && 4 * left < missed[0].len(),
