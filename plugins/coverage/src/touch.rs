@@ -37,11 +37,13 @@ pub fn touch_up(ground: &Ground, slit: &Slit, cuts: &[Cut], grid: &FloorGrid, gr
         let grow = (0.06 - (b - a)).max(0.0) / 2.0;
         let line =
             [middle + across * offset + along * (a - grow), middle + across * offset + along * (b + grow)];
-        let pushed: Vec<Point> = polyline::resampled(&line, STEP_M)
-            .iter()
-            .filter_map(|p| pushed(ground, slit, cuts, *p))
-            .collect();
-        lanes.extend(runs(slit, cuts, &pushed));
+        let drivable = |aside: fn(&[Cut], Point) -> Point| -> Vec<Lane> {
+            let places = polyline::resampled(&line, STEP_M);
+            let roomy = places.iter().filter_map(|p| with_room(ground, slit, cuts, aside(cuts, *p)));
+            runs(slit, cuts, &roomy.collect::<Vec<_>>())
+        };
+        let straight = drivable(|_, at| at);
+        lanes.extend(if straight.is_empty() { drivable(beside_cuts) } else { straight });
     }
     lanes
 }
@@ -61,7 +63,7 @@ fn axis(points: &[Point]) -> (Point, Vector) {
 }
 
 /// The nearest place with room, by walking out of what is in the way.
-fn pushed(ground: &Ground, slit: &Slit, cuts: &[Cut], from: Point) -> Option<Point> {
+fn with_room(ground: &Ground, slit: &Slit, cuts: &[Cut], from: Point) -> Option<Point> {
     let mut at = from;
     for _ in 0..12 {
         let wall_m = ground.wall.wall_distance_m(at) - ground.keep_m - SLACK_M;
@@ -81,6 +83,22 @@ fn pushed(ground: &Ground, slit: &Slit, cuts: &[Cut], from: Point) -> Option<Poi
     }
     let is_clear = cuts.iter().all(|cut| polyline::distance_m(&cut.line, at) >= CUT_M);
     (is_clear && slit.contains(at)).then_some(at)
+}
+
+/// A place that is too near to a cut, moved away from it: a strip along a cut is scanned from beside the cut.
+fn beside_cuts(cuts: &[Cut], at: Point) -> Point {
+    let sides = cuts.iter().flat_map(|cut| cut.line.windows(2));
+    let Some((nearest, side)) = sides
+        .map(|side| (polyline::nearest_on_segment(side[0], side[1], at), side))
+        .min_by(|a, b| (a.0 - at).norm().total_cmp(&(b.0 - at).norm()))
+        .filter(|(nearest, _)| (nearest - at).norm() < CUT_M)
+    else {
+        return at;
+    };
+    let along = side[1] - side[0];
+    let away =
+        (at - nearest).try_normalize(1e-9).or_else(|| Vector::new(-along.y, along.x).try_normalize(1e-9));
+    nearest + away.unwrap_or_else(Vector::zeros) * (1.1 * CUT_M)
 }
 
 fn inward(ground: &Ground, at: Point) -> Vector {
@@ -115,4 +133,42 @@ fn runs(slit: &Slit, cuts: &[Cut], points: &[Point]) -> Vec<Lane> {
 fn crosses(cuts: &[Cut], a: Point, b: Point) -> bool {
     let mut sides = cuts.iter().flat_map(|cut| cut.line.windows(2));
     sides.any(|side| field::part::crossing(a, b, side[0], side[1]).is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trials::tanks::Tank;
+
+    #[test]
+    fn a_strip_that_was_missed_along_a_cut_is_scanned_from_beside_it() {
+        let boundary = world::Boundary::Circle { radius_m: 5.0 };
+        let tank = Tank { boundary, anchor: Point::new(-3.0, 0.0), columns: vec![(Point::origin(), 0.3)] };
+        let obstacles = tank.obstacles();
+        let ground = Ground::new(&tank.site(&obstacles), tank.anchor).unwrap();
+        // Hardly aslant to the lane that is missing.
+        let line = vec![Point::origin(), Point::new(5.0, 0.004)];
+        let slit = Slit::new(&ground, std::slice::from_ref(&line), ground.home()).unwrap();
+        let cuts = [Cut { line, from: 0 }];
+        let mut grid = FloorGrid::new(&ground, &slit, 0.05);
+        for k in -8..=8 {
+            let y = 0.55 * f64::from(k);
+            if k != 0 {
+                grid.sweep(&[Point::new(-5.0, y), Point::new(5.0, y)]);
+            }
+        }
+        grid.sweep(&[Point::new(-5.0, 0.0), Point::new(-0.6, 0.0)]);
+        let missed = grid.missed();
+        let lanes = touch_up(&ground, &slit, &cuts, &grid, &missed[0]);
+        for lane in &lanes {
+            grid.sweep(&lane.points);
+        }
+        let left = grid.missed().concat().into_iter().filter(|cell| grid.center(*cell).y.abs() < 0.3).count();
+        assert!(
+            missed[0].len() > 500 && 4 * left < missed[0].len(),
+            "{left} of {} cells are left",
+            missed[0].len()
+        );
+        assert!(lanes.iter().all(|lane| !lane.points.windows(2).any(|w| crosses(&cuts, w[0], w[1]))));
+    }
 }

@@ -82,9 +82,10 @@ fn deeper(depth: u64) -> u64 {
 }
 
 fn hoard() {
-    let mut hoard = Vec::new();
+    let mut hoard: Vec<Vec<u8>> = Vec::new();
     loop {
-        hoard.push(vec![1_u8; 1 << 20]);
+        // Never written to, so that the limit is met before the deadline however slow the machine is.
+        hoard.push(Vec::with_capacity(64 << 20));
         black_box(&hoard);
     }
 }

@@ -64,14 +64,14 @@ impl Base {
     ///
     /// What passes no farther from it than rounding errors came back along the cable, and winds off.
     fn sense_of(&self, from: Point, to: Point) -> f64 {
-        let along = to - from;
-        // From the corner itself no side can be told by where the corner lies; the cable's bearing still tells it.
-        let passed_m = if from == self.center || self.radius_m == 0.0 {
-            direction(self.out_rad).perp(&along)
-        } else {
+        let along = (to - from).normalize();
+        // Standing on a corner the tip is on no side of it; the cable's bearing still tells one.
+        let passed = if self.radius_m > 0.0 {
             (from - self.center).perp(&along)
-        } / along.norm();
-        if passed_m.abs() <= SLACK_M && self.side != 0.0 { -self.side } else { passed_m }
+        } else {
+            direction(self.out_rad).perp(&along)
+        };
+        if passed.abs() <= SLACK_M && self.side != 0.0 { -self.side } else { passed }
     }
 }
 
