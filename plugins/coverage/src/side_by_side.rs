@@ -135,11 +135,12 @@ mod tests {
                 thread::sleep(Duration::from_millis(1));
             }
             stop.stage(1.0);
-            Ok(thread::sleep(Duration::from_millis(10)))
+            thread::sleep(Duration::from_millis(10));
+            Ok(())
         };
         side_by_side(vec![0; 3], &part(&bench), work).unwrap();
         let told = bench.progress();
-        assert!(told.len() > 3 && told.windows(2).all(|pair| pair[0].0 <= pair[1].0), "{told:?}");
+        assert!(told.len() >= 3 && told.windows(2).all(|pair| pair[0].0 <= pair[1].0), "{told:?}");
         assert_eq!(told.last(), Some(&(0.5, "items, 3 of 3 done".to_owned())));
         assert!(told.iter().any(|(share, _)| *share > 0.0 && *share < 0.5), "{told:?}");
     }
@@ -147,15 +148,17 @@ mod tests {
     #[test]
     fn an_item_goes_through_its_stages_and_never_back() {
         let stop = Stop::default();
+        let is_at = |share: f64| (stop.at() - share).abs() < 1e-9;
         stop.stage(0.4);
-        assert_eq!(stop.at(), 0.0);
+        assert!(is_at(0.0));
         stop.reached(0.5);
-        assert_eq!(stop.at(), 0.2);
+        assert!(is_at(0.2));
         stop.reached(0.1);
+        assert!(is_at(0.2), "never back");
         stop.stage(0.8);
-        assert_eq!(stop.at(), 0.4);
+        assert!(is_at(0.4), "the stage before is done");
         stop.reached(7.0);
-        assert_eq!(stop.at(), 0.8);
+        assert!(is_at(0.8));
     }
 
     #[test]

@@ -48,15 +48,11 @@ pub(super) fn clauses(model: &Model) -> Clauses {
 /// What the engine is busy with and how far, for how long already and at most, and what it is doing.
 fn waits_for(model: &Model, busy: &Busy) -> Vec<String> {
     let passed_s = (model.console.now.mono_s - busy.since_mono_s).max(0.0) as u64;
-    let mut first = format!("BUSY: {}", busy.work);
-    if let Some((share, _)) = &busy.at {
-        // Only the end makes it whole.
-        first.push_str(&format!(", {} %", (100.0 * share).floor().clamp(0.0, 99.0)));
-    }
-    if let Some(within_s) = busy.within_s {
-        first.push_str(&format!(", {passed_s} s of {} s at most", within_s as u64));
-    }
-    first.push('.');
+    // Only the end makes it whole.
+    let percent = |share: f64| format!(", {} %", (100.0 * share).floor().clamp(0.0, 99.0));
+    let share = busy.at.as_ref().map_or_else(String::new, |(share, _)| percent(*share));
+    let time = |within_s: f64| format!(", {passed_s} s of {} s at most", within_s as u64);
+    let first = format!("BUSY: {}{share}{}.", busy.work, busy.within_s.map_or_else(String::new, time));
     let what = busy.at.iter().filter(|(_, what)| !what.is_empty()).map(|(_, what)| format!("{what}."));
     std::iter::once(first).chain(what).collect()
 }

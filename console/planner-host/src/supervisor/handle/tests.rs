@@ -20,7 +20,8 @@ fn saying(frames: &[Vec<u8>]) -> Worker {
 }
 
 fn octal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("\\{byte:03o}")).collect()
+    let escapes: Vec<String> = bytes.iter().map(|byte| format!("\\{byte:03o}")).collect();
+    escapes.concat()
 }
 
 fn frame(kind: u8, sequence: u32, write: impl FnOnce(&mut Writer)) -> Vec<u8> {
@@ -43,7 +44,11 @@ fn done(sequence: u32) -> Vec<u8> {
 }
 
 fn ask(worker: &mut Worker, kind: u8, deadline: Duration) -> Result<u32, Failure> {
-    worker.ask(kind, deadline, |_| {}, |body| body.u32())
+    worker.ask(kind, deadline, |_| {}, number)
+}
+
+fn number(body: &mut Body<'_>) -> Read<u32> {
+    body.u32()
 }
 
 #[test]
