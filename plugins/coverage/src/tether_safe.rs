@@ -29,6 +29,8 @@ const HOPELESS: f64 = 0.02;
 /// straighter cuts as well, nobody knows before.
 const ALL_TRIED: f64 = 0.98;
 const ONE_ANGLE: f64 = 0.7;
+/// Nearer to home than so many swaths no cable lies across a cut.
+const FAR: f64 = 4.0;
 /// Share of the time for one angle that first tours take, and share of these that cuts take.
 const FIRST_TOURS: f64 = 0.25;
 const CUTS: f64 = 0.25;
@@ -212,12 +214,12 @@ impl TetherSafe {
             reel_m: if reel_m > least_m * wishes.cable_share { f64::INFINITY } else { reel_m },
             cell_m: self.cell_m,
         };
-        // A cable that is out may have to come in first, and then all is tried again.
-        let is_away = (start - home).norm() > task.tolerance_m;
-        stages.until(if is_away && laid.is_some() { ALL_TRIED / 2.0 } else { ALL_TRIED });
+        let (away_m, is_out) = ((start - home).norm(), laid.is_some());
+        // A cable that is well out may have to come in first, and then all is tried again.
+        stages.until(if is_out && away_m > FAR * ground.swath_m { ALL_TRIED / 2.0 } else { ALL_TRIED });
         let mut tried = self.try_all(request.site, ground, wishes, &order, laid.as_ref(), &mut stages)?;
         let mut lead_in: Vec<Point> = Vec::new();
-        if is_away && tried.iter().all(|t| !t.worth.certificate.certified) {
+        if away_m > task.tolerance_m && tried.iter().all(|t| !t.worth.certificate.certified) {
             // Under way the cable may lie as no cut of the new map allows: take it in first.
             if let Some(way) = laid.as_ref().and_then(|cable| answer::way_home(ground, request.site, cable)) {
                 ctx.log(
