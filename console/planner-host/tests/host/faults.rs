@@ -94,7 +94,7 @@ fn a_stack_overflow_is_told_with_the_last_output() {
 fn running_out_of_memory_is_told_with_the_last_output() {
     let fault = fault_of("alloc", HostConfig { step_deadline: Duration::from_secs(10), ..config() });
     assert_eq!(fault.cause, Cause::Died, "{fault}");
-    assert!(fault.message.ends_with("last output: memory allocation of 1048576 bytes failed"), "{fault}");
+    assert!(fault.message.ends_with("last output: memory allocation of 67108864 bytes failed"), "{fault}");
 }
 
 #[test]
