@@ -1,17 +1,25 @@
 //! What a path scans, cell by cell: a flat bar across the heading, as wide as the swath, that also sweeps when the
 //! robot turns in place.
+//!
+//! The rows of cells are turned against the tank's axes. A planner that shortens paths as long as no cell is lost would
+//! otherwise keep off every straight wall by the half cell that no row of centres tells of.
 
 use crate::{ground::Ground, slit::Slit};
-use world::{Point, Vector};
+use world::{Boundary, Point, Vector};
 
 mod bar;
 pub use bar::Run;
 
+/// Direction of the rows, radians from east: along no wall and no lanes that people build or plan.
+const ROWS_RAD: f64 = 0.3;
+
 /// A grid over the floor with the number of times that each cell was swept.
 #[derive(Debug, Clone)]
 pub struct FloorGrid {
-    /// South west corner, metres.
-    pub low: Point,
+    /// Unit vector along the rows.
+    ahead: Vector,
+    /// Where the first cell of the first row begins, along and across the rows, metres.
+    low: Point,
     /// Edge of a cell, metres.
     pub cell_m: f64,
     /// Cells from west to east.
@@ -33,13 +41,26 @@ pub struct FloorGrid {
     pub changes: u32,
 }
 
+/// Least and most coordinates of a wall along and across a direction, metres.
+fn bounds_along(wall: &Boundary, ahead: Vector) -> (Point, Point) {
+    match wall {
+        Boundary::Circle { .. } => wall.bounds(),
+        Boundary::Polygon { vertices } => {
+            let turned = vertices.iter().map(|v| Point::new(ahead.dot(&v.coords), ahead.perp(&v.coords)));
+            Boundary::Polygon { vertices: turned.collect() }.bounds()
+        }
+    }
+}
+
 impl FloorGrid {
     /// The floor that the tool can reach from the domain.
     pub fn new(ground: &Ground, slit: &Slit, cell_m: f64) -> Self {
-        let (low, high) = ground.wall.bounds();
+        let ahead = crate::ground::direction(ROWS_RAD);
+        let (low, high) = bounds_along(&ground.wall, ahead);
         let count = |span_m: f64| (span_m / cell_m).ceil().max(1.0) as usize;
         let (columns, rows) = (count(high.x - low.x), count(high.y - low.y));
         let mut grid = Self {
+            ahead,
             low,
             cell_m,
             columns,
@@ -111,6 +132,12 @@ impl FloorGrid {
         self.n_reachable as f64 * self.cell_m * self.cell_m
     }
 
+    /// Number of whole cells in an area, square metres; at least 1.
+    pub fn cells_in(&self, area_m2: f64) -> usize {
+        // Rounding must not lose a cell of 0.05 m of four.
+        ((area_m2 / (self.cell_m * self.cell_m) + 1e-6) as usize).max(1)
+    }
+
     /// Share of the reachable floor that was swept.
     pub fn coverage(&self) -> f64 {
         self.n_swept as f64 / self.n_reachable.max(1) as f64
@@ -119,7 +146,13 @@ impl FloorGrid {
     /// Centre of a cell.
     pub fn center(&self, cell: usize) -> Point {
         let (column, row) = (cell % self.columns, cell / self.columns);
-        self.low + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m
+        let here = self.low + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m;
+        Point::from(self.ahead * here.x + Vector::new(-self.ahead.y, self.ahead.x) * here.y)
+    }
+
+    /// A place by its coordinates along and across the rows.
+    fn along_rows(&self, at: Point) -> Point {
+        Point::new(self.ahead.dot(&at.coords), self.ahead.perp(&at.coords))
     }
 
     /// The floor alone, without room for sweeps.
@@ -247,7 +280,8 @@ impl FloorGrid {
 
     /// Whether a place is reachable floor that was swept just once.
     pub fn is_alone(&self, at: Point) -> bool {
-        let (x, y) = ((at.x - self.low.x) / self.cell_m, (at.y - self.low.y) / self.cell_m);
+        let here = (self.along_rows(at) - self.low) / self.cell_m;
+        let (x, y) = (here.x, here.y);
         if x < 0.0 || y < 0.0 || x >= self.columns as f64 || y >= self.rows as f64 {
             return false;
         }
@@ -291,7 +325,8 @@ impl FloorGrid {
         mut visit: impl FnMut(usize, Point),
     ) {
         let reach = Vector::new(reach_m, reach_m);
-        let (from, to) = (place - reach - self.low, place + reach - self.low);
+        let place_here = self.along_rows(place);
+        let (from, to) = (place_here - reach - self.low, place_here + reach - self.low);
         let index = |m: f64, most: usize| (m / self.cell_m).floor().clamp(0.0, most as f64 - 1.0) as usize;
         for row in index(from.y, self.rows)..=index(to.y, self.rows) {
             for column in index(from.x, self.columns)..=index(to.x, self.columns) {

@@ -30,6 +30,8 @@ const LONG_M: f64 = 9.0;
 const FINE: usize = 8;
 /// Turning beyond which longer shortcuts are tried, radians.
 const MUCH_TURN_RAD: f64 = 3.0;
+/// A touch-up that scans less than this by the time it is tied in is left, square metres.
+const LEAST_GAIN_M2: f64 = 0.01;
 /// Touch-ups are tied in at path points within this distance, metres.
 const TIE_M: f64 = 2.0;
 
@@ -406,7 +408,7 @@ impl<'a> Track<'a> {
             }
             let all = 0..self.sides.len();
             let Some((_, at, is_reversed)) = self.best_tie(&lane, prices, all) else { continue };
-            if self.grid.would_gain(&lane.points) < 4 {
+            if self.grid.would_gain(&lane.points) < self.grid.cells_in(LEAST_GAIN_M2) {
                 continue;
             }
             self.tie(at, &lane, is_reversed);

@@ -23,6 +23,8 @@ use world::{
 const SHORTEST: &str = "shortest";
 const UNLIMITED: Limits =
     Limits { reel_m: f64::INFINITY, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY };
+/// Most cells of the floor: more take memory and time, and the edges where cells matter are a smaller share of a large tank.
+const MOST_CELLS: f64 = 4e6;
 /// First tours this much costlier than the best, as a share, never win.
 const HOPELESS: f64 = 0.02;
 /// How far a plan is when all candidates are tried, and when those of one angle are: about half of all tanks need
@@ -63,11 +65,11 @@ const TURN: ParamSpec = float("turn_m", "Turn in the search", "m", 0.0, 20.0, 1.
 const CHOICE_TURN: ParamSpec = float("choice_turn_m", "Turn in the choice", "m", 0.0, 20.0, 3.0)
     .help("Among candidates one may be this much longer for every whole turn that it saves.")
     .group("Plan");
-const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.57)
+const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.58)
     .help("Touch-ups are added until this share of the floor in reach is scanned.")
     .group("Plan");
-const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
-    .help("Edge of the cells in which floor is counted.")
+const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.025)
+    .help("Edge of the cells in which floor is counted; in large tanks as much larger as keeps them below four million.")
     .group("Plan");
 const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 3.0)
     .help("Changes tried per lane in the search for the order of lanes; more takes longer and shortens the path.")
@@ -182,6 +184,12 @@ fn no_lane(ground: &Ground, reel_m: f64, home: Point) -> Option<String> {
     })
 }
 
+/// Smallest cells that the floor is counted in, metres.
+fn least_cell_m(ground: &Ground) -> f64 {
+    let (low, high) = ground.wall.bounds();
+    ((high.x - low.x) * (high.y - low.y) / MOST_CELLS).sqrt()
+}
+
 fn stricter(a: Limits, b: Limits) -> Limits {
     Limits {
         reel_m: a.reel_m.min(b.reel_m),
@@ -212,7 +220,7 @@ impl TetherSafe {
             start,
             regions: task.regions,
             reel_m: if reel_m > least_m * wishes.cable_share { f64::INFINITY } else { reel_m },
-            cell_m: self.cell_m,
+            cell_m: self.cell_m.max(least_cell_m(ground)),
         };
         let (away_m, is_out) = ((start - home).norm(), laid.is_some());
         // A cable that is well out may have to come in first, and then all is tried again.

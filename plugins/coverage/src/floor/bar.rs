@@ -105,6 +105,11 @@ impl FloorGrid {
 
     /// Every cell whose centre lies in a convex polygon of at most `FAN` corners, in either sense, row by row.
     pub(super) fn fill(&self, polygon: &[Point], mut visit: impl FnMut(Range<usize>)) {
+        let mut turned = [Point::origin(); FAN];
+        for (turned, corner) in turned.iter_mut().zip(polygon) {
+            *turned = self.along_rows(*corner);
+        }
+        let polygon = &turned[..polygon.len()];
         let low = polygon.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
         let high = polygon.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
         let row_of = |y: f64| (y - self.low.y) / self.cell_m - 0.5;
@@ -143,7 +148,7 @@ impl FloorGrid {
         }
     }
 
-    /// North coordinate of the centres of a row.
+    /// Place of the centres of a row across the rows.
     fn row_y(&self, row: usize) -> f64 {
         self.low.y + (f64::from(row as u32) + 0.5) * self.cell_m
     }

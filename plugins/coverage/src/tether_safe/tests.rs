@@ -23,6 +23,18 @@ fn every_known_tank_is_covered_and_the_cable_comes_in() {
 }
 
 #[test]
+fn the_floor_is_covered_by_whatever_cells_it_is_counted() {
+    for known in Known::ALL {
+        let tank = known.tank(12);
+        let plan = plan(&tank, &[], None).0.unwrap();
+        for cell_m in [0.043, CELL_M, 0.02] {
+            let share = tank.score(&plan.path, &plan.cuts, cell_m).unwrap().coverage_reachable;
+            assert!(share >= 0.994, "{} by cells of {cell_m} m: {share}", known.id());
+        }
+    }
+}
+
+#[test]
 fn legs_name_the_whole_path_in_order() {
     let (plan, _) = plan(&Known::E1.tank(3), &[("pattern", 1.0), ("kicks", 1.0)], None);
     let plan = plan.unwrap();
