@@ -25,6 +25,8 @@ const UNLIMITED: Limits =
     Limits { reel_m: f64::INFINITY, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY };
 /// Most cells of the floor: more take memory and time, and the edges where cells matter are a smaller share of a large tank.
 const MOST_CELLS: f64 = 4e6;
+/// Share of the floor by which a plan may miss what is asked for without the reel being to blame.
+const BY_REEL: f64 = 0.001;
 /// First tours this much costlier than the best, as a share, never win.
 const HOPELESS: f64 = 0.02;
 /// How far a plan is when all candidates are tried, and when those of one angle are: about half of all tanks need
@@ -244,7 +246,9 @@ impl TetherSafe {
         stages.until(1.0);
         stages.next(1.0, "floor out of reach").begin();
         answer::tell_unreachable(ground, &scan, &order, ctx);
-        let is_whole = worth.coverage >= wishes.enough.min(0.99);
+        // A reel near the least that can do may still reach all there is.
+        let least = if order.reel_m.is_finite() { wishes.enough - BY_REEL } else { 0.99 };
+        let is_whole = worth.coverage >= wishes.enough.min(least);
         if !is_whole && order.reel_m.is_infinite() {
             let share = 100.0 * worth.coverage;
             ctx.log(
@@ -256,7 +260,7 @@ impl TetherSafe {
             scan.cuts.iter().for_each(|cut| ctx.polyline(Layer::Tether, &cut.line));
         }
         let mut plan = plan_of(&scan, start, &lead_in);
-        plan.complete = is_whole && order.reel_m.is_infinite();
+        plan.complete = is_whole;
         if !is_within(&worth, wishes) && worth.certificate.certified {
             ctx.log(
                 LogLevel::Warn,

@@ -74,6 +74,21 @@ fn a_short_reel_gives_a_partial_plan_that_says_what_is_left() {
 }
 
 #[test]
+fn a_reel_that_just_does_is_not_called_too_short() {
+    let tank = Known::E1.tank(4);
+    let free = plan(&tank, &[], None).0.unwrap();
+    let needed_m = tank.score(&free.path, &free.cuts, CELL_M).unwrap().certificate.max_cable_m;
+    let tether = TetherLimits {
+        reel_m: needed_m + 0.01,
+        max_wrap_rad: f64::INFINITY,
+        max_sum_wrap_rad: f64::INFINITY,
+    };
+    let (plan, bench) = plan(&tank, &[], Some(tether));
+    assert!(plan.unwrap().complete, "{:?}", bench.logs());
+    assert!(bench.logs().iter().all(|(_, said)| !said.contains("too short")), "{:?}", bench.logs());
+}
+
+#[test]
 fn an_anchor_in_a_column_or_outside_is_refused_with_a_reason() {
     let tank = Known::E1.tank(4);
     let in_column = Tank { anchor: tank.columns[0].0, ..tank.clone() };
