@@ -4,7 +4,7 @@ use crate::{plan::patient, scenario::Scenario};
 use mission::{
     Event, EventKind, Fault, Input, Mission, MissionConfig, Order, Parameters, Phase, PlannerInfo, RunOpened,
     event::JOURNAL_VERSION,
-    link::{PlannerLink, Reply},
+    planner::{PlannerLink, Reply},
 };
 use planner_api::{Command, Drive, Plan, PlanRequest, Sensed, Site};
 use planner_host::{Host, HostConfig, PluginDirs, Progress};

@@ -1,6 +1,6 @@
 //! What a mission is to do, and within which limits.
 
-use crate::{link::Parameters, tether::TetherConfig};
+use crate::{planner::Parameters, tether::TetherConfig};
 use planner_api::{Limits, Motion, TetherLimits};
 use positioning::{Aggregation, Forecast, RangeNoise, SolverKind};
 use serde::{Deserialize, Serialize};

@@ -11,9 +11,9 @@ use crate::{
     config::{MissionConfig, PlannerChoice},
     event::{Event, EventKind, HoldReason, Outcome, TetherAlarm},
     follower::Follower,
-    link::{PlannerInfo, PlannerLink},
     locate::Locator,
     order::Order,
+    planner::{PlannerInfo, PlannerLink},
     task::{StuckWatch, Task},
     tether::Tether,
 };

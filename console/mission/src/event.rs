@@ -9,8 +9,8 @@ pub use log_line::{LogLine, Severity};
 
 use crate::{
     config::{MissionConfig, PlannerChoice},
-    link::{Fault, PlannerInfo},
     order::Order,
+    planner::{Fault, PlannerInfo},
 };
 use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, PoseEstimate, Reason};
 use positioning::{Exclusion, Fix, FixError, Ranging};

@@ -4,8 +4,9 @@
 //! run reads [`Event`]s; nothing else leaves the engine but the commands to the robot.
 //!
 //! Read in this order: [`engine`] (the tick), [`event`] (what leaves it), [`order`] and [`config`] (what enters),
-//! [`link`] (the port to planners).
+//! [`ask`] (the port to planners).
 
+pub mod ask;
 mod chart;
 pub mod config;
 mod drift;
@@ -13,19 +14,20 @@ pub mod drive;
 pub mod engine;
 pub mod event;
 mod follower;
-pub mod link;
 mod locate;
 pub mod order;
+pub mod planner;
 mod preview;
 mod task;
 pub mod tether;
 
+pub use ask::{Answer, Ask, AskId, Awaits, Given, Said, What, WorkerId};
 pub use config::{Locating, MissionConfig, PlannerChoice, ScanConfig, TaskConfig};
 pub use engine::{Input, Mission, Phase, Step};
 pub use event::{Event, EventKind, HoldReason, LogLine, Outcome, RunOpened, Severity};
-pub use link::{
+pub use order::Order;
+pub use planner::{
     Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo, PlannerLink, Reply,
 };
-pub use order::Order;
 pub use preview::preview;
 pub use tether::TetherConfig;

@@ -1,6 +1,6 @@
 //! What the operator tells the mission; it enters at the top of the next tick.
 
-use crate::{config::PlannerChoice, link::ParamValue};
+use crate::{config::PlannerChoice, planner::ParamValue};
 use serde::{Deserialize, Serialize};
 
 /// One order.

@@ -3,7 +3,7 @@
 use crate::{
     chart::Chart,
     config::MissionConfig,
-    link::{Fault, PlannerInfo, PlannerLink, Reply},
+    planner::{Fault, PlannerInfo, PlannerLink, Reply},
     task::Task,
 };
 use nalgebra::Matrix3;

@@ -2,7 +2,7 @@
 #![expect(clippy::print_stdout, reason = "a bench tells its figures")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use mission::link::{Parameters, PlannerLink};
+use mission::planner::{Parameters, PlannerLink};
 use nalgebra::{Matrix3, Point2};
 use planner_api::{Boundary, Limits, Motion, Obstacle, Outline, PoseEstimate, Sensed, Site};
 use planner_host::{Host, HostConfig, PluginDirs, WorkerCommand};

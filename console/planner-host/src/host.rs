@@ -14,7 +14,7 @@ use crate::survey::{LOAD_WITHIN, MEMORY_LIMIT};
 use driving::{Driving, Saved, must_cover};
 use fault::Phase;
 use find::Catalog;
-use mission::link::{Cause, During, Fault, Parameters, PlannerInfo, PlannerLink, Reply};
+use mission::planner::{Cause, During, Fault, Parameters, PlannerInfo, PlannerLink, Reply};
 use planner_api::{Command, LogLevel, Plan, PlanRequest, Sensed, Site};
 use std::sync::{Arc, atomic::AtomicBool};
 use std::time::{Duration, Instant};

@@ -132,6 +132,7 @@ mod tests {
             sha256: String::new(),
             abi: String::new(),
             covers: false,
+            snapshots: false,
             parameters: vec![
                 param("k_rep", "m3/s", ParamKind::Float { min: 0.0, max: 10.0, default: 0.4 }),
                 param("n", "", ParamKind::Int { min: 0, max: 4, default: 2 }),

@@ -114,6 +114,7 @@ pub(crate) fn info(planner: &Described, loaded: &Loaded, plugin: &str) -> Planne
         sha256: loaded.sha256.clone(),
         abi: Abi { major: loaded.abi_major, minor: loaded.abi_minor }.to_string(),
         covers: Caps(planner.caps).has(Caps::COVERAGE),
+        snapshots: Caps(planner.caps).has(Caps::SNAPSHOT),
         parameters: planner.parameters.clone(),
     }
 }

@@ -20,7 +20,7 @@ pub use ui::{Overlay, Pane, Ui};
 
 use mission::{
     MissionConfig, Order, Outcome, PlannerChoice, PlannerInfo, Severity, TaskConfig, event::HoldReason,
-    link::Fault,
+    planner::Fault,
 };
 use planner_api::{Command, Drawing};
 use positioning::AccuracyMap;

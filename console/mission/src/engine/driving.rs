@@ -4,7 +4,7 @@ use super::Mission;
 use crate::{
     drive::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD, drive_for},
     event::EventKind,
-    link::{Cause, Fault, PlannerLink},
+    planner::{Cause, Fault, PlannerLink},
     task::Task,
 };
 use planner_api::{Command, Drive, Reason, Sensed, Status};

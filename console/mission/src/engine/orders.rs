@@ -4,8 +4,8 @@ use super::{Mission, Phase};
 use crate::{
     config::PlannerChoice,
     event::{EventKind, HoldReason, Outcome},
-    link::{Cause, ParamValue, PlannerLink},
     order::Order,
+    planner::{Cause, ParamValue, PlannerLink},
 };
 use planner_api::{Code, Reason};
 

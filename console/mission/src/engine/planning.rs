@@ -5,7 +5,7 @@ use crate::{
     config::PlannerChoice,
     event::{EventKind, HoldReason, Outcome},
     follower::Follower,
-    link::{Cause, Fault, PlannerLink, Reply},
+    planner::{Cause, Fault, PlannerLink, Reply},
 };
 use planner_api::{Leg, LegTag, Plan, PlanRequest, PoseEstimate, Reason};
 use world::{Point, polyline};

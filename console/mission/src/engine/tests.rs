@@ -7,7 +7,7 @@ mod tethered;
 use super::*;
 use crate::{
     config::{ScanConfig, TaskConfig},
-    link::{Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, Reply},
+    planner::{Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, Reply},
 };
 use planner_api::{self as api, Command, Limits, Motion, Plan, PlanRequest, Sensed, Site, Status};
 use world::tether::Cable;

@@ -8,7 +8,7 @@ use crate::wire::answer::{BAD_OUTPUT, Said, said_of};
 use crate::wire::body::{Body, Writer};
 use crate::wire::kind;
 use crate::{checks, parameters};
-use mission::link::{Cause, During, Parameters, PlannerInfo};
+use mission::planner::{Cause, During, Parameters, PlannerInfo};
 use planner_api::{Caps, Code, Command, Limits, Plan, PlanRequest, Sensed, Site, Task};
 use std::sync::{Arc, atomic::AtomicBool};
 

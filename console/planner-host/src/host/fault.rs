@@ -2,7 +2,7 @@
 
 use crate::supervisor::Failure;
 use crate::wire::answer::{BAD_OUTPUT, Refusal};
-use mission::link::{Cause, During, Fault};
+use mission::planner::{Cause, During, Fault};
 use nalgebra::Point2;
 use planner_api::Code;
 use std::fmt;
@@ -44,7 +44,7 @@ impl fmt::Display for Phase {
 
 /// A fault with its sentence.
 pub(super) fn new(planner: &str, during: During, cause: Cause, message: String) -> Fault {
-    Fault { planner: planner.to_owned(), during, cause, message, partial: Vec::new() }
+    Fault { planner: planner.to_owned(), during, cause, message, partial: Vec::new(), plugin_sha256: None }
 }
 
 /// A planner's answer that no robot can follow; `what` reads on after the planner's name.

@@ -6,7 +6,7 @@ use crate::parameters::nearest;
 use crate::supervisor::{Failure, Worker};
 use crate::survey::{info, load, survey};
 use crate::wire::answer::{Described, Loaded};
-use mission::link::{Cause, During, PlannerInfo};
+use mission::planner::{Cause, During, PlannerInfo};
 
 /// A worker that has loaded a planner.
 pub(super) struct Found {

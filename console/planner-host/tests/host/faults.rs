@@ -1,7 +1,7 @@
 //! Every way to misbehave ends as a fault with one sentence, and another planner can drive.
 
 use crate::stand::{assert_another_drives, choose, config, fly, host, impatient, plan, step, words};
-use mission::link::{During, ParamValue, Parameters, PlannerLink};
+use mission::planner::{During, ParamValue, Parameters, PlannerLink};
 use mission::{Cause, Fault};
 use planner_api::{Code, LogLevel};
 use planner_host::HostConfig;

@@ -1,7 +1,7 @@
 //! Files that are no good plugins: refused with the reason, and nobody else is hurt.
 
 use crate::stand::{assert_refused, built, choose, compile, config, direct_c, folder_with, worker};
-use mission::link::Parameters;
+use mission::planner::Parameters;
 use planner_host::{Host, PluginDirs, Survey, survey};
 use std::path::Path;
 

@@ -6,7 +6,7 @@ use crate::stand::{
 };
 use crate::state::COUNTER;
 use mission::Cause;
-use mission::link::{ParamValue, Parameters, PlannerLink};
+use mission::planner::{ParamValue, Parameters, PlannerLink};
 use nalgebra::Point2;
 use planner_api::{Drive, Leg, LegTag, PoseEstimate, Status};
 use planner_host::{Host, PluginDirs};
@@ -87,7 +87,7 @@ fn answers_that_are_none_are_caught() {
 }
 
 /// A planner in C that covers: it hands over the last corner of every region, and what the test puts in.
-fn plans_to_cover(by: &str) -> Result<planner_api::Plan, mission::link::Fault> {
+fn plans_to_cover(by: &str) -> Result<planner_api::Plan, mission::planner::Fault> {
     let plan = "out->cost = 0.0; out->complete = 1;";
     let covers = format!(
         "if (in->task != TP_COVER || in->n_regions != 2 || !in->has_tether || in->reel != 40.0 ||

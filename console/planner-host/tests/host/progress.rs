@@ -3,7 +3,7 @@
 use crate::stand::{assert_another_drives, choose, config, folder_with, host, impatient, plan, step, words};
 use crate::state::COUNTER;
 use mission::Cause;
-use mission::link::Parameters;
+use mission::planner::Parameters;
 use planner_host::{Host, Progress};
 use std::sync::{Arc, Mutex};
 

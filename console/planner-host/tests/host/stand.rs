@@ -1,6 +1,6 @@
 //! A tank, a robot, a host and what a C compiler makes of a few lines.
 
-use mission::link::{ParamValue, Parameters, PlannerInfo, PlannerLink, Reply};
+use mission::planner::{ParamValue, Parameters, PlannerInfo, PlannerLink, Reply};
 use mission::{Cause, Fault};
 use nalgebra::{Matrix3, Point2};
 use planner_api::{

@@ -1,7 +1,7 @@
 //! Private state outlives the process that kept it.
 
 use crate::stand::{choose, config, folder_with, step, words};
-use mission::link::Parameters;
+use mission::planner::Parameters;
 use planner_api::Drive;
 use planner_host::{Host, PluginDirs};
 use tempfile::TempDir;

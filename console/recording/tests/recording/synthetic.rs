@@ -277,6 +277,7 @@ fn fault() -> Fault {
         cause: Cause::Hung,
         message: "planner rpf did not answer in step; its process was ended".into(),
         partial: Vec::new(),
+        plugin_sha256: None,
     }
 }
 
@@ -299,6 +300,7 @@ fn chosen(id: &str, from: Option<String>) -> EventKind {
         sha256: "9f2c1a".repeat(10),
         abi: "1.0".into(),
         covers: false,
+        snapshots: false,
         parameters: vec![parameter],
     };
     let parameters = [("k_rep".to_owned(), ParamValue::Float(0.6))].into();

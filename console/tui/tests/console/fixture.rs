@@ -1,7 +1,7 @@
 //! A spiral mission in a tank with columns, told as events without any engine.
 
 use mission::event::{HoldReason, JOURNAL_VERSION, RunOpened, TetherAlarm, TetherContact};
-use mission::link::{Cause, During, Fault};
+use mission::planner::{Cause, During, Fault};
 use mission::{
     Event, EventKind, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters, PlannerChoice,
     PlannerInfo, ScanConfig, TaskConfig, TetherConfig,
@@ -130,6 +130,7 @@ pub fn planner(id: &str, version: &str, about: &str) -> PlannerInfo {
         sha256: "1c9e".into(),
         abi: "1.0".into(),
         covers: false,
+            snapshots: false,
         parameters: vec![
             parameter("rpf_gain", "Rotating gain", "m3/s", gain, float(0.2, 4.0, 1.2), true),
             parameter(
@@ -371,6 +372,7 @@ impl Telling {
             cause: Cause::Panic,
             message: message.clone(),
             partial: Vec::new(),
+            plugin_sha256: None,
         };
         vec![self.now(EventKind::PlannerFailed { fault }), self.held(HoldReason::PlannerFault { message })]
     }

@@ -1,4 +1,4 @@
-//! The port to planners: what the mission asks of whoever runs them.
+//! Planners as the mission knows them: who they are, what parameters they take, how they fail.
 
 use crate::event::Severity;
 use planner_api::{Command, Drawing, LogLevel, Plan, PlanRequest, Sensed, Site};
@@ -110,6 +110,9 @@ pub struct PlannerInfo {
     /// Whether it covers floor.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub covers: bool,
+    /// Whether it can save its private state and go on from it in a new process.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub snapshots: bool,
     /// Its parameters.
     pub parameters: Vec<ParamInfo>,
 }
@@ -149,10 +152,13 @@ pub enum Cause {
     Panic,
     /// Its process ended: a signal, an abort, an exit.
     Died,
-    /// It did not answer in time and its process was killed.
+    /// It did not answer although it had the processor to itself for the whole time allowed, or it was stopped; its
+    /// process was killed.
     Hung,
-    /// It answered in time after being asked to stop: too slow.
+    /// It answered only after it was asked to stop: too slow.
     Late,
+    /// It hardly got the processor, for very long; its process was killed.
+    Starved,
     /// It answered with numbers that are not finite or beyond the robot's limits.
     BadOutput,
     /// It sent something that is no answer.
@@ -181,6 +187,17 @@ pub struct Fault {
     /// For a plan that got only part of the way: that part.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub partial: Vec<world::Point>,
+    /// SHA-256 of the plugin's file, hexadecimal, as far as it is known by then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plugin_sha256: Option<String>,
+}
+
+impl Cause {
+    /// Whether the process failed from outside the planner's own logic, or by the clock: computing the run again does
+    /// not show it again. After such a fault the process is gone.
+    pub fn is_external(self) -> bool {
+        matches!(self, Self::Died | Self::Hung | Self::Late | Self::Starved)
+    }
 }
 
 impl Fault {
