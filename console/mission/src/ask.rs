@@ -6,8 +6,10 @@
 //!
 //! Lengths are metres, angles radians, counter-clockwise from the x axis, in the tank frame.
 
+mod recorded;
 mod site;
 
+pub use recorded::RecordedAnswers;
 pub use site::{Site, SiteObstacle, SiteZone};
 
 use crate::{

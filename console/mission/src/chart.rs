@@ -1,6 +1,11 @@
 //! The mission's own map: the drawing, and what was found on the way.
 
-use crate::{config::MissionConfig, drift::Drift, event::EventKind};
+use crate::{
+    ask::{Site, SiteObstacle, SiteZone},
+    config::MissionConfig,
+    drift::Drift,
+    event::EventKind,
+};
 use nalgebra::{Isometry2, Translation2};
 use planner_api as api;
 use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, World, ZoneKind};
@@ -139,48 +144,54 @@ impl Chart {
         EventKind::ObstacleFound { obstacle }
     }
 
-    /// Calls `ask` with the whole chart in the form that planners read.
-    pub fn with_site<R>(&self, ask: impl FnOnce(&api::Site<'_>) -> R) -> R {
-        let obstacles: Vec<api::Obstacle<'_>> =
-            (0..self.world.obstacles.len()).filter_map(|index| self.told(index)).collect();
-        let zones: Vec<api::Zone<'_>> = self
-            .world
-            .zones
-            .iter()
-            .map(|zone| api::Zone { kind: zone_kind(zone.kind), outline: outline_of(&zone.shape) })
-            .collect();
-        ask(&api::Site {
+    /// The whole chart in the form that planners read.
+    pub fn site(&self) -> Site {
+        Site {
             revision: self.revision,
-            boundary: boundary_of(&self.world.boundary),
-            obstacles: &obstacles,
-            zones: &zones,
+            boundary: self.world.boundary.clone(),
+            obstacles: (0..self.world.obstacles.len()).filter_map(|index| self.reported(index)).collect(),
+            zones: self
+                .world
+                .zones
+                .iter()
+                .map(|zone| SiteZone { kind: zone_kind(zone.kind), shape: zone.shape.clone() })
+                .collect(),
             limits: self.limits,
             swath_m: self.swath_m,
             clearance_m: self.clearance_m,
             seed: self.seed,
-        })
+        }
     }
 
     /// The obstacles within sensing range of a point, in the form that planners read: where they are seen now, and where
     /// the chart has them while they are not.
-    pub fn near(&self, point: Point) -> Vec<api::Obstacle<'_>> {
+    pub fn near(&self, point: Point) -> Vec<SiteObstacle> {
         let reach_m = self.limits.sensing_range_m + self.limits.radius_m;
         let near = self.map.within(point, reach_m);
-        near.iter().filter_map(|near| self.told(near.index)).map(|told| self.as_seen(told)).collect()
+        near.iter().filter_map(|near| self.reported(near.index)).map(|told| self.as_seen(told)).collect()
     }
 
-    fn as_seen<'a>(&'a self, told: api::Obstacle<'a>) -> api::Obstacle<'a> {
+    fn as_seen(&self, told: SiteObstacle) -> SiteObstacle {
         let seen = self.in_sight.iter().find(|(id, _)| id.0 == told.id);
-        seen.map_or(told, |(_, shape)| api::Obstacle { outline: outline_of(shape), ..told })
+        match seen {
+            Some((_, shape)) => SiteObstacle { shape: shape.clone(), ..told },
+            None => told,
+        }
     }
 
     /// An obstacle in the form that planners read; none for one that moved away out of sight.
-    fn told(&self, index: usize) -> Option<api::Obstacle<'_>> {
-        let obstacle = obstacle_of(&self.world.obstacles[index]);
-        let Some(found) = self.found.iter().find(|found| found.index == index) else { return Some(obstacle) };
-        let Some(velocity_m_per_s) = found.drift.velocity() else { return Some(obstacle) };
-        let in_sight = self.now_s - found.drift.seen_s() <= OUT_OF_SIGHT_S;
-        in_sight.then_some(api::Obstacle { velocity_m_per_s, ..obstacle })
+    fn reported(&self, index: usize) -> Option<SiteObstacle> {
+        let obstacle = &self.world.obstacles[index];
+        let found = self.found.iter().find(|found| found.index == index);
+        let velocity = found.and_then(|found| found.drift.velocity());
+        let is_gone = velocity.is_some()
+            && found.is_some_and(|found| self.now_s - found.drift.seen_s() > OUT_OF_SIGHT_S);
+        (!is_gone).then(|| SiteObstacle {
+            id: obstacle.id.0,
+            discovered: !obstacle.known,
+            velocity_m_per_s: velocity.unwrap_or_default(),
+            shape: obstacle.shape.clone(),
+        })
     }
 
     /// Whether an event tells of something that moves.
@@ -200,32 +211,6 @@ impl Chart {
 
 fn shift(by: world::Vector) -> Isometry2<f64> {
     Isometry2::from_parts(Translation2::from(by), nalgebra::UnitComplex::identity())
-}
-
-fn obstacle_of(obstacle: &Obstacle) -> api::Obstacle<'_> {
-    api::Obstacle {
-        id: obstacle.id.0,
-        outline: outline_of(&obstacle.shape),
-        discovered: !obstacle.known,
-        velocity_m_per_s: api::Vector2::zeros(),
-    }
-}
-
-fn outline_of(shape: &Shape) -> api::Outline<'_> {
-    match shape {
-        Shape::Disc { center, radius_m } => api::Outline::Disc { center: *center, radius_m: *radius_m },
-        Shape::Polygon { vertices } => api::Outline::Polygon { vertices },
-        Shape::Polyline { points, half_width_m } => {
-            api::Outline::Polyline { points, half_width_m: *half_width_m }
-        }
-    }
-}
-
-fn boundary_of(boundary: &world::Boundary) -> api::Boundary<'_> {
-    match boundary {
-        world::Boundary::Circle { radius_m } => api::Boundary::Circle { radius_m: *radius_m },
-        world::Boundary::Polygon { vertices } => api::Boundary::Polygon { vertices },
-    }
 }
 
 fn zone_kind(kind: ZoneKind) -> api::ZoneKind {

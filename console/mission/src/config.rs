@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use world::{Point, Pose, coverage::Tool};
 
 /// Which planner drives, with the parameters that differ from their defaults.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PlannerChoice {
     /// The planner's id.
     pub id: String,

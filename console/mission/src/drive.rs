@@ -10,6 +10,9 @@ pub const TURN_FIRST_IN_LANES_RAD: f64 = 0.25;
 /// Turn rate per heading error, 1/s: a 0.5 rad error is gone in about a second.
 const HEADING_GAIN_PER_S: f64 = 2.5;
 
+/// Share by which a speed may exceed the limit by rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// What the robot is sent for a planner's command: within its limits and in its own way of moving.
 ///
 /// A unicycle turns into a velocity, on the spot above `turn_first_rad`, and slows down as the cosine of the heading
@@ -47,9 +50,11 @@ fn twist(v_m_per_s: f64, w_rad_per_s: f64, limits: &Limits) -> Drive {
     }
 }
 
+/// Shortens a velocity to a speed. What was shortened once may be longer than that by rounding and stays as it is, so that
+/// a command that was sent can be fed in again.
 fn at_most(velocity: Vector2<f64>, speed_m_per_s: f64) -> Vector2<f64> {
     let speed = velocity.norm();
-    if speed > speed_m_per_s { velocity * (speed_m_per_s / speed) } else { velocity }
+    if speed > speed_m_per_s * (1.0 + ROUNDING) { velocity * (speed_m_per_s / speed) } else { velocity }
 }
 
 #[cfg(test)]
@@ -74,6 +79,16 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn what_was_sent_is_sent_again_to_the_bit(x in -9.0..9.0_f64, y in -9.0..9.0_f64, heading in -4.0..4.0_f64) {
+            for motion in [Motion::Point, Motion::Unicycle] {
+                for command in [Drive::Velocity(Vector2::new(x, y)), Drive::Twist { v_m_per_s: x, w_rad_per_s: y }] {
+                    let sent = drive_for(command, heading, &limits(motion), TURN_FIRST_RAD);
+                    prop_assert_eq!(drive_for(sent, heading, &limits(motion), TURN_FIRST_RAD), sent);
+                }
+            }
+        }
+
         #[test]
         fn no_command_exceeds_the_limits(x in -9.0..9.0_f64, y in -9.0..9.0_f64, heading in -4.0..4.0_f64) {
             for motion in [Motion::Point, Motion::Unicycle] {

@@ -1,30 +1,39 @@
-//! The engine: what is sensed and ordered goes in, what the robot does and everything that happened comes out.
+//! The engine: what is sensed, ordered and answered goes in; what the robot does, what is asked of planners and everything
+//! that happened comes out.
+//!
+//! A tick is [`Mission::sense`], any number of [`Mission::poll_ask`] and [`Mission::answer`], and [`Mission::act`]. The
+//! mission never waits: an ask that is not answered when [`Mission::act`] is called may be answered in any later tick. The
+//! same inputs and answers in the same ticks give the same events.
 
+mod answers;
+mod asks;
 mod driving;
 mod orders;
 mod planning;
+mod rules;
 mod scanning;
+mod seat;
 mod tethering;
+mod workers;
 
 use crate::{
     chart::Chart,
-    config::{MissionConfig, PlannerChoice},
+    config::MissionConfig,
     event::{Event, EventKind, HoldReason, Outcome, TetherAlarm},
-    follower::Follower,
     locate::Locator,
     order::Order,
-    planner::{PlannerInfo, PlannerLink},
-    task::{StuckWatch, Task},
+    standing::{Gait, Hold, Phase, PositionTrust, Resumes, Standing},
+    task::Task,
     tether::Tether,
 };
 use planner_api::{Drive, Reason};
-use tethering::{Caught, Cuts};
-use world::{CoverageGrid, Floor, FloorMaker, Point, Readings, World};
+use rules::{LatePlannerRule, LostPositionRule, Rules, Seen, Verdict};
+use scanning::ScannedFloor;
+use seat::{Prepare, Seat};
+use workers::Workers;
+use world::{Floor, Point, Readings, World};
 
-/// A robot that is stuck again within this distance is stuck in the same place, metres.
-const SAME_PLACE_M: f64 = 1.0;
-
-/// What enters the engine in one tick.
+/// What enters the engine at the top of a tick.
 #[derive(Debug, Clone, Copy)]
 pub struct Input<'a> {
     /// What was sensed since the last tick.
@@ -33,7 +42,7 @@ pub struct Input<'a> {
     pub orders: &'a [Order],
 }
 
-/// What leaves the engine in one tick.
+/// What leaves the engine at the end of a tick.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// How the robot shall move until the next tick, within its limits and in its own way of moving.
@@ -44,8 +53,8 @@ pub struct Step {
 
 /// A mission under way.
 ///
-/// Costs per tick: one planner call, one position update, and work that grows with the obstacles in sensing range and
-/// the cells under the swath. Memory grows by one point per decimetre flown.
+/// Costs per tick: one position update, and work that grows with the obstacles in sensing range and the cells under the
+/// swath. Memory grows by one point per decimetre flown.
 pub struct Mission {
     config: MissionConfig,
     tick: u64,
@@ -53,69 +62,36 @@ pub struct Mission {
     locator: Locator,
     chart: Chart,
     task: Task,
-    coverage: CoverageGrid,
-    /// Makes the floor anew when an obstacle was found; made for the first one.
-    surveyor: Option<FloorMaker>,
+    floor: ScannedFloor,
     /// `None` without a tether, or if its anchor cannot be.
     tether: Option<Tether>,
-    /// What the plan keeps to.
-    cuts: Cuts,
-    /// What the cable reached in this tick.
-    cable_trouble: Option<TetherAlarm>,
-    /// For how long the robot has been held because it has no way home, seconds; `None` if that is not why.
-    waits_for_home_s: Option<f64>,
-    planner: Seat,
-    /// When the planner answered a step too late the last time, seconds.
-    late_at_s: Option<f64>,
-    stuck: StuckWatch,
-    lost_s: f64,
-    /// For how long the planner has said that it is stuck, seconds.
-    blocked_s: f64,
-    /// For how long an operator has let the mission wait, seconds.
-    waited_s: f64,
-    /// Where it said so last, and how often there.
-    blocked_at: Option<(Point, usize)>,
-    /// Where the cable held the robot last.
-    caught: Option<Caught>,
-    /// Where the robot was stuck last and got another plan.
-    replanned_at: Option<Point>,
+    /// The path flown, a point each decimetre.
     trail: Vec<Point>,
-    plan: Option<Follower>,
-    /// Whether the plan under way was for all that is left of the task.
-    plan_is_whole: bool,
-    last_drive: Drive,
-    happened: Vec<EventKind>,
+    rules: Rules,
+    /// The planner that drives.
+    active: Seat,
+    /// A planner that is being prepared to take over.
+    candidate: Option<Seat>,
+    workers: Workers,
+    happened: Happened,
+}
+
+/// What has happened in this tick so far, and what the robot was told at the end of the last one.
+struct Happened {
+    events: Vec<EventKind>,
     /// Told when everything else of the tick has been told.
     ending: Option<EventKind>,
+    last_drive: Drive,
 }
 
-/// What the mission is doing.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Phase {
-    /// Nothing has been started.
-    Waiting,
-    /// The robot moves.
-    Running,
-    /// The robot moves for this one tick.
-    Stepping,
-    /// The robot stands still and may go on.
-    Held(HoldReason),
-    /// It is over.
-    Ended(Outcome),
-}
+impl Happened {
+    fn push(&mut self, kind: EventKind) {
+        self.events.push(kind);
+    }
 
-/// The planner that drives.
-struct Seat {
-    choice: PlannerChoice,
-    info: Option<PlannerInfo>,
-    /// Whether it is loaded, configured and has not failed since.
-    fit: bool,
-    /// Whether the automatic replacement after a fault has been used.
-    fallback_used: bool,
-    /// Whether its last plan was refused because of the tether.
-    refused: bool,
-    /// Whether its plan is still to be made, or made for a map that has changed since.
-    plan_due: Option<Reason>,
+    fn extend(&mut self, kinds: impl IntoIterator<Item = EventKind>) {
+        self.events.extend(kinds);
+    }
 }
 
 impl Mission {
@@ -130,37 +106,17 @@ impl Mission {
                 .tether
                 .as_ref()
                 .and_then(|tether| Tether::new(tether, config.limits.radius_m, &drawing, start).ok()),
-            cuts: Cuts::default(),
-            cable_trouble: None,
-            waits_for_home_s: None,
             phase: Phase::Waiting,
             locator: Locator::new(&config, &drawing),
             chart: Chart::new(drawing, &config, seed),
             task: Task::new(&config.task, start),
-            coverage: CoverageGrid::new(floor),
-            surveyor: None,
-            planner: Seat {
-                choice: config.planner.clone(),
-                info: None,
-                fit: false,
-                fallback_used: false,
-                refused: false,
-                plan_due: Some(Reason::Start),
-            },
-            late_at_s: None,
-            stuck: StuckWatch::new(config.stuck_s),
-            lost_s: 0.0,
-            blocked_s: 0.0,
-            waited_s: 0.0,
-            blocked_at: None,
-            caught: None,
-            replanned_at: None,
+            floor: ScannedFloor::new(floor),
             trail: vec![start],
-            plan: None,
-            plan_is_whole: true,
-            last_drive: Drive::STILL,
-            happened: Vec::new(),
-            ending: None,
+            rules: Rules::new(&config),
+            active: Seat::new(config.planner.clone(), Reason::Start),
+            candidate: None,
+            workers: Workers::default(),
+            happened: Happened { events: Vec::new(), ending: None, last_drive: Drive::STILL },
             config,
         }
     }
@@ -170,35 +126,46 @@ impl Mission {
         &self.phase
     }
 
-    /// One tick.
-    pub fn step(&mut self, input: &Input<'_>, planner: &mut dyn PlannerLink) -> Step {
+    /// Everything that decides whether an order is accepted now.
+    pub fn standing(&self) -> Standing<'_> {
+        let planner = self.active.info.as_ref().filter(|_| self.active.is_ready);
+        Standing { phase: &self.phase, position: self.position_trust(), planner }
+    }
+
+    fn position_trust(&self) -> PositionTrust {
+        if self.locator.is_lost() {
+            let (error_m, limit_m) = (self.locator.error_95_m(), self.config.position_limit_m);
+            PositionTrust::Lost { error_m, limit_m }
+        } else if self.locator.is_alarmed() {
+            PositionTrust::Alarmed
+        } else {
+            PositionTrust::Good
+        }
+    }
+
+    /// Begins a tick: obeys the orders, takes in what was sensed, applies the rules. To be called once, first.
+    pub fn sense(&mut self, input: &Input<'_>) {
         for order in input.orders {
-            self.obey(order, planner);
+            self.obey(order);
         }
         let before = self.locator.pose();
         let located = self.locator.take(input.readings);
         self.happened.extend(located);
         let map_changed = self.look_around(input.readings);
         self.scan_from(before);
-        self.drag_tether(map_changed, input.readings.paid_out_m);
-        self.apply_rules(input.readings, planner);
-        let drive = match self.phase {
-            Phase::Running | Phase::Stepping => self.drive(planner),
-            Phase::Waiting | Phase::Held(_) | Phase::Ended(_) => Drive::STILL,
-        };
-        if self.phase == Phase::Stepping {
-            self.hold(HoldReason::Stepped);
-        }
-        self.finish_tick(drive)
+        let reached = self.drag_tether(map_changed, input.readings.paid_out_m);
+        self.apply_rules(input.readings, reached.as_ref());
     }
 
-    fn finish_tick(&mut self, drive: Drive) -> Step {
+    /// Ends a tick: what the robot does until the next one, and everything that happened. To be called once, last.
+    pub fn act(&mut self) -> Step {
+        let drive = self.drive();
         let (tick, t_s) = (self.tick, self.now_s());
-        let mut happened = std::mem::take(&mut self.happened);
-        happened.extend(self.ending.take());
+        let mut happened = std::mem::take(&mut self.happened.events);
+        happened.extend(self.happened.ending.take());
         let events = happened.into_iter().map(|kind| Event { tick, t_s, kind }).collect();
         self.tick += 1;
-        self.last_drive = drive;
+        self.happened.last_drive = drive;
         Step { drive, events }
     }
 
@@ -206,105 +173,142 @@ impl Mission {
         self.tick as f64 * self.config.tick_s
     }
 
-    /// The rules that hold the robot, let it go on, or end the mission.
-    fn apply_rules(&mut self, readings: &Readings, planner: &mut dyn PlannerLink) {
-        // While somebody looks after a mission that is held, its time does not run out.
-        if self.config.attended && matches!(self.phase, Phase::Held(_)) {
-            self.waited_s += self.config.tick_s;
+    /// The rules that hold the robot, let it go on, or end the mission; the first that has something to say wins.
+    fn apply_rules(&mut self, readings: &Readings, reached: Option<&TetherAlarm>) {
+        if matches!(self.phase, Phase::Waiting | Phase::Ended(_)) {
+            return;
         }
-        match self.phase.clone() {
-            Phase::Waiting | Phase::Ended(_) => {}
-            _ if readings.contact => self.end(Outcome::Collision, "the bumper touched something"),
-            _ if self.now_s() - self.waited_s >= self.config.time_limit_s => {
-                let reason = format!("time is up after {:.0} s", self.config.time_limit_s);
-                self.end(Outcome::TimeLimit, &reason);
+        let is_held = matches!(self.phase, Phase::Held(_));
+        let seen = Seen {
+            config: &self.config,
+            now_s: self.now_s(),
+            here: self.locator.position(),
+            position: self.position_trust(),
+            task: &self.task,
+            scanned: self.floor.coverage.fraction_reachable(),
+        };
+        let time_is_up = self.rules.time_limit.update(&seen, is_held);
+        if readings.contact {
+            return self.end(Outcome::Collision, "the bumper touched something".into());
+        }
+        let verdict = match &self.phase {
+            _ if time_is_up.is_some() => time_is_up,
+            Phase::Running(_) => {
+                let lost = self.rules.lost_position.update(&seen);
+                if lost.is_none() && self.task.is_done(seen.here) {
+                    return self.end_done();
+                }
+                let (can_replan, is_waiting) = (self.plans_ways_home(), self.robot_waits());
+                let (tether, stuck) = (&mut self.rules.tether, &mut self.rules.stuck);
+                lost.or_else(|| reached.map(|alarm| tether.update(&seen, alarm, can_replan)))
+                    .or_else(|| owed_too_long(&self.active, self.tick, self.config.tick_s))
+                    .or_else(|| if is_waiting { None } else { stuck.update(&seen) })
             }
-            Phase::Running | Phase::Stepping => self.watch_moving(),
-            Phase::Held(reason) => self.watch_held(&reason, planner),
+            Phase::Held(hold) => match (&hold.by, hold.resumes) {
+                (_, Resumes::Never) => None,
+                (HoldReason::PositionLost | HoldReason::PositionAlarmed, _) => {
+                    LostPositionRule::update_held(&seen)
+                }
+                (HoldReason::Tether { .. }, _) => {
+                    let can_go_home = self.tether.as_ref().is_none_or(Tether::can_go_home);
+                    self.rules.tether.update_held(&seen, can_go_home)
+                }
+                (HoldReason::PlannerSilent { .. }, _) => {
+                    self.active.pending.is_none().then_some(Verdict::Resume)
+                }
+                _ => None,
+            },
+            Phase::Waiting | Phase::Ended(_) => None,
+        };
+        match verdict {
+            Some(verdict) => self.carry_out(verdict),
+            None => self.go_on_or_help(),
         }
     }
 
-    fn watch_moving(&mut self) {
-        let here = self.locator.position();
-        let (lost, alarmed) = (self.locator.is_lost(), self.locator.is_alarmed());
-        self.lost_s = if lost || alarmed { self.lost_s + self.config.tick_s } else { 0.0 };
-        if self.lost_s >= self.config.lost_hold_s && (lost || alarmed) {
-            self.hold(if lost { HoldReason::PositionLost } else { HoldReason::PositionAlarmed });
-        } else if self.task.is_done(here) {
-            self.end_done();
-        } else if self.watch_tether() {
-            // Told and done.
-        } else if self.stuck.is_stuck(&self.task, here, self.config.tick_s) {
-            if !self.tries_another_plan(here) {
-                self.stop_stuck(here);
+    /// Nothing stops the robot, or nothing lets a held one go on.
+    fn go_on_or_help(&mut self) {
+        match &self.phase {
+            Phase::Running(_) => self.task.wait(self.config.tick_s),
+            Phase::Held(hold) if hold.by.blames_planner() => self.replace_failed_planner(),
+            Phase::Waiting | Phase::Held(_) | Phase::Ended(_) => {}
+        }
+    }
+
+    /// Whether the robot stands because it has no plan, or no planner, yet.
+    fn robot_waits(&self) -> bool {
+        self.active.is_planning() || self.candidate.as_ref().is_some_and(|seat| seat.robot_waits)
+    }
+
+    fn carry_out(&mut self, verdict: Verdict) {
+        match verdict {
+            Verdict::Hold(hold) => self.hold(hold),
+            Verdict::HoldAndReplan(hold) => {
+                self.active.want_plan(Reason::Blocked);
+                self.hold(hold);
             }
-        } else {
-            self.task.wait(self.config.tick_s);
+            Verdict::Resume => self.go_on(Gait::Steady),
+            Verdict::Replan(reason) => self.active.want_plan(reason),
+            Verdict::End(outcome, reason) => self.end(outcome, reason),
         }
     }
 
-    /// A robot that is stuck in its lanes gets another plan from where it stands, once at each place.
-    fn tries_another_plan(&mut self, here: Point) -> bool {
-        let tried = self.replanned_at.is_some_and(|at| (here - at).norm() < SAME_PLACE_M);
-        if tried || !matches!(self.task, Task::Cover(_)) {
-            return false;
-        }
-        self.replanned_at = Some(here);
-        self.planner.plan_due.get_or_insert(Reason::Blocked);
-        self.stuck.reset();
-        true
-    }
-
-    /// An operator may know a way on; without one the mission is over.
-    fn stop_stuck(&mut self, here: Point) {
-        let done = self.task.done() * 100.0;
-        let message = format!("no progress at {:.2}, {:.2} m, {done:.0} % done", here.x, here.y);
-        if self.config.attended {
-            self.hold(HoldReason::Stuck { message });
-        } else {
-            self.end(Outcome::Stuck, &message);
-        }
-    }
-
-    fn watch_held(&mut self, reason: &HoldReason, planner: &mut dyn PlannerLink) {
-        match reason {
-            HoldReason::PositionLost | HoldReason::PositionAlarmed
-                if !self.locator.is_lost() && !self.locator.is_alarmed() =>
-            {
-                self.go_on(Phase::Running);
+    /// After a fault: the fallback takes over, if there is one; with nobody there to help the mission ends.
+    fn replace_failed_planner(&mut self) {
+        let Phase::Held(Hold { by, resumes }) = &self.phase else { return };
+        if *resumes == Resumes::ByFallback {
+            let active = self.active.choice.id.clone();
+            if let Some(choice) = self.rules.fallback.update(&self.config, &active) {
+                let mut seat = self.active.successor(choice, Reason::Swap { from: active });
+                seat.prepare = Prepare::Plan;
+                self.drop_candidate();
+                self.replace_active(seat);
             }
-            HoldReason::PlannerFault { message } | HoldReason::PlanRefused { message } => {
-                self.replace_failed_planner(message, planner);
-            }
-            HoldReason::PositionLost
-            | HoldReason::PositionAlarmed
-            | HoldReason::Operator
-            | HoldReason::Stuck { .. }
-            | HoldReason::Stepped => {}
-            HoldReason::Tether { .. } => self.watch_way_home(),
+        } else if resumes.is_never() && !self.config.attended && self.active.prepare == Prepare::No {
+            let (HoldReason::PlannerFault { message }
+            | HoldReason::PlanRefused { message }
+            | HoldReason::PlannerSilent { message }) = by
+            else {
+                return;
+            };
+            let reason = format!("nobody attended the hold: {message}");
+            self.end(Outcome::Aborted, reason);
         }
     }
 
-    fn hold(&mut self, by: HoldReason) {
-        if !matches!(by, HoldReason::Tether { .. }) {
-            self.waits_for_home_s = None;
+    fn hold(&mut self, hold: Hold) {
+        let Hold { by, resumes } = hold.clone();
+        self.happened.push(EventKind::Held { by, resumes });
+        self.phase = Phase::Held(hold);
+        self.active.outdate_step();
+        if let Some(unsent) = self.active.command.take() {
+            self.discard(unsent);
         }
-        self.happened.push(EventKind::Held { by: by.clone() });
-        self.phase = Phase::Held(by);
     }
 
-    fn go_on(&mut self, how: Phase) {
-        self.lost_s = 0.0;
-        self.waits_for_home_s = None;
-        self.stuck.reset();
+    /// Lets the robot move again, for good or for one tick.
+    fn resume(&mut self, gait: Gait) {
+        self.active.prepare = Prepare::No;
+        self.go_on(gait);
+    }
+
+    fn go_on(&mut self, gait: Gait) {
+        self.rules.restart();
         self.happened.push(EventKind::Resumed);
-        self.phase = how;
+        self.phase = Phase::Running(gait);
     }
 
-    fn end(&mut self, outcome: Outcome, reason: &str) {
-        self.ending = Some(EventKind::Ended { outcome, reason: reason.into() });
+    fn end(&mut self, outcome: Outcome, reason: String) {
+        self.happened.ending = Some(EventKind::Ended { outcome, reason });
         self.phase = Phase::Ended(outcome);
+        self.drop_candidate();
+        self.close_active();
     }
+}
+
+/// Whether a planner owes the answer to a step for too long.
+fn owed_too_long(active: &Seat, tick: u64, tick_s: f64) -> Option<Verdict> {
+    LatePlannerRule::update(&active.choice.id, active.owed_ticks(tick)? as f64 * tick_s)
 }
 
 #[cfg(test)]

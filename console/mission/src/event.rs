@@ -8,9 +8,11 @@ mod log_line;
 pub use log_line::{LogLine, Severity};
 
 use crate::{
+    ask::AskId,
     config::{MissionConfig, PlannerChoice},
     order::Order,
     planner::{Fault, PlannerInfo},
+    standing::Resumes,
 };
 use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, PoseEstimate, Reason};
 use positioning::{Exclusion, Fix, FixError, Ranging};
@@ -20,7 +22,7 @@ use world::tether::Certificate;
 use world::{CellRun, KindRun, Obstacle, ObstacleId, Point, Pose, StationId, World};
 
 /// Version of the journal's form; raised when an old reader could not read a new journal.
-pub const JOURNAL_VERSION: u32 = 2;
+pub const JOURNAL_VERSION: u32 = 3;
 
 /// One thing that happened.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -182,8 +184,27 @@ pub enum EventKind {
         /// Its outline as estimated now.
         obstacle: Obstacle,
     },
+    /// A planner was opened that is to take over once it has a plan.
+    PlannerPrepared {
+        /// Which ask this answers.
+        ask: AskId,
+        /// Which, with its parameters.
+        choice: PlannerChoice,
+        /// Who it is.
+        info: Box<PlannerInfo>,
+    },
+    /// A planner that was to take over does not; the one before stays.
+    PlannerRejected {
+        /// Which.
+        planner: String,
+        /// Why, as a sentence.
+        why: String,
+    },
     /// A planner took over.
     PlannerChosen {
+        /// Which ask this answers; absent for one that was prepared before, and in journals up to version 2.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        ask: Option<AskId>,
         /// Which, with its parameters.
         choice: PlannerChoice,
         /// Who it is.
@@ -193,11 +214,20 @@ pub enum EventKind {
     },
     /// Parameters changed under way.
     ParametersChanged {
+        /// Which ask this answers; absent in journals up to version 2.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        ask: Option<AskId>,
         /// The planner with its parameters as they are now.
         choice: PlannerChoice,
     },
     /// A plan was made.
     Planned {
+        /// Which ask this answers; absent in journals up to version 2.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        ask: Option<AskId>,
+        /// How many points of a way home along the tether the mission put before the planner's path.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        way_home: usize,
         /// By whom.
         planner: String,
         /// Why.
@@ -217,6 +247,9 @@ pub enum EventKind {
     },
     /// The planner told how to move, and this is what the robot was sent.
     Commanded {
+        /// Which ask this answers; absent in journals up to version 2.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        ask: Option<AskId>,
         /// The planner's command; what was sent to the robot.
         command: Command,
     },
@@ -239,8 +272,30 @@ pub enum EventKind {
         /// What.
         message: String,
     },
+    /// A planner saved its private state, which the console keeps.
+    Snapshotted {
+        /// Which ask this answers, and the name of the state.
+        ask: AskId,
+        /// Length of the state, bytes; 0 if there was none to save.
+        bytes: u64,
+    },
+    /// A planner's answer came too late to be used.
+    Discarded {
+        /// Which ask it answers.
+        ask: AskId,
+    },
+    /// A planner answered a step only after the tick it was asked for; told of the first of a row.
+    PlannerLate {
+        /// Which planner.
+        planner: String,
+        /// For how many ticks the robot stood still.
+        ticks: u64,
+    },
     /// The planner failed.
     PlannerFailed {
+        /// Which ask this answers; absent in journals up to version 2.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        ask: Option<AskId>,
         /// How.
         fault: Fault,
     },
@@ -281,6 +336,9 @@ pub enum EventKind {
     Held {
         /// Why, as a sentence.
         by: HoldReason,
+        /// Whether the hold ends by itself.
+        #[serde(default, skip_serializing_if = "Resumes::is_never")]
+        resumes: Resumes,
     },
     /// The robot may move again.
     Resumed,
@@ -291,6 +349,11 @@ pub enum EventKind {
         /// Why, as a sentence.
         reason: String,
     },
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_zero(n: &usize) -> bool {
+    *n == 0
 }
 
 /// Where the cable bears on an obstacle.
@@ -422,6 +485,11 @@ pub enum HoldReason {
         /// The fault's sentence.
         message: String,
     },
+    /// The planner has not answered for long.
+    PlannerSilent {
+        /// Which, as a sentence.
+        message: String,
+    },
     /// The robot gets nowhere.
     Stuck {
         /// Where, as a sentence.
@@ -441,13 +509,22 @@ pub enum HoldReason {
     Stepped,
 }
 
+impl HoldReason {
+    /// Whether the planner is the cause, so that another one may be the remedy.
+    pub fn blames_planner(&self) -> bool {
+        matches!(self, Self::PlannerFault { .. } | Self::PlannerSilent { .. } | Self::PlanRefused { .. })
+    }
+}
+
 impl fmt::Display for HoldReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Operator => f.write_str("held by the operator"),
             Self::PositionLost => f.write_str("held because the position is lost"),
             Self::PositionAlarmed => f.write_str("held because the ranges contradict each other"),
-            Self::PlannerFault { message } => write!(f, "held because of the planner: {message}"),
+            Self::PlannerFault { message } | Self::PlannerSilent { message } => {
+                write!(f, "held because of the planner: {message}")
+            }
             Self::Stuck { message } => write!(f, "held because the robot is stuck: {message}"),
             Self::Tether { message } => write!(f, "held because of the tether: {message}"),
             Self::PlanRefused { message } => write!(f, "held because a plan was refused: {message}"),

@@ -4,7 +4,7 @@
 //! run reads [`Event`]s; nothing else leaves the engine but the commands to the robot.
 //!
 //! Read in this order: [`engine`] (the tick), [`event`] (what leaves it), [`order`] and [`config`] (what enters),
-//! [`ask`] (the port to planners).
+//! [`standing`] (which orders are accepted when), [`ask`] (the port to planners).
 
 pub mod ask;
 mod chart;
@@ -18,16 +18,16 @@ mod locate;
 pub mod order;
 pub mod planner;
 mod preview;
+pub mod standing;
 mod task;
 pub mod tether;
 
 pub use ask::{Answer, Ask, AskId, Awaits, Given, Said, What, WorkerId};
 pub use config::{Locating, MissionConfig, PlannerChoice, ScanConfig, TaskConfig};
-pub use engine::{Input, Mission, Phase, Step};
+pub use engine::{Input, Mission, Step};
 pub use event::{Event, EventKind, HoldReason, LogLine, Outcome, RunOpened, Severity};
 pub use order::Order;
-pub use planner::{
-    Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo, PlannerLink, Reply,
-};
+pub use planner::{Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo};
 pub use preview::preview;
+pub use standing::{Gait, Hold, Phase, PositionTrust, Refusal, Resumes, Standing};
 pub use tether::TetherConfig;

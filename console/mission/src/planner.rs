@@ -1,7 +1,6 @@
 //! Planners as the mission knows them: who they are, what parameters they take, how they fail.
 
 use crate::event::Severity;
-use planner_api::{Command, Drawing, LogLevel, Plan, PlanRequest, Sensed, Site};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -201,53 +200,12 @@ impl Cause {
 }
 
 impl Fault {
-    /// How much it asks of the operator: a late answer from a process that is well may be the machine's doing.
+    /// How much it asks of the operator: what came too late may be the machine's doing, and what was refused has not
+    /// driven the robot.
     pub fn severity(&self) -> Severity {
-        if self.cause == Cause::Late { Severity::Warn } else { Severity::Crit }
+        match self.cause {
+            Cause::Late | Cause::Starved | Cause::Refused => Severity::Warn,
+            _ => Severity::Crit,
+        }
     }
-}
-
-/// An answer with everything the planner drew and said on the way.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reply<T> {
-    /// The answer.
-    pub value: T,
-    /// What it drew.
-    pub drawings: Vec<Drawing>,
-    /// Named figures of this tick: name, value, unit.
-    pub scalars: Vec<(String, f64, String)>,
-    /// What it said.
-    pub logs: Vec<(LogLevel, String)>,
-}
-
-/// Whoever runs planners for the mission.
-///
-/// Every call returns within its deadline; a planner that misses it comes back as a [`Fault`].
-pub trait PlannerLink {
-    /// Loads and configures a planner; it drives from the next call on, and the one before is stopped.
-    ///
-    /// On a fault the planner before stays in place, if it still lives. Also called to start a planner again that
-    /// died, and to apply parameters that are not live.
-    ///
-    /// # Errors
-    /// Not found, refused, quarantined, or failed while loading or configuring.
-    fn choose(&mut self, id: &str, parameters: &Parameters, site: &Site<'_>) -> Result<PlannerInfo, Fault>;
-
-    /// Gives the planner new values of live parameters.
-    ///
-    /// # Errors
-    /// Out of range, unknown, not live, or the planner failed.
-    fn reconfigure(&mut self, parameters: &Parameters) -> Result<(), Fault>;
-
-    /// Asks for a plan.
-    ///
-    /// # Errors
-    /// The planner found none or failed.
-    fn plan(&mut self, request: &PlanRequest<'_>) -> Result<Reply<Plan>, Fault>;
-
-    /// Asks for a command.
-    ///
-    /// # Errors
-    /// The planner failed; the mission holds the robot.
-    fn step(&mut self, sensed: &Sensed<'_>) -> Result<Reply<Command>, Fault>;
 }

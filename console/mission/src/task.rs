@@ -4,7 +4,7 @@ mod cover;
 
 pub use cover::Cover;
 
-use crate::{config::TaskConfig, follower::Follower};
+use crate::{ask::TaskLeft, config::TaskConfig, follower::Follower};
 use planner_api as api;
 use world::{CoverageGrid, ObstacleMap, Point, Shape};
 
@@ -92,14 +92,6 @@ impl Task {
         }
     }
 
-    /// What is left to scan, as polygons; none unless the task is to cover, or when all of it is left.
-    pub fn regions_left(&self, coverage: &CoverageGrid, lane_m: f64) -> Vec<Vec<Point>> {
-        match self {
-            Self::Cover(cover) => cover.regions_left(coverage, lane_m),
-            Self::Goto(_) | Self::Follow { .. } => Vec::new(),
-        }
-    }
-
     /// Reachable cells that are left to scan; none unless the task is to cover.
     pub fn floor_left(&self, coverage: &CoverageGrid) -> Vec<usize> {
         match self {
@@ -138,18 +130,14 @@ impl Task {
         }
     }
 
-    /// What is left of the task, as planners read it; `regions` are those of [`Task::regions_left`].
-    pub fn as_request<'a>(
-        &'a self,
-        regions: &'a [&'a [Point]],
-        tether: Option<api::TetherLimits>,
-    ) -> api::Task<'a> {
+    /// What is left of the task, as planners read it.
+    pub fn left(&self, coverage: &CoverageGrid, lane_m: f64, tether: Option<api::TetherLimits>) -> TaskLeft {
         match self {
-            Self::Goto(goto) => api::Task::Goto { goal: goto.goal, tolerance_m: goto.tolerance_m },
+            Self::Goto(goto) => TaskLeft::Goto { goal: goto.goal, tolerance_m: goto.tolerance_m },
             Self::Follow { follower, tolerance_m } => {
-                api::Task::Follow { targets: follower.remaining(), tolerance_m: *tolerance_m }
+                TaskLeft::Follow { targets: follower.remaining().to_vec(), tolerance_m: *tolerance_m }
             }
-            Self::Cover(cover) => cover.as_request(regions, tether),
+            Self::Cover(cover) => cover.left(coverage, lane_m, tether),
         }
     }
 

@@ -1,134 +1,89 @@
-//! One tick of moving: ask the planner, send the robot its answer.
+//! One tick of moving: the planner's command becomes what the robot is sent.
 
-use super::Mission;
+use super::{
+    Mission,
+    rules::{LatePlannerRule, Verdict},
+    seat::{Arrived, Pending},
+};
 use crate::{
+    ask::Said,
     drive::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD, drive_for},
-    event::EventKind,
-    planner::{Cause, Fault, PlannerLink},
+    event::{EventKind, HoldReason},
+    standing::{Gait, Hold, Phase, Resumes},
     task::Task,
 };
-use planner_api::{Command, Drive, Reason, Sensed, Status};
-use world::Point;
+use planner_api::{Command, Drive};
 
 /// How much of the targets and of the plan a planner sees ahead, metres.
-const AHEAD_M: f64 = 4.0;
-/// A planner that has been stuck in its lanes for this long is asked for new ones, seconds.
-const BLOCKED_S: f64 = 1.0;
-/// So many plans are asked for in one place.
-const MOST_PLANS: usize = 4;
-/// A robot that is blocked further away than this is blocked in another place, metres.
-const MOVED_ON_M: f64 = 0.3;
-/// A planner that answers too late again within this time holds the robot, seconds.
-const LATE_AGAIN_S: f64 = 60.0;
+pub(super) const AHEAD_M: f64 = 4.0;
 /// Distance between the points of the path flown that are kept for planners, metres.
 const TRAIL_M: f64 = 0.1;
 
 impl Mission {
-    pub(super) fn drive(&mut self, planner: &mut dyn PlannerLink) -> Drive {
-        let command = self.plan_if_due(planner).and_then(|()| self.ask_for_command(planner));
-        match command {
-            Ok(Some(command)) => {
-                self.replan_if_blocked(command.status);
-                self.send(command)
-            }
-            Ok(None) => Drive::STILL,
-            Err(message) => {
-                self.hold_for_planner(message);
-                Drive::STILL
-            }
+    /// Sends the robot the command of this tick; without one it stands still.
+    pub(super) fn drive(&mut self) -> Drive {
+        let Phase::Running(gait) = self.phase else { return Drive::STILL };
+        let Some(arrived) = self.active.command.take() else { return Drive::STILL };
+        let (ask, command) = (arrived.ask, arrived.command);
+        self.pass_on_with(arrived);
+        let (here, in_lanes) = (self.locator.position(), matches!(self.task, Task::Cover(_)));
+        let verdict = self.active.blocked.update(command.status, here, in_lanes, self.config.tick_s);
+        if let Some(Verdict::Replan(reason)) = verdict {
+            self.active.want_plan(reason);
         }
+        let sent = self.as_sent(command);
+        self.happened.push(EventKind::Commanded { ask: Some(ask), command: sent });
+        if gait == Gait::OneTick {
+            self.hold(Hold { by: HoldReason::Stepped, resumes: Resumes::Never });
+        }
+        sent.drive
     }
 
-    /// The plan from here on. Lanes are followed by the task itself, which knows how far it is.
-    fn path_ahead(&self) -> &[Point] {
-        match &self.task {
-            Task::Cover(_) => self.task.targets_ahead(AHEAD_M),
-            Task::Goto(_) | Task::Follow { .. } => self.plan.as_ref().map_or(&[], |plan| plan.ahead(AHEAD_M)),
-        }
-    }
-
-    /// A planner that cannot go on along its lanes is asked for new ones from where the robot stands; not at once again,
-    /// for the robot may have to turn or to be seen better first.
-    fn replan_if_blocked(&mut self, status: Status) {
-        self.blocked_s = if status == Status::Stuck { self.blocked_s + self.config.tick_s } else { 0.0 };
-        if self.blocked_s < BLOCKED_S || !matches!(self.task, Task::Cover(_)) {
-            return;
-        }
-        self.blocked_s = 0.0;
-        let here = self.locator.position();
-        let (at, times) =
-            self.blocked_at.filter(|(at, _)| (here - at).norm() < MOVED_ON_M).unwrap_or((here, 0));
-        self.blocked_at = Some((at, times + 1));
-        // Plans that all begin with the same obstacle do not help: the rule for a robot that is stuck takes over.
-        if times < MOST_PLANS {
-            self.planner.plan_due.get_or_insert(Reason::Blocked);
-        }
-    }
-
-    /// What the planner commands; nothing for this tick when its answer came too late once.
-    fn ask_for_command(&mut self, planner: &mut dyn PlannerLink) -> Result<Option<Command>, String> {
-        let pose = self.locator.pose_estimate();
-        let here = pose.position;
-        self.keep_trail();
-        if let Some(plan) = &mut self.plan {
-            plan.advance(here, self.chart.map(), 0.0);
-        }
-        let (v_m_per_s, w_rad_per_s) = match self.last_drive {
-            Drive::Twist { v_m_per_s, w_rad_per_s } => (v_m_per_s, w_rad_per_s),
-            Drive::Velocity(velocity) => (velocity.norm(), 0.0),
-        };
-        let obstacles = self.chart.near(here);
-        let answer = planner.step(&Sensed {
-            tick: self.tick,
-            t_s: self.now_s(),
-            dt_s: self.config.tick_s,
-            pose,
-            v_m_per_s,
-            w_rad_per_s,
-            target: self.task.target(),
-            targets_ahead: self.task.targets_ahead(AHEAD_M),
-            path_ahead: self.path_ahead(),
-            obstacles: &obstacles,
-        });
-        drop(obstacles);
-        match answer {
-            Ok(reply) => {
-                let command = reply.value;
-                self.pass_on(reply);
-                Ok(Some(command))
-            }
-            Err(fault) if self.is_late_once(&fault) => {
-                let message = format!("{}; the robot stood still for that tick", fault.message);
-                self.happened.push(EventKind::PlannerFailed { fault: Fault { message, ..fault } });
-                Ok(None)
-            }
-            Err(fault) => Err(self.note_fault(fault)),
-        }
-    }
-
-    /// Whether a planner whose process is well answered too late, and not so before in a while: a busy machine costs a
-    /// tick, not the mission.
-    fn is_late_once(&mut self, fault: &Fault) -> bool {
-        if fault.cause != Cause::Late {
-            return false;
-        }
-        let now_s = self.now_s();
-        let before_s = self.late_at_s.replace(now_s);
-        before_s.is_none_or(|before_s| now_s - before_s > LATE_AGAIN_S)
-    }
-
-    fn send(&mut self, command: Command) -> Drive {
+    /// A command as the robot would be sent it now: within its limits and in its own way of moving. Doing this to a
+    /// command that was sent changes nothing, so that recorded commands can be fed in again.
+    pub fn as_sent(&self, command: Command) -> Command {
         let turn_first_rad = match self.task {
             Task::Cover(_) => TURN_FIRST_IN_LANES_RAD,
             Task::Goto(_) | Task::Follow { .. } => TURN_FIRST_RAD,
         };
         let heading_rad = self.locator.pose().heading_rad;
         let drive = drive_for(command.drive, heading_rad, &self.config.limits, turn_first_rad);
-        self.happened.push(EventKind::Commanded { command: Command { drive, status: command.status } });
-        drive
+        Command { drive, status: command.status }
     }
 
-    fn keep_trail(&mut self) {
+    /// Takes a command of the active planner, which was asked for in this tick or in an earlier one. The freshest one
+    /// that arrives before the tick ends is sent.
+    pub(super) fn take_command(&mut self, asked: &Pending, usable: bool, command: Command, said: Said) {
+        let ticks = self.tick - asked.tick;
+        let late_ticks = self.active.late.arrived(ticks).then_some(ticks);
+        let arrived = Arrived { ask: asked.id, command, said, late_ticks };
+        if !(usable && LatePlannerRule::is_fresh(ticks as f64 * self.config.tick_s)) {
+            return self.discard(arrived);
+        }
+        let now_s = self.now_s();
+        self.active.saved_at_s.get_or_insert(now_s);
+        if let Some(older) = self.active.command.replace(arrived) {
+            self.discard(older);
+        }
+    }
+
+    /// Notes that a command is not sent; what the planner said with it is passed on all the same.
+    pub(super) fn discard(&mut self, arrived: Arrived) {
+        let ask = arrived.ask;
+        self.pass_on_with(arrived);
+        self.happened.push(EventKind::Discarded { ask });
+    }
+
+    /// What there is to report with a command, directly before what becomes of it.
+    fn pass_on_with(&mut self, arrived: Arrived) {
+        let planner = self.active.choice.id.clone();
+        if let Some(ticks) = arrived.late_ticks {
+            self.happened.push(EventKind::PlannerLate { planner: planner.clone(), ticks });
+        }
+        self.pass_on(arrived.said, &planner);
+    }
+
+    pub(super) fn keep_trail(&mut self) {
         let here = self.locator.position();
         if self.trail.last().is_none_or(|last| (here - last).norm() >= TRAIL_M) {
             self.trail.push(here);

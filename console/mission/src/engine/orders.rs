@@ -1,150 +1,114 @@
-//! What each order does in each phase, and why it may be refused.
+//! What each order does. Whether it is accepted is decided by [`Standing::allows`](crate::Standing::allows) alone.
 
-use super::{Mission, Phase};
+use super::{
+    Mission,
+    seat::{Prepare, Seat},
+};
 use crate::{
     config::PlannerChoice,
     event::{EventKind, HoldReason, Outcome},
     order::Order,
-    planner::{Cause, ParamValue, PlannerLink},
+    planner::ParamValue,
+    standing::{Gait, Hold, Phase, Resumes},
 };
-use planner_api::{Code, Reason};
+use planner_api::Reason;
 
 impl Mission {
-    pub(super) fn obey(&mut self, order: &Order, planner: &mut dyn PlannerLink) {
+    pub(super) fn obey(&mut self, order: &Order) {
         // The order stands in the journal before its effects.
-        let slot = self.happened.len();
-        let order_event = match self.follow(order, planner) {
-            Ok(()) => EventKind::Ordered { order: order.clone() },
-            Err(why) => EventKind::OrderRefused { order: order.clone(), why },
-        };
-        self.happened.insert(slot, order_event);
-    }
-
-    fn follow(&mut self, order: &Order, planner: &mut dyn PlannerLink) -> Result<(), String> {
-        match (order, self.phase.clone()) {
-            (_, Phase::Ended(outcome)) => Err(format!("the mission has ended {}", outcome.word())),
-            (Order::Start, Phase::Waiting) => {
-                self.start(planner);
-                Ok(())
+        if let Err(why) = self.standing().allows(order) {
+            self.happened.push(EventKind::OrderRefused { order: order.clone(), why: why.to_string() });
+            return;
+        }
+        self.happened.push(EventKind::Ordered { order: order.clone() });
+        match order {
+            Order::Start => self.phase = Phase::Running(Gait::Steady),
+            Order::Hold => self.hold_by_order(),
+            Order::Resume => self.resume(Gait::Steady),
+            Order::Step => self.resume(Gait::OneTick),
+            Order::Abort => self.end(Outcome::Aborted, "ended by the operator".into()),
+            Order::ChoosePlanner(choice) => {
+                let from = self.active.choice.id.clone();
+                self.choose(choice.clone(), Reason::Swap { from });
             }
-            (Order::Start, _) => Err("the mission has been started already".into()),
-            (Order::Hold, Phase::Held(HoldReason::Operator)) => Ok(()),
-            (Order::Hold, Phase::Running | Phase::Stepping | Phase::Held(_)) => {
-                self.hold(HoldReason::Operator);
-                Ok(())
-            }
-            (Order::Resume, Phase::Held(_)) => self.resume(Phase::Running, planner),
-            (Order::Resume, Phase::Running | Phase::Stepping) => Err("the robot is moving".into()),
-            (Order::Step, Phase::Held(_)) => self.resume(Phase::Stepping, planner),
-            (Order::Step, Phase::Running | Phase::Stepping) => Err("a single step needs a hold first".into()),
-            (Order::Abort, _) => {
-                self.end(Outcome::Aborted, "ended by the operator");
-                Ok(())
-            }
-            (Order::ChoosePlanner(_), Phase::Running | Phase::Stepping) => {
-                Err("a planner is changed while the robot is held".into())
-            }
-            (Order::ChoosePlanner(choice), _) => self.choose_by_order(choice, planner),
-            (Order::SetParameter { key, value }, _) => self.set_parameter(key, value, planner),
-            (Order::FlyUncertified, Phase::Held(HoldReason::PlanRefused { .. })) => {
+            Order::SetParameter { key, value } => self.set_parameter(key, value),
+            Order::FlyUncertified => {
                 self.fly_uncertified(true);
-                self.resume(Phase::Running, planner).inspect_err(|_| self.fly_uncertified(false))
-            }
-            (Order::FlyUncertified, _) => Err("no plan has been refused because of the tether".into()),
-            (Order::Hold | Order::Resume | Order::Step, Phase::Waiting) => {
-                Err("the mission has not been started".into())
+                self.resume(Gait::Steady);
             }
         }
     }
 
-    fn fly_uncertified(&mut self, fly: bool) {
+    /// From now on only an order lets the robot move; a hold of which that is true already keeps its reason.
+    fn hold_by_order(&mut self) {
+        if self.phase.may_move() {
+            self.hold(Hold { by: HoldReason::Operator, resumes: Resumes::Never });
+        }
+    }
+
+    pub(super) fn fly_uncertified(&mut self, fly: bool) {
         if let Some(tether) = &mut self.tether {
             tether.fly_uncertified(fly);
         }
     }
 
-    fn start(&mut self, planner: &mut dyn PlannerLink) {
-        self.phase = Phase::Running;
-        if let Err(message) = self.make_planner_fit(planner) {
-            self.hold_for_planner(message);
+    /// Another planner, or the same one with other parameters, is to take over.
+    ///
+    /// While the one before could drive on it stays until the other has a plan that may be flown; one that could not is
+    /// replaced at once.
+    pub(super) fn choose(&mut self, choice: PlannerChoice, reason: Reason) {
+        let waiting = self.phase == Phase::Waiting;
+        let reason = if waiting { Reason::Start } else { reason };
+        let mut seat = self.active.successor(choice, reason);
+        seat.prepare = if waiting { Prepare::Open } else { Prepare::Plan };
+        self.drop_candidate();
+        if self.active.can_drive() {
+            self.active.snapshot_due = self.can_hand_over_state(&seat);
+            self.candidate = Some(seat);
+        } else {
+            self.replace_active(seat);
         }
     }
 
-    /// Lets the robot move again, for good or for one tick.
-    fn resume(&mut self, how: Phase, planner: &mut dyn PlannerLink) -> Result<(), String> {
-        if self.locator.is_alarmed() {
-            return Err("the ranges contradict each other; going on needs a fix that holds together".into());
-        }
-        if self.locator.is_lost() {
-            return Err(format!(
-                "the position is lost: 95 % error {:.2} m, limit {:.2} m",
-                self.locator.error_95_m(),
-                self.config.position_limit_m
-            ));
-        }
-        self.make_planner_fit(planner)?;
-        self.go_on(how);
-        Ok(())
+    /// Whether a successor can go on from what the active planner knows now.
+    fn can_hand_over_state(&self, seat: &Seat) -> bool {
+        let snapshots = self.active.info.as_ref().is_some_and(|info| info.snapshots);
+        snapshots && self.active.is_ready && seat.choice.id == self.active.choice.id
     }
 
-    fn choose_by_order(
-        &mut self,
-        choice: &PlannerChoice,
-        planner: &mut dyn PlannerLink,
-    ) -> Result<(), String> {
-        let from = self.planner.choice.id.clone();
-        self.seat_by_order(choice, planner)?;
-        if self.phase != Phase::Waiting {
-            self.planner.plan_due = Some(Reason::Swap { from });
-            self.plan_if_due(planner)?;
-            if matches!(
-                self.phase,
-                Phase::Held(
-                    HoldReason::PlannerFault { .. }
-                        | HoldReason::PlanRefused { .. }
-                        | HoldReason::Stuck { .. }
-                )
-            ) {
-                // The reason is gone with the planner; now it is the operator who lets the robot go on.
-                self.hold(HoldReason::Operator);
-            }
-        }
-        Ok(())
+    /// Puts a planner in the place of the active one, whose worker is closed.
+    pub(super) fn replace_active(&mut self, seat: Seat) {
+        self.close_active();
+        self.active = seat;
     }
 
-    fn set_parameter(
-        &mut self,
-        key: &str,
-        value: &ParamValue,
-        planner: &mut dyn PlannerLink,
-    ) -> Result<(), String> {
-        let mut choice = self.planner.choice.clone();
+    /// Closes the worker of the active planner.
+    pub(super) fn close_active(&mut self) {
+        if let Some(unsent) = self.active.command.take() {
+            self.discard(unsent);
+        }
+        let worker = self.active.leave_worker();
+        self.workers.close(worker);
+    }
+
+    /// Closes a planner that was being prepared.
+    pub(super) fn drop_candidate(&mut self) {
+        if let Some(mut seat) = self.candidate.take() {
+            self.workers.close(seat.leave_worker());
+        }
+    }
+
+    fn set_parameter(&mut self, key: &str, value: &ParamValue) {
+        // A change on top of a change that is under way.
+        let newest = self.candidate.as_ref().filter(|seat| seat.choice.id == self.active.choice.id);
+        let base = newest.map(|seat| &seat.choice).or(self.active.reconfigure.as_ref());
+        let mut choice = base.unwrap_or(&self.active.choice).clone();
         choice.parameters.insert(key.into(), value.clone());
-        let live = self
-            .planner
-            .info
-            .as_ref()
-            .is_some_and(|info| info.parameters.iter().any(|p| p.key == key && p.live));
-        if live && self.planner.fit {
-            match planner.reconfigure(&choice.parameters) {
-                Ok(()) => {
-                    self.planner.choice = choice.clone();
-                    self.happened.push(EventKind::ParametersChanged { choice });
-                    return Ok(());
-                }
-                // It takes them as a new instance, like those that are not live.
-                Err(fault) if fault.cause == Cause::Planner(Code::Unsupported) => {}
-                Err(fault) => return Err(fault.message),
-            }
+        let is_live = |info: &crate::PlannerInfo| info.parameters.iter().any(|p| p.key == key && p.live);
+        if self.active.is_ready && newest.is_none() && self.active.info.as_ref().is_some_and(is_live) {
+            self.active.reconfigure = Some(choice);
+        } else {
+            self.choose(choice, Reason::Operator);
         }
-        if self.phase == Phase::Running {
-            return Err(format!("`{key}` cannot change while the robot moves: hold first"));
-        }
-        self.seat(choice, planner)?;
-        if self.phase != Phase::Waiting {
-            self.planner.plan_due = Some(Reason::Operator);
-            self.plan_if_due(planner)?;
-        }
-        Ok(())
     }
 }

@@ -1,12 +1,26 @@
 //! What one tick of looking around and scanning adds to the map and to the coverage.
 
-use super::{Mission, Phase};
-use crate::{chart::Seen, event::EventKind, task::Task};
+use super::Mission;
+use crate::{chart::Seen, event::EventKind, standing::Phase, task::Task};
 use planner_api::Reason;
-use world::{CellRun, FloorMaker, Pose, Readings, Shape, tether::Reach};
+use world::{CellRun, CoverageGrid, Floor, FloorMaker, Pose, Readings, Shape, tether::Reach};
 
 /// Floor left out below this is not worth a word at the end, square metres.
 const WORTH_TELLING_M2: f64 = 0.05;
+
+/// The floor and what of it has been scanned.
+pub(super) struct ScannedFloor {
+    pub coverage: CoverageGrid,
+    /// Makes the floor anew when an obstacle was found; made for the first one.
+    surveyor: Option<FloorMaker>,
+}
+
+impl ScannedFloor {
+    /// Nothing has been scanned.
+    pub fn new(floor: Floor) -> Self {
+        Self { coverage: CoverageGrid::new(floor), surveyor: None }
+    }
+}
 
 impl Mission {
     /// Puts what is seen on the chart; whether the chart has changed.
@@ -26,8 +40,12 @@ impl Mission {
         let shapes: Vec<Shape> = still.filter_map(shape_of).collect();
         let is_due =
             changes_plans && (events.is_empty() || events.iter().any(|event| self.is_in_the_way(event)));
-        if self.planner.plan_due.is_none() && is_due {
-            self.planner.plan_due = Some(Reason::MapChanged);
+        if is_due {
+            self.active.want_plan(Reason::MapChanged);
+        }
+        if changes_plans {
+            self.active.found_since.extend_from_slice(&shapes);
+            self.candidate.iter_mut().for_each(|seat| seat.found_since.extend_from_slice(&shapes));
         }
         self.happened.extend(events);
         self.survey(&shapes);
@@ -52,9 +70,10 @@ impl Mission {
     /// What stands where is no floor, and what is beside it cannot be reached.
     fn survey(&mut self, shapes: &[Shape]) {
         let (config, world) = (&self.config, self.chart.world());
-        let surveyor = self.surveyor.get_or_insert_with(|| {
+        let ScannedFloor { coverage, surveyor } = &mut self.floor;
+        let surveyor = surveyor.get_or_insert_with(|| {
             FloorMaker::of(
-                self.coverage.floor(),
+                coverage.floor(),
                 // Before the first find: what is found is told below.
                 &world.as_drawn(),
                 config.room_m(),
@@ -64,7 +83,7 @@ impl Mission {
         });
         let changes = surveyor.update(world, self.chart.map(), shapes);
         if !changes.is_empty() {
-            self.coverage.change(&changes);
+            coverage.change(&changes);
             self.happened.push(EventKind::FloorChanged { changes });
         }
     }
@@ -75,11 +94,11 @@ impl Mission {
         if self.phase == Phase::Waiting {
             return;
         }
-        let fresh = self.coverage.not_covered_under(self.config.tool(), before, here);
+        let fresh = self.floor.coverage.not_covered_under(self.config.tool(), before, here);
         if self.locator.error_95_m() > self.config.scan_limit_m() {
             self.leave_uncounted(fresh);
         } else if !fresh.is_empty() {
-            self.coverage.apply(&fresh);
+            self.floor.coverage.apply(&fresh);
             self.happened.push(EventKind::Covered { runs: fresh });
         }
         if self.locator.is_lost() {
@@ -90,8 +109,8 @@ impl Mission {
             along_m: self.task.along_m(),
             cross_track_m: self.task.cross_track_m(here.position),
             target: self.task.target(),
-            covered_reachable: self.coverage.fraction_reachable(),
-            covered_whole: self.coverage.fraction_whole(),
+            covered_reachable: self.floor.coverage.fraction_reachable(),
+            covered_whole: self.floor.coverage.fraction_whole(),
             leg: self.task.leg(),
         });
     }
@@ -108,14 +127,15 @@ impl Mission {
         match &self.task {
             Task::Goto(_) | Task::Follow { .. } => "the task is done".into(),
             Task::Cover(_) => {
-                let share = 100.0 * self.coverage.fraction_reachable();
-                let base_m2 = self.coverage.counts().reachable as f64 * self.coverage.floor().cell_m2();
+                let share = 100.0 * self.floor.coverage.fraction_reachable();
+                let base_m2 =
+                    self.floor.coverage.counts().reachable as f64 * self.floor.coverage.floor().cell_m2();
                 let scanned = format!(
                     "back at the anchor, {share:.1} % of the {base_m2:.1} m² of reachable floor scanned"
                 );
                 let asked = if self.task.is_in_part() {
-                    let n_left = self.task.floor_left(&self.coverage).len();
-                    let left_m2 = n_left as f64 * self.coverage.floor().cell_m2();
+                    let n_left = self.task.floor_left(&self.floor.coverage).len();
+                    let left_m2 = n_left as f64 * self.floor.coverage.floor().cell_m2();
                     format!(", all but {left_m2:.2} m² of what was asked for")
                 } else {
                     String::new()
@@ -127,12 +147,12 @@ impl Mission {
 
     /// What the plan left out because the cable does not lead there, as a sentence.
     fn left_beyond_reel(&self) -> Option<String> {
-        let (anchor, reach_m) = self.config.cable_reach().filter(|_| !self.plan_is_whole)?;
+        let (anchor, reach_m) = self.config.cable_reach().filter(|_| !self.active.is_plan_whole())?;
         let world = self.chart.world();
         let shapes: Vec<Shape> = world.obstacles.iter().map(|o| o.shape.clone()).collect();
         let reach = Reach::new(anchor, &world.boundary, &shapes, reach_m);
-        let floor = self.coverage.floor();
-        let left = self.task.floor_left(&self.coverage);
+        let floor = self.floor.coverage.floor();
+        let left = self.task.floor_left(&self.floor.coverage);
         let beyond = left.iter().filter(|index| reach.is_beyond(floor.center(**index))).count();
         let beyond_m2 = beyond as f64 * floor.cell_m2();
         let reel_m = self.config.tether.as_ref()?.limits.reel_m;

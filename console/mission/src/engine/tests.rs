@@ -1,15 +1,18 @@
 //! Missions in a perfect little world: exact ranges, a point robot that does what it is told.
 
+mod arrivals;
 mod caught;
 mod covering;
+mod stopping;
 mod tethered;
 
 use super::*;
 use crate::{
-    config::{ScanConfig, TaskConfig},
-    planner::{Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, Reply},
+    ask::{Answer, Ask, Given, PlanAsk, Said, StepAsk, TaskLeft, What},
+    config::{PlannerChoice, ScanConfig, TaskConfig},
+    planner::{Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo},
 };
-use planner_api::{self as api, Command, Limits, Motion, Plan, PlanRequest, Sensed, Site, Status};
+use planner_api::{self as api, Command, Limits, Motion, Plan, Status};
 use world::tether::Cable;
 use world::{Boundary, Obstacle, ObstacleId, Odometry, Pose, RangeSet, Shape, Sighting, Station, StationId};
 
@@ -17,8 +20,13 @@ use world::{Boundary, Obstacle, ObstacleId, Odometry, Pose, RangeSet, Shape, Sig
 #[derive(Default)]
 struct Straight {
     fail_at_tick: Option<u64>,
-    /// At these ticks its answer comes too late.
-    late_at_ticks: Vec<u64>,
+    fail_at_ticks: Vec<u64>,
+    /// Its plans lead to the goal instead of nowhere in particular.
+    plans_to_goal: bool,
+    /// It talks with every answer.
+    says_much: bool,
+    /// It keeps state.
+    snapshots: bool,
     refuse: Vec<&'static str>,
     /// From this tick on it says that it cannot go on.
     stuck_from_tick: Option<u64>,
@@ -43,20 +51,36 @@ impl Straight {
             during,
             cause,
             partial: vec![],
+            plugin_sha256: None,
         }
     }
 }
 
-fn reply<T>(value: T) -> Reply<T> {
-    Reply { value, drawings: vec![], scalars: vec![], logs: vec![] }
-}
+impl Straight {
+    /// Answers an ask; nothing to those that have no answer.
+    fn answer(&mut self, Ask { id, what }: Ask) -> Option<Answer> {
+        let result = match what {
+            What::Open { choice, .. } => self.open(&choice.id).map(|info| Given::Opened(Box::new(info))),
+            What::Reconfigure(_) => self.reconfigure().map(|()| Given::Reconfigured),
+            What::Plan(request) => Ok(Given::Plan(self.plan(&request))),
+            What::Step(sensed) => self.step(&sensed).map(Given::Command),
+            What::Snapshot => Ok(Given::State { bytes: 1 }),
+            What::Close => return None,
+        };
+        let mut said = Said::default();
+        if self.says_much {
+            said.logs = (0..id.n % 3).map(|n| (api::LogLevel::Info, format!("{id}, {n}"))).collect();
+            said.scalars = vec![("n".into(), f64::from(id.n), String::new())];
+        }
+        Some(Answer { ask: id, result, said })
+    }
 
-impl PlannerLink for Straight {
-    fn choose(&mut self, id: &str, _: &Parameters, _: &Site<'_>) -> Result<PlannerInfo, Fault> {
+    fn open(&mut self, id: &str) -> Result<PlannerInfo, Fault> {
         if self.refuse.contains(&id) {
             let message = format!("there is no planner {id}");
             let (during, cause) = (During::Load, Cause::Refused);
-            return Err(Fault { planner: id.into(), during, cause, message, partial: vec![] });
+            let partial = vec![];
+            return Err(Fault { planner: id.into(), during, cause, message, partial, plugin_sha256: None });
         }
         self.chosen.push(id.into());
         let text = String::new;
@@ -75,47 +99,51 @@ impl PlannerLink for Straight {
             version: "1.0".into(),
             about: text(),
             plugin: text(),
-            sha256: text(),
+            sha256: format!("sha of {id}"),
             abi: text(),
-            covers: false,
+            covers: true,
+            snapshots: self.snapshots,
             parameters: if self.has_stiff_gain { vec![gain] } else { vec![] },
         })
     }
 
-    fn reconfigure(&mut self, _: &Parameters) -> Result<(), Fault> {
+    fn reconfigure(&self) -> Result<(), Fault> {
         let cause = Cause::Planner(api::Code::Unsupported);
         if self.has_stiff_gain { Err(self.fault(During::Configure, cause)) } else { Ok(()) }
     }
 
-    fn plan(&mut self, request: &PlanRequest<'_>) -> Result<Reply<Plan>, Fault> {
+    fn plan(&mut self, request: &PlanAsk) -> Plan {
         self.plans += 1;
-        if let api::Task::Cover { anchor, regions, .. } = request.task {
+        if let TaskLeft::Cover { anchor, regions, .. } = &request.task {
             self.regions_m2.push(regions.iter().map(|r| world::shape::ring_area_m2(r)).sum());
             let cuts = self.cut.iter().cloned().collect();
             if self.leads_nowhere {
-                return Ok(reply(Plan { path: vec![anchor], ..Plan::default() }));
+                return Plan { path: vec![*anchor], ..Plan::default() };
             }
-            return Ok(reply(Plan { cuts, ..covering::lanes(request, anchor) }));
+            return Plan { cuts, ..covering::lanes(request, *anchor) };
         }
-        Ok(reply(Plan { path: vec![request.start.position], complete: true, ..Plan::default() }))
+        let mut path = vec![request.start.position];
+        if let TaskLeft::Goto { goal, .. } = request.task
+            && self.plans_to_goal
+        {
+            path.push(goal);
+        }
+        Plan { path, complete: true, ..Plan::default() }
     }
 
-    fn step(&mut self, sensed: &Sensed<'_>) -> Result<Reply<Command>, Fault> {
-        if self.fail_at_tick == Some(sensed.tick) {
+    fn step(&mut self, sensed: &StepAsk) -> Result<Command, Fault> {
+        if self.fail_at_tick == Some(sensed.tick) || self.fail_at_ticks.contains(&sensed.tick) {
             return Err(self.fault(During::Step, Cause::Panic));
         }
-        if self.late_at_ticks.contains(&sensed.tick) {
-            return Err(self.fault(During::Step, Cause::Late));
-        }
         if self.stuck_from_tick.is_some_and(|tick| sensed.tick >= tick) {
-            return Ok(reply(Command::still(Status::Stuck)));
+            return Ok(Command::still(Status::Stuck));
         }
         let way = sensed.target - sensed.pose.position;
-        Ok(reply(if way.norm() > 0.0 {
+        Ok(if way.norm() > 0.0 {
             Command::velocity(way.normalize() * 0.4)
         } else {
             Command::still(Status::Waiting)
-        }))
+        })
     }
 }
 
@@ -183,6 +211,13 @@ struct Flight {
     caught_m: f64,
     sightings: Vec<Sighting>,
     events: Vec<Event>,
+    /// For how many ticks an ask of this tick stays unanswered.
+    delay: Box<dyn Fn(&Ask, u64) -> u64>,
+    /// Asks without an answer, with the tick in which they get one.
+    open: Vec<(u64, Ask)>,
+    closed: Vec<crate::WorkerId>,
+    /// What entered each tick.
+    inputs: Vec<(Readings, Vec<Order>)>,
 }
 
 impl Flight {
@@ -202,6 +237,10 @@ impl Flight {
             caught_m: 0.0,
             sightings: vec![],
             events: vec![],
+            delay: Box::new(|_, _| 0),
+            open: vec![],
+            closed: vec![],
+            inputs: vec![],
         }
     }
 
@@ -223,7 +262,10 @@ impl Flight {
             contact: false,
             paid_out_m: self.reel.as_ref().map(|cable| cable.length_m() + self.caught_m),
         };
-        let step = self.mission.step(&Input { readings: &readings, orders }, &mut self.planner);
+        self.mission.sense(&Input { readings: &readings, orders });
+        self.inputs.push((readings, orders.to_vec()));
+        self.serve();
+        let step = self.mission.act();
         let Drive::Velocity(velocity) = step.drive else {
             self.moved = Odometry::default();
             self.events.extend(step.events.clone());
@@ -239,9 +281,37 @@ impl Flight {
         step.events.into_iter().map(|event| event.kind).collect()
     }
 
+    /// Answers what is due in this tick, and hands out what is asked.
+    fn serve(&mut self) {
+        let tick = self.mission.tick;
+        loop {
+            while let Some(ask) = self.mission.poll_ask() {
+                if ask.what == What::Close {
+                    self.open.retain(|(_, open)| open.id.worker != ask.id.worker);
+                    self.closed.push(ask.id.worker);
+                } else {
+                    let due = tick + (self.delay)(&ask, tick);
+                    self.open.push((due, ask));
+                }
+            }
+            let Some(at) = self.open.iter().position(|(due, _)| *due <= tick) else { return };
+            let (_, ask) = self.open.remove(at);
+            if let Some(answer) = self.planner.answer(ask) {
+                self.mission.answer(answer);
+            }
+        }
+    }
+
     fn fly(&mut self, ticks: usize) {
         for _ in 0..ticks {
             self.tick(&[]);
+        }
+    }
+
+    fn held_by(&self) -> Option<&HoldReason> {
+        match self.mission.phase() {
+            Phase::Held(hold) => Some(&hold.by),
+            _ => None,
         }
     }
 
@@ -251,6 +321,10 @@ impl Flight {
             _ => None,
         }
     }
+}
+
+fn swap_to(id: &str) -> Order {
+    Order::ChoosePlanner(PlannerChoice { id: id.into(), parameters: Parameters::new() })
 }
 
 fn refusal(events: &[EventKind]) -> Option<&str> {
@@ -301,10 +375,10 @@ fn a_held_robot_stands_still_and_goes_on_only_when_told() {
     let held_at = flight.pose;
     flight.fly(30);
     assert_eq!(flight.pose, held_at);
-    assert_eq!(flight.mission.phase(), &Phase::Held(HoldReason::Operator));
+    assert_eq!(flight.held_by(), Some(&HoldReason::Operator));
     flight.tick(&[Order::Step]);
     assert!((flight.pose.position - held_at.position).norm() > 0.03);
-    assert_eq!(flight.mission.phase(), &Phase::Held(HoldReason::Stepped));
+    assert_eq!(flight.held_by(), Some(&HoldReason::Stepped));
     flight.tick(&[Order::Resume]);
     flight.fly(200);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
@@ -321,55 +395,13 @@ fn a_planner_that_fails_holds_the_robot_in_the_same_tick() {
     assert_eq!(flight.pose, before);
     assert!(events.iter().any(|kind| matches!(kind, EventKind::PlannerFailed { .. })));
     assert!(
-        events.iter().any(|kind| matches!(kind, EventKind::Held { by: HoldReason::PlannerFault { .. } }))
+        events.iter().any(|kind| matches!(kind, EventKind::Held { by: HoldReason::PlannerFault { .. }, .. }))
     );
-    flight.tick(&[Order::ChoosePlanner(PlannerChoice { id: "other".into(), parameters: Parameters::new() })]);
+    flight.tick(&[swap_to("other")]);
     flight.tick(&[Order::Resume]);
     flight.fly(200);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
     assert_eq!(flight.planner.chosen, ["straight", "other"]);
-}
-
-#[test]
-fn an_answer_that_comes_late_once_costs_a_tick_and_one_more_holds_the_robot() {
-    let mut flight = Flight::new(config());
-    flight.planner.late_at_ticks = vec![30, 50];
-    flight.tick(&[Order::Start]);
-    flight.fly(29);
-    let before = flight.pose;
-    let events = flight.tick(&[]);
-    assert_eq!(flight.pose, before);
-    let told = |events: &[EventKind]| {
-        events.iter().find_map(|kind| match kind {
-            EventKind::PlannerFailed { fault } => Some(fault.message.clone()),
-            _ => None,
-        })
-    };
-    assert!(
-        told(&events).is_some_and(|message| message.ends_with("stood still for that tick")),
-        "{events:?}"
-    );
-    assert!(!events.iter().any(|kind| matches!(kind, EventKind::Held { .. })), "{events:?}");
-    flight.tick(&[]);
-    assert!(flight.pose != before && flight.mission.phase() == &Phase::Running);
-    flight.fly(19);
-    assert!(matches!(flight.mission.phase(), Phase::Held(HoldReason::PlannerFault { .. })));
-    flight.tick(&[Order::Resume]);
-    flight.fly(200);
-    assert_eq!(flight.ended(), Some(Outcome::Complete));
-}
-
-#[test]
-fn answers_that_come_late_far_apart_hold_nothing() {
-    let mut flight = Flight::new(config());
-    flight.planner.late_at_ticks = vec![30];
-    flight.tick(&[Order::Start]);
-    // A minute and a little before tick 30.
-    flight.mission.late_at_s = Some(-58.0);
-    flight.fly(30);
-    assert_eq!(flight.mission.phase(), &Phase::Running);
-    flight.fly(200);
-    assert_eq!(flight.ended(), Some(Outcome::Complete));
 }
 
 #[test]
@@ -397,9 +429,12 @@ fn a_planner_that_is_not_there_holds_at_the_start_and_another_may_fly() {
     let mut flight = Flight::new(config());
     flight.planner.refuse = vec!["straight"];
     flight.tick(&[Order::Start]);
-    assert!(matches!(flight.mission.phase(), Phase::Held(HoldReason::PlannerFault { .. })));
-    assert!(refusal(&flight.tick(&[Order::Resume])).is_some_and(|why| why.contains("no planner straight")));
-    flight.tick(&[Order::ChoosePlanner(PlannerChoice { id: "other".into(), parameters: Parameters::new() })]);
+    assert!(matches!(flight.held_by(), Some(HoldReason::PlannerFault { .. })));
+    let again = flight.tick(&[Order::Resume]);
+    assert!(again.iter().any(|kind| matches!(kind, EventKind::PlannerFailed { fault, .. } if fault.message.contains("no planner straight"))));
+    assert!(matches!(flight.held_by(), Some(HoldReason::PlannerFault { .. })));
+    flight.tick(&[swap_to("other")]);
+    assert_eq!(flight.held_by(), Some(&HoldReason::Operator), "the reason is gone with the planner");
     flight.tick(&[Order::Resume]);
     flight.fly(200);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
@@ -409,21 +444,19 @@ fn a_planner_that_is_not_there_holds_at_the_start_and_another_may_fly() {
 fn a_planner_is_not_swapped_while_the_robot_moves() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
-    let swap = Order::ChoosePlanner(PlannerChoice { id: "other".into(), parameters: Parameters::new() });
-    assert!(refusal(&flight.tick(&[swap])).is_some_and(|why| why.contains("held")));
+    assert!(refusal(&flight.tick(&[swap_to("other")])).is_some_and(|why| why.contains("HOLD first")));
 }
 
 #[test]
-fn a_planner_that_is_refused_has_not_failed() {
+fn a_planner_that_is_refused_does_not_take_over() {
     let mut flight = Flight::new(config());
     flight.planner.refuse = vec!["other"];
     flight.tick(&[Order::Start]);
     flight.fly(10);
     flight.tick(&[Order::Hold]);
-    let events = flight
-        .tick(&[Order::ChoosePlanner(PlannerChoice { id: "other".into(), parameters: Parameters::new() })]);
-    assert!(refusal(&events).is_some_and(|why| why.contains("there is no planner other")), "{events:?}");
-    assert!(!events.iter().any(|kind| matches!(kind, EventKind::PlannerFailed { .. })), "{events:?}");
+    let events = flight.tick(&[swap_to("other")]);
+    assert!(events.iter().any(|kind| matches!(kind, EventKind::PlannerRejected { why, .. } if why.contains("there is no planner other"))), "{events:?}");
+    assert_eq!(flight.held_by(), Some(&HoldReason::Operator));
     flight.tick(&[Order::Resume]);
     flight.fly(200);
     assert_eq!(flight.ended(), Some(Outcome::Complete), "the one before drives on");
@@ -450,7 +483,7 @@ fn a_lost_position_holds_the_robot_and_a_regained_one_lets_it_go_on() {
     flight.fly(10);
     flight.silent = true;
     flight.fly(60);
-    assert_eq!(flight.mission.phase(), &Phase::Held(HoldReason::PositionLost));
+    assert_eq!(flight.held_by(), Some(&HoldReason::PositionLost));
     assert!(refusal(&flight.tick(&[Order::Resume])).is_some_and(|why| why.contains("limit 0.30 m")));
     flight.silent = false;
     flight.fly(200);
@@ -469,7 +502,7 @@ fn contradicting_ranges_hold_the_robot_in_time_and_it_goes_on_when_they_agree() 
     // Of four stations nobody can say which one is wrong.
     flight.late_m = vec![1.5];
     flight.fly(20);
-    assert_eq!(flight.mission.phase(), &Phase::Held(HoldReason::PositionAlarmed), "within 2 s");
+    assert_eq!(flight.held_by(), Some(&HoldReason::PositionAlarmed), "within 2 s");
     assert!(refusal(&flight.tick(&[Order::Resume])).is_some_and(|why| why.contains("contradict")));
     assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PositionAlarmed { .. })), 1);
     flight.late_m.clear();
@@ -516,9 +549,9 @@ fn a_stuck_robot_is_held_for_the_operator_and_ends_the_mission_without_one() {
         flight.tick(&[Order::Start]);
         flight.fly(400);
         if attended {
-            assert!(matches!(flight.mission.phase(), Phase::Held(HoldReason::Stuck { .. })));
+            assert!(matches!(flight.held_by(), Some(HoldReason::Stuck { .. })));
             flight.tick(&[Order::Resume]);
-            assert_eq!(flight.mission.phase(), &Phase::Running);
+            assert_eq!(flight.mission.phase(), &Phase::Running(Gait::Steady));
         } else {
             assert_eq!(flight.ended(), Some(Outcome::Stuck));
         }
@@ -571,7 +604,12 @@ fn a_live_parameter_that_the_planner_cannot_change_under_way_makes_a_new_instanc
     flight.planner.has_stiff_gain = true;
     flight.tick(&[Order::Start]);
     let gain = || Order::SetParameter { key: "gain".into(), value: ParamValue::Float(2.0) };
-    assert!(refusal(&flight.tick(&[gain()])).is_some_and(|why| why.contains("hold first")));
+    let events = flight.tick(&[gain()]);
+    assert!(
+        events.iter().any(|kind| matches!(kind, EventKind::PlannerFailed { .. })),
+        "it says so: {events:?}"
+    );
+    assert_eq!(flight.mission.phase(), &Phase::Running(Gait::Steady), "and drives on with the value before");
     flight.tick(&[Order::Hold]);
     assert_eq!(refusal(&flight.tick(&[gain()])), None);
     assert_eq!((flight.planner.chosen.len(), flight.planner.plans), (2, 2));

@@ -81,29 +81,20 @@ impl Event {
                     format!("obstacle not on the drawing at {:.2}, {:.2} m", at.x, at.y),
                 )
             }
-            EventKind::PlannerChosen { choice, info, from } => {
-                let before = from.as_ref().map(|id| format!(", took over from {id}")).unwrap_or_default();
-                line(Severity::Info, "plan", format!("planner {} {} drives{before}", choice.id, info.version))
-            }
-            EventKind::ParametersChanged { choice } => {
-                line(Severity::Info, "plan", format!("parameters of {} changed", choice.id))
-            }
-            EventKind::Planned { planner, length_m, complete, .. } => {
-                let part = if *complete { "" } else { ", only part of the way" };
-                line(Severity::Info, "plan", format!("{planner} planned {length_m:.1} m{part}"))
-            }
-            EventKind::PlannerSaid { planner, level, message } => match level {
-                LogLevel::Debug => return None,
-                LogLevel::Info => line(Severity::Info, "plan", format!("{planner}: {message}")),
-                LogLevel::Warn => line(Severity::Watch, "plan", format!("{planner}: {message}")),
-            },
-            EventKind::PlannerFailed { fault } => line(fault.severity(), "plan", fault.message.clone()),
+            EventKind::PlannerChosen { .. }
+            | EventKind::PlannerPrepared { .. }
+            | EventKind::PlannerRejected { .. }
+            | EventKind::ParametersChanged { .. }
+            | EventKind::Planned { .. }
+            | EventKind::PlannerSaid { .. }
+            | EventKind::PlannerLate { .. }
+            | EventKind::PlannerFailed { .. } => of_planner(&self.kind)?,
             EventKind::Truth { collided: true, pose, .. } => line(
                 Severity::Crit,
                 "robot",
                 format!("collision at {:.2}, {:.2} m", pose.position.x, pose.position.y),
             ),
-            EventKind::Held { by } => line(hold_severity(by), "mission", by.to_string()),
+            EventKind::Held { by, .. } => line(hold_severity(by), "mission", by.to_string()),
             EventKind::Resumed => line(Severity::Info, "mission", "moving again".into()),
             EventKind::Ended { outcome, reason } => {
                 let severity = if *outcome == Outcome::Complete { Severity::Info } else { Severity::Warn };
@@ -121,6 +112,8 @@ impl Event {
             | EventKind::Estimated { .. }
             | EventKind::ObstacleMoved { .. }
             | EventKind::Commanded { .. }
+            | EventKind::Snapshotted { .. }
+            | EventKind::Discarded { .. }
             | EventKind::Drawn { .. }
             | EventKind::Scalars { .. }
             | EventKind::Covered { .. }
@@ -133,6 +126,40 @@ impl Event {
 
 fn line(severity: Severity, source: &'static str, text: String) -> LogLine {
     LogLine { severity, source, text }
+}
+
+fn of_planner(kind: &EventKind) -> Option<LogLine> {
+    Some(match kind {
+        EventKind::PlannerChosen { choice, info, from, .. } => {
+            let before = from.as_ref().map(|id| format!(", took over from {id}")).unwrap_or_default();
+            line(Severity::Info, "plan", format!("planner {} {} drives{before}", choice.id, info.version))
+        }
+        EventKind::ParametersChanged { choice, .. } => {
+            line(Severity::Info, "plan", format!("parameters of {} changed", choice.id))
+        }
+        EventKind::Planned { planner, length_m, complete, .. } => {
+            let part = if *complete { "" } else { ", only part of the way" };
+            line(Severity::Info, "plan", format!("{planner} planned {length_m:.1} m{part}"))
+        }
+        EventKind::PlannerSaid { planner, level, message } => match level {
+            LogLevel::Debug => return None,
+            LogLevel::Info => line(Severity::Info, "plan", format!("{planner}: {message}")),
+            LogLevel::Warn => line(Severity::Watch, "plan", format!("{planner}: {message}")),
+        },
+        EventKind::PlannerPrepared { choice, info, .. } => {
+            line(Severity::Info, "plan", format!("planner {} {} is being prepared", choice.id, info.version))
+        }
+        EventKind::PlannerRejected { planner, why } => {
+            line(Severity::Warn, "plan", format!("planner {planner} does not take over: {why}"))
+        }
+        EventKind::PlannerLate { planner, ticks } => line(
+            Severity::Watch,
+            "plan",
+            format!("planner {planner} answered {ticks} ticks late; the robot stood still meanwhile"),
+        ),
+        EventKind::PlannerFailed { fault, .. } => line(fault.severity(), "plan", fault.message.clone()),
+        _ => return None,
+    })
 }
 
 fn of_tether(kind: &EventKind) -> Option<LogLine> {
@@ -160,6 +187,7 @@ fn hold_severity(by: &HoldReason) -> Severity {
         HoldReason::PositionLost
         | HoldReason::PositionAlarmed
         | HoldReason::PlannerFault { .. }
+        | HoldReason::PlannerSilent { .. }
         | HoldReason::PlanRefused { .. }
         | HoldReason::Tether { .. }
         | HoldReason::Stuck { .. } => Severity::Warn,

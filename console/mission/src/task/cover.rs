@@ -1,6 +1,6 @@
 //! Scanning the floor along the legs of a plan, and coming back to the anchor.
 
-use crate::follower::Follower;
+use crate::{ask::TaskLeft, follower::Follower};
 use planner_api::{self as api, LegTag, Plan};
 use world::{CoverageGrid, ObstacleMap, Point, Shape, coverage::regions, polyline};
 
@@ -122,8 +122,9 @@ impl Cover {
 
     /// What is left to scan, as boxes of floor. Nothing at all is told as one cell at the anchor: an empty list would
     /// mean everything.
-    pub fn regions_left(&self, coverage: &CoverageGrid, lane_m: f64) -> Vec<Vec<Point>> {
-        if self.regions.is_empty() && coverage.counts().covered == 0 {
+    fn regions_left(&self, coverage: &CoverageGrid, lane_m: f64) -> Vec<Vec<Point>> {
+        // Before the first plan the tool has only been over the start, where it will come by again.
+        if self.regions.is_empty() && self.lanes.is_none() {
             return Vec::new();
         }
         let floor = coverage.floor();
@@ -149,12 +150,9 @@ impl Cover {
     }
 
     /// What is left, as planners read it.
-    pub fn as_request<'a>(
-        &self,
-        regions: &'a [&'a [Point]],
-        tether: Option<api::TetherLimits>,
-    ) -> api::Task<'a> {
-        api::Task::Cover { anchor: self.anchor, regions, tether, tolerance_m: self.tolerance_m }
+    pub fn left(&self, coverage: &CoverageGrid, lane_m: f64, tether: Option<api::TetherLimits>) -> TaskLeft {
+        let regions = self.regions_left(coverage, lane_m);
+        TaskLeft::Cover { anchor: self.anchor, regions, tether, tolerance_m: self.tolerance_m }
     }
 
     /// Share of the way done, 0 to 1: what was flown along this plan and those before, and what this one has left.
@@ -207,9 +205,10 @@ mod tests {
 
     #[test]
     fn what_is_left_shrinks_by_what_was_scanned_and_nothing_left_is_not_everything() {
-        let cover = Cover::new(Point::origin(), vec![], 0.2, Point::origin());
+        let mut cover = Cover::new(Point::origin(), vec![], 0.2, Point::origin());
         let mut grid = CoverageGrid::new(floor());
         assert_eq!(cover.regions_left(&grid, 0.6), Vec::<Vec<Point>>::new());
+        cover.take_plan(&plan());
         grid.mark_swath(Point::new(-3.0, 0.0), Point::new(3.0, 0.0), 2.0);
         let left_m2 = area_m2(&cover.regions_left(&grid, 0.6));
         let expected_m2 = (grid.counts().reachable - grid.counts().covered_reachable) as f64 * 0.01;

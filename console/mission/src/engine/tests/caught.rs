@@ -51,7 +51,7 @@ fn cable_that_the_map_does_not_explain_holds_until_the_operator_goes_on() {
     assert_eq!(told.len(), 1, "{told:?}");
     assert!(told[0].starts_with("the reel has paid out ") && told[0].contains("has caught on"), "{told:?}");
     flight.fly(100);
-    assert!(matches!(flight.mission.phase(), Phase::Held(HoldReason::Tether { .. })));
+    assert!(matches!(flight.held_by(), Some(HoldReason::Tether { .. })));
     flight.tick(&[Order::Resume]);
     flight.fly(200);
     assert_eq!((holds(&flight), flight.ended()), (1, Some(Outcome::Complete)));

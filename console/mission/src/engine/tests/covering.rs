@@ -4,7 +4,7 @@ use super::*;
 use planner_api::{Leg, LegTag};
 
 /// Straight lanes over the regions, or over everything; round obstacles they leave a gap and pass it to the north.
-pub fn lanes(request: &PlanRequest<'_>, anchor: Point) -> Plan {
+pub fn lanes(request: &PlanAsk, anchor: Point) -> Plan {
     let room_m = request.site.limits.radius_m + request.site.clearance_m;
     let mut path = vec![request.start.position];
     let mut legs = Vec::new();
@@ -32,18 +32,18 @@ pub fn lanes(request: &PlanRequest<'_>, anchor: Point) -> Plan {
     Plan { path, complete: true, legs, ..Plan::default() }
 }
 
-fn is_wanted(request: &PlanRequest<'_>, point: Point) -> bool {
-    let api::Task::Cover { regions, .. } = request.task else { return false };
-    let is_near = |region: &&[Point]| {
-        let near = Shape::Polygon { vertices: region.to_vec() };
+fn is_wanted(request: &PlanAsk, point: Point) -> bool {
+    let TaskLeft::Cover { regions, .. } = &request.task else { return false };
+    let is_near = |region: &Vec<Point>| {
+        let near = Shape::Polygon { vertices: region.clone() };
         near.distance_m(point) < 0.2
     };
     regions.is_empty() || regions.iter().any(is_near)
 }
 
-fn beside(request: &PlanRequest<'_>, point: Point, room_m: f64) -> Point {
-    for obstacle in request.site.obstacles {
-        let api::Outline::Disc { center, radius_m } = obstacle.outline else { continue };
+fn beside(request: &PlanAsk, point: Point, room_m: f64) -> Point {
+    for obstacle in &request.site.obstacles {
+        let Shape::Disc { center, radius_m } = obstacle.shape else { continue };
         let (off_m, reach_m) = (point.x - center.x, radius_m + room_m + 0.05);
         if (point - center).norm() < reach_m {
             return Point::new(point.x, center.y + (reach_m * reach_m - off_m * off_m).sqrt());
@@ -180,7 +180,7 @@ fn a_plan_that_scans_nothing_of_what_is_asked_is_refused_with_the_reason() {
     flight.tick(&[Order::Start]);
     flight.fly(5);
     // No matter of the tether: flying it all the same would be no remedy.
-    let Phase::Held(HoldReason::PlannerFault { message }) = flight.mission.phase() else {
+    let Some(HoldReason::PlannerFault { message }) = flight.held_by() else {
         panic!("{:?}", flight.mission.phase())
     };
     assert!(message.contains("scans nothing"), "{message}");
@@ -194,8 +194,8 @@ fn planners_steer_round_obstacles_where_they_are_seen_not_where_the_chart_has_th
     let world = World { obstacles: vec![known], ..drawing() };
     let mut chart = Chart::new(world, &covering(), 1);
     let pose = covering().start;
-    let shown = |chart: &Chart| match chart.near(pose.position)[0].outline {
-        api::Outline::Disc { center, .. } => center.x,
+    let shown = |chart: &Chart| match chart.near(pose.position)[0].shape {
+        Shape::Disc { center, .. } => center.x,
         _ => f64::NAN,
     };
     assert!((shown(&chart) - 1.0).abs() < 1e-9);

@@ -44,7 +44,7 @@ fn the_end_of_the_reel_warns_then_holds_and_the_operator_may_go_on() {
         })
     };
     assert!(reel(false).count() >= 1 && reel(true).count() == 1);
-    assert!(matches!(flight.mission.phase(), Phase::Held(HoldReason::Tether { .. })));
+    assert!(matches!(flight.held_by(), Some(HoldReason::Tether { .. })));
     flight.tick(&[Order::Resume]);
     flight.fly(200);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
@@ -62,27 +62,31 @@ fn with_nobody_there_the_end_of_the_reel_ends_the_mission() {
 fn a_plan_that_cannot_be_certified_is_refused_until_the_operator_says_otherwise() {
     let mut config = tethered(20.0);
     config.tether.as_mut().unwrap().fly_uncertified = false;
-    config.tether.as_mut().unwrap().limits.reel_m = 0.001;
-    // The planner of these tests tells a path of one point; beyond this reel it is not safe.
-    config.start = Pose::new(-2.0, 0.0, 0.0);
-    let mut flight = Flight::new(config.clone());
+    config.tether.as_mut().unwrap().limits.reel_m = 4.0;
+    // The way to the goal is longer than the reel.
+    let refused_flight = |config: &MissionConfig| {
+        let mut flight = Flight::new(config.clone());
+        flight.planner.plans_to_goal = true;
+        flight
+    };
+    let mut flight = refused_flight(&config);
     let told = flight.tick(&[Order::Start]);
     let why = told.iter().find_map(|kind| match kind {
         EventKind::Certified { refused: true, certificate, .. } => Some(certificate.reasons.join("; ")),
         _ => None,
     });
-    assert!(why.as_ref().is_some_and(|why| why.contains("the reel holds 0.0 m")), "{why:?}");
+    assert!(why.as_ref().is_some_and(|why| why.contains("the reel holds 4.0 m")), "{why:?}");
     let here = flight.pose;
     flight.fly(20);
     assert_eq!(flight.pose, here);
-    assert!(matches!(flight.mission.phase(), Phase::Held(HoldReason::PlanRefused { .. })));
+    assert!(matches!(flight.held_by(), Some(HoldReason::PlanRefused { .. })));
     let events = flight.tick(&[Order::FlyUncertified]);
     assert!(
         events.iter().any(|kind| matches!(kind, EventKind::Certified { refused: false, .. })),
         "{events:?}"
     );
     assert!(refusal(&flight.tick(&[Order::FlyUncertified])).is_some_and(|why| why.contains("no plan")));
-    let mut flight = Flight::new(MissionConfig { attended: false, ..config });
+    let mut flight = refused_flight(&MissionConfig { attended: false, ..config });
     flight.tick(&[Order::Start]);
     flight.fly(5);
     assert_eq!(flight.ended(), Some(Outcome::Aborted));
@@ -134,7 +138,8 @@ fn fly_before_barrier(flight: &mut Flight, ticks: usize, shift_m: impl Fn(usize)
 }
 
 pub fn holds(flight: &Flight) -> usize {
-    let is_hold = |event: &&Event| matches!(event.kind, EventKind::Held { by: HoldReason::Tether { .. } });
+    let is_hold =
+        |event: &&Event| matches!(event.kind, EventKind::Held { by: HoldReason::Tether { .. }, .. });
     flight.events.iter().filter(is_hold).count()
 }
 

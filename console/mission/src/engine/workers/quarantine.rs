@@ -3,20 +3,20 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 /// So many faults ...
-pub(crate) const MOST_FAULTS: usize = 3;
+pub(in crate::engine) const MOST_FAULTS: usize = 3;
 /// ... within this mission time, seconds, and a plugin may not drive again.
-pub(crate) const WINDOW_S: f64 = 60.0;
+pub(in crate::engine) const WINDOW_S: f64 = 60.0;
 
 /// Counts faults by the hash of the plugin's file, over mission time.
 #[derive(Debug, Default)]
-pub(crate) struct Quarantine {
+pub(in crate::engine) struct Quarantine {
     faults_s: BTreeMap<String, Vec<f64>>,
     closed: BTreeSet<String>,
 }
 
 impl Quarantine {
     /// A plugin failed at this mission time.
-    pub(crate) fn note(&mut self, sha256: &str, t_s: f64) {
+    pub fn note(&mut self, sha256: &str, t_s: f64) {
         let recent = self.faults_s.entry(sha256.to_owned()).or_default();
         recent.push(t_s);
         recent.retain(|earlier| t_s - earlier < WINDOW_S);
@@ -26,7 +26,7 @@ impl Quarantine {
     }
 
     /// Whether a plugin may not drive again.
-    pub(crate) fn holds(&self, sha256: &str) -> bool {
+    pub fn holds(&self, sha256: &str) -> bool {
         self.closed.contains(sha256)
     }
 }

@@ -1,0 +1,292 @@
+//! What the answers of planners do.
+
+use super::{
+    Mission,
+    planning::{Evaluated, Objection},
+    seat::{AskedPlan, Pending, PendingKind, PlanState, Prepare, Seat},
+    workers,
+};
+use crate::{
+    ask::{Answer, AskId, Given, Said},
+    config::TaskConfig,
+    event::{EventKind, HoldReason},
+    planner::{Cause, During, Fault, PlannerInfo},
+    standing::{Gait, Hold, Phase, Resumes},
+};
+use planner_api::{Code, Plan};
+
+/// A candidate whose plan begins further from the robot than this plans again, metres.
+const NEAR_PLAN_M: f64 = 0.5;
+
+/// A fault with what it belongs to.
+struct Failed {
+    ask: AskId,
+    kind: PendingKind,
+    fault: Fault,
+    said: Said,
+}
+
+impl Mission {
+    /// Takes the answer to an ask. Answers that nobody waits for any more are ignored.
+    pub fn answer(&mut self, answer: Answer) {
+        let is_owed = |seat: &Seat| seat.pending.as_ref().is_some_and(|pending| pending.id == answer.ask);
+        if is_owed(&self.active) {
+            if let Some(pending) = self.active.pending.take() {
+                self.answer_active(pending, answer);
+            }
+        } else if let Some(mut seat) = self.candidate.take() {
+            match seat.pending.take_if(|pending| pending.id == answer.ask) {
+                Some(pending) => self.candidate = self.answer_candidate(seat, pending, answer),
+                None => self.candidate = Some(seat),
+            }
+        }
+    }
+
+    fn answer_active(&mut self, pending: Pending, Answer { ask, result, said }: Answer) {
+        let given = match result.and_then(|given| self.checked(&self.active, given)) {
+            Ok(given) => given,
+            Err(fault) => return self.fail_active(Failed { ask, kind: pending.kind, fault, said }),
+        };
+        match (pending.kind.clone(), given) {
+            (PendingKind::Open, Given::Opened(info)) => self.open_succeeded(ask, *info, said),
+            (PendingKind::Reconfigure(choice), Given::Reconfigured) => {
+                self.pass_on(said, &choice.id);
+                self.active.choice = choice.clone();
+                self.happened.push(EventKind::ParametersChanged { ask: Some(ask), choice });
+            }
+            (PendingKind::Plan(asked), Given::Plan(plan)) => self.plan_arrived(ask, asked, plan, said),
+            (PendingKind::Step { usable }, Given::Command(command)) => {
+                let usable = usable && matches!(self.phase, Phase::Running(_));
+                self.take_command(&pending, usable, command, said);
+            }
+            (PendingKind::Snapshot, Given::State { bytes }) => {
+                self.pass_on(said, &self.active.choice.id.clone());
+                if bytes > 0 {
+                    self.active.saved = Some(ask);
+                }
+                self.happened.push(EventKind::Snapshotted { ask, bytes });
+            }
+            (kind, _) => {
+                let fault = mismatch(&self.active.choice.id);
+                self.fail_active(Failed { ask, kind, fault, said });
+            }
+        }
+    }
+
+    /// Refuses a planner that may not or cannot fly this mission, although it could be opened.
+    fn checked(&self, seat: &Seat, given: Given) -> Result<Given, Fault> {
+        let Given::Opened(info) = &given else { return Ok(given) };
+        let id = &seat.choice.id;
+        let refuse = |during, cause, message| {
+            let plugin_sha256 = Some(info.sha256.clone());
+            Err(Fault { planner: id.clone(), during, cause, message, partial: Vec::new(), plugin_sha256 })
+        };
+        if self.workers.quarantine.holds(&info.sha256) {
+            let (faults, window_s) = (workers::MOST_FAULTS, workers::WINDOW_S);
+            let message = format!(
+                "planner {id} failed {faults} times within {window_s} s and may not drive again in this mission"
+            );
+            return refuse(During::Load, Cause::Quarantined, message);
+        }
+        if matches!(self.config.task, TaskConfig::Cover { .. }) && !info.covers {
+            let message = format!("planner {id} does not support coverage missions: choose one that does");
+            return refuse(During::Configure, Cause::Refused, message);
+        }
+        Ok(given)
+    }
+
+    fn open_succeeded(&mut self, ask: AskId, info: PlannerInfo, said: Said) {
+        self.pass_on(said, &self.active.choice.id.clone());
+        let seat = &mut self.active;
+        let before = seat.info.replace(info.clone()).map(|before| before.id);
+        let (choice, from) = (seat.choice.clone(), before.or_else(|| seat.from.take()));
+        seat.is_ready = true;
+        if seat.prepare == Prepare::Open {
+            seat.prepare = Prepare::No;
+        }
+        self.happened.push(EventKind::PlannerChosen { ask: Some(ask), choice, info: Box::new(info), from });
+    }
+
+    fn plan_arrived(&mut self, ask: AskId, asked: AskedPlan, plan: Plan, said: Said) {
+        let id = self.active.choice.id.clone();
+        self.pass_on(said, &id);
+        let Evaluated { plan, events, objection } = self.evaluate(ask, &id, &asked, plan);
+        self.happened.extend(events);
+        match objection {
+            None => {
+                self.take_plan(&plan);
+                self.plan_is_there();
+            }
+            Some(objection) if objection.by_tether && self.may_try_from_anchor(&asked) => {
+                self.active.plan = PlanState::Due { reason: asked.reason, from_anchor: true };
+            }
+            Some(Objection { by_tether, message }) => {
+                self.active.plan = PlanState::due(asked.reason);
+                self.active_is_no_use(if by_tether {
+                    HoldReason::PlanRefused { message }
+                } else {
+                    HoldReason::PlannerFault { message }
+                });
+            }
+        }
+    }
+
+    /// Whether a plan that was refused for the tether is asked for once more, from the anchor.
+    fn may_try_from_anchor(&self, asked: &AskedPlan) -> bool {
+        asked.way_home.is_empty() && !asked.from_anchor && self.way_to_anchor().is_some()
+    }
+
+    /// The active planner has a plan that flies: a hold that it was to end, or that blamed another planner, is over.
+    fn plan_is_there(&mut self) {
+        let was_ordered = std::mem::take(&mut self.active.prepare) == Prepare::Plan;
+        let Phase::Held(hold) = &self.phase else { return };
+        if hold.resumes == Resumes::ByFallback {
+            self.go_on(Gait::Steady);
+        } else if was_ordered && (hold.by.blames_planner() || matches!(hold.by, HoldReason::Stuck { .. })) {
+            // The reason is gone with the planner; now it is the operator who lets the robot go on.
+            self.hold(Hold { by: HoldReason::Operator, resumes: Resumes::Never });
+        }
+    }
+
+    fn fail_active(&mut self, Failed { ask, kind, fault, said }: Failed) {
+        self.pass_on(said, &self.active.choice.id.clone());
+        let (message, cause) = (fault.message.clone(), fault.cause);
+        self.note_fault(ask, fault, self.active.info.as_ref().map(|info| info.sha256.clone()));
+        let says_no = matches!(cause, Cause::Planner(_) | Cause::Refused);
+        match kind {
+            // It goes on with the values that it has; as a new instance it may take others.
+            PendingKind::Reconfigure(choice) if says_no => {
+                let unsupported = cause == Cause::Planner(Code::Unsupported);
+                if unsupported && !matches!(self.phase, Phase::Running(_)) {
+                    self.choose(choice, planner_api::Reason::Operator);
+                }
+                return;
+            }
+            PendingKind::Plan(_) | PendingKind::Step { .. } | PendingKind::Snapshot if says_no => {}
+            _ => self.close_active(),
+        }
+        if !self.active.has_plan() {
+            // The operator agreed to the plan that was refused, not to one of later.
+            self.fly_uncertified(self.config.tether.as_ref().is_some_and(|tether| tether.fly_uncertified));
+        }
+        self.active_is_no_use(HoldReason::PlannerFault { message });
+    }
+
+    /// The active planner cannot drive the robot on.
+    fn active_is_no_use(&mut self, by: HoldReason) {
+        self.active.prepare = Prepare::No;
+        let is_to_be_held = match &self.phase {
+            Phase::Running(_) => true,
+            Phase::Held(hold) => hold.by.blames_planner(),
+            Phase::Waiting | Phase::Ended(_) => false,
+        };
+        if is_to_be_held {
+            let resumes = self.rules.fallback.resumes(&self.config, &self.active.choice.id);
+            self.hold(Hold { by, resumes });
+        }
+    }
+
+    /// Tells a fault, and counts it against its plugin if it is of the kind that counts.
+    fn note_fault(&mut self, ask: AskId, fault: Fault, sha256: Option<String>) {
+        let counts =
+            !matches!(fault.cause, Cause::Planner(_) | Cause::Refused | Cause::Quarantined | Cause::Starved);
+        if let Some(sha256) = fault.plugin_sha256.clone().or(sha256).filter(|_| counts) {
+            let now_s = self.now_s();
+            self.workers.quarantine.note(&sha256, now_s);
+        }
+        self.happened.push(EventKind::PlannerFailed { ask: Some(ask), fault });
+    }
+
+    /// Takes an answer of the planner that is being prepared; gives it back unless it has taken over or is closed.
+    fn answer_candidate(
+        &mut self,
+        mut seat: Seat,
+        pending: Pending,
+        Answer { ask, result, said }: Answer,
+    ) -> Option<Seat> {
+        match (pending.kind, result.and_then(|given| self.checked(&seat, given))) {
+            (PendingKind::Open, Ok(Given::Opened(info))) => {
+                self.pass_on(said, &seat.choice.id);
+                (seat.info, seat.is_ready) = (Some((*info).clone()), true);
+                self.happened.push(EventKind::PlannerPrepared { ask, choice: seat.choice.clone(), info });
+                Some(seat)
+            }
+            (PendingKind::Plan(asked), Ok(Given::Plan(plan))) => {
+                self.candidate_planned(seat, ask, asked, plan, said)
+            }
+            (_, result) => {
+                let fault = result.err().unwrap_or_else(|| mismatch(&seat.choice.id));
+                self.pass_on(said, &seat.choice.id);
+                let message = fault.message.clone();
+                self.note_fault(ask, fault, seat.info.as_ref().map(|info| info.sha256.clone()));
+                self.reject(seat, message);
+                None
+            }
+        }
+    }
+
+    fn candidate_planned(
+        &mut self,
+        mut seat: Seat,
+        ask: AskId,
+        asked: AskedPlan,
+        plan: Plan,
+        said: Said,
+    ) -> Option<Seat> {
+        let id = seat.choice.id.clone();
+        if (self.locator.position() - asked.here).norm() > NEAR_PLAN_M {
+            // The robot went on meanwhile. It plans again from here, and this time the robot waits for it.
+            self.pass_on(said, &id);
+            self.happened.push(EventKind::Discarded { ask });
+            seat.robot_waits = true;
+            return Some(seat);
+        }
+        let Evaluated { plan, events, objection } = self.evaluate(ask, &id, &asked, plan);
+        if objection.is_none() {
+            self.promote(seat);
+            self.pass_on(said, &id);
+            self.happened.extend(events);
+            self.take_plan(&plan);
+            self.plan_is_there();
+            return None;
+        }
+        self.pass_on(said, &id);
+        self.happened.extend(events);
+        match objection {
+            Some(objection) if !(objection.by_tether && self.may_try_from_anchor(&asked)) => {
+                self.reject(seat, objection.message);
+                None
+            }
+            _ => {
+                seat.plan = PlanState::Due { reason: asked.reason, from_anchor: true };
+                Some(seat)
+            }
+        }
+    }
+
+    /// The planner that was being prepared takes over.
+    fn promote(&mut self, seat: Seat) {
+        let (choice, from, info) = (seat.choice.clone(), seat.from.clone(), seat.info.clone());
+        self.replace_active(seat);
+        if let Some(info) = info {
+            self.happened.push(EventKind::PlannerChosen { ask: None, choice, info: Box::new(info), from });
+        }
+    }
+
+    fn reject(&mut self, mut seat: Seat, why: String) {
+        self.workers.close(seat.leave_worker());
+        self.happened.push(EventKind::PlannerRejected { planner: seat.choice.id, why });
+    }
+}
+
+/// An answer of another kind than the ask.
+fn mismatch(planner: &str) -> Fault {
+    Fault {
+        planner: planner.to_owned(),
+        during: During::Step,
+        cause: Cause::Protocol,
+        message: format!("planner {planner} sent an answer to another question"),
+        partial: Vec::new(),
+        plugin_sha256: None,
+    }
+}

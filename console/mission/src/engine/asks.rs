@@ -1,0 +1,168 @@
+//! What is asked of the planners next.
+
+use super::{
+    Mission,
+    driving::AHEAD_M,
+    seat::{AskedPlan, PendingKind, PlanState, Prepare},
+};
+use crate::{
+    ask::{Ask, Awaits, PlanAsk, StepAsk, What},
+    standing::Phase,
+    task::Task,
+};
+use planner_api::{Drive, PoseEstimate, Reason};
+use std::sync::Arc;
+use world::Point;
+
+/// Private state is saved this often, seconds.
+const SAVE_EVERY_S: f64 = 1.0;
+
+impl Mission {
+    /// The next thing that is wanted of a planner, if anything is. To be called until it gives nothing, after
+    /// [`Mission::sense`] and after every [`Mission::answer`].
+    pub fn poll_ask(&mut self) -> Option<Ask> {
+        self.workers.poll().or_else(|| self.ask_active()).or_else(|| self.ask_candidate())
+    }
+
+    /// What the mission would like to have before the tick ends.
+    pub fn awaits(&self) -> Awaits {
+        let is_running = matches!(self.phase, Phase::Running(_));
+        match &self.active.pending {
+            Some(pending) if is_running => match pending.kind {
+                PendingKind::Open | PendingKind::Plan(_) => Awaits::Work,
+                PendingKind::Reconfigure(_) | PendingKind::Step { .. } | PendingKind::Snapshot => {
+                    Awaits::Step
+                }
+            },
+            Some(_) => Awaits::Candidate,
+            None => match self.candidate.as_ref().filter(|seat| seat.pending.is_some()) {
+                Some(seat) if is_running && seat.robot_waits => Awaits::Work,
+                Some(_) => Awaits::Candidate,
+                None => Awaits::Nothing,
+            },
+        }
+    }
+
+    fn ask_active(&mut self) -> Option<Ask> {
+        let is_running = matches!(self.phase, Phase::Running(_));
+        let seat = &self.active;
+        if seat.pending.is_some() || matches!(self.phase, Phase::Ended(_)) {
+            return None;
+        }
+        if !seat.is_ready {
+            return (is_running || seat.prepare > Prepare::No).then(|| self.open_active());
+        }
+        if let Some(choice) = self.active.reconfigure.take() {
+            let parameters = choice.parameters.clone();
+            return self.ask_of_active(PendingKind::Reconfigure(choice), What::Reconfigure(parameters));
+        }
+        if let PlanState::Due { reason, from_anchor } = &self.active.plan {
+            if !is_running && self.active.prepare < Prepare::Plan {
+                return None;
+            }
+            let (kind, what) = self.plan_ask(reason.clone(), *from_anchor);
+            self.active.found_since.clear();
+            return self.ask_of_active(kind, what);
+        }
+        if self.active.snapshot_due || (is_running && self.is_snapshot_due()) {
+            (self.active.snapshot_due, self.active.saved_at_s) = (false, Some(self.now_s()));
+            return self.ask_of_active(PendingKind::Snapshot, What::Snapshot);
+        }
+        let robot_waits = self.candidate.as_ref().is_some_and(|seat| seat.robot_waits);
+        let is_step_due = is_running && !robot_waits && self.active.stepped_at != Some(self.tick);
+        is_step_due.then(|| self.ask_for_step()).flatten()
+    }
+
+    fn open_active(&mut self) -> Ask {
+        if self.active.info.is_some() {
+            self.active.plan = PlanState::due(Reason::Recover);
+        }
+        let (worker, site) = (self.workers.next(), self.chart.site());
+        self.active.open(worker, self.tick, site)
+    }
+
+    fn ask_of_active(&mut self, kind: PendingKind, what: What) -> Option<Ask> {
+        self.active.ask(self.tick, kind, what)
+    }
+
+    fn ask_candidate(&mut self) -> Option<Ask> {
+        let is_saving = self.active.snapshot_due
+            || matches!(&self.active.pending, Some(pending) if pending.kind == PendingKind::Snapshot);
+        let seat = self.candidate.as_mut().filter(|seat| seat.pending.is_none())?;
+        if !seat.is_ready {
+            if is_saving {
+                return None;
+            }
+            if seat.choice.id == self.active.choice.id {
+                seat.saved = self.active.saved;
+            }
+            let (worker, site) = (self.workers.next(), self.chart.site());
+            return Some(seat.open(worker, self.tick, site));
+        }
+        let PlanState::Due { reason, from_anchor } = seat.plan.clone() else { return None };
+        let (kind, what) = self.plan_ask(reason, from_anchor);
+        let seat = self.candidate.as_mut()?;
+        seat.found_since.clear();
+        seat.ask(self.tick, kind, what)
+    }
+
+    fn is_snapshot_due(&self) -> bool {
+        let seat = &self.active;
+        let snapshots = seat.info.as_ref().is_some_and(|info| info.snapshots);
+        snapshots
+            && seat.stepped_at != Some(self.tick)
+            && seat.saved_at_s.is_some_and(|saved_at_s| self.now_s() - saved_at_s >= SAVE_EVERY_S)
+    }
+
+    /// The inputs of a plan from the end of a way home, or from where the robot stands.
+    ///
+    /// A cable that is caught is freed first. A plan that was refused because of the cable out there is asked for once
+    /// more from the anchor, after a way back along the cable: no planner has to know how the cable lies.
+    fn plan_ask(&self, reason: Reason, from_anchor: bool) -> (PendingKind, What) {
+        let way_home = if from_anchor { self.way_to_anchor() } else { self.way_out() }.unwrap_or_default();
+        let here = self.locator.pose_estimate();
+        let start = way_home.last().map_or(here, |home| PoseEstimate { position: *home, ..here });
+        let previous: Vec<Point> = self.trail.iter().chain(&way_home).copied().collect();
+        let task = self.task.left(&self.floor.coverage, self.config.lane_m(), self.config.tether_limits());
+        let site = Arc::new(self.chart.site());
+        let what = What::Plan(Box::new(PlanAsk { reason: reason.clone(), start, task, site, previous }));
+        (PendingKind::Plan(AskedPlan { reason, way_home, from_anchor, here: here.position }), what)
+    }
+
+    fn ask_for_step(&mut self) -> Option<Ask> {
+        let pose = self.locator.pose_estimate();
+        let here = pose.position;
+        self.keep_trail();
+        if let Some(plan) = &mut self.active.follower {
+            plan.advance(here, self.chart.map(), 0.0);
+        }
+        let (v_m_per_s, w_rad_per_s) = match self.happened.last_drive {
+            Drive::Twist { v_m_per_s, w_rad_per_s } => (v_m_per_s, w_rad_per_s),
+            Drive::Velocity(velocity) => (velocity.norm(), 0.0),
+        };
+        let step = StepAsk {
+            tick: self.tick,
+            t_s: self.now_s(),
+            dt_s: self.config.tick_s,
+            pose,
+            v_m_per_s,
+            w_rad_per_s,
+            target: self.task.target(),
+            targets_ahead: self.task.targets_ahead(AHEAD_M).to_vec(),
+            path_ahead: self.path_ahead().to_vec(),
+            obstacles: self.chart.near(here),
+        };
+        self.active.stepped_at = Some(self.tick);
+        self.ask_of_active(PendingKind::Step { usable: true }, What::Step(Box::new(step)))
+    }
+
+    /// The plan from here on. Lanes are followed by the task itself, which knows how far it is.
+    fn path_ahead(&self) -> &[Point] {
+        match &self.task {
+            Task::Cover(_) => self.task.targets_ahead(AHEAD_M),
+            Task::Goto(_) | Task::Follow { .. } => {
+                self.active.follower.as_ref().map_or(&[], |plan| plan.ahead(AHEAD_M))
+            }
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! A planner that does not answer in time: the robot stands still meanwhile; after a while it is held.
+
+use super::Verdict;
+use crate::{
+    event::HoldReason,
+    standing::{Hold, Resumes},
+};
+
+/// A command that is older than this is of no use, seconds.
+const STALE_S: f64 = 0.2;
+/// A planner that does not answer for this long holds the robot until it does, seconds.
+const SILENT_S: f64 = 2.0;
+
+/// Whether the planner's last command came late.
+#[derive(Debug, Default)]
+pub(in crate::engine) struct LatePlannerRule {
+    was_late: bool,
+}
+
+impl LatePlannerRule {
+    /// A command arrived so many ticks after it was asked for: whether a row of late ones begins with it.
+    pub fn arrived(&mut self, ticks: u64) -> bool {
+        let begins = ticks > 0 && !self.was_late;
+        self.was_late = ticks > 0;
+        begins
+    }
+
+    /// Whether a command of this age, in seconds, may still be sent.
+    pub fn is_fresh(age_s: f64) -> bool {
+        // Ages are multiples of a tick, as floating point numbers.
+        age_s <= STALE_S + 1e-9
+    }
+
+    /// One tick of a running robot whose planner has owed an answer for so long, seconds.
+    pub fn update(planner: &str, owed_s: f64) -> Option<Verdict> {
+        let message = || format!("planner {planner} has not answered for {SILENT_S} s");
+        (owed_s >= SILENT_S - 1e-9).then(|| {
+            let by = HoldReason::PlannerSilent { message: message() };
+            Verdict::Hold(Hold { by, resumes: Resumes::WhenCleared })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_first_late_command_of_a_row_is_reported() {
+        let mut rule = LatePlannerRule::default();
+        let begins: Vec<bool> = [0, 1, 1, 0, 2].map(|ticks| rule.arrived(ticks)).to_vec();
+        assert_eq!(begins, [false, true, false, false, true]);
+    }
+
+    #[test]
+    fn a_command_two_ticks_old_may_be_sent_and_a_silent_planner_holds_after_twenty() {
+        assert!(LatePlannerRule::is_fresh(2.0 * 0.1) && !LatePlannerRule::is_fresh(3.0 * 0.1));
+        assert!(LatePlannerRule::update("apf", 19.0 * 0.1).is_none());
+        assert!(LatePlannerRule::update("apf", 20.0 * 0.1).is_some());
+    }
+}

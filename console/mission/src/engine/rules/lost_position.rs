@@ -1,0 +1,32 @@
+//! A robot whose position cannot be relied on is held until it can be.
+
+use super::{Seen, Verdict};
+use crate::{
+    event::HoldReason,
+    standing::{Hold, PositionTrust, Resumes},
+};
+
+/// For how long the position could not be relied on, seconds.
+#[derive(Debug, Default)]
+pub(in crate::engine) struct LostPositionRule {
+    lost_s: f64,
+}
+
+impl LostPositionRule {
+    /// One tick of a running robot: holds it when the position has been bad for long enough.
+    pub fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
+        self.lost_s = if seen.is_position_good() { 0.0 } else { self.lost_s + seen.config.tick_s };
+        let by = match seen.position {
+            PositionTrust::Good => return None,
+            PositionTrust::Lost { .. } => HoldReason::PositionLost,
+            PositionTrust::Alarmed => HoldReason::PositionAlarmed,
+        };
+        (self.lost_s >= seen.config.lost_hold_s)
+            .then_some(Verdict::Hold(Hold { by, resumes: Resumes::WhenCleared }))
+    }
+
+    /// One tick of a robot that this rule holds.
+    pub fn update_held(seen: &Seen<'_>) -> Option<Verdict> {
+        seen.is_position_good().then_some(Verdict::Resume)
+    }
+}

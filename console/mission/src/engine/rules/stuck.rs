@@ -1,0 +1,54 @@
+//! A robot that gets nowhere gets another plan in its lanes, once at each place; else an operator must help.
+
+use super::{SAME_PLACE_M, Seen, Verdict};
+use crate::{
+    event::{HoldReason, Outcome},
+    standing::{Hold, Resumes},
+    task::{StuckWatch, Task},
+};
+use planner_api::Reason;
+use world::Point;
+
+/// Watches the progress of the task.
+pub(in crate::engine) struct StuckRule {
+    watch: StuckWatch,
+    /// Where the robot was stuck last and got another plan.
+    replanned_at: Option<Point>,
+}
+
+impl StuckRule {
+    /// A rule of some patience, seconds.
+    pub fn new(patience_s: f64) -> Self {
+        Self { watch: StuckWatch::new(patience_s), replanned_at: None }
+    }
+
+    /// Forgets the progress seen so far: another plan leads another way.
+    pub fn restart(&mut self) {
+        self.watch.reset();
+    }
+
+    /// One tick of a robot that was free to move.
+    pub fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
+        if !self.watch.is_stuck(seen.task, seen.here, seen.config.tick_s) {
+            return None;
+        }
+        let tried = self.replanned_at.is_some_and(|at| (seen.here - at).norm() < SAME_PLACE_M);
+        if tried || !matches!(seen.task, Task::Cover(_)) {
+            return Some(give_up(seen));
+        }
+        self.replanned_at = Some(seen.here);
+        self.watch.reset();
+        Some(Verdict::Replan(Reason::Blocked))
+    }
+}
+
+/// An operator may know a way on; without one the mission is over.
+fn give_up(seen: &Seen<'_>) -> Verdict {
+    let (here, done) = (seen.here, seen.task.done() * 100.0);
+    let message = format!("no progress at {:.2}, {:.2} m, {done:.0} % done", here.x, here.y);
+    if seen.config.attended {
+        Verdict::Hold(Hold { by: HoldReason::Stuck { message }, resumes: Resumes::Never })
+    } else {
+        Verdict::End(Outcome::Stuck, message)
+    }
+}

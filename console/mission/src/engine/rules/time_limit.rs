@@ -1,0 +1,23 @@
+//! The mission ends unfinished when its time is up.
+
+use super::{Seen, Verdict};
+use crate::event::Outcome;
+
+/// Counts the time that an operator has let the mission wait: while somebody looks after a mission that is held, its time
+/// does not run out.
+#[derive(Debug, Default)]
+pub(in crate::engine) struct TimeLimitRule {
+    waited_s: f64,
+}
+
+impl TimeLimitRule {
+    /// One tick of a mission under way.
+    pub fn update(&mut self, seen: &Seen<'_>, is_held: bool) -> Option<Verdict> {
+        if seen.config.attended && is_held {
+            self.waited_s += seen.config.tick_s;
+        }
+        let limit_s = seen.config.time_limit_s;
+        (seen.now_s - self.waited_s >= limit_s)
+            .then(|| Verdict::End(Outcome::TimeLimit, format!("time is up after {limit_s:.0} s")))
+    }
+}

@@ -1,0 +1,228 @@
+//! A planner of the mission: how far it is prepared, its plan, and what is asked of it.
+
+use super::rules::{BlockedRule, CutsRule, LatePlannerRule};
+use crate::{
+    ask::{Ask, AskId, Said, Site, What, WorkerId},
+    config::PlannerChoice,
+    follower::Follower,
+    planner::PlannerInfo,
+};
+use planner_api::{Command, Reason};
+use std::sync::Arc;
+use world::{Point, Shape};
+
+/// A planner with its worker, its plan and its open ask.
+///
+/// The mission has an active one, which drives, and at most one candidate, which is prepared to take over.
+#[derive(Default)]
+pub(super) struct Seat {
+    pub choice: PlannerChoice,
+    /// Who it is, from the first time that it was opened.
+    pub info: Option<PlannerInfo>,
+    /// Whether it is loaded, configured and has not failed since.
+    pub is_ready: bool,
+    pub plan: PlanState,
+    /// How far it is to be prepared while it does not drive.
+    pub prepare: Prepare,
+    /// The instance that runs; `None` before the first, and after a fault.
+    pub worker: Option<WorkerId>,
+    n_asks: u32,
+    /// The ask that has not been answered yet.
+    pub pending: Option<Pending>,
+    /// The newest state that it saved.
+    pub saved: Option<AskId>,
+    /// Mission time of the last snapshot, or of the first command, seconds.
+    pub saved_at_s: Option<f64>,
+    /// Whether its state is wanted for the instance that replaces it.
+    pub snapshot_due: bool,
+    /// What its live parameters are to become.
+    pub reconfigure: Option<PlannerChoice>,
+    /// Which planner drove before it.
+    pub from: Option<String>,
+    /// Its plan, for tasks that do not follow it by themselves.
+    pub follower: Option<Follower>,
+    /// What was found since the plan was asked for that is being made.
+    pub found_since: Vec<Shape>,
+    /// Whether the robot stands until it has planned: by the time that it had, the robot had gone on.
+    pub robot_waits: bool,
+    /// Its command for this tick.
+    pub command: Option<Arrived>,
+    /// The tick for which it was asked last to command.
+    pub stepped_at: Option<u64>,
+    /// Whether it answers late.
+    pub late: LatePlannerRule,
+    /// The lines that its plan never crosses.
+    pub cuts: CutsRule,
+    /// Whether it says that it cannot go on.
+    pub blocked: BlockedRule,
+}
+
+/// How far a planner is to be prepared without driving.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub(super) enum Prepare {
+    /// Not at all.
+    #[default]
+    No,
+    /// It shall be opened.
+    Open,
+    /// It shall have a plan.
+    Plan,
+}
+
+/// The plan of a planner.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum PlanState {
+    /// It is still to be made, or is being made.
+    Due {
+        /// Why.
+        reason: Reason,
+        /// Whether it is to begin at the anchor, after a way home: from here it was refused for the tether.
+        from_anchor: bool,
+    },
+    /// It is being flown.
+    Flying {
+        /// Whether it is for all that was left of the task.
+        is_whole: bool,
+    },
+}
+
+impl Default for PlanState {
+    fn default() -> Self {
+        Self::due(Reason::Start)
+    }
+}
+
+impl PlanState {
+    /// A plan that is wanted from where the robot stands.
+    pub fn due(reason: Reason) -> Self {
+        Self::Due { reason, from_anchor: false }
+    }
+}
+
+/// An ask without an answer.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Pending {
+    pub id: AskId,
+    /// When it was asked.
+    pub tick: u64,
+    pub kind: PendingKind,
+}
+
+/// What was asked, with what has to be remembered until the answer.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum PendingKind {
+    Open,
+    Reconfigure(PlannerChoice),
+    Plan(AskedPlan),
+    Step {
+        /// Whether the robot has not been held and no other plan has been taken since.
+        usable: bool,
+    },
+    Snapshot,
+}
+
+/// What has to be remembered of a plan that is being made.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct AskedPlan {
+    pub reason: Reason,
+    /// The way home before the plan; empty for a plan from where the robot stood.
+    pub way_home: Vec<Point>,
+    /// Whether that way home was the second try.
+    pub from_anchor: bool,
+    /// Where the robot stood.
+    pub here: Point,
+}
+
+/// A command that has arrived.
+pub(super) struct Arrived {
+    pub ask: AskId,
+    pub command: Command,
+    pub said: Said,
+    /// For how many ticks the robot stood still for it, if a row of late ones begins with it.
+    pub late_ticks: Option<u64>,
+}
+
+impl Seat {
+    /// A planner that has not been opened, and why it will be asked for a plan.
+    pub fn new(choice: PlannerChoice, reason: Reason) -> Self {
+        Self { choice, plan: PlanState::due(reason), ..Self::default() }
+    }
+
+    /// The same planner with other parameters, or another one, to take this one's place.
+    pub fn successor(&self, choice: PlannerChoice, reason: Reason) -> Self {
+        let same = choice.id == self.choice.id;
+        Self {
+            saved: self.saved.filter(|_| same),
+            from: self.info.as_ref().map(|info| info.id.clone()).or_else(|| self.from.clone()),
+            ..Self::new(choice, reason)
+        }
+    }
+
+    /// Whether it could drive at once.
+    pub fn can_drive(&self) -> bool {
+        self.is_ready && self.has_plan()
+    }
+
+    /// Whether it has a plan and no other is due.
+    pub fn has_plan(&self) -> bool {
+        matches!(self.plan, PlanState::Flying { .. })
+    }
+
+    /// Whether its last plan was for all that was left of the task.
+    pub fn is_plan_whole(&self) -> bool {
+        !matches!(self.plan, PlanState::Flying { is_whole: false })
+    }
+
+    /// Wants another plan, unless one is wanted already.
+    pub fn want_plan(&mut self, reason: Reason) {
+        if self.has_plan() {
+            self.plan = PlanState::due(reason);
+        }
+    }
+
+    /// Has a new worker open this planner.
+    pub fn open(&mut self, worker: WorkerId, tick: u64, site: Site) -> Ask {
+        (self.worker, self.n_asks, self.saved_at_s) = (Some(worker), 0, None);
+        let (choice, site, restore) = (self.choice.clone(), Arc::new(site), self.saved);
+        self.number(worker, tick, PendingKind::Open, What::Open { choice, site, restore })
+    }
+
+    /// Asks something of the worker; `None` without one.
+    pub fn ask(&mut self, tick: u64, kind: PendingKind, what: What) -> Option<Ask> {
+        Some(self.number(self.worker?, tick, kind, what))
+    }
+
+    /// Numbers the next ask and remembers it until the answer.
+    fn number(&mut self, worker: WorkerId, tick: u64, kind: PendingKind, what: What) -> Ask {
+        self.n_asks += 1;
+        let id = AskId { worker, n: self.n_asks };
+        self.pending = Some(Pending { id, tick, kind });
+        Ask { id, what }
+    }
+
+    /// Forgets the worker, which is to be closed.
+    pub fn leave_worker(&mut self) -> Option<WorkerId> {
+        (self.is_ready, self.snapshot_due) = (false, false);
+        (self.pending, self.command, self.reconfigure) = (None, None, None);
+        self.worker.take()
+    }
+
+    /// Whether a plan is being made.
+    pub fn is_planning(&self) -> bool {
+        matches!(&self.pending, Some(Pending { kind: PendingKind::Plan(_), .. }))
+    }
+
+    /// For how many ticks it has owed an answer that a moving robot needs.
+    pub fn owed_ticks(&self, tick: u64) -> Option<u64> {
+        let pending = self.pending.as_ref()?;
+        let is_short = !matches!(pending.kind, PendingKind::Open | PendingKind::Plan(_));
+        is_short.then(|| tick - pending.tick)
+    }
+
+    /// No answer to a step that was asked before is of use any more.
+    pub fn outdate_step(&mut self) {
+        if let Some(Pending { kind: PendingKind::Step { usable }, .. }) = &mut self.pending {
+            *usable = false;
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! Answers that come when they come: the mission waits for none of them, and the journal repeats every one.
+
+use super::{covering::covering, *};
+use crate::{Awaits, ask::RecordedAnswers};
+use proptest::prelude::*;
+
+fn step_delay(ticks: u64, from: u64, to: u64) -> Box<dyn Fn(&Ask, u64) -> u64> {
+    Box::new(
+        move |ask, tick| {
+            if matches!(ask.what, What::Step(_)) && (from..to).contains(&tick) { ticks } else { 0 }
+        },
+    )
+}
+
+fn moves(flight: &mut Flight, ticks: usize) -> Vec<bool> {
+    (0..ticks)
+        .map(|_| {
+            let before = flight.pose;
+            flight.tick(&[]);
+            flight.pose != before
+        })
+        .collect()
+}
+
+#[test]
+fn a_late_step_costs_its_tick_and_is_used_while_it_is_fresh() {
+    let mut flight = Flight::new(config());
+    flight.tick(&[Order::Start]);
+    flight.fly(10);
+    let tick = flight.mission.tick;
+    flight.delay = step_delay(1, tick, tick + 1);
+    assert_eq!(moves(&mut flight, 4), [false, true, true, true]);
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PlannerLate { ticks: 1, .. })), 1);
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PlannerFailed { .. })), 0);
+    flight.delay = Box::new(|_, _| 0);
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+}
+
+#[test]
+fn a_step_older_than_two_ticks_is_dropped_and_asked_again() {
+    let mut flight = Flight::new(config());
+    flight.tick(&[Order::Start]);
+    flight.fly(10);
+    let tick = flight.mission.tick;
+    flight.delay = step_delay(3, tick, tick + 1);
+    assert_eq!(moves(&mut flight, 5), [false, false, false, true, true]);
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::Discarded { .. })), 1);
+}
+
+#[test]
+fn a_planner_that_is_silent_for_two_seconds_holds_the_robot_until_it_answers() {
+    let mut flight = Flight::new(config());
+    flight.tick(&[Order::Start]);
+    flight.fly(10);
+    let tick = flight.mission.tick;
+    flight.delay = step_delay(50, tick, tick + 1);
+    flight.fly(25);
+    let Phase::Held(hold) = flight.mission.phase() else { panic!("{:?}", flight.mission.phase()) };
+    assert!(matches!(hold.by, HoldReason::PlannerSilent { .. }) && !hold.resumes.is_never());
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PlannerFailed { .. })), 0);
+}
+
+#[test]
+fn the_clock_runs_while_a_plan_is_made_and_nobody_is_stuck_meanwhile() {
+    for config in [config(), covering()] {
+        let mut flight = Flight::new(config);
+        flight.delay = Box::new(|ask, _| if matches!(ask.what, What::Plan(_)) { 300 } else { 0 });
+        flight.tick(&[Order::Start]);
+        assert_eq!(flight.mission.awaits(), Awaits::Work);
+        let before = flight.pose;
+        flight.fly(299);
+        assert_eq!((flight.pose, flight.mission.phase()), (before, &Phase::Running(Gait::Steady)));
+        flight.fly(20);
+        assert!(flight.pose != before);
+    }
+}
+
+#[test]
+fn two_planners_have_asks_open_at_once_and_the_one_before_drives_on() {
+    let mut flight = Flight::new(config());
+    flight.tick(&[Order::Start]);
+    flight.fly(10);
+    flight.tick(&[Order::Hold]);
+    flight.delay = Box::new(|ask, _| if matches!(ask.what, What::Plan(_)) { 5 } else { 0 });
+    flight.tick(&[swap_to("other")]);
+    assert_eq!(flight.mission.awaits(), Awaits::Candidate);
+    // While the other one plans, the robot goes on with the planner and the plan that it has.
+    flight.delay = step_delay(1, 0, u64::MAX);
+    flight.tick(&[Order::Resume]);
+    let workers: Vec<_> = flight.open.iter().map(|(_, ask)| ask.id.worker).collect();
+    assert!(workers.len() == 2 && workers[0] != workers[1], "{workers:?}");
+    flight.delay = Box::new(|_, _| 0);
+    flight.fly(250);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+    assert_eq!(flight.planner.chosen, ["straight", "other"]);
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PlannerPrepared { .. })), 1);
+}
+
+#[test]
+fn a_planner_whose_plan_comes_after_the_robot_went_on_plans_again_and_the_robot_waits() {
+    let mut flight = Flight::new(config());
+    flight.tick(&[Order::Start]);
+    flight.fly(10);
+    flight.tick(&[Order::Hold]);
+    flight.delay = Box::new(|ask, _| if matches!(ask.what, What::Plan(_)) { 25 } else { 0 });
+    flight.tick(&[swap_to("other")]);
+    flight.tick(&[Order::Resume]);
+    flight.fly(24);
+    let before = flight.pose;
+    assert_eq!(moves(&mut flight, 20), [false; 20], "it waits for the second plan");
+    flight.fly(5);
+    assert!(flight.pose != before);
+    assert_eq!(flight.planner.chosen, ["straight", "other"]);
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PlannerChosen { .. })), 2);
+}
+
+#[test]
+fn a_live_parameter_goes_to_the_planner_before_its_next_step() {
+    let mut flight = Flight::new(config());
+    flight.tick(&[Order::Start]);
+    flight.fly(10);
+    flight.mission.active.info.as_mut().unwrap().parameters = vec![ParamInfo {
+        key: "gain".into(),
+        label: String::new(),
+        unit: String::new(),
+        help: String::new(),
+        group: String::new(),
+        kind: ParamKind::Float { min: 0.0, max: 9.0, default: 1.0 },
+        live: true,
+    }];
+    let value = ParamValue::Float(2.0);
+    let events = flight.tick(&[Order::SetParameter { key: "gain".into(), value: value.clone() }]);
+    let at = |is: fn(&EventKind) -> bool| events.iter().position(is);
+    let changed = at(|kind| matches!(kind, EventKind::ParametersChanged { .. }));
+    assert!(
+        changed.is_some() && changed < at(|kind| matches!(kind, EventKind::Commanded { .. })),
+        "{events:?}"
+    );
+    assert_eq!(flight.mission.active.choice.parameters["gain"], value);
+}
+
+#[test]
+fn state_is_saved_every_second_and_given_to_the_next_instance() {
+    let mut flight = Flight::new(config());
+    flight.planner.snapshots = true;
+    flight.tick(&[Order::Start]);
+    flight.fly(35);
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::Snapshotted { .. })), 3);
+    let newest = flight.mission.active.saved;
+    flight.planner.fail_at_tick = Some(flight.mission.tick);
+    flight.tick(&[]);
+    flight.delay = Box::new(|ask, _| u64::from(matches!(ask.what, What::Open { .. })));
+    flight.tick(&[Order::Resume]);
+    let What::Open { restore, .. } = &flight.open[0].1.what else { panic!("{:?}", flight.open) };
+    assert!(newest.is_some() && *restore == newest);
+}
+
+#[test]
+fn a_plugin_that_fails_three_times_within_a_minute_may_not_drive_again() {
+    let mut flight = Flight::new(config());
+    flight.tick(&[Order::Start]);
+    for _ in 0..3 {
+        flight.planner.fail_at_tick = Some(flight.mission.tick);
+        flight.tick(&[]);
+        flight.tick(&[Order::Resume]);
+    }
+    let barred = |kind: &EventKind| matches!(kind, EventKind::PlannerFailed { fault, .. } if fault.cause == Cause::Quarantined);
+    assert_eq!(count(&flight, barred), 1);
+    flight.tick(&[swap_to("other")]);
+    flight.tick(&[Order::Resume]);
+    flight.fly(200);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+}
+
+/// The answers of a journal, fed into another mission in the ticks in which they arrived.
+fn replay(config: MissionConfig, recorded: &Flight) -> Vec<Event> {
+    let mut again = Flight::new(config);
+    let (mut events, mut answers) = (Vec::new(), RecordedAnswers::default());
+    for (readings, orders) in &recorded.inputs {
+        let tick = again.mission.tick;
+        answers
+            .begin_tick(recorded.events.iter().filter(|event| event.tick == tick).map(|event| &event.kind));
+        again.mission.sense(&Input { readings, orders });
+        loop {
+            std::iter::from_fn(|| again.mission.poll_ask()).for_each(|ask| answers.submit(ask));
+            let Some((_, answer)) = answers.next_answer() else { break };
+            again.mission.answer(answer);
+        }
+        events.extend(again.mission.act().events);
+    }
+    events
+}
+
+fn order(n: u8) -> Order {
+    match n % 7 {
+        0 => Order::Hold,
+        1 => Order::Resume,
+        2 => Order::Step,
+        3 => swap_to("other"),
+        4 => swap_to("straight"),
+        5 => Order::SetParameter { key: "gain".into(), value: ParamValue::Float(f64::from(n)) },
+        _ => Order::Start,
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Delays, losses, faults and orders at random: the robot moves only while it runs, HOLD stops it in its tick, no worker
+    /// has two open asks, and the journal repeats to the bit.
+    #[test]
+    fn whatever_arrives_when_the_rules_hold_and_the_journal_repeats(
+        covers in any::<bool>(),
+        delays in prop::collection::vec(prop_oneof![4 => 0_u64..1, 2 => 1_u64..5, 1 => 20_u64..60], 64),
+        faults in prop::collection::vec(0_u64..400, 0..4),
+        orders in prop::collection::vec((0_u64..400, 0_u8..14), 0..12),
+    ) {
+        let config = if covers { covering() } else { config() };
+        let mut flight = Flight::new(config.clone());
+        flight.planner.snapshots = true;
+        flight.planner.fail_at_ticks.clone_from(&faults);
+        flight.planner.says_much = true;
+        flight.delay = Box::new(move |ask, tick| delays[(ask.id.n as usize * 31 + tick as usize) % delays.len()]);
+        flight.tick(&[Order::Start]);
+        for tick in 1..400 {
+            let now: Vec<Order> =
+                orders.iter().filter(|(at, _)| *at == tick).map(|(_, n)| order(*n)).collect();
+            let before = flight.pose;
+            flight.tick(&now);
+            let holds = now.last() == Some(&Order::Hold);
+            if holds || !matches!(flight.mission.phase(), Phase::Running(_) | Phase::Held(Hold { by: HoldReason::Stepped, .. })) {
+                prop_assert_eq!(flight.pose, before, "{:?}", flight.mission.phase());
+            }
+            let mut open: Vec<_> = flight.open.iter().map(|(_, ask)| ask.id.worker).collect();
+            let n_open = open.len();
+            open.dedup();
+            prop_assert!(n_open <= 2 && open.len() == n_open, "{:?}", flight.open);
+        }
+        let again = replay(config, &flight);
+        for (again, event) in again.iter().zip(&flight.events) {
+            prop_assert_eq!(again, event);
+        }
+        prop_assert_eq!(again.len(), flight.events.len());
+    }
+}

@@ -1,0 +1,158 @@
+//! Stopping has no exception: whatever the mission does and waits for, HOLD keeps the robot still from the tick in which it
+//! arrives, and nothing but an order lets it move again.
+
+use super::{covering::covering, tethered::tethered, *};
+use crate::standing::Resumes;
+
+/// A flight in some state, with whatever would let the robot move again if nobody held it.
+struct Case {
+    name: &'static str,
+    flight: Flight,
+    /// Removes the cause of the hold, or lets the planner answer.
+    clear: fn(&mut Flight),
+}
+
+fn never(_: &Ask, _: u64) -> u64 {
+    u64::MAX / 2
+}
+
+fn at_once(flight: &mut Flight) {
+    flight.delay = Box::new(|_, _| 0);
+    flight.open.iter_mut().for_each(|(due, _)| *due = 0);
+}
+
+fn started(config: MissionConfig) -> Flight {
+    let mut flight = Flight::new(config);
+    flight.tick(&[Order::Start]);
+    flight.fly(10);
+    flight
+}
+
+fn waiting_for(is_unanswered: fn(&Ask) -> bool, config: MissionConfig) -> Flight {
+    let mut flight = Flight::new(config);
+    flight.delay = Box::new(move |ask, tick| if is_unanswered(ask) { never(ask, tick) } else { 0 });
+    flight.tick(&[Order::Start]);
+    flight.fly(5);
+    flight
+}
+
+fn fallback() -> MissionConfig {
+    let choice = PlannerChoice { id: "fallback".into(), parameters: Parameters::new() };
+    MissionConfig { fallback: Some(choice), ..config() }
+}
+
+fn lost() -> Flight {
+    let mut flight = started(MissionConfig { odometry_sigma_per_m: 0.5, ..config() });
+    flight.silent = true;
+    flight.fly(60);
+    flight
+}
+
+fn alarmed() -> Flight {
+    let mut flight = started(config());
+    flight.late_m = vec![1.5];
+    flight.fly(20);
+    flight
+}
+
+/// Held because the hull does not fit back along the cable; the hold ends when it does.
+fn without_way_home() -> Flight {
+    let mut flight = started(tethered(20.0));
+    let hold =
+        Hold { by: HoldReason::Tether { message: "no way home".into() }, resumes: Resumes::WhenCleared };
+    flight.mission.phase = Phase::Held(hold);
+    flight
+}
+
+fn fallback_under_way() -> Flight {
+    let mut flight = started(fallback());
+    flight.planner.fail_at_tick = Some(flight.mission.tick);
+    flight.delay =
+        Box::new(|ask, tick| if matches!(ask.what, What::Open { .. }) { never(ask, tick) } else { 0 });
+    flight.fly(5);
+    flight
+}
+
+fn silent_planner() -> Flight {
+    let mut flight = started(config());
+    flight.delay = Box::new(never);
+    flight.fly(25);
+    flight
+}
+
+fn cases() -> Vec<Case> {
+    let is_open = |ask: &Ask| matches!(ask.what, What::Open { .. });
+    let is_plan = |ask: &Ask| matches!(ask.what, What::Plan(_));
+    let is_step = |ask: &Ask| matches!(ask.what, What::Step(_));
+    let case = |name, flight, clear| Case { name, flight, clear };
+    vec![
+        case("running", started(config()), at_once),
+        case("running, planner opening", waiting_for(is_open, config()), at_once),
+        case("running, plan in the making", waiting_for(is_plan, config()), at_once),
+        case("covering, plan in the making", waiting_for(is_plan, covering()), at_once),
+        case("running, step unanswered", waiting_for(is_step, config()), at_once),
+        case("position lost", lost(), |flight| flight.silent = false),
+        case("ranges contradict", alarmed(), |flight| flight.late_m.clear()),
+        case("no way home", without_way_home(), |_| {}),
+        case("fallback opening", fallback_under_way(), at_once),
+        case("planner silent", silent_planner(), at_once),
+    ]
+}
+
+/// What ways to stop give the mission: HOLD for every key and signal, and the end for leaving.
+#[test]
+fn every_hold_stops_the_robot_in_its_tick_and_for_good() {
+    for Case { name, mut flight, clear } in cases() {
+        assert!(flight.mission.phase().may_move(), "{name}: {:?}", flight.mission.phase());
+        let before = flight.pose;
+        flight.tick(&[Order::Hold]);
+        assert_eq!(flight.pose, before, "{name}: it moved in the tick of HOLD");
+        assert_eq!(flight.held_by(), Some(&HoldReason::Operator), "{name}");
+        clear(&mut flight);
+        flight.fly(80);
+        assert_eq!(flight.pose, before, "{name}: it moved by itself");
+        assert!(!flight.mission.phase().may_move(), "{name}: {:?}", flight.mission.phase());
+        flight.tick(&[Order::Resume]);
+        flight.fly(30);
+        assert!(flight.pose != before, "{name}: an order lets it move: {:?}", flight.mission.phase());
+    }
+}
+
+#[test]
+fn hold_and_another_order_in_one_tick_are_obeyed_in_turn() {
+    for Case { name, mut flight, .. } in cases() {
+        let before = flight.pose;
+        flight.tick(&[Order::Hold, swap_to("other"), Order::Hold]);
+        flight.fly(20);
+        assert_eq!(flight.pose, before, "{name}");
+    }
+    let mut flight = Flight::new(config());
+    let before = flight.pose;
+    flight.tick(&[Order::Start, Order::Hold]);
+    flight.fly(20);
+    assert_eq!(flight.pose, before, "a start that was held in the same tick");
+}
+
+#[test]
+fn leaving_ends_every_mission_in_its_tick_and_closes_every_worker() {
+    for Case { name, mut flight, clear } in cases() {
+        let before = flight.pose;
+        let events = flight.tick(&[Order::Abort]);
+        assert!(matches!(events.last(), Some(EventKind::Ended { outcome: Outcome::Aborted, .. })), "{name}");
+        clear(&mut flight);
+        flight.fly(20);
+        assert_eq!(flight.pose, before, "{name}");
+        assert!(flight.open.is_empty() && !flight.closed.is_empty(), "{name}: {:?}", flight.open);
+    }
+}
+
+#[test]
+fn a_hold_that_only_an_order_ends_keeps_its_reason() {
+    let task = TaskConfig::Goto { goal: Point::new(3.0, 0.0), tolerance_m: 0.0 };
+    let mut flight = started(MissionConfig { task, ..config() });
+    flight.fly(400);
+    assert!(matches!(flight.held_by(), Some(HoldReason::Stuck { .. })));
+    let told = flight.tick(&[Order::Hold]);
+    assert!(told.iter().any(|kind| matches!(kind, EventKind::Ordered { order: Order::Hold })));
+    assert!(matches!(flight.held_by(), Some(HoldReason::Stuck { .. })));
+}

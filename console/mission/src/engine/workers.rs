@@ -1,0 +1,34 @@
+//! The numbers of workers, what is to be told to them, and plugins that failed too often.
+
+mod quarantine;
+
+use crate::ask::{Ask, AskId, What, WorkerId};
+pub(super) use quarantine::{MOST_FAULTS, Quarantine, WINDOW_S};
+use std::collections::VecDeque;
+
+/// Workers of a mission.
+#[derive(Default)]
+pub(super) struct Workers {
+    next: u16,
+    closing: VecDeque<WorkerId>,
+    pub quarantine: Quarantine,
+}
+
+impl Workers {
+    /// A number that no worker had before.
+    pub fn next(&mut self) -> WorkerId {
+        self.next = self.next.wrapping_add(1);
+        WorkerId(self.next)
+    }
+
+    /// Has a worker closed.
+    pub fn close(&mut self, worker: Option<WorkerId>) {
+        self.closing.extend(worker);
+    }
+
+    /// The next worker to close, as an ask; nobody waits for an answer.
+    pub fn poll(&mut self) -> Option<Ask> {
+        let worker = self.closing.pop_front()?;
+        Some(Ask { id: AskId { worker, n: u32::MAX }, what: What::Close })
+    }
+}
