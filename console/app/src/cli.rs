@@ -61,6 +61,10 @@ pub enum Command {
     Verify {
         /// Folder of the run, or its name within the logs.
         run: PathBuf,
+        /// Take the planners' answers from the journal instead of asking the planners again: for a plugin that is not at
+        /// hand. What this proves, and what it does not, is said.
+        #[arg(long)]
+        from_journal: bool,
         #[command(flatten)]
         logs: LogsArg,
     },
@@ -165,6 +169,10 @@ pub struct RunArgs {
     /// Write neither journal nor recording.
     #[arg(long)]
     pub no_record: bool,
+    /// Wait for planners no longer than the console does at the pace of the clock, for authors of planners: a step that is
+    /// not answered within 60 % of a tick is late. The result then depends on the machine; the journal still verifies.
+    #[arg(long)]
+    pub live_deadlines: bool,
     /// Print the report as JSON on stdout, and nothing else.
     #[arg(long)]
     pub json: bool,

@@ -2,6 +2,7 @@
 
 mod crash;
 mod engine;
+mod inbox;
 mod screen;
 mod watch;
 
@@ -10,7 +11,8 @@ use crate::{
     failure::bad_input,
     scenario::Scenario,
 };
-use engine::Engine;
+use engine::{Engine, Line};
+use inbox::{Inbox, Outbox, inbox};
 use planner_host::PluginDirs;
 use screen::{Left, Screen};
 use std::{
@@ -18,12 +20,9 @@ use std::{
     panic::{AssertUnwindSafe, catch_unwind},
     path::Path,
     process::ExitCode,
-    sync::mpsc::{self, Receiver, SyncSender},
 };
 use tui::{Caps, Msg, Speed, terminal};
 
-/// Messages that may wait for the screen; when so many do, the simulation waits.
-const QUEUE: usize = 4096;
 /// How fast a simulated mission goes at first.
 const START_SPEED: Speed = Speed::Times(4.0);
 
@@ -35,11 +34,11 @@ pub fn open(
     drill: Option<Drill>,
 ) -> anyhow::Result<ExitCode> {
     check_terminal()?;
-    let (tell, told) = mpsc::sync_channel(QUEUE);
+    let (tell, told) = inbox();
     let engine = Engine::start(scenario, &logs.logs, plugins, tell.clone(), drill)?;
-    let left = show(&engine, &logs.logs, plugins, (tell, told), drill);
+    let left = show(&engine.line(), &logs.logs, plugins, (tell, told), drill);
     // Whatever happened to the screen, the run is closed in good order.
-    let ended = engine.close(left.as_ref().ok().and_then(|left| left.signal));
+    let ended = engine.close(left.as_ref().is_ok_and(|left| left.signal.is_some()));
     Ok(left?.say_goodbye(ended?.as_ref()))
 }
 
@@ -56,23 +55,22 @@ fn check_terminal() -> anyhow::Result<()> {
 }
 
 fn show(
-    engine: &Engine,
+    engine: &Line,
     logs: &Path,
     plugins: &PluginDirs,
-    (tell, told): (SyncSender<Msg>, Receiver<Msg>),
+    (tell, told): (Outbox, Inbox),
     drill: Option<Drill>,
 ) -> anyhow::Result<Left> {
     let caps = Caps::from_env(|name| std::env::var(name).ok());
     let mourner = tell.clone();
     terminal::install_panic_hook(move |thread, message| {
         let news = Msg::ThreadPanicked { thread: thread.into(), message: message.into() };
-        // A full queue must not stop a thread that is going down.
-        let _ = mourner.try_send(news);
+        mourner.urge(news);
     });
-    let mut screen = Screen::open(caps, told, engine, drill)?;
+    let mut screen = Screen::open(caps, told, engine.clone(), drill)?;
     watch::keys(&tell)?;
-    watch::signals(&tell)?;
-    watch::terminal(&tell)?;
+    watch::signals(&tell, engine.clone())?;
+    watch::terminal(&tell, engine.clone())?;
     watch::planners(plugins, &tell)?;
     drop(tell);
     let ran = catch_unwind(AssertUnwindSafe(|| screen.run()));

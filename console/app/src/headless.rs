@@ -4,8 +4,11 @@ use crate::{
     accuracy::warn_of_clearance,
     cli::{LogsArg, RunArgs},
     failure::{COMPLETE, ENDED_OTHERWISE},
-    flight::{Flight, Pace},
+    answers::{InOrder, Window, Windowed},
+    flight::Flight,
     output::{say, say_line},
+    plan::patient,
+    plan_watch::{PlanWatch, Watched},
     progress,
     run_folder::RunFolder,
     scenario::Scenario,
@@ -14,10 +17,11 @@ use crate::{
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use mission::{Event, EventKind, Order, Outcome, Phase};
-use planner_host::PluginDirs;
+use planner_host::{Host, HostConfig, PluginDirs};
 use recording::{JournalWriter, Options, RunRecorder};
-use report::{Fold, Logs, Summary};
+use report::{Fold, Logs, PlannerCalls, Summary};
 use std::{
+    collections::VecDeque,
     io::IsTerminal,
     process::ExitCode,
     time::{Duration, Instant},
@@ -33,12 +37,15 @@ pub struct Telling {
     pub json: bool,
     /// A journal and a recording are written.
     pub record: bool,
+    /// Answers that come later than the console would wait for are late, as they are there.
+    pub live_deadlines: bool,
 }
 
 /// `tankops run`.
 pub fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = crate::read_scenario(&args.scenario, &args.changes)?;
-    fly(&scenario, plugins, &args.logs, Telling { json: args.json, record: !args.no_record })
+    let (json, record, live_deadlines) = (args.json, !args.no_record, args.live_deadlines);
+    fly(&scenario, plugins, &args.logs, Telling { json, record, live_deadlines })
 }
 
 /// Flies a scenario to its end and tells the result.
@@ -51,7 +58,7 @@ pub fn fly(
     crate::planners::check_choices(scenario, plugins)?;
     warn_of_clearance(scenario);
     let began = Instant::now();
-    let mut flight = Flight::prepare(scenario, false, plugins, Pace::Batch);
+    let flight = Flight::prepare(scenario, false);
     let folder = telling
         .record
         .then(|| RunFolder::create(&logs.logs, &scenario.name, &scenario.mission.planner.id, scenario.seed))
@@ -61,14 +68,13 @@ pub fn fly(
         None => RunRecorder::spawn(JournalWriter::unwritten(began), None)?,
     };
     let bar = progress_bar(scenario, telling);
-    flight.tell_plans(progress::shown_in(&bar));
-    let (flight, fold) = fly_to_end(flight, &recorder, &bar);
+    let (host, fold) = fly_to_end(flight, host(scenario, plugins), &recorder, &bar, telling.live_deadlines);
     bar.finish_and_clear();
     let finished = recorder.finish(CLOSE_TIMEOUT);
     let summary = Summary {
         wall_time_s: Some(began.elapsed().as_secs_f64()),
         events_sha256: finished.events_sha256,
-        planner_calls: Some(flight.planner_calls()),
+        planner_calls: Some(planner_calls(&host)),
         logs: folder.is_some().then(|| Logs {
             journal: finished.journal.map(|path| path.display().to_string()),
             recording: finished.recording.map(|path| path.display().to_string()),
@@ -83,9 +89,19 @@ pub fn fly(
     Ok(exit_code(&summary))
 }
 
-fn fly_to_end(mut flight: Flight, recorder: &RunRecorder, bar: &ProgressBar) -> (Flight, Fold) {
+/// Flies to the end; every ask is answered before time moves on, or within the console's windows.
+fn fly_to_end(
+    mut flight: Flight,
+    mut host: Host,
+    recorder: &RunRecorder,
+    bar: &ProgressBar,
+    live_deadlines: bool,
+) -> (Host, Fold) {
     let stop = stop_signal::listen();
-    flight.stop_planning_on(stop.flag());
+    stop.ring(host.doorbell());
+    let (on_work, on_progress) = progress::shown_in(bar, host.plan_budget());
+    host.tell_progress(on_progress);
+    let (mut watch, mut open) = (PlanWatch::telling(on_work), VecDeque::new());
     let mut fold = Fold::new();
     let mut take = |events: Vec<Event>| {
         for event in &events {
@@ -100,10 +116,32 @@ fn fly_to_end(mut flight: Flight, recorder: &RunRecorder, bar: &ProgressBar) -> 
         if stop.requested() {
             orders.push(Order::Abort);
         }
-        take(flight.tick(&orders));
+        let window = Window::real_time(flight.tick_length());
+        take(if live_deadlines {
+            flight.tick(&orders, &mut Watched::new(Windowed::new(&mut host, window), &mut watch))
+        } else {
+            flight.tick(&orders, &mut Watched::new(InOrder::new(&mut host, &mut open), &mut watch))
+        });
         orders.clear();
     }
-    (flight, fold)
+    (host, fold)
+}
+
+/// A host for the planners of a scenario.
+pub fn host(scenario: &Scenario, plugins: &PluginDirs) -> Host {
+    Host::new(plugins, patient(HostConfig::default(), &scenario.mission))
+}
+
+/// Figures about the planners' calls, by the wall clock.
+pub fn planner_calls(host: &Host) -> PlannerCalls {
+    let stats = host.stats();
+    PlannerCalls {
+        plan: stats.plan.calls,
+        step: stats.step.calls,
+        p50_us: stats.step.p50_us,
+        p99_us: stats.step.p99_us,
+        faults: stats.faults,
+    }
 }
 
 fn progress_bar(scenario: &Scenario, telling: Telling) -> ProgressBar {

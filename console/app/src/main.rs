@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod again;
+mod answers;
 mod cli;
 mod console;
 mod drawing;
@@ -11,6 +12,7 @@ mod headless;
 mod output;
 mod past_runs;
 mod plan;
+mod plan_watch;
 mod planners;
 mod progress;
 mod reproduce;
@@ -76,7 +78,7 @@ fn by_default(plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     if std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
         return console::open(&scenario, &logs, plugins, None);
     }
-    headless::fly(&scenario, plugins, &logs, headless::Telling { json: false, record: true })
+    headless::fly(&scenario, plugins, &logs, headless::Telling { json: false, record: true, live_deadlines: false })
 }
 
 fn demo() -> anyhow::Result<Scenario> {

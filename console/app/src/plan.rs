@@ -4,7 +4,6 @@ use crate::{
     cli::PlanArgs,
     drawing::planned::{Drawn, svg},
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
-    flight::Planning,
     output::{say, say_line},
     progress,
     scenario::Scenario,

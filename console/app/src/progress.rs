@@ -1,8 +1,8 @@
 //! What a terminal on stderr shows while something takes its time.
 
-use crate::flight::{OnPlan, PlanNews, Planning};
+use crate::plan_watch::OnWork;
 use indicatif::{ProgressBar, ProgressStyle};
-use planner_host::Progress;
+use planner_host::{OnProgress, Progress};
 use std::{
     io::IsTerminal,
     sync::{Arc, Mutex, PoisonError},
@@ -13,11 +13,11 @@ use std::{
 const EVERY: Duration = Duration::from_millis(250);
 
 /// Says what is going on, for how long already and at most; nothing where stderr is no terminal.
-pub fn spinner(planning: &Planning) -> ProgressBar {
+pub fn spinner(work: &str, within: Duration) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let spinner = ProgressBar::new_spinner().with_message(words(planning));
+    let spinner = ProgressBar::new_spinner().with_message(words(work, within));
     let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed} so far");
     let spinner = spinner.with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
     spinner.enable_steady_tick(EVERY);
@@ -25,39 +25,36 @@ pub fn spinner(planning: &Planning) -> ProgressBar {
 }
 
 /// Shows how far a plan is.
-pub fn show_share(bar: &ProgressBar, planning: &Planning, progress: &Progress) {
+pub fn show_share(bar: &ProgressBar, work: &str, progress: &Progress) {
     if !bar.is_hidden() {
-        bar.set_message(format!("{}: {}", words(planning), share(progress)));
+        bar.set_message(format!("{work}: {}", share(progress)));
     }
 }
 
-/// Shows plans that are being made in the bar of something larger.
-pub fn shown_in(bar: &ProgressBar) -> OnPlan {
-    let bar = bar.clone();
-    let at_hand: Mutex<Option<Planning>> = Mutex::default();
-    Arc::new(move |news| {
-        let mut at_hand = at_hand.lock().unwrap_or_else(PoisonError::into_inner);
-        match news {
-            PlanNews::Begun(planning) if !bar.is_hidden() => {
-                bar.set_message(words(&planning));
-                bar.enable_steady_tick(EVERY);
-                *at_hand = Some(planning);
-            }
-            PlanNews::Begun(_) => {}
-            PlanNews::Progress(progress) => {
-                at_hand.iter().for_each(|planning| show_share(&bar, planning, &progress));
-            }
-            PlanNews::Done => {
-                *at_hand = None;
-                bar.disable_steady_tick();
-                bar.set_message("");
-            }
+/// What planners do that takes its time, shown in the bar of something larger: the work, and how far it is.
+pub fn shown_in(bar: &ProgressBar, within: Duration) -> (OnWork, OnProgress) {
+    let at_hand: Arc<Mutex<String>> = Arc::default();
+    let (shown, work) = (bar.clone(), Arc::clone(&at_hand));
+    let on_work: OnWork = Box::new(move |words_of| {
+        let mut work = work.lock().unwrap_or_else(PoisonError::into_inner);
+        *work = words_of.unwrap_or_default().to_owned();
+        if words_of.is_none() {
+            shown.disable_steady_tick();
+            shown.set_message("");
+        } else if !shown.is_hidden() {
+            shown.set_message(words(&work, within));
+            shown.enable_steady_tick(EVERY);
         }
-    })
+    });
+    let shown = bar.clone();
+    let on_progress: OnProgress = Arc::new(move |_, progress| {
+        show_share(&shown, &at_hand.lock().unwrap_or_else(PoisonError::into_inner), progress);
+    });
+    (on_work, on_progress)
 }
 
-fn words(planning: &Planning) -> String {
-    format!("{}, {} s at most", planning.work, planning.within.as_secs())
+fn words(work: &str, within: Duration) -> String {
+    format!("{work}, {} s at most", within.as_secs())
 }
 
 /// Only the end of a plan makes it whole.

@@ -1,9 +1,19 @@
 //! Being asked to stop from outside: SIGINT, SIGTERM, SIGHUP.
 
-use std::sync::{
-    Arc,
-    atomic::{AtomicBool, Ordering},
+use planner_host::Doorbell;
+use signal_hook::{
+    consts::{SIGHUP, SIGINT, SIGTERM},
+    iterator::Signals,
 };
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+};
+
+const SIGNALS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
 
 /// Whether somebody asked this process to stop.
 #[derive(Debug, Clone)]
@@ -15,6 +25,14 @@ impl StopSignal {
         Arc::clone(&self.0)
     }
 
+    /// Rings a doorbell at every signal, so that whoever waits for planners looks up.
+    pub fn ring(&self, doorbell: Doorbell) {
+        let Ok(mut signals) = Signals::new(SIGNALS) else { return };
+        let ringing = move || signals.forever().for_each(|_| doorbell.ring());
+        // Without the thread the signal is noticed when the planner answers.
+        drop(thread::Builder::new().name("stop signal".into()).spawn(ringing));
+    }
+
     /// Whether a signal has come since listening began.
     pub fn requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)
@@ -24,7 +42,7 @@ impl StopSignal {
 /// Listens from now on; the first signal asks, a second one of the same kind ends the process at once.
 pub fn listen() -> StopSignal {
     let asked = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM, signal_hook::consts::SIGHUP] {
+    for signal in SIGNALS {
         // The order matters: the second signal finds the flag set by the first.
         let registered =
             signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&asked))

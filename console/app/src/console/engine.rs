@@ -1,27 +1,30 @@
 //! The thread that flies: takes orders, keeps the pace, hands every event to recorder, report and screen.
+//!
+//! It never waits in a planner or for the screen. Whatever it waits for (the next tick, an answer, room in the screen's
+//! inbox), an order to hold or to end ends the wait at once.
 
+use super::inbox::Outbox;
 use crate::{
+    answers::{Window, Windowed},
     cli::Drill,
-    flight::{Flight, Pace, PlanNews},
-    headless::CLOSE_TIMEOUT,
+    flight::Flight,
+    headless::{self, CLOSE_TIMEOUT},
+    plan_watch::{PlanWatch, Watched},
     run_folder::RunFolder,
     scenario::Scenario,
 };
-use mission::{Event, Order, Phase};
-use planner_host::{PluginDirs, Progress};
+use mission::{Awaits, Event, Order, Phase};
+use planner_host::{Doorbell, Host, PluginDirs, Progress};
 use recording::{Options, RunRecorder};
 use report::{Fold, Logs, Summary};
 use std::{
     path::{Path, PathBuf},
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-        mpsc::{self, Receiver, RecvTimeoutError, Sender, SyncSender},
-    },
+    sync::Arc,
+    sync::mpsc::{self, Receiver, RecvTimeoutError, Sender},
     thread::{self, JoinHandle},
     time::{Duration, Instant},
 };
-use tui::{Msg, Signal, Speed};
+use tui::{Msg, Speed};
 
 /// How often the screen hears how the recorder is doing.
 const HEALTH_PERIOD: Duration = Duration::from_millis(500);
@@ -29,6 +32,10 @@ const HEALTH_PERIOD: Duration = Duration::from_millis(500);
 const MOST_LATE: Duration = Duration::from_millis(50);
 /// How long a process that was told to end may take to close the recording.
 const HURRY: Duration = Duration::from_millis(900);
+/// With so many messages waiting for the screen the simulation waits for it.
+const MOST_BACKLOG: usize = 512;
+/// How long it waits then before it looks again, unless an order comes.
+const LOOK_AGAIN: Duration = Duration::from_millis(2);
 
 /// What the engine is told.
 enum Request {
@@ -42,10 +49,36 @@ enum Request {
 
 /// The flying thread, seen from outside.
 pub struct Engine {
-    requests: Sender<Request>,
+    line: Line,
     thread: JoinHandle<anyhow::Result<Option<Ended>>>,
-    /// Set when no plan is wanted any more: the mission is to end.
-    stop_planning: Arc<AtomicBool>,
+}
+
+/// A line to the engine, for every thread that may have to stop the robot.
+#[derive(Clone)]
+pub struct Line {
+    requests: Sender<Request>,
+    doorbell: Doorbell,
+}
+
+impl Line {
+    /// Hands an order to the mission; it enters with the next tick. What stops the robot makes that tick begin now.
+    pub fn order(&self, order: Order) {
+        let is_urgent = matches!(order, Order::Hold | Order::Abort);
+        self.request(Request::Order(order), is_urgent);
+    }
+
+    /// Changes the pace.
+    pub fn speed(&self, speed: Speed) {
+        self.request(Request::Speed(speed), false);
+    }
+
+    fn request(&self, request: Request, is_urgent: bool) {
+        // An engine that has ended has told the screen why.
+        let _ = self.requests.send(request);
+        if is_urgent {
+            self.doorbell.ring();
+        }
+    }
 }
 
 /// A run that was flown.
@@ -62,48 +95,43 @@ impl Engine {
         scenario: &Scenario,
         logs: &Path,
         plugins: &PluginDirs,
-        tell: SyncSender<Msg>,
+        screen: Outbox,
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
         let (requests, asked) = mpsc::channel();
-        let mut flight = Flight::prepare(scenario, true, plugins, Pace::Live);
-        let stop_planning = Arc::new(AtomicBool::new(false));
-        flight.stop_planning_on(Arc::clone(&stop_planning));
-        let screen = tell.clone();
-        flight.tell_plans(Arc::new(move |news| tell_plan(&screen, news)));
-        let cockpit = Cockpit {
+        let mut host = headless::host(scenario, plugins);
+        let line = Line { requests, doorbell: host.doorbell() };
+        let progress = screen.clone();
+        host.tell_progress(Arc::new(move |_, Progress { share, what }| {
+            progress.tell(Msg::BusyAt { share: *share, what: what.clone() });
+        }));
+        let engine = EngineThread {
             scenario: scenario.clone(),
             logs: logs.to_path_buf(),
-            flight,
+            flight: Flight::prepare(scenario, true),
+            host,
+            watch: PlanWatch::default(),
+            shown_work: None,
             asked,
-            tell,
+            screen,
             speed: super::START_SPEED,
+            early: Vec::new(),
             log: None,
             drill,
         };
-        let thread = thread::Builder::new().name("engine".into()).spawn(move || cockpit.fly())?;
-        Ok(Self { requests, thread, stop_planning })
+        let thread = thread::Builder::new().name("engine".into()).spawn(move || engine.fly())?;
+        Ok(Self { line, thread })
     }
 
-    /// Hands an order to the mission; it enters with the next tick.
-    pub fn order(&self, order: Order) {
-        if order == Order::Abort {
-            self.stop_planning.store(true, Ordering::Relaxed);
-        }
-        // An engine that has ended has told the screen why.
-        let _ = self.requests.send(Request::Order(order));
-    }
-
-    /// Changes the pace.
-    pub fn speed(&self, speed: Speed) {
-        let _ = self.requests.send(Request::Speed(speed));
+    /// A line to the engine.
+    pub fn line(&self) -> Line {
+        self.line.clone()
     }
 
     /// Ends the run, closes its files and waits for that; a process that was told to end by a signal hurries.
-    pub fn close(self, signal: Option<Signal>) -> anyhow::Result<Option<Ended>> {
-        self.stop_planning.store(true, Ordering::Relaxed);
-        let within = if signal.is_some() { HURRY } else { CLOSE_TIMEOUT };
-        let _ = self.requests.send(Request::Close { within });
+    pub fn close(self, hurry: bool) -> anyhow::Result<Option<Ended>> {
+        let within = if hurry { HURRY } else { CLOSE_TIMEOUT };
+        self.line.request(Request::Close { within }, true);
         self.thread
             .join()
             .unwrap_or_else(|panic| Err(anyhow::anyhow!("the engine panicked: {}", words(&*panic))))
@@ -116,13 +144,19 @@ fn words(panic: &(dyn std::any::Any + Send)) -> String {
 }
 
 /// Everything the thread owns.
-struct Cockpit {
+struct EngineThread {
     scenario: Scenario,
     logs: PathBuf,
     flight: Flight,
+    host: Host,
+    watch: PlanWatch,
+    /// The planners' work that the screen shows.
+    shown_work: Option<String>,
     asked: Receiver<Request>,
-    tell: SyncSender<Msg>,
+    screen: Outbox,
     speed: Speed,
+    /// What happened before the mission was started; it is written down when it is.
+    early: Vec<Event>,
     log: Option<RunLog>,
     drill: Option<Drill>,
 }
@@ -137,7 +171,7 @@ struct RunLog {
     ended: Option<Summary>,
 }
 
-impl Cockpit {
+impl EngineThread {
     fn fly(mut self) -> anyhow::Result<Option<Ended>> {
         self.tell_events(&[self.flight.opened()]);
         let mut due = Instant::now();
@@ -153,16 +187,24 @@ impl Cockpit {
         }
     }
 
-    /// Whether ticks pass by themselves.
+    /// Whether ticks pass by themselves: the mission is under way, or a planner is being prepared for it.
     fn is_under_way(&self) -> bool {
-        self.log.is_some() && !matches!(self.flight.phase(), Phase::Waiting | Phase::Ended(_))
+        match self.flight.phase() {
+            Phase::Waiting => self.flight.mission().awaits() != Awaits::Nothing,
+            Phase::Running(_) | Phase::Held(_) => true,
+            Phase::Ended(_) => false,
+        }
     }
 
     /// Waits for the next tick, or, while no ticks pass, for a request; gives the orders that came and whether to
     /// close.
     fn wait_until(&mut self, due: Instant) -> (Vec<Order>, Option<Duration>) {
+        // What rings from here on has not been taken yet.
+        self.host.clear_doorbell();
         let mut orders = Vec::new();
         loop {
+            let is_behind = self.screen.backlog() > MOST_BACKLOG;
+            let due = if is_behind { due.max(Instant::now() + LOOK_AGAIN) } else { due };
             let wait = due.saturating_duration_since(Instant::now());
             let request = if self.is_under_way() {
                 self.asked.recv_timeout(wait)
@@ -172,53 +214,71 @@ impl Cockpit {
                 return (orders, None);
             };
             match request {
-                // A hold does not wait for the tick that is due: the tick comes now.
-                Ok(Request::Order(Order::Hold)) => {
-                    orders.push(Order::Hold);
+                // What stops the robot does not wait for the tick that is due: the tick comes now.
+                Ok(Request::Order(order @ (Order::Hold | Order::Abort))) => {
+                    orders.push(order);
                     return (orders, None);
                 }
                 Ok(Request::Order(order)) => orders.push(order),
                 Ok(Request::Speed(speed)) => self.speed = speed,
                 Ok(Request::Close { within }) => return (orders, Some(within)),
+                Err(RecvTimeoutError::Timeout) if is_behind => {}
                 Err(RecvTimeoutError::Timeout) => return (orders, None),
                 Err(RecvTimeoutError::Disconnected) => return (orders, Some(CLOSE_TIMEOUT)),
             }
         }
     }
 
-    /// When the tick after this one is due; time that was lost is not made up for by rushing.
+    /// When the tick after this one is due; time that was lost is not made up for by rushing. While the robot stands for
+    /// a planner's work, mission time passes no faster than the clock.
     fn next_due(&self, due: Instant) -> Instant {
         let now = Instant::now();
+        let tick = self.flight.tick_length();
+        let pace = match self.speed {
+            _ if self.flight.mission().awaits() == Awaits::Work => tick,
+            Speed::Times(factor) => tick.div_f64(factor),
+            Speed::Max => return now,
+        };
+        if now.saturating_duration_since(due) < MOST_LATE { due + pace } else { now + pace }
+    }
+
+    /// How long a tick waits for answers at this pace.
+    fn window(&self) -> Window {
+        let tick = self.flight.tick_length();
         match self.speed {
-            Speed::Times(factor) if now.saturating_duration_since(due) < MOST_LATE => {
-                due + self.flight.tick_length().div_f64(factor)
-            }
-            Speed::Times(factor) => now + self.flight.tick_length().div_f64(factor),
-            Speed::Max => now,
+            Speed::Times(factor) if factor <= 1.0 => Window::real_time(tick),
+            Speed::Times(_) => Window::faster(tick),
+            Speed::Max => Window::unbounded(tick),
         }
     }
 
     fn tick(&mut self, orders: &[Order]) -> anyhow::Result<()> {
-        if self.log.is_none() && orders.contains(&Order::Start) {
+        let window = self.window();
+        let answers = Windowed::new(&mut self.host, window);
+        let events = self.flight.tick(orders, &mut Watched::new(answers, &mut self.watch));
+        if self.log.is_none() && *self.flight.phase() != Phase::Waiting {
             self.open_log()?;
         }
-        let slow = orders.iter().any(may_take_long);
-        if slow {
-            self.say(Msg::Busy(Some(("starting".into(), None))));
-        }
-        let events = self.flight.tick(orders);
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
         assert!(!failing, "drill: the engine fails on purpose");
-        if slow {
-            self.say(Msg::Busy(None));
-        }
         self.keep(&events);
+        self.tell_work();
         self.tell_events(&events);
         self.tell_health();
         if matches!(self.flight.phase(), Phase::Ended(_)) {
             self.close_log(CLOSE_TIMEOUT);
         }
         Ok(())
+    }
+
+    /// Tells the screen what planners are doing beyond this tick.
+    fn tell_work(&mut self) {
+        let work = self.watch.current().map(str::to_owned);
+        if work != self.shown_work {
+            let within_s = self.host.plan_budget().as_secs_f64();
+            self.say(Msg::Busy(work.clone().map(|work| (work, Some(within_s)))));
+            self.shown_work = work;
+        }
     }
 
     fn open_log(&mut self) -> anyhow::Result<()> {
@@ -235,11 +295,13 @@ impl Cockpit {
             ended: None,
         });
         self.keep(&[self.flight.opened()]);
+        let early = std::mem::take(&mut self.early);
+        self.keep(&early);
         Ok(())
     }
 
     fn keep(&mut self, events: &[Event]) {
-        let Some(log) = &mut self.log else { return };
+        let Some(log) = &mut self.log else { return self.early.extend_from_slice(events) };
         for event in events {
             log.fold.apply(event);
         }
@@ -267,7 +329,7 @@ impl Cockpit {
         let summary = Summary {
             wall_time_s: Some(log.began.elapsed().as_secs_f64()),
             events_sha256: finished.events_sha256,
-            planner_calls: Some(self.flight.planner_calls()),
+            planner_calls: Some(headless::planner_calls(&self.host)),
             logs: Some(Logs {
                 journal: finished.journal.map(|path| path.display().to_string()),
                 recording: finished.recording.map(|path| path.display().to_string()),
@@ -283,8 +345,9 @@ impl Cockpit {
     }
 
     fn close(mut self, within: Duration) -> Option<Ended> {
-        if self.is_under_way() {
-            let events = self.flight.tick(&[Order::Abort]);
+        if matches!(self.flight.phase(), Phase::Running(_) | Phase::Held(_)) {
+            let answers = Windowed::new(&mut self.host, Window::real_time(Duration::ZERO));
+            let events = self.flight.tick(&[Order::Abort], &mut Watched::new(answers, &mut self.watch));
             self.keep(&events);
         }
         self.close_log(within);
@@ -300,22 +363,6 @@ impl Cockpit {
 
     fn say(&self, message: Msg) {
         // A screen that is gone needs no news.
-        let _ = self.tell.send(message);
+        self.screen.tell(message);
     }
-}
-
-/// Tells the screen of a plan that is being made.
-fn tell_plan(screen: &SyncSender<Msg>, news: PlanNews) {
-    // A screen that is gone needs no news, and one that is slow can do without some of the progress: the plan waits.
-    let _ = match news {
-        PlanNews::Begun(planning) => {
-            screen.send(Msg::Busy(Some((planning.work, Some(planning.within.as_secs_f64()))))).is_ok()
-        }
-        PlanNews::Progress(Progress { share, what }) => screen.try_send(Msg::BusyAt { share, what }).is_ok(),
-        PlanNews::Done => screen.send(Msg::Busy(None)).is_ok(),
-    };
-}
-
-fn may_take_long(order: &Order) -> bool {
-    matches!(order, Order::Start | Order::Resume | Order::ChoosePlanner(_) | Order::SetParameter { .. })
 }

@@ -1,16 +1,18 @@
 //! The drawing thread: messages in, model updated, effects carried out, a frame when something changed.
 
-use super::engine::{Ended, Engine};
+use super::{
+    engine::{Ended, Line},
+    inbox::Inbox,
+};
 use crate::{
     cli::Drill,
     failure::{COMPLETE, ENDED_OTHERWISE},
 };
 use anyhow::Context;
-use mission::Outcome;
+use mission::{EventKind, Outcome};
 use std::{
     io::Write,
     process::ExitCode,
-    sync::mpsc::{Receiver, RecvTimeoutError},
     time::{Duration, Instant, SystemTime},
 };
 use tui::{Caps, Effect, Health, Model, Msg, Recording, Signal, Times, terminal::TerminalGuard, update};
@@ -23,17 +25,18 @@ const BURST_TIME: Duration = Duration::from_millis(5);
 const KEY_FRAME: Duration = Duration::from_millis(8);
 
 /// The screen while the console is open.
-pub struct Screen<'a> {
+pub struct Screen {
     terminal: TerminalGuard,
     model: Model,
     caps: Caps,
-    told: Receiver<Msg>,
-    engine: &'a Engine,
+    inbox: Inbox,
+    engine: Line,
     began: Instant,
     drawn: Instant,
     frame_interval: Duration,
     dirty: bool,
-    key_seen: bool,
+    /// Whether the operator waits for something that the next frame shows.
+    answer_seen: bool,
     drill: Option<Drill>,
 }
 
@@ -44,12 +47,12 @@ pub struct Left {
     pub signal: Option<Signal>,
 }
 
-impl<'a> Screen<'a> {
+impl Screen {
     /// Takes the terminal over.
     pub fn open(
         caps: Caps,
-        told: Receiver<Msg>,
-        engine: &'a Engine,
+        inbox: Inbox,
+        engine: Line,
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
         let terminal = TerminalGuard::enter().context("taking over the terminal")?;
@@ -62,14 +65,14 @@ impl<'a> Screen<'a> {
             terminal,
             model,
             caps,
-            told,
+            inbox,
             engine,
             began: now,
             drawn: now,
             // A slow line gets fewer frames.
             frame_interval: Duration::from_millis(if caps.ssh { 100 } else { 33 }),
             dirty: true,
-            key_seen: true,
+            answer_seen: true,
             drill,
         })
     }
@@ -93,51 +96,38 @@ impl<'a> Screen<'a> {
 
     /// Shortest time between the last frame and the next.
     fn pause(&self) -> Duration {
-        if self.key_seen { KEY_FRAME } else { self.frame_interval }
+        if self.answer_seen { KEY_FRAME } else { self.frame_interval }
     }
 
     /// Waits for a message, then takes in what else is there.
     fn take_burst(&mut self) -> anyhow::Result<Option<Left>> {
-        let Some(first) = self.wait()? else {
-            self.tell_time();
-            self.dirty = true;
-            return Ok(None);
-        };
+        let first = self.wait();
         self.tell_time();
+        self.dirty = true;
         let until = Instant::now() + BURST_TIME;
-        let mut next = Some(first);
+        let mut next = first;
         for _ in 0..BURST {
             let Some(msg) = next else { break };
-            self.key_seen |= matches!(msg, Msg::Key(_) | Msg::Paste(_) | Msg::Resize { .. });
-            self.dirty = true;
+            self.answer_seen |= is_answer(&msg);
             for effect in update(&mut self.model, msg) {
                 if let Some(left) = self.carry_out(effect)? {
                     return Ok(Some(left));
                 }
             }
-            next = if Instant::now() < until { self.told.try_recv().ok() } else { None };
+            let now = Instant::now();
+            next = if now < until { self.inbox.next(Some(now)) } else { None };
         }
         Ok(None)
     }
 
     /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.
-    fn wait(&self) -> anyhow::Result<Option<Msg>> {
-        let frame = self.dirty.then(|| self.pause().saturating_sub(self.drawn.elapsed()));
-        let by_itself = self
-            .model
-            .wakes_at_mono_s()
-            .map(|at| Duration::from_secs_f64((at - self.began.elapsed().as_secs_f64()).max(0.001)));
-        let answer = match frame.into_iter().chain(by_itself).min() {
-            Some(timeout) => self.told.recv_timeout(timeout),
-            None => self.told.recv().map_err(|_| RecvTimeoutError::Disconnected),
-        };
-        match answer {
-            Ok(msg) => Ok(Some(msg)),
-            Err(RecvTimeoutError::Timeout) => Ok(None),
-            Err(RecvTimeoutError::Disconnected) => {
-                anyhow::bail!("all other threads of the console have ended")
-            }
-        }
+    fn wait(&self) -> Option<Msg> {
+        let frame = self.dirty.then(|| self.drawn + self.pause());
+        let by_itself =
+            self.model.wakes_at_mono_s().map(|at_s| self.began + Duration::from_secs_f64(at_s.max(0.0)));
+        // By itself the screen changes a little after the moment, so that the moment has passed then.
+        let by_itself = by_itself.map(|at| at + Duration::from_millis(1));
+        self.inbox.next(frame.into_iter().chain(by_itself).min())
     }
 
     fn tell_time(&mut self) {
@@ -174,8 +164,17 @@ impl<'a> Screen<'a> {
         assert!(!failing, "drill: the screen fails on purpose");
         let (model, caps) = (&self.model, &self.caps);
         self.terminal.draw(|frame| tui::view(model, caps, frame)).context("drawing")?;
-        (self.drawn, self.dirty, self.key_seen) = (Instant::now(), false, false);
+        (self.drawn, self.dirty, self.answer_seen) = (Instant::now(), false, false);
         Ok(())
+    }
+}
+
+/// Whether an operator waits to see this: a key, or that the robot was stopped.
+fn is_answer(msg: &Msg) -> bool {
+    match msg {
+        Msg::Key(_) | Msg::Paste(_) | Msg::Resize { .. } | Msg::Signal(_) => true,
+        Msg::Events(events) => events.iter().any(|event| matches!(event.kind, EventKind::Held { .. })),
+        _ => false,
     }
 }
 

@@ -1,6 +1,8 @@
 //! The threads that only listen: keys, signals, a terminal that goes away, the survey of planners.
 
+use super::{engine::Line, inbox::Outbox};
 use anyhow::Context;
+use mission::Order;
 use crossterm::event::{self, Event};
 use planner_host::PluginDirs;
 use rustix::event::{PollFd, PollFlags, poll};
@@ -8,14 +10,14 @@ use signal_hook::{
     consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP},
     iterator::Signals,
 };
-use std::{sync::mpsc::SyncSender, thread, time::Duration};
+use std::{thread, time::Duration};
 use tui::{Msg, Refused, Signal, terminal};
 
 /// How long the console may take to leave in good order after a signal; then it leaves anyway.
 const GRACE: Duration = Duration::from_secs(1);
 
 /// Keys, pastes and sizes.
-pub fn keys(tell: &SyncSender<Msg>) -> anyhow::Result<()> {
+pub fn keys(tell: &Outbox) -> anyhow::Result<()> {
     let tell = tell.clone();
     spawn("keys", move || {
         while let Ok(event) = event::read() {
@@ -25,7 +27,7 @@ pub fn keys(tell: &SyncSender<Msg>) -> anyhow::Result<()> {
                 Event::Resize(width, height) => Some(Msg::Resize { width, height }),
                 Event::FocusGained | Event::FocusLost | Event::Mouse(_) => None,
             };
-            if msg.is_some_and(|msg| tell.send(msg).is_err()) {
+            if msg.is_some_and(|msg| !tell.urge(msg)) {
                 return;
             }
         }
@@ -33,7 +35,7 @@ pub fn keys(tell: &SyncSender<Msg>) -> anyhow::Result<()> {
 }
 
 /// Signals; one that ends the process ends it within [`GRACE`], whatever the other threads do.
-pub fn signals(tell: &SyncSender<Msg>) -> anyhow::Result<()> {
+pub fn signals(tell: &Outbox, line: Line) -> anyhow::Result<()> {
     let tell = tell.clone();
     let mut signals =
         Signals::new([SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT]).context("listening to signals")?;
@@ -46,7 +48,11 @@ pub fn signals(tell: &SyncSender<Msg>) -> anyhow::Result<()> {
                 SIGCONT => Signal::Continue,
                 _ => Signal::Interrupt,
             };
-            if tell.send(Msg::Signal(signal)).is_err() {
+            // The robot is stopped from here, whatever the screen is doing.
+            if signal != Signal::Continue {
+                line.order(Order::Hold);
+            }
+            if !tell.urge(Msg::Signal(signal)) {
                 return;
             }
             if matches!(signal, Signal::Terminate | Signal::Hangup) {
@@ -63,7 +69,7 @@ fn leave_in_any_case(signal: i32) {
 }
 
 /// A terminal that is closed while SIGHUP is ignored, as under nohup, is noticed here.
-pub fn terminal(tell: &SyncSender<Msg>) -> anyhow::Result<()> {
+pub fn terminal(tell: &Outbox, line: Line) -> anyhow::Result<()> {
     let tell = tell.clone();
     spawn("terminal", move || {
         let stdin = std::io::stdin();
@@ -72,7 +78,8 @@ pub fn terminal(tell: &SyncSender<Msg>) -> anyhow::Result<()> {
             let waited = poll(&mut watched, None);
             let gone = watched[0].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL);
             if waited.is_ok() && gone {
-                let _ = tell.send(Msg::Signal(Signal::Hangup));
+                line.order(Order::Hold);
+                tell.urge(Msg::Signal(Signal::Hangup));
                 leave_in_any_case(SIGHUP);
             }
         }
@@ -80,13 +87,13 @@ pub fn terminal(tell: &SyncSender<Msg>) -> anyhow::Result<()> {
 }
 
 /// Which planners there are; asks every plugin in a process of its own, so it may take a while.
-pub fn planners(plugins: &PluginDirs, tell: &SyncSender<Msg>) -> anyhow::Result<()> {
+pub fn planners(plugins: &PluginDirs, tell: &Outbox) -> anyhow::Result<()> {
     let (plugins, tell) = (plugins.clone(), tell.clone());
     spawn("planners", move || {
         let (found, refused) = crate::planners::surveyed(&plugins);
         let refused = refused.into_iter().map(|(plugin, reason)| Refused { plugin, reason }).collect();
         // A screen that is gone needs no list.
-        let _ = tell.send(Msg::Planners { found, refused });
+        tell.tell(Msg::Planners { found, refused });
     })
 }
 

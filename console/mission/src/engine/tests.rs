@@ -18,6 +18,7 @@ use world::{Boundary, Obstacle, ObstacleId, Odometry, Pose, RangeSet, Shape, Sig
 
 /// A planner that drives straight to its target, and does as told by the test otherwise.
 #[derive(Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a way to misbehave")]
 struct Straight {
     fail_at_tick: Option<u64>,
     fail_at_ticks: Vec<u64>,
@@ -196,6 +197,9 @@ fn config() -> MissionConfig {
     }
 }
 
+/// For how many ticks an ask of a tick stays unanswered.
+type Delay = Box<dyn Fn(&Ask, u64) -> u64>;
+
 /// The mission, its planner and a robot that is where it was sent.
 struct Flight {
     mission: Mission,
@@ -212,7 +216,7 @@ struct Flight {
     sightings: Vec<Sighting>,
     events: Vec<Event>,
     /// For how many ticks an ask of this tick stays unanswered.
-    delay: Box<dyn Fn(&Ask, u64) -> u64>,
+    delay: Delay,
     /// Asks without an answer, with the tick in which they get one.
     open: Vec<(u64, Ask)>,
     closed: Vec<crate::WorkerId>,

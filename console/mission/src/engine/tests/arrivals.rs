@@ -4,7 +4,7 @@ use super::{covering::covering, *};
 use crate::{Awaits, ask::RecordedAnswers};
 use proptest::prelude::*;
 
-fn step_delay(ticks: u64, from: u64, to: u64) -> Box<dyn Fn(&Ask, u64) -> u64> {
+fn step_delay(ticks: u64, from: u64, to: u64) -> Delay {
     Box::new(
         move |ask, tick| {
             if matches!(ask.what, What::Step(_)) && (from..to).contains(&tick) { ticks } else { 0 }
