@@ -1,25 +1,18 @@
-//! A plan without a flight: what a planner would do on the drawing.
+//! A plan without a flight: what a planner is asked on the drawing.
 
 use crate::{
+    ask::{PlanAsk, Site, SiteObstacle, SiteZone, TaskLeft},
     chart::Chart,
     config::MissionConfig,
-    planner::{Fault, PlannerInfo, PlannerLink, Reply},
     task::Task,
 };
 use nalgebra::Matrix3;
-use planner_api::{Plan, PlanRequest, PoseEstimate, Reason};
-use world::{CoverageGrid, Floor, World};
+use planner_api::{self as api, PoseEstimate, Reason};
+use std::sync::Arc;
+use world::{Boundary, CoverageGrid, Floor, Shape, World};
 
-/// Seats the mission's planner and asks it for a plan of the whole task, from the start, on the drawing.
-///
-/// # Errors
-/// The planner could not be loaded, or found no plan.
-pub fn preview(
-    config: &MissionConfig,
-    drawing: &World,
-    seed: u64,
-    planner: &mut dyn PlannerLink,
-) -> Result<(PlannerInfo, Reply<Plan>), Fault> {
+/// What the mission's planner would be asked for at the start, on the drawing: a plan of the whole task.
+pub fn preview(config: &MissionConfig, drawing: &World, seed: u64) -> PlanAsk {
     let chart = Chart::new(drawing.clone(), config, seed);
     let task = Task::new(&config.task, config.start.position);
     let (room_m, start) = (config.room_m(), config.start.position);
@@ -30,12 +23,57 @@ pub fn preview(
         heading_rad: config.start.heading_rad,
         covariance: Matrix3::from_diagonal(&nalgebra::Vector3::new(position_m2, position_m2, heading_rad2)),
     };
-    chart.with_site(|site| {
-        let info = planner.choose(&config.planner.id, &config.planner.parameters, site)?;
-        let regions = task.regions_left(&CoverageGrid::new(floor), config.lane_m());
-        let regions: Vec<&[world::Point]> = regions.iter().map(Vec::as_slice).collect();
-        let task = task.as_request(&regions, config.tether_limits());
-        let request = PlanRequest { reason: &Reason::Start, start, task, site, previous: &[] };
-        Ok((info, planner.plan(&request)?))
-    })
+    let regions = task.regions_left(&CoverageGrid::new(floor), config.lane_m());
+    let regions: Vec<&[world::Point]> = regions.iter().map(Vec::as_slice).collect();
+    let task = task_left(&task.as_request(&regions, config.tether_limits()));
+    let site = Arc::new(chart.with_site(site_of));
+    PlanAsk { reason: Reason::Start, start, task, site, previous: Vec::new() }
+}
+
+fn task_left(task: &api::Task<'_>) -> TaskLeft {
+    match *task {
+        api::Task::Goto { goal, tolerance_m } => TaskLeft::Goto { goal, tolerance_m },
+        api::Task::Follow { targets, tolerance_m } => {
+            TaskLeft::Follow { targets: targets.to_vec(), tolerance_m }
+        }
+        api::Task::Cover { anchor, regions, tether, tolerance_m } => TaskLeft::Cover {
+            anchor,
+            regions: regions.iter().map(|region| region.to_vec()).collect(),
+            tether,
+            tolerance_m,
+        },
+    }
+}
+
+fn site_of(site: &api::Site<'_>) -> Site {
+    let obstacle = |obstacle: &api::Obstacle<'_>| SiteObstacle {
+        id: obstacle.id,
+        discovered: obstacle.discovered,
+        velocity_m_per_s: obstacle.velocity_m_per_s,
+        shape: shape_of(&obstacle.outline),
+    };
+    let zone = |zone: &api::Zone<'_>| SiteZone { kind: zone.kind, shape: shape_of(&zone.outline) };
+    Site {
+        revision: site.revision,
+        boundary: match site.boundary {
+            api::Boundary::Circle { radius_m } => Boundary::Circle { radius_m },
+            api::Boundary::Polygon { vertices } => Boundary::Polygon { vertices: vertices.to_vec() },
+        },
+        obstacles: site.obstacles.iter().map(obstacle).collect(),
+        zones: site.zones.iter().map(zone).collect(),
+        limits: site.limits,
+        swath_m: site.swath_m,
+        clearance_m: site.clearance_m,
+        seed: site.seed,
+    }
+}
+
+fn shape_of(outline: &api::Outline<'_>) -> Shape {
+    match *outline {
+        api::Outline::Disc { center, radius_m } => Shape::Disc { center, radius_m },
+        api::Outline::Polygon { vertices } => Shape::Polygon { vertices: vertices.to_vec() },
+        api::Outline::Polyline { points, half_width_m } => {
+            Shape::Polyline { points: points.to_vec(), half_width_m }
+        }
+    }
 }
