@@ -11,7 +11,7 @@ use crate::{
 use anyhow::Context;
 use mission::{Cause, Fault, MissionConfig, Parameters, TaskConfig, preview, tether::judge_from_start};
 use planner_api::{Code, LogLevel, Plan};
-use planner_host::{Host, HostConfig, PluginDirs};
+use planner_host::{BlockingHost, HostConfig, PluginDirs, Reply};
 use serde::Serialize;
 use std::{
     process::ExitCode,
@@ -94,21 +94,21 @@ fn is_refused(scenario: &Scenario, certificate: Option<&Certificate>) -> bool {
 }
 
 fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planned> {
-    let mut host = Host::new(plugins, patient(HostConfig::new(Duration::from_secs(1)), &scenario.mission));
+    let mut host = BlockingHost::new(plugins, patient(HostConfig::default(), &scenario.mission));
     let planning = Planning {
         work: format!("{} plans", scenario.mission.planner.id),
         within: patience(&scenario.mission),
     };
     let spinner = progress::spinner(&planning);
     let shown = spinner.clone();
-    host.tell_progress(Arc::new(move |progress| progress::show_share(&shown, &planning, progress)));
+    host.tell_progress(Arc::new(move |_, progress| progress::show_share(&shown, &planning, progress)));
     let began = Instant::now();
-    let answer = preview(&scenario.mission, &scenario.sim.world.as_drawn(), scenario.seed, &mut host);
+    let answer = ask_for_plan(scenario, &mut host);
     spinner.finish_and_clear();
     let plan_time_ms = host.stats().plan.p50_us.unwrap_or(began.elapsed().as_secs_f64() * 1e6) / 1e3;
     let mut warnings = Vec::new();
     let (plan, reason) = match answer {
-        Ok((_, reply)) => {
+        Ok(reply) => {
             let is_warning = |(level, _): &&(LogLevel, String)| matches!(level, LogLevel::Warn);
             warnings.extend(reply.logs.iter().filter(is_warning).map(|(_, message)| message.clone()));
             let said = warnings
@@ -138,6 +138,14 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
     })
 }
 
+/// Asks the mission's planner for a plan of the whole task, from the start, on the drawing.
+fn ask_for_plan(scenario: &Scenario, host: &mut BlockingHost) -> Result<Reply<Plan>, Fault> {
+    let ask = preview(&scenario.mission, &scenario.sim.world.as_drawn(), scenario.seed);
+    let planner = &scenario.mission.planner;
+    ask.site.lend(|site| host.choose(&planner.id, &planner.parameters, site))?;
+    ask.lend(|request| host.plan(request))
+}
+
 fn planned_floor(mission: &MissionConfig, drawing: &World) -> Option<PlannedFloor> {
     let TaskConfig::Cover { .. } = &mission.task else { return None };
     let (start, swath_m) = (mission.start.position, mission.swath_m);
@@ -151,7 +159,7 @@ fn planned_floor(mission: &MissionConfig, drawing: &World) -> Option<PlannedFloo
 
 /// How long a plan for a mission may take.
 fn patience(mission: &MissionConfig) -> Duration {
-    patient(HostConfig::new(Duration::from_secs(1)), mission).plan_deadline
+    patient(HostConfig::default(), mission).plan_deadline
 }
 
 /// A plan for a whole floor takes longer than a way to a point, and more memory.

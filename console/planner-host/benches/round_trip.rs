@@ -2,19 +2,19 @@
 #![expect(clippy::print_stdout, reason = "a bench tells its figures")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use mission::planner::{Parameters, PlannerLink};
+use mission::planner::Parameters;
 use nalgebra::{Matrix3, Point2};
 use planner_api::{Boundary, Limits, Motion, Obstacle, Outline, PoseEstimate, Sensed, Site};
-use planner_host::{Host, HostConfig, PluginDirs, WorkerCommand};
+use planner_host::{BlockingHost, HostConfig, PluginDirs, WorkerCommand};
 use std::time::Duration;
 
 const N_OBSTACLES: u32 = 16;
 
-fn host() -> Host {
+fn host() -> BlockingHost {
     let worker = env!("CARGO_BIN_EXE_planner-worker");
     let mut config = HostConfig::new(Duration::from_secs(1));
     config.worker_command = WorkerCommand::new(worker);
-    Host::new(&PluginDirs::standard(&[]), config)
+    BlockingHost::new(&PluginDirs::standard(&[]), config)
 }
 
 fn obstacles() -> Vec<Obstacle<'static>> {

@@ -1,113 +1,94 @@
-//! The port that the mission asks: finds, starts, asks and replaces planners.
+//! Answers the mission's asks: finds, starts, asks and ends planners, and never waits but in [`Host::next`].
 
-mod driving;
+mod config;
 mod fault;
 mod find;
+mod opening;
+mod planner;
+mod saved;
+
+pub use config::HostConfig;
 
 use crate::OnProgress;
 use crate::discovery::PluginDirs;
 use crate::parameters;
-use crate::quarantine::{MOST_FAULTS, Quarantine, WINDOW_S};
 use crate::stats::{Durations, HostStats};
-use crate::supervisor::WorkerCommand;
-use crate::survey::{LOAD_WITHIN, MEMORY_LIMIT};
-use driving::{Driving, Saved, must_cover};
+use crate::supervisor::{Bell, Doorbell, Failure, Happened, Worker, wait};
 use fault::Phase;
 use find::Catalog;
-use mission::planner::{Cause, During, Fault, Parameters, PlannerInfo, PlannerLink, Reply};
-use planner_api::{Command, LogLevel, Plan, PlanRequest, Sensed, Site};
-use std::sync::{Arc, atomic::AtomicBool};
-use std::time::{Duration, Instant};
+use mission::planner::{Cause, During, Fault, Parameters, PlannerInfo};
+use mission::{Answer, Ask, AskId, Given, Said, What, WorkerId};
+use opening::Opening;
+use planner::{Asked, Doing, Planner, Told};
+use planner_api::{PlanRequest, Sensed, Site};
+use saved::SavedStates;
+use std::collections::VecDeque;
+use std::time::Instant;
 
-/// Deadlines and limits of planners.
-#[derive(Debug, Clone, PartialEq)]
-pub struct HostConfig {
-    /// How workers are started.
-    pub worker_command: WorkerCommand,
-    /// For loading a library.
-    pub load_deadline: Duration,
-    /// For making a planner, or giving it new values.
-    pub configure_deadline: Duration,
-    /// For a plan.
-    pub plan_deadline: Duration,
-    /// For a command.
-    pub step_deadline: Duration,
-    /// For saving or restoring a planner's private state.
-    pub state_deadline: Duration,
-    /// Address space of a worker, bytes.
-    pub memory_limit_bytes: u64,
-    /// Whether anyone looks at drawings.
-    pub wants_drawing: bool,
-    /// Whether the mission covers floor, so that planners that cannot are refused when they are chosen.
-    pub must_cover: bool,
+/// Runs planners for missions, each in a worker process.
+///
+/// [`Self::submit`] begins what is asked and returns at once; [`Self::next`] is where the answers come from, and the only
+/// place that waits. Every ask but [`What::Close`] is answered exactly once, unless its worker is closed before.
+///
+/// After a fault that depends on the clock or on what is outside of the planner, after a panic and after an answer that is
+/// none, the process has ended and the planner must be opened anew.
+pub struct Host {
+    config: HostConfig,
+    catalog: Catalog,
+    planners: Vec<Planner>,
+    /// Workers that nobody asks any more and that have not ended yet.
+    leaving: Vec<Worker>,
+    answers: VecDeque<Answer>,
+    saved: SavedStates,
+    bell: Bell,
+    plan_times: Durations,
+    step_times: Durations,
+    n_faults: u64,
+    on_progress: Option<OnProgress>,
 }
 
-impl HostConfig {
-    /// The usual deadlines, with this one for a command: well below the length of a tick.
-    pub fn new(step_deadline: Duration) -> Self {
-        Self {
-            worker_command: WorkerCommand::default(),
-            load_deadline: LOAD_WITHIN,
-            configure_deadline: Duration::from_secs(1),
-            plan_deadline: Duration::from_secs(5),
-            step_deadline,
-            state_deadline: Duration::from_millis(100),
-            memory_limit_bytes: MEMORY_LIMIT,
-            wants_drawing: true,
-            must_cover: false,
+/// What is wanted of a planner, lent.
+pub(crate) enum Wanted<'a> {
+    Open { planner: &'a str, parameters: &'a Parameters, site: &'a Site<'a>, restore: Option<AskId> },
+    Reconfigure(&'a Parameters),
+    Plan(&'a PlanRequest<'a>),
+    Step(&'a Sensed<'a>),
+    Snapshot,
+}
+
+impl Wanted<'_> {
+    fn phase(&self) -> Phase {
+        match self {
+            Self::Open { .. } => Phase::Load,
+            Self::Reconfigure(_) => Phase::Configure,
+            Self::Plan(_) => Phase::Plan,
+            Self::Step(sensed) => Phase::Step(sensed.tick),
+            Self::Snapshot => Phase::State,
         }
     }
 }
 
-impl Default for HostConfig {
-    /// With a tenth of a second for a command.
-    fn default() -> Self {
-        Self::new(Duration::from_millis(100))
-    }
-}
-
-/// Runs planners for one mission, each in a worker process.
-///
-/// A plugin that fails three times within a minute of mission time is quarantined by the hash of its file and cannot
-/// be chosen again.
-pub struct Host {
-    config: HostConfig,
-    catalog: Catalog,
-    driving: Option<Driving>,
-    saved: Option<Saved>,
-    quarantine: Quarantine,
-    /// What planners said during calls that have no reply to carry it.
-    unheard: Vec<(LogLevel, String)>,
-    t_s: f64,
-    plan_times: Durations,
-    step_times: Durations,
-    n_faults: u64,
-    stop: Option<Arc<AtomicBool>>,
-    on_progress: Option<OnProgress>,
-}
-
 impl Host {
-    /// A host that searches these folders when a planner is first chosen.
+    /// A host that searches these folders when a planner is first opened.
     pub fn new(dirs: &PluginDirs, config: HostConfig) -> Self {
         Self {
             config,
             catalog: Catalog::new(dirs.clone()),
-            driving: None,
-            saved: None,
-            quarantine: Quarantine::default(),
-            unheard: Vec::new(),
-            t_s: 0.0,
+            planners: Vec::new(),
+            leaving: Vec::new(),
+            answers: VecDeque::new(),
+            saved: SavedStates::default(),
+            bell: Bell::new(),
             plan_times: Durations::default(),
             step_times: Durations::default(),
             n_faults: 0,
-            stop: None,
             on_progress: None,
         }
     }
 
-    /// From now on a plan is given up when this is set, and no other is begun.
-    pub fn stop_planning_on(&mut self, stop: Arc<AtomicBool>) {
-        self.stop = Some(stop);
+    /// Reads the plugin files now, so that the first planner is opened sooner.
+    pub fn warm_up(&mut self) {
+        self.catalog.read_once();
     }
 
     /// From now on somebody is told how far a plan is while it is being made.
@@ -115,153 +96,191 @@ impl Host {
         self.on_progress = Some(on_progress);
     }
 
-    /// The planner that drives.
-    pub fn planner_id(&self) -> Option<&str> {
-        self.driving.as_ref().map(|driving| driving.info.id.as_str())
-    }
-
     /// Calls, wall times and faults so far.
     pub fn stats(&self) -> HostStats {
         HostStats { plan: self.plan_times.stats(), step: self.step_times.stats(), faults: self.n_faults }
     }
 
-    /// Counts a fault, and quarantines its plugin when there were too many.
-    fn note(&mut self, fault: Fault, sha256: &str) -> Fault {
-        self.n_faults += 1;
-        if !matches!(fault.cause, Cause::Planner(_) | Cause::Refused | Cause::Quarantined) {
-            self.quarantine.note(sha256, self.t_s);
-        }
-        fault
+    /// Makes [`Self::next`] return from any thread.
+    pub fn doorbell(&self) -> Doorbell {
+        self.bell.button()
     }
 
-    fn refuse_quarantined(&self, id: &str, sha256: &str) -> Result<(), Fault> {
-        if !self.quarantine.holds(sha256) {
-            return Ok(());
-        }
-        let message = format!(
-            "planner {id} failed {MOST_FAULTS} times within {WINDOW_S} s and may not drive again in this mission"
-        );
-        Err(fault::new(id, During::Load, Cause::Quarantined, message))
+    /// Forgets that the doorbell was rung.
+    pub fn clear_doorbell(&mut self) {
+        self.bell.clear();
     }
 
-    fn start(
-        &mut self,
-        id: &str,
-        parameters: &Parameters,
-        site: &Site<'_>,
-    ) -> Result<Driving, (Fault, String)> {
-        let found = self.catalog.find(id, &self.config)?;
-        let sha256 = found.info.sha256.clone();
-        let made = self
-            .refuse_quarantined(id, &sha256)
-            .and_then(|()| {
-                if self.config.must_cover { must_cover(&found.info, During::Configure) } else { Ok(()) }
-            })
-            .and_then(|()| Driving::configure(found, parameters, site, &self.config));
-        let (mut driving, said) = made.map_err(|fault| (fault, sha256.clone()))?;
-        if let Some(stop) = &self.stop {
-            driving.stop_on(Arc::clone(stop));
-        }
-        if let Some(tell) = &self.on_progress {
-            driving.tell_progress(Arc::clone(tell));
-        }
-        self.unheard.extend(said.logs);
-        self.save_state_of_the_same(&driving.info);
-        if let Some(saved) = self.saved.as_ref().filter(|saved| saved.fits(&driving)) {
-            driving.restore(saved, &self.config).map_err(|fault| (fault, sha256))?;
-        }
-        Ok(driving)
-    }
-
-    /// When the planner that drives is made anew, what it knows now is better than what was saved last.
-    fn save_state_of_the_same(&mut self, next: &PlannerInfo) {
-        let same = self.driving.as_mut().filter(|driving| driving.is(next));
-        if let Some(Ok(Some(saved))) = same.map(|driving| driving.snapshot(&self.config)) {
-            self.saved = Some(saved);
+    /// Begins what is asked. A worker with an open ask takes no other one but [`What::Close`].
+    pub fn submit(&mut self, ask: Ask) {
+        let id = ask.id;
+        match ask.what {
+            What::Open { choice, site, restore } => site.lend(|site| {
+                let (planner, parameters) = (choice.id.as_str(), &choice.parameters);
+                self.begin(id, &Wanted::Open { planner, parameters, site, restore });
+            }),
+            What::Reconfigure(values) => self.begin(id, &Wanted::Reconfigure(&values)),
+            What::Plan(plan) => plan.lend(|request| self.begin(id, &Wanted::Plan(request))),
+            What::Step(step) => step.lend(|sensed| self.begin(id, &Wanted::Step(sensed))),
+            What::Snapshot => self.begin(id, &Wanted::Snapshot),
+            What::Close => self.close(id.worker),
         }
     }
 
-    /// Saves the planner's private state now and then, so that a new instance can go on from it.
-    fn save_state_if_due(&mut self, driving: &mut Driving) -> Result<(), Fault> {
-        if driving.is_save_due(self.t_s)
-            && let Some(saved) = driving.snapshot(&self.config)?
-        {
-            self.saved = Some(saved);
+    /// Begins what is wanted; what cannot be begun is answered at once.
+    pub(crate) fn begin(&mut self, id: AskId, wanted: &Wanted<'_>) {
+        if let Err(fault) = self.try_begin(id, wanted) {
+            self.answer(id, Err(fault));
         }
-        Ok(())
     }
 
-    /// Runs a call on the planner that drives.
-    fn with_driving<T>(
-        &mut self,
-        phase: Phase,
-        call: impl FnOnce(&mut Self, &mut Driving) -> Result<T, Fault>,
-    ) -> Result<T, Fault> {
-        let Some(mut driving) = self.driving.take() else {
-            self.n_faults += 1;
-            return Err(fault::new(
-                "",
-                phase.during(),
-                Cause::Refused,
-                "no planner was chosen yet".to_owned(),
-            ));
+    fn try_begin(&mut self, id: AskId, wanted: &Wanted<'_>) -> Result<(), Fault> {
+        if let Wanted::Open { planner, parameters, site, restore } = *wanted {
+            self.close(id.worker);
+            let opening = Opening::new(planner, parameters, site, restore);
+            return self.open(id, opening).inspect_err(|_| self.close(id.worker));
+        }
+        let config = &self.config;
+        let Some(planner) = self.planners.iter_mut().find(|planner| planner.id == id.worker) else {
+            return Err(fault::of(Failure::Gone, "", wanted.phase()));
         };
-        let result = call(self, &mut driving);
-        let sha256 = driving.info.sha256.clone();
-        self.driving = Some(driving);
-        result.map_err(|fault| self.note(fault, &sha256))
-    }
-}
-
-impl PlannerLink for Host {
-    fn choose(&mut self, id: &str, parameters: &Parameters, site: &Site<'_>) -> Result<PlannerInfo, Fault> {
-        match self.start(id, parameters, site) {
-            Ok(driving) => {
-                let info = driving.info.clone();
-                // What another planner knew is of no use to anyone who takes over later.
-                self.saved = self.saved.take().filter(|saved| saved.fits(&driving));
-                self.driving = Some(driving);
-                Ok(info)
+        if planner.asked.is_some() {
+            return Err(planner.busy(wanted.phase()));
+        }
+        match wanted {
+            Wanted::Open { .. } => Ok(()),
+            Wanted::Reconfigure(values) => planner.reconfigure(id, values, config),
+            Wanted::Plan(request) => planner.plan(id, request, config),
+            Wanted::Step(sensed) => planner.step(id, sensed, config),
+            Wanted::Snapshot if planner.saves_state() => planner.snapshot(id, config),
+            Wanted::Snapshot => {
+                self.answer(id, Ok((Given::State { bytes: 0 }, Said::default())));
+                Ok(())
             }
-            Err((fault, sha256)) => Err(self.note(fault, &sha256)),
         }
     }
 
-    fn reconfigure(&mut self, parameters: &Parameters) -> Result<(), Fault> {
-        self.with_driving(Phase::Configure, |host, driving| {
-            driving.check_live(parameters)?;
-            let said = driving.reconfigure(parameters, &host.config)?;
-            host.unheard.extend(said.logs);
-            Ok(())
-        })
+    /// Ends a worker and drops what it was asked.
+    pub(crate) fn close(&mut self, id: WorkerId) {
+        if let Some(index) = self.planners.iter().position(|planner| planner.id == id) {
+            let planner = self.planners.swap_remove(index);
+            if let Some(mut worker) = planner.worker {
+                worker.shut_down();
+                self.leave(worker);
+            }
+        }
+        self.answers.retain(|answer| answer.ask.worker != id);
     }
 
-    fn plan(&mut self, request: &PlanRequest<'_>) -> Result<Reply<Plan>, Fault> {
-        self.with_driving(Phase::Plan, |host, driving| {
-            let asked = Instant::now();
-            let answer = driving.plan(request, &host.config);
-            host.plan_times.note(asked.elapsed());
-            answer.map(|(plan, said)| host.reply(plan, said))
-        })
+    /// Leaves a worker to its end.
+    fn leave(&mut self, worker: Worker) {
+        if !worker.is_gone() {
+            self.leaving.push(worker);
+        }
     }
 
-    fn step(&mut self, sensed: &Sensed<'_>) -> Result<Reply<Command>, Fault> {
-        self.t_s = sensed.t_s;
-        self.with_driving(Phase::Step(sensed.tick), |host, driving| {
-            host.save_state_if_due(driving)?;
-            let asked = Instant::now();
-            let answer = driving.step(sensed, &host.config);
-            host.step_times.note(asked.elapsed());
-            answer.map(|(command, said)| host.reply(command, said))
-        })
+    /// The next answer, as soon as there is one. None when a moment has passed, when the doorbell was rung, or when no ask
+    /// is open; without a moment it waits as long as it takes. What has arrived by now is always looked at.
+    pub fn next(&mut self, until: Option<Instant>) -> Option<Answer> {
+        loop {
+            let may_wait = self.answers.is_empty() && self.is_asked();
+            if self.look(if may_wait { until } else { Some(Instant::now()) }) {
+                return None;
+            }
+            if let Some(answer) = self.answers.pop_front() {
+                return Some(answer);
+            }
+            if !self.is_asked() || until.is_some_and(|until| Instant::now() >= until) {
+                return None;
+            }
+        }
+    }
+
+    fn is_asked(&self) -> bool {
+        self.planners.iter().any(|planner| planner.asked.is_some())
+    }
+
+    /// Waits until something happens, at most to a moment, and does what is due; whether the doorbell was rung.
+    fn look(&mut self, until: Option<Instant>) -> bool {
+        let asked = self.planners.iter().filter_map(|planner| planner.worker.as_ref());
+        let workers: Vec<&Worker> = asked.chain(&self.leaving).collect();
+        let Happened { rung, ready } = wait(Some(&self.bell), &workers, until);
+        let (now, mut ready) = (Instant::now(), ready.into_iter());
+        let mut outcomes = Vec::new();
+        for planner in &mut self.planners {
+            let Some(worker) = &mut planner.worker else { continue };
+            let Some(ready) = ready.next() else { break };
+            let (asked, on_progress) = (planner.asked.as_ref(), self.on_progress.as_ref());
+            let tell = &mut |progress: &_| {
+                if let Some((asked, tell)) = asked.zip(on_progress) {
+                    tell(asked.id, progress);
+                }
+            };
+            outcomes.extend(worker.advance(ready, now, tell).map(|outcome| (planner.id, outcome)));
+        }
+        self.leaving.retain_mut(|worker| {
+            if let Some(ready) = ready.next() {
+                worker.advance(ready, now, &mut |_| {});
+            }
+            !worker.is_gone()
+        });
+        for (id, outcome) in outcomes {
+            self.take(id, outcome);
+        }
+        rung
+    }
+
+    /// Takes the outcome of what a worker was asked.
+    fn take(&mut self, id: WorkerId, outcome: Result<(), Failure>) {
+        let Some(planner) = self.planners.iter_mut().find(|planner| planner.id == id) else { return };
+        let Some(Asked { id, at, doing }) = planner.asked.take() else { return };
+        let told = match doing {
+            Doing::Open(opening, stage) => return self.go_on_opening(id, *opening, stage, outcome),
+            Doing::Reconfigure(values) => planner.reconfigured(outcome, values),
+            Doing::Plan(limits) => {
+                self.plan_times.note(at.elapsed());
+                planner.planned(outcome, limits)
+            }
+            Doing::Step(tick) => {
+                self.step_times.note(at.elapsed());
+                planner.stepped(outcome, tick)
+            }
+            Doing::Snapshot => planner.snapshotted(outcome).map(|saved| {
+                let bytes = saved.as_ref().map_or(0, |state| state.len() as u64);
+                let saved = saved.zip(planner.ready.as_ref());
+                saved.into_iter().for_each(|(state, ready)| self.saved.keep(ready.loaded.saved(id, state)));
+                (Given::State { bytes }, Said::default())
+            }),
+        };
+        self.answer(id, told);
+    }
+
+    /// Puts an answer where [`Self::next`] finds it.
+    fn answer(&mut self, ask: AskId, told: Told) {
+        self.n_faults += u64::from(told.is_err());
+        let (result, said) = match told {
+            Ok((given, said)) => (Ok(given), said),
+            Err(fault) => (Err(fault), Said::default()),
+        };
+        if result.is_err() {
+            self.retire(ask.worker);
+        }
+        self.answers.push_back(Answer { ask, result, said });
+    }
+
+    /// Parts from a worker that cannot be asked any more.
+    fn retire(&mut self, id: WorkerId) {
+        let unasked = self.planners.iter_mut().find(|planner| planner.id == id && planner.asked.is_none());
+        let ended = unasked.and_then(|planner| planner.worker.take_if(|worker| !worker.is_idle()));
+        ended.into_iter().for_each(|worker| self.leave(worker));
     }
 }
 
-impl Host {
-    fn reply<T>(&mut self, value: T, said: crate::wire::answer::Said) -> Reply<T> {
-        let mut logs = std::mem::take(&mut self.unheard);
-        logs.extend(said.logs);
-        Reply { value, drawings: said.drawings, scalars: said.scalars, logs }
+impl Drop for Host {
+    /// Kills all workers at once, then reaps them.
+    fn drop(&mut self) {
+        let asked = self.planners.iter_mut().filter_map(|planner| planner.worker.as_mut());
+        asked.chain(&mut self.leaving).for_each(Worker::kill);
     }
 }
 

@@ -2,15 +2,17 @@
 //!
 //! A plugin is a shared library of strangers. The console never loads one: it starts itself again as a worker
 //! process, which loads one plugin and answers requests over a socket. Whatever the plugin does there (crash, hang,
-//! eat memory, print) ends as a [`mission::Fault`] with one sentence, within the deadline of the call.
+//! eat memory, print) ends as a [`mission::Fault`] with one sentence, within the budget of what it was asked.
 //!
-//! [`Host`] is the port that the mission asks; [`survey`] lists what was found; [`worker_main`] is what the hidden
+//! [`Host`] answers what the mission asks and never waits unless it is told to; [`BlockingHost`] is for callers with
+//! nothing else to do than wait; [`survey`] lists what was found; [`worker_main`] is what the hidden
 //! command `worker` runs. Planners run on Unix systems; elsewhere every choice is refused with a sentence.
 //!
 //! Frames and units are those of `planner_api`.
 
 #![deny(unsafe_code)]
 
+mod blocking;
 mod checks;
 pub mod discovery;
 mod host;
@@ -18,7 +20,6 @@ mod host;
 mod loader;
 mod parameters;
 mod progress;
-mod quarantine;
 pub mod stamp;
 mod stats;
 mod supervisor;
@@ -27,12 +28,13 @@ mod wire;
 #[cfg(unix)]
 mod worker;
 
+pub use blocking::{BlockingHost, Reply};
 pub use discovery::PluginDirs;
 pub use host::{Host, HostConfig};
 pub use parameters::{check_parameters, parameter_problems};
 pub use progress::{OnProgress, Progress};
 pub use stats::{CallStats, HostStats};
-pub use supervisor::WorkerCommand;
+pub use supervisor::{Doorbell, WorkerCommand};
 pub use survey::{Survey, SurveyedPlugin, check_plugin, survey};
 #[cfg(unix)]
 pub use worker::worker_main;

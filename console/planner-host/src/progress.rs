@@ -1,6 +1,7 @@
 //! How far a plan is while it is being made. It is shown and then forgotten: it depends on the clock on the wall, so it
 //! enters neither journal nor recording.
 
+use mission::AskId;
 use std::sync::Arc;
 
 /// How far a plan is.
@@ -12,8 +13,9 @@ pub struct Progress {
     pub what: String,
 }
 
-/// Who is told how far a plan is. It is called on the thread that waits for the plan and must not keep it waiting.
-pub type OnProgress = Arc<dyn Fn(&Progress) + Send + Sync>;
+/// Who is told how far the plan of an ask is. It is called on the thread that waits for the plan and must not keep it
+/// waiting.
+pub type OnProgress = Arc<dyn Fn(AskId, &Progress) + Send + Sync>;
 
 impl Progress {
     /// Most characters of the words.

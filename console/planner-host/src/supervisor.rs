@@ -1,20 +1,40 @@
-//! The console's side of a worker: starts it, asks it, and turns every way to fail into a [`Failure`].
+//! The console's side of workers: starts them, asks them, and turns every way to fail into a [`Failure`].
+//!
+//! Nothing here waits but [`wait`], for all workers at once.
 
 #[cfg(unix)]
-mod child;
+mod clock;
+#[cfg(unix)]
+mod doorbell;
 #[cfg(unix)]
 mod ending;
 #[cfg(unix)]
-mod handle;
+mod load;
+#[cfg(unix)]
+mod poller;
+#[cfg(unix)]
+mod process;
 #[cfg(not(unix))]
-mod nowhere;
+mod unsupported;
+#[cfg(unix)]
+mod worker;
 
 #[cfg(unix)]
-pub(crate) use handle::Worker;
-#[cfg(not(unix))]
-pub(crate) use nowhere::Worker;
+pub use doorbell::Doorbell;
+#[cfg(unix)]
+pub(crate) use {
+    doorbell::Bell,
+    poller::{Happened, wait},
+    worker::Worker,
+};
 
-use crate::wire::answer::Refusal;
+#[cfg(not(unix))]
+pub use unsupported::Doorbell;
+#[cfg(not(unix))]
+pub(crate) use unsupported::{Bell, Happened, Worker, wait};
+
+use crate::wire::answer::{BAD_OUTPUT, Refusal};
+use planner_api::Code;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -45,9 +65,9 @@ impl Default for WorkerCommand {
     }
 }
 
-/// After its deadline a worker is asked to stop and given this long before it is killed.
+/// A worker that is told to end is given this long to drop its planner in good order.
 #[cfg(unix)]
-const GRACE: Duration = Duration::from_millis(30);
+pub(crate) const SHUT_DOWN_WITHIN: Duration = Duration::from_millis(100);
 
 /// Planners are told a deadline that is this much earlier than the one they are held to, so that one that minds its
 /// time still answers in time.
@@ -70,16 +90,28 @@ pub(crate) enum Failure {
         /// The last line that it printed; may be empty.
         last_output: String,
     },
-    /// No answer within deadline and grace; the process was killed.
+    /// No answer within budget and grace; the process was killed.
     Hung,
-    /// Nobody wants the plan any more.
-    Stopped,
-    /// An answer, but only within the grace.
+    /// An answer, but only within the grace; the process was killed.
     Late,
+    /// It hardly got the processor, for very long; the process was killed.
+    Starved,
     /// An answer that is none; the process was killed.
     Protocol,
     /// There is no process any more.
     Gone,
     /// A worker could not be started, or the request is too long for it.
     Console(String),
+}
+
+impl Failure {
+    /// Whether a planner that says so cannot be asked again, or gave up by the clock: then its process ends.
+    #[cfg(unix)]
+    fn ends_the_process(&self) -> bool {
+        let Self::Planner(refusal) = self else { return false };
+        match Code::from_number(refusal.code) {
+            Some(code) => matches!(code, Code::Panic | Code::Poisoned | Code::Timeout | Code::Cancelled),
+            None => refusal.code != BAD_OUTPUT,
+        }
+    }
 }

@@ -2,14 +2,14 @@
 
 use crate::discovery::{PluginDirs, PluginFile};
 use crate::stamp::Abi;
-use crate::supervisor::{Failure, Worker, WorkerCommand};
+use crate::supervisor::{Failure, Happened, Worker, WorkerCommand, wait};
 use crate::wire::answer::{Described, Loaded, loaded_of};
 use crate::wire::body::Writer;
 use crate::wire::{self, kind};
 use mission::PlannerInfo;
 use planner_api::Caps;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A library that does not load and describe itself within this time is refused.
 pub(crate) const LOAD_WITHIN: Duration = Duration::from_secs(2);
@@ -85,22 +85,27 @@ fn look_at(plugin: &PluginFile, worker: &WorkerCommand, known: &mut Vec<String>)
 
 fn probe(plugin: &PluginFile, worker: &WorkerCommand) -> Result<Vec<PlannerInfo>, Failure> {
     let mut worker = Worker::spawn(worker)?;
-    let loaded = load(&mut worker, &plugin.path, "", LOAD_WITHIN, MEMORY_LIMIT)?;
+    worker.ask(kind::LOAD, LOAD_WITHIN, |w| write_load(w, &plugin.path, "", MEMORY_LIMIT))?;
+    finished(&mut worker)?;
+    let loaded = worker.take_answer(loaded_of)?;
     Ok(loaded.planners.iter().map(|planner| info(planner, &loaded, &plugin.name())).collect())
 }
 
-/// Asks a worker to load a library and to keep the planner of this id, or to describe all planners for an empty id.
-pub(crate) fn load(
-    worker: &mut Worker,
-    path: &Path,
-    id: &str,
-    within: Duration,
-    memory_limit_bytes: u64,
-) -> Result<Loaded, Failure> {
-    let write = |w: &mut Writer| {
-        w.u32(wire::VERSION).u64(memory_limit_bytes).bytes(path.as_os_str().as_encoded_bytes()).text(id);
-    };
-    worker.ask(kind::LOAD, within, write, loaded_of)
+/// Waits until a worker has answered.
+fn finished(worker: &mut Worker) -> Result<(), Failure> {
+    loop {
+        let Happened { ready, .. } = wait(None, &[worker], None);
+        for ready in ready {
+            if let Some(outcome) = worker.advance(ready, Instant::now(), &mut |_| {}) {
+                return outcome;
+            }
+        }
+    }
+}
+
+/// A request to load a library and to keep the planner of this id, or to describe all planners for an empty id.
+pub(crate) fn write_load(w: &mut Writer, path: &Path, id: &str, memory_limit_bytes: u64) {
+    w.u32(wire::VERSION).u64(memory_limit_bytes).bytes(path.as_os_str().as_encoded_bytes()).text(id);
 }
 
 /// A planner as the mission knows it.
@@ -127,7 +132,7 @@ pub(crate) fn refusal_text(failure: &Failure) -> String {
         Failure::Died { how, last_output } => {
             format!("{how} while it was loaded; last output: {last_output}")
         }
-        Failure::Hung | Failure::Late | Failure::Stopped => {
+        Failure::Hung | Failure::Late | Failure::Starved => {
             "did not load in time; its process was stopped".to_owned()
         }
         Failure::Planner(_) | Failure::Protocol | Failure::Gone => {

@@ -10,7 +10,6 @@ pub(crate) mod body;
 #[cfg(unix)]
 pub(crate) mod frame;
 pub(crate) mod input;
-pub(crate) mod owned;
 
 /// Raised whenever a frame changes its form: console and worker must be of one build.
 pub(crate) const VERSION: u32 = 3;

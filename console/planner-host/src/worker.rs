@@ -1,13 +1,13 @@
 //! The worker process: one plugin, no way back into the console but one socket.
 
 mod confine;
-mod patience;
+mod deadline;
 mod session;
 mod telling;
 
 use crate::wire::frame::{Incoming, Received};
 use crate::wire::{answer::BAD_OUTPUT, answer::Refusal, body::Writer, kind};
-use patience::Patience;
+use deadline::Deadline;
 use session::{Session, Trouble};
 use std::io::Write;
 use std::os::fd::OwnedFd;
@@ -29,17 +29,17 @@ fn serve(socket: &OwnedFd) -> std::io::Result<()> {
     confine::confine();
     confine::die_with_the_console(socket.try_clone()?)?;
     let mut stream = UnixStream::from(socket.try_clone()?);
-    let patience = Patience::new(socket.try_clone()?)?;
+    let deadline = Deadline::new(socket.try_clone()?)?;
     let (mut incoming, mut writer, mut session) =
-        (Incoming::default(), Writer::default(), Session::new(&patience));
+        (Incoming::default(), Writer::default(), Session::new(&deadline));
     loop {
-        match incoming.receive(&mut stream, None) {
+        match incoming.receive(&mut stream) {
             Received::Frame => {}
             Received::Closed => return Ok(()),
-            Received::Late | Received::Broken => return Err(std::io::ErrorKind::InvalidData.into()),
+            Received::Broken => return Err(std::io::ErrorKind::InvalidData.into()),
         }
         if incoming.kind() != kind::CANCEL {
-            patience.begin(&incoming);
+            deadline.begin(&incoming);
             answer(&mut session, &incoming, &mut writer)?;
             stream.write_all(finished(&mut writer, incoming.sequence()))?;
         }

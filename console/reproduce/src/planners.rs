@@ -1,9 +1,9 @@
 //! Planners, asked over the plugin boundary as the console asks them.
 
 use crate::study::Problem;
-use mission::{Cause, Fault, Parameters, PlannerLink};
+use mission::{Cause, Fault, Parameters};
 use planner_api::{Code, Plan, PlanRequest, Site};
-use planner_host::{Host, HostConfig, PluginDirs};
+use planner_host::{BlockingHost, HostConfig, PluginDirs};
 use std::time::{Duration, Instant};
 use world::Point;
 
@@ -46,14 +46,14 @@ impl Planners {
     ///
     /// # Errors
     /// It is missing, refuses the parameters or broke down.
-    pub fn seat(&self, id: &str, parameters: &Parameters, site: &Site<'_>) -> Result<Host, Problem> {
+    pub fn seat(&self, id: &str, parameters: &Parameters, site: &Site<'_>) -> Result<BlockingHost, Problem> {
         let config = HostConfig {
             plan_deadline: PLAN_WITHIN,
             memory_limit_bytes: MEMORY_BYTES,
             wants_drawing: false,
             ..HostConfig::new(Duration::from_secs(1))
         };
-        let mut host = Host::new(&self.dirs, config);
+        let mut host = BlockingHost::new(&self.dirs, config);
         host.choose(id, parameters, site).map_err(|fault| problem(id, fault))?;
         Ok(host)
     }

@@ -70,20 +70,27 @@ pub(super) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
                 "planner {planner} did not answer {phase} in time and ignored the request to stop; its process was killed"
             ),
         ),
-        Failure::Stopped => fault(Cause::Late, format!("planner {planner} was stopped during {phase}")),
         Failure::Late => {
             fault(Cause::Late, format!("planner {planner} was too slow: it missed the deadline of {phase}"))
         }
+        Failure::Starved => fault(
+            Cause::Starved,
+            format!(
+                "planner {planner} got so little of the processor that it did not finish {phase}; its process was killed"
+            ),
+        ),
         Failure::Protocol => fault(
             Cause::Protocol,
             format!(
                 "planner {planner} sent something that is no answer during {phase}; its process was killed"
             ),
         ),
-        Failure::Gone => fault(
-            Cause::Died,
-            format!("planner {planner} cannot do {phase}: its process has ended and it must be chosen again"),
-        ),
+        Failure::Gone => {
+            let who =
+                if planner.is_empty() { "the planner".to_owned() } else { format!("planner {planner}") };
+            let why = "its process has ended and it must be chosen again";
+            fault(Cause::Died, format!("{who} cannot do {phase}: {why}"))
+        }
     }
 }
 

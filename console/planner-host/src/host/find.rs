@@ -1,98 +1,94 @@
-//! From a planner's id to a worker that has loaded it.
+//! From a planner's id to the plugin files that may have it.
 
-use super::{Fault, HostConfig, fault, fault::Phase};
 use crate::discovery::{PluginDirs, PluginFile};
 use crate::parameters::nearest;
-use crate::supervisor::{Failure, Worker};
-use crate::survey::{info, load, survey};
-use crate::wire::answer::{Described, Loaded};
-use mission::planner::{Cause, During, PlannerInfo};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
 
-/// A worker that has loaded a planner.
-pub(super) struct Found {
-    pub(super) worker: Worker,
-    pub(super) info: PlannerInfo,
-    pub(super) caps: u32,
-    pub(super) state_version: u32,
+/// A plugin file that may have a planner.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Candidate {
+    pub(super) path: PathBuf,
+    /// Name of the file without its folder.
+    pub(super) name: String,
+    pub(super) sha256: String,
 }
 
 /// The plugin files, read when they are first needed and again when a planner is missing.
 pub(super) struct Catalog {
     dirs: PluginDirs,
-    plugins: Vec<PluginFile>,
+    plugins: Option<Vec<PluginFile>>,
+    /// Ids of planners that were loaded from them.
+    known: BTreeSet<String>,
 }
 
 impl Catalog {
     pub(super) fn new(dirs: PluginDirs) -> Self {
-        Self { dirs, plugins: Vec::new() }
+        Self { dirs, plugins: None, known: BTreeSet::new() }
     }
 
-    /// Loads the first plugin that has this planner; a fault comes with the hash of the plugin that is to blame.
-    pub(super) fn find(&mut self, id: &str, config: &HostConfig) -> Result<Found, (Fault, String)> {
-        if let Some(found) = load_first(&self.plugins, id, config)? {
-            return Ok(found);
+    /// Reads the plugin files unless they were read before; whether they were read now.
+    pub(super) fn read_once(&mut self) -> bool {
+        let is_first = self.plugins.is_none();
+        if is_first {
+            self.read();
         }
-        self.plugins = self.dirs.plugins();
-        if let Some(found) = load_first(&self.plugins, id, config)? {
-            return Ok(found);
-        }
-        let message = self.not_found(id, config);
-        Err((fault::new(id, During::Load, Cause::Refused, message), String::new()))
+        is_first
     }
 
-    fn not_found(&self, id: &str, config: &HostConfig) -> String {
+    /// Reads the plugin files.
+    pub(super) fn read(&mut self) {
+        self.plugins = Some(self.dirs.plugins());
+    }
+
+    fn plugins(&self) -> &[PluginFile] {
+        self.plugins.as_deref().unwrap_or_default()
+    }
+
+    /// The files that may have this planner, in the order in which they are to be tried.
+    pub(super) fn candidates(&self, id: &str) -> Vec<Candidate> {
+        let may_have = self.plugins().iter().filter(|plugin| plugin.may_have(id));
+        may_have
+            .map(|plugin| Candidate {
+                path: plugin.path.clone(),
+                name: plugin.name(),
+                sha256: plugin.sha256.clone(),
+            })
+            .collect()
+    }
+
+    /// A planner of this id was loaded.
+    pub(super) fn learn(&mut self, id: &str) {
+        if !self.known.contains(id) {
+            self.known.insert(id.to_owned());
+        }
+    }
+
+    /// Why there is no planner of this id: by what is known without loading anything.
+    pub(super) fn not_found(&self, id: &str) -> String {
         let named_so = |plugin: &&PluginFile| plugin.name().contains(&id.replace('-', "_"));
         if let Some((plugin, Err(why))) =
-            self.plugins.iter().find(named_so).map(|plugin| (plugin, &plugin.abi))
+            self.plugins().iter().find(named_so).map(|plugin| (plugin, &plugin.abi))
         {
             return format!("planner {id} is not there: plugin {} is refused: {why}", plugin.name());
         }
-        let survey = survey(&self.dirs, &config.worker_command);
-        let ids: Vec<&str> = survey.planners().map(|info| info.id.as_str()).collect();
-        match nearest(id, ids.iter().copied()) {
+        let plugins: BTreeSet<String> = self.plugins().iter().map(named_after).collect();
+        match nearest(id, self.known.iter().chain(&plugins).map(String::as_str)) {
             Some(known) => format!("no plugin has the planner {id}; did you mean `{known}`?"),
-            None if ids.is_empty() => {
+            None if plugins.is_empty() => {
                 format!("no plugin has the planner {id}; there are no plugins in the folders searched")
             }
-            None => format!("no plugin has the planner {id}; there are {}", ids.join(", ")),
-        }
-    }
-}
-
-/// Tries plugins in order. One that cannot be loaded does not hide the ones behind it, but is told if there is none.
-fn load_first(
-    plugins: &[PluginFile],
-    id: &str,
-    config: &HostConfig,
-) -> Result<Option<Found>, (Fault, String)> {
-    let mut first_failure = None;
-    for plugin in plugins.iter().filter(|plugin| plugin.may_have(id)) {
-        match load_one(plugin, id, config) {
-            Ok(Some(found)) => return Ok(Some(found)),
-            Ok(None) => {}
-            Err(failure) => {
-                let fault = of_plugin(failure, id, &plugin.name());
-                first_failure.get_or_insert((fault, plugin.sha256.clone()));
+            None => {
+                let plugins: Vec<String> = plugins.into_iter().collect();
+                format!("no plugin has the planner {id}; the plugins searched are {}", plugins.join(", "))
             }
         }
     }
-    first_failure.map_or(Ok(None), Err)
 }
 
-fn load_one(plugin: &PluginFile, id: &str, config: &HostConfig) -> Result<Option<Found>, Failure> {
-    let mut worker = Worker::spawn(&config.worker_command)?;
-    let loaded = load(&mut worker, &plugin.path, id, config.load_deadline, config.memory_limit_bytes)?;
-    Ok(loaded.planners.first().map(|planner| found(worker, planner, &loaded, plugin)))
-}
-
-fn found(worker: Worker, planner: &Described, loaded: &Loaded, plugin: &PluginFile) -> Found {
-    let info = info(planner, loaded, &plugin.name());
-    Found { worker, info, caps: planner.caps, state_version: planner.state_version }
-}
-
-/// While a library loads, no planner of it is to blame yet.
-fn of_plugin(failure: Failure, id: &str, plugin: &str) -> Fault {
-    let fault = fault::of(failure, id, Phase::Load);
-    let message = fault.message.replacen(&format!("planner {id} "), &format!("plugin {plugin} "), 1);
-    Fault { message, ..fault }
+/// What a planner would be called after which a plugin file is named.
+fn named_after(plugin: &PluginFile) -> String {
+    let stem = plugin.path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = stem.split_once("planner_").map_or(&*stem, |(_, name)| name);
+    name.replace('_', "-")
 }

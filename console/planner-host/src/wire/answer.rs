@@ -2,17 +2,10 @@
 
 use super::body::{Body, Malformed, Read, Writer};
 use crate::Progress;
+pub(crate) use mission::Said;
 use mission::{ParamInfo, ParamKind};
 use nalgebra::Point2;
 use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, Plan, abi};
-
-/// What a planner drew, reported and said during a call.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Said {
-    pub(crate) drawings: Vec<Drawing>,
-    pub(crate) scalars: Vec<(String, f64, String)>,
-    pub(crate) logs: Vec<(LogLevel, String)>,
-}
 
 /// A planner's refusal as it crosses: the number of its code, its sentence, the part of the way that it found.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -24,6 +24,23 @@ impl Writer {
         Ok(&self.0)
     }
 
+    /// The frame that was finished last.
+    #[cfg(unix)]
+    pub(crate) fn frame(&self) -> &[u8] {
+        &self.0
+    }
+
+    /// What was written without a frame around it.
+    pub(crate) fn into_bytes(self) -> Vec<u8> {
+        self.0
+    }
+
+    /// Something that was written before.
+    pub(crate) fn written(&mut self, bytes: &[u8]) -> &mut Self {
+        self.0.extend_from_slice(bytes);
+        self
+    }
+
     pub(crate) fn u8(&mut self, value: u8) -> &mut Self {
         self.0.push(value);
         self

@@ -2,11 +2,8 @@
 
 use super::LONGEST;
 use super::body::Body;
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use rustix::io::Errno;
 use std::io::{ErrorKind, Read};
-use std::os::fd::AsFd;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Bytes before the body.
 pub(crate) const HEADER: usize = 13;
@@ -18,21 +15,36 @@ pub(crate) const KIND_AT: usize = 4;
 pub(crate) enum Received {
     /// A whole frame; it stays readable until the next call.
     Frame,
-    /// Not in time; what has arrived of a frame is kept.
-    Late,
     /// The other side is gone.
     Closed,
     /// What arrived is no frame.
     Broken,
 }
 
-/// Reads frames; keeps what has arrived of the next one, also across missed deadlines.
+/// What came of reading from a stream.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Filled {
+    /// Something arrived.
+    Some,
+    /// Nothing is there by now.
+    Nothing,
+    /// The other side is gone.
+    Closed,
+    /// The stream cannot be read.
+    Broken,
+}
+
+/// A length that no frame has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct NoFrame;
+
+/// Reads frames; keeps what has arrived of the next one.
 #[derive(Debug, Default)]
 pub(crate) struct Incoming {
     buffer: Vec<u8>,
     /// Bytes of the buffer that hold data.
     filled: usize,
-    /// Length of the frame at the front that the last call returned.
+    /// Length of the frame at the front that was returned last.
     current: usize,
 }
 
@@ -40,31 +52,52 @@ pub(crate) struct Incoming {
 const ROOM: usize = 16 << 10;
 
 impl Incoming {
-    /// Waits for a frame until a moment, or for as long as it takes.
-    pub(crate) fn receive(&mut self, stream: &mut (impl Read + AsFd), until: Option<Instant>) -> Received {
-        self.forget_current();
+    /// Waits for a frame as long as it takes, on a stream that blocks.
+    pub(crate) fn receive(&mut self, stream: &mut impl Read) -> Received {
         loop {
-            match self.front_length() {
-                Some(length) if !(HEADER - 4..=LONGEST).contains(&length) => return Received::Broken,
-                Some(length) if self.filled >= 4 + length => {
-                    self.current = 4 + length;
-                    return Received::Frame;
-                }
-                Some(length) => self.make_room(4 + length),
-                None => self.make_room(ROOM),
+            match self.next_frame() {
+                Some(Ok(())) => return Received::Frame,
+                Some(Err(NoFrame)) => return Received::Broken,
+                None => {}
             }
-            if !is_readable(stream, until) {
-                return Received::Late;
+            match self.fill(stream) {
+                Filled::Some | Filled::Nothing => {}
+                Filled::Closed => return Received::Closed,
+                Filled::Broken => return Received::Broken,
             }
-            match stream.read(&mut self.buffer[self.filled..]) {
-                Ok(0) => return Received::Closed,
-                Ok(n) => self.filled += n,
-                Err(error) => match error.kind() {
-                    ErrorKind::Interrupted | ErrorKind::WouldBlock => {}
-                    ErrorKind::ConnectionReset | ErrorKind::BrokenPipe => return Received::Closed,
-                    _ => return Received::Broken,
-                },
+        }
+    }
+
+    /// Goes on to the next frame, if all of it has arrived; it stays readable until the next call.
+    pub(crate) fn next_frame(&mut self) -> Option<Result<(), NoFrame>> {
+        self.forget_current();
+        let length = self.front_length()?;
+        if !(HEADER - 4..=LONGEST).contains(&length) {
+            return Some(Err(NoFrame));
+        }
+        if self.filled < 4 + length {
+            return None;
+        }
+        self.current = 4 + length;
+        Some(Ok(()))
+    }
+
+    /// Reads what has arrived, at most the rest of the next frame or what there is room for; to be called when there was
+    /// no next frame.
+    pub(crate) fn fill(&mut self, stream: &mut impl Read) -> Filled {
+        let needed = self.front_length().map_or(ROOM, |length| 4 + length.min(LONGEST));
+        self.make_room(needed.max(self.filled + 1));
+        match stream.read(&mut self.buffer[self.filled..]) {
+            Ok(0) => Filled::Closed,
+            Ok(n) => {
+                self.filled += n;
+                Filled::Some
             }
+            Err(error) => match error.kind() {
+                ErrorKind::Interrupted | ErrorKind::WouldBlock => Filled::Nothing,
+                ErrorKind::ConnectionReset | ErrorKind::BrokenPipe => Filled::Closed,
+                _ => Filled::Broken,
+            },
         }
     }
 
@@ -116,19 +149,6 @@ impl Incoming {
     }
 }
 
-fn is_readable(stream: &impl AsFd, until: Option<Instant>) -> bool {
-    loop {
-        let left = until.map(|until| until.saturating_duration_since(Instant::now()));
-        let timeout = left.and_then(|left| Timespec::try_from(left).ok());
-        match poll(&mut [PollFd::new(stream, PollFlags::IN)], timeout.as_ref()) {
-            Ok(0) => return false,
-            Err(Errno::INTR) => {}
-            // Errors of the stream show when it is read.
-            Ok(_) | Err(_) => return true,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -140,21 +160,21 @@ mod tests {
         Writer::default().begin(5, sequence, 250).text(text).finish().expect("short").to_vec()
     }
 
-    fn soon() -> Instant {
-        Instant::now() + Duration::from_millis(1)
-    }
-
     #[test]
-    fn a_half_read_frame_survives_a_missed_deadline() {
+    fn a_half_read_frame_is_kept_until_the_rest_arrives() {
         let (mut ours, mut theirs) = UnixStream::pair().expect("a pair");
+        ours.set_nonblocking(true).expect("a socket");
         let mut incoming = Incoming::default();
         let bytes = frame(7, "hello");
+        assert_eq!(incoming.fill(&mut ours), Filled::Nothing);
         for piece in [&bytes[..2], &bytes[2..9], &bytes[9..bytes.len() - 1]] {
             theirs.write_all(piece).expect("written");
-            assert_eq!(incoming.receive(&mut ours, Some(soon())), Received::Late);
+            assert_eq!(incoming.fill(&mut ours), Filled::Some);
+            assert_eq!(incoming.next_frame(), None);
         }
         theirs.write_all(&bytes[bytes.len() - 1..]).expect("written");
-        assert_eq!(incoming.receive(&mut ours, None), Received::Frame);
+        assert_eq!(incoming.fill(&mut ours), Filled::Some);
+        assert_eq!(incoming.next_frame(), Some(Ok(())));
         assert_eq!((incoming.kind(), incoming.sequence()), (5, 7));
         assert_eq!(incoming.soft_deadline(), Some(Duration::from_micros(250)));
         assert_eq!(incoming.body().text(), Ok("hello".to_owned()));
@@ -166,13 +186,13 @@ mod tests {
         let (mut ours, mut theirs) = UnixStream::pair().expect("a pair");
         theirs.write_all(&[frame(1, "a"), frame(2, "b")].concat()).expect("written");
         let mut incoming = Incoming::default();
-        assert_eq!(incoming.receive(&mut ours, None), Received::Frame);
+        assert_eq!(incoming.receive(&mut ours), Received::Frame);
         assert!(incoming.has_more());
         assert_eq!((incoming.sequence(), incoming.body().text()), (1, Ok("a".to_owned())));
-        assert_eq!(incoming.receive(&mut ours, None), Received::Frame);
+        assert_eq!(incoming.receive(&mut ours), Received::Frame);
         assert_eq!((incoming.sequence(), incoming.body().text()), (2, Ok("b".to_owned())));
         drop(theirs);
-        assert_eq!(incoming.receive(&mut ours, None), Received::Closed);
+        assert_eq!(incoming.receive(&mut ours), Received::Closed);
     }
 
     #[test]
@@ -180,7 +200,7 @@ mod tests {
         for length in [0_u32, 8, u32::MAX] {
             let (mut ours, mut theirs) = UnixStream::pair().expect("a pair");
             theirs.write_all(&length.to_le_bytes()).expect("written");
-            assert_eq!(Incoming::default().receive(&mut ours, None), Received::Broken, "{length}");
+            assert_eq!(Incoming::default().receive(&mut ours), Received::Broken, "{length}");
         }
     }
 
@@ -191,7 +211,7 @@ mod tests {
         let bytes = frame(1, &text);
         let writer = std::thread::spawn(move || theirs.write_all(&bytes));
         let mut incoming = Incoming::default();
-        assert_eq!(incoming.receive(&mut ours, None), Received::Frame);
+        assert_eq!(incoming.receive(&mut ours), Received::Frame);
         assert_eq!(incoming.body().text(), Ok(text));
         writer.join().expect("no panic").expect("written");
     }

@@ -1,13 +1,13 @@
-//! Site, request and what is sensed: written from the borrowed forms, read into the owned ones.
+//! Site, request and what is sensed: written from the borrowed forms, read into the owned ones of the mission's port.
 
 use super::body::{Body, Malformed, Read, Writer};
-use super::owned::{
-    OwnedBoundary, OwnedObstacle, OwnedOutline, OwnedRequest, OwnedSensed, OwnedSite, OwnedTask, OwnedZone,
-};
+use mission::ask::{self, PlanAsk, SiteObstacle, SiteZone, StepAsk, TaskLeft};
 use planner_api::{
     Boundary, Limits, Motion, Obstacle, Outline, PlanRequest, Reason, Sensed, Site, Task, TetherLimits, Zone,
     ZoneKind,
 };
+use std::sync::Arc;
+use world::Shape;
 
 impl Writer {
     fn outline(&mut self, outline: &Outline<'_>) -> &mut Self {
@@ -102,32 +102,32 @@ impl Writer {
 }
 
 impl Body<'_> {
-    fn outline(&mut self) -> Read<OwnedOutline> {
+    fn outline(&mut self) -> Read<Shape> {
         match self.u8()? {
-            0 => Ok(OwnedOutline::Disc { center: self.point()?, radius_m: self.f64()? }),
-            1 => Ok(OwnedOutline::Polygon { vertices: self.points()? }),
-            2 => Ok(OwnedOutline::Polyline { points: self.points()?, half_width_m: self.f64()? }),
+            0 => Ok(Shape::Disc { center: self.point()?, radius_m: self.f64()? }),
+            1 => Ok(Shape::Polygon { vertices: self.points()? }),
+            2 => Ok(Shape::Polyline { points: self.points()?, half_width_m: self.f64()? }),
             _ => Err(Malformed),
         }
     }
 
-    fn obstacle(&mut self) -> Read<OwnedObstacle> {
-        Ok(OwnedObstacle {
+    fn obstacle(&mut self) -> Read<SiteObstacle> {
+        Ok(SiteObstacle {
             id: self.u32()?,
             discovered: self.flag()?,
-            outline: self.outline()?,
+            shape: self.outline()?,
             velocity_m_per_s: self.point()?.coords,
         })
     }
 
-    fn zone(&mut self) -> Read<OwnedZone> {
+    fn zone(&mut self) -> Read<SiteZone> {
         let kind = match self.u8()? {
             0 => ZoneKind::NoGo,
             1 => ZoneKind::Land,
             2 => ZoneKind::Underwater,
             _ => return Err(Malformed),
         };
-        Ok(OwnedZone { kind, outline: self.outline()? })
+        Ok(SiteZone { kind, shape: self.outline()? })
     }
 
     fn limits(&mut self) -> Read<Limits> {
@@ -145,14 +145,14 @@ impl Body<'_> {
         })
     }
 
-    pub(crate) fn site(&mut self) -> Read<OwnedSite> {
+    pub(crate) fn site(&mut self) -> Read<ask::Site> {
         let (revision, seed) = (self.u32()?, self.u64()?);
         let boundary = match self.u8()? {
-            0 => OwnedBoundary::Circle { radius_m: self.f64()? },
-            1 => OwnedBoundary::Polygon { vertices: self.points()? },
+            0 => world::Boundary::Circle { radius_m: self.f64()? },
+            1 => world::Boundary::Polygon { vertices: self.points()? },
             _ => return Err(Malformed),
         };
-        Ok(OwnedSite {
+        Ok(ask::Site {
             revision,
             seed,
             boundary,
@@ -184,12 +184,12 @@ impl Body<'_> {
         Ok(Some(TetherLimits { reel_m, max_wrap_rad, max_sum_wrap_rad }))
     }
 
-    pub(crate) fn request(&mut self) -> Read<OwnedRequest> {
+    pub(crate) fn request(&mut self) -> Read<PlanAsk> {
         let (reason, start) = (self.reason()?, self.pose()?);
         let task = match self.u8()? {
-            0 => OwnedTask::Goto { goal: self.point()?, tolerance_m: self.f64()? },
-            1 => OwnedTask::Follow { targets: self.points()?, tolerance_m: self.f64()? },
-            2 => OwnedTask::Cover {
+            0 => TaskLeft::Goto { goal: self.point()?, tolerance_m: self.f64()? },
+            1 => TaskLeft::Follow { targets: self.points()?, tolerance_m: self.f64()? },
+            2 => TaskLeft::Cover {
                 anchor: self.point()?,
                 tolerance_m: self.f64()?,
                 tether: self.tether()?,
@@ -197,11 +197,11 @@ impl Body<'_> {
             },
             _ => return Err(Malformed),
         };
-        Ok(OwnedRequest { reason, start, task, site: self.site()?, previous: self.points()? })
+        Ok(PlanAsk { reason, start, task, site: Arc::new(self.site()?), previous: self.points()? })
     }
 
-    pub(crate) fn sensed(&mut self) -> Read<OwnedSensed> {
-        Ok(OwnedSensed {
+    pub(crate) fn sensed(&mut self) -> Read<StepAsk> {
+        Ok(StepAsk {
             tick: self.u64()?,
             t_s: self.f64()?,
             dt_s: self.f64()?,

@@ -1,7 +1,8 @@
 //! What a worker gives up before it loads anything.
 
+use crate::supervisor::SHUT_DOWN_WITHIN;
 use rustix::event::{PollFd, PollFlags, poll};
-use rustix::process::{Resource, Rlimit, Signal, getpid, getrlimit, kill_process, nice, setrlimit};
+use rustix::process::{Resource, Rlimit, Signal, getpid, getrlimit, kill_process, setrlimit};
 use std::io;
 use std::os::fd::{AsFd, OwnedFd};
 
@@ -9,7 +10,6 @@ use std::os::fd::{AsFd, OwnedFd};
 const SOCKET_AT: i32 = 200;
 const MOST_FILES: u64 = 256;
 const LARGEST_FILE: u64 = 64 << 20;
-const NICENESS: i32 = 5;
 
 /// Takes the socket that came as standard input and puts nothing in its place.
 pub(super) fn take_socket() -> io::Result<OwnedFd> {
@@ -25,7 +25,6 @@ pub(super) fn confine() {
     limit(Resource::Core, 0);
     limit(Resource::Nofile, MOST_FILES);
     limit(Resource::Fsize, LARGEST_FILE);
-    let _ = nice(NICENESS);
     #[cfg(target_os = "linux")]
     {
         let _ = rustix::thread::set_no_new_privs(true);
@@ -43,16 +42,19 @@ fn limit(resource: Resource, most: u64) {
     let _ = setrlimit(resource, Rlimit { current: Some(most), maximum: Some(most) });
 }
 
-/// Starts a thread that ends this process when the console is gone, also in the middle of an endless loop.
+/// Starts a thread that ends this process when the console is gone, or has told it to end and was not obeyed; also in the
+/// middle of an endless loop.
 pub(super) fn die_with_the_console(socket: OwnedFd) -> io::Result<()> {
     std::thread::Builder::new().name("watchdog".into()).stack_size(64 << 10).spawn(move || {
         loop {
-            let mut sockets = [PollFd::new(&socket, PollFlags::empty())];
-            // No events are asked for: only a full hang-up or an error is reported.
+            let mut sockets = [PollFd::new(&socket, TOLD_TO_END)];
             let happened = poll(&mut sockets, None).map_or(PollFlags::empty(), |_| sockets[0].revents());
             if happened.contains(PollFlags::NVAL) {
                 // The planner closed our descriptor; the main thread finds that out, too, and ends with its own code.
                 return;
+            }
+            if happened == TOLD_TO_END {
+                std::thread::sleep(SHUT_DOWN_WITHIN);
             }
             if !happened.is_empty() {
                 let _ = kill_process(getpid(), Signal::KILL);
@@ -61,3 +63,10 @@ pub(super) fn die_with_the_console(socket: OwnedFd) -> io::Result<()> {
     })?;
     Ok(())
 }
+
+/// The console sends nothing more. A full hang-up and errors are reported unasked.
+#[cfg(target_os = "linux")]
+const TOLD_TO_END: PollFlags = PollFlags::RDHUP;
+/// Elsewhere only a full hang-up or an error is reported, and the console has to kill who does not obey.
+#[cfg(not(target_os = "linux"))]
+const TOLD_TO_END: PollFlags = PollFlags::empty();

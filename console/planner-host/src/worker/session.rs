@@ -1,7 +1,7 @@
 //! What a worker holds between two requests, and how it obeys them.
 
 use super::confine;
-use super::patience::Patience;
+use super::deadline::Deadline;
 use crate::loader::{self, Instance, Plugin, Sink, Table};
 use crate::wire::answer::{Loaded, Refusal};
 use crate::wire::body::{Body, Malformed, Writer};
@@ -34,15 +34,15 @@ impl From<Refusal> for Trouble {
 
 /// The library, and the planner that was made from it.
 pub(super) struct Session<'a> {
-    patience: &'a Patience,
+    deadline: &'a Deadline,
     table: Option<Table>,
     instance: Option<Instance>,
 }
 
 impl<'a> Session<'a> {
     /// Nothing loaded yet.
-    pub(super) fn new(patience: &'a Patience) -> Self {
-        Self { patience, table: None, instance: None }
+    pub(super) fn new(deadline: &'a Deadline) -> Self {
+        Self { deadline, table: None, instance: None }
     }
 
     /// Obeys a request and writes the body of its answer.
@@ -60,7 +60,7 @@ impl<'a> Session<'a> {
     }
 
     fn sink(&self) -> Sink<'a> {
-        Sink::new(self.patience)
+        Sink::new(self.deadline)
     }
 
     /// Loads a library once; describes one planner of it and keeps that, or all of them when none is named.
@@ -108,7 +108,7 @@ impl<'a> Session<'a> {
     }
 
     fn plan(&mut self, mut body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
-        self.patience.set_watched(body.flag()?);
+        self.deadline.set_watched(body.flag()?);
         let request = body.request()?;
         body.end()?;
         let mut sink = self.sink();
@@ -119,7 +119,7 @@ impl<'a> Session<'a> {
     }
 
     fn step(&mut self, mut body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
-        self.patience.set_watched(body.flag()?);
+        self.deadline.set_watched(body.flag()?);
         let sensed = body.sensed()?;
         body.end()?;
         let mut sink = self.sink();

@@ -1,7 +1,7 @@
 //! Every way to misbehave ends as a fault with one sentence, and another planner can drive.
 
 use crate::stand::{assert_another_drives, choose, config, fly, host, impatient, plan, step, words};
-use mission::planner::{During, ParamValue, Parameters, PlannerLink};
+use mission::planner::{During, ParamValue, Parameters};
 use mission::{Cause, Fault};
 use planner_api::{Code, LogLevel};
 use planner_host::HostConfig;
@@ -10,9 +10,10 @@ use std::time::{Duration, Instant};
 /// The fault of a planner that was told to commit it at its sixth step.
 fn fault_of(kind: &str, config: HostConfig) -> Fault {
     let mut host = host(config);
-    choose(&mut host, "faulty", &words(&[("fault", kind)])).unwrap();
+    let sha256 = choose(&mut host, "faulty", &words(&[("fault", kind)])).unwrap().sha256;
     let fault = fly(&mut host).unwrap_err();
     assert_eq!((fault.planner.as_str(), fault.during), ("faulty", During::Step));
+    assert_eq!(fault.plugin_sha256.as_deref(), Some(sha256.as_str()));
     assert_another_drives(&mut host);
     fault
 }
@@ -122,13 +123,17 @@ fn a_planner_that_does_not_answer_is_killed_in_time() {
 }
 
 #[test]
-fn a_planner_that_stops_when_asked_is_late_and_lives() {
+fn a_planner_that_stops_when_asked_is_late_and_its_process_ends() {
     let mut host = host(impatient());
     choose(&mut host, "faulty", &words(&[("fault", "slow")])).unwrap();
     let fault = fly(&mut host).unwrap_err();
     assert_eq!(fault.cause, Cause::Late);
     assert_eq!(fault.message, "planner faulty was too slow: it missed the deadline of step 5");
-    assert!(plan(&mut host).is_ok(), "the same instance answers");
+    let fault = plan(&mut host).unwrap_err();
+    assert_eq!(fault.cause, Cause::Died);
+    let sentence = "planner faulty cannot do plan: its process has ended and it must be chosen again";
+    assert_eq!(fault.message, sentence);
+    assert_another_drives(&mut host);
 }
 
 #[test]
@@ -193,20 +198,6 @@ fn the_same_fault_reads_the_same_every_time() {
     for kind in ["panic", "segv", "stack", "exit", "close_fds"] {
         assert_eq!(fault_of(kind, config()), fault_of(kind, config()));
     }
-}
-
-#[test]
-fn three_faults_within_a_minute_are_the_end_of_a_plugin() {
-    let mut host = host(config());
-    for _ in 0..3 {
-        choose(&mut host, "faulty", &words(&[("fault", "segv")])).unwrap();
-        fly(&mut host).unwrap_err();
-    }
-    let fault = choose(&mut host, "faulty", &Parameters::new()).unwrap_err();
-    assert_eq!(fault.cause, Cause::Quarantined);
-    let sentence = "planner faulty failed 3 times within 60 s and may not drive again in this mission";
-    assert_eq!(fault.message, sentence);
-    assert_eq!(host.stats().faults, 4);
 }
 
 #[test]

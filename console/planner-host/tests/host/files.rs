@@ -2,7 +2,7 @@
 
 use crate::stand::{assert_refused, built, choose, compile, config, direct_c, folder_with, worker};
 use mission::planner::Parameters;
-use planner_host::{Host, PluginDirs, Survey, survey};
+use planner_host::{BlockingHost, PluginDirs, Survey, survey};
 use std::path::Path;
 
 fn refusal(dirs: &PluginDirs) -> String {
@@ -22,7 +22,7 @@ fn file(name: &str, content: &[u8]) -> (tempfile::TempDir, PluginDirs) {
 fn a_text_file_is_no_library() {
     let (_folder, dirs) = file("libplanner_text.so", b"not a library\n");
     assert_eq!(refusal(&dirs), "not a shared library");
-    let fault = choose(&mut Host::new(&dirs, config()), "text", &Parameters::new()).unwrap_err();
+    let fault = choose(&mut BlockingHost::new(&dirs, config()), "text", &Parameters::new()).unwrap_err();
     assert_refused(&fault, &["planner text", "libplanner_text.so", "not a shared library"]);
 }
 
@@ -70,7 +70,7 @@ fn a_planner_without_its_functions_is_refused_with_their_names() {
     );
     let (_folder, dirs) = folder_with("half", &source);
     assert_eq!(refusal(&dirs), "planner `half` lacks the function(s): describe, create, destroy, plan, step");
-    let fault = choose(&mut Host::new(&dirs, config()), "half", &Parameters::new()).unwrap_err();
+    let fault = choose(&mut BlockingHost::new(&dirs, config()), "half", &Parameters::new()).unwrap_err();
     assert_refused(&fault, &["plugin libplanner_half.so is refused", "lacks the function(s)"]);
 }
 
@@ -124,7 +124,7 @@ fn the_first_planner_of_an_id_wins_and_later_ones_are_shadowed() {
     let found = survey(&dirs, &worker());
     assert_eq!((found.plugins[0].planners.len(), found.plugins[1].planners.len()), (1, 0));
     assert_eq!(found.plugins[1].shadowed, ["direct-c"]);
-    let info = choose(&mut Host::new(&dirs, config()), "direct-c", &Parameters::new()).unwrap();
+    let info = choose(&mut BlockingHost::new(&dirs, config()), "direct-c", &Parameters::new()).unwrap();
     assert_eq!(info.plugin, "libplanner_one.so");
 }
 
@@ -139,14 +139,14 @@ fn a_bad_file_does_not_hide_a_good_one() {
     std::fs::write(&source, bad).unwrap();
     compile(&source, folder.path(), "bad", &[]);
     let dirs = PluginDirs(vec![folder.path().to_owned()]);
-    let info = choose(&mut Host::new(&dirs, config()), "direct-c", &Parameters::new()).unwrap();
+    let info = choose(&mut BlockingHost::new(&dirs, config()), "direct-c", &Parameters::new()).unwrap();
     assert_eq!(info.plugin, "libplanner_good.so");
 }
 
 #[test]
 fn a_planner_that_is_not_there_names_the_nearest_one() {
     let (folder, dirs) = (tempfile::tempdir().unwrap(), |folder: &Path| PluginDirs(vec![folder.to_owned()]));
-    let mut empty = Host::new(&dirs(folder.path()), config());
+    let mut empty = BlockingHost::new(&dirs(folder.path()), config());
     let fault = choose(&mut empty, "apf", &Parameters::new()).unwrap_err();
     assert_refused(&fault, &["no plugin has the planner apf", "there are no plugins"]);
     compile(&direct_c(), folder.path(), "direct_c", &[]);

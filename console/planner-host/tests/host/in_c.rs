@@ -6,15 +6,15 @@ use crate::stand::{
 };
 use crate::state::COUNTER;
 use mission::Cause;
-use mission::planner::{ParamValue, Parameters, PlannerLink};
+use mission::planner::{ParamValue, Parameters};
 use nalgebra::Point2;
 use planner_api::{Drive, Leg, LegTag, PoseEstimate, Status};
-use planner_host::{Host, PluginDirs};
+use planner_host::{BlockingHost, PluginDirs};
 
-fn host() -> (tempfile::TempDir, Host) {
+fn host() -> (tempfile::TempDir, BlockingHost) {
     let folder = tempfile::tempdir().unwrap();
     compile(&direct_c(), folder.path(), "direct_c", &[]);
-    let host = Host::new(&PluginDirs(vec![folder.path().to_owned()]), config());
+    let host = BlockingHost::new(&PluginDirs(vec![folder.path().to_owned()]), config());
     (folder, host)
 }
 
@@ -50,11 +50,14 @@ fn driven(from: PoseEstimate, drive: Drive) -> PoseEstimate {
 fn live_values_reach_a_planner_in_c() {
     let (_folder, mut host) = host();
     choose(&mut host, "direct-c", &Parameters::new()).unwrap();
-    let turn_rate =
-        |host: &mut Host, tick| match step_at(host, tick, pose(Point2::origin())).unwrap().value.drive {
-            Drive::Twist { w_rad_per_s, .. } => w_rad_per_s,
-            Drive::Velocity(_) => panic!("it drives by twists"),
-        };
+    let turn_rate = |host: &mut BlockingHost, tick| match step_at(host, tick, pose(Point2::origin()))
+        .unwrap()
+        .value
+        .drive
+    {
+        Drive::Twist { w_rad_per_s, .. } => w_rad_per_s,
+        Drive::Velocity(_) => panic!("it drives by twists"),
+    };
     assert!((turn_rate(&mut host, 0) - 1.0).abs() < 1e-12, "at the robot's limit");
     let gain = |gain| Parameters::from([("turn_gain".to_owned(), ParamValue::Float(gain))]);
     host.reconfigure(&gain(0.5)).unwrap();
@@ -69,7 +72,7 @@ fn answers_that_are_none_are_caught() {
     let spoilt = |by: &str| {
         let good = "out->drive = TP_TWIST; out->status = TP_MOVING; out->a = 0.001 * c->count; out->b = 0.0;";
         let (_folder, dirs) = folder_with("counter", &COUNTER.replace(good, &format!("(void)out; {by}")));
-        let mut host = Host::new(&dirs, config());
+        let mut host = BlockingHost::new(&dirs, config());
         choose(&mut host, "counter", &Parameters::new()).unwrap();
         let fault = step_at(&mut host, 0, pose(Point2::origin())).unwrap_err();
         assert_eq!(fault.cause, Cause::BadOutput);
@@ -98,7 +101,7 @@ fn plans_to_cover(by: &str) -> Result<planner_api::Plan, mission::planner::Fault
     );
     let source = COUNTER.replace(plan, &covers).replace("TP_CAP_LOCAL", "TP_CAP_COVERAGE");
     let (_folder, dirs) = folder_with("counter", &source);
-    let mut host = Host::new(&dirs, config());
+    let mut host = BlockingHost::new(&dirs, config());
     choose(&mut host, "counter", &Parameters::new()).unwrap();
     plan_to_cover(&mut host).map(|reply| reply.value)
 }

@@ -4,27 +4,27 @@ use crate::stand::{assert_another_drives, choose, config, folder_with, host, imp
 use crate::state::COUNTER;
 use mission::Cause;
 use mission::planner::Parameters;
-use planner_host::{Host, Progress};
+use planner_host::{BlockingHost, Progress};
 use std::sync::{Arc, Mutex};
 
 type Heard = Arc<Mutex<Vec<Progress>>>;
 
-fn hearing(host: &mut Host) -> Heard {
+fn hearing(host: &mut BlockingHost) -> Heard {
     let heard = Heard::default();
     let hearing = Arc::clone(&heard);
-    host.tell_progress(Arc::new(move |progress| hearing.lock().unwrap().push(progress.clone())));
+    host.tell_progress(Arc::new(move |_, progress| hearing.lock().unwrap().push(progress.clone())));
     heard
 }
 
 /// The counter in C with other lines at the top of its functions.
-fn counter(replaced: &[(&str, &str)]) -> (tempfile::TempDir, Host) {
+fn counter(replaced: &[(&str, &str)]) -> (tempfile::TempDir, BlockingHost) {
     let mut source = COUNTER.to_owned();
     for (old, new) in replaced {
         assert!(source.contains(old), "{old}");
         source = source.replace(old, new);
     }
     let (folder, dirs) = folder_with("counter", &source);
-    let mut host = Host::new(&dirs, config());
+    let mut host = BlockingHost::new(&dirs, config());
     choose(&mut host, "counter", &Parameters::new()).unwrap();
     (folder, host)
 }
@@ -91,6 +91,6 @@ fn a_planner_that_tells_progress_without_end_is_killed_like_any_that_hangs() {
     choose(&mut host, "faulty", &words(&[("fault", "plan_progress")])).unwrap();
     let fault = plan(&mut host).unwrap_err();
     assert_eq!(fault.cause, Cause::Hung, "{fault}");
-    assert!(heard.lock().unwrap().len() < 10, "it cannot flood the console");
+    assert!(heard.lock().unwrap().len() < 100, "it cannot flood the console");
     assert_another_drives(&mut host);
 }

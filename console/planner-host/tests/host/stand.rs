@@ -1,13 +1,13 @@
 //! A tank, a robot, a host and what a C compiler makes of a few lines.
 
-use mission::planner::{ParamValue, Parameters, PlannerInfo, PlannerLink, Reply};
+use mission::planner::{ParamValue, Parameters, PlannerInfo};
 use mission::{Cause, Fault};
 use nalgebra::{Matrix3, Point2};
 use planner_api::{
     Boundary, Command, Limits, Motion, Obstacle, Outline, Plan, PlanRequest, PoseEstimate, Reason, Sensed,
     Site, Task, TetherLimits,
 };
-use planner_host::{Host, HostConfig, PluginDirs, WorkerCommand};
+use planner_host::{BlockingHost, HostConfig, PluginDirs, Reply, WorkerCommand};
 use std::path::{Path, PathBuf};
 use std::process::Command as Run;
 use std::time::Duration;
@@ -36,8 +36,8 @@ pub fn impatient() -> HostConfig {
 }
 
 /// A host for the plugins that were built with this test.
-pub fn host(config: HostConfig) -> Host {
-    Host::new(&built(), config)
+pub fn host(config: HostConfig) -> BlockingHost {
+    BlockingHost::new(&built(), config)
 }
 
 /// The folder where plugins land that were built with this test.
@@ -82,16 +82,16 @@ pub fn words(pairs: &[(&str, &str)]) -> Parameters {
     pairs.iter().map(|(key, word)| ((*key).to_owned(), ParamValue::Word((*word).to_owned()))).collect()
 }
 
-pub fn choose(host: &mut Host, id: &str, parameters: &Parameters) -> Result<PlannerInfo, Fault> {
+pub fn choose(host: &mut BlockingHost, id: &str, parameters: &Parameters) -> Result<PlannerInfo, Fault> {
     with_site(|site| host.choose(id, parameters, site))
 }
 
-pub fn plan(host: &mut Host) -> Result<Reply<Plan>, Fault> {
+pub fn plan(host: &mut BlockingHost) -> Result<Reply<Plan>, Fault> {
     plan_for(host, Task::Goto { goal: GOAL, tolerance_m: 0.1 })
 }
 
 /// Asks to cover two triangles on a tether.
-pub fn plan_to_cover(host: &mut Host) -> Result<Reply<Plan>, Fault> {
+pub fn plan_to_cover(host: &mut BlockingHost) -> Result<Reply<Plan>, Fault> {
     let triangle = [Point2::new(1.0, 0.0), Point2::new(2.0, 0.0), Point2::new(1.0, 1.0)];
     let tether = TetherLimits { reel_m: 40.0, max_wrap_rad: 1.5, max_sum_wrap_rad: 2.5 };
     let regions: [&[_]; 2] = [&triangle, &triangle];
@@ -99,7 +99,7 @@ pub fn plan_to_cover(host: &mut Host) -> Result<Reply<Plan>, Fault> {
     plan_for(host, Task::Cover { anchor, regions: &regions, tether, tolerance_m: 0.1 })
 }
 
-fn plan_for(host: &mut Host, task: Task<'_>) -> Result<Reply<Plan>, Fault> {
+fn plan_for(host: &mut BlockingHost, task: Task<'_>) -> Result<Reply<Plan>, Fault> {
     with_site(|site| {
         let start = pose(Point2::origin());
         host.plan(&PlanRequest { reason: &Reason::Start, start, task, site, previous: &[] })
@@ -107,17 +107,22 @@ fn plan_for(host: &mut Host, task: Task<'_>) -> Result<Reply<Plan>, Fault> {
 }
 
 /// A step from the origin.
-pub fn step(host: &mut Host, tick: u64) -> Result<Reply<Command>, Fault> {
+pub fn step(host: &mut BlockingHost, tick: u64) -> Result<Reply<Command>, Fault> {
     step_at(host, tick, pose(Point2::origin()))
 }
 
-pub fn step_at(host: &mut Host, tick: u64, pose: PoseEstimate) -> Result<Reply<Command>, Fault> {
+pub fn step_at(host: &mut BlockingHost, tick: u64, pose: PoseEstimate) -> Result<Reply<Command>, Fault> {
+    sensed(tick, |sensed| host.step(&Sensed { pose, ..*sensed }))
+}
+
+/// What is sensed at the origin.
+pub fn sensed<R>(tick: u64, call: impl FnOnce(&Sensed<'_>) -> R) -> R {
     let far = Outline::Disc { center: Point2::new(5.0, 0.0), radius_m: 0.3 };
-    host.step(&Sensed {
+    call(&Sensed {
         tick,
         t_s: tick as f64 * TICK_S,
         dt_s: TICK_S,
-        pose,
+        pose: pose(Point2::origin()),
         v_m_per_s: 0.0,
         w_rad_per_s: 0.0,
         target: GOAL,
@@ -133,12 +138,12 @@ pub fn step_at(host: &mut Host, tick: u64, pose: PoseEstimate) -> Result<Reply<C
 }
 
 /// Steps until the first fault, ten at most.
-pub fn fly(host: &mut Host) -> Result<(), Fault> {
+pub fn fly(host: &mut BlockingHost) -> Result<(), Fault> {
     (0..10).try_for_each(|tick| step(host, tick).map(|_| ()))
 }
 
 /// After whatever happened another planner drives.
-pub fn assert_another_drives(host: &mut Host) {
+pub fn assert_another_drives(host: &mut BlockingHost) {
     choose(host, "faulty", &Parameters::new()).unwrap();
     assert!(plan(host).unwrap().value.complete);
     fly(host).unwrap();

@@ -3,7 +3,7 @@
 use crate::stand::{choose, config, folder_with, step, words};
 use mission::planner::Parameters;
 use planner_api::Drive;
-use planner_host::{Host, PluginDirs};
+use planner_host::{BlockingHost, PluginDirs};
 use tempfile::TempDir;
 
 /// Counts its steps; its speed is the count in millimetres per second. Aborts at the thirtieth step of its process.
@@ -50,14 +50,14 @@ TP_EXPORT const tp_entry tank_planner_entry = TP_ENTRY(list, 1, "C");
 TP_STAMP(TP_ABI_MAJOR, TP_ABI_MINOR);
 "#;
 
-fn host() -> (TempDir, Host) {
+fn host() -> (TempDir, BlockingHost) {
     let (folder, PluginDirs(mut dirs)) = folder_with("counter", COUNTER);
     dirs.extend(crate::stand::built().0);
-    (folder, Host::new(&PluginDirs(dirs), config()))
+    (folder, BlockingHost::new(&PluginDirs(dirs), config()))
 }
 
 /// Its count after a step.
-fn count(host: &mut Host, tick: u64) -> u32 {
+fn count(host: &mut BlockingHost, tick: u64) -> u32 {
     match step(host, tick).unwrap().value.drive {
         Drive::Twist { v_m_per_s, .. } => (v_m_per_s * 1000.0).round() as u32,
         Drive::Velocity(_) => panic!("it drives by twists"),

@@ -1,15 +1,16 @@
-//! A flight on a map that is discovered on the way, over the planner link.
+//! A flight on a map that is discovered on the way, over the plugin boundary.
 
 use super::{
     Method,
     measured::{Gone, TOLERANCE_M},
 };
 use crate::{planners::Planners, study::Problem};
-use mission::{Cause, PlannerLink};
+use mission::Cause;
 use nalgebra::Matrix3;
 use planner_api::{
     Drive, Obstacle, Outline, PlanRequest, PoseEstimate, Reason, Sensed, Site, Status, Task, Vector2,
 };
+use planner_host::BlockingHost;
 use std::time::Instant;
 use trials::traps::{HULL_M, STEP_M, Trap};
 use world::{Point, polyline};
@@ -96,7 +97,7 @@ impl Journey<'_> {
 
     fn ask_for_plan(
         &mut self,
-        host: &mut impl PlannerLink,
+        host: &mut BlockingHost,
         reason: &Reason,
         method: &Method,
     ) -> Result<(), Problem> {
@@ -117,7 +118,7 @@ impl Journey<'_> {
         Ok(())
     }
 
-    fn step(&mut self, host: &mut impl PlannerLink, tick: u64, method: &Method) -> Result<Status, Problem> {
+    fn step(&mut self, host: &mut BlockingHost, tick: u64, method: &Method) -> Result<Status, Problem> {
         let here = self.here();
         self.plan.advance(here);
         let near: Vec<Obstacle<'static>> =

@@ -1,0 +1,294 @@
+//! From a planner's id to a planner that is ready, step by step: load, configure, restore.
+
+use super::find::Candidate;
+use super::planner::{Asked, Doing, Planner, Ready, must_cover, unless_refused};
+use super::saved::Saved;
+use super::{Host, fault, fault::Phase, numbers};
+use crate::supervisor::{Failure, Worker};
+use crate::survey::{info, write_load};
+use crate::wire::answer::{self, Said, loaded_of, said_of};
+use crate::wire::body::Writer;
+use crate::wire::kind;
+use mission::planner::{Cause, During};
+use mission::{AskId, Fault, Given, Parameters, PlannerInfo};
+use planner_api::{Caps, Limits, Site};
+use std::collections::VecDeque;
+use std::time::Instant;
+
+/// A planner that is being opened.
+pub(super) struct Opening {
+    pub(super) planner: String,
+    pub(super) parameters: Parameters,
+    pub(super) site: WrittenSite,
+    pub(super) restore: Option<AskId>,
+    /// Plugin files that were not tried yet.
+    pub(super) candidates: VecDeque<Candidate>,
+    /// Whether the plugin files were read for this planner, so that reading them again finds nothing new.
+    pub(super) is_fresh: bool,
+    /// Told when no file has the planner.
+    first_fault: Option<Fault>,
+}
+
+/// What a planner that is being opened was asked last.
+pub(super) enum Stage {
+    /// To load this file.
+    Load(Candidate),
+    /// To make the planner.
+    Configure(Loaded),
+    /// To go on from an earlier state, and what it said when it was made.
+    Restore(Loaded, Said),
+}
+
+/// A planner whose plugin is loaded.
+pub(super) struct Loaded {
+    pub(super) info: PlannerInfo,
+    pub(super) saves_state: bool,
+    pub(super) state_version: u32,
+}
+
+/// The tank as it goes to the worker.
+pub(super) struct WrittenSite {
+    pub(super) bytes: Vec<u8>,
+    pub(super) limits: Limits,
+}
+
+impl WrittenSite {
+    fn of(site: &Site<'_>) -> Self {
+        let mut writer = Writer::default();
+        writer.site(site);
+        Self { bytes: writer.into_bytes(), limits: site.limits }
+    }
+}
+
+impl Opening {
+    /// Nothing was tried yet.
+    pub(super) fn new(
+        planner: &str,
+        parameters: &Parameters,
+        site: &Site<'_>,
+        restore: Option<AskId>,
+    ) -> Self {
+        Self {
+            planner: planner.to_owned(),
+            parameters: parameters.clone(),
+            site: WrittenSite::of(site),
+            restore,
+            candidates: VecDeque::new(),
+            is_fresh: false,
+            first_fault: None,
+        }
+    }
+
+    /// A file could not be loaded. That does not hide the ones behind it, but is told if none of them has the planner.
+    pub(super) fn note(&mut self, failure: Failure, candidate: &Candidate) {
+        let fault = fault::of(failure, &self.planner, Phase::Load);
+        // While a library loads, no planner of it is to blame yet.
+        let (planner, plugin) = (format!("planner {} ", self.planner), format!("plugin {} ", candidate.name));
+        let message = fault.message.replacen(&planner, &plugin, 1);
+        let plugin_sha256 = Some(candidate.sha256.clone());
+        self.first_fault.get_or_insert(Fault { message, plugin_sha256, ..fault });
+    }
+}
+
+impl Loaded {
+    fn new(planner: &answer::Described, loaded: &answer::Loaded, plugin: &str) -> Self {
+        let saves_state = Caps(planner.caps).has(Caps::SNAPSHOT);
+        Self { info: info(planner, loaded, plugin), saves_state, state_version: planner.state_version }
+    }
+
+    /// Its private state, under the number of the ask that it was saved for.
+    pub(super) fn saved(&self, ask: AskId, state: Vec<u8>) -> Saved {
+        let (planner, sha256) = (self.info.id.clone(), self.info.sha256.clone());
+        Saved { ask, planner, sha256, version: self.state_version, state }
+    }
+
+    fn fault(&self, failure: Failure, phase: Phase) -> Fault {
+        self.blamed(fault::of(failure, &self.info.id, phase))
+    }
+
+    fn blamed(&self, fault: Fault) -> Fault {
+        Fault { plugin_sha256: Some(self.info.sha256.clone()), ..fault }
+    }
+}
+
+impl Host {
+    /// Begins to open a planner.
+    pub(super) fn open(&mut self, id: AskId, mut opening: Opening) -> Result<(), Fault> {
+        opening.is_fresh = self.catalog.read_once();
+        opening.candidates = self.catalog.candidates(&opening.planner).into();
+        self.planners.push(Planner::new(id.worker));
+        self.load_next(id, opening)
+    }
+
+    /// Asks a new worker to load the next file that may have the planner.
+    fn load_next(&mut self, id: AskId, mut opening: Opening) -> Result<(), Fault> {
+        loop {
+            let Some(candidate) = opening.candidates.pop_front() else {
+                if let Some(fault) = opening.first_fault.take() {
+                    return Err(fault);
+                }
+                if opening.is_fresh {
+                    let message = self.catalog.not_found(&opening.planner);
+                    return Err(fault::new(&opening.planner, During::Load, Cause::Refused, message));
+                }
+                // A plugin may have been built meanwhile.
+                self.catalog.read();
+                opening.is_fresh = true;
+                opening.candidates = self.catalog.candidates(&opening.planner).into();
+                continue;
+            };
+            match self.load(&candidate, &opening.planner) {
+                Ok(worker) => {
+                    let doing = Doing::Open(Box::new(opening), Stage::Load(candidate));
+                    self.wait_for(id, worker, doing);
+                    return Ok(());
+                }
+                Err(failure) => opening.note(failure, &candidate),
+            }
+        }
+    }
+
+    /// Starts a worker and asks it to load a file.
+    fn load(&self, candidate: &Candidate, planner: &str) -> Result<Worker, Failure> {
+        let mut worker = Worker::spawn(&self.config.worker_command)?;
+        let memory_limit_bytes = self.config.memory_limit_bytes;
+        worker.ask(kind::LOAD, self.config.load_deadline, |w| {
+            write_load(w, &candidate.path, planner, memory_limit_bytes);
+        })?;
+        Ok(worker)
+    }
+
+    /// Leaves an ask open until its worker has answered.
+    fn wait_for(&mut self, id: AskId, worker: Worker, doing: Doing) {
+        if let Some(planner) = self.planners.iter_mut().find(|planner| planner.id == id.worker) {
+            planner.worker = Some(worker);
+            planner.asked = Some(Asked { id, at: Instant::now(), doing });
+        }
+    }
+
+    /// Takes the outcome of a stage and begins the next one.
+    pub(super) fn go_on_opening(
+        &mut self,
+        id: AskId,
+        opening: Opening,
+        stage: Stage,
+        outcome: Result<(), Failure>,
+    ) {
+        let planner = self.planners.iter_mut().find(|planner| planner.id == id.worker);
+        let Some(mut worker) = planner.and_then(|planner| planner.worker.take()) else { return };
+        let begun = match stage {
+            Stage::Load(candidate) => {
+                let answer = outcome.and_then(|()| worker.take_answer(loaded_of));
+                self.configure(id, worker, opening, &candidate, answer)
+            }
+            Stage::Configure(loaded) => {
+                let answer = outcome.and_then(|()| worker.take_answer(said_of));
+                self.restore(id, worker, opening, loaded, answer)
+            }
+            Stage::Restore(loaded, said) => {
+                let answer = outcome.and_then(|()| worker.take_answer(|_| Ok(())));
+                match unless_refused(answer.map_err(|failure| loaded.fault(failure, Phase::State))) {
+                    Ok(_) => {
+                        self.opened(id, worker, opening, loaded, said);
+                        Ok(())
+                    }
+                    Err(fault) => self.part(worker, fault),
+                }
+            }
+        };
+        if let Err(fault) = begun {
+            self.close(id.worker);
+            self.answer(id, Err(fault));
+        }
+    }
+
+    /// Parts from a worker whose planner cannot be opened.
+    fn part(&mut self, mut worker: Worker, fault: Fault) -> Result<(), Fault> {
+        worker.shut_down();
+        self.leave(worker);
+        Err(fault)
+    }
+
+    /// Makes the planner in a worker that has loaded it; else tries the next file.
+    fn configure(
+        &mut self,
+        id: AskId,
+        mut worker: Worker,
+        mut opening: Opening,
+        candidate: &Candidate,
+        answer: Result<answer::Loaded, Failure>,
+    ) -> Result<(), Fault> {
+        let found = answer.map(|answer| {
+            answer.planners.first().map(|planner| Loaded::new(planner, &answer, &candidate.name))
+        });
+        let loaded = match found {
+            Ok(Some(loaded)) => loaded,
+            other => {
+                worker.shut_down();
+                self.leave(worker);
+                if let Err(failure) = other {
+                    opening.note(failure, candidate);
+                }
+                return self.load_next(id, opening);
+            }
+        };
+        self.catalog.learn(&loaded.info.id);
+        let coverage =
+            if self.config.must_cover { must_cover(&loaded.info, During::Configure) } else { Ok(()) };
+        let values = coverage.and_then(|()| numbers(&loaded.info, &opening.parameters));
+        let asked = values.and_then(|values| {
+            let write = |w: &mut Writer| {
+                w.values(&values).written(&opening.site.bytes);
+            };
+            let asked = worker.ask(kind::CONFIGURE, self.config.configure_deadline, write);
+            asked.map_err(|failure| loaded.fault(failure, Phase::Configure))
+        });
+        match asked {
+            Ok(()) => {
+                self.wait_for(id, worker, Doing::Open(Box::new(opening), Stage::Configure(loaded)));
+                Ok(())
+            }
+            Err(fault) => self.part(worker, loaded.blamed(fault)),
+        }
+    }
+
+    /// Gives a planner that was made the state of an earlier one, if there is one that it understands.
+    fn restore(
+        &mut self,
+        id: AskId,
+        mut worker: Worker,
+        opening: Opening,
+        loaded: Loaded,
+        answer: Result<Said, Failure>,
+    ) -> Result<(), Fault> {
+        let said = match answer {
+            Ok(said) => said,
+            Err(failure) => return self.part(worker, loaded.fault(failure, Phase::Configure)),
+        };
+        let fitting = |ask| self.saved.fitting(ask, &loaded.info, loaded.state_version);
+        let Some(state) = opening.restore.and_then(fitting) else {
+            self.opened(id, worker, opening, loaded, said);
+            return Ok(());
+        };
+        let write = |w: &mut Writer| {
+            w.u32(loaded.state_version).bytes(state);
+        };
+        match worker.ask(kind::RESTORE, self.config.state_deadline, write) {
+            Ok(()) => {
+                self.wait_for(id, worker, Doing::Open(Box::new(opening), Stage::Restore(loaded, said)));
+                Ok(())
+            }
+            Err(failure) => self.part(worker, loaded.fault(failure, Phase::State)),
+        }
+    }
+
+    /// The planner is ready.
+    fn opened(&mut self, id: AskId, worker: Worker, opening: Opening, loaded: Loaded, said: Said) {
+        let info = Box::new(loaded.info.clone());
+        if let Some(planner) = self.planners.iter_mut().find(|planner| planner.id == id.worker) {
+            planner.ready = Some(Ready::new(loaded, opening.parameters, opening.site.limits));
+            planner.worker = Some(worker);
+        }
+        self.answer(id, Ok((Given::Opened(info), said)));
+    }
+}

@@ -1,0 +1,258 @@
+//! A planner in its worker: what it is asked, and what it gives.
+
+use super::opening::{Loaded, Opening, Stage};
+use super::{HostConfig, fault, fault::Phase, numbers};
+use crate::supervisor::{Failure, Worker};
+use crate::wire::answer::{Said, said_of};
+use crate::wire::body::{Body, Read, Writer};
+use crate::wire::kind;
+use crate::{checks, parameters};
+use mission::planner::{Cause, During, Fault, Parameters, PlannerInfo};
+use mission::{AskId, Given, WorkerId};
+use planner_api::{Limits, PlanRequest, Sensed, Task};
+use std::time::{Duration, Instant};
+
+/// A planner under the number that the mission gave it.
+pub(super) struct Planner {
+    pub(super) id: WorkerId,
+    /// None when its process has ended.
+    pub(super) worker: Option<Worker>,
+    pub(super) asked: Option<Asked>,
+    /// None while it is being opened, or when that failed.
+    pub(super) ready: Option<Ready>,
+}
+
+/// An open ask.
+pub(super) struct Asked {
+    pub(super) id: AskId,
+    pub(super) at: Instant,
+    pub(super) doing: Doing,
+}
+
+/// What an open ask is about.
+pub(super) enum Doing {
+    Open(Box<Opening>, Stage),
+    /// With all values once it has taken the new ones.
+    Reconfigure(Parameters),
+    /// With the robot's limits for the commands that follow.
+    Plan(Limits),
+    /// With the number of the tick.
+    Step(u64),
+    Snapshot,
+}
+
+impl Doing {
+    pub(super) fn phase(&self) -> Phase {
+        match self {
+            Self::Open(_, Stage::Load(_)) => Phase::Load,
+            Self::Open(_, Stage::Configure(_)) | Self::Reconfigure(_) => Phase::Configure,
+            Self::Open(_, Stage::Restore(..)) | Self::Snapshot => Phase::State,
+            Self::Plan(_) => Phase::Plan,
+            Self::Step(tick) => Phase::Step(*tick),
+        }
+    }
+}
+
+/// A planner that was opened.
+pub(super) struct Ready {
+    pub(super) loaded: Loaded,
+    parameters: Parameters,
+    limits: Limits,
+}
+
+/// What a planner gave, and what it said.
+pub(super) type Told = Result<(Given, Said), Fault>;
+
+impl Ready {
+    pub(super) fn new(loaded: Loaded, parameters: Parameters, limits: Limits) -> Self {
+        Self { loaded, parameters, limits }
+    }
+
+    /// Refuses values that are unknown, out of range or not live; all values with the new ones.
+    fn merged(&self, changed: &Parameters) -> Result<Parameters, Fault> {
+        let info = &self.loaded.info;
+        let refuse = |message| fault::new(&info.id, During::Configure, Cause::Refused, message);
+        for key in changed.keys() {
+            let param = parameters::find(info, key).map_err(refuse)?;
+            if !param.live {
+                return Err(refuse(format!(
+                    "parameter `{key}` of planner {} cannot change under way",
+                    info.id
+                )));
+            }
+        }
+        let mut merged = self.parameters.clone();
+        merged.extend(changed.clone());
+        Ok(merged)
+    }
+}
+
+impl Planner {
+    /// A planner that has not been asked for anything.
+    pub(super) fn new(id: WorkerId) -> Self {
+        Self { id, worker: None, asked: None, ready: None }
+    }
+
+    /// Asks the worker; what it is asked stays open.
+    ///
+    /// # Errors
+    /// It cannot be asked.
+    fn ask(
+        &mut self,
+        id: AskId,
+        doing: Doing,
+        kind: u8,
+        budget: Duration,
+        write: impl FnOnce(&mut Writer),
+    ) -> Result<(), Fault> {
+        let asked = match &mut self.worker {
+            Some(worker) => worker.ask(kind, budget, write),
+            None => Err(Failure::Gone),
+        };
+        let phase = doing.phase();
+        asked.map_err(|failure| self.fault(failure, phase))?;
+        self.asked = Some(Asked { id, at: Instant::now(), doing });
+        Ok(())
+    }
+
+    /// Gives new values; those that are not given stay.
+    pub(super) fn reconfigure(
+        &mut self,
+        id: AskId,
+        changed: &Parameters,
+        config: &HostConfig,
+    ) -> Result<(), Fault> {
+        let Some(ready) = &self.ready else { return Err(self.fault(Failure::Gone, Phase::Configure)) };
+        let merged = ready.merged(changed).map_err(|fault| self.blamed(fault))?;
+        let values = numbers(&ready.loaded.info, &merged).map_err(|fault| self.blamed(fault))?;
+        let write = |w: &mut Writer| {
+            w.values(&values);
+        };
+        self.ask(id, Doing::Reconfigure(merged), kind::RECONFIGURE, config.configure_deadline, write)
+    }
+
+    /// Asks for a plan.
+    pub(super) fn plan(
+        &mut self,
+        id: AskId,
+        request: &PlanRequest<'_>,
+        config: &HostConfig,
+    ) -> Result<(), Fault> {
+        if let (Some(ready), Task::Cover { .. }) = (&self.ready, &request.task) {
+            must_cover(&ready.loaded.info, During::Plan).map_err(|fault| self.blamed(fault))?;
+        }
+        let write = |w: &mut Writer| {
+            w.flag(config.wants_drawing).request(request);
+        };
+        self.ask(id, Doing::Plan(request.site.limits), kind::PLAN, config.plan_deadline, write)
+    }
+
+    /// Asks for a command.
+    pub(super) fn step(&mut self, id: AskId, sensed: &Sensed<'_>, config: &HostConfig) -> Result<(), Fault> {
+        let write = |w: &mut Writer| {
+            w.flag(config.wants_drawing).sensed(sensed);
+        };
+        self.ask(id, Doing::Step(sensed.tick), kind::STEP, config.step_deadline, write)
+    }
+
+    /// Whether it can save its state.
+    pub(super) fn saves_state(&self) -> bool {
+        self.ready.as_ref().is_some_and(|ready| ready.loaded.saves_state)
+    }
+
+    /// Asks for the private state.
+    pub(super) fn snapshot(&mut self, id: AskId, config: &HostConfig) -> Result<(), Fault> {
+        self.ask(id, Doing::Snapshot, kind::SNAPSHOT, config.state_deadline, |_| {})
+    }
+
+    /// Reads the answer that the worker has, or passes on why there is none.
+    pub(super) fn read<T>(
+        &mut self,
+        outcome: Result<(), Failure>,
+        read: impl FnOnce(&mut Body<'_>) -> Read<T>,
+    ) -> Result<T, Failure> {
+        outcome?;
+        self.worker.as_mut().map_or(Err(Failure::Gone), |worker| worker.take_answer(read))
+    }
+
+    /// What came of new values.
+    pub(super) fn reconfigured(&mut self, outcome: Result<(), Failure>, values: Parameters) -> Told {
+        let said = self.read(outcome, said_of).map_err(|failure| self.fault(failure, Phase::Configure))?;
+        if let Some(ready) = &mut self.ready {
+            ready.parameters = values;
+        }
+        Ok((Given::Reconfigured, said))
+    }
+
+    /// What came of a plan.
+    pub(super) fn planned(&mut self, outcome: Result<(), Failure>, limits: Limits) -> Told {
+        let answer = self.read(outcome, |body| Ok((body.plan()?, said_of(body)?)));
+        let (plan, said) = answer.map_err(|failure| self.fault(failure, Phase::Plan))?;
+        checks::plan(&plan).map_err(|what| self.bad_output(Phase::Plan, &what))?;
+        if let Some(ready) = &mut self.ready {
+            ready.limits = limits;
+        }
+        Ok((Given::Plan(plan), said))
+    }
+
+    /// What came of a command.
+    pub(super) fn stepped(&mut self, outcome: Result<(), Failure>, tick: u64) -> Told {
+        let phase = Phase::Step(tick);
+        let answer = self.read(outcome, |body| Ok((body.command()?, said_of(body)?)));
+        let (command, said) = answer.map_err(|failure| self.fault(failure, phase))?;
+        let checked = self.ready.as_ref().map_or(Ok(()), |ready| checks::command(&command, &ready.limits));
+        checked.map_err(|what| self.bad_output(phase, &what))?;
+        Ok((Given::Command(command), said))
+    }
+
+    /// The private state; none when the planner cannot tell it now.
+    pub(super) fn snapshotted(&mut self, outcome: Result<(), Failure>) -> Result<Option<Vec<u8>>, Fault> {
+        let answer = self.read(outcome, |body| Ok(body.bytes()?.to_vec()));
+        unless_refused(answer.map_err(|failure| self.fault(failure, Phase::State)))
+    }
+
+    /// It was asked before it had answered.
+    pub(super) fn busy(&self, phase: Phase) -> Fault {
+        let message = format!(
+            "planner {} cannot do {phase}: it has not answered what it was asked before",
+            self.name()
+        );
+        self.blamed(fault::new(self.name(), phase.during(), Cause::Refused, message))
+    }
+
+    /// A failure of this planner.
+    fn fault(&self, failure: Failure, phase: Phase) -> Fault {
+        self.blamed(fault::of(failure, self.name(), phase))
+    }
+
+    fn bad_output(&self, phase: Phase, what: &str) -> Fault {
+        self.blamed(fault::bad_output(self.name(), phase, what))
+    }
+
+    fn name(&self) -> &str {
+        self.ready.as_ref().map_or("", |ready| &ready.loaded.info.id)
+    }
+
+    /// A fault with the file that is to blame.
+    fn blamed(&self, fault: Fault) -> Fault {
+        Fault { plugin_sha256: self.ready.as_ref().map(|ready| ready.loaded.info.sha256.clone()), ..fault }
+    }
+}
+
+/// State is a convenience: a planner may refuse to save or restore it, but not fail over it.
+pub(super) fn unless_refused<T>(answer: Result<T, Fault>) -> Result<Option<T>, Fault> {
+    match answer {
+        Ok(answer) => Ok(Some(answer)),
+        Err(Fault { cause: Cause::Planner(_), .. }) => Ok(None),
+        Err(fault) => Err(fault),
+    }
+}
+
+/// Refuses a planner that covers no floor.
+pub(super) fn must_cover(info: &PlannerInfo, during: During) -> Result<(), Fault> {
+    let refused = || {
+        let message = format!("planner {} covers no floor: choose one that offers coverage", info.id);
+        fault::new(&info.id, during, Cause::Refused, message)
+    };
+    if info.covers { Ok(()) } else { Err(refused()) }
+}

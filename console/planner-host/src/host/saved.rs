@@ -1,0 +1,100 @@
+//! Private state of planners, kept for those that come after them.
+
+use mission::{AskId, PlannerInfo};
+
+/// So many states are kept, of as many workers.
+const MOST: usize = 8;
+
+/// Private state of a planner.
+#[derive(Debug)]
+pub(super) struct Saved {
+    /// The ask that it was saved for.
+    pub(super) ask: AskId,
+    pub(super) planner: String,
+    pub(super) sha256: String,
+    pub(super) version: u32,
+    pub(super) state: Vec<u8>,
+}
+
+/// The newest state of every worker, the newest workers last; outlives the workers.
+#[derive(Debug, Default)]
+pub(super) struct SavedStates(Vec<Saved>);
+
+impl SavedStates {
+    /// Keeps a state in place of an earlier one of the same worker.
+    pub(super) fn keep(&mut self, saved: Saved) {
+        self.0.retain(|earlier| earlier.ask.worker != saved.ask.worker);
+        self.0.push(saved);
+        let surplus = self.0.len().saturating_sub(MOST);
+        self.0.drain(..surplus);
+    }
+
+    /// The state that was saved for an ask, if it is of the same planner, file and version.
+    pub(super) fn fitting(&self, ask: AskId, info: &PlannerInfo, version: u32) -> Option<&[u8]> {
+        let fits = |saved: &&Saved| {
+            saved.ask == ask
+                && saved.planner == info.id
+                && saved.sha256 == info.sha256
+                && saved.version == version
+        };
+        self.0.iter().find(fits).map(|saved| saved.state.as_slice())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mission::WorkerId;
+
+    fn info() -> PlannerInfo {
+        PlannerInfo {
+            id: "apf".into(),
+            name: String::new(),
+            version: String::new(),
+            about: String::new(),
+            plugin: String::new(),
+            sha256: "ab".into(),
+            abi: String::new(),
+            covers: false,
+            snapshots: true,
+            parameters: Vec::new(),
+        }
+    }
+
+    fn ask(worker: u16, n: u32) -> AskId {
+        AskId { worker: WorkerId(worker), n }
+    }
+
+    fn saved(ask: AskId) -> Saved {
+        let state = vec![ask.n as u8];
+        Saved { ask, planner: "apf".into(), sha256: "ab".into(), version: 7, state }
+    }
+
+    #[test]
+    fn only_the_newest_of_a_worker_is_kept() {
+        let mut states = SavedStates::default();
+        [ask(1, 1), ask(2, 1), ask(1, 2)].into_iter().for_each(|ask| states.keep(saved(ask)));
+        let fitting = |worker, n| states.fitting(ask(worker, n), &info(), 7);
+        assert_eq!(fitting(1, 1), None);
+        assert_eq!((fitting(1, 2), fitting(2, 1)), (Some(&[2][..]), Some(&[1][..])));
+    }
+
+    #[test]
+    fn only_the_newest_workers_are_kept() {
+        let mut states = SavedStates::default();
+        (0..=MOST as u16).for_each(|worker| states.keep(saved(ask(worker, 1))));
+        assert_eq!(states.fitting(ask(0, 1), &info(), 7), None);
+        assert!(states.fitting(ask(1, 1), &info(), 7).is_some());
+    }
+
+    #[test]
+    fn state_of_another_planner_file_or_version_does_not_fit() {
+        let mut states = SavedStates::default();
+        states.keep(saved(ask(1, 1)));
+        let fits = |info: &PlannerInfo, version| states.fitting(ask(1, 1), info, version).is_some();
+        assert!(fits(&info(), 7));
+        assert!(!fits(&info(), 8));
+        assert!(!fits(&PlannerInfo { id: "bvo".into(), ..info() }, 7));
+        assert!(!fits(&PlannerInfo { sha256: "cd".into(), ..info() }, 7));
+    }
+}

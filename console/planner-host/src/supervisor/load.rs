@@ -1,0 +1,61 @@
+//! What the system tells of a busy process, from `/proc`.
+
+use super::clock::Load;
+use rustix::process::Pid;
+use std::fs::{read_dir, read_to_string};
+use std::time::Duration;
+
+/// Looks at a process; nothing where there is no `/proc`.
+pub(super) fn load_of(pid: Pid) -> Option<Load> {
+    let process = format!("/proc/{}", pid.as_raw_pid());
+    let ticks = Stat::of(&read_to_string(format!("{process}/stat")).ok()?)?.ticks;
+    let threads = read_dir(format!("{process}/task")).ok()?;
+    let mut stats = threads.flatten().filter_map(|thread| {
+        // A thread may end while it is looked at.
+        Stat::of(&read_to_string(thread.path().join("stat")).ok()?)
+    });
+    let cpu = Duration::from_secs(ticks).checked_div(ticks_per_second())?;
+    Some(Load { cpu, is_running: stats.any(|stat| matches!(stat.state, 'R' | 'D')) })
+}
+
+fn ticks_per_second() -> u32 {
+    u32::try_from(rustix::param::clock_ticks_per_second()).unwrap_or(100)
+}
+
+/// State and processor time of a process or of a thread.
+#[derive(Debug, PartialEq, Eq)]
+struct Stat {
+    state: char,
+    /// Processor time for itself and for the system on its behalf, clock ticks.
+    ticks: u64,
+}
+
+impl Stat {
+    /// Reads a line of `/proc/PID/stat`; the name of the program may contain anything.
+    fn of(line: &str) -> Option<Self> {
+        let (_, fields) = line.rsplit_once(')')?;
+        let fields: Vec<&str> = fields.split_ascii_whitespace().collect();
+        let ticks = |at: usize| fields.get(at)?.parse::<u64>().ok();
+        Some(Self { state: fields.first()?.chars().next()?, ticks: ticks(11)? + ticks(12)? })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn state_and_time_are_found_behind_any_name() {
+        let line = "7 (a) R (b) S 1 7 7 0 -1 4194560 110 0 0 0 30 12 0 0 20 0 3 0 4242 0";
+        assert_eq!(Stat::of(line), Some(Stat { state: 'S', ticks: 42 }));
+        assert_eq!(Stat::of("7 (cut off"), None);
+        assert_eq!(Stat::of("7 (a) R 1 2"), None);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn this_very_process_runs() {
+        let load = load_of(rustix::process::getpid()).expect("it is there");
+        assert!(load.is_running);
+    }
+}

@@ -1,0 +1,88 @@
+//! The one place where the console waits for workers: a single `poll(2)` over all of them.
+
+use super::doorbell::Bell;
+use super::worker::Worker;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use std::os::fd::BorrowedFd;
+use std::time::Instant;
+
+/// What a descriptor of a worker tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Source {
+    /// Answers, and room for requests.
+    Socket,
+    /// The end of the process.
+    Exit,
+    /// What it prints.
+    Output,
+}
+
+/// A descriptor to wait for, and for what.
+pub(super) type Watched<'a> = (Source, BorrowedFd<'a>, PollFlags);
+
+/// What has happened to a worker.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Ready {
+    /// Something arrived, or the other side hung up.
+    pub(super) readable: bool,
+    /// There is room for more of the request.
+    pub(super) writable: bool,
+    /// The process has ended.
+    pub(super) exited: bool,
+    /// It printed something, or closed its output.
+    pub(super) printed: bool,
+}
+
+impl Ready {
+    fn note(&mut self, source: Source, happened: PollFlags) {
+        match source {
+            Source::Socket => {
+                self.writable |= happened.contains(PollFlags::OUT);
+                self.readable |= !happened.difference(PollFlags::OUT).is_empty();
+            }
+            Source::Exit => self.exited |= !happened.is_empty(),
+            Source::Output => self.printed |= !happened.is_empty(),
+        }
+    }
+}
+
+/// What came of waiting.
+#[derive(Debug, Default)]
+pub(crate) struct Happened {
+    /// Whether the doorbell was rung; it is cleared.
+    pub(crate) rung: bool,
+    /// What has happened to the workers, in their order.
+    pub(crate) ready: Vec<Ready>,
+}
+
+/// Waits until something happens to a worker, until one of them has to be looked at, until the bell is rung, or until a
+/// moment, whichever is first.
+pub(crate) fn wait(bell: Option<&Bell>, workers: &[&Worker], until: Option<Instant>) -> Happened {
+    let mut watched = Vec::with_capacity(1 + 3 * workers.len());
+    let mut owners = Vec::with_capacity(3 * workers.len());
+    let line = bell.and_then(Bell::line);
+    watched.extend(line.iter().map(|line| PollFd::from_borrowed_fd(*line, PollFlags::IN)));
+    for (index, worker) in workers.iter().enumerate() {
+        worker.watched(|(source, descriptor, flags)| {
+            watched.push(PollFd::from_borrowed_fd(descriptor, flags));
+            owners.push((index, source));
+        });
+    }
+    let until = workers.iter().filter_map(|worker| worker.wake_at()).chain(until).min();
+    let left = until.map(|until| until.saturating_duration_since(Instant::now()));
+    let timeout = left.and_then(|left| Timespec::try_from(left).ok());
+    let mut ready = vec![Ready::default(); workers.len()];
+    // After a signal, or when time is up, nothing has happened: whoever waits looks at the clock and waits again.
+    if !matches!(poll(&mut watched, timeout.as_ref()), Ok(1..)) {
+        return Happened { rung: false, ready };
+    }
+    let (rung, of_workers) = watched.split_at(usize::from(line.is_some()));
+    for (descriptor, (index, source)) in of_workers.iter().zip(owners) {
+        ready[index].note(source, descriptor.revents());
+    }
+    let rung = rung.iter().any(|line| !line.revents().is_empty());
+    if let Some(bell) = bell.filter(|_| rung) {
+        bell.clear();
+    }
+    Happened { rung, ready }
+}

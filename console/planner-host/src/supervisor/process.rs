@@ -1,0 +1,117 @@
+//! The process of a worker: started, watched, killed and reaped, without ever waiting for it.
+
+use super::WorkerCommand;
+use rustix::process::Pid;
+use std::collections::VecDeque;
+use std::io::{self, PipeReader, Read};
+use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::os::unix::net::UnixStream;
+use std::os::unix::process::CommandExt;
+use std::process::{Child, Command, ExitStatus, Stdio};
+
+/// So much of the output is kept, bytes.
+const TAIL: usize = 4096;
+/// So many reads of the output in a row, so that a planner that prints without end holds nobody up.
+const MOST_READS: usize = 16;
+
+/// A child process and the end of what it printed.
+pub(super) struct Process {
+    child: Child,
+    /// Readable once the process has ended; absent where the system has no such thing.
+    pidfd: Option<OwnedFd>,
+    /// How it ended, once it is reaped.
+    status: Option<ExitStatus>,
+    output: Option<PipeReader>,
+    tail: VecDeque<u8>,
+}
+
+impl Process {
+    /// Starts a worker with this socket as its standard input, without environment, in a process group of its own.
+    pub(super) fn spawn(command: &WorkerCommand, socket: UnixStream) -> io::Result<Self> {
+        let (reader, writer) = io::pipe()?;
+        rustix::io::ioctl_fionbio(&reader, true)?;
+        let mut start = Command::new(&command.program);
+        start
+            .args(&command.arguments)
+            .env_clear()
+            .process_group(0)
+            .stdin(Stdio::from(OwnedFd::from(socket)))
+            .stdout(writer.try_clone()?)
+            .stderr(writer);
+        let child = start.spawn()?;
+        // Dropping the command closes our copies of the pipe, so that its end can be seen.
+        drop(start);
+        let pidfd = pidfd_of(&child);
+        Ok(Self { child, pidfd, status: None, output: Some(reader), tail: VecDeque::new() })
+    }
+
+    /// Its process id; it is not given to another process before this one is reaped.
+    pub(super) fn pid(&self) -> Pid {
+        Pid::from_child(&self.child)
+    }
+
+    /// Readable once the process has ended, if the system has such a descriptor.
+    pub(super) fn pidfd(&self) -> Option<BorrowedFd<'_>> {
+        self.pidfd.as_ref().map(AsFd::as_fd)
+    }
+
+    /// What it prints; none once it has closed its output.
+    pub(super) fn output(&self) -> Option<BorrowedFd<'_>> {
+        self.output.as_ref().map(AsFd::as_fd)
+    }
+
+    /// Reaps the process if it has ended, and tells how it ended.
+    pub(super) fn reap(&mut self) -> Option<ExitStatus> {
+        if self.status.is_none() {
+            self.status = self.child.try_wait().ok().flatten();
+        }
+        self.status
+    }
+
+    /// Whether it was reaped.
+    pub(super) fn is_reaped(&self) -> bool {
+        self.status.is_some()
+    }
+
+    /// Kills the process unless it was reaped.
+    pub(super) fn kill(&mut self) {
+        if self.status.is_none() {
+            // It may have ended by itself.
+            let _ = self.child.kill();
+        }
+    }
+
+    /// Reads what was printed and keeps the end of it.
+    pub(super) fn read_output(&mut self) {
+        let mut piece = [0; TAIL];
+        for _ in 0..MOST_READS {
+            let Some(output) = &mut self.output else { return };
+            match output.read(&mut piece) {
+                Ok(n @ 1..) => {
+                    self.tail.extend(&piece[..n]);
+                    let surplus = self.tail.len().saturating_sub(TAIL);
+                    self.tail.drain(..surplus);
+                }
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => return,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Ok(_) | Err(_) => self.output = None,
+            }
+        }
+    }
+
+    /// The end of what was printed.
+    pub(super) fn tail(&mut self) -> &[u8] {
+        self.tail.make_contiguous()
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn pidfd_of(child: &Child) -> Option<OwnedFd> {
+    rustix::process::pidfd_open(Pid::from_child(child), rustix::process::PidfdFlags::empty()).ok()
+}
+
+/// Elsewhere the process is looked at now and then.
+#[cfg(not(target_os = "linux"))]
+fn pidfd_of(_: &Child) -> Option<OwnedFd> {
+    None
+}

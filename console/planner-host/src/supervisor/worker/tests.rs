@@ -1,0 +1,174 @@
+//! The supervisor against workers that say what they like: a shell that writes bytes into its socket.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use super::*;
+use crate::Progress;
+use crate::supervisor::wait;
+
+/// Long enough for a busy machine to start a shell.
+const PATIENT: Duration = Duration::from_secs(10);
+
+/// A worker that runs this script; its standard input is the socket.
+fn worker(script: &str) -> Worker {
+    let command = WorkerCommand { program: "/bin/sh".into(), arguments: vec!["-c".into(), script.into()] };
+    Worker::spawn(&command).unwrap()
+}
+
+/// A worker that answers every request without a body by one of these, and then only listens.
+fn answering(answers: &[&[Vec<u8>]]) -> Worker {
+    let answer =
+        |frames: &&[Vec<u8>]| format!("head -c 13 > /dev/null; printf '{}' >&0;", octal(&frames.concat()));
+    let answers: Vec<String> = answers.iter().map(answer).collect();
+    worker(&format!("{} while read -r line; do :; done", answers.concat()))
+}
+
+fn octal(bytes: &[u8]) -> String {
+    let escapes: Vec<String> = bytes.iter().map(|byte| format!("\\{byte:03o}")).collect();
+    escapes.concat()
+}
+
+fn frame(kind: u8, sequence: u32, write: impl FnOnce(&mut Writer)) -> Vec<u8> {
+    let mut writer = Writer::default();
+    write(writer.begin(kind, sequence, 0));
+    writer.finish().unwrap().to_vec()
+}
+
+fn progress(sequence: u32, share: f64, what: &str) -> Vec<u8> {
+    let progress = Progress { share, what: what.to_owned() };
+    frame(kind::PROGRESS, sequence, |w| {
+        w.progress(&progress);
+    })
+}
+
+fn done(sequence: u32) -> Vec<u8> {
+    frame(kind::DONE, sequence, |w| {
+        w.u32(7);
+    })
+}
+
+fn ask(
+    worker: &mut Worker,
+    kind: u8,
+    budget: Duration,
+    mut tell: impl FnMut(&Progress),
+) -> Result<u32, Failure> {
+    worker.ask(kind, budget, |_| {})?;
+    loop {
+        let ready = wait(None, &[worker], None).ready[0];
+        if let Some(outcome) = worker.advance(ready, Instant::now(), &mut tell) {
+            outcome?;
+            return worker.take_answer(|body| body.u32());
+        }
+    }
+}
+
+/// Looks at a worker until it has ended.
+fn see_to_its_end(worker: &mut Worker) {
+    while !worker.is_gone() {
+        let ready = wait(None, &[worker], None).ready[0];
+        assert_eq!(worker.advance(ready, Instant::now(), &mut |_| {}), None);
+    }
+}
+
+#[test]
+fn progress_before_the_answer_to_a_plan_is_passed_on() {
+    let plan = [progress(1, 0.25, "one of two"), progress(1, 1.0, ""), done(1)];
+    let mut worker = answering(&[&plan, &[done(2)]]);
+    let mut heard = Vec::new();
+    let hear = |progress: &Progress| heard.push(progress.clone());
+    assert_eq!(ask(&mut worker, kind::PLAN, PATIENT, hear), Ok(7));
+    let told = |share, what: &str| Progress { share, what: what.to_owned() };
+    assert_eq!(heard, [told(0.25, "one of two"), told(1.0, "")]);
+    assert_eq!(ask(&mut worker, kind::STEP, PATIENT, |_| {}), Ok(7), "the next answer is found");
+}
+
+#[test]
+fn what_comes_after_an_answer_is_none() {
+    let mut worker = answering(&[&[done(1), done(2)]]);
+    assert_eq!(ask(&mut worker, kind::STEP, PATIENT, |_| {}), Ok(7));
+    assert_eq!(ask(&mut worker, kind::STEP, PATIENT, |_| {}), Err(Failure::Protocol));
+    see_to_its_end(&mut worker);
+}
+
+#[test]
+fn progress_that_nobody_asked_for_is_no_answer() {
+    let long = "x".repeat(Progress::LONGEST + 1);
+    let trailing = frame(kind::PROGRESS, 1, |w| {
+        w.f64(0.5).text("a").u8(0);
+    });
+    for (kind, frame) in [
+        (kind::STEP, progress(1, 0.5, "")),
+        (kind::CONFIGURE, progress(1, 0.5, "")),
+        (kind::PLAN, progress(2, 0.5, "")),
+        (kind::PLAN, progress(0, 0.5, "")),
+        (kind::PLAN, progress(1, 1.5, "")),
+        (kind::PLAN, progress(1, f64::NAN, "")),
+        (kind::PLAN, progress(1, 0.5, "\u{1b}[2J")),
+        (kind::PLAN, progress(1, 0.5, &long)),
+        (kind::PLAN, trailing),
+    ] {
+        let mut worker = answering(&[&[frame.clone(), done(1)]]);
+        assert_eq!(ask(&mut worker, kind, PATIENT, |_| {}), Err(Failure::Protocol), "{kind}: {frame:?}");
+        see_to_its_end(&mut worker);
+    }
+}
+
+#[test]
+fn a_worker_that_tells_progress_without_end_is_killed_at_its_deadline_all_the_same() {
+    let flood = octal(&progress(1, 0.5, "at it").repeat(50));
+    let mut worker = worker(&format!("while printf '{flood}' >&0; do :; done"));
+    let mut heard = 0;
+    assert_eq!(ask(&mut worker, kind::PLAN, Duration::from_secs(1), |_| heard += 1), Err(Failure::Hung));
+    assert!((1..100).contains(&heard), "{heard} of a flood were passed on");
+}
+
+#[test]
+fn a_worker_that_is_told_to_end_amid_progress_is_killed_if_it_does_not() {
+    let flood = octal(&progress(1, 0.5, "at it").repeat(50));
+    let mut worker = worker(&format!("while printf '{flood}' >&0; do :; done"));
+    worker.ask(kind::PLAN, Duration::from_hours(1), |_| {}).unwrap();
+    worker.shut_down();
+    assert_eq!(worker.ask(kind::STEP, PATIENT, |_| {}), Err(Failure::Gone));
+    see_to_its_end(&mut worker);
+}
+
+#[test]
+fn a_request_that_does_not_fit_into_the_socket_is_written_piece_by_piece() {
+    let length = 4 << 20;
+    let mut worker = worker(&format!(
+        "head -c {} > /dev/null; printf '{}' >&0; while read -r line; do :; done",
+        length + 13 + 4,
+        octal(&done(1))
+    ));
+    worker
+        .ask(kind::PLAN, PATIENT, |w| {
+            w.bytes(&vec![0; length]);
+        })
+        .unwrap();
+    assert!(!worker.has_sent(), "nothing waits for room");
+    loop {
+        let ready = wait(None, &[&worker], None).ready[0];
+        if let Some(outcome) = worker.advance(ready, Instant::now(), &mut |_| {}) {
+            assert_eq!(outcome, Ok(()));
+            assert_eq!(worker.take_answer(|body| body.u32()), Ok(7));
+            return;
+        }
+    }
+}
+
+#[test]
+fn a_worker_that_reads_nothing_is_killed_when_its_budget_is_used_up() {
+    let mut worker = worker("while :; do sleep 1; done");
+    worker
+        .ask(kind::PLAN, Duration::from_millis(100), |w| {
+            w.bytes(&vec![0; 4 << 20]);
+        })
+        .unwrap();
+    loop {
+        let ready = wait(None, &[&worker], None).ready[0];
+        if let Some(outcome) = worker.advance(ready, Instant::now(), &mut |_| {}) {
+            assert_eq!(outcome, Err(Failure::Hung));
+            return;
+        }
+    }
+}

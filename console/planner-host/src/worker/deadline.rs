@@ -1,0 +1,131 @@
+//! How long the console waits for the request at hand, by a clock as fair as its own: a planner that the machine has no
+//! time for is not late.
+
+use super::telling::Telling;
+use crate::Progress;
+use crate::loader::Watch;
+use crate::wire::frame::{Incoming, KIND_AT};
+use crate::wire::kind;
+use rustix::net::{RecvFlags, recv};
+use rustix::time::{ClockId, clock_gettime};
+use std::cell::Cell;
+use std::os::fd::OwnedFd;
+use std::time::{Duration, Instant};
+
+/// Socket and processor time are looked at no more often than this.
+const LOOK_EVERY: Duration = Duration::from_millis(1);
+
+/// Deadline of a request, and whether a CANCEL is waiting behind it.
+pub(super) struct Deadline {
+    socket: OwnedFd,
+    budget: Cell<Option<Budget>>,
+    looked: Cell<Instant>,
+    cancelled: Cell<bool>,
+    exhausted: Cell<bool>,
+    watched: Cell<bool>,
+    telling: Telling,
+}
+
+/// Time for a request: it is used up when as much has passed on the wall and this process has computed as long.
+#[derive(Debug, Clone, Copy)]
+struct Budget {
+    within: Duration,
+    began: Instant,
+    /// Processor time of this process when it began.
+    began_cpu: Duration,
+}
+
+impl Budget {
+    fn new(within: Duration, now: Instant) -> Self {
+        Self { within, began: now, began_cpu: processor_time() }
+    }
+
+    fn left(&self, now: Instant) -> Duration {
+        let computed = processor_time().saturating_sub(self.began_cpu);
+        self.within.saturating_sub(computed.min(now - self.began))
+    }
+
+    fn is_used_up(&self, now: Instant) -> bool {
+        // The processor time costs a call of the system; most of the time there is no need to know it.
+        now - self.began >= self.within && self.left(now).is_zero()
+    }
+}
+
+/// Processor time of all threads of this process.
+fn processor_time() -> Duration {
+    Duration::try_from(clock_gettime(ClockId::ProcessCPUTime)).unwrap_or_default()
+}
+
+impl Deadline {
+    /// No request yet.
+    ///
+    /// # Errors
+    /// When the socket cannot be had twice.
+    pub(super) fn new(socket: OwnedFd) -> std::io::Result<Self> {
+        let telling = Telling::new(socket.try_clone()?);
+        Ok(Self {
+            socket,
+            budget: Cell::new(None),
+            looked: Cell::new(Instant::now()),
+            cancelled: Cell::new(false),
+            exhausted: Cell::new(false),
+            watched: Cell::new(false),
+            telling,
+        })
+    }
+
+    /// A request arrived; only a CANCEL can have arrived behind it.
+    pub(super) fn begin(&self, request: &Incoming) {
+        let now = Instant::now();
+        self.budget.set(request.soft_deadline().map(|within| Budget::new(within, now)));
+        self.looked.set(now);
+        self.cancelled.set(request.has_more());
+        self.exhausted.set(false);
+        self.telling.begin(request.kind(), request.sequence());
+    }
+
+    /// Whether anyone looks at drawings of this request.
+    pub(super) fn set_watched(&self, watched: bool) {
+        self.watched.set(watched);
+    }
+
+    fn is_cancel_waiting(&self) -> bool {
+        let mut head = [0_u8; KIND_AT + 1];
+        match recv(&self.socket, &mut head[..], RecvFlags::PEEK | RecvFlags::DONTWAIT) {
+            // The console hung up.
+            Ok((0, _)) => true,
+            Ok((n, _)) => n == head.len() && head[KIND_AT] == kind::CANCEL,
+            Err(_) => false,
+        }
+    }
+}
+
+impl Watch for Deadline {
+    fn should_stop(&self) -> u32 {
+        let now = Instant::now();
+        self.telling.catch_up(now);
+        if now - self.looked.get() >= LOOK_EVERY {
+            self.looked.set(now);
+            self.cancelled.set(self.cancelled.get() || self.is_cancel_waiting());
+            self.exhausted.set(self.budget.get().is_some_and(|budget| budget.is_used_up(now)));
+        }
+        match (self.cancelled.get(), self.exhausted.get()) {
+            (true, _) => 1,
+            (false, true) => 2,
+            (false, false) => 0,
+        }
+    }
+
+    fn time_left_s(&self) -> f64 {
+        let left = self.budget.get().map(|budget| budget.left(Instant::now()));
+        left.map_or(f64::INFINITY, |left| left.as_secs_f64())
+    }
+
+    fn wants_drawing(&self) -> bool {
+        self.watched.get()
+    }
+
+    fn take_progress(&self, progress: Progress) {
+        self.telling.take(progress);
+    }
+}
