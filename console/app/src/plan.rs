@@ -95,13 +95,10 @@ fn is_refused(scenario: &Scenario, certificate: Option<&Certificate>) -> bool {
 
 fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planned> {
     let mut host = BlockingHost::new(plugins, patient(HostConfig::default(), &scenario.mission));
-    let planning = Planning {
-        work: format!("{} plans", scenario.mission.planner.id),
-        within: patience(&scenario.mission),
-    };
-    let spinner = progress::spinner(&planning);
+    let work = format!("Planning ({})", scenario.mission.planner.id);
+    let spinner = progress::spinner(&work, patience(&scenario.mission));
     let shown = spinner.clone();
-    host.tell_progress(Arc::new(move |_, progress| progress::show_share(&shown, &planning, progress)));
+    host.tell_progress(Arc::new(move |_, progress| progress::show_share(&shown, &work, progress)));
     let began = Instant::now();
     let answer = ask_for_plan(scenario, &mut host);
     spinner.finish_and_clear();

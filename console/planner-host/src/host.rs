@@ -23,7 +23,7 @@ use planner::{Asked, Doing, Planner, Told};
 use planner_api::{PlanRequest, Sensed, Site};
 use saved::SavedStates;
 use std::collections::VecDeque;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Runs planners for missions, each in a worker process.
 ///
@@ -94,6 +94,11 @@ impl Host {
     /// From now on somebody is told how far a plan is while it is being made.
     pub fn tell_progress(&mut self, on_progress: OnProgress) {
         self.on_progress = Some(on_progress);
+    }
+
+    /// How long a plan may take.
+    pub fn plan_budget(&self) -> Duration {
+        self.config.plan_deadline
     }
 
     /// Calls, wall times and faults so far.
