@@ -240,7 +240,7 @@ impl Host {
         let Some(planner) = self.planners.iter_mut().find(|planner| planner.id == id) else { return };
         let Some(Asked { id, at, doing }) = planner.asked.take() else { return };
         let told = match doing {
-            Doing::Open(opening, stage) => return self.go_on_opening(id, *opening, stage, outcome),
+            Doing::Open(opening, stage) => return self.go_on_opening(id, *opening, *stage, outcome),
             Doing::Reconfigure(values) => planner.reconfigured(outcome, values),
             Doing::Plan(limits) => {
                 self.plan_times.note(at.elapsed());
@@ -252,8 +252,9 @@ impl Host {
             }
             Doing::Snapshot => planner.snapshotted(outcome).map(|saved| {
                 let bytes = saved.as_ref().map_or(0, |state| state.len() as u64);
-                let saved = saved.zip(planner.ready.as_ref());
-                saved.into_iter().for_each(|(state, ready)| self.saved.keep(ready.loaded.saved(id, state)));
+                if let Some((state, ready)) = saved.zip(planner.ready.as_ref()) {
+                    self.saved.keep(ready.loaded.saved(id, state));
+                }
                 (Given::State { bytes }, Said::default())
             }),
         };
@@ -276,8 +277,9 @@ impl Host {
     /// Parts from a worker that cannot be asked any more.
     fn retire(&mut self, id: WorkerId) {
         let unasked = self.planners.iter_mut().find(|planner| planner.id == id && planner.asked.is_none());
-        let ended = unasked.and_then(|planner| planner.worker.take_if(|worker| !worker.is_idle()));
-        ended.into_iter().for_each(|worker| self.leave(worker));
+        if let Some(ended) = unasked.and_then(|planner| planner.worker.take_if(|worker| !worker.is_idle())) {
+            self.leave(ended);
+        }
     }
 }
 

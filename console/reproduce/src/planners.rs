@@ -69,7 +69,7 @@ impl Planners {
         request: &PlanRequest<'_>,
     ) -> Result<Planned, Problem> {
         let mut host = match self.seat(id, parameters, request.site) {
-            Err(Problem::Planner { fault, .. }) if is_no(&fault) => return Ok(no_plan(fault, 0.0)),
+            Err(Problem::Planner { fault, .. }) if is_no(&fault) => return Ok(no_plan(*fault, 0.0)),
             seated => seated?,
         };
         let asked = Instant::now();
@@ -98,5 +98,5 @@ fn no_plan(fault: Fault, plan_time_ms: f64) -> Planned {
 }
 
 fn problem(id: &str, fault: Fault) -> Problem {
-    Problem::Planner { case: id.to_owned(), fault }
+    Problem::Planner { case: id.to_owned(), fault: Box::new(fault) }
 }

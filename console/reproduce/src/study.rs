@@ -61,7 +61,7 @@ pub enum Problem {
         /// Layout and method.
         case: String,
         /// What happened.
-        fault: Fault,
+        fault: Box<Fault>,
     },
     /// Nothing is left to measure.
     #[error("{0}")]

@@ -39,6 +39,16 @@ pub(super) enum Stage {
     Restore(Loaded, Said),
 }
 
+impl Stage {
+    pub(super) fn phase(&self) -> Phase {
+        match self {
+            Self::Load(_) => Phase::Load,
+            Self::Configure(_) => Phase::Configure,
+            Self::Restore(..) => Phase::State,
+        }
+    }
+}
+
 /// A planner whose plugin is loaded.
 pub(super) struct Loaded {
     pub(super) info: PlannerInfo,
@@ -139,7 +149,7 @@ impl Host {
             };
             match self.load(&candidate, &opening.planner) {
                 Ok(worker) => {
-                    let doing = Doing::Open(Box::new(opening), Stage::Load(candidate));
+                    let doing = Doing::Open(Box::new(opening), Box::new(Stage::Load(candidate)));
                     self.wait_for(id, worker, doing);
                     return Ok(());
                 }
@@ -245,7 +255,8 @@ impl Host {
         });
         match asked {
             Ok(()) => {
-                self.wait_for(id, worker, Doing::Open(Box::new(opening), Stage::Configure(loaded)));
+                let doing = Doing::Open(Box::new(opening), Box::new(Stage::Configure(loaded)));
+                self.wait_for(id, worker, doing);
                 Ok(())
             }
             Err(fault) => self.part(worker, loaded.blamed(fault)),
@@ -275,7 +286,8 @@ impl Host {
         };
         match worker.ask(kind::RESTORE, self.config.state_deadline, write) {
             Ok(()) => {
-                self.wait_for(id, worker, Doing::Open(Box::new(opening), Stage::Restore(loaded, said)));
+                let doing = Doing::Open(Box::new(opening), Box::new(Stage::Restore(loaded, said)));
+                self.wait_for(id, worker, doing);
                 Ok(())
             }
             Err(failure) => self.part(worker, loaded.fault(failure, Phase::State)),

@@ -31,7 +31,7 @@ pub(super) struct Asked {
 
 /// What an open ask is about.
 pub(super) enum Doing {
-    Open(Box<Opening>, Stage),
+    Open(Box<Opening>, Box<Stage>),
     /// With all values once it has taken the new ones.
     Reconfigure(Parameters),
     /// With the robot's limits for the commands that follow.
@@ -44,9 +44,9 @@ pub(super) enum Doing {
 impl Doing {
     pub(super) fn phase(&self) -> Phase {
         match self {
-            Self::Open(_, Stage::Load(_)) => Phase::Load,
-            Self::Open(_, Stage::Configure(_)) | Self::Reconfigure(_) => Phase::Configure,
-            Self::Open(_, Stage::Restore(..)) | Self::Snapshot => Phase::State,
+            Self::Open(_, stage) => stage.phase(),
+            Self::Reconfigure(_) => Phase::Configure,
+            Self::Snapshot => Phase::State,
             Self::Plan(_) => Phase::Plan,
             Self::Step(tick) => Phase::Step(*tick),
         }

@@ -73,7 +73,9 @@ mod tests {
     #[test]
     fn only_the_newest_of_a_worker_is_kept() {
         let mut states = SavedStates::default();
-        [ask(1, 1), ask(2, 1), ask(1, 2)].into_iter().for_each(|ask| states.keep(saved(ask)));
+        for ask in [ask(1, 1), ask(2, 1), ask(1, 2)] {
+            states.keep(saved(ask));
+        }
         let fitting = |worker, n| states.fitting(ask(worker, n), &info(), 7);
         assert_eq!(fitting(1, 1), None);
         assert_eq!((fitting(1, 2), fitting(2, 1)), (Some(&[2][..]), Some(&[1][..])));

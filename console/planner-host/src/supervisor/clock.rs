@@ -108,7 +108,9 @@ mod tests {
     #[test]
     fn without_looks_wall_time_counts() {
         let mut clock = FairClock::default();
-        [100, 150, 2000].into_iter().for_each(|ms| clock.advance(MS * ms, None));
+        for ms in [100, 150, 2000] {
+            clock.advance(MS * ms, None);
+        }
         assert_eq!(clock.judge(2000 * MS), Verdict::Exhausted);
         assert_eq!(clock.judge(2001 * MS), Verdict::Left(MS));
     }

@@ -21,12 +21,9 @@ pub(super) enum Source {
 pub(super) type Watched<'a> = (Source, BorrowedFd<'a>, PollFlags);
 
 /// What has happened to a worker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Ready {
-    /// Something arrived, or the other side hung up.
-    pub(super) readable: bool,
-    /// There is room for more of the request.
-    pub(super) writable: bool,
+    socket: PollFlags,
     /// The process has ended.
     pub(super) exited: bool,
     /// It printed something, or closed its output.
@@ -34,14 +31,23 @@ pub(crate) struct Ready {
 }
 
 impl Ready {
+    const NOTHING: Self = Self { socket: PollFlags::empty(), exited: false, printed: false };
+
+    /// Something arrived, or the other side hung up.
+    pub(super) fn readable(self) -> bool {
+        !self.socket.difference(PollFlags::OUT).is_empty()
+    }
+
+    /// There is room for more of the request.
+    pub(super) fn writable(self) -> bool {
+        self.socket.contains(PollFlags::OUT)
+    }
+
     fn note(&mut self, source: Source, happened: PollFlags) {
         match source {
-            Source::Socket => {
-                self.writable |= happened.contains(PollFlags::OUT);
-                self.readable |= !happened.difference(PollFlags::OUT).is_empty();
-            }
-            Source::Exit => self.exited |= !happened.is_empty(),
-            Source::Output => self.printed |= !happened.is_empty(),
+            Source::Socket => self.socket = happened,
+            Source::Exit => self.exited = !happened.is_empty(),
+            Source::Output => self.printed = !happened.is_empty(),
         }
     }
 }
@@ -71,7 +77,7 @@ pub(crate) fn wait(bell: Option<&Bell>, workers: &[&Worker], until: Option<Insta
     let until = workers.iter().filter_map(|worker| worker.wake_at()).chain(until).min();
     let left = until.map(|until| until.saturating_duration_since(Instant::now()));
     let timeout = left.and_then(|left| Timespec::try_from(left).ok());
-    let mut ready = vec![Ready::default(); workers.len()];
+    let mut ready = vec![Ready::NOTHING; workers.len()];
     // After a signal, or when time is up, nothing has happened: whoever waits looks at the clock and waits again.
     if !matches!(poll(&mut watched, timeout.as_ref()), Ok(1..)) {
         return Happened { rung: false, ready };

@@ -191,10 +191,10 @@ impl Worker {
         now: Instant,
         tell: &mut dyn FnMut(&Progress),
     ) -> Option<Result<(), Failure>> {
-        if ready.writable {
+        if ready.writable() {
             self.send(now);
         }
-        let arrived = if ready.readable { self.receive(now, tell) } else { Arrived::Nothing };
+        let arrived = if ready.readable() { self.receive(now, tell) } else { Arrived::Nothing };
         match arrived {
             Arrived::Answer if matches!(self.state, State::Busy(_)) => {
                 self.state = State::Idle;
@@ -204,7 +204,7 @@ impl Worker {
             Arrived::Broken => return Some(Err(self.end(Failure::Protocol))),
             Arrived::Closed => self.lose(now),
             // Only when there is nothing more to read the end of the process is the end of the request.
-            Arrived::Nothing if ready.exited && !ready.readable => self.lose(now),
+            Arrived::Nothing if ready.exited && !ready.readable() => self.lose(now),
             Arrived::Nothing => {}
         }
         None

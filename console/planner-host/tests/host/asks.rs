@@ -102,8 +102,8 @@ fn step(tick: u64) -> What {
     })))
 }
 
-fn soon() -> Option<Instant> {
-    Some(Instant::now() + Duration::from_millis(20))
+fn soon() -> Instant {
+    Instant::now() + Duration::from_millis(20)
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn two_workers_answer_independently() {
         assert!(matches!(desk.ask(TWO, step(tick)), Ok(Given::Command(_))));
     }
     assert!(matches!(desk.ask(TWO, plan()), Ok(Given::Plan(plan)) if plan.complete));
-    assert!(desk.host.next(soon()).is_none_or(|answer| answer.ask == hangs));
+    assert!(desk.host.next(Some(soon())).is_none_or(|answer| answer.ask == hangs));
 }
 
 #[test]
@@ -231,9 +231,13 @@ fn stopped_and_computing_workers_hang_in_their_own_time() {
     desk.open(ONE, "stop");
     desk.open(TWO, "hang");
     for tick in 0..5 {
-        [ONE, TWO].into_iter().for_each(|worker| drop(desk.ask(worker, step(tick)).unwrap()));
+        for worker in [ONE, TWO] {
+            desk.ask(worker, step(tick)).unwrap();
+        }
     }
-    [ONE, TWO].into_iter().for_each(|worker| drop(desk.submit(worker, step(5))));
+    for worker in [ONE, TWO] {
+        desk.submit(worker, step(5));
+    }
     for fault in [desk.next(), desk.next()].map(|answer| answer.result.unwrap_err()) {
         assert_eq!(fault.cause, Cause::Hung, "{fault}");
     }
@@ -280,7 +284,7 @@ fn who_is_closed_or_failed_leaves_no_process_behind() {
             }
             let began = Instant::now();
             while running(&program) > 0 {
-                assert_eq!(desk.host.next(soon()), None);
+                assert_eq!(desk.host.next(Some(soon())), None);
                 assert!(began.elapsed() < LONG, "{fault}: it still runs");
             }
         }

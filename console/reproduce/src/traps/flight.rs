@@ -113,7 +113,9 @@ impl Journey<'_> {
             Ok(reply) => self.plan = Course::new(&reply.value.path),
             // A planner that finds no plan may still know how to move.
             Err(fault) if matches!(fault.cause, Cause::Planner(_)) => self.plan = Course::default(),
-            Err(fault) => return Err(Problem::Planner { case: method.id.to_owned(), fault }),
+            Err(fault) => {
+                return Err(Problem::Planner { case: method.id.to_owned(), fault: Box::new(fault) });
+            }
         }
         Ok(())
     }
@@ -139,7 +141,9 @@ impl Journey<'_> {
         let command = match host.step(&sensed) {
             Ok(reply) => reply.value,
             Err(fault) if matches!(fault.cause, Cause::Planner(_)) => return Ok(Status::Stuck),
-            Err(fault) => return Err(Problem::Planner { case: method.id.to_owned(), fault }),
+            Err(fault) => {
+                return Err(Problem::Planner { case: method.id.to_owned(), fault: Box::new(fault) });
+            }
         };
         // At 1 m/s a tick is as many seconds long as a step is metres.
         let velocity = match command.drive {

@@ -53,13 +53,21 @@ fn ask(
     mut tell: impl FnMut(&Progress),
 ) -> Result<u32, Failure> {
     worker.ask(kind, budget, |_| {})?;
+    answer(worker, &mut tell)
+}
+
+/// Waits for the answer.
+fn answer(worker: &mut Worker, tell: &mut dyn FnMut(&Progress)) -> Result<u32, Failure> {
     loop {
         let ready = wait(None, &[worker], None).ready[0];
-        if let Some(outcome) = worker.advance(ready, Instant::now(), &mut tell) {
-            outcome?;
-            return worker.take_answer(|body| body.u32());
+        if let Some(outcome) = worker.advance(ready, Instant::now(), tell) {
+            return outcome.and_then(|()| worker.take_answer(number));
         }
     }
+}
+
+fn number(body: &mut Body<'_>) -> Read<u32> {
+    body.u32()
 }
 
 /// Looks at a worker until it has ended.
@@ -146,14 +154,7 @@ fn a_request_that_does_not_fit_into_the_socket_is_written_piece_by_piece() {
         })
         .unwrap();
     assert!(!worker.has_sent(), "nothing waits for room");
-    loop {
-        let ready = wait(None, &[&worker], None).ready[0];
-        if let Some(outcome) = worker.advance(ready, Instant::now(), &mut |_| {}) {
-            assert_eq!(outcome, Ok(()));
-            assert_eq!(worker.take_answer(|body| body.u32()), Ok(7));
-            return;
-        }
-    }
+    assert_eq!(answer(&mut worker, &mut |_| {}), Ok(7));
 }
 
 #[test]
@@ -164,11 +165,5 @@ fn a_worker_that_reads_nothing_is_killed_when_its_budget_is_used_up() {
             w.bytes(&vec![0; 4 << 20]);
         })
         .unwrap();
-    loop {
-        let ready = wait(None, &[&worker], None).ready[0];
-        if let Some(outcome) = worker.advance(ready, Instant::now(), &mut |_| {}) {
-            assert_eq!(outcome, Err(Failure::Hung));
-            return;
-        }
-    }
+    assert_eq!(answer(&mut worker, &mut |_| {}), Err(Failure::Hung));
 }
