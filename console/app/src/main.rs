@@ -12,6 +12,7 @@ mod output;
 mod past_runs;
 mod plan;
 mod planners;
+mod preflight;
 mod progress;
 mod reproduce;
 mod run_folder;

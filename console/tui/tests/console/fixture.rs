@@ -130,7 +130,7 @@ pub fn planner(id: &str, version: &str, about: &str) -> PlannerInfo {
         sha256: "1c9e".into(),
         abi: "1.0".into(),
         covers: false,
-            snapshots: false,
+        snapshots: false,
         parameters: vec![
             parameter("rpf_gain", "Rotating gain", "m3/s", gain, float(0.2, 4.0, 1.2), true),
             parameter(
