@@ -14,7 +14,7 @@ use mission::Event;
 use std::{
     path::{Path, PathBuf},
     sync::{
-        Arc, Mutex, OnceLock, PoisonError,
+        Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicU64, Ordering},
         mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
     },
@@ -82,26 +82,36 @@ struct Shared {
     sent: AtomicU64,
     done: AtomicU64,
     journal_bytes: AtomicU64,
-    /// The first error with which something is lost.
-    loss: OnceLock<String>,
+    /// Errors with which something is lost, each once.
+    losses: Mutex<Vec<String>>,
     /// What is wrong now and may be over later.
     trouble: Mutex<Option<String>>,
 }
 
 impl Shared {
     fn lose(&self, error: &impl ToString) {
-        // Only the first error says what happened.
-        let _ = self.loss.set(error.to_string());
+        let (mut losses, error) = (locked(&self.losses), error.to_string());
+        if !losses.contains(&error) {
+            losses.push(error);
+        }
     }
 
     fn set_trouble(&self, trouble: Option<String>) {
-        *self.trouble.lock().unwrap_or_else(PoisonError::into_inner) = trouble;
+        *locked(&self.trouble) = trouble;
     }
 
     fn error(&self) -> Option<String> {
-        let trouble = || self.trouble.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        self.loss.get().cloned().or_else(trouble)
+        let mut errors = locked(&self.losses).clone();
+        let trouble = locked(&self.trouble).clone();
+        // A file that has ended is also in trouble.
+        errors.extend(trouble.filter(|trouble| !errors.contains(trouble)));
+        (!errors.is_empty()).then(|| errors.join("; "))
     }
+}
+
+/// What is shared holds no invariant that a panic could break.
+fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Writes journal and recording of a run in a thread of its own.

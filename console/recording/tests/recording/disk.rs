@@ -280,6 +280,20 @@ fn the_recording_goes_on_when_the_journal_fails() {
 }
 
 #[test]
+fn when_both_files_fail_both_are_reported() {
+    let now = Instant::now();
+    let recorder = Recorder::writing_to(small_disk(1000), &Identity::of_run("test"), now).expect("opens");
+    let journal = JournalWriter::writing_to(small_disk(1000), now);
+    let run = RunRecorder::spawn(journal, Some(recorder)).expect("a thread");
+    for events in synthetic::run(300) {
+        run.send(events);
+    }
+    let error = run.finish(Duration::from_secs(20)).error.expect("it is reported");
+    assert!(error.starts_with("the journal stopped after 1000 bytes: "), "{error}");
+    assert!(error.contains("; the recording stopped: "), "{error}");
+}
+
+#[test]
 fn a_recording_is_never_written_over() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("recording.rrd");
