@@ -1,5 +1,6 @@
 //! Failures by whose turn it is: the user's or ours.
 
+use crate::output::warn_line;
 use std::{fmt, process::ExitCode};
 
 /// The mission was flown and is complete.
@@ -28,14 +29,13 @@ pub fn bad_input(text: impl Into<String>) -> anyhow::Error {
     BadInput(text.into()).into()
 }
 
-/// Tells a failure on stderr; the exit code says whose turn it is.
-#[expect(clippy::print_stderr, reason = "this is where errors reach the user")]
+/// Reports a failure on stderr; the exit code says whose turn it is.
 pub fn tell(error: &anyhow::Error) -> ExitCode {
     if let Some(BadInput(text)) = error.downcast_ref() {
         let prefix = if text.starts_with("error") { "" } else { "error: " };
-        eprintln!("{prefix}{}", text.trim_end());
+        warn_line(&format!("{prefix}{}", text.trim_end()));
         return ExitCode::from(BAD_INPUT);
     }
-    eprintln!("error: {error:#}");
+    warn_line(&format!("error: {error:#}"));
     ExitCode::from(INTERNAL)
 }

@@ -14,6 +14,7 @@ mod past_runs;
 mod plan;
 mod plan_watch;
 mod planners;
+mod preflight;
 mod progress;
 mod reproduce;
 mod run_folder;

@@ -1,4 +1,4 @@
-//! What reaches stdout.
+//! What reaches stdout and stderr.
 
 use anyhow::Context;
 use std::io::{ErrorKind, Write};
@@ -15,4 +15,10 @@ pub fn say(text: &str) -> anyhow::Result<()> {
 /// Writes a line to stdout, as [`say`].
 pub fn say_line(line: &str) -> anyhow::Result<()> {
     say(&format!("{line}\n"))
+}
+
+/// Writes a line to stderr, in one piece; a line that cannot be written is dropped, because there is no other place to
+/// report that, and the exit code still says how it went.
+pub fn warn_line(line: &str) {
+    let _ = std::io::stderr().write_all(format!("{line}\n").as_bytes());
 }

@@ -7,7 +7,7 @@ use crate::{
     run_folder::{self, Standing},
 };
 use anyhow::Context;
-use recording::{JOURNAL_FILE, read_journal};
+use recording::{JOURNAL_FILE, JournalError, JournalReader, RecordingError};
 use report::{Fold, Summary};
 use serde::Serialize;
 use std::{
@@ -19,7 +19,7 @@ use std::{
 #[derive(Debug, Serialize)]
 struct Listed {
     name: String,
-    /// `complete`, `stuck`, …, `RUNNING`, `CRASHED` or `UNREADABLE`.
+    /// `complete`, `stuck`, …, `RUNNING`, `CRASHED`, `RECORDING FAILED` or `UNREADABLE`.
     end: String,
     scenario: Option<String>,
     planner: Option<String>,
@@ -40,7 +40,7 @@ pub fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
     } else if listed.is_empty() {
         say_line(&format!("no runs in {}", logs.logs.display()))?;
     } else {
-        say_line(&format!("{:<12} {:>8} {:>22}  run", "end", "T+ s", "% of reachable floor"))?;
+        say_line(&format!("{:<16} {:>8} {:>22}  run", "end", "T+ s", "% of reachable floor"))?;
         for run in &listed {
             say_line(&row(run))?;
         }
@@ -53,7 +53,7 @@ fn row(run: &Listed) -> String {
         |value: Option<f64>, scale: f64| value.map_or_else(|| "-".into(), |v| format!("{:.1}", v * scale));
     let note = run.note.as_ref().map(|note| format!("  ({note})")).unwrap_or_default();
     format!(
-        "{:<12} {:>8} {:>22}  {}{note}",
+        "{:<16} {:>8} {:>22}  {}{note}",
         run.end,
         number(run.mission_time_s, 1.0),
         number(run.coverage_reachable, 100.0),
@@ -62,51 +62,77 @@ fn row(run: &Listed) -> String {
 }
 
 fn look_at(folder: &Path) -> Listed {
-    let from = |end: String, summary: Option<Summary>, note: Option<String>| Listed {
-        name: folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default(),
-        end,
-        scenario: summary.as_ref().and_then(|s| s.scenario.clone()),
-        planner: summary.as_ref().and_then(|s| s.planner.clone()),
-        seed: summary.as_ref().and_then(|s| s.seed),
-        mission_time_s: summary.as_ref().and_then(|s| s.mission_time_s),
-        coverage_reachable: summary.as_ref().and_then(|s| s.coverage.as_ref().map(|c| c.reachable)),
-        folder: folder.to_path_buf(),
-        note,
-    };
     match run_folder::standing(folder) {
         Standing::Ended(summary) => {
-            let end = summary.outcome.map_or("unknown", mission::Outcome::word).to_owned();
-            let sha256 = run_folder::sha256(&folder.join(JOURNAL_FILE)).ok();
-            let doubt = run_folder::journal_doubt(folder, sha256.as_deref());
-            let note = doubt.or_else(|| summary.logs.as_ref().and_then(|logs| logs.error.clone()));
-            from(end, Some(*summary), note)
+            let note = summary.logs.as_ref().and_then(|logs| logs.error.clone());
+            listed(folder, word(&summary), Some(&summary), note)
         }
-        Standing::Running => from("RUNNING".into(), None, None),
-        Standing::Unreadable(why) => from("UNREADABLE".into(), None, Some(why)),
-        Standing::Crashed => {
-            let (summary, note) = rebuild(folder);
-            match summary.as_ref().and_then(|summary| summary.outcome) {
-                // Whatever became of the report: the journal has the run to its end.
-                Some(outcome) => from(outcome.word().to_owned(), summary, Some("without a report".into())),
-                None => from("CRASHED".into(), summary, Some(note)),
-            }
+        Standing::NotRecorded(summary, why) => {
+            let note = format!("ended as {}, but not kept: {why}", word(&summary));
+            listed(folder, "RECORDING FAILED", Some(&summary), Some(note))
+        }
+        Standing::Running => listed(folder, "RUNNING", None, None),
+        Standing::JournalOnly { doubt, failure } => by_journal(folder, doubt.as_deref(), failure),
+    }
+}
+
+fn listed(folder: &Path, end: &str, summary: Option<&Summary>, note: Option<String>) -> Listed {
+    Listed {
+        name: folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default(),
+        end: end.to_owned(),
+        scenario: summary.and_then(|summary| summary.scenario.clone()),
+        planner: summary.and_then(|summary| summary.planner.clone()),
+        seed: summary.and_then(|summary| summary.seed),
+        mission_time_s: summary.and_then(|summary| summary.mission_time_s),
+        coverage_reachable: summary.and_then(|summary| summary.coverage.as_ref()).map(|c| c.reachable),
+        folder: folder.to_path_buf(),
+        note,
+    }
+}
+
+fn word(summary: &Summary) -> &'static str {
+    summary.outcome.map_or("unknown", mission::Outcome::word)
+}
+
+/// A run of which only the journal says what happened.
+fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>) -> Listed {
+    let (summary, damage) = rebuild(&folder.join(JOURNAL_FILE));
+    let with = |more: &str| Some(doubt.map_or_else(|| more.to_owned(), |doubt| format!("{doubt}; {more}")));
+    // Whatever became of the report: the journal has the run to its end.
+    let ended = summary.outcome.filter(|_| damage.is_none());
+    match (ended, failure, damage) {
+        (Some(outcome), ..) => {
+            let source = doubt.map_or("without a report", |_| "shown as the journal has it");
+            listed(folder, outcome.word(), Some(&summary), with(source))
+        }
+        (None, _, Some(damage)) => listed(folder, "UNREADABLE", Some(&summary), with(&damage)),
+        (None, Some(why), None) => {
+            listed(folder, "RECORDING FAILED", Some(&summary), with(&format!("{why}; {}", held(&summary))))
+        }
+        (None, None, None) => {
+            listed(folder, "CRASHED", Some(&summary), with(&format!("killed; {}", held(&summary))))
         }
     }
 }
 
-/// What the journal of a crashed run still tells.
-fn rebuild(folder: &Path) -> (Option<Summary>, String) {
-    match read_journal(&folder.join(JOURNAL_FILE)) {
-        Ok(journal) => {
-            let mut fold = Fold::new();
-            for event in &journal.events {
-                fold.apply(event);
-            }
-            let until_s = journal.events.last().map_or(0.0, |event| event.t_s);
-            (Some(fold.summary()), format!("killed; the journal holds everything up to T+{until_s:.1} s"))
-        }
-        Err(error) => (None, error.to_string()),
-    }
+/// Up to when a journal that stops early goes.
+fn held(summary: &Summary) -> String {
+    summary.mission_time_s.map_or_else(
+        || "the journal holds nothing".into(),
+        |until_s| format!("the journal holds everything up to T+{until_s:.1} s"),
+    )
+}
+
+/// What a journal says, up to the first damage, and what the damage is.
+fn rebuild(journal: &Path) -> (Summary, Option<String>) {
+    let mut fold = Fold::new();
+    let damage = JournalReader::open(journal).and_then(|reader| {
+        reader.into_iter().try_for_each(|event| {
+            fold.apply(&event?);
+            Ok(())
+        })
+    });
+    (fold.summary(), damage.err().map(|error| error.to_string()))
 }
 
 /// `tankops export`.
@@ -116,12 +142,17 @@ pub fn export(run: &Path, rrd: &Path, logs: &LogsArg) -> anyhow::Result<ExitCode
         return Err(bad_input(format!("{} exists already; recordings are never overwritten", rrd.display())));
     }
     let path = folder.join(JOURNAL_FILE);
-    let journal = read_journal(&path).map_err(|error| bad_input(error.to_string()))?;
-    crate::verify::opened(&journal.events)?;
+    let damaged = |error: JournalError| bad_input(error.to_string());
+    let first =
+        JournalReader::open(&path).and_then(|mut reader| reader.next().transpose()).map_err(damaged)?;
+    crate::verify::opened(first.as_slice())?;
     let made = recording::export(&path, rrd);
     if made.is_err() {
         // What was begun must not stand in the way of the next try.
         let _ = std::fs::remove_file(rrd);
+    }
+    if let Err(RecordingError::Journal(error)) = made {
+        return Err(damaged(error));
     }
     let sha256 = run_folder::sha256(&path).ok();
     if let Some(doubt) = run_folder::journal_doubt(&folder, sha256.as_deref()) {

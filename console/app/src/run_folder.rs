@@ -1,19 +1,39 @@
 //! A run on disk: its folder, who writes to it, how it ended.
 
-use crate::failure::bad_input;
+#[cfg_attr(
+    not(test),
+    expect(dead_code, reason = "the console and headless runs say it from the next step on")
+)]
+pub mod kept;
+mod standing;
+
+pub use standing::{Standing, journal_doubt, standing};
+
+use crate::{
+    failure::bad_input,
+    preflight::{LogsError, make_logs},
+};
 use anyhow::Context;
-use recording::JOURNAL_FILE;
+use jiff::Timestamp;
+use recording::{FAILURE_FILE, JOURNAL_FILE};
 use report::Summary;
 use sha2::{Digest, Sha256};
+use standing::ReportFile;
 use std::{
     fmt::Write as _,
-    fs::{self, File, TryLockError},
+    fs::{self, File, OpenOptions},
     io::{self, Read, Write},
     path::{Path, PathBuf},
+    time::SystemTime,
 };
 
 const REPORT_FILE: &str = "report.json";
+const REPORT_DRAFT: &str = "report.json.part";
 const LOCK_FILE: &str = "run.lock";
+/// A folder with one of these files is that of a run.
+const SIGNS: [&str; 4] = [JOURNAL_FILE, REPORT_FILE, LOCK_FILE, FAILURE_FILE];
+/// Space that is taken for the report when a run starts, bytes, so that a disk that is full at the end has room for it.
+const REPORT_RESERVE: usize = 256 << 10;
 
 /// The folder of a run that is being written; nobody else writes to it.
 pub struct RunFolder {
@@ -24,18 +44,17 @@ pub struct RunFolder {
 
 impl RunFolder {
     /// Makes a new folder `<utc>-<scenario>-<planner>-<seed>`, with a number behind it if that exists.
+    ///
+    /// # Errors
+    /// The folder for runs cannot take one, as [`make_logs`] says.
     pub fn create(logs: &Path, scenario: &str, planner: &str, seed: u64) -> anyhow::Result<Self> {
-        fs::create_dir_all(logs).map_err(|error| {
-            let place = logs.display();
-            bad_input(format!(
-                "the folder for runs cannot be made: {error}; choose another with --logs: {place}"
-            ))
-        })?;
-        let now = jiff::Timestamp::now().strftime("%Y%m%dT%H%M%SZ").to_string();
-        let name = format!("{now}-{}-{}-{seed}", plain(scenario), plain(planner));
+        make_logs(logs).map_err(LogsError::refuse)?;
+        let refused = |error| not_writable(logs, &error);
+        let name = format!("{}-{}-{}-{seed}", utc(SystemTime::now()), plain(scenario), plain(planner));
         let path = fresh_folder(logs, &name)?;
-        let lock = File::create_new(path.join(LOCK_FILE)).with_context(|| locking(&path))?;
+        let lock = File::create_new(path.join(LOCK_FILE)).map_err(refused)?;
         lock.try_lock().map_err(io::Error::from).with_context(|| locking(&path))?;
+        fs::write(path.join(REPORT_DRAFT), vec![b'\n'; REPORT_RESERVE]).map_err(refused)?;
         Ok(Self { path, _lock: lock })
     }
 
@@ -46,18 +65,35 @@ impl RunFolder {
 
     /// Writes the report, whole or not at all.
     pub fn write_report(&self, summary: &Summary) -> anyhow::Result<()> {
-        let text = serde_json::to_string_pretty(summary).context("writing the report as JSON")?;
-        let (draft, final_name) = (self.path.join("report.json.part"), self.path.join(REPORT_FILE));
-        let mut file = File::create(&draft).with_context(|| format!("writing {}", draft.display()))?;
-        file.write_all(text.as_bytes())
-            .and_then(|()| file.write_all(b"\n"))
-            .and_then(|()| file.sync_all())?;
+        let journal_bytes = fs::metadata(self.path.join(JOURNAL_FILE)).ok().map(|journal| journal.len());
+        let report = ReportFile { summary, journal_bytes };
+        let text = serde_json::to_string_pretty(&report).context("writing the report as JSON")? + "\n";
+        let (draft, final_name) = (self.path.join(REPORT_DRAFT), self.path.join(REPORT_FILE));
+        replace_bytes(&draft, text.as_bytes()).with_context(|| format!("writing {}", draft.display()))?;
         fs::rename(&draft, &final_name).with_context(|| format!("writing {}", final_name.display()))
     }
 }
 
+/// Writes over the bytes of a file, so that the space they take is used, then cuts off what is left of them.
+fn replace_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+    file.write_all(bytes)?;
+    file.set_len(bytes.len() as u64)?;
+    file.sync_all()
+}
+
+/// A moment as the names of runs begin; a clock before 1970 or after 9999 counts as the nearest moment between.
+pub fn utc(moment: SystemTime) -> String {
+    let time = Timestamp::try_from(moment.max(SystemTime::UNIX_EPOCH)).unwrap_or(Timestamp::MAX);
+    time.strftime("%Y%m%dT%H%M%SZ").to_string()
+}
+
 fn locking(path: &Path) -> String {
     format!("locking the folder of the run: {}", path.display())
+}
+
+fn not_writable(logs: &Path, error: &io::Error) -> anyhow::Error {
+    LogsError::NotWritable { logs: logs.to_owned(), why: error.to_string() }.refuse()
 }
 
 fn fresh_folder(logs: &Path, name: &str) -> anyhow::Result<PathBuf> {
@@ -67,7 +103,7 @@ fn fresh_folder(logs: &Path, name: &str) -> anyhow::Result<PathBuf> {
         match fs::create_dir(&path) {
             Ok(()) => return Ok(path),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-            Err(error) => return Err(error).with_context(|| format!("making the folder {}", path.display())),
+            Err(error) => return Err(not_writable(logs, &error)),
         }
     }
     anyhow::bail!("a thousand runs named {name} exist already: {}", logs.display())
@@ -76,32 +112,6 @@ fn fresh_folder(logs: &Path, name: &str) -> anyhow::Result<PathBuf> {
 /// A name without anything that a file system or a shell could mind.
 fn plain(name: &str) -> String {
     name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect()
-}
-
-/// How a past run stands.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Standing {
-    /// It ended and its report was written.
-    Ended(Box<Summary>),
-    /// Somebody is writing to it.
-    Running,
-    /// It was killed; journal and recording hold everything up to then.
-    Crashed,
-    /// Its report cannot be read.
-    Unreadable(String),
-}
-
-/// How the run in a folder stands.
-pub fn standing(folder: &Path) -> Standing {
-    if let Ok(text) = fs::read_to_string(folder.join(REPORT_FILE)) {
-        return match serde_json::from_str(&text) {
-            Ok(summary) => Standing::Ended(Box::new(summary)),
-            Err(error) => Standing::Unreadable(format!("{REPORT_FILE}: {error}")),
-        };
-    }
-    let locked = File::open(folder.join(LOCK_FILE))
-        .map(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)));
-    if locked.unwrap_or(false) { Standing::Running } else { Standing::Crashed }
 }
 
 /// SHA-256 of a file, hexadecimal.
@@ -120,17 +130,7 @@ pub fn sha256(path: &Path) -> io::Result<String> {
     }))
 }
 
-/// What speaks against the journal of a run whose digest is this: its report names another one.
-pub fn journal_doubt(folder: &Path, sha256: Option<&str>) -> Option<String> {
-    let report: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(folder.join(REPORT_FILE)).ok()?).ok()?;
-    let then = report.get("events_sha256")?.as_str()?;
-    (then != sha256?).then(|| {
-        "the journal is not the one that was written: it does not have the SHA-256 of the report".to_owned()
-    })
-}
-
-/// Folders of past runs, oldest first.
+/// Folders of past runs, oldest first; also those that have lost their journal.
 pub fn past_runs(logs: &Path) -> anyhow::Result<Vec<PathBuf>> {
     if !logs.exists() {
         return Ok(Vec::new());
@@ -139,7 +139,7 @@ pub fn past_runs(logs: &Path) -> anyhow::Result<Vec<PathBuf>> {
         fs::read_dir(logs).with_context(|| format!("reading the folder of runs: {}", logs.display()))?;
     let mut folders: Vec<PathBuf> = entries
         .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| path.join(JOURNAL_FILE).exists())
+        .filter(|path| SIGNS.iter().any(|name| path.join(name).exists()))
         .collect();
     folders.sort();
     Ok(folders)
@@ -159,27 +159,4 @@ pub fn find(run: &Path, logs: &Path) -> anyhow::Result<PathBuf> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_folder_that_is_being_written_is_running_and_then_crashed() {
-        let logs = tempfile::tempdir().unwrap();
-        let folder = RunFolder::create(logs.path(), "demo tank/7", "rpf", 1).unwrap();
-        let name = folder.path().file_name().unwrap().to_str().unwrap().to_owned();
-        assert!(name.ends_with("-demo-tank-7-rpf-1"), "{name}");
-        assert_eq!(standing(folder.path()), Standing::Running);
-        let path = folder.path().to_path_buf();
-        drop(folder);
-        assert_eq!(standing(&path), Standing::Crashed);
-    }
-
-    #[test]
-    fn two_runs_in_one_second_get_two_folders() {
-        let logs = tempfile::tempdir().unwrap();
-        let folders: Vec<RunFolder> =
-            (0..3).map(|_| RunFolder::create(logs.path(), "demo", "rpf", 1).unwrap()).collect();
-        assert_ne!(folders[0].path(), folders[1].path());
-        assert_ne!(folders[1].path(), folders[2].path());
-    }
-}
+mod tests;

@@ -1,6 +1,6 @@
 //! What can go wrong with a recording.
 
-use crate::journal::JournalError;
+use crate::{file::FileChange, journal::JournalError};
 use std::path::PathBuf;
 
 /// Why there is no recording, or why it stopped.
@@ -28,12 +28,21 @@ pub enum RecordingError {
         /// Which event came first.
         got: String,
     },
-    /// Writing failed; everything before it is in the file.
+    /// Writing failed; data is kept in memory and written when that is possible again.
+    #[error("the recording cannot be written ({why}); its data is kept in memory until it can")]
+    Stalled {
+        /// What the system says.
+        why: String,
+    },
+    /// Writing failed for good; everything before it is in the file.
     #[error("the recording stopped: {why}")]
     Write {
         /// What the system says.
         why: String,
     },
+    /// The file on disk is not the one that was written.
+    #[error("the recording is not on disk as it was written: {0}")]
+    Changed(#[from] FileChange),
     /// The recording SDK refused something.
     #[error("the recording stopped: the recording SDK refused data ({why})")]
     Sdk {
@@ -43,6 +52,14 @@ pub enum RecordingError {
     /// The journal failed.
     #[error(transparent)]
     Journal(#[from] JournalError),
+    /// The file that would report a failure could not be made.
+    #[error("cannot reserve space for the report of a failure ({why}): {}", folder.display())]
+    Marker {
+        /// What the system says.
+        why: String,
+        /// Which folder of a run.
+        folder: PathBuf,
+    },
     /// The recorder's thread could not be started.
     #[error("cannot start the recorder's thread: {why}")]
     Thread {

@@ -3,12 +3,15 @@
 //! It carries no wall-clock time, so equal runs have equal journals, byte for byte. It is the record from which
 //! everything else (recording, report, replay) can be made again, and it does not change with the recording SDK.
 
+mod ending;
 mod reader;
 mod writer;
 
-pub use reader::{Journal, JournalReader, read_journal};
+pub use ending::read_ending;
+pub use reader::{Journal, JournalLine, JournalReader, read_journal};
 pub use writer::{JournalEnd, JournalWriter};
 
+use crate::file::FileChange;
 use std::path::PathBuf;
 
 /// Why a journal cannot be written or read.
@@ -22,7 +25,17 @@ pub enum JournalError {
         /// Which file.
         path: PathBuf,
     },
-    /// Writing failed; what was written before it stays.
+    /// Writing failed; events are kept in memory and written when that is possible again.
+    #[error(
+        "the journal cannot be written beyond {bytes} bytes ({why}); events are kept in memory until it can"
+    )]
+    Stalled {
+        /// How much was written.
+        bytes: u64,
+        /// What the system says.
+        why: String,
+    },
+    /// Writing failed for good; what was written before it stays.
     #[error("the journal stopped after {bytes} bytes: {why}")]
     Write {
         /// How much was written.
@@ -30,6 +43,9 @@ pub enum JournalError {
         /// What the system says.
         why: String,
     },
+    /// The file on disk is not the one that was written.
+    #[error("the journal is not on disk as it was written: {0}")]
+    Changed(#[from] FileChange),
     /// The file could not be read.
     #[error("cannot read the journal ({why}): {}", path.display())]
     Read {
@@ -57,6 +73,24 @@ pub enum JournalError {
         theirs: u32,
         /// Version that this tankops reads.
         ours: u32,
+        /// Which file.
+        path: PathBuf,
+    },
+    /// It was written by an older tankops, and this one does not understand it.
+    #[error(
+        "the journal has version {theirs}, and line {line} of it cannot be read by this tankops, which writes version \
+         {ours} ({why}); use the tankops that wrote it: {}",
+        path.display()
+    )]
+    Older {
+        /// Version of the journal.
+        theirs: u32,
+        /// Version that this tankops writes.
+        ours: u32,
+        /// Which line, from 1.
+        line: usize,
+        /// What is wrong with it.
+        why: String,
         /// Which file.
         path: PathBuf,
     },

@@ -2,17 +2,21 @@
 //!
 //! The journal (`events.jsonl`) is ours: every event, one line each, versioned, the same bytes for the same run. The
 //! recording (`recording.rrd`) is a view of it for the rerun viewer and can be made anew from the journal at any
-//! time. Both are written by one thread behind a bounded queue ([`RunRecorder`]); a disk error stops only the file
-//! it hits and is told in [`Health`], the mission goes on.
+//! time. Both are written by one thread behind a bounded queue ([`RunRecorder`]). What cannot be written is kept in
+//! memory up to a limit; a disk error, or a file that is deleted or changed by others, shows in [`Health`] within a
+//! second, and the mission goes on.
 //!
 //! Nothing here prints: what the recording SDK has to say goes to `tracing`.
 
+mod backlog;
 pub mod error;
 pub mod export;
+pub mod file;
 pub mod identity;
 pub mod inspect;
 pub mod journal;
 mod layout;
+pub mod marker;
 pub mod recorder;
 mod rr;
 mod sink;
@@ -20,9 +24,13 @@ pub mod thread;
 
 pub use error::RecordingError;
 pub use export::export;
+pub use file::FileChange;
 pub use identity::Identity;
 pub use inspect::{Summary, inspect};
-pub use journal::{Journal, JournalEnd, JournalError, JournalReader, JournalWriter, read_journal};
+pub use journal::{
+    Journal, JournalEnd, JournalError, JournalLine, JournalReader, JournalWriter, read_ending, read_journal,
+};
+pub use marker::{FAILURE_FILE, recorded_failure};
 pub use recorder::Recorder;
 pub use sink::SinkHealth;
 pub use thread::{Finished, Health, Options, RunRecorder};

@@ -15,6 +15,7 @@ mod tick;
 
 use crate::{
     error::RecordingError,
+    file::{FileChange, FileWatch},
     identity::Identity,
     sink::{SafeSink, SinkHealth},
 };
@@ -35,12 +36,14 @@ const SEND_AFTER: Duration = Duration::from_secs(5);
 
 /// Folds events into a recording.
 ///
-/// What the recording holds depends on the events alone; time decides only how early it reaches the file. The first
-/// error is told once and ends the recording; events after it are not recorded.
+/// What the recording holds depends on the events alone; time decides only how early it reaches the file. What cannot
+/// be written, because the disk is full, is kept up to 32 MB and written when that is possible. An error of
+/// [`Recorder::push`] or [`Recorder::idle`] ends the recording; events after it are not recorded.
 pub struct Recorder {
     fold: Fold,
     stream: Option<Stream>,
     health: Arc<SinkHealth>,
+    watch: Option<FileWatch>,
     ticks_waiting: u32,
     sent_at: Instant,
 }
@@ -51,7 +54,8 @@ impl Recorder {
     /// # Errors
     /// [`RecordingError::Create`] if the file exists or cannot be made.
     pub fn create(path: &Path, identity: &Identity, now: Instant) -> Result<Self, RecordingError> {
-        Self::open(SafeSink::create(path)?, identity, now)
+        let (sink, watch) = SafeSink::create(path)?;
+        Ok(Self { watch: Some(watch), ..Self::open(sink, identity, now)? })
     }
 
     /// A recording that goes to any writer.
@@ -69,7 +73,7 @@ impl Recorder {
     fn open(sink: SafeSink, identity: &Identity, now: Instant) -> Result<Self, RecordingError> {
         let health = sink.health();
         let stream = Some(Stream::open(sink, identity)?);
-        Ok(Self { fold: Fold::default(), stream, health, ticks_waiting: 0, sent_at: now })
+        Ok(Self { fold: Fold::default(), stream, health, watch: None, ticks_waiting: 0, sent_at: now })
     }
 
     /// How the file is doing; stays readable after the recorder is gone.
@@ -77,10 +81,28 @@ impl Recorder {
         Arc::clone(&self.health)
     }
 
+    /// Why the recording is not being written now; none if it is.
+    pub fn trouble(&self) -> Option<RecordingError> {
+        let why = self.health.error()?;
+        Some(if self.health.has_ended() {
+            RecordingError::Write { why }
+        } else {
+            RecordingError::Stalled { why }
+        })
+    }
+
+    /// Whether the path still shows the file that is being written.
+    ///
+    /// # Errors
+    /// How it differs.
+    pub fn check_file(&self) -> Result<(), FileChange> {
+        self.watch.as_ref().map_or(Ok(()), |watch| watch.check(self.health.bytes()))
+    }
+
     /// Takes in the next event; does nothing after an error.
     ///
     /// # Errors
-    /// The first error, once.
+    /// The first error with which data is lost, once.
     pub fn push(&mut self, event: &Event, now: Instant) -> Result<(), RecordingError> {
         let Some(stream) = &self.stream else { return Ok(()) };
         match self.fold.apply(event, stream) {
@@ -95,7 +117,7 @@ impl Recorder {
     /// Sends waiting rows if it is time; to be called now and then while nothing happens.
     ///
     /// # Errors
-    /// The first error, once.
+    /// As [`Recorder::push`].
     pub fn idle(&mut self, now: Instant) -> Result<(), RecordingError> {
         if now.saturating_duration_since(self.sent_at) >= SEND_AFTER { self.send(now) } else { Ok(()) }
     }
@@ -103,7 +125,8 @@ impl Recorder {
     /// Writes everything and closes the recording.
     ///
     /// # Errors
-    /// The first error, also if it has been told before: the recording is not whole.
+    /// The first error, also if it has been reported before: the recording is not whole.
+    /// [`RecordingError::Changed`] if the file on disk is not the one that was written, or has another length.
     pub fn finish(mut self) -> Result<(), RecordingError> {
         if let Some(stream) = &self.stream {
             self.fold.finish(stream)?;
@@ -111,7 +134,11 @@ impl Recorder {
         }
         // Dropping the last handle writes the footer of the format.
         drop(self.stream.take());
-        self.health.error().map_or(Ok(()), |why| Err(RecordingError::Write { why: why.to_owned() }))
+        if let Some(why) = self.health.error() {
+            return Err(RecordingError::Write { why });
+        }
+        let bytes = self.health.bytes();
+        Ok(self.watch.as_ref().map_or(Ok(()), |watch| watch.check_closed(bytes))?)
     }
 
     fn send(&mut self, now: Instant) -> Result<(), RecordingError> {
@@ -122,8 +149,8 @@ impl Recorder {
             return self.stop(error);
         }
         stream.flush();
-        match self.health.error() {
-            Some(why) => self.stop(RecordingError::Write { why: why.to_owned() }),
+        match self.trouble().filter(|_| self.health.has_ended()) {
+            Some(error) => self.stop(error),
             None => Ok(()),
         }
     }

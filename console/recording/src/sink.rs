@@ -1,26 +1,29 @@
-//! A file sink that tells how it is.
+//! A file sink that reports how it is.
 //!
 //! The SDK's own file sink truncates existing files, loses the first write error with its thread, and can hang when
-//! the stream is dropped afterwards. This one never writes over a file, never blocks the SDK after an error, and
-//! counts the bytes that reached the system.
+//! the stream is dropped afterwards. This one never writes over a file, never blocks the SDK after an error, keeps
+//! what could not be written, and counts the bytes that reached the system.
 
-use crate::{error::RecordingError, rr};
+use crate::{backlog::Backlog, error::RecordingError, file::FileWatch, rr};
 use std::{
-    fs::OpenOptions,
     io::{self, Write},
     path::Path,
     sync::{
-        Arc, Mutex, MutexGuard, OnceLock, PoisonError,
-        atomic::{AtomicU64, Ordering},
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, AtomicU64, Ordering},
     },
     time::Duration,
 };
+
+/// Data that is kept while the file cannot be written, bytes: more than an hour of mission time.
+const MOST_WAITING_BYTES: usize = 32 << 20;
 
 /// How the file of a recording is doing; can be read at any time without waiting.
 #[derive(Debug, Default)]
 pub struct SinkHealth {
     bytes: AtomicU64,
-    error: OnceLock<String>,
+    has_ended: AtomicBool,
+    error: Mutex<Option<String>>,
 }
 
 impl SinkHealth {
@@ -29,44 +32,62 @@ impl SinkHealth {
         self.bytes.load(Ordering::Relaxed)
     }
 
-    /// The first error, in the words of the system.
-    pub fn error(&self) -> Option<&str> {
-        self.error.get().map(String::as_str)
+    /// Why the file cannot be written now, in the words of the system; none if it can.
+    pub fn error(&self) -> Option<String> {
+        self.lock().clone()
     }
 
+    /// Whether data is lost, so that nothing is written any more.
+    pub fn has_ended(&self) -> bool {
+        self.has_ended.load(Ordering::Relaxed)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Option<String>> {
+        self.error.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn update(&self, backlog: &Backlog) {
+        self.bytes.store(backlog.written_bytes(), Ordering::Relaxed);
+        if self.has_ended() {
+            return;
+        }
+        *self.lock() = backlog.trouble().map(str::to_owned);
+        self.has_ended.store(backlog.has_ended(), Ordering::Relaxed);
+    }
+
+    /// The end, for another reason than the file. Only the first one says what happened.
     fn fail(&self, error: &impl ToString) {
-        // Only the first error tells what happened; the others follow from it.
-        let _ = self.error.set(error.to_string());
+        if !self.has_ended.swap(true, Ordering::Relaxed) {
+            *self.lock() = Some(error.to_string());
+        }
     }
 }
 
-/// A writer that swallows everything after its first error, so that the SDK above it never waits or panics.
+/// A writer that never fails, so that the SDK above it never waits or panics.
 struct Guarded {
-    out: Box<dyn Write + Send>,
+    backlog: Backlog,
     health: Arc<SinkHealth>,
+}
+
+impl Guarded {
+    fn drain(&mut self) {
+        self.backlog.drain();
+        self.health.update(&self.backlog);
+    }
 }
 
 impl Write for Guarded {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.write_all(bytes)?;
+        if !self.health.has_ended() {
+            self.backlog.waiting().extend_from_slice(bytes);
+            self.drain();
+        }
         Ok(bytes.len())
     }
 
-    fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
-        if self.health.error().is_none() {
-            match self.out.write_all(bytes) {
-                Ok(()) => drop(self.health.bytes.fetch_add(bytes.len() as u64, Ordering::Relaxed)),
-                Err(error) => self.health.fail(&error),
-            }
-        }
-        Ok(())
-    }
-
     fn flush(&mut self) -> io::Result<()> {
-        if self.health.error().is_none()
-            && let Err(error) = self.out.flush()
-        {
-            self.health.fail(&error);
+        if !self.health.has_ended() {
+            self.drain();
         }
         Ok(())
     }
@@ -80,20 +101,21 @@ pub(crate) struct SafeSink {
 
 impl SafeSink {
     /// Makes a file where there is none, and writes the head of the format to it.
-    pub(crate) fn create(path: &Path) -> Result<Self, RecordingError> {
+    pub(crate) fn create(path: &Path) -> Result<(Self, FileWatch), RecordingError> {
         let failed = |why| RecordingError::Create { why, path: path.to_owned() };
-        let file = OpenOptions::new().write(true).create_new(true).open(path);
-        let sink = Self::writing_to(Box::new(file.map_err(|error| failed(error.to_string()))?))?;
+        let (file, watch) = FileWatch::create(path).map_err(|error| failed(error.to_string()))?;
+        let sink = Self::writing_to(Box::new(file))?;
         match sink.health.error() {
-            Some(error) => Err(failed(error.to_owned())),
-            None => Ok(sink),
+            Some(error) => Err(failed(error)),
+            None => Ok((sink, watch)),
         }
     }
 
     /// A sink over any writer.
     pub(crate) fn writing_to(out: Box<dyn Write + Send>) -> Result<Self, RecordingError> {
         let health = Arc::new(SinkHealth::default());
-        let guarded = Guarded { out, health: Arc::clone(&health) };
+        let backlog = Backlog::new(out, MOST_WAITING_BYTES);
+        let guarded = Guarded { backlog, health: Arc::clone(&health) };
         let options = rr::EncodingOptions::PROTOBUF_COMPRESSED;
         let encoder = rr::Encoder::new_eager(rr::CrateVersion::LOCAL, options, guarded);
         Ok(Self { encoder: Mutex::new(encoder.map_err(|error| RecordingError::sdk(&error))?), health })
@@ -111,7 +133,7 @@ impl SafeSink {
 
 impl rr::LogSink for SafeSink {
     fn send(&self, message: rr::LogMsg) {
-        if self.health.error().is_some() {
+        if self.health.has_ended() {
             return;
         }
         if let Err(error) = self.encoder().append(&message) {
@@ -123,7 +145,9 @@ impl rr::LogSink for SafeSink {
         if let Err(error) = self.encoder().flush_blocking() {
             self.health.fail(&error);
         }
-        self.health.error().map_or(Ok(()), |error| Err(rr::SinkFlushError::failed(error)))
+        // What only waits for space is no failure to the SDK: nothing is lost.
+        let lost = self.health.error().filter(|_| self.health.has_ended());
+        lost.map_or(Ok(()), |error| Err(rr::SinkFlushError::failed(error)))
     }
 
     fn defers_finalization_to_shutdown(&self) -> bool {

@@ -3,8 +3,10 @@
 use crate::{
     JOURNAL_FILE, RECORDING_FILE,
     error::RecordingError,
+    file::FileChange,
     identity::Identity,
-    journal::{JournalEnd, JournalWriter},
+    journal::{JournalEnd, JournalError, JournalWriter},
+    marker::FailureMarker,
     recorder::Recorder,
     sink::SinkHealth,
 };
@@ -12,7 +14,7 @@ use mission::Event;
 use std::{
     path::{Path, PathBuf},
     sync::{
-        Arc, Mutex, OnceLock, PoisonError,
+        Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicU64, Ordering},
         mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
     },
@@ -26,6 +28,9 @@ const QUEUE: usize = 8192;
 const IDLE: Duration = Duration::from_millis(100);
 /// How long a recorder that is dropped without being finished is waited for.
 const DROP_TIMEOUT: Duration = Duration::from_secs(2);
+/// How often the files on disk are compared with those that are being written; with [`IDLE`] and the half second
+/// after which a screen asks, an operator knows within a second.
+const WATCH_PERIOD: Duration = Duration::from_millis(400);
 
 /// What to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,20 +56,23 @@ pub struct Health {
     pub rrd_bytes: u64,
     /// Batches of events that wait to be written.
     pub lag: u64,
-    /// The first error, as a sentence.
+    /// Why journal or recording is not on disk as it should be, as a sentence. It goes away if everything could be
+    /// written in the end, or if a file that was moved is back in its place.
     pub error: Option<String>,
 }
 
 /// What a recorder leaves behind.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Finished {
-    /// SHA-256 of the journal, hexadecimal; absent if the journal is not whole.
+    /// SHA-256 of what was written to the journal, hexadecimal; absent if the journal is not whole, or its path does
+    /// not show the file that was written, at its length. The file is not read again: `verify` does that.
     pub events_sha256: Option<String>,
     /// The journal, if one was begun.
     pub journal: Option<PathBuf>,
     /// The recording, if one was begun.
     pub recording: Option<PathBuf>,
-    /// The first error, as a sentence; both files hold everything before it.
+    /// Why journal or recording is not whole or not there, as a sentence. Absent, each is the file that was opened,
+    /// in its place, with every byte that was written to it.
     pub error: Option<String>,
 }
 
@@ -74,21 +82,44 @@ struct Shared {
     sent: AtomicU64,
     done: AtomicU64,
     journal_bytes: AtomicU64,
-    error: OnceLock<String>,
+    /// Errors with which something is lost, each once.
+    losses: Mutex<Vec<String>>,
+    /// What is wrong now and may be over later.
+    trouble: Mutex<Option<String>>,
 }
 
 impl Shared {
-    fn fail(&self, error: &impl ToString) {
-        // Only the first error tells what happened.
-        let _ = self.error.set(error.to_string());
+    fn lose(&self, error: &impl ToString) {
+        let (mut losses, error) = (locked(&self.losses), error.to_string());
+        if !losses.contains(&error) {
+            losses.push(error);
+        }
     }
+
+    fn set_trouble(&self, trouble: Option<String>) {
+        *locked(&self.trouble) = trouble;
+    }
+
+    fn error(&self) -> Option<String> {
+        let mut errors = locked(&self.losses).clone();
+        let trouble = locked(&self.trouble).clone();
+        // A file that has ended is also in trouble.
+        errors.extend(trouble.filter(|trouble| !errors.contains(trouble)));
+        (!errors.is_empty()).then(|| errors.join("; "))
+    }
+}
+
+/// What is shared holds no invariant that a panic could break.
+fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Writes journal and recording of a run in a thread of its own.
 ///
 /// [`RunRecorder::send`] hands over events and returns at once, unless 8192 batches wait: then the simulation waits
-/// for the disk, and nothing is lost. An error stops the file that it hits and shows in [`RunRecorder::health`];
-/// everything else goes on.
+/// for the disk, and nothing is lost. An error concerns only the file that it hits and shows in
+/// [`RunRecorder::health`] within a second, as does a file that others delete, replace or truncate; everything else
+/// goes on. In the folder of the run [`crate::FAILURE_FILE`] says why, for those who look at it later.
 pub struct RunRecorder {
     sender: Option<SyncSender<Arc<[Event]>>>,
     /// Behind a lock so that screens may ask for the health from other threads; only `close` takes it.
@@ -103,7 +134,10 @@ pub struct RunRecorder {
 struct Writer {
     journal: Option<JournalWriter>,
     recorder: Option<Recorder>,
+    marker: Option<FailureMarker>,
     shared: Arc<Shared>,
+    watched: Instant,
+    changed: Option<String>,
 }
 
 impl RunRecorder {
@@ -121,7 +155,10 @@ impl RunRecorder {
         };
         let identity = Identity::of_folder(folder);
         let recorder = recording.as_ref().map(|path| Recorder::create(path, &identity, now)).transpose()?;
-        let mut started = Self::spawn(writer, recorder)?;
+        let marker = (options.journal || options.rrd).then(|| FailureMarker::reserve(folder)).transpose();
+        let marker = marker
+            .map_err(|error| RecordingError::Marker { why: error.to_string(), folder: folder.to_owned() })?;
+        let mut started = Self::spawn_with(writer, recorder, marker)?;
         (started.journal, started.recording) = (journal, recording);
         Ok(started)
     }
@@ -131,11 +168,26 @@ impl RunRecorder {
     /// # Errors
     /// [`RecordingError::Thread`] if the system gives no thread.
     pub fn spawn(journal: JournalWriter, recorder: Option<Recorder>) -> Result<Self, RecordingError> {
+        Self::spawn_with(journal, recorder, None)
+    }
+
+    fn spawn_with(
+        journal: JournalWriter,
+        recorder: Option<Recorder>,
+        marker: Option<FailureMarker>,
+    ) -> Result<Self, RecordingError> {
         let shared = Arc::new(Shared::default());
         let sink = recorder.as_ref().map(Recorder::health);
         let (sender, batches) = sync_channel(QUEUE);
         let (tell_end, ended) = sync_channel(1);
-        let writer = Writer { journal: Some(journal), recorder, shared: Arc::clone(&shared) };
+        let writer = Writer {
+            journal: Some(journal),
+            recorder,
+            marker,
+            shared: Arc::clone(&shared),
+            watched: Instant::now(),
+            changed: None,
+        };
         let thread = thread::Builder::new().name("recorder".into());
         let handle = thread.spawn(move || {
             let end = writer.run(&batches);
@@ -152,7 +204,7 @@ impl RunRecorder {
         let Some(sender) = &self.sender else { return };
         self.shared.sent.fetch_add(1, Ordering::Relaxed);
         if sender.send(events.into()).is_err() {
-            self.shared.fail(&"the recorder's thread has ended");
+            self.shared.lose(&"the recorder's thread has ended");
         }
     }
 
@@ -163,11 +215,11 @@ impl RunRecorder {
             journal_bytes: self.shared.journal_bytes.load(Ordering::Relaxed),
             rrd_bytes: self.sink.as_ref().map_or(0, |sink| sink.bytes()),
             lag: sent.saturating_sub(self.shared.done.load(Ordering::Relaxed)),
-            error: self.error(),
+            error: self.shared.error(),
         }
     }
 
-    /// Writes everything that waits, closes both files, and tells what is there.
+    /// Writes everything that waits, closes both files, and reports what is there.
     ///
     /// After `timeout` the files are left to the thread, and the error says so.
     pub fn finish(mut self, timeout: Duration) -> Finished {
@@ -176,7 +228,7 @@ impl RunRecorder {
             events_sha256: end.map(|end| end.events_sha256),
             journal: self.journal.take(),
             recording: self.recording.take(),
-            error: self.error(),
+            error: self.shared.error(),
         }
     }
 
@@ -188,23 +240,15 @@ impl RunRecorder {
             Err(RecvTimeoutError::Timeout) => {
                 let waited = timeout.as_secs_f64();
                 self.shared
-                    .fail(&format!("the recording was not closed within {waited} s; its end may be missing"));
+                    .lose(&format!("the recording was not closed within {waited} s; its end may be missing"));
                 None
             }
             Err(RecvTimeoutError::Disconnected) => {
                 self.shared
-                    .fail(&"the recorder's thread broke off; the ends of journal and recording are missing");
+                    .lose(&"the recorder's thread broke off; the ends of journal and recording are missing");
                 None
             }
         }
-    }
-
-    fn error(&self) -> Option<String> {
-        let told = self.shared.error.get().cloned();
-        told.or_else(|| {
-            let why = self.sink.as_ref()?.error()?.to_owned();
-            Some(RecordingError::Write { why }.to_string())
-        })
     }
 }
 
@@ -229,53 +273,74 @@ impl Writer {
     fn write(&mut self, events: &[Event]) {
         let now = Instant::now();
         for event in events {
-            if let Some(journal) = &mut self.journal
-                && let Err(error) = journal.append(event, now)
-            {
-                self.shared.fail(&error);
-            }
-            if let Some(recorder) = &mut self.recorder
-                && let Err(error) = recorder.push(event, now)
-            {
-                self.shared.fail(&error);
+            // What the journal reports is asked for below.
+            let _ = self.journal.as_mut().map(|journal| journal.append(event, now));
+            if let Some(Err(error)) = self.recorder.as_mut().map(|recorder| recorder.push(event, now)) {
+                self.shared.lose(&error);
             }
         }
         self.shared.done.fetch_add(1, Ordering::Relaxed);
-        self.count();
+        self.look(now);
     }
 
     fn idle(&mut self) {
         let now = Instant::now();
-        if let Some(journal) = &mut self.journal
-            && let Err(error) = journal.tick(now)
-        {
-            self.shared.fail(&error);
+        let _ = self.journal.as_mut().map(|journal| journal.tick(now));
+        if let Some(Err(error)) = self.recorder.as_mut().map(|recorder| recorder.idle(now)) {
+            self.shared.lose(&error);
         }
-        if let Some(recorder) = &mut self.recorder
-            && let Err(error) = recorder.idle(now)
-        {
-            self.shared.fail(&error);
-        }
-        self.count();
+        self.look(now);
     }
 
-    fn count(&self) {
+    /// Looks at both files, and shares what it sees.
+    fn look(&mut self, now: Instant) {
+        if now.saturating_duration_since(self.watched) >= WATCH_PERIOD {
+            self.watched = now;
+            self.changed = self.check_files().err();
+        }
         let bytes = self.journal.as_ref().map_or(0, JournalWriter::written_bytes);
         self.shared.journal_bytes.store(bytes, Ordering::Relaxed);
+        self.shared.set_trouble(self.trouble());
+        self.mark();
+    }
+
+    fn check_files(&self) -> Result<(), String> {
+        let as_text = |error: RecordingError| error.to_string();
+        let journal = self.journal.as_ref().map_or(Ok(()), JournalWriter::check_file);
+        journal.map_err(|change| as_text(JournalError::from(change).into()))?;
+        let recording = self.recorder.as_ref().map_or(Ok(()), Recorder::check_file);
+        recording.map_err(|change: FileChange| as_text(change.into()))
+    }
+
+    fn trouble(&self) -> Option<String> {
+        let journal = self.journal.as_ref().and_then(JournalWriter::trouble).map(|error| error.to_string());
+        let recording = || self.recorder.as_ref().and_then(Recorder::trouble).map(|error| error.to_string());
+        journal.or_else(recording).or_else(|| self.changed.clone())
+    }
+
+    /// Leaves a sign of what is wrong in the folder of the run, or takes it away.
+    fn mark(&mut self) {
+        if let Some(marker) = &mut self.marker {
+            marker.show(self.shared.error().as_deref());
+        }
     }
 
     fn close(&mut self) -> Option<JournalEnd> {
-        let end = self.journal.take().map(JournalWriter::finish);
-        if let Some(Err(error)) = &end {
-            self.shared.fail(error);
+        let journal = self.journal.take().map(JournalWriter::finish).transpose();
+        let recording = self.recorder.take().map_or(Ok(()), Recorder::finish);
+        let end = journal.unwrap_or_else(|error| {
+            self.shared.lose(&error);
+            None
+        });
+        if let Err(error) = recording {
+            self.shared.lose(&error);
         }
-        let end = end.and_then(Result::ok);
         if let Some(end) = &end {
             self.shared.journal_bytes.store(end.bytes, Ordering::Relaxed);
         }
-        if let Some(Err(error)) = self.recorder.take().map(Recorder::finish) {
-            self.shared.fail(&error);
-        }
+        // How each file ended is clear now; what was wrong on the way and is over does not matter any more.
+        self.shared.set_trouble(None);
+        self.mark();
         end
     }
 }

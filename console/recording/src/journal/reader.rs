@@ -14,7 +14,9 @@ use std::{
 pub struct Journal {
     /// Its events, oldest first.
     pub events: Vec<Event>,
-    /// If the last line is cut off, because the writer was killed or the disk was full: what is missing.
+    /// Version of its format; absent if it is empty or its first line is cut off.
+    pub version: Option<u32>,
+    /// If it is empty or its last line is cut off, because the writer was killed or the disk was full: what is missing.
     pub truncated: Option<String>,
 }
 
@@ -25,10 +27,19 @@ pub struct Journal {
 pub fn read_journal(path: &Path) -> Result<Journal, JournalError> {
     let mut reader = JournalReader::open(path)?;
     let events = reader.by_ref().collect::<Result<_, _>>()?;
-    Ok(Journal { events, truncated: reader.truncated })
+    Ok(Journal { events, version: reader.version, truncated: reader.truncated })
 }
 
-/// Reads a journal event by event.
+/// A line of a journal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JournalLine<'a> {
+    /// Its bytes as they are in the file, without the newline.
+    pub raw: &'a [u8],
+    /// What they say. Keys that no event has, and white space, are only in `raw`.
+    pub event: Event,
+}
+
+/// Reads a journal event by event; as an iterator, or line by line with the bytes of the file.
 ///
 /// Ends after the first error.
 pub struct JournalReader {
@@ -36,8 +47,10 @@ pub struct JournalReader {
     path: PathBuf,
     text: Vec<u8>,
     line: usize,
+    version: Option<u32>,
     ended: bool,
     truncated: Option<String>,
+    unended_bytes: u64,
 }
 
 /// What a journal of any version tells in its first line.
@@ -59,14 +72,48 @@ impl JournalReader {
             path: path.to_owned(),
             text: Vec::new(),
             line: 0,
+            version: None,
             ended: false,
             truncated: None,
+            unended_bytes: 0,
         })
     }
 
-    /// After the end: what is missing, if the last line is cut off.
+    /// The next event with the bytes of its line; `None` after the end.
+    ///
+    /// # Errors
+    /// See [`JournalError`]; a last line that is cut off is no error.
+    pub fn next_line(&mut self) -> Result<Option<JournalLine<'_>>, JournalError> {
+        if self.ended {
+            return Ok(None);
+        }
+        match self.read_event() {
+            Ok(event) => {
+                let raw = self.text.strip_suffix(b"\n").unwrap_or(&self.text);
+                Ok(event.map(|event| JournalLine { raw, event }))
+            }
+            Err(error) => {
+                self.ended = true;
+                Err(error)
+            }
+        }
+    }
+
+    /// Version of the format; known after the first event.
+    pub fn version(&self) -> Option<u32> {
+        self.version
+    }
+
+    /// After the end: what is missing, if the journal is empty or its last line is cut off.
     pub fn truncated(&self) -> Option<&str> {
         self.truncated.as_deref()
+    }
+
+    /// After the end: how many bytes follow the last newline; 0 in a whole journal.
+    ///
+    /// They may be a whole event (only its newline is missing), which is then read like any other.
+    pub fn unended_bytes(&self) -> u64 {
+        self.unended_bytes
     }
 
     fn read_event(&mut self) -> Result<Option<Event>, JournalError> {
@@ -74,12 +121,17 @@ impl JournalReader {
         let length =
             self.lines.read_until(b'\n', &mut self.text).map_err(|error| read_error(&self.path, &error))?;
         self.line += 1;
+        if length == 0 {
+            return Ok(self.end_of_file());
+        }
         let whole = self.text.last() == Some(&b'\n');
+        if !whole {
+            self.cut_off(length);
+        }
         match self.parse() {
-            _ if length == 0 => Ok(self.end_of_file()),
             Ok(event) => Ok(Some(event)),
             Err(error @ JournalError::Newer { .. }) => Err(error),
-            Err(_) if !whole => Ok(self.torn(length)),
+            Err(_) if !whole => Ok(None),
             Err(error) => Err(error),
         }
     }
@@ -92,25 +144,31 @@ impl JournalReader {
         None
     }
 
-    fn torn(&mut self, length: usize) -> Option<Event> {
+    fn cut_off(&mut self, length: usize) {
         self.ended = true;
+        self.unended_bytes = length as u64;
         self.truncated = Some(format!("line {}, the last one, is cut off after {length} bytes", self.line));
-        None
     }
 
-    fn parse(&self) -> Result<Event, JournalError> {
+    fn parse(&mut self) -> Result<Event, JournalError> {
         if self.line == 1 {
-            self.check_head()?;
+            self.version = Some(self.check_head()?);
         }
-        serde_json::from_slice(&self.text).map_err(|error| JournalError::Damaged {
-            line: self.line,
-            column: error.column().max(1),
-            why: without_position(&error),
-            path: self.path.clone(),
-        })
+        serde_json::from_slice(&self.text).map_err(|error| self.misunderstood(&error))
     }
 
-    fn check_head(&self) -> Result<(), JournalError> {
+    fn misunderstood(&self, error: &serde_json::Error) -> JournalError {
+        let (line, why, path) = (self.line, without_position(error), self.path.clone());
+        match self.version {
+            Some(theirs) if theirs < JOURNAL_VERSION && error.is_data() => {
+                JournalError::Older { theirs, ours: JOURNAL_VERSION, line, why, path }
+            }
+            _ => JournalError::Damaged { line, column: error.column().max(1), why, path },
+        }
+    }
+
+    /// The version that the first line names.
+    fn check_head(&self) -> Result<u32, JournalError> {
         let refuse = |why| JournalError::NotAJournal { why, path: self.path.clone() };
         let head: Head =
             serde_json::from_slice(&self.text).map_err(|error| refuse(without_position(&error)))?;
@@ -121,7 +179,7 @@ impl JournalReader {
             let theirs = head.journal_version;
             return Err(JournalError::Newer { theirs, ours: JOURNAL_VERSION, path: self.path.clone() });
         }
-        Ok(())
+        Ok(head.journal_version)
     }
 }
 
@@ -129,12 +187,7 @@ impl Iterator for JournalReader {
     type Item = Result<Event, JournalError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.ended {
-            return None;
-        }
-        let event = self.read_event();
-        self.ended |= event.is_err();
-        event.transpose()
+        self.next_line().map(|line| line.map(|line| line.event)).transpose()
     }
 }
 

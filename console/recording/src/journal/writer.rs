@@ -1,11 +1,14 @@
 //! Writing the journal.
 
 use super::JournalError;
-use crate::identity::hexadecimal;
+use crate::{
+    backlog::Backlog,
+    file::{FileChange, FileWatch},
+    identity::hexadecimal,
+};
 use mission::Event;
 use sha2::{Digest, Sha256};
 use std::{
-    fs::OpenOptions,
     io::{self, Write},
     path::Path,
     time::{Duration, Instant},
@@ -15,20 +18,25 @@ use std::{
 const FLUSH_AFTER: Duration = Duration::from_millis(500);
 /// or when they take this many bytes.
 const FLUSH_BYTES: usize = 64 * 1024;
+/// Events that are kept while the file cannot be written, bytes: about 40 minutes of mission time.
+const MOST_WAITING_BYTES: usize = 64 << 20;
 
 /// Writes a journal.
 ///
 /// Events are gathered and handed to the operating system at least every half second or 64 kB, so that a process
 /// that is killed loses no more than that. The deadline is looked at with every event and by [`JournalWriter::tick`].
-/// The first write error is told once and ends the journal; events after it are not written.
+///
+/// What cannot be written, because the disk is full, is kept and tried again every half second: the journal then is
+/// whole in the end. When more than 64 MB wait, the journal has ended; events after that are not written.
 pub struct JournalWriter {
-    out: Box<dyn Write + Send>,
-    pending: Vec<u8>,
+    backlog: Backlog,
+    watch: Option<FileWatch>,
     hasher: Sha256,
     events: u64,
-    written_bytes: u64,
     flushed_at: Instant,
-    error: Option<JournalError>,
+    /// An event that cannot be written as JSON ends the journal.
+    unwritable: Option<String>,
+    reported: Option<JournalError>,
 }
 
 /// What is known about a journal when it is closed.
@@ -48,10 +56,9 @@ impl JournalWriter {
     /// # Errors
     /// [`JournalError::Create`] if the file exists or cannot be made.
     pub fn create(path: &Path, now: Instant) -> Result<Self, JournalError> {
-        let file = OpenOptions::new().write(true).create_new(true).open(path);
-        let file =
-            file.map_err(|error| JournalError::Create { why: error.to_string(), path: path.to_owned() })?;
-        Ok(Self::writing_to(Box::new(file), now))
+        let (file, watch) = FileWatch::create(path)
+            .map_err(|error| JournalError::Create { why: error.to_string(), path: path.to_owned() })?;
+        Ok(Self { watch: Some(watch), ..Self::writing_to(Box::new(file), now) })
     }
 
     /// A journal that is written nowhere and only counted and hashed.
@@ -61,33 +68,34 @@ impl JournalWriter {
 
     /// A journal that goes to any writer.
     pub fn writing_to(out: Box<dyn Write + Send>, now: Instant) -> Self {
-        let pending = Vec::with_capacity(2 * FLUSH_BYTES);
         Self {
-            out,
-            pending,
+            backlog: Backlog::new(out, MOST_WAITING_BYTES),
+            watch: None,
             hasher: Sha256::new(),
             events: 0,
-            written_bytes: 0,
             flushed_at: now,
-            error: None,
+            unwritable: None,
+            reported: None,
         }
     }
 
-    /// Adds an event; does nothing after an error.
+    /// Adds an event; does nothing after the journal has ended.
     ///
     /// # Errors
-    /// [`JournalError::Write`], once.
+    /// As [`JournalWriter::tick`].
     pub fn append(&mut self, event: &Event, now: Instant) -> Result<(), JournalError> {
-        if self.error.is_some() {
+        if self.has_ended() {
             return Ok(());
         }
-        let start = self.pending.len();
-        if let Err(error) = serde_json::to_writer(&mut self.pending, event) {
-            self.pending.truncate(start);
-            return self.fail(&error);
+        let waiting = self.backlog.waiting();
+        let start = waiting.len();
+        if let Err(error) = serde_json::to_writer(&mut *waiting, event) {
+            waiting.truncate(start);
+            self.unwritable = Some(error.to_string());
+            return self.report();
         }
-        self.pending.push(b'\n');
-        self.hasher.update(&self.pending[start..]);
+        waiting.push(b'\n');
+        self.hasher.update(&waiting[start..]);
         self.events += 1;
         self.tick(now)
     }
@@ -95,56 +103,71 @@ impl JournalWriter {
     /// Hands waiting events to the system if it is time; to be called now and then while nothing happens.
     ///
     /// # Errors
-    /// [`JournalError::Write`], once.
+    /// Once when the journal cannot be written ([`JournalError::Stalled`]), and once when it has ended
+    /// ([`JournalError::Write`]).
     pub fn tick(&mut self, now: Instant) -> Result<(), JournalError> {
-        let due = self.pending.len() >= FLUSH_BYTES
-            || (!self.pending.is_empty() && now.saturating_duration_since(self.flushed_at) >= FLUSH_AFTER);
-        if !due {
+        let is_waiting = self.backlog.waiting_bytes() > 0;
+        // A full disk is asked again now and then, not with every event.
+        let is_much = self.backlog.waiting_bytes() >= FLUSH_BYTES && self.backlog.trouble().is_none();
+        let is_old = now.saturating_duration_since(self.flushed_at) >= FLUSH_AFTER;
+        if !(is_much || is_waiting && is_old) {
             return Ok(());
         }
         self.flushed_at = now;
-        self.flush()
+        self.backlog.drain();
+        self.report()
     }
 
     /// Hands everything to the system and closes the journal.
     ///
     /// # Errors
-    /// [`JournalError::Write`], also if it has been told before: the journal is not whole.
+    /// [`JournalError::Write`], also if it has been reported before: the journal is not whole.
+    /// [`JournalError::Changed`] if the file on disk is not the one that was written, or has another length.
     pub fn finish(mut self) -> Result<JournalEnd, JournalError> {
-        self.flush()?;
-        match self.error {
-            Some(error) => Err(error),
-            None => Ok(JournalEnd {
-                events_sha256: hexadecimal(&self.hasher.finalize()),
-                events: self.events,
-                bytes: self.written_bytes,
-            }),
+        self.backlog.drain();
+        let bytes = self.written_bytes();
+        if let Some(why) = self.unwritable.as_deref().or(self.backlog.trouble()) {
+            return Err(JournalError::Write { bytes, why: why.to_owned() });
         }
+        self.watch.as_ref().map_or(Ok(()), |watch| watch.check_closed(bytes))?;
+        let events_sha256 = hexadecimal(&self.hasher.finalize());
+        Ok(JournalEnd { events_sha256, events: self.events, bytes })
     }
 
     /// How many bytes the system has got.
     pub fn written_bytes(&self) -> u64 {
-        self.written_bytes
+        self.backlog.written_bytes()
     }
 
-    fn flush(&mut self) -> Result<(), JournalError> {
-        if self.error.is_some() {
-            return Ok(());
+    /// Why the journal is not being written now; none if it is.
+    pub fn trouble(&self) -> Option<JournalError> {
+        let bytes = self.written_bytes();
+        let stall = self.backlog.trouble().map(|why| JournalError::Stalled { bytes, why: why.to_owned() });
+        if !self.has_ended() {
+            return stall;
         }
-        match self.out.write_all(&self.pending).and_then(|()| self.out.flush()) {
-            Ok(()) => {
-                self.written_bytes += self.pending.len() as u64;
-                self.pending.clear();
-                Ok(())
-            }
-            Err(error) => self.fail(&error),
-        }
+        let why = self.unwritable.as_deref().or(self.backlog.trouble()).unwrap_or_default().to_owned();
+        Some(JournalError::Write { bytes, why })
     }
 
-    fn fail(&mut self, why: &impl ToString) -> Result<(), JournalError> {
-        let error = JournalError::Write { bytes: self.written_bytes, why: why.to_string() };
-        self.error = Some(error.clone());
-        self.pending = Vec::new();
-        Err(error)
+    /// Whether the path still shows the file that is being written.
+    ///
+    /// # Errors
+    /// How it differs.
+    pub fn check_file(&self) -> Result<(), FileChange> {
+        self.watch.as_ref().map_or(Ok(()), |watch| watch.check(self.written_bytes()))
+    }
+
+    fn has_ended(&self) -> bool {
+        self.unwritable.is_some() || self.backlog.has_ended()
+    }
+
+    /// The trouble there is, if it is another one than was reported.
+    fn report(&mut self) -> Result<(), JournalError> {
+        let trouble = self.trouble();
+        let is_same_kind = trouble.as_ref().map(std::mem::discriminant)
+            == self.reported.as_ref().map(std::mem::discriminant);
+        self.reported.clone_from(&trouble);
+        trouble.filter(|_| !is_same_kind).map_or(Ok(()), Err)
     }
 }

@@ -1,28 +1,51 @@
 //! A disk that fails.
 
 use crate::{events, synthetic};
+use mission::Event;
 use recording::{Identity, JournalError, JournalWriter, Recorder, RecordingError, RunRecorder};
 use std::{
     io::{self, Write},
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicUsize, Ordering},
+    },
     time::{Duration, Instant},
 };
 
-/// A disk with room for so many bytes.
+/// A disk with room for so many bytes; the room can change while it is written.
+#[derive(Clone)]
 struct SmallDisk {
-    left: usize,
+    room: Arc<AtomicUsize>,
+    written: Arc<Mutex<Vec<u8>>>,
+}
+
+impl SmallDisk {
+    fn new(room: usize) -> Self {
+        Self { room: Arc::new(AtomicUsize::new(room)), written: Arc::default() }
+    }
+
+    fn grow(&self, bytes: usize) {
+        self.room.fetch_add(bytes, Ordering::Relaxed);
+    }
+
+    fn written(&self) -> Vec<u8> {
+        self.written.lock().expect("not poisoned").clone()
+    }
 }
 
 fn small_disk(bytes: usize) -> Box<dyn Write + Send> {
-    Box::new(SmallDisk { left: bytes })
+    Box::new(SmallDisk::new(bytes))
 }
 
 impl Write for SmallDisk {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.left == 0 {
+        let room = self.room.load(Ordering::Relaxed);
+        if room == 0 {
             return Err(io::Error::from(io::ErrorKind::StorageFull));
         }
-        let written = bytes.len().min(self.left);
-        self.left -= written;
+        let written = bytes.len().min(room);
+        self.room.fetch_sub(written, Ordering::Relaxed);
+        self.written.lock().expect("not poisoned").extend_from_slice(&bytes[..written]);
         Ok(written)
     }
 
@@ -31,15 +54,140 @@ impl Write for SmallDisk {
     }
 }
 
+/// A file whose call number `fails_at` fails, and no other.
+struct FaultyFile {
+    calls: usize,
+    fails_at: usize,
+    disk: SmallDisk,
+    was_reached: Arc<AtomicUsize>,
+}
+
+impl FaultyFile {
+    fn fault(&mut self) -> io::Result<()> {
+        self.calls += 1;
+        if self.calls == self.fails_at {
+            self.was_reached.store(1, Ordering::Relaxed);
+            return Err(io::Error::from(io::ErrorKind::StorageFull));
+        }
+        Ok(())
+    }
+}
+
+impl Write for FaultyFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.fault()?;
+        // Half of it, as a disk that is nearly full does.
+        self.disk.write(&bytes[..bytes.len().div_ceil(2)])
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.fault()
+    }
+}
+
+/// Events a second apart; whatever fails on the way is asked for at the end.
+fn append_slowly(journal: &mut JournalWriter, events: &[Event], begin: Instant) -> Vec<JournalError> {
+    let at = |index: usize| begin + Duration::from_secs(index as u64);
+    events.iter().enumerate().filter_map(|(index, event)| journal.append(event, at(index)).err()).collect()
+}
+
+fn lines(events: &[Event]) -> Vec<u8> {
+    let line = |event| serde_json::to_string(event).expect("an event is JSON") + "\n";
+    events.iter().map(line).collect::<String>().into_bytes()
+}
+
 #[test]
-fn a_full_disk_stops_the_journal_and_is_told_once() {
+fn a_call_that_fails_once_costs_the_journal_nothing_whichever_it_is() {
+    let events = events(8);
+    let whole = lines(&events);
+    for fails_at in 1.. {
+        let (disk, was_reached) = (SmallDisk::new(usize::MAX), Arc::new(AtomicUsize::new(0)));
+        let file =
+            FaultyFile { calls: 0, fails_at, disk: disk.clone(), was_reached: Arc::clone(&was_reached) };
+        let begin = Instant::now();
+        let mut journal = JournalWriter::writing_to(Box::new(file), begin);
+        let reported = append_slowly(&mut journal, &events, begin);
+        // A fault in the last call of all has nobody to try again.
+        match journal.finish() {
+            Ok(end) => assert_eq!((disk.written(), end.bytes), (whole.clone(), whole.len() as u64)),
+            Err(error) => assert!(matches!(error, JournalError::Write { .. }), "{error}"),
+        }
+        assert!(whole.starts_with(&disk.written()), "call {fails_at}");
+        assert!(reported.len() <= 1, "call {fails_at}: {reported:?}");
+        if was_reached.load(Ordering::Relaxed) == 0 {
+            assert!(fails_at > 50, "so many calls are made");
+            return;
+        }
+    }
+}
+
+#[test]
+fn a_call_that_fails_once_costs_the_recording_nothing() {
+    let events = events(30);
+    // Not every call as above: each recorder starts threads of the SDK.
+    for fails_at in (2..240).step_by(17) {
+        let (disk, was_reached) = (SmallDisk::new(usize::MAX), Arc::new(AtomicUsize::new(0)));
+        let file =
+            FaultyFile { calls: 0, fails_at, disk: disk.clone(), was_reached: Arc::clone(&was_reached) };
+        let begin = Instant::now();
+        let mut recorder =
+            Recorder::writing_to(Box::new(file), &Identity::of_run("test"), begin).expect("opens");
+        for event in &events {
+            recorder.push(event, begin).expect("nothing is lost");
+        }
+        recorder.finish().expect("it is whole in the end");
+        let path = tempfile::NamedTempFile::new().expect("a file");
+        std::fs::write(path.path(), disk.written()).expect("writable");
+        assert!(recording::inspect(path.path()).expect("readable").is_complete(), "call {fails_at}");
+        assert_eq!(was_reached.load(Ordering::Relaxed), 1, "call {fails_at}");
+    }
+}
+
+#[test]
+fn a_full_disk_is_reported_once_and_the_journal_is_not_whole() {
     let now = Instant::now();
     let mut journal = JournalWriter::writing_to(small_disk(200_000), now);
     let events = events(3000);
     let errors: Vec<_> = events.iter().filter_map(|event| journal.append(event, now).err()).collect();
     assert_eq!(errors.len(), 1);
-    assert!(matches!(errors[0], JournalError::Write { bytes, .. } if bytes > 60_000), "{}", errors[0]);
-    assert_eq!(journal.finish().expect_err("it is not whole"), errors[0]);
+    assert!(matches!(errors[0], JournalError::Stalled { bytes: 200_000, .. }), "{}", errors[0]);
+    let error = journal.finish().expect_err("it is not whole");
+    assert!(matches!(error, JournalError::Write { bytes: 200_000, .. }), "{error}");
+}
+
+#[test]
+fn a_disk_that_has_space_again_gives_a_whole_journal() {
+    let begin = Instant::now();
+    let disk = SmallDisk::new(20_000);
+    let mut journal = JournalWriter::writing_to(Box::new(disk.clone()), begin);
+    let events = events(100);
+    let reported = append_slowly(&mut journal, &events[..events.len() / 2], begin);
+    assert_eq!(reported.len(), 1);
+    assert!(journal.trouble().is_some());
+    disk.grow(10_000_000);
+    let later = begin + Duration::from_hours(1);
+    journal.tick(later).expect("there is space again");
+    assert_eq!(journal.trouble(), None);
+    assert!(append_slowly(&mut journal, &events[events.len() / 2..], later).is_empty());
+    journal.finish().expect("it is whole");
+    assert_eq!(disk.written(), lines(&events));
+}
+
+#[test]
+fn a_disk_that_stays_full_ends_the_journal_when_too_much_waits() {
+    let begin = Instant::now();
+    let mut journal = JournalWriter::writing_to(small_disk(1000), begin);
+    let events = events(20);
+    let mut errors = Vec::new();
+    // 64 MB are kept; one event a second is tried, thousands are kept in between.
+    for second in 0..40 {
+        let now = begin + Duration::from_secs(second);
+        for _ in 0..200 {
+            errors.extend(events.iter().filter_map(|event| journal.append(event, now).err()));
+        }
+    }
+    assert!(matches!(errors[..], [JournalError::Stalled { .. }, JournalError::Write { bytes: 1000, .. }]));
+    assert!(journal.finish().is_err());
 }
 
 #[cfg(target_os = "linux")]
@@ -53,20 +201,38 @@ fn the_journal_tells_the_words_of_the_system() {
 }
 
 #[test]
-fn a_full_disk_stops_the_recording_and_is_told_once() {
+fn a_full_disk_is_reported_and_the_recording_is_not_whole() {
     let begin = Instant::now();
     let mut recorder =
         Recorder::writing_to(small_disk(300_000), &Identity::of_run("test"), begin).expect("opens");
     let health = recorder.health();
-    let mut errors = Vec::new();
     for (index, event) in events(3000).iter().enumerate() {
-        errors.extend(recorder.push(event, begin + Duration::from_millis(index as u64)).err());
+        recorder.push(event, begin + Duration::from_millis(index as u64)).expect("it is kept in memory");
     }
-    assert_eq!(errors.len(), 1, "{errors:?}");
-    assert!(matches!(errors[0], RecordingError::Write { .. }));
+    let until = Instant::now() + Duration::from_secs(20);
+    while health.error().is_none() && Instant::now() < until {
+        std::thread::yield_now();
+    }
+    assert!(matches!(recorder.trouble(), Some(RecordingError::Stalled { .. })));
     assert!(health.bytes() <= 300_000);
     assert!(recorder.finish().is_err(), "it is not whole");
     assert!(begin.elapsed() < Duration::from_secs(30));
+}
+
+#[test]
+fn a_disk_that_has_space_again_gives_a_whole_recording() {
+    let begin = Instant::now();
+    let disk = SmallDisk::new(100_000);
+    let mut recorder =
+        Recorder::writing_to(Box::new(disk.clone()), &Identity::of_run("test"), begin).expect("opens");
+    for event in events(1200) {
+        recorder.push(&event, begin).expect("it is kept in memory");
+    }
+    disk.grow(100_000_000);
+    recorder.finish().expect("it is whole");
+    let path = tempfile::NamedTempFile::new().expect("a file");
+    std::fs::write(path.path(), disk.written()).expect("writable");
+    assert!(recording::inspect(path.path()).expect("readable").is_complete());
 }
 
 #[test]
@@ -111,6 +277,20 @@ fn the_recording_goes_on_when_the_journal_fails() {
     assert_eq!(finished.events_sha256, None);
     assert!(finished.error.expect("it is told").starts_with("the journal stopped after"));
     assert!(recording::inspect(&path).expect("readable").is_complete());
+}
+
+#[test]
+fn when_both_files_fail_both_are_reported() {
+    let now = Instant::now();
+    let recorder = Recorder::writing_to(small_disk(1000), &Identity::of_run("test"), now).expect("opens");
+    let journal = JournalWriter::writing_to(small_disk(1000), now);
+    let run = RunRecorder::spawn(journal, Some(recorder)).expect("a thread");
+    for events in synthetic::run(300) {
+        run.send(events);
+    }
+    let error = run.finish(Duration::from_secs(20)).error.expect("it is reported");
+    assert!(error.starts_with("the journal stopped after 1000 bytes: "), "{error}");
+    assert!(error.contains("; the recording stopped: "), "{error}");
 }
 
 #[test]

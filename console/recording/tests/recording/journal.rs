@@ -2,7 +2,7 @@
 
 use crate::events;
 use mission::event::JOURNAL_VERSION;
-use recording::{JournalError, JournalWriter, read_journal};
+use recording::{JournalError, JournalReader, JournalWriter, read_ending, read_journal};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -139,4 +139,78 @@ fn events_reach_the_system_after_half_a_second_also_when_nothing_happens() {
     assert_eq!(journal.written_bytes(), first, "the deadline counts from the last write");
     journal.append(&events[2], begin + Duration::from_millis(1001)).expect("room on the disk");
     assert!(journal.written_bytes() > first, "a busy stream meets the deadline too");
+}
+
+fn read_lines(path: &Path) -> (Vec<Vec<u8>>, JournalReader) {
+    let mut reader = JournalReader::open(path).expect("readable");
+    let mut lines = Vec::new();
+    while let Some(line) = reader.next_line().expect("nothing is damaged") {
+        lines.push(line.raw.to_owned());
+    }
+    (lines, reader)
+}
+
+#[test]
+fn every_line_comes_with_the_bytes_of_the_file() {
+    let (_folder, path) = written(20);
+    let (lines, reader) = read_lines(&path);
+    let joined: Vec<u8> = lines.iter().flat_map(|line| [line, &b"\n"[..]].concat()).collect();
+    assert_eq!(joined, fs::read(&path).expect("readable"));
+    assert_eq!((reader.unended_bytes(), reader.truncated()), (0, None));
+    assert_eq!(reader.version(), Some(JOURNAL_VERSION));
+}
+
+#[test]
+fn unknown_keys_and_white_space_are_read_but_show_in_the_bytes() {
+    let (_folder, path) = written(20);
+    let (before, _) = read_lines(&path);
+    change(&path, |text| text.replacen("}\n", ",\"tampered\":true}\n", 3).replacen("}\n{", "} \n{", 6));
+    let (after, _) = read_lines(&path);
+    assert_eq!(read_journal(&path).expect("it can be read").events, events(20));
+    assert_eq!(before.len(), after.len());
+    let changed = before.iter().zip(&after).filter(|(before, after)| before != after).count();
+    assert_eq!(changed, 6, "three of them in both ways");
+}
+
+#[test]
+fn bytes_after_the_last_newline_are_counted() {
+    let (_folder, path) = written(5);
+    change(&path, |text| text.trim_end().to_owned());
+    let (lines, reader) = read_lines(&path);
+    assert_eq!(reader.unended_bytes(), lines.last().expect("events").len() as u64);
+    assert_eq!(lines.len(), events(5).len(), "the event itself is whole");
+    assert!(reader.truncated().is_some(), "but the journal is not");
+    change(&path, |text| text + "\n{\"tick\":");
+    let (lines, reader) = read_lines(&path);
+    assert_eq!((lines.len(), reader.unended_bytes()), (events(5).len(), 8));
+}
+
+#[test]
+fn an_empty_journal_has_no_version_and_says_that_it_is_empty() {
+    let (_folder, path) = written(1);
+    change(&path, |_| String::new());
+    let journal = read_journal(&path).expect("it can be read");
+    assert_eq!((journal.events.len(), journal.version), (0, None));
+    assert_eq!(journal.truncated.as_deref(), Some("the journal is empty"));
+}
+
+#[test]
+fn a_journal_of_an_older_version_that_is_not_understood_is_not_called_damaged() {
+    let (_folder, path) = written(3);
+    change(&path, |text| {
+        let old = format!("\"journal_version\":{JOURNAL_VERSION}");
+        let text = text.replacen(&old, "\"journal_version\":1", 1);
+        text.replacen("\"event\":\"truth\"", "\"event\":\"was_called_so_once\"", 1)
+    });
+    let error = read_journal(&path).expect_err("not understood");
+    assert!(matches!(error, JournalError::Older { theirs: 1, .. }), "{error}");
+}
+
+#[test]
+fn the_ending_is_read_from_the_end_alone() {
+    let (_folder, path) = written(500);
+    let last = events(500).pop().expect("events");
+    assert_eq!(read_ending(&path).expect("readable"), Some(last));
+    change(&path, |text| text[..text.len() - 10].to_owned());
+    assert_eq!(read_ending(&path).expect("readable"), None);
 }

@@ -1,9 +1,11 @@
 //! The recorder's thread.
 
 use crate::{events, synthetic};
-use recording::{JournalWriter, Options, RunRecorder, inspect, read_journal};
+use recording::{FAILURE_FILE, JournalWriter, Options, RunRecorder, inspect, read_journal, recorded_failure};
 use std::{
+    fs,
     io::{self, Write},
+    path::Path,
     sync::{Arc, Condvar, Mutex},
     time::{Duration, Instant},
 };
@@ -33,7 +35,7 @@ fn what_is_not_asked_for_is_not_written_but_the_hash_is_the_same() {
             recorder.send(events);
         }
         let finished = recorder.finish(Duration::from_secs(20));
-        (finished.events_sha256, std::fs::read_dir(folder.path()).expect("readable").count())
+        (finished.events_sha256, fs::read_dir(folder.path()).expect("readable").count())
     };
     let (nothing, no_files) = hash(Options { rrd: false, journal: false });
     let (journal, one_file) = hash(Options { rrd: false, journal: true });
@@ -55,7 +57,7 @@ fn the_health_tells_bytes_and_that_nothing_waits() {
     }
     let health = recorder.health();
     assert_eq!((health.lag, &health.error), (0, &None));
-    let on_disk = |name| std::fs::metadata(folder.path().join(name)).expect("it is there").len();
+    let on_disk = |name| fs::metadata(folder.path().join(name)).expect("it is there").len();
     assert!(health.journal_bytes > 0 && health.rrd_bytes > 0);
     assert!(health.journal_bytes <= on_disk("events.jsonl") && health.rrd_bytes <= on_disk("recording.rrd"));
 }
@@ -122,4 +124,128 @@ fn the_sender_waits_when_the_queue_is_full_and_nothing_is_lost() {
         big.iter().for_each(|event| expected.append(event, Instant::now()).expect("nothing to fail"));
     }
     assert_eq!(finished.events_sha256, Some(expected.finish().expect("nothing to fail").events_sha256));
+}
+
+/// Waits until the health reports an error, and gives it with the time that took.
+fn noticed(recorder: &RunRecorder) -> (String, Duration) {
+    let begin = Instant::now();
+    loop {
+        if let Some(error) = recorder.health().error {
+            return (error, begin.elapsed());
+        }
+        assert!(begin.elapsed() < Duration::from_secs(10), "it is never noticed");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn recorder_with_events(folder: &Path) -> RunRecorder {
+    let recorder = RunRecorder::start(folder, Options::default()).expect("new files");
+    for events in synthetic::run(20) {
+        recorder.send(events);
+    }
+    // So that something is written that can be truncated.
+    std::thread::sleep(Duration::from_millis(800));
+    assert_eq!(recorder.health().error, None);
+    recorder
+}
+
+/// What somebody else does to the folder of a run.
+type Change = fn(&Path);
+
+#[test]
+fn what_happens_to_the_files_is_noticed_within_a_second_also_while_nothing_is_written() {
+    let changes: [(&str, Change); 5] = [
+        ("the journal is not on disk as it was written: the file was deleted", |folder| {
+            fs::remove_dir_all(folder).expect("ours");
+        }),
+        ("the journal is not on disk as it was written: the file was deleted", |folder| {
+            fs::remove_file(folder.join("events.jsonl")).expect("ours");
+        }),
+        ("the recording is not on disk as it was written: the file was deleted", |folder| {
+            fs::remove_file(folder.join("recording.rrd")).expect("ours");
+        }),
+        ("the journal is not on disk as it was written: the file was replaced", |folder| {
+            fs::rename(folder, folder.with_extension("old")).expect("ours");
+            fs::create_dir(folder).expect("ours");
+            fs::copy(folder.with_extension("old").join("events.jsonl"), folder.join("events.jsonl"))
+                .expect("ours");
+        }),
+        ("the journal is not on disk as it was written: the file has 0 bytes", |folder| {
+            drop(fs::File::create(folder.join("events.jsonl")).expect("ours"));
+        }),
+    ];
+    for (sentence, change) in changes {
+        let logs = tempdir().expect("a folder");
+        let folder = logs.path().join("run");
+        fs::create_dir(&folder).expect("a folder");
+        let recorder = recorder_with_events(&folder);
+        change(&folder);
+        let (error, after) = noticed(&recorder);
+        assert!(error.starts_with(sentence), "{error}");
+        assert!(after < Duration::from_secs(1), "{after:?}");
+        let finished = recorder.finish(Duration::from_secs(20));
+        assert!(finished.error.expect("it is still so").starts_with(sentence));
+        assert_eq!(finished.events_sha256.is_some(), sentence.starts_with("the recording"));
+    }
+}
+
+#[test]
+fn a_change_is_noticed_while_events_come_in() {
+    let logs = tempdir().expect("a folder");
+    let folder = logs.path().join("run");
+    fs::create_dir(&folder).expect("a folder");
+    let recorder = recorder_with_events(&folder);
+    fs::remove_dir_all(&folder).expect("ours");
+    let begin = Instant::now();
+    while recorder.health().error.is_none() && begin.elapsed() < Duration::from_secs(5) {
+        recorder.send(events(1));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(begin.elapsed() < Duration::from_secs(1), "{:?}", begin.elapsed());
+}
+
+#[test]
+fn a_folder_that_comes_back_is_whole_again() {
+    let logs = tempdir().expect("a folder");
+    let folder = logs.path().join("run");
+    fs::create_dir(&folder).expect("a folder");
+    let recorder = recorder_with_events(&folder);
+    let elsewhere = logs.path().join("elsewhere");
+    fs::rename(&folder, &elsewhere).expect("ours");
+    noticed(&recorder);
+    fs::rename(&elsewhere, &folder).expect("ours");
+    let until = Instant::now() + Duration::from_secs(10);
+    while recorder.health().error.is_some() && Instant::now() < until {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let finished = recorder.finish(Duration::from_secs(20));
+    assert_eq!(finished.error, None);
+    assert!(finished.events_sha256.is_some());
+    assert_eq!(recorded_failure(&folder), None);
+}
+
+#[test]
+fn a_failure_leaves_a_sign_in_the_folder_and_a_whole_run_none() {
+    let names = |folder: &Path| {
+        let entries = fs::read_dir(folder).expect("readable");
+        let mut names: Vec<_> = entries.map(|entry| entry.expect("readable").file_name()).collect();
+        names.sort();
+        names
+    };
+    let folder = tempdir().expect("a folder");
+    let recorder = recorder_with_events(folder.path());
+    assert_eq!(recorder.finish(Duration::from_secs(20)).error, None);
+    assert_eq!(names(folder.path()), ["events.jsonl", "recording.rrd"]);
+    let folder = tempdir().expect("a folder");
+    let recorder = recorder_with_events(folder.path());
+    fs::remove_file(folder.path().join("recording.rrd")).expect("ours");
+    let (error, _) = noticed(&recorder);
+    // A kill -9 after this finds the sign on disk.
+    let until = Instant::now() + Duration::from_secs(1);
+    while recorded_failure(folder.path()).is_none() && Instant::now() < until {
+        std::thread::yield_now();
+    }
+    assert_eq!(recorded_failure(folder.path()), Some(error));
+    recorder.finish(Duration::from_secs(20));
+    assert_eq!(names(folder.path()), ["events.jsonl", FAILURE_FILE]);
 }

@@ -1,0 +1,132 @@
+//! A file that is being written, and whether its path still shows that file.
+//!
+//! A file that is deleted, replaced or truncated while it is open takes every further write without an error; only a
+//! comparison with what the path shows finds it.
+
+use std::{
+    fs::{self, File, OpenOptions},
+    io,
+    os::unix::fs::MetadataExt,
+    path::{Path, PathBuf},
+};
+
+/// How a file on disk differs from the one that was opened and written.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum FileChange {
+    /// There is nothing at the path any more.
+    #[error("the file was deleted: {}", path.display())]
+    Deleted {
+        /// Which file.
+        path: PathBuf,
+    },
+    /// The path leads to another file.
+    #[error("the file was replaced by another one: {}", path.display())]
+    Replaced {
+        /// Which file.
+        path: PathBuf,
+    },
+    /// The file has another length than what was written to it.
+    #[error("the file has {found} bytes, but {written} were written: {}", path.display())]
+    Length {
+        /// Length on disk, bytes.
+        found: u64,
+        /// What was written, bytes.
+        written: u64,
+        /// Which file.
+        path: PathBuf,
+    },
+    /// The system does not say what is there.
+    #[error("the file cannot be examined ({why}): {}", path.display())]
+    Unknown {
+        /// What the system says.
+        why: String,
+        /// Which file.
+        path: PathBuf,
+    },
+}
+
+/// The identity of an open file, to compare with what its path shows.
+///
+/// The system gives the inode to no other file as long as this one is open.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct FileWatch {
+    path: PathBuf,
+    device: u64,
+    inode: u64,
+}
+
+impl FileWatch {
+    /// Creates a file where there is none.
+    ///
+    /// Every write goes to its end, so that a file that is truncated stays shorter than what was written.
+    pub(crate) fn create(path: &Path) -> io::Result<(File, Self)> {
+        let file = OpenOptions::new().append(true).create_new(true).open(path)?;
+        let opened = file.metadata()?;
+        // The working directory may change, the file does not move with it.
+        let path = std::path::absolute(path)?;
+        Ok((file, Self { path, device: opened.dev(), inode: opened.ino() }))
+    }
+
+    /// Whether the path shows the file with at least so many bytes; more may be on their way.
+    pub(crate) fn check(&self, written: u64) -> Result<(), FileChange> {
+        self.check_length(written, |found| found >= written)
+    }
+
+    /// Whether the path shows the file with exactly so many bytes.
+    pub(crate) fn check_closed(&self, written: u64) -> Result<(), FileChange> {
+        self.check_length(written, |found| found == written)
+    }
+
+    fn check_length(&self, written: u64, fits: impl Fn(u64) -> bool) -> Result<(), FileChange> {
+        let path = || self.path.clone();
+        let shown = fs::metadata(&self.path).map_err(|error| match error.kind() {
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => FileChange::Deleted { path: path() },
+            _ => FileChange::Unknown { why: error.to_string(), path: path() },
+        })?;
+        if (shown.dev(), shown.ino()) != (self.device, self.inode) {
+            return Err(FileChange::Replaced { path: path() });
+        }
+        let found = shown.len();
+        if fits(found) { Ok(()) } else { Err(FileChange::Length { found, written, path: path() }) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    fn written() -> (tempfile::TempDir, PathBuf, File, FileWatch) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("file");
+        let (mut file, watch) = FileWatch::create(&path).expect("a new file");
+        file.write_all(b"12345678").expect("room on the disk");
+        (folder, path, file, watch)
+    }
+
+    #[test]
+    fn an_untouched_file_is_the_one_that_was_opened() {
+        let (_folder, path, _file, watch) = written();
+        assert_eq!(watch.check(8), Ok(()));
+        assert_eq!(watch.check(7), Ok(()), "more may be on its way");
+        assert_eq!(watch.check_closed(8), Ok(()));
+        assert_eq!(watch.check_closed(7), Err(FileChange::Length { found: 8, written: 7, path }));
+    }
+
+    #[test]
+    fn a_file_that_was_deleted_or_replaced_is_noticed() {
+        let (_folder, path, _file, watch) = written();
+        fs::remove_file(&path).expect("ours");
+        assert_eq!(watch.check(8), Err(FileChange::Deleted { path: path.clone() }));
+        fs::write(&path, "12345678").expect("writable");
+        assert_eq!(watch.check(8), Err(FileChange::Replaced { path }));
+    }
+
+    #[test]
+    fn a_truncated_file_stays_too_short_whatever_is_written_next() {
+        let (_folder, path, mut file, watch) = written();
+        OpenOptions::new().write(true).truncate(true).open(&path).expect("ours");
+        file.write_all(b"9abc").expect("room on the disk");
+        assert_eq!(watch.check(12), Err(FileChange::Length { found: 4, written: 12, path }));
+    }
+}
