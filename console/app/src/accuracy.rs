@@ -5,7 +5,7 @@ mod drawing;
 use crate::{
     cli::AccuracyArgs,
     failure::{COMPLETE, bad_input},
-    output::{say, say_line},
+    output::{say, say_line, warn_line},
     scenario::Scenario,
 };
 use anyhow::Context;
@@ -81,10 +81,9 @@ pub fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
 /// Warns of a scan with so little clearance that the position error may use it up.
 ///
 /// Costs as much as the map: one forecast for each of some thousand places.
-#[expect(clippy::print_stderr, reason = "this is where warnings reach the user")]
 pub fn warn_of_clearance(scenario: &Scenario) {
     if let Some(warning) = clearance_warning(scenario) {
-        eprintln!("warning: {}: {warning}", scenario.shown_name);
+        warn_line(&format!("warning: {}: {warning}", scenario.shown_name));
     }
 }
 

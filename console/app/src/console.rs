@@ -9,6 +9,7 @@ mod watch;
 use crate::{
     cli::{Drill, LogsArg},
     failure::bad_input,
+    preflight::{LogsError, check_logs},
     scenario::Scenario,
 };
 use engine::{Engine, Line};
@@ -34,6 +35,8 @@ pub fn open(
     drill: Option<Drill>,
 ) -> anyhow::Result<ExitCode> {
     check_terminal()?;
+    crate::planners::check_choices(scenario, plugins)?;
+    check_logs(&logs.logs).map_err(LogsError::refuse)?;
     let (tell, told) = inbox();
     let engine = Engine::start(scenario, &logs.logs, plugins, tell.clone(), drill)?;
     let left = show(&engine.line(), &logs.logs, plugins, (tell, told), drill);

@@ -1,7 +1,9 @@
 //! One flight: simulator and mission, tick by tick.
 
 use crate::{answers::Answers, scenario::Scenario};
-use mission::{Event, EventKind, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION};
+use mission::{
+    Event, EventKind, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION,
+};
 use planner_api::Drive;
 use sim::Simulator;
 use std::time::Duration;

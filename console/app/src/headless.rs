@@ -2,15 +2,15 @@
 
 use crate::{
     accuracy::warn_of_clearance,
+    answers::{InOrder, Window, Windowed},
     cli::{LogsArg, RunArgs},
     failure::{COMPLETE, ENDED_OTHERWISE},
-    answers::{InOrder, Window, Windowed},
     flight::Flight,
-    output::{say, say_line},
+    output::{say, say_line, warn_line},
     plan::patient,
     plan_watch::{PlanWatch, Watched},
     progress,
-    run_folder::RunFolder,
+    run_folder::{Kept, RunFolder},
     scenario::Scenario,
     stop_signal,
 };
@@ -71,22 +71,38 @@ pub fn fly(
     let (host, fold) = fly_to_end(flight, host(scenario, plugins), &recorder, &bar, telling.live_deadlines);
     bar.finish_and_clear();
     let finished = recorder.finish(CLOSE_TIMEOUT);
+    let logs = folder.is_some().then(|| Logs {
+        journal: finished.journal.as_ref().map(|path| path.display().to_string()),
+        recording: finished.recording.as_ref().map(|path| path.display().to_string()),
+        error: finished.error.clone(),
+    });
     let summary = Summary {
         wall_time_s: Some(began.elapsed().as_secs_f64()),
-        events_sha256: finished.events_sha256,
+        events_sha256: finished.events_sha256.clone(),
         planner_calls: Some(planner_calls(&host)),
-        logs: folder.is_some().then(|| Logs {
-            journal: finished.journal.map(|path| path.display().to_string()),
-            recording: finished.recording.map(|path| path.display().to_string()),
-            error: finished.error.clone(),
-        }),
+        logs,
         ..fold.summary()
     };
     let summary = scenario.expect.judged(summary);
-    let report = folder.as_ref().map_or(Ok(()), |folder| folder.write_report(&summary));
-    let report_error = report.err().map(|error| format!("{error:#}"));
-    tell(&summary, finished.error.as_deref().or(report_error.as_deref()), telling)?;
-    Ok(exit_code(&summary))
+    let kept = folder.as_ref().map(|folder| Kept::new(folder, &finished, &folder.write_report(&summary)));
+    tell(&summary, telling)?;
+    match &kept {
+        Some(kept) if kept.problem().is_some() => warn_line(&kept.text()),
+        Some(kept) if !telling.json => say_line(&kept.text())?,
+        _ => {}
+    }
+    let code = exit_code(&summary);
+    Ok(ExitCode::from(kept.map_or(code, |kept| kept.exit_code(code))))
+}
+
+/// Says on stderr, once, that recording fails, and that it goes on.
+fn report_trouble(reported: &mut Option<String>, trouble: Option<String>) {
+    match (&reported, &trouble) {
+        (None, Some(error)) => warn_line(&format!("warning: recording fails: {error}")),
+        (Some(_), None) => warn_line("recording goes on, nothing is lost"),
+        _ => {}
+    }
+    *reported = trouble;
 }
 
 /// Flies to the end; every ask is answered before time moves on, or within the console's windows.
@@ -111,7 +127,7 @@ fn fly_to_end(
         recorder.send(events);
     };
     take(vec![flight.opened()]);
-    let mut orders = vec![Order::Start];
+    let (mut orders, mut trouble) = (vec![Order::Start], None);
     while !matches!(flight.phase(), Phase::Ended(_)) {
         if stop.requested() {
             orders.push(Order::Abort);
@@ -123,6 +139,7 @@ fn fly_to_end(
             flight.tick(&orders, &mut Watched::new(InOrder::new(&mut host, &mut open), &mut watch))
         });
         orders.clear();
+        report_trouble(&mut trouble, recorder.health().error);
     }
     (host, fold)
 }
@@ -172,11 +189,7 @@ fn show_progress(bar: &ProgressBar, events: &[Event]) {
     }
 }
 
-#[expect(clippy::print_stderr, reason = "this is where warnings reach the user")]
-fn tell(summary: &Summary, recording_error: Option<&str>, telling: Telling) -> anyhow::Result<()> {
-    if let Some(error) = recording_error {
-        eprintln!("warning: what was written of the run is not whole: {error}");
-    }
+fn tell(summary: &Summary, telling: Telling) -> anyhow::Result<()> {
     if telling.json {
         say_line(&serde_json::to_string_pretty(summary).context("writing the report as JSON")?)
     } else {
@@ -184,6 +197,6 @@ fn tell(summary: &Summary, recording_error: Option<&str>, telling: Telling) -> a
     }
 }
 
-fn exit_code(summary: &Summary) -> ExitCode {
-    ExitCode::from(if summary.outcome == Some(Outcome::Complete) { COMPLETE } else { ENDED_OTHERWISE })
+fn exit_code(summary: &Summary) -> u8 {
+    if summary.outcome == Some(Outcome::Complete) { COMPLETE } else { ENDED_OTHERWISE }
 }

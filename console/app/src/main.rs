@@ -32,6 +32,7 @@ use std::{
     io::IsTerminal,
     path::{Path, PathBuf},
     process::ExitCode,
+    sync::Arc,
 };
 
 /// The demo, so that `tankops` shows something wherever it is started.
@@ -42,7 +43,16 @@ fn main() -> ExitCode {
     if matches!(cli.command, Some(Command::Worker)) {
         return planner_host::worker_main();
     }
+    survive_file_size_limit();
     dispatch(cli).unwrap_or_else(|error| failure::tell(&error))
+}
+
+/// A file that may not grow (`ulimit -f`) is an error of the write, as a full disk is, and not the end of the process.
+///
+/// A handler that does nothing, because ignoring the signal would be inherited by the planners' processes.
+fn survive_file_size_limit() {
+    // Without a handler the signal ends the process, as it does by default.
+    let _ = signal_hook::flag::register(libc::SIGXFSZ, Arc::default());
 }
 
 fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
@@ -63,7 +73,9 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Reproduce(args)) => reproduce::reproduce(&args, &plugins),
         Some(Command::Tune(args)) => tune::tune(&args, &plugins),
         Some(Command::Runs { json, logs }) => past_runs::list(&logs, json),
-        Some(Command::Verify { run, logs }) => verify::verify(&run, &logs, &plugins),
+        Some(Command::Verify { run, from_journal, logs }) => {
+            verify::verify(&run, &logs, &plugins, from_journal)
+        }
         Some(Command::Export { run, rrd, logs }) => past_runs::export(&run, &rrd, &logs),
         Some(Command::Report { runs, json, output, logs }) => {
             again::report(&runs, &logs, json, output.as_deref())
@@ -79,7 +91,12 @@ fn by_default(plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     if std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
         return console::open(&scenario, &logs, plugins, None);
     }
-    headless::fly(&scenario, plugins, &logs, headless::Telling { json: false, record: true, live_deadlines: false })
+    headless::fly(
+        &scenario,
+        plugins,
+        &logs,
+        headless::Telling { json: false, record: true, live_deadlines: false },
+    )
 }
 
 fn demo() -> anyhow::Result<Scenario> {

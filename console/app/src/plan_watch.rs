@@ -6,7 +6,7 @@ use mission::{Answer, Ask, AskId, Mission, What, WorkerId};
 use std::collections::BTreeMap;
 
 /// Who is told of the work that begins, in words, and of its end.
-pub type OnWork = Box<dyn FnMut(Option<&str>)>;
+pub type OnWork = Box<dyn FnMut(Option<&str>) + Send>;
 
 /// Work that planners are doing and that takes its time.
 #[derive(Default)]

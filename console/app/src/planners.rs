@@ -3,7 +3,7 @@
 use crate::{
     accuracy::warn_of_clearance,
     failure::{BAD_INPUT, COMPLETE, bad_input},
-    output::{say, say_line},
+    output::{say, say_line, warn_line},
     scenario::{Scenario, Settings},
 };
 use anyhow::Context;
@@ -133,7 +133,6 @@ fn parameter_listing(info: &ParamInfo) -> String {
 }
 
 /// `tankops check`.
-#[expect(clippy::print_stderr, reason = "this is where refusals reach the user")]
 pub fn check(files: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let mut sound = true;
     for file in files {
@@ -141,7 +140,7 @@ pub fn check(files: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<ExitCode
             Ok(what) => say_line(&format!("ok: {}: {what}", file.display()))?,
             Err(why) => {
                 sound = false;
-                eprintln!("{}", why.trim_end());
+                warn_line(why.trim_end());
             }
         }
     }

@@ -43,10 +43,6 @@ impl LogsError {
 ///
 /// # Errors
 /// See [`LogsError`]; each one is for the user to correct, and says how.
-#[cfg_attr(
-    not(test),
-    expect(dead_code, reason = "the console calls it before it opens, from the next step on")
-)]
 pub fn check_logs(logs: &Path) -> Result<(), LogsError> {
     let missing: Vec<PathBuf> =
         logs.ancestors().take_while(|folder| is_missing(folder)).map(Path::to_owned).collect();

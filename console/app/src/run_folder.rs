@@ -1,13 +1,10 @@
 //! A run on disk: its folder, who writes to it, how it ended.
 
-#[cfg_attr(
-    not(test),
-    expect(dead_code, reason = "the console and headless runs say it from the next step on")
-)]
-pub mod kept;
+mod kept;
 mod standing;
 
-pub use standing::{Standing, journal_doubt, standing};
+pub use kept::Kept;
+pub use standing::{Standing, end_is_missing, journal_doubt, standing};
 
 use crate::{
     failure::bad_input,

@@ -1,87 +1,172 @@
 //! `tankops verify`: compute a past run again and prove that its journal is equal.
+//!
+//! Two proofs are made in one pass. *Mission*: simulator and mission are given the recorded orders and the recorded answers
+//! of the planners in the ticks in which they arrived, and every line must come out again, byte for byte. This is always
+//! possible, whatever the machine did to the planners while the run was flown. *Planners*: each ask also goes to a planner,
+//! and its answer must be the recorded one. A planner that was killed, stopped or too late then is not asked to be so again:
+//! such faults are counted.
+//!
+//! The journal is read tick by tick; memory does not grow with it.
+
+mod journal;
+mod planners;
 
 use crate::{
     cli::LogsArg,
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
-    flight::{Flight, Pace},
+    flight::Flight,
+    headless,
     output::say_line,
     run_folder,
     scenario::Scenario,
 };
 use anyhow::Context;
-use mission::{Event, EventKind, Order, PlannerInfo, RunOpened};
+use journal::{RecordedTick, Ticks};
+use mission::{Event, EventKind, Order, PlannerInfo, RunOpened, event::JOURNAL_VERSION};
 use planner_host::PluginDirs;
-use recording::{JOURNAL_FILE, read_journal};
-use std::{collections::BTreeMap, path::Path, process::ExitCode};
+use planners::{Asked, Replayed};
+use recording::JOURNAL_FILE;
+use std::{path::Path, process::ExitCode};
 
-/// What a comparison found.
-#[derive(Debug, Clone, PartialEq)]
-enum Verdict {
-    Equal { events: usize, last_tick: u64 },
-    Different { tick: u64, recorded: String, computed: String },
+/// What was found.
+#[derive(Debug, Default)]
+struct Findings {
+    /// The first line that is not computed again.
+    difference: Option<Difference>,
+    /// What speaks against the file as a whole.
+    doubt: Option<String>,
+    /// Why the journal has no end; what it holds up to there is compared.
+    no_end: Option<String>,
+    /// What the planners did when they were asked again; `None` if they were not.
+    planners: Option<Asked>,
+    events: usize,
+    last_tick: u64,
+}
+
+/// Where journal and computation part.
+#[derive(Debug)]
+struct Difference {
+    tick: u64,
+    recorded: String,
+    computed: String,
 }
 
 /// `tankops verify RUN`.
-pub fn verify(run: &Path, logs: &LogsArg, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
+pub fn verify(
+    run: &Path,
+    logs: &LogsArg,
+    plugins: &PluginDirs,
+    from_journal: bool,
+) -> anyhow::Result<ExitCode> {
     let folder = run_folder::find(run, &logs.logs)?;
     let path = folder.join(JOURNAL_FILE);
-    let journal = read_journal(&path).map_err(|error| bad_input(error.to_string()))?;
-    if let Some(damage) = &journal.truncated {
-        say_line(&format!("note: the journal stops early ({damage}); what it holds is compared"))?;
-    }
-    match compare(&journal.events, plugins)? {
-        Verdict::Equal { events, last_tick } => {
-            // A report counts the ticks that passed since the first one, which has the number 0.
-            say_line(&format!(
-                "equal: {events} events computed again, byte for byte, from tick 0 to tick {last_tick}"
-            ))?;
-            Ok(ExitCode::from(COMPLETE))
-        }
-        Verdict::Different { tick, recorded, computed } => {
-            say_line(&format!(
-                "different from tick {tick} on\n  recorded: {recorded}\n  computed: {computed}"
-            ))?;
-            for note in planner_changes(&journal.events, plugins) {
-                say_line(&format!("note: {note}"))?;
-            }
-            Ok(ExitCode::from(ENDED_OTHERWISE))
-        }
-    }
+    let mut findings = compare(&path, (!from_journal).then_some(plugins))?;
+    let sha256 = run_folder::sha256(&path).with_context(|| format!("reading {}", path.display()))?;
+    findings.doubt = run_folder::journal_doubt(&folder, Some(&sha256))
+        .or_else(|| findings.no_end.as_ref().and_then(|_| run_folder::end_is_missing(&folder)));
+    tell(&findings, &path, plugins)?;
+    let differs = findings.planners.as_ref().is_some_and(|asked| asked.difference.is_some());
+    let equal = findings.difference.is_none() && findings.doubt.is_none() && !differs;
+    Ok(ExitCode::from(if equal { COMPLETE } else { ENDED_OTHERWISE }))
 }
 
-fn compare(recorded: &[Event], plugins: &PluginDirs) -> anyhow::Result<Verdict> {
-    let opened = opened(recorded)?;
+fn tell(findings: &Findings, path: &Path, plugins: &PluginDirs) -> anyhow::Result<()> {
+    let Findings { difference, doubt, no_end, planners, events, last_tick } = findings;
+    if let Some(why) = no_end {
+        say_line(&format!("note: the journal has no end ({why}); what it holds before is compared"))?;
+    }
+    if let Some(Difference { tick, recorded, computed }) = difference {
+        say_line(&format!("different from tick {tick} on\n  recorded: {recorded}\n  computed: {computed}"))?;
+    } else if let Some(doubt) = doubt {
+        say_line(&format!(
+            "different: {doubt}; its {events} events up to tick {last_tick} are computed again"
+        ))?;
+    }
+    if let Some(asked) = planners {
+        for (planner, count) in &asked.external {
+            say_line(&format!(
+                "note: planner {planner} failed from outside or by the clock {count} times in the run; that is taken from the \
+                 journal"
+            ))?;
+        }
+        if let Some(why) = &asked.difference {
+            say_line(&format!("different: {why}; the mission repeats from the recorded answers"))?;
+        }
+    }
+    let is_different = planners.as_ref().is_some_and(|asked| asked.difference.is_some());
+    if difference.is_some() || is_different {
+        for note in planner_changes(path, plugins)? {
+            say_line(&format!("note: {note}"))?;
+        }
+    }
+    if difference.is_none() && doubt.is_none() && !is_different {
+        // A report counts the ticks that passed since the first one, which has the number 0.
+        let (how, asked) = match planners {
+            Some(asked) => ("", format!("; {} answers of planners are the same again", asked.compared)),
+            None => {
+                (" from the recorded answers", "; the planners were not asked (--from-journal)".to_owned())
+            }
+        };
+        say_line(&format!(
+            "equal: {events} events computed again{how}, byte for byte, from tick 0 to tick {last_tick}{asked}"
+        ))?;
+    }
+    Ok(())
+}
+
+fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
+    let mut ticks = Ticks::open(path)?;
+    let opened = ticks.opened()?.clone();
+    if opened.journal_version != JOURNAL_VERSION {
+        return Err(bad_input(format!(
+            "the journal has version {}, and this tankops computes version {JOURNAL_VERSION}: a run is computed again by the \
+             version that flew it; report, export and runs read it all the same: {}",
+            opened.journal_version,
+            path.display()
+        )));
+    }
     let scenario = Scenario::parse(&opened.scenario_toml, "the scenario in the journal")
         .map_err(|errors| bad_input(errors.render()))?;
-    let mut flight = Flight::prepare(&scenario, opened.mission.attended, plugins, Pace::Batch);
-    let orders = orders_by_tick(recorded);
-    let last_tick = recorded.last().map_or(0, |event| event.tick);
-    let mut position = 0;
-    let mut check = |computed: &[Event]| -> anyhow::Result<Option<Verdict>> {
-        for event in computed {
-            let (theirs, ours) = (recorded.get(position).map(line).transpose()?, line(event)?);
-            let Some(theirs) = theirs else { return Ok(None) };
-            if theirs != ours {
-                return Ok(Some(Verdict::Different { tick: event.tick, recorded: theirs, computed: ours }));
-            }
-            position += 1;
+    let mut flight = Flight::prepare(&scenario, opened.mission.attended);
+    let mut replayed = Replayed::new(plugins.map(|plugins| headless::host(&scenario, plugins)));
+    let mut findings = Findings::default();
+    let mut head = vec![flight.opened()];
+    while findings.difference.is_none()
+        && let Some(recorded) = ticks.next()?
+    {
+        replayed.begin_tick(&recorded);
+        let mut computed = std::mem::take(&mut head);
+        computed.extend(flight.tick(&recorded.orders(), &mut replayed));
+        findings.difference = difference(&recorded, &computed)?;
+        findings.events += recorded.lines.len();
+        findings.last_tick = recorded.tick;
+    }
+    findings.no_end = ticks.no_end();
+    findings.planners = replayed.into_asked();
+    Ok(findings)
+}
+
+/// The first line of a tick that is not the recorded one.
+fn difference(recorded: &RecordedTick, computed: &[Event]) -> anyhow::Result<Option<Difference>> {
+    let tick = recorded.tick;
+    for index in 0..recorded.lines.len().max(computed.len()) {
+        let ours = computed.get(index).map(line).transpose()?;
+        let theirs = recorded.lines.get(index).map(|(raw, _)| raw.as_slice());
+        if ours.as_deref().map(str::as_bytes) != theirs {
+            let theirs = theirs.map(|raw| String::from_utf8_lossy(raw).into_owned());
+            let nothing = || "nothing more in this tick".to_owned();
+            return Ok(Some(Difference {
+                tick,
+                recorded: theirs.unwrap_or_else(nothing),
+                computed: ours.unwrap_or_else(nothing),
+            }));
         }
-        Ok(None)
-    };
-    if let Some(different) = check(&[flight.opened()])? {
-        return Ok(different);
     }
-    for tick in 0..=last_tick {
-        let events = flight.tick(orders.get(&tick).map_or(&[], Vec::as_slice));
-        if let Some(different) = check(&events)? {
-            return Ok(different);
-        }
-    }
-    if position < recorded.len() {
-        let (tick, recorded) = (recorded[position].tick, line(&recorded[position])?);
-        return Ok(Verdict::Different { tick, recorded, computed: "nothing more".into() });
-    }
-    Ok(Verdict::Equal { events: position, last_tick })
+    Ok(None)
+}
+
+fn line(event: &Event) -> anyhow::Result<String> {
+    serde_json::to_string(event).context("writing an event as JSON")
 }
 
 /// How the run was opened; a journal without that tells nothing.
@@ -94,37 +179,40 @@ pub fn opened(events: &[Event]) -> anyhow::Result<&RunOpened> {
     }
 }
 
-fn line(event: &Event) -> anyhow::Result<String> {
-    serde_json::to_string(event).context("writing an event as JSON")
-}
-
-fn orders_by_tick(events: &[Event]) -> BTreeMap<u64, Vec<Order>> {
-    let mut orders: BTreeMap<u64, Vec<Order>> = BTreeMap::new();
-    for event in events {
-        if let EventKind::Ordered { order } | EventKind::OrderRefused { order, .. } = &event.kind {
-            orders.entry(event.tick).or_default().push(order.clone());
-        }
-    }
-    orders
-}
-
 /// Planners of the run whose plugin is another file now.
-fn planner_changes(events: &[Event], plugins: &PluginDirs) -> Vec<String> {
+fn planner_changes(path: &Path, plugins: &PluginDirs) -> anyhow::Result<Vec<String>> {
     let now = crate::planners::found(plugins);
     let changed = |then: &PlannerInfo| match now.iter().find(|info| info.id == then.id) {
-        None => Some(format!("planner {} of the run is not installed", then.id)),
-        Some(info) if info.sha256 != then.sha256 => {
-            Some(format!("planner {} is another build than in the run ({} then)", then.id, then.version))
+        None => {
+            Some(format!("planner {} of the run is not installed; --from-journal does without it", then.id))
         }
+        Some(info) if info.sha256 != then.sha256 => Some(format!(
+            "planner {} is another build than in the run ({} then); --from-journal does without it",
+            then.id, then.version
+        )),
         Some(_) => None,
     };
-    let mut notes: Vec<String> = events
-        .iter()
-        .filter_map(|event| match &event.kind {
-            EventKind::PlannerChosen { info, .. } => changed(info),
+    let mut notes: Vec<String> = Vec::new();
+    let mut ticks = Ticks::open(path)?;
+    while let Some(tick) = ticks.next()? {
+        let infos = tick.lines.iter().filter_map(|(_, event)| match &event.kind {
+            EventKind::PlannerChosen { info, .. } | EventKind::PlannerPrepared { info, .. } => changed(info),
             _ => None,
-        })
-        .collect();
+        });
+        notes.extend(infos.collect::<Vec<_>>());
+    }
+    notes.sort();
     notes.dedup();
-    notes
+    Ok(notes)
+}
+
+impl RecordedTick {
+    /// The orders of the tick, those that were refused too.
+    fn orders(&self) -> Vec<Order> {
+        let order = |(_, event): &(Vec<u8>, Event)| match &event.kind {
+            EventKind::Ordered { order } | EventKind::OrderRefused { order, .. } => Some(order.clone()),
+            _ => None,
+        };
+        self.lines.iter().filter_map(order).collect()
+    }
 }

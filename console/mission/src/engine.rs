@@ -128,8 +128,7 @@ impl Mission {
 
     /// Everything that decides whether an order is accepted now.
     pub fn standing(&self) -> Standing<'_> {
-        let planner = self.active.info.as_ref().filter(|_| self.active.is_ready);
-        Standing { phase: &self.phase, position: self.position_trust(), planner }
+        Standing { phase: &self.phase, position: self.position_trust(), planner: self.active.info.as_ref() }
     }
 
     fn position_trust(&self) -> PositionTrust {

@@ -29,5 +29,5 @@ pub use event::{Event, EventKind, HoldReason, LogLine, Outcome, RunOpened, Sever
 pub use order::Order;
 pub use planner::{Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo};
 pub use preview::preview;
-pub use standing::{Gait, Hold, Phase, PositionTrust, Refusal, Resumes, Standing};
+pub use standing::{FoldedStanding, Gait, Hold, Phase, PositionTrust, Refusal, Resumes, Standing};
 pub use tether::TetherConfig;

@@ -4,7 +4,7 @@
 //! which keys do something and why the others do not. It has no state and changes none.
 
 use crate::{
-    event::{HoldReason, Outcome},
+    event::{EventKind, HoldReason, Outcome},
     order::Order,
     planner::PlannerInfo,
 };
@@ -12,9 +12,10 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// What the mission is doing.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub enum Phase {
     /// Nothing has been started.
+    #[default]
     Waiting,
     /// The robot moves, or will as soon as its planner is ready.
     Running(Gait),
@@ -74,9 +75,10 @@ impl Phase {
 }
 
 /// How far the position can be relied on.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum PositionTrust {
     /// Within the limit.
+    #[default]
     Good,
     /// Its error is beyond the limit.
     Lost {
@@ -98,6 +100,56 @@ pub struct Standing<'a> {
     pub position: PositionTrust,
     /// The active planner, once it has been opened.
     pub planner: Option<&'a PlannerInfo>,
+}
+
+/// The standing of a mission as its events tell it, for those who see nothing else of the mission.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct FoldedStanding {
+    /// What the mission is doing.
+    pub phase: Phase,
+    /// Whether the last order was for a single step.
+    is_stepping: bool,
+    /// Position error and limit, metres, while the position counts as lost.
+    lost: Option<(f64, f64)>,
+    /// Whether the ranges contradict each other.
+    is_alarmed: bool,
+    /// The active planner.
+    planner: Option<Box<PlannerInfo>>,
+}
+
+impl FoldedStanding {
+    /// Takes in one event; they must come in the order of the journal.
+    pub fn apply(&mut self, event: &EventKind) {
+        match event {
+            EventKind::RunOpened(_) => *self = Self::default(),
+            EventKind::Ordered { order: Order::Start } => self.phase = Phase::Running(Gait::Steady),
+            EventKind::Ordered { order } => self.is_stepping = *order == Order::Step,
+            EventKind::Resumed => {
+                let gait = if std::mem::take(&mut self.is_stepping) { Gait::OneTick } else { Gait::Steady };
+                self.phase = Phase::Running(gait);
+            }
+            EventKind::Held { by, resumes } => {
+                self.phase = Phase::Held(Hold { by: by.clone(), resumes: *resumes });
+            }
+            EventKind::Ended { outcome, .. } => self.phase = Phase::Ended(*outcome),
+            EventKind::PositionLost { error_m, limit_m } => self.lost = Some((*error_m, *limit_m)),
+            EventKind::PositionRegained { .. } => self.lost = None,
+            EventKind::PositionAlarmed { .. } => self.is_alarmed = true,
+            EventKind::PositionTrusted => self.is_alarmed = false,
+            EventKind::PlannerChosen { info, .. } => self.planner = Some(info.clone()),
+            _ => {}
+        }
+    }
+
+    /// Everything that decides whether an order is accepted now.
+    pub fn standing(&self) -> Standing<'_> {
+        let position = match self.lost {
+            Some((error_m, limit_m)) => PositionTrust::Lost { error_m, limit_m },
+            None if self.is_alarmed => PositionTrust::Alarmed,
+            None => PositionTrust::Good,
+        };
+        Standing { phase: &self.phase, position, planner: self.planner.as_deref() }
+    }
 }
 
 /// Why an order is not accepted.

@@ -91,7 +91,7 @@ impl Fold {
             }
             EventKind::Progressed { done, along_m, .. } => self.progress(*done, *along_m),
             EventKind::PlannerChosen { choice, info, .. } => self.choose(choice, info),
-            EventKind::ParametersChanged { choice } => self.set_parameters(choice),
+            EventKind::ParametersChanged { choice, .. } => self.set_parameters(choice),
             EventKind::ObstacleFound { obstacle } => {
                 self.known.obstacles_found += 1;
                 self.find(obstacle);

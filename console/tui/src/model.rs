@@ -19,7 +19,7 @@ pub use trail::Trail;
 pub use ui::{Overlay, Pane, Ui};
 
 use mission::{
-    MissionConfig, Order, Outcome, PlannerChoice, PlannerInfo, Severity, TaskConfig, event::HoldReason,
+    FoldedStanding, MissionConfig, Order, Phase, PlannerChoice, PlannerInfo, Severity, TaskConfig,
     planner::Fault,
 };
 use planner_api::{Command, Drawing};
@@ -37,8 +37,10 @@ const SILENCE_S: f64 = 2.0;
 pub struct Model {
     /// What the run is about; `None` until it is opened.
     pub run: Option<Run>,
-    /// Whether the mission waits, moves, is held or has ended.
-    pub phase: Phase,
+    /// What the mission is doing, and which orders it accepts.
+    pub standing: FoldedStanding,
+    /// Why it ended, as a sentence; empty before.
+    pub end_reason: String,
     /// Mission time.
     pub clock: Clock,
     /// Where the robot believes to be, and how well it knows.
@@ -79,25 +81,6 @@ pub struct Run {
     pub mission: MissionConfig,
     /// Length of the preset path, metres; `None` for a mission without one.
     pub preset_m: Option<f64>,
-}
-
-/// Whether the mission waits, moves, is held or has ended.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub enum Phase {
-    /// Not started.
-    #[default]
-    Idle,
-    /// The planner drives.
-    Running,
-    /// The robot stands still until it is told to go on.
-    Held(HoldReason),
-    /// The run is over.
-    Ended {
-        /// How.
-        outcome: Outcome,
-        /// Why, as a sentence.
-        reason: String,
-    },
 }
 
 /// Mission time, as the events tell it.
@@ -294,21 +277,19 @@ pub struct Console {
 }
 
 impl Model {
-    /// Whether the robot moves or may begin to move any moment without being told.
-    pub fn may_move(&self) -> bool {
-        let by_itself = match &self.phase {
-            Phase::Running | Phase::Held(HoldReason::PositionLost | HoldReason::PositionAlarmed) => true,
-            Phase::Held(HoldReason::PlannerFault { .. } | HoldReason::PlanRefused { .. }) => {
-                self.has_fallback()
-            }
-            Phase::Idle | Phase::Held(_) | Phase::Ended { .. } => false,
-        };
-        by_itself || self.console.asked.is_some()
+    /// What the mission is doing.
+    pub fn phase(&self) -> &Phase {
+        &self.standing.phase
     }
 
-    /// Whether another planner may take over by itself after a fault.
-    pub fn has_fallback(&self) -> bool {
-        self.run.as_ref().is_some_and(|run| run.mission.fallback.is_some())
+    /// Whether the mission runs: the robot moves, or waits for its planner.
+    pub fn is_running(&self) -> bool {
+        matches!(self.phase(), Phase::Running(_))
+    }
+
+    /// Whether the robot moves, or may begin to move without an order, or because of one that is on its way.
+    pub fn may_move(&self) -> bool {
+        self.phase().may_move() || self.console.asked.is_some()
     }
 
     /// Why a planner cannot fly this mission, if it cannot.
@@ -332,14 +313,13 @@ impl Model {
 
     /// Whether the run is over.
     pub fn has_ended(&self) -> bool {
-        matches!(self.phase, Phase::Ended { .. })
+        matches!(self.phase(), Phase::Ended(_))
     }
 
     /// Whether the mission runs and yet nothing was heard of it, and for how long, seconds.
     pub fn silent_s(&self) -> Option<f64> {
         let silence_s = self.console.now.mono_s - self.clock.heard_mono_s;
-        let told = self.phase != Phase::Running || self.console.busy.is_some();
-        (!told && silence_s > SILENCE_S).then_some(silence_s)
+        (self.is_running() && silence_s > SILENCE_S).then_some(silence_s)
     }
 
     /// The notice, while it is fresh.
@@ -350,7 +330,7 @@ impl Model {
     /// When the screen next changes by itself, on the console's own clock, seconds; `None` if it does not.
     pub fn wakes_at_mono_s(&self) -> Option<f64> {
         let notice = self.notice().map(|notice| notice.until_mono_s);
-        let silence = (self.phase == Phase::Running).then(|| match self.silent_s() {
+        let silence = self.is_running().then(|| match self.silent_s() {
             None => self.clock.heard_mono_s + SILENCE_S,
             Some(_) => self.console.now.mono_s + 1.0,
         });

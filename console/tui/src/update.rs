@@ -49,8 +49,15 @@ pub enum Msg {
         /// What, as a sentence.
         text: String,
     },
-    /// What the engine is busy with while it sends no events (`rpf plans`), and how long that may take, seconds;
-    /// `None` when it is done.
+    /// An order did not reach the mission.
+    OrderFailed {
+        /// Which.
+        order: Order,
+        /// Why, as a sentence.
+        why: String,
+    },
+    /// What a planner is doing that takes its time (`Planning (rpf)`), and how long that may take, seconds; `None` when
+    /// it is done.
     Busy(Option<(String, Option<f64>)>),
     /// How far that is.
     BusyAt {
@@ -127,11 +134,13 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Health(health) => take_health(model, health),
         Msg::Planners { found, refused } => take_planners(model, found, refused),
         Msg::Notice { severity, text } => news(model, Cause::Console, severity, text),
+        Msg::OrderFailed { order, why } => {
+            model.answered(&order);
+            news(model, Cause::Console, Severity::Crit, why)
+        }
         Msg::Busy(work) => {
             let since_mono_s = model.console.now.mono_s;
             model.console.busy = work.map(|(work, within_s)| Busy { work, within_s, since_mono_s, at: None });
-            // The engine speaks through this message while it sends no events.
-            model.clock.heard_mono_s = model.console.now.mono_s;
             Vec::new()
         }
         Msg::BusyAt { share, what } => {
@@ -139,7 +148,6 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
             if let Some(busy) = &mut model.console.busy {
                 busy.at = Some((share, what));
             }
-            model.clock.heard_mono_s = model.console.now.mono_s;
             Vec::new()
         }
         Msg::Signal(signal) => obey_signal(model, signal),
@@ -171,9 +179,10 @@ fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Sends HOLD if anything may move.
+/// Sends HOLD whenever the mission would accept it, and after an order that makes the robot move.
 fn hold_now(model: &mut Model) -> Vec<Effect> {
-    if !model.may_move() {
+    let is_accepted = model.standing.standing().allows(&Order::Hold).is_ok();
+    if !is_accepted && model.console.asked.is_none() {
         return Vec::new();
     }
     model.console.hold_asked = true;

@@ -1,14 +1,15 @@
 //! What is kept when the screen itself fails.
 
+use crate::run_folder::utc;
 use anyhow::anyhow;
-use std::path::Path;
+use std::{path::Path, time::SystemTime};
 use tui::Model;
 
 /// Writes what the screen knew beside the runs; the error says where, and that the run was closed.
 ///
 /// The file is a model as JSON: it can be opened in a test of the screen.
 pub fn report(logs: &Path, model: &Model) -> anyhow::Error {
-    let name = format!("crash-{}.json", jiff::Timestamp::now().strftime("%Y%m%dT%H%M%SZ"));
+    let name = format!("crash-{}.json", utc(SystemTime::now()));
     let path = logs.join(name);
     let kept = serde_json::to_vec(model).map_err(anyhow::Error::from).and_then(|text| {
         std::fs::create_dir_all(logs)?;

@@ -10,7 +10,7 @@ use crate::{
     flight::Flight,
     headless::{self, CLOSE_TIMEOUT},
     plan_watch::{PlanWatch, Watched},
-    run_folder::RunFolder,
+    run_folder::{Kept, RunFolder},
     scenario::Scenario,
 };
 use mission::{Awaits, Event, Order, Phase};
@@ -50,7 +50,7 @@ enum Request {
 /// The flying thread, seen from outside.
 pub struct Engine {
     line: Line,
-    thread: JoinHandle<anyhow::Result<Option<Ended>>>,
+    thread: JoinHandle<Option<Ended>>,
 }
 
 /// A line to the engine, for every thread that may have to stop the robot.
@@ -85,8 +85,8 @@ impl Line {
 pub struct Ended {
     /// Its report.
     pub summary: Summary,
-    /// Its folder.
-    pub folder: PathBuf,
+    /// Whether it is on disk.
+    pub kept: Kept,
 }
 
 impl Engine {
@@ -132,9 +132,7 @@ impl Engine {
     pub fn close(self, hurry: bool) -> anyhow::Result<Option<Ended>> {
         let within = if hurry { HURRY } else { CLOSE_TIMEOUT };
         self.line.request(Request::Close { within }, true);
-        self.thread
-            .join()
-            .unwrap_or_else(|panic| Err(anyhow::anyhow!("the engine panicked: {}", words(&*panic))))
+        self.thread.join().map_err(|panic| anyhow::anyhow!("the engine panicked: {}", words(&*panic)))
     }
 }
 
@@ -168,21 +166,21 @@ struct RunLog {
     fold: Fold,
     began: Instant,
     health_told: Instant,
-    ended: Option<Summary>,
+    ended: Option<Ended>,
 }
 
 impl EngineThread {
-    fn fly(mut self) -> anyhow::Result<Option<Ended>> {
+    fn fly(mut self) -> Option<Ended> {
         self.tell_events(&[self.flight.opened()]);
         let mut due = Instant::now();
         loop {
             let (orders, close) = self.wait_until(due);
             if !orders.is_empty() || self.is_under_way() {
                 due = self.next_due(due);
-                self.tick(&orders)?;
+                self.tick(&orders);
             }
             if let Some(within) = close {
-                return Ok(self.close(within));
+                return self.close(within);
             }
         }
     }
@@ -252,13 +250,22 @@ impl EngineThread {
         }
     }
 
-    fn tick(&mut self, orders: &[Order]) -> anyhow::Result<()> {
+    fn tick(&mut self, orders: &[Order]) {
+        let starts = self.log.is_none() && orders.contains(&Order::Start);
+        if starts && let Err(error) = self.open_log() {
+            // Nothing moves that is not written down.
+            let why = format!("cannot start: {error:#}");
+            self.screen.urge(Msg::OrderFailed { order: Order::Start, why });
+            let others: Vec<Order> = orders.iter().filter(|order| **order != Order::Start).cloned().collect();
+            return self.tick_with(&others);
+        }
+        self.tick_with(orders);
+    }
+
+    fn tick_with(&mut self, orders: &[Order]) {
         let window = self.window();
         let answers = Windowed::new(&mut self.host, window);
         let events = self.flight.tick(orders, &mut Watched::new(answers, &mut self.watch));
-        if self.log.is_none() && *self.flight.phase() != Phase::Waiting {
-            self.open_log()?;
-        }
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
         assert!(!failing, "drill: the engine fails on purpose");
         self.keep(&events);
@@ -268,7 +275,6 @@ impl EngineThread {
         if matches!(self.flight.phase(), Phase::Ended(_)) {
             self.close_log(CLOSE_TIMEOUT);
         }
-        Ok(())
     }
 
     /// Tells the screen what planners are doing beyond this tick.
@@ -326,22 +332,24 @@ impl EngineThread {
         let Some(log) = &mut self.log else { return };
         let Some(recorder) = log.recorder.take() else { return };
         let finished = recorder.finish(within);
+        let logs = Logs {
+            journal: finished.journal.as_ref().map(|path| path.display().to_string()),
+            recording: finished.recording.as_ref().map(|path| path.display().to_string()),
+            error: finished.error.clone(),
+        };
         let summary = Summary {
             wall_time_s: Some(log.began.elapsed().as_secs_f64()),
-            events_sha256: finished.events_sha256,
+            events_sha256: finished.events_sha256.clone(),
             planner_calls: Some(headless::planner_calls(&self.host)),
-            logs: Some(Logs {
-                journal: finished.journal.map(|path| path.display().to_string()),
-                recording: finished.recording.map(|path| path.display().to_string()),
-                error: finished.error.clone(),
-            }),
+            logs: Some(logs),
             ..log.fold.summary()
         };
         let summary = self.scenario.expect.judged(summary);
         let report = log.folder.write_report(&summary);
-        log.ended = Some(summary);
-        let error = finished.error.or_else(|| report.err().map(|error| format!("{error:#}")));
-        self.say(Msg::Health(super::screen::closed(error)));
+        let kept = Kept::new(&log.folder, &finished, &report);
+        let problem = kept.problem();
+        log.ended = Some(Ended { summary, kept });
+        self.say(Msg::Health(super::screen::closed(problem)));
     }
 
     fn close(mut self, within: Duration) -> Option<Ended> {
@@ -351,10 +359,7 @@ impl EngineThread {
             self.keep(&events);
         }
         self.close_log(within);
-        self.log.and_then(|log| {
-            let folder = log.folder.path().to_path_buf();
-            log.ended.map(|summary| Ended { summary, folder })
-        })
+        self.log.and_then(|log| log.ended)
     }
 
     fn tell_events(&self, events: &[Event]) {

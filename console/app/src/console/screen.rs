@@ -49,12 +49,7 @@ pub struct Left {
 
 impl Screen {
     /// Takes the terminal over.
-    pub fn open(
-        caps: Caps,
-        inbox: Inbox,
-        engine: Line,
-        drill: Option<Drill>,
-    ) -> anyhow::Result<Self> {
+    pub fn open(caps: Caps, inbox: Inbox, engine: Line, drill: Option<Drill>) -> anyhow::Result<Self> {
         let terminal = TerminalGuard::enter().context("taking over the terminal")?;
         let mut model = Model::default();
         model.console.speed = super::START_SPEED;
@@ -188,15 +183,18 @@ impl Left {
     pub fn say_goodbye(self, ended: Option<&Ended>) -> ExitCode {
         // A terminal that is gone takes no goodbye.
         if let Some(ended) = ended.filter(|_| self.signal != Some(Signal::Hangup)) {
-            let text = format!("{}run kept in {}\n", report::human(&ended.summary), ended.folder.display());
+            let text = format!("{}{}\n", report::human(&ended.summary), ended.kept.text());
             let _ = std::io::stdout().write_all(text.as_bytes());
         }
         match self.signal {
             Some(signal) => ExitCode::from(128 + number(signal)),
-            None => ExitCode::from(match ended.and_then(|ended| ended.summary.outcome) {
-                None | Some(Outcome::Complete) => COMPLETE,
-                Some(_) => ENDED_OTHERWISE,
-            }),
+            None => {
+                let code = match ended.and_then(|ended| ended.summary.outcome) {
+                    None | Some(Outcome::Complete) => COMPLETE,
+                    Some(_) => ENDED_OTHERWISE,
+                };
+                ExitCode::from(ended.map_or(code, |ended| ended.kept.exit_code(code)))
+            }
         }
     }
 }

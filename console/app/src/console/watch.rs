@@ -2,8 +2,8 @@
 
 use super::{engine::Line, inbox::Outbox};
 use anyhow::Context;
-use mission::Order;
 use crossterm::event::{self, Event};
+use mission::Order;
 use planner_host::PluginDirs;
 use rustix::event::{PollFd, PollFlags, poll};
 use signal_hook::{

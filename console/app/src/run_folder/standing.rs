@@ -126,3 +126,11 @@ pub fn journal_doubt(folder: &Path, sha256: Option<&str>) -> Option<String> {
     let source: Source = serde_json::from_str(&text).ok()?;
     (source.events_sha256? != sha256?).then(|| NOT_THE_ONE.to_owned())
 }
+
+/// What speaks against a journal without an end: the run has a report, so it was closed in good order.
+pub fn end_is_missing(folder: &Path) -> Option<String> {
+    let report: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.join(REPORT_FILE)).ok()?).ok()?;
+    report.get("outcome")?.as_str()?;
+    Some("the run has a report, so it came to its end, but the journal has none".to_owned())
+}

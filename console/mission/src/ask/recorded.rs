@@ -50,15 +50,17 @@ impl RecordedAnswers {
         }
     }
 
-    /// The next answer of this tick to something that was asked, with the ask.
-    pub fn next_answer(&mut self) -> Option<(Ask, Answer)> {
+    /// The next answer of this tick to something that was asked, with the ask, and whether the mission made use of it: of
+    /// one that it did not the journal does not hold the content.
+    pub fn next_answer(&mut self) -> Option<(Ask, Answer, bool)> {
         // A worker's answers are recorded when they are used, which may be after the next question to it.
         let is_open = |recorded: &Recorded| self.open.iter().position(|open| open.id == recorded.ask);
         let (at, open) =
             self.due.iter().enumerate().find_map(|(at, recorded)| Some((at, is_open(recorded)?)))?;
         let (Recorded { ask: id, closing, said }, ask) = (self.due.remove(at)?, self.open.swap_remove(open));
         let result = closing.recorded_answer(&ask.what)?;
-        Some((ask, Answer { ask: id, result, said }))
+        let is_used = !matches!(closing, EventKind::Discarded { .. });
+        Some((ask, Answer { ask: id, result, said }, is_used))
     }
 }
 

@@ -136,7 +136,7 @@ impl Opened {
                 stream.property("planners", &self.document.planner_properties())?;
                 self.write_document(stream, at)?;
             }
-            EventKind::ParametersChanged { choice } => {
+            EventKind::ParametersChanged { choice, .. } => {
                 self.document.parameters_changed(choice);
                 stream.property("planners", &self.document.planner_properties())?;
                 self.write_document(stream, at)?;

@@ -72,7 +72,7 @@ impl States {
             EventKind::Ordered { order: Order::Start } | EventKind::Resumed => self.enter(MOVING, at),
             // A run without an operator is never told to start.
             EventKind::Commanded { .. } if self.mission == WAITING => self.enter(MOVING, at),
-            EventKind::Held { by } => self.enter(held(by), at),
+            EventKind::Held { by, .. } => self.enter(held(by), at),
             EventKind::Ended { outcome, .. } => self.enter(outcome.word(), at),
             EventKind::PositionLost { .. } => self.change(paths::STATE_POSITION, at, LOST),
             EventKind::PositionRegained { .. } => self.change(paths::STATE_POSITION, at, KNOWN),
@@ -115,7 +115,7 @@ fn held(by: &HoldReason) -> &'static str {
         HoldReason::Stepped => STEPPED,
         HoldReason::PositionLost => HELD_LOST,
         HoldReason::PositionAlarmed => HELD_ALARMED,
-        HoldReason::PlannerFault { .. } => HELD_FAULT,
+        HoldReason::PlannerFault { .. } | HoldReason::PlannerSilent { .. } => HELD_FAULT,
         HoldReason::Stuck { .. } => HELD_STUCK,
         HoldReason::Tether { .. } => HELD_TETHER,
         HoldReason::PlanRefused { .. } => HELD_REFUSED,

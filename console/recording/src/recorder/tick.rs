@@ -52,7 +52,7 @@ impl Tick {
         match event {
             EventKind::Truth { pose, clearance_m, .. } => self.truth = Some((*pose, *clearance_m)),
             EventKind::Estimated { pose } => self.estimate = Some(*pose),
-            EventKind::Commanded { command } => self.speed_sent = Some(speed(&command.drive)),
+            EventKind::Commanded { command, .. } => self.speed_sent = Some(speed(&command.drive)),
             EventKind::Drawn { drawings } => self.drawings.extend(drawings),
             EventKind::Ranged { ranges } => self.ranges = Some(ranges.clone()),
             EventKind::Fixed { fix } => self.fix = Some(fix.clone()),

@@ -1,8 +1,8 @@
 //! Events into the model.
 
-use super::{Cause, Model, Overlay, Phase, PlanShown, Progress, Raster, Run, Trail};
+use super::{Cause, Model, Overlay, PlanShown, Progress, Raster, Run, Trail};
 use mission::{
-    Event, EventKind, Order, Outcome, PlannerChoice, PlannerInfo, Severity, TaskConfig,
+    Event, EventKind, Hold, Order, Outcome, PlannerChoice, PlannerInfo, Severity, TaskConfig,
     event::HoldReason,
     event::{RunOpened, TetherAlarm},
 };
@@ -27,14 +27,10 @@ impl Model {
         if let Some(line) = event.log_line() {
             self.log.add(event.t_s, line.severity, line.source, line.text);
         }
+        self.standing.apply(&event.kind);
         match &event.kind {
             EventKind::RunOpened(run) => self.open(run),
-            EventKind::Ordered { order } => {
-                self.answered(order);
-                if *order == Order::Start && self.phase == Phase::Idle {
-                    self.phase = Phase::Running;
-                }
-            }
+            EventKind::Ordered { order } => self.answered(order),
             EventKind::OrderRefused { order, why } => {
                 self.answered(order);
                 self.say(Severity::Warn, format!("the mission refused: {why}"));
@@ -52,19 +48,19 @@ impl Model {
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
             EventKind::PlannerChosen { choice, info, .. } => self.seat(choice, info),
-            EventKind::ParametersChanged { choice } => self.planning.choice = Some(choice.clone()),
+            EventKind::ParametersChanged { choice, .. } => self.planning.choice = Some(choice.clone()),
             EventKind::Planned { path, length_m, complete, .. } => {
                 let path = Trail::thinned(path);
                 let plan = PlanShown { path, length_m: *length_m, complete: *complete, t_s: event.t_s };
                 self.planning.plan = Some(plan);
                 self.planner_works();
             }
-            EventKind::Commanded { command } => self.command(event.t_s, *command),
+            EventKind::Commanded { command, .. } => self.command(event.t_s, *command),
             EventKind::Drawn { drawings } => self.draw(event.tick, drawings),
             EventKind::Scalars { scalars } => {
                 self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
             }
-            EventKind::PlannerFailed { fault } => {
+            EventKind::PlannerFailed { fault, .. } => {
                 // A planner that was refused leaves the one before in its place.
                 if self.planner_id() == Some(fault.planner.as_str()) {
                     self.planning.fault = Some(fault.clone());
@@ -104,16 +100,29 @@ impl Model {
             | EventKind::TetherAlarmed { .. }
             | EventKind::TetherEased { .. }
             | EventKind::Certified { .. } => self.tethered(event),
-            EventKind::Held { by } => self.hold(event, by),
+            EventKind::Held { by, resumes } => self.hold(event, &Hold { by: by.clone(), resumes: *resumes }),
             EventKind::Resumed => {
-                self.phase = Phase::Running;
                 self.console.asked = None;
                 self.alarms.clear(&Cause::Stuck);
                 self.planner_works();
             }
             EventKind::Ended { outcome, reason } => self.end(event, *outcome, reason),
+            EventKind::PlannerLate { planner, ticks } => {
+                self.raise(
+                    event,
+                    Cause::Planner,
+                    Severity::Watch,
+                    format!("planner {planner} answered {ticks} ticks late"),
+                );
+            }
+            EventKind::PlannerRejected { planner, why } => {
+                self.say(Severity::Warn, format!("planner {planner} does not take over: {why}"));
+            }
             EventKind::Truth { .. }
             | EventKind::TetherTruth { .. }
+            | EventKind::PlannerPrepared { .. }
+            | EventKind::Snapshotted { .. }
+            | EventKind::Discarded { .. }
             | EventKind::PlannerSaid { .. }
             | EventKind::Uncounted { .. } => {}
         }
@@ -203,7 +212,7 @@ impl Model {
 
     fn tell_time(&mut self, event: &Event) {
         let passed_s = event.t_s - self.clock.t_s;
-        if self.phase == Phase::Running && passed_s > 0.0 {
+        if self.is_running() && passed_s > 0.0 {
             self.clock.moving_s += passed_s;
         }
         (self.clock.tick, self.clock.t_s) = (event.tick, event.t_s);
@@ -227,11 +236,10 @@ impl Model {
         let forecast = run.mission.forecast((high - low).amax() / FORECAST_CELLS);
         self.accuracy = Some(AccuracyMap::new(&run.world.as_drawn(), &forecast));
         self.planning.choice = Some(run.mission.planner.clone());
-        self.phase = Phase::Idle;
     }
 
     /// Notes that the mission answered an order, for better or worse.
-    fn answered(&mut self, order: &Order) {
+    pub(crate) fn answered(&mut self, order: &Order) {
         if self.console.asked.as_ref() == Some(order) {
             self.console.asked = None;
         }
@@ -287,10 +295,7 @@ impl Model {
     }
 
     fn command(&mut self, t_s: f64, command: Command) {
-        // It was late once, and goes on.
-        if self.planning.fault.is_some() {
-            self.planner_works();
-        }
+        self.planner_works();
         self.planning.command = Some((t_s, command));
     }
 
@@ -299,20 +304,19 @@ impl Model {
         self.alarms.clear(&Cause::Planner);
     }
 
-    fn hold(&mut self, event: &Event, by: &HoldReason) {
-        if let HoldReason::Stuck { message } = by {
+    fn hold(&mut self, event: &Event, hold: &Hold) {
+        if let HoldReason::Stuck { message } = &hold.by {
             self.raise(event, Cause::Stuck, Severity::Warn, format!("stuck: {message}"));
         }
-        self.phase = Phase::Held(by.clone());
         self.console.hold_asked = false;
         self.console.asked = None;
-        if !matches!(by, HoldReason::Operator | HoldReason::Stepped) {
+        if !matches!(hold.by, HoldReason::Operator | HoldReason::Stepped) {
             self.withdraw_question();
         }
     }
 
     fn end(&mut self, event: &Event, outcome: Outcome, reason: &str) {
-        self.phase = Phase::Ended { outcome, reason: reason.to_owned() };
+        reason.clone_into(&mut self.end_reason);
         self.console.hold_asked = false;
         self.console.asked = None;
         self.withdraw_question();

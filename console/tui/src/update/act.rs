@@ -3,8 +3,8 @@
 use super::{Effect, hold_now, offered, overlay};
 use crate::actions::ActionId;
 use crate::model::ui::{Ask, MAX_ZOOM, MapView};
-use crate::model::{Model, Overlay, Pane, Phase};
-use mission::{Order, Severity};
+use crate::model::{Model, Overlay, Pane};
+use mission::{Order, Phase, Severity};
 use world::{Point, Vector};
 
 /// Seconds within which a second Ctrl-C asks to leave.
@@ -113,7 +113,7 @@ fn interrupt(model: &mut Model) -> Vec<Effect> {
 /// Holds a mission that may move, then asks; where nothing is at stake it leaves at once.
 fn leave(model: &mut Model) -> Vec<Effect> {
     let effects = hold_now(model);
-    if effects.is_empty() && matches!(model.phase, Phase::Idle | Phase::Ended { .. }) {
+    if effects.is_empty() && matches!(model.phase(), Phase::Waiting | Phase::Ended(_)) {
         return vec![Effect::Quit { signal: None }];
     }
     model.ui.overlay = Overlay::Quit;

@@ -1,8 +1,8 @@
 //! What can be done now, and why not otherwise. Footer and keys ask the same question.
 
 use crate::actions::ActionId;
-use crate::model::{Model, Phase, Speed, ui::MAX_ZOOM};
-use mission::HoldReason;
+use crate::model::{Model, Speed, ui::MAX_ZOOM};
+use mission::{Order, Phase, PlannerChoice, Refusal};
 
 /// Whether an action can be done now.
 ///
@@ -12,10 +12,10 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
     match id {
         ActionId::Hold => hold(model),
         ActionId::Start => start(model),
-        ActionId::Resume => held(model, "there is nothing to resume"),
-        ActionId::FlyUncertified => refused(model),
-        ActionId::Step => held(model, "a single step needs HOLD first (space)"),
-        ActionId::Abort => under_way(model),
+        ActionId::Resume => accepted(model, &Order::Resume),
+        ActionId::FlyUncertified => accepted(model, &Order::FlyUncertified),
+        ActionId::Step => accepted(model, &Order::Step),
+        ActionId::Abort => abort(model),
         ActionId::ChoosePlanner => swap(model),
         ActionId::Parameters => parameters(model),
         ActionId::Acknowledge => {
@@ -64,60 +64,38 @@ fn demand(met: bool, otherwise: &str) -> Result<(), String> {
     if met { Ok(()) } else { Err(otherwise.to_owned()) }
 }
 
+/// Whether the mission would accept an order, by its own table.
+pub(super) fn accepted(model: &Model, order: &Order) -> Result<(), String> {
+    model.standing.standing().allows(order).map_err(|why| match why.remedy() {
+        Some(remedy) => format!("{why}; {remedy}"),
+        None => why.to_string(),
+    })
+}
+
 fn hold(model: &Model) -> Result<(), String> {
-    match model.phase {
-        _ if model.may_move() => Ok(()),
-        Phase::Idle => Err("nothing moves: the mission has not started; S starts it".into()),
-        Phase::Ended { .. } => Err("nothing moves: the mission has ended".into()),
-        Phase::Running | Phase::Held(_) => Ok(()),
-    }
+    if model.console.asked.is_some() { Ok(()) } else { accepted(model, &Order::Hold) }
 }
 
 fn start(model: &Model) -> Result<(), String> {
-    match model.phase {
-        Phase::Idle if model.run.is_none() => Err("there is no mission yet".into()),
-        Phase::Idle if model.console.asked.is_some() => Err("the start is on its way; space holds".into()),
-        Phase::Idle => Ok(()),
-        Phase::Running => Err("the mission runs already".into()),
-        Phase::Held(_) => Err("the mission is held; space asks to go on".into()),
-        Phase::Ended { .. } => Err("the mission has ended; run it again from the command line".into()),
-    }
+    demand(model.run.is_some(), "there is no mission yet")?;
+    accepted(model, &Order::Start)?;
+    demand(model.console.asked.is_none(), "the start has been requested; space holds")
 }
 
-fn held(model: &Model, otherwise: &str) -> Result<(), String> {
-    match model.phase {
-        Phase::Held(_) if model.position.lost => {
-            Err("the position is lost; wait until it is regained".into())
-        }
-        Phase::Held(_) => Ok(()),
-        Phase::Idle => Err("the mission has not started; S starts it".into()),
-        Phase::Running => Err(otherwise.into()),
-        Phase::Ended { .. } => Err("the mission has ended".into()),
-    }
-}
-
-fn refused(model: &Model) -> Result<(), String> {
-    let is_refused = matches!(model.phase, Phase::Held(HoldReason::PlanRefused { .. }));
-    demand(is_refused, "no plan has been refused because of the tether")
-}
-
-fn under_way(model: &Model) -> Result<(), String> {
-    match model.phase {
-        Phase::Idle if !model.may_move() => Err("the mission has not started; q leaves".into()),
-        Phase::Ended { .. } => Err("the mission has ended already; q leaves".into()),
-        _ => Ok(()),
-    }
+/// Ending a mission that was never started would leave a run of nothing.
+fn abort(model: &Model) -> Result<(), String> {
+    let is_waiting = *model.phase() == Phase::Waiting && !model.may_move();
+    demand(!is_waiting, "the mission has not been started; q leaves")?;
+    accepted(model, &Order::Abort)
 }
 
 fn swap(model: &Model) -> Result<(), String> {
-    match model.phase {
-        // Orders are obeyed in order: after HOLD was sent the list may open without waiting for the answer.
-        Phase::Running if !model.console.hold_asked => Err("another planner needs HOLD first (space)".into()),
-        Phase::Ended { .. } => Err("the mission has ended; no planner drives any more".into()),
-        Phase::Idle | Phase::Running | Phase::Held(_) => {
-            demand(!model.console.planners.is_empty(), "no planner was found yet")
-        }
+    let choice = PlannerChoice::default();
+    // Orders are obeyed in order: after HOLD was sent the list may open without waiting for the answer.
+    if !model.console.hold_asked {
+        accepted(model, &Order::ChoosePlanner(choice))?;
     }
+    demand(!model.console.planners.is_empty(), "no planner was found yet")
 }
 
 fn parameters(model: &Model) -> Result<(), String> {
@@ -135,4 +113,24 @@ fn speed(model: &Model, faster: bool) -> Result<(), String> {
 
 fn map(model: &Model) -> Result<(), String> {
     demand(model.ui.shows_map(), "the map is not shown here; Tab, or 60x16 and more")
+}
+
+/// What would be right, in keys.
+trait Remedy {
+    fn remedy(&self) -> Option<&'static str>;
+}
+
+impl Remedy for Refusal {
+    fn remedy(&self) -> Option<&'static str> {
+        match self {
+            Self::NotStarted => Some("S starts it"),
+            Self::AlreadyStarted
+            | Self::AlreadyMoving
+            | Self::StepNeedsHold
+            | Self::SwapNeedsHold
+            | Self::NotLive { .. } => Some("space: HOLD"),
+            Self::Ended(_) => Some("q leaves"),
+            Self::PositionLost { .. } | Self::PositionAlarmed | Self::NoPlanRefused => None,
+        }
+    }
 }

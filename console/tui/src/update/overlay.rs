@@ -4,8 +4,8 @@ use super::{Effect, act as do_action, act::ask, offered};
 use crate::actions::{self, ActionId};
 use crate::keys::Key;
 use crate::model::ui::{Ask, Edit, MapLayer};
-use crate::model::{Model, Overlay, Phase, parameter};
-use mission::{Order, PlannerChoice, Severity};
+use crate::model::{Model, Overlay, parameter};
+use mission::{Order, Phase, PlannerChoice, Severity};
 
 /// Longest text that can be typed.
 const MAX_TYPED: usize = 64;
@@ -88,8 +88,7 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
 
 fn quit(model: &mut Model) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
-    let open =
-        !matches!(model.phase, Phase::Ended { .. }) && (model.phase != Phase::Idle || model.may_move());
+    let open = !model.has_ended() && (*model.phase() != Phase::Waiting || model.may_move());
     let end = open.then_some(Effect::Order(Order::Abort));
     end.into_iter().chain([Effect::Quit { signal: None }]).collect()
 }
@@ -118,16 +117,13 @@ fn edit(model: &mut Model) -> Vec<Effect> {
     let Overlay::Parameters { selected, .. } = model.ui.overlay else { return Vec::new() };
     let info = model.planner().and_then(|info| info.parameters.get(selected));
     let Some(info) = info else { return Vec::new() };
-    if model.has_ended() {
-        model.say(Severity::Watch, "the mission has ended; parameters stay as they were");
-        return Vec::new();
-    }
-    if model.phase == Phase::Running && !info.live {
-        let why = format!("{} cannot change under way; HOLD first (space)", info.key);
+    let value = parameter::value(&model.planning, info);
+    let order = Order::SetParameter { key: info.key.clone(), value: value.clone() };
+    if let Err(why) = super::offer::accepted(model, &order) {
         model.say(Severity::Watch, why);
         return Vec::new();
     }
-    let text = parameter::value(&model.planning, info).to_string();
+    let text = value.to_string();
     model.ui.overlay = Overlay::Parameters { selected, edit: Some(Edit { text, refusal: None }) };
     Vec::new()
 }

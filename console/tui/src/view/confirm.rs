@@ -2,8 +2,9 @@
 
 use super::next::{self, Clauses};
 use super::{Look, coverage, text};
-use crate::model::{Model, Overlay, Phase, ui::Ask};
+use crate::model::{Model, Overlay, ui::Ask};
 use crate::theme::Role;
+use mission::Phase;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -51,11 +52,12 @@ fn question(model: &Model) -> Option<Vec<String>> {
                 format!("One tick of {} s each time.", text::number(tick_s, 2)),
             ]
         }
-        Overlay::Quit => match model.phase {
-            Phase::Idle if model.console.busy.is_some() => {
-                ["LEAVE? Enter leaves, Esc stays.".into(), "The plan in the making is given up.".into()]
-            }
-            Phase::Idle | Phase::Ended { .. } => {
+        Overlay::Quit => match model.phase() {
+            _ if model.console.busy.is_some() => [
+                "LEAVE? Enter leaves, Esc stays.".into(),
+                "Planning will be cancelled and the mission ended.".into(),
+            ],
+            Phase::Waiting | Phase::Ended(_) => {
                 ["LEAVE? Enter leaves, Esc stays.".into(), "Nothing is under way.".into()]
             }
             _ => ["LEAVE? Enter leaves, Esc stays, held.".into(), "The mission ends here as aborted.".into()],

@@ -2,9 +2,10 @@
 
 use super::{Look, text};
 use crate::actions::{self, ACTIONS, Action, ActionId, Context};
-use crate::model::{Model, Overlay, Phase, ui::Arrangement};
+use crate::model::{Model, Overlay, ui::Arrangement};
 use crate::theme::Role;
 use crate::update::offered;
+use mission::Phase;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -80,7 +81,7 @@ fn shown(action: &Action, contexts: &[Context], model: &Model) -> bool {
 
 fn label(action: &Action, model: &Model) -> String {
     let word = match (action.id, &model.ui.overlay) {
-        (ActionId::Hold, _) if matches!(model.phase, Phase::Held(_)) && !model.may_move() => "resume?",
+        (ActionId::Hold, _) if matches!(model.phase(), Phase::Held(_)) && !model.may_move() => "resume?",
         (ActionId::Accept, Overlay::Commands { .. }) => "run",
         (ActionId::Accept, Overlay::Planners { .. }) => "choose",
         (ActionId::Accept, Overlay::Layers { .. }) => "show/hide",

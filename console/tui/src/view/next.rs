@@ -1,9 +1,9 @@
 //! The line that says what comes next and whether anybody is needed.
 
 use super::{events, text};
-use crate::model::{Busy, Model, Phase};
+use crate::model::{Busy, Model};
 use crate::theme::Role;
-use mission::{Order, Outcome, Severity, event::HoldReason};
+use mission::{Hold, Order, Outcome, Phase, Severity, event::HoldReason};
 
 /// How a line looks, and its clauses, the most important one first.
 pub(super) type Clauses = (Role, Vec<String>);
@@ -15,44 +15,50 @@ pub(super) fn clauses(model: &Model) -> Clauses {
             if notice.severity == Severity::Info { Role::Title } else { events::role(notice.severity) };
         return (role, vec![notice.text.clone()]);
     }
-    if let Some(silent_s) = model.silent_s().filter(|_| model.console.busy.is_none()) {
+    if let Some(silent_s) = model.silent_s() {
         let news = format!("◌ No news from the mission for {} s: values are old.", silent_s as u64);
-        return (Role::Stale, vec![news, "space asks for HOLD.".into()]);
+        return (Role::Stale, vec![news, "space: HOLD.".into()]);
     }
     if model.console.hold_asked {
-        let mut told = vec!["HOLD is on its way.".into()];
-        told.extend(model.console.busy.iter().flat_map(|busy| waits_for(model, busy)));
-        return (Role::Hold, told);
+        return (Role::Hold, vec!["HOLD requested...".into()]);
     }
-    if let Some(work) = &model.console.busy {
-        let mut told = waits_for(model, work);
-        told.extend(["space holds when it is done.".into(), "X, q stop it.".into()]);
-        return (Role::Watch, told);
-    }
-    match (&model.console.asked, &model.phase) {
-        (Some(Order::Start), _) => (Role::Title, vec!["The start is on its way.".into()]),
-        (Some(_), _) => (Role::Title, vec!["The order is on its way.".into()]),
-        (None, Phase::Idle) => idle(model),
-        (None, Phase::Running) => running(model),
-        (None, Phase::Held(by)) => (Role::Hold, held(model, by)),
-        (None, Phase::Ended { outcome: Outcome::Complete, reason }) => (
+    let work = model.console.busy.as_ref().map(|busy| work(model, busy));
+    match (&model.console.asked, model.phase()) {
+        (Some(Order::Start), _) => (Role::Title, vec!["Starting...".into()]),
+        (Some(_), _) => (Role::Title, vec!["Order sent...".into()]),
+        (None, Phase::Held(hold)) => {
+            let mut clauses = held(model, hold);
+            work.into_iter().flatten().for_each(|clause| clauses.insert(1.min(clauses.len()), clause));
+            (Role::Hold, clauses)
+        }
+        (None, Phase::Waiting | Phase::Running(_)) if work.is_some() => {
+            let stop = ["space: HOLD.", "X: end mission."].map(str::to_owned);
+            (Role::Watch, work.into_iter().flatten().chain(stop).collect())
+        }
+        (None, Phase::Waiting) => idle(model),
+        (None, Phase::Running(_)) => running(model),
+        (None, Phase::Ended(Outcome::Complete)) => (
             Role::Good,
-            vec![format!("DONE: {reason}."), "Nothing moves any more.".into(), "q leaves.".into()],
+            vec![
+                format!("DONE: {}.", model.end_reason),
+                "Nothing moves any more.".into(),
+                "q leaves.".into(),
+            ],
         ),
-        (None, Phase::Ended { outcome, reason }) => {
-            (Role::Warn, vec![format!("ENDED {}: {reason}.", outcome.word()), "q leaves.".into()])
+        (None, Phase::Ended(outcome)) => {
+            (Role::Warn, vec![format!("ENDED {}: {}.", outcome.word(), model.end_reason), "q leaves.".into()])
         }
     }
 }
 
-/// What the engine is busy with and how far, for how long already and at most, and what it is doing.
-fn waits_for(model: &Model, busy: &Busy) -> Vec<String> {
+/// What a planner is doing and how far, for how long already and at most, and what exactly.
+fn work(model: &Model, busy: &Busy) -> Vec<String> {
     let passed_s = (model.console.now.mono_s - busy.since_mono_s).max(0.0) as u64;
     // Only the end makes it whole.
-    let percent = |share: f64| format!(", {} %", (100.0 * share).floor().clamp(0.0, 99.0));
+    let percent = |share: f64| format!(" {} %", (100.0 * share).floor().clamp(0.0, 99.0));
     let share = busy.at.as_ref().map_or_else(String::new, |(share, _)| percent(*share));
     let time = |within_s: f64| format!(", {passed_s} s of {} s at most", within_s as u64);
-    let first = format!("BUSY: {}{share}{}.", busy.work, busy.within_s.map_or_else(String::new, time));
+    let first = format!("{}{share}{}.", busy.work, busy.within_s.map_or_else(String::new, time));
     let what = busy.at.iter().filter(|(_, what)| !what.is_empty()).map(|(_, what)| format!("{what}."));
     std::iter::once(first).chain(what).collect()
 }
@@ -100,38 +106,41 @@ fn running(model: &Model) -> Clauses {
     (Role::Title, vec![format!("NEXT: to {at}; task {done} % done."), calm])
 }
 
-fn held(model: &Model, by: &HoldReason) -> Vec<String> {
+fn held(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String> {
+    const KEEP: &str = "space: HOLD (stay held).";
     let clauses: &[&str] = match by {
         HoldReason::Operator | HoldReason::Stepped if model.position.lost => {
-            &["HELD by you; the position is lost.", "Going on needs a fix first."]
+            &["HELD by operator; position lost.", "Cannot resume without a position fix."]
         }
-        HoldReason::Operator => &["HELD by you.", "space asks to go on.", "P changes the planner."],
-        HoldReason::Stepped => &["HELD after a step.", "space asks to go on."],
-        HoldReason::PositionAlarmed => &[
-            "HELD, ranges contradict each other.",
-            "Goes on by itself when they agree.",
-            "space keeps it held.",
-        ],
+        HoldReason::Operator => &["HELD by operator.", "space: resume.", "P: change planner."],
+        HoldReason::Stepped => &["HELD after a step.", "space: resume."],
+        HoldReason::PositionAlarmed => {
+            &["HELD, ranges contradict each other.", "Resumes automatically when they agree.", KEEP]
+        }
         HoldReason::PositionLost => {
-            &["HELD, position lost.", "Goes on by itself when regained.", "space keeps it held."]
+            &["HELD, position lost.", "Resumes automatically when the position is recovered.", KEEP]
         }
-        HoldReason::Stuck { message } => {
-            &["HELD, stuck.", "P changes the planner.", "space tries again.", message]
+        HoldReason::Stuck { message } => &["HELD, stuck.", "P: change planner.", "space: retry.", message],
+        HoldReason::Tether { message } if !resumes.is_never() => {
+            &["HELD, tether.", "Resumes automatically when there is a way home.", KEEP, message]
         }
         HoldReason::Tether { message } => {
-            &["HELD, tether.", "space goes on; a scan eases the cable first.", "X ends here.", message]
+            &["HELD, tether.", "space: resume; a scan eases the tether first.", "X: end mission.", message]
         }
-        HoldReason::PlanRefused { message } if model.has_fallback() => {
-            &["HELD, plan refused.", "The fallback takes over if it can.", message]
+        HoldReason::PlanRefused { message } if !resumes.is_never() => {
+            &["HELD, plan refused.", "The fallback planner takes over.", KEEP, message]
         }
         HoldReason::PlanRefused { message } => {
-            &["HELD, plan refused.", "P chooses another.", ":fly-uncertified flies it.", message]
+            &["HELD, plan refused.", "P: change planner.", ":fly-uncertified flies it.", message]
         }
-        HoldReason::PlannerFault { message } if model.has_fallback() => {
-            &["HELD, planner failed.", "The fallback takes over if it can.", message]
+        HoldReason::PlannerSilent { message } => {
+            &["HELD, planner silent.", "Resumes automatically when it answers.", KEEP, message]
+        }
+        HoldReason::PlannerFault { message } if !resumes.is_never() => {
+            &["HELD, planner failed.", "The fallback planner takes over.", KEEP, message]
         }
         HoldReason::PlannerFault { message } => {
-            &["HELD, planner failed.", "P chooses another.", "space tries again.", message]
+            &["HELD, planner failed.", "P: change planner.", "space: retry.", message]
         }
     };
     clauses.iter().map(|clause| (*clause).to_owned()).collect()

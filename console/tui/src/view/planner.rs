@@ -1,7 +1,7 @@
 //! The planner pane: who drives, where to, and what the robot was told.
 
 use super::{Look, fill, text};
-use crate::model::{Model, Pane, Phase};
+use crate::model::{Model, Pane};
 use crate::theme::Role;
 use planner_api::{Drive, Status};
 use ratatui::Frame;
@@ -116,7 +116,7 @@ fn heading(model: &Model) -> String {
 fn command(model: &Model) -> Value {
     let Some((t_s, command)) = &model.planning.command else { return (Role::Text, "-".into()) };
     let tick_s = model.run.as_ref().map_or(0.1, |run| run.mission.tick_s);
-    if model.phase != Phase::Running || model.clock.t_s - t_s > STALE_TICKS * tick_s {
+    if !model.is_running() || model.clock.t_s - t_s > STALE_TICKS * tick_s {
         return (Role::Text, "stand still".into());
     }
     let drive = match command.drive {

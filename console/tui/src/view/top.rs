@@ -1,9 +1,9 @@
 //! The line on top: who is in charge, what runs, whether it is recorded, what is wrong.
 
 use super::{Look, text};
-use crate::model::{Model, Phase, Recording, ui::Arrangement};
+use crate::model::{Model, Recording, ui::Arrangement};
 use crate::theme::Role;
-use mission::{Outcome, Severity, event::HoldReason};
+use mission::{Hold, Outcome, Phase, Severity, event::HoldReason};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -44,13 +44,15 @@ fn right_of(area: Rect, width: u16) -> Rect {
 
 /// Who is in charge, and whether the robot moves.
 pub(super) fn state(model: &Model) -> Parts {
-    let (who, role, word) = match &model.phase {
-        Phase::Idle => ("OPER", Role::Title, "■ IDLE"),
-        Phase::Running => ("AUTO", Role::Run, "▶ RUN"),
-        Phase::Held(HoldReason::Operator | HoldReason::Stepped) => ("OPER", Role::Hold, "‖ HOLD"),
+    let (who, role, word) = match model.phase() {
+        Phase::Waiting => ("OPER", Role::Title, "■ IDLE"),
+        Phase::Running(_) => ("AUTO", Role::Run, "▶ RUN"),
+        Phase::Held(Hold { by: HoldReason::Operator | HoldReason::Stepped, .. }) => {
+            ("OPER", Role::Hold, "‖ HOLD")
+        }
         Phase::Held(_) => ("AUTO", Role::Hold, "‖ HOLD"),
-        Phase::Ended { outcome: Outcome::Complete, .. } => ("OPER", Role::Good, "✓ DONE"),
-        Phase::Ended { .. } => ("OPER", Role::Warn, "■ ENDED"),
+        Phase::Ended(Outcome::Complete) => ("OPER", Role::Good, "✓ DONE"),
+        Phase::Ended(_) => ("OPER", Role::Warn, "■ ENDED"),
     };
     vec![(Role::Title, format!("{who} ")), (role, word.into())]
 }

@@ -1,7 +1,7 @@
 //! Answers that come when they come: the mission waits for none of them, and the journal repeats every one.
 
 use super::{covering::covering, *};
-use crate::{Awaits, ask::RecordedAnswers};
+use crate::{Awaits, FoldedStanding, ask::RecordedAnswers};
 use proptest::prelude::*;
 
 fn step_delay(ticks: u64, from: u64, to: u64) -> Delay {
@@ -186,7 +186,7 @@ fn replay(config: MissionConfig, recorded: &Flight) -> Vec<Event> {
         again.mission.sense(&Input { readings, orders });
         loop {
             std::iter::from_fn(|| again.mission.poll_ask()).for_each(|ask| answers.submit(ask));
-            let Some((_, answer)) = answers.next_answer() else { break };
+            let Some((_, answer, _)) = answers.next_answer() else { break };
             again.mission.answer(answer);
         }
         events.extend(again.mission.act().events);
@@ -225,11 +225,21 @@ proptest! {
         flight.planner.says_much = true;
         flight.delay = Box::new(move |ask, tick| delays[(ask.id.n as usize * 31 + tick as usize) % delays.len()]);
         flight.tick(&[Order::Start]);
+        let mut told = FoldedStanding::default();
+        flight.events.iter().for_each(|event| told.apply(&event.kind));
         for tick in 1..400 {
             let now: Vec<Order> =
                 orders.iter().filter(|(at, _)| *at == tick).map(|(_, n)| order(*n)).collect();
             let before = flight.pose;
             flight.tick(&now);
+            for event in flight.events.iter().filter(|event| event.tick == flight.mission.tick - 1) {
+                told.apply(&event.kind);
+            }
+            let standing = flight.mission.standing();
+            prop_assert_eq!(&told.phase, standing.phase);
+            for n in [0, 1, 2, 3, 6] {
+                prop_assert_eq!(told.standing().allows(&order(n)), standing.allows(&order(n)));
+            }
             let holds = now.last() == Some(&Order::Hold);
             if holds || !matches!(flight.mission.phase(), Phase::Running(_) | Phase::Held(Hold { by: HoldReason::Stepped, .. })) {
                 prop_assert_eq!(flight.pose, before, "{:?}", flight.mission.phase());
