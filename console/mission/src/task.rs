@@ -218,8 +218,8 @@ impl StuckWatch {
         *self = Self::new(self.patience_s);
     }
 
-    /// Takes one tick of moving; whether the robot is stuck.
-    pub fn is_stuck(&mut self, task: &Task, position: Point, tick_s: f64) -> bool {
+    /// Takes one tick of moving; gives whether the robot is stuck.
+    pub fn update(&mut self, task: &Task, position: Point, tick_s: f64) -> bool {
         let left_m = task.left_m();
         self.since_progress_s += tick_s;
         if left_m < self.least_left_m - PROGRESS_M {
@@ -252,14 +252,14 @@ mod tests {
             let angle = f64::from(*tick) * 0.05;
             let position = Point::new(angle.cos(), angle.sin());
             task.advance(position, &map, 0.3);
-            watch.is_stuck(&task, position, 0.1)
+            watch.update(&task, position, 0.1)
         });
         assert!(stuck_after.is_some_and(|tick| (180..260).contains(&tick)), "{stuck_after:?}");
         let (mut task, mut watch) = (goto((9.0, 0.0)), StuckWatch::new(10.0));
         assert!((0..150).all(|tick| {
             let position = Point::new(-f64::from(tick) * 0.04, 0.0);
             task.advance(position, &map, 0.3);
-            !watch.is_stuck(&task, position, 0.1)
+            !watch.update(&task, position, 0.1)
         }));
     }
 

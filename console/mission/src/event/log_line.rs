@@ -131,7 +131,11 @@ fn line(severity: Severity, source: &'static str, text: String) -> LogLine {
 fn of_planner(kind: &EventKind) -> Option<LogLine> {
     Some(match kind {
         EventKind::PlannerChosen { choice, info, from, .. } => {
-            let before = from.as_ref().map(|id| format!(", took over from {id}")).unwrap_or_default();
+            let before = match from {
+                Some(id) if *id == choice.id => ", started again".to_owned(),
+                Some(id) => format!(", took over from {id}"),
+                None => String::new(),
+            };
             line(Severity::Info, "plan", format!("planner {} {} drives{before}", choice.id, info.version))
         }
         EventKind::ParametersChanged { choice, .. } => {
