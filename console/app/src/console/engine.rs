@@ -33,9 +33,9 @@ const MOST_LATE: Duration = Duration::from_millis(50);
 /// How long a process that was told to end may take to close the recording.
 const HURRY: Duration = Duration::from_millis(900);
 /// With so many messages waiting for the screen the simulation waits for it.
-const MOST_BACKLOG: usize = 512;
+const MOST_BACKLOG: usize = 64;
 /// How long it waits then before it looks again, unless an order comes.
-const LOOK_AGAIN: Duration = Duration::from_millis(2);
+const LOOK_AGAIN: Duration = Duration::from_millis(1);
 
 /// What the engine is told.
 enum Request {

@@ -28,7 +28,8 @@ pub(super) fn clauses(model: &Model) -> Clauses {
         (Some(_), _) => (Role::Title, vec!["Order sent...".into()]),
         (None, Phase::Held(hold)) => {
             let mut clauses = held(model, hold);
-            work.into_iter().flatten().for_each(|clause| clauses.insert(1.min(clauses.len()), clause));
+            // Why it is held comes first, then what is being done meanwhile.
+            clauses.splice(1..1, work.into_iter().flatten());
             (Role::Hold, clauses)
         }
         (None, Phase::Waiting | Phase::Running(_)) if work.is_some() => {
