@@ -47,27 +47,15 @@ impl Model {
             | EventKind::PositionTrusted => self.locate(event),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
-            EventKind::PlannerChosen { choice, info, .. } => self.seat(choice, info),
-            EventKind::ParametersChanged { choice, .. } => self.planning.choice = Some(choice.clone()),
-            EventKind::Planned { path, length_m, complete, .. } => {
-                let path = Trail::thinned(path);
-                let plan = PlanShown { path, length_m: *length_m, complete: *complete, t_s: event.t_s };
-                self.planning.plan = Some(plan);
-                self.planner_works();
-            }
-            EventKind::Commanded { command, .. } => self.command(event.t_s, *command),
-            EventKind::Drawn { drawings } => self.draw(event.tick, drawings),
-            EventKind::Scalars { scalars } => {
-                self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
-            }
-            EventKind::PlannerFailed { fault, .. } => {
-                // A planner that was refused does not replace the active one.
-                if self.planner_id() == Some(fault.planner.as_str()) {
-                    self.planning.fault = Some(fault.clone());
-                }
-                self.raise(event, Cause::Planner, fault.severity(), fault.message.clone());
-                self.withdraw_question();
-            }
+            EventKind::PlannerChosen { .. }
+            | EventKind::ParametersChanged { .. }
+            | EventKind::Planned { .. }
+            | EventKind::Commanded { .. }
+            | EventKind::Drawn { .. }
+            | EventKind::Scalars { .. }
+            | EventKind::PlannerFailed { .. }
+            | EventKind::PlannerLate { .. }
+            | EventKind::PlannerRejected { .. } => self.planned(event),
             EventKind::Covered { runs } => {
                 if let Some(coverage) = &mut self.coverage {
                     coverage.apply(runs);
@@ -109,6 +97,40 @@ impl Model {
                 }
             }
             EventKind::Ended { outcome, reason } => self.end(event, *outcome, reason),
+            EventKind::Truth { .. }
+            | EventKind::TetherTruth { .. }
+            | EventKind::PlannerPrepared { .. }
+            | EventKind::Snapshotted { .. }
+            | EventKind::Discarded { .. }
+            | EventKind::PlannerSaid { .. }
+            | EventKind::Uncounted { .. } => {}
+        }
+    }
+
+    /// Takes in an event of a planner.
+    fn planned(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::PlannerChosen { choice, info, .. } => self.seat(choice, info),
+            EventKind::ParametersChanged { choice, .. } => self.planning.choice = Some(choice.clone()),
+            EventKind::Planned { path, length_m, complete, .. } => {
+                let path = Trail::thinned(path);
+                let plan = PlanShown { path, length_m: *length_m, complete: *complete, t_s: event.t_s };
+                self.planning.plan = Some(plan);
+                self.planner_works();
+            }
+            EventKind::Commanded { command, .. } => self.command(event.t_s, *command),
+            EventKind::Drawn { drawings } => self.draw(event.tick, drawings),
+            EventKind::Scalars { scalars } => {
+                self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
+            }
+            EventKind::PlannerFailed { fault, .. } => {
+                // A planner that was refused does not replace the active one.
+                if self.planner_id() == Some(fault.planner.as_str()) {
+                    self.planning.fault = Some(fault.clone());
+                }
+                self.raise(event, Cause::Planner, fault.severity(), fault.message.clone());
+                self.withdraw_question();
+            }
             EventKind::PlannerLate { planner, ticks } => {
                 self.raise(
                     event,
@@ -120,13 +142,7 @@ impl Model {
             EventKind::PlannerRejected { planner, why } => {
                 self.say(Severity::Warn, format!("planner {planner} does not take over: {why}"));
             }
-            EventKind::Truth { .. }
-            | EventKind::TetherTruth { .. }
-            | EventKind::PlannerPrepared { .. }
-            | EventKind::Snapshotted { .. }
-            | EventKind::Discarded { .. }
-            | EventKind::PlannerSaid { .. }
-            | EventKind::Uncounted { .. } => {}
+            _ => {}
         }
     }
 

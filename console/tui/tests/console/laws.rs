@@ -223,7 +223,7 @@ fn nothing_but_style_is_lost_without_colour() {
     failed.tell(Msg::Events(events));
     let mut unrecorded = Screen::running();
     unrecorded.tell(Msg::Health(Health { recording: Recording::Failed("full".into()), reached_speed: None }));
-    let cases: [(&str, Screen, &[&str]); 6] = [
+    let cases: Vec<(&str, Screen, &[&str])> = vec![
         ("idle", Screen::idle(), &["■ IDLE", "REC●", "Press S"]),
         ("running", Screen::running(), &["▶ RUN", "2w", "OUT 0.42 m", "found"]),
         ("held", Screen::held(), &["‖ HOLD", "HELD by operator"]),
