@@ -131,13 +131,9 @@ impl Model {
                 self.raise(event, Cause::Planner, fault.severity(), fault.message.clone());
                 self.withdraw_question();
             }
+            // No alarm: the planner works again, and a fault before may not be acknowledged yet.
             EventKind::PlannerLate { planner, ticks } => {
-                self.raise(
-                    event,
-                    Cause::Planner,
-                    Severity::Watch,
-                    format!("planner {planner} answered {ticks} ticks late"),
-                );
+                self.say(Severity::Watch, format!("planner {planner} answered {ticks} ticks late"));
             }
             EventKind::PlannerRejected { planner, why } => {
                 self.say(Severity::Warn, format!("planner {planner} does not take over: {why}"));

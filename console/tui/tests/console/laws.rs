@@ -98,6 +98,26 @@ fn msg() -> impl Strategy<Value = Msg> {
     ]
 }
 
+/// What most changes which orders are accepted.
+fn turn() -> impl Strategy<Value = Msg> {
+    let telling = Screen::idle().telling;
+    let tether = || HoldReason::Tether { message: "no way home".into() };
+    let refused = || HoldReason::PlanRefused { message: "not certified".into() };
+    let one = |kind| vec![telling.now(kind)];
+    let turns = vec![
+        one(EventKind::Resumed),
+        one(EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 }),
+        one(EventKind::PositionRegained { error_m: 0.1 }),
+        vec![telling.held_until(tether(), Resumes::WhenCleared)],
+        vec![telling.held_until(refused(), Resumes::ByFallback)],
+        vec![telling.held(refused())],
+        telling.obeyed(Order::Hold),
+        telling.obeyed(Order::Resume),
+        vec![telling.ended(Outcome::Complete, "the task is done")],
+    ];
+    prop::sample::select(turns).prop_map(Msg::Events)
+}
+
 /// Messages of an operator who asks for everything and often agrees.
 fn deed() -> impl Strategy<Value = Vec<Msg>> {
     let press = |key: Key| Msg::Key(key.into());
@@ -109,7 +129,9 @@ fn deed() -> impl Strategy<Value = Vec<Msg>> {
         4 => Just(vec![press(Key::Enter)]),
         1 => Just(vec![press(Key::Esc)]),
         2 => prop::sample::select(vec![Key::Up, Key::Down]).prop_map(move |key| vec![press(key)]),
-        4 => msg().prop_map(|msg| vec![msg]),
+        1 => Just(vec![press(Key::Char('p')), press(Key::Down), press(Key::Down), press(Key::Down), press(Key::Enter)]),
+        1 => msg().prop_map(|msg| vec![msg]),
+        4 => turn().prop_map(|msg| vec![msg]),
     ]
 }
 

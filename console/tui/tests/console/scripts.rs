@@ -264,7 +264,12 @@ fn a_planner_that_is_rejected_or_late_is_reported() {
     told(&mut screen, EventKind::Snapshotted { ask, bytes: 12 });
     assert_eq!(screen.model, before, "of no interest to the operator");
     told(&mut screen, EventKind::PlannerLate { planner: "rpf".into(), ticks: 4 });
-    assert_eq!(screen.model.alarms.count(Severity::Watch), before.alarms.count(Severity::Watch) + 1);
+    assert_eq!(notice(&screen), "planner rpf answered 4 ticks late");
+    let events = screen.telling.planner_fails();
+    screen.tell(Msg::Events(events));
+    told(&mut screen, EventKind::PlannerLate { planner: "rpf".into(), ticks: 4 });
+    obeyed(&mut screen, Order::Resume);
+    assert_eq!(screen.model.alarms.unacknowledged(Severity::Crit), 1, "the fault waits to be acknowledged");
 }
 
 #[test]
