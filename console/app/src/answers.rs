@@ -19,23 +19,34 @@ pub trait Answers {
     fn next(&mut self, mission: &Mission) -> Option<Answer>;
 }
 
-/// Waits for every answer, and gives them in the order of the asks.
-pub struct InOrder<'a> {
-    host: &'a mut Host,
+/// Waits for every answer, and gives them in the order of the asks. A tick that somebody interrupts by the doorbell leaves
+/// asks open for the next one.
+pub struct InOrder {
+    host: Host,
     /// Asks without an answer, oldest first.
-    open: &'a mut VecDeque<AskId>,
+    open: VecDeque<AskId>,
     /// Answers that came before older ones.
     early: Vec<Answer>,
 }
 
-impl<'a> InOrder<'a> {
-    /// For one tick; `open` are the asks that earlier ticks left without an answer, because somebody interrupted them.
-    pub fn new(host: &'a mut Host, open: &'a mut VecDeque<AskId>) -> Self {
-        Self { host, open, early: Vec::new() }
+impl InOrder {
+    /// The answers of a host.
+    pub fn new(host: Host) -> Self {
+        Self { host, open: VecDeque::new(), early: Vec::new() }
+    }
+
+    /// The host.
+    pub fn host(&mut self) -> &mut Host {
+        &mut self.host
+    }
+
+    /// The host, after the flight.
+    pub fn into_host(self) -> Host {
+        self.host
     }
 }
 
-impl Answers for InOrder<'_> {
+impl Answers for InOrder {
     fn submit(&mut self, ask: Ask) {
         if ask.what == What::Close {
             self.open.retain(|open| open.worker != ask.id.worker);

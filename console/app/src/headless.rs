@@ -12,7 +12,7 @@ use crate::{
     progress,
     run_folder::{Kept, RunFolder},
     scenario::Scenario,
-    stop_signal,
+    stop_signal::{self, StopSignal},
 };
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -21,7 +21,6 @@ use planner_host::{Host, HostConfig, PluginDirs};
 use recording::{JournalWriter, Options, RunRecorder};
 use report::{Fold, Logs, PlannerCalls, Summary};
 use std::{
-    collections::VecDeque,
     io::IsTerminal,
     process::ExitCode,
     time::{Duration, Instant},
@@ -55,6 +54,7 @@ pub fn fly(
     logs: &LogsArg,
     telling: Telling,
 ) -> anyhow::Result<ExitCode> {
+    let stop = stop_signal::listen();
     crate::planners::check_choices(scenario, plugins)?;
     warn_of_clearance(scenario);
     let began = Instant::now();
@@ -68,7 +68,15 @@ pub fn fly(
         None => RunRecorder::spawn(JournalWriter::unwritten(began), None)?,
     };
     let bar = progress_bar(scenario, telling);
-    let (host, fold) = fly_to_end(flight, host(scenario, plugins), &recorder, &bar, telling.live_deadlines);
+    let (mut fold, mut trouble) = (Fold::new(), None);
+    let mut take = |events: Vec<Event>| {
+        events.iter().for_each(|event| fold.apply(event));
+        show_progress(&bar, &events);
+        recorder.send(events);
+        report_trouble(&mut trouble, recorder.health().error);
+    };
+    take(vec![flight.opened()]);
+    let host = fly_to_end(flight, host(scenario, plugins), take, (&bar, &stop), telling.live_deadlines);
     bar.finish_and_clear();
     let finished = recorder.finish(CLOSE_TIMEOUT);
     let logs = folder.is_some().then(|| Logs {
@@ -108,40 +116,31 @@ fn report_trouble(reported: &mut Option<String>, trouble: Option<String>) {
 /// Flies to the end; every ask is answered before time moves on, or within the console's windows.
 fn fly_to_end(
     mut flight: Flight,
-    mut host: Host,
-    recorder: &RunRecorder,
-    bar: &ProgressBar,
+    host: Host,
+    mut take: impl FnMut(Vec<Event>),
+    (bar, stop): (&ProgressBar, &StopSignal),
     live_deadlines: bool,
-) -> (Host, Fold) {
-    let stop = stop_signal::listen();
-    stop.ring(host.doorbell());
-    let (on_work, on_progress) = progress::shown_in(bar, host.plan_budget());
-    host.tell_progress(on_progress);
-    let (mut watch, mut open) = (PlanWatch::telling(on_work), VecDeque::new());
-    let mut fold = Fold::new();
-    let mut take = |events: Vec<Event>| {
-        for event in &events {
-            fold.apply(event);
-        }
-        show_progress(bar, &events);
-        recorder.send(events);
-    };
-    take(vec![flight.opened()]);
-    let (mut orders, mut trouble) = (vec![Order::Start], None);
+) -> Host {
+    let mut answers = InOrder::new(host);
+    let (on_work, on_progress) = progress::shown_in(bar, answers.host().plan_budget());
+    answers.host().tell_progress(on_progress);
+    stop.ring(answers.host().doorbell());
+    let mut watch = PlanWatch::telling(on_work);
+    let mut orders = vec![Order::Start];
     while !matches!(flight.phase(), Phase::Ended(_)) {
         if stop.requested() {
             orders.push(Order::Abort);
         }
-        let window = Window::real_time(flight.tick_length());
         take(if live_deadlines {
-            flight.tick(&orders, &mut Watched::new(Windowed::new(&mut host, window), &mut watch))
+            let window = Window::real_time(flight.tick_length());
+            let mut windowed = Windowed::new(answers.host(), window);
+            flight.tick(&orders, &mut Watched::new(&mut windowed, &mut watch))
         } else {
-            flight.tick(&orders, &mut Watched::new(InOrder::new(&mut host, &mut open), &mut watch))
+            flight.tick(&orders, &mut Watched::new(&mut answers, &mut watch))
         });
         orders.clear();
-        report_trouble(&mut trouble, recorder.health().error);
     }
-    (host, fold)
+    answers.into_host()
 }
 
 /// A host for the planners of a scenario.

@@ -61,13 +61,13 @@ impl PlanWatch {
 
 /// Answers with somebody who watches plans being made.
 pub struct Watched<'a, A> {
-    answers: A,
+    answers: &'a mut A,
     watch: &'a mut PlanWatch,
 }
 
 impl<'a, A: Answers> Watched<'a, A> {
     /// These answers, watched.
-    pub fn new(answers: A, watch: &'a mut PlanWatch) -> Self {
+    pub fn new(answers: &'a mut A, watch: &'a mut PlanWatch) -> Self {
         Self { answers, watch }
     }
 }

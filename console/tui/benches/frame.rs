@@ -32,6 +32,8 @@ fn long_mission() -> Screen {
         })
         .collect();
     let planned = EventKind::Planned {
+        ask: None,
+        way_home: 0,
         planner: "rpf".into(),
         reason: planner_api::Reason::Operator,
         length_m: world::polyline::length_m(&path),

@@ -6,17 +6,17 @@ use crate::model::{Model, Overlay, Pane};
 /// Names an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ActionId {
-    /// Stand still now; when held, open the line that asks whether to go on.
+    /// Stand still now; when held, ask whether to resume.
     Hold,
     /// Stand still now; twice asks to leave.
     Interrupt,
-    /// Draw the whole screen anew.
+    /// Redraw the screen.
     Redraw,
     /// Stand still and give the terminal back to the shell for a while.
     Suspend,
     /// Start the mission.
     Start,
-    /// Go on.
+    /// Resume.
     Resume,
     /// Fly a plan that was refused because of the tether.
     FlyUncertified,
@@ -216,16 +216,16 @@ impl Action {
 /// Every action, in the order of the footer and of help.
 #[rustfmt::skip]
 pub const ACTIONS: &[Action] = &[
-    action(ActionId::Hold, "hold", "HOLD now; when held: ask to go on", &[Key::Char(' ')], &[Context::Anywhere]).label("HOLD"),
+    action(ActionId::Hold, "hold", "HOLD now; when held: ask to resume", &[Key::Char(' ')], &[Context::Anywhere]).label("HOLD"),
     action(ActionId::Interrupt, "interrupt", "HOLD now; twice: ask to leave", &[Key::Ctrl('c')], &[Context::Anywhere]),
     action(ActionId::Start, "start", "Start the mission", &[Key::Char('S')], &[Context::Mission]).label("start").risk(Risk::Moves),
-    action(ActionId::Resume, "resume", "Go on after a hold", &[], &[Context::Mission]).risk(Risk::Moves),
+    action(ActionId::Resume, "resume", "Resume after a hold", &[], &[Context::Mission]).risk(Risk::Moves),
     action(ActionId::FlyUncertified, "fly-uncertified", "Fly a plan refused because of the tether", &[], &[Context::Mission]).risk(Risk::Moves),
     action(ActionId::Step, "step", "Move for one tick while held", &[Key::Char('.')], &[Context::Mission]).label("step").risk(Risk::Moves),
     action(ActionId::Slower, "slower", "Simulate slower", &[Key::Char('<')], &[Context::Mission]).label("speed").repeats(),
     action(ActionId::Faster, "faster", "Simulate faster", &[Key::Char('>')], &[Context::Mission]).label("speed").repeats(),
     action(ActionId::Abort, "end", "Hold, then ask to end the mission", &[Key::Char('X')], &[Context::Mission]).label("end").risk(Risk::Destroys),
-    action(ActionId::ChoosePlanner, "planner", "Let another planner drive, while held", &[Key::Char('P')], &[Context::Mission]).label("planner").risk(Risk::Moves),
+    action(ActionId::ChoosePlanner, "planner", "Change the planner, while held", &[Key::Char('P')], &[Context::Mission]).label("planner").risk(Risk::Moves),
     action(ActionId::Parameters, "parameters", "See and change the planner's parameters", &[Key::Char('p')], &[Context::Mission]).label("parameters"),
     action(ActionId::Acknowledge, "acknowledge", "Acknowledge the worst alarm", &[Key::Char('a')], &[Context::Mission]).label("ack"),
     action(ActionId::Commands, "commands", "Find a command by its name", &[Key::Char(':'), Key::Ctrl('p')], &[Context::Mission]).label("command"),
@@ -250,13 +250,13 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::PageOlder, "page-older", "A page towards older events", &[Key::PageDown, Key::Ctrl('d')], &[Context::Events]).repeats(),
     action(ActionId::Newest, "newest", "The newest event", &[Key::Home, Key::Char('g')], &[Context::Events]),
     action(ActionId::Oldest, "oldest", "The oldest event", &[Key::End, Key::Char('G')], &[Context::Events]),
-    action(ActionId::Redraw, "redraw", "Draw the whole screen anew", &[Key::Ctrl('l')], &[Context::Anywhere]),
+    action(ActionId::Redraw, "redraw", "Redraw the screen", &[Key::Ctrl('l')], &[Context::Anywhere]),
     action(ActionId::Suspend, "suspend", "HOLD, then back to the shell until fg", &[Key::Ctrl('z')], &[Context::Anywhere]),
     action(ActionId::Edit, "edit", "Type a value", &[Key::Char('e')], &[Context::Parameters]).label("edit"),
-    action(ActionId::Accept, "accept", "Agree, or take the selected line", &[Key::Enter], &[Context::List, Context::Text, Context::Confirm, Context::Stepping]).label("yes"),
+    action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::List, Context::Text, Context::Confirm, Context::Stepping]).label("yes"),
     action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("one more tick").risk(Risk::Moves),
-    action(ActionId::Cancel, "cancel", "Back without doing anything", &[Key::Esc], &[Context::Text, Context::Stepping]).label("back"),
-    action(ActionId::Cancel, "cancel", "Back without doing anything", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm]).label("back"),
+    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc], &[Context::Text, Context::Stepping]).label("back"),
+    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm]).label("back"),
     action(ActionId::Up, "up", "Select the line above", &[Key::Up, Key::Char('k')], &[Context::List]).repeats(),
     action(ActionId::Down, "down", "Select the line below", &[Key::Down, Key::Char('j')], &[Context::List]).repeats(),
     action(ActionId::Up, "up", "Select the line above", &[Key::Up], &[Context::Commands]).repeats(),

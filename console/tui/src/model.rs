@@ -83,7 +83,7 @@ pub struct Run {
     pub preset_m: Option<f64>,
 }
 
-/// Mission time, as the events tell it.
+/// Mission time, by the events.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Clock {
     /// Number of the last tick.
@@ -147,7 +147,7 @@ pub struct Planning {
     pub fault: Option<Fault>,
 }
 
-/// The time as the caller told it.
+/// The time, by the caller.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Times {
     /// Seconds on a clock that never jumps.
@@ -202,7 +202,7 @@ pub enum Recording {
     /// Nobody asked for it.
     #[default]
     Off,
-    /// All is on its way to the disk.
+    /// Everything is being written.
     On,
     /// It failed, and why.
     Failed(String),
@@ -237,16 +237,16 @@ pub struct Notice {
     pub until_mono_s: f64,
 }
 
-/// What keeps the engine busy.
+/// Work of a planner that takes its time; ticks and HOLD go on meanwhile.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Busy {
-    /// What it is, as words that read on after "BUSY:".
+    /// What it is, such as `Planning (rpf)`.
     pub work: String,
     /// How long it may take, seconds; not known for what is short.
     pub within_s: Option<f64>,
     /// When it began, on the console's own clock, seconds.
     pub since_mono_s: f64,
-    /// How far it is: the share done, 0 to 1, and what is being done; `None` if nobody tells.
+    /// How far it is: the share done, 0 to 1, and what is being done; `None` if it is not reported.
     #[serde(default)]
     pub at: Option<(f64, String)>,
 }
@@ -254,7 +254,7 @@ pub struct Busy {
 /// The console itself.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Console {
-    /// The time as last told.
+    /// The time, by the last message.
     pub now: Times,
     /// How fast the mission shall go.
     pub speed: Speed,
@@ -264,7 +264,7 @@ pub struct Console {
     pub planners: Vec<PlannerInfo>,
     /// Plugins that cannot be chosen.
     pub refused: Vec<Refused>,
-    /// What the engine is busy with while it sends no events.
+    /// What a planner is working on.
     pub busy: Option<Busy>,
     /// What was last said to the operator.
     pub notice: Option<Notice>,
@@ -287,7 +287,7 @@ impl Model {
         matches!(self.phase(), Phase::Running(_))
     }
 
-    /// Whether the robot moves, or may begin to move without an order, or because of one that is on its way.
+    /// Whether the robot moves, or may begin to move without an order, or because of one that was sent and not answered yet.
     pub fn may_move(&self) -> bool {
         self.phase().may_move() || self.console.asked.is_some()
     }
@@ -296,7 +296,7 @@ impl Model {
     pub fn cannot_fly(&self, planner: &PlannerInfo) -> Option<String> {
         let covers =
             self.run.as_ref().is_some_and(|run| matches!(run.mission.task, TaskConfig::Cover { .. }));
-        (covers && !planner.covers).then(|| "covers no floor".into())
+        (covers && !planner.covers).then(|| "does not support coverage missions".into())
     }
 
     /// What is known of the planner that drives, or that will drive first.
@@ -309,6 +309,11 @@ impl Model {
     /// Id of the planner that drives, or that will drive first.
     pub fn planner_id(&self) -> Option<&str> {
         self.planning.choice.as_ref().map(|choice| choice.id.as_str())
+    }
+
+    /// Whether leaving would abort a mission: one that was started and has not ended, or whose start was requested.
+    pub fn is_under_way(&self) -> bool {
+        !self.has_ended() && (*self.phase() != Phase::Waiting || self.may_move())
     }
 
     /// Whether the run is over.
@@ -346,7 +351,7 @@ impl Model {
         known.then(|| self.clock.moving_s * (1.0 - done) / done)
     }
 
-    /// Tells the operator something in the line above the keys.
+    /// Shows the operator a message in the line above the keys.
     pub(crate) fn say(&mut self, severity: Severity, text: impl Into<String>) {
         let until_mono_s = self.console.now.mono_s + NOTICE_S;
         self.console.notice = Some(Notice { severity, text: text.into(), until_mono_s });

@@ -15,7 +15,7 @@ use crate::model::{
 use mission::{Event, Order, PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
 
-/// What the model is told.
+/// What reaches the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Msg {
     /// A key went down.
@@ -88,7 +88,7 @@ pub enum Signal {
     Hangup,
     /// SIGTSTP: hold and give the terminal back for a while.
     Stop,
-    /// SIGCONT: draw anew.
+    /// SIGCONT: redraw.
     Continue,
 }
 
@@ -99,7 +99,7 @@ pub enum Effect {
     Order(Order),
     /// Change the pace of the simulation.
     Speed(Speed),
-    /// Draw every cell anew.
+    /// Redraw every cell.
     Redraw,
     /// Give the terminal back and stop the process until SIGCONT.
     Suspend,
@@ -144,7 +144,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
             Vec::new()
         }
         Msg::BusyAt { share, what } => {
-            // What was told too late, when all is done, is of no interest.
+            // Progress that is reported after the work is done is ignored.
             if let Some(busy) = &mut model.console.busy {
                 busy.at = Some((share, what));
             }
@@ -165,16 +165,21 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
 }
 
 fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
+    if press.key == Key::Char(' ') && !model.may_move() && overlay::is_typing(model) {
+        // With nothing to stop, the stop key is a letter like any other.
+        overlay::type_key(model, press.key);
+        return Vec::new();
+    }
     let Some(action) = actions::action_for(press.key, &actions::contexts(model)) else {
         return if overlay::type_key(model, press.key) { Vec::new() } else { unknown(model, press.key) };
     };
     if press.repeat && !action.repeats { Vec::new() } else { act(model, action.id) }
 }
 
-/// A key that means nothing here says so, instead of leaving the operator to wonder.
+/// Reports a key that has no action here.
 fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
     if model.ui.overlay == Overlay::None {
-        model.say(Severity::Info, format!("{key} means nothing here; ? shows the keys"));
+        model.say(Severity::Info, format!("Key {key} is not assigned (?: show keys)"));
     }
     Vec::new()
 }

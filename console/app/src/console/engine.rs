@@ -264,8 +264,8 @@ impl EngineThread {
 
     fn tick_with(&mut self, orders: &[Order]) {
         let window = self.window();
-        let answers = Windowed::new(&mut self.host, window);
-        let events = self.flight.tick(orders, &mut Watched::new(answers, &mut self.watch));
+        let mut answers = Windowed::new(&mut self.host, window);
+        let events = self.flight.tick(orders, &mut Watched::new(&mut answers, &mut self.watch));
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
         assert!(!failing, "drill: the engine fails on purpose");
         self.keep(&events);
@@ -354,8 +354,8 @@ impl EngineThread {
 
     fn close(mut self, within: Duration) -> Option<Ended> {
         if matches!(self.flight.phase(), Phase::Running(_) | Phase::Held(_)) {
-            let answers = Windowed::new(&mut self.host, Window::real_time(Duration::ZERO));
-            let events = self.flight.tick(&[Order::Abort], &mut Watched::new(answers, &mut self.watch));
+            let mut answers = Windowed::new(&mut self.host, Window::real_time(Duration::ZERO));
+            let events = self.flight.tick(&[Order::Abort], &mut Watched::new(&mut answers, &mut self.watch));
             self.keep(&events);
         }
         self.close_log(within);

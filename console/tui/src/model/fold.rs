@@ -1,6 +1,6 @@
 //! Events into the model.
 
-use super::{Cause, Model, Overlay, PlanShown, Progress, Raster, Run, Trail};
+use super::{Cause, Model, Overlay, PlanShown, Progress, Raster, Run, Trail, ui::Ask};
 use mission::{
     Event, EventKind, Hold, Order, Outcome, PlannerChoice, PlannerInfo, Severity, TaskConfig,
     event::HoldReason,
@@ -47,27 +47,15 @@ impl Model {
             | EventKind::PositionTrusted => self.locate(event),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
-            EventKind::PlannerChosen { choice, info, .. } => self.seat(choice, info),
-            EventKind::ParametersChanged { choice, .. } => self.planning.choice = Some(choice.clone()),
-            EventKind::Planned { path, length_m, complete, .. } => {
-                let path = Trail::thinned(path);
-                let plan = PlanShown { path, length_m: *length_m, complete: *complete, t_s: event.t_s };
-                self.planning.plan = Some(plan);
-                self.planner_works();
-            }
-            EventKind::Commanded { command, .. } => self.command(event.t_s, *command),
-            EventKind::Drawn { drawings } => self.draw(event.tick, drawings),
-            EventKind::Scalars { scalars } => {
-                self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
-            }
-            EventKind::PlannerFailed { fault, .. } => {
-                // A planner that was refused leaves the one before in its place.
-                if self.planner_id() == Some(fault.planner.as_str()) {
-                    self.planning.fault = Some(fault.clone());
-                }
-                self.raise(event, Cause::Planner, fault.severity(), fault.message.clone());
-                self.withdraw_question();
-            }
+            EventKind::PlannerChosen { .. }
+            | EventKind::ParametersChanged { .. }
+            | EventKind::Planned { .. }
+            | EventKind::Commanded { .. }
+            | EventKind::Drawn { .. }
+            | EventKind::Scalars { .. }
+            | EventKind::PlannerFailed { .. }
+            | EventKind::PlannerLate { .. }
+            | EventKind::PlannerRejected { .. } => self.planned(event),
             EventKind::Covered { runs } => {
                 if let Some(coverage) = &mut self.coverage {
                     coverage.apply(runs);
@@ -102,22 +90,13 @@ impl Model {
             | EventKind::Certified { .. } => self.tethered(event),
             EventKind::Held { by, resumes } => self.hold(event, &Hold { by: by.clone(), resumes: *resumes }),
             EventKind::Resumed => {
-                self.console.asked = None;
                 self.alarms.clear(&Cause::Stuck);
                 self.planner_works();
+                if matches!(self.ui.overlay, Overlay::Confirm(Ask::Resume | Ask::FlyUncertified)) {
+                    self.withdraw_question();
+                }
             }
             EventKind::Ended { outcome, reason } => self.end(event, *outcome, reason),
-            EventKind::PlannerLate { planner, ticks } => {
-                self.raise(
-                    event,
-                    Cause::Planner,
-                    Severity::Watch,
-                    format!("planner {planner} answered {ticks} ticks late"),
-                );
-            }
-            EventKind::PlannerRejected { planner, why } => {
-                self.say(Severity::Warn, format!("planner {planner} does not take over: {why}"));
-            }
             EventKind::Truth { .. }
             | EventKind::TetherTruth { .. }
             | EventKind::PlannerPrepared { .. }
@@ -125,6 +104,41 @@ impl Model {
             | EventKind::Discarded { .. }
             | EventKind::PlannerSaid { .. }
             | EventKind::Uncounted { .. } => {}
+        }
+    }
+
+    /// Takes in an event of a planner.
+    fn planned(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::PlannerChosen { choice, info, .. } => self.seat(choice, info),
+            EventKind::ParametersChanged { choice, .. } => self.planning.choice = Some(choice.clone()),
+            EventKind::Planned { path, length_m, complete, .. } => {
+                let path = Trail::thinned(path);
+                let plan = PlanShown { path, length_m: *length_m, complete: *complete, t_s: event.t_s };
+                self.planning.plan = Some(plan);
+                self.planner_works();
+            }
+            EventKind::Commanded { command, .. } => self.command(event.t_s, *command),
+            EventKind::Drawn { drawings } => self.draw(event.tick, drawings),
+            EventKind::Scalars { scalars } => {
+                self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
+            }
+            EventKind::PlannerFailed { fault, .. } => {
+                // A planner that was refused does not replace the active one.
+                if self.planner_id() == Some(fault.planner.as_str()) {
+                    self.planning.fault = Some(fault.clone());
+                }
+                self.raise(event, Cause::Planner, fault.severity(), fault.message.clone());
+                self.withdraw_question();
+            }
+            // No alarm: the planner works again, and a fault before may not be acknowledged yet.
+            EventKind::PlannerLate { planner, ticks } => {
+                self.say(Severity::Watch, format!("planner {planner} answered {ticks} ticks late"));
+            }
+            EventKind::PlannerRejected { planner, why } => {
+                self.say(Severity::Warn, format!("planner {planner} does not take over: {why}"));
+            }
+            _ => {}
         }
     }
 
@@ -136,7 +150,7 @@ impl Model {
         self.planner_works();
     }
 
-    /// Takes in what is told about the tether.
+    /// Takes in an event of the tether.
     fn tethered(&mut self, event: &Event) {
         match &event.kind {
             EventKind::TetherAlarmed { alarm, reached } => {
@@ -167,7 +181,7 @@ impl Model {
         }
     }
 
-    /// Takes in what is told about the robot's place.
+    /// Takes in an event of the robot's position.
     fn locate(&mut self, event: &Event) {
         match &event.kind {
             EventKind::Ranged { ranges } => self.position.ranged(event.t_s, ranges.len()),
@@ -238,7 +252,8 @@ impl Model {
         self.planning.choice = Some(run.mission.planner.clone());
     }
 
-    /// Notes that the mission answered an order, for better or worse.
+    /// Notes that the mission accepted or refused an order. Nothing else ends the wait for it: an event of the tick before
+    /// says nothing about an order that comes after it.
     pub(crate) fn answered(&mut self, order: &Order) {
         if self.console.asked.as_ref() == Some(order) {
             self.console.asked = None;
@@ -260,7 +275,7 @@ impl Model {
                 format!("residual {residual_m:.2} m, gate {gate_m:.2} m")
             }
         };
-        self.raise(event, Cause::Station(station), Severity::Watch, format!("{name} left out: {why}"));
+        self.raise(event, Cause::Station(station), Severity::Watch, format!("{name} rejected: {why}"));
     }
 
     /// The station of that id.
@@ -308,8 +323,6 @@ impl Model {
         if let HoldReason::Stuck { message } = &hold.by {
             self.raise(event, Cause::Stuck, Severity::Warn, format!("stuck: {message}"));
         }
-        self.console.hold_asked = false;
-        self.console.asked = None;
         if !matches!(hold.by, HoldReason::Operator | HoldReason::Stepped) {
             self.withdraw_question();
         }
@@ -332,7 +345,7 @@ impl Model {
     fn withdraw_question(&mut self) {
         if matches!(self.ui.overlay, Overlay::Confirm(_) | Overlay::Stepping) {
             self.ui.overlay = Overlay::None;
-            self.say(Severity::Warn, "the question was withdrawn: things have changed since it was asked");
+            self.say(Severity::Warn, "Confirmation cancelled: the situation has changed");
         }
     }
 }

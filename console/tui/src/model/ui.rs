@@ -184,7 +184,7 @@ pub enum Overlay {
 pub enum Ask {
     /// Start the mission.
     Start,
-    /// Go on.
+    /// Resume.
     Resume,
     /// Fly a plan that was refused because of the tether.
     FlyUncertified,

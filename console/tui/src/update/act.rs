@@ -4,7 +4,7 @@ use super::{Effect, hold_now, offered, overlay};
 use crate::actions::ActionId;
 use crate::model::ui::{Ask, MAX_ZOOM, MapView};
 use crate::model::{Model, Overlay, Pane};
-use mission::{Order, Phase, Severity};
+use mission::{Order, Severity};
 use world::{Point, Vector};
 
 /// Seconds within which a second Ctrl-C asks to leave.
@@ -92,7 +92,7 @@ fn hold(model: &mut Model) -> Vec<Effect> {
     if model.ui.overlay == Overlay::None {
         return ask(model, Ask::Resume);
     }
-    model.say(Severity::Info, "the robot is held already");
+    model.say(Severity::Info, "Already held");
     Vec::new()
 }
 
@@ -105,18 +105,19 @@ fn interrupt(model: &mut Model) -> Vec<Effect> {
     if twice {
         model.ui.overlay = Overlay::Quit;
     } else {
-        model.say(Severity::Info, "Ctrl-C once more within 2 s asks to leave");
+        model.say(Severity::Info, "Press Ctrl-C again within 2 s to leave");
     }
     effects
 }
 
-/// Holds a mission that may move, then asks; where nothing is at stake it leaves at once.
+/// Holds, then asks; with nothing under way it leaves at once.
 fn leave(model: &mut Model) -> Vec<Effect> {
-    let effects = hold_now(model);
-    if effects.is_empty() && matches!(model.phase(), Phase::Waiting | Phase::Ended(_)) {
-        return vec![Effect::Quit { signal: None }];
+    let mut effects = hold_now(model);
+    if model.is_under_way() {
+        model.ui.overlay = Overlay::Quit;
+    } else {
+        effects.push(Effect::Quit { signal: None });
     }
-    model.ui.overlay = Overlay::Quit;
     effects
 }
 

@@ -20,18 +20,17 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Parameters => parameters(model),
         ActionId::Acknowledge => {
             let waiting = model.alarms.list().iter().any(|alarm| !alarm.acknowledged);
-            demand(waiting, "no alarm waits to be acknowledged")
+            demand(waiting, "no unacknowledged alarm")
         }
         ActionId::Slower => speed(model, false),
         ActionId::Faster => speed(model, true),
-        ActionId::ZoomIn => map(model).and(demand(model.ui.map.zoom < MAX_ZOOM, "the map is at its largest")),
-        ActionId::ZoomOut => map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is shown already")),
+        ActionId::ZoomIn => map(model).and(demand(model.ui.map.zoom < MAX_ZOOM, "maximum zoom")),
+        ActionId::ZoomOut => map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is already shown")),
         ActionId::WholeTank | ActionId::Layers => map(model),
-        ActionId::Follow => {
-            map(model).and(demand(model.position.pose.is_some(), "the robot's place is not known yet"))
-        }
+        ActionId::Follow => map(model)
+            .and(demand(model.position.pose.is_some(), "the position of the robot is not known yet")),
         ActionId::PanLeft | ActionId::PanRight | ActionId::PanUp | ActionId::PanDown => {
-            map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is shown; z enlarges the map first"))
+            map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is shown; z: zoom in first"))
         }
         ActionId::Severity
         | ActionId::Filter
@@ -41,10 +40,10 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::PageOlder
         | ActionId::Newest
         | ActionId::Oldest => {
-            demand(model.ui.shows_events(), "the events are not shown here; Tab, or 60x16 and more")
+            demand(model.ui.shows_events(), "the events are not shown; Tab: next pane (needs 60x16)")
         }
         ActionId::NextPane | ActionId::PreviousPane => {
-            demand(!model.ui.panes().is_empty(), "panes need 60 columns and 16 rows")
+            demand(!model.ui.panes().is_empty(), "panes need at least 60x16")
         }
         ActionId::Interrupt
         | ActionId::Redraw
@@ -77,15 +76,15 @@ fn hold(model: &Model) -> Result<(), String> {
 }
 
 fn start(model: &Model) -> Result<(), String> {
-    demand(model.run.is_some(), "there is no mission yet")?;
+    demand(model.run.is_some(), "no mission loaded yet")?;
     accepted(model, &Order::Start)?;
-    demand(model.console.asked.is_none(), "the start has been requested; space holds")
+    demand(model.console.asked.is_none(), "start already requested; space: HOLD")
 }
 
 /// Ending a mission that was never started would leave a run of nothing.
 fn abort(model: &Model) -> Result<(), String> {
     let is_waiting = *model.phase() == Phase::Waiting && !model.may_move();
-    demand(!is_waiting, "the mission has not been started; q leaves")?;
+    demand(!is_waiting, "the mission has not been started; q: leave")?;
     accepted(model, &Order::Abort)
 }
 
@@ -95,7 +94,7 @@ fn swap(model: &Model) -> Result<(), String> {
     if !model.console.hold_asked {
         accepted(model, &Order::ChoosePlanner(choice))?;
     }
-    demand(!model.console.planners.is_empty(), "no planner was found yet")
+    demand(!model.console.planners.is_empty(), "no planner found yet")
 }
 
 fn parameters(model: &Model) -> Result<(), String> {
@@ -106,13 +105,13 @@ fn parameters(model: &Model) -> Result<(), String> {
 }
 
 fn speed(model: &Model, faster: bool) -> Result<(), String> {
-    demand(!model.has_ended(), "the mission has ended; its pace does not matter any more")?;
-    let end = if faster { "this is as fast as it goes" } else { "this is the slowest" };
+    demand(!model.has_ended(), "the mission has ended")?;
+    let end = if faster { "Maximum speed" } else { "Minimum speed" };
     demand(model.console.speed.stepped(faster).is_some_and(|next: Speed| next != model.console.speed), end)
 }
 
 fn map(model: &Model) -> Result<(), String> {
-    demand(model.ui.shows_map(), "the map is not shown here; Tab, or 60x16 and more")
+    demand(model.ui.shows_map(), "the map is not shown; Tab: next pane (needs 60x16)")
 }
 
 /// What would be right, in keys.
@@ -123,14 +122,16 @@ trait Remedy {
 impl Remedy for Refusal {
     fn remedy(&self) -> Option<&'static str> {
         match self {
-            Self::NotStarted => Some("S starts it"),
-            Self::AlreadyStarted
-            | Self::AlreadyMoving
-            | Self::StepNeedsHold
-            | Self::SwapNeedsHold
-            | Self::NotLive { .. } => Some("space: HOLD"),
-            Self::Ended(_) => Some("q leaves"),
-            Self::PositionLost { .. } | Self::PositionAlarmed | Self::NoPlanRefused => None,
+            Self::NotStarted => Some("S: start"),
+            Self::AlreadyStarted | Self::AlreadyMoving | Self::StepNeedsHold | Self::SwapNeedsHold => {
+                Some("space: HOLD")
+            }
+            Self::Ended(_) => Some("q: leave"),
+            // These say themselves what would be right, as far as there is anything.
+            Self::NotLive { .. }
+            | Self::PositionLost { .. }
+            | Self::PositionAlarmed
+            | Self::NoPlanRefused => None,
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::actions::{self, ActionId};
 use crate::keys::Key;
 use crate::model::ui::{Ask, Edit, MapLayer};
 use crate::model::{Model, Overlay, parameter};
-use mission::{Order, Phase, PlannerChoice, Severity};
+use mission::{Order, PlannerChoice, Severity};
 
 /// Longest text that can be typed.
 const MAX_TYPED: usize = 64;
@@ -26,6 +26,8 @@ pub(super) fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
 pub(super) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
     if matches!(order, Order::Start | Order::Resume | Order::FlyUncertified | Order::Step) {
         model.console.asked = Some(order.clone());
+        // A HOLD that was sent before it does not stop what comes after it.
+        model.console.hold_asked = false;
     }
     vec![Effect::Order(order)]
 }
@@ -88,14 +90,13 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
 
 fn quit(model: &mut Model) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
-    let open = !model.has_ended() && (*model.phase() != Phase::Waiting || model.may_move());
-    let end = open.then_some(Effect::Order(Order::Abort));
+    let end = model.is_under_way().then_some(Effect::Order(Order::Abort));
     end.into_iter().chain([Effect::Quit { signal: None }]).collect()
 }
 
 fn run_command(model: &mut Model, filter: &str, selected: usize) -> Vec<Effect> {
     let Some(action) = actions::listed(filter, model.ui.pane).get(selected).copied() else {
-        model.say(Severity::Watch, format!("there is no command `{filter}`"));
+        model.say(Severity::Watch, format!("No command matches `{filter}`"));
         return Vec::new();
     };
     model.ui.overlay = Overlay::None;
@@ -105,8 +106,8 @@ fn run_command(model: &mut Model, filter: &str, selected: usize) -> Vec<Effect> 
 fn choose_planner(model: &mut Model, selected: usize) -> Vec<Effect> {
     let Some(planner) = model.console.planners.get(selected) else { return Vec::new() };
     if let Some(why) = model.cannot_fly(planner) {
-        let told = format!("{} cannot fly this mission: it {why}", planner.id);
-        model.say(Severity::Watch, told);
+        let text = format!("planner {} {why}", planner.id);
+        model.say(Severity::Watch, text);
         return Vec::new();
     }
     let choice = PlannerChoice { id: planner.id.clone(), parameters: mission::Parameters::new() };
@@ -131,11 +132,16 @@ fn edit(model: &mut Model) -> Vec<Effect> {
 fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
     let info = model.planner().and_then(|info| info.parameters.get(selected));
     let Some(info) = info else { return close(model) };
-    match parameter::parse(info, &edit.text) {
-        Ok(value) => {
-            let key = info.key.clone();
+    let order = |value| Order::SetParameter { key: info.key.clone(), value };
+    // Checked again: the mission may have changed while the value was typed.
+    let checked = parameter::parse(info, &edit.text).map(order).and_then(|order| {
+        super::offer::accepted(model, &order)?;
+        Ok(order)
+    });
+    match checked {
+        Ok(order) => {
             model.ui.overlay = Overlay::Parameters { selected, edit: None };
-            send(model, Order::SetParameter { key, value })
+            send(model, order)
         }
         Err(why) => {
             let refused = Edit { refusal: Some(why), ..edit };
@@ -180,13 +186,18 @@ pub(super) fn type_key(model: &mut Model, key: Key) -> bool {
 /// Puts pasted text into the line that is open; without one it goes nowhere, so that no paste is ever a command.
 pub(super) fn paste(model: &mut Model, pasted: &str) -> Vec<Effect> {
     let Some(text) = typed(model) else {
-        model.say(Severity::Info, "pasted text was ignored: no line is open to take it");
+        model.say(Severity::Info, "Nowhere to paste");
         return Vec::new();
     };
     let room = MAX_TYPED.saturating_sub(text.chars().count());
     text.extend(pasted.chars().filter(|letter| !letter.is_control()).take(room));
     typing_changed(model);
     Vec::new()
+}
+
+/// Whether a line is open in which text is typed.
+pub(super) fn is_typing(model: &mut Model) -> bool {
+    typed(model).is_some()
 }
 
 fn typed(model: &mut Model) -> Option<&mut String> {

@@ -4,7 +4,6 @@ use super::next::{self, Clauses};
 use super::{Look, coverage, text};
 use crate::model::{Model, Overlay, ui::Ask};
 use crate::theme::Role;
-use mission::Phase;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -27,46 +26,53 @@ fn question(model: &Model) -> Option<Vec<String>> {
     let planner = model.planner_id().unwrap_or("the planner");
     let clauses = match &model.ui.overlay {
         Overlay::Confirm(Ask::Start) => {
-            ["START? Enter starts, Esc does not.".into(), format!("The robot moves, driven by {planner}.")]
+            vec![
+                "Start mission? Enter: start, Esc: cancel.".into(),
+                format!("Robot will move (planner {planner})."),
+            ]
         }
-        Overlay::Confirm(Ask::Resume) => [
-            "RESUME? Enter resumes, Esc stays held.".into(),
-            format!("The robot moves, driven by {planner}."),
-        ],
-        Overlay::Confirm(Ask::FlyUncertified) => [
-            "FLY WITHOUT CERTIFICATE? Enter flies, Esc stays held.".into(),
-            "The cable may stay out; so fly all later plans.".into(),
+        Overlay::Confirm(Ask::Resume) => {
+            vec![
+                "Resume? Enter: resume, Esc: stay held.".into(),
+                format!("Robot will move (planner {planner})."),
+            ]
+        }
+        Overlay::Confirm(Ask::FlyUncertified) => vec![
+            "Run uncertified plan? Enter: run, Esc: stay held.".into(),
+            "Tether may remain deployed.".into(),
+            "Applies to all later plans.".into(),
         ],
         Overlay::Confirm(Ask::Abort) => {
             let scanned = format!("{} % of reachable floor scanned.", coverage::shares(model).0);
-            ["END HERE? Enter ends it for good, Esc does not.".into(), scanned]
+            vec!["End mission? Enter: end for good, Esc: cancel.".into(), scanned]
         }
         Overlay::Confirm(Ask::Swap(choice)) => {
             let next = text::fit(&choice.id, 18);
-            [format!("CHANGE TO {next}? Enter changes, Esc does not."), "Nothing moves yet.".into()]
+            let question = format!("Change planner to {next}? Enter: change, Esc: cancel.");
+            vec![question, "No motion yet.".into()]
         }
         Overlay::Stepping => {
             let tick_s = model.run.as_ref().map_or(0.0, |run| run.mission.tick_s);
-            [
-                "STEP? Enter or . moves, Esc ends.".into(),
-                format!("One tick of {} s each time.", text::number(tick_s, 2)),
+            vec![
+                "Single step? Enter or .: step, Esc: stop stepping.".into(),
+                format!("{} s per step.", text::number(tick_s, 2)),
             ]
         }
-        Overlay::Quit => match model.phase() {
-            _ if model.console.busy.is_some() => [
-                "LEAVE? Enter leaves, Esc stays.".into(),
-                "Planning will be cancelled and the mission ended.".into(),
-            ],
-            Phase::Waiting | Phase::Ended(_) => {
-                ["LEAVE? Enter leaves, Esc stays.".into(), "Nothing is under way.".into()]
-            }
-            _ => ["LEAVE? Enter leaves, Esc stays, held.".into(), "The mission ends here as aborted.".into()],
-        },
+        Overlay::Quit => quit(model),
         Overlay::Filter => {
             let typed = text::fit(&model.ui.needle, 20);
-            [format!("EVENTS WITH: {typed}_"), " Enter keeps the filter, Esc clears it.".into()]
+            vec![format!("Filter events: {typed}_"), " Enter: keep, Esc: clear.".into()]
         }
         _ => return None,
     };
-    Some(clauses.into())
+    Some(clauses)
+}
+
+fn quit(model: &Model) -> Vec<String> {
+    if !model.is_under_way() {
+        return vec!["Leave console? Enter: leave, Esc: stay.".into(), "No mission under way.".into()];
+    }
+    let question = "Leave and abort mission? Enter: leave, Esc: stay held.".to_owned();
+    let planning = model.console.busy.as_ref().map(|_| "Planning will be cancelled.".to_owned());
+    std::iter::once(question).chain(planning).collect()
 }

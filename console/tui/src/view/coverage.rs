@@ -26,7 +26,7 @@ fn wide_lines(look: &Look, width: u16) -> Vec<Line<'static>> {
         row("", format!("{whole:>5} % of whole floor")),
         look.line([(Role::Good, format!(" {}", bar(model, width)))]),
         row(to_do_label(model), format!("{:>5} % reach, {to_do} % whole", to_do_reachable(model))),
-        row("no reach", format!("{unreachable:>5} % whole, {margin} % margin")),
+        row("unreachable", format!("{unreachable:>5} % whole, {margin} % margin")),
         row("rate", format!("{}   {}", rate(model), area(model))),
         row(way_label(model), way(model)),
         row("left", left(model, true)),

@@ -119,10 +119,10 @@ fn commands(look: &Look, help: bool, filter: &str, selected: usize, columns: u16
     let below = if help {
         rules(usize::from(columns).saturating_sub(3))
     } else {
-        vec![hint(" Enter runs the line   Esc closes   - not now")]
+        vec![hint(" Enter: run   Esc: close   -: not available")]
     };
     List {
-        title: if help { "Keys and commands here" } else { "Command" }.into(),
+        title: if help { "Keys and commands" } else { "Command" }.into(),
         note: "type to filter",
         above: vec![vec![
             (Role::Title, format!(" > {filter}_")),
@@ -149,11 +149,11 @@ fn rules(columns: usize) -> Vec<Row> {
             .unwrap_or_default()
     };
     let (up, down, accept) = (keys(ActionId::Up), keys(ActionId::Down), keys(ActionId::Accept));
-    let lists = format!("{up} {down} select, {accept} runs the line, Esc closes, - is not for now.");
+    let lists = format!("{up} {down}: select, {accept}: run, Esc: close, -: not available now.");
     [
         lists.as_str(),
-        "Nothing asks before it STOPS; all ask before they MOVE or END.",
-        "Colour never stands alone: C W w are alarms, * is not acknowledged.",
+        "Stopping never asks first; what MOVES the robot or ENDS the mission does.",
+        "Alarms: C critical, W warning, w watch, * unacknowledged.",
     ]
     .into_iter()
     .flat_map(|rule| wrap(rule, columns))
@@ -169,7 +169,7 @@ fn planners(look: &Look, selected: usize, columns: u16) -> List {
             (Role::Title, text::column(&planner.id, 18)),
             (Role::Text, text::column(&planner.version, 8)),
             match look.model.cannot_fly(planner) {
-                _ if drives => (Role::Good, "drives".into()),
+                _ if drives => (Role::Good, "active".into()),
                 Some(why) => (Role::Dim, why),
                 None => (Role::Good, String::new()),
             },
@@ -194,7 +194,7 @@ fn planners(look: &Look, selected: usize, columns: u16) -> List {
             .into_iter()
             .chain(about)
             .chain(refused)
-            .chain([hint(" What was scanned stays; Enter asks before it changes.")])
+            .chain([hint(" Enter: change planner (asks first); scanned floor is kept.")])
             .collect(),
         needed_below: 0,
     }

@@ -364,7 +364,7 @@ fn draw_legend(look: &Look, frame: &mut Frame, area: Rect) {
     let found = look.model.run.iter().flat_map(|run| &run.world.obstacles).any(|obstacle| !obstacle.known);
     let entries = [
         (layers.shows(MapLayer::Scanned), Role::Scanned, swatch("▒▒"), "scanned"),
-        (layers.shows(MapLayer::Scanned), Role::Partly, swatch("░░"), "in part"),
+        (layers.shows(MapLayer::Scanned), Role::Partly, swatch("░░"), "partial"),
         (layers.shows(MapLayer::Accuracy), Role::Crit, if plain { "%%" } else { "██" }, "bad fixes"),
         (layers.shows(MapLayer::Trail), Role::Trail, line("⠤⠤", ".."), "trail"),
         (layers.shows(MapLayer::Plan), Role::Plan, line("⠄⠠", ",,"), "plan"),

@@ -3,7 +3,7 @@
 use super::{events, text};
 use crate::model::{Busy, Model};
 use crate::theme::Role;
-use mission::{Hold, Order, Outcome, Phase, Severity, event::HoldReason};
+use mission::{Hold, Order, Outcome, Phase, PositionTrust, Severity, event::HoldReason};
 
 /// How a line looks, and its clauses, the most important one first.
 pub(super) type Clauses = (Role, Vec<String>);
@@ -16,7 +16,7 @@ pub(super) fn clauses(model: &Model) -> Clauses {
         return (role, vec![notice.text.clone()]);
     }
     if let Some(silent_s) = model.silent_s() {
-        let news = format!("◌ No news from the mission for {} s: values are old.", silent_s as u64);
+        let news = format!("◌ No data from the mission for {} s: values are stale.", silent_s as u64);
         return (Role::Stale, vec![news, "space: HOLD.".into()]);
     }
     if model.console.hold_asked {
@@ -28,26 +28,27 @@ pub(super) fn clauses(model: &Model) -> Clauses {
         (Some(_), _) => (Role::Title, vec!["Order sent...".into()]),
         (None, Phase::Held(hold)) => {
             let mut clauses = held(model, hold);
-            // Why it is held comes first, then what is being done meanwhile.
-            clauses.splice(1..1, work.into_iter().flatten());
+            // That the robot will move by itself goes before what a planner is doing.
+            let at = if hold.resumes.is_never() { 1 } else { 2 }.min(clauses.len());
+            clauses.splice(at..at, work.into_iter().flatten());
             (Role::Hold, clauses)
         }
-        (None, Phase::Waiting | Phase::Running(_)) if work.is_some() => {
-            let stop = ["space: HOLD.", "X: end mission."].map(str::to_owned);
-            (Role::Watch, work.into_iter().flatten().chain(stop).collect())
+        (None, Phase::Waiting) => {
+            let (role, start) = idle(model);
+            (role, work.into_iter().flatten().chain(start).collect())
         }
-        (None, Phase::Waiting) => idle(model),
-        (None, Phase::Running(_)) => running(model),
-        (None, Phase::Ended(Outcome::Complete)) => (
-            Role::Good,
-            vec![
-                format!("DONE: {}.", model.end_reason),
-                "Nothing moves any more.".into(),
-                "q leaves.".into(),
-            ],
-        ),
+        (None, Phase::Running(_)) => match work {
+            Some(work) => {
+                let stop = ["space: HOLD.", "X: end mission."].map(str::to_owned);
+                (Role::Watch, work.into_iter().chain(stop).collect())
+            }
+            None => running(model),
+        },
+        (None, Phase::Ended(Outcome::Complete)) => {
+            (Role::Good, vec![format!("DONE: {}.", model.end_reason), "q: leave.".into()])
+        }
         (None, Phase::Ended(outcome)) => {
-            (Role::Warn, vec![format!("ENDED {}: {}.", outcome.word(), model.end_reason), "q leaves.".into()])
+            (Role::Warn, vec![format!("ENDED {}: {}.", outcome.word(), model.end_reason), "q: leave.".into()])
         }
     }
 }
@@ -78,39 +79,40 @@ pub(super) fn joined(clauses: &[String], columns: usize) -> String {
 
 fn idle(model: &Model) -> Clauses {
     if model.run.is_none() {
-        return (Role::Title, vec!["NEXT: the scenario is being read.".into()]);
+        return (Role::Title, vec!["Loading scenario...".into()]);
     }
     let who = model.planner_id().unwrap_or("the planner");
-    (
-        Role::Title,
-        vec![format!("NEXT: S asks to start with {who}."), "Nothing moves before you agree.".into()],
-    )
+    (Role::Title, vec![format!("Press S to start (planner {who}).")])
 }
 
 fn running(model: &Model) -> Clauses {
     if model.position.lost {
         let hold_s = model.run.as_ref().map_or(0.0, |run| run.mission.lost_hold_s);
-        let text = format!("POSITION LOST: the robot holds by itself after {} s.", text::number(hold_s, 1));
+        let text = format!("POSITION LOST: automatic HOLD after {} s.", text::number(hold_s, 1));
         return (Role::Crit, vec![text]);
     }
     let open = model.alarms.worst().filter(|alarm| !alarm.acknowledged && alarm.severity >= Severity::Warn);
     if let Some(alarm) = open {
-        let over = if alarm.active { "" } else { " (over by now)" };
-        return (events::role(alarm.severity), vec![format!("a acknowledges{over}: {}", alarm.text)]);
+        let over = if alarm.active { "" } else { " (cleared)" };
+        return (events::role(alarm.severity), vec![format!("a: acknowledge{over}: {}", alarm.text)]);
     }
-    let calm = "Nothing needs you now.".to_owned();
+    let calm = "No action required.".to_owned();
     let Some(progress) = &model.progress else {
-        return (Role::Title, vec!["NEXT: the first step.".into(), calm]);
+        return (Role::Title, vec!["Waiting for the first command.".into(), calm]);
     };
     let at = format!("{}, {} m", text::number(progress.target.x, 2), text::number(progress.target.y, 2));
     let done = text::percent(progress.done);
-    (Role::Title, vec![format!("NEXT: to {at}; task {done} % done."), calm])
+    (Role::Title, vec![format!("Next target: {at}; task {done} % done."), calm])
 }
 
 fn held(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String> {
     const KEEP: &str = "space: HOLD (stay held).";
+    let position = model.standing.standing().position;
     let clauses: &[&str] = match by {
-        HoldReason::Operator | HoldReason::Stepped if model.position.lost => {
+        HoldReason::Operator | HoldReason::Stepped if position == PositionTrust::Alarmed => {
+            &["HELD by operator; ranges contradict each other.", "Cannot resume without a consistent fix."]
+        }
+        HoldReason::Operator | HoldReason::Stepped if position != PositionTrust::Good => {
             &["HELD by operator; position lost.", "Cannot resume without a position fix."]
         }
         HoldReason::Operator => &["HELD by operator.", "space: resume.", "P: change planner."],
@@ -129,16 +131,16 @@ fn held(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String> {
             &["HELD, tether.", "space: resume; a scan eases the tether first.", "X: end mission.", message]
         }
         HoldReason::PlanRefused { message } if !resumes.is_never() => {
-            &["HELD, plan refused.", "The fallback planner takes over.", KEEP, message]
+            &["HELD, plan refused.", "Resumes with fallback planner.", KEEP, message]
         }
         HoldReason::PlanRefused { message } => {
-            &["HELD, plan refused.", "P: change planner.", ":fly-uncertified flies it.", message]
+            &["HELD, plan refused.", "P: change planner.", ":fly-uncertified runs it.", message]
         }
         HoldReason::PlannerSilent { message } => {
             &["HELD, planner silent.", "Resumes automatically when it answers.", KEEP, message]
         }
         HoldReason::PlannerFault { message } if !resumes.is_never() => {
-            &["HELD, planner failed.", "The fallback planner takes over.", KEEP, message]
+            &["HELD, planner failed.", "Resumes with fallback planner.", KEEP, message]
         }
         HoldReason::PlannerFault { message } => {
             &["HELD, planner failed.", "P: change planner.", "space: retry.", message]
@@ -153,9 +155,9 @@ mod tests {
 
     #[test]
     fn clauses_that_do_not_fit_are_left_out_whole() {
-        let clauses = ["HELD by you.", "space asks to go on.", "P."].map(str::to_owned);
-        assert_eq!(joined(&clauses, 40), "HELD by you. space asks to go on. P.");
-        assert_eq!(joined(&clauses, 20), "HELD by you. P.");
+        let clauses = ["HELD by operator.", "space: resume.", "P."].map(str::to_owned);
+        assert_eq!(joined(&clauses, 40), "HELD by operator. space: resume. P.");
+        assert_eq!(joined(&clauses, 20), "HELD by operator. P.");
         assert_eq!(joined(&clauses, 8), "HELD by…");
     }
 }

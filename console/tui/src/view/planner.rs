@@ -1,4 +1,4 @@
-//! The planner pane: who drives, where to, and what the robot was told.
+//! The planner pane: the active planner, its target, and the last command.
 
 use super::{Look, fill, text};
 use crate::model::{Model, Pane};
@@ -51,7 +51,7 @@ fn rows_of(model: &Model, wide: bool, room: usize) -> Vec<(&'static str, Value)>
             ("plan", (Role::Text, plan(model))),
         ]);
     } else {
-        rows[0].0 = "drives";
+        rows[0].0 = "active";
         rows.extend([
             ("to", (Role::Text, target_at(model))),
             ("in", (Role::Text, format!("{}, off {}", target_in(model), off(model)))),

@@ -97,11 +97,11 @@ fn wrap_role(look: &Look, tether: &Tether) -> Role {
 /// The largest wrap and where it is.
 fn worst(look: &Look, tether: &Tether, wide: bool) -> String {
     if tether.is_caught {
-        return "unknown, the cable has caught".into();
+        return "unknown, tether snagged".into();
     }
     let Some(most) = tether.contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()))
     else {
-        return "none, the cable is straight".into();
+        return "none, tether straight".into();
     };
     let limit = limits(look).map_or_else(|| "-".into(), |limits| degrees(limits.max_wrap_rad));
     let sign = if most.wrap_rad > 0.0 { "+" } else { "" };
@@ -118,9 +118,9 @@ fn contacts(tether: &Tether) -> String {
 
 fn home(tether: &Tether, wide: bool) -> (Role, String) {
     match tether.way_home_m {
-        _ if tether.is_caught && wide => (Role::Crit, "UNKNOWN: the cable has caught".into()),
-        _ if tether.is_caught => (Role::Crit, "UNKNOWN, caught".into()),
-        Some(way_m) if wide => (Role::Good, format!("{} m, along the cable: YES", text::number(way_m, 1))),
+        _ if tether.is_caught && wide => (Role::Crit, "UNKNOWN: tether snagged".into()),
+        _ if tether.is_caught => (Role::Crit, "UNKNOWN, snagged".into()),
+        Some(way_m) if wide => (Role::Good, format!("{} m, along the tether: YES", text::number(way_m, 1))),
         Some(way_m) => (Role::Good, format!("{} m  YES", text::number(way_m, 1))),
         None => (Role::Crit, "NO: the hull does not fit".into()),
     }
@@ -129,7 +129,7 @@ fn home(tether: &Tether, wide: bool) -> (Role, String) {
 /// What stays out when the mission is over.
 fn returned(look: &Look) -> String {
     match (&look.model.tether, look.model.has_ended()) {
-        (Some(tether), true) => format!("{} m left out", text::number(tether.length_m, 1)),
+        (Some(tether), true) => format!("{} m still deployed", text::number(tether.length_m, 1)),
         _ => "-".into(),
     }
 }

@@ -4,7 +4,7 @@ use mission::event::{HoldReason, JOURNAL_VERSION, RunOpened, TetherAlarm, Tether
 use mission::planner::{Cause, During, Fault};
 use mission::{
     Event, EventKind, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters, PlannerChoice,
-    PlannerInfo, ScanConfig, TaskConfig, TetherConfig,
+    PlannerInfo, Resumes, ScanConfig, TaskConfig, TetherConfig,
 };
 use nalgebra::{Matrix2, Matrix3};
 use planner_api::{Command, Drawing, Layer, Limits, Motion, PoseEstimate, Reason};
@@ -240,8 +240,10 @@ impl Telling {
         let info = Box::new(planners().remove(1));
         [
             EventKind::Ordered { order: Order::Start },
-            EventKind::PlannerChosen { choice: choice("rpf"), info, from: None },
+            EventKind::PlannerChosen { ask: None, choice: choice("rpf"), info, from: None },
             EventKind::Planned {
+                ask: None,
+                way_home: 0,
                 planner: "rpf".into(),
                 reason: Reason::Start,
                 path: self.path.clone(),
@@ -300,7 +302,7 @@ impl Telling {
             ],
         });
         kinds.push(EventKind::Scalars { scalars: vec![("field".into(), 1.25, "m/s".into())] });
-        kinds.push(EventKind::Commanded { command: Command::twist(0.2, 0.021) });
+        kinds.push(EventKind::Commanded { ask: None, command: Command::twist(0.2, 0.021) });
         kinds.into_iter().map(|kind| self.now(kind)).collect()
     }
 
@@ -358,9 +360,24 @@ impl Telling {
         self.now(EventKind::StationExcluded { station: StationId(4), reason })
     }
 
-    /// A hold.
+    /// A hold that only an order ends.
     pub fn held(&self, by: HoldReason) -> Event {
-        self.now(EventKind::Held { by })
+        self.held_until(by, Resumes::Never)
+    }
+
+    /// A hold.
+    pub fn held_until(&self, by: HoldReason, resumes: Resumes) -> Event {
+        self.now(EventKind::Held { by, resumes })
+    }
+
+    /// The operator's order, and what follows from it.
+    pub fn obeyed(&self, order: Order) -> Vec<Event> {
+        let after = match order {
+            Order::Hold => Some(EventKind::Held { by: HoldReason::Operator, resumes: Resumes::Never }),
+            Order::Resume | Order::Step | Order::FlyUncertified => Some(EventKind::Resumed),
+            _ => None,
+        };
+        std::iter::once(EventKind::Ordered { order }).chain(after).map(|kind| self.now(kind)).collect()
     }
 
     /// The planner fails and the robot is held.
@@ -374,7 +391,10 @@ impl Telling {
             partial: Vec::new(),
             plugin_sha256: None,
         };
-        vec![self.now(EventKind::PlannerFailed { fault }), self.held(HoldReason::PlannerFault { message })]
+        vec![
+            self.now(EventKind::PlannerFailed { ask: None, fault }),
+            self.held(HoldReason::PlannerFault { message }),
+        ]
     }
 
     /// How the cable lies between an anchor at the eastern shell and the robot.
@@ -501,10 +521,7 @@ impl Screen {
     /// The same, held by the operator.
     pub fn held() -> Self {
         let mut screen = Self::running();
-        let events = vec![
-            screen.telling.now(EventKind::Ordered { order: Order::Hold }),
-            screen.telling.held(HoldReason::Operator),
-        ];
+        let events = screen.telling.obeyed(Order::Hold);
         screen.tell(Msg::Events(events));
         screen
     }

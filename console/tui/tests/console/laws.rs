@@ -1,9 +1,9 @@
 //! Laws that hold for every screen.
 
-use crate::fixture::{ASCII, PLAIN, RICH, Screen};
+use crate::fixture::{ASCII, PLAIN, RICH, Screen, choice, planner};
 use crate::screens::{drawn, text};
 use mission::event::HoldReason;
-use mission::{Event, EventKind, Order, Outcome, Severity};
+use mission::{AskId, Event, EventKind, Order, Outcome, Resumes, Severity, WorkerId};
 use proptest::prelude::*;
 use ratatui::style::Style;
 use tui::{Caps, Effect, Health, Key, KeyPress, Model, Msg, Recording, Signal, Times};
@@ -31,6 +31,17 @@ fn event() -> impl Strategy<Value = Event> {
         for by in [HoldReason::Operator, HoldReason::Stepped, HoldReason::PositionLost] {
             events.push(telling.held(by));
         }
+        let message = || "no way home".to_owned();
+        events.extend([
+            telling.held_until(HoldReason::PositionLost, Resumes::WhenCleared),
+            telling.held_until(HoldReason::Tether { message: message() }, Resumes::WhenCleared),
+            telling.held_until(HoldReason::PlanRefused { message: message() }, Resumes::Never),
+            telling.held_until(HoldReason::PlannerFault { message: message() }, Resumes::ByFallback),
+        ]);
+        for order in [Order::Hold, Order::Resume, Order::Step, Order::Abort, Order::FlyUncertified] {
+            events.extend(telling.obeyed(order));
+        }
+        let ask = AskId { worker: WorkerId(3), n: 7 };
         let lone = [
             EventKind::Resumed,
             EventKind::PositionLost { error_m: f64::NAN, limit_m: 0.0 },
@@ -39,6 +50,18 @@ fn event() -> impl Strategy<Value = Event> {
             EventKind::Scalars { scalars: vec![("x".into(), f64::NAN, String::new()); 40] },
             EventKind::Covered { runs: vec![world::CellRun(u32::MAX, u32::MAX), world::CellRun(0, 900)] },
             EventKind::OrderRefused { order: Order::Resume, why: "no".repeat(200) },
+            EventKind::OrderRefused { order: Order::Hold, why: "no".into() },
+            EventKind::PositionAlarmed { chi2: f64::NAN, degrees_of_freedom: 0 },
+            EventKind::PositionTrusted,
+            EventKind::PlannerPrepared {
+                ask,
+                choice: choice("apf"),
+                info: Box::new(planner("apf", "1.2", "of no use")),
+            },
+            EventKind::PlannerRejected { planner: "漢字".repeat(40), why: "no".repeat(200) },
+            EventKind::PlannerLate { planner: "rpf".into(), ticks: u64::MAX },
+            EventKind::Snapshotted { ask, bytes: u64::MAX },
+            EventKind::Discarded { ask },
         ];
         events.extend(lone.into_iter().map(|kind| telling.now(kind)));
         events.push(telling.ended(Outcome::Stuck, "漢字".repeat(40).as_str()));
@@ -51,8 +74,13 @@ fn event() -> impl Strategy<Value = Event> {
 fn msg() -> impl Strategy<Value = Msg> {
     let recording =
         prop::sample::select(vec![Recording::On, Recording::Off, Recording::Failed("full".into())]);
-    let signal =
-        prop::sample::select(vec![Signal::Interrupt, Signal::Terminate, Signal::Stop, Signal::Continue]);
+    let signal = prop::sample::select(vec![
+        Signal::Interrupt,
+        Signal::Terminate,
+        Signal::Hangup,
+        Signal::Stop,
+        Signal::Continue,
+    ]);
     prop_oneof![
         8 => (key(), any::<bool>()).prop_map(|(key, repeat)| Msg::Key(KeyPress { key, repeat })),
         4 => prop::collection::vec(event(), 0..6).prop_map(Msg::Events),
@@ -64,8 +92,61 @@ fn msg() -> impl Strategy<Value = Msg> {
         1 => "\\PC{0,90}".prop_map(|text| Msg::Notice { severity: Severity::Crit, text }),
         1 => prop::option::of(("[a-z]{0,9}", prop::option::of(0.0..99.0_f64))).prop_map(Msg::Busy),
         1 => (any::<f64>(), "\\PC{0,90}").prop_map(|(share, what)| Msg::BusyAt { share, what }),
+        1 => prop::sample::select(vec![Order::Start, Order::Hold, Order::Resume])
+            .prop_map(|order| Msg::OrderFailed { order, why: "the engine is gone".into() }),
         1 => signal.prop_map(Msg::Signal),
     ]
+}
+
+/// What most changes which orders are accepted.
+fn turn() -> impl Strategy<Value = Msg> {
+    let telling = Screen::idle().telling;
+    let tether = || HoldReason::Tether { message: "no way home".into() };
+    let refused = || HoldReason::PlanRefused { message: "not certified".into() };
+    let one = |kind| vec![telling.now(kind)];
+    let turns = vec![
+        one(EventKind::Resumed),
+        one(EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 }),
+        one(EventKind::PositionRegained { error_m: 0.1 }),
+        vec![telling.held_until(tether(), Resumes::WhenCleared)],
+        vec![telling.held_until(refused(), Resumes::ByFallback)],
+        vec![telling.held(refused())],
+        telling.obeyed(Order::Hold),
+        telling.obeyed(Order::Resume),
+        vec![telling.ended(Outcome::Complete, "the task is done")],
+    ];
+    prop::sample::select(turns).prop_map(Msg::Events)
+}
+
+/// Messages of an operator who asks for everything and often agrees.
+fn deed() -> impl Strategy<Value = Vec<Msg>> {
+    let press = |key: Key| Msg::Key(key.into());
+    let keys = prop::sample::select(vec![
+        "S", " ", ".", "P", "p", "X", "q", ":resume", ":fly-unc", ":step", ":start", "e", "1",
+    ]);
+    prop_oneof![
+        4 => keys.prop_map(move |keys| keys.chars().map(Key::Char).map(press).collect()),
+        4 => Just(vec![press(Key::Enter)]),
+        1 => Just(vec![press(Key::Esc)]),
+        2 => prop::sample::select(vec![Key::Up, Key::Down]).prop_map(move |key| vec![press(key)]),
+        1 => Just(vec![press(Key::Char('p')), press(Key::Down), press(Key::Down), press(Key::Down), press(Key::Enter)]),
+        1 => msg().prop_map(|msg| vec![msg]),
+        4 => turn().prop_map(|msg| vec![msg]),
+    ]
+}
+
+/// Whether the mission answered HOLD in these events.
+fn answers_hold(msg: &Msg) -> bool {
+    let kind = |event: &Event| match &event.kind {
+        EventKind::Ordered { order } | EventKind::OrderRefused { order, .. } => *order == Order::Hold,
+        EventKind::Ended { .. } => true,
+        _ => false,
+    };
+    match msg {
+        Msg::Events(events) => events.iter().any(kind),
+        Msg::OrderFailed { order, .. } => *order == Order::Hold,
+        _ => false,
+    }
 }
 
 fn caps() -> impl Strategy<Value = Caps> {
@@ -92,6 +173,36 @@ proptest! {
         let buffer = drawn(&screen.model, caps, size);
         prop_assert_eq!((buffer.area.width, buffer.area.height), size);
         prop_assert!(caps != ASCII || buffer.content.iter().all(|cell| cell.symbol().is_ascii()));
+    }
+
+    #[test]
+    fn every_order_is_one_that_the_mission_accepts_or_that_follows_a_hold(
+        deeds in prop::collection::vec(deed(), 0..60),
+        start in 0..3_u8,
+    ) {
+        let mut screen = match start {
+            0 => Screen::idle(),
+            1 => Screen::held(),
+            _ => Screen::running(),
+        };
+        let mut follows_hold = false;
+        for msg in deeds.into_iter().flatten() {
+            let before = screen.model.standing.clone();
+            follows_hold &= !answers_hold(&msg);
+            for effect in screen.tell(msg) {
+                let Effect::Order(order) = effect else { continue };
+                match order {
+                    Order::Hold => follows_hold = true,
+                    Order::Abort => {}
+                    // Nothing that moves the robot is sent on the strength of a HOLD that was not answered.
+                    Order::ChoosePlanner(_) if follows_hold => {}
+                    order => {
+                        prop_assert_eq!(before.standing().allows(&order), Ok(()), "{:?} in {:?}", order, before.phase);
+                        follows_hold = false;
+                    }
+                }
+            }
+        }
     }
 
     #[test]
@@ -134,10 +245,10 @@ fn nothing_but_style_is_lost_without_colour() {
     failed.tell(Msg::Events(events));
     let mut unrecorded = Screen::running();
     unrecorded.tell(Msg::Health(Health { recording: Recording::Failed("full".into()), reached_speed: None }));
-    let cases: [(&str, Screen, &[&str]); 6] = [
-        ("idle", Screen::idle(), &["■ IDLE", "REC●", "NEXT"]),
+    let cases: Vec<(&str, Screen, &[&str])> = vec![
+        ("idle", Screen::idle(), &["■ IDLE", "REC●", "Press S"]),
         ("running", Screen::running(), &["▶ RUN", "2w", "OUT 0.42 m", "found"]),
-        ("held", Screen::held(), &["‖ HOLD", "HELD by you"]),
+        ("held", Screen::held(), &["‖ HOLD", "HELD by operator"]),
         ("lost", lost, &["‖ HOLD", "LOST", "1C*", "CRIT"]),
         ("failed", failed, &["‖ HOLD", "FAILED", "1C*", "CRIT"]),
         ("unrecorded", unrecorded, &["REC✗", "1C*", "recording failed"]),

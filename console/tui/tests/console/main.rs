@@ -5,3 +5,4 @@ mod fixture;
 mod laws;
 mod screens;
 mod scripts;
+mod stopping;

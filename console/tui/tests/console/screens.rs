@@ -2,7 +2,7 @@
 
 use crate::fixture::{ASCII, PLAIN, RICH, Screen};
 use mission::event::HoldReason;
-use mission::{EventKind, Outcome};
+use mission::{EventKind, Order, Outcome, Resumes};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
@@ -59,8 +59,12 @@ fn idle() {
 #[test]
 fn planning() {
     let mut screen = Screen::idle();
-    screen.tell(Msg::Busy(Some(("tether-safe plans".into(), Some(60.0)))));
+    let started = screen.telling.now(EventKind::Ordered { order: Order::Start });
+    screen.tell(Msg::Events(vec![started]));
+    screen.tell(Msg::Busy(Some(("Planning (tether-safe)".into(), Some(60.0)))));
     screen.pass(7.0);
+    let events = screen.telling.wait(14);
+    screen.tell(Msg::Events(events));
     screen.tell(Msg::BusyAt { share: 0.42, what: "candidate 2 of 3".into() });
     store("planning", &mut screen);
 }
@@ -102,7 +106,7 @@ fn position_lost() {
     let mut events = screen.telling.wait(4);
     events.push(screen.telling.now(EventKind::PositionLost { error_m: 0.49, limit_m: 0.15 }));
     events.extend(screen.telling.wait(4));
-    events.push(screen.telling.held(HoldReason::PositionLost));
+    events.push(screen.telling.held_until(HoldReason::PositionLost, Resumes::WhenCleared));
     screen.tell(Msg::Events(events));
     store("lost", &mut screen);
 }
@@ -111,6 +115,26 @@ fn position_lost() {
 fn tethered() {
     let mut screen = Screen::tethered();
     store("tethered", &mut screen);
+}
+
+#[test]
+fn no_way_home() {
+    let mut screen = Screen::tethered();
+    let message = mission::event::TetherAlarm::NoWayHome.to_string();
+    let held = screen.telling.held_until(HoldReason::Tether { message }, Resumes::WhenCleared);
+    screen.tell(Msg::Events(vec![held]));
+    store("no_way_home", &mut screen);
+}
+
+#[test]
+fn fallback_plans() {
+    let mut screen = Screen::running();
+    let message = "planner rpf panicked during step".to_owned();
+    let held = screen.telling.held_until(HoldReason::PlannerFault { message }, Resumes::ByFallback);
+    screen.tell(Msg::Events(vec![held]));
+    screen.tell(Msg::Busy(Some(("Planning (apf)".into(), Some(60.0)))));
+    screen.pass(7.0);
+    store("fallback", &mut screen);
 }
 
 #[test]

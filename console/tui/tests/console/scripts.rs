@@ -3,8 +3,8 @@
 use crate::fixture::{RICH, Screen, choice};
 use crate::screens::{drawn, text};
 use mission::event::HoldReason;
-use mission::{EventKind, Order, Outcome, ParamValue, Severity};
-use tui::model::{Overlay, Pane, Phase};
+use mission::{EventKind, Gait, Order, Outcome, ParamValue, Phase, Resumes, Severity};
+use tui::model::{Overlay, Pane};
 use tui::{Effect, Key, KeyPress, Model, Msg, Recording, Signal, Speed};
 
 const SPACE: Key = Key::Char(' ');
@@ -26,15 +26,24 @@ fn told(screen: &mut Screen, kind: EventKind) -> Vec<Effect> {
     screen.tell(Msg::Events(vec![event]))
 }
 
+fn obeyed(screen: &mut Screen, order: Order) {
+    let events = screen.telling.obeyed(order);
+    screen.tell(Msg::Events(events));
+}
+
+fn held(by: HoldReason) -> EventKind {
+    EventKind::Held { by, resumes: Resumes::Never }
+}
+
 #[test]
 fn the_mission_starts_only_after_the_operator_agreed() {
     let mut screen = Screen::idle();
     assert_eq!(screen.type_text("S"), []);
-    assert_eq!(screen.model.phase, Phase::Idle);
+    assert_eq!(*screen.model.phase(), Phase::Waiting);
     assert_eq!(screen.press([Key::Enter]), [order(Order::Start)]);
     let events = screen.telling.start();
     screen.tell(Msg::Events(events));
-    assert_eq!(screen.model.phase, Phase::Running);
+    assert_eq!(*screen.model.phase(), Phase::Running(Gait::Steady));
     assert_eq!(screen.model.console.asked, None);
 }
 
@@ -52,7 +61,7 @@ fn space_holds_at_once_and_then_asks_to_go_on() {
     let mut screen = Screen::running();
     assert_eq!(screen.press([SPACE]), [order(Order::Hold)]);
     assert!(screen.model.console.hold_asked);
-    told(&mut screen, EventKind::Held { by: HoldReason::Operator });
+    obeyed(&mut screen, Order::Hold);
     assert_eq!(screen.press([SPACE]), []);
     assert_eq!(screen.press([SPACE]), [], "space never agrees");
     assert_eq!(screen.press([Key::Enter]), [order(Order::Resume)]);
@@ -90,9 +99,9 @@ fn a_start_that_was_not_answered_yet_can_be_held() {
 fn a_robot_that_waits_for_its_position_can_be_held_for_good() {
     let mut screen = Screen::running();
     told(&mut screen, EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
-    told(&mut screen, EventKind::Held { by: HoldReason::PositionLost });
+    told(&mut screen, EventKind::Held { by: HoldReason::PositionLost, resumes: Resumes::WhenCleared });
     assert_eq!(screen.press([SPACE]), [order(Order::Hold)]);
-    told(&mut screen, EventKind::Held { by: HoldReason::Operator });
+    obeyed(&mut screen, Order::Hold);
     assert_eq!(screen.press([SPACE, Key::Enter]), []);
     assert!(notice(&screen).contains("position is lost"));
     told(&mut screen, EventKind::PositionRegained { error_m: 0.1 });
@@ -108,12 +117,11 @@ fn single_steps_ask_once_and_wait_for_each_answer() {
     assert_eq!(screen.type_text("."), []);
     assert_eq!(screen.type_text("."), [order(Order::Step)]);
     assert_eq!(screen.type_text("."), [], "the first step was not answered yet");
-    told(&mut screen, EventKind::Ordered { order: Order::Step });
-    told(&mut screen, EventKind::Resumed);
-    told(&mut screen, EventKind::Held { by: HoldReason::Stepped });
+    obeyed(&mut screen, Order::Step);
+    told(&mut screen, held(HoldReason::Stepped));
     assert_eq!(screen.press([Key::Enter]), [order(Order::Step)]);
-    told(&mut screen, EventKind::Resumed);
-    told(&mut screen, EventKind::Held { by: HoldReason::Stepped });
+    obeyed(&mut screen, Order::Step);
+    told(&mut screen, held(HoldReason::Stepped));
     assert_eq!(screen.press([Key::Esc, Key::Enter]), []);
 }
 
@@ -123,7 +131,7 @@ fn the_pace_goes_in_steps_and_says_where_it_ends() {
     assert_eq!(screen.type_text(">>"), [Effect::Speed(Speed::Times(2.0)), Effect::Speed(Speed::Times(4.0))]);
     assert_eq!(screen.type_text(">>>>>").last(), Some(&Effect::Speed(Speed::Max)));
     assert_eq!(screen.type_text(">"), []);
-    assert!(notice(&screen).contains("as fast as it goes"));
+    assert!(notice(&screen).contains("Maximum speed"));
     assert_eq!(screen.type_text("<<<<<<<<<").last(), Some(&Effect::Speed(Speed::Times(0.25))));
     assert_eq!(screen.type_text("<"), []);
 }
@@ -134,10 +142,7 @@ fn another_planner_drives_only_when_held_and_agreed() {
     assert_eq!(screen.type_text("P"), []);
     assert!(notice(&screen).contains("HOLD first"));
     screen.press([SPACE, Key::Char('P')]);
-    assert!(
-        matches!(screen.model.ui.overlay, Overlay::Planners { .. }),
-        "HOLD is on its way, the list may open"
-    );
+    assert!(matches!(screen.model.ui.overlay, Overlay::Planners { .. }), "HOLD was sent, the list may open");
     let mut screen = Screen::held();
     screen.type_text("P");
     assert_eq!(screen.model.ui.overlay, Overlay::Planners { selected: 1 }, "the one that drives is selected");
@@ -152,9 +157,9 @@ fn a_planner_that_covers_no_floor_is_marked_and_not_asked_to() {
     run.mission.task =
         mission::TaskConfig::Cover { anchor: world::Point::origin(), regions: Vec::new(), tolerance_m: 0.2 };
     let planners = screen.model.console.planners.clone();
-    assert_eq!(screen.model.cannot_fly(&planners[0]).as_deref(), Some("covers no floor"));
+    assert_eq!(screen.model.cannot_fly(&planners[0]).as_deref(), Some("does not support coverage missions"));
     screen.press([Key::Char('P'), Key::Up, Key::Up, Key::Up, Key::Enter]);
-    assert_eq!(notice(&screen), format!("{} cannot fly this mission: it covers no floor", planners[0].id));
+    assert_eq!(notice(&screen), format!("planner {} does not support coverage missions", planners[0].id));
     assert!(matches!(screen.model.ui.overlay, Overlay::Planners { .. }), "no question is asked");
     screen.model.console.planners[0].covers = true;
     screen.press([Key::Enter]);
@@ -162,25 +167,140 @@ fn a_planner_that_covers_no_floor_is_marked_and_not_asked_to() {
 }
 
 #[test]
-fn a_plan_in_the_making_is_told_with_the_time_it_has_taken() {
+fn planning_is_shown_with_the_time_it_has_taken_while_ticks_go_on() {
     let mut screen = Screen::idle();
-    screen.tell(Msg::Busy(Some(("rpf plans".into(), Some(60.0)))));
+    screen.press([Key::Char('S'), Key::Enter]);
+    let started = screen.telling.now(EventKind::Ordered { order: Order::Start });
+    screen.tell(Msg::Events(vec![started]));
+    screen.tell(Msg::Busy(Some(("Planning (rpf)".into(), Some(60.0)))));
     assert!(screen.model.wakes_at_mono_s().is_some(), "the seconds go on");
-    screen.pass(7.0);
-    assert!(shown(&screen).contains("BUSY: rpf plans, 7 s of 60 s at most."), "{}", shown(&screen));
+    for _ in 0..7 {
+        screen.pass(1.0);
+        let events = screen.telling.wait(2);
+        screen.tell(Msg::Events(events));
+    }
+    assert_eq!(screen.model.silent_s(), None);
+    let expect = |screen: &Screen, text: &str| assert!(shown(screen).contains(text), "{}", shown(screen));
+    expect(&screen, "Planning (rpf), 7 s of 60 s at most. space: HOLD. X: end mission.");
     screen.tell(Msg::BusyAt { share: 0.419, what: "candidate 2 of 3".into() });
-    assert!(shown(&screen).contains("BUSY: rpf plans, 41 %, 7 s of 60 s at most."), "{}", shown(&screen));
+    expect(&screen, "Planning (rpf) 41 %, 7 s of 60 s at most. candidate 2 of 3.");
     screen.tell(Msg::BusyAt { share: 1.0, what: String::new() });
-    assert!(
-        shown(&screen).contains("rpf plans, 99 %, 7 s"),
-        "only its end makes it whole: {}",
-        shown(&screen)
-    );
-    screen.press([Key::Char('q')]);
+    expect(&screen, "Planning (rpf) 99 %, 7 s");
     screen.tell(Msg::Busy(None));
-    assert!(!shown(&screen).contains("BUSY"));
     screen.tell(Msg::BusyAt { share: 0.5, what: "late".into() });
-    assert!(!shown(&screen).contains("BUSY"), "what is told too late begins nothing");
+    assert!(!shown(&screen).contains("Planning ("), "late progress starts nothing");
+}
+
+#[test]
+fn work_on_a_planner_that_is_only_prepared_offers_what_can_be_done() {
+    let mut screen = Screen::idle();
+    screen.tell(Msg::Busy(Some(("Loading planner (rpf)".into(), None))));
+    let line = "Loading planner (rpf). Press S to start (planner rpf).";
+    assert!(shown(&screen).contains(line), "{}", shown(&screen));
+    assert!(!shown(&screen).contains("space: HOLD"), "there is nothing to hold");
+}
+
+#[test]
+fn a_hold_by_the_operator_says_what_keeps_the_robot_from_resuming() {
+    let lost = EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 };
+    let alarmed = EventKind::PositionAlarmed { chi2: 90.0, degrees_of_freedom: 2 };
+    for (event, why) in [(lost, "position lost"), (alarmed, "ranges contradict each other")] {
+        let mut screen = Screen::held();
+        told(&mut screen, event);
+        let line = format!("HELD by operator; {why}. Cannot resume without a");
+        assert!(shown(&screen).contains(&line), "{}", shown(&screen));
+    }
+}
+
+#[test]
+fn an_order_that_does_not_reach_the_mission_is_an_alarm_and_can_be_given_again() {
+    let mut screen = Screen::idle();
+    screen.press([Key::Char('S'), Key::Enter]);
+    let failed = Msg::OrderFailed { order: Order::Start, why: "cannot create the run folder".into() };
+    assert_eq!(screen.tell(failed), [Effect::Bell]);
+    assert_eq!((&screen.model.console.asked, screen.model.may_move()), (&None, false));
+    assert!(notice(&screen).contains("cannot create the run folder"));
+    assert_eq!(screen.press([Key::Char('S'), Key::Enter]), [order(Order::Start)]);
+}
+
+#[test]
+fn a_hold_of_the_tick_before_does_not_answer_a_resume() {
+    let mut screen = Screen::held();
+    assert_eq!(screen.press([SPACE, Key::Enter]), [order(Order::Resume)]);
+    told(&mut screen, held(HoldReason::Tether { message: "snagged".into() }));
+    assert_eq!(screen.press([SPACE]), [order(Order::Hold)], "the robot will move after that event");
+    obeyed(&mut screen, Order::Resume);
+    obeyed(&mut screen, Order::Hold);
+    assert_eq!((screen.model.may_move(), screen.model.console.hold_asked), (false, false));
+}
+
+#[test]
+fn a_robot_that_resumes_by_itself_withdraws_the_question() {
+    let mut screen = Screen::running();
+    let by = HoldReason::Tether { message: "no way home".into() };
+    told(&mut screen, EventKind::Held { by, resumes: Resumes::WhenCleared });
+    screen.press([Key::Char(':')]);
+    screen.type_text("resume");
+    screen.press([Key::Enter]);
+    assert!(matches!(screen.model.ui.overlay, Overlay::Confirm(_)));
+    told(&mut screen, EventKind::Resumed);
+    assert_eq!(screen.model.ui.overlay, Overlay::None);
+    assert_eq!(screen.press([Key::Enter]), []);
+}
+
+#[test]
+fn a_planner_that_is_rejected_or_late_is_reported() {
+    let mut screen = Screen::held();
+    let ask = mission::AskId { worker: mission::WorkerId(2), n: 1 };
+    let info = Box::new(crate::fixture::planners().remove(2));
+    told(&mut screen, EventKind::PlannerPrepared { ask, choice: choice("spiral-tangent"), info });
+    assert_eq!(screen.model.planner_id(), Some("rpf"), "it does not drive yet");
+    let why = "no plan within 60 s".to_owned();
+    told(&mut screen, EventKind::PlannerRejected { planner: "spiral-tangent".into(), why });
+    assert!(notice(&screen).contains("spiral-tangent does not take over: no plan within 60 s"));
+    let mut screen = Screen::running();
+    let before = screen.model.clone();
+    told(&mut screen, EventKind::Discarded { ask });
+    told(&mut screen, EventKind::Snapshotted { ask, bytes: 12 });
+    assert_eq!(screen.model, before, "of no interest to the operator");
+    told(&mut screen, EventKind::PlannerLate { planner: "rpf".into(), ticks: 4 });
+    assert_eq!(notice(&screen), "planner rpf answered 4 ticks late");
+    let events = screen.telling.planner_fails();
+    screen.tell(Msg::Events(events));
+    told(&mut screen, EventKind::PlannerLate { planner: "rpf".into(), ticks: 4 });
+    obeyed(&mut screen, Order::Resume);
+    assert_eq!(screen.model.alarms.unacknowledged(Severity::Crit), 1, "the fault waits to be acknowledged");
+}
+
+#[test]
+fn a_space_is_typed_where_nothing_can_move_and_holds_where_something_can() {
+    let lines: [&[Key]; 3] = [&[Key::Char(':')], &[Key::Char('/')], &[Key::Char('p'), Key::Enter]];
+    for line in lines {
+        let mut screen = Screen::held();
+        screen.press(line.iter().copied());
+        screen.type_text("a b");
+        let typed = match &screen.model.ui.overlay {
+            Overlay::Commands { filter, .. } => filter,
+            Overlay::Parameters { edit: Some(edit), .. } => &edit.text,
+            _ => &screen.model.ui.needle,
+        };
+        assert!(typed.ends_with("a b"), "{typed}");
+        told(&mut screen, EventKind::Resumed);
+        assert_eq!(screen.press([SPACE]), [order(Order::Hold)], "space after {line:?}");
+    }
+}
+
+#[test]
+fn a_value_is_checked_again_when_it_is_sent() {
+    let mut screen = Screen::running();
+    told(&mut screen, EventKind::Held { by: HoldReason::PositionLost, resumes: Resumes::WhenCleared });
+    screen.press([Key::Char('p'), Key::Down, Key::Down, Key::Down, Key::Enter]);
+    told(&mut screen, EventKind::Resumed);
+    assert_eq!(screen.press([Key::Enter]), [], "mode is not live");
+    let Overlay::Parameters { edit: Some(edit), .. } = &screen.model.ui.overlay else {
+        panic!("still typing")
+    };
+    assert!(edit.refusal.as_ref().is_some_and(|why| why.contains("while the robot is moving")));
 }
 
 #[test]
@@ -206,7 +326,9 @@ fn a_bad_value_is_refused_in_place_and_a_good_one_sent() {
 fn what_cannot_change_under_way_says_so() {
     let mut screen = Screen::running();
     screen.press([Key::Char('p'), Key::Down, Key::Down, Key::Down, Key::Enter]);
-    assert!(notice(&screen).contains("mode cannot change under way"));
+    assert!(
+        notice(&screen).contains("parameter `mode` cannot be changed while the robot is moving; HOLD first")
+    );
     assert!(matches!(screen.model.ui.overlay, Overlay::Parameters { edit: None, .. }));
 }
 
@@ -221,7 +343,7 @@ fn ending_holds_first_and_asks() {
 fn leaving_a_running_mission_holds_first_and_ends_it_only_when_agreed() {
     let mut screen = Screen::running();
     assert_eq!(screen.type_text("q"), [order(Order::Hold)]);
-    told(&mut screen, EventKind::Held { by: HoldReason::Operator });
+    obeyed(&mut screen, Order::Hold);
     assert_eq!(screen.press([Key::Esc]), []);
     screen.type_text("q");
     assert_eq!(screen.press([Key::Enter]), [order(Order::Abort), Effect::Quit { signal: None }]);
@@ -359,21 +481,21 @@ fn an_alarm_whose_cause_is_gone_says_so_until_the_operator_has_seen_it() {
     let mut screen = Screen::running();
     told(&mut screen, EventKind::PositionAlarmed { chi2: 90.0, degrees_of_freedom: 2 });
     let open = shown(&screen);
-    assert!(open.contains("a acknowledges: ") && !open.contains("over by now"), "{open}");
+    assert!(open.contains("a: acknowledge: ") && !open.contains("(cleared)"), "{open}");
     told(&mut screen, EventKind::PositionTrusted);
     let over = shown(&screen);
-    assert!(over.contains("a acknowledges (over by now): "), "{over}");
+    assert!(over.contains("a: acknowledge (cleared): "), "{over}");
 }
 
 #[test]
 fn a_stuck_robot_is_held_with_an_alarm_until_it_goes_on_and_the_operator_knows() {
     let mut screen = Screen::running();
-    told(&mut screen, EventKind::Held { by: HoldReason::Stuck { message: "no progress".into() } });
+    told(&mut screen, held(HoldReason::Stuck { message: "no progress".into() }));
     assert_eq!(screen.model.alarms.unacknowledged(Severity::Warn), 1);
     screen.type_text("a");
     assert_eq!(screen.model.alarms.count(Severity::Warn), 1, "seen, and not over");
     assert_eq!(screen.press([SPACE, Key::Enter]), [order(Order::Resume)]);
-    told(&mut screen, EventKind::Resumed);
+    obeyed(&mut screen, Order::Resume);
     assert_eq!(screen.model.alarms.count(Severity::Warn), 0);
 }
 

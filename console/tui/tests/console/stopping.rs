@@ -1,0 +1,268 @@
+//! Every way to stop the robot, in every situation.
+
+use crate::fixture::{Screen, choice};
+use mission::{Event, EventKind, Gait, Hold, HoldReason, Order, Outcome, ParamValue, Phase, Resumes};
+use tui::model::ui::{Ask, Edit};
+use tui::model::{Overlay, Pane};
+use tui::{Effect, Key, Model, Msg, Signal, update};
+
+const HOLD: Effect = Effect::Order(Order::Hold);
+
+fn hold_reasons() -> Vec<HoldReason> {
+    let message = || "why".to_owned();
+    let all = vec![
+        HoldReason::Operator,
+        HoldReason::PositionLost,
+        HoldReason::PositionAlarmed,
+        HoldReason::PlannerFault { message: message() },
+        HoldReason::PlannerSilent { message: message() },
+        HoldReason::Stuck { message: message() },
+        HoldReason::Tether { message: message() },
+        HoldReason::PlanRefused { message: message() },
+        HoldReason::Stepped,
+    ];
+    // A new reason does not compile until it is in the list above.
+    for by in &all {
+        match by {
+            HoldReason::Operator
+            | HoldReason::PositionLost
+            | HoldReason::PositionAlarmed
+            | HoldReason::PlannerFault { .. }
+            | HoldReason::PlannerSilent { .. }
+            | HoldReason::Stuck { .. }
+            | HoldReason::Tether { .. }
+            | HoldReason::PlanRefused { .. }
+            | HoldReason::Stepped => {}
+        }
+    }
+    all
+}
+
+fn phases() -> Vec<Phase> {
+    let held = hold_reasons().into_iter().flat_map(|by| {
+        [Resumes::Never, Resumes::WhenCleared, Resumes::ByFallback]
+            .map(|resumes| Phase::Held(Hold { by: by.clone(), resumes }))
+    });
+    let outcomes = [
+        Outcome::Complete,
+        Outcome::Stuck,
+        Outcome::Collision,
+        Outcome::TimeLimit,
+        Outcome::Entangled,
+        Outcome::Aborted,
+    ];
+    [Phase::Waiting, Phase::Running(Gait::Steady), Phase::Running(Gait::OneTick)]
+        .into_iter()
+        .chain(held)
+        .chain(outcomes.map(Phase::Ended))
+        .collect()
+}
+
+fn positions(screen: &Screen) -> [Option<Event>; 3] {
+    let lost = EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 };
+    let alarmed = EventKind::PositionAlarmed { chi2: 90.0, degrees_of_freedom: 2 };
+    [None, Some(screen.telling.now(lost)), Some(screen.telling.now(alarmed))]
+}
+
+fn overlays() -> Vec<Overlay> {
+    let commands = |help| Overlay::Commands { help, filter: "resume".into(), selected: 0 };
+    let edit = Some(Edit { text: "1".into(), refusal: None });
+    let all = vec![
+        Overlay::None,
+        Overlay::Confirm(Ask::Start),
+        Overlay::Confirm(Ask::Resume),
+        Overlay::Confirm(Ask::FlyUncertified),
+        Overlay::Confirm(Ask::Abort),
+        Overlay::Confirm(Ask::Swap(choice("apf"))),
+        Overlay::Stepping,
+        Overlay::Quit,
+        commands(false),
+        commands(true),
+        Overlay::Planners { selected: 0 },
+        Overlay::Parameters { selected: 0, edit: None },
+        Overlay::Parameters { selected: 0, edit },
+        Overlay::Layers { selected: 0 },
+        Overlay::Filter,
+    ];
+    // A new overlay does not compile until it is in the list above.
+    for overlay in &all {
+        match overlay {
+            Overlay::None
+            | Overlay::Confirm(Ask::Start | Ask::Resume | Ask::FlyUncertified | Ask::Abort | Ask::Swap(_))
+            | Overlay::Stepping
+            | Overlay::Quit
+            | Overlay::Commands { .. }
+            | Overlay::Planners { .. }
+            | Overlay::Parameters { .. }
+            | Overlay::Layers { .. }
+            | Overlay::Filter => {}
+        }
+    }
+    all
+}
+
+/// The ways to stop, and whether they stop whatever lies over the screen. `q` and `X` belong to the mission screen: in a
+/// list they close it, in a line of text they are typed.
+fn ways() -> Vec<(Msg, bool)> {
+    let key = |key: Key, everywhere: bool| (Msg::Key(key.into()), everywhere);
+    let panicked = Msg::ThreadPanicked { thread: "recorder".into(), message: "out of bounds".into() };
+    let signals = [Signal::Interrupt, Signal::Terminate, Signal::Hangup, Signal::Stop];
+    [
+        key(Key::Char(' '), true),
+        key(Key::Ctrl('c'), true),
+        key(Key::Ctrl('z'), true),
+        key(Key::Char('q'), false),
+        key(Key::Char('X'), false),
+        (panicked, true),
+    ]
+    .into_iter()
+    .chain(signals.map(|signal| (Msg::Signal(signal), true)))
+    .collect()
+}
+
+fn moves(effect: &Effect) -> bool {
+    matches!(effect, Effect::Order(Order::Start | Order::Resume | Order::Step | Order::FlyUncertified))
+}
+
+/// A screen in a phase that its events have led to.
+fn screen_in(phase: &Phase) -> Screen {
+    let mut screen = if *phase == Phase::Waiting { Screen::idle() } else { Screen::running() };
+    let telling = &screen.telling;
+    let events = match phase {
+        Phase::Waiting | Phase::Running(Gait::Steady) => Vec::new(),
+        Phase::Running(Gait::OneTick) => [telling.obeyed(Order::Hold), telling.obeyed(Order::Step)].concat(),
+        Phase::Held(hold) => vec![telling.held_until(hold.by.clone(), hold.resumes)],
+        Phase::Ended(outcome) => vec![telling.ended(*outcome, "why")],
+    };
+    screen.tell(Msg::Events(events));
+    assert_eq!(screen.model.phase(), phase);
+    // What is only drawn is of no interest here, and slow to copy.
+    (screen.model.coverage, screen.model.accuracy) = (None, None);
+    (screen.model.trail, screen.model.log) = Default::default();
+    screen.model.planning.plan = None;
+    screen.model.run = None;
+    screen
+}
+
+/// Every phase with every hold reason, position, planner's work and order that was sent and not answered yet.
+fn situations() -> Vec<Model> {
+    let orders = [Order::Start, Order::Resume, Order::Step, Order::FlyUncertified];
+    let asked: Vec<Option<Order>> = orders.into_iter().map(Some).chain([None]).collect();
+    let mut all = Vec::new();
+    for phase in phases() {
+        let screen = screen_in(&phase);
+        for position in positions(&screen) {
+            let mut screen = screen.clone();
+            screen.tell(Msg::Events(position.into_iter().collect()));
+            for (asked, is_busy) in asked.iter().flat_map(|asked| [(asked, false), (asked, true)]) {
+                // No order is on its way to a mission that has ended.
+                if asked.is_some() && matches!(phase, Phase::Ended(_)) {
+                    continue;
+                }
+                let mut screen = screen.clone();
+                screen.model.console.asked.clone_from(asked);
+                if is_busy {
+                    screen.tell(Msg::Busy(Some(("Planning (tether-safe)".into(), Some(60.0)))));
+                }
+                all.push(screen.model);
+            }
+        }
+    }
+    all
+}
+
+/// Whether the robot moves or may move without a further order, said without the code under test.
+fn is_loose(model: &Model) -> bool {
+    let by_itself = match model.phase() {
+        Phase::Running(_) => true,
+        Phase::Held(hold) => hold.resumes != Resumes::Never,
+        Phase::Waiting | Phase::Ended(_) => false,
+    };
+    by_itself || model.console.asked.is_some()
+}
+
+fn is_held_for_good(phase: &Phase) -> bool {
+    matches!(phase, Phase::Held(hold) if hold.resumes == Resumes::Never)
+}
+
+#[test]
+fn every_way_to_stop_holds_whenever_the_robot_may_move_and_never_makes_it_move() {
+    let mut held = 0;
+    for situation in situations() {
+        for overlay in overlays() {
+            for (way, everywhere) in ways() {
+                let mut model = situation.clone();
+                model.ui.overlay = overlay.clone();
+                let effects = update(&mut model, way.clone());
+                let about = || {
+                    let asked = &situation.console.asked;
+                    format!("{way:?} in {:?}, {asked:?} sent, {overlay:?}", situation.phase())
+                };
+                assert!(!effects.iter().any(moves), "{} gave {effects:?}", about());
+                if is_loose(&situation) && (everywhere || overlay == Overlay::None) {
+                    assert_eq!(effects.first(), Some(&HOLD), "{}", about());
+                    held += 1;
+                }
+                let opened = model.ui.overlay == Overlay::Confirm(Ask::Resume) && overlay != model.ui.overlay;
+                if opened {
+                    let is_space = way == Msg::Key(Key::Char(' ').into());
+                    let may_ask = is_held_for_good(situation.phase()) && !is_loose(&situation);
+                    assert!(is_space && may_ask, "{} asks to resume", about());
+                }
+            }
+        }
+    }
+    assert!(held > 10_000, "only {held} cases");
+}
+
+#[test]
+fn a_hold_that_was_sent_can_be_sent_again() {
+    for situation in situations().into_iter().filter(is_loose) {
+        for (first, _) in ways() {
+            for (second, everywhere) in ways() {
+                let mut model = situation.clone();
+                assert_eq!(update(&mut model, first.clone()).first(), Some(&HOLD));
+                let overlay = model.ui.overlay.clone();
+                let effects = update(&mut model, second.clone());
+                assert!(!effects.iter().any(moves), "{second:?} after {first:?}");
+                if everywhere || overlay == Overlay::None {
+                    assert_eq!(effects.first(), Some(&HOLD), "{second:?} after {first:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_way_to_stop_works_on_every_size_and_in_every_pane() {
+    for (width, height) in [(120, 36), (80, 24), (60, 16), (44, 10), (1, 1), (0, 0)] {
+        for pane in Pane::ALL {
+            for (way, _) in ways() {
+                let mut screen = Screen::running();
+                screen.tell(Msg::Resize { width, height });
+                screen.model.ui.pane = pane;
+                assert_eq!(screen.tell(way.clone()).first(), Some(&HOLD), "{way:?} at {width}x{height}");
+            }
+        }
+    }
+}
+
+#[test]
+fn leaving_ends_what_was_asked_to_start() {
+    let mut screen = Screen::idle();
+    screen.press([Key::Char('S'), Key::Enter]);
+    assert_eq!(screen.type_text("q"), [HOLD]);
+    let leave = [Effect::Order(Order::Abort), Effect::Quit { signal: None }];
+    assert_eq!(screen.press([Key::Enter]), leave);
+}
+
+#[test]
+fn a_parameter_that_was_sent_does_not_count_as_a_robot_that_may_move() {
+    let mut screen = Screen::held();
+    let key = "rpf_gain".to_owned();
+    let sent = Effect::Order(Order::SetParameter { key, value: ParamValue::Float(1.2) });
+    assert_eq!(screen.press([Key::Char('p'), Key::Enter, Key::Enter]), [sent]);
+    screen.press([Key::Esc]);
+    assert_eq!(screen.press([Key::Char(' ')]), []);
+    assert_eq!(screen.model.ui.overlay, Overlay::Confirm(Ask::Resume));
+}
