@@ -19,7 +19,7 @@ pub use trail::Trail;
 pub use ui::{Overlay, Pane, Ui};
 
 use mission::{
-    FoldedStanding, MissionConfig, Order, Phase, PlannerChoice, PlannerInfo, Severity, TaskConfig,
+    FoldedStanding, MissionConfig, Order, Phase, PlannerChoice, PlannerInfo, Severity, TaskConfig, WorkerId,
     planner::Fault,
 };
 use planner_api::{Command, Drawing};
@@ -145,6 +145,9 @@ pub struct Planning {
     pub scalars: Vec<(String, f64, String)>,
     /// Its last failure, until it drives again.
     pub fault: Option<Fault>,
+    /// The worker of a planner that is being prepared; its plans are not flown yet.
+    #[serde(default)]
+    pub candidate: Option<WorkerId>,
 }
 
 /// The time, by the caller.

@@ -173,7 +173,12 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
     let Some(action) = actions::action_for(press.key, &actions::contexts(model)) else {
         return if overlay::type_key(model, press.key) { Vec::new() } else { unknown(model, press.key) };
     };
-    if press.repeat && !action.repeats { Vec::new() } else { act(model, action.id) }
+    match action.id {
+        // A key that is held down stops the robot, too, and does nothing else.
+        ActionId::Hold if press.repeat && model.may_move() && !model.console.hold_asked => hold_now(model),
+        _ if press.repeat && !action.repeats => Vec::new(),
+        id => act(model, id),
+    }
 }
 
 /// Reports a key that has no action here.

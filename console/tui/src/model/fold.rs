@@ -47,7 +47,8 @@ impl Model {
             | EventKind::PositionTrusted => self.locate(event),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
-            EventKind::PlannerChosen { .. }
+            EventKind::PlannerPrepared { .. }
+            | EventKind::PlannerChosen { .. }
             | EventKind::ParametersChanged { .. }
             | EventKind::Planned { .. }
             | EventKind::Commanded { .. }
@@ -99,7 +100,6 @@ impl Model {
             EventKind::Ended { outcome, reason } => self.end(event, *outcome, reason),
             EventKind::Truth { .. }
             | EventKind::TetherTruth { .. }
-            | EventKind::PlannerPrepared { .. }
             | EventKind::Snapshotted { .. }
             | EventKind::Discarded { .. }
             | EventKind::PlannerSaid { .. }
@@ -110,8 +110,14 @@ impl Model {
     /// Takes in an event of a planner.
     fn planned(&mut self, event: &Event) {
         match &event.kind {
-            EventKind::PlannerChosen { choice, info, .. } => self.seat(choice, info),
+            EventKind::PlannerPrepared { ask, .. } => self.planning.candidate = Some(ask.worker),
+            EventKind::PlannerChosen { choice, info, .. } => {
+                self.planning.candidate = None;
+                self.seat(choice, info);
+            }
             EventKind::ParametersChanged { choice, .. } => self.planning.choice = Some(choice.clone()),
+            // One that is being prepared: its plan flies when it takes over.
+            EventKind::Planned { ask: Some(ask), .. } if self.planning.candidate == Some(ask.worker) => {}
             EventKind::Planned { path, length_m, complete, .. } => {
                 let path = Trail::thinned(path);
                 let plan = PlanShown { path, length_m: *length_m, complete: *complete, t_s: event.t_s };
@@ -136,6 +142,7 @@ impl Model {
                 self.say(Severity::Watch, format!("planner {planner} answered {ticks} ticks late"));
             }
             EventKind::PlannerRejected { planner, why } => {
+                self.planning.candidate = None;
                 self.say(Severity::Warn, format!("planner {planner} does not take over: {why}"));
             }
             _ => {}

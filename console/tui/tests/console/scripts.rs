@@ -410,11 +410,12 @@ fn pasted_text_is_never_a_command() {
 }
 
 #[test]
-fn a_held_down_key_repeats_movement_and_nothing_else() {
+fn a_key_that_is_held_down_moves_the_map_or_stops_the_robot_and_nothing_else() {
     let mut screen = Screen::running();
     let mut repeat = |letter| screen.tell(Msg::Key(KeyPress { key: Key::Char(letter), repeat: true }));
     assert_eq!(repeat('q'), []);
-    assert_eq!(repeat(' '), []);
+    assert_eq!(repeat(' '), [Effect::Order(Order::Hold)]);
+    assert_eq!(repeat(' '), [], "it has been asked for");
     repeat('z');
     assert_eq!((screen.model.ui.map.zoom, &screen.model.ui.overlay), (1, &Overlay::None));
 }
