@@ -20,11 +20,6 @@ const SIGNALS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
 pub struct StopSignal(Arc<AtomicBool>);
 
 impl StopSignal {
-    /// What is set when a signal comes.
-    pub fn flag(&self) -> Arc<AtomicBool> {
-        Arc::clone(&self.0)
-    }
-
     /// Rings a doorbell at every signal, so that whoever waits for planners looks up.
     pub fn ring(&self, doorbell: Doorbell) {
         let Ok(mut signals) = Signals::new(SIGNALS) else { return };
