@@ -160,3 +160,56 @@ fn a_run_that_is_deleted_in_flight_is_told_at_once_and_at_the_end() {
     assert_eq!(session.back_in_the_shell(), "code=3");
     assert!(session.text().contains("NOT kept"), "{}", session.text());
 }
+
+#[test]
+fn a_terminated_console_does_not_wait_for_the_plan() {
+    let mut session = started("plan_hang");
+    session.signal_console(rustix::process::Signal::TERM);
+    assert_eq!(session.back_in_the_shell(), "code=143");
+    let events = journal(&session.run());
+    assert_held_first(&events);
+    assert_eq!(events.last().unwrap()["event"], "ended");
+    session.bench.prove(&session.run());
+}
+
+#[test]
+fn a_hold_takes_effect_while_a_planner_is_being_opened() {
+    let goto = scenario("goto-single-obstacle.toml");
+    let arguments = format!("console {} --planner faulty --set fault=configure_hang", goto.display());
+    let mut session = Session::open(&arguments, 120, 36);
+    session.see("IDLE");
+    // Right after the start: the planner is being opened for a second.
+    session.press("S\r ");
+    session.see("‖ HOLD");
+    session.until("the fault", |session| first_of(&journal(&session.run()), "planner_failed").is_some());
+    let (_, events) = leave(session);
+    assert_held_first(&events);
+    assert!(first_of(&events, "planner_chosen").is_none());
+}
+
+#[test]
+fn after_a_planner_that_cannot_be_opened_another_one_is_chosen_and_flies() {
+    let goto = scenario("goto-single-obstacle.toml");
+    let arguments = format!("console {} --planner faulty --set fault=configure_panic", goto.display());
+    let mut session = Session::open(&arguments, 120, 36);
+    session.see("IDLE");
+    session.press("S\r");
+    session.until("the fault", |session| {
+        !session.bench.runs().is_empty() && first_of(&journal(&session.run()), "planner_failed").is_some()
+    });
+    session.see("‖ HOLD");
+    session.press_until("P", "What was scanned stays");
+    session.choose("rpf");
+    session.see("CHANGE TO rpf?");
+    session.press("\r");
+    session.until("the plan", |session| first_of(&journal(&session.run()), "planned").is_some());
+    session.press(" ");
+    session.see("RESUME?");
+    session.press("\r");
+    session.see("▶ RUN");
+    session.press(">>>>>>");
+    session.see("DONE");
+    session.press("q");
+    assert_eq!(session.back_in_the_shell(), "code=0");
+    session.bench.prove(&session.run());
+}

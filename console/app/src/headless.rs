@@ -114,7 +114,7 @@ fn fly_to_end(
     live_deadlines: bool,
 ) -> (Host, Fold) {
     let stop = stop_signal::listen();
-    stop.ring(host.doorbell());
+    stop_signal::ring(host.doorbell());
     let (on_work, on_progress) = progress::shown_in(bar, host.plan_budget());
     host.tell_progress(on_progress);
     let (mut watch, mut open) = (PlanWatch::telling(on_work), VecDeque::new());

@@ -169,7 +169,7 @@ impl Robot {
             kinds.push(EventKind::PositionRegained { error_m: 0.21 });
         }
         if part(10) {
-            kinds.push(EventKind::PlannerFailed { ask: ask(tick), fault: fault() });
+            kinds.push(EventKind::PlannerFailed { ask: Some(ask(tick)), fault: fault() });
             kinds.push(EventKind::Held { by: HoldReason::Operator, resumes: Resumes::Never });
         }
         if tick == ticks / 2 + 19 {
@@ -197,7 +197,7 @@ impl Robot {
             let length_m = world::polyline::length_m(&path);
             let planner = if driven == tick { "rpf".into() } else { "apf".into() };
             kinds.push(EventKind::Planned {
-                ask: ask(tick),
+                ask: Some(ask(tick)),
                 way_home: 0,
                 planner,
                 reason: Reason::Start,
@@ -212,7 +212,7 @@ impl Robot {
         let pull = (target - estimate.position).norm();
         kinds.push(EventKind::Scalars { scalars: vec![("potential".into(), 0.5 * pull * pull, "J".into())] });
         let command = Command::velocity(truth.direction() * SPEED_M_PER_S);
-        kinds.push(EventKind::Commanded { ask: ask(tick), command });
+        kinds.push(EventKind::Commanded { ask: Some(ask(tick)), command });
         let runs =
             self.grid.mark_swath(self.before + self.drift, estimate.position, self.opened.mission.swath_m);
         if !runs.is_empty() {
@@ -308,7 +308,7 @@ fn chosen(id: &str, from: Option<String>) -> EventKind {
     };
     let parameters = [("k_rep".to_owned(), ParamValue::Float(0.6))].into();
     EventKind::PlannerChosen {
-        ask: ask(0),
+        ask: Some(ask(0)),
         choice: PlannerChoice { id: id.into(), parameters },
         info: Box::new(info),
         from,
@@ -316,8 +316,8 @@ fn chosen(id: &str, from: Option<String>) -> EventKind {
 }
 
 /// An ask of a tick.
-fn ask(tick: u64) -> Option<AskId> {
-    Some(AskId { worker: WorkerId(1), n: tick as u32 + 1 })
+fn ask(tick: u64) -> AskId {
+    AskId { worker: WorkerId(1), n: tick as u32 + 1 }
 }
 
 fn opened() -> RunOpened {
