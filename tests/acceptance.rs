@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+#[cfg(target_os = "linux")]
+#[path = "acceptance/arrivals.rs"]
+mod arrivals;
 #[path = "acceptance/bench.rs"]
 mod bench;
 #[path = "acceptance/command_line.rs"]
@@ -11,6 +14,11 @@ mod faults;
 #[cfg(unix)]
 #[path = "acceptance/killed.rs"]
 mod killed;
+#[cfg(target_os = "linux")]
+#[path = "acceptance/planning.rs"]
+mod planning;
+#[path = "acceptance/proof.rs"]
+mod proof;
 #[path = "acceptance/replay.rs"]
 mod replay;
 #[path = "acceptance/reproduce.rs"]
@@ -19,6 +27,9 @@ mod reproduce;
 mod rescan;
 #[path = "acceptance/scenarios.rs"]
 mod scenarios;
+#[cfg(unix)]
+#[path = "acceptance/session.rs"]
+mod session;
 #[cfg(unix)]
 #[path = "acceptance/terminal.rs"]
 mod terminal;

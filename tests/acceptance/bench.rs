@@ -59,6 +59,19 @@ impl Bench {
         Ended::from(command.output().unwrap())
     }
 
+    /// Computes a run again.
+    pub fn verify(&self, run: &Path, more: &[&str]) -> Ended {
+        Ended::from(self.command().arg("verify").arg(run).args(more).output().unwrap())
+    }
+
+    /// Makes sure that a run is computed again equally, with the planners asked again and without.
+    pub fn prove(&self, run: &Path) {
+        for more in [&[][..], &["--from-journal"]] {
+            let verified = self.verify(run, more);
+            assert!(verified.code == Some(0) && verified.out.contains("equal: "), "{more:?}: {verified:?}");
+        }
+    }
+
     /// Folders of runs, oldest first.
     pub fn runs(&self) -> Vec<PathBuf> {
         let mut runs: Vec<PathBuf> = std::fs::read_dir(self.path().join("logs"))
@@ -95,4 +108,14 @@ impl Ended {
 pub fn journal(run: &Path) -> Vec<Value> {
     let text = std::fs::read_to_string(run.join("events.jsonl")).unwrap();
     text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
+}
+
+/// The events of one kind.
+pub fn of_kind<'a>(events: &'a [Value], kind: &str) -> Vec<&'a Value> {
+    events.iter().filter(|event| event["event"] == kind).collect()
+}
+
+/// Where the first event of a kind stands in a journal.
+pub fn first_of(events: &[Value], kind: &str) -> Option<usize> {
+    events.iter().position(|event| event["event"] == kind)
 }

@@ -1,7 +1,6 @@
 //! Planners that misbehave: the robot holds within the tick, the operator reads why, the mission can go on.
 
-use crate::bench::{Bench, Ended, journal, scenario};
-use serde_json::Value;
+use crate::bench::{Bench, Ended, journal, of_kind, scenario};
 
 /// Flies the goto scenario with the faulty planner; `apf` is its fallback.
 fn fly_faulty(bench: &Bench, fault: &str) -> Ended {
@@ -11,10 +10,6 @@ fn fly_faulty(bench: &Bench, fault: &str) -> Ended {
         &scenario("goto-single-obstacle.toml"),
         &["--planner", "faulty", "--set", &set, "--set", "at_step=12", "--set", "planner.fallback.id=apf"],
     )
-}
-
-fn of_kind<'a>(events: &'a [Value], kind: &str) -> Vec<&'a Value> {
-    events.iter().filter(|event| event["event"] == kind).collect()
 }
 
 #[test]
@@ -104,7 +99,8 @@ fn a_plugin_for_another_abi_is_listed_with_the_remedy() {
     assert!(listed.out.contains("ABI 9.0") && listed.out.contains("update the console"), "{listed:?}");
 }
 
-fn compile(example: &str, library: &std::path::Path) {
+/// Compiles one of the examples in C into a plugin.
+pub fn compile(example: &str, library: &std::path::Path) {
     compile_file(&crate::bench::workspace().join("plugins/examples/direct-c").join(example), library);
 }
 

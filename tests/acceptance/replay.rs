@@ -17,7 +17,7 @@ fn a_run_is_listed_verified_and_exported() {
     assert_eq!(verified.code, Some(0), "{verified:?}");
     assert!(verified.out.starts_with("equal: "), "{verified:?}");
     let ticks = bench.tankops(&["report", name, "--json"]).json()["ticks"].as_u64().unwrap();
-    assert!(verified.out.contains(&format!("from tick 0 to tick {ticks}\n")), "{verified:?}");
+    assert!(verified.out.contains(&format!("from tick 0 to tick {ticks};")), "{verified:?}");
 
     let exported = bench.tankops(&["export", name, "--rrd", "again.rrd"]);
     assert_eq!(exported.code, Some(0), "{exported:?}");

@@ -124,7 +124,7 @@ fn fly_to_end(
     let mut answers = InOrder::new(host);
     let (on_work, on_progress) = progress::shown_in(bar, answers.host().plan_budget());
     answers.host().tell_progress(on_progress);
-    stop.ring(answers.host().doorbell());
+    stop_signal::ring(answers.host().doorbell());
     let mut watch = PlanWatch::telling(on_work);
     let mut orders = vec![Order::Start];
     while !matches!(flight.phase(), Phase::Ended(_)) {

@@ -37,7 +37,7 @@ pub fn shown_in(bar: &ProgressBar, within: Duration) -> (OnWork, OnProgress) {
     let (shown, work) = (bar.clone(), Arc::clone(&at_hand));
     let on_work: OnWork = Box::new(move |words_of| {
         let mut work = work.lock().unwrap_or_else(PoisonError::into_inner);
-        *work = words_of.unwrap_or_default().to_owned();
+        words_of.unwrap_or_default().clone_into(&mut work);
         if words_of.is_none() {
             shown.disable_steady_tick();
             shown.set_message("");

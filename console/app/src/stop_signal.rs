@@ -20,14 +20,6 @@ const SIGNALS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
 pub struct StopSignal(Arc<AtomicBool>);
 
 impl StopSignal {
-    /// Rings a doorbell at every signal, so that whoever waits for planners looks up.
-    pub fn ring(&self, doorbell: Doorbell) {
-        let Ok(mut signals) = Signals::new(SIGNALS) else { return };
-        let ringing = move || signals.forever().for_each(|_| doorbell.ring());
-        // Without the thread the signal is noticed when the planner answers.
-        drop(thread::Builder::new().name("stop signal".into()).spawn(ringing));
-    }
-
     /// Whether a signal has come since listening began.
     pub fn requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)
@@ -46,4 +38,12 @@ pub fn listen() -> StopSignal {
         drop(registered);
     }
     StopSignal(asked)
+}
+
+/// Rings a doorbell at every signal, so that whoever waits for planners looks up.
+pub fn ring(doorbell: Doorbell) {
+    let Ok(mut signals) = Signals::new(SIGNALS) else { return };
+    let ringing = move || signals.forever().for_each(|_| doorbell.ring());
+    // Without the thread the signal is noticed when the planner answers.
+    drop(thread::Builder::new().name("stop signal".into()).spawn(ringing));
 }

@@ -85,8 +85,7 @@ fn tell(findings: &Findings, path: &Path, plugins: &PluginDirs) -> anyhow::Resul
     if let Some(asked) = planners {
         for (planner, count) in &asked.external {
             say_line(&format!(
-                "note: planner {planner} failed from outside or by the clock {count} times in the run; that is taken from the \
-                 journal"
+                "note: faults of planner {planner} from outside or by the clock, taken from the journal: {count}"
             ))?;
         }
         if let Some(why) = &asked.difference {
@@ -104,7 +103,7 @@ fn tell(findings: &Findings, path: &Path, plugins: &PluginDirs) -> anyhow::Resul
         let (how, asked) = match planners {
             Some(asked) => ("", format!("; {} answers of planners are the same again", asked.compared)),
             None => {
-                (" from the recorded answers", "; the planners were not asked (--from-journal)".to_owned())
+                (" from the recorded answers", "; the planners were not asked (--from-journal): what they answered, drew and said is not proven".to_owned())
             }
         };
         say_line(&format!(
@@ -138,7 +137,7 @@ fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings
         let mut computed = std::mem::take(&mut head);
         computed.extend(flight.tick(&recorded.orders(), &mut replayed));
         findings.difference = difference(&recorded, &computed)?;
-        findings.events += recorded.lines.len();
+        findings.events += recorded.to_compare().len();
         findings.last_tick = recorded.tick;
     }
     findings.no_end = ticks.no_end();
@@ -148,10 +147,11 @@ fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings
 
 /// The first line of a tick that is not the recorded one.
 fn difference(recorded: &RecordedTick, computed: &[Event]) -> anyhow::Result<Option<Difference>> {
-    let tick = recorded.tick;
-    for index in 0..recorded.lines.len().max(computed.len()) {
+    let (tick, lines) = (recorded.tick, recorded.to_compare());
+    let end = if recorded.is_cut { lines.len() } else { lines.len().max(computed.len()) };
+    for index in 0..end {
         let ours = computed.get(index).map(line).transpose()?;
-        let theirs = recorded.lines.get(index).map(|(raw, _)| raw.as_slice());
+        let theirs = lines.get(index).map(|(raw, _)| raw.as_slice());
         if ours.as_deref().map(str::as_bytes) != theirs {
             let theirs = theirs.map(|raw| String::from_utf8_lossy(raw).into_owned());
             let nothing = || "nothing more in this tick".to_owned();

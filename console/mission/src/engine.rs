@@ -126,6 +126,11 @@ impl Mission {
         &self.phase
     }
 
+    /// The planner that drives, or that will drive first.
+    pub fn planner_id(&self) -> &str {
+        &self.active.choice.id
+    }
+
     /// Everything that decides whether an order is accepted now.
     pub fn standing(&self) -> Standing<'_> {
         Standing { phase: &self.phase, position: self.position_trust(), planner: self.active.info.as_ref() }

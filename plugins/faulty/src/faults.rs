@@ -23,6 +23,8 @@ pub(crate) const FAULTS: &[&str] = &[
     "hang",
     "sleep",
     "slow",
+    "nap",
+    "dawdle",
     "nan",
     "huge",
     "draw_flood",
@@ -32,8 +34,22 @@ pub(crate) const FAULTS: &[&str] = &[
     "configure_hang",
     "plan_panic",
     "plan_hang",
+    "plan_nap",
+    "plan_long",
     "plan_progress",
 ];
+
+/// Longer than a tick of usual length, and no fault.
+const NAP: Duration = Duration::from_millis(150);
+/// Within a tick of usual length, but so much that a mission takes seconds.
+const DAWDLE: Duration = Duration::from_millis(50);
+/// Long enough for an operator to do something meanwhile.
+const LONG: Duration = Duration::from_millis(2500);
+
+/// Whether a fault happens once; the others happen in every step from then on.
+pub(crate) fn happens_once(kind: &str) -> bool {
+    kind == "nap"
+}
 
 /// Does what the word says; returns when the fault is one that can be survived.
 pub(crate) fn commit(kind: &str, ctx: &Ctx<'_>) -> Result<()> {
@@ -54,6 +70,9 @@ pub(crate) fn commit(kind: &str, ctx: &Ctx<'_>) -> Result<()> {
         "hang" => spin(),
         "sleep" => std::thread::sleep(Duration::from_hours(1)),
         "slow" => return work_politely(ctx),
+        "nap" => std::thread::sleep(NAP),
+        "dawdle" => std::thread::sleep(DAWDLE),
+        "long" => std::thread::sleep(LONG),
         "draw_flood" => draw_flood(ctx),
         "print_flood" => print_flood(),
         "progress" => tell_progress_for_ever(ctx),

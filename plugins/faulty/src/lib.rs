@@ -5,7 +5,7 @@
 
 mod faults;
 
-use faults::{FAULTS, commit};
+use faults::{FAULTS, commit, happens_once};
 use nalgebra::Vector2;
 use planner_api::{
     Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site, Status, Task,
@@ -53,7 +53,8 @@ impl Planner for Faulty {
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
-        let due = self.n_steps >= self.at_step;
+        let since = self.n_steps - self.at_step;
+        let due = since == 0 || (since > 0 && !happens_once(self.fault));
         self.n_steps += 1;
         if due {
             match self.fault {

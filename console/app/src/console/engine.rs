@@ -288,7 +288,7 @@ impl EngineThread {
     }
 
     fn open_log(&mut self) -> anyhow::Result<()> {
-        let planner = &self.scenario.mission.planner.id;
+        let planner = self.flight.mission().planner_id();
         let folder = RunFolder::create(&self.logs, &self.scenario.name, planner, self.scenario.seed)?;
         let recorder = RunRecorder::start(folder.path(), Options::default())?;
         let now = Instant::now();

@@ -186,16 +186,14 @@ impl Left {
             let text = format!("{}{}\n", report::human(&ended.summary), ended.kept.text());
             let _ = std::io::stdout().write_all(text.as_bytes());
         }
-        match self.signal {
-            Some(signal) => ExitCode::from(128 + number(signal)),
-            None => {
-                let code = match ended.and_then(|ended| ended.summary.outcome) {
-                    None | Some(Outcome::Complete) => COMPLETE,
-                    Some(_) => ENDED_OTHERWISE,
-                };
-                ExitCode::from(ended.map_or(code, |ended| ended.kept.exit_code(code)))
-            }
+        if let Some(signal) = self.signal {
+            return ExitCode::from(128 + number(signal));
         }
+        let code = match ended.and_then(|ended| ended.summary.outcome) {
+            None | Some(Outcome::Complete) => COMPLETE,
+            Some(_) => ENDED_OTHERWISE,
+        };
+        ExitCode::from(ended.map_or(code, |ended| ended.kept.exit_code(code)))
     }
 }
 

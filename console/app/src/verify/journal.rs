@@ -11,9 +11,29 @@ pub struct RecordedTick {
     pub tick: u64,
     /// Each line as it is in the file, and what it says.
     pub lines: Vec<(Vec<u8>, Event)>,
+    /// Whether the journal stops in this tick: then only the lines that come before all answers of planners are compared.
+    pub is_cut: bool,
 }
 
-/// Reads a journal tick by tick. The last tick of a journal without an end may be cut off in the middle, so it is left out.
+impl RecordedTick {
+    /// The lines to compare.
+    pub fn to_compare(&self) -> &[(Vec<u8>, Event)] {
+        let is_answer = |(_, event): &(Vec<u8>, Event)| {
+            let is_said = matches!(
+                event.kind,
+                EventKind::Drawn { .. }
+                    | EventKind::Scalars { .. }
+                    | EventKind::PlannerSaid { .. }
+                    | EventKind::PlannerLate { .. }
+            );
+            is_said || event.kind.closes().is_some()
+        };
+        let end = if self.is_cut { self.lines.iter().position(is_answer) } else { None };
+        &self.lines[..end.unwrap_or(self.lines.len())]
+    }
+}
+
+/// Reads a journal tick by tick.
 pub struct Ticks {
     reader: JournalReader,
     /// The first line of the tick that comes next.
@@ -53,7 +73,7 @@ impl Ticks {
     /// A line cannot be understood.
     pub fn next(&mut self) -> anyhow::Result<Option<RecordedTick>> {
         let Some(first) = self.ahead.take() else { return Ok(None) };
-        let mut recorded = RecordedTick { tick: first.1.tick, lines: vec![first] };
+        let mut recorded = RecordedTick { tick: first.1.tick, lines: vec![first], is_cut: false };
         while let Some(line) = self.line()? {
             if line.1.tick != recorded.tick {
                 self.ahead = Some(line);
@@ -68,7 +88,8 @@ impl Ticks {
         }
         let torn = self.reader.truncated().map(|why| format!("{why}, ")).unwrap_or_default();
         self.no_end = Some(format!("{torn}it stops in tick {}", recorded.tick));
-        Ok(None)
+        recorded.is_cut = true;
+        Ok(Some(recorded))
     }
 
     /// Why the journal has no end; to be asked after the last tick.

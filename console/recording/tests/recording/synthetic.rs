@@ -4,8 +4,8 @@
 //! potential field, an obstacle to discover, a station that falls silent, a hold, a second planner and an end.
 
 use mission::{
-    Cause, During, Event, EventKind, Fault, MissionConfig, Order, Outcome, ParamInfo, ParamKind, ParamValue,
-    Parameters, PlannerChoice, PlannerInfo, ScanConfig, TaskConfig,
+    AskId, Cause, During, Event, EventKind, Fault, MissionConfig, Order, Outcome, ParamInfo, ParamKind,
+    ParamValue, Parameters, PlannerChoice, PlannerInfo, Resumes, ScanConfig, TaskConfig, WorkerId,
     event::{HoldReason, JOURNAL_VERSION, RunOpened},
 };
 use nalgebra::{Matrix2, Matrix3};
@@ -169,8 +169,8 @@ impl Robot {
             kinds.push(EventKind::PositionRegained { error_m: 0.21 });
         }
         if part(10) {
-            kinds.push(EventKind::PlannerFailed { fault: fault() });
-            kinds.push(EventKind::Held { by: HoldReason::Operator });
+            kinds.push(EventKind::PlannerFailed { ask: Some(ask(tick)), fault: fault() });
+            kinds.push(EventKind::Held { by: HoldReason::Operator, resumes: Resumes::Never });
         }
         if tick == ticks / 2 + 19 {
             kinds.push(chosen("apf", Some("rpf".into())));
@@ -197,6 +197,8 @@ impl Robot {
             let length_m = world::polyline::length_m(&path);
             let planner = if driven == tick { "rpf".into() } else { "apf".into() };
             kinds.push(EventKind::Planned {
+                ask: Some(ask(tick)),
+                way_home: 0,
                 planner,
                 reason: Reason::Start,
                 path,
@@ -209,7 +211,8 @@ impl Robot {
         kinds.push(EventKind::Drawn { drawings: self.forces(estimate.position, target) });
         let pull = (target - estimate.position).norm();
         kinds.push(EventKind::Scalars { scalars: vec![("potential".into(), 0.5 * pull * pull, "J".into())] });
-        kinds.push(EventKind::Commanded { command: Command::velocity(truth.direction() * SPEED_M_PER_S) });
+        let command = Command::velocity(truth.direction() * SPEED_M_PER_S);
+        kinds.push(EventKind::Commanded { ask: Some(ask(tick)), command });
         let runs =
             self.grid.mark_swath(self.before + self.drift, estimate.position, self.opened.mission.swath_m);
         if !runs.is_empty() {
@@ -305,10 +308,16 @@ fn chosen(id: &str, from: Option<String>) -> EventKind {
     };
     let parameters = [("k_rep".to_owned(), ParamValue::Float(0.6))].into();
     EventKind::PlannerChosen {
+        ask: Some(ask(0)),
         choice: PlannerChoice { id: id.into(), parameters },
         info: Box::new(info),
         from,
     }
+}
+
+/// An ask of a tick.
+fn ask(tick: u64) -> AskId {
+    AskId { worker: WorkerId(1), n: tick as u32 + 1 }
 }
 
 fn opened() -> RunOpened {

@@ -144,7 +144,7 @@ fn a_worker_that_is_told_to_end_amid_progress_is_killed_if_it_does_not() {
 fn a_request_that_does_not_fit_into_the_socket_is_written_piece_by_piece() {
     let length = 4 << 20;
     let mut worker = worker(&format!(
-        "head -c {} > /dev/null; printf '{}' >&0; while read -r line; do :; done",
+        "sleep 0.3; head -c {} > /dev/null; printf '{}' >&0; while read -r line; do :; done",
         length + 13 + 4,
         octal(&done(1))
     ));

@@ -1,0 +1,215 @@
+//! The console while a planner makes a plan: nothing that the operator does waits for it.
+
+use crate::{
+    bench::{first_of, journal, of_kind, scenario},
+    session::Session,
+};
+use serde_json::Value;
+
+/// The console with a mission that has been started and whose planner misbehaves.
+fn started(fault: &str) -> Session {
+    let goto = scenario("goto-single-obstacle.toml");
+    let arguments = format!("console {} --planner faulty --set fault={fault}", goto.display());
+    let mut session = Session::open(&arguments, 120, 36);
+    session.see("IDLE");
+    session.press("S");
+    session.see("START?");
+    session.press("\r");
+    session.see("Planning (faulty)");
+    session
+}
+
+/// Leaves a console whose mission is held or under way, and gives what was written down.
+fn leave(mut session: Session) -> (Session, Vec<Value>) {
+    session.press("q");
+    session.see("LEAVE?");
+    session.press("\r");
+    assert_eq!(session.back_in_the_shell(), "code=1");
+    let events = journal(&session.run());
+    assert_eq!(events.last().unwrap()["outcome"], "aborted");
+    session.bench.prove(&session.run());
+    (session, events)
+}
+
+/// The hold by the operator came before the plan, and before the time of the plan was over.
+fn assert_held_first(events: &[Value]) {
+    let held = first_of(events, "held").expect("held");
+    assert_eq!(events[held]["by"], "operator", "{}", events[held]);
+    for kind in ["planned", "planner_failed"] {
+        assert!(first_of(events, kind).is_none_or(|at| at > held), "{kind} came before the hold");
+    }
+}
+
+#[test]
+fn a_hold_takes_effect_while_a_plan_is_being_made() {
+    let mut session = started("plan_hang");
+    session.press(" ");
+    session.see("‖ HOLD");
+    let (_, events) = leave(session);
+    assert_held_first(&events);
+    assert!(first_of(&events, "planned").is_none());
+}
+
+#[test]
+fn ctrl_c_holds_while_a_plan_is_being_made_and_the_console_leaves_in_good_order() {
+    let mut session = started("plan_hang");
+    session.press("\x03");
+    session.see("‖ HOLD");
+    let (_, events) = leave(session);
+    assert_held_first(&events);
+}
+
+#[test]
+fn leaving_while_a_plan_is_being_made_holds_first() {
+    let (_, events) = leave(started("plan_hang"));
+    assert_held_first(&events);
+}
+
+#[test]
+fn a_plan_that_was_made_while_the_mission_was_held_is_flown_afterwards() {
+    let mut session = started("plan_long");
+    session.press(" ");
+    session.see("‖ HOLD");
+    session.until("the plan", |session| first_of(&journal(&session.run()), "planned").is_some());
+    assert!(session.text().contains("‖ HOLD"), "{}", session.text());
+    session.press(" ");
+    session.see("RESUME?");
+    session.press("\r");
+    session.see("▶ RUN");
+    session.until("a command", |session| first_of(&journal(&session.run()), "commanded").is_some());
+    let (_, events) = leave(session);
+    assert_held_first(&events);
+    assert_eq!(of_kind(&events, "planned").len(), 1);
+    let [planned, resumed, commanded] =
+        ["planned", "resumed", "commanded"].map(|kind| first_of(&events, kind).unwrap());
+    assert!(planned < resumed && resumed < commanded);
+}
+
+#[test]
+fn a_planner_that_fails_while_the_mission_is_held_does_not_let_it_go() {
+    let mut session = started("plan_hang");
+    session.press(" ");
+    session.see("‖ HOLD");
+    session.until("the fault", |session| first_of(&journal(&session.run()), "planner_failed").is_some());
+    session.see("‖ HOLD");
+    let (_, events) = leave(session);
+    assert_held_first(&events);
+    assert!(of_kind(&events, "resumed").is_empty());
+}
+
+#[test]
+fn another_planner_chosen_before_the_start_is_written_down_and_proven() {
+    let goto = scenario("goto-single-obstacle.toml");
+    let mut session = Session::open(&format!("console {} --planner apf", goto.display()), 120, 36);
+    session.see("IDLE");
+    session.press_until("P", "What was scanned stays");
+    session.choose("rpf");
+    session.see("CHANGE TO rpf?");
+    session.press("\r");
+    session.until("the planner", |session| !session.text().contains("CHANGE TO"));
+    session.see("rpf ");
+    session.press("S");
+    session.see("START?");
+    session.press("\r");
+    session.see("▶ RUN");
+    session.press(">>>>>>");
+    session.see("DONE");
+    session.press("q");
+    assert_eq!(session.back_in_the_shell(), "code=0");
+    let run = session.run();
+    let events = journal(&run);
+    let chosen = of_kind(&events, "planner_chosen");
+    assert!(chosen.iter().all(|event| event["choice"]["id"] == "rpf"), "{chosen:?}");
+    let ordered = of_kind(&events, "ordered");
+    assert_eq!(ordered.len(), 2, "{ordered:?}");
+    assert!(ordered[0]["order"].to_string().contains("rpf") && ordered[1]["order"] == "start", "{ordered:?}");
+    session.bench.prove(&run);
+}
+
+#[test]
+fn what_makes_no_run_possible_is_said_before_the_screen_is_taken() {
+    // The shell of the session writes the file `before`.
+    for (arguments, words) in [
+        ("console --logs before", ["before", "not a folder"]),
+        ("console --planner nonsense", ["nonsense", "there is no planner"]),
+    ] {
+        let mut session = Session::open(arguments, 200, 30);
+        assert_eq!(session.back_in_the_shell(), "code=2", "{arguments}");
+        let text = session.text();
+        assert!(words.iter().all(|word| text.contains(word)), "{arguments}: {text}");
+        assert!(!session.took_the_screen(), "{arguments}: {text}");
+        assert!(session.bench.runs().is_empty());
+    }
+}
+
+#[test]
+fn a_run_that_is_deleted_in_flight_is_told_at_once_and_at_the_end() {
+    let goto = scenario("goto-single-obstacle.toml");
+    let mut session = Session::open(&format!("console {}", goto.display()), 120, 36);
+    session.see("IDLE");
+    session.press("<<<<");
+    session.press("S");
+    session.see("START?");
+    session.press("\r");
+    session.see("REC●");
+    std::fs::remove_dir_all(session.run()).unwrap();
+    session.see("REC✗");
+    session.press("q");
+    session.see("LEAVE?");
+    session.press("\r");
+    assert_eq!(session.back_in_the_shell(), "code=3");
+    assert!(session.text().contains("NOT kept"), "{}", session.text());
+}
+
+#[test]
+fn a_terminated_console_does_not_wait_for_the_plan() {
+    let mut session = started("plan_hang");
+    session.signal_console(rustix::process::Signal::TERM);
+    assert_eq!(session.back_in_the_shell(), "code=143");
+    let events = journal(&session.run());
+    assert_held_first(&events);
+    assert_eq!(events.last().unwrap()["event"], "ended");
+    session.bench.prove(&session.run());
+}
+
+#[test]
+fn a_hold_takes_effect_while_a_planner_is_being_opened() {
+    let goto = scenario("goto-single-obstacle.toml");
+    let arguments = format!("console {} --planner faulty --set fault=configure_hang", goto.display());
+    let mut session = Session::open(&arguments, 120, 36);
+    session.see("IDLE");
+    // Right after the start: the planner is being opened for a second.
+    session.press("S\r ");
+    session.see("‖ HOLD");
+    session.until("the fault", |session| first_of(&journal(&session.run()), "planner_failed").is_some());
+    let (_, events) = leave(session);
+    assert_held_first(&events);
+    assert!(first_of(&events, "planner_chosen").is_none());
+}
+
+#[test]
+fn after_a_planner_that_cannot_be_opened_another_one_is_chosen_and_flies() {
+    let goto = scenario("goto-single-obstacle.toml");
+    let arguments = format!("console {} --planner faulty --set fault=configure_panic", goto.display());
+    let mut session = Session::open(&arguments, 120, 36);
+    session.see("IDLE");
+    session.press("S\r");
+    session.until("the fault", |session| {
+        !session.bench.runs().is_empty() && first_of(&journal(&session.run()), "planner_failed").is_some()
+    });
+    session.see("‖ HOLD");
+    session.press_until("P", "What was scanned stays");
+    session.choose("rpf");
+    session.see("CHANGE TO rpf?");
+    session.press("\r");
+    session.until("the plan", |session| first_of(&journal(&session.run()), "planned").is_some());
+    session.press(" ");
+    session.see("RESUME?");
+    session.press("\r");
+    session.see("▶ RUN");
+    session.press(">>>>>>");
+    session.see("DONE");
+    session.press("q");
+    assert_eq!(session.back_in_the_shell(), "code=0");
+    session.bench.prove(&session.run());
+}

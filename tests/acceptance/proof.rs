@@ -1,0 +1,193 @@
+//! What `verify` proves, and what it refuses to call equal.
+
+use crate::{
+    bench::{Bench, journal, scenario, workspace},
+    faults::compile,
+};
+use std::path::{Path, PathBuf};
+
+/// A short run that was flown to its end.
+fn flown(bench: &Bench) -> PathBuf {
+    assert_eq!(bench.fly(&scenario("goto-single-obstacle.toml"), &[]).code, Some(0));
+    bench.runs().remove(0)
+}
+
+fn text_of(run: &Path) -> String {
+    std::fs::read_to_string(run.join("events.jsonl")).unwrap()
+}
+
+/// The text with one line changed.
+fn with_line(text: &str, number: usize, change: impl Fn(&str) -> String) -> String {
+    let lines =
+        text.lines().enumerate().map(|(i, line)| if i == number { change(line) } else { line.to_owned() });
+    lines.map(|line| line + "\n").collect()
+}
+
+#[test]
+fn a_journal_in_which_a_line_is_written_otherwise_is_different() {
+    let bench = Bench::new();
+    let run = flown(&bench);
+    let text = text_of(&run);
+    let at = 150;
+    let (tick, t_s) = (&journal(&run)[at]["tick"], &journal(&run)[at]["t_s"]);
+    let (clock, longer) = (format!("\"t_s\":{t_s},"), format!("\"t_s\":{t_s}0,"));
+    let opening = text.lines().next().unwrap();
+    assert!(opening.contains("\"seed\":1,"));
+    let changed = [
+        ("white space", at, with_line(&text, at, |line| line.replacen(':', ": ", 1))),
+        ("white space at the end", at, with_line(&text, at, |line| format!("{line} "))),
+        ("another key", at, with_line(&text, at, |line| line.replacen('{', "{\"note\":1,", 1))),
+        ("a number with a zero more", at, with_line(&text, at, |line| line.replacen(&clock, &longer, 1))),
+        (
+            "two keys in another order",
+            at,
+            with_line(&text, at, |line| {
+                let (first, second) = (format!("\"tick\":{tick},"), format!("\"t_s\":{t_s},"));
+                line.replacen(&format!("{first}{second}"), &format!("{second}{first}"), 1)
+            }),
+        ),
+        ("a line twice", at, with_line(&text, at, |line| format!("{line}\n{line}"))),
+        ("a key in the opening", 0, with_line(&text, 0, |line| line.replacen('{', "{\"note\":1,", 1))),
+        (
+            "a number in the opening",
+            0,
+            with_line(&text, 0, |line| line.replacen("\"seed\":1,", "\"seed\":1 ,", 1)),
+        ),
+    ];
+    std::fs::rename(run.join("report.json"), run.join("report.kept")).unwrap();
+    for (what, line, changed) in changed {
+        assert_ne!(changed, text, "{what}");
+        std::fs::write(run.join("events.jsonl"), changed).unwrap();
+        let tick = journal(&run)[line]["tick"].as_u64().unwrap();
+        for more in [&[][..], &["--from-journal"]] {
+            let verified = bench.verify(&run, more);
+            let told = verified.out.contains(&format!("different from tick {tick} on"));
+            assert!(verified.code == Some(1) && told, "{what}: {verified:?}");
+        }
+    }
+    std::fs::write(run.join("events.jsonl"), text).unwrap();
+    std::fs::rename(run.join("report.kept"), run.join("report.json")).unwrap();
+    bench.prove(&run);
+}
+
+#[test]
+fn a_journal_that_was_cut_is_different_from_what_its_report_tells() {
+    let bench = Bench::new();
+    let run = flown(&bench);
+    let text = text_of(&run);
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines.len() > 600, "{}", lines.len());
+    let report = std::fs::read_to_string(run.join("report.json")).unwrap();
+    let hash_of_another = report.replacen("\"events_sha256\": \"", "\"events_sha256\": \"0123", 1);
+    assert_ne!(hash_of_another, report);
+    for (what, kept) in
+        [("the last line", lines.len() - 1), ("500 lines", lines.len() - 500), ("all but one", 1)]
+    {
+        std::fs::write(run.join("events.jsonl"), lines[..kept].join("\n") + "\n").unwrap();
+        // A report that does not name the journal's hash claims an end all the same.
+        for report in [report.clone(), report.replacen("events_sha256", "events", 1)] {
+            std::fs::write(run.join("report.json"), report).unwrap();
+            let verified = bench.verify(&run, &[]);
+            let told = verified.out.contains("different: ") && verified.out.contains("no end");
+            assert!(verified.code == Some(1) && told, "without {what}: {verified:?}");
+        }
+    }
+    std::fs::write(run.join("events.jsonl"), &text).unwrap();
+    std::fs::write(run.join("report.json"), hash_of_another).unwrap();
+    let verified = bench.verify(&run, &[]);
+    assert!(verified.code == Some(1) && verified.out.contains("SHA-256"), "{verified:?}");
+}
+
+#[test]
+fn a_journal_without_an_end_is_compared_as_far_as_it_goes() {
+    let bench = Bench::new();
+    let run = flown(&bench);
+    let text = text_of(&run);
+    std::fs::remove_file(run.join("report.json")).unwrap();
+    // As a process leaves it that was killed: somewhere in a line, at the end of one, or before a newline.
+    let middle = text.len() / 2;
+    let line_end = middle + text[middle..].find('\n').unwrap();
+    for kept in [middle, line_end + 1, line_end] {
+        std::fs::write(run.join("events.jsonl"), &text[..kept]).unwrap();
+        for more in [&[][..], &["--from-journal"]] {
+            let verified = bench.verify(&run, more);
+            let told = verified.out.contains("the journal has no end") && verified.out.contains("equal: ");
+            assert!(verified.code == Some(0) && told, "{kept} bytes: {verified:?}");
+        }
+    }
+}
+
+#[test]
+fn nothing_may_follow_the_end_of_a_journal() {
+    let bench = Bench::new();
+    let run = flown(&bench);
+    let text = text_of(&run);
+    std::fs::remove_file(run.join("report.json")).unwrap();
+    let ending = text.lines().last().unwrap();
+    let tick = journal(&run).last().unwrap()["tick"].as_u64().unwrap();
+    let later = ending.replacen(&format!("\"tick\":{tick},"), &format!("\"tick\":{},", tick + 1), 1);
+    assert_ne!(later, ending);
+    for more in [ending, &later] {
+        std::fs::write(run.join("events.jsonl"), format!("{text}{more}\n")).unwrap();
+        let verified = bench.verify(&run, &[]);
+        assert!(verified.code == Some(1) && verified.out.contains("different"), "{verified:?}");
+    }
+}
+
+#[test]
+fn a_run_whose_planner_is_not_at_hand_is_proven_from_its_journal() {
+    let bench = Bench::new();
+    let plugins = bench.path().join("plugins-in-c");
+    std::fs::create_dir(&plugins).unwrap();
+    compile("direct.c", &plugins.join("libplanner_direct_c.so"));
+    let with_it = ["--plugin-dir", plugins.to_str().unwrap()];
+    let goto = scenario("goto-single-obstacle.toml");
+    let flown = bench.fly(&goto, &[&["--planner", "direct-c"][..], &with_it].concat());
+    assert!(flown.json()["ticks"].as_u64() > Some(50), "{flown:?}");
+    let run = bench.runs().remove(0);
+    let at_hand = bench.verify(&run, &with_it);
+    assert!(
+        at_hand.code == Some(0) && at_hand.out.contains("answers of planners are the same"),
+        "{at_hand:?}"
+    );
+    let missing = bench.verify(&run, &[]);
+    let told = missing.out.contains("planner direct-c of the run is not installed");
+    assert!(missing.code == Some(1) && told && missing.out.contains("--from-journal"), "{missing:?}");
+    let from_journal = bench.verify(&run, &["--from-journal"]);
+    let told = from_journal.out.contains("the planners were not asked");
+    assert!(
+        from_journal.code == Some(0) && told && from_journal.out.starts_with("equal: "),
+        "{from_journal:?}"
+    );
+}
+
+#[test]
+fn a_run_of_version_2_is_listed_told_and_exported_but_not_computed_again() {
+    let bench = Bench::new();
+    let logs = workspace().join("tests/acceptance/fixtures/v2");
+    let at = ["--logs", logs.to_str().unwrap()];
+    let listed = bench.tankops(&[&["runs", "--json"][..], &at].concat()).json();
+    assert_eq!((listed.as_array().unwrap().len(), &listed[0]["end"]), (1, &"complete".into()), "{listed}");
+    let name = listed[0]["name"].as_str().unwrap();
+    let told = bench.tankops(&[&["report", name, "--json"][..], &at].concat());
+    let report = told.json();
+    assert_eq!((&report["outcome"], &report["ticks"]), (&"complete".into(), &45.into()), "{told:?}");
+    let then = std::fs::read_to_string(logs.join(name).join("report.json")).unwrap();
+    let then: serde_json::Value = serde_json::from_str(&then).unwrap();
+    for key in ["planner", "parameters", "path_length_m", "coverage", "positioning", "events_sha256", "unmet"]
+    {
+        assert_eq!(report[key], then[key], "{key}");
+    }
+    let exported = bench.tankops(&[&["export", name, "--rrd", "again.rrd"][..], &at].concat());
+    assert_eq!(exported.code, Some(0), "{exported:?}");
+    assert!(!recording::inspect(&bench.path().join("again.rrd")).unwrap().entities.is_empty());
+    for more in [&[][..], &["--from-journal"]] {
+        let refused = bench.tankops(&[&["verify", name][..], &at, more].concat());
+        assert_eq!(refused.code, Some(2), "{refused:?}");
+        assert!(
+            refused.err.contains("the journal has version 2") && refused.err.contains("version 3"),
+            "{refused:?}"
+        );
+        assert_eq!((refused.err.trim().lines().count(), refused.out.as_str()), (1, ""), "{refused:?}");
+    }
+}

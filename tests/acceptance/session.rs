@@ -1,0 +1,165 @@
+//! A pseudo terminal with a shell that starts `tankops`.
+
+use crate::bench::Bench;
+use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
+use std::{
+    io::{Read, Write},
+    path::PathBuf,
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+const PATIENCE: Duration = Duration::from_mins(1);
+
+/// A shell in a pseudo terminal that notes `stty -a` before and after `tankops`.
+pub struct Session {
+    pub bench: Bench,
+    screen: Arc<Mutex<vt100::Parser>>,
+    /// Everything that was ever written to the terminal.
+    written: Arc<Mutex<Vec<u8>>>,
+    keys: Box<dyn Write + Send>,
+    child: Box<dyn Child + Send + Sync>,
+    master: Option<Box<dyn MasterPty + Send>>,
+    /// Whether the terminal has been closed: its reader then lets go of it, too.
+    closed: Arc<AtomicBool>,
+}
+
+fn screen_of(width: u16, height: u16) -> vt100::Parser {
+    let size = |count| std::num::NonZero::new(count).unwrap();
+    vt100::Parser::new(size(height), size(width), 0)
+}
+
+impl Session {
+    pub fn open(arguments: &str, width: u16, height: u16) -> Self {
+        let bench = Bench::new();
+        let size = PtySize { rows: height, cols: width, pixel_width: 0, pixel_height: 0 };
+        let pair = native_pty_system().openpty(size).unwrap();
+        let program = PathBuf::from(env!("CARGO_BIN_EXE_tankops"));
+        let deps = program.parent().unwrap().join("deps");
+        let script = format!(
+            "stty -a > before; {} --plugin-dir {} {arguments}; echo \"code=$?\" > code; stty -a > after; echo SHELL-AGAIN",
+            program.display(),
+            deps.display()
+        );
+        let mut command = CommandBuilder::new("bash");
+        command.args(["-c", &script]);
+        command.cwd(bench.path());
+        command.env("TERM", "xterm-256color");
+        command.env("LANG", "C.UTF-8");
+        command.env_remove("NO_COLOR");
+        let child = pair.slave.spawn_command(command).unwrap();
+        drop(pair.slave);
+        let screen = Arc::new(Mutex::new(screen_of(width, height)));
+        let mut output = pair.master.try_clone_reader().unwrap();
+        let shown = Arc::clone(&screen);
+        let written = Arc::new(Mutex::new(Vec::new()));
+        let kept = Arc::clone(&written);
+        let closed = Arc::new(AtomicBool::new(false));
+        let is_closed = Arc::clone(&closed);
+        std::thread::spawn(move || {
+            let mut bytes = [0; 8192];
+            while let Ok(count) = output.read(&mut bytes) {
+                if count == 0 || is_closed.load(Ordering::SeqCst) {
+                    return;
+                }
+                kept.lock().unwrap().extend_from_slice(&bytes[..count]);
+                shown.lock().unwrap().process(&bytes[..count]);
+            }
+        });
+        let keys = pair.master.take_writer().unwrap();
+        Self { bench, screen, written, keys, child, master: Some(pair.master), closed }
+    }
+
+    pub fn text(&self) -> String {
+        self.screen.lock().unwrap().screen().contents()
+    }
+
+    /// Waits until the screen shows a word.
+    pub fn see(&self, word: &str) {
+        self.until(&format!("`{word}` on the screen"), |session| session.text().contains(word));
+    }
+
+    pub fn until(&self, what: &str, is_so: impl Fn(&Self) -> bool) {
+        let until = Instant::now() + PATIENCE;
+        while !is_so(self) {
+            assert!(Instant::now() < until, "waited for {what} in vain; the screen shows:\n{}", self.text());
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    pub fn press(&mut self, keys: &str) {
+        self.keys.write_all(keys.as_bytes()).unwrap();
+        self.keys.flush().unwrap();
+    }
+
+    /// Presses a key until the screen shows a word; on a busy machine the planners are still being looked for.
+    pub fn press_until(&mut self, key: &str, word: &str) {
+        let until = Instant::now() + PATIENCE;
+        while !self.text().contains(word) && Instant::now() < until {
+            self.press(key);
+            std::thread::sleep(Duration::from_millis(500));
+        }
+        self.see(word);
+    }
+
+    /// Goes down an open list to an entry and takes it.
+    pub fn choose(&mut self, entry: &str) {
+        let chosen = format!(">{entry} ");
+        for _ in 0..60 {
+            if self.text().contains(&chosen) {
+                break;
+            }
+            self.press("\x1b[B");
+            std::thread::sleep(Duration::from_millis(100));
+        }
+        self.see(&chosen);
+        self.press("\r");
+    }
+
+    /// Waits for the shell to be back; the terminal must be as it was. Gives the exit code.
+    pub fn back_in_the_shell(&mut self) -> String {
+        self.until("the shell", |session| {
+            session.bench.path().join("after").exists() && session.text().contains("SHELL-AGAIN")
+        });
+        let read = |name: &str| std::fs::read_to_string(self.bench.path().join(name)).unwrap();
+        assert_eq!(read("before"), read("after"));
+        let parser = self.screen.lock().unwrap();
+        assert!(!parser.screen().alternate_screen(), "the alternate screen was left on");
+        assert!(!parser.screen().hide_cursor(), "the cursor was left hidden");
+        assert!(!parser.screen().bracketed_paste(), "bracketed paste was left on");
+        read("code").trim().to_owned()
+    }
+
+    /// Process id of the console, from its parent shell.
+    pub fn console_pid(&self) -> i32 {
+        let shell = self.child.process_id().unwrap();
+        let children = std::fs::read_to_string(format!("/proc/{shell}/task/{shell}/children")).unwrap();
+        children.split_whitespace().next().unwrap().parse().unwrap()
+    }
+
+    pub fn signal_console(&self, signal: rustix::process::Signal) {
+        let pid = rustix::process::Pid::from_raw(self.console_pid()).unwrap();
+        rustix::process::kill_process(pid, signal).unwrap();
+    }
+
+    /// Closes the terminal under the console, as a window that is shut.
+    pub fn hang_up(&mut self) {
+        self.closed.store(true, Ordering::SeqCst);
+        drop(self.master.take());
+        self.keys = Box::new(std::io::sink());
+    }
+
+    /// Whether the console took the whole screen at any time.
+    pub fn took_the_screen(&self) -> bool {
+        let written = self.written.lock().unwrap();
+        written.windows(8).any(|bytes| bytes == b"\x1b[?1049h")
+    }
+
+    /// The folder of the run.
+    pub fn run(&self) -> PathBuf {
+        self.bench.runs().remove(0)
+    }
+}
