@@ -27,7 +27,7 @@ use crate::{
     tether::Tether,
 };
 use planner_api::{Drive, Reason};
-use rules::{LatePlannerRule, LostPositionRule, Rules, Seen, Verdict};
+use rules::{PlannerSeen, Rules, Seen, Verdict};
 use scanning::ScannedFloor;
 use seat::{Prepare, Seat};
 use workers::Workers;
@@ -182,7 +182,6 @@ impl Mission {
         if matches!(self.phase, Phase::Waiting | Phase::Ended(_)) {
             return;
         }
-        let is_held = matches!(self.phase, Phase::Held(_));
         let seen = Seen {
             config: &self.config,
             now_s: self.now_s(),
@@ -190,41 +189,18 @@ impl Mission {
             position: self.position_trust(),
             task: &self.task,
             scanned: self.floor.coverage.fraction_reachable(),
-        };
-        let time_is_up = self.rules.time_limit.update(&seen, is_held);
-        if readings.contact {
-            return self.end(Outcome::Collision, "the bumper touched something".into());
-        }
-        let verdict = match &self.phase {
-            _ if time_is_up.is_some() => time_is_up,
-            Phase::Running(_) => {
-                let lost = self.rules.lost_position.update(&seen);
-                if lost.is_none() && self.task.is_done(seen.here) {
-                    return self.end_done();
-                }
-                let (can_replan, is_waiting) = (self.plans_ways_home(), self.robot_waits());
-                let (tether, stuck) = (&mut self.rules.tether, &mut self.rules.stuck);
-                lost.or_else(|| reached.map(|alarm| tether.update(&seen, alarm, can_replan)))
-                    .or_else(|| owed_too_long(&self.active, self.tick, self.config.tick_s))
-                    .or_else(|| if is_waiting { None } else { stuck.update(&seen) })
-            }
-            Phase::Held(hold) => match (&hold.by, hold.resumes) {
-                (_, Resumes::Never) => None,
-                (HoldReason::PositionLost | HoldReason::PositionAlarmed, _) => {
-                    LostPositionRule::update_held(&seen)
-                }
-                (HoldReason::Tether { .. }, _) => {
-                    let can_go_home = self.tether.as_ref().is_none_or(Tether::can_go_home);
-                    self.rules.tether.update_held(&seen, can_go_home)
-                }
-                (HoldReason::PlannerSilent { .. }, _) => {
-                    self.active.pending.is_none().then_some(Verdict::Resume)
-                }
-                _ => None,
+            touched: readings.contact,
+            reached,
+            can_replan: self.plans_ways_home(),
+            can_go_home: self.tether.as_ref().is_none_or(Tether::can_go_home),
+            planner: PlannerSeen {
+                id: &self.active.choice.id,
+                is_waited_for: self.robot_waits(),
+                owes: self.active.pending.is_some(),
+                owed_s: self.active.owed_ticks(self.tick).map(|ticks| ticks as f64 * self.config.tick_s),
             },
-            Phase::Waiting | Phase::Ended(_) => None,
         };
-        match verdict {
+        match self.rules.update(&seen, &self.phase) {
             Some(verdict) => self.carry_out(verdict),
             None => self.go_on_or_help(),
         }
@@ -253,6 +229,7 @@ impl Mission {
             }
             Verdict::Resume => self.go_on(Gait::Steady),
             Verdict::Replan(reason) => self.active.want_plan(reason),
+            Verdict::Done => self.end_done(),
             Verdict::End(outcome, reason) => self.end(outcome, reason),
         }
     }
@@ -308,11 +285,6 @@ impl Mission {
         self.drop_candidate();
         self.close_active();
     }
-}
-
-/// Whether a planner owes the answer to a step for too long.
-fn owed_too_long(active: &Seat, tick: u64, tick_s: f64) -> Option<Verdict> {
-    LatePlannerRule::update(&active.choice.id, active.owed_ticks(tick)? as f64 * tick_s)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A planner that does not answer in time: the robot stands still meanwhile; after a while it is held.
 
-use super::Verdict;
+use super::{PlannerSeen, Verdict};
 use crate::{
     event::HoldReason,
     standing::{Hold, Resumes},
@@ -31,12 +31,12 @@ impl LatePlannerRule {
         age_s <= STALE_S + 1e-9
     }
 
-    /// One tick of a running robot whose planner has owed an answer for so long, seconds.
-    pub fn update(planner: &str, owed_s: f64) -> Option<Verdict> {
-        let message = || format!("planner {planner} has not answered for {SILENT_S} s");
-        (owed_s >= SILENT_S - 1e-9).then(|| {
-            let by = HoldReason::PlannerSilent { message: message() };
-            Verdict::Hold(Hold { by, resumes: Resumes::WhenCleared })
+    /// One tick of a running robot: holds it when its planner has owed an answer for too long.
+    pub fn update(planner: &PlannerSeen<'_>) -> Option<Verdict> {
+        let is_silent = planner.owed_s.is_some_and(|owed_s| owed_s >= SILENT_S - 1e-9);
+        is_silent.then(|| {
+            let message = format!("planner {} has not answered for {SILENT_S} s", planner.id);
+            Verdict::Hold(Hold { by: HoldReason::PlannerSilent { message }, resumes: Resumes::WhenCleared })
         })
     }
 }
@@ -55,7 +55,11 @@ mod tests {
     #[test]
     fn a_command_two_ticks_old_may_be_sent_and_a_silent_planner_holds_after_twenty() {
         assert!(LatePlannerRule::is_fresh(2.0 * 0.1) && !LatePlannerRule::is_fresh(3.0 * 0.1));
-        assert!(LatePlannerRule::update("apf", 19.0 * 0.1).is_none());
-        assert!(LatePlannerRule::update("apf", 20.0 * 0.1).is_some());
+        let silent = |owed_s| {
+            let owed_s = Some(owed_s);
+            LatePlannerRule::update(&PlannerSeen { id: "apf", is_waited_for: false, owes: true, owed_s })
+                .is_some()
+        };
+        assert!(!silent(19.0 * 0.1) && silent(20.0 * 0.1));
     }
 }

@@ -33,15 +33,14 @@ struct Caught {
 }
 
 impl TetherRule {
-    /// One tick of a running robot in which the cable reached a limit; `can_replan` says whether the mission puts ways
-    /// home before plans.
-    pub fn update(&mut self, seen: &Seen<'_>, alarm: &TetherAlarm, can_replan: bool) -> Verdict {
+    /// One tick of a running robot in which the cable reached a limit.
+    pub fn update(&mut self, seen: &Seen<'_>, alarm: &TetherAlarm) -> Verdict {
         self.waited_s = 0.0;
         let message = alarm.to_string();
         match alarm {
-            TetherAlarm::Reel { .. } => self.stop(seen, message, Outcome::Aborted, can_replan),
+            TetherAlarm::Reel { .. } => self.stop(seen, message, Outcome::Aborted),
             TetherAlarm::Wrap { .. } | TetherAlarm::SumOfWraps { .. } | TetherAlarm::Snag { .. } => {
-                self.stop(seen, message, Outcome::Entangled, can_replan)
+                self.stop(seen, message, Outcome::Entangled)
             }
             // What closed the way may move on.
             TetherAlarm::NoWayHome | TetherAlarm::Strayed => {
@@ -53,7 +52,7 @@ impl TetherRule {
     /// A cable at its limits, or caught, holds the robot. Lanes are planned again from there, after a way that eases the
     /// cable; with nobody there this is tried a few times in one place, and more often while floor is scanned in between;
     /// else the mission ends.
-    fn stop(&mut self, seen: &Seen<'_>, message: String, outcome: Outcome, can_replan: bool) -> Verdict {
+    fn stop(&mut self, seen: &Seen<'_>, message: String, outcome: Outcome) -> Verdict {
         let (at, scanned) = (seen.here, seen.scanned);
         let again = self
             .caught
@@ -62,7 +61,7 @@ impl TetherRule {
         self.caught = Some(Caught { times: times + 1, ..again.unwrap_or(Caught { at, scanned, times }) });
         let attended = seen.config.attended;
         let resumes = if attended { Resumes::Never } else { Resumes::WhenCleared };
-        if can_replan && times < MOST_TIMES_CAUGHT {
+        if seen.can_replan && times < MOST_TIMES_CAUGHT {
             Verdict::HoldAndReplan(held(message, resumes))
         } else if attended {
             Verdict::Hold(held(message, resumes))
@@ -73,8 +72,8 @@ impl TetherRule {
 
     /// One tick of a robot that this rule holds until it has a way home; with nobody there to help the mission ends after
     /// a while.
-    pub fn update_held(&mut self, seen: &Seen<'_>, can_go_home: bool) -> Option<Verdict> {
-        if can_go_home {
+    pub fn update_held(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
+        if seen.can_go_home {
             return Some(Verdict::Resume);
         }
         if !seen.config.attended && self.waited_s >= WAIT_FOR_HOME_S {
