@@ -70,7 +70,9 @@ pub fn fly(
     let bar = progress_bar(scenario, telling);
     let (mut fold, mut trouble) = (Fold::new(), None);
     let mut take = |events: Vec<Event>| {
-        events.iter().for_each(|event| fold.apply(event));
+        for event in &events {
+            fold.apply(event);
+        }
         show_progress(&bar, &events);
         recorder.send(events);
         report_trouble(&mut trouble, recorder.health().error);
