@@ -71,7 +71,7 @@ fn show(
         mourner.urge(news);
     });
     let mut screen = Screen::open(caps, told, engine.clone(), drill)?;
-    watch::keys(&tell)?;
+    watch::keys(&tell, engine.clone())?;
     watch::signals(&tell, engine.clone())?;
     watch::terminal(&tell, engine.clone())?;
     watch::planners(plugins, &tell)?;

@@ -23,4 +23,6 @@ pub use fold::Fold;
 pub use human::human;
 pub use merged::{Merged, MergedRun, PastRun, merged};
 pub use rescan::{NoLane, Rescan, rescan};
-pub use summary::{Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Summary, Tether, Tracking};
+pub use summary::{
+    Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking,
+};

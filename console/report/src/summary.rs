@@ -63,10 +63,40 @@ pub struct Summary {
     pub tether: Option<Tether>,
     /// How long planners took; told by the app.
     pub planner_calls: Option<PlannerCalls>,
+    /// How long stopping took; absent for runs that were not stopped by an operator. Told by the app.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stops: Option<Stops>,
     /// SHA-256 of the journal, hexadecimal; told by the app.
     pub events_sha256: Option<String>,
     /// The files of the run; told by the app.
     pub logs: Option<Logs>,
+}
+
+/// How long it took from a key or signal that stops the robot, as the console read it, to the command that stops it, by the
+/// wall clock.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Stops {
+    /// How many there were.
+    pub count: u64,
+    /// Half of them took at most this long, milliseconds.
+    pub p50_ms: f64,
+    /// Ninety-nine of a hundred took at most this long, milliseconds.
+    pub p99_ms: f64,
+    /// The longest, milliseconds.
+    pub max_ms: f64,
+}
+
+impl Stops {
+    /// The figures of some stops, each in milliseconds; `None` without any.
+    pub fn of(times_ms: &[f64]) -> Option<Self> {
+        let mut sorted = times_ms.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let rank = (share * sorted.len() as f64).ceil() as usize;
+            sorted.get(rank.saturating_sub(1)).copied()
+        };
+        Some(Self { count: sorted.len() as u64, p50_ms: at(0.5)?, p99_ms: at(0.99)?, max_ms: at(1.0)? })
+    }
 }
 
 /// How much of the floor was scanned. Shares are 0 to 1.

@@ -16,11 +16,14 @@ use crate::{
 use mission::{Awaits, Event, Order, Phase};
 use planner_host::{Doorbell, Host, PluginDirs, Progress};
 use recording::{Options, RunRecorder};
-use report::{Fold, Logs, Summary};
+use report::{Fold, Logs, Stops, Summary};
 use std::{
     path::{Path, PathBuf},
-    sync::Arc,
-    sync::mpsc::{self, Receiver, RecvTimeoutError, Sender},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{self, Receiver, RecvTimeoutError, Sender},
+    },
     thread::{self, JoinHandle},
     time::{Duration, Instant},
 };
@@ -39,7 +42,8 @@ const LOOK_AGAIN: Duration = Duration::from_millis(1);
 
 /// What the engine is told.
 enum Request {
-    Order(Order),
+    /// An order, and when whoever gave it was heard.
+    Order(Order, Instant),
     Speed(Speed),
     /// End the run, close everything, stop.
     Close {
@@ -58,13 +62,29 @@ pub struct Engine {
 pub struct Line {
     requests: Sender<Request>,
     doorbell: Doorbell,
+    /// Whether the robot moves or may begin to, as the screen knows it.
+    may_move: Arc<AtomicBool>,
 }
 
 impl Line {
     /// Hands an order to the mission; it enters with the next tick. What stops the robot makes that tick begin now.
     pub fn order(&self, order: Order) {
         let is_urgent = matches!(order, Order::Hold | Order::Abort);
-        self.request(Request::Order(order), is_urgent);
+        self.request(Request::Order(order, Instant::now()), is_urgent);
+    }
+
+    /// Holds the robot if it may move; whether it may.
+    pub fn stop(&self) -> bool {
+        let may_move = self.may_move.load(Ordering::Relaxed);
+        if may_move {
+            self.order(Order::Hold);
+        }
+        may_move
+    }
+
+    /// The screen has learnt whether the robot may move.
+    pub fn tell_may_move(&self, may_move: bool) {
+        self.may_move.store(may_move, Ordering::Relaxed);
     }
 
     /// Changes the pace.
@@ -100,7 +120,7 @@ impl Engine {
     ) -> anyhow::Result<Self> {
         let (requests, asked) = mpsc::channel();
         let mut host = headless::host(scenario, plugins);
-        let line = Line { requests, doorbell: host.doorbell() };
+        let line = Line { requests, doorbell: host.doorbell(), may_move: Arc::default() };
         let progress = screen.clone();
         host.tell_progress(Arc::new(move |_, Progress { share, what }| {
             progress.tell(Msg::BusyAt { share: *share, what: what.clone() });
@@ -116,6 +136,8 @@ impl Engine {
             screen,
             speed: super::START_SPEED,
             early: Vec::new(),
+            stop_asked: None,
+            stops_ms: Vec::new(),
             log: None,
             drill,
         };
@@ -155,6 +177,10 @@ struct EngineThread {
     speed: Speed,
     /// What happened before the mission was started; it is written down when it is.
     early: Vec<Event>,
+    /// When the stop was asked for that the next tick brings.
+    stop_asked: Option<Instant>,
+    /// How long each stop took, milliseconds.
+    stops_ms: Vec<f64>,
     log: Option<RunLog>,
     drill: Option<Drill>,
 }
@@ -213,11 +239,14 @@ impl EngineThread {
             };
             match request {
                 // What stops the robot does not wait for the tick that is due: the tick comes now.
-                Ok(Request::Order(order @ (Order::Hold | Order::Abort))) => {
+                Ok(Request::Order(order @ (Order::Hold | Order::Abort), at)) => {
+                    if self.flight.phase().may_move() {
+                        self.stop_asked.get_or_insert(at);
+                    }
                     orders.push(order);
                     return (orders, None);
                 }
-                Ok(Request::Order(order)) => orders.push(order),
+                Ok(Request::Order(order, _)) => orders.push(order),
                 Ok(Request::Speed(speed)) => self.speed = speed,
                 Ok(Request::Close { within }) => return (orders, Some(within)),
                 Err(RecvTimeoutError::Timeout) if is_behind => {}
@@ -266,6 +295,9 @@ impl EngineThread {
         let window = self.window();
         let mut answers = Windowed::new(&mut self.host, window);
         let events = self.flight.tick(orders, &mut Watched::new(&mut answers, &mut self.watch));
+        if let Some(asked) = self.stop_asked.take() {
+            self.stops_ms.push(asked.elapsed().as_secs_f64() * 1e3);
+        }
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
         assert!(!failing, "drill: the engine fails on purpose");
         self.keep(&events);
@@ -341,6 +373,7 @@ impl EngineThread {
             wall_time_s: Some(log.began.elapsed().as_secs_f64()),
             events_sha256: finished.events_sha256.clone(),
             planner_calls: Some(headless::planner_calls(&self.host)),
+            stops: Stops::of(&self.stops_ms),
             logs: Some(logs),
             ..log.fold.summary()
         };

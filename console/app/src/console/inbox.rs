@@ -15,7 +15,7 @@ struct Shared {
 
 #[derive(Default)]
 struct Queues {
-    urgent: VecDeque<Msg>,
+    urgent: VecDeque<Told>,
     news: VecDeque<Msg>,
     is_closed: bool,
 }
@@ -25,6 +25,13 @@ impl Shared {
         // A queue is whole between any two statements.
         self.queues.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// A message, and whether the thread that heard of it has stopped the robot already.
+#[derive(Debug, PartialEq)]
+pub struct Told {
+    pub msg: Msg,
+    pub is_stopped: bool,
 }
 
 /// The receiving end; telling is in vain once it is gone.
@@ -43,7 +50,12 @@ pub fn inbox() -> (Outbox, Inbox) {
 impl Outbox {
     /// Tells what comes before all news: keys, signals, failures. `false` if nobody listens any more.
     pub fn urge(&self, msg: Msg) -> bool {
-        self.put(|queues| queues.urgent.push_back(msg))
+        self.put(|queues| queues.urgent.push_back(Told { msg, is_stopped: false }))
+    }
+
+    /// The same of what has stopped the robot already, so that it is not stopped twice.
+    pub fn urge_stopped(&self, msg: Msg) -> bool {
+        self.put(|queues| queues.urgent.push_back(Told { msg, is_stopped: true }))
     }
 
     /// Tells news. `false` if nobody listens any more.
@@ -70,10 +82,11 @@ impl Outbox {
 
 impl Inbox {
     /// The next message, the most urgent first; waits until a moment, or for as long as it takes.
-    pub fn next(&self, until: Option<Instant>) -> Option<Msg> {
+    pub fn next(&self, until: Option<Instant>) -> Option<Told> {
         let mut queues = self.0.queues();
         loop {
-            let next = queues.urgent.pop_front().or_else(|| queues.news.pop_front());
+            let news = |queues: &mut Queues| Some(Told { msg: queues.news.pop_front()?, is_stopped: false });
+            let next = queues.urgent.pop_front().or_else(|| news(&mut queues));
             if next.is_some() {
                 return next;
             }
@@ -109,8 +122,9 @@ mod tests {
         }
         assert!(outbox.urge(Msg::Signal(Signal::Interrupt)));
         assert_eq!(outbox.backlog(), 10_000);
-        assert_eq!(inbox.next(None), Some(Msg::Signal(Signal::Interrupt)));
-        assert_eq!(inbox.next(Some(Instant::now())), Some(Msg::Events(Vec::new())));
+        let mut next = || inbox.next(Some(Instant::now())).map(|told| told.msg);
+        assert_eq!(next(), Some(Msg::Signal(Signal::Interrupt)));
+        assert_eq!(next(), Some(Msg::Events(Vec::new())));
     }
 
     #[test]

@@ -2,14 +2,14 @@
 
 use super::{
     engine::{Ended, Line},
-    inbox::Inbox,
+    inbox::{Inbox, Told},
 };
 use crate::{
     cli::Drill,
     failure::{COMPLETE, ENDED_OTHERWISE},
 };
 use anyhow::Context;
-use mission::{EventKind, Outcome};
+use mission::{EventKind, Order, Outcome};
 use std::{
     io::Write,
     process::ExitCode,
@@ -102,9 +102,14 @@ impl Screen {
         let until = Instant::now() + BURST_TIME;
         let mut next = first;
         for _ in 0..BURST {
-            let Some(msg) = next else { break };
+            let Some(Told { msg, is_stopped }) = next else { break };
             self.answer_seen |= is_answer(&msg);
-            for effect in update(&mut self.model, msg) {
+            let effects = update(&mut self.model, msg);
+            self.engine.tell_may_move(self.model.may_move());
+            for effect in effects {
+                if is_stopped && effect == Effect::Order(Order::Hold) {
+                    continue;
+                }
                 if let Some(left) = self.carry_out(effect)? {
                     return Ok(Some(left));
                 }
@@ -116,7 +121,7 @@ impl Screen {
     }
 
     /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.
-    fn wait(&self) -> Option<Msg> {
+    fn wait(&self) -> Option<Told> {
         let frame = self.dirty.then(|| self.drawn + self.pause());
         let by_itself =
             self.model.wakes_at_mono_s().map(|at_s| self.began + Duration::from_secs_f64(at_s.max(0.0)));

@@ -3,7 +3,6 @@
 use super::{engine::Line, inbox::Outbox};
 use anyhow::Context;
 use crossterm::event::{self, Event};
-use mission::Order;
 use planner_host::PluginDirs;
 use rustix::event::{PollFd, PollFlags, poll};
 use signal_hook::{
@@ -11,13 +10,13 @@ use signal_hook::{
     iterator::Signals,
 };
 use std::{thread, time::Duration};
-use tui::{Msg, Refused, Signal, terminal};
+use tui::{Key, Msg, Refused, Signal, terminal};
 
 /// How long the console may take to leave in good order after a signal; then it leaves anyway.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// Keys, pastes and sizes.
-pub fn keys(tell: &Outbox) -> anyhow::Result<()> {
+/// Keys, pastes and sizes. A key that stops the robot does so from here, whatever the screen is doing.
+pub fn keys(tell: &Outbox, line: Line) -> anyhow::Result<()> {
     let tell = tell.clone();
     spawn("keys", move || {
         while let Ok(event) = event::read() {
@@ -27,7 +26,9 @@ pub fn keys(tell: &Outbox) -> anyhow::Result<()> {
                 Event::Resize(width, height) => Some(Msg::Resize { width, height }),
                 Event::FocusGained | Event::FocusLost | Event::Mouse(_) => None,
             };
-            if msg.is_some_and(|msg| !tell.urge(msg)) {
+            let Some(msg) = msg else { continue };
+            let stops = is_stop_key(&msg) && line.stop();
+            if !(if stops { tell.urge_stopped(msg) } else { tell.urge(msg) }) {
                 return;
             }
         }
@@ -49,10 +50,9 @@ pub fn signals(tell: &Outbox, line: Line) -> anyhow::Result<()> {
                 _ => Signal::Interrupt,
             };
             // The robot is stopped from here, whatever the screen is doing.
-            if signal != Signal::Continue {
-                line.order(Order::Hold);
-            }
-            if !tell.urge(Msg::Signal(signal)) {
+            let stops = signal != Signal::Continue && line.stop();
+            let msg = Msg::Signal(signal);
+            if !(if stops { tell.urge_stopped(msg) } else { tell.urge(msg) }) {
                 return;
             }
             if matches!(signal, Signal::Terminate | Signal::Hangup) {
@@ -60,6 +60,11 @@ pub fn signals(tell: &Outbox, line: Line) -> anyhow::Result<()> {
             }
         }
     })
+}
+
+/// Whether a key stops a robot that moves, whatever is open on the screen.
+fn is_stop_key(msg: &Msg) -> bool {
+    matches!(msg, Msg::Key(press) if !press.repeat && matches!(press.key, Key::Char(' ') | Key::Ctrl('c')))
 }
 
 fn leave_in_any_case(signal: i32) {
@@ -78,8 +83,12 @@ pub fn terminal(tell: &Outbox, line: Line) -> anyhow::Result<()> {
             let waited = poll(&mut watched, None);
             let gone = watched[0].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL);
             if waited.is_ok() && gone {
-                line.order(Order::Hold);
-                tell.urge(Msg::Signal(Signal::Hangup));
+                let (stops, msg) = (line.stop(), Msg::Signal(Signal::Hangup));
+                if stops {
+                    tell.urge_stopped(msg)
+                } else {
+                    tell.urge(msg)
+                };
                 leave_in_any_case(SIGHUP);
             }
         }
