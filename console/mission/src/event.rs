@@ -507,6 +507,8 @@ pub enum HoldReason {
     },
     /// A single step is done.
     Stepped,
+    /// The reason went with the planner that was replaced; the operator decides when the robot moves again.
+    PlannerReplaced,
 }
 
 impl HoldReason {
@@ -529,6 +531,7 @@ impl fmt::Display for HoldReason {
             Self::Tether { message } => write!(f, "held because of the tether: {message}"),
             Self::PlanRefused { message } => write!(f, "held because a plan was refused: {message}"),
             Self::Stepped => f.write_str("held after a single step"),
+            Self::PlannerReplaced => f.write_str("held until resumed: the planner was replaced"),
         }
     }
 }

@@ -275,6 +275,7 @@ mod tests {
             HoldReason::Tether { message: message() },
             HoldReason::PlanRefused { message: message() },
             HoldReason::Stepped,
+            HoldReason::PlannerReplaced,
         ]
     }
 

@@ -256,14 +256,17 @@ impl EngineThread {
         }
     }
 
-    /// When the tick after this one is due; time that was lost is not made up for by rushing. While the robot stands for
-    /// a planner's work, mission time passes no faster than the clock.
+    /// When the tick after this one is due; time that was lost is not made up for by rushing. While a planner is at work, and
+    /// while only an order can let the robot move, mission time passes no faster than the clock.
     fn next_due(&self, due: Instant) -> Instant {
         let now = Instant::now();
         let tick = self.flight.tick_length();
+        let is_still = matches!(self.flight.phase(), Phase::Held(hold) if hold.resumes.is_never());
+        let waits = is_still || self.flight.mission().is_preparing();
         let pace = match self.speed {
-            _ if self.flight.mission().awaits() == Awaits::Work => tick,
+            Speed::Times(factor) if waits => tick.div_f64(factor.min(1.0)),
             Speed::Times(factor) => tick.div_f64(factor),
+            Speed::Max if waits => tick,
             Speed::Max => return now,
         };
         if now.saturating_duration_since(due) < MOST_LATE { due + pace } else { now + pace }

@@ -144,7 +144,7 @@ impl Mission {
             self.go_on(Gait::Steady);
         } else if was_ordered && (hold.by.blames_planner() || matches!(hold.by, HoldReason::Stuck { .. })) {
             // The reason is gone with the planner; now it is the operator who lets the robot go on.
-            self.hold(Hold { by: HoldReason::Operator, resumes: Resumes::Never });
+            self.hold(Hold { by: HoldReason::PlannerReplaced, resumes: Resumes::Never });
         }
     }
 

@@ -3,7 +3,7 @@
 use super::{
     Mission,
     driving::AHEAD_M,
-    seat::{AskedPlan, PendingKind, PlanState, Prepare},
+    seat::{AskedPlan, Pending, PendingKind, PlanState, Prepare, Seat},
 };
 use crate::{
     ask::{Ask, Awaits, PlanAsk, StepAsk, What},
@@ -41,6 +41,14 @@ impl Mission {
                 None => Awaits::Nothing,
             },
         }
+    }
+
+    /// Whether a planner is being opened or is making a plan, whether or not the robot stands for it.
+    pub fn is_preparing(&self) -> bool {
+        let prepares = |seat: &Seat| {
+            matches!(&seat.pending, Some(Pending { kind: PendingKind::Open | PendingKind::Plan(_), .. }))
+        };
+        prepares(&self.active) || self.candidate.as_ref().is_some_and(prepares)
     }
 
     fn ask_active(&mut self) -> Option<Ask> {

@@ -438,7 +438,7 @@ fn a_planner_that_is_not_there_holds_at_the_start_and_another_may_fly() {
     assert!(again.iter().any(|kind| matches!(kind, EventKind::PlannerFailed { fault, .. } if fault.message.contains("no planner straight"))));
     assert!(matches!(flight.held_by(), Some(HoldReason::PlannerFault { .. })));
     flight.tick(&[swap_to("other")]);
-    assert_eq!(flight.held_by(), Some(&HoldReason::Operator), "the reason is gone with the planner");
+    assert_eq!(flight.held_by(), Some(&HoldReason::PlannerReplaced), "the reason is gone with the planner");
     flight.tick(&[Order::Resume]);
     flight.fly(200);
     assert_eq!(flight.ended(), Some(Outcome::Complete));

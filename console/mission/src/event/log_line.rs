@@ -187,7 +187,7 @@ fn of_tether(kind: &EventKind) -> Option<LogLine> {
 
 fn hold_severity(by: &HoldReason) -> Severity {
     match by {
-        HoldReason::Operator | HoldReason::Stepped => Severity::Info,
+        HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced => Severity::Info,
         HoldReason::PositionLost
         | HoldReason::PositionAlarmed
         | HoldReason::PlannerFault { .. }

@@ -111,7 +111,7 @@ impl States {
 
 fn held(by: &HoldReason) -> &'static str {
     match by {
-        HoldReason::Operator => HELD,
+        HoldReason::Operator | HoldReason::PlannerReplaced => HELD,
         HoldReason::Stepped => STEPPED,
         HoldReason::PositionLost => HELD_LOST,
         HoldReason::PositionAlarmed => HELD_ALARMED,

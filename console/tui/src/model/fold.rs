@@ -330,7 +330,7 @@ impl Model {
         if let HoldReason::Stuck { message } = &hold.by {
             self.raise(event, Cause::Stuck, Severity::Warn, format!("stuck: {message}"));
         }
-        if !matches!(hold.by, HoldReason::Operator | HoldReason::Stepped) {
+        if !matches!(hold.by, HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced) {
             self.withdraw_question();
         }
     }

@@ -109,14 +109,19 @@ fn held(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String> {
     const KEEP: &str = "space: HOLD (stay held).";
     let position = model.standing.standing().position;
     let clauses: &[&str] = match by {
-        HoldReason::Operator | HoldReason::Stepped if position == PositionTrust::Alarmed => {
+        HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced
+            if position == PositionTrust::Alarmed =>
+        {
             &["HELD by operator; ranges contradict each other.", "Cannot resume without a consistent fix."]
         }
-        HoldReason::Operator | HoldReason::Stepped if position != PositionTrust::Good => {
+        HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced
+            if position != PositionTrust::Good =>
+        {
             &["HELD by operator; position lost.", "Cannot resume without a position fix."]
         }
         HoldReason::Operator => &["HELD by operator.", "space: resume.", "P: change planner."],
         HoldReason::Stepped => &["HELD after a step.", "space: resume."],
+        HoldReason::PlannerReplaced => &["HELD, planner replaced.", "space: resume.", "P: change planner."],
         HoldReason::PositionAlarmed => {
             &["HELD, ranges contradict each other.", "Resumes automatically when they agree.", KEEP]
         }

@@ -47,9 +47,10 @@ pub(super) fn state(model: &Model) -> Parts {
     let (who, role, word) = match model.phase() {
         Phase::Waiting => ("OPER", Role::Title, "■ IDLE"),
         Phase::Running(_) => ("AUTO", Role::Run, "▶ RUN"),
-        Phase::Held(Hold { by: HoldReason::Operator | HoldReason::Stepped, .. }) => {
-            ("OPER", Role::Hold, "‖ HOLD")
-        }
+        Phase::Held(Hold {
+            by: HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced,
+            ..
+        }) => ("OPER", Role::Hold, "‖ HOLD"),
         Phase::Held(_) => ("AUTO", Role::Hold, "‖ HOLD"),
         Phase::Ended(Outcome::Complete) => ("OPER", Role::Good, "✓ DONE"),
         Phase::Ended(_) => ("OPER", Role::Warn, "■ ENDED"),

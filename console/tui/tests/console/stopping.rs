@@ -20,6 +20,7 @@ fn hold_reasons() -> Vec<HoldReason> {
         HoldReason::Tether { message: message() },
         HoldReason::PlanRefused { message: message() },
         HoldReason::Stepped,
+        HoldReason::PlannerReplaced,
     ];
     // A new reason does not compile until it is in the list above.
     for by in &all {
@@ -32,7 +33,8 @@ fn hold_reasons() -> Vec<HoldReason> {
             | HoldReason::Stuck { .. }
             | HoldReason::Tether { .. }
             | HoldReason::PlanRefused { .. }
-            | HoldReason::Stepped => {}
+            | HoldReason::Stepped
+            | HoldReason::PlannerReplaced => {}
         }
     }
     all
