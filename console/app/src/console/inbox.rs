@@ -122,7 +122,7 @@ mod tests {
         }
         assert!(outbox.urge(Msg::Signal(Signal::Interrupt)));
         assert_eq!(outbox.backlog(), 10_000);
-        let mut next = || inbox.next(Some(Instant::now())).map(|told| told.msg);
+        let next = || inbox.next(Some(Instant::now())).map(|told| told.msg);
         assert_eq!(next(), Some(Msg::Signal(Signal::Interrupt)));
         assert_eq!(next(), Some(Msg::Events(Vec::new())));
     }
