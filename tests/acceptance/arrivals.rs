@@ -98,7 +98,9 @@ fn interfere(signal: Signal, after_ms: u64, fallback: bool) {
     bench.prove(&run);
     let verified = bench.verify(&run, &[]);
     assert!(
-        verified.out.contains("planner faulty failed from outside or by the clock 1 time"),
+        verified
+            .out
+            .contains("faults of planner faulty from outside or by the clock, taken from the journal: 1"),
         "{verified:?}"
     );
 }

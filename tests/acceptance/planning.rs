@@ -13,7 +13,7 @@ fn started(fault: &str) -> Session {
     let mut session = Session::open(&arguments, 120, 36);
     session.see("IDLE");
     session.press("S");
-    session.see("START?");
+    session.see("Start mission?");
     session.press("\r");
     session.see("Planning (faulty)");
     session
@@ -22,7 +22,7 @@ fn started(fault: &str) -> Session {
 /// Leaves a console whose mission is held or under way, and gives what was written down.
 fn leave(mut session: Session) -> (Session, Vec<Value>) {
     session.press("q");
-    session.see("LEAVE?");
+    session.see("Enter: leave");
     session.press("\r");
     assert_eq!(session.back_in_the_shell(), "code=1");
     let events = journal(&session.run());
@@ -73,7 +73,7 @@ fn a_plan_that_was_made_while_the_mission_was_held_is_flown_afterwards() {
     session.until("the plan", |session| first_of(&journal(&session.run()), "planned").is_some());
     assert!(session.text().contains("‖ HOLD"), "{}", session.text());
     session.press(" ");
-    session.see("RESUME?");
+    session.see("Resume?");
     session.press("\r");
     session.see("▶ RUN");
     session.until("a command", |session| first_of(&journal(&session.run()), "commanded").is_some());
@@ -104,12 +104,12 @@ fn another_planner_chosen_before_the_start_is_written_down_and_proven() {
     session.see("IDLE");
     session.press_until("P", "What was scanned stays");
     session.choose("rpf");
-    session.see("CHANGE TO rpf?");
+    session.see("Change planner to rpf?");
     session.press("\r");
-    session.until("the planner", |session| !session.text().contains("CHANGE TO"));
+    session.until("the planner", |session| !session.text().contains("Change planner to"));
     session.see("rpf ");
     session.press("S");
-    session.see("START?");
+    session.see("Start mission?");
     session.press("\r");
     session.see("▶ RUN");
     session.press(">>>>>>");
@@ -149,13 +149,13 @@ fn a_run_that_is_deleted_in_flight_is_told_at_once_and_at_the_end() {
     session.see("IDLE");
     session.press("<<<<");
     session.press("S");
-    session.see("START?");
+    session.see("Start mission?");
     session.press("\r");
     session.see("REC●");
     std::fs::remove_dir_all(session.run()).unwrap();
     session.see("REC✗");
     session.press("q");
-    session.see("LEAVE?");
+    session.see("Enter: leave");
     session.press("\r");
     assert_eq!(session.back_in_the_shell(), "code=3");
     assert!(session.text().contains("NOT kept"), "{}", session.text());
@@ -200,11 +200,11 @@ fn after_a_planner_that_cannot_be_opened_another_one_is_chosen_and_flies() {
     session.see("‖ HOLD");
     session.press_until("P", "What was scanned stays");
     session.choose("rpf");
-    session.see("CHANGE TO rpf?");
+    session.see("Change planner to rpf?");
     session.press("\r");
     session.until("the plan", |session| first_of(&journal(&session.run()), "planned").is_some());
     session.press(" ");
-    session.see("RESUME?");
+    session.see("Resume?");
     session.press("\r");
     session.see("▶ RUN");
     session.press(">>>>>>");

@@ -17,20 +17,20 @@ fn a_mission_is_flown_held_swapped_and_finished_by_hand() {
     let mut session = Session::open("console --planner apf", 120, 36);
     session.see("IDLE");
     session.press("S");
-    session.see("START?");
+    session.see("Start mission?");
     session.press("\r");
     session.see("▶ RUN");
     session.press(" ");
     session.see("‖ HOLD");
     session.press_until("P", "What was scanned stays");
     session.choose("rpf");
-    session.see("CHANGE TO rpf?");
+    session.see("Change planner to rpf?");
     session.press("\r");
     session.until("the swap in the journal", |session| {
         kinds(&session.run()).iter().filter(|kind| *kind == "planner_chosen").count() == 2
     });
     session.press(" ");
-    session.see("RESUME?");
+    session.see("Resume?");
     session.press("\r");
     session.see("▶ RUN");
     session.press(">>>>>>");
