@@ -102,7 +102,7 @@ fn another_planner_chosen_before_the_start_is_written_down_and_proven() {
     let goto = scenario("goto-single-obstacle.toml");
     let mut session = Session::open(&format!("console {} --planner apf", goto.display()), 120, 36);
     session.see("IDLE");
-    session.press_until("P", "What was scanned stays");
+    session.press_until("P", "scanned floor is kept");
     session.choose("rpf");
     session.see("Change planner to rpf?");
     session.press("\r");
@@ -198,7 +198,7 @@ fn after_a_planner_that_cannot_be_opened_another_one_is_chosen_and_flies() {
         !session.bench.runs().is_empty() && first_of(&journal(&session.run()), "planner_failed").is_some()
     });
     session.see("‖ HOLD");
-    session.press_until("P", "What was scanned stays");
+    session.press_until("P", "scanned floor is kept");
     session.choose("rpf");
     session.see("Change planner to rpf?");
     session.press("\r");

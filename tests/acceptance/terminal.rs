@@ -22,7 +22,7 @@ fn a_mission_is_flown_held_swapped_and_finished_by_hand() {
     session.see("▶ RUN");
     session.press(" ");
     session.see("‖ HOLD");
-    session.press_until("P", "What was scanned stays");
+    session.press_until("P", "scanned floor is kept");
     session.choose("rpf");
     session.see("Change planner to rpf?");
     session.press("\r");
