@@ -73,13 +73,9 @@ impl Line {
         self.request(Request::Order(order, Instant::now()), is_urgent);
     }
 
-    /// Holds the robot if it may move; whether it may.
-    pub fn stop(&self) -> bool {
-        let may_move = self.may_move.load(Ordering::Relaxed);
-        if may_move {
-            self.order(Order::Hold);
-        }
-        may_move
+    /// Whether the robot moves or may begin to, as the screen knows it.
+    pub fn may_move(&self) -> bool {
+        self.may_move.load(Ordering::Relaxed)
     }
 
     /// The screen has learnt whether the robot may move.

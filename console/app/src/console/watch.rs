@@ -3,6 +3,7 @@
 use super::{engine::Line, inbox::Outbox};
 use anyhow::Context;
 use crossterm::event::{self, Event};
+use mission::Order;
 use planner_host::PluginDirs;
 use rustix::event::{PollFd, PollFlags, poll};
 use signal_hook::{
@@ -27,8 +28,8 @@ pub fn keys(tell: &Outbox, line: Line) -> anyhow::Result<()> {
                 Event::FocusGained | Event::FocusLost | Event::Mouse(_) => None,
             };
             let Some(msg) = msg else { continue };
-            let stops = is_stop_key(&msg) && line.stop();
-            if !(if stops { tell.urge_stopped(msg) } else { tell.urge(msg) }) {
+            let stops = is_stop_key(&msg);
+            if !tell_and_stop(&tell, &line, msg, stops) {
                 return;
             }
         }
@@ -50,9 +51,7 @@ pub fn signals(tell: &Outbox, line: Line) -> anyhow::Result<()> {
                 _ => Signal::Interrupt,
             };
             // The robot is stopped from here, whatever the screen is doing.
-            let stops = signal != Signal::Continue && line.stop();
-            let msg = Msg::Signal(signal);
-            if !(if stops { tell.urge_stopped(msg) } else { tell.urge(msg) }) {
+            if !tell_and_stop(&tell, &line, Msg::Signal(signal), signal != Signal::Continue) {
                 return;
             }
             if matches!(signal, Signal::Terminate | Signal::Hangup) {
@@ -60,6 +59,18 @@ pub fn signals(tell: &Outbox, line: Line) -> anyhow::Result<()> {
             }
         }
     })
+}
+
+/// Passes on what was heard, and stops the robot if it may move and this stops it; `false` if nobody listens any more.
+///
+/// The screen hears of it first: what it makes of the key must not depend on the hold that follows.
+fn tell_and_stop(tell: &Outbox, line: &Line, msg: Msg, stops: bool) -> bool {
+    if !(stops && line.may_move()) {
+        return tell.urge(msg);
+    }
+    let is_heard = tell.urge_stopped(msg);
+    line.order(Order::Hold);
+    is_heard
 }
 
 /// Whether a key stops a robot that moves, whatever is open on the screen.
