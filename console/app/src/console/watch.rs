@@ -94,12 +94,7 @@ pub fn terminal(tell: &Outbox, line: Line) -> anyhow::Result<()> {
             let waited = poll(&mut watched, None);
             let gone = watched[0].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL);
             if waited.is_ok() && gone {
-                let (stops, msg) = (line.stop(), Msg::Signal(Signal::Hangup));
-                if stops {
-                    tell.urge_stopped(msg)
-                } else {
-                    tell.urge(msg)
-                };
+                tell_and_stop(&tell, &line, Msg::Signal(Signal::Hangup), true);
                 leave_in_any_case(SIGHUP);
             }
         }
