@@ -10,7 +10,7 @@ use nalgebra::{Isometry2, Translation2};
 use planner_api as api;
 use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, World, ZoneKind};
 
-/// A found obstacle must turn out to stand this much elsewhere before it is told again, metres.
+/// A found obstacle must turn out to stand this much elsewhere before it is reported again, metres.
 const MOVED_M: f64 = 0.05;
 /// Sightings that count in the running mean of a found obstacle's place.
 const MEMORY: f64 = 50.0;
@@ -37,7 +37,7 @@ struct Found {
     /// Index into the world's obstacles.
     index: usize,
     sightings: f64,
-    told_at: Point,
+    reported_at: Point,
     drift: Drift,
 }
 
@@ -86,7 +86,7 @@ impl Chart {
         self.in_sight = sightings.iter().map(seen).collect();
     }
 
-    /// Puts sightings on the chart, seen at a time, in seconds, from an estimated pose; tells what is new.
+    /// Puts sightings on the chart, seen at a time, in seconds, from an estimated pose; gives what is new.
     ///
     /// The obstacle tracker knows the columns of the drawing again, so only others are put in.
     pub fn see(&mut self, now_s: f64, sightings: &[Sighting], from: &Pose) -> Seen {
@@ -126,19 +126,19 @@ impl Chart {
         let mean = center + (shape.center() - center) / (found.sightings + 1.0);
         found.sightings = (found.sightings + 1.0).min(MEMORY);
         obstacle.shape = shape.transformed(&shift(mean - shape.center()));
-        if (mean - found.told_at).norm() < MOVED_M {
+        if (mean - found.reported_at).norm() < MOVED_M {
             return None;
         }
-        found.told_at = mean;
+        found.reported_at = mean;
         Some(EventKind::ObstacleMoved { id, obstacle: obstacle.clone() })
     }
 
     fn add(&mut self, id: ObstacleId, shape: Shape) -> EventKind {
         let name = format!("found {}", self.found.len() + 1);
-        let told_at = shape.center();
+        let reported_at = shape.center();
         let mut drift = Drift::default();
-        drift.see(self.now_s, told_at);
-        self.found.push(Found { id, index: self.world.obstacles.len(), sightings: 1.0, told_at, drift });
+        drift.see(self.now_s, reported_at);
+        self.found.push(Found { id, index: self.world.obstacles.len(), sightings: 1.0, reported_at, drift });
         let obstacle = Obstacle { id, name, shape, known: false };
         self.world.obstacles.push(obstacle.clone());
         EventKind::ObstacleFound { obstacle }
@@ -168,14 +168,17 @@ impl Chart {
     pub fn near(&self, point: Point) -> Vec<SiteObstacle> {
         let reach_m = self.limits.sensing_range_m + self.limits.radius_m;
         let near = self.map.within(point, reach_m);
-        near.iter().filter_map(|near| self.reported(near.index)).map(|told| self.as_seen(told)).collect()
+        near.iter()
+            .filter_map(|near| self.reported(near.index))
+            .map(|obstacle| self.as_seen(obstacle))
+            .collect()
     }
 
-    fn as_seen(&self, told: SiteObstacle) -> SiteObstacle {
-        let seen = self.in_sight.iter().find(|(id, _)| id.0 == told.id);
+    fn as_seen(&self, charted: SiteObstacle) -> SiteObstacle {
+        let seen = self.in_sight.iter().find(|(id, _)| id.0 == charted.id);
         match seen {
-            Some((_, shape)) => SiteObstacle { shape: shape.clone(), ..told },
-            None => told,
+            Some((_, shape)) => SiteObstacle { shape: shape.clone(), ..charted },
+            None => charted,
         }
     }
 
@@ -194,7 +197,7 @@ impl Chart {
         })
     }
 
-    /// Whether an event tells of something that moves.
+    /// Whether an event is about something that moves.
     pub fn moves(&self, event: &EventKind) -> bool {
         match event {
             EventKind::ObstacleFound { obstacle } | EventKind::ObstacleMoved { obstacle, .. } => {

@@ -61,7 +61,7 @@ impl TaskConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ScanConfig {
-    /// Width by which neighbouring lanes shall overlap, metres: planners are told a swath narrower by this, so that
+    /// Width by which neighbouring lanes shall overlap, metres: planners get a swath narrower by this, so that
     /// the position error leaves no gaps between lanes.
     pub overlap_m: f64,
     /// Half width of the 95 % position error above which nothing counts as scanned, metres; `None` for the limit

@@ -5,7 +5,7 @@ use world::{Point, Vector};
 
 /// Places older than this are forgotten, seconds.
 const MEMORY_S: f64 = 1.5;
-/// Fewer places than this tell nothing.
+/// With fewer places than this nothing is concluded.
 const LEAST_PLACES: usize = 4;
 /// Slower than this it counts as standing still, metres per second: so much a poor position can feign.
 const MOVING_M_PER_S: f64 = 0.08;
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn a_steady_motion_is_told_as_it_is() {
+    fn a_steady_motion_is_estimated_as_it_is() {
         let velocity = seen(|t_s| Point::new(1.0 + 0.3 * t_s, -0.2 * t_s)).velocity().unwrap();
         assert!((velocity - Vector::new(0.3, -0.2)).norm() < 1e-9);
     }

@@ -76,10 +76,10 @@ pub struct Mission {
     happened: Happened,
 }
 
-/// What has happened in this tick so far, and what the robot was told at the end of the last one.
+/// What has happened in this tick so far, and the command at the end of the last one.
 struct Happened {
     events: Vec<EventKind>,
-    /// Told when everything else of the tick has been told.
+    /// The end of the mission, reported after all other events of the tick.
     ending: Option<EventKind>,
     last_drive: Drive,
 }

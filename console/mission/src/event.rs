@@ -54,7 +54,7 @@ pub enum EventKind {
         /// Why, and what would be right.
         why: String,
     },
-    /// How the cable truly lay at the top of this tick; told by the simulator, never known to the mission.
+    /// How the cable truly lay at the top of this tick; reported by the simulator, never known to the mission.
     TetherTruth {
         /// Cable between anchor and robot, metres.
         length_m: f64,
@@ -69,7 +69,7 @@ pub enum EventKind {
     Tethered {
         /// Cable between anchor and robot as the map explains it, metres.
         length_m: f64,
-        /// What the reel has paid out, as its encoder tells, metres; absent without one.
+        /// What the reel has paid out by its encoder, metres; absent without one.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         paid_out_m: Option<f64>,
         /// What is left on the reel, metres: the less by the two.
@@ -99,7 +99,7 @@ pub enum EventKind {
         /// Which limit.
         alarm: TetherAlarm,
     },
-    /// A plan was judged for the tether.
+    /// A plan was evaluated for the tether.
     Certified {
         /// Whose plan.
         planner: String,
@@ -108,7 +108,7 @@ pub enum EventKind {
         /// The judgement.
         certificate: Certificate,
     },
-    /// Where the robot truly was at the top of this tick; told by the simulator, never known to the mission.
+    /// Where the robot truly was at the top of this tick; reported by the simulator, never known to the mission.
     Truth {
         /// True pose.
         pose: Pose,
@@ -131,7 +131,7 @@ pub enum EventKind {
     FixFailed {
         /// Why.
         error: FixError,
-        /// Whether the cycle before failed too; the log tells only the first of a row.
+        /// Whether the cycle before failed too; the log shows only the first of a row.
         repeated: bool,
     },
     /// A station was left out of a fix for the first time since it was used.
@@ -163,7 +163,7 @@ pub enum EventKind {
         /// Half width of the 95 % error, metres.
         error_m: f64,
     },
-    /// The ranges contradict each other, and leaving out a station does not mend it.
+    /// The ranges contradict each other, and leaving out a station does not resolve it.
     PositionAlarmed {
         /// Sum of the squared residuals over their variances.
         chi2: f64,
@@ -238,14 +238,14 @@ pub enum EventKind {
         length_m: f64,
         /// Whether it achieves the whole task.
         complete: bool,
-        /// What the stretches of the path are for, as far as the planner told.
+        /// What the stretches of the path are for, as far as the planner says.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         legs: Vec<Leg>,
         /// Lines that the tethered robot never crosses.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         cuts: Vec<Vec<Point>>,
     },
-    /// The planner told how to move, and this is what the robot was sent.
+    /// The planner answered a step, and this is what the robot was sent.
     Commanded {
         /// Which ask this answers; absent in journals up to version 2.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -284,7 +284,7 @@ pub enum EventKind {
         /// Which ask it answers.
         ask: AskId,
     },
-    /// A planner answered a step only after the tick it was asked for; told of the first of a row.
+    /// A planner answered a step only after the tick it was asked for; reported for the first of a row.
     PlannerLate {
         /// Which planner.
         planner: String,
@@ -328,11 +328,11 @@ pub enum EventKind {
         covered_reachable: f64,
         /// Scanned share of the whole floor, 0 to 1.
         covered_whole: f64,
-        /// What the stretch of the plan under the robot is for; absent if the planner did not tell.
+        /// What the stretch of the plan under the robot is for; absent if the planner does not say.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         leg: Option<LegTag>,
     },
-    /// The robot was told to stand still.
+    /// The robot was stopped.
     Held {
         /// Why, as a sentence.
         by: HoldReason,
@@ -403,7 +403,7 @@ pub enum TetherAlarm {
     },
     /// The hull does not fit along the cable.
     NoWayHome,
-    /// The robot has left its plan across a line that the plan never crosses: it is planned anew.
+    /// The robot has left its plan across a line that the plan never crosses: another plan is due.
     Strayed,
 }
 
@@ -440,7 +440,7 @@ impl fmt::Display for TetherAlarm {
                 "the reel has paid out {paid_out_m:.1} m, the map explains {explained_m:.1} m: the cable has caught on \
                  something that is not on the map"
             ),
-            Self::Strayed => f.write_str("the robot strayed across a cut of its plan; planning anew"),
+            Self::Strayed => f.write_str("the robot strayed across a cut of its plan; planning again"),
             Self::NoWayHome => f.write_str("the hull does not fit back along the cable: no way home"),
         }
     }
@@ -465,7 +465,7 @@ pub struct RunOpened {
     pub mission: MissionConfig,
     /// The coverage grid: which cells are floor and which of them the tool can reach.
     pub floor: world::Floor,
-    /// How the plates of the floor lie, if the drawing tells.
+    /// How the plates of the floor lie, if the drawing shows them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plates: Option<world::PlateLayout>,
 }

@@ -50,12 +50,12 @@ impl Locator {
         }
     }
 
-    /// Takes what was sensed since the last tick; tells what came of it.
+    /// Takes what was sensed since the last tick; gives the resulting events.
     pub fn take(&mut self, readings: &Readings) -> Vec<EventKind> {
         self.positioner.predict(&readings.odometry);
         let mut events = if readings.ranging_cycle { self.cycle(readings) } else { Vec::new() };
         events.push(EventKind::Estimated { pose: self.pose_estimate() });
-        events.extend(self.judge());
+        events.extend(self.check_limit());
         events
     }
 
@@ -78,7 +78,7 @@ impl Locator {
     }
 
     /// Raises the alarm when ranges contradict each other beyond what leaving out a station mends, and ends it with
-    /// the next fix that holds together. A cycle that tells nothing changes nothing.
+    /// the next fix that holds together. A cycle without information changes nothing.
     fn heed(&mut self, fix: &Result<Fix, FixError>) -> Option<EventKind> {
         let contradiction = match fix {
             Ok(fix) if fix.integrity == Integrity::Alarm => Some((fix.chi2, fix.degrees_of_freedom)),
@@ -112,7 +112,7 @@ impl Locator {
         events
     }
 
-    fn judge(&mut self) -> Option<EventKind> {
+    fn check_limit(&mut self) -> Option<EventKind> {
         let error_m = self.error_95_m();
         let lost = error_m > self.limit_m;
         let changed = lost != std::mem::replace(&mut self.lost, lost);

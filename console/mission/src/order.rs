@@ -1,4 +1,4 @@
-//! What the operator tells the mission; it enters at the top of the next tick.
+//! The operator's orders; they enter at the top of the next tick.
 
 use crate::{config::PlannerChoice, planner::ParamValue};
 use serde::{Deserialize, Serialize};

@@ -168,7 +168,7 @@ pub enum Cause {
     Quarantined,
 }
 
-/// A planner's failure, told so that an operator knows what happened.
+/// A planner's failure, worded so that an operator knows what happened.
 ///
 /// `message` names planner, cause and step, and carries no figure that differs between two equal runs (no
 /// milliseconds, no process ids): it goes into the journal, which must repeat byte for byte.

@@ -6,8 +6,8 @@ use planner_api::{PoseEstimate, Reason};
 use std::sync::Arc;
 use world::{CoverageGrid, Floor, World};
 
-/// The inputs of a plan of the whole task, from the start, on the drawing; the tank as the planner is told of it is part of
-/// them.
+/// The inputs of a plan of the whole task, from the start, on the drawing; including the tank as the
+/// planner knows it.
 pub fn preview(config: &MissionConfig, drawing: &World, seed: u64) -> PlanAsk {
     let chart = Chart::new(drawing.clone(), config, seed);
     let task = Task::new(&config.task, config.start.position);

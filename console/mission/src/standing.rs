@@ -102,7 +102,7 @@ pub struct Standing<'a> {
     pub planner: Option<&'a PlannerInfo>,
 }
 
-/// The standing of a mission as its events tell it, for those who see nothing else of the mission.
+/// The standing of a mission as it follows from its events, for those who see nothing else of the mission.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct FoldedStanding {
     /// What the mission is doing.

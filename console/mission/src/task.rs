@@ -113,7 +113,7 @@ impl Task {
         }
     }
 
-    /// What the stretch of the plan under the robot is for, if the planner told.
+    /// What the stretch of the plan under the robot is for, if the planner says.
     pub fn leg(&self) -> Option<api::LegTag> {
         match self {
             Self::Cover(cover) => cover.leg(),
@@ -170,7 +170,7 @@ impl Task {
         }
     }
 
-    /// Whether the task is done, judged by the position that `advance` took last.
+    /// Whether the task is done, by the position that `advance` took last.
     pub fn is_done(&self, position: Point) -> bool {
         match self {
             Self::Goto(goto) => goto.left_m() <= goto.tolerance_m,

@@ -178,7 +178,7 @@ impl Tether {
     }
 
     /// How the cable lies after some time, and what is newly wrong or right again.
-    pub fn tell(&mut self, world: &World, map: &ObstacleMap, passed_s: f64) -> Vec<EventKind> {
+    pub fn update(&mut self, world: &World, map: &ObstacleMap, passed_s: f64) -> Vec<EventKind> {
         let way_home = self.cable.way_home(&self.roomy, map, home_room_m(self.hull_m));
         let way_home_m = way_home.map(|way| world::polyline::length_m(&way));
         self.without_home_s = if way_home_m.is_some() { 0.0 } else { self.without_home_s + passed_s };
@@ -197,7 +197,7 @@ impl Tether {
             line: self.cable.taut_line(),
         }];
         for (alarm, share) in self.alarms(world) {
-            events.extend(self.judge(alarm, share));
+            events.extend(self.check(alarm, share));
         }
         events
     }
@@ -226,7 +226,7 @@ impl Tether {
         ]
     }
 
-    fn judge(&mut self, alarm: TetherAlarm, share: f64) -> Option<EventKind> {
+    fn check(&mut self, alarm: TetherAlarm, share: f64) -> Option<EventKind> {
         let level = self.levels.entry(alarm.word()).or_default();
         let now = match share {
             share if share > 1.0 => Level::Reached,
@@ -251,12 +251,12 @@ impl Tether {
 
     fn contacts(&self, world: &World) -> Vec<TetherContact> {
         let contacts = self.cable.contacts();
-        let told = contacts.iter().map(|contact| TetherContact {
+        let contacts = contacts.iter().map(|contact| TetherContact {
             on: name_of(world, contact.on),
             wrap_rad: contact.wrap_rad,
             at: contact.last,
         });
-        told.collect()
+        contacts.collect()
     }
 
     /// Where the cable is made fast.
@@ -278,15 +278,15 @@ impl Tether {
     ///
     /// The cuts of a plan that first goes home along the cable hold from there on.
     pub fn certify(&self, plan: &Plan, world: &World, returns: bool) -> Certificate {
-        let judge = |cable, path, cuts: &[Vec<Point>]| {
+        let evaluate = |cable, path, cuts: &[Vec<Point>]| {
             certified(&self.config, self.hull_m, cable, path, cuts, world, returns)
         };
         let home = way_home_ends(plan, self.config.anchor);
         if home == 0 {
-            return judge(Some(&self.cable), &plan.path, &plan.cuts);
+            return evaluate(Some(&self.cable), &plan.path, &plan.cuts);
         }
-        let mut whole = judge(Some(&self.cable), &plan.path, &[]);
-        let rest = judge(None, &plan.path[home..], &plan.cuts);
+        let mut whole = evaluate(Some(&self.cable), &plan.path, &[]);
+        let rest = evaluate(None, &plan.path[home..], &plan.cuts);
         (whole.cut_crossings, whole.sealed_m2) = (rest.cut_crossings, rest.sealed_m2);
         let more: Vec<String> = rest.reasons.into_iter().filter(|why| !whole.reasons.contains(why)).collect();
         whole.reasons.extend(more);
@@ -351,7 +351,7 @@ fn certified(
         cuts,
     };
     if path.is_empty() {
-        return Certificate::refused("the planner tells no path that could be judged".into());
+        return Certificate::refused("the planner gave no path that could be evaluated".into());
     }
     certify(&case).unwrap_or_else(|error| Certificate::refused(error.to_string()))
 }

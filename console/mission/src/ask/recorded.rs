@@ -1,4 +1,4 @@
-//! The answers that a journal holds: each event that closes an ask carries what a mission has to be told to repeat it.
+//! The answers that a journal holds: each event that closes an ask carries what a mission needs to repeat it.
 
 use super::{Answer, Ask, AskId, Given, Said, What};
 use crate::{event::EventKind, planner::Fault};

@@ -1,4 +1,4 @@
-//! The tank as planners are told of it.
+//! The tank as planners know it.
 
 use planner_api as api;
 use world::{Boundary, Shape, Vector};
@@ -24,7 +24,7 @@ pub struct Site {
     pub seed: u64,
 }
 
-/// An obstacle as planners are told of it.
+/// An obstacle as planners know it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SiteObstacle {
     /// Its number.

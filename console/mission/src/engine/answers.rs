@@ -186,7 +186,7 @@ impl Mission {
         }
     }
 
-    /// Tells a fault, and counts it against its plugin if it is of the kind that counts.
+    /// Reports a fault, and counts it against its plugin if it is of the kind that counts.
     fn note_fault(&mut self, ask: AskId, fault: Fault, sha256: Option<String>) {
         let counts =
             !matches!(fault.cause, Cause::Planner(_) | Cause::Refused | Cause::Quarantined | Cause::Starved);

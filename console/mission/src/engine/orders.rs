@@ -105,7 +105,7 @@ impl Mission {
         let mut choice = base.unwrap_or(&self.active.choice).clone();
         choice.parameters.insert(key.into(), value.clone());
         let is_live = |info: &crate::PlannerInfo| info.parameters.iter().any(|p| p.key == key && p.live);
-        // A planner that is being opened is told once it is there.
+        // A planner that is being opened gets the values once it is there.
         let is_here = self.active.is_ready || matches!(self.phase, Phase::Running(_));
         if is_here && newest.is_none() && self.active.info.as_ref().is_some_and(is_live) {
             self.active.reconfigure = Some(choice);

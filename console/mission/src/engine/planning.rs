@@ -17,7 +17,7 @@ const NO_WAY_M: f64 = 0.01;
 pub(super) struct Evaluated {
     /// The plan, after the way home that the mission put before it.
     pub plan: Plan,
-    /// That it was made, and how it was judged for the tether.
+    /// That it was made, and its certificate for the tether.
     pub events: Vec<EventKind>,
     /// Why it is not flown.
     pub objection: Option<Objection>,
@@ -84,7 +84,7 @@ impl Mission {
     /// Flies a plan from now on.
     pub(super) fn take_plan(&mut self, plan: &Plan) {
         self.task.take_plan(plan);
-        // What is left is counted anew along the new plan.
+        // Progress is counted along the new plan from here.
         self.rules.stuck.restart();
         let anchor = self.tether.as_ref().map(Tether::anchor);
         let lines = if anchor.is_some() { plan.cuts.as_slice() } else { &[] };

@@ -11,7 +11,7 @@ const WORTH_TELLING_M2: f64 = 0.05;
 /// The floor and what of it has been scanned.
 pub(super) struct ScannedFloor {
     pub coverage: CoverageGrid,
-    /// Makes the floor anew when an obstacle was found; made for the first one.
+    /// Recomputes the floor when an obstacle is found; created for the first one.
     surveyor: Option<FloorMaker>,
 }
 
@@ -74,7 +74,7 @@ impl Mission {
         let surveyor = surveyor.get_or_insert_with(|| {
             FloorMaker::of(
                 coverage.floor(),
-                // Before the first find: what is found is told below.
+                // As it was before the first find; finds are applied below.
                 &world.as_drawn(),
                 config.room_m(),
                 config.swath_m,

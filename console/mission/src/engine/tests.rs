@@ -1,4 +1,4 @@
-//! Missions in a perfect little world: exact ranges, a point robot that does what it is told.
+//! Missions in a perfect little world: exact ranges, a point robot that follows its commands.
 
 mod arrivals;
 mod caught;
@@ -16,7 +16,7 @@ use planner_api::{self as api, Command, Limits, Motion, Plan, Status};
 use world::tether::Cable;
 use world::{Boundary, Obstacle, ObstacleId, Odometry, Pose, RangeSet, Shape, Sighting, Station, StationId};
 
-/// A planner that drives straight to its target, and does as told by the test otherwise.
+/// A planner that drives straight to its target, and otherwise behaves as the test demands.
 #[derive(Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a way to misbehave")]
 struct Straight {
@@ -275,7 +275,7 @@ impl Flight {
             self.events.extend(step.events.clone());
             return step.events.into_iter().map(|event| event.kind).collect();
         };
-        // The heading stays: the odometry of a point robot tells both components.
+        // The heading stays: the odometry of a point robot has both components.
         self.pose.position += velocity * 0.1;
         if let Some(cable) = &mut self.reel {
             cable.drag_to(self.pose.position);
@@ -362,7 +362,7 @@ fn a_goto_mission_ends_complete_at_its_goal() {
 }
 
 #[test]
-fn the_end_is_the_last_that_is_told_also_by_order() {
+fn the_end_is_the_last_event_also_by_order() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
     flight.fly(20);
@@ -371,7 +371,7 @@ fn the_end_is_the_last_that_is_told_also_by_order() {
 }
 
 #[test]
-fn a_held_robot_stands_still_and_goes_on_only_when_told() {
+fn a_held_robot_stands_still_and_goes_on_only_by_order() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
     flight.fly(20);
@@ -529,7 +529,7 @@ fn a_single_contradicting_cycle_holds_nobody() {
 }
 
 #[test]
-fn every_exclusion_is_told_with_its_reason() {
+fn every_exclusion_is_reported_with_its_reason() {
     let consensus =
         crate::Locating { solver: positioning::SolverKind::Consensus, ..crate::Locating::default() };
     let mut flight = Flight::new(MissionConfig { locating: consensus, ..config() });
@@ -563,7 +563,7 @@ fn a_stuck_robot_is_held_for_the_operator_and_ends_the_mission_without_one() {
 }
 
 #[test]
-fn a_found_obstacle_is_told_once_and_planned_for() {
+fn a_found_obstacle_is_reported_once_and_planned_for() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
     for _ in 0..5 {
@@ -596,10 +596,10 @@ fn two_flights_with_the_same_orders_tell_the_same() {
         flight.fly(200);
         serde_json::to_string(&flight.events).unwrap()
     };
-    let told = fly();
-    assert_eq!(told, fly());
-    let back: Vec<Event> = serde_json::from_str(&told).unwrap();
-    assert_eq!(serde_json::to_string(&back).unwrap(), told);
+    let journal = fly();
+    assert_eq!(journal, fly());
+    let back: Vec<Event> = serde_json::from_str(&journal).unwrap();
+    assert_eq!(serde_json::to_string(&back).unwrap(), journal);
 }
 
 #[test]

@@ -23,7 +23,7 @@ impl Mission {
             tether.drag_to(self.locator.position());
         }
         tether.measure(paid_out_m, error_m, self.config.tick_s);
-        let events = tether.tell(world, self.chart.map(), self.config.tick_s);
+        let events = tether.update(world, self.chart.map(), self.config.tick_s);
         let reached = events.iter().find_map(|event| match event {
             EventKind::TetherAlarmed { alarm, reached: true } => Some(alarm.clone()),
             _ => None,
@@ -36,7 +36,7 @@ impl Mission {
         reached
     }
 
-    /// What was found may stand beside the rest of the plan and yet in the way of its cable: then it is planned anew.
+    /// What was found may stand beside the rest of the plan and yet in the way of its tether: then another plan is due.
     fn doubt_plan(&mut self) {
         let Some(tether) = self.tether.as_ref().filter(|tether| !tether.flies_uncertified()) else { return };
         let Some(rest) = self.task.lanes_left().filter(|_| self.active.has_plan()) else { return };
@@ -45,7 +45,7 @@ impl Mission {
         }
     }
 
-    /// A robot that has come off its plan across a cut is planned for anew, from the cable as it lies.
+    /// A robot that has come off its plan across a cut needs another plan, from the tether as it lies.
     fn watch_cuts(&mut self) {
         if self.locator.is_lost() {
             return;

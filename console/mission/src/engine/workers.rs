@@ -1,4 +1,4 @@
-//! The numbers of workers, what is to be told to them, and plugins that failed too often.
+//! The numbers of workers, those to be closed, and plugins that failed too often.
 
 mod quarantine;
 

@@ -120,7 +120,7 @@ impl Cover {
         self.lanes.as_ref().is_none_or(|lanes| lanes.follower.remaining().iter().any(is_in_the_way))
     }
 
-    /// What is left to scan, as boxes of floor. Nothing at all is told as one cell at the anchor: an empty list would
+    /// What is left to scan, as boxes of floor. If nothing is left, it is one cell at the anchor: an empty list would
     /// mean everything.
     fn regions_left(&self, coverage: &CoverageGrid, lane_m: f64) -> Vec<Vec<Point>> {
         // Before the first plan the tool has only been over the start, where it will come by again.
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn the_leg_under_the_robot_is_told_and_the_end_is_at_the_anchor() {
+    fn the_leg_under_the_robot_is_known_and_the_end_is_at_the_anchor() {
         let map = ObstacleMap::new(&Boundary::Circle { radius_m: 3.0 }, &[]);
         let mut cover = Cover::new(Point::origin(), vec![], 0.2, Point::origin());
         cover.take_plan(&plan());

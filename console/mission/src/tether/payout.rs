@@ -1,7 +1,7 @@
 //! What the reel has paid out, against what the map explains.
 //!
 //! The mission's cable knows only obstacles on the map; the true one may catch on a column that nobody has seen yet.
-//! The encoder of the reel is the one sense that tells. Two taut cables that lie alike among the same obstacles differ
+//! Only the encoder of the reel can reveal that. Two taut cables that lie alike among the same obstacles differ
 //! by no more than their ends do, so more than the position error is a cable that lies otherwise.
 
 use super::KEPT_M;
@@ -63,7 +63,7 @@ impl Payout {
         }
     }
 
-    /// What the encoder tells, metres.
+    /// Tether paid out as measured by the encoder, metres.
     pub(super) fn measured_m(&self) -> Option<f64> {
         self.measured_m
     }

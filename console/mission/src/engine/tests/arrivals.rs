@@ -225,20 +225,20 @@ proptest! {
         flight.planner.says_much = true;
         flight.delay = Box::new(move |ask, tick| delays[(ask.id.n as usize * 31 + tick as usize) % delays.len()]);
         flight.tick(&[Order::Start]);
-        let mut told = FoldedStanding::default();
-        flight.events.iter().for_each(|event| told.apply(&event.kind));
+        let mut folded = FoldedStanding::default();
+        flight.events.iter().for_each(|event| folded.apply(&event.kind));
         for tick in 1..400 {
             let now: Vec<Order> =
                 orders.iter().filter(|(at, _)| *at == tick).map(|(_, n)| order(*n)).collect();
             let before = flight.pose;
             flight.tick(&now);
             for event in flight.events.iter().filter(|event| event.tick == flight.mission.tick - 1) {
-                told.apply(&event.kind);
+                folded.apply(&event.kind);
             }
             let standing = flight.mission.standing();
-            prop_assert_eq!(&told.phase, standing.phase);
+            prop_assert_eq!(&folded.phase, standing.phase);
             for n in [0, 1, 2, 3, 6] {
-                prop_assert_eq!(told.standing().allows(&order(n)), standing.allows(&order(n)));
+                prop_assert_eq!(folded.standing().allows(&order(n)), standing.allows(&order(n)));
             }
             let holds = now.last() == Some(&Order::Hold);
             if holds || !matches!(flight.mission.phase(), Phase::Running(_) | Phase::Held(Hold { by: HoldReason::Stepped, .. })) {

@@ -1,4 +1,4 @@
-//! A cable that catches on what nobody has drawn or seen: the reel tells, and the robot goes back and frees it.
+//! A tether that snags on something that nobody has drawn or seen: the reel reveals it, and the robot goes back and frees it.
 
 use super::{
     covering::covering,
@@ -47,9 +47,12 @@ fn caught(config: MissionConfig, more_m: f64, ticks: usize) -> Flight {
 #[test]
 fn cable_that_the_map_does_not_explain_holds_until_the_operator_goes_on() {
     let mut flight = caught(tethered(20.0), 1.5, 40);
-    let told = snags(&flight);
-    assert_eq!(told.len(), 1, "{told:?}");
-    assert!(told[0].starts_with("the reel has paid out ") && told[0].contains("has caught on"), "{told:?}");
+    let snags = snags(&flight);
+    assert_eq!(snags.len(), 1, "{snags:?}");
+    assert!(
+        snags[0].starts_with("the reel has paid out ") && snags[0].contains("has caught on"),
+        "{snags:?}"
+    );
     flight.fly(100);
     assert!(matches!(flight.held_by(), Some(HoldReason::Tether { .. })));
     flight.tick(&[Order::Resume]);
@@ -121,10 +124,10 @@ fn a_caught_cable_is_freed_on_the_way_back() {
 fn what_the_cable_has_caught_on_is_planned_for_once_it_is_seen() {
     let flight = scan_round_unseen_column(1.5);
     assert_eq!((snags(&flight).len(), eased(&flight)), (1, 1));
-    let anew = |event: &Event| {
+    let is_again = |event: &Event| {
         matches!(event.kind, EventKind::Planned { reason: Reason::MapChanged, .. }) && event.t_s > 300.0
     };
-    assert!(flight.events.iter().any(anew));
+    assert!(flight.events.iter().any(is_again));
 }
 
 /// The reasons for plans after a column is found across the cable, far from the lanes that are left.

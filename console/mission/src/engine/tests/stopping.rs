@@ -152,7 +152,7 @@ fn a_hold_that_only_an_order_ends_keeps_its_reason() {
     let mut flight = started(MissionConfig { task, ..config() });
     flight.fly(400);
     assert!(matches!(flight.held_by(), Some(HoldReason::Stuck { .. })));
-    let told = flight.tick(&[Order::Hold]);
-    assert!(told.iter().any(|kind| matches!(kind, EventKind::Ordered { order: Order::Hold })));
+    let events = flight.tick(&[Order::Hold]);
+    assert!(events.iter().any(|kind| matches!(kind, EventKind::Ordered { order: Order::Hold })));
     assert!(matches!(flight.held_by(), Some(HoldReason::Stuck { .. })));
 }

@@ -1,4 +1,4 @@
-//! The tether in flight: plans are judged, limits hold the robot, what is found is wound round as driven.
+//! The tether in flight: plans are certified, limits hold the robot, and the tether wraps what is found on the way as it was driven.
 
 use super::*;
 use crate::{
@@ -23,7 +23,7 @@ fn lengths(flight: &Flight) -> Vec<f64> {
 }
 
 #[test]
-fn the_cable_is_told_every_tick_and_grows_with_the_way() {
+fn the_tether_is_reported_every_tick_and_grows_with_the_way() {
     let mut flight = Flight::new(tethered(20.0));
     flight.tick(&[Order::Start]);
     flight.fly(200);
@@ -70,8 +70,8 @@ fn a_plan_that_cannot_be_certified_is_refused_until_the_operator_says_otherwise(
         flight
     };
     let mut flight = refused_flight(&config);
-    let told = flight.tick(&[Order::Start]);
-    let why = told.iter().find_map(|kind| match kind {
+    let events = flight.tick(&[Order::Start]);
+    let why = events.iter().find_map(|kind| match kind {
         EventKind::Certified { refused: true, certificate, .. } => Some(certificate.reasons.join("; ")),
         _ => None,
     });
@@ -111,8 +111,8 @@ fn an_obstacle_found_across_the_cable_is_passed_on_the_side_that_was_driven() {
         world.obstacles.push(column(0.05 * side));
         tether.lay_anew(&world);
         let map = world::ObstacleMap::new(&world.boundary, &world.obstacles);
-        let told = tether.tell(&world, &map, 0.1);
-        let EventKind::Tethered { contacts, way_home_m, .. } = &told[0] else { panic!("{told:?}") };
+        let events = tether.update(&world, &map, 0.1);
+        let EventKind::Tethered { contacts, way_home_m, .. } = &events[0] else { panic!("{events:?}") };
         assert!(contacts.len() == 1 && contacts[0].wrap_rad * sign > 0.0, "{contacts:?}");
         assert!(way_home_m.is_some_and(|way_m| way_m > 6.0));
     }
@@ -197,8 +197,8 @@ fn a_plan_that_is_refused_under_way_is_asked_for_again_after_a_way_home() {
     let here = flight.pose.position;
     flight.tick(&[Order::Hold]);
     let other = PlannerChoice { id: "other".into(), parameters: Parameters::new() };
-    let told = flight.tick(&[Order::ChoosePlanner(other)]);
-    let plans: Vec<(Point, Option<LegTag>)> = told
+    let events = flight.tick(&[Order::ChoosePlanner(other)]);
+    let plans: Vec<(Point, Option<LegTag>)> = events
         .iter()
         .filter_map(|kind| match kind {
             EventKind::Planned { path, legs, .. } => Some((path[0], legs.first().map(|leg| leg.tag))),
