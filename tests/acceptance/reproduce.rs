@@ -75,7 +75,7 @@ fn every_coverage_planner_has_every_figure_of_its_tether_and_is_drawn() {
 }
 
 #[test]
-fn tuning_repeats_and_is_judged_on_other_layouts() {
+fn tuning_repeats_and_is_evaluated_on_other_layouts() {
     let bench = Bench::new();
     let asked = "tune --planner rpf --on wang-d3 --tune k_rep --tune rho_0_m --set wall_gain=0 --layouts 3 \
                  --test-layouts 4 --generations 2 --json";

@@ -31,7 +31,7 @@ fn tenths(percent: &Value) -> i64 {
 }
 
 #[test]
-fn what_a_mission_missed_is_planned_flown_and_told_together_with_it() {
+fn what_a_mission_missed_is_planned_flown_and_reported_together_with_it() {
     let bench = Bench::new();
     let first = half_a_scan(&bench);
     let made = rescan(&bench, &[&first], "again.toml");
@@ -51,10 +51,10 @@ fn what_a_mission_missed_is_planned_flown_and_told_together_with_it() {
 
     let [a, b] = [&first, &second].map(|run| run.to_str().unwrap().to_owned());
     let merged = bench.tankops(&["report", &a, &b, "--json"]).json();
-    for (told, run) in merged["runs"].as_array().unwrap().iter().zip([&first, &second]) {
-        assert_eq!(told["run"], run.file_name().unwrap().to_str().unwrap());
+    for (listed, run) in merged["runs"].as_array().unwrap().iter().zip([&first, &second]) {
+        assert_eq!(listed["run"], run.file_name().unwrap().to_str().unwrap());
         for (key, file) in [("journal_sha256", "events.jsonl"), ("recording_sha256", "recording.rrd")] {
-            assert_eq!(told[key], digest(&run.join(file)), "{key}");
+            assert_eq!(listed[key], digest(&run.join(file)), "{key}");
         }
     }
     let share = |coverage: &Value| coverage["reachable"].as_f64().unwrap();
@@ -95,7 +95,7 @@ fn runs_that_do_not_fit_together_are_refused_with_the_reason() {
 }
 
 #[test]
-fn a_journal_that_was_changed_is_told_wherever_it_is_read() {
+fn a_journal_that_was_changed_is_reported_wherever_it_is_read() {
     let bench = Bench::new();
     let run = half_a_scan(&bench);
     let name = run.to_str().unwrap();
@@ -103,9 +103,9 @@ fn a_journal_that_was_changed_is_told_wherever_it_is_read() {
     let text = std::fs::read_to_string(&journal).unwrap();
     assert!(!bench.tankops(&["report", name]).out.contains("not the one that was written"));
     std::fs::write(&journal, text.replacen("\"collided\":false", "\"collided\":true", 1)).unwrap();
-    for command in [vec!["runs"], vec!["report", name], vec!["export", name, "--rrd", "anew.rrd"]] {
-        let told = bench.tankops(&command);
-        assert!(told.code == Some(0) && told.out.contains("not the one that was written"), "{told:?}");
+    for command in [vec!["runs"], vec!["report", name], vec!["export", name, "--rrd", "regenerated.rrd"]] {
+        let read = bench.tankops(&command);
+        assert!(read.code == Some(0) && read.out.contains("not the one that was written"), "{read:?}");
     }
 }
 
@@ -118,8 +118,8 @@ fn the_figures_of_a_run_that_was_cut_off_are_held_to_no_bounds() {
     let kept: Vec<&str> = text.lines().take(text.lines().count() / 2).collect();
     std::fs::write(&journal, kept.join("\n") + "\n").unwrap();
     std::fs::remove_file(run.join("report.json")).unwrap();
-    let told = bench.tankops(&["report", run.to_str().unwrap()]);
-    assert!(told.out.contains("cut off") && !told.out.contains("not as expected"), "{told:?}");
+    let report = bench.tankops(&["report", run.to_str().unwrap()]);
+    assert!(report.out.contains("cut off") && !report.out.contains("not as expected"), "{report:?}");
 }
 
 #[test]
@@ -127,8 +127,8 @@ fn a_mission_that_covers_floor_is_refused_a_planner_that_does_not() {
     let bench = Bench::new();
     let cover = scenario("cover-circle.toml");
     let refused = bench.tankops(&["run", cover.to_str().unwrap(), "--planner", "navfn"]);
-    let told = refused.err.contains("covers no floor") && refused.err.contains("tether-safe");
-    assert!(refused.code == Some(2) && told, "{refused:?}");
+    let says_why = refused.err.contains("covers no floor") && refused.err.contains("tether-safe");
+    assert!(refused.code == Some(2) && says_why, "{refused:?}");
 }
 
 #[test]

@@ -87,7 +87,7 @@ pub fn report(
 fn one(run: &PastRun, events: &[Event], json: bool) -> anyhow::Result<String> {
     let scenario = scenario_of(events)?;
     let (logs, events_sha256) = (Some(run.logs.clone()), run.journal_sha256.clone());
-    let summary = scenario.expect.judged(Summary { logs, events_sha256, ..run.fold.summary() });
+    let summary = scenario.expect.evaluated(Summary { logs, events_sha256, ..run.fold.summary() });
     if json { to_json(&summary) } else { Ok(human(&summary)) }
 }
 

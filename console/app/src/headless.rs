@@ -93,7 +93,7 @@ pub fn fly(
         logs,
         ..fold.summary()
     };
-    let summary = scenario.expect.judged(summary);
+    let summary = scenario.expect.evaluated(summary);
     let kept = folder.as_ref().map(|folder| Kept::new(folder, &finished, &folder.write_report(&summary)));
     tell(&summary, telling)?;
     match &kept {

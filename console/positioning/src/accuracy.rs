@@ -11,7 +11,7 @@ use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 use world::{ObstacleMap, Point, Station, World};
 
-/// No station is nearer than this, metres: no direction can be told from there.
+/// No station is nearer than this, metres: the direction is undefined this close.
 const NEAREST_M: f64 = 0.05;
 /// Cells along the longer side that a map may have.
 const MOST_CELLS: usize = 400;
@@ -113,7 +113,7 @@ impl Forecast {
         }
     }
 
-    /// What one station tells of a place.
+    /// The information one station gives at a place.
     fn seen(&self, place: Point, station: Point) -> Seen {
         let away = place - station;
         let distance_m = away.norm().max(NEAREST_M);
@@ -126,7 +126,7 @@ impl Forecast {
     }
 }
 
-/// What some stations tell of a place together.
+/// The information several stations give at a place together.
 #[derive(Debug, Clone, Copy, Default)]
 struct Seen {
     heard: u32,

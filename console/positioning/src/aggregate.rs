@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn the_extremes_tell_more_of_bounded_noise_than_the_mean() {
+    fn the_extremes_are_more_informative_than_the_mean_for_bounded_noise() {
         let uniform = RangeNoise::Uniform { ratio: 0.05 };
         let (mean, _) = scatter(Aggregation::Mean, &uniform);
         assert!(scatter(Aggregation::Midrange, &uniform).0 < 0.55 * mean);

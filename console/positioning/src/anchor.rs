@@ -6,7 +6,7 @@ use crate::{
 };
 use world::{Point, Station, StationId, Vector};
 
-/// Distances below this count as this, metres: no direction can be told so near to a station.
+/// Distances below this count as this, metres: the direction is undefined this close to a station.
 const NEAREST_M: f64 = 1e-3;
 
 /// A range and where it was measured from.

@@ -23,8 +23,8 @@ const THINNEST_M: f64 = 1e-6;
 /// as likely as its neighbour, so the weighted centroid is the exact mean of the posterior. With uniform noise its
 /// error falls with the number of repetitions, not with their root.
 ///
-/// To be used only where the bound is known to hold: with any other noise the set soon is empty, which
-/// [`FixError::EmptySet`] tells.
+/// To be used only where the bound is known to hold: with any other noise the set is soon empty, which
+/// [`FixError::EmptySet`] reports.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounded {
     /// Largest error of a single range as a share of the distance, below 1.
@@ -40,7 +40,7 @@ impl PositionSolver for Bounded {
     ) -> Result<Fix, FixError> {
         let anchors = anchored(ranges, stations)?;
         let annuli = anchors.iter().map(|a| self.annulus(a, ranges)).collect::<Option<Vec<_>>>();
-        let empty = FixError::EmptySet { ratio: self.told_ratio() };
+        let empty = FixError::EmptySet { ratio: self.reported_ratio() };
         let annuli = annuli.ok_or(empty.clone())?;
         // The middle of each annulus is the best single range; it gives the place to look at.
         let middles: Vec<Anchor> = anchors
@@ -79,10 +79,10 @@ impl Bounded {
     pub(crate) fn likelihood(self, ranges: &[Ranging], stations: &[Station]) -> Result<Likelihood, FixError> {
         let anchors = anchored(ranges, stations)?;
         let annuli = anchors.iter().map(|a| self.annulus(a, ranges)).collect::<Option<Vec<_>>>();
-        annuli.map(Likelihood).ok_or(FixError::EmptySet { ratio: self.told_ratio() })
+        annuli.map(Likelihood).ok_or(FixError::EmptySet { ratio: self.reported_ratio() })
     }
 
-    fn told_ratio(self) -> f64 {
+    fn reported_ratio(self) -> f64 {
         if self.ratio.is_finite() { self.ratio } else { 0.0 }
     }
 

@@ -1,4 +1,4 @@
-//! What a whole session tells about the speed of sound and about the places of the stations.
+//! What a whole session reveals about the speed of sound and about the positions of the stations.
 
 use crate::{
     anchor::{Anchor, anchored},
@@ -36,7 +36,7 @@ impl Default for Unknowns {
 /// Every cycle is fitted with its position free; what is left over of its information goes into one system of linear
 /// equations (a Schur complement), so a session costs the same memory however long it is. Cycles that contradict
 /// themselves even with their scale free, as those with a wrong station do, are left out. Four stations are needed to
-/// tell a scale from a position; the survey also needs a robot that moves about.
+/// separate a scale from a position; the survey also needs a robot that moves about.
 #[derive(Debug, Clone)]
 pub struct Calibration {
     stations: Vec<Station>,
@@ -113,7 +113,7 @@ impl Calibration {
     /// Takes in the uncorrected ranges of one cycle; whether they could be used.
     ///
     /// # Errors
-    /// See [`FixError`]: a cycle without a position tells nothing.
+    /// See [`FixError`]: a cycle without a position contributes nothing.
     pub fn take(
         &mut self,
         ranges: &[Ranging],

@@ -17,7 +17,7 @@ const SUBSET_STEPS: usize = 2;
 const MOST_SUBSETS: usize = 120;
 /// Best groups of agreeing stations that are refined.
 const REFINED: usize = 8;
-/// Rounds of choosing the agreeing stations anew.
+/// Iterations of reselecting the agreeing stations.
 const ROUNDS: usize = 6;
 /// A second answer whose cost is larger by less than this is as good as the first.
 const MARGIN: f64 = 16.0;
@@ -59,7 +59,7 @@ impl PositionSolver for Consensus {
         let Some(best) = answers.first() else { return solve_anchors(&anchors, prior) };
         let fix = best.fix.clone();
         let rival = answers.iter().skip(1).find(|other| best.is_contested_by(other));
-        Ok(judged(fix, &anchors, rival))
+        Ok(with_exclusions(fix, &anchors, rival))
     }
 }
 
@@ -141,8 +141,8 @@ impl Consensus {
     }
 }
 
-/// The fix with what was left out, and the trust that is left.
-fn judged(mut fix: Fix, anchors: &[Anchor], rival: Option<&Answer>) -> Fix {
+/// The fix with the excluded stations, and its integrity lowered where the rest do not confirm it.
+fn with_exclusions(mut fix: Fix, anchors: &[Anchor], rival: Option<&Answer>) -> Fix {
     for anchor in anchors.iter().filter(|a| !fix.used.contains(&a.station)) {
         let view = anchor.view_from(fix.position);
         let gate_m = CUT_SIGMAS * view.sigma_m;

@@ -50,7 +50,7 @@ const WANDER_SHARE: f64 = 0.05;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MotionNoise {
     /// Standard deviation of the position after one metre without a fix, metres; mostly slip, so it grows in
-    /// proportion to the way until fixes tell how large the slip is.
+    /// proportion to the way until fixes show how large the slip is.
     pub sigma_per_m: f64,
     /// Standard deviation of a single motion as a share of it, fresh in every motion.
     #[serde(default)]
@@ -58,7 +58,7 @@ pub struct MotionNoise {
     /// Standard deviation of a turn as a share of the turn.
     pub turn_sigma_ratio: f64,
     /// Standard deviation of the turn that a robot at rest measures in a tick, radians; mostly the gyro's bias times
-    /// the tick, so it adds up until fixes tell how large it is.
+    /// the tick, so it adds up until fixes show how large it is.
     pub heading_sigma_per_tick_rad: f64,
     /// Chance that the tracks slip through in a motion and it is mostly lost, 0 to 1.
     #[serde(default)]

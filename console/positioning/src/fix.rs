@@ -212,7 +212,7 @@ pub enum FixError {
 
 /// A way from ranges to a fix.
 pub trait PositionSolver {
-    /// Finds the position that the ranges tell.
+    /// Computes the position from the ranges.
     ///
     /// `prior` is a position with its covariance that is already believed; solvers use it to choose between mirror
     /// solutions, and with fewer than three stations need it.

@@ -10,7 +10,7 @@ use world::{Odometry, Point, Pose, Station, geometry::wrap_angle_rad};
 
 /// An [`Ekf`] that remembers its last motions and looks back over them (Rauch, Tung and Striebel).
 ///
-/// Ranges taken after a motion also tell where it began. Ten motions back the error is a third below that of the
+/// Ranges taken after a motion also constrain where it began. Ten motions back the error is a third below that of the
 /// filter; the present is no better known. For maps and reports, not for driving.
 #[derive(Debug, Clone)]
 pub struct FixedLag {
@@ -76,7 +76,7 @@ impl FixedLag {
         self.expect(&self.filter.clone());
     }
 
-    /// Puts the present where a fix says it is; see [`Ekf::restart_at`]. The past tells nothing about it.
+    /// Puts the present where a fix says it is; see [`Ekf::restart_at`]. The past carries no information about it.
     pub fn restart_at(&mut self, position: Point, covariance: &Matrix2<f64>, heading_sigma_rad: f64) {
         self.filter.restart_at(position, covariance, heading_sigma_rad);
         self.past.clear();
@@ -108,7 +108,7 @@ impl FixedLag {
     /// Every pose remembered, the oldest first, the present last.
     pub fn smoothed(&self) -> Vec<Smoothed> {
         let (mut state, mut covariance) = (*self.filter.state(), *self.filter.state_covariance());
-        let mut found = vec![told(0, &state, &covariance)];
+        let mut found = vec![smoothed_pose(0, &state, &covariance)];
         for (ago, past) in self.past.iter().rev().enumerate() {
             let Some(inverse) = past.expected_covariance.cholesky().map(|c| c.inverse()) else { break };
             let gain = past.covariance * past.by_state.transpose() * inverse;
@@ -119,7 +119,7 @@ impl FixedLag {
             if !state.iter().chain(covariance.iter()).all(|number| number.is_finite()) {
                 break;
             }
-            found.push(told(ago + 1, &state, &covariance));
+            found.push(smoothed_pose(ago + 1, &state, &covariance));
         }
         found.reverse();
         found
@@ -131,11 +131,11 @@ impl FixedLag {
         smoothed
             .first()
             .copied()
-            .unwrap_or_else(|| told(0, self.filter.state(), self.filter.state_covariance()))
+            .unwrap_or_else(|| smoothed_pose(0, self.filter.state(), self.filter.state_covariance()))
     }
 }
 
-fn told(lag: usize, state: &State, covariance: &Covariance) -> Smoothed {
+fn smoothed_pose(lag: usize, state: &State, covariance: &Covariance) -> Smoothed {
     let covariance = covariance.fixed_view::<2, 2>(0, 0).into_owned();
     Smoothed { lag, pose: Pose::new(state.x, state.y, state.z), covariance }
 }

@@ -34,7 +34,7 @@ impl PositionSolver for LinearLs {
     }
 }
 
-/// What the linear equations tell.
+/// The solution of the linear equations.
 pub(crate) struct Linear {
     pub position: Point,
     pub covariance: Matrix2<f64>,

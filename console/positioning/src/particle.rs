@@ -128,7 +128,7 @@ impl Particles {
         let left = effective(&weights);
         if left < TOO_FEW * self.guesses.len() as f64 {
             let fix = solver.solve(ranges, stations, Some(prior))?;
-            self.place_anew(fix.position, &fix.covariance, |at| bounds.at(at));
+            self.reinitialise(fix.position, &fix.covariance, |at| bounds.at(at));
         } else {
             self.guesses.iter_mut().zip(&weights).for_each(|(guess, weight)| guess.weight = *weight);
         }
@@ -189,7 +189,7 @@ impl Particles {
         }
     }
 
-    fn place_anew(&mut self, mean: Point, covariance: &Matrix2<f64>, likelihood: impl Fn(Point) -> f64) {
+    fn reinitialise(&mut self, mean: Point, covariance: &Matrix2<f64>, likelihood: impl Fn(Point) -> f64) {
         let root = root(covariance) * 1.5;
         let rng = &mut self.rng;
         for guess in &mut self.guesses {

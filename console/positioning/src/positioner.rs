@@ -167,7 +167,7 @@ impl Positioner {
         };
         if self.config.calibrates_sound {
             let prior = (self.filter.pose().position, self.filter.position_covariance());
-            // A cycle without a position tells nothing; why there is none, the fix will say.
+            // A cycle without a position contributes nothing; the fix states why there is none.
             let _ = self.sound.take(&rangings, Some(prior));
             rangings = self.sound.corrected(&rangings);
         }

@@ -23,7 +23,7 @@ const LEAST_SPARED: f64 = 1e-6;
 /// Stands for an infinite dilution, so that every number stays finite.
 pub(crate) const NO_GEOMETRY: f64 = 1e9;
 
-/// Puts a fix together and judges it by its residuals.
+/// Assembles a fix and rates its integrity by its residuals.
 pub(crate) fn assess(
     anchors: &[Anchor],
     position: Point,
@@ -39,9 +39,9 @@ pub(crate) fn assess(
         return Err(FixError::NotConverged { iterations: 0 });
     }
     let bent = || has_rival_on_circle(anchors, position, &covariance, chi2);
-    let integrity = match judge(chi2, degrees_of_freedom) {
+    let integrity = match integrity_of(chi2, degrees_of_freedom) {
         Integrity::Ok if bent() => Integrity::Suspect,
-        judged => judged,
+        rated => rated,
     };
     Ok(Fix {
         position,
@@ -98,8 +98,8 @@ fn largest_sigma_m(covariance: &Matrix2<f64>) -> f64 {
     (f64::midpoint(a, c) + ((a - c) / 2.0).hypot(b)).max(0.0).sqrt()
 }
 
-/// What a sum of squared normalised residuals says.
-pub(crate) fn judge(chi2: f64, degrees_of_freedom: u32) -> Integrity {
+/// The integrity that follows from a sum of squared normalised residuals.
+pub(crate) fn integrity_of(chi2: f64, degrees_of_freedom: u32) -> Integrity {
     if degrees_of_freedom == 0 {
         Integrity::Untestable
     } else if chi2 > chi_squared_quantile(ALARM_Z, degrees_of_freedom) {
@@ -162,9 +162,9 @@ mod tests {
 
     #[test]
     fn more_residual_is_never_trusted_more() {
-        assert_eq!(judge(1.0, 1), Integrity::Ok);
-        assert_eq!(judge(8.0, 1), Integrity::Suspect);
-        assert_eq!(judge(20.0, 1), Integrity::Alarm);
-        assert_eq!(judge(0.0, 0), Integrity::Untestable);
+        assert_eq!(integrity_of(1.0, 1), Integrity::Ok);
+        assert_eq!(integrity_of(8.0, 1), Integrity::Suspect);
+        assert_eq!(integrity_of(20.0, 1), Integrity::Alarm);
+        assert_eq!(integrity_of(0.0, 0), Integrity::Untestable);
     }
 }

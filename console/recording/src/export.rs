@@ -1,9 +1,9 @@
-//! The recording made anew from the journal.
+//! Regenerates the recording from the journal.
 
 use crate::{error::RecordingError, identity::Identity, journal::JournalReader, recorder::Recorder};
 use std::{path::Path, time::Instant};
 
-/// Makes the recording of a run from its journal, equal in content to the one that was made while it ran.
+/// Regenerates the recording of a run from its journal, equal in content to the one that was made while it ran.
 ///
 /// The recording is that of the run to which the journal belongs (the name of its folder), wherever it is put. A
 /// journal that is cut off gives a recording up to there; what is missing is returned.

@@ -6,7 +6,7 @@ use std::path::Path;
 /// Name and id of a recording.
 ///
 /// The viewer merges files that carry the same id, and keeps files with different ones apart. The id is a hash of
-/// the name of the run's folder, so a recording that is made anew from the journal is the same recording.
+/// the name of the run's folder, so a recording regenerated from the journal is the same recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
     /// Unique per run, the same every time it is asked for.

@@ -128,7 +128,7 @@ impl Sketch {
         .into()
     }
 
-    /// How the planner does its work: one plot at a time, the most telling one first.
+    /// How the planner does its work: one plot at a time, the most informative first.
     fn planning(&mut self, task: &TaskConfig, has_tether: bool) -> bp::ContainerLike {
         let forces = self.plot("Forces [N]", &[paths::FORCE_SIZES], None);
         let figures = self.plot("Planner", &[&format!("{}/**", paths::PLANNER_SCALARS)], None);

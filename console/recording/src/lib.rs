@@ -1,7 +1,7 @@
 //! Events to a rerun recording and to the journal, and back.
 //!
 //! The journal (`events.jsonl`) is ours: every event, one line each, versioned, the same bytes for the same run. The
-//! recording (`recording.rrd`) is a view of it for the rerun viewer and can be made anew from the journal at any
+//! recording (`recording.rrd`) is a view of it for the rerun viewer and can be regenerated from the journal at any
 //! time. Both are written by one thread behind a bounded queue ([`RunRecorder`]). What cannot be written is kept in
 //! memory up to a limit; a disk error, or a file that is deleted or changed by others, shows in [`Health`] within a
 //! second, and the mission goes on.

@@ -179,7 +179,7 @@ impl RunRecorder {
         let shared = Arc::new(Shared::default());
         let sink = recorder.as_ref().map(Recorder::health);
         let (sender, batches) = sync_channel(QUEUE);
-        let (tell_end, ended) = sync_channel(1);
+        let (end_sender, ended) = sync_channel(1);
         let writer = Writer {
             journal: Some(journal),
             recorder,
@@ -192,7 +192,7 @@ impl RunRecorder {
         let handle = thread.spawn(move || {
             let end = writer.run(&batches);
             // Nobody may be waiting any more.
-            let _ = tell_end.send(end);
+            let _ = end_sender.send(end);
         });
         handle.map_err(|error| RecordingError::Thread { why: error.to_string() })?;
         let ended = Mutex::new(ended);

@@ -274,13 +274,14 @@ pub fn account(run: &RunOpened, grid: &CoverageGrid, evidence: &Evidence) -> Acc
 }
 
 fn plate_accounts(map: &PlateMap, by_plate: &[Tally], cell_m2: f64) -> Vec<PlateAccount> {
-    let told = map.plates.iter().zip(by_plate);
-    told.map(|(plate, tally)| PlateAccount {
-        name: plate.name.clone(),
-        kind: plate.kind,
-        shares: tally.shares(cell_m2),
-    })
-    .collect()
+    let tallied = map.plates.iter().zip(by_plate);
+    tallied
+        .map(|(plate, tally)| PlateAccount {
+            name: plate.name.clone(),
+            kind: plate.kind,
+            shares: tally.shares(cell_m2),
+        })
+        .collect()
 }
 
 fn out_of_reach(kind: Cell) -> Option<OutOfReach> {

@@ -80,7 +80,7 @@ impl Expect {
     /// The same figures with the sentences about the bounds that were not kept. The figures of a run that was cut off
     /// are not compared: nobody knows what it would have come to.
     #[must_use]
-    pub fn judged(&self, run: Summary) -> Summary {
+    pub fn evaluated(&self, run: Summary) -> Summary {
         if run.outcome.is_none() {
             return run;
         }

@@ -112,7 +112,7 @@ impl Fold {
         }
     }
 
-    /// The figures so far. Those that no event tells are absent; the app fills them in.
+    /// The figures so far. Those that no event provides are absent; the app fills them in.
     pub fn summary(&self) -> Summary {
         Summary {
             coverage: self.scanned.as_ref().map(Scanned::coverage),

@@ -70,7 +70,7 @@ pub(crate) struct Joined<'a> {
 pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
     let Joined { run, scanned, evidence } = joined(runs)?;
     let opened = |past: &PastRun| past.fold.run.as_ref().map(|run| run.mission.clone());
-    let told = runs.iter().filter_map(|past| {
+    let listed = runs.iter().filter_map(|past| {
         let mission = opened(past)?;
         Some(MergedRun {
             run: past.name.clone(),
@@ -81,13 +81,13 @@ pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
             summary: Summary { floor: None, logs: Some(past.logs.clone()), ..past.fold.summary() },
         })
     });
-    let told: Vec<MergedRun> = told.collect();
+    let listed: Vec<MergedRun> = listed.collect();
     // What counted in any of the runs counts: the loosest limit is the one that holds for all of it.
-    let position_limit_m = told.iter().map(|run| run.position_limit_m).fold(0.0, f64::max);
+    let position_limit_m = listed.iter().map(|run| run.position_limit_m).fold(0.0, f64::max);
     Ok(Merged {
         coverage: scanned.coverage(),
         floor: Account { position_limit_m, ..account(run, scanned.believed(), &evidence) },
-        runs: told,
+        runs: listed,
     })
 }
 
@@ -113,7 +113,8 @@ pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
         evidence.found().filter(|(id, _)| !known.contains(id)).map(|(_, shape)| shape.clone()).collect();
     if !more.is_empty() {
         // What only the other runs found is no floor either.
-        scanned.change(&anew(run, scanned.believed().floor(), &evidence, run.mission.swath_m).kinds());
+        scanned
+            .change(&updated_floor(run, scanned.believed().floor(), &evidence, run.mission.swath_m).kinds());
     }
     Ok(Joined { run, scanned, evidence })
 }
@@ -133,7 +134,7 @@ fn parts(past: &PastRun) -> Result<Parts<'_>, String> {
     Ok(Parts { run, scanned, evidence })
 }
 
-/// Refuses runs of which one tells nothing about the floor of the other.
+/// Refuses runs of which one contains nothing about the floor of the other.
 fn fit_together(
     (name, other): (&str, &Parts<'_>),
     (last_name, last, scanned): (&str, &RunOpened, &Scanned),
@@ -161,7 +162,7 @@ fn fit_together(
 }
 
 /// The floor with everything that any of the runs found.
-pub(crate) fn anew(run: &RunOpened, grid: &Floor, evidence: &Evidence, swath_m: f64) -> Floor {
+pub(crate) fn updated_floor(run: &RunOpened, grid: &Floor, evidence: &Evidence, swath_m: f64) -> Floor {
     let mut world = run.world.as_drawn();
     let drawn: BTreeSet<ObstacleId> = world.obstacles.iter().map(|obstacle| obstacle.id).collect();
     for (id, shape) in evidence.found().filter(|(id, _)| !drawn.contains(id)) {
@@ -306,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn what_counted_under_a_looser_limit_is_told_with_that_limit() {
+    fn what_counted_under_a_looser_limit_is_reported_with_that_limit() {
         let mut tight = round_tank(0.1);
         tight.mission.scan.position_limit_m = Some(0.1);
         let (loose_m, runs) =

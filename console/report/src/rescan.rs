@@ -5,7 +5,7 @@ use crate::{
         Area, MissReason,
         areas::{area_of, areas as areas_of},
     },
-    merged::{Joined, PastRun, anew, joined},
+    merged::{Joined, PastRun, joined, updated_floor},
 };
 use std::{collections::VecDeque, fmt};
 use world::{Floor, Point, coverage::regions};
@@ -52,7 +52,7 @@ impl fmt::Display for NoLane {
 
 /// Finds what is to be scanned again.
 ///
-/// Missed floor to which no lane leads is told apart. The rest that lies closely together is taken together and grown by
+/// Missed floor to which no lane leads is listed separately. Of the rest, what lies closely together is merged and grown by
 /// what a robot can aim at. What is then smaller than `least_m2` is left. There are no more than `most` boxes; the fewer, the coarser.
 ///
 /// # Errors
@@ -62,7 +62,7 @@ pub fn rescan(runs: &[PastRun], least_m2: f64, most: usize) -> Result<Rescan, St
     let grid = scanned.believed();
     let floor = grid.floor();
     let is_missed = |index: usize| floor.is_reachable(index) && !grid.is_covered(index);
-    let lanes = anew(run, floor, &evidence, run.mission.lane_m());
+    let lanes = updated_floor(run, floor, &evidence, run.mission.lane_m());
     let (swath_m, reasons) = (run.mission.swath_m, evidence.reasons(run));
     let is_asked = |index: usize| is_missed(index) && evidence.is_asked(index);
     let no_lane: Vec<Option<NoLane>> = (0..floor.len())
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn specks_that_lanes_less_the_overlap_do_not_reach_are_told_and_not_offered() {
+    fn specks_that_lanes_less_the_overlap_do_not_reach_are_reported_and_not_offered() {
         let mut run = round_tank(0.05);
         run.mission.scan.overlap_m = 0.2;
         // The hull keeps 0.45 m from the shell, so that a bar of 0.4 m ends 0.25 m from it, and one of 0.6 m 0.15 m.
@@ -244,8 +244,8 @@ mod tests {
             rescan.areas.len() == 1 && holds(&rescan, 1.0, -1.0) && !holds(&rescan, 4.8, 0.0),
             "{rescan:?}"
         );
-        let told: Vec<NoLane> = rescan.out_of_reach.iter().map(|area| area.reason).collect();
-        assert!(!told.is_empty() && told.iter().all(|why| *why == NoLane::Narrow), "{rescan:?}");
+        let reasons: Vec<NoLane> = rescan.out_of_reach.iter().map(|area| area.reason).collect();
+        assert!(!reasons.is_empty() && reasons.iter().all(|why| *why == NoLane::Narrow), "{rescan:?}");
         assert!(rescan.out_of_reach[0].at.x > 4.6, "{rescan:?}");
     }
 

@@ -4,7 +4,7 @@ use crate::account::Account;
 use mission::{Outcome, Parameters};
 use serde::{Deserialize, Serialize};
 
-/// Everything that is told about a run when it is over. What is not known is `None`, in JSON `null`, never zero.
+/// Everything that is reported about a run when it is over. What is not known is `None`, in JSON `null`, never zero.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Summary {
     /// Name of the scenario.
@@ -61,14 +61,14 @@ pub struct Summary {
     pub positioning: Option<Positioning>,
     /// How the tether lay; absent without one.
     pub tether: Option<Tether>,
-    /// How long planners took; told by the app.
+    /// How long planners took; set by the app.
     pub planner_calls: Option<PlannerCalls>,
-    /// How long stopping took; absent for runs that were not stopped by an operator. Told by the app.
+    /// How long stopping took; absent for runs that were not stopped by an operator. Set by the app.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stops: Option<Stops>,
-    /// SHA-256 of the journal, hexadecimal; told by the app.
+    /// SHA-256 of the journal, hexadecimal; set by the app.
     pub events_sha256: Option<String>,
-    /// The files of the run; told by the app.
+    /// The files of the run; set by the app.
     pub logs: Option<Logs>,
 }
 

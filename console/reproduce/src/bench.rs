@@ -17,8 +17,8 @@ pub struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    /// A bench with planners from these folders on so many threads (0: one for each core), which tells `progress` how
-    /// many cases of how many are done.
+    /// A bench with planners from these folders on so many threads (0: one for each core), which reports to
+    /// `progress` how many cases of how many are done.
     ///
     /// # Errors
     /// So many threads are of no use, or cannot be started.

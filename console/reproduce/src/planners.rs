@@ -87,7 +87,7 @@ impl Planners {
     }
 }
 
-/// Whether a planner says no for a good reason; bad parameters are the study's to mend.
+/// Whether a planner refuses for a valid reason; bad parameters are a fault of the study.
 fn is_no(fault: &Fault) -> bool {
     matches!(fault.cause, Cause::Planner(code) if code != Code::Config)
 }

@@ -7,7 +7,7 @@ pub struct Sample {
 }
 
 impl FromIterator<f64> for Sample {
-    /// Values that are not finite are left out; [`Sample::len`] tells how many are behind a figure.
+    /// Values that are not finite are left out; [`Sample::len`] gives the number behind a figure.
     fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
         let mut sorted: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);

@@ -1,7 +1,7 @@
 //! Wang et al. 2023: planners on the preset spiral.
 //!
-//! Layouts: the paper's three distributions, uniform in the disk or, as printed, in the square. The paper tells neither
-//! how obstacles nor how the robot extend; collisions are counted at a clearance of 0.3 m from an obstacle point.
+//! Layouts: the paper's three distributions, uniform in the disk or, as printed, in the square. The paper states
+//! the size of neither obstacles nor robot; collisions are counted at a clearance of 0.3 m from an obstacle point.
 
 mod figures;
 mod method;

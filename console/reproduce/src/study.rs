@@ -113,11 +113,11 @@ mod tests {
     fn a_prefix_that_fits_nothing_is_answered_with_what_there_is() {
         let study = study("pan-maps").unwrap();
         let options = Options { cases: vec!["nope".into()], ..Options::default() };
-        let told = options.nothing_left(study, &["E1", "E2"], &["a", "b"]).to_string();
-        assert_eq!(told, "pan-maps: no case begins with --case nope; known are E1, E2");
+        let message = options.nothing_left(study, &["E1", "E2"], &["a", "b"]).to_string();
+        assert_eq!(message, "pan-maps: no case begins with --case nope; known are E1, E2");
         let options = Options { methods: vec!["c".into(), "d".into()], ..Options::default() };
-        let told = options.nothing_left(study, &["E1", "E2"], &["a", "b"]).to_string();
-        assert_eq!(told, "pan-maps: no method begins with --method c, d; known are a, b");
+        let message = options.nothing_left(study, &["E1", "E2"], &["a", "b"]).to_string();
+        assert_eq!(message, "pan-maps: no method begins with --method c, d; known are a, b");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Goal planners on random traps: U, triangle, spiral and double traps among free discs.
 //!
 //! The reference is the exact shortest way on the whole map. Known map: one plan, whose path is measured. Unknown map:
-//! a flight in which discs within the sensing range are discovered, planned anew on every discovery and flown by the
+//! a flight in which discs within the sensing range are discovered, replanned on every discovery and flown by the
 //! planner's own commands.
 
 mod flight;

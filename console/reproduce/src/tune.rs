@@ -1,4 +1,5 @@
-//! Parameter tuning, which Wang et al. 2023 name as future work: CMA-ES on a training set of layouts, judged on another.
+//! Parameter tuning, which Wang et al. 2023 name as future work: CMA-ES on a training set of layouts, evaluated on
+//! another.
 
 mod scale;
 
@@ -31,7 +32,7 @@ pub struct Tuning<'a> {
     pub group: Group,
     /// Number and first seed of the layouts that it is tuned on.
     pub training: (usize, u64),
-    /// Number and first seed of the layouts that it is judged on; none of the training set's.
+    /// Number and first seed of the layouts that it is evaluated on; none of the training set's.
     pub test: (usize, u64),
     /// Generations of the search.
     pub generations: usize,
@@ -100,13 +101,13 @@ pub fn tune(tuning: &Tuning<'_>, bench: &Bench<'_>) -> Result<Tuned, Problem> {
     }
     let (after, share) = best.into_inner();
     let tuned = merged(tuning, &scales, &share);
-    let rows = judge(tuning, bench, &tuned)?;
+    let rows = evaluate(tuning, bench, &tuned)?;
     let values = scales.iter().map(|scale| (scale.key.clone(), tuned[&scale.key].clone())).collect();
     Ok(Tuned { values, loss: (before, after), evaluations, rows })
 }
 
 /// Rows of the start and of the tuned values on the test set.
-fn judge(tuning: &Tuning<'_>, bench: &Bench<'_>, tuned: &Parameters) -> Result<Vec<Row>, Problem> {
+fn evaluate(tuning: &Tuning<'_>, bench: &Bench<'_>, tuned: &Parameters) -> Result<Vec<Row>, Problem> {
     let options = options(tuning.test);
     let mut rows = Vec::new();
     for (name, parameters) in [("start", tuning.start), ("tuned", tuned)] {

@@ -5,9 +5,9 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal, StudentT};
 use rand_pcg::Pcg64;
 
-/// Shortest range that is ever told, metres.
+/// Shortest range that is ever reported, metres.
 const SHORTEST_M: f64 = 1e-6;
-/// Longest range that is ever told, metres.
+/// Longest range that is ever reported, metres.
 const LONGEST_M: f64 = 1e9;
 /// Degrees of freedom of the heavy-tailed noise: the fewest whole number with a variance.
 const TAIL_FREEDOM: f64 = 3.0;
@@ -75,8 +75,8 @@ impl NoiseModel {
     }
 }
 
-/// A distance with its error as a range that can be told, metres; always positive.
-pub(crate) fn told_m(range_m: f64) -> f64 {
+/// A distance with its error, limited to the ranges that can be reported, metres; always positive.
+pub(crate) fn reported_m(range_m: f64) -> f64 {
     // A distance so far that the error turns it into nothing is still a distance.
     if range_m.is_nan() { LONGEST_M } else { range_m.clamp(SHORTEST_M, LONGEST_M) }
 }
@@ -94,7 +94,7 @@ mod tests {
             let mut rng = Pcg64::seed_from_u64(seed);
             for model in [NoiseModel::Uniform { ratio }, NoiseModel::Triangular { ratio }] {
                 for _ in 0..20 {
-                    let range = told_m(distance * (1.0 + model.error_ratio(&mut rng)));
+                    let range = reported_m(distance * (1.0 + model.error_ratio(&mut rng)));
                     prop_assert!((range - distance).abs() <= ratio * distance * (1.0 + 1e-12));
                 }
             }

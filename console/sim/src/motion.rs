@@ -1,4 +1,4 @@
-//! From what the robot is told to the arc that its tracks run in one tick.
+//! From the drive command to the arc that the tracks run in one tick.
 
 use crate::config::{Drive, RobotConfig};
 use world::{Pace, Pose, Vector, geometry::wrap_angle_rad};

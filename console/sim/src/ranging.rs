@@ -3,7 +3,7 @@
 mod path;
 
 use crate::{
-    chance::{Chance, normal, told_m},
+    chance::{Chance, normal, reported_m},
     config::{AeConfig, StationFault},
 };
 use path::Surroundings;
@@ -73,7 +73,7 @@ impl Sounder {
 
 fn spoil(set: &mut RangeSet, fault: &StationFault) {
     match fault.late_m {
-        Some(late_m) => set.ranges_m.iter_mut().for_each(|range_m| *range_m = told_m(*range_m + late_m)),
+        Some(late_m) => set.ranges_m.iter_mut().for_each(|range_m| *range_m = reported_m(*range_m + late_m)),
         None => set.ranges_m.clear(),
     }
 }
@@ -100,7 +100,7 @@ fn measure(
         let is_heard = chance.detour.random::<f64>() >= what.ping_dropout;
         if let Some(way) = way.filter(|_| is_heard) {
             let scale = 1.0 + what.sound_speed_error_ratio;
-            ranges_m.push(told_m(way.length_m * (1.0 + error) * scale + late_m + ping_late_m));
+            ranges_m.push(reported_m(way.length_m * (1.0 + error) * scale + late_m + ping_late_m));
         }
     }
     RangeSet { station: station.id, ranges_m }

@@ -124,11 +124,11 @@ mod tests {
     }
 
     #[test]
-    fn an_outline_is_told_in_the_frame_of_the_robot() {
+    fn an_outline_is_reported_in_the_frame_of_the_robot() {
         let obstacles = [disc(1, 2.0, 3.0, 0.5)];
         let map = ObstacleMap::new(&ROUND, &obstacles);
         let pose = Pose::new(2.0, 1.0, std::f64::consts::FRAC_PI_2);
-        let told = sightings(&map, &ROUND, &obstacles, &pose, 5.0);
-        assert!((told[0].shape_in_robot.center() - Point::new(2.0, 0.0)).norm() < 1e-12);
+        let sighted = sightings(&map, &ROUND, &obstacles, &pose, 5.0);
+        assert!((sighted[0].shape_in_robot.center() - Point::new(2.0, 0.0)).norm() < 1e-12);
     }
 }

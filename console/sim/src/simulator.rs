@@ -79,8 +79,8 @@ impl Simulator {
     /// Moves the truth by one tick.
     pub fn act(&mut self, drive: Drive) {
         self.adapt();
-        let told = self.tracks.drive(drive, &self.pose);
-        let driven = Arc { way_m: told.way_m * (1.0 - self.draw_slip()), ..told };
+        let by_tracks = self.tracks.drive(drive, &self.pose);
+        let driven = Arc { way_m: by_tracks.way_m * (1.0 - self.draw_slip()), ..by_tracks };
         let reached = sweep(&self.map, self.radius_m(), &self.pose, &driven);
         let cable = self.cable.as_ref().map(|cable| dragged(cable, reached.pose.position));
         let is_at_its_end = self.is_at_its_end(cable.as_ref());
@@ -90,7 +90,7 @@ impl Simulator {
             self.cable = cable;
             reached.pose
         };
-        self.odometry = self.measured(&told);
+        self.odometry = self.measured(&by_tracks);
         let touched_before = self.in_contact;
         let is_run_into = self.move_obstacles();
         self.in_contact =
@@ -163,13 +163,13 @@ impl Simulator {
         (robot.slip_mean + robot.slip_sigma * normal(&mut self.chance.slip)).clamp(0.0, 1.0)
     }
 
-    /// What the odometry makes of a motion: tracks cannot feel slip nor that the robot was stopped, the gyro can tell
-    /// the turn but drifts.
-    fn measured(&mut self, told: &Arc) -> Odometry {
+    /// The odometry of a motion: tracks sense neither slip nor that the robot was stopped; the gyro measures the turn
+    /// but drifts.
+    fn measured(&mut self, by_tracks: &Arc) -> Odometry {
         let robot = &self.config.robot;
         let mut erring = || bounded(1.0 + robot.odometry_sigma_ratio * normal(&mut self.chance.odometry));
         let (of_way, of_turn) = (erring(), erring());
-        let (forward_m, sideways_m, turn_rad) = told.seen_from_start();
+        let (forward_m, sideways_m, turn_rad) = by_tracks.seen_from_start();
         Odometry {
             forward_m: forward_m * of_way,
             sideways_m: sideways_m * of_way,

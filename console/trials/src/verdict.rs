@@ -30,7 +30,7 @@ impl Verdict {
     }
 }
 
-/// Judges a walk.
+/// Evaluates a walk.
 pub fn verdict(path: &[Point], preset: &[Point]) -> Verdict {
     let lags: Vec<f64> = path.iter().zip(preset).map(|(p, q)| (p - q).norm()).collect();
     let stands = |k: usize| {

@@ -82,7 +82,7 @@ impl PlateLayout {
         (kind, row as i64 + 1, number as i64 + 1)
     }
 
-    /// Whether all of a rectangle, told by its south west corner, lies within the ring.
+    /// Whether all of a rectangle, given by its south west corner, lies within the ring.
     fn is_whole(&self, boundary: &Boundary, corner: Point) -> bool {
         [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].iter().all(|(east, north)| {
             let corner = corner + nalgebra::Vector2::new(east * self.length_m, north * self.width_m);

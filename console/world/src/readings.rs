@@ -48,7 +48,7 @@ pub struct Readings {
     pub sightings: Vec<Sighting>,
     /// Whether the bumper is pressed.
     pub contact: bool,
-    /// Cable that the reel has paid out, as its encoder tells, metres; `None` without a tether or without an encoder.
+    /// Cable that the reel has paid out, as measured by its encoder, metres; `None` without a tether or without an encoder.
     #[serde(default)]
     pub paid_out_m: Option<f64>,
 }

@@ -44,7 +44,7 @@ impl Boundary {
         }
     }
 
-    /// Whether a box, told by its south west and north east corners, holds some of the floor.
+    /// Whether a box, given by its south west and north east corners, holds some of the floor.
     pub fn meets_box(&self, low: Point, high: Point) -> bool {
         let in_box = |p: &Point| low.x < p.x && p.x < high.x && low.y < p.y && p.y < high.y;
         match self {

@@ -5,7 +5,7 @@ use crate::{
     parameters,
     window::{Twist, Window, arc, moved},
 };
-use field::{Ground, Scene, body::Body, drawing, judge, offline, scene::no_go, stall::Stall};
+use field::{Ground, Scene, body::Body, drawing, offline, outcome, scene::no_go, stall::Stall};
 use planner_api::{
     Caps, Code, Command, Config, Ctx, Drive, Layer, LogLevel, Motion, Outline, ParamSpec, Plan, PlanRequest,
     Planner, PlannerError, Result, Sensed, Site, Status, Task, Vector2, ZoneKind,
@@ -69,9 +69,9 @@ impl Planner for ApfDwa {
         ctx.scalar("overspeed", run.overspeed_m_per_s, "m/s");
         let at = run.path[run.path.len() - 1];
         let missing_m = (goal - at).norm();
-        let shortfall = (!run.arrived).then_some(judge::Shortfall::Short { missing_m, at });
+        let shortfall = (!run.arrived).then_some(outcome::Shortfall::Short { missing_m, at });
         let clearance_m = self.ground.path_clearance_m(&run.path, site.clearance_m + 1.0);
-        Ok(offline::told(judge::Walk { path: run.path, shortfall }, clearance_m, site.clearance_m, ctx))
+        Ok(offline::plan_of(outcome::Walk { path: run.path, shortfall }, clearance_m, site.clearance_m, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
@@ -96,7 +96,7 @@ impl Planner for ApfDwa {
         ctx.scalar("safe_distance", self.settings.window.keep_m - self.ground.hull_m, "m");
         ctx.scalar("mode", self.hybrid.mode().unwrap_or(0.0), "");
         ctx.scalar("speed_limit", decision.pace.v_max_m_per_s, "m/s");
-        self.tell(&pose, decision.twist, ctx);
+        self.report(&pose, decision.twist, ctx);
         let idle_s = self.stall.update(sensed.t_s, pose.position, sensed.target);
         let status = if idle_s > self.stuck_s { Status::Stuck } else { Status::Moving };
         Ok(Command { drive: self.drive(&pose, decision.twist), status })
@@ -130,7 +130,7 @@ impl ApfDwa {
         }
     }
 
-    fn tell(&mut self, pose: &Pose, twist: Twist, ctx: &Ctx<'_>) {
+    fn report(&mut self, pose: &Pose, twist: Twist, ctx: &Ctx<'_>) {
         let guide = self.hybrid.guide();
         if guide.used() > self.used {
             self.used = guide.used();

@@ -17,10 +17,10 @@ const PASSED_M: f64 = 0.35;
 const ROOM_M: f64 = 0.25;
 /// Attempts with less and less room.
 const ATTEMPTS: u32 = 6;
-/// Whether the way is still free is looked at after so many steps; it is looked for anew when it is not, and whenever
-/// the map changes.
+/// Whether the way is still free is checked after so many steps; it is replanned when it is not, and whenever the map
+/// changes.
 const LOOK_STEPS: usize = 20;
-/// It is looked for anew after so many steps anyway: the robot has moved aside.
+/// It is replanned after so many steps in any case: the robot has moved aside.
 const FRESH_STEPS: usize = 40;
 /// A way counts as free with this much less room than the window keeps, metres.
 const SLACK_M: f64 = 0.03;

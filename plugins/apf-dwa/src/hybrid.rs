@@ -59,7 +59,7 @@ pub struct Hybrid {
     guide: Guide,
 }
 
-/// How many distances are told: as many as the paper plots.
+/// How many distances are reported: as many as the paper plots.
 const N_DISTANCES: usize = 10;
 
 impl Hybrid {
@@ -88,7 +88,7 @@ impl Hybrid {
         self.guide.forget_map();
     }
 
-    /// Decides how to move in the next tick; `velocity_of` tells how an obstacle moves, metres per second.
+    /// Decides how to move in the next tick; `velocity_of` gives the velocity of an obstacle, metres per second.
     pub fn decide(
         &mut self,
         state: &State,

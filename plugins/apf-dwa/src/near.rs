@@ -65,7 +65,7 @@ pub struct NearThings {
 }
 
 impl NearThings {
-    /// Looks around; `velocity_of` tells how an obstacle moves.
+    /// What is within reach; `velocity_of` gives the velocity of an obstacle.
     pub fn of(ground: &Ground, at: Point, reach_m: f64, velocity_of: impl Fn(u32) -> Vector) -> Self {
         let mut near = Self::default();
         for solid in ground.solids.iter().filter(|s| !s.is_beyond(at, reach_m)) {

@@ -27,7 +27,7 @@ pub struct Twist {
     pub w_rad_per_s: f64,
 }
 
-/// What an arc is judged by; each term is divided by its sum over all arcs that are allowed.
+/// Weights of the cost of an arc; each term is divided by its sum over all arcs that are allowed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
     /// Looking where the reference points at the end of the arc.

@@ -116,7 +116,7 @@ impl Planner for ApfVirtualGoals {
             ctx.log(LogLevel::Info, &format!("the way uses {} virtual goals", goals.used));
         }
         ctx.scalar("virtual_goals", f64::from(goals.used), "");
-        Ok(checked.told(walk, ground, ctx))
+        Ok(checked.plan_of(walk, ground, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

@@ -1,7 +1,7 @@
 //! What the goal planners of this crate share: checks of a plan, the map as it is known, the flight along a force.
 
 use field::{
-    Flight, Ground, Nearby, Pilot, Scene, drawing, goal_walk::Trip, judge::Walk, law::Forces, offline,
+    Flight, Ground, Nearby, Pilot, Scene, drawing, goal_walk::Trip, law::Forces, offline, outcome::Walk,
     pilot::Tick,
 };
 use planner_api::{
@@ -98,9 +98,9 @@ impl GoalFlight {
 }
 
 impl Checked {
-    /// A walk as a plan; what is wrong with it is said in the log.
-    pub fn told(&self, walk: Walk, ground: &Ground, ctx: &Ctx<'_>) -> Plan {
+    /// A walk as a plan; what is wrong with it is logged.
+    pub fn plan_of(&self, walk: Walk, ground: &Ground, ctx: &Ctx<'_>) -> Plan {
         let clearance_m = ground.path_clearance_m(&walk.path, self.demanded_m + 1.0);
-        offline::told(walk, clearance_m, self.demanded_m, ctx)
+        offline::plan_of(walk, clearance_m, self.demanded_m, ctx)
     }
 }

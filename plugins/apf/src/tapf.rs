@@ -91,7 +91,7 @@ impl Planner for Tapf {
         let force = |at| law.forces(at, trip.goal, ground, &mut nearby, &mut sides).resultant();
         let next = goal_walk::descent(&trip, self.step_m, self.window_m, force);
         let walk = goal_walk::walk(&trip, next, || ctx.check())?;
-        Ok(checked.told(walk, ground, ctx))
+        Ok(checked.plan_of(walk, ground, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

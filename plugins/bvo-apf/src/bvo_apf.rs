@@ -8,7 +8,7 @@ use crate::{
     thought::{self, Walked},
 };
 use field::{
-    Flight, Ground, Pilot, Scene, Side, drawing, judge, law::Forces, offline, params as p, pilot::Tick,
+    Flight, Ground, Pilot, Scene, Side, drawing, law::Forces, offline, outcome, params as p, pilot::Tick,
 };
 use planner_api::{
     Caps, Code, Command, Config, Ctx, Drive, Layer, LogLevel, ParamSpec, Plan, PlanRequest, Planner,
@@ -67,11 +67,11 @@ impl Planner for BvoApf {
         self.ground = Ground::new(request.site);
         let mut machine = Machine::new(self.settings_for(start, goal), self.ground.clone());
         let walked = self.walked(&mut machine, start, goal, tolerance_m, ctx)?;
-        tell(&machine.news, ctx);
+        report(&machine.news, ctx);
         show_virtual(&machine, ctx);
         ctx.scalar("retreats", f64::from(machine.retreats), "");
         ctx.scalar("virtual_circles", machine.virtual_circles().count() as f64, "");
-        Ok(judged(walked, &machine, &self.ground, goal, request.site.clearance_m, ctx))
+        Ok(plan_of(walked, &machine, &self.ground, goal, request.site.clearance_m, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
@@ -131,14 +131,14 @@ impl BvoApf {
         let flying = self.flying(sensed);
         flying.machine.learn(tick.bodies);
         let next = flying.next(at, sensed.target);
-        tell(&std::mem::take(&mut flying.machine.news), ctx);
+        report(&std::mem::take(&mut flying.machine.news), ctx);
         ctx.scalar("phase", phase_number(flying.machine.phase()), "");
         ctx.scalar("virtual_circles", flying.machine.virtual_circles().count() as f64, "");
         show_virtual(&flying.machine, ctx);
         next.map(|aim| (aim, flying.machine.forces))
     }
 
-    /// What is kept between ticks, begun anew for another goal.
+    /// What is kept between ticks, reset for another goal.
     fn flying(&mut self, sensed: &Sensed<'_>) -> &mut Flying {
         let goal = sensed.target;
         let fits = self.flying.as_ref().is_some_and(|flying| (flying.goal - goal).norm() < 1e-6);
@@ -183,7 +183,7 @@ fn phase_number(phase: &Phase) -> f64 {
     }
 }
 
-fn tell(news: &[News], ctx: &Ctx<'_>) {
+fn report(news: &[News], ctx: &Ctx<'_>) {
     for item in news {
         let (level, message) = match item {
             News::Retreats { at } => {
@@ -221,7 +221,7 @@ fn show_virtual(machine: &Machine, ctx: &Ctx<'_>) {
 }
 
 /// The plan, and what is wrong with it in the log.
-fn judged(
+fn plan_of(
     walked: Walked,
     machine: &Machine,
     ground: &Ground,
@@ -231,12 +231,12 @@ fn judged(
 ) -> Plan {
     let end = walked.path[walked.path.len() - 1];
     let shortfall = (!walked.arrived).then(|| match machine.phase() {
-        Phase::Stuck => judge::Shortfall::Trapped { at: end },
-        _ => judge::Shortfall::Short { missing_m: (goal - end).norm(), at: end },
+        Phase::Stuck => outcome::Shortfall::Trapped { at: end },
+        _ => outcome::Shortfall::Short { missing_m: (goal - end).norm(), at: end },
     });
-    let walk = judge::Walk { path: walked.path, shortfall };
+    let walk = outcome::Walk { path: walked.path, shortfall };
     let clearance_m = ground.path_clearance_m(&walk.path, demanded_m + 1.0);
-    offline::told(walk, clearance_m, demanded_m, ctx)
+    offline::plan_of(walk, clearance_m, demanded_m, ctx)
 }
 
 #[cfg(test)]

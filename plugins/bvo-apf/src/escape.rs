@@ -5,7 +5,7 @@ use field::{Ground, Side, ground::disc_around, tangents};
 use std::{collections::BTreeSet, f64::consts::PI};
 use world::{Point, Vector};
 
-/// The hull of the group is looked at anew after this way, metres.
+/// The hull of the group is recomputed after this distance, metres.
 const LOOK_M: f64 = 0.25;
 /// What lies further ahead on the way to the tangent point is left for later, metres.
 const AHEAD_M: f64 = 4.0;

@@ -25,7 +25,7 @@ const GAIN_M: f64 = 1.0;
 
 /// A way round may take this many times the circle about the group before it counts as leading nowhere.
 const ROUNDS: f64 = 2.5;
-/// On the way back the trap is looked at anew after this way, metres.
+/// On the way back the trap is examined again after this distance, metres.
 const LOOK_BACK_M: f64 = 0.05;
 
 /// What the machine is doing.
@@ -187,7 +187,7 @@ impl Machine {
         self.ground.solids.iter().filter(|s| is_virtual(s)).map(|s| (s.center, s.radius_m))
     }
 
-    /// Takes what is sensed; a group being gone round is put together anew if that changes the map.
+    /// Takes what is sensed; the group being gone round is recomputed if that changes the map.
     pub fn learn(&mut self, bodies: &[Body]) {
         if self.ground.learn(bodies) {
             self.map_changed();

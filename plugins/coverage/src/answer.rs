@@ -1,4 +1,4 @@
-//! What the coverage planners share: reading the task, writing the plan, telling what cannot be scanned.
+//! What the coverage planners share: reading the task, writing the plan, reporting what cannot be scanned.
 
 use crate::{
     floor::FloorGrid,
@@ -16,7 +16,7 @@ use world::{
 
 /// Floor out of reach below this is not worth a line, square metres.
 const LEAST_M2: f64 = 0.05;
-/// Places told one by one.
+/// Places listed one by one.
 const MOST_PLACES: usize = 8;
 
 /// Bearings in which floor in reach is looked for beside floor at the wall.
@@ -108,8 +108,8 @@ pub fn way_home(ground: &Ground, site: &Site<'_>, cable: &Cable) -> Option<Vec<P
     cable.way_home(&roomy, &map, ground.keep_m)
 }
 
-/// Tells which floor cannot be scanned, and why.
-pub fn tell_unreachable(ground: &Ground, scan: &Scan, order: &Order<'_>, ctx: &Ctx<'_>) {
+/// Logs which floor cannot be scanned, and why.
+pub fn report_unreachable(ground: &Ground, scan: &Scan, order: &Order<'_>, ctx: &Ctx<'_>) {
     let grid = &scan.grid;
     let cell_m2 = grid.cell_m * grid.cell_m;
     let margin = format!(
@@ -126,7 +126,7 @@ pub fn tell_unreachable(ground: &Ground, scan: &Scan, order: &Order<'_>, ctx: &C
                 && is_shell_margin(ground, grid, at) == is_margin;
         }
         closed.swept.fill(0);
-        tell(&closed, cell_m2, why, ground, ctx);
+        log_places(&closed, cell_m2, why, ground, ctx);
     }
     if order.reel_m.is_finite() {
         let mut far = grid.clone();
@@ -138,7 +138,7 @@ pub fn tell_unreachable(ground: &Ground, scan: &Scan, order: &Order<'_>, ctx: &C
             };
         }
         far.swept.fill(0);
-        tell(&far, cell_m2, &format!("is beyond the reel of {:.1} m", order.reel_m), ground, ctx);
+        log_places(&far, cell_m2, &format!("is beyond the reel of {:.1} m", order.reel_m), ground, ctx);
     }
 }
 
@@ -155,7 +155,7 @@ fn is_shell_margin(ground: &Ground, grid: &FloorGrid, at: Point) -> bool {
     edge_m < ground.keep_m + ground.swath_m / 2.0 && !is_gap() && is_beside()
 }
 
-fn tell(grid: &FloorGrid, cell_m2: f64, why: &str, ground: &Ground, ctx: &Ctx<'_>) {
+fn log_places(grid: &FloorGrid, cell_m2: f64, why: &str, ground: &Ground, ctx: &Ctx<'_>) {
     let groups = grid.missed();
     let worth: Vec<&Vec<usize>> = groups.iter().filter(|g| g.len() as f64 * cell_m2 > LEAST_M2).collect();
     for group in worth.iter().take(MOST_PLACES) {

@@ -18,16 +18,16 @@ pub fn plan<P: Planner>(
     (plan, bench)
 }
 
-/// What a planner told of its progress rises from its beginning, in more than a few steps.
+/// Asserts that the progress a planner reports rises from near zero, in more than a few steps.
 pub fn assert_progress_rises(bench: &Bench) {
-    let told = bench.progress();
-    let shares: Vec<f64> = told.iter().map(|(share, _)| *share).collect();
-    assert!(shares.windows(2).all(|pair| pair[0] <= pair[1]), "{told:?}");
-    assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)), "{told:?}");
+    let progress = bench.progress();
+    let shares: Vec<f64> = progress.iter().map(|(share, _)| *share).collect();
+    assert!(shares.windows(2).all(|pair| pair[0] <= pair[1]), "{progress:?}");
+    assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)), "{progress:?}");
     let distinct =
         shares.iter().map(|share| (share * 1e3) as u64).collect::<std::collections::BTreeSet<_>>().len();
-    assert!(distinct > 10 && shares[0] < 0.1 && shares[shares.len() - 1] > 0.3, "{distinct}: {told:?}");
-    assert!(told.iter().all(|(_, what)| !what.is_empty() && what.len() <= 80), "{told:?}");
+    assert!(distinct > 10 && shares[0] < 0.1 && shares[shares.len() - 1] > 0.3, "{distinct}: {progress:?}");
+    assert!(progress.iter().all(|(_, what)| !what.is_empty() && what.len() <= 80), "{progress:?}");
 }
 
 /// A planner with its plan of a tank.

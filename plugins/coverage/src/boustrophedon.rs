@@ -22,7 +22,7 @@ const DIRECTION: ParamSpec = float("direction_deg", "Direction of lanes", "deg",
     .help("Direction of the lanes, counter-clockwise from east.")
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
-    .help("Edge of the cells in which floor is counted, to tell what cannot be reached.")
+    .help("Edge of the cells in which floor is counted, to report what cannot be reached.")
     .group("Plan");
 
 /// What stages take of the time that is left, about: lanes, and the ways between them.
@@ -89,7 +89,7 @@ impl Planner for Boustrophedon {
         let mut scan = Scan { pieces, cuts: Vec::new(), slit, grid };
         scan.grid.sweep(&scan.path());
         let order = Order { start, regions: task.regions, reel_m: f64::INFINITY, cell_m: self.cell_m };
-        answer::tell_unreachable(&ground, &scan, &order, ctx);
+        answer::report_unreachable(&ground, &scan, &order, ctx);
         let plan = plan_of(&scan, request.start.position, &[]);
         self.follow.take(&plan);
         Ok(plan)

@@ -91,7 +91,7 @@ impl Worth {
     }
 
     /// One line for the operator.
-    pub fn told(&self, name: &str) -> String {
+    pub fn summary(&self, name: &str) -> String {
         let c = &self.certificate;
         format!(
             "{name}: {:.1} m, {:.0} turns, {:.2} % of the floor in reach, cable {:.2} m ({:.3} of the least), wrap \

@@ -26,7 +26,7 @@ const TOUCHING_M: f64 = 4.0 * crate::ground::SLACK_M;
 pub struct CutRule {
     /// Largest angle between a cut and the ray from the anchor, radians.
     pub alpha_rad: f64,
-    /// No cut may make the tether longer than this, as far as can be told, metres.
+    /// No cut may make the tether longer than this, as far as can be estimated, metres.
     pub cable_m: f64,
 }
 
@@ -55,7 +55,7 @@ struct Group {
 /// A cut that must not be made: the middle of its obstacle, and where it would end.
 type Banned = (Point, Point);
 
-/// Cuts are made anew at most this often because they sealed off floor.
+/// Cuts are recomputed at most this often because they sealed off floor.
 const TRIES: usize = 12;
 /// Floor that may be sealed off: slivers between a cut and the outline of an obstacle, square metres.
 const SLIVER_M2: f64 = 0.02;
@@ -395,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn cuts_that_seal_floor_off_are_made_anew_until_they_do_not() {
+    fn cuts_that_seal_floor_off_are_recomputed_until_they_do_not() {
         for (seed, alpha_rad, cable_m) in
             [(7, 0.0, 1e3), (9, 0.0, 1e3), (11, 0.0, 1e3), (5, 0.9, 7.0), (8, 0.9, 7.0)]
         {

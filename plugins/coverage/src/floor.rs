@@ -2,7 +2,7 @@
 //! robot turns in place.
 //!
 //! The rows of cells are turned against the tank's axes. A planner that shortens paths as long as no cell is lost would
-//! otherwise keep off every straight wall by the half cell that no row of centres tells of.
+//! otherwise keep off every straight wall by the half cell that no row of centres represents.
 
 use crate::{ground::Ground, slit::Slit};
 use world::{Boundary, Point, Vector};

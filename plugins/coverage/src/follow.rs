@@ -39,7 +39,7 @@ pub const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0
 /// Steering parameters that every coverage planner has.
 pub const PARAMS: [ParamSpec; 5] = [GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
 
-/// Follows the path ahead; stops in front of what was discovered on it, so that the mission plans anew.
+/// Follows the path ahead; stops in front of what was discovered on it, so that the mission replans.
 pub struct Follow {
     flight: Flight,
     pilot: Pilot,
@@ -49,7 +49,7 @@ pub struct Follow {
     /// Where the path is bound to the cuts from; `None` once the robot has been there.
     from: Option<Point>,
     seen_at: Option<Point>,
-    has_told: bool,
+    has_reported: bool,
 }
 
 /// A line that the path does not cross.
@@ -79,7 +79,7 @@ impl Follow {
             cuts: Vec::new(),
             from: None,
             seen_at: None,
-            has_told: false,
+            has_reported: false,
         }
     }
 
@@ -89,7 +89,7 @@ impl Follow {
         let way_home = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract);
         self.from = plan.path.get(way_home.map_or(0, |leg| leg.last)).copied();
         self.seen_at = None;
-        self.has_told = false;
+        self.has_reported = false;
     }
 
     /// Keeps account of the side of every cut on which the robot is.
@@ -133,14 +133,13 @@ impl Follow {
         let near = polyline::resampled(&within(&way, WATCH_M), 0.1);
         // Where the robot stands it stands, however near.
         if near.iter().skip(1).filter(|p| (*p - at).norm() > 0.2).any(is_blocked) {
-            return Ok(self.stopped(ctx, "an obstacle stands on the path; the plan has to be made anew"));
+            return Ok(self.stopped(ctx, "an obstacle blocks the path; replanning is required"));
         }
         let wanted = aim(at, sensed);
         let nearer = sensed.path_ahead.first().copied();
         let Some(target) = std::iter::once(wanted).chain(nearer).find(|aim| self.comes_right(at, *aim))
         else {
-            return Ok(self
-                .stopped(ctx, "the way back to the path leads across a cut; the plan has to be made anew"));
+            return Ok(self.stopped(ctx, "the way back to the path crosses a cut; replanning is required"));
         };
         let is_last = sensed.targets_ahead.len() <= 1 && sensed.path_ahead.len() <= 1;
         let tick = Tick { t_s: sensed.t_s, pose: sensed.pose, target, is_last, bodies: &bodies };
@@ -155,7 +154,7 @@ impl Follow {
     }
 
     fn stopped(&mut self, ctx: &Ctx<'_>, why: &str) -> Command {
-        if !std::mem::replace(&mut self.has_told, true) {
+        if !std::mem::replace(&mut self.has_reported, true) {
             ctx.log(LogLevel::Warn, why);
         }
         Command::still(Status::Stuck)

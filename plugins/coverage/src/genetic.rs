@@ -18,8 +18,8 @@ pub fn length(order: &[usize], distance: &[Vec<f64>]) -> f64 {
     closed.map(|(a, b)| distance[*a][*b]).sum()
 }
 
-/// An order by selection, order crossover and mutation; cell 0 stays first. Tells how far it is, 0 to 1.
-pub fn evolved(distance: &[Vec<f64>], seed: u64, tell: &dyn Fn(f64)) -> Vec<usize> {
+/// An order by selection, order crossover and mutation; cell 0 stays first. Reports its progress, 0 to 1.
+pub fn evolved(distance: &[Vec<f64>], seed: u64, report: &dyn Fn(f64)) -> Vec<usize> {
     let n = distance.len();
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     if n < 4 {
@@ -34,7 +34,7 @@ pub fn evolved(distance: &[Vec<f64>], seed: u64, tell: &dyn Fn(f64)) -> Vec<usiz
         .collect();
     let mut since_gain = 0;
     for generation in 0..GENERATIONS {
-        tell(generation as f64 / GENERATIONS as f64);
+        report(generation as f64 / GENERATIONS as f64);
         population.sort_by(|a, b| a.0.total_cmp(&b.0));
         let best = population[0].0;
         let mut next: Vec<(f64, Vec<usize>)> = population[..ELITE].to_vec();
@@ -86,10 +86,10 @@ fn mutate(order: &mut [usize], random: &mut Pcg64Mcg) {
 }
 
 /// The best order, by dynamic programming over sets (Held and Karp 1962); the genetic one for many cells.
-pub fn exact(distance: &[Vec<f64>], seed: u64, tell: &dyn Fn(f64)) -> Vec<usize> {
+pub fn exact(distance: &[Vec<f64>], seed: u64, report: &dyn Fn(f64)) -> Vec<usize> {
     let n = distance.len();
     if !(4..=MOST_EXACT).contains(&n) {
-        return evolved(distance, seed, tell);
+        return evolved(distance, seed, report);
     }
     let others = n - 1;
     let mut best = vec![vec![(f64::INFINITY, 0_usize); others]; 1 << others];

@@ -29,7 +29,7 @@ const ORDER: ParamSpec = choice("order", "Order of cells", &["genetic", "exact"]
     .help("The published genetic algorithm, or the exact order for up to 13 cells.")
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
-    .help("Edge of the cells in which floor is counted, to tell what cannot be reached.")
+    .help("Edge of the cells in which floor is counted, to report what cannot be reached.")
     .group("Plan");
 /// What stages take of the time that is left, about: division, order of cells, lanes.
 const DIVISION: f64 = 0.1;
@@ -117,7 +117,7 @@ impl Planner for HullPartition {
         let part = stages.next(LANES, "lanes of cells");
         for (k, cell) in cells_in_order.into_iter().enumerate() {
             ctx.check()?;
-            part.tell(k as f64 / cells.len() as f64, k, cells.len());
+            part.report(k as f64 / cells.len() as f64, k, cells.len());
             let lanes = lanes(&cells[cell], &ground, &slit, &is_wanted);
             for lane in lanes.iter().flat_map(|lane| between_cuts(lane, &cuts)) {
                 pieces.push(Piece { points: way(at, lane[0]), is_lane: false });
@@ -130,7 +130,7 @@ impl Planner for HullPartition {
         stages.next(1.0, "floor out of reach").begin();
         scan.grid.sweep(&scan.path());
         let order = Order { start, regions: task.regions, reel_m: f64::INFINITY, cell_m: self.cell_m };
-        answer::tell_unreachable(&ground, &scan, &order, ctx);
+        answer::report_unreachable(&ground, &scan, &order, ctx);
         let mut plan = plan_of(&scan, request.start.position, &[]);
         plan.cuts.iter_mut().for_each(|cut| trim(cut));
         if scan.slit.sealed_m2 > SEALED_M2 {
@@ -236,11 +236,11 @@ impl HullPartition {
         let centers: Vec<Point> = names.iter().map(|k| cells[*k].center()).collect();
         let distance: Vec<Vec<f64>> =
             centers.iter().map(|a| centers.iter().map(|b| (a - b).norm()).collect()).collect();
-        let tell = |share: f64| part.reached(share);
+        let report = |share: f64| part.reached(share);
         let order = if self.is_exact {
-            genetic::exact(&distance, seed, &tell)
+            genetic::exact(&distance, seed, &report)
         } else {
-            genetic::evolved(&distance, seed, &tell)
+            genetic::evolved(&distance, seed, &report)
         };
         order.into_iter().map(|k| names[k]).collect()
     }

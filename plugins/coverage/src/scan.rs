@@ -121,7 +121,7 @@ pub struct Order<'a> {
     pub cell_m: f64,
 }
 
-/// A candidate as far as the first tour: enough to tell what it will be worth, about.
+/// A candidate as far as the first tour: enough to estimate what it will be worth.
 pub struct Draft<'a> {
     ground: &'a Ground,
     order: Order<'a>,

@@ -56,8 +56,8 @@ impl Stop {
     }
 }
 
-/// Works on all items, as many at a time as there are cores; the results are in the order of the items. Tells meanwhile
-/// how far they are, as a part of the plan.
+/// Works on all items, as many at a time as there are cores; the results are in the order of the items. Meanwhile
+/// reports their progress as a part of the plan.
 ///
 /// # Errors
 /// The first error of any item, in their order.
@@ -72,11 +72,11 @@ pub fn side_by_side<T: Send, R: Send>(
     let next = || waiting.lock().ok()?.pop_front();
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let mut results: Vec<Option<Result<R>>> = (0..n).map(|_| None).collect();
-    let tell = |results: &[Option<Result<R>>]| {
+    let report = |results: &[Option<Result<R>>]| {
         let shares =
             results.iter().zip(&stops).map(|(result, stop)| if result.is_some() { 1.0 } else { stop.at() });
         let n_done = results.iter().flatten().count();
-        part.tell(shares.sum::<f64>() / n as f64, n_done, n);
+        part.report(shares.sum::<f64>() / n as f64, n_done, n);
     };
     thread::scope(|scope| {
         let (sender, receiver) = channel();
@@ -105,11 +105,11 @@ pub fn side_by_side<T: Send, R: Send>(
                 }
                 Err(RecvTimeoutError::Disconnected) => break,
             }
-            tell(&results);
+            report(&results);
         }
         while let Some((place, item)) = next() {
             results[place] = Some(ctx.check().and_then(|()| work(item, &stops[place])));
-            tell(&results);
+            report(&results);
         }
     });
     results.into_iter().flatten().collect()
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_told_rises_to_the_end_of_the_part() {
+    fn the_reported_progress_rises_to_the_end_of_the_part() {
         let bench = Bench::new();
         let work = |_: u64, stop: &Stop| {
             stop.stage(0.5);
@@ -139,10 +139,13 @@ mod tests {
             Ok(())
         };
         side_by_side(vec![0; 3], &part(&bench), work).unwrap();
-        let told = bench.progress();
-        assert!(told.len() >= 3 && told.windows(2).all(|pair| pair[0].0 <= pair[1].0), "{told:?}");
-        assert_eq!(told.last(), Some(&(0.5, "items, 3 of 3 done".to_owned())));
-        assert!(told.iter().any(|(share, _)| *share > 0.0 && *share < 0.5), "{told:?}");
+        let progress = bench.progress();
+        assert!(
+            progress.len() >= 3 && progress.windows(2).all(|pair| pair[0].0 <= pair[1].0),
+            "{progress:?}"
+        );
+        assert_eq!(progress.last(), Some(&(0.5, "items, 3 of 3 done".to_owned())));
+        assert!(progress.iter().any(|(share, _)| *share > 0.0 && *share < 0.5), "{progress:?}");
     }
 
     #[test]
@@ -181,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_error_in_the_order_of_the_items_is_told() {
+    fn the_first_error_in_the_order_of_the_items_is_returned() {
         let bench = Bench::new();
         let work = |k: i32, _: &Stop| {
             if k < 3 { Ok(k) } else { Err(PlannerError::new(Code::Invalid, format!("item {k}"))) }

@@ -1,4 +1,4 @@
-//! How far a plan is, told stage by stage.
+//! Progress of a plan, reported stage by stage.
 
 use planner_api::Ctx;
 
@@ -56,18 +56,18 @@ impl<'a> Stages<'a> {
 }
 
 impl Part<'_> {
-    /// Tells that the stage begins.
+    /// Reports that the stage begins.
     pub fn begin(&self) {
         self.ctx.progress(self.from, self.what);
     }
 
-    /// Tells how far the stage is, 0 to 1.
+    /// Reports the progress of the stage, 0 to 1.
     pub fn reached(&self, share: f64) {
         self.ctx.progress(self.at(share), self.what);
     }
 
-    /// Tells that so many of some things are done, and how far they all are, 0 to 1.
-    pub fn tell(&self, share: f64, n_done: usize, n: usize) {
+    /// Reports how many of `n` items are done, and the progress of all of them, 0 to 1.
+    pub fn report(&self, share: f64, n_done: usize, n: usize) {
         self.ctx.progress(self.at(share), &format!("{}, {n_done} of {n} done", self.what));
     }
 
@@ -87,16 +87,16 @@ mod tests {
         let mut stages = Stages::new(&bench.ctx());
         stages.until(0.5);
         stages.next(0.5, "cuts").begin();
-        stages.next(1.0, "lanes").tell(0.5, 1, 2);
+        stages.next(1.0, "lanes").report(0.5, 1, 2);
         stages.until(1.0);
         stages.next(0.5, "tour").reached(0.5);
-        stages.next(1.0, "the rest").tell(9.0, 2, 2);
-        let told = |share, what: &str| (share, what.to_owned());
+        stages.next(1.0, "the rest").report(9.0, 2, 2);
+        let progress = |share, what: &str| (share, what.to_owned());
         let all = [
-            told(0.0, "cuts"),
-            told(0.375, "lanes, 1 of 2 done"),
-            told(0.625, "tour"),
-            told(1.0, "the rest, 2 of 2 done"),
+            progress(0.0, "cuts"),
+            progress(0.375, "lanes, 1 of 2 done"),
+            progress(0.625, "tour"),
+            progress(1.0, "the rest, 2 of 2 done"),
         ];
         assert_eq!(bench.progress(), all);
     }

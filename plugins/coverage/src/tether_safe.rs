@@ -242,10 +242,10 @@ impl TetherSafe {
                 tried = self.try_all(request.site, ground, wishes, &from_home, None, &mut stages)?;
             }
         }
-        let (worth, scan) = Self::told(tried, ctx).ok_or_else(|| answer::no_room(ground))?;
+        let (worth, scan) = Self::chosen(tried, ctx).ok_or_else(|| answer::no_room(ground))?;
         stages.until(1.0);
         stages.next(1.0, "floor out of reach").begin();
-        answer::tell_unreachable(ground, &scan, &order, ctx);
+        answer::report_unreachable(ground, &scan, &order, ctx);
         // A reel near the least that can do may still reach all there is.
         let least = if order.reel_m.is_finite() { wishes.enough - BY_REEL } else { 0.99 };
         let is_whole = worth.coverage >= wishes.enough.min(least);
@@ -342,11 +342,11 @@ impl TetherSafe {
         Ok(tried)
     }
 
-    /// The candidate that was kept; all that are worth it are told.
-    fn told(tried: Vec<Tried>, ctx: &Ctx<'_>) -> Option<(Worth, Scan)> {
+    /// The candidate that was kept; logs every candidate that no other beats.
+    fn chosen(tried: Vec<Tried>, ctx: &Ctx<'_>) -> Option<(Worth, Scan)> {
         for t in &tried {
             if !tried.iter().any(|other| t.worth.is_beaten_by(&other.worth)) {
-                ctx.log(LogLevel::Info, &t.worth.told(&t.name));
+                ctx.log(LogLevel::Info, &t.worth.summary(&t.name));
             }
         }
         tried.into_iter().find_map(|t| t.scan.map(|scan| (t.worth, scan)))
@@ -391,7 +391,7 @@ fn laid_cable(ground: &Ground, request: &PlanRequest<'_>) -> Option<Cable> {
     (!request.previous.is_empty()).then_some(cable)
 }
 
-/// Why a plan that scans this share of the floor in reach is not complete; told last, for it is the reason given.
+/// Why a plan that scans this share of the floor in reach is not complete; logged last, because it is the reason given.
 fn why_incomplete(coverage: f64, order: &Order<'_>) -> String {
     let scanned = format!("the plan scans {:.1} % of the floor in reach", 100.0 * coverage);
     if order.reel_m.is_finite() {

@@ -1,7 +1,7 @@
 //! Descending a law toward one goal, in steps of constant length.
 
 use crate::{
-    judge::{Shortfall, Walk},
+    outcome::{Shortfall, Walk},
     scene::Scene,
     settings::Settings,
     turning::Reading,

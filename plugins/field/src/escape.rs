@@ -29,7 +29,7 @@ pub enum Escape {
     None,
     /// A target beside the nearest obstacle, on the side away from it as seen along the way, after Yang 2018.
     VirtualTarget,
-    /// A push to the side to which obstacles push, after Zhao 2022; chosen anew in every trap, so it may alternate.
+    /// A push to the side to which obstacles push, after Zhao 2022; chosen again in every trap, so it may alternate.
     Push,
 }
 

@@ -1,8 +1,8 @@
 //! Walking toward one goal, step by step, by whatever decides the steps.
 
 use crate::{
-    judge::{Shortfall, Walk},
     oscillation::Oscillation,
+    outcome::{Shortfall, Walk},
 };
 use world::{Point, Vector};
 

@@ -9,7 +9,7 @@ use crate::{
 use planner_api::Site;
 use world::{Point, Vector};
 
-/// What is near is looked up anew after this way, metres.
+/// What is near is looked up again after this distance, metres.
 const SLACK_M: f64 = 1.0;
 
 /// A convex thing that the robot must not touch.

@@ -2,7 +2,7 @@
 
 use crate::{
     descent::{self, Descent},
-    judge::{Shortfall, Walk},
+    outcome::{Shortfall, Walk},
     scene::Scene,
     settings::Settings,
     walk::{Move, Walker},

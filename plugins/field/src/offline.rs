@@ -2,8 +2,8 @@
 
 use crate::{
     descent::{self, Descent},
-    judge::{Walk, judge},
     lockstep::{self, Course},
+    outcome::{self, Walk},
     rollout,
     scene::Scene,
     settings::{Planning, Settings},
@@ -16,8 +16,8 @@ const MOST_POINTS: usize = 200_000;
 /// Outside the floor by no more than this is rounding, metres.
 const ROUNDING_M: f64 = 1e-6;
 
-/// A path for the task; `complete` tells whether it achieves all of it with the clearance demanded, and the log why
-/// not.
+/// A path for the task; `complete` states whether it achieves all of it with the clearance demanded, and the log
+/// why not.
 ///
 /// # Errors
 /// [`Code::StartOccupied`], [`Code::StartOutside`], [`Code::GoalOccupied`], [`Code::GoalOutside`],
@@ -41,7 +41,7 @@ pub fn plan(settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Re
         walked(&scene, settings, request, ctx)?
     };
     let clearance_m = scene.path_clearance_m(&walk.path);
-    Ok(told(walk, clearance_m, request.site.clearance_m, ctx))
+    Ok(plan_of(walk, clearance_m, request.site.clearance_m, ctx))
 }
 
 fn is_flown(planning: Planning, radius_m: f64) -> bool {
@@ -130,9 +130,9 @@ pub fn check_goal(scene: &Scene, goal: Point, tolerance_m: f64) -> Result<()> {
 }
 
 /// A walk as a plan, with its least distance between hull and anything solid and that demanded, metres; what is wrong
-/// with it is said in the log.
-pub fn told(walk: Walk, clearance_m: f64, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
-    let shortfall = judge(&walk, clearance_m, demanded_m);
+/// with it is logged.
+pub fn plan_of(walk: Walk, clearance_m: f64, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
+    let shortfall = outcome::assess(&walk, clearance_m, demanded_m);
     if let Some(reason) = shortfall {
         ctx.log(LogLevel::Warn, &format!("the plan is not complete: {reason}"));
     }

@@ -48,14 +48,14 @@ impl Oscillation {
         (at - first).norm_squared() < self.least_m * self.least_m || self.without_gain > self.patience
     }
 
-    /// Begins anew.
+    /// Starts over.
     pub fn forget(&mut self) {
         self.recent.clear();
         (self.best_m, self.without_gain) = (f64::INFINITY, 0);
         self.patience = PATIENCE_WINDOWS * self.n_steps;
     }
 
-    /// Begins anew and allows so many steps without a new best distance, if they are more than usual.
+    /// Starts over and allows so many steps without a new best distance, if they are more than usual.
     pub fn forget_for(&mut self, steps: usize) {
         self.forget();
         self.patience = self.patience.max(steps);

@@ -1,7 +1,7 @@
 //! Planning by flying the known map in thought.
 
 use crate::{
-    judge::{Shortfall, Walk},
+    outcome::{Shortfall, Walk},
     pilot::{Pilot, Tick},
     scene::Scene,
     settings::Settings,

@@ -9,7 +9,7 @@ use world::{Boundary, Point};
 
 /// Edge of a bucket, metres.
 const BUCKET_M: f64 = 1.0;
-/// Spare room is told up to this much, metres; beyond it there is at least as much.
+/// Spare room is measured up to this much, metres; anything larger is reported as this.
 pub const MOST_SPARE_M: f64 = 0.6;
 /// Slack for rounding, metres.
 const ROUNDING_M: f64 = 1e-9;

@@ -8,7 +8,7 @@ const WINDOW: usize = 6;
 /// It is a trap when the net displacement falls below this share of what those moves could have covered.
 const SHARE: f64 = 0.35;
 
-/// Tells a trap from the last six moves: they led less than 0.35 of their length away from where they began, the target
+/// Detects a trap from the last six moves: they led less than 0.35 of their length away from where they began, the target
 /// is more than a step off, and an obstacle acts.
 ///
 /// Wang et al. 2023 do not say when they call the robot trapped; window and share are ours.

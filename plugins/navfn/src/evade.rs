@@ -76,18 +76,18 @@ pub fn evade(wish: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Vector {
         headings.flat_map(|rad| SHARES.map(|share| Vector::new(rad.cos(), rad.sin()) * (v_max * share)));
     let slower = [1.0, 0.5].map(|share| wish * share);
     let all = slower.into_iter().chain([Vector::zeros()]).chain(grid);
-    let judged: Vec<(Vector, Outlook)> =
+    let outlooks: Vec<(Vector, Outlook)> =
         all.map(|velocity| (velocity, outlook(velocity, pose, around))).collect();
     let cost = |(velocity, outlook): &(Vector, Outlook)| {
         let missing_m = (LIKED_M - outlook.room_m).max(0.0);
         (velocity - wish).norm() + WORTH_PER_S * missing_m * v_max.max(0.1) / 0.4
     };
-    let clear = judged.iter().filter(|(_, outlook)| outlook.until_s >= HORIZON_S);
+    let clear = outlooks.iter().filter(|(_, outlook)| outlook.until_s >= HORIZON_S);
     let best = clear.min_by(|a, b| cost(a).total_cmp(&cost(b)));
     let last = || {
         let later =
             |a: &Outlook, b: &Outlook| a.until_s.total_cmp(&b.until_s).then(a.room_m.total_cmp(&b.room_m));
-        judged.iter().max_by(|a, b| later(&a.1, &b.1))
+        outlooks.iter().max_by(|a, b| later(&a.1, &b.1))
     };
     best.or_else(last).map_or(wish, |(velocity, _)| *velocity)
 }

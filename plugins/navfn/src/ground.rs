@@ -11,7 +11,7 @@ use world::{
 
 /// Kept beyond what is demanded, so that no rounding counts as a touch, metres.
 const ROUNDING_M: f64 = 1e-6;
-/// Points of a plan are no further apart than this, so that the mission can tell how far along it the robot is, metres.
+/// Points of a plan are no further apart than this, so that the mission can locate the robot along it, metres.
 const SPACING_M: f64 = 0.2;
 
 /// Something solid and what the middle of the robot keeps from it.
@@ -95,8 +95,8 @@ impl Ground {
 
     /// A way as a plan; it says so where something was discovered on the goal.
     ///
-    /// Up to a disc the robot goes on: what moves is seen as one, and the console plans anew only for what comes into the
-    /// way. Before anything else the plan ends.
+    /// The plan leads up to a disc: moving obstacles are seen as discs, and the console replans only for what comes into
+    /// the way. Before any other shape the plan ends.
     pub fn plan_of(&self, way: &Way, ctx: &Ctx<'_>) -> Plan {
         let mut path = polyline::resampled(&way.points(), SPACING_M);
         for (name, solid) in &self.on_goal {

@@ -228,7 +228,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_repaired_field_is_the_field_made_anew(
+        fn a_repaired_field_equals_the_field_recomputed(
             changes in prop::collection::vec(prop::collection::vec(0..COLUMNS * COLUMNS, 1..60), 1..8),
             until in 0..COLUMNS * COLUMNS,
         ) {
@@ -249,9 +249,9 @@ mod tests {
                 repaired.march(until, &mut || true);
             }
             repaired.march(0, &mut || true);
-            let anew = marched(&blocked, source);
+            let recomputed = marched(&blocked, source);
             for cell in 0..COLUMNS * COLUMNS {
-                let (ours, theirs) = (repaired.distance_m(cell), anew.distance_m(cell));
+                let (ours, theirs) = (repaired.distance_m(cell), recomputed.distance_m(cell));
                 let same = (ours - theirs).abs() < 1e-3 || (ours.is_infinite() && theirs.is_infinite());
                 prop_assert!(same, "cell {cell}: {ours} {theirs}");
             }

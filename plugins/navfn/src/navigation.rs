@@ -53,7 +53,7 @@ impl Navigation {
         self.field.n_settled()
     }
 
-    /// Takes over a changed ground; the field is repaired, or made anew if goal or wall changed.
+    /// Takes over a changed ground; the field is repaired, or recomputed if goal or wall changed.
     pub fn update(&mut self, ground: &Ground, floor: &GrownFloor, cells: usize) {
         let same_wall =
             self.boundary == ground.boundary && (self.wall_keep_m - ground.wall_keep_m).abs() < 1e-12;

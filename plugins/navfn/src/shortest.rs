@@ -7,7 +7,7 @@ use crate::{
 use field::params as p;
 use planner_api::{Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site};
 
-/// The shortest path that hull and clearance allow on the map as it is known, by tangents and arcs; planned anew
+/// The shortest path that hull and clearance allow on the map as it is known, by tangents and arcs; replanned
 /// whenever an obstacle is discovered.
 pub struct Shortest {
     clearance_m: f64,

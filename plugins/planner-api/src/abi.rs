@@ -122,7 +122,7 @@ pub unsafe trait Sized32: Copy {}
 /// Copies a struct that may have been written by an older or newer side: what its writer did not have is zero.
 ///
 /// # Safety
-/// `from` is aligned and points at a struct that begins with a `u32` telling how many bytes of it are readable.
+/// `from` is aligned and points at a struct that begins with a `u32` giving how many bytes of it are readable.
 pub unsafe fn copy_sized<T: Sized32>(from: *const T) -> T {
     let mut to = std::mem::MaybeUninit::<T>::zeroed();
     // SAFETY: the first `size` bytes are readable by promise, and no more than `T` has room for are written;

@@ -1,4 +1,4 @@
-//! What a planner tells the robot to do.
+//! What a planner commands the robot to do.
 
 use nalgebra::Vector2;
 

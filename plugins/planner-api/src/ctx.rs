@@ -102,7 +102,7 @@ impl<'a> Ctx<'a> {
         self.services.scalar(name, value, unit);
     }
 
-    /// Tells how far a plan is while it is being made: the share done, 0 to 1, about in proportion to time, and what is
+    /// Reports the progress of a plan while it is being made: the share done, 0 to 1, about in proportion to time, and what is
     /// being done in a few plain words (`candidate 3 of 8`). The console shows it while it waits and keeps none of it;
     /// outside of `plan` it goes nowhere. Call it as often as you like: what comes faster than it can be read is left out.
     pub fn progress(&self, share: f64, what: &str) {

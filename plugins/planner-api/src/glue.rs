@@ -207,7 +207,7 @@ pub unsafe extern "C" fn step<P: Planner>(
     }
 }
 
-/// Tells a planner that it will be stopped; 1 when it needs a few more steps.
+/// Notifies a planner that it will be stopped; 1 when it needs a few more steps.
 ///
 /// # Safety
 /// `instance` as for [`destroy`]; `host` points at the console's services.

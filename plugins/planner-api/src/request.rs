@@ -104,7 +104,7 @@ pub struct Plan {
     pub cost: f64,
     /// Whether the path achieves the whole task.
     pub complete: bool,
-    /// What the stretches of the path are for, in order; empty when the planner does not tell. Two legs may share a
+    /// What the stretches of the path are for, in order; empty when the planner does not state it. Two legs may share a
     /// point, and what no leg names is on the way from one place to another.
     pub legs: Vec<Leg>,
     /// Lines that the tethered robot never crosses, neither on the path nor when it leaves it.

@@ -1,4 +1,4 @@
-//! Where the mission takes place, as far as the drawing tells.
+//! Where the mission takes place, as far as the drawing shows it.
 
 use nalgebra::{Point2, Vector2};
 

@@ -84,7 +84,7 @@ impl Bench {
         self.scalars.borrow().iter().rev().find(|(known, ..)| known == name).map(|(_, value, _)| *value)
     }
 
-    /// How far a plan was told to be since the last [`Bench::clear`]: share, and what was being done.
+    /// Progress reported for a plan since the last [`Bench::clear`]: share, and what was being done.
     pub fn progress(&self) -> Vec<(f64, String)> {
         self.progress.borrow().clone()
     }

@@ -20,7 +20,7 @@ pub fn plan<P: Planner>(layout: &Layout, values: &[(&str, f64)]) -> Result<Plan>
     planner.plan(&request, &bench.ctx())
 }
 
-/// Time this thread has spent computing, so that figures hold on a busy machine; zero where it cannot be told.
+/// Time this thread has spent computing, so that figures hold on a busy machine; zero where it is not available.
 fn on_cpu() -> Duration {
     let stat = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     let nanoseconds = stat.split_whitespace().next().and_then(|word| word.parse().ok());
@@ -93,7 +93,7 @@ impl Figures {
         times[((times.len() - 1) as f64 * share) as usize].as_secs_f64() * 1e3
     }
 
-    pub fn told(&self) -> String {
+    pub fn summary(&self) -> String {
         format!(
             "n {} ok {:.4} rmse {:.4} floor {:.4} ratio {:.3} P {:.4} R {:.4} cov {:.4} ct {:.4} Pct {:.4} worst {:.2} \
              clearance {:.4} wall {:.4} turn {:.1} (mean of most {:.1}) ms p50 {:.1} p99 {:.1} max {:.1}\n  refusals {} {:?}",

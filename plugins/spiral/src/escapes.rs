@@ -38,8 +38,8 @@ pub enum Push {}
 impl Kind for VirtualTarget {
     const ID: &'static str = "vt";
     const NAME: &'static str = "Virtual target";
-    const ABOUT: &'static str = "Potential field that leaves traps by a virtual target; reconstructed from what Wang et al. \
-                                 2023 tell of Yang 2018.";
+    const ABOUT: &'static str = "Potential field that leaves traps by a virtual target; reconstructed from the \
+                                 description of Yang 2018 in Wang et al. 2023.";
     const PARAMS: &'static [ParamSpec] = PARAMS;
 
     fn settings(config: &Config<'_>) -> Settings {
@@ -50,8 +50,8 @@ impl Kind for VirtualTarget {
 impl Kind for Push {
     const ID: &'static str = "iapf";
     const NAME: &'static str = "Improved potential field";
-    const ABOUT: &'static str = "Potential field that leaves traps by a push to the side; reconstructed from what Wang et \
-                                 al. 2023 tell of Zhao 2022.";
+    const ABOUT: &'static str = "Potential field that leaves traps by a push to the side; reconstructed from the \
+                                 description of Zhao 2022 in Wang et al. 2023.";
     const PARAMS: &'static [ParamSpec] = PARAMS;
 
     fn settings(config: &Config<'_>) -> Settings {

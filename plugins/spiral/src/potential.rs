@@ -7,7 +7,7 @@ use planner_api::{
 };
 use std::marker::PhantomData;
 
-/// What tells one potential field from another.
+/// What distinguishes one potential field from another.
 pub trait Kind: 'static {
     /// Identity.
     const ID: &'static str;

@@ -21,8 +21,8 @@ pub fn no_path(
     };
     let at = course.points[blocked];
     let keep_m = room.keep().obstacle_m;
-    let proof =
-        ring.map_or_else(|| "no way round was found beside the preset path".to_owned(), |ring| told(&ring));
+    let proof = ring
+        .map_or_else(|| "no way round was found beside the preset path".to_owned(), |ring| proof_by(&ring));
     PlannerError::no_path_but(
         format!(
             "blocked at station {blocked} of {}, ({:.2}, {:.2}), {:.1} m along the preset path: hull and clearance \
@@ -36,7 +36,7 @@ pub fn no_path(
     )
 }
 
-fn told(ring: &Ring) -> String {
+fn proof_by(ring: &Ring) -> String {
     let ids: Vec<String> = ring.obstacles.iter().map(u32::to_string).collect();
     let wall = if ring.has_wall { " and the wall" } else { "" };
     format!("proved: no way leads there, a ring of obstacles {}{wall} closes it off", ids.join(", "))

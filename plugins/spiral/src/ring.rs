@@ -255,7 +255,7 @@ mod tests {
         ) {
             let tank = Layout { radius_m: 2.0, ..layout(columns.iter().map(|(x, y)| (Point::new(*x, *y), 0.0)).collect()) };
             let at = Point::new(at.0, at.1);
-            // For some clearances in between the cells are too coarse to tell.
+            // For some clearances in between the cells are too coarse to decide.
             let (reached_wide, reached_narrow) = (flood(&tank, 0.33, at), flood(&tank, 0.22, at));
             for (goal, wide, narrow) in reached_wide.into_iter().zip(reached_narrow).map(|((p, w), (_, n))| (p, w, n)) {
                 let least_m = clear_m(&tank, goal).min(clear_m(&tank, at));

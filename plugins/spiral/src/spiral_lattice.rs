@@ -61,7 +61,7 @@ impl Planner for SpiralLattice {
         let room = course::room(request.site, self.wishes.clearance_m, &course)?;
         course::check_start(request, &course, &room, ctx)?;
         match lattice::plan(&course, &room, self.wishes.limits, ctx)? {
-            Ok(path) => Ok(told(path, &course, &room, ctx)),
+            Ok(path) => Ok(plan_of(path, &course, &room, ctx)),
             Err(Blocked { station, partial }) => {
                 Err(refusal::no_path(&course, (request.site, &room), station, partial))
             }
@@ -82,7 +82,7 @@ fn wishes(config: &Config<'_>) -> Result<Wishes> {
     Ok(Wishes { clearance_m: config.float("clearance_m"), limits })
 }
 
-fn told(path: lattice::Path, course: &Course, room: &field::Room, ctx: &Ctx<'_>) -> Plan {
+fn plan_of(path: lattice::Path, course: &Course, room: &field::Room, ctx: &Ctx<'_>) -> Plan {
     for window in &path.sharp {
         let (from, to) = (course.points[*window.start()], course.points[*window.end()]);
         ctx.log(

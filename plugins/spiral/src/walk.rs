@@ -9,7 +9,7 @@ use field::{Room, part::Part};
 use planner_api::{Ctx, Result};
 use world::{Point, polyline};
 
-/// What is sensed is looked up anew after this way, metres.
+/// What is sensed is looked up again after this distance, metres.
 const LOOK_M: f64 = 0.2;
 /// Moves allowed, as a multiple of those of the course.
 const DETOUR: f64 = 4.0;
@@ -118,7 +118,8 @@ impl<'a> Walk<'a> {
         self.end_spare_m < 0.0 && (last - self.follower.at).norm() < self.step_m - self.end_spare_m
     }
 
-    /// Goes where what was sensed so far leads back to the course; anew whenever something new is in the way.
+    /// Drives back to the course along a way that avoids what was sensed so far; replans whenever something new is in
+    /// the way.
     fn left_pocket(&mut self, track: &Track<'_>, ctx: &Ctx<'_>) -> Result<Left> {
         loop {
             let seen = self.parts.iter().zip(&self.seen).filter(|(_, seen)| **seen).map(|(part, _)| part.0);

@@ -376,7 +376,7 @@ impl EngineThread {
             logs: Some(logs),
             ..log.fold.summary()
         };
-        let summary = self.scenario.expect.judged(summary);
+        let summary = self.scenario.expect.evaluated(summary);
         let report = log.folder.write_report(&summary);
         let kept = Kept::new(&log.folder, &finished, &report);
         let problem = kept.problem();

@@ -76,7 +76,7 @@ fn even_ring(count: usize, turn: usize) -> Vec<usize> {
     (0..count).map(|k| (k * CANDIDATES / count + offset) % CANDIDATES).collect()
 }
 
-/// What every candidate tells of every cell.
+/// What every candidate contributes to every cell.
 struct Problem {
     candidates: Vec<Point>,
     /// Candidate by candidate, cell by cell; nothing heard where an obstacle is in the way.

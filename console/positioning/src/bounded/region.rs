@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, SymmetricEigen};
 use world::{Point, Vector};
 
-/// How often the rings are taken for strips anew, each time about a better place.
+/// How often the rings are linearised to strips again, each time about a better position.
 const RELINEARISATIONS: usize = 3;
 /// Cells along each axis of the box in which the region is summed up.
 const CELLS: u32 = 16;

@@ -84,7 +84,7 @@ fn a_session_finds_where_the_stations_are() {
         station.position += Vector::new(draws.bell(), draws.bell()) * 0.1;
     }
     let mut calibration =
-        // With the speed of sound free as well nobody could tell a large array from slow sound.
+        // With the speed of sound free as well a large array could not be distinguished from slow sound.
         Calibration::new(&surveyed, Unknowns { survey_sigma_m: 0.1, sound_sigma_ratio: 0.0 });
     for _ in 0..400 {
         let truth = draws.on_disc();
@@ -114,7 +114,7 @@ fn a_session_finds_where_the_stations_are() {
 }
 
 #[test]
-fn three_stations_tell_nothing_and_nonsense_is_refused() {
+fn three_stations_contribute_nothing_and_nonsense_is_refused() {
     let stations = ring(3, 7.5);
     let mut draws = Draws::new(0.05, 20, 8);
     let mut calibration = Calibration::new(&stations, Unknowns::default());

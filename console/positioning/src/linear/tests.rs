@@ -135,15 +135,15 @@ fn the_bias_points_away_from_the_circumcentre() {
 fn the_covariance_is_the_scatter() {
     for stations in [skew_stations(), ring(6, 7.0)] {
         let (truth, mut draws) = (Point::new(-3.0, -4.0), Draws::new(0.05, 20, 5));
-        let (mut scatter, mut told) = (Matrix2::zeros(), Matrix2::zeros());
+        let (mut scatter, mut reported) = (Matrix2::zeros(), Matrix2::zeros());
         for _ in 0..10_000 {
             let fix = LinearLs
                 .solve(&draws.rangings(&stations, truth, Aggregation::Mean), &stations, None)
                 .unwrap();
             scatter += (fix.position - truth) * (fix.position - truth).transpose() / 10_000.0;
-            told += fix.covariance / 10_000.0;
+            reported += fix.covariance / 10_000.0;
         }
-        assert!((scatter - told).norm() < 0.05 * told.norm(), "{scatter} {told}");
+        assert!((scatter - reported).norm() < 0.05 * reported.norm(), "{scatter} {reported}");
     }
 }
 

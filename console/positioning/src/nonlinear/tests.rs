@@ -55,7 +55,7 @@ struct Score {
     bound_m: f64,
     /// Share of truths within the 95 % ellipse.
     inside: f64,
-    /// Share of fixes judged `Ok`.
+    /// Share of fixes whose integrity is `Ok`.
     fine: f64,
 }
 

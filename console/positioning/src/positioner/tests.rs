@@ -105,7 +105,7 @@ fn a_robot_that_was_stopped_while_its_tracks_went_on_is_found_again() {
 }
 
 #[test]
-fn a_spiral_with_slip_is_followed_within_the_errors_told() {
+fn a_spiral_with_slip_is_followed_within_the_reported_errors() {
     let stations = paper_stations();
     let mut draws = Draws::new(0.05, 20, 77);
     let mut truth = Pose::new(8.0, 0.0, std::f64::consts::FRAC_PI_2);
@@ -133,7 +133,7 @@ fn a_spiral_with_slip_is_followed_within_the_errors_told() {
 }
 
 #[test]
-fn a_fix_beyond_the_wall_is_told() {
+fn a_fix_beyond_the_wall_is_reported() {
     let stations = paper_stations();
     let (mut positioner, mut draws) = (at_the_origin(&stations), Draws::new(0.0, 20, 1));
     let fix = positioner.cycle(&draws.cycle(&stations, Point::new(0.0, -3.0))).fix.unwrap();

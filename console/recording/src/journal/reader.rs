@@ -53,7 +53,7 @@ pub struct JournalReader {
     unended_bytes: u64,
 }
 
-/// What a journal of any version tells in its first line.
+/// What the first line of a journal of any version contains.
 #[derive(Deserialize)]
 struct Head {
     event: String,

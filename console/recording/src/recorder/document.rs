@@ -11,7 +11,7 @@ pub(crate) struct Driver {
     pub info: PlannerInfo,
 }
 
-/// Everything that the text tells.
+/// Everything that the text contains.
 pub(crate) struct Document {
     run: RunOpened,
     drivers: Vec<Driver>,

@@ -2,7 +2,7 @@
 //!
 //! The viewer fits this timeline only once, to what it has read when the first lane appears. So the lanes are written
 //! all together at the end, where they are fitted to the whole run. A recording whose writer was killed has none;
-//! the event log tells the same, and the recording made anew from the journal has them.
+//! the event log shows the same, and a recording regenerated from the journal has them.
 
 use super::{
     paths,
@@ -70,7 +70,7 @@ impl States {
     pub(crate) fn apply(&mut self, event: &EventKind, at: At) {
         match event {
             EventKind::Ordered { order: Order::Start } | EventKind::Resumed => self.enter(MOVING, at),
-            // A run without an operator is never told to start.
+            // A run without an operator never receives a start order.
             EventKind::Commanded { .. } if self.mission == WAITING => self.enter(MOVING, at),
             EventKind::Held { by, .. } => self.enter(held(by), at),
             EventKind::Ended { outcome, .. } => self.enter(outcome.word(), at),

@@ -18,7 +18,7 @@ type Done = Result<(), RecordingError>;
 /// Points of a piece of the way that is sent as one line.
 const WAY_POINTS: usize = 32;
 
-/// Everything that one tick has told so far.
+/// Everything that one tick has reported so far.
 pub(crate) struct Tick {
     pub at: At,
     pub drawings: Vec<Drawing>,

@@ -192,7 +192,7 @@ fn a_disk_that_stays_full_ends_the_journal_when_too_much_waits() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn the_journal_tells_the_words_of_the_system() {
+fn the_journal_reports_the_message_of_the_system() {
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("linux has it");
     let mut journal = JournalWriter::writing_to(Box::new(full), Instant::now());
     let later = Instant::now() + Duration::from_secs(1);
@@ -258,7 +258,7 @@ fn the_mission_goes_on_when_the_recording_fails_and_the_journal_is_whole() {
     }
     let finished = run.finish(Duration::from_secs(20));
     assert!(finished.events_sha256.is_some());
-    let error = finished.error.expect("it is told");
+    let error = finished.error.expect("it is reported");
     assert!(error.starts_with("the recording stopped: "), "{error}");
 }
 
@@ -275,7 +275,7 @@ fn the_recording_goes_on_when_the_journal_fails() {
     }
     let finished = run.finish(Duration::from_secs(20));
     assert_eq!(finished.events_sha256, None);
-    assert!(finished.error.expect("it is told").starts_with("the journal stopped after"));
+    assert!(finished.error.expect("it is reported").starts_with("the journal stopped after"));
     assert!(recording::inspect(&path).expect("readable").is_complete());
 }
 

@@ -62,7 +62,7 @@ fn a_line_that_was_cut_off_by_a_kill_is_left_out() {
     change(&path, |text| text[..text.len() - 10].to_owned());
     let journal = read_journal(&path).expect("a torn journal can be read");
     assert_eq!(journal.events, whole[..whole.len() - 1]);
-    let truncated = journal.truncated.expect("it is told");
+    let truncated = journal.truncated.expect("it is reported");
     assert!(truncated.starts_with(&format!("line {}, the last one, is cut off", whole.len())), "{truncated}");
 }
 
@@ -79,7 +79,7 @@ fn a_journal_cut_anywhere_gives_a_beginning_of_the_run() {
 }
 
 #[test]
-fn damage_in_the_middle_is_told_with_line_and_column() {
+fn damage_in_the_middle_is_reported_with_line_and_column() {
     let (_folder, path) = written(20);
     change(&path, |text| {
         let mut lines: Vec<_> = text.lines().map(str::to_owned).collect();

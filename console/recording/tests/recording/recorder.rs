@@ -74,7 +74,7 @@ fn a_tethered_run_has_the_cable_and_its_figures_in_every_tick() {
     if let EventKind::RunOpened(run) = &mut events[0].kind {
         run.mission.tether = Some(tether);
     }
-    let told: Vec<Event> = events
+    let tether_events: Vec<Event> = events
         .iter()
         .filter_map(|event| match &event.kind {
             EventKind::Truth { pose, .. } => Some((event.clone(), pose.position)),
@@ -101,7 +101,7 @@ fn a_tethered_run_has_the_cable_and_its_figures_in_every_tick() {
             [Event { kind: truth, ..event.clone() }, Event { kind, ..event }]
         })
         .collect();
-    events.extend(told);
+    events.extend(tether_events);
     events.sort_by_key(|event| event.tick);
     let content = recorded(&events);
     for (entity, component, wanted) in [
@@ -156,7 +156,7 @@ fn the_log_has_a_line_for_every_event_that_people_read() {
 }
 
 #[test]
-fn the_timeline_of_states_tells_who_drove_and_what_the_mission_did() {
+fn the_timeline_of_states_shows_who_drove_and_what_the_mission_did() {
     let content = recorded(&events(TICKS));
     let states = |entity| {
         let rows = rows(&content, entity, "StateChange:state");
@@ -201,7 +201,7 @@ fn chunks_do_not_change_what_is_recorded() {
 }
 
 #[test]
-fn a_recording_made_anew_from_the_journal_is_the_same() {
+fn a_recording_regenerated_from_the_journal_is_the_same() {
     let folder = tempdir().expect("a folder");
     let recorder =
         recording::RunRecorder::start(folder.path(), recording::Options::default()).expect("new files");
@@ -210,15 +210,15 @@ fn a_recording_made_anew_from_the_journal_is_the_same() {
     }
     let finished = recorder.finish(Duration::from_secs(20));
     assert_eq!(finished.error, None);
-    let anew = folder.path().join("anew.rrd");
-    assert_eq!(export(&folder.path().join("events.jsonl"), &anew).expect("a whole journal"), None);
+    let regenerated = folder.path().join("regenerated.rrd");
+    assert_eq!(export(&folder.path().join("events.jsonl"), &regenerated).expect("a whole journal"), None);
     let first = finished.recording.expect("a recording was asked for");
-    assert_eq!(content(&first), content(&anew));
-    assert_eq!(inspect(&first).expect("readable"), inspect(&anew).expect("readable"));
+    assert_eq!(content(&first), content(&regenerated));
+    assert_eq!(inspect(&first).expect("readable"), inspect(&regenerated).expect("readable"));
 }
 
 #[test]
-fn the_summary_tells_run_ticks_coverage_and_end() {
+fn the_summary_gives_run_ticks_coverage_and_end() {
     let folder = tempdir().expect("a folder");
     let path = folder.path().join("recording.rrd");
     let events = events(TICKS);
@@ -257,7 +257,7 @@ fn a_recording_without_a_world_is_refused() {
             .expect("opens");
     let error = recorder.push(&events[1], Instant::now()).expect_err("the first event is missing");
     assert!(matches!(&error, RecordingError::NotOpened { got } if got == "planner_chosen"), "{error}");
-    recorder.push(&events[2], Instant::now()).expect("an error is told once");
+    recorder.push(&events[2], Instant::now()).expect("an error is reported once");
 }
 
 #[test]
@@ -268,7 +268,7 @@ fn a_tick_takes_no_more_than_600_bytes() {
         record(&path, &events(ticks), Duration::ZERO);
         std::fs::metadata(&path).expect("it is there").len()
     };
-    // Layout, scene and footer are paid once, so the difference tells.
+    // Layout, scene and footer are written once, so the difference is what the ticks take.
     let (short, long) = (size(1000), size(3000));
     assert!(long - short <= 600 * 2000, "{} bytes a tick", (long - short) / 2000);
     assert!(short < 1_200_000, "{short} bytes for 1000 ticks");

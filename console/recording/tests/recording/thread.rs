@@ -45,7 +45,7 @@ fn what_is_not_asked_for_is_not_written_but_the_hash_is_the_same() {
 }
 
 #[test]
-fn the_health_tells_bytes_and_that_nothing_waits() {
+fn the_health_reports_bytes_and_that_nothing_waits() {
     let folder = tempdir().expect("a folder");
     let recorder = RunRecorder::start(folder.path(), Options::default()).expect("new files");
     for events in synthetic::run(100) {
@@ -94,7 +94,7 @@ fn a_disk_that_does_not_answer_is_not_waited_for_longer_than_asked() {
     let begin = Instant::now();
     let finished = recorder.finish(Duration::from_millis(200));
     assert!(begin.elapsed() < Duration::from_secs(2));
-    let error = finished.error.expect("it is told");
+    let error = finished.error.expect("it is reported");
     assert!(error.contains("was not closed within 0.2 s"), "{error}");
     disk.free();
 }

@@ -1,4 +1,4 @@
-//! What tells why floor was missed: where plans led, where the robot went, where its position was uncertain.
+//! Evidence of why floor was missed: where plans led, where the robot went, where its position was uncertain.
 
 use super::{CRITICAL_ZONE_M, MissReason};
 use mission::{TaskConfig, event::RunOpened};

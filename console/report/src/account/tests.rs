@@ -56,7 +56,7 @@ fn both_bases_and_every_plate_sum_to_the_whole() {
 }
 
 #[test]
-fn lanes_that_were_not_flown_are_told_with_place_plate_and_reason() {
+fn lanes_that_were_not_flown_are_reported_with_place_plate_and_reason() {
     let run = round_tank(0.05);
     let (grid, evidence) = scanned(&run, 9);
     let account = account(&run, &grid, &evidence);
@@ -92,7 +92,7 @@ fn floor_ahead_of_a_run_that_was_cut_short_was_not_passed_however_near_the_robot
 }
 
 #[test]
-fn a_lane_that_was_flown_beside_its_place_is_told_as_passed_and_those_ahead_are_not() {
+fn a_lane_that_was_flown_beside_its_place_is_reported_as_passed_and_those_ahead_are_not() {
     let run = round_tank(0.05);
     let mut evidence = Evidence::new(&run);
     evidence.plan(&lanes(), true);
@@ -126,7 +126,7 @@ fn a_new_plan_takes_the_place_of_the_one_before_unless_it_is_refused() {
 }
 
 #[test]
-fn floor_that_the_cable_does_not_lead_to_is_told_as_beyond_the_reel_only_if_the_plan_left_it_out() {
+fn floor_that_the_cable_does_not_lead_to_is_reported_as_beyond_the_reel_only_if_the_plan_left_it_out() {
     let mut run = round_tank(0.05);
     run.mission.tether = Some(mission::TetherConfig {
         anchor: Point::new(0.0, -4.5),
@@ -188,8 +188,8 @@ fn out_of_reach_is_listed_with_the_reason() {
     assert!(reasons.contains(&OutOfReach::ShellMargin) && reasons.contains(&OutOfReach::BesideObstacle));
     let all_m2 = (account.whole.unreachable + account.whole.margin) * account.whole.area_m2;
     let listed_m2: f64 = account.unreachable.iter().map(|area| area.area_m2).sum();
-    let told_m2 = listed_m2 + account.unreachable_slivers.area_m2;
-    assert!((told_m2 - all_m2).abs() < 1e-9, "nothing is dropped: {told_m2} of {all_m2}");
+    let reported_m2 = listed_m2 + account.unreachable_slivers.area_m2;
+    assert!((reported_m2 - all_m2).abs() < 1e-9, "nothing is dropped: {reported_m2} of {all_m2}");
 }
 
 #[test]

@@ -52,11 +52,11 @@ fn shares(shares: &Shares) -> String {
     let Percent { scanned, missed, unreachable, margin } = shares.percent;
     let classes =
         [("scanned", scanned), ("missed", missed), ("unreachable", unreachable), ("shell margin", margin)];
-    let told = classes
+    let listed = classes
         .iter()
         .filter(|(name, percent)| *percent > 0.0 || matches!(*name, "scanned" | "missed"))
         .map(|(name, percent)| format!("{percent:.1} % {name}"));
-    format!("{:.1} m²: {}", shares.area_m2, told.collect::<Vec<_>>().join(", "))
+    format!("{:.1} m²: {}", shares.area_m2, listed.collect::<Vec<_>>().join(", "))
 }
 
 fn critical_zone(account: &Account) -> String {
@@ -105,9 +105,9 @@ mod tests {
             plate: None,
             reason: "so",
         };
-        let told = |count: usize| areas(&(0..count).map(|_| area()).collect::<Vec<_>>()).pop();
-        assert_eq!(told(11).as_deref(), Some("0.02 m² in 1 more place"));
-        assert_eq!(told(12).as_deref(), Some("0.04 m² in 2 more places"));
+        let rest = |count: usize| areas(&(0..count).map(|_| area()).collect::<Vec<_>>()).pop();
+        assert_eq!(rest(11).as_deref(), Some("0.02 m² in 1 more place"));
+        assert_eq!(rest(12).as_deref(), Some("0.04 m² in 2 more places"));
         let sliver = slivers(Slivers { count: 1, area_m2: 0.001 });
         assert_eq!(sliver.as_deref(), Some("0.00 m² in 1 place too small to be listed"));
     }

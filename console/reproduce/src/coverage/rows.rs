@@ -26,7 +26,7 @@ struct Figure {
 enum Worst {
     Least,
     Most,
-    Untold,
+    Omitted,
 }
 
 const fn figure(
@@ -40,12 +40,12 @@ const fn figure(
 
 const FIGURES: &[Figure] = &[
     figure("coverage_reachable", "", Worst::Least, |scan, _| scan.coverage_reachable),
-    figure("coverage_whole", "", Worst::Untold, |scan, _| scan.coverage_whole),
+    figure("coverage_whole", "", Worst::Omitted, |scan, _| scan.coverage_whole),
     figure("length_over_lower_bound", "", Worst::Most, |scan, _| scan.length_over_lower_bound),
-    figure("length_m", "m", Worst::Untold, |scan, _| scan.length_m),
+    figure("length_m", "m", Worst::Omitted, |scan, _| scan.length_m),
     figure("turns", "", Worst::Most, |scan, _| scan.turns as f64),
     figure("rotation_turns", "", Worst::Most, |scan, _| scan.rotation_turns),
-    figure("max_cable_m", "m", Worst::Untold, |scan, _| scan.certificate.max_cable_m),
+    figure("max_cable_m", "m", Worst::Omitted, |scan, _| scan.certificate.max_cable_m),
     figure("max_cable_over_eccentricity", "", Worst::Most, |scan, _| {
         scan.certificate.max_cable_m / scan.certificate.eccentricity_m.max(1e-9)
     }),
@@ -56,10 +56,10 @@ const FIGURES: &[Figure] = &[
         capstan_factor(FRICTION, scan.certificate.max_sum_wrap_rad)
     }),
     figure("max_contacts", "", Worst::Most, |_, haul| haul.max_contacts as f64),
-    figure("contact_share", "", Worst::Untold, |_, haul| haul.contact_share),
+    figure("contact_share", "", Worst::Omitted, |_, haul| haul.contact_share),
     figure("detour_share", "", Worst::Most, |_, haul| haul.detour_share),
     figure("hook_share", "", Worst::Most, |_, haul| haul.hook_share),
-    figure("own_cable_share", "", Worst::Untold, |_, haul| haul.own_cable_share),
+    figure("own_cable_share", "", Worst::Omitted, |_, haul| haul.own_cable_share),
     figure("left_out_m", "m", Worst::Most, |scan, _| scan.certificate.left_out_m.unwrap_or(0.0)),
     figure("collisions", "", Worst::Most, |scan, _| scan.certificate.collisions as f64),
     figure("cut_crossings", "", Worst::Most, |scan, _| scan.certificate.cut_crossings as f64),
@@ -114,7 +114,7 @@ pub fn rows(table: &str, case: &str, method: &str, all: &[(u64, &Measured)]) -> 
         let (end, worst) = match figure.worst {
             Worst::Least => ("min", values.iter().min_by(by_value)),
             Worst::Most => ("max", values.iter().max_by(by_value)),
-            Worst::Untold => continue,
+            Worst::Omitted => continue,
         };
         let seed = worst.map_or_else(String::new, |(seed, _)| format!("seed {seed}"));
         let metric = format!("{}_{end}", figure.metric);
@@ -132,11 +132,11 @@ pub fn rows(table: &str, case: &str, method: &str, all: &[(u64, &Measured)]) -> 
 
 /// The layouts that miss a rate, the first ones with the reason.
 fn named(metric: &str, missed: &[&(u64, &Measured)]) -> String {
-    let told: Vec<String> =
+    let listed: Vec<String> =
         missed.iter().take(MOST_NAMED).map(|(seed, one)| named_one(metric, *seed, one)).collect();
     let rest = missed.len().saturating_sub(MOST_NAMED);
     let more = if rest > 0 { format!("; {rest} more") } else { String::new() };
-    format!("{}{more}", told.join("; "))
+    format!("{}{more}", listed.join("; "))
 }
 
 fn named_one(metric: &str, seed: u64, one: &Measured) -> String {

@@ -155,7 +155,7 @@ fn filtered(drive: &Drive, ranges: &[Vec<Ranging>], stations: &[Station]) -> (Ve
         let smoothed = smoother.smoothed();
         let past = |ago: usize| drive.steps.get((k + 1).checked_sub(ago + 1)?).map(|(_, truth)| *truth);
         if k + 1 == drive.steps.len() {
-            // At the end everything remembered is told.
+            // At the end everything remembered is reported.
             back.extend(
                 smoothed.iter().filter_map(|s| Some(outcome(s.pose.position, &s.covariance, past(s.lag)?))),
             );
@@ -207,6 +207,6 @@ mod tests {
             |m: usize| run[m].iter().filter_map(|o| o.error_m).collect::<Sample>().mean().expect("fixes");
         let (nls, ekf, lagged) = (mean(2), mean(4), mean(6));
         assert!(ekf < 0.6 * nls && lagged < 0.9 * ekf, "{nls} {ekf} {lagged}");
-        assert_eq!(run[6].len(), run[4].len(), "every step is told once");
+        assert_eq!(run[6].len(), run[4].len(), "every step is reported once");
     }
 }

@@ -156,7 +156,7 @@ fn session(case: &Case, seeds: &[u64], methods: &[Method], calibrates: bool) -> 
     done
 }
 
-/// Nonlinear least squares after the ranges of the whole session have told the speed of sound.
+/// Nonlinear least squares after the speed of sound was estimated from the ranges of the whole session.
 fn calibrated(case: &Case, cycles: &[(Point, Vec<RangeSet>)]) -> Vec<Outcome> {
     let (stations, noise) = (&case.scene.stations, case.scene.noise());
     if stations.len() < 4 {

@@ -84,7 +84,7 @@ pub fn of_table2(k_att: f64) -> Method {
     method
 }
 
-/// Our own followers; the lattice also without its turn limit, which tells what the limit costs.
+/// Our own followers; the lattice also without its turn limit, which shows what the limit costs.
 pub fn followers() -> Vec<Method> {
     let plain = |id: &str, planner: &str, parameters, note, pairing| Method {
         id: id.to_owned(),

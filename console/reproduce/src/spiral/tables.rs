@@ -196,7 +196,7 @@ fn asked(study: &Study, options: &Options, methods: &[Method]) -> Result<Vec<Run
 fn some(runs: &[Run], study: &Study) -> Result<(), Problem> {
     if runs.is_empty() {
         return Err(Problem::Nothing(format!(
-            "{} has no case and method that begin as asked; without --case and --method it tells all",
+            "{}: no case and method begin with the given --case and --method; without these options all are run",
             study.name
         )));
     }

@@ -15,7 +15,7 @@ use std::time::Instant;
 use trials::traps::{HULL_M, STEP_M, Trap};
 use world::{Point, polyline};
 
-/// The planner is told what lies ahead on its plan, from this far on, metres.
+/// The planner is given what lies ahead on its plan, from this far on, metres.
 const AHEAD_M: f64 = 0.5;
 /// So much of it, metres.
 const SHOWN_M: f64 = 4.0;

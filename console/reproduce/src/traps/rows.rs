@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn a_planner_that_is_not_there_is_told() {
+    fn a_missing_planner_is_reported() {
         let missing = Measured { is_there: false, ..measured(None) };
         let rows = rows("trap-suite", "u", &methods()[0], &[&missing]);
         assert_eq!((rows.len(), rows[0].ours, rows[0].note.as_str()), (1, None, MISSING));

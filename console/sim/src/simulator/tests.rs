@@ -239,13 +239,13 @@ fn slip_shortens_the_way_and_odometry_does_not_feel_it() {
     let mut config = SimConfig { robot: RobotConfig { slip_mean: 0.1, ..exact(&robot()) }, ..config() };
     config.robot.start = Pose::new(-6.0, 2.0, 0.0);
     let mut sim = Simulator::new(config, 1);
-    let mut told = 0.0;
+    let mut measured = 0.0;
     for _ in 0..100 {
         sim.act(ahead(0.5));
-        told += sim.sense().odometry.forward_m;
+        measured += sim.sense().odometry.forward_m;
     }
     let driven = sim.truth().pose.position.x + 6.0;
-    assert!((driven / told - 0.9).abs() < 1e-9, "{driven} {told}");
+    assert!((driven / measured - 0.9).abs() < 1e-9, "{driven} {measured}");
 }
 
 #[test]
@@ -277,7 +277,7 @@ fn the_start_is_sensed_at_rest_without_a_cycle() {
 }
 
 #[test]
-fn a_cycle_without_an_answer_is_told() {
+fn a_cycle_without_an_answer_is_reported() {
     let run = free_run(config());
     assert!(run[30].ranging_cycle && run[30].ranges.is_empty());
     assert!(run[10].ranging_cycle && !run[10].ranges.is_empty());
@@ -351,12 +351,12 @@ fn tethered(reel_m: f64) -> Simulator {
 }
 
 #[test]
-fn the_reel_tells_what_it_has_paid_out() {
+fn the_reel_reports_what_it_has_paid_out() {
     let mut sim = tethered(9.0);
     for _ in 0..50 {
         sim.act(ahead(0.4));
         let out_m = (sim.truth().pose.position - Point::new(-6.0, 0.0)).norm();
-        assert!(sim.sense().paid_out_m.is_some_and(|told_m| (told_m - out_m).abs() < 1e-9));
+        assert!(sim.sense().paid_out_m.is_some_and(|reported_m| (reported_m - out_m).abs() < 1e-9));
     }
     assert_eq!(Simulator::new(config(), 1).sense().paid_out_m, None);
 }

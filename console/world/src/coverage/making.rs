@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 /// Rounding that does not make a cell beside the wall one beside an obstacle, metres.
 const ROUNDING_M: f64 = 1e-6;
 
-/// A floor with what it takes to make it anew when an obstacle is found.
+/// A floor with what it takes to update it when an obstacle is found.
 pub struct FloorMaker {
     floor: Floor,
     /// Distance from every cell's centre to anything solid, metres.
@@ -54,12 +54,12 @@ impl FloorMaker {
         self.floor
     }
 
-    /// Makes the floor anew after obstacles of these outlines came or moved a little; tells the cells that changed.
+    /// Updates the floor after obstacles of these outlines appeared or moved a little; returns the cells that changed.
     ///
     /// Costs a distance query per cell near the outlines and a flood fill.
     pub fn update(&mut self, world: &World, map: &ObstacleMap, changed: &[Shape]) -> Vec<KindRun> {
         let before = self.floor.cells.clone();
-        // An obstacle that moved stood no further off than it was told to have moved at most.
+        // Wide enough for the former outline of an obstacle that moved as well: it moved only a little.
         let reach_m = self.room_m + self.swath_m;
         for shape in changed {
             for index in around(&self.floor, shape, reach_m) {
@@ -205,12 +205,12 @@ mod tests {
         let (before, after) = (tank(&[(2.0, 0.0, 0.3)]), tank(&[(2.0, 0.0, 0.3), (-1.0, 2.0, 0.4)]));
         let make = |world: &World| FloorMaker::new(world, 0.05, 0.35, 0.5, Point::origin());
         let mut maker = make(&before);
-        let mut told = Floor::new(&before, 0.05, 0.35, 0.5, Point::origin());
+        let mut updated = Floor::new(&before, 0.05, 0.35, 0.5, Point::origin());
         let map = ObstacleMap::new(&after.boundary, &after.obstacles);
         let changes = maker.update(&after, &map, &[after.obstacles[1].shape.clone()]);
-        told.change(&changes);
-        let anew = make(&after).into_floor();
-        assert_eq!((&maker.into_floor(), &told), (&anew, &anew));
+        updated.change(&changes);
+        let rebuilt = make(&after).into_floor();
+        assert_eq!((&maker.into_floor(), &updated), (&rebuilt, &rebuilt));
         assert!(!changes.is_empty() && changes.len() < 200);
     }
 }

@@ -35,7 +35,7 @@ pub struct Limits {
     pub max_sum_wrap_rad: f64,
 }
 
-/// A path to be judged.
+/// A path to be certified.
 #[derive(Debug, Clone, Copy)]
 pub struct Case<'a> {
     /// The whole path, tank frame.
@@ -58,7 +58,7 @@ pub struct Case<'a> {
     pub cuts: &'a [Vec<Point>],
 }
 
-/// The judgement.
+/// The result of certifying a path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Certificate {
     /// Whether the path may be flown with a tether.
@@ -88,7 +88,7 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// The judgement of a path that could not even be looked at.
+    /// The certificate of a path that could not be evaluated at all.
     pub fn refused(reason: String) -> Self {
         Self {
             certified: false,
@@ -107,7 +107,7 @@ impl Certificate {
     }
 }
 
-/// Judges a path: replays the cable, looks for collisions, crossings of cuts and sealed floor.
+/// Certifies a path: replays the cable and checks for collisions, crossings of cuts and sealed floor.
 ///
 /// Knows no planner. Without cuts the last two are empty.
 ///

@@ -31,7 +31,7 @@ pub struct Post {
 impl Post {
     /// Whether a line of this direction may bear on the post with the post's solid on its left (`side` 1) or right (-1).
     ///
-    /// A round post lies on the side that the line touches it from; of a corner only its edges tell.
+    /// A round post lies on the side that the line touches it from; for a corner only its edges decide.
     pub(super) fn lies_on(&self, side: f64, line: Vector) -> bool {
         self.radius_m > 0.0 || self.edges.iter().all(|edge| side * line.perp(edge) >= -ALONG_EDGE)
     }

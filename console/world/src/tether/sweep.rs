@@ -65,7 +65,7 @@ impl Base {
     /// What passes no farther from it than rounding errors came back along the cable, and winds off.
     fn sense_of(&self, from: Point, to: Point) -> f64 {
         let along = (to - from).normalize();
-        // Standing on a corner the tip is on no side of it; the cable's bearing still tells one.
+        // Standing on a corner the tip is on no side of it; the cable's bearing still gives one.
         let passed = if self.radius_m > 0.0 {
             (from - self.center).perp(&along)
         } else {

@@ -27,7 +27,7 @@ fn request<'a>(site: &'a Site<'a>, task: Task<'a>) -> PlanRequest<'a> {
 }
 
 #[test]
-fn a_plan_is_the_run_of_the_loop_and_tells_its_overspeed() {
+fn a_plan_is_the_run_of_the_loop_and_reports_its_overspeed() {
     with_planner(&[], 3, |planner, site, bench| {
         let task = Task::Goto { goal: GOAL, tolerance_m: 0.15 };
         let plan = planner.plan(&request(site, task), &bench.ctx()).unwrap();
@@ -107,7 +107,7 @@ fn in_flight_it_arrives_though_it_must_discover_everything_and_is_swapped_on_the
 }
 
 #[test]
-fn it_tells_ten_distances_the_mode_and_the_limit() {
+fn it_reports_ten_distances_the_mode_and_the_limit() {
     with_planner(&[], 3, |planner, site, bench| {
         let at = Pose::new(-4.5, -4.5, 0.8);
         planner.step(&sensed(at, 0, Twist::default(), site.obstacles), &bench.ctx()).unwrap();

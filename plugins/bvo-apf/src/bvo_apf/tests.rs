@@ -71,7 +71,7 @@ fn every_mode_plans_a_complete_path_and_the_best_is_shorter() {
 }
 
 #[test]
-fn a_plan_tells_how_it_left_the_trap_and_draws_what_it_made_up() {
+fn a_plan_reports_how_it_left_the_trap_and_draws_its_virtual_circles() {
     let (plan, bench) = plan(&[("mode", 0.0), ("rho_0_m", 1.0), ("k_rep", 1.0)], task());
     assert!(plan.is_ok());
     let said: Vec<String> = bench.logs().into_iter().map(|(_, message)| message).collect();

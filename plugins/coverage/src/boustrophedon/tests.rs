@@ -14,7 +14,7 @@ fn the_traditional_way_covers_most_and_leaves_the_cable_entangled() {
 }
 
 #[test]
-fn a_plan_tells_how_far_it_is_and_never_goes_back() {
+fn the_reported_progress_never_goes_back() {
     bench::assert_progress_rises(&bench::plan::<Boustrophedon>(&Known::E1.tank(2), &[], None).1);
 }
 

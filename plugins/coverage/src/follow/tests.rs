@@ -73,7 +73,7 @@ fn it_stops_in_front_of_what_stands_on_the_path() {
     };
     assert_ne!(status(&mut planner, &[]), Status::Stuck);
     assert_eq!(status(&mut planner, &[found(0.8 + HULL_M)]), Status::Stuck);
-    assert!(bench.logs().iter().any(|(_, said)| said.contains("obstacle stands on the path")));
+    assert!(bench.logs().iter().any(|(_, said)| said.contains("obstacle blocks the path")));
 }
 
 /// Places on both sides of a cut; the anchor sees the first one without a cut between.

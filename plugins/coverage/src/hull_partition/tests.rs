@@ -15,7 +15,7 @@ fn with_backtracking_through_the_tree_the_cable_comes_in() {
 }
 
 #[test]
-fn a_plan_tells_how_far_it_is_and_never_goes_back() {
+fn the_reported_progress_never_goes_back() {
     bench::assert_progress_rises(&bench::plan::<HullPartition>(&Known::E2.tank(6), &[], None).1);
 }
 

@@ -38,7 +38,7 @@ struct Stretch {
 
 impl Track<'_> {
     /// Bends the path to missed floor until the coverage is reached, as long as a square metre costs no more than
-    /// `most_m_per_m2`; groups of fewer cells than the least are left. Tells the number of bends.
+    /// `most_m_per_m2`; groups of fewer cells than the least are left. Returns the number of bends.
     ///
     /// # Errors
     /// When the console wants an end.

@@ -44,7 +44,7 @@ fn legs_name_the_whole_path_in_order() {
 }
 
 #[test]
-fn a_plan_tells_how_far_it_is_and_never_goes_back() {
+fn the_reported_progress_never_goes_back() {
     for tank in [Known::E2.tank(3), Tank { columns: Vec::new(), ..Known::E3.tank(0) }] {
         let bench = plan(&tank, &[], None).1;
         bench::assert_progress_rises(&bench);
@@ -99,7 +99,7 @@ fn an_anchor_in_a_column_or_outside_is_refused_with_a_reason() {
 }
 
 #[test]
-fn overlapping_columns_and_gaps_too_narrow_are_told_not_dropped() {
+fn overlapping_columns_and_gaps_too_narrow_are_reported_not_dropped() {
     let mut tank = Known::E1.tank(4);
     // A ring of columns that leave no gap: what they enclose cannot be reached.
     let ring = |k: i32| {
@@ -161,7 +161,7 @@ fn the_ring_along_the_shell_that_the_tool_does_not_reach_is_margin_and_no_gap() 
 }
 
 #[test]
-fn a_swath_wider_than_the_floor_and_a_reel_too_short_for_a_lane_are_told_apart() {
+fn a_swath_wider_than_the_floor_and_a_reel_too_short_for_a_lane_are_distinguished() {
     let ground = |swath_m: f64| {
         let tank = Known::E1.tank(4);
         let obstacles = tank.obstacles();

@@ -124,7 +124,7 @@ impl StepOut {
         (self.status, self.drive, self.a, self.b) = (status, drive, a, b);
     }
 
-    /// The numbers as a command; tells which of them is none.
+    /// The numbers as a command; the error names the one that is invalid.
     ///
     /// # Errors
     /// A sentence for the operator that reads on after the planner's name.
@@ -153,7 +153,7 @@ impl From<&crate::Leg> for Leg {
 }
 
 impl Leg {
-    /// The leg; tells when its tag is none.
+    /// The leg; an error if its tag is unknown.
     ///
     /// # Errors
     /// A sentence for the operator that reads on after the planner's name.

@@ -1,4 +1,4 @@
-//! Panics end here: caught, told, forgotten.
+//! Panics end here: they are caught, reported and never unwind into the console.
 
 use super::services::HostServices;
 use crate::{Code, PlannerError, Result};
@@ -36,26 +36,26 @@ pub(super) fn run(services: &HostServices, call: impl FnOnce() -> Result<()>) ->
 
 /// Runs what the author wrote and says nothing about a panic.
 pub(super) fn quietly(call: impl FnOnce()) {
-    // Nobody is left to tell: the instance is gone either way.
+    // Nobody is left to report to: the instance is gone either way.
     let _ = caught(call);
 }
 
 /// Work on a thread that a planner started: a panic comes back as the error of the call that waits for it, so that the
-/// console is told its place and text as of any other. A panic that only ends its thread would lose both.
+/// console receives its place and text as of any other. A panic that only ends its thread would lose both.
 ///
 /// # Errors
 /// What the work returns, or [`Code::Panic`] with `file:line: payload`.
 pub fn on_own_thread<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
-    told(work).unwrap_or_else(|sentence| Err(PlannerError::new(Code::Panic, sentence)))
+    without_unwinding(work).unwrap_or_else(|sentence| Err(PlannerError::new(Code::Panic, sentence)))
 }
 
 fn caught<T>(call: impl FnOnce() -> T) -> std::result::Result<T, String> {
     HOOK.call_once(|| std::panic::set_hook(Box::new(note)));
-    told(call)
+    without_unwinding(call)
 }
 
 /// The place is known once a call of the console has set the hook; tests that call planners directly keep theirs.
-fn told<T>(call: impl FnOnce() -> T) -> std::result::Result<T, String> {
+fn without_unwinding<T>(call: impl FnOnce() -> T) -> std::result::Result<T, String> {
     catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
         let place = WHERE.with_borrow(Clone::clone);
         let sentence = format!("{place}: {}", text_of(&*payload));

@@ -21,7 +21,7 @@ impl HostServices {
         Self(unsafe { abi::copy_sized(host) })
     }
 
-    /// Tells the sentence of a refusal.
+    /// Reports the sentence of a refusal.
     pub(super) fn error(&self, message: &str) {
         if let Some(error) = self.0.error {
             // SAFETY: the console copies the text before it returns, as everywhere below.
@@ -45,7 +45,7 @@ impl HostServices {
         }
     }
 
-    /// Tells what the stretches of the path are for.
+    /// Reports what the stretches of the path are for.
     pub(super) fn legs(&self, legs: &[Leg]) {
         if let (Some(take), false) = (self.0.legs, legs.is_empty()) {
             let raw: Vec<abi::Leg> = legs.iter().map(abi::Leg::from).collect();

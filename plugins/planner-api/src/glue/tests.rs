@@ -209,7 +209,7 @@ fn zones() -> [Zone<'static>; 1] {
     [Zone { kind: ZoneKind::Underwater, outline: Outline::Polygon { vertices: &CORNERS } }]
 }
 
-/// An instance made through the table, acting as told.
+/// An instance made through the table that acts as `act` says.
 fn instance(sink: &mut Sink, act: f64) -> *mut c_void {
     let (obstacles, zones) = (obstacles(), zones());
     let site = site(&obstacles, &zones);
@@ -386,7 +386,7 @@ fn a_plan_that_got_part_of_the_way_hands_that_part_over() {
 }
 
 #[test]
-fn a_panic_on_a_thread_of_the_planner_is_told_with_its_place_too() {
+fn a_panic_on_a_thread_of_the_planner_is_reported_with_its_place_too() {
     let mut sink = Sink::default();
     let planner = instance(&mut sink, 5.0);
     assert_eq!(do_step(&mut sink, planner, &sensed(&[])).0, Code::Panic as i32);
@@ -400,7 +400,7 @@ fn a_panic_on_a_thread_of_the_planner_is_told_with_its_place_too() {
 }
 
 #[test]
-fn a_panic_is_told_with_its_place_and_poisons_the_instance() {
+fn a_panic_is_reported_with_its_place_and_poisons_the_instance() {
     let mut sink = Sink::default();
     let planner = instance(&mut sink, 1.0);
     let (code, out) = do_step(&mut sink, planner, &sensed(&[]));

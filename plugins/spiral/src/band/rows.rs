@@ -106,8 +106,8 @@ pub fn solids_of(part: &Part, keep_m: f64) -> Vec<Solid<'_>> {
 impl<'a> Solid<'a> {
     /// The rows of everything of a way that is near.
     ///
-    /// A piece that lies beyond a tangent keeps out of a circle. Which tangent is told by the middle of the piece: by
-    /// its nearest point two pieces that meet on the circle would hold each other straight.
+    /// A piece that lies beyond a tangent keeps out of a circle. The middle of the piece determines which
+    /// tangent: by its nearest point, two pieces that meet on the circle would hold each other straight.
     pub fn rows(&self, kind: u32, way: &[Point], rows: &mut Vec<Row<'a>>) {
         match *self {
             Self::Circle(center, radius_m) => {

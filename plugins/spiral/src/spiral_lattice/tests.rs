@@ -61,16 +61,16 @@ fn bounds() -> [(Distribution, f64, f64); 3] {
 }
 
 fn hold(figures: &Figures, rmse_m: f64, precision: f64) {
-    let told = figures.told();
-    assert!(figures.ok_rate() >= 0.995, "{told}");
-    assert!(figures.least(|s| s.clearance_m) >= CLEARANCE_M - 1e-6, "{told}");
-    assert!(figures.least(|s| s.wall_m) >= -1e-6, "{told}");
-    assert!(figures.mean(|s| s.rmse_m) <= rmse_m, "{told}");
-    assert!(figures.mean(|s| s.precision) >= precision, "{told}");
-    assert!(figures.refusals.iter().all(|(_, reason)| reason.contains("proved")), "{told}");
+    let summary = figures.summary();
+    assert!(figures.ok_rate() >= 0.995, "{summary}");
+    assert!(figures.least(|s| s.clearance_m) >= CLEARANCE_M - 1e-6, "{summary}");
+    assert!(figures.least(|s| s.wall_m) >= -1e-6, "{summary}");
+    assert!(figures.mean(|s| s.rmse_m) <= rmse_m, "{summary}");
+    assert!(figures.mean(|s| s.precision) >= precision, "{summary}");
+    assert!(figures.refusals.iter().all(|(_, reason)| reason.contains("proved")), "{summary}");
     // Here and there the only way turns faster, and the planner says so.
     let slow = figures.safeties.iter().filter(|s| s.heading_step_rad <= 30.1_f64.to_radians());
-    assert!(slow.count() * 10 >= figures.safeties.len() * 9, "{told}");
+    assert!(slow.count() * 10 >= figures.safeties.len() * 9, "{summary}");
 }
 
 #[test]

@@ -35,10 +35,13 @@ fn a_path_out_and_back_on_one_side_of_a_column_is_certified() {
     let columns = [column(0, 4.0, 0.0)];
     let cuts = [points(&[(4.0, 0.0), (10.0, 0.0)])];
     let path = points(&[(0., 0.), (4., 3.), (8., 2.), (8., 0.5), (4., 3.), (0., 0.)]);
-    let judged = certify(&case(&path, &columns, &cuts)).unwrap();
-    assert!(judged.certified, "{:?}", judged.reasons);
-    assert_eq!((judged.left_out_m, judged.cut_crossings, judged.collisions), (Some(0.0), 0, 0));
-    assert!((judged.eccentricity_m - 68.0_f64.sqrt()).abs() < 1e-2, "{}", judged.eccentricity_m);
+    let certificate = certify(&case(&path, &columns, &cuts)).unwrap();
+    assert!(certificate.certified, "{:?}", certificate.reasons);
+    assert_eq!(
+        (certificate.left_out_m, certificate.cut_crossings, certificate.collisions),
+        (Some(0.0), 0, 0)
+    );
+    assert!((certificate.eccentricity_m - 68.0_f64.sqrt()).abs() < 1e-2, "{}", certificate.eccentricity_m);
 }
 
 #[test]
@@ -46,33 +49,33 @@ fn a_path_round_a_column_is_refused_with_its_name() {
     let columns = [column(0, 4.0, 0.0)];
     let path = points(&[(0., 0.), (4., 3.), (8., 0.), (4., -3.), (0., 0.)]);
     let cuts = [points(&[(4.0, 0.0), (10.0, 0.0)])];
-    let judged = certify(&case(&path, &columns, &cuts)).unwrap();
-    assert!(!judged.certified && judged.cut_crossings == 1 && judged.crossings_left == 1);
-    assert!(judged.left_out_m.is_some_and(|left_m| left_m > 7.9));
-    let words = judged.reasons.join("; ");
+    let certificate = certify(&case(&path, &columns, &cuts)).unwrap();
+    assert!(!certificate.certified && certificate.cut_crossings == 1 && certificate.crossings_left == 1);
+    assert!(certificate.left_out_m.is_some_and(|left_m| left_m > 7.9));
+    let words = certificate.reasons.join("; ");
     assert!(
         words.contains("stay out on return, hooked round C0") && words.contains("crosses cuts 1"),
         "{words}"
     );
     // A mission that need not return is not refused for that.
-    let judged = certify(&Case { returns: false, cuts: &[], ..case(&path, &columns, &[]) }).unwrap();
-    assert_eq!((judged.left_out_m, judged.cut_crossings), (None, 0));
+    let certificate = certify(&Case { returns: false, cuts: &[], ..case(&path, &columns, &[]) }).unwrap();
+    assert_eq!((certificate.left_out_m, certificate.cut_crossings), (None, 0));
 }
 
 #[test]
-fn limits_and_collisions_are_told_with_place_and_figure() {
+fn limits_and_collisions_are_reported_with_place_and_figure() {
     let columns = [column(0, 4.0, 0.0), column(1, -4.0, 0.0)];
     let path = points(&[(0., 0.), (4., 0.5), (9.0, 0.0), (-9.5, 3.0), (-4.0, -0.8), (0.0, 0.0)]);
     let limits = Limits { reel_m: 9.0, max_wrap_rad: 0.1, max_sum_wrap_rad: 0.2 };
-    let judged = certify(&Case { limits, ..case(&path, &columns, &[]) }).unwrap();
-    let words = judged.reasons.join("; ");
+    let certificate = certify(&Case { limits, ..case(&path, &columns, &[]) }).unwrap();
+    let words = certificate.reasons.join("; ");
     for part in ["by C0", "the reel holds 9.0 m", "round C", "all wraps together"] {
         assert!(words.contains(part), "{part}: {words}");
     }
 }
 
 #[test]
-fn a_collision_is_told_where_the_path_is_narrowest_and_by_what() {
+fn a_collision_is_reported_at_the_narrowest_place_with_its_obstacle() {
     let words = |path: &[(f64, f64)], columns: &[Obstacle]| {
         certify(&case(&points(path), columns, &[])).unwrap().reasons.join("; ")
     };
@@ -101,9 +104,9 @@ fn cuts_that_close_a_pocket_are_found_unless_the_path_has_been_inside() {
         (0..=8).map(|k| TAU * f64::from(k) / 8.0).map(|a| Point::new(5.0 + a.cos(), a.sin())).collect();
     let path = points(&[(0., 0.), (0., 5.), (0., 0.)]);
     let cuts = [ring];
-    let judged = certify(&case(&path, &[], &cuts)).unwrap();
-    assert!((judged.sealed_m2 - 2.83).abs() < 0.1, "{}", judged.sealed_m2);
-    assert!(judged.reasons[0].contains("seal off"), "{:?}", judged.reasons);
+    let certificate = certify(&case(&path, &[], &cuts)).unwrap();
+    assert!((certificate.sealed_m2 - 2.83).abs() < 0.1, "{}", certificate.sealed_m2);
+    assert!(certificate.reasons[0].contains("seal off"), "{:?}", certificate.reasons);
     let open = [cuts[0][1..].to_vec()];
     assert!(certify(&case(&path, &[], &open)).unwrap().sealed_m2.abs() < 1e-9);
 }
@@ -141,10 +144,10 @@ proptest! {
         let home: Vec<Point> = cable.taut_line().into_iter().rev().collect();
         prop_assert_eq!(cuts::crossings(&home, &cuts), 0);
         path.extend(home);
-        let judged = certify(&Case { room_m: 0.0, ..case(&path, &columns, &cuts) }).unwrap();
+        let certificate = certify(&Case { room_m: 0.0, ..case(&path, &columns, &cuts) }).unwrap();
         // A cut may lead by another column too closely for the hull; that is all that can be wrong.
-        prop_assert!(judged.reasons.iter().all(|r| r.contains("seal off")), "{:?}", judged.reasons);
-        prop_assert_eq!((judged.left_out_m, judged.crossings_left), (Some(0.0), 0));
-        prop_assert!(judged.max_cable_m >= judged.eccentricity_m - 1e-6);
+        prop_assert!(certificate.reasons.iter().all(|r| r.contains("seal off")), "{:?}", certificate.reasons);
+        prop_assert_eq!((certificate.left_out_m, certificate.crossings_left), (Some(0.0), 0));
+        prop_assert!(certificate.max_cable_m >= certificate.eccentricity_m - 1e-6);
     }
 }

@@ -107,7 +107,7 @@ fn a_cable_that_passes_close_by_a_column_after_another_keeps_its_side_of_both() 
     assert!(way.iter().all(|p| p.x < -1.5 || p.y < 1.2 || p.x > -1e-9), "{way:?}");
 }
 
-/// The way of a hull among columns, off by some noise: every place is free for the hull, what is told of it is not.
+/// The way of a hull among columns, off by some noise: every true position is free for the hull, the reported ones are not.
 fn driven(floor: &Floor, goals: &[(f64, f64)], noise: &[(f64, f64)]) -> Vec<Point> {
     let mut at = floor.roomy.outside(floor.cable.anchor());
     let mut way = vec![at];

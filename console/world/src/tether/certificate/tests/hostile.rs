@@ -88,15 +88,18 @@ fn loops_are_refused_until_every_one_is_undone() {
     let columns = [column(0, 0.0, 5.0)];
     for turns in [1.0, 2.0, 5.0, -3.0] {
         let path = home_and_out(&[ring(0.0, 5.0, turns)]);
-        let judged = certify(&lenient(&path, &columns)).unwrap();
-        assert!(!judged.certified && judged.crossings_left == turns.abs() as usize, "{turns}: {judged:?}");
-        assert!(judged.max_wrap_rad > TAU * turns.abs() - PI, "{turns}: {judged:?}");
+        let certificate = certify(&lenient(&path, &columns)).unwrap();
+        assert!(
+            !certificate.certified && certificate.crossings_left == turns.abs() as usize,
+            "{turns}: {certificate:?}"
+        );
+        assert!(certificate.max_wrap_rad > TAU * turns.abs() - PI, "{turns}: {certificate:?}");
         let almost = home_and_out(&[ring(0.0, 5.0, turns), ring(0.0, 5.0, turns.signum() - turns)]);
-        let judged = certify(&lenient(&almost, &columns)).unwrap();
-        assert_eq!((judged.certified, judged.crossings_left), (false, 1), "{turns}");
+        let certificate = certify(&lenient(&almost, &columns)).unwrap();
+        assert_eq!((certificate.certified, certificate.crossings_left), (false, 1), "{turns}");
         let undone = home_and_out(&[ring(0.0, 5.0, turns), ring(0.0, 5.0, -turns)]);
-        let judged = certify(&lenient(&undone, &columns)).unwrap();
-        assert!(judged.certified && judged.left_out_m.unwrap() < 1e-6, "{turns}: {judged:?}");
+        let certificate = certify(&lenient(&undone, &columns)).unwrap();
+        assert!(certificate.certified && certificate.left_out_m.unwrap() < 1e-6, "{turns}: {certificate:?}");
     }
 }
 
@@ -106,9 +109,9 @@ fn a_knot_that_winds_round_no_column_in_sum_is_refused() {
     let columns = [column(0, 0.0, 5.0), column(1, 5.0, 0.0)];
     let rings = [(0.0, 5.0, 1.0), (5.0, 0.0, 1.0), (0.0, 5.0, -1.0), (5.0, 0.0, -1.0)];
     let knot = home_and_out(&rings.map(|(x, y, turns)| ring(x, y, turns)));
-    let judged = certify(&lenient(&knot, &columns)).unwrap();
-    assert!(!judged.certified && judged.crossings_left == 4, "{judged:?}");
-    assert!(judged.left_out_m.unwrap() > 10.0);
+    let certificate = certify(&lenient(&knot, &columns)).unwrap();
+    assert!(!certificate.certified && certificate.crossings_left == 4, "{certificate:?}");
+    assert!(certificate.left_out_m.unwrap() > 10.0);
     let nested = [rings[0], rings[1], (5.0, 0.0, -1.0), (0.0, 5.0, -1.0)];
     let undone = home_and_out(&nested.map(|(x, y, turns)| ring(x, y, turns)));
     assert!(certify(&lenient(&undone, &columns)).unwrap().certified);
@@ -119,15 +122,15 @@ fn a_cut_crossed_and_crossed_back_is_crossed_twice() {
     let columns = [column(0, 4.0, 0.0)];
     let cuts = [points(&[(4.0, 0.0), (10.0, 0.0)])];
     let over = points(&[(0., 0.), (4., 3.), (8., 1.), (8., -1.), (8., 1.), (4., 3.), (0., 0.)]);
-    let judged = certify(&case(&over, &columns, &cuts)).unwrap();
-    assert_eq!((judged.certified, judged.cut_crossings, judged.crossings_left), (false, 2, 0));
+    let certificate = certify(&case(&over, &columns, &cuts)).unwrap();
+    assert_eq!((certificate.certified, certificate.cut_crossings, certificate.crossings_left), (false, 2, 0));
     // Up to the cut and no further is allowed.
     let along = points(&[(0., 0.), (4., 3.), (8., 0.01), (9., 0.01), (4., 3.), (0., 0.)]);
     assert!(certify(&case(&along, &columns, &cuts)).unwrap().certified);
 }
 
 #[test]
-fn a_hull_that_grazes_is_told_from_one_that_scrapes() {
+fn a_hull_that_grazes_is_distinguished_from_one_that_scrapes() {
     let columns = [column(0, 4.0, 0.0)];
     for (gap_m, is_fine) in [(0.302, true), (0.298, true), (0.29, false), (0.0, false), (-0.3, false)] {
         let aside = 0.3 + gap_m;
@@ -144,11 +147,11 @@ fn a_path_that_leaves_the_floor_is_refused_even_between_its_points() {
     let corners = [(-5., -5.), (5., -5.), (5., 5.), (1., 5.), (1., 0.5), (-1., 0.5), (-1., 5.), (-5., 5.)];
     let boundary = Boundary::Polygon { vertices: points(&corners) };
     let over = points(&[(0., 0.), (-3., 0.), (-3., 3.), (3., 3.), (3., 0.), (0., 0.)]);
-    let judged = certify(&Case { boundary: &boundary, ..lenient(&over, &[]) }).unwrap();
-    assert!(judged.collisions == 1 && judged.reasons[0].contains("by the wall"), "{judged:?}");
+    let certificate = certify(&Case { boundary: &boundary, ..lenient(&over, &[]) }).unwrap();
+    assert!(certificate.collisions == 1 && certificate.reasons[0].contains("by the wall"), "{certificate:?}");
     let round = points(&[(0., 0.), (-3., 0.), (-3., 3.), (-3., 0.), (3., 0.), (3., 3.), (3., 0.), (0., 0.)]);
-    let judged = certify(&Case { boundary: &boundary, room_m: 0.1, ..lenient(&round, &[]) }).unwrap();
-    assert!(judged.certified, "{judged:?}");
+    let certificate = certify(&Case { boundary: &boundary, room_m: 0.1, ..lenient(&round, &[]) }).unwrap();
+    assert!(certificate.certified, "{certificate:?}");
 }
 
 #[test]
@@ -158,12 +161,12 @@ fn numbers_that_are_none_certify_nothing() {
         for k in 0..3 {
             let mut broken = path.clone();
             broken[k].y = bad;
-            let judged = certify(&lenient(&broken, &[column(0, 0.0, 5.0)])).unwrap();
-            assert!(!judged.certified, "{bad} at {k}");
+            let certificate = certify(&lenient(&broken, &[column(0, 0.0, 5.0)])).unwrap();
+            assert!(!certificate.certified, "{bad} at {k}");
         }
         let cuts = [vec![Point::new(4.0, bad), Point::new(5.0, 5.0)]];
-        let judged = certify(&Case { cuts: &cuts, ..lenient(&path, &[]) }).unwrap();
-        assert!(bad.is_finite() || !judged.certified, "{bad} in a cut");
+        let certificate = certify(&Case { cuts: &cuts, ..lenient(&path, &[]) }).unwrap();
+        assert!(bad.is_finite() || !certificate.certified, "{bad} in a cut");
     }
     let no_limit = Limits { reel_m: f64::NAN, ..lenient(&path, &[]).limits };
     assert!(!certify(&Case { limits: no_limit, ..lenient(&path, &[]) }).unwrap().certified);
@@ -177,23 +180,23 @@ fn a_path_of_one_point_is_fine_at_the_anchor_only() {
 }
 
 #[test]
-fn a_path_that_ends_beside_the_anchor_is_judged_with_the_cable_taken_in() {
+fn a_path_that_ends_beside_the_anchor_is_certified_with_the_cable_reeled_in() {
     // Round the column and back to 0.2 m of the anchor: near enough, and hooked.
     let columns = [column(0, 0.0, 3.0)];
     let mut path = home_and_out(&[ring(0.0, 3.0, 1.0)]);
     *path.last_mut().unwrap() = Point::new(0.2, 0.0);
-    let judged = certify(&lenient(&path, &columns)).unwrap();
-    assert!(!judged.certified && judged.crossings_left == 1, "{judged:?}");
+    let certificate = certify(&lenient(&path, &columns)).unwrap();
+    assert!(!certificate.certified && certificate.crossings_left == 1, "{certificate:?}");
 }
 
 #[test]
 fn a_gate_narrower_than_a_cell_is_no_seal() {
     let chamber = points(&[(3.0, 3.02), (3.0, 5.0), (5.0, 5.0), (5.0, 3.0), (3.0, 3.0)]);
     let path = points(&[(0., 0.), (0., 5.), (0., 0.)]);
-    let judged = |cuts: &[Vec<Point>]| certify(&Case { cuts, ..lenient(&path, &[]) }).unwrap();
+    let certified_with = |cuts: &[Vec<Point>]| certify(&Case { cuts, ..lenient(&path, &[]) }).unwrap();
     let shut = [points(&[(3.0, 3.0), (3.0, 5.0), (5.0, 5.0), (5.0, 3.0), (3.0, 3.0)])];
-    assert!((judged(&shut).sealed_m2 - 4.0).abs() < 0.2);
-    assert!(judged(&[chamber]).certified);
+    assert!((certified_with(&shut).sealed_m2 - 4.0).abs() < 0.2);
+    assert!(certified_with(&[chamber]).certified);
 }
 
 proptest! {
@@ -207,9 +210,9 @@ proptest! {
         let columns = columns_at(&at);
         let Some(path) = closed_walk(&goals, &columns) else { return Ok(()) };
         let word = letters_left(&path, &columns);
-        let judged = certify(&lenient(&path, &columns)).unwrap();
-        prop_assert_eq!(judged.certified, word.is_empty(), "{:?} {:?}", word, judged.reasons);
-        prop_assert_eq!(judged.left_out_m.unwrap() < 1e-6, word.is_empty());
+        let certificate = certify(&lenient(&path, &columns)).unwrap();
+        prop_assert_eq!(certificate.certified, word.is_empty(), "{:?} {:?}", word, certificate.reasons);
+        prop_assert_eq!(certificate.left_out_m.unwrap() < 1e-6, word.is_empty());
         // With its own way back it is always certified.
         let there_and_back: Vec<Point> = path.iter().chain(path.iter().rev()).copied().collect();
         prop_assert!(certify(&lenient(&there_and_back, &columns)).unwrap().certified);

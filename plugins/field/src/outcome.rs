@@ -74,8 +74,8 @@ impl fmt::Display for Shortfall {
     }
 }
 
-/// What is wrong with a walk whose least clearance is known; the first of several.
-pub fn judge(walk: &Walk, clearance_m: f64, demanded_m: f64) -> Option<Shortfall> {
+/// Why a walk with this least clearance does not achieve its task; the first reason if there are several.
+pub fn assess(walk: &Walk, clearance_m: f64, demanded_m: f64) -> Option<Shortfall> {
     let close =
         (clearance_m < demanded_m - ROUNDING_M).then_some(Shortfall::Close { clearance_m, demanded_m });
     walk.shortfall.or(close)
