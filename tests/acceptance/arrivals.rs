@@ -1,4 +1,4 @@
-//! Answers that come late, are cut short or never come: the run goes on or ends, and is proven all the same.
+//! Answers that come late, are cut short or never come: the run continues or ends, and can still be verified.
 
 use crate::bench::{Bench, Ended, first_of, journal, of_kind, scenario};
 use rustix::process::{Pid, Signal, kill_process};
@@ -39,7 +39,7 @@ impl Flying {
     fn until(&self, what: &str, is_so: impl Fn(&Self) -> bool) {
         let until = Instant::now() + PATIENCE;
         while !is_so(self) {
-            assert!(Instant::now() < until, "waited for {what} in vain");
+            assert!(Instant::now() < until, "timed out waiting for {what}");
             std::thread::sleep(Duration::from_millis(5));
         }
     }
@@ -55,7 +55,7 @@ impl Flying {
         pids.into_iter().filter(|pid| is_worker(*pid)).collect()
     }
 
-    /// Sends a signal to the planner that drives.
+    /// Sends a signal to the active planner.
     fn signal_worker(&self, signal: Signal) -> i32 {
         self.until("a worker", |flying| !flying.workers().is_empty());
         let worker = self.workers()[0];

@@ -87,7 +87,7 @@ fn wrong_usage_is_exit_code_2_and_names_the_remedy() {
 }
 
 #[test]
-fn without_a_terminal_the_demo_is_flown_and_told() {
+fn without_a_terminal_the_demo_is_flown_and_reported() {
     let bench = Bench::new();
     let flown = bench.tankops(&[]);
     assert_eq!(flown.code, Some(0), "{flown:?}");
@@ -108,9 +108,9 @@ fn an_output_that_cannot_be_written_is_an_error_and_no_panic() {
     let bench = Bench::new();
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
     let listed = bench.command().arg("planners").stdout(full).output().unwrap();
-    let told = String::from_utf8(listed.stderr).unwrap();
-    assert_eq!(listed.status.code(), Some(3), "{told}");
-    assert!(told.contains("writing to stdout") && !told.contains("panicked"), "{told}");
+    let errors = String::from_utf8(listed.stderr).unwrap();
+    assert_eq!(listed.status.code(), Some(3), "{errors}");
+    assert!(errors.contains("writing to stdout") && !errors.contains("panicked"), "{errors}");
 }
 
 #[test]
@@ -137,7 +137,7 @@ fn check_warns_of_a_clearance_within_the_position_error() {
 }
 
 #[test]
-fn every_objection_of_a_planner_is_told_at_its_line() {
+fn every_objection_of_a_planner_is_reported_at_its_line() {
     let demo = std::fs::read_to_string(scenario("demo.toml")).unwrap();
     let bench = Bench::new();
     let head = "[planner]\n";
@@ -160,7 +160,7 @@ fn a_plugin_folder_that_does_not_exist_is_an_error() {
 }
 
 #[test]
-fn a_run_that_lost_its_report_is_told_by_its_journal() {
+fn a_run_that_lost_its_report_is_listed_from_its_journal() {
     let bench = Bench::new();
     assert_eq!(
         bench.tankops(&["run", scenario("goto-single-obstacle.toml").to_str().unwrap()]).code,

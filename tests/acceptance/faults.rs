@@ -1,4 +1,4 @@
-//! Planners that misbehave: the robot holds within the tick, the operator reads why, the mission can go on.
+//! Planners that misbehave: the robot holds within the tick, the operator sees the reason, the mission can continue.
 
 use crate::bench::{Bench, Ended, journal, of_kind, scenario};
 

@@ -143,7 +143,7 @@ fn what_makes_no_run_possible_is_said_before_the_screen_is_taken() {
 }
 
 #[test]
-fn a_run_that_is_deleted_in_flight_is_told_at_once_and_at_the_end() {
+fn a_run_that_is_deleted_in_flight_is_reported_at_once_and_at_the_end() {
     let goto = scenario("goto-single-obstacle.toml");
     let mut session = Session::open(&format!("console {}", goto.display()), 120, 36);
     session.see("IDLE");

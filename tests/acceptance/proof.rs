@@ -61,8 +61,8 @@ fn a_journal_in_which_a_line_is_written_otherwise_is_different() {
         let tick = journal(&run)[line]["tick"].as_u64().unwrap();
         for more in [&[][..], &["--from-journal"]] {
             let verified = bench.verify(&run, more);
-            let told = verified.out.contains(&format!("different from tick {tick} on"));
-            assert!(verified.code == Some(1) && told, "{what}: {verified:?}");
+            let is_reported = verified.out.contains(&format!("different from tick {tick} on"));
+            assert!(verified.code == Some(1) && is_reported, "{what}: {verified:?}");
         }
     }
     std::fs::write(run.join("events.jsonl"), text).unwrap();
@@ -71,7 +71,7 @@ fn a_journal_in_which_a_line_is_written_otherwise_is_different() {
 }
 
 #[test]
-fn a_journal_that_was_cut_is_different_from_what_its_report_tells() {
+fn a_truncated_journal_differs_from_its_report() {
     let bench = Bench::new();
     let run = flown(&bench);
     let text = text_of(&run);
@@ -88,8 +88,8 @@ fn a_journal_that_was_cut_is_different_from_what_its_report_tells() {
         for report in [report.clone(), report.replacen("events_sha256", "events", 1)] {
             std::fs::write(run.join("report.json"), report).unwrap();
             let verified = bench.verify(&run, &[]);
-            let told = verified.out.contains("different: ") && verified.out.contains("no end");
-            assert!(verified.code == Some(1) && told, "without {what}: {verified:?}");
+            let is_reported = verified.out.contains("different: ") && verified.out.contains("no end");
+            assert!(verified.code == Some(1) && is_reported, "without {what}: {verified:?}");
         }
     }
     std::fs::write(run.join("events.jsonl"), &text).unwrap();
@@ -111,8 +111,9 @@ fn a_journal_without_an_end_is_compared_as_far_as_it_goes() {
         std::fs::write(run.join("events.jsonl"), &text[..kept]).unwrap();
         for more in [&[][..], &["--from-journal"]] {
             let verified = bench.verify(&run, more);
-            let told = verified.out.contains("the journal has no end") && verified.out.contains("equal: ");
-            assert!(verified.code == Some(0) && told, "{kept} bytes: {verified:?}");
+            let is_equal =
+                verified.out.contains("the journal has no end") && verified.out.contains("equal: ");
+            assert!(verified.code == Some(0) && is_equal, "{kept} bytes: {verified:?}");
         }
     }
 }
@@ -135,7 +136,7 @@ fn nothing_may_follow_the_end_of_a_journal() {
 }
 
 #[test]
-fn a_run_whose_planner_is_not_at_hand_is_proven_from_its_journal() {
+fn a_run_whose_planner_is_not_installed_is_proven_from_its_journal() {
     let bench = Bench::new();
     let plugins = bench.path().join("plugins-in-c");
     std::fs::create_dir(&plugins).unwrap();
@@ -145,33 +146,33 @@ fn a_run_whose_planner_is_not_at_hand_is_proven_from_its_journal() {
     let flown = bench.fly(&goto, &[&["--planner", "direct-c"][..], &with_it].concat());
     assert!(flown.json()["ticks"].as_u64() > Some(50), "{flown:?}");
     let run = bench.runs().remove(0);
-    let at_hand = bench.verify(&run, &with_it);
+    let installed = bench.verify(&run, &with_it);
     assert!(
-        at_hand.code == Some(0) && at_hand.out.contains("answers of planners are the same"),
-        "{at_hand:?}"
+        installed.code == Some(0) && installed.out.contains("answers of planners are the same"),
+        "{installed:?}"
     );
     let missing = bench.verify(&run, &[]);
-    let told = missing.out.contains("planner direct-c of the run is not installed");
-    assert!(missing.code == Some(1) && told && missing.out.contains("--from-journal"), "{missing:?}");
+    let is_reported = missing.out.contains("planner direct-c of the run is not installed");
+    assert!(missing.code == Some(1) && is_reported && missing.out.contains("--from-journal"), "{missing:?}");
     let from_journal = bench.verify(&run, &["--from-journal"]);
-    let told = from_journal.out.contains("the planners were not asked");
+    let is_noted = from_journal.out.contains("the planners were not asked");
     assert!(
-        from_journal.code == Some(0) && told && from_journal.out.starts_with("equal: "),
+        from_journal.code == Some(0) && is_noted && from_journal.out.starts_with("equal: "),
         "{from_journal:?}"
     );
 }
 
 #[test]
-fn a_run_of_version_2_is_listed_told_and_exported_but_not_computed_again() {
+fn a_run_of_version_2_is_listed_reported_and_exported_but_not_recomputed() {
     let bench = Bench::new();
     let logs = workspace().join("tests/acceptance/fixtures/v2");
     let at = ["--logs", logs.to_str().unwrap()];
     let listed = bench.tankops(&[&["runs", "--json"][..], &at].concat()).json();
     assert_eq!((listed.as_array().unwrap().len(), &listed[0]["end"]), (1, &"complete".into()), "{listed}");
     let name = listed[0]["name"].as_str().unwrap();
-    let told = bench.tankops(&[&["report", name, "--json"][..], &at].concat());
-    let report = told.json();
-    assert_eq!((&report["outcome"], &report["ticks"]), (&"complete".into(), &45.into()), "{told:?}");
+    let reported = bench.tankops(&[&["report", name, "--json"][..], &at].concat());
+    let report = reported.json();
+    assert_eq!((&report["outcome"], &report["ticks"]), (&"complete".into(), &45.into()), "{reported:?}");
     let then = std::fs::read_to_string(logs.join(name).join("report.json")).unwrap();
     let then: serde_json::Value = serde_json::from_str(&then).unwrap();
     for key in ["planner", "parameters", "path_length_m", "coverage", "positioning", "events_sha256", "unmet"]

@@ -27,7 +27,7 @@ fn a_run_is_listed_verified_and_exported() {
 }
 
 #[test]
-fn a_changed_journal_is_told_from_its_first_difference_on() {
+fn a_changed_journal_is_reported_from_its_first_difference_on() {
     let bench = Bench::new();
     bench.fly(&scenario("goto-single-obstacle.toml"), &[]);
     let run = bench.runs().remove(0);
@@ -46,7 +46,7 @@ fn a_changed_journal_is_told_from_its_first_difference_on() {
 }
 
 #[test]
-fn a_run_that_does_not_exist_is_told_with_the_way_to_find_others() {
+fn the_error_for_a_missing_run_says_how_to_find_others() {
     let bench = Bench::new();
     let verified = bench.tankops(&["verify", "yesterday"]);
     assert_eq!(verified.code, Some(2));
@@ -67,8 +67,8 @@ fn an_export_that_fails_leaves_nothing_behind() {
     assert_eq!(exported.code, Some(2), "{exported:?}");
     assert!(exported.err.contains("301"), "{exported:?}");
     for command in [vec!["verify"], vec!["report"], vec!["export", "--rrd", "again.rrd"]] {
-        let told = bench.tankops(&[&command[..], &[run.to_str().unwrap()]].concat());
-        assert_eq!(told.err.matches("events.jsonl").count(), 1, "{command:?}: {told:?}");
+        let failed = bench.tankops(&[&command[..], &[run.to_str().unwrap()]].concat());
+        assert_eq!(failed.err.matches("events.jsonl").count(), 1, "{command:?}: {failed:?}");
     }
     assert!(!bench.path().join("again.rrd").exists());
 }

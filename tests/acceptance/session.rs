@@ -85,7 +85,11 @@ impl Session {
     pub fn until(&self, what: &str, is_so: impl Fn(&Self) -> bool) {
         let until = Instant::now() + PATIENCE;
         while !is_so(self) {
-            assert!(Instant::now() < until, "waited for {what} in vain; the screen shows:\n{}", self.text());
+            assert!(
+                Instant::now() < until,
+                "timed out waiting for {what}; the screen shows:\n{}",
+                self.text()
+            );
             std::thread::sleep(Duration::from_millis(20));
         }
     }

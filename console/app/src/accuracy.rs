@@ -25,7 +25,7 @@ const MOST_SHOWN: usize = 12;
 
 /// A forecast as scripts read it.
 #[derive(Debug, Serialize)]
-struct Told<'a> {
+struct ForecastReport<'a> {
     scenario: &'a str,
     limit_m: f64,
     stations: Vec<Placed<'a>>,
@@ -62,18 +62,18 @@ pub fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
     let map = AccuracyMap::new(&drawing, &forecast);
     let advice = args.advise.map(|count| advise(&drawing, count, &forecast)).transpose();
     let advice = advice.map_err(|error| bad_input(format!("--advise: {error}")))?;
-    let told = told(&scenario, &map, advice);
+    let report = forecast_report(&scenario, &map, advice);
     if let Some(file) = &args.svg {
-        let places = told.advice.as_ref().map_or(&[][..], |advice| &advice.places);
-        let picture = drawing::svg(&drawing, &map, told.limit_m, places);
+        let places = report.advice.as_ref().map_or(&[][..], |advice| &advice.places);
+        let picture = drawing::svg(&drawing, &map, report.limit_m, places);
         std::fs::write(file, picture).map_err(|error| {
             bad_input(format!("the drawing cannot be written: {error}: {}", file.display()))
         })?;
     }
     if args.json {
-        say_line(&serde_json::to_string(&told).context("writing the forecast as JSON")?)?;
+        say_line(&serde_json::to_string(&report).context("writing the forecast as JSON")?)?;
     } else {
-        say(&words(&told))?;
+        say(&words(&report))?;
     }
     Ok(ExitCode::from(COMPLETE))
 }
@@ -91,7 +91,7 @@ pub fn warn_of_clearance(scenario: &Scenario) {
 fn clearance_warning(scenario: &Scenario) -> Option<String> {
     let clearance_m = scenario.mission.clearance_m;
     let map = AccuracyMap::new(&scenario.sim.world.as_drawn(), &forecast(scenario));
-    let expected_m = FILTERED * told(scenario, &map, None).p95_error_95_m?;
+    let expected_m = FILTERED * forecast_report(scenario, &map, None).p95_error_95_m?;
     let is_scan = matches!(scenario.mission.task, TaskConfig::Cover { .. });
     (is_scan && clearance_m < expected_m).then(|| {
         format!(
@@ -107,7 +107,11 @@ fn forecast(scenario: &Scenario) -> Forecast {
     scenario.mission.forecast((high - low).amax() / CELLS)
 }
 
-fn told<'a>(scenario: &'a Scenario, map: &'a AccuracyMap, advice: Option<Advice>) -> Told<'a> {
+fn forecast_report<'a>(
+    scenario: &'a Scenario,
+    map: &'a AccuracyMap,
+    advice: Option<Advice>,
+) -> ForecastReport<'a> {
     let limit_m = scenario.mission.position_limit_m;
     let mut errors: Vec<f64> = map.floor().filter_map(|(_, cell)| cell.error_95_m).collect();
     errors.sort_by(f64::total_cmp);
@@ -115,7 +119,7 @@ fn told<'a>(scenario: &'a Scenario, map: &'a AccuracyMap, advice: Option<Advice>
     let beyond: Vec<Place> =
         map.beyond(limit_m).into_iter().map(|(at, accuracy)| Place { at, accuracy }).collect();
     let mean = errors.iter().sum::<f64>() / errors.len() as f64;
-    Told {
+    ForecastReport {
         scenario: &scenario.name,
         limit_m,
         stations: scenario
@@ -137,24 +141,24 @@ fn told<'a>(scenario: &'a Scenario, map: &'a AccuracyMap, advice: Option<Advice>
     }
 }
 
-fn words(told: &Told<'_>) -> String {
+fn words(report: &ForecastReport<'_>) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail.
     let metres = |value: Option<f64>| value.map_or("none".into(), |m| format!("{m:.3} m"));
     let percent = |share: f64| share * 100.0;
     let _ = writeln!(text, "95 % error of a single fix, by the scatter of the ranges");
-    let _ = writeln!(text, "mean      {}", metres(told.mean_error_95_m));
-    let _ = writeln!(text, "p95       {}", metres(told.p95_error_95_m));
-    let _ = writeln!(text, "worst     {}", metres(told.worst_error_95_m));
-    let _ = writeln!(text, "no fix    {:.1} % of the floor", percent(told.blind_share));
+    let _ = writeln!(text, "mean      {}", metres(report.mean_error_95_m));
+    let _ = writeln!(text, "p95       {}", metres(report.p95_error_95_m));
+    let _ = writeln!(text, "worst     {}", metres(report.worst_error_95_m));
+    let _ = writeln!(text, "no fix    {:.1} % of the floor", percent(report.blind_share));
     let _ = writeln!(
         text,
         "beyond    {:.1} % of the floor, {:.1} m2, above the limit of {:.2} m or without a fix",
-        percent(told.beyond_limit_share),
-        told.beyond_limit_area_m2,
-        told.limit_m
+        percent(report.beyond_limit_share),
+        report.beyond_limit_area_m2,
+        report.limit_m
     );
-    for place in told.beyond_limit.iter().take(MOST_SHOWN) {
+    for place in report.beyond_limit.iter().take(MOST_SHOWN) {
         let error = place.accuracy.error_95_m.map_or("no fix".into(), |m| format!("{m:.3} m"));
         let _ = writeln!(
             text,
@@ -162,11 +166,11 @@ fn words(told: &Told<'_>) -> String {
             place.at.x, place.at.y, place.accuracy.heard
         );
     }
-    let rest = told.beyond_limit.len().saturating_sub(MOST_SHOWN);
+    let rest = report.beyond_limit.len().saturating_sub(MOST_SHOWN);
     if rest > 0 {
-        let _ = writeln!(text, "  and {rest} more cells of {:.2} m", told.map.cell_m);
+        let _ = writeln!(text, "  and {rest} more cells of {:.2} m", report.map.cell_m);
     }
-    if let Some(advice) = &told.advice {
+    if let Some(advice) = &report.advice {
         let _ = writeln!(
             text,
             "advice    {} stations on the wall: mean {:.3} m, worst {:.3} m, no fix on {:.1} % of the floor",

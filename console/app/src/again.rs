@@ -23,8 +23,8 @@ use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value, value};
 
 /// Boxes in a scenario for a re-scan; more are joined into coarser ones.
 const MOST_BOXES: usize = 4000;
-/// Areas that are told one by one.
-const MOST_TOLD: usize = 10;
+/// Areas that are listed one by one.
+const MOST_LISTED: usize = 10;
 
 /// A past run, read again.
 struct Past {
@@ -110,11 +110,11 @@ pub fn rescan(args: &RescanArgs) -> anyhow::Result<ExitCode> {
         return Err(bad_input(format!("--least-m2 {}: must be an area of 0 m² or more", args.least_m2)));
     }
     let (past, events) = Past::read_all(&args.runs, &args.logs)?;
-    tell_doubts(&past, &events)?;
+    print_doubts(&past, &events)?;
     let again = report::rescan(&past, args.least_m2, MOST_BOXES).map_err(bad_input)?;
     if again.boxes.is_empty() {
         let left_m2: f64 = again.left.iter().map(|area| area.area_m2).sum();
-        tell_areas("out of reach", &again.out_of_reach)?;
+        print_areas("out of reach", &again.out_of_reach)?;
         return Err(bad_input(format!(
             "nothing was missed that is worth another scan: {} smaller than {} m² left, {left_m2:.2} m² together, and {} out of reach; \
              --least-m2 sets the limit",
@@ -129,11 +129,11 @@ pub fn rescan(args: &RescanArgs) -> anyhow::Result<ExitCode> {
     fs::write(output, &text).map_err(|error| {
         bad_input(format!("the scenario cannot be written: {error}: {}", output.display()))
     })?;
-    tell(&again, args, &names)?;
+    print_rescan(&again, args, &names)?;
     Ok(ExitCode::from(COMPLETE))
 }
 
-fn tell(again: &report::Rescan, args: &RescanArgs, names: &[&str]) -> anyhow::Result<()> {
+fn print_rescan(again: &report::Rescan, args: &RescanArgs, names: &[&str]) -> anyhow::Result<()> {
     let missed_m2: f64 = again.areas.iter().map(|area| area.area_m2).sum();
     let boxes_m2: f64 = again.boxes.iter().map(|[low, high]| (high.x - low.x) * (high.y - low.y)).sum();
     say_line(&format!(
@@ -142,14 +142,14 @@ fn tell(again: &report::Rescan, args: &RescanArgs, names: &[&str]) -> anyhow::Re
         counted(again.areas.len(), "area", "areas"),
         counted(again.boxes.len(), "box", "boxes"),
     ))?;
-    tell_areas("again", &again.areas)?;
-    tell_areas(&format!("left, smaller than {} m²", args.least_m2), &again.left)?;
-    tell_areas("left, out of reach", &again.out_of_reach)?;
+    print_areas("again", &again.areas)?;
+    print_areas(&format!("left, smaller than {} m²", args.least_m2), &again.left)?;
+    print_areas("left, out of reach", &again.out_of_reach)?;
     if again.not_asked_m2 > 0.0 {
         say_line(&format!("left: {:.2} m² that no mission was to scan", again.not_asked_m2))?;
     }
     say_line(&format!(
-        "fly it with `tankops run {logs} {}`; then `tankops report {logs} {} RUN` tells all of them together",
+        "fly it with `tankops run {logs} {}`; then `tankops report {logs} {} RUN` shows all of them together",
         args.output.display(),
         names.join(" "),
         logs = format_args!("--logs {}", args.logs.logs.display()),
@@ -161,8 +161,8 @@ fn counted(number: usize, one: &str, more: &str) -> String {
     format!("{number} {}", if number == 1 { one } else { more })
 }
 
-/// Says of each journal that was changed that it was, and refuses one that scanned where no cell is.
-fn tell_doubts(past: &[PastRun], events: &[Vec<Event>]) -> anyhow::Result<()> {
+/// Reports each journal that was changed, and refuses one that scanned outside the floor's cells.
+fn print_doubts(past: &[PastRun], events: &[Vec<Event>]) -> anyhow::Result<()> {
     for (run, events) in past.iter().zip(events) {
         let cells = opened(events)?.floor.len() as u64;
         let is_beyond = |run: &world::CellRun| u64::from(run.0) + u64::from(run.1) > cells;
@@ -183,11 +183,11 @@ fn tell_doubts(past: &[PastRun], events: &[Vec<Event>]) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn tell_areas<R: Display>(label: &str, areas: &[Area<R>]) -> anyhow::Result<()> {
-    for area in areas.iter().take(MOST_TOLD) {
+fn print_areas<R: Display>(label: &str, areas: &[Area<R>]) -> anyhow::Result<()> {
+    for area in areas.iter().take(MOST_LISTED) {
         say_line(&format!("{label}: {area}"))?;
     }
-    let rest = areas.get(MOST_TOLD..).unwrap_or_default();
+    let rest = areas.get(MOST_LISTED..).unwrap_or_default();
     if !rest.is_empty() {
         let area_m2: f64 = rest.iter().map(|area| area.area_m2).sum();
         say_line(&format!(

@@ -1,7 +1,7 @@
 //! Where the answers of planners come from, and how long a tick waits for them.
 //!
 //! The mission itself never waits. A headless flight answers every ask before time moves on, in the order of the asks, so
-//! that it does not depend on the machine; the console gives each tick a window and goes on.
+//! that it does not depend on the machine; the console gives each tick a time window and continues without late answers.
 
 use mission::{Answer, Ask, AskId, Awaits, Mission, What};
 use planner_host::Host;
@@ -19,8 +19,8 @@ pub trait Answers {
     fn next(&mut self, mission: &Mission) -> Option<Answer>;
 }
 
-/// Waits for every answer, and gives them in the order of the asks. A tick that somebody interrupts by the doorbell leaves
-/// asks open for the next one.
+/// Waits for every answer, and gives them in the order of the asks. A tick that a [`planner_host::Waker`] interrupts
+/// leaves its asks open for the next one.
 pub struct InOrder {
     host: Host,
     /// Asks without an answer, oldest first.

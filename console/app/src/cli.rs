@@ -45,9 +45,9 @@ pub enum Command {
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },
-    /// Make a paper's table or figure anew, ours beside the printed values.
+    /// Reproduce a table or figure of a paper, our values beside the printed ones.
     Reproduce(ReproduceArgs),
-    /// Search for better parameters of a planner on one set of layouts, and judge them on another.
+    /// Search for better parameters of a planner on one set of layouts, and evaluate them on another.
     Tune(TuneArgs),
     /// List past runs.
     Runs {
@@ -61,14 +61,14 @@ pub enum Command {
     Verify {
         /// Folder of the run, or its name within the logs.
         run: PathBuf,
-        /// Take the planners' answers from the journal instead of asking the planners again: for a plugin that is not at
-        /// hand. What this proves, and what it does not, is said.
+        /// Take the planners' answers from the journal instead of asking the planners again: for a plugin that is not
+        /// available. The output states what this proves and what it does not.
         #[arg(long)]
         from_journal: bool,
         #[command(flatten)]
         logs: LogsArg,
     },
-    /// Make the recording of a past run anew from its journal.
+    /// Regenerate the recording of a past run from its journal.
     Export {
         /// Folder of the run, or its name within the logs.
         run: PathBuf,
@@ -78,7 +78,7 @@ pub enum Command {
         #[command(flatten)]
         logs: LogsArg,
     },
-    /// Tell the result of a past run, or of a scan and its re-scans together.
+    /// Show the result of a past run, or of a scan and its re-scans together.
     Report {
         /// Folders of runs, or their names within the logs; several must be of one floor.
         #[arg(required = true, value_name = "RUN")]
@@ -125,7 +125,7 @@ pub struct LogsArg {
 /// What may be changed in a scenario from the command line.
 #[derive(Debug, Clone, Default, Args)]
 pub struct Changes {
-    /// Planner that drives, instead of the scenario's.
+    /// Planner to use instead of the scenario's.
     #[arg(long, value_name = "ID")]
     pub planner: Option<String>,
     /// Set a planner parameter (`k_rep=2`) or any key of the scenario (`mission.swath_m=0.5`).
@@ -243,10 +243,10 @@ pub struct TuneArgs {
     /// Seed of the first layout to tune on.
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     pub first_seed: u64,
-    /// Number of layouts to judge on.
+    /// Number of layouts to evaluate on.
     #[arg(long, value_name = "N", default_value_t = 200)]
     pub test_layouts: usize,
-    /// Seed of the first layout to judge on.
+    /// Seed of the first layout to evaluate on.
     #[arg(long, value_name = "SEED", default_value_t = 1_000_000)]
     pub test_first_seed: u64,
     /// Generations of the search.

@@ -12,7 +12,7 @@ use crate::{
     preflight::{LogsError, check_logs},
     scenario::Scenario,
 };
-use engine::{Engine, Line};
+use engine::{Engine, EngineHandle};
 use inbox::{Inbox, Outbox, inbox};
 use planner_host::PluginDirs;
 use screen::{Left, Screen};
@@ -37,12 +37,12 @@ pub fn open(
     check_terminal()?;
     crate::planners::check_choices(scenario, plugins)?;
     check_logs(&logs.logs).map_err(LogsError::refuse)?;
-    let (tell, told) = inbox();
-    let engine = Engine::start(scenario, &logs.logs, plugins, tell.clone(), drill)?;
-    let left = show(&engine.line(), &logs.logs, plugins, (tell, told), drill);
-    // Whatever happened to the screen, the run is closed in good order.
+    let (outbox, inbox) = inbox();
+    let engine = Engine::start(scenario, &logs.logs, plugins, outbox.clone(), drill)?;
+    let left = show(&engine.handle(), &logs.logs, plugins, (outbox, inbox), drill);
+    // Whatever happened to the screen, the run is closed cleanly.
     let ended = engine.close(left.as_ref().is_ok_and(|left| left.signal.is_some()));
-    Ok(left?.say_goodbye(ended?.as_ref()))
+    Ok(left?.report_end(ended?.as_ref()))
 }
 
 fn check_terminal() -> anyhow::Result<()> {
@@ -58,24 +58,24 @@ fn check_terminal() -> anyhow::Result<()> {
 }
 
 fn show(
-    engine: &Line,
+    engine: &EngineHandle,
     logs: &Path,
     plugins: &PluginDirs,
-    (tell, told): (Outbox, Inbox),
+    (outbox, inbox): (Outbox, Inbox),
     drill: Option<Drill>,
 ) -> anyhow::Result<Left> {
     let caps = Caps::from_env(|name| std::env::var(name).ok());
-    let mourner = tell.clone();
+    let panic_outbox = outbox.clone();
     terminal::install_panic_hook(move |thread, message| {
-        let news = Msg::ThreadPanicked { thread: thread.into(), message: message.into() };
-        mourner.urge(news);
+        let panicked = Msg::ThreadPanicked { thread: thread.into(), message: message.into() };
+        panic_outbox.send_urgent(panicked);
     });
-    let mut screen = Screen::open(caps, told, engine.clone(), drill)?;
-    watch::keys(&tell, engine.clone())?;
-    watch::signals(&tell, engine.clone())?;
-    watch::terminal(&tell, engine.clone())?;
-    watch::planners(plugins, &tell)?;
-    drop(tell);
+    let mut screen = Screen::open(caps, inbox, engine.clone(), drill)?;
+    watch::keys(&outbox, engine.clone())?;
+    watch::signals(&outbox, engine.clone())?;
+    watch::terminal(&outbox, engine.clone())?;
+    watch::planners(plugins, &outbox)?;
+    drop(outbox);
     let ran = catch_unwind(AssertUnwindSafe(|| screen.run()));
     ran.unwrap_or_else(|_| Err(crash::report(logs, screen.model())))
 }

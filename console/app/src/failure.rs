@@ -1,4 +1,4 @@
-//! Failures by whose turn it is: the user's or ours.
+//! Failures by who has to act: the user or the developers.
 
 use crate::output::warn_line;
 use std::{fmt, process::ExitCode};
@@ -12,7 +12,7 @@ pub const BAD_INPUT: u8 = 2;
 /// A fault of the program or the machine.
 pub const INTERNAL: u8 = 3;
 
-/// Input that the user can mend; its text is complete, with place and remedy.
+/// An input error that the user can fix; its text is complete, with place and remedy.
 #[derive(Debug)]
 pub struct BadInput(pub String);
 
@@ -29,8 +29,8 @@ pub fn bad_input(text: impl Into<String>) -> anyhow::Error {
     BadInput(text.into()).into()
 }
 
-/// Reports a failure on stderr; the exit code says whose turn it is.
-pub fn tell(error: &anyhow::Error) -> ExitCode {
+/// Reports a failure on stderr; the exit code distinguishes input errors from internal ones.
+pub fn report(error: &anyhow::Error) -> ExitCode {
     if let Some(BadInput(text)) = error.downcast_ref() {
         let prefix = if text.starts_with("error") { "" } else { "error: " };
         warn_line(&format!("{prefix}{}", text.trim_end()));

@@ -29,14 +29,14 @@ use std::{
 /// How long closing the recording may take before it is abandoned with a message.
 pub const CLOSE_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// How a headless run is told.
+/// Options of a headless run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Telling {
-    /// The report as JSON on stdout and nothing else there.
+pub struct RunOptions {
+    /// Print the report as JSON on stdout, and nothing else there.
     pub json: bool,
-    /// A journal and a recording are written.
+    /// Write a journal and a recording.
     pub record: bool,
-    /// Answers that come later than the console would wait for are late, as they are there.
+    /// Apply the console's answer windows: an answer that comes later counts as late.
     pub live_deadlines: bool,
 }
 
@@ -44,22 +44,22 @@ pub struct Telling {
 pub fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = crate::read_scenario(&args.scenario, &args.changes)?;
     let (json, record, live_deadlines) = (args.json, !args.no_record, args.live_deadlines);
-    fly(&scenario, plugins, &args.logs, Telling { json, record, live_deadlines })
+    fly(&scenario, plugins, &args.logs, RunOptions { json, record, live_deadlines })
 }
 
-/// Flies a scenario to its end and tells the result.
+/// Flies a scenario to its end and prints the result.
 pub fn fly(
     scenario: &Scenario,
     plugins: &PluginDirs,
     logs: &LogsArg,
-    telling: Telling,
+    options: RunOptions,
 ) -> anyhow::Result<ExitCode> {
     let stop = stop_signal::listen();
     crate::planners::check_choices(scenario, plugins)?;
     warn_of_clearance(scenario);
     let began = Instant::now();
     let flight = Flight::prepare(scenario, false);
-    let folder = telling
+    let folder = options
         .record
         .then(|| RunFolder::create(&logs.logs, &scenario.name, &scenario.mission.planner.id, scenario.seed))
         .transpose()?;
@@ -67,7 +67,7 @@ pub fn fly(
         Some(folder) => RunRecorder::start(folder.path(), Options::default())?,
         None => RunRecorder::spawn(JournalWriter::unwritten(began), None)?,
     };
-    let bar = progress_bar(scenario, telling);
+    let bar = progress_bar(scenario, options);
     let (mut fold, mut trouble) = (Fold::new(), None);
     let mut take = |events: Vec<Event>| {
         for event in &events {
@@ -78,7 +78,7 @@ pub fn fly(
         report_trouble(&mut trouble, recorder.health().error);
     };
     take(vec![flight.opened()]);
-    let host = fly_to_end(flight, host(scenario, plugins), take, (&bar, &stop), telling.live_deadlines);
+    let host = fly_to_end(flight, host(scenario, plugins), take, (&bar, &stop), options.live_deadlines);
     bar.finish_and_clear();
     let finished = recorder.finish(CLOSE_TIMEOUT);
     let logs = folder.is_some().then(|| Logs {
@@ -95,21 +95,21 @@ pub fn fly(
     };
     let summary = scenario.expect.evaluated(summary);
     let kept = folder.as_ref().map(|folder| Kept::new(folder, &finished, &folder.write_report(&summary)));
-    tell(&summary, telling)?;
+    print_summary(&summary, options)?;
     match &kept {
         Some(kept) if kept.problem().is_some() => warn_line(&kept.text()),
-        Some(kept) if !telling.json => say_line(&kept.text())?,
+        Some(kept) if !options.json => say_line(&kept.text())?,
         _ => {}
     }
     let code = exit_code(&summary);
     Ok(ExitCode::from(kept.map_or(code, |kept| kept.exit_code(code))))
 }
 
-/// Says on stderr, once, that recording fails, and that it goes on.
+/// Reports on stderr, once each, that recording fails and that it has resumed.
 fn report_trouble(reported: &mut Option<String>, trouble: Option<String>) {
     match (&reported, &trouble) {
         (None, Some(error)) => warn_line(&format!("warning: recording fails: {error}")),
-        (Some(_), None) => warn_line("recording goes on, nothing is lost"),
+        (Some(_), None) => warn_line("recording resumed, nothing was lost"),
         _ => {}
     }
     *reported = trouble;
@@ -125,9 +125,9 @@ fn fly_to_end(
 ) -> Host {
     let mut answers = InOrder::new(host);
     let (on_work, on_progress) = progress::shown_in(bar, answers.host().plan_budget());
-    answers.host().tell_progress(on_progress);
-    stop_signal::ring(answers.host().doorbell());
-    let mut watch = PlanWatch::telling(on_work);
+    answers.host().set_on_progress(on_progress);
+    stop_signal::wake_on_signal(answers.host().waker());
+    let mut watch = PlanWatch::with_callback(on_work);
     let mut orders = vec![Order::Start];
     while !matches!(flight.phase(), Phase::Ended(_)) {
         if stop.requested() {
@@ -162,8 +162,8 @@ pub fn planner_calls(host: &Host) -> PlannerCalls {
     }
 }
 
-fn progress_bar(scenario: &Scenario, telling: Telling) -> ProgressBar {
-    if telling.json || !std::io::stderr().is_terminal() {
+fn progress_bar(scenario: &Scenario, options: RunOptions) -> ProgressBar {
+    if options.json || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(1000).with_prefix(scenario.name.clone());
@@ -190,8 +190,8 @@ fn show_progress(bar: &ProgressBar, events: &[Event]) {
     }
 }
 
-fn tell(summary: &Summary, telling: Telling) -> anyhow::Result<()> {
-    if telling.json {
+fn print_summary(summary: &Summary, options: RunOptions) -> anyhow::Result<()> {
+    if options.json {
         say_line(&serde_json::to_string_pretty(summary).context("writing the report as JSON")?)
     } else {
         say(&report::human(summary))

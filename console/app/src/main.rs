@@ -44,7 +44,7 @@ fn main() -> ExitCode {
         return planner_host::worker_main();
     }
     survive_file_size_limit();
-    dispatch(cli).unwrap_or_else(|error| failure::tell(&error))
+    dispatch(cli).unwrap_or_else(|error| failure::report(&error))
 }
 
 /// A file that may not grow (`ulimit -f`) is an error of the write, as a full disk is, and not the end of the process.
@@ -95,7 +95,7 @@ fn by_default(plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
         &scenario,
         plugins,
         &logs,
-        headless::Telling { json: false, record: true, live_deadlines: false },
+        headless::RunOptions { json: false, record: true, live_deadlines: false },
     )
 }
 

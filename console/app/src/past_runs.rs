@@ -158,9 +158,9 @@ pub fn export(run: &Path, rrd: &Path, logs: &LogsArg) -> anyhow::Result<ExitCode
     if let Some(doubt) = run_folder::journal_doubt(&folder, sha256.as_deref()) {
         say_line(&format!("note: {doubt}; the recording holds what it holds"))?;
     }
-    if let Some(damage) = made.context("making the recording anew")? {
+    if let Some(damage) = made.context("regenerating the recording")? {
         say_line(&format!("note: the journal stops early ({damage}); the recording holds what it holds"))?;
     }
-    say_line(&format!("{} made anew from {}", rrd.display(), path.display()))?;
+    say_line(&format!("{} regenerated from {}", rrd.display(), path.display()))?;
     Ok(ExitCode::from(COMPLETE))
 }

@@ -77,7 +77,7 @@ pub struct Leg {
 pub fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = crate::read_scenario(&args.scenario, &args.changes)?;
     let planned = make_plan(&scenario, plugins)?;
-    tell(&planned, args.json)?;
+    print_plan(&planned, args.json)?;
     if let Some(file) = &args.svg {
         std::fs::write(file, picture(&scenario, &planned)).map_err(|error| {
             bad_input(format!("the drawing cannot be written: {error}: {}", file.display()))
@@ -98,7 +98,7 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Planne
     let work = format!("Planning ({})", scenario.mission.planner.id);
     let spinner = progress::spinner(&work, patience(&scenario.mission));
     let shown = spinner.clone();
-    host.tell_progress(Arc::new(move |_, progress| progress::show_share(&shown, &work, progress)));
+    host.set_on_progress(Arc::new(move |_, progress| progress::show_share(&shown, &work, progress)));
     let began = Instant::now();
     let answer = ask_for_plan(scenario, &mut host);
     spinner.finish_and_clear();
@@ -172,7 +172,7 @@ pub fn patient(config: HostConfig, mission: &MissionConfig) -> HostConfig {
     }
 }
 
-/// A planner that says no by itself gives as much as it has; any other fault is the user's to mend.
+/// A planner that refuses returns its partial path; any other fault is for the user to fix.
 fn partial_plan(fault: &Fault) -> anyhow::Result<Plan> {
     match fault.cause {
         Cause::Planner(code) if code != Code::Config => {
@@ -182,8 +182,8 @@ fn partial_plan(fault: &Fault) -> anyhow::Result<Plan> {
     }
 }
 
-/// What the path does to the tether, judged independently of its planner; where there is none, what it would do to one
-/// of any length.
+/// What the path does to the tether, certified independently of its planner; without a tether, what it would do to one of
+/// unlimited length.
 fn certificate(scenario: &Scenario, plan: &Plan) -> Option<Certificate> {
     if plan.path.is_empty() {
         return None;
@@ -247,13 +247,13 @@ fn longest_cable(anchor: Point, world: &World, path: &[Point]) -> Option<Vec<Poi
     Some(cable.at_longest(path).taut_line())
 }
 
-/// The legs as the planner told them; a planner that told none has a single one.
+/// The legs as reported by the planner; a plan without legs has a single one.
 pub fn legs(plan: &Plan) -> Vec<Leg> {
-    let told = plan.legs.iter().map(|leg| Leg { tag: leg.tag.word(), first: leg.first, last: leg.last });
+    let reported = plan.legs.iter().map(|leg| Leg { tag: leg.tag.word(), first: leg.first, last: leg.last });
     match plan.path.len() {
         0 => vec![],
         n if plan.legs.is_empty() => vec![Leg { tag: "path", first: 0, last: n - 1 }],
-        _ => told.collect(),
+        _ => reported.collect(),
     }
 }
 
@@ -263,8 +263,8 @@ fn lengths(planned: &Planned) -> String {
         let legs = planned.legs.iter().filter(|leg| leg.tag == tag);
         legs.map(|leg| polyline::length_m(&planned.path[leg.first..=leg.last])).sum()
     };
-    let told = ["swath", "connector", "retract", "travel"].map(|tag| (tag, length_m(tag)));
-    let parts: Vec<String> = told
+    let by_tag = ["swath", "connector", "retract", "travel"].map(|tag| (tag, length_m(tag)));
+    let parts: Vec<String> = by_tag
         .iter()
         .filter(|(_, length_m)| *length_m > 0.0)
         .map(|(tag, length_m)| format!("{tag} {length_m:.1} m"))
@@ -272,7 +272,7 @@ fn lengths(planned: &Planned) -> String {
     if parts.is_empty() { String::new() } else { format!("legs      {}\n", parts.join(", ")) }
 }
 
-/// What was warned of, for people, without the reason that is told already.
+/// The warnings, for people, except the one already printed as the reason.
 fn warnings(planned: &Planned) -> String {
     let fresh = planned.warnings.iter().filter(|warning| Some(*warning) != planned.reason.as_ref());
     fresh.map(|warning| format!("warning   {warning}\n")).collect::<Vec<_>>().concat()
@@ -299,7 +299,7 @@ fn certified(certificate: &Certificate) -> String {
     )
 }
 
-fn tell(planned: &Planned, json: bool) -> anyhow::Result<()> {
+fn print_plan(planned: &Planned, json: bool) -> anyhow::Result<()> {
     if json {
         return say_line(&serde_json::to_string(planned).context("writing the plan as JSON")?);
     }

@@ -1,11 +1,11 @@
-//! Which planner is being opened or is making a plan, for whoever shows it. What it shows depends on the clock on the
-//! wall, so it enters neither journal nor recording.
+//! Which planner is being opened or is planning, for display. This depends on wall-clock time, so it enters neither
+//! journal nor recording.
 
 use crate::answers::Answers;
 use mission::{Answer, Ask, AskId, Mission, What, WorkerId};
 use std::collections::BTreeMap;
 
-/// Who is told of the work that begins, in words, and of its end.
+/// Callback for the planners' work: a description when it begins, `None` when it ends.
 pub type OnWork = Box<dyn FnMut(Option<&str>) + Send>;
 
 /// Work that planners are doing and that takes its time.
@@ -17,12 +17,12 @@ pub struct PlanWatch {
 }
 
 impl PlanWatch {
-    /// Tells somebody of every change at once.
-    pub fn telling(on_work: OnWork) -> Self {
+    /// Calls back on every change.
+    pub fn with_callback(on_work: OnWork) -> Self {
         Self { on_work: Some(on_work), ..Self::default() }
     }
 
-    /// What is being done, as words: `Planning (tether-safe)`.
+    /// The current work, as shown: `Planning (tether-safe)`.
     pub fn current(&self) -> Option<&str> {
         self.open.values().next().map(String::as_str)
     }
@@ -43,16 +43,16 @@ impl PlanWatch {
             }
             What::Reconfigure(_) | What::Step(_) | What::Snapshot => return,
         }
-        self.tell();
+        self.notify();
     }
 
     fn answered(&mut self, ask: AskId) {
         if self.open.remove(&ask).is_some() {
-            self.tell();
+            self.notify();
         }
     }
 
-    fn tell(&mut self) {
+    fn notify(&mut self) {
         if let Some(on_work) = &mut self.on_work {
             on_work(self.open.values().next().map(String::as_str));
         }

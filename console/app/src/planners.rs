@@ -80,7 +80,7 @@ pub fn choice_of<'a>(id: &str, known: &'a [PlannerInfo]) -> Result<&'a PlannerIn
         } else {
             format!("found: {}", ids.join(", "))
         };
-        format!("there is no planner `{id}`; {has}; `tankops planners` tells where they are looked for")
+        format!("there is no planner `{id}`; {has}; `tankops planners` shows where they are searched for")
     })
 }
 

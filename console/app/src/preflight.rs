@@ -91,7 +91,7 @@ fn free_bytes(folder: &Path) -> Option<u64> {
     (space.f_blocks > 0).then(|| space.f_bavail.saturating_mul(space.f_frsize))
 }
 
-/// Creates a file, writes to it and removes it: permissions alone do not tell of quotas and read-only mounts.
+/// Creates a file, writes to it and removes it: permissions alone do not reveal quotas and read-only mounts.
 fn probe(folder: &Path) -> io::Result<()> {
     let path = folder.join(format!(".probe-{}-{:?}", std::process::id(), std::thread::current().id()));
     let mut file = File::create_new(&path)?;
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn too_little_space_is_told_in_numbers() {
+    fn too_little_space_is_reported_in_numbers() {
         let (logs, free_bytes) = (PathBuf::from("logs"), 943_718);
         let error = LogsError::NoSpace { logs, free_bytes, needed_bytes: MIN_FREE_BYTES };
         assert!(error.to_string().contains("0.9 MB are free, at least 16.0 MB are needed"), "{error}");

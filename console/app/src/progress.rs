@@ -69,9 +69,9 @@ mod tests {
 
     #[test]
     fn a_plan_that_is_not_there_yet_is_never_whole() {
-        let told = |share, what: &str| super::share(&Progress { share, what: what.to_owned() });
-        assert_eq!(told(0.0, ""), "0 %");
-        assert_eq!(told(0.429, "candidate 3 of 8"), "42 %, candidate 3 of 8");
-        assert_eq!(told(1.0, "certificate"), "99 %, certificate");
+        let shown = |share, what: &str| super::share(&Progress { share, what: what.to_owned() });
+        assert_eq!(shown(0.0, ""), "0 %");
+        assert_eq!(shown(0.429, "candidate 3 of 8"), "42 %, candidate 3 of 8");
+        assert_eq!(shown(1.0, "certificate"), "99 %, certificate");
     }
 }

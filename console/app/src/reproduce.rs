@@ -96,7 +96,7 @@ fn progress_bar(name: &'static str) -> ProgressBar {
     bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-/// Shows that something of unknown length goes on.
+/// Shows that work of unknown length is in progress.
 pub fn spinner(name: &'static str, json: bool) -> ProgressBar {
     if json || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
@@ -132,8 +132,9 @@ fn notes(block: &[Row]) -> Vec<String> {
     for row in block.iter().filter(|row| !row.note.is_empty()) {
         let is_of_all = block.iter().all(|other| other.note == row.note);
         let note = if is_of_all { row.note.clone() } else { format!("{}: {}", row.metric, row.note) };
-        let is_told = block.iter().take_while(|other| !std::ptr::eq(*other, row)).any(|o| o.note == row.note);
-        if !is_told {
+        let is_printed =
+            block.iter().take_while(|other| !std::ptr::eq(*other, row)).any(|o| o.note == row.note);
+        if !is_printed {
             notes.push(note);
         }
     }
@@ -160,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_told_in_blocks_with_their_notes_once() {
+    fn rows_are_printed_in_blocks_with_their_notes_once() {
         let row = |metric: &str, ours| Row::new("t", "d1/disk", "rpf", metric, ours, "m").of(3);
         let rows = [
             row("rmse", Some(0.25)).printed(0.266).note("gated"),

@@ -56,7 +56,7 @@ pub struct Scenario {
     pub sim: SimConfig,
     /// What is to be done.
     pub mission: MissionConfig,
-    /// How the plates of the floor lie, if the drawing tells.
+    /// How the plates of the floor lie, if the drawing specifies it.
     pub plates: Option<PlateLayout>,
     /// Bounds that the run is held to.
     pub expect: Expect,

@@ -1,6 +1,6 @@
 //! Being asked to stop from outside: SIGINT, SIGTERM, SIGHUP.
 
-use planner_host::Doorbell;
+use planner_host::Waker;
 use signal_hook::{
     consts::{SIGHUP, SIGINT, SIGTERM},
     iterator::Signals,
@@ -40,10 +40,10 @@ pub fn listen() -> StopSignal {
     StopSignal(asked)
 }
 
-/// Rings a doorbell at every signal, so that whoever waits for planners looks up.
-pub fn ring(doorbell: Doorbell) {
+/// Wakes the host at every signal, so that a wait for planners is interrupted.
+pub fn wake_on_signal(waker: Waker) {
     let Ok(mut signals) = Signals::new(SIGNALS) else { return };
-    let ringing = move || signals.forever().for_each(|_| doorbell.ring());
+    let watch = move || signals.forever().for_each(|_| waker.wake());
     // Without the thread the signal is noticed when the planner answers.
-    drop(thread::Builder::new().name("stop signal".into()).spawn(ringing));
+    drop(thread::Builder::new().name("stop signal".into()).spawn(watch));
 }

@@ -1,4 +1,4 @@
-//! `tankops tune`: better parameters, judged on layouts that they were not tuned on.
+//! `tankops tune`: better parameters, evaluated on layouts that they were not tuned on.
 
 use crate::{
     cli::TuneArgs,
@@ -50,7 +50,7 @@ pub fn tune(args: &TuneArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let tuned = Bench::new(plugins, args.threads, &progress).and_then(|bench| search(&tuning, &bench));
     let tuned = tuned.map_err(|problem| bad_input(problem.to_string()))?;
     bar.finish_and_clear();
-    tell(&tuned, args)?;
+    print_result(&tuned, args)?;
     Ok(ExitCode::from(COMPLETE))
 }
 
@@ -86,7 +86,7 @@ fn value(written: &str) -> ParamValue {
     }
 }
 
-fn tell(tuned: &Tuned, args: &TuneArgs) -> anyhow::Result<()> {
+fn print_result(tuned: &Tuned, args: &TuneArgs) -> anyhow::Result<()> {
     let (before, after) = tuned.loss;
     if args.json {
         let answer = serde_json::json!({

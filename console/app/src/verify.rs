@@ -64,13 +64,13 @@ pub fn verify(
     let sha256 = run_folder::sha256(&path).with_context(|| format!("reading {}", path.display()))?;
     findings.doubt = run_folder::journal_doubt(&folder, Some(&sha256))
         .or_else(|| findings.no_end.as_ref().and_then(|_| run_folder::end_is_missing(&folder)));
-    tell(&findings, &path, plugins)?;
+    print_findings(&findings, &path, plugins)?;
     let differs = findings.planners.as_ref().is_some_and(|asked| asked.difference.is_some());
     let equal = findings.difference.is_none() && findings.doubt.is_none() && !differs;
     Ok(ExitCode::from(if equal { COMPLETE } else { ENDED_OTHERWISE }))
 }
 
-fn tell(findings: &Findings, path: &Path, plugins: &PluginDirs) -> anyhow::Result<()> {
+fn print_findings(findings: &Findings, path: &Path, plugins: &PluginDirs) -> anyhow::Result<()> {
     let Findings { difference, doubt, no_end, planners, events, last_tick } = findings;
     if let Some(why) = no_end {
         say_line(&format!("note: the journal has no end ({why}); what it holds before is compared"))?;
@@ -169,7 +169,7 @@ fn line(event: &Event) -> anyhow::Result<String> {
     serde_json::to_string(event).context("writing an event as JSON")
 }
 
-/// How the run was opened; a journal without that tells nothing.
+/// How the run was opened; a journal that does not begin with it is refused.
 pub fn opened(events: &[Event]) -> anyhow::Result<&RunOpened> {
     match events.first().map(|event| &event.kind) {
         Some(EventKind::RunOpened(opened)) => Ok(opened),

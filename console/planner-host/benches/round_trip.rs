@@ -1,5 +1,5 @@
 //! What a call to a planner costs: from the console through the worker process and back.
-#![expect(clippy::print_stdout, reason = "a bench tells its figures")]
+#![expect(clippy::print_stdout, reason = "a bench prints its figures")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use mission::planner::Parameters;

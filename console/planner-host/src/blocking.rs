@@ -26,10 +26,10 @@ pub struct Reply<T> {
 
 /// Runs one planner at a time, and waits for each of its answers.
 ///
-/// A planner that is chosen in place of one that died goes on from the private state that was saved last.
+/// A planner that is chosen in place of one that died continues from the private state that was saved last.
 pub struct BlockingHost {
     host: Host,
-    driving: Option<Driving>,
+    active: Option<Active>,
     saved: Option<Saved>,
     n_asks: u32,
     /// What planners said during calls that have no reply to carry it.
@@ -38,8 +38,8 @@ pub struct BlockingHost {
     n_unanswered: u64,
 }
 
-/// The planner that drives.
-struct Driving {
+/// The active planner.
+struct Active {
     worker: WorkerId,
     info: PlannerInfo,
     /// Mission time of the last save, seconds; from the first step on.
@@ -64,7 +64,7 @@ impl BlockingHost {
     pub fn new(dirs: &PluginDirs, config: HostConfig) -> Self {
         Self {
             host: Host::new(dirs, config),
-            driving: None,
+            active: None,
             saved: None,
             n_asks: 0,
             unheard: Vec::new(),
@@ -72,9 +72,9 @@ impl BlockingHost {
         }
     }
 
-    /// From now on somebody is told how far a plan is while it is being made.
-    pub fn tell_progress(&mut self, on_progress: OnProgress) {
-        self.host.tell_progress(on_progress);
+    /// Sets the callback that receives the progress of plans while they are being computed.
+    pub fn set_on_progress(&mut self, on_progress: OnProgress) {
+        self.host.set_on_progress(on_progress);
     }
 
     /// Calls, wall times and faults so far.
@@ -83,7 +83,8 @@ impl BlockingHost {
         HostStats { faults: stats.faults + self.n_unanswered, ..stats }
     }
 
-    /// Opens a planner; it drives from the next call on, and the one before is closed. On a fault that one stays.
+    /// Opens a planner; it is active from the next call on, and the previous one is closed. On a fault the previous one
+    /// stays active.
     ///
     /// # Errors
     /// Not found, refused, or failed while loading or configuring.
@@ -94,32 +95,32 @@ impl BlockingHost {
         site: &Site<'_>,
     ) -> Result<PlannerInfo, Fault> {
         self.save_state_of(id);
-        let worker = WorkerId(self.driving.as_ref().map_or(0, |driving| driving.worker.0.wrapping_add(1)));
+        let worker = WorkerId(self.active.as_ref().map_or(0, |active| active.worker.0.wrapping_add(1)));
         let restore = self.saved.as_ref().map(|saved| saved.ask);
         let opened = self.ask(worker, &Wanted::Open { planner: id, parameters, site, restore });
         let (Given::Opened(info), said) = opened.inspect_err(|_| self.host.close(worker))? else {
             unreachable!("what is opened is answered so")
         };
         self.unheard.extend(said.logs);
-        // What another planner knew is of no use to anyone who takes over later.
+        // The saved state of another planner is of no use to a later one.
         self.saved = self.saved.take().filter(|saved| saved.is_of(&info));
-        let driving = Driving { worker, info: (*info).clone(), saved_at_s: None };
-        if let Some(before) = self.driving.replace(driving) {
+        let active = Active { worker, info: (*info).clone(), saved_at_s: None };
+        if let Some(before) = self.active.replace(active) {
             self.host.close(before.worker);
         }
         Ok(*info)
     }
 
-    /// When the planner that drives is opened anew, what it knows now is better than what was saved last.
+    /// When the active planner is opened again, its current state is better than the one saved last.
     fn save_state_of(&mut self, id: &str) {
-        if self.driving.as_ref().is_some_and(|driving| driving.info.id == id) {
+        if self.active.as_ref().is_some_and(|active| active.info.id == id) {
             // A planner that fails over it is replaced anyway.
             let _ = self.save_state();
         }
     }
 
     fn save_state(&mut self) -> Result<(), Fault> {
-        let Some(Driving { worker, info, .. }) = &self.driving else { return Ok(()) };
+        let Some(Active { worker, info, .. }) = &self.active else { return Ok(()) };
         let (worker, planner, sha256) = (*worker, info.id.clone(), info.sha256.clone());
         if let (Given::State { bytes: 1.. }, _) = self.ask(worker, &Wanted::Snapshot)? {
             let ask = AskId { worker, n: self.n_asks };
@@ -133,7 +134,7 @@ impl BlockingHost {
     /// # Errors
     /// Out of range, unknown, not live, or the planner failed.
     pub fn reconfigure(&mut self, parameters: &Parameters) -> Result<(), Fault> {
-        let worker = self.driving(During::Configure)?;
+        let worker = self.active(During::Configure)?;
         let (_, said) = self.ask(worker, &Wanted::Reconfigure(parameters))?;
         self.unheard.extend(said.logs);
         Ok(())
@@ -144,7 +145,7 @@ impl BlockingHost {
     /// # Errors
     /// The planner found none or failed.
     pub fn plan(&mut self, request: &PlanRequest<'_>) -> Result<Reply<Plan>, Fault> {
-        let worker = self.driving(During::Plan)?;
+        let worker = self.active(During::Plan)?;
         match self.ask(worker, &Wanted::Plan(request))? {
             (Given::Plan(plan), said) => Ok(self.reply(plan, said)),
             _ => unreachable!("a plan is answered so"),
@@ -156,23 +157,23 @@ impl BlockingHost {
     /// # Errors
     /// The planner failed.
     pub fn step(&mut self, sensed: &Sensed<'_>) -> Result<Reply<Command>, Fault> {
-        let worker = self.driving(During::Step)?;
+        let worker = self.active(During::Step)?;
         if self.is_save_due(sensed.t_s) {
             self.save_state()?;
         }
         let (Given::Command(command), said) = self.ask(worker, &Wanted::Step(sensed))? else {
             unreachable!("a step is answered so")
         };
-        if let Some(driving) = &mut self.driving {
-            driving.saved_at_s.get_or_insert(sensed.t_s);
+        if let Some(active) = &mut self.active {
+            active.saved_at_s.get_or_insert(sensed.t_s);
         }
         Ok(self.reply(command, said))
     }
 
     /// Whether it is time to save the private state again, after the first step.
     fn is_save_due(&mut self, t_s: f64) -> bool {
-        let saving = self.driving.as_mut().filter(|driving| driving.info.snapshots);
-        let last_s = saving.and_then(|driving| driving.saved_at_s.as_mut());
+        let saving = self.active.as_mut().filter(|active| active.info.snapshots);
+        let last_s = saving.and_then(|active| active.saved_at_s.as_mut());
         let due = last_s.filter(|last_s| t_s - **last_s >= SAVE_EVERY_S);
         due.is_some_and(|last_s| {
             *last_s = t_s;
@@ -180,9 +181,9 @@ impl BlockingHost {
         })
     }
 
-    fn driving(&mut self, during: During) -> Result<WorkerId, Fault> {
-        if let Some(driving) = &self.driving {
-            return Ok(driving.worker);
+    fn active(&mut self, during: During) -> Result<WorkerId, Fault> {
+        if let Some(active) = &self.active {
+            return Ok(active.worker);
         }
         self.n_unanswered += 1;
         Err(Fault {

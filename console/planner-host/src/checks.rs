@@ -93,17 +93,17 @@ mod tests {
 
     #[test]
     fn legs_lie_on_the_path_in_order() {
-        let judged = |legs: &[(usize, usize)]| {
+        let checked = |legs: &[(usize, usize)]| {
             let legs = legs.iter().map(|&(first, last)| Leg { tag: LegTag::Swath, first, last }).collect();
             plan(&Plan { path: vec![Point2::origin(); 5], legs, ..Plan::default() })
         };
-        assert_eq!(judged(&[(0, 2), (2, 2), (3, 4)]), Ok(()));
-        assert_eq!(judged(&[(0, 5)]), Err("gave leg 0 from point 0 to 5 of a path of 5 points".into()));
+        assert_eq!(checked(&[(0, 2), (2, 2), (3, 4)]), Ok(()));
+        assert_eq!(checked(&[(0, 5)]), Err("gave leg 0 from point 0 to 5 of a path of 5 points".into()));
         assert_eq!(
-            judged(&[(0, 3), (2, 4)]),
+            checked(&[(0, 3), (2, 4)]),
             Err("gave leg 1 from point 2 on, within the leg before it".into())
         );
-        assert!(judged(&[(2, 1)]).is_err());
+        assert!(checked(&[(2, 1)]).is_err());
     }
 
     proptest! {

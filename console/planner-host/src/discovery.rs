@@ -61,7 +61,7 @@ fn is_plugin_name(path: &Path) -> bool {
 /// A larger file is no plugin, bytes.
 const MOST_BYTES: u64 = 512 << 20;
 
-/// A file that is named like a plugin, as far as it can be judged without loading it.
+/// A file that is named like a plugin, with what can be determined without loading it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PluginFile {
     /// Where it is.
@@ -74,7 +74,7 @@ pub struct PluginFile {
 }
 
 impl PluginFile {
-    /// Reads and judges a file.
+    /// Reads a file and checks its stamp.
     pub fn read(path: PathBuf) -> Self {
         match read_bytes(&path) {
             Ok(words) => {
@@ -104,7 +104,6 @@ impl PluginFile {
     }
 }
 
-/// SHA-256 in hexadecimal.
 /// The bytes of a plain file of sensible size; a device or a pipe might never end.
 fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     let about = std::fs::metadata(path).map_err(|error| format!("cannot be read: {error}"))?;
@@ -117,6 +116,7 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))
 }
 
+/// SHA-256 in hexadecimal.
 pub(crate) fn sha256_hex(bytes: &[u8]) -> String {
     use std::fmt::Write;
     Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut text, byte| {

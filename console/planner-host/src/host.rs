@@ -13,13 +13,13 @@ use crate::OnProgress;
 use crate::discovery::PluginDirs;
 use crate::parameters;
 use crate::stats::{Durations, HostStats};
-use crate::supervisor::{Bell, Doorbell, Failure, Happened, Worker, wait};
+use crate::supervisor::{Failure, Happened, WakeReceiver, Waker, Worker, wait};
 use fault::Phase;
 use find::Catalog;
 use mission::planner::{Cause, During, Fault, Parameters, PlannerInfo};
 use mission::{Answer, Ask, AskId, Given, Said, What, WorkerId};
 use opening::Opening;
-use planner::{Asked, Doing, Planner, Told};
+use planner::{Asked, Doing, Outcome, Planner};
 use planner_api::{PlanRequest, Sensed, Site};
 use saved::SavedStates;
 use std::collections::VecDeque;
@@ -30,8 +30,8 @@ use std::time::{Duration, Instant};
 /// [`Self::submit`] begins what is asked and returns at once; [`Self::next`] is where the answers come from, and the only
 /// place that waits. Every ask but [`What::Close`] is answered exactly once, unless its worker is closed before.
 ///
-/// After a fault that depends on the clock or on what is outside of the planner, after a panic and after an answer that is
-/// none, the process has ended and the planner must be opened anew.
+/// After a fault caused by the clock or by something outside the planner, after a panic and after an invalid answer, the
+/// process has ended and the planner must be opened again.
 pub struct Host {
     config: HostConfig,
     catalog: Catalog,
@@ -40,7 +40,7 @@ pub struct Host {
     leaving: Vec<Worker>,
     answers: VecDeque<Answer>,
     saved: SavedStates,
-    bell: Bell,
+    wake_ups: WakeReceiver,
     plan_times: Durations,
     step_times: Durations,
     n_faults: u64,
@@ -78,7 +78,7 @@ impl Host {
             leaving: Vec::new(),
             answers: VecDeque::new(),
             saved: SavedStates::default(),
-            bell: Bell::new(),
+            wake_ups: WakeReceiver::new(),
             plan_times: Durations::default(),
             step_times: Durations::default(),
             n_faults: 0,
@@ -91,8 +91,8 @@ impl Host {
         self.catalog.read_once();
     }
 
-    /// From now on somebody is told how far a plan is while it is being made.
-    pub fn tell_progress(&mut self, on_progress: OnProgress) {
+    /// Sets the callback that receives the progress of plans while they are being computed.
+    pub fn set_on_progress(&mut self, on_progress: OnProgress) {
         self.on_progress = Some(on_progress);
     }
 
@@ -107,13 +107,13 @@ impl Host {
     }
 
     /// Makes [`Self::next`] return from any thread.
-    pub fn doorbell(&self) -> Doorbell {
-        self.bell.button()
+    pub fn waker(&self) -> Waker {
+        self.wake_ups.waker()
     }
 
-    /// Forgets that the doorbell was rung.
-    pub fn clear_doorbell(&mut self) {
-        self.bell.clear();
+    /// Drops pending wake-ups.
+    pub fn clear_wake_ups(&mut self) {
+        self.wake_ups.clear();
     }
 
     /// Begins what is asked. A worker with an open ask takes no other one but [`What::Close`].
@@ -184,8 +184,8 @@ impl Host {
         }
     }
 
-    /// The next answer, as soon as there is one. None when a moment has passed, when the doorbell was rung, or when no ask
-    /// is open; without a moment it waits as long as it takes. What has arrived by now is always looked at.
+    /// The next answer, as soon as there is one. None when the given time is reached, when the host was woken, or when no
+    /// ask is open; without a time it waits as long as it takes. What has already arrived is always processed.
     pub fn next(&mut self, until: Option<Instant>) -> Option<Answer> {
         loop {
             let may_wait = self.answers.is_empty() && self.is_asked();
@@ -205,23 +205,23 @@ impl Host {
         self.planners.iter().any(|planner| planner.asked.is_some())
     }
 
-    /// Waits until something happens, at most to a moment, and does what is due; whether the doorbell was rung.
+    /// Waits until something happens, at most until the given time, and does what is due; whether the host was woken.
     fn look(&mut self, until: Option<Instant>) -> bool {
         let asked = self.planners.iter().filter_map(|planner| planner.worker.as_ref());
         let workers: Vec<&Worker> = asked.chain(&self.leaving).collect();
-        let Happened { rung, ready } = wait(Some(&self.bell), &workers, until);
+        let Happened { woken, ready } = wait(Some(&self.wake_ups), &workers, until);
         let (now, mut ready) = (Instant::now(), ready.into_iter());
         let mut outcomes = Vec::new();
         for planner in &mut self.planners {
             let Some(worker) = &mut planner.worker else { continue };
             let Some(ready) = ready.next() else { break };
             let (asked, on_progress) = (planner.asked.as_ref(), self.on_progress.as_ref());
-            let tell = &mut |progress: &_| {
-                if let Some((asked, tell)) = asked.zip(on_progress) {
-                    tell(asked.id, progress);
+            let forward = &mut |progress: &_| {
+                if let Some((asked, on_progress)) = asked.zip(on_progress) {
+                    on_progress(asked.id, progress);
                 }
             };
-            outcomes.extend(worker.advance(ready, now, tell).map(|outcome| (planner.id, outcome)));
+            outcomes.extend(worker.advance(ready, now, forward).map(|outcome| (planner.id, outcome)));
         }
         self.leaving.retain_mut(|worker| {
             if let Some(ready) = ready.next() {
@@ -232,14 +232,14 @@ impl Host {
         for (id, outcome) in outcomes {
             self.take(id, outcome);
         }
-        rung
+        woken
     }
 
     /// Takes the outcome of what a worker was asked.
     fn take(&mut self, id: WorkerId, outcome: Result<(), Failure>) {
         let Some(planner) = self.planners.iter_mut().find(|planner| planner.id == id) else { return };
         let Some(Asked { id, at, doing }) = planner.asked.take() else { return };
-        let told = match doing {
+        let outcome = match doing {
             Doing::Open(opening, stage) => return self.go_on_opening(id, *opening, *stage, outcome),
             Doing::Reconfigure(values) => planner.reconfigured(outcome, values),
             Doing::Plan(limits) => {
@@ -258,13 +258,13 @@ impl Host {
                 (Given::State { bytes }, Said::default())
             }),
         };
-        self.answer(id, told);
+        self.answer(id, outcome);
     }
 
     /// Puts an answer where [`Self::next`] finds it.
-    fn answer(&mut self, ask: AskId, told: Told) {
-        self.n_faults += u64::from(told.is_err());
-        let (result, said) = match told {
+    fn answer(&mut self, ask: AskId, outcome: Outcome) {
+        self.n_faults += u64::from(outcome.is_err());
+        let (result, said) = match outcome {
             Ok((given, said)) => (Ok(given), said),
             Err(fault) => (Err(fault), Said::default()),
         };
@@ -274,7 +274,7 @@ impl Host {
         self.answers.push_back(Answer { ask, result, said });
     }
 
-    /// Parts from a worker that cannot be asked any more.
+    /// Removes a worker that cannot be asked any more.
     fn retire(&mut self, id: WorkerId) {
         let unasked = self.planners.iter_mut().find(|planner| planner.id == id && planner.asked.is_none());
         if let Some(ended) = unasked.and_then(|planner| planner.worker.take_if(|worker| !worker.is_idle())) {

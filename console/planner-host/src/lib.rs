@@ -4,7 +4,7 @@
 //! process, which loads one plugin and answers requests over a socket. Whatever the plugin does there (crash, hang,
 //! eat memory, print) ends as a [`mission::Fault`] with one sentence, within the budget of what it was asked.
 //!
-//! [`Host`] answers what the mission asks and never waits unless it is told to; [`BlockingHost`] is for callers with
+//! [`Host`] answers what the mission asks and waits only where the caller requests it; [`BlockingHost`] is for callers with
 //! nothing else to do than wait; [`survey`] lists what was found; [`worker_main`] is what the hidden
 //! command `worker` runs. Planners run on Unix systems; elsewhere every choice is refused with a sentence.
 //!
@@ -34,7 +34,7 @@ pub use host::{Host, HostConfig};
 pub use parameters::{check_parameters, parameter_problems};
 pub use progress::{OnProgress, Progress};
 pub use stats::{CallStats, HostStats};
-pub use supervisor::{Doorbell, WorkerCommand};
+pub use supervisor::{Waker, WorkerCommand};
 pub use survey::{Survey, SurveyedPlugin, check_plugin, survey};
 #[cfg(unix)]
 pub use worker::worker_main;

@@ -66,8 +66,8 @@ fn load(bytes: &[u8], path: &Path) -> Result<abi::Entry, String> {
     // All symbols are resolved now: a missing one is a refusal here and not the end of the process at its first use.
     // SAFETY: runs the library's constructors, whatever they do; this process exists to bear that.
     let library = unsafe { Library::open(Some(staged.path()), RTLD_NOW | RTLD_LOCAL) }.map_err(|error| {
-        let told = error.source().map_or_else(|| error.to_string(), ToString::to_string);
-        format!("the loader refused it: {}", told.replace(&*staged.path().to_string_lossy(), &name))
+        let reason = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+        format!("the loader refused it: {}", reason.replace(&*staged.path().to_string_lossy(), &name))
     })?;
     // SAFETY: the stamp promises that this symbol is an entry; its own magic is checked before anything else.
     let entry = unsafe {

@@ -1,23 +1,23 @@
-//! How far a plan is while it is being made. It is shown and then forgotten: it depends on the clock on the wall, so it
-//! enters neither journal nor recording.
+//! Progress of a plan while it is being computed. It is shown and not stored: it depends on wall-clock time, so it enters
+//! neither journal nor recording.
 
 use mission::AskId;
 use std::sync::Arc;
 
-/// How far a plan is.
+/// Progress of a plan that is being computed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Progress {
-    /// Share done, 0 to 1, as the planner tells it.
+    /// Share done, 0 to 1, as reported by the planner.
     pub share: f64,
-    /// What is being done, a few words.
+    /// The current activity, in a few words.
     pub what: String,
 }
 
-/// Who is told how far the plan of an ask is. It is called on the thread that waits for the plan and must not keep it
-/// waiting.
+/// Callback for the progress of the plan that an ask requested. It is called on the thread that waits for the plan and
+/// must not block it.
 pub type OnProgress = Arc<dyn Fn(AskId, &Progress) + Send + Sync>;
 
 impl Progress {
-    /// Most characters of the words.
+    /// Maximum number of characters of [`Self::what`].
     pub(crate) const LONGEST: usize = 80;
 }

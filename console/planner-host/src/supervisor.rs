@@ -5,8 +5,6 @@
 #[cfg(unix)]
 mod clock;
 #[cfg(unix)]
-mod doorbell;
-#[cfg(unix)]
 mod ending;
 #[cfg(unix)]
 mod load;
@@ -17,21 +15,23 @@ mod process;
 #[cfg(not(unix))]
 mod unsupported;
 #[cfg(unix)]
+mod waker;
+#[cfg(unix)]
 mod worker;
 
 #[cfg(unix)]
-pub use doorbell::Doorbell;
+pub use waker::Waker;
 #[cfg(unix)]
 pub(crate) use {
-    doorbell::Bell,
     poller::{Happened, wait},
+    waker::WakeReceiver,
     worker::Worker,
 };
 
 #[cfg(not(unix))]
-pub use unsupported::Doorbell;
+pub use unsupported::Waker;
 #[cfg(not(unix))]
-pub(crate) use unsupported::{Bell, Happened, Worker, wait};
+pub(crate) use unsupported::{Happened, WakeReceiver, Worker, wait};
 
 use crate::wire::answer::{BAD_OUTPUT, Refusal};
 use planner_api::Code;
@@ -44,7 +44,7 @@ use std::time::Duration;
 pub struct WorkerCommand {
     /// The program.
     pub program: PathBuf,
-    /// What it is told.
+    /// Its command-line arguments.
     pub arguments: Vec<OsString>,
 }
 
@@ -65,12 +65,12 @@ impl Default for WorkerCommand {
     }
 }
 
-/// A worker that is told to end is given this long to drop its planner in good order.
+/// A worker that is asked to shut down is given this long to drop its planner cleanly.
 #[cfg(unix)]
 pub(crate) const SHUT_DOWN_WITHIN: Duration = Duration::from_millis(100);
 
-/// Planners are told a deadline that is this much earlier than the one they are held to, so that one that minds its
-/// time still answers in time.
+/// The deadline that a planner sees. It is earlier than the enforced one, so that a planner that watches its time still
+/// answers before it is killed.
 #[cfg(unix)]
 fn soft(deadline: Duration) -> Duration {
     deadline * 9 / 10
@@ -90,9 +90,9 @@ pub(crate) enum Failure {
         /// The last line that it printed; may be empty.
         last_output: String,
     },
-    /// No answer within budget and grace; the process was killed.
+    /// No answer within the budget and the grace period; the process was killed.
     Hung,
-    /// An answer, but only within the grace; the process was killed.
+    /// An answer, but only within the grace period; the process was killed.
     Late,
     /// It hardly got the processor, for very long; the process was killed.
     Starved,
@@ -105,7 +105,7 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
-    /// Whether a planner that says so cannot be asked again, or gave up by the clock: then its process ends.
+    /// Whether the planner cannot be asked again after this, or ran out of time: then its process ends.
     #[cfg(unix)]
     fn ends_the_process(&self) -> bool {
         let Self::Planner(refusal) = self else { return false };

@@ -2,8 +2,8 @@
 
 mod confine;
 mod deadline;
+mod progress_reporter;
 mod session;
-mod telling;
 
 use crate::wire::frame::{Incoming, Received};
 use crate::wire::{answer::BAD_OUTPUT, answer::Refusal, body::Writer, kind};

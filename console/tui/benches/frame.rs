@@ -3,7 +3,7 @@
 #![allow(
     clippy::print_stderr,
     clippy::disallowed_methods,
-    reason = "a bench looks at the clock and tells it"
+    reason = "a bench reads the clock and prints times"
 )]
 
 #[path = "../tests/console/fixture.rs"]
@@ -43,19 +43,19 @@ fn long_mission() -> Screen {
         cuts: vec![],
     };
     let covered = EventKind::Covered { runs: vec![CellRun(0, 34_000)] };
-    let mut events: Vec<Event> = [planned, covered].map(|kind| screen.telling.now(kind)).into();
+    let mut events: Vec<Event> = [planned, covered].map(|kind| screen.mission.now(kind)).into();
     let pose = screen.model.position.pose.expect("the fixture has driven");
     events.extend(path.into_iter().map(|position| {
-        screen.telling.now(EventKind::Estimated { pose: planner_api::PoseEstimate { position, ..pose } })
+        screen.mission.now(EventKind::Estimated { pose: planner_api::PoseEstimate { position, ..pose } })
     }));
-    screen.tell(Msg::Events(events));
+    screen.send(Msg::Events(events));
     screen
 }
 
 fn frame(criterion: &mut Criterion) {
     for (width, height) in [(80, 24), (120, 36), (200, 60), (300, 100)] {
         let mut screen = long_mission();
-        screen.tell(Msg::Resize { width, height });
+        screen.send(Msg::Resize { width, height });
         let scanned = screen.model.coverage.as_ref().map_or(0, |raster| raster.counts().covered);
         let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a screen in memory");
         let mut draw = || terminal.draw(|frame| view(&screen.model, &RICH, frame)).map(drop).expect("memory");
@@ -77,7 +77,7 @@ fn fold(criterion: &mut Criterion) {
     let mut screen = long_mission();
     criterion.bench_function("update_with_one_tick_of_events", |bencher| {
         bencher.iter(|| {
-            let events = screen.telling.drive(1);
+            let events = screen.mission.drive(1);
             update(&mut screen.model, Msg::Events(events))
         });
     });

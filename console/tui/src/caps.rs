@@ -33,12 +33,12 @@ pub struct Caps {
     pub colours: Colours,
     /// Its characters.
     pub glyphs: Glyphs,
-    /// Whether it sits behind a slow line, so that fewer frames should be drawn.
+    /// Whether it sits behind a slow connection, so that fewer frames should be drawn.
     pub ssh: bool,
 }
 
 impl Caps {
-    /// What the environment tells; `variable` looks up an environment variable.
+    /// The capabilities according to the environment; `variable` looks up an environment variable.
     pub fn from_env(variable: impl Fn(&str) -> Option<String>) -> Self {
         let term = variable("TERM").unwrap_or_default();
         let says = |name: &str| variable(name).filter(|value| !value.is_empty());

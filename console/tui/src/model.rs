@@ -129,7 +129,7 @@ pub struct PlanShown {
 /// The planner and what it last did.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Planning {
-    /// Which planner drives, with the parameters set by hand.
+    /// The active planner, with the parameters set by hand.
     pub choice: Option<PlannerChoice>,
     /// Who it is.
     pub info: Option<PlannerInfo>,
@@ -143,7 +143,7 @@ pub struct Planning {
     pub drawings_tick: u64,
     /// Its last figures: name, value, unit.
     pub scalars: Vec<(String, f64, String)>,
-    /// Its last failure, until it drives again.
+    /// Its last failure, until it is active again.
     pub fault: Option<Fault>,
     /// The worker of a planner that is being prepared; its plans are not flown yet.
     #[serde(default)]
@@ -229,7 +229,7 @@ pub struct Refused {
     pub reason: String,
 }
 
-/// A line for the operator that goes away by itself.
+/// A message for the operator that disappears by itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Notice {
     /// How much it asks of the operator.
@@ -240,7 +240,7 @@ pub struct Notice {
     pub until_mono_s: f64,
 }
 
-/// Work of a planner that takes its time; ticks and HOLD go on meanwhile.
+/// A planner's work that takes time; ticks and HOLD continue meanwhile.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Busy {
     /// What it is, such as `Planning (rpf)`.
@@ -302,14 +302,14 @@ impl Model {
         (covers && !planner.covers).then(|| "does not support coverage missions".into())
     }
 
-    /// What is known of the planner that drives, or that will drive first.
+    /// What is known of the active planner, or of the first one.
     pub fn planner(&self) -> Option<&PlannerInfo> {
         let id = self.planner_id();
         let listed = || self.console.planners.iter().find(|planner| Some(planner.id.as_str()) == id);
         self.planning.info.as_ref().or_else(listed)
     }
 
-    /// Id of the planner that drives, or that will drive first.
+    /// Id of the active planner, or of the first one.
     pub fn planner_id(&self) -> Option<&str> {
         self.planning.choice.as_ref().map(|choice| choice.id.as_str())
     }

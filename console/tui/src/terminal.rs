@@ -26,7 +26,7 @@ impl TerminalGuard {
     /// Takes the terminal over: raw mode, alternate screen, bracketed paste, reports of focus.
     ///
     /// # Errors
-    /// If there is no terminal or it cannot be written; it is given back before that is told.
+    /// If there is no terminal or it cannot be written to; the terminal is restored before the error is returned.
     pub fn enter() -> io::Result<Self> {
         restore::own();
         let open = || {

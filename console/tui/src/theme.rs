@@ -28,7 +28,7 @@ pub enum Role {
     Crit,
     /// The robot moves by itself.
     Run,
-    /// The robot is told to stand still.
+    /// The robot is held.
     Hold,
     /// A value older than it should be.
     Stale,
@@ -122,7 +122,7 @@ impl Theme {
         Self { styles: Role::ALL.map(|role| style(role, caps.colours)) }
     }
 
-    /// Gives each role a colour that no other has, so that [`Theme::role_of`] can tell them apart.
+    /// Gives each role a colour that no other has, so that [`Theme::role_of`] can distinguish them.
     pub fn labelled() -> Self {
         Self { styles: Role::ALL.map(|role| Style::new().fg(Color::Indexed(16 + role as u8))) }
     }

@@ -29,7 +29,7 @@ pub enum Msg {
         /// Rows.
         height: u16,
     },
-    /// The mission went on.
+    /// The mission resumed.
     Events(Vec<Event>),
     /// The time.
     Time(Times),
@@ -84,7 +84,7 @@ pub enum Signal {
     Interrupt,
     /// SIGTERM: hold and leave.
     Terminate,
-    /// SIGHUP, or the terminal is gone: hold and leave.
+    /// SIGHUP, or the terminal was closed: hold and leave.
     Hangup,
     /// SIGTSTP: hold and give the terminal back for a while.
     Stop,

@@ -75,7 +75,7 @@ pub(crate) fn commit(kind: &str, ctx: &Ctx<'_>) -> Result<()> {
         "long" => std::thread::sleep(LONG),
         "draw_flood" => draw_flood(ctx),
         "print_flood" => print_flood(),
-        "progress" => tell_progress_for_ever(ctx),
+        "progress" => report_progress_endlessly(ctx),
         "close_fds" => process::close_everything(),
         _ => {}
     }
@@ -129,7 +129,7 @@ fn draw_flood(ctx: &Ctx<'_>) {
     }
 }
 
-fn tell_progress_for_ever(ctx: &Ctx<'_>) {
+fn report_progress_endlessly(ctx: &Ctx<'_>) {
     for round in 0_u64.. {
         ctx.progress(0.999, &format!("almost done, round {round}"));
     }

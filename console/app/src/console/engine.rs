@@ -14,7 +14,7 @@ use crate::{
     scenario::Scenario,
 };
 use mission::{Awaits, Event, Order, Phase};
-use planner_host::{Doorbell, Host, PluginDirs, Progress};
+use planner_host::{Host, PluginDirs, Progress, Waker};
 use recording::{Options, RunRecorder};
 use report::{Fold, Logs, Stops, Summary};
 use std::{
@@ -29,20 +29,20 @@ use std::{
 };
 use tui::{Msg, Speed};
 
-/// How often the screen hears how the recorder is doing.
+/// How often the recorder's health is sent to the screen.
 const HEALTH_PERIOD: Duration = Duration::from_millis(500);
 /// A tick that is later than this is not made up for.
 const MOST_LATE: Duration = Duration::from_millis(50);
-/// How long a process that was told to end may take to close the recording.
+/// Time limit for closing the recording when a signal has asked the process to exit.
 const HURRY: Duration = Duration::from_millis(900);
-/// With so many messages waiting for the screen the simulation waits for it.
+/// With this many messages waiting for the screen, the simulation waits for it.
 const MOST_BACKLOG: usize = 64;
 /// How long it waits then before it looks again, unless an order comes.
 const LOOK_AGAIN: Duration = Duration::from_millis(1);
 
-/// What the engine is told.
+/// A request to the engine thread.
 enum Request {
-    /// An order, and when whoever gave it was heard.
+    /// An order, and when it was received.
     Order(Order, Instant),
     Speed(Speed),
     /// End the run, close everything, stop.
@@ -53,20 +53,20 @@ enum Request {
 
 /// The flying thread, seen from outside.
 pub struct Engine {
-    line: Line,
+    handle: EngineHandle,
     thread: JoinHandle<Option<Ended>>,
 }
 
-/// A line to the engine, for every thread that may have to stop the robot.
+/// A handle to the engine, for every thread that may have to stop the robot.
 #[derive(Clone)]
-pub struct Line {
+pub struct EngineHandle {
     requests: Sender<Request>,
-    doorbell: Doorbell,
+    waker: Waker,
     /// Whether the robot moves or may begin to, as the screen knows it.
     may_move: Arc<AtomicBool>,
 }
 
-impl Line {
+impl EngineHandle {
     /// Hands an order to the mission; it enters with the next tick. What stops the robot makes that tick begin now.
     pub fn order(&self, order: Order) {
         let is_urgent = matches!(order, Order::Hold | Order::Abort);
@@ -78,8 +78,8 @@ impl Line {
         self.may_move.load(Ordering::Relaxed)
     }
 
-    /// The screen has learnt whether the robot may move.
-    pub fn tell_may_move(&self, may_move: bool) {
+    /// The screen reports whether the robot may move.
+    pub fn set_may_move(&self, may_move: bool) {
         self.may_move.store(may_move, Ordering::Relaxed);
     }
 
@@ -89,10 +89,10 @@ impl Line {
     }
 
     fn request(&self, request: Request, is_urgent: bool) {
-        // An engine that has ended has told the screen why.
+        // An engine that has ended has already sent the reason to the screen.
         let _ = self.requests.send(request);
         if is_urgent {
-            self.doorbell.ring();
+            self.waker.wake();
         }
     }
 }
@@ -116,10 +116,10 @@ impl Engine {
     ) -> anyhow::Result<Self> {
         let (requests, asked) = mpsc::channel();
         let mut host = headless::host(scenario, plugins);
-        let line = Line { requests, doorbell: host.doorbell(), may_move: Arc::default() };
+        let handle = EngineHandle { requests, waker: host.waker(), may_move: Arc::default() };
         let progress = screen.clone();
-        host.tell_progress(Arc::new(move |_, Progress { share, what }| {
-            progress.tell(Msg::BusyAt { share: *share, what: what.clone() });
+        host.set_on_progress(Arc::new(move |_, Progress { share, what }| {
+            progress.send(Msg::BusyAt { share: *share, what: what.clone() });
         }));
         let engine = EngineThread {
             scenario: scenario.clone(),
@@ -138,18 +138,18 @@ impl Engine {
             drill,
         };
         let thread = thread::Builder::new().name("engine".into()).spawn(move || engine.fly())?;
-        Ok(Self { line, thread })
+        Ok(Self { handle, thread })
     }
 
-    /// A line to the engine.
-    pub fn line(&self) -> Line {
-        self.line.clone()
+    /// A handle to the engine.
+    pub fn handle(&self) -> EngineHandle {
+        self.handle.clone()
     }
 
-    /// Ends the run, closes its files and waits for that; a process that was told to end by a signal hurries.
+    /// Ends the run, closes its files and waits for that; less time is allowed after a signal (`hurry`).
     pub fn close(self, hurry: bool) -> anyhow::Result<Option<Ended>> {
         let within = if hurry { HURRY } else { CLOSE_TIMEOUT };
-        self.line.request(Request::Close { within }, true);
+        self.handle.request(Request::Close { within }, true);
         self.thread.join().map_err(|panic| anyhow::anyhow!("the engine panicked: {}", words(&*panic)))
     }
 }
@@ -187,13 +187,13 @@ struct RunLog {
     recorder: Option<RunRecorder>,
     fold: Fold,
     began: Instant,
-    health_told: Instant,
+    health_sent_at: Instant,
     ended: Option<Ended>,
 }
 
 impl EngineThread {
     fn fly(mut self) -> Option<Ended> {
-        self.tell_events(&[self.flight.opened()]);
+        self.send_events(&[self.flight.opened()]);
         let mut due = Instant::now();
         loop {
             let (orders, close) = self.wait_until(due);
@@ -219,8 +219,8 @@ impl EngineThread {
     /// Waits for the next tick, or, while no ticks pass, for a request; gives the orders that came and whether to
     /// close.
     fn wait_until(&mut self, due: Instant) -> (Vec<Order>, Option<Duration>) {
-        // What rings from here on has not been taken yet.
-        self.host.clear_doorbell();
+        // A wake-up from here on belongs to a request that has not been taken yet.
+        self.host.clear_wake_ups();
         let mut orders = Vec::new();
         loop {
             let is_behind = self.screen.backlog() > MOST_BACKLOG;
@@ -281,9 +281,9 @@ impl EngineThread {
     fn tick(&mut self, orders: &[Order]) {
         let starts = self.log.is_none() && orders.contains(&Order::Start);
         if starts && let Err(error) = self.open_log() {
-            // Nothing moves that is not written down.
+            // Nothing moves without being recorded.
             let why = format!("cannot start: {error:#}");
-            self.screen.urge(Msg::OrderFailed { order: Order::Start, why });
+            self.screen.send_urgent(Msg::OrderFailed { order: Order::Start, why });
             let others: Vec<Order> = orders.iter().filter(|order| **order != Order::Start).cloned().collect();
             return self.tick_with(&others);
         }
@@ -300,20 +300,20 @@ impl EngineThread {
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
         assert!(!failing, "drill: the engine fails on purpose");
         self.keep(&events);
-        self.tell_work();
-        self.tell_events(&events);
-        self.tell_health();
+        self.send_work();
+        self.send_events(&events);
+        self.send_health();
         if matches!(self.flight.phase(), Phase::Ended(_)) {
             self.close_log(CLOSE_TIMEOUT);
         }
     }
 
-    /// Tells the screen what planners are doing beyond this tick.
-    fn tell_work(&mut self) {
+    /// Sends to the screen what planners are doing beyond this tick.
+    fn send_work(&mut self) {
         let work = self.watch.current().map(str::to_owned);
         if work != self.shown_work {
             let within_s = self.host.plan_budget().as_secs_f64();
-            self.say(Msg::Busy(work.clone().map(|work| (work, Some(within_s)))));
+            self.send(Msg::Busy(work.clone().map(|work| (work, Some(within_s)))));
             self.shown_work = work;
         }
     }
@@ -328,7 +328,7 @@ impl EngineThread {
             recorder: Some(recorder),
             fold: Fold::new(),
             began: now,
-            health_told: now,
+            health_sent_at: now,
             ended: None,
         });
         self.keep(&[self.flight.opened()]);
@@ -347,15 +347,15 @@ impl EngineThread {
         }
     }
 
-    fn tell_health(&mut self) {
+    fn send_health(&mut self) {
         let Some(log) = &mut self.log else { return };
         let Some(recorder) = &log.recorder else { return };
-        if log.health_told.elapsed() < HEALTH_PERIOD {
+        if log.health_sent_at.elapsed() < HEALTH_PERIOD {
             return;
         }
-        log.health_told = Instant::now();
+        log.health_sent_at = Instant::now();
         let health = super::screen::health(&recorder.health(), None);
-        self.say(Msg::Health(health));
+        self.send(Msg::Health(health));
     }
 
     /// Closes journal and recording and writes the report.
@@ -381,7 +381,7 @@ impl EngineThread {
         let kept = Kept::new(&log.folder, &finished, &report);
         let problem = kept.problem();
         log.ended = Some(Ended { summary, kept });
-        self.say(Msg::Health(super::screen::closed(problem)));
+        self.send(Msg::Health(super::screen::closed(problem)));
     }
 
     fn close(mut self, within: Duration) -> Option<Ended> {
@@ -394,12 +394,12 @@ impl EngineThread {
         self.log.and_then(|log| log.ended)
     }
 
-    fn tell_events(&self, events: &[Event]) {
-        self.say(Msg::Events(events.to_vec()));
+    fn send_events(&self, events: &[Event]) {
+        self.send(Msg::Events(events.to_vec()));
     }
 
-    fn say(&self, message: Msg) {
-        // A screen that is gone needs no news.
-        self.screen.tell(message);
+    fn send(&self, message: Msg) {
+        // Once the screen is closed, messages are discarded.
+        self.screen.send(message);
     }
 }

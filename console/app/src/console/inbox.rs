@@ -1,4 +1,5 @@
-//! What the drawing thread is told: urgent messages (keys, signals) before all news, and nobody who tells ever waits.
+//! The message queue of the drawing thread: urgent messages (keys, signals) come before all others, and senders never
+//! block.
 
 use std::{
     collections::VecDeque,
@@ -15,8 +16,8 @@ struct Shared {
 
 #[derive(Default)]
 struct Queues {
-    urgent: VecDeque<Told>,
-    news: VecDeque<Msg>,
+    urgent: VecDeque<Received>,
+    normal: VecDeque<Msg>,
     is_closed: bool,
 }
 
@@ -27,45 +28,45 @@ impl Shared {
     }
 }
 
-/// A message, and whether the thread that heard of it has stopped the robot already.
+/// A message, and whether its sender orders the hold itself, so that the screen must not order it a second time.
 #[derive(Debug, PartialEq)]
-pub struct Told {
+pub struct Received {
     pub msg: Msg,
-    pub is_stopped: bool,
+    pub held_by_sender: bool,
 }
 
-/// The receiving end; telling is in vain once it is gone.
+/// The receiving end; once it is dropped, messages are discarded.
 pub struct Inbox(Arc<Shared>);
 
-/// The telling end, for any number of threads.
+/// The sending end, for any number of threads.
 #[derive(Clone)]
 pub struct Outbox(Arc<Shared>);
 
-/// A pair of ends.
+/// A connected pair of ends.
 pub fn inbox() -> (Outbox, Inbox) {
     let shared = Arc::new(Shared::default());
     (Outbox(Arc::clone(&shared)), Inbox(shared))
 }
 
 impl Outbox {
-    /// Tells what comes before all news: keys, signals, failures. `false` if nobody listens any more.
-    pub fn urge(&self, msg: Msg) -> bool {
-        self.put(|queues| queues.urgent.push_back(Told { msg, is_stopped: false }))
+    /// Sends a message that comes before all others: a key, a signal, a failure. `false` if the inbox is closed.
+    pub fn send_urgent(&self, msg: Msg) -> bool {
+        self.put(|queues| queues.urgent.push_back(Received { msg, held_by_sender: false }))
     }
 
-    /// The same of what has stopped the robot already, so that it is not stopped twice.
-    pub fn urge_stopped(&self, msg: Msg) -> bool {
-        self.put(|queues| queues.urgent.push_back(Told { msg, is_stopped: true }))
+    /// The same for a message whose sender orders the hold itself, so that it is not ordered twice.
+    pub fn send_urgent_with_hold(&self, msg: Msg) -> bool {
+        self.put(|queues| queues.urgent.push_back(Received { msg, held_by_sender: true }))
     }
 
-    /// Tells news. `false` if nobody listens any more.
-    pub fn tell(&self, msg: Msg) -> bool {
-        self.put(|queues| queues.news.push_back(msg))
+    /// Sends any other message. `false` if the inbox is closed.
+    pub fn send(&self, msg: Msg) -> bool {
+        self.put(|queues| queues.normal.push_back(msg))
     }
 
-    /// How much news waits.
+    /// Number of waiting messages that are not urgent.
     pub fn backlog(&self) -> usize {
-        self.0.queues().news.len()
+        self.0.queues().normal.len()
     }
 
     fn put(&self, put: impl FnOnce(&mut Queues)) -> bool {
@@ -81,12 +82,14 @@ impl Outbox {
 }
 
 impl Inbox {
-    /// The next message, the most urgent first; waits until a moment, or for as long as it takes.
-    pub fn next(&self, until: Option<Instant>) -> Option<Told> {
+    /// The next message, urgent ones first; waits until the given time, or without one for as long as it takes.
+    pub fn next(&self, until: Option<Instant>) -> Option<Received> {
         let mut queues = self.0.queues();
         loop {
-            let news = |queues: &mut Queues| Some(Told { msg: queues.news.pop_front()?, is_stopped: false });
-            let next = queues.urgent.pop_front().or_else(|| news(&mut queues));
+            let normal = |queues: &mut Queues| {
+                Some(Received { msg: queues.normal.pop_front()?, held_by_sender: false })
+            };
+            let next = queues.urgent.pop_front().or_else(|| normal(&mut queues));
             if next.is_some() {
                 return next;
             }
@@ -105,7 +108,7 @@ impl Drop for Inbox {
     fn drop(&mut self) {
         let mut queues = self.0.queues();
         queues.is_closed = true;
-        (queues.urgent, queues.news) = (VecDeque::new(), VecDeque::new());
+        (queues.urgent, queues.normal) = (VecDeque::new(), VecDeque::new());
     }
 }
 
@@ -115,23 +118,23 @@ mod tests {
     use tui::Signal;
 
     #[test]
-    fn a_key_overtakes_all_news_and_telling_never_waits() {
+    fn a_key_overtakes_all_other_messages_and_senders_never_wait() {
         let (outbox, inbox) = inbox();
         for _ in 0..10_000 {
-            assert!(outbox.tell(Msg::Events(Vec::new())));
+            assert!(outbox.send(Msg::Events(Vec::new())));
         }
-        assert!(outbox.urge(Msg::Signal(Signal::Interrupt)));
+        assert!(outbox.send_urgent(Msg::Signal(Signal::Interrupt)));
         assert_eq!(outbox.backlog(), 10_000);
-        let next = || inbox.next(Some(Instant::now())).map(|told| told.msg);
+        let next = || inbox.next(Some(Instant::now())).map(|received| received.msg);
         assert_eq!(next(), Some(Msg::Signal(Signal::Interrupt)));
         assert_eq!(next(), Some(Msg::Events(Vec::new())));
     }
 
     #[test]
-    fn an_inbox_that_is_gone_takes_no_more() {
+    fn a_closed_inbox_takes_no_more_messages() {
         let (outbox, inbox) = inbox();
         drop(inbox);
-        assert!(!outbox.tell(Msg::Events(Vec::new())));
+        assert!(!outbox.send(Msg::Events(Vec::new())));
         assert_eq!(outbox.backlog(), 0);
     }
 }

@@ -1,8 +1,8 @@
 //! The drawing thread: messages in, model updated, effects carried out, a frame when something changed.
 
 use super::{
-    engine::{Ended, Line},
-    inbox::{Inbox, Told},
+    engine::{Ended, EngineHandle},
+    inbox::{Inbox, Received},
 };
 use crate::{
     cli::Drill,
@@ -30,7 +30,7 @@ pub struct Screen {
     model: Model,
     caps: Caps,
     inbox: Inbox,
-    engine: Line,
+    engine: EngineHandle,
     began: Instant,
     drawn: Instant,
     frame_interval: Duration,
@@ -49,7 +49,12 @@ pub struct Left {
 
 impl Screen {
     /// Takes the terminal over.
-    pub fn open(caps: Caps, inbox: Inbox, engine: Line, drill: Option<Drill>) -> anyhow::Result<Self> {
+    pub fn open(
+        caps: Caps,
+        inbox: Inbox,
+        engine: EngineHandle,
+        drill: Option<Drill>,
+    ) -> anyhow::Result<Self> {
         let terminal = TerminalGuard::enter().context("taking over the terminal")?;
         let mut model = Model::default();
         model.console.speed = super::START_SPEED;
@@ -97,17 +102,17 @@ impl Screen {
     /// Waits for a message, then takes in what else is there.
     fn take_burst(&mut self) -> anyhow::Result<Option<Left>> {
         let first = self.wait();
-        self.tell_time();
+        self.update_time();
         self.dirty = true;
         let until = Instant::now() + BURST_TIME;
         let mut next = first;
         for _ in 0..BURST {
-            let Some(Told { msg, is_stopped }) = next else { break };
+            let Some(Received { msg, held_by_sender }) = next else { break };
             self.answer_seen |= is_answer(&msg);
             let effects = update(&mut self.model, msg);
-            self.engine.tell_may_move(self.model.may_move());
+            self.engine.set_may_move(self.model.may_move());
             for effect in effects {
-                if is_stopped && effect == Effect::Order(Order::Hold) {
+                if held_by_sender && effect == Effect::Order(Order::Hold) {
                     continue;
                 }
                 if let Some(left) = self.carry_out(effect)? {
@@ -121,7 +126,7 @@ impl Screen {
     }
 
     /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.
-    fn wait(&self) -> Option<Told> {
+    fn wait(&self) -> Option<Received> {
         let frame = self.dirty.then(|| self.drawn + self.pause());
         let by_itself =
             self.model.wakes_at_mono_s().map(|at_s| self.began + Duration::from_secs_f64(at_s.max(0.0)));
@@ -130,7 +135,7 @@ impl Screen {
         self.inbox.next(frame.into_iter().chain(by_itself).min())
     }
 
-    fn tell_time(&mut self) {
+    fn update_time(&mut self) {
         let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         let now =
             Times { mono_s: self.began.elapsed().as_secs_f64(), wall_unix_s: since_epoch.as_secs_f64() };
@@ -184,9 +189,9 @@ fn ring() -> anyhow::Result<()> {
 }
 
 impl Left {
-    /// Says on the normal screen how the run ended; the exit code tells scripts.
-    pub fn say_goodbye(self, ended: Option<&Ended>) -> ExitCode {
-        // A terminal that is gone takes no goodbye.
+    /// Reports on the normal screen how the run ended; the exit code reports it to scripts.
+    pub fn report_end(self, ended: Option<&Ended>) -> ExitCode {
+        // A terminal that was closed shows nothing.
         if let Some(ended) = ended.filter(|_| self.signal != Some(Signal::Hangup)) {
             let text = format!("{}{}\n", report::human(&ended.summary), ended.kept.text());
             let _ = std::io::stdout().write_all(text.as_bytes());

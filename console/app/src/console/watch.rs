@@ -1,6 +1,6 @@
-//! The threads that only listen: keys, signals, a terminal that goes away, the survey of planners.
+//! The threads that only listen: keys, signals, a terminal that is closed, the survey of planners.
 
-use super::{engine::Line, inbox::Outbox};
+use super::{engine::EngineHandle, inbox::Outbox};
 use anyhow::Context;
 use crossterm::event::{self, Event};
 use mission::Order;
@@ -13,12 +13,12 @@ use signal_hook::{
 use std::{thread, time::Duration};
 use tui::{Key, Msg, Refused, Signal, terminal};
 
-/// How long the console may take to leave in good order after a signal; then it leaves anyway.
+/// How long the console may take to exit cleanly after a signal; then it exits anyway.
 const GRACE: Duration = Duration::from_secs(1);
 
 /// Keys, pastes and sizes. A key that stops the robot does so from here, whatever the screen is doing.
-pub fn keys(tell: &Outbox, line: Line) -> anyhow::Result<()> {
-    let tell = tell.clone();
+pub fn keys(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
+    let outbox = outbox.clone();
     spawn("keys", move || {
         while let Ok(event) = event::read() {
             let msg = match event {
@@ -29,7 +29,7 @@ pub fn keys(tell: &Outbox, line: Line) -> anyhow::Result<()> {
             };
             let Some(msg) = msg else { continue };
             let stops = is_stop_key(&msg);
-            if !tell_and_stop(&tell, &line, msg, stops) {
+            if !send_and_hold(&outbox, &engine, msg, stops) {
                 return;
             }
         }
@@ -37,8 +37,8 @@ pub fn keys(tell: &Outbox, line: Line) -> anyhow::Result<()> {
 }
 
 /// Signals; one that ends the process ends it within [`GRACE`], whatever the other threads do.
-pub fn signals(tell: &Outbox, line: Line) -> anyhow::Result<()> {
-    let tell = tell.clone();
+pub fn signals(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
+    let outbox = outbox.clone();
     let mut signals =
         Signals::new([SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT]).context("listening to signals")?;
     spawn("signals", move || {
@@ -51,7 +51,7 @@ pub fn signals(tell: &Outbox, line: Line) -> anyhow::Result<()> {
                 _ => Signal::Interrupt,
             };
             // The robot is stopped from here, whatever the screen is doing.
-            if !tell_and_stop(&tell, &line, Msg::Signal(signal), signal != Signal::Continue) {
+            if !send_and_hold(&outbox, &engine, Msg::Signal(signal), signal != Signal::Continue) {
                 return;
             }
             if matches!(signal, Signal::Terminate | Signal::Hangup) {
@@ -61,16 +61,17 @@ pub fn signals(tell: &Outbox, line: Line) -> anyhow::Result<()> {
     })
 }
 
-/// Passes on what was heard, and stops the robot if it may move and this stops it; `false` if nobody listens any more.
+/// Sends a message to the screen, and orders a hold if the message stops the robot and the robot may move; `false` if the
+/// inbox is closed.
 ///
-/// The screen hears of it first: what it makes of the key must not depend on the hold that follows.
-fn tell_and_stop(tell: &Outbox, line: &Line, msg: Msg, stops: bool) -> bool {
-    if !(stops && line.may_move()) {
-        return tell.urge(msg);
+/// The screen gets the message first: how it handles the key must not depend on the hold that follows.
+fn send_and_hold(outbox: &Outbox, engine: &EngineHandle, msg: Msg, stops: bool) -> bool {
+    if !(stops && engine.may_move()) {
+        return outbox.send_urgent(msg);
     }
-    let is_heard = tell.urge_stopped(msg);
-    line.order(Order::Hold);
-    is_heard
+    let is_delivered = outbox.send_urgent_with_hold(msg);
+    engine.order(Order::Hold);
+    is_delivered
 }
 
 /// Whether a key stops a robot that moves, whatever is open on the screen.
@@ -85,16 +86,17 @@ fn leave_in_any_case(signal: i32) {
 }
 
 /// A terminal that is closed while SIGHUP is ignored, as under nohup, is noticed here.
-pub fn terminal(tell: &Outbox, line: Line) -> anyhow::Result<()> {
-    let tell = tell.clone();
+pub fn terminal(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
+    let outbox = outbox.clone();
     spawn("terminal", move || {
         let stdin = std::io::stdin();
         let mut watched = [PollFd::new(&stdin, PollFlags::empty())];
         loop {
             let waited = poll(&mut watched, None);
-            let gone = watched[0].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL);
-            if waited.is_ok() && gone {
-                tell_and_stop(&tell, &line, Msg::Signal(Signal::Hangup), true);
+            let is_closed =
+                watched[0].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL);
+            if waited.is_ok() && is_closed {
+                send_and_hold(&outbox, &engine, Msg::Signal(Signal::Hangup), true);
                 leave_in_any_case(SIGHUP);
             }
         }
@@ -102,13 +104,13 @@ pub fn terminal(tell: &Outbox, line: Line) -> anyhow::Result<()> {
 }
 
 /// Which planners there are; asks every plugin in a process of its own, so it may take a while.
-pub fn planners(plugins: &PluginDirs, tell: &Outbox) -> anyhow::Result<()> {
-    let (plugins, tell) = (plugins.clone(), tell.clone());
+pub fn planners(plugins: &PluginDirs, outbox: &Outbox) -> anyhow::Result<()> {
+    let (plugins, outbox) = (plugins.clone(), outbox.clone());
     spawn("planners", move || {
         let (found, refused) = crate::planners::surveyed(&plugins);
         let refused = refused.into_iter().map(|(plugin, reason)| Refused { plugin, reason }).collect();
-        // A screen that is gone needs no list.
-        tell.tell(Msg::Planners { found, refused });
+        // A screen that was closed needs no list.
+        outbox.send(Msg::Planners { found, refused });
     })
 }
 

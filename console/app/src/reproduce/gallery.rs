@@ -37,10 +37,10 @@ impl Gallery {
     pub fn hang(&self, picture: &Picture<'_>) {
         let file = self.folder.join(file_name(picture));
         if let Err(error) = std::fs::write(&file, drawn(picture)) {
-            let told = bad_input(format!("a drawing cannot be written: {error}: {}", file.display()));
-            // Whoever panicked with the lock has been told of already.
+            let error = bad_input(format!("a drawing cannot be written: {error}: {}", file.display()));
+            // A thread that panicked while holding the lock has already been reported.
             let mut failure = self.failure.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            failure.get_or_insert(told);
+            failure.get_or_insert(error);
         }
     }
 

@@ -23,7 +23,7 @@ impl Kept {
     pub fn problem(&self) -> Option<String> {
         let mut missing = [JOURNAL_FILE, REPORT_FILE].into_iter().map(|name| self.folder.join(name));
         let missing =
-            || missing.find(|path| !path.is_file()).map(|path| format!("{} is gone", path.display()));
+            || missing.find(|path| !path.is_file()).map(|path| format!("{} is missing", path.display()));
         self.problem.clone().or_else(missing)
     }
 
@@ -67,7 +67,7 @@ mod tests {
         assert_eq!(kept.text(), format!("run kept in {}", folder.path().display()));
         assert_eq!(kept.exit_code(COMPLETE), COMPLETE);
         fs::remove_dir_all(folder.path()).unwrap();
-        assert!(kept.text().contains("NOT kept") && kept.text().contains("is gone"), "{}", kept.text());
+        assert!(kept.text().contains("NOT kept") && kept.text().contains("is missing"), "{}", kept.text());
         assert_eq!(kept.exit_code(COMPLETE), INTERNAL);
     }
 

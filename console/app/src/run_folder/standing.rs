@@ -127,7 +127,7 @@ pub fn journal_doubt(folder: &Path, sha256: Option<&str>) -> Option<String> {
     (source.events_sha256? != sha256?).then(|| NOT_THE_ONE.to_owned())
 }
 
-/// What speaks against a journal without an end: the run has a report, so it was closed in good order.
+/// What contradicts a journal without an end: the run has a report, so it was closed cleanly.
 pub fn end_is_missing(folder: &Path) -> Option<String> {
     let report: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(folder.join(REPORT_FILE)).ok()?).ok()?;

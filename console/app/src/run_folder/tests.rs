@@ -117,7 +117,7 @@ fn a_lost_journal_is_noticed_and_the_run_still_listed() {
 }
 
 #[test]
-fn a_run_whose_writer_failed_is_told_from_one_that_was_killed() {
+fn a_run_whose_writer_failed_is_distinguished_from_one_that_was_killed() {
     let logs = tempfile::tempdir().unwrap();
     let (folder, _, summary) = ended(logs.path());
     fs::remove_file(folder.join(REPORT_FILE)).unwrap();

@@ -150,13 +150,13 @@ mod tests {
     }
 
     #[test]
-    fn a_map_that_cannot_be_read_is_told_at_its_key() {
+    fn a_map_that_cannot_be_read_is_reported_at_its_key() {
         let text = "name = \"x\"\n[tank]\nmap = \"no-such.yaml\"\n";
         let errors = put_in(text, "s.toml", Path::new("/nowhere")).unwrap_err();
-        let told = errors.problems[0].to_string();
+        let message = errors.problems[0].to_string();
         assert!(
-            told.starts_with("tank.map = \"no-such.yaml\": /nowhere/no-such.yaml: cannot be read"),
-            "{told}"
+            message.starts_with("tank.map = \"no-such.yaml\": /nowhere/no-such.yaml: cannot be read"),
+            "{message}"
         );
         assert_eq!(errors.problems[0].at, Some(24..38));
     }

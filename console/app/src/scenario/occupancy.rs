@@ -1,4 +1,4 @@
-//! Occupancy maps in the form of the ROS map server: a YAML file that names an image and tells its scale.
+//! Occupancy maps in the form of the ROS map server: a YAML file that names an image and gives its scale.
 //!
 //! The YAML is flat: `key: value` lines, comments, one list. Of the image only brightness counts. Cells that are not
 //! known to be free count as solid, as the robots of the papers treat them.
@@ -276,21 +276,21 @@ mod tests {
     #[test]
     fn errors_name_file_line_and_key() {
         let pgm = b"P5 1 1 255 \xfe";
-        let told = |yaml: &str| map(yaml, pgm).unwrap_err().to_string();
-        assert_eq!(told(""), "m.yaml, image: missing; add a line as `image: map.pgm`");
+        let message = |yaml: &str| map(yaml, pgm).unwrap_err().to_string();
+        assert_eq!(message(""), "m.yaml, image: missing; add a line as `image: map.pgm`");
         assert_eq!(
-            told(&YAML.replace("0.5", "fine")),
+            message(&YAML.replace("0.5", "fine")),
             "m.yaml, line 2, resolution: `fine` is no finite number, as 0.05 is"
         );
         assert_eq!(
-            told(&YAML.replace("[1.0, -2.0, 0.0]", "[1.0, 2.0]")),
+            message(&YAML.replace("[1.0, -2.0, 0.0]", "[1.0, 2.0]")),
             "m.yaml, line 3, origin: `[1.0, 2.0]` is not [x, y, angle] in metres and radians"
         );
         assert_eq!(
-            told(&YAML.replace("negate: 0", "negate: maybe")),
+            message(&YAML.replace("negate: 0", "negate: maybe")),
             "m.yaml, line 4, negate: `maybe` is neither 0 nor 1"
         );
-        assert!(told(&YAML.replace("m.pgm", "n.pgm")).starts_with("n.pgm: cannot be read"));
+        assert!(message(&YAML.replace("m.pgm", "n.pgm")).starts_with("n.pgm: cannot be read"));
         let cut = map(YAML, b"P5 3 3 255 \xfe").unwrap_err().to_string();
         assert_eq!(cut, "m.pgm: 1 of 9 pixels are there; the file is cut off");
         let jpeg = map(YAML, b"\xff\xd8\xff").unwrap_err().to_string();

@@ -24,7 +24,7 @@ pub fn ae(section: &Section<'_>) -> Option<AeConfig> {
     })
 }
 
-/// How the estimator is to use the ranges; it is told how they scatter, not what goes wrong with them.
+/// How the estimator is to use the ranges; it knows their scatter, but not their faults.
 pub fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating> {
     let (solver, aggregation) = (section.word("solver"), section.word("aggregation"));
     let calibrates_sound = section.flag("calibrates_sound");

@@ -72,7 +72,7 @@ pub fn robot(section: &Section<'_>) -> Option<Robot> {
     let odometry_sigma_ratio = section.number("odometry_sigma_ratio");
     let gyro_bias_deg = section.number("gyro_bias_deg_per_s");
     let amphibious = amphibious?;
-    // Planners are told the faster of both paces; the zones tell them where the other one holds.
+    // Planners get the faster of both paces; the zones specify where the slower one applies.
     let fastest = amphibious.map_or(one_pace?, |both| both.fastest());
     Some(Robot {
         limits: Limits {

@@ -53,7 +53,7 @@ fn the_scenarios_in_the_box_are_right() {
 }
 
 #[test]
-fn an_amphibious_robot_has_the_papers_limits_and_planners_are_told_the_faster_ones() {
+fn an_amphibious_robot_has_the_papers_limits_and_planners_get_the_faster_ones() {
     let scenario =
         read(&SMALL.replacen("start_m = [-3, 0]", "start_m = [-3, 0]\nmotion = \"amphibious\"", 1));
     let amphibious = scenario.sim.robot.amphibious.expect("it walks and swims");
@@ -367,7 +367,7 @@ fn each_mistake_in_an_obstacle_has_its_sentence() {
 }
 
 #[test]
-fn a_spiral_that_does_not_fit_is_told_what_does() {
+fn an_error_for_a_spiral_that_does_not_fit_names_one_that_does() {
     let spiral = |outer_m: f64| {
         let task = format!("kind = \"follow\"\nspiral = {{ outer_radius_m = {outer_m}, pitch_m = 1 }}");
         SMALL.replace("kind = \"goto\"\ngoal_m = [3, 0]", &task)
@@ -388,7 +388,7 @@ fn a_clockwise_polygon_is_turned_round() {
 }
 
 #[test]
-fn everything_that_is_wrong_is_told_at_once() {
+fn all_errors_are_reported_at_once() {
     let text = SMALL
         .replace("radius_m = 5", "radius_m = 0\nraduis_m = 1")
         .replace("goal_m = [3, 0]", "goal_m = [3]\nswath = 0.5")

@@ -57,7 +57,7 @@ impl Ticks {
     /// How the run was opened.
     ///
     /// # Errors
-    /// The first line tells something else, or there is none.
+    /// The first line is another event, or there is none.
     pub fn opened(&self) -> anyhow::Result<&RunOpened> {
         match self.ahead.as_ref().map(|(_, event)| &event.kind) {
             Some(EventKind::RunOpened(opened)) => Ok(opened),

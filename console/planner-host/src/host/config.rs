@@ -24,7 +24,7 @@ pub struct HostConfig {
     pub state_deadline: Duration,
     /// Address space of a worker, bytes.
     pub memory_limit_bytes: u64,
-    /// Whether anyone looks at drawings.
+    /// Whether drawings are shown.
     pub wants_drawing: bool,
     /// Whether the mission covers floor, so that planners that cannot are refused when they are chosen.
     pub must_cover: bool,

@@ -25,7 +25,7 @@ pub(super) struct Opening {
     pub(super) candidates: VecDeque<Candidate>,
     /// Whether the plugin files were read for this planner, so that reading them again finds nothing new.
     pub(super) is_fresh: bool,
-    /// Told when no file has the planner.
+    /// Reported when no file has the planner.
     first_fault: Option<Fault>,
 }
 
@@ -35,7 +35,7 @@ pub(super) enum Stage {
     Load(Candidate),
     /// To make the planner.
     Configure(Loaded),
-    /// To go on from an earlier state, and what it said when it was made.
+    /// To continue from an earlier state, with what it said when it was created.
     Restore(Loaded, Said),
 }
 
@@ -89,7 +89,7 @@ impl Opening {
         }
     }
 
-    /// A file could not be loaded. That does not hide the ones behind it, but is told if none of them has the planner.
+    /// A file could not be loaded. The remaining files are still tried; the fault is reported if none has the planner.
     pub(super) fn note(&mut self, failure: Failure, candidate: &Candidate) {
         let fault = fault::of(failure, &self.planner, Phase::Load);
         // While a library loads, no planner of it is to blame yet.
@@ -212,7 +212,7 @@ impl Host {
         }
     }
 
-    /// Parts from a worker whose planner cannot be opened.
+    /// Shuts down a worker whose planner cannot be opened.
     fn part(&mut self, mut worker: Worker, fault: Fault) -> Result<(), Fault> {
         worker.shut_down();
         self.leave(worker);

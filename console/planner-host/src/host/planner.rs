@@ -60,8 +60,8 @@ pub(super) struct Ready {
     limits: Limits,
 }
 
-/// What a planner gave, and what it said.
-pub(super) type Told = Result<(Given, Said), Fault>;
+/// The outcome of an ask: the planner's answer with its log lines, or its fault.
+pub(super) type Outcome = Result<(Given, Said), Fault>;
 
 impl Ready {
     pub(super) fn new(loaded: Loaded, parameters: Parameters, limits: Limits) -> Self {
@@ -176,7 +176,7 @@ impl Planner {
     }
 
     /// What came of new values.
-    pub(super) fn reconfigured(&mut self, outcome: Result<(), Failure>, values: Parameters) -> Told {
+    pub(super) fn reconfigured(&mut self, outcome: Result<(), Failure>, values: Parameters) -> Outcome {
         let said = self.read(outcome, said_of).map_err(|failure| self.fault(failure, Phase::Configure))?;
         if let Some(ready) = &mut self.ready {
             ready.parameters = values;
@@ -185,7 +185,7 @@ impl Planner {
     }
 
     /// What came of a plan.
-    pub(super) fn planned(&mut self, outcome: Result<(), Failure>, limits: Limits) -> Told {
+    pub(super) fn planned(&mut self, outcome: Result<(), Failure>, limits: Limits) -> Outcome {
         let answer = self.read(outcome, |body| Ok((body.plan()?, said_of(body)?)));
         let (plan, said) = answer.map_err(|failure| self.fault(failure, Phase::Plan))?;
         checks::plan(&plan).map_err(|what| self.bad_output(Phase::Plan, &what))?;
@@ -196,7 +196,7 @@ impl Planner {
     }
 
     /// What came of a command.
-    pub(super) fn stepped(&mut self, outcome: Result<(), Failure>, tick: u64) -> Told {
+    pub(super) fn stepped(&mut self, outcome: Result<(), Failure>, tick: u64) -> Outcome {
         let phase = Phase::Step(tick);
         let answer = self.read(outcome, |body| Ok((body.command()?, said_of(body)?)));
         let (command, said) = answer.map_err(|failure| self.fault(failure, phase))?;
@@ -205,7 +205,7 @@ impl Planner {
         Ok((Given::Command(command), said))
     }
 
-    /// The private state; none when the planner cannot tell it now.
+    /// The private state; none when the planner cannot provide it now.
     pub(super) fn snapshotted(&mut self, outcome: Result<(), Failure>) -> Result<Option<Vec<u8>>, Fault> {
         let answer = self.read(outcome, |body| Ok(body.bytes()?.to_vec()));
         unless_refused(answer.map_err(|failure| self.fault(failure, Phase::State)))

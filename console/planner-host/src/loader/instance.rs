@@ -87,7 +87,7 @@ impl Instance {
         let code = sink.during(|host| unsafe { plan(self.planner, host, &raw const input, &raw mut out) });
         accept(code, sink)?;
         if out.complete > 1 {
-            return Err(bad_output("gave a plan without telling whether it is complete".to_owned()));
+            return Err(bad_output("gave a plan without stating whether it is complete".to_owned()));
         }
         let legs = sink.legs.drain(..).map(|leg| leg.get()).collect::<Result<_, _>>().map_err(bad_output)?;
         Ok(Plan {

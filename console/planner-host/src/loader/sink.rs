@@ -20,13 +20,13 @@ const LONGEST_MESSAGE: usize = 1024;
 
 /// Deadline and wishes of the console during a call.
 pub(crate) trait Watch {
-    /// 0 to go on, 1 when cancelled, 2 when the deadline passed.
+    /// 0 to continue, 1 when cancelled, 2 when the deadline passed.
     fn should_stop(&self) -> u32;
     /// Time until the deadline, seconds.
     fn time_left_s(&self) -> f64;
-    /// Whether anyone looks at drawings.
+    /// Whether drawings are shown.
     fn wants_drawing(&self) -> bool;
-    /// Takes how far a plan is, as soon as it is told.
+    /// Receives progress as soon as the planner reports it.
     fn take_progress(&self, progress: Progress);
 }
 
@@ -200,7 +200,7 @@ unsafe extern "C" fn take_scalar(ctx: *mut c_void, name: Str, value: f64, unit: 
 }
 
 unsafe extern "C" fn take_progress(ctx: *mut c_void, share: f64, ptr: *const u8, len: usize) {
-    // A share that is no number tells nothing.
+    // A share that is not a number carries no information.
     if share.is_finite() {
         let what = plain(Str { ptr, len }, Progress::LONGEST);
         // SAFETY: as above.
@@ -222,7 +222,7 @@ unsafe extern "C" fn take_param(ctx: *mut c_void, param: *const Param) {
         sink.n_dropped += 1;
         return;
     }
-    // SAFETY: the plugin promises a parameter of the size that it tells.
+    // SAFETY: the plugin promises a parameter of the size that it states.
     sink.params.push(param_info(&unsafe { abi::copy_sized(param) }));
 }
 

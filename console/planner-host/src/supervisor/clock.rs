@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-/// A worker that hardly gets the processor is given up after so many budgets of wall time ...
+/// A worker that hardly gets the processor is killed after this many budgets of wall time ...
 const MOST_BUDGETS: u32 = 10;
-/// ... but not before this much.
+/// ... but not before this time has passed.
 const LEAST_CAP: Duration = Duration::from_mins(1);
 
 /// A look at a busy process.
@@ -45,7 +45,7 @@ impl FairClock {
     }
 
     /// What is left of a budget.
-    pub(super) fn judge(&self, budget: Duration) -> Verdict {
+    pub(super) fn evaluate(&self, budget: Duration) -> Verdict {
         match budget.saturating_sub(self.charged) {
             Duration::ZERO => Verdict::Exhausted,
             _ if self.wall >= (budget * MOST_BUDGETS).max(LEAST_CAP) => Verdict::Starved,
@@ -61,7 +61,7 @@ pub(super) enum Verdict {
     Left(Duration),
     /// Nothing.
     Exhausted,
-    /// Something, but the machine had no time for the process for so long that nobody waits on.
+    /// Something, but the process has been starved of processor time for too long to keep waiting.
     Starved,
 }
 
@@ -111,16 +111,16 @@ mod tests {
         for ms in [100, 150, 2000] {
             clock.advance(MS * ms, None);
         }
-        assert_eq!(clock.judge(2000 * MS), Verdict::Exhausted);
-        assert_eq!(clock.judge(2001 * MS), Verdict::Left(MS));
+        assert_eq!(clock.evaluate(2000 * MS), Verdict::Exhausted);
+        assert_eq!(clock.evaluate(2001 * MS), Verdict::Left(MS));
     }
 
     #[test]
-    fn a_starved_process_is_given_up_after_ten_budgets_and_not_before_a_minute() {
-        let short = |end_ms| after(end_ms, 0.001, true).judge(2000 * MS);
+    fn a_starved_process_is_killed_after_ten_budgets_and_not_before_a_minute() {
+        let short = |end_ms| after(end_ms, 0.001, true).evaluate(2000 * MS);
         assert!(matches!(short(59_950), Verdict::Left(_)));
         assert_eq!(short(60_000), Verdict::Starved);
-        let long = |end_ms| after(end_ms, 0.001, true).judge(10_000 * MS);
+        let long = |end_ms| after(end_ms, 0.001, true).evaluate(10_000 * MS);
         assert!(matches!(long(99_950), Verdict::Left(_)));
         assert_eq!(long(100_000), Verdict::Starved);
     }

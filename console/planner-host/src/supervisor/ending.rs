@@ -5,7 +5,7 @@ use rustix::process::Signal;
 use std::os::unix::process::ExitStatusExt;
 use std::process::ExitStatus;
 
-/// Longest line of output that is told.
+/// Maximum length of the reported line of output.
 const LONGEST_LINE: usize = 160;
 
 /// "was killed by SIGSEGV (invalid memory access)" and the like; a process that closed its socket and still had to be
@@ -39,8 +39,8 @@ fn signal_text(number: i32) -> String {
 /// The last line with anything in it, without what moves a cursor or differs from run to run.
 pub(super) fn last_line(output: &[u8]) -> String {
     let text = String::from_utf8_lossy(output);
-    let is_telling = |line: &&str| !line.trim().is_empty() && !line.starts_with("note: ");
-    let line = text.lines().rfind(is_telling).unwrap_or_default();
+    let is_informative = |line: &&str| !line.trim().is_empty() && !line.starts_with("note: ");
+    let line = text.lines().rfind(is_informative).unwrap_or_default();
     let visible: String = line.chars().filter(|c| !c.is_control()).collect();
     without_ids(&visible).trim().chars().take(LONGEST_LINE).collect()
 }
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn endings_are_told_in_words() {
+    fn exits_are_described_in_words() {
         let signalled = |number| how_it_ended(Some(ExitStatus::from_raw(number)));
         assert_eq!(signalled(11), "was killed by SIGSEGV (invalid memory access)");
         assert_eq!(signalled(0), "ended its own process with exit code 0");

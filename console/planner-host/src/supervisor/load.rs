@@ -1,4 +1,4 @@
-//! What the system tells of a busy process, from `/proc`.
+//! The load of a busy process, read from `/proc`.
 
 use super::clock::Load;
 use rustix::process::Pid;

@@ -1,12 +1,12 @@
 //! The one place where the console waits for workers: a single `poll(2)` over all of them.
 
-use super::doorbell::Bell;
+use super::waker::WakeReceiver;
 use super::worker::Worker;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use std::os::fd::BorrowedFd;
 use std::time::Instant;
 
-/// What a descriptor of a worker tells.
+/// What a worker's descriptor is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Source {
     /// Answers, and room for requests.
@@ -55,19 +55,19 @@ impl Ready {
 /// What came of waiting.
 #[derive(Debug, Default)]
 pub(crate) struct Happened {
-    /// Whether the doorbell was rung; it is cleared.
-    pub(crate) rung: bool,
+    /// Whether the host was woken; the wake-up is cleared.
+    pub(crate) woken: bool,
     /// What has happened to the workers, in their order.
     pub(crate) ready: Vec<Ready>,
 }
 
-/// Waits until something happens to a worker, until one of them has to be looked at, until the bell is rung, or until a
-/// moment, whichever is first.
-pub(crate) fn wait(bell: Option<&Bell>, workers: &[&Worker], until: Option<Instant>) -> Happened {
+/// Waits until something happens to a worker, a worker has to be looked at, the host is woken, or the given time is
+/// reached, whichever comes first.
+pub(crate) fn wait(wake_ups: Option<&WakeReceiver>, workers: &[&Worker], until: Option<Instant>) -> Happened {
     let mut watched = Vec::with_capacity(1 + 3 * workers.len());
     let mut owners = Vec::with_capacity(3 * workers.len());
-    let line = bell.and_then(Bell::line);
-    watched.extend(line.iter().map(|line| PollFd::from_borrowed_fd(*line, PollFlags::IN)));
+    let wake_up = wake_ups.and_then(WakeReceiver::descriptor);
+    watched.extend(wake_up.iter().map(|wake_up| PollFd::from_borrowed_fd(*wake_up, PollFlags::IN)));
     for (index, worker) in workers.iter().enumerate() {
         worker.watched(|(source, descriptor, flags)| {
             watched.push(PollFd::from_borrowed_fd(descriptor, flags));
@@ -78,17 +78,17 @@ pub(crate) fn wait(bell: Option<&Bell>, workers: &[&Worker], until: Option<Insta
     let left = until.map(|until| until.saturating_duration_since(Instant::now()));
     let timeout = left.and_then(|left| Timespec::try_from(left).ok());
     let mut ready = vec![Ready::NOTHING; workers.len()];
-    // After a signal, or when time is up, nothing has happened: whoever waits looks at the clock and waits again.
+    // After a signal or a timeout nothing has happened: the caller checks the clock and waits again.
     if !matches!(poll(&mut watched, timeout.as_ref()), Ok(1..)) {
-        return Happened { rung: false, ready };
+        return Happened { woken: false, ready };
     }
-    let (rung, of_workers) = watched.split_at(usize::from(line.is_some()));
+    let (wake_up, of_workers) = watched.split_at(usize::from(wake_up.is_some()));
     for (descriptor, (index, source)) in of_workers.iter().zip(owners) {
         ready[index].note(source, descriptor.revents());
     }
-    let rung = rung.iter().any(|line| !line.revents().is_empty());
-    if let Some(bell) = bell.filter(|_| rung) {
-        bell.clear();
+    let woken = wake_up.iter().any(|wake_up| !wake_up.revents().is_empty());
+    if let Some(wake_ups) = wake_ups.filter(|_| woken) {
+        wake_ups.clear();
     }
-    Happened { rung, ready }
+    Happened { woken, ready }
 }

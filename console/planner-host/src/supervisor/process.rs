@@ -60,7 +60,7 @@ impl Process {
         self.output.as_ref().map(AsFd::as_fd)
     }
 
-    /// Reaps the process if it has ended, and tells how it ended.
+    /// Reaps the process if it has ended, and returns how it ended.
     pub(super) fn reap(&mut self) -> Option<ExitStatus> {
         if self.status.is_none() {
             self.status = self.child.try_wait().ok().flatten();

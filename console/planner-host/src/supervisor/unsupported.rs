@@ -54,34 +54,34 @@ pub(crate) struct Ready;
 /// What came of waiting.
 #[derive(Debug, Default)]
 pub(crate) struct Happened {
-    pub(crate) rung: bool,
+    pub(crate) woken: bool,
     pub(crate) ready: Vec<Ready>,
 }
 
 /// Without workers nobody waits.
-pub(crate) fn wait(_: Option<&Bell>, _: &[&Worker], _: Option<Instant>) -> Happened {
+pub(crate) fn wait(_: Option<&WakeReceiver>, _: &[&Worker], _: Option<Instant>) -> Happened {
     Happened::default()
 }
 
 /// Has nobody to wake.
 #[derive(Debug, Clone)]
-pub struct Doorbell;
+pub struct Waker;
 
-impl Doorbell {
+impl Waker {
     /// Does nothing.
-    pub fn ring(&self) {}
+    pub fn wake(&self) {}
 }
 
-/// The other end of a doorbell.
-pub(crate) struct Bell;
+/// The receiving end of a [`Waker`].
+pub(crate) struct WakeReceiver;
 
-impl Bell {
+impl WakeReceiver {
     pub(crate) fn new() -> Self {
         Self
     }
 
-    pub(crate) fn button(&self) -> Doorbell {
-        Doorbell
+    pub(crate) fn waker(&self) -> Waker {
+        Waker
     }
 
     pub(crate) fn clear(&self) {}

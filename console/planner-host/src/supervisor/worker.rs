@@ -23,8 +23,9 @@ use std::time::{Duration, Instant};
 
 /// A worker that did not answer within its budget is asked to stop and given this long before it is killed.
 const GRACE: Duration = Duration::from_millis(100);
-/// A process that is not told when another ends is looked at so often.
+/// Polling period where the system does not report the exit of a process.
 const LOOK_EVERY: Duration = Duration::from_millis(1);
+
 /// A worker process, its socket and its output.
 pub(crate) struct Worker {
     process: Process,
@@ -130,7 +131,7 @@ impl Worker {
         }
     }
 
-    /// Tells every descriptor that may change the state.
+    /// Reports every descriptor that may change the state.
     pub(super) fn watched<'a>(&'a self, mut watch: impl FnMut(Watched<'a>)) {
         match &self.state {
             State::Idle | State::Gone => return,
@@ -167,7 +168,7 @@ impl Worker {
         &mut self,
         ready: Ready,
         now: Instant,
-        tell: &mut dyn FnMut(&Progress),
+        on_progress: &mut dyn FnMut(&Progress),
     ) -> Option<Result<(), Failure>> {
         if ready.printed {
             self.process.read_output();
@@ -175,7 +176,7 @@ impl Worker {
         match &self.state {
             State::Idle | State::Gone => None,
             State::Busy(_) | State::Cancelling(..) => {
-                self.exchange(ready, now, tell).or_else(|| self.keep_deadline(now).map(Err))
+                self.exchange(ready, now, on_progress).or_else(|| self.keep_deadline(now).map(Err))
             }
             State::Dying(_) => self.advance_dying(ready, now).map(Err),
             State::Leaving(until) => {
@@ -189,12 +190,12 @@ impl Worker {
         &mut self,
         ready: Ready,
         now: Instant,
-        tell: &mut dyn FnMut(&Progress),
+        on_progress: &mut dyn FnMut(&Progress),
     ) -> Option<Result<(), Failure>> {
         if ready.writable() {
             self.send(now);
         }
-        let arrived = if ready.readable() { self.receive(now, tell) } else { Arrived::Nothing };
+        let arrived = if ready.readable() { self.receive(now, on_progress) } else { Arrived::Nothing };
         match arrived {
             Arrived::Answer if matches!(self.state, State::Busy(_)) => {
                 self.state = State::Idle;
@@ -210,8 +211,8 @@ impl Worker {
         None
     }
 
-    /// Reads once, and passes on what is told of progress.
-    fn receive(&mut self, now: Instant, tell: &mut dyn FnMut(&Progress)) -> Arrived {
+    /// Reads once, and forwards progress messages.
+    fn receive(&mut self, now: Instant, on_progress: &mut dyn FnMut(&Progress)) -> Arrived {
         let mut has_read = false;
         loop {
             match self.incoming.next_frame() {
@@ -224,14 +225,14 @@ impl Worker {
                 },
                 Some(Ok(())) if self.incoming.sequence() != self.sequence => return Arrived::Broken,
                 Some(Ok(())) if self.incoming.kind() != kind::PROGRESS => return Arrived::Answer,
-                Some(Ok(())) if self.pass_on(now, tell).is_ok() => {}
+                Some(Ok(())) if self.forward_progress(now, on_progress).is_ok() => {}
                 Some(_) => return Arrived::Broken,
             }
         }
     }
 
-    /// Tells how far the plan is, unless it was told too often.
-    fn pass_on(&mut self, now: Instant, tell: &mut dyn FnMut(&Progress)) -> Read<()> {
+    /// Forwards a progress message, unless the rate limit is reached.
+    fn forward_progress(&mut self, now: Instant, on_progress: &mut dyn FnMut(&Progress)) -> Read<()> {
         let (State::Busy(request) | State::Cancelling(request, _)) = &mut self.state else {
             return Err(Malformed);
         };
@@ -241,8 +242,8 @@ impl Worker {
         let mut body = self.incoming.body();
         let progress = body.progress()?;
         body.end()?;
-        if request.may_tell(now) {
-            tell(&progress);
+        if request.may_forward(now) {
+            on_progress(&progress);
         }
         Ok(())
     }
@@ -272,8 +273,8 @@ impl Worker {
         }
     }
 
-    /// Reads the answer that has just come. After one that is none, or that says that the planner cannot go on, the process
-    /// is killed.
+    /// Reads the answer that has just arrived. If it is malformed, or says that the planner cannot continue, the process is
+    /// killed.
     pub(crate) fn take_answer<T>(
         &mut self,
         read: impl FnOnce(&mut Body<'_>) -> Read<T>,
@@ -320,8 +321,8 @@ impl Worker {
         Some(Failure::Died { how: how_it_ended(status), last_output: last_line(self.process.tail()) })
     }
 
-    /// Leaves the process to end by itself within a grace, so that the planner is dropped in good order; what is asked
-    /// has no outcome any more.
+    /// Lets the process exit by itself within a grace period, so that the planner is dropped cleanly; an open request has
+    /// no outcome any more.
     pub(crate) fn shut_down(&mut self) {
         let now = Instant::now();
         match self.state {
@@ -337,7 +338,7 @@ impl Worker {
         }
     }
 
-    /// Kills the process; what is asked has no outcome any more.
+    /// Kills the process; an open request has no outcome any more.
     pub(crate) fn kill(&mut self) {
         if !self.is_gone() {
             self.process.kill();

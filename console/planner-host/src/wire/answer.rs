@@ -187,7 +187,7 @@ impl Body<'_> {
         Ok(Leg { tag, first: self.u32()? as usize, last: self.u32()? as usize })
     }
 
-    /// A worker tells only what can be shown as it is.
+    /// A worker sends only text that can be displayed unchanged.
     pub(crate) fn progress(&mut self) -> Read<Progress> {
         let progress = Progress { share: self.f64()?, what: self.text()? };
         let is_short = progress.what.chars().count() <= Progress::LONGEST;

@@ -15,7 +15,7 @@ pub(crate) const KIND_AT: usize = 4;
 pub(crate) enum Received {
     /// A whole frame; it stays readable until the next call.
     Frame,
-    /// The other side is gone.
+    /// The peer has closed the connection.
     Closed,
     /// What arrived is no frame.
     Broken,
@@ -28,7 +28,7 @@ pub(crate) enum Filled {
     Some,
     /// Nothing is there by now.
     Nothing,
-    /// The other side is gone.
+    /// The peer has closed the connection.
     Closed,
     /// The stream cannot be read.
     Broken,

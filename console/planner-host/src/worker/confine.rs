@@ -1,4 +1,4 @@
-//! What a worker gives up before it loads anything.
+//! The privileges and resources that a worker drops before it loads anything.
 
 use crate::supervisor::SHUT_DOWN_WITHIN;
 use rustix::event::{PollFd, PollFlags, poll};
@@ -19,7 +19,7 @@ pub(super) fn take_socket() -> io::Result<OwnedFd> {
     Ok(socket)
 }
 
-/// Gives up what a planner does not need. What the system does not grant is left as it is: these are fences against
+/// Drops what a planner does not need. Limits that the system does not grant are ignored: they only guard against
 /// accidents, and the deadlines hold without them.
 pub(super) fn confine() {
     limit(Resource::Core, 0);
@@ -42,18 +42,18 @@ fn limit(resource: Resource, most: u64) {
     let _ = setrlimit(resource, Rlimit { current: Some(most), maximum: Some(most) });
 }
 
-/// Starts a thread that ends this process when the console is gone, or has told it to end and was not obeyed; also in the
-/// middle of an endless loop.
+/// Starts a thread that ends this process when the console has exited, or when the process ignores a request to shut
+/// down; also in the middle of an endless loop.
 pub(super) fn die_with_the_console(socket: OwnedFd) -> io::Result<()> {
     std::thread::Builder::new().name("watchdog".into()).stack_size(64 << 10).spawn(move || {
         loop {
-            let mut sockets = [PollFd::new(&socket, TOLD_TO_END)];
+            let mut sockets = [PollFd::new(&socket, SHUTDOWN_REQUESTED)];
             let happened = poll(&mut sockets, None).map_or(PollFlags::empty(), |_| sockets[0].revents());
             if happened.contains(PollFlags::NVAL) {
                 // The planner closed our descriptor; the main thread finds that out, too, and ends with its own code.
                 return;
             }
-            if happened == TOLD_TO_END {
+            if happened == SHUTDOWN_REQUESTED {
                 std::thread::sleep(SHUT_DOWN_WITHIN);
             }
             if !happened.is_empty() {
@@ -66,7 +66,7 @@ pub(super) fn die_with_the_console(socket: OwnedFd) -> io::Result<()> {
 
 /// The console sends nothing more. A full hang-up and errors are reported unasked.
 #[cfg(target_os = "linux")]
-const TOLD_TO_END: PollFlags = PollFlags::RDHUP;
-/// Elsewhere only a full hang-up or an error is reported, and the console has to kill who does not obey.
+const SHUTDOWN_REQUESTED: PollFlags = PollFlags::RDHUP;
+/// Elsewhere only a full hang-up or an error is reported, and the console has to kill a worker that does not exit.
 #[cfg(not(target_os = "linux"))]
-const TOLD_TO_END: PollFlags = PollFlags::empty();
+const SHUTDOWN_REQUESTED: PollFlags = PollFlags::empty();

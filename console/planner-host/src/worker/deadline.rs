@@ -1,7 +1,7 @@
-//! How long the console waits for the request at hand, by a clock as fair as its own: a planner that the machine has no
-//! time for is not late.
+//! How long the console waits for the current request, measured by the same fair clock: a planner that the machine does
+//! not schedule is not late.
 
-use super::telling::Telling;
+use super::progress_reporter::ProgressReporter;
 use crate::Progress;
 use crate::loader::Watch;
 use crate::wire::frame::{Incoming, KIND_AT};
@@ -23,7 +23,7 @@ pub(super) struct Deadline {
     cancelled: Cell<bool>,
     exhausted: Cell<bool>,
     watched: Cell<bool>,
-    telling: Telling,
+    progress: ProgressReporter,
 }
 
 /// Time for a request: it is used up when as much has passed on the wall and this process has computed as long.
@@ -62,7 +62,7 @@ impl Deadline {
     /// # Errors
     /// When the socket cannot be had twice.
     pub(super) fn new(socket: OwnedFd) -> std::io::Result<Self> {
-        let telling = Telling::new(socket.try_clone()?);
+        let progress = ProgressReporter::new(socket.try_clone()?);
         Ok(Self {
             socket,
             budget: Cell::new(None),
@@ -70,7 +70,7 @@ impl Deadline {
             cancelled: Cell::new(false),
             exhausted: Cell::new(false),
             watched: Cell::new(false),
-            telling,
+            progress,
         })
     }
 
@@ -81,10 +81,10 @@ impl Deadline {
         self.looked.set(now);
         self.cancelled.set(request.has_more());
         self.exhausted.set(false);
-        self.telling.begin(request.kind(), request.sequence());
+        self.progress.begin(request.kind(), request.sequence());
     }
 
-    /// Whether anyone looks at drawings of this request.
+    /// Whether drawings of this request are shown.
     pub(super) fn set_watched(&self, watched: bool) {
         self.watched.set(watched);
     }
@@ -103,7 +103,7 @@ impl Deadline {
 impl Watch for Deadline {
     fn should_stop(&self) -> u32 {
         let now = Instant::now();
-        self.telling.catch_up(now);
+        self.progress.catch_up(now);
         if now - self.looked.get() >= LOOK_EVERY {
             self.looked.set(now);
             self.cancelled.set(self.cancelled.get() || self.is_cancel_waiting());
@@ -126,6 +126,6 @@ impl Watch for Deadline {
     }
 
     fn take_progress(&self, progress: Progress) {
-        self.telling.take(progress);
+        self.progress.take(progress);
     }
 }

@@ -67,7 +67,7 @@ impl<'a> Session<'a> {
     fn load(&mut self, mut body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
         if body.u32()? != wire::VERSION {
             return Err(Trouble::Refused(
-                "the worker is of another build than the console; start tankops anew".into(),
+                "the worker is of another build than the console; restart tankops".into(),
             ));
         }
         confine::limit_memory(body.u64()?);

@@ -1,4 +1,4 @@
-//! Several workers at once, asked and answered in any order, and nobody waits unless told to.
+//! Several workers at once, asked and answered in any order, and nothing blocks unless requested.
 
 use crate::stand::{GOAL, built, config, folder_with, impatient, pose, sensed, with_site, words, worker};
 use crate::state::COUNTER;
@@ -145,39 +145,39 @@ fn a_crash_in_one_worker_does_not_disturb_the_other() {
     assert!(fault.message.contains("SIGSEGV") && fault.plugin_sha256.is_some(), "{fault}");
     assert!(matches!(planned.result, Ok(Given::Plan(_))));
     assert!(desk.ask(TWO, step(0)).is_ok());
-    assert_eq!(desk.ask(ONE, step(6)).unwrap_err().cause, Cause::Died, "it is gone");
+    assert_eq!(desk.ask(ONE, step(6)).unwrap_err().cause, Cause::Died, "its process has ended");
 }
 
 #[test]
-fn the_doorbell_wakes_who_waits_for_a_plan_that_hangs() {
+fn a_waker_interrupts_the_wait_for_a_plan_that_hangs() {
     let mut desk = Desk::new(&built(), HostConfig { plan_deadline: LONG, ..config() });
     desk.open(ONE, "plan_hang");
     desk.submit(ONE, plan());
-    let bell = desk.host.doorbell();
-    let ringer = std::thread::spawn(move || {
+    let waker = desk.host.waker();
+    let waking = std::thread::spawn(move || {
         std::thread::sleep(Duration::from_millis(50));
-        bell.ring();
+        waker.wake();
     });
     let asked = Instant::now();
     assert_eq!(desk.host.next(None), None);
     assert!(asked.elapsed() < LONG / 2);
-    ringer.join().unwrap();
+    waking.join().unwrap();
     desk.submit(ONE, What::Close);
     assert_eq!(desk.host.next(None), None, "a closed worker answers nothing");
 }
 
 #[test]
-fn a_doorbell_that_was_rung_before_is_heard_once() {
+fn earlier_wake_ups_count_once() {
     let mut desk = Desk::new(&built(), config());
     desk.open(ONE, "none");
-    let bell = desk.host.doorbell();
-    bell.ring();
-    bell.clone().ring();
+    let waker = desk.host.waker();
+    waker.wake();
+    waker.clone().wake();
     let id = desk.submit(ONE, plan());
     assert_eq!(desk.host.next(None), None);
     assert_eq!(desk.next().ask, id, "the answer is not lost");
-    bell.ring();
-    desk.host.clear_doorbell();
+    waker.wake();
+    desk.host.clear_wake_ups();
     assert!(desk.ask(ONE, plan()).is_ok());
 }
 
@@ -249,7 +249,7 @@ fn running(program: &Path) -> usize {
     processes.filter(|process| process.path().join("exe").read_link().is_ok_and(|exe| exe == program)).count()
 }
 
-/// A worker program of its own, so that its processes can be told from those of other tests.
+/// A worker program of its own, so that its processes can be distinguished from those of other tests.
 fn own_worker() -> (tempfile::TempDir, WorkerCommand) {
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().canonicalize().unwrap().join("worker");
@@ -359,7 +359,7 @@ fn a_planner_without_a_state_gives_none() {
 }
 
 #[test]
-fn a_worker_that_died_while_nobody_asked_is_told_when_it_is_asked_next() {
+fn a_worker_that_died_between_asks_is_reported_at_the_next_ask() {
     let late = "if (++c->in_this_process >= 30) abort();";
     let at_exit = "if (!c->in_this_process++) signal(SIGALRM, SIG_DFL), ualarm(1000, 0);";
     let source = COUNTER

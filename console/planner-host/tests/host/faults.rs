@@ -7,7 +7,7 @@ use planner_api::{Code, LogLevel};
 use planner_host::HostConfig;
 use std::time::{Duration, Instant};
 
-/// The fault of a planner that was told to commit it at its sixth step.
+/// The fault of a planner that is configured to commit it at its sixth step.
 fn fault_of(kind: &str, config: HostConfig) -> Fault {
     let mut host = host(config);
     let sha256 = choose(&mut host, "faulty", &words(&[("fault", kind)])).unwrap().sha256;
@@ -65,34 +65,34 @@ fn a_refusal_does_not_end_the_process() {
 }
 
 #[test]
-fn an_invalid_memory_access_is_told() {
+fn an_invalid_memory_access_is_reported() {
     assert_dies("segv", "was killed by SIGSEGV (invalid memory access)");
 }
 
 #[test]
-fn an_abort_is_told() {
+fn an_abort_is_reported() {
     assert_dies("abort", "was killed by SIGABRT");
 }
 
 #[test]
-fn a_planner_that_ends_its_process_is_told() {
+fn a_planner_that_ends_its_process_is_reported() {
     assert_dies("exit", "ended its own process with exit code 0");
 }
 
 #[test]
-fn a_planner_that_is_killed_is_told() {
+fn a_planner_that_is_killed_is_reported() {
     assert_dies("kill", "was killed by SIGKILL");
 }
 
 #[test]
-fn a_stack_overflow_is_told_with_the_last_output() {
+fn a_stack_overflow_is_reported_with_the_last_output() {
     let fault = fault_of("stack", config());
     assert_eq!(fault.cause, Cause::Died, "{fault}");
     assert!(fault.message.contains("stack overflow"), "{fault}");
 }
 
 #[test]
-fn running_out_of_memory_is_told_with_the_last_output() {
+fn running_out_of_memory_is_reported_with_the_last_output() {
     let fault = fault_of("alloc", HostConfig { step_deadline: Duration::from_secs(10), ..config() });
     assert_eq!(fault.cause, Cause::Died, "{fault}");
     assert!(fault.message.ends_with("last output: memory allocation of 67108864 bytes failed"), "{fault}");
@@ -117,7 +117,7 @@ fn a_planner_that_does_not_answer_is_killed_in_time() {
         assert_eq!(fault.message, sentence, "{kind}");
         // Deadline, grace, at most 150 ms to reap; the rest is a busy machine.
         assert!(took < Duration::from_secs(1), "{kind} took {took:?}");
-        assert_eq!(step(&mut host, 6).unwrap_err().cause, Cause::Died, "it is gone");
+        assert_eq!(step(&mut host, 6).unwrap_err().cause, Cause::Died, "its process has ended");
         assert_another_drives(&mut host);
     }
 }
@@ -147,7 +147,7 @@ fn numbers_that_no_robot_can_follow_are_caught() {
 }
 
 #[test]
-fn a_flood_of_drawings_is_cut_and_told() {
+fn a_flood_of_drawings_is_truncated_and_reported() {
     let mut host = host(config());
     choose(&mut host, "faulty", &words(&[("fault", "draw_flood")])).unwrap();
     let flood = (0..6).map(|tick| step(&mut host, tick).unwrap()).last().unwrap();
@@ -183,7 +183,7 @@ fn a_planner_that_fails_while_it_is_made_leaves_the_one_before_in_place() {
 }
 
 #[test]
-fn a_planner_that_fails_while_it_plans_is_told() {
+fn a_planner_that_fails_while_it_plans_is_reported() {
     for (kind, cause) in [("plan_panic", Cause::Panic), ("plan_hang", Cause::Hung)] {
         let mut host = host(impatient());
         choose(&mut host, "faulty", &words(&[("fault", kind)])).unwrap();

@@ -107,17 +107,17 @@ fn plans_to_cover(by: &str) -> Result<planner_api::Plan, mission::planner::Fault
 }
 
 #[test]
-fn a_planner_in_c_covers_regions_and_tells_legs_and_cuts() {
-    let told = plans_to_cover(
+fn a_planner_in_c_covers_regions_and_reports_legs_and_cuts() {
+    let covering = plans_to_cover(
         "const tp_leg legs[] = {{TP_LEG_TRAVEL, 0, 1, 0}, {TP_LEG_SWATH, 1, 2, 0}};
          h->legs(h->ctx, legs, 2); h->cut(h->ctx, in->regions[0].points, 3); h->cut(h->ctx, in->targets, 1);",
     )
     .unwrap();
     let corner = Point2::new(1.0, 1.0);
-    assert_eq!(told.path, [Point2::new(0.5, 0.0), corner, corner]);
+    assert_eq!(covering.path, [Point2::new(0.5, 0.0), corner, corner]);
     let leg = |tag, first, last| Leg { tag, first, last };
-    assert_eq!(told.legs, [leg(LegTag::Travel, 0, 1), leg(LegTag::Swath, 1, 2)]);
-    assert_eq!(told.cuts.iter().map(Vec::len).collect::<Vec<_>>(), [3, 1]);
+    assert_eq!(covering.legs, [leg(LegTag::Travel, 0, 1), leg(LegTag::Swath, 1, 2)]);
+    assert_eq!(covering.cuts.iter().map(Vec::len).collect::<Vec<_>>(), [3, 1]);
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn the_header_is_cplusplus_11_too() {
         .output();
     // Not every machine that builds tankops has a C++ compiler.
     if let Ok(compiled) = compiler {
-        let told = String::from_utf8_lossy(&compiled.stderr).replace("#pragma once in main file", "");
-        assert!(compiled.status.success(), "{told}");
+        let errors = String::from_utf8_lossy(&compiled.stderr).replace("#pragma once in main file", "");
+        assert!(compiled.status.success(), "{errors}");
     }
 }

@@ -1,4 +1,4 @@
-//! How far a plan is reaches whoever asked for it, and nothing that a planner tells gains it time.
+//! Progress of a plan reaches whoever requested it, and reporting progress never extends a deadline.
 
 use crate::stand::{assert_another_drives, choose, config, folder_with, host, impatient, plan, step, words};
 use crate::state::COUNTER;
@@ -7,13 +7,13 @@ use mission::planner::Parameters;
 use planner_host::{BlockingHost, Progress};
 use std::sync::{Arc, Mutex};
 
-type Heard = Arc<Mutex<Vec<Progress>>>;
+type Received = Arc<Mutex<Vec<Progress>>>;
 
-fn hearing(host: &mut BlockingHost) -> Heard {
-    let heard = Heard::default();
-    let hearing = Arc::clone(&heard);
-    host.tell_progress(Arc::new(move |_, progress| hearing.lock().unwrap().push(progress.clone())));
-    heard
+fn recorded(host: &mut BlockingHost) -> Received {
+    let received = Received::default();
+    let recorded = Arc::clone(&received);
+    host.set_on_progress(Arc::new(move |_, progress| recorded.lock().unwrap().push(progress.clone())));
+    received
 }
 
 /// The counter in C with other lines at the top of its functions.
@@ -32,8 +32,8 @@ fn counter(replaced: &[(&str, &str)]) -> (tempfile::TempDir, BlockingHost) {
 const PLAN: &str = "out->cost = 0.0; out->complete = 1;";
 
 #[test]
-fn a_planner_in_c_tells_how_far_its_plan_is() {
-    let tells = "
+fn a_planner_in_c_reports_the_progress_of_its_plan() {
+    let reports = "
       char flood[300]; memset(flood, 'x', sizeof flood);
       if (!TP_HOST_HAS(h, progress)) return TP_E_INTERNAL;
       h->progress(h->ctx, 0.0 / 0.0, \"no number\", 9);
@@ -48,31 +48,31 @@ fn a_planner_in_c_tells_how_far_its_plan_is() {
       began = h->time_left_s(h->ctx);
       while (began - h->time_left_s(h->ctx) < 0.1) h->should_stop(h->ctx);
       h->should_stop(h->ctx);";
-    let (_folder, mut host) = counter(&[(PLAN, &format!("{tells} {PLAN}"))]);
-    let heard = hearing(&mut host);
+    let (_folder, mut host) = counter(&[(PLAN, &format!("{reports} {PLAN}"))]);
+    let received = recorded(&mut host);
     choose(&mut host, "counter", &Parameters::new()).unwrap();
     plan(&mut host).unwrap();
-    let told = |share, what: &str| Progress { share, what: what.to_owned() };
-    let all = [told(0.25, "one [31m"), told(1.0, &"x".repeat(80)), told(0.0, "")];
-    assert_eq!(*heard.lock().unwrap(), all);
+    let progress = |share, what: &str| Progress { share, what: what.to_owned() };
+    let all = [progress(0.25, "one [31m"), progress(1.0, &"x".repeat(80)), progress(0.0, "")];
+    assert_eq!(*received.lock().unwrap(), all);
     plan(&mut host).unwrap();
-    assert_eq!(heard.lock().unwrap().len(), 6, "the next plan tells as well");
+    assert_eq!(received.lock().unwrap().len(), 6, "progress of the next plan is reported as well");
 }
 
 #[test]
-fn progress_outside_of_a_plan_goes_nowhere_and_harms_nobody() {
-    let tell = "h->progress(h->ctx, 0.5, \"anywhere\", 8);";
+fn progress_outside_of_a_plan_is_ignored() {
+    let report = "h->progress(h->ctx, 0.5, \"anywhere\", 8);";
     let (_folder, mut host) = counter(&[
-        ("{ (void)h; return TP_OK; }", &format!("{{ {tell} return TP_OK; }}")),
-        ("(void)h; (void)s;", &format!("{tell} (void)s;")),
-        ("(void)h; (void)in;\n  if", &format!("{tell} (void)in;\n  if")),
-        ("h->bytes(", &format!("{tell} h->bytes(")),
+        ("{ (void)h; return TP_OK; }", &format!("{{ {report} return TP_OK; }}")),
+        ("(void)h; (void)s;", &format!("{report} (void)s;")),
+        ("(void)h; (void)in;\n  if", &format!("{report} (void)in;\n  if")),
+        ("h->bytes(", &format!("{report} h->bytes(")),
     ]);
-    let heard = hearing(&mut host);
+    let received = recorded(&mut host);
     choose(&mut host, "counter", &Parameters::new()).unwrap();
     plan(&mut host).unwrap();
     (0..12).for_each(|tick| drop(step(&mut host, tick).unwrap()));
-    assert_eq!(*heard.lock().unwrap(), []);
+    assert_eq!(*received.lock().unwrap(), []);
 }
 
 #[test]
@@ -85,12 +85,12 @@ fn a_plugin_built_for_version_1_1_is_loaded_and_plans() {
 }
 
 #[test]
-fn a_planner_that_tells_progress_without_end_is_killed_like_any_that_hangs() {
+fn a_planner_that_reports_progress_endlessly_is_killed_like_any_that_hangs() {
     let mut host = host(impatient());
-    let heard = hearing(&mut host);
+    let received = recorded(&mut host);
     choose(&mut host, "faulty", &words(&[("fault", "plan_progress")])).unwrap();
     let fault = plan(&mut host).unwrap_err();
     assert_eq!(fault.cause, Cause::Hung, "{fault}");
-    assert!(heard.lock().unwrap().len() < 100, "it cannot flood the console");
+    assert!(received.lock().unwrap().len() < 100, "it cannot flood the console");
     assert_another_drives(&mut host);
 }

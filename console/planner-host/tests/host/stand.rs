@@ -142,7 +142,7 @@ pub fn fly(host: &mut BlockingHost) -> Result<(), Fault> {
     (0..10).try_for_each(|tick| step(host, tick).map(|_| ()))
 }
 
-/// After whatever happened another planner drives.
+/// Whatever happened before, another planner can take over.
 pub fn assert_another_drives(host: &mut BlockingHost) {
     choose(host, "faulty", &Parameters::new()).unwrap();
     assert!(plan(host).unwrap().value.complete);

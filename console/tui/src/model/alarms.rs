@@ -54,7 +54,7 @@ pub struct Alarm {
 
 /// What is wrong, in the order in which it came.
 ///
-/// An alarm stays until its cause is gone and, from WARN on, the operator has acknowledged it.
+/// An alarm stays until its cause has cleared and, from WARN on, the operator has acknowledged it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Alarms {
     list: Vec<Alarm>,
@@ -74,7 +74,7 @@ impl Alarms {
         }
     }
 
-    /// Notes that a cause is gone.
+    /// Notes that a cause has cleared.
     pub fn clear(&mut self, cause: &Cause) {
         for alarm in self.list.iter_mut().filter(|alarm| alarm.cause == *cause) {
             alarm.active = false;

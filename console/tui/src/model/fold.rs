@@ -23,7 +23,7 @@ impl Model {
         if matches!(event.kind, EventKind::Truth { .. } | EventKind::TetherTruth { .. }) {
             return;
         }
-        self.tell_time(event);
+        self.update_clock(event);
         if let Some(line) = event.log_line() {
             self.log.add(event.t_s, line.severity, line.source, line.text);
         }
@@ -149,7 +149,7 @@ impl Model {
         }
     }
 
-    /// Another planner drives.
+    /// Another planner becomes active.
     fn seat(&mut self, choice: &PlannerChoice, info: &PlannerInfo) {
         (self.planning.choice, self.planning.info) = (Some(choice.clone()), Some(info.clone()));
         self.planning.scalars.clear();
@@ -231,7 +231,7 @@ impl Model {
         }
     }
 
-    fn tell_time(&mut self, event: &Event) {
+    fn update_clock(&mut self, event: &Event) {
         let passed_s = event.t_s - self.clock.t_s;
         if self.is_running() && passed_s > 0.0 {
             self.clock.moving_s += passed_s;

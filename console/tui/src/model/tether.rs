@@ -4,7 +4,7 @@ use mission::{EventKind, event::TetherContact};
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// How the cable lies, and what was last judged of a plan.
+/// How the cable lies, and the last certificate of a plan.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tether {
     /// Cable that is out, metres: what the reel has paid out, without an encoder what the map explains.

@@ -163,7 +163,7 @@ pub enum Overlay {
         /// Which line is selected.
         selected: usize,
     },
-    /// The parameters of the planner that drives.
+    /// The parameters of the active planner.
     Parameters {
         /// Which line is selected.
         selected: usize,

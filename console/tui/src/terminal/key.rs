@@ -5,7 +5,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
 /// The key of a terminal event; `None` for releases and for keys that the console does not know.
 ///
-/// Alt is not used: over a slow line it cannot be told from Esc and a letter.
+/// Alt is not used: over a slow connection it cannot be distinguished from Esc followed by a letter.
 pub fn key_from_crossterm(event: &KeyEvent) -> Option<KeyPress> {
     let repeat = match event.kind {
         KeyEventKind::Press => false,
@@ -47,7 +47,7 @@ mod tests {
     }
 
     #[test]
-    fn releases_are_no_keys_and_repeats_are_told() {
+    fn releases_are_ignored_and_repeats_are_marked() {
         let space = |kind| press(KeyCode::Char(' '), KeyModifiers::NONE, kind);
         assert_eq!(space(KeyEventKind::Press), Some(Key::Char(' ').into()));
         assert_eq!(space(KeyEventKind::Repeat), Some(KeyPress { key: Key::Char(' '), repeat: true }));
@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn capitals_keep_their_shift_and_control_is_told() {
+    fn capitals_keep_their_shift_and_control_is_recognized() {
         let press = |code, modifiers| press(code, modifiers, KeyEventKind::Press).map(|press| press.key);
         assert_eq!(press(KeyCode::Char('S'), KeyModifiers::SHIFT), Some(Key::Char('S')));
         assert_eq!(press(KeyCode::Char('c'), KeyModifiers::CONTROL), Some(Key::Ctrl('c')));

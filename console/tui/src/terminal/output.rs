@@ -3,9 +3,9 @@
 use super::restore::is_taken;
 use std::io::{self, Stdout, Write};
 
-/// Tells the terminal to show nothing until the frame is there.
+/// Begins a synchronized update: the terminal shows nothing until the frame is complete.
 const BEGIN: &[u8] = b"\x1b[?2026h";
-/// Tells it to show the frame.
+/// Ends the synchronized update: the terminal shows the frame.
 const END: &[u8] = b"\x1b[?2026l";
 
 /// Gathers what is written until the flush, and sends that as one synchronized update.

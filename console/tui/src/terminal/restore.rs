@@ -33,7 +33,7 @@ pub(super) fn is_taken() -> bool {
 /// Gives the terminal back. Does nothing if the console does not have it, so it may be called again and again.
 pub fn restore() {
     if TAKEN.swap(false, Ordering::SeqCst) {
-        // There is nobody left to tell if the terminal is gone.
+        // If the terminal is closed, the error cannot be reported anywhere.
         let mut output = io::stdout();
         let _ = output.write_all(RESTORE.as_bytes()).and_then(|()| output.flush());
         let _ = disable_raw_mode();
@@ -51,10 +51,10 @@ pub fn restore_from_signal() {
 
 /// Puts a panic hook in front of the one that is installed.
 ///
-/// A panic of the thread that owns the terminal first gives it back, then goes to the hook before. A panic of any
-/// other thread while the console has the terminal must not write on the screen: it is told to `tell`, as the name
-/// of the thread and the message with its place.
-pub fn install_panic_hook(tell: impl Fn(&str, &str) + Send + Sync + 'static) {
+/// A panic of the thread that owns the terminal first restores the terminal, then calls the previous hook. A panic of any
+/// other thread while the console has the terminal must not write to the screen: it is passed to `on_panic`, with the
+/// name of the thread and the message with its source location.
+pub fn install_panic_hook(on_panic: impl Fn(&str, &str) + Send + Sync + 'static) {
     let before = panic::take_hook();
     panic::set_hook(Box::new(move |info| {
         let mine = OWNER.lock().is_ok_and(|owner| *owner == Some(thread::current().id()));
@@ -70,7 +70,7 @@ pub fn install_panic_hook(tell: impl Fn(&str, &str) + Send + Sync + 'static) {
             .or_else(|| payload.downcast_ref::<String>().map(String::as_str))
             .unwrap_or("a panic without a message");
         let place = info.location().map(|at| format!(" ({}:{})", at.file(), at.line())).unwrap_or_default();
-        tell(thread::current().name().unwrap_or("without a name"), &format!("{said}{place}"));
+        on_panic(thread::current().name().unwrap_or("without a name"), &format!("{said}{place}"));
     }));
 }
 

@@ -12,7 +12,7 @@ const INTERRUPT_TWICE_S: f64 = 2.0;
 /// Lines of a page of events.
 const PAGE: usize = 10;
 
-/// Does what an action says, or tells the operator why not.
+/// Carries out an action, or shows the operator why it is not available.
 pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
     if let Err(why) = offered(model, id) {
         model.say(Severity::Watch, why);

@@ -196,8 +196,8 @@ impl Pen<'_> {
         }
     }
 
-    /// How much of plan and trail is drawn, metres: where neighbouring passes would run into each other, only what
-    /// lies close before and behind the robot. What was scanned tells the rest.
+    /// How much of plan and trail is drawn, metres: where neighbouring passes would merge on the map, only what lies
+    /// close before and behind the robot. The scanned cells show the rest.
     fn reach_m(&self) -> Option<f64> {
         let swath_m = self.model().run.as_ref()?.mission.swath_m;
         (swath_m < PASS_COLUMNS * self.window.column_m).then_some(REACH_COLUMNS * self.window.column_m)

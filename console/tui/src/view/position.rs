@@ -1,4 +1,4 @@
-//! The position pane: what the AE stations tell, and how far to trust it.
+//! The position pane: the AE stations' measurements, and how far to trust them.
 
 use super::{Look, fill, text};
 use crate::model::{Model, Pane, position::HISTORY_S};

@@ -1,4 +1,4 @@
-//! A spiral mission in a tank with columns, told as events without any engine.
+//! A spiral mission in a tank with columns, as scripted events without an engine.
 
 use mission::event::{HoldReason, JOURNAL_VERSION, RunOpened, TetherAlarm, TetherContact};
 use mission::planner::{Cause, During, Fault};
@@ -204,9 +204,9 @@ pub fn opened() -> EventKind {
     }))
 }
 
-/// A mission that is told tick by tick.
+/// A scripted mission that yields its events tick by tick.
 #[derive(Clone)]
-pub struct Telling {
+pub struct ScriptedMission {
     path: Vec<Point>,
     grid: CoverageGrid,
     tick: u64,
@@ -216,7 +216,7 @@ pub struct Telling {
     pub sigma_m: f64,
 }
 
-impl Telling {
+impl ScriptedMission {
     /// Before the first tick.
     pub fn new() -> Self {
         let EventKind::RunOpened(run) = opened() else { unreachable!("the run opens first") };
@@ -408,12 +408,12 @@ impl Telling {
             Bearing::Wall => "wall".into(),
         };
         let contacts = cable.contacts();
-        let told = |c: &Contact| TetherContact { on: name(c.on), wrap_rad: c.wrap_rad, at: c.last };
+        let contact = |c: &Contact| TetherContact { on: name(c.on), wrap_rad: c.wrap_rad, at: c.last };
         self.now(EventKind::Tethered {
             length_m: cable.length_m(),
             paid_out_m: None,
             free_m: config.limits.reel_m - cable.length_m(),
-            contacts: contacts.iter().map(told).collect(),
+            contacts: contacts.iter().map(contact).collect(),
             max_wrap_rad: cable.max_wrap_rad(),
             sum_wrap_rad: cable.sum_wrap_rad(),
             pull_factor: capstan_factor(config.friction, cable.sum_wrap_rad()),
@@ -434,7 +434,7 @@ impl Telling {
         vec![cable, alarmed, self.held(HoldReason::Tether { message })]
     }
 
-    /// A judgement of a plan.
+    /// The certificate of a plan.
     pub fn certified(&self, reasons: &[&str]) -> Event {
         let certificate = Certificate {
             certified: reasons.is_empty(),
@@ -457,13 +457,13 @@ impl Telling {
     }
 }
 
-/// A screen that has been told of a mission.
+/// A screen that shows a scripted mission.
 #[derive(Clone)]
 pub struct Screen {
     /// Its model.
     pub model: Model,
-    /// The mission it is told of.
-    pub telling: Telling,
+    /// The mission that it shows.
+    pub mission: ScriptedMission,
     mono_s: f64,
 }
 
@@ -475,16 +475,16 @@ impl Screen {
     }
 
     fn make_idle() -> Self {
-        let mut screen = Self { model: Model::default(), telling: Telling::new(), mono_s: 0.0 };
-        screen.tell(Msg::Time(Times { mono_s: 0.0, wall_unix_s: 1_795_264_000.0 }));
-        screen.tell(Msg::Health(Health { recording: Recording::On, reached_speed: None }));
+        let mut screen = Self { model: Model::default(), mission: ScriptedMission::new(), mono_s: 0.0 };
+        screen.send(Msg::Time(Times { mono_s: 0.0, wall_unix_s: 1_795_264_000.0 }));
+        screen.send(Msg::Health(Health { recording: Recording::On, reached_speed: None }));
         let refused = Refused {
             plugin: "my_plugin.so".into(),
             reason: "built for planner ABI 3, this console speaks 1; rebuild it".into(),
         };
-        screen.tell(Msg::Planners { found: planners(), refused: vec![refused] });
-        let events = screen.telling.opening();
-        screen.tell(Msg::Events(events));
+        screen.send(Msg::Planners { found: planners(), refused: vec![refused] });
+        let events = screen.mission.opening();
+        screen.send(Msg::Events(events));
         screen
     }
 
@@ -496,14 +496,14 @@ impl Screen {
 
     fn make_running() -> Self {
         let mut screen = Self::idle();
-        let mut events = screen.telling.start();
-        events.extend(screen.telling.drive(1200));
+        let mut events = screen.mission.start();
+        events.extend(screen.mission.drive(1200));
         let found = EventKind::ObstacleFound { obstacle: found() };
-        events.push(screen.telling.now(found));
-        events.extend(screen.telling.drive(700));
-        events.push(screen.telling.excluded());
-        events.extend(screen.telling.drive(35));
-        screen.tell(Msg::Events(events));
+        events.push(screen.mission.now(found));
+        events.extend(screen.mission.drive(700));
+        events.push(screen.mission.excluded());
+        events.extend(screen.mission.drive(35));
+        screen.send(Msg::Events(events));
         screen
     }
 
@@ -513,27 +513,27 @@ impl Screen {
         if let Some(run) = &mut screen.model.run {
             run.mission.tether = Some(tether());
         }
-        let events = vec![screen.telling.certified(&[]), screen.telling.cable()];
-        screen.tell(Msg::Events(events));
+        let events = vec![screen.mission.certified(&[]), screen.mission.cable()];
+        screen.send(Msg::Events(events));
         screen
     }
 
     /// The same, held by the operator.
     pub fn held() -> Self {
         let mut screen = Self::running();
-        let events = screen.telling.obeyed(Order::Hold);
-        screen.tell(Msg::Events(events));
+        let events = screen.mission.obeyed(Order::Hold);
+        screen.send(Msg::Events(events));
         screen
     }
 
-    /// Tells the model something.
-    pub fn tell(&mut self, msg: Msg) -> Vec<tui::Effect> {
+    /// Sends a message to the model.
+    pub fn send(&mut self, msg: Msg) -> Vec<tui::Effect> {
         update(&mut self.model, msg)
     }
 
     /// Presses keys, one after the other.
     pub fn press(&mut self, keys: impl IntoIterator<Item = tui::Key>) -> Vec<tui::Effect> {
-        keys.into_iter().flat_map(|key| self.tell(Msg::Key(key.into()))).collect()
+        keys.into_iter().flat_map(|key| self.send(Msg::Key(key.into()))).collect()
     }
 
     /// Types characters.
@@ -544,7 +544,7 @@ impl Screen {
     /// Lets time pass on the console's own clock.
     pub fn pass(&mut self, seconds: f64) -> Vec<tui::Effect> {
         self.mono_s += seconds;
-        self.tell(Msg::Time(Times { mono_s: self.mono_s, wall_unix_s: 1_795_264_000.0 + self.mono_s }))
+        self.send(Msg::Time(Times { mono_s: self.mono_s, wall_unix_s: 1_795_264_000.0 + self.mono_s }))
     }
 }
 

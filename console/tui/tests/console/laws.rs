@@ -20,26 +20,26 @@ fn key() -> impl Strategy<Value = Key> {
 
 /// Events of a whole mission in any order, with wild times.
 fn event() -> impl Strategy<Value = Event> {
-    let told: Vec<Event> = {
+    let events: Vec<Event> = {
         let mut screen = Screen::idle();
-        let telling = &mut screen.telling;
-        let mut events = telling.opening();
-        events.extend(telling.start());
-        events.extend(telling.drive(40));
-        events.push(telling.excluded());
-        events.extend(telling.planner_fails());
+        let mission = &mut screen.mission;
+        let mut events = mission.opening();
+        events.extend(mission.start());
+        events.extend(mission.drive(40));
+        events.push(mission.excluded());
+        events.extend(mission.planner_fails());
         for by in [HoldReason::Operator, HoldReason::Stepped, HoldReason::PositionLost] {
-            events.push(telling.held(by));
+            events.push(mission.held(by));
         }
         let message = || "no way home".to_owned();
         events.extend([
-            telling.held_until(HoldReason::PositionLost, Resumes::WhenCleared),
-            telling.held_until(HoldReason::Tether { message: message() }, Resumes::WhenCleared),
-            telling.held_until(HoldReason::PlanRefused { message: message() }, Resumes::Never),
-            telling.held_until(HoldReason::PlannerFault { message: message() }, Resumes::ByFallback),
+            mission.held_until(HoldReason::PositionLost, Resumes::WhenCleared),
+            mission.held_until(HoldReason::Tether { message: message() }, Resumes::WhenCleared),
+            mission.held_until(HoldReason::PlanRefused { message: message() }, Resumes::Never),
+            mission.held_until(HoldReason::PlannerFault { message: message() }, Resumes::ByFallback),
         ]);
         for order in [Order::Hold, Order::Resume, Order::Step, Order::Abort, Order::FlyUncertified] {
-            events.extend(telling.obeyed(order));
+            events.extend(mission.obeyed(order));
         }
         let ask = AskId { worker: WorkerId(3), n: 7 };
         let lone = [
@@ -63,11 +63,11 @@ fn event() -> impl Strategy<Value = Event> {
             EventKind::Snapshotted { ask, bytes: u64::MAX },
             EventKind::Discarded { ask },
         ];
-        events.extend(lone.into_iter().map(|kind| telling.now(kind)));
-        events.push(telling.ended(Outcome::Stuck, "漢字".repeat(40).as_str()));
+        events.extend(lone.into_iter().map(|kind| mission.now(kind)));
+        events.push(mission.ended(Outcome::Stuck, "漢字".repeat(40).as_str()));
         events
     };
-    (prop::sample::select(told), prop_oneof![0.0..1e4_f64, Just(f64::NAN), Just(f64::INFINITY), Just(-5.0)])
+    (prop::sample::select(events), prop_oneof![0.0..1e4_f64, Just(f64::NAN), Just(f64::INFINITY), Just(-5.0)])
         .prop_map(|(event, t_s)| Event { t_s, ..event })
 }
 
@@ -93,27 +93,27 @@ fn msg() -> impl Strategy<Value = Msg> {
         1 => prop::option::of(("[a-z]{0,9}", prop::option::of(0.0..99.0_f64))).prop_map(Msg::Busy),
         1 => (any::<f64>(), "\\PC{0,90}").prop_map(|(share, what)| Msg::BusyAt { share, what }),
         1 => prop::sample::select(vec![Order::Start, Order::Hold, Order::Resume])
-            .prop_map(|order| Msg::OrderFailed { order, why: "the engine is gone".into() }),
+            .prop_map(|order| Msg::OrderFailed { order, why: "the engine has ended".into() }),
         1 => signal.prop_map(Msg::Signal),
     ]
 }
 
 /// What most changes which orders are accepted.
 fn turn() -> impl Strategy<Value = Msg> {
-    let telling = Screen::idle().telling;
+    let mission = Screen::idle().mission;
     let tether = || HoldReason::Tether { message: "no way home".into() };
     let refused = || HoldReason::PlanRefused { message: "not certified".into() };
-    let one = |kind| vec![telling.now(kind)];
+    let one = |kind| vec![mission.now(kind)];
     let turns = vec![
         one(EventKind::Resumed),
         one(EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 }),
         one(EventKind::PositionRegained { error_m: 0.1 }),
-        vec![telling.held_until(tether(), Resumes::WhenCleared)],
-        vec![telling.held_until(refused(), Resumes::ByFallback)],
-        vec![telling.held(refused())],
-        telling.obeyed(Order::Hold),
-        telling.obeyed(Order::Resume),
-        vec![telling.ended(Outcome::Complete, "the task is done")],
+        vec![mission.held_until(tether(), Resumes::WhenCleared)],
+        vec![mission.held_until(refused(), Resumes::ByFallback)],
+        vec![mission.held(refused())],
+        mission.obeyed(Order::Hold),
+        mission.obeyed(Order::Resume),
+        vec![mission.ended(Outcome::Complete, "the task is done")],
     ];
     prop::sample::select(turns).prop_map(Msg::Events)
 }
@@ -168,7 +168,7 @@ proptest! {
             screen.model = Model::default();
         }
         for msg in msgs {
-            screen.tell(msg);
+            screen.send(msg);
         }
         let buffer = drawn(&screen.model, caps, size);
         prop_assert_eq!((buffer.area.width, buffer.area.height), size);
@@ -189,7 +189,7 @@ proptest! {
         for msg in deeds.into_iter().flatten() {
             let before = screen.model.standing.clone();
             follows_hold &= !answers_hold(&msg);
-            for effect in screen.tell(msg) {
+            for effect in screen.send(msg) {
                 let Effect::Order(order) = effect else { continue };
                 match order {
                     Order::Hold => follows_hold = true,
@@ -237,14 +237,14 @@ fn the_smallest_and_largest_screens_are_drawn() {
 #[test]
 fn nothing_but_style_is_lost_without_colour() {
     let mut lost = Screen::running();
-    let event = lost.telling.now(EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
-    let held = lost.telling.held(HoldReason::PositionLost);
-    lost.tell(Msg::Events(vec![event, held]));
+    let event = lost.mission.now(EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
+    let held = lost.mission.held(HoldReason::PositionLost);
+    lost.send(Msg::Events(vec![event, held]));
     let mut failed = Screen::running();
-    let events = failed.telling.planner_fails();
-    failed.tell(Msg::Events(events));
+    let events = failed.mission.planner_fails();
+    failed.send(Msg::Events(events));
     let mut unrecorded = Screen::running();
-    unrecorded.tell(Msg::Health(Health { recording: Recording::Failed("full".into()), reached_speed: None }));
+    unrecorded.send(Msg::Health(Health { recording: Recording::Failed("full".into()), reached_speed: None }));
     let cases: Vec<(&str, Screen, &[&str])> = vec![
         ("idle", Screen::idle(), &["■ IDLE", "REC●", "Press S"]),
         ("running", Screen::running(), &["▶ RUN", "2w", "OUT 0.42 m", "found"]),
@@ -276,12 +276,12 @@ fn nothing_but_style_is_lost_without_colour() {
 #[test]
 fn what_is_drawn_does_not_grow_with_the_mission() {
     let mut screen = Screen::running();
-    let events = screen.telling.wait(200_000);
-    screen.tell(Msg::Events(events));
+    let events = screen.mission.wait(200_000);
+    screen.send(Msg::Events(events));
     assert!(screen.model.trail.points().len() <= 2048);
     assert!(screen.model.position.history_m().len() <= 120);
     for i in 0..20_000 {
-        screen.tell(Msg::Notice { severity: Severity::Info, text: format!("line {i}") });
+        screen.send(Msg::Notice { severity: Severity::Info, text: format!("line {i}") });
     }
     assert!(screen.model.log.len() <= 10_000);
 }

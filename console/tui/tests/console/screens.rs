@@ -41,13 +41,13 @@ fn roles(model: &Model, caps: Caps, size: (u16, u16)) -> String {
 
 fn store(name: &str, screen: &mut Screen) {
     for size in SIZES {
-        screen.tell(Msg::Resize { width: size.0, height: size.1 });
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
         let text = text(&drawn(&screen.model, RICH, size));
         let roles = roles(&screen.model, RICH, size);
         insta::assert_snapshot!(format!("{name}_{}x{}", size.0, size.1), format!("{text}\n{roles}"));
     }
     let size = (80, 24);
-    screen.tell(Msg::Resize { width: size.0, height: size.1 });
+    screen.send(Msg::Resize { width: size.0, height: size.1 });
     insta::assert_snapshot!(format!("{name}_80x24_no_colour"), text(&drawn(&screen.model, PLAIN, size)));
 }
 
@@ -59,13 +59,13 @@ fn idle() {
 #[test]
 fn planning() {
     let mut screen = Screen::idle();
-    let started = screen.telling.now(EventKind::Ordered { order: Order::Start });
-    screen.tell(Msg::Events(vec![started]));
-    screen.tell(Msg::Busy(Some(("Planning (tether-safe)".into(), Some(60.0)))));
+    let started = screen.mission.now(EventKind::Ordered { order: Order::Start });
+    screen.send(Msg::Events(vec![started]));
+    screen.send(Msg::Busy(Some(("Planning (tether-safe)".into(), Some(60.0)))));
     screen.pass(7.0);
-    let events = screen.telling.wait(14);
-    screen.tell(Msg::Events(events));
-    screen.tell(Msg::BusyAt { share: 0.42, what: "candidate 2 of 3".into() });
+    let events = screen.mission.wait(14);
+    screen.send(Msg::Events(events));
+    screen.send(Msg::BusyAt { share: 0.42, what: "candidate 2 of 3".into() });
     store("planning", &mut screen);
 }
 
@@ -78,7 +78,7 @@ fn running() {
 fn running_with_letters_only() {
     let mut screen = Screen::running();
     for size in [(120, 36), (80, 24)] {
-        screen.tell(Msg::Resize { width: size.0, height: size.1 });
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
         insta::assert_snapshot!(
             format!("ascii_{}x{}", size.0, size.1),
             text(&drawn(&screen.model, ASCII, size))
@@ -89,7 +89,7 @@ fn running_with_letters_only() {
 #[test]
 fn running_zoomed_and_followed() {
     let mut screen = Screen::running();
-    screen.tell(Msg::Resize { width: 120, height: 36 });
+    screen.send(Msg::Resize { width: 120, height: 36 });
     screen.type_text("zzf");
     store("zoomed", &mut screen);
 }
@@ -102,12 +102,12 @@ fn held() {
 #[test]
 fn position_lost() {
     let mut screen = Screen::running();
-    screen.telling.sigma_m = 0.2;
-    let mut events = screen.telling.wait(4);
-    events.push(screen.telling.now(EventKind::PositionLost { error_m: 0.49, limit_m: 0.15 }));
-    events.extend(screen.telling.wait(4));
-    events.push(screen.telling.held_until(HoldReason::PositionLost, Resumes::WhenCleared));
-    screen.tell(Msg::Events(events));
+    screen.mission.sigma_m = 0.2;
+    let mut events = screen.mission.wait(4);
+    events.push(screen.mission.now(EventKind::PositionLost { error_m: 0.49, limit_m: 0.15 }));
+    events.extend(screen.mission.wait(4));
+    events.push(screen.mission.held_until(HoldReason::PositionLost, Resumes::WhenCleared));
+    screen.send(Msg::Events(events));
     store("lost", &mut screen);
 }
 
@@ -121,8 +121,8 @@ fn tethered() {
 fn no_way_home() {
     let mut screen = Screen::tethered();
     let message = mission::event::TetherAlarm::NoWayHome.to_string();
-    let held = screen.telling.held_until(HoldReason::Tether { message }, Resumes::WhenCleared);
-    screen.tell(Msg::Events(vec![held]));
+    let held = screen.mission.held_until(HoldReason::Tether { message }, Resumes::WhenCleared);
+    screen.send(Msg::Events(vec![held]));
     store("no_way_home", &mut screen);
 }
 
@@ -130,9 +130,9 @@ fn no_way_home() {
 fn fallback_plans() {
     let mut screen = Screen::running();
     let message = "planner rpf panicked during step".to_owned();
-    let held = screen.telling.held_until(HoldReason::PlannerFault { message }, Resumes::ByFallback);
-    screen.tell(Msg::Events(vec![held]));
-    screen.tell(Msg::Busy(Some(("Planning (apf)".into(), Some(60.0)))));
+    let held = screen.mission.held_until(HoldReason::PlannerFault { message }, Resumes::ByFallback);
+    screen.send(Msg::Events(vec![held]));
+    screen.send(Msg::Busy(Some(("Planning (apf)".into(), Some(60.0)))));
     screen.pass(7.0);
     store("fallback", &mut screen);
 }
@@ -140,42 +140,42 @@ fn fallback_plans() {
 #[test]
 fn caught() {
     let mut screen = Screen::tethered();
-    let events = screen.telling.caught();
-    screen.tell(Msg::Events(events));
+    let events = screen.mission.caught();
+    screen.send(Msg::Events(events));
     store("caught", &mut screen);
 }
 
 #[test]
 fn plan_refused() {
     let mut screen = Screen::tethered();
-    let events = screen.telling.plan_refused();
-    screen.tell(Msg::Events(events));
+    let events = screen.mission.plan_refused();
+    screen.send(Msg::Events(events));
     store("plan_refused", &mut screen);
 }
 
 #[test]
 fn planner_fault() {
     let mut screen = Screen::running();
-    let events = screen.telling.planner_fails();
-    screen.tell(Msg::Events(events));
+    let events = screen.mission.planner_fails();
+    screen.send(Msg::Events(events));
     store("fault", &mut screen);
 }
 
 #[test]
 fn ended() {
     let mut screen = Screen::running();
-    let events = vec![screen.telling.ended(Outcome::Complete, "the task is done")];
-    screen.tell(Msg::Events(events));
+    let events = vec![screen.mission.ended(Outcome::Complete, "the task is done")];
+    screen.send(Msg::Events(events));
     store("ended", &mut screen);
 }
 
 #[test]
 fn ended_in_a_collision_without_recording() {
     let mut screen = Screen::running();
-    let events = vec![screen.telling.ended(Outcome::Collision, "the bumper touched something")];
+    let events = vec![screen.mission.ended(Outcome::Collision, "the bumper touched something")];
     let recording = Recording::Failed("the disk is full".into());
-    screen.tell(Msg::Events(events));
-    screen.tell(Msg::Health(tui::Health { recording, reached_speed: None }));
+    screen.send(Msg::Events(events));
+    screen.send(Msg::Health(tui::Health { recording, reached_speed: None }));
     screen.pass(20.0);
     store("collision", &mut screen);
 }

@@ -21,14 +21,14 @@ fn shown(screen: &Screen) -> String {
     text(&drawn(&screen.model, RICH, (120, 36)))
 }
 
-fn told(screen: &mut Screen, kind: EventKind) -> Vec<Effect> {
-    let event = screen.telling.now(kind);
-    screen.tell(Msg::Events(vec![event]))
+fn send_event(screen: &mut Screen, kind: EventKind) -> Vec<Effect> {
+    let event = screen.mission.now(kind);
+    screen.send(Msg::Events(vec![event]))
 }
 
 fn obeyed(screen: &mut Screen, order: Order) {
-    let events = screen.telling.obeyed(order);
-    screen.tell(Msg::Events(events));
+    let events = screen.mission.obeyed(order);
+    screen.send(Msg::Events(events));
 }
 
 fn held(by: HoldReason) -> EventKind {
@@ -41,8 +41,8 @@ fn the_mission_starts_only_after_the_operator_agreed() {
     assert_eq!(screen.type_text("S"), []);
     assert_eq!(*screen.model.phase(), Phase::Waiting);
     assert_eq!(screen.press([Key::Enter]), [order(Order::Start)]);
-    let events = screen.telling.start();
-    screen.tell(Msg::Events(events));
+    let events = screen.mission.start();
+    screen.send(Msg::Events(events));
     assert_eq!(*screen.model.phase(), Phase::Running(Gait::Steady));
     assert_eq!(screen.model.console.asked, None);
 }
@@ -98,13 +98,13 @@ fn a_start_that_was_not_answered_yet_can_be_held() {
 #[test]
 fn a_robot_that_waits_for_its_position_can_be_held_for_good() {
     let mut screen = Screen::running();
-    told(&mut screen, EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
-    told(&mut screen, EventKind::Held { by: HoldReason::PositionLost, resumes: Resumes::WhenCleared });
+    send_event(&mut screen, EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
+    send_event(&mut screen, EventKind::Held { by: HoldReason::PositionLost, resumes: Resumes::WhenCleared });
     assert_eq!(screen.press([SPACE]), [order(Order::Hold)]);
     obeyed(&mut screen, Order::Hold);
     assert_eq!(screen.press([SPACE, Key::Enter]), []);
     assert!(notice(&screen).contains("position is lost"));
-    told(&mut screen, EventKind::PositionRegained { error_m: 0.1 });
+    send_event(&mut screen, EventKind::PositionRegained { error_m: 0.1 });
     assert_eq!(screen.press([SPACE, Key::Enter]), [order(Order::Resume)]);
 }
 
@@ -118,10 +118,10 @@ fn single_steps_ask_once_and_wait_for_each_answer() {
     assert_eq!(screen.type_text("."), [order(Order::Step)]);
     assert_eq!(screen.type_text("."), [], "the first step was not answered yet");
     obeyed(&mut screen, Order::Step);
-    told(&mut screen, held(HoldReason::Stepped));
+    send_event(&mut screen, held(HoldReason::Stepped));
     assert_eq!(screen.press([Key::Enter]), [order(Order::Step)]);
     obeyed(&mut screen, Order::Step);
-    told(&mut screen, held(HoldReason::Stepped));
+    send_event(&mut screen, held(HoldReason::Stepped));
     assert_eq!(screen.press([Key::Esc, Key::Enter]), []);
 }
 
@@ -145,7 +145,7 @@ fn another_planner_drives_only_when_held_and_agreed() {
     assert!(matches!(screen.model.ui.overlay, Overlay::Planners { .. }), "HOLD was sent, the list may open");
     let mut screen = Screen::held();
     screen.type_text("P");
-    assert_eq!(screen.model.ui.overlay, Overlay::Planners { selected: 1 }, "the one that drives is selected");
+    assert_eq!(screen.model.ui.overlay, Overlay::Planners { selected: 1 }, "the active one is selected");
     assert_eq!(screen.press([Key::Down, Key::Enter]), []);
     assert_eq!(screen.press([Key::Enter]), [order(Order::ChoosePlanner(choice("spiral-tangent")))]);
 }
@@ -170,31 +170,31 @@ fn a_planner_that_covers_no_floor_is_marked_and_not_asked_to() {
 fn planning_is_shown_with_the_time_it_has_taken_while_ticks_go_on() {
     let mut screen = Screen::idle();
     screen.press([Key::Char('S'), Key::Enter]);
-    let started = screen.telling.now(EventKind::Ordered { order: Order::Start });
-    screen.tell(Msg::Events(vec![started]));
-    screen.tell(Msg::Busy(Some(("Planning (rpf)".into(), Some(60.0)))));
-    assert!(screen.model.wakes_at_mono_s().is_some(), "the seconds go on");
+    let started = screen.mission.now(EventKind::Ordered { order: Order::Start });
+    screen.send(Msg::Events(vec![started]));
+    screen.send(Msg::Busy(Some(("Planning (rpf)".into(), Some(60.0)))));
+    assert!(screen.model.wakes_at_mono_s().is_some(), "the seconds keep counting");
     for _ in 0..7 {
         screen.pass(1.0);
-        let events = screen.telling.wait(2);
-        screen.tell(Msg::Events(events));
+        let events = screen.mission.wait(2);
+        screen.send(Msg::Events(events));
     }
     assert_eq!(screen.model.silent_s(), None);
     let expect = |screen: &Screen, text: &str| assert!(shown(screen).contains(text), "{}", shown(screen));
     expect(&screen, "Planning (rpf), 7 s of 60 s at most. space: HOLD. X: end mission.");
-    screen.tell(Msg::BusyAt { share: 0.419, what: "candidate 2 of 3".into() });
+    screen.send(Msg::BusyAt { share: 0.419, what: "candidate 2 of 3".into() });
     expect(&screen, "Planning (rpf) 41 %, 7 s of 60 s at most. candidate 2 of 3.");
-    screen.tell(Msg::BusyAt { share: 1.0, what: String::new() });
+    screen.send(Msg::BusyAt { share: 1.0, what: String::new() });
     expect(&screen, "Planning (rpf) 99 %, 7 s");
-    screen.tell(Msg::Busy(None));
-    screen.tell(Msg::BusyAt { share: 0.5, what: "late".into() });
+    screen.send(Msg::Busy(None));
+    screen.send(Msg::BusyAt { share: 0.5, what: "late".into() });
     assert!(!shown(&screen).contains("Planning ("), "late progress starts nothing");
 }
 
 #[test]
 fn work_on_a_planner_that_is_only_prepared_offers_what_can_be_done() {
     let mut screen = Screen::idle();
-    screen.tell(Msg::Busy(Some(("Loading planner (rpf)".into(), None))));
+    screen.send(Msg::Busy(Some(("Loading planner (rpf)".into(), None))));
     let line = "Loading planner (rpf). Press S to start (planner rpf).";
     assert!(shown(&screen).contains(line), "{}", shown(&screen));
     assert!(!shown(&screen).contains("space: HOLD"), "there is nothing to hold");
@@ -206,7 +206,7 @@ fn a_hold_by_the_operator_says_what_keeps_the_robot_from_resuming() {
     let alarmed = EventKind::PositionAlarmed { chi2: 90.0, degrees_of_freedom: 2 };
     for (event, why) in [(lost, "position lost"), (alarmed, "ranges contradict each other")] {
         let mut screen = Screen::held();
-        told(&mut screen, event);
+        send_event(&mut screen, event);
         let line = format!("HELD by operator; {why}. Cannot resume without a");
         assert!(shown(&screen).contains(&line), "{}", shown(&screen));
     }
@@ -217,7 +217,7 @@ fn an_order_that_does_not_reach_the_mission_is_an_alarm_and_can_be_given_again()
     let mut screen = Screen::idle();
     screen.press([Key::Char('S'), Key::Enter]);
     let failed = Msg::OrderFailed { order: Order::Start, why: "cannot create the run folder".into() };
-    assert_eq!(screen.tell(failed), [Effect::Bell]);
+    assert_eq!(screen.send(failed), [Effect::Bell]);
     assert_eq!((&screen.model.console.asked, screen.model.may_move()), (&None, false));
     assert!(notice(&screen).contains("cannot create the run folder"));
     assert_eq!(screen.press([Key::Char('S'), Key::Enter]), [order(Order::Start)]);
@@ -227,7 +227,7 @@ fn an_order_that_does_not_reach_the_mission_is_an_alarm_and_can_be_given_again()
 fn a_hold_of_the_tick_before_does_not_answer_a_resume() {
     let mut screen = Screen::held();
     assert_eq!(screen.press([SPACE, Key::Enter]), [order(Order::Resume)]);
-    told(&mut screen, held(HoldReason::Tether { message: "snagged".into() }));
+    send_event(&mut screen, held(HoldReason::Tether { message: "snagged".into() }));
     assert_eq!(screen.press([SPACE]), [order(Order::Hold)], "the robot will move after that event");
     obeyed(&mut screen, Order::Resume);
     obeyed(&mut screen, Order::Hold);
@@ -238,12 +238,12 @@ fn a_hold_of_the_tick_before_does_not_answer_a_resume() {
 fn a_robot_that_resumes_by_itself_withdraws_the_question() {
     let mut screen = Screen::running();
     let by = HoldReason::Tether { message: "no way home".into() };
-    told(&mut screen, EventKind::Held { by, resumes: Resumes::WhenCleared });
+    send_event(&mut screen, EventKind::Held { by, resumes: Resumes::WhenCleared });
     screen.press([Key::Char(':')]);
     screen.type_text("resume");
     screen.press([Key::Enter]);
     assert!(matches!(screen.model.ui.overlay, Overlay::Confirm(_)));
-    told(&mut screen, EventKind::Resumed);
+    send_event(&mut screen, EventKind::Resumed);
     assert_eq!(screen.model.ui.overlay, Overlay::None);
     assert_eq!(screen.press([Key::Enter]), []);
 }
@@ -253,21 +253,21 @@ fn a_planner_that_is_rejected_or_late_is_reported() {
     let mut screen = Screen::held();
     let ask = mission::AskId { worker: mission::WorkerId(2), n: 1 };
     let info = Box::new(crate::fixture::planners().remove(2));
-    told(&mut screen, EventKind::PlannerPrepared { ask, choice: choice("spiral-tangent"), info });
+    send_event(&mut screen, EventKind::PlannerPrepared { ask, choice: choice("spiral-tangent"), info });
     assert_eq!(screen.model.planner_id(), Some("rpf"), "it does not drive yet");
     let why = "no plan within 60 s".to_owned();
-    told(&mut screen, EventKind::PlannerRejected { planner: "spiral-tangent".into(), why });
+    send_event(&mut screen, EventKind::PlannerRejected { planner: "spiral-tangent".into(), why });
     assert!(notice(&screen).contains("spiral-tangent does not take over: no plan within 60 s"));
     let mut screen = Screen::running();
     let before = screen.model.clone();
-    told(&mut screen, EventKind::Discarded { ask });
-    told(&mut screen, EventKind::Snapshotted { ask, bytes: 12 });
+    send_event(&mut screen, EventKind::Discarded { ask });
+    send_event(&mut screen, EventKind::Snapshotted { ask, bytes: 12 });
     assert_eq!(screen.model, before, "of no interest to the operator");
-    told(&mut screen, EventKind::PlannerLate { planner: "rpf".into(), ticks: 4 });
+    send_event(&mut screen, EventKind::PlannerLate { planner: "rpf".into(), ticks: 4 });
     assert_eq!(notice(&screen), "planner rpf answered 4 ticks late");
-    let events = screen.telling.planner_fails();
-    screen.tell(Msg::Events(events));
-    told(&mut screen, EventKind::PlannerLate { planner: "rpf".into(), ticks: 4 });
+    let events = screen.mission.planner_fails();
+    screen.send(Msg::Events(events));
+    send_event(&mut screen, EventKind::PlannerLate { planner: "rpf".into(), ticks: 4 });
     obeyed(&mut screen, Order::Resume);
     assert_eq!(screen.model.alarms.unacknowledged(Severity::Crit), 1, "the fault waits to be acknowledged");
 }
@@ -285,7 +285,7 @@ fn a_space_is_typed_where_nothing_can_move_and_holds_where_something_can() {
             _ => &screen.model.ui.needle,
         };
         assert!(typed.ends_with("a b"), "{typed}");
-        told(&mut screen, EventKind::Resumed);
+        send_event(&mut screen, EventKind::Resumed);
         assert_eq!(screen.press([SPACE]), [order(Order::Hold)], "space after {line:?}");
     }
 }
@@ -293,9 +293,9 @@ fn a_space_is_typed_where_nothing_can_move_and_holds_where_something_can() {
 #[test]
 fn a_value_is_checked_again_when_it_is_sent() {
     let mut screen = Screen::running();
-    told(&mut screen, EventKind::Held { by: HoldReason::PositionLost, resumes: Resumes::WhenCleared });
+    send_event(&mut screen, EventKind::Held { by: HoldReason::PositionLost, resumes: Resumes::WhenCleared });
     screen.press([Key::Char('p'), Key::Down, Key::Down, Key::Down, Key::Enter]);
-    told(&mut screen, EventKind::Resumed);
+    send_event(&mut screen, EventKind::Resumed);
     assert_eq!(screen.press([Key::Enter]), [], "mode is not live");
     let Overlay::Parameters { edit: Some(edit), .. } = &screen.model.ui.overlay else {
         panic!("still typing")
@@ -353,8 +353,8 @@ fn leaving_a_running_mission_holds_first_and_ends_it_only_when_agreed() {
 fn leaving_is_not_asked_where_nothing_is_at_stake() {
     assert_eq!(Screen::idle().type_text("q"), [Effect::Quit { signal: None }]);
     let mut screen = Screen::running();
-    let ended = screen.telling.ended(Outcome::Complete, "the task is done");
-    screen.tell(Msg::Events(vec![ended]));
+    let ended = screen.mission.ended(Outcome::Complete, "the task is done");
+    screen.send(Msg::Events(vec![ended]));
     assert_eq!(screen.type_text("q"), [Effect::Quit { signal: None }]);
 }
 
@@ -374,15 +374,15 @@ fn control_c_holds_and_only_twice_in_two_seconds_asks_to_leave() {
 fn control_z_holds_before_the_terminal_is_given_back() {
     let mut screen = Screen::running();
     assert_eq!(screen.press([Key::Ctrl('z')]), [order(Order::Hold), Effect::Suspend]);
-    assert_eq!(screen.tell(Msg::Signal(Signal::Continue)), [Effect::Redraw]);
+    assert_eq!(screen.send(Msg::Signal(Signal::Continue)), [Effect::Redraw]);
 }
 
 #[test]
 fn a_signal_to_end_holds_and_leaves() {
     for signal in [Signal::Terminate, Signal::Hangup] {
-        let effects = Screen::running().tell(Msg::Signal(signal));
+        let effects = Screen::running().send(Msg::Signal(signal));
         assert_eq!(effects, [order(Order::Hold), Effect::Quit { signal: Some(signal) }]);
-        assert_eq!(Screen::idle().tell(Msg::Signal(signal)), [Effect::Quit { signal: Some(signal) }]);
+        assert_eq!(Screen::idle().send(Msg::Signal(signal)), [Effect::Quit { signal: Some(signal) }]);
     }
 }
 
@@ -390,8 +390,8 @@ fn a_signal_to_end_holds_and_leaves() {
 fn a_question_is_withdrawn_when_things_change() {
     let mut screen = Screen::held();
     screen.press([SPACE]);
-    let events = screen.telling.planner_fails();
-    screen.tell(Msg::Events(events));
+    let events = screen.mission.planner_fails();
+    screen.send(Msg::Events(events));
     assert_eq!(screen.model.ui.overlay, Overlay::None);
     assert_eq!(screen.press([Key::Enter]), []);
 }
@@ -399,10 +399,10 @@ fn a_question_is_withdrawn_when_things_change() {
 #[test]
 fn pasted_text_is_never_a_command() {
     let mut screen = Screen::running();
-    assert_eq!(screen.tell(Msg::Paste("Xq S\n ".into())), []);
+    assert_eq!(screen.send(Msg::Paste("Xq S\n ".into())), []);
     assert_eq!(screen.model.ui.overlay, Overlay::None);
     screen.type_text(":");
-    screen.tell(Msg::Paste("zoom\nin".into()));
+    screen.send(Msg::Paste("zoom\nin".into()));
     let Overlay::Commands { filter, .. } = &screen.model.ui.overlay else { panic!("the list is open") };
     assert_eq!(filter, "zoomin");
     screen.press([Key::Enter]);
@@ -412,7 +412,7 @@ fn pasted_text_is_never_a_command() {
 #[test]
 fn a_key_that_is_held_down_moves_the_map_or_stops_the_robot_and_nothing_else() {
     let mut screen = Screen::running();
-    let mut repeat = |letter| screen.tell(Msg::Key(KeyPress { key: Key::Char(letter), repeat: true }));
+    let mut repeat = |letter| screen.send(Msg::Key(KeyPress { key: Key::Char(letter), repeat: true }));
     assert_eq!(repeat('q'), []);
     assert_eq!(repeat(' '), [Effect::Order(Order::Hold)]);
     assert_eq!(repeat(' '), [], "it has been asked for");
@@ -425,7 +425,7 @@ fn every_command_can_be_run_by_its_name() {
     for action in tui::actions::ACTIONS.iter().filter(|action| action.is_command()) {
         let mut by_name = Screen::held();
         by_name.press([Key::Char(':')]);
-        by_name.tell(Msg::Paste(action.name.into()));
+        by_name.send(Msg::Paste(action.name.into()));
         let named = by_name.press([Key::Enter]);
         let mut by_id = Screen::held();
         let direct = tui::update::act(&mut by_id.model, action.id);
@@ -457,7 +457,7 @@ fn the_truth_is_not_known_to_the_screen() {
     let mut screen = Screen::running();
     let before = screen.model.clone();
     let pose = world::Pose::new(1.0, 1.0, 0.0);
-    told(&mut screen, EventKind::Truth { pose, clearance_m: -0.1, collided: true });
+    send_event(&mut screen, EventKind::Truth { pose, clearance_m: -0.1, collided: true });
     assert_eq!(screen.model, before);
     let names: Vec<&str> =
         before.run.as_ref().map(|run| run.world.obstacles.iter().map(|o| o.name.as_str()).collect()).unwrap();
@@ -469,9 +469,9 @@ fn the_truth_is_not_known_to_the_screen() {
 #[test]
 fn a_critical_alarm_rings_and_waits_for_the_operator() {
     let mut screen = Screen::running();
-    let effects = told(&mut screen, EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
+    let effects = send_event(&mut screen, EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
     assert_eq!(effects, [Effect::Bell]);
-    told(&mut screen, EventKind::PositionRegained { error_m: 0.1 });
+    send_event(&mut screen, EventKind::PositionRegained { error_m: 0.1 });
     assert_eq!(screen.model.alarms.count(Severity::Crit), 1);
     screen.type_text("a");
     assert_eq!(screen.model.alarms.count(Severity::Crit), 0);
@@ -480,10 +480,10 @@ fn a_critical_alarm_rings_and_waits_for_the_operator() {
 #[test]
 fn an_alarm_whose_cause_is_gone_says_so_until_the_operator_has_seen_it() {
     let mut screen = Screen::running();
-    told(&mut screen, EventKind::PositionAlarmed { chi2: 90.0, degrees_of_freedom: 2 });
+    send_event(&mut screen, EventKind::PositionAlarmed { chi2: 90.0, degrees_of_freedom: 2 });
     let open = shown(&screen);
     assert!(open.contains("a: acknowledge: ") && !open.contains("(cleared)"), "{open}");
-    told(&mut screen, EventKind::PositionTrusted);
+    send_event(&mut screen, EventKind::PositionTrusted);
     let over = shown(&screen);
     assert!(over.contains("a: acknowledge (cleared): "), "{over}");
 }
@@ -491,7 +491,7 @@ fn an_alarm_whose_cause_is_gone_says_so_until_the_operator_has_seen_it() {
 #[test]
 fn a_stuck_robot_is_held_with_an_alarm_until_it_goes_on_and_the_operator_knows() {
     let mut screen = Screen::running();
-    told(&mut screen, held(HoldReason::Stuck { message: "no progress".into() }));
+    send_event(&mut screen, held(HoldReason::Stuck { message: "no progress".into() }));
     assert_eq!(screen.model.alarms.unacknowledged(Severity::Warn), 1);
     screen.type_text("a");
     assert_eq!(screen.model.alarms.count(Severity::Warn), 1, "seen, and not over");
@@ -504,11 +504,11 @@ fn a_stuck_robot_is_held_with_an_alarm_until_it_goes_on_and_the_operator_knows()
 fn a_failed_recording_is_an_alarm_until_it_works_again_and_was_seen() {
     let mut screen = Screen::running();
     let health = |recording| Msg::Health(tui::Health { recording, reached_speed: None });
-    assert_eq!(screen.tell(health(Recording::Failed("disk full".into()))), [Effect::Bell]);
-    assert_eq!(screen.tell(health(Recording::Failed("disk full".into()))), []);
+    assert_eq!(screen.send(health(Recording::Failed("disk full".into()))), [Effect::Bell]);
+    assert_eq!(screen.send(health(Recording::Failed("disk full".into()))), []);
     screen.type_text("a");
     assert_eq!(screen.model.alarms.count(Severity::Crit), 1, "seen, and not over");
-    screen.tell(health(Recording::On));
+    screen.send(health(Recording::On));
     assert_eq!(screen.model.alarms.count(Severity::Crit), 0);
 }
 
@@ -516,7 +516,7 @@ fn a_failed_recording_is_an_alarm_until_it_works_again_and_was_seen() {
 fn a_thread_that_panics_holds_the_robot() {
     let mut screen = Screen::running();
     let panicked = Msg::ThreadPanicked { thread: "recorder".into(), message: "index out of bounds".into() };
-    assert_eq!(screen.tell(panicked), [order(Order::Hold), Effect::Bell]);
+    assert_eq!(screen.send(panicked), [order(Order::Hold), Effect::Bell]);
 }
 
 #[test]
@@ -535,7 +535,7 @@ fn silence_is_noticed_while_running_and_nowhere_else() {
 #[test]
 fn news_go_away_by_themselves_and_stay_in_the_log() {
     let mut screen = Screen::idle();
-    screen.tell(Msg::Notice { severity: Severity::Warn, text: "the disk is nearly full".into() });
+    screen.send(Msg::Notice { severity: Severity::Warn, text: "the disk is nearly full".into() });
     assert_eq!(notice(&screen), "the disk is nearly full");
     screen.pass(10.0);
     assert_eq!(notice(&screen), "");
@@ -545,10 +545,10 @@ fn news_go_away_by_themselves_and_stay_in_the_log() {
 #[test]
 fn panes_follow_the_size_of_the_screen() {
     let mut screen = Screen::running();
-    screen.tell(Msg::Resize { width: 60, height: 16 });
+    screen.send(Msg::Resize { width: 60, height: 16 });
     screen.press([Key::Tab, Key::Tab]);
     assert_eq!(screen.model.ui.pane, Pane::Position);
-    screen.tell(Msg::Resize { width: 120, height: 36 });
+    screen.send(Msg::Resize { width: 120, height: 36 });
     assert_eq!(screen.model.ui.pane, Pane::Map);
     screen.press([Key::BackTab]);
     assert_eq!(screen.model.ui.pane, Pane::Events);

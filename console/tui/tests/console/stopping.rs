@@ -63,7 +63,7 @@ fn phases() -> Vec<Phase> {
 fn positions(screen: &Screen) -> [Option<Event>; 3] {
     let lost = EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 };
     let alarmed = EventKind::PositionAlarmed { chi2: 90.0, degrees_of_freedom: 2 };
-    [None, Some(screen.telling.now(lost)), Some(screen.telling.now(alarmed))]
+    [None, Some(screen.mission.now(lost)), Some(screen.mission.now(alarmed))]
 }
 
 fn overlays() -> Vec<Overlay> {
@@ -129,14 +129,14 @@ fn moves(effect: &Effect) -> bool {
 /// A screen in a phase that its events have led to.
 fn screen_in(phase: &Phase) -> Screen {
     let mut screen = if *phase == Phase::Waiting { Screen::idle() } else { Screen::running() };
-    let telling = &screen.telling;
+    let mission = &screen.mission;
     let events = match phase {
         Phase::Waiting | Phase::Running(Gait::Steady) => Vec::new(),
-        Phase::Running(Gait::OneTick) => [telling.obeyed(Order::Hold), telling.obeyed(Order::Step)].concat(),
-        Phase::Held(hold) => vec![telling.held_until(hold.by.clone(), hold.resumes)],
-        Phase::Ended(outcome) => vec![telling.ended(*outcome, "why")],
+        Phase::Running(Gait::OneTick) => [mission.obeyed(Order::Hold), mission.obeyed(Order::Step)].concat(),
+        Phase::Held(hold) => vec![mission.held_until(hold.by.clone(), hold.resumes)],
+        Phase::Ended(outcome) => vec![mission.ended(*outcome, "why")],
     };
-    screen.tell(Msg::Events(events));
+    screen.send(Msg::Events(events));
     assert_eq!(screen.model.phase(), phase);
     // What is only drawn is of no interest here, and slow to copy.
     (screen.model.coverage, screen.model.accuracy) = (None, None);
@@ -155,7 +155,7 @@ fn situations() -> Vec<Model> {
         let screen = screen_in(&phase);
         for position in positions(&screen) {
             let mut screen = screen.clone();
-            screen.tell(Msg::Events(position.into_iter().collect()));
+            screen.send(Msg::Events(position.into_iter().collect()));
             for (asked, is_busy) in asked.iter().flat_map(|asked| [(asked, false), (asked, true)]) {
                 // No order is on its way to a mission that has ended.
                 if asked.is_some() && matches!(phase, Phase::Ended(_)) {
@@ -164,7 +164,7 @@ fn situations() -> Vec<Model> {
                 let mut screen = screen.clone();
                 screen.model.console.asked.clone_from(asked);
                 if is_busy {
-                    screen.tell(Msg::Busy(Some(("Planning (tether-safe)".into(), Some(60.0)))));
+                    screen.send(Msg::Busy(Some(("Planning (tether-safe)".into(), Some(60.0)))));
                 }
                 all.push(screen.model);
             }
@@ -241,9 +241,9 @@ fn every_way_to_stop_works_on_every_size_and_in_every_pane() {
         for pane in Pane::ALL {
             for (way, _) in ways() {
                 let mut screen = Screen::running();
-                screen.tell(Msg::Resize { width, height });
+                screen.send(Msg::Resize { width, height });
                 screen.model.ui.pane = pane;
-                assert_eq!(screen.tell(way.clone()).first(), Some(&HOLD), "{way:?} at {width}x{height}");
+                assert_eq!(screen.send(way.clone()).first(), Some(&HOLD), "{way:?} at {width}x{height}");
             }
         }
     }

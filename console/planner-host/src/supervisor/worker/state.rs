@@ -7,16 +7,16 @@ use std::time::{Duration, Instant};
 const FIRST_LOOK: Duration = Duration::from_millis(100);
 /// ... then so often ...
 const LOOK_EVERY: Duration = Duration::from_millis(50);
-/// ... and near the end of its budget no more often than this, which is as fine as processor time is told.
+/// ... and near the end of its budget no more often than this, which is the resolution of the processor time.
 const LEAST_LOOK: Duration = Duration::from_millis(10);
 /// A process whose socket is closed has ended or is about to.
 const EXIT_WITHIN: Duration = Duration::from_millis(80);
-/// A killed process is gone at once unless the system is stuck.
+/// A killed process ends at once unless the system is stuck.
 pub(super) const DIE_WITHIN: Duration = Duration::from_millis(30);
 /// What a dead process printed is in the pipe already.
 const OUTPUT_WITHIN: Duration = Duration::from_millis(30);
-/// Progress of a plan is passed on this often, per second, with so much over at first; the rest of a flood is left out. A
-/// worker that is well tells 20 a second.
+/// Progress messages are forwarded at this rate, after an initial burst; the rest of a flood is dropped. A well-behaved
+/// worker sends 20 a second.
 const MOST_PER_S: f64 = 40.0;
 const MOST_AT_FIRST: f64 = 20.0;
 
@@ -30,7 +30,7 @@ pub(super) enum State {
     Cancelling(Request, Instant),
     /// It is ending, and what there is to know of it is being gathered.
     Dying(Dying),
-    /// It was told to end; until then it may do so by itself. Without a time it was killed and is not reaped yet.
+    /// It was asked to shut down and has until then to exit by itself. Without a time it was killed and is not reaped yet.
     Leaving(Option<Instant>),
     /// It has ended and was reaped.
     Gone,
@@ -44,7 +44,7 @@ pub(super) struct Request {
     budget: Duration,
     began: Instant,
     clock: FairClock,
-    n_told: u32,
+    n_forwarded: u32,
 }
 
 /// What is left of a request's budget.
@@ -57,13 +57,13 @@ pub(super) enum Budgeted {
 impl Request {
     pub(super) fn new(kind: u8, budget: Duration, now: Instant) -> Self {
         let look_at = now + budget.min(FIRST_LOOK);
-        Self { kind, look_at, budget, began: now, clock: FairClock::default(), n_told: 0 }
+        Self { kind, look_at, budget, began: now, clock: FairClock::default(), n_forwarded: 0 }
     }
 
     /// Takes a look at the process.
     pub(super) fn look(&mut self, now: Instant, load: Option<Load>) -> Budgeted {
         self.clock.advance(now.saturating_duration_since(self.began), load);
-        match self.clock.judge(self.budget) {
+        match self.clock.evaluate(self.budget) {
             Verdict::Left(left) => {
                 self.look_at = now + left.clamp(LEAST_LOOK, LOOK_EVERY);
                 Budgeted::Left
@@ -73,11 +73,11 @@ impl Request {
         }
     }
 
-    /// Whether one more piece of progress may be passed on.
-    pub(super) fn may_tell(&mut self, now: Instant) -> bool {
+    /// Whether one more progress message may be forwarded; if so, counts it.
+    pub(super) fn may_forward(&mut self, now: Instant) -> bool {
         let elapsed_s = now.saturating_duration_since(self.began).as_secs_f64();
-        let may = f64::from(self.n_told) < MOST_AT_FIRST + MOST_PER_S * elapsed_s;
-        self.n_told += u32::from(may);
+        let may = f64::from(self.n_forwarded) < MOST_AT_FIRST + MOST_PER_S * elapsed_s;
+        self.n_forwarded += u32::from(may);
         may
     }
 }

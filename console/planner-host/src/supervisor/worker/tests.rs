@@ -50,17 +50,17 @@ fn ask(
     worker: &mut Worker,
     kind: u8,
     budget: Duration,
-    mut tell: impl FnMut(&Progress),
+    mut on_progress: impl FnMut(&Progress),
 ) -> Result<u32, Failure> {
     worker.ask(kind, budget, |_| {})?;
-    answer(worker, &mut tell)
+    answer(worker, &mut on_progress)
 }
 
 /// Waits for the answer.
-fn answer(worker: &mut Worker, tell: &mut dyn FnMut(&Progress)) -> Result<u32, Failure> {
+fn answer(worker: &mut Worker, on_progress: &mut dyn FnMut(&Progress)) -> Result<u32, Failure> {
     loop {
         let ready = wait(None, &[worker], None).ready[0];
-        if let Some(outcome) = worker.advance(ready, Instant::now(), tell) {
+        if let Some(outcome) = worker.advance(ready, Instant::now(), on_progress) {
             return outcome.and_then(|()| worker.take_answer(number));
         }
     }
@@ -82,11 +82,11 @@ fn see_to_its_end(worker: &mut Worker) {
 fn progress_before_the_answer_to_a_plan_is_passed_on() {
     let plan = [progress(1, 0.25, "one of two"), progress(1, 1.0, ""), done(1)];
     let mut worker = answering(&[&plan, &[done(2)]]);
-    let mut heard = Vec::new();
-    let hear = |progress: &Progress| heard.push(progress.clone());
-    assert_eq!(ask(&mut worker, kind::PLAN, PATIENT, hear), Ok(7));
-    let told = |share, what: &str| Progress { share, what: what.to_owned() };
-    assert_eq!(heard, [told(0.25, "one of two"), told(1.0, "")]);
+    let mut received = Vec::new();
+    let receive = |progress: &Progress| received.push(progress.clone());
+    assert_eq!(ask(&mut worker, kind::PLAN, PATIENT, receive), Ok(7));
+    let expected = |share, what: &str| Progress { share, what: what.to_owned() };
+    assert_eq!(received, [expected(0.25, "one of two"), expected(1.0, "")]);
     assert_eq!(ask(&mut worker, kind::STEP, PATIENT, |_| {}), Ok(7), "the next answer is found");
 }
 
@@ -122,16 +122,16 @@ fn progress_that_nobody_asked_for_is_no_answer() {
 }
 
 #[test]
-fn a_worker_that_tells_progress_without_end_is_killed_at_its_deadline_all_the_same() {
+fn a_worker_that_reports_progress_endlessly_is_still_killed_at_its_deadline() {
     let flood = octal(&progress(1, 0.5, "at it").repeat(50));
     let mut worker = worker(&format!("while printf '{flood}' >&0; do :; done"));
-    let mut heard = 0;
-    assert_eq!(ask(&mut worker, kind::PLAN, Duration::from_secs(1), |_| heard += 1), Err(Failure::Hung));
-    assert!((1..100).contains(&heard), "{heard} of a flood were passed on");
+    let mut received = 0;
+    assert_eq!(ask(&mut worker, kind::PLAN, Duration::from_secs(1), |_| received += 1), Err(Failure::Hung));
+    assert!((1..100).contains(&received), "{received} of a flood were passed on");
 }
 
 #[test]
-fn a_worker_that_is_told_to_end_amid_progress_is_killed_if_it_does_not() {
+fn a_worker_that_ignores_shutdown_while_reporting_progress_is_killed() {
     let flood = octal(&progress(1, 0.5, "at it").repeat(50));
     let mut worker = worker(&format!("while printf '{flood}' >&0; do :; done"));
     worker.ask(kind::PLAN, Duration::from_hours(1), |_| {}).unwrap();

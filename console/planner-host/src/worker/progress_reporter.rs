@@ -1,4 +1,4 @@
-//! How far the plan at hand is, told to the console as it comes, and not more often than anyone can read it.
+//! Reports the progress of the current plan to the console, rate-limited to what a person can read.
 
 use crate::Progress;
 use crate::wire::{body::Writer, kind};
@@ -7,33 +7,33 @@ use std::cell::{Cell, RefCell};
 use std::os::fd::OwnedFd;
 use std::time::{Duration, Instant};
 
-/// The console is told no more often than this.
-const TELL_EVERY: Duration = Duration::from_millis(50);
+/// Minimum time between two reports.
+const REPORT_EVERY: Duration = Duration::from_millis(50);
 
-/// Tells the console how far the plan at hand is.
-pub(super) struct Telling {
+/// Reports the progress of the current plan to the console.
+pub(super) struct ProgressReporter {
     socket: OwnedFd,
     /// Sequence number of the request, while it is one for a plan.
     plan: Cell<Option<u32>>,
-    told: Cell<Option<Instant>>,
-    /// What came too soon after the last; the newest.
+    reported_at: Cell<Option<Instant>>,
+    /// The newest progress that came too soon after the last report.
     waiting: RefCell<Option<Progress>>,
 }
 
-impl Telling {
+impl ProgressReporter {
     /// No request yet.
     pub(super) fn new(socket: OwnedFd) -> Self {
-        Self { socket, plan: Cell::new(None), told: Cell::new(None), waiting: RefCell::default() }
+        Self { socket, plan: Cell::new(None), reported_at: Cell::new(None), waiting: RefCell::default() }
     }
 
-    /// A request arrived; only those for a plan are told of.
+    /// A request arrived; progress is reported only for a plan.
     pub(super) fn begin(&self, kind: u8, sequence: u32) {
         self.plan.set((kind == kind::PLAN).then_some(sequence));
-        self.told.set(None);
+        self.reported_at.set(None);
         self.waiting.take();
     }
 
-    /// Takes how far the plan is: tells it now, or keeps it for later when the last was only just told.
+    /// Takes progress: reports it now, or keeps it for later when the last report is too recent.
     pub(super) fn take(&self, progress: Progress) {
         if self.plan.get().is_some() {
             self.waiting.replace(Some(progress));
@@ -41,18 +41,19 @@ impl Telling {
         }
     }
 
-    /// Tells what had to wait, if it is time.
+    /// Reports waiting progress, if it is time.
     pub(super) fn catch_up(&self, now: Instant) {
-        if self.waiting.borrow().is_none() || self.told.get().is_some_and(|told| now - told < TELL_EVERY) {
+        let is_too_soon = self.reported_at.get().is_some_and(|at| now - at < REPORT_EVERY);
+        if self.waiting.borrow().is_none() || is_too_soon {
             return;
         }
         if let (Some(sequence), Some(progress)) = (self.plan.get(), self.waiting.take()) {
-            self.told.set(Some(now));
+            self.reported_at.set(Some(now));
             self.write(Writer::default().begin(kind::PROGRESS, sequence, 0).progress(&progress));
         }
     }
 
-    /// Writes a frame whole or not at all: a console that does not read holds nobody up.
+    /// Writes a frame whole or not at all: a console that does not read blocks nothing.
     fn write(&self, writer: &mut Writer) {
         let Ok(mut rest) = writer.finish() else { return };
         let mut flags = SendFlags::DONTWAIT;
