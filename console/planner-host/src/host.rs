@@ -201,6 +201,16 @@ impl Host {
         }
     }
 
+    /// Looks after workers that are being ended, without waiting; whether there are any left.
+    ///
+    /// [`Self::next`] does so as well: this is for times when nothing is asked.
+    pub fn look_after_leaving(&mut self) -> bool {
+        if !self.leaving.is_empty() {
+            self.look(Some(Instant::now()));
+        }
+        !self.leaving.is_empty()
+    }
+
     fn is_asked(&self) -> bool {
         self.planners.iter().any(|planner| planner.asked.is_some())
     }

@@ -210,13 +210,23 @@ impl RunRecorder {
 
     /// How the recorder is doing; never waits.
     pub fn health(&self) -> Health {
-        let sent = self.shared.sent.load(Ordering::Relaxed);
         Health {
             journal_bytes: self.shared.journal_bytes.load(Ordering::Relaxed),
             rrd_bytes: self.sink.as_ref().map_or(0, |sink| sink.bytes()),
-            lag: sent.saturating_sub(self.shared.done.load(Ordering::Relaxed)),
+            lag: self.lag(),
             error: self.shared.error(),
         }
+    }
+
+    /// Whether half of the queue is full, so that a sender that must not wait should send no more for now.
+    pub fn is_behind(&self) -> bool {
+        self.lag() > (QUEUE / 2) as u64
+    }
+
+    /// Batches of events that wait to be written.
+    fn lag(&self) -> u64 {
+        let sent = self.shared.sent.load(Ordering::Relaxed);
+        sent.saturating_sub(self.shared.done.load(Ordering::Relaxed))
     }
 
     /// Writes everything that waits, closes both files, and reports what is there.

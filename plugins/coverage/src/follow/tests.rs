@@ -99,7 +99,7 @@ fn it_never_goes_back_to_the_path_across_a_cut() {
     };
     assert_ne!(status(0, tank.anchor, &[here]), Status::Stuck);
     assert_eq!(status(1, here, &[there]), Status::Stuck);
-    assert!(bench.logs().iter().any(|(_, said)| said.contains("across a cut")), "{:?}", bench.logs());
+    assert!(bench.logs().iter().any(|(_, said)| said.contains("crosses a cut")), "{:?}", bench.logs());
 }
 
 #[test]
