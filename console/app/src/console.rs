@@ -3,6 +3,8 @@
 mod crash;
 mod engine;
 mod inbox;
+mod line;
+mod pace;
 mod screen;
 mod watch;
 
@@ -12,8 +14,9 @@ use crate::{
     preflight::{LogsError, check_logs},
     scenario::Scenario,
 };
-use engine::{Engine, EngineHandle};
+use engine::Engine;
 use inbox::{Inbox, Outbox, inbox};
+use line::EngineHandle;
 use planner_host::PluginDirs;
 use screen::{Left, Screen};
 use std::{
@@ -22,7 +25,7 @@ use std::{
     path::Path,
     process::ExitCode,
 };
-use tui::{Caps, Msg, Speed, terminal};
+use tui::{Caps, Msg, Refused, Speed, terminal};
 
 /// How fast a simulated mission goes at first.
 const START_SPEED: Speed = Speed::Times(4.0);
@@ -35,14 +38,17 @@ pub fn open(
     drill: Option<Drill>,
 ) -> anyhow::Result<ExitCode> {
     check_terminal()?;
-    crate::planners::check_choices(scenario, plugins)?;
+    let (found, refused) = crate::planners::surveyed(plugins);
+    crate::planners::check_choices(scenario, &found)?;
     check_logs(&logs.logs).map_err(LogsError::refuse)?;
     let (outbox, inbox) = inbox();
     let engine = Engine::start(scenario, &logs.logs, plugins, outbox.clone(), drill)?;
-    let left = show(&engine.handle(), &logs.logs, plugins, (outbox, inbox), drill);
+    let refused = refused.into_iter().map(|(plugin, reason)| Refused { plugin, reason }).collect();
+    outbox.send(Msg::Planners { found, refused });
+    let left = show(&engine.handle(), &logs.logs, (outbox, inbox), drill);
     // Whatever happened to the screen, the run is closed cleanly.
-    let ended = engine.close(left.as_ref().is_ok_and(|left| left.signal.is_some()));
-    Ok(left?.report_end(ended?.as_ref()))
+    let closed = engine.close(left.as_ref().is_ok_and(|left| left.signal.is_some()));
+    Ok(left?.report_end(closed?.as_ref()))
 }
 
 fn check_terminal() -> anyhow::Result<()> {
@@ -60,7 +66,6 @@ fn check_terminal() -> anyhow::Result<()> {
 fn show(
     engine: &EngineHandle,
     logs: &Path,
-    plugins: &PluginDirs,
     (outbox, inbox): (Outbox, Inbox),
     drill: Option<Drill>,
 ) -> anyhow::Result<Left> {
@@ -74,7 +79,6 @@ fn show(
     watch::keys(&outbox, engine.clone())?;
     watch::signals(&outbox, engine.clone())?;
     watch::terminal(&outbox, engine.clone())?;
-    watch::planners(plugins, &outbox)?;
     drop(outbox);
     let ran = catch_unwind(AssertUnwindSafe(|| screen.run()));
     ran.unwrap_or_else(|_| Err(crash::report(logs, screen.model())))

@@ -10,7 +10,7 @@ use crate::{
     plan::patient,
     plan_watch::{PlanWatch, Watched},
     progress,
-    run_folder::{Kept, RunFolder},
+    run_log::{Closed, RunLog},
     scenario::Scenario,
     stop_signal::{self, StopSignal},
 };
@@ -18,13 +18,8 @@ use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use mission::{Event, EventKind, Order, Outcome, Phase};
 use planner_host::{Host, HostConfig, PluginDirs};
-use recording::{JournalWriter, Options, RunRecorder};
-use report::{Fold, Logs, PlannerCalls, Summary};
-use std::{
-    io::IsTerminal,
-    process::ExitCode,
-    time::{Duration, Instant},
-};
+use report::{PlannerCalls, Summary};
+use std::{io::IsTerminal, process::ExitCode, time::Duration};
 
 /// How long closing the recording may take before it is abandoned with a message.
 pub const CLOSE_TIMEOUT: Duration = Duration::from_secs(10);
@@ -55,46 +50,24 @@ pub fn fly(
     options: RunOptions,
 ) -> anyhow::Result<ExitCode> {
     let stop = stop_signal::listen();
-    crate::planners::check_choices(scenario, plugins)?;
+    crate::planners::check_choices(scenario, &crate::planners::found(plugins))?;
     warn_of_clearance(scenario);
-    let began = Instant::now();
     let flight = Flight::prepare(scenario, false);
-    let folder = options
-        .record
-        .then(|| RunFolder::create(&logs.logs, &scenario.name, &scenario.mission.planner.id, scenario.seed))
-        .transpose()?;
-    let recorder = match &folder {
-        Some(folder) => RunRecorder::start(folder.path(), Options::default())?,
-        None => RunRecorder::spawn(JournalWriter::unwritten(began), None)?,
+    let mut log = match options.record {
+        true => RunLog::create(&logs.logs, scenario, &scenario.mission.planner.id)?,
+        false => RunLog::unwritten()?,
     };
     let bar = progress_bar(scenario, options);
-    let (mut fold, mut trouble) = (Fold::new(), None);
+    let mut trouble = None;
     let mut take = |events: Vec<Event>| {
-        for event in &events {
-            fold.apply(event);
-        }
+        log.keep(&events);
         show_progress(&bar, &events);
-        recorder.send(events);
-        report_trouble(&mut trouble, recorder.health().error);
+        report_trouble(&mut trouble, log.health().error);
     };
     take(vec![flight.opened()]);
     let host = fly_to_end(flight, host(scenario, plugins), take, (&bar, &stop), options.live_deadlines);
     bar.finish_and_clear();
-    let finished = recorder.finish(CLOSE_TIMEOUT);
-    let logs = folder.is_some().then(|| Logs {
-        journal: finished.journal.as_ref().map(|path| path.display().to_string()),
-        recording: finished.recording.as_ref().map(|path| path.display().to_string()),
-        error: finished.error.clone(),
-    });
-    let summary = Summary {
-        wall_time_s: Some(began.elapsed().as_secs_f64()),
-        events_sha256: finished.events_sha256.clone(),
-        planner_calls: Some(planner_calls(&host)),
-        logs,
-        ..fold.summary()
-    };
-    let summary = scenario.expect.evaluated(summary);
-    let kept = folder.as_ref().map(|folder| Kept::new(folder, &finished, &folder.write_report(&summary)));
+    let Closed { summary, kept } = log.close(CLOSE_TIMEOUT, scenario, &host, None);
     print_summary(&summary, options)?;
     match &kept {
         Some(kept) if kept.problem().is_some() => warn_line(&kept.text()),
@@ -124,10 +97,10 @@ fn fly_to_end(
     live_deadlines: bool,
 ) -> Host {
     let mut answers = InOrder::new(host);
-    let (on_work, on_progress) = progress::shown_in(bar, answers.host().plan_budget());
+    let (on_work, on_progress) = progress::shown_in(bar);
     answers.host().set_on_progress(on_progress);
     stop_signal::wake_on_signal(answers.host().waker());
-    let mut watch = PlanWatch::with_callback(on_work);
+    let mut watch = PlanWatch::new(answers.host().plan_budget(), Some(on_work));
     let mut orders = vec![Order::Start];
     while !matches!(flight.phase(), Phase::Ended(_)) {
         if stop.requested() {

@@ -18,6 +18,7 @@ mod preflight;
 mod progress;
 mod reproduce;
 mod run_folder;
+mod run_log;
 mod scenario;
 mod stop_signal;
 mod tune;

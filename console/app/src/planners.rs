@@ -27,18 +27,18 @@ pub fn surveyed(plugins: &PluginDirs) -> (Vec<PlannerInfo>, Vec<(String, String)
     (survey.planners().cloned().collect(), refused.collect())
 }
 
-/// Makes sure, before anything is flown, that the planners of a scenario exist and take their parameters.
+/// Makes sure, before anything is flown, that the planners of a scenario are among the known ones and take their
+/// parameters.
 ///
 /// # Errors
 /// Every objection, with its place in the scenario.
-pub fn check_choices(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<()> {
-    let known = found(plugins);
+pub fn check_choices(scenario: &Scenario, known: &[PlannerInfo]) -> anyhow::Result<()> {
     let mission = &scenario.mission;
     let fallback = mission.fallback.iter().map(|choice| ("planner.fallback", choice));
     let choices = std::iter::once(("planner", &mission.planner)).chain(fallback);
     let must_cover = matches!(mission.task, TaskConfig::Cover { .. });
     let objections: Vec<_> =
-        choices.flat_map(|(section, choice)| objections(section, choice, &known, must_cover)).collect();
+        choices.flat_map(|(section, choice)| objections(section, choice, known, must_cover)).collect();
     if objections.is_empty() { Ok(()) } else { Err(bad_input(scenario.refused(objections).render())) }
 }
 
@@ -154,7 +154,7 @@ fn check_file(file: &Path, plugins: &PluginDirs) -> Result<String, String> {
         return check_plugin(file);
     }
     let scenario = Scenario::read_with(file, &Settings::default()).map_err(|errors| errors.render())?;
-    check_choices(&scenario, plugins).map_err(|error| error.to_string())?;
+    check_choices(&scenario, &found(plugins)).map_err(|error| error.to_string())?;
     warn_of_clearance(&scenario);
     Ok(format!("scenario {}, planner {}", scenario.name, scenario.mission.planner.id))
 }

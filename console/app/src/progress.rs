@@ -1,6 +1,6 @@
 //! What a terminal on stderr shows while something takes its time.
 
-use crate::plan_watch::OnWork;
+use crate::plan_watch::{OnWork, Work};
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_host::{OnProgress, Progress};
 use std::{
@@ -12,13 +12,13 @@ use std::{
 /// How often the time that has passed is drawn again.
 const EVERY: Duration = Duration::from_millis(250);
 
-/// Says what is going on, for how long already and at most; nothing where stderr is no terminal.
-pub fn spinner(work: &str, within: Duration) -> ProgressBar {
+/// Shows what is going on, for how long already and its limit; nothing where stderr is no terminal.
+pub fn spinner(work: &str, limit: Duration) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let spinner = ProgressBar::new_spinner().with_message(words(work, within));
-    let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed} so far");
+    let spinner = ProgressBar::new_spinner().with_message(words(work, Some(limit)));
+    let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed} elapsed");
     let spinner = spinner.with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
     spinner.enable_steady_tick(EVERY);
     spinner
@@ -32,29 +32,36 @@ pub fn show_share(bar: &ProgressBar, work: &str, progress: &Progress) {
 }
 
 /// What planners do that takes its time, shown in the bar of something larger: the work, and how far it is.
-pub fn shown_in(bar: &ProgressBar, within: Duration) -> (OnWork, OnProgress) {
-    let at_hand: Arc<Mutex<String>> = Arc::default();
-    let (shown, work) = (bar.clone(), Arc::clone(&at_hand));
-    let on_work: OnWork = Box::new(move |words_of| {
-        let mut work = work.lock().unwrap_or_else(PoisonError::into_inner);
-        words_of.unwrap_or_default().clone_into(&mut work);
-        if words_of.is_none() {
-            shown.disable_steady_tick();
-            shown.set_message("");
-        } else if !shown.is_hidden() {
-            shown.set_message(words(&work, within));
-            shown.enable_steady_tick(EVERY);
+pub fn shown_in(bar: &ProgressBar) -> (OnWork, OnProgress) {
+    let current: Arc<Mutex<Option<Work>>> = Arc::default();
+    let (shown, work) = (bar.clone(), Arc::clone(&current));
+    let on_work: OnWork = Box::new(move |new| {
+        *work.lock().unwrap_or_else(PoisonError::into_inner) = new.cloned();
+        match new {
+            None => {
+                shown.disable_steady_tick();
+                shown.set_message("");
+            }
+            Some(Work { what, limit, .. }) if !shown.is_hidden() => {
+                shown.set_message(words(what, *limit));
+                shown.enable_steady_tick(EVERY);
+            }
+            Some(_) => {}
         }
     });
     let shown = bar.clone();
-    let on_progress: OnProgress = Arc::new(move |_, progress| {
-        show_share(&shown, &at_hand.lock().unwrap_or_else(PoisonError::into_inner), progress);
+    let on_progress: OnProgress = Arc::new(move |ask, progress| {
+        let current = current.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(work) = current.as_ref().filter(|work| work.ask == ask) {
+            show_share(&shown, &work.what, progress);
+        }
     });
     (on_work, on_progress)
 }
 
-fn words(work: &str, within: Duration) -> String {
-    format!("{work}, {} s at most", within.as_secs())
+fn words(work: &str, limit: Option<Duration>) -> String {
+    let limit = limit.map(|limit| format!(", limit {} s", limit.as_secs()));
+    work.to_owned() + &limit.unwrap_or_default()
 }
 
 /// Only the end of a plan makes it whole.

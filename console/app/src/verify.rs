@@ -22,11 +22,11 @@ use crate::{
 };
 use anyhow::Context;
 use journal::{RecordedTick, Ticks};
-use mission::{Event, EventKind, Order, PlannerInfo, RunOpened, event::JOURNAL_VERSION};
+use mission::{Event, EventKind, Order, RunOpened, event::JOURNAL_VERSION};
 use planner_host::PluginDirs;
 use planners::{Asked, Replayed};
 use recording::JOURNAL_FILE;
-use std::{path::Path, process::ExitCode};
+use std::{collections::BTreeMap, path::Path, process::ExitCode};
 
 /// What was found.
 #[derive(Debug, Default)]
@@ -39,8 +39,17 @@ struct Findings {
     no_end: Option<String>,
     /// What the planners did when they were asked again; `None` if they were not.
     planners: Option<Asked>,
+    /// The planners of the run, by id.
+    builds: BTreeMap<String, Build>,
     events: usize,
     last_tick: u64,
+}
+
+/// Which build of a planner flew the run.
+#[derive(Debug)]
+struct Build {
+    version: String,
+    sha256: String,
 }
 
 /// Where journal and computation part.
@@ -64,14 +73,23 @@ pub fn verify(
     let sha256 = run_folder::sha256(&path).with_context(|| format!("reading {}", path.display()))?;
     findings.doubt = run_folder::journal_doubt(&folder, Some(&sha256))
         .or_else(|| findings.no_end.as_ref().and_then(|_| run_folder::end_is_missing(&folder)));
-    print_findings(&findings, &path, plugins)?;
-    let differs = findings.planners.as_ref().is_some_and(|asked| asked.difference.is_some());
-    let equal = findings.difference.is_none() && findings.doubt.is_none() && !differs;
-    Ok(ExitCode::from(if equal { COMPLETE } else { ENDED_OTHERWISE }))
+    print_findings(&findings, plugins)?;
+    Ok(ExitCode::from(if findings.are_equal() { COMPLETE } else { ENDED_OTHERWISE }))
 }
 
-fn print_findings(findings: &Findings, path: &Path, plugins: &PluginDirs) -> anyhow::Result<()> {
-    let Findings { difference, doubt, no_end, planners, events, last_tick } = findings;
+impl Findings {
+    /// How the first planner that answers otherwise does.
+    fn other_answer(&self) -> Option<&String> {
+        self.planners.as_ref().and_then(|asked| asked.difference.as_ref())
+    }
+
+    fn are_equal(&self) -> bool {
+        self.difference.is_none() && self.doubt.is_none() && self.other_answer().is_none()
+    }
+}
+
+fn print_findings(findings: &Findings, plugins: &PluginDirs) -> anyhow::Result<()> {
+    let Findings { difference, doubt, no_end, planners, events, last_tick, .. } = findings;
     if let Some(why) = no_end {
         say_line(&format!("note: the journal has no end ({why}); what it holds before is compared"))?;
     }
@@ -82,35 +100,41 @@ fn print_findings(findings: &Findings, path: &Path, plugins: &PluginDirs) -> any
             "different: {doubt}; its {events} events up to tick {last_tick} are computed again"
         ))?;
     }
-    if let Some(asked) = planners {
-        for (planner, count) in &asked.external {
-            say_line(&format!(
-                "note: faults of planner {planner} from outside or by the clock, taken from the journal: {count}"
-            ))?;
-        }
-        if let Some(why) = &asked.difference {
-            say_line(&format!("different: {why}; the mission repeats from the recorded answers"))?;
-        }
+    for (planner, count) in planners.iter().flat_map(|asked| &asked.external) {
+        say_line(&format!(
+            "note: faults of planner {planner} from outside or by the clock, taken from the journal: {count}"
+        ))?;
     }
-    let is_different = planners.as_ref().is_some_and(|asked| asked.difference.is_some());
-    if difference.is_some() || is_different {
-        for note in planner_changes(path, plugins)? {
+    if let Some(why) = findings.other_answer() {
+        say_line(&format!("different: {why}; the mission repeats from the recorded answers"))?;
+    }
+    if difference.is_some() || findings.other_answer().is_some() {
+        for note in planner_changes(&findings.builds, plugins) {
             say_line(&format!("note: {note}"))?;
         }
     }
-    if difference.is_none() && doubt.is_none() && !is_different {
+    if findings.are_equal() {
         // A report counts the ticks that passed since the first one, which has the number 0.
-        let (how, asked) = match planners {
-            Some(asked) => ("", format!("; {} answers of planners are the same again", asked.compared)),
-            None => {
-                (" from the recorded answers", "; the planners were not asked (--from-journal): what they answered, drew and said is not proven".to_owned())
-            }
-        };
+        let how = if planners.is_some() { "" } else { " from the recorded answers" };
         say_line(&format!(
-            "equal: {events} events computed again{how}, byte for byte, from tick 0 to tick {last_tick}{asked}"
+            "equal: {events} events computed again{how}, byte for byte, from tick 0 to tick {last_tick}; {}",
+            proven(planners.as_ref())
         ))?;
     }
     Ok(())
+}
+
+/// What is proven of the planners of a run that is equal.
+fn proven(planners: Option<&Asked>) -> String {
+    let Some(Asked { same, not_comparable, .. }) = planners else {
+        return "the planners were not asked (--from-journal): what they answered, drew and logged is not proven"
+            .into();
+    };
+    let rest = match not_comparable {
+        0 => String::new(),
+        n => format!(", {n} that the mission refused or did not use cannot be compared"),
+    };
+    format!("{same} answers of planners are the same again{rest}")
 }
 
 fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
@@ -134,6 +158,7 @@ fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings
         && let Some(recorded) = ticks.next()?
     {
         replayed.begin_tick(&recorded);
+        findings.builds.extend(recorded.builds());
         let mut computed = std::mem::take(&mut head);
         computed.extend(flight.tick(&recorded.orders(), &mut replayed));
         findings.difference = difference(&recorded, &computed)?;
@@ -171,39 +196,21 @@ fn line(event: &Event) -> anyhow::Result<String> {
 
 /// How the run was opened; a journal that does not begin with it is refused.
 pub fn opened(events: &[Event]) -> anyhow::Result<&RunOpened> {
-    match events.first().map(|event| &event.kind) {
-        Some(EventKind::RunOpened(opened)) => Ok(opened),
-        _ => Err(bad_input(
-            "the journal does not begin with the opening of a run, so it cannot be computed again",
-        )),
-    }
+    journal::opening(events.first())
 }
 
 /// Planners of the run whose plugin is another file now.
-fn planner_changes(path: &Path, plugins: &PluginDirs) -> anyhow::Result<Vec<String>> {
+fn planner_changes(builds: &BTreeMap<String, Build>, plugins: &PluginDirs) -> Vec<String> {
     let now = crate::planners::found(plugins);
-    let changed = |then: &PlannerInfo| match now.iter().find(|info| info.id == then.id) {
-        None => {
-            Some(format!("planner {} of the run is not installed; --from-journal does without it", then.id))
-        }
+    let changed = |(id, then): (&String, &Build)| match now.iter().find(|info| info.id == *id) {
+        None => Some(format!("planner {id} of the run is not installed; --from-journal does without it")),
         Some(info) if info.sha256 != then.sha256 => Some(format!(
-            "planner {} is another build than in the run ({} then); --from-journal does without it",
-            then.id, then.version
+            "planner {id} is another build than in the run ({} then); --from-journal does without it",
+            then.version
         )),
         Some(_) => None,
     };
-    let mut notes: Vec<String> = Vec::new();
-    let mut ticks = Ticks::open(path)?;
-    while let Some(tick) = ticks.next()? {
-        let infos = tick.lines.iter().filter_map(|(_, event)| match &event.kind {
-            EventKind::PlannerChosen { info, .. } | EventKind::PlannerPrepared { info, .. } => changed(info),
-            _ => None,
-        });
-        notes.extend(infos.collect::<Vec<_>>());
-    }
-    notes.sort();
-    notes.dedup();
-    Ok(notes)
+    builds.iter().filter_map(changed).collect()
 }
 
 impl RecordedTick {
@@ -214,5 +221,15 @@ impl RecordedTick {
             _ => None,
         };
         self.lines.iter().filter_map(order).collect()
+    }
+
+    /// The planners that were opened in this tick.
+    fn builds(&self) -> impl Iterator<Item = (String, Build)> {
+        self.lines.iter().filter_map(|(_, event)| match &event.kind {
+            EventKind::PlannerChosen { info, .. } | EventKind::PlannerPrepared { info, .. } => {
+                Some((info.id.clone(), Build { version: info.version.clone(), sha256: info.sha256.clone() }))
+            }
+            _ => None,
+        })
     }
 }

@@ -29,31 +29,9 @@ fn within(what: &str, value: f64, limit: f64, unit: &str) -> Result<(), String> 
 
 /// Checks a plan; the sentence reads on after the planner's name.
 pub(crate) fn plan(plan: &Plan) -> Result<(), String> {
-    if let Some(index) = plan.path.iter().position(|p| !(p.x.is_finite() && p.y.is_finite())) {
-        return Err(format!("gave a path whose point {index} is not finite"));
-    }
-    if plan.cuts.iter().flatten().any(|p| !(p.x.is_finite() && p.y.is_finite())) {
-        return Err("gave a cut with a point that is not finite".to_owned());
-    }
-    legs(plan)?;
+    plan.check()?;
     if !plan.cost.is_finite() {
         return Err("gave a plan without a finite cost".to_owned());
-    }
-    Ok(())
-}
-
-/// Legs lie on the path, in order, and share at most a point.
-fn legs(plan: &Plan) -> Result<(), String> {
-    let mut from = 0;
-    for (index, leg) in plan.legs.iter().enumerate() {
-        let (first, last, n) = (leg.first, leg.last, plan.path.len());
-        if first > last || last >= n {
-            return Err(format!("gave leg {index} from point {first} to {last} of a path of {n} points"));
-        }
-        if first < from {
-            return Err(format!("gave leg {index} from point {first} on, within the leg before it"));
-        }
-        from = last;
     }
     Ok(())
 }

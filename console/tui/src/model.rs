@@ -246,7 +246,7 @@ pub struct Busy {
     /// What it is, such as `Planning (rpf)`.
     pub work: String,
     /// How long it may take, seconds; not known for what is short.
-    pub within_s: Option<f64>,
+    pub limit_s: Option<f64>,
     /// When it began, on the console's own clock, seconds.
     pub since_mono_s: f64,
     /// How far it is: the share done, 0 to 1, and what is being done; `None` if it is not reported.

@@ -140,7 +140,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         }
         Msg::Busy(work) => {
             let since_mono_s = model.console.now.mono_s;
-            model.console.busy = work.map(|(work, within_s)| Busy { work, within_s, since_mono_s, at: None });
+            model.console.busy = work.map(|(work, limit_s)| Busy { work, limit_s, since_mono_s, at: None });
             Vec::new()
         }
         Msg::BusyAt { share, what } => {

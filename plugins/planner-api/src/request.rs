@@ -111,6 +111,38 @@ pub struct Plan {
     pub cuts: Vec<Vec<Point2<f64>>>,
 }
 
+impl Plan {
+    /// Checks that all points are finite and that the legs lie on the path, in order, and share at most a point.
+    ///
+    /// # Errors
+    /// What is wrong; the sentence reads on after the planner's name.
+    pub fn check(&self) -> Result<(), String> {
+        let is_finite = |p: &Point2<f64>| p.x.is_finite() && p.y.is_finite();
+        if let Some(index) = self.path.iter().position(|p| !is_finite(p)) {
+            return Err(format!("gave a path whose point {index} is not finite"));
+        }
+        if !self.cuts.iter().flatten().all(is_finite) {
+            return Err("gave a cut with a point that is not finite".to_owned());
+        }
+        self.check_legs()
+    }
+
+    fn check_legs(&self) -> Result<(), String> {
+        let mut from = 0;
+        for (index, leg) in self.legs.iter().enumerate() {
+            let (first, last, n) = (leg.first, leg.last, self.path.len());
+            if first > last || last >= n {
+                return Err(format!("gave leg {index} from point {first} to {last} of a path of {n} points"));
+            }
+            if first < from {
+                return Err(format!("gave leg {index} from point {first} on, within the leg before it"));
+            }
+            from = last;
+        }
+        Ok(())
+    }
+}
+
 /// What a stretch of a path is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]

@@ -1,28 +1,30 @@
 //! The thread that flies: takes orders, keeps the pace, hands every event to recorder, report and screen.
 //!
-//! It never waits in a planner or for the screen. Whatever it waits for (the next tick, an answer, room in the screen's
-//! inbox), an order to hold or to end ends the wait at once.
+//! It never waits in a planner, for the screen or for the disk. Whatever it waits for (the next tick, an answer, room in the
+//! screen's inbox or in the recorder's queue), an order to hold or to end ends the wait at once.
 
-use super::inbox::Outbox;
+use super::{
+    inbox::Outbox,
+    line::{EngineHandle, Request, line},
+    pace::{Reached, next_due, window},
+};
 use crate::{
     answers::{Window, Windowed},
     cli::Drill,
     flight::Flight,
     headless::{self, CLOSE_TIMEOUT},
-    plan_watch::{PlanWatch, Watched},
-    run_folder::{Kept, RunFolder},
+    plan_watch::{PlanWatch, Watched, Work},
+    run_log::{Closed, RunLog},
     scenario::Scenario,
 };
-use mission::{Awaits, Event, Order, Phase};
-use planner_host::{Host, PluginDirs, Progress, Waker};
-use recording::{Options, RunRecorder};
-use report::{Fold, Logs, Stops, Summary};
+use mission::{AskId, Awaits, Event, Order, Phase};
+use planner_host::{Host, PluginDirs, Progress};
+use report::Stops;
 use std::{
     path::{Path, PathBuf},
     sync::{
         Arc,
-        atomic::{AtomicBool, Ordering},
-        mpsc::{self, Receiver, RecvTimeoutError, Sender},
+        mpsc::{self, Receiver, RecvTimeoutError},
     },
     thread::{self, JoinHandle},
     time::{Duration, Instant},
@@ -31,78 +33,19 @@ use tui::{Msg, Speed};
 
 /// How often the recorder's health is sent to the screen.
 const HEALTH_PERIOD: Duration = Duration::from_millis(500);
-/// A tick that is later than this is not made up for.
-const MOST_LATE: Duration = Duration::from_millis(50);
 /// Time limit for closing the recording when a signal has asked the process to exit.
 const HURRY: Duration = Duration::from_millis(900);
 /// With this many messages waiting for the screen, the simulation waits for it.
 const MOST_BACKLOG: usize = 64;
 /// How long it waits then before it looks again, unless an order comes.
 const LOOK_AGAIN: Duration = Duration::from_millis(1);
-
-/// A request to the engine thread.
-enum Request {
-    /// An order, and when it was received.
-    Order(Order, Instant),
-    Speed(Speed),
-    /// End the run, close everything, stop.
-    Close {
-        within: Duration,
-    },
-}
+/// How often workers that are being ended are looked after while no ticks pass.
+const LOOK_AFTER: Duration = Duration::from_millis(20);
 
 /// The flying thread, seen from outside.
 pub struct Engine {
     handle: EngineHandle,
-    thread: JoinHandle<Option<Ended>>,
-}
-
-/// A handle to the engine, for every thread that may have to stop the robot.
-#[derive(Clone)]
-pub struct EngineHandle {
-    requests: Sender<Request>,
-    waker: Waker,
-    /// Whether the robot moves or may begin to, as the screen knows it.
-    may_move: Arc<AtomicBool>,
-}
-
-impl EngineHandle {
-    /// Hands an order to the mission; it enters with the next tick. What stops the robot makes that tick begin now.
-    pub fn order(&self, order: Order) {
-        let is_urgent = matches!(order, Order::Hold | Order::Abort);
-        self.request(Request::Order(order, Instant::now()), is_urgent);
-    }
-
-    /// Whether the robot moves or may begin to, as the screen knows it.
-    pub fn may_move(&self) -> bool {
-        self.may_move.load(Ordering::Relaxed)
-    }
-
-    /// The screen reports whether the robot may move.
-    pub fn set_may_move(&self, may_move: bool) {
-        self.may_move.store(may_move, Ordering::Relaxed);
-    }
-
-    /// Changes the pace.
-    pub fn speed(&self, speed: Speed) {
-        self.request(Request::Speed(speed), false);
-    }
-
-    fn request(&self, request: Request, is_urgent: bool) {
-        // An engine that has ended has already sent the reason to the screen.
-        let _ = self.requests.send(request);
-        if is_urgent {
-            self.waker.wake();
-        }
-    }
-}
-
-/// A run that was flown.
-pub struct Ended {
-    /// Its report.
-    pub summary: Summary,
-    /// Whether it is on disk.
-    pub kept: Kept,
+    thread: JoinHandle<Option<Closed>>,
 }
 
 impl Engine {
@@ -114,19 +57,21 @@ impl Engine {
         screen: Outbox,
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
-        let (requests, asked) = mpsc::channel();
         let mut host = headless::host(scenario, plugins);
-        let handle = EngineHandle { requests, waker: host.waker(), may_move: Arc::default() };
-        let progress = screen.clone();
-        host.set_on_progress(Arc::new(move |_, Progress { share, what }| {
-            progress.send(Msg::BusyAt { share: *share, what: what.clone() });
+        let (handle, asked) = line(host.waker());
+        let (progress, reported) = mpsc::channel();
+        host.set_on_progress(Arc::new(move |ask, at| {
+            // The receiver lives as long as the host.
+            let _ = progress.send((ask, at.clone()));
         }));
+        let now = Instant::now();
         let engine = EngineThread {
             scenario: scenario.clone(),
             logs: logs.to_path_buf(),
             flight: Flight::prepare(scenario, true),
+            watch: PlanWatch::new(host.plan_budget(), None),
             host,
-            watch: PlanWatch::default(),
+            reported,
             shown_work: None,
             asked,
             screen,
@@ -135,6 +80,9 @@ impl Engine {
             stop_asked: None,
             stops_ms: Vec::new(),
             log: None,
+            closed: None,
+            health_sent_at: now,
+            reached: Reached::since(now),
             drill,
         };
         let thread = thread::Builder::new().name("engine".into()).spawn(move || engine.fly())?;
@@ -147,16 +95,15 @@ impl Engine {
     }
 
     /// Ends the run, closes its files and waits for that; less time is allowed after a signal (`hurry`).
-    pub fn close(self, hurry: bool) -> anyhow::Result<Option<Ended>> {
-        let within = if hurry { HURRY } else { CLOSE_TIMEOUT };
-        self.handle.request(Request::Close { within }, true);
+    pub fn close(self, hurry: bool) -> anyhow::Result<Option<Closed>> {
+        self.handle.close(if hurry { HURRY } else { CLOSE_TIMEOUT });
         self.thread.join().map_err(|panic| anyhow::anyhow!("the engine panicked: {}", words(&*panic)))
     }
 }
 
 fn words(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(ToString::to_string);
-    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without a word".into())
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without a message".into())
 }
 
 /// Everything the thread owns.
@@ -166,8 +113,10 @@ struct EngineThread {
     flight: Flight,
     host: Host,
     watch: PlanWatch,
+    /// How far planners say they are.
+    reported: Receiver<(AskId, Progress)>,
     /// The planners' work that the screen shows.
-    shown_work: Option<String>,
+    shown_work: Option<Work>,
     asked: Receiver<Request>,
     screen: Outbox,
     speed: Speed,
@@ -178,31 +127,30 @@ struct EngineThread {
     /// How long each stop took, milliseconds.
     stops_ms: Vec<f64>,
     log: Option<RunLog>,
+    closed: Option<Closed>,
+    health_sent_at: Instant,
+    reached: Reached,
     drill: Option<Drill>,
 }
 
-/// What is written about the run.
-struct RunLog {
-    folder: RunFolder,
-    recorder: Option<RunRecorder>,
-    fold: Fold,
-    began: Instant,
-    health_sent_at: Instant,
-    ended: Option<Ended>,
-}
-
 impl EngineThread {
-    fn fly(mut self) -> Option<Ended> {
-        self.send_events(&[self.flight.opened()]);
+    fn fly(mut self) -> Option<Closed> {
+        self.send_events(vec![self.flight.opened()]);
         let mut due = Instant::now();
         loop {
             let (orders, close) = self.wait_until(due);
-            if !orders.is_empty() || self.is_under_way() {
-                due = self.next_due(due);
-                self.tick(&orders);
-            }
             if let Some(within) = close {
-                return self.close(within);
+                return self.close(orders, within);
+            }
+            if !orders.is_empty() || self.is_under_way() {
+                due = next_due(
+                    due,
+                    Instant::now(),
+                    self.flight.tick_length(),
+                    self.speed,
+                    self.waits(),
+                );
+                self.tick(orders);
             }
         }
     }
@@ -216,6 +164,20 @@ impl EngineThread {
         }
     }
 
+    /// Whether a planner is at work, or only an order can let the robot move.
+    fn waits(&self) -> bool {
+        self.is_held_for_good() || self.flight.mission().is_preparing()
+    }
+
+    fn is_held_for_good(&self) -> bool {
+        matches!(self.flight.phase(), Phase::Held(hold) if hold.resumes.is_never())
+    }
+
+    /// Whether screen or recorder is so far behind that the simulation waits for it.
+    fn is_ahead(&self) -> bool {
+        self.screen.backlog() > MOST_BACKLOG || self.log.as_ref().is_some_and(RunLog::is_behind)
+    }
+
     /// Waits for the next tick, or, while no ticks pass, for a request; gives the orders that came and whether to
     /// close.
     fn wait_until(&mut self, due: Instant) -> (Vec<Order>, Option<Duration>) {
@@ -223,17 +185,19 @@ impl EngineThread {
         self.host.clear_wake_ups();
         let mut orders = Vec::new();
         loop {
-            let is_behind = self.screen.backlog() > MOST_BACKLOG;
-            let due = if is_behind { due.max(Instant::now() + LOOK_AGAIN) } else { due };
+            let is_ahead = self.is_ahead();
+            let due = if is_ahead { due.max(Instant::now() + LOOK_AGAIN) } else { due };
             let wait = due.saturating_duration_since(Instant::now());
             let request = if self.is_under_way() {
                 self.asked.recv_timeout(wait)
             } else if orders.is_empty() {
-                self.asked.recv().map_err(|_| RecvTimeoutError::Disconnected)
+                self.wait_for_request()
             } else {
                 return (orders, None);
             };
             match request {
+                // Key and screen both order a hold; the second one has nothing left to stop.
+                Ok(Request::Order(Order::Hold, _)) if orders.is_empty() && self.is_held_for_good() => {}
                 // What stops the robot does not wait for the tick that is due: the tick comes now.
                 Ok(Request::Order(order @ (Order::Hold | Order::Abort), at)) => {
                     if self.flight.phase().may_move() {
@@ -245,92 +209,76 @@ impl EngineThread {
                 Ok(Request::Order(order, _)) => orders.push(order),
                 Ok(Request::Speed(speed)) => self.speed = speed,
                 Ok(Request::Close { within }) => return (orders, Some(within)),
-                Err(RecvTimeoutError::Timeout) if is_behind => {}
+                Err(RecvTimeoutError::Timeout) if is_ahead => {}
                 Err(RecvTimeoutError::Timeout) => return (orders, None),
                 Err(RecvTimeoutError::Disconnected) => return (orders, Some(CLOSE_TIMEOUT)),
             }
         }
     }
 
-    /// When the tick after this one is due; time that was lost is not made up for by rushing. While a planner is at work, and
-    /// while only an order can let the robot move, mission time passes no faster than the clock.
-    fn next_due(&self, due: Instant) -> Instant {
-        let now = Instant::now();
-        let tick = self.flight.tick_length();
-        let is_still = matches!(self.flight.phase(), Phase::Held(hold) if hold.resumes.is_never());
-        let waits = is_still || self.flight.mission().is_preparing();
-        let pace = match self.speed {
-            Speed::Times(factor) if waits => tick.div_f64(factor.min(1.0)),
-            Speed::Times(factor) => tick.div_f64(factor),
-            Speed::Max if waits => tick,
-            Speed::Max => return now,
-        };
-        if now.saturating_duration_since(due) < MOST_LATE { due + pace } else { now + pace }
-    }
-
-    /// How long a tick waits for answers at this pace.
-    fn window(&self) -> Window {
-        let tick = self.flight.tick_length();
-        match self.speed {
-            Speed::Times(factor) if factor <= 1.0 => Window::real_time(tick),
-            Speed::Times(_) => Window::faster(tick),
-            Speed::Max => Window::unbounded(tick),
+    /// Waits while no ticks pass; looks after workers that are being ended meanwhile.
+    fn wait_for_request(&mut self) -> Result<Request, RecvTimeoutError> {
+        while self.host.look_after_leaving() {
+            match self.asked.recv_timeout(LOOK_AFTER) {
+                Err(RecvTimeoutError::Timeout) => {}
+                request => return request,
+            }
         }
+        self.asked.recv().map_err(|_| RecvTimeoutError::Disconnected)
     }
 
-    fn tick(&mut self, orders: &[Order]) {
-        let starts = self.log.is_none() && orders.contains(&Order::Start);
+    fn tick(&mut self, mut orders: Vec<Order>) {
+        let starts = self.log.is_none() && self.closed.is_none() && orders.contains(&Order::Start);
         if starts && let Err(error) = self.open_log() {
             // Nothing moves without being recorded.
             let why = format!("cannot start: {error:#}");
             self.screen.send_urgent(Msg::OrderFailed { order: Order::Start, why });
-            let others: Vec<Order> = orders.iter().filter(|order| **order != Order::Start).cloned().collect();
-            return self.tick_with(&others);
+            orders.retain(|order| *order != Order::Start);
         }
-        self.tick_with(orders);
-    }
-
-    fn tick_with(&mut self, orders: &[Order]) {
-        let window = self.window();
-        let mut answers = Windowed::new(&mut self.host, window);
-        let events = self.flight.tick(orders, &mut Watched::new(&mut answers, &mut self.watch));
-        if let Some(asked) = self.stop_asked.take() {
-            self.stops_ms.push(asked.elapsed().as_secs_f64() * 1e3);
-        }
+        let events = self.fly_tick(&orders, window(self.flight.tick_length(), self.speed));
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
         assert!(!failing, "drill: the engine fails on purpose");
-        self.keep(&events);
         self.send_work();
-        self.send_events(&events);
+        self.send_events(events);
         self.send_health();
         if matches!(self.flight.phase(), Phase::Ended(_)) {
             self.close_log(CLOSE_TIMEOUT);
         }
     }
 
-    /// Sends to the screen what planners are doing beyond this tick.
+    /// Flies a tick and keeps what happened.
+    fn fly_tick(&mut self, orders: &[Order], window: Window) -> Vec<Event> {
+        let mut answers = Windowed::new(&mut self.host, window);
+        let events = self.flight.tick(orders, &mut Watched::new(&mut answers, &mut self.watch));
+        if let Some(asked) = self.stop_asked.take() {
+            self.stops_ms.push(asked.elapsed().as_secs_f64() * 1e3);
+        }
+        self.reached.count();
+        self.keep(&events);
+        events
+    }
+
+    /// Sends to the screen what planners are doing beyond this tick, and how far they are.
     fn send_work(&mut self) {
-        let work = self.watch.current().map(str::to_owned);
-        if work != self.shown_work {
-            let within_s = self.host.plan_budget().as_secs_f64();
-            self.send(Msg::Busy(work.clone().map(|work| (work, Some(within_s)))));
-            self.shown_work = work;
+        let work = self.watch.current();
+        if work != self.shown_work.as_ref() {
+            self.shown_work = work.cloned();
+            let shown = work.map(|work| (work.what.clone(), work.limit.map(|limit| limit.as_secs_f64())));
+            self.send(Msg::Busy(shown));
+        }
+        // Of each planner the last word counts, and only that of the work that is shown.
+        let shown = self.shown_work.as_ref().map(|work| work.ask);
+        let last = self.reported.try_iter().filter(|(ask, _)| Some(*ask) == shown).last();
+        if let Some((_, Progress { share, what })) = last {
+            self.send(Msg::BusyAt { share, what });
         }
     }
 
     fn open_log(&mut self) -> anyhow::Result<()> {
-        let planner = self.flight.mission().planner_id();
-        let folder = RunFolder::create(&self.logs, &self.scenario.name, planner, self.scenario.seed)?;
-        let recorder = RunRecorder::start(folder.path(), Options::default())?;
-        let now = Instant::now();
-        self.log = Some(RunLog {
-            folder,
-            recorder: Some(recorder),
-            fold: Fold::new(),
-            began: now,
-            health_sent_at: now,
-            ended: None,
-        });
+        let log = RunLog::create(&self.logs, &self.scenario, self.flight.mission().planner_id())?;
+        self.log = Some(log);
+        self.health_sent_at = Instant::now();
+        self.reached = Reached::since(self.health_sent_at);
         self.keep(&[self.flight.opened()]);
         let early = std::mem::take(&mut self.early);
         self.keep(&early);
@@ -338,64 +286,47 @@ impl EngineThread {
     }
 
     fn keep(&mut self, events: &[Event]) {
-        let Some(log) = &mut self.log else { return self.early.extend_from_slice(events) };
-        for event in events {
-            log.fold.apply(event);
-        }
-        if let Some(recorder) = &log.recorder {
-            recorder.send(events);
+        match &mut self.log {
+            Some(log) => log.keep(events),
+            None if self.closed.is_none() => self.early.extend_from_slice(events),
+            None => {}
         }
     }
 
     fn send_health(&mut self) {
-        let Some(log) = &mut self.log else { return };
-        let Some(recorder) = &log.recorder else { return };
-        if log.health_sent_at.elapsed() < HEALTH_PERIOD {
+        let Some(log) = &self.log else { return };
+        let now = Instant::now();
+        if now.saturating_duration_since(self.health_sent_at) < HEALTH_PERIOD {
             return;
         }
-        log.health_sent_at = Instant::now();
-        let health = super::screen::health(&recorder.health(), None);
+        self.health_sent_at = now;
+        let reached = self.reached.take(now, self.flight.tick_length());
+        // While the mission waits, its pace says nothing of how it will go on.
+        let health = super::screen::health(&log.health(), (!self.waits()).then_some(reached));
         self.send(Msg::Health(health));
     }
 
     /// Closes journal and recording and writes the report.
     fn close_log(&mut self, within: Duration) {
-        let Some(log) = &mut self.log else { return };
-        let Some(recorder) = log.recorder.take() else { return };
-        let finished = recorder.finish(within);
-        let logs = Logs {
-            journal: finished.journal.as_ref().map(|path| path.display().to_string()),
-            recording: finished.recording.as_ref().map(|path| path.display().to_string()),
-            error: finished.error.clone(),
-        };
-        let summary = Summary {
-            wall_time_s: Some(log.began.elapsed().as_secs_f64()),
-            events_sha256: finished.events_sha256.clone(),
-            planner_calls: Some(headless::planner_calls(&self.host)),
-            stops: Stops::of(&self.stops_ms),
-            logs: Some(logs),
-            ..log.fold.summary()
-        };
-        let summary = self.scenario.expect.evaluated(summary);
-        let report = log.folder.write_report(&summary);
-        let kept = Kept::new(&log.folder, &finished, &report);
-        let problem = kept.problem();
-        log.ended = Some(Ended { summary, kept });
+        let Some(log) = self.log.take() else { return };
+        let closed = log.close(within, &self.scenario, &self.host, Stops::of(&self.stops_ms));
+        let problem = closed.kept.as_ref().and_then(|kept| kept.problem());
+        self.closed = Some(closed);
         self.send(Msg::Health(super::screen::closed(problem)));
     }
 
-    fn close(mut self, within: Duration) -> Option<Ended> {
+    /// Ends the mission in a tick that waits for nobody, and closes its files.
+    fn close(mut self, mut orders: Vec<Order>, within: Duration) -> Option<Closed> {
         if matches!(self.flight.phase(), Phase::Running(_) | Phase::Held(_)) {
-            let mut answers = Windowed::new(&mut self.host, Window::real_time(Duration::ZERO));
-            let events = self.flight.tick(&[Order::Abort], &mut Watched::new(&mut answers, &mut self.watch));
-            self.keep(&events);
+            orders.push(Order::Abort);
+            self.fly_tick(&orders, Window::real_time(Duration::ZERO));
         }
         self.close_log(within);
-        self.log.and_then(|log| log.ended)
+        self.closed
     }
 
-    fn send_events(&self, events: &[Event]) {
-        self.send(Msg::Events(events.to_vec()));
+    fn send_events(&self, events: Vec<Event>) {
+        self.send(Msg::Events(events));
     }
 
     fn send(&self, message: Msg) {

@@ -16,7 +16,7 @@ struct Shared {
 
 #[derive(Default)]
 struct Queues {
-    urgent: VecDeque<Received>,
+    urgent: VecDeque<Msg>,
     normal: VecDeque<Msg>,
     is_closed: bool,
 }
@@ -26,13 +26,6 @@ impl Shared {
         // A queue is whole between any two statements.
         self.queues.lock().unwrap_or_else(PoisonError::into_inner)
     }
-}
-
-/// A message, and whether its sender orders the hold itself, so that the screen must not order it a second time.
-#[derive(Debug, PartialEq)]
-pub struct Received {
-    pub msg: Msg,
-    pub held_by_sender: bool,
 }
 
 /// The receiving end; once it is dropped, messages are discarded.
@@ -51,12 +44,7 @@ pub fn inbox() -> (Outbox, Inbox) {
 impl Outbox {
     /// Sends a message that comes before all others: a key, a signal, a failure. `false` if the inbox is closed.
     pub fn send_urgent(&self, msg: Msg) -> bool {
-        self.put(|queues| queues.urgent.push_back(Received { msg, held_by_sender: false }))
-    }
-
-    /// The same for a message whose sender orders the hold itself, so that it is not ordered twice.
-    pub fn send_urgent_with_hold(&self, msg: Msg) -> bool {
-        self.put(|queues| queues.urgent.push_back(Received { msg, held_by_sender: true }))
+        self.put(|queues| queues.urgent.push_back(msg))
     }
 
     /// Sends any other message. `false` if the inbox is closed.
@@ -83,13 +71,10 @@ impl Outbox {
 
 impl Inbox {
     /// The next message, urgent ones first; waits until the given time, or without one for as long as it takes.
-    pub fn next(&self, until: Option<Instant>) -> Option<Received> {
+    pub fn next(&self, until: Option<Instant>) -> Option<Msg> {
         let mut queues = self.0.queues();
         loop {
-            let normal = |queues: &mut Queues| {
-                Some(Received { msg: queues.normal.pop_front()?, held_by_sender: false })
-            };
-            let next = queues.urgent.pop_front().or_else(|| normal(&mut queues));
+            let next = queues.urgent.pop_front().or_else(|| queues.normal.pop_front());
             if next.is_some() {
                 return next;
             }
@@ -125,7 +110,7 @@ mod tests {
         }
         assert!(outbox.send_urgent(Msg::Signal(Signal::Interrupt)));
         assert_eq!(outbox.backlog(), 10_000);
-        let next = || inbox.next(Some(Instant::now())).map(|received| received.msg);
+        let next = || inbox.next(Some(Instant::now()));
         assert_eq!(next(), Some(Msg::Signal(Signal::Interrupt)));
         assert_eq!(next(), Some(Msg::Events(Vec::new())));
     }

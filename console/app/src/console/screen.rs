@@ -1,15 +1,13 @@
 //! The drawing thread: messages in, model updated, effects carried out, a frame when something changed.
 
-use super::{
-    engine::{Ended, EngineHandle},
-    inbox::{Inbox, Received},
-};
+use super::{inbox::Inbox, line::EngineHandle};
 use crate::{
     cli::Drill,
     failure::{COMPLETE, ENDED_OTHERWISE},
+    run_log::Closed,
 };
 use anyhow::Context;
-use mission::{EventKind, Order, Outcome};
+use mission::{EventKind, Outcome};
 use std::{
     io::Write,
     process::ExitCode,
@@ -107,14 +105,11 @@ impl Screen {
         let until = Instant::now() + BURST_TIME;
         let mut next = first;
         for _ in 0..BURST {
-            let Some(Received { msg, held_by_sender }) = next else { break };
+            let Some(msg) = next else { break };
             self.answer_seen |= is_answer(&msg);
             let effects = update(&mut self.model, msg);
             self.engine.set_may_move(self.model.may_move());
             for effect in effects {
-                if held_by_sender && effect == Effect::Order(Order::Hold) {
-                    continue;
-                }
                 if let Some(left) = self.carry_out(effect)? {
                     return Ok(Some(left));
                 }
@@ -126,7 +121,7 @@ impl Screen {
     }
 
     /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.
-    fn wait(&self) -> Option<Received> {
+    fn wait(&self) -> Option<Msg> {
         let frame = self.dirty.then(|| self.drawn + self.pause());
         let by_itself =
             self.model.wakes_at_mono_s().map(|at_s| self.began + Duration::from_secs_f64(at_s.max(0.0)));
@@ -190,20 +185,22 @@ fn ring() -> anyhow::Result<()> {
 
 impl Left {
     /// Reports on the normal screen how the run ended; the exit code reports it to scripts.
-    pub fn report_end(self, ended: Option<&Ended>) -> ExitCode {
+    pub fn report_end(self, closed: Option<&Closed>) -> ExitCode {
+        let kept = closed.and_then(|closed| closed.kept.as_ref());
         // A terminal that was closed shows nothing.
-        if let Some(ended) = ended.filter(|_| self.signal != Some(Signal::Hangup)) {
-            let text = format!("{}{}\n", report::human(&ended.summary), ended.kept.text());
+        if let Some(closed) = closed.filter(|_| self.signal != Some(Signal::Hangup)) {
+            let line = kept.map(|kept| kept.text() + "\n").unwrap_or_default();
+            let text = report::human(&closed.summary) + &line;
             let _ = std::io::stdout().write_all(text.as_bytes());
         }
         if let Some(signal) = self.signal {
             return ExitCode::from(128 + number(signal));
         }
-        let code = match ended.and_then(|ended| ended.summary.outcome) {
+        let code = match closed.and_then(|closed| closed.summary.outcome) {
             None | Some(Outcome::Complete) => COMPLETE,
             Some(_) => ENDED_OTHERWISE,
         };
-        ExitCode::from(ended.map_or(code, |ended| ended.kept.exit_code(code)))
+        ExitCode::from(kept.map_or(code, |kept| kept.exit_code(code)))
     }
 }
 

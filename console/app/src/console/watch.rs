@@ -1,17 +1,16 @@
-//! The threads that only listen: keys, signals, a terminal that is closed, the survey of planners.
+//! The threads that only listen: keys, signals, a terminal that is closed.
 
-use super::{engine::EngineHandle, inbox::Outbox};
+use super::{inbox::Outbox, line::EngineHandle};
 use anyhow::Context;
 use crossterm::event::{self, Event};
 use mission::Order;
-use planner_host::PluginDirs;
 use rustix::event::{PollFd, PollFlags, poll};
 use signal_hook::{
     consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP},
     iterator::Signals,
 };
 use std::{thread, time::Duration};
-use tui::{Key, Msg, Refused, Signal, terminal};
+use tui::{Key, Msg, Signal, terminal};
 
 /// How long the console may take to exit cleanly after a signal; then it exits anyway.
 const GRACE: Duration = Duration::from_secs(1);
@@ -64,13 +63,13 @@ pub fn signals(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
 /// Sends a message to the screen, and orders a hold if the message stops the robot and the robot may move; `false` if the
 /// inbox is closed.
 ///
-/// The screen gets the message first: how it handles the key must not depend on the hold that follows.
+/// The screen gets the message first: how it handles the key must not depend on the hold that follows. It orders a hold
+/// itself as well: this one may overtake an order to move that the screen has not sent yet, that one cannot.
 fn send_and_hold(outbox: &Outbox, engine: &EngineHandle, msg: Msg, stops: bool) -> bool {
-    if !(stops && engine.may_move()) {
-        return outbox.send_urgent(msg);
+    let is_delivered = outbox.send_urgent(msg);
+    if stops && engine.may_move() {
+        engine.order(Order::Hold);
     }
-    let is_delivered = outbox.send_urgent_with_hold(msg);
-    engine.order(Order::Hold);
     is_delivered
 }
 
@@ -100,17 +99,6 @@ pub fn terminal(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
                 leave_in_any_case(SIGHUP);
             }
         }
-    })
-}
-
-/// Which planners there are; asks every plugin in a process of its own, so it may take a while.
-pub fn planners(plugins: &PluginDirs, outbox: &Outbox) -> anyhow::Result<()> {
-    let (plugins, outbox) = (plugins.clone(), outbox.clone());
-    spawn("planners", move || {
-        let (found, refused) = crate::planners::surveyed(&plugins);
-        let refused = refused.into_iter().map(|(plugin, reason)| Refused { plugin, reason }).collect();
-        // A screen that was closed needs no list.
-        outbox.send(Msg::Planners { found, refused });
     })
 }
 

@@ -33,6 +33,19 @@ impl RecordedTick {
     }
 }
 
+/// How the run was opened, by the first event of its journal.
+///
+/// # Errors
+/// It is another event, or there is none.
+pub fn opening(first: Option<&Event>) -> anyhow::Result<&RunOpened> {
+    match first.map(|event| &event.kind) {
+        Some(EventKind::RunOpened(opened)) => Ok(opened),
+        _ => Err(bad_input(
+            "the journal does not begin with the opening of a run, so it cannot be computed again",
+        )),
+    }
+}
+
 /// Reads a journal tick by tick.
 pub struct Ticks {
     reader: JournalReader,
@@ -59,12 +72,7 @@ impl Ticks {
     /// # Errors
     /// The first line is another event, or there is none.
     pub fn opened(&self) -> anyhow::Result<&RunOpened> {
-        match self.ahead.as_ref().map(|(_, event)| &event.kind) {
-            Some(EventKind::RunOpened(opened)) => Ok(opened),
-            _ => Err(bad_input(
-                "the journal does not begin with the opening of a run, so it cannot be computed again",
-            )),
-        }
+        opening(self.ahead.as_ref().map(|(_, event)| event))
     }
 
     /// The next tick; `None` after the last one.

@@ -21,7 +21,9 @@ pub struct Replayed {
 #[derive(Debug, Default)]
 pub struct Asked {
     /// Answers that were compared and are the same.
-    pub compared: usize,
+    pub same: usize,
+    /// Answers that cannot be compared: the mission refused them, or made no use of them.
+    pub not_comparable: usize,
     /// Faults from outside or by the clock, by planner.
     pub external: BTreeMap<String, usize>,
     /// The first answer that is another one.
@@ -57,7 +59,7 @@ impl Replayed {
         }
     }
 
-    fn compare(&mut self, ask: &Ask, recorded: &Answer, mission: &Mission, is_used: bool) {
+    fn compare(&mut self, recorded: &Answer, mission: &Mission, is_used: bool) {
         if self.host.is_none() {
             return;
         }
@@ -69,19 +71,20 @@ impl Replayed {
             *counts.external.entry(fault.planner.clone()).or_default() += 1;
             return;
         }
-        let own = self.own_answer(ask.id);
+        let own = self.own_answer(recorded.ask);
         let Some(asked) = &mut self.asked else { return };
-        let why = match own {
-            None => Some("gave no answer".to_owned()),
-            Some(_) if !is_used => None,
-            Some(own) => otherwise(&own, recorded, mission),
+        let verdict = match own {
+            None => Verdict::Different("gave no answer".to_owned()),
+            Some(_) if !is_used => Verdict::NotComparable,
+            Some(own) => verdict(&own, recorded, mission),
         };
-        match why {
-            None => asked.compared += usize::from(is_used),
-            Some(why) => {
-                let tick = self.tick;
+        match verdict {
+            Verdict::Same => asked.same += 1,
+            Verdict::NotComparable => asked.not_comparable += 1,
+            Verdict::Different(why) => {
+                let (ask, tick) = (recorded.ask, self.tick);
                 asked.difference =
-                    Some(format!("a planner answers ask {} in tick {tick} otherwise: it {why}", ask.id));
+                    Some(format!("a planner answers ask {ask} in tick {tick} otherwise: it {why}"));
                 // From here on it knows other things than it did then.
                 self.host = None;
             }
@@ -91,35 +94,45 @@ impl Replayed {
 
 impl Answers for Replayed {
     fn submit(&mut self, ask: Ask) {
-        if let Some(host) = &mut self.host {
-            host.submit(ask.clone());
-        }
         if ask.what == What::Close {
             self.early.retain(|early| early.ask.worker != ask.id.worker);
         }
-        self.recorded.submit(ask);
+        self.recorded.submit(&ask);
+        if let Some(host) = &mut self.host {
+            host.submit(ask);
+        }
     }
 
     fn next(&mut self, mission: &Mission) -> Option<Answer> {
-        let (ask, answer, is_used) = self.recorded.next_answer()?;
-        self.compare(&ask, &answer, mission, is_used);
+        let (answer, is_used) = self.recorded.next_answer()?;
+        self.compare(&answer, mission, is_used);
         Some(answer)
     }
 }
 
-/// How a planner's own answer differs from the recorded one; the sentence reads on after "it".
-fn otherwise(own: &Answer, recorded: &Answer, mission: &Mission) -> Option<String> {
-    match (&own.result, &recorded.result) {
-        // What the mission itself refused is no answer of the planner.
-        (Ok(Given::Opened(_)), Err(Fault { cause: Cause::Quarantined | Cause::Refused, .. })) => None,
+/// What comes of comparing a planner's own answer with the recorded one.
+enum Verdict {
+    Same,
+    /// The recorded answer is not the planner's.
+    NotComparable,
+    /// The sentence reads on after "it".
+    Different(String),
+}
+
+fn verdict(own: &Answer, recorded: &Answer, mission: &Mission) -> Verdict {
+    let why = match (&own.result, &recorded.result) {
+        (Ok(Given::Opened(_)), Err(Fault { cause: Cause::Quarantined | Cause::Refused, .. })) => {
+            return Verdict::NotComparable;
+        }
         (Ok(own_given), Ok(given)) => differs(own_given, given, mission)
-            .or_else(|| (own.said != recorded.said).then(|| "says or draws something else".to_owned())),
+            .or_else(|| (own.said != recorded.said).then(|| "logs or draws something else".to_owned())),
         (Err(own), Err(fault)) => {
             (own != fault).then(|| format!("fails with \"{}\" instead of \"{}\"", own.message, fault.message))
         }
         (Ok(_), Err(fault)) => Some(format!("does not fail (\"{}\" then)", fault.message)),
         (Err(own), Ok(_)) => Some(format!("fails: {}", own.message)),
-    }
+    };
+    why.map_or(Verdict::Same, Verdict::Different)
 }
 
 fn differs(own: &Given, recorded: &Given, mission: &Mission) -> Option<String> {

@@ -1,14 +1,18 @@
 //! The answers that a journal holds: each event that closes an ask carries what a mission needs to repeat it.
 
 use super::{Answer, Ask, AskId, Given, Said, What};
-use crate::{event::EventKind, planner::Fault};
+use crate::{
+    event::EventKind,
+    planner::{Cause, During, Fault},
+};
 use planner_api::{Command, Leg, Plan, Status};
 use std::collections::VecDeque;
 
 /// Answers asks from a journal, each in the tick in which it was answered when the journal was written.
 #[derive(Debug, Default)]
 pub struct RecordedAnswers {
-    open: Vec<Ask>,
+    /// What was asked and not answered yet, and whether it is a plan.
+    open: Vec<(AskId, bool)>,
     due: VecDeque<Recorded>,
 }
 
@@ -42,25 +46,26 @@ impl RecordedAnswers {
     }
 
     /// Takes an ask of the mission.
-    pub fn submit(&mut self, ask: Ask) {
+    pub fn submit(&mut self, ask: &Ask) {
         if ask.what == What::Close {
-            self.open.retain(|open| open.id.worker != ask.id.worker);
+            self.open.retain(|(open, _)| open.worker != ask.id.worker);
         } else {
-            self.open.push(ask);
+            self.open.push((ask.id, matches!(ask.what, What::Plan(_))));
         }
     }
 
-    /// The next answer of this tick to something that was asked, with the ask, and whether the mission made use of it: of
-    /// one that it did not the journal does not hold the content.
-    pub fn next_answer(&mut self) -> Option<(Ask, Answer, bool)> {
+    /// The next answer of this tick to something that was asked, and whether the mission made use of it: of one that it
+    /// did not the journal does not hold the content.
+    pub fn next_answer(&mut self) -> Option<(Answer, bool)> {
         // A worker's answers are recorded when they are used, which may be after the next question to it.
-        let is_open = |recorded: &Recorded| self.open.iter().position(|open| open.id == recorded.ask);
+        let is_open = |recorded: &Recorded| self.open.iter().position(|(open, _)| *open == recorded.ask);
         let (at, open) =
             self.due.iter().enumerate().find_map(|(at, recorded)| Some((at, is_open(recorded)?)))?;
-        let (Recorded { ask: id, closing, said }, ask) = (self.due.remove(at)?, self.open.swap_remove(open));
-        let result = closing.recorded_answer(&ask.what)?;
+        let Recorded { ask, closing, said } = self.due.remove(at)?;
+        let (_, is_plan) = self.open.swap_remove(open);
+        let result = closing.recorded_answer(is_plan)?;
         let is_used = !matches!(closing, EventKind::Discarded { .. });
-        Some((ask, Answer { ask: id, result, said }, is_used))
+        Some((Answer { ask, result, said }, is_used))
     }
 }
 
@@ -83,22 +88,21 @@ impl EventKind {
 
     /// What the planner answered, as far as the mission made use of it; `None` for events that close no ask.
     ///
-    /// The cost of a plan is not recorded, since nobody reads it, and a command is the one that was sent.
-    pub fn recorded_answer(&self, what: &What) -> Option<Result<Given, Fault>> {
+    /// The cost of a plan is not recorded, since nobody reads it, and a command is the one that was sent. A plan that no
+    /// planner can have given (the journal was edited) is a fault. `is_plan`: whether a plan was asked for.
+    pub fn recorded_answer(&self, is_plan: bool) -> Option<Result<Given, Fault>> {
         Some(match self {
             Self::PlannerChosen { ask: Some(_), info, .. } | Self::PlannerPrepared { info, .. } => {
                 Ok(Given::Opened(info.clone()))
             }
             Self::ParametersChanged { ask: Some(_), .. } => Ok(Given::Reconfigured),
             Self::Planned { ask: Some(_), way_home, path, complete, legs, cuts, .. } => {
-                Ok(Given::Plan(without_way_home(*way_home, path, *complete, legs, cuts)))
+                without_way_home(*way_home, path, *complete, legs, cuts).map(Given::Plan)
             }
             Self::Commanded { ask: Some(_), command } => Ok(Given::Command(*command)),
             Self::Snapshotted { bytes, .. } => Ok(Given::State { bytes: *bytes }),
-            Self::Discarded { .. } => Ok(match what {
-                What::Plan(_) => Given::Plan(Plan::default()),
-                _ => Given::Command(Command::still(Status::Waiting)),
-            }),
+            Self::Discarded { .. } if is_plan => Ok(Given::Plan(Plan::default())),
+            Self::Discarded { .. } => Ok(Given::Command(Command::still(Status::Waiting))),
             Self::PlannerFailed { ask: Some(_), fault } => Err(fault.clone()),
             _ => return None,
         })
@@ -106,17 +110,66 @@ impl EventKind {
 }
 
 /// The plan as the planner gave it, before the mission put a way home of so many points in front.
+///
+/// # Errors
+/// No planner can have given it.
 fn without_way_home(
     way_home: usize,
     path: &[world::Point],
     complete: bool,
     legs: &[Leg],
     cuts: &[Vec<world::Point>],
-) -> Plan {
+) -> Result<Plan, Fault> {
     // The way home has a leg of its own, the first.
     let own = legs.iter().skip(usize::from(way_home > 0));
-    let legs =
-        own.map(|leg| Leg { first: leg.first - way_home, last: leg.last - way_home, ..*leg }).collect();
+    let shifted = |leg: &Leg| {
+        let (first, last) = (leg.first.checked_sub(way_home)?, leg.last.checked_sub(way_home)?);
+        Some(Leg { first, last, ..*leg })
+    };
+    let legs: Option<Vec<Leg>> = own.map(shifted).collect();
+    let legs = legs.ok_or_else(|| impossible("gave a leg that begins on the way home".to_owned()))?;
     let path = path.iter().skip(way_home).copied().collect();
-    Plan { path, complete, legs, cuts: cuts.to_vec(), ..Plan::default() }
+    let plan = Plan { path, complete, legs, cuts: cuts.to_vec(), ..Plan::default() };
+    plan.check().map_err(impossible)?;
+    Ok(plan)
+}
+
+fn impossible(what: String) -> Fault {
+    Fault {
+        planner: String::new(),
+        during: During::Plan,
+        cause: Cause::BadOutput,
+        message: format!("the planner of the journal {what}"),
+        partial: Vec::new(),
+        plugin_sha256: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point2;
+    use planner_api::LegTag;
+
+    fn leg(first: usize, last: usize) -> Leg {
+        Leg { tag: LegTag::Travel, first, last }
+    }
+
+    fn recorded(way_home: usize, legs: &[Leg]) -> Result<Vec<(usize, usize)>, String> {
+        let path: Vec<_> = (0..5).map(|x| Point2::new(f64::from(x), 0.0)).collect();
+        let plan = without_way_home(way_home, &path, true, legs, &[]).map_err(|fault| fault.message)?;
+        Ok(plan.legs.iter().map(|leg| (leg.first, leg.last)).collect())
+    }
+
+    #[test]
+    fn a_plan_of_an_edited_journal_is_a_fault_and_no_panic() {
+        assert_eq!(recorded(2, &[leg(0, 2), leg(2, 4)]), Ok(vec![(0, 2)]));
+        assert_eq!(
+            recorded(2, &[leg(0, 2), leg(1, 4)]),
+            Err("the planner of the journal gave a leg that begins on the way home".into())
+        );
+        assert!(recorded(0, &[leg(0, 5)]).unwrap_err().ends_with("to 5 of a path of 5 points"));
+        assert!(recorded(usize::MAX, &[leg(0, 0), leg(1, 2)]).is_err());
+        assert!(recorded(9, &[leg(0, 9), leg(9, 9)]).is_err());
+    }
 }

@@ -53,14 +53,14 @@ pub(super) fn clauses(model: &Model) -> Clauses {
     }
 }
 
-/// What a planner is doing and how far, for how long already and at most, and what exactly.
+/// What a planner is doing and how far, for how long already and its limit, and what exactly.
 fn work(model: &Model, busy: &Busy) -> Vec<String> {
     let passed_s = (model.console.now.mono_s - busy.since_mono_s).max(0.0) as u64;
     // Only the end makes it whole.
     let percent = |share: f64| format!(" {} %", (100.0 * share).floor().clamp(0.0, 99.0));
     let share = busy.at.as_ref().map_or_else(String::new, |(share, _)| percent(*share));
-    let time = |within_s: f64| format!(", {passed_s} s of {} s at most", within_s as u64);
-    let first = format!("{}{share}{}.", busy.work, busy.within_s.map_or_else(String::new, time));
+    let time = |limit_s: f64| format!(", {passed_s} s (limit {} s)", limit_s as u64);
+    let first = format!("{}{share}{}.", busy.work, busy.limit_s.map_or_else(String::new, time));
     let what = busy.at.iter().filter(|(_, what)| !what.is_empty()).map(|(_, what)| format!("{what}."));
     std::iter::once(first).chain(what).collect()
 }

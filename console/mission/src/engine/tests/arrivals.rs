@@ -185,8 +185,8 @@ fn replay(config: MissionConfig, recorded: &Flight) -> Vec<Event> {
             .begin_tick(recorded.events.iter().filter(|event| event.tick == tick).map(|event| &event.kind));
         again.mission.sense(&Input { readings, orders });
         loop {
-            std::iter::from_fn(|| again.mission.poll_ask()).for_each(|ask| answers.submit(ask));
-            let Some((_, answer, _)) = answers.next_answer() else { break };
+            std::iter::from_fn(|| again.mission.poll_ask()).for_each(|ask| answers.submit(&ask));
+            let Some((answer, _)) = answers.next_answer() else { break };
             again.mission.answer(answer);
         }
         events.extend(again.mission.act().events);

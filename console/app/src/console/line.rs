@@ -1,0 +1,77 @@
+//! The line to the engine's thread: orders and other requests, from every thread that may have to stop the robot.
+
+use mission::Order;
+use planner_host::Waker;
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{self, Receiver, Sender},
+    },
+    time::{Duration, Instant},
+};
+use tui::Speed;
+
+/// A request to the engine's thread.
+pub enum Request {
+    /// An order, and when it was received.
+    Order(Order, Instant),
+    /// Change the pace.
+    Speed(Speed),
+    /// End the run, close everything, stop.
+    Close {
+        /// How long that may take.
+        within: Duration,
+    },
+}
+
+/// The sending end.
+#[derive(Clone)]
+pub struct EngineHandle {
+    requests: Sender<Request>,
+    waker: Waker,
+    /// Whether the robot moves or may begin to, as the screen knows it.
+    may_move: Arc<AtomicBool>,
+}
+
+/// A line to an engine whose planners this waker interrupts.
+pub fn line(waker: Waker) -> (EngineHandle, Receiver<Request>) {
+    let (requests, asked) = mpsc::channel();
+    (EngineHandle { requests, waker, may_move: Arc::default() }, asked)
+}
+
+impl EngineHandle {
+    /// Hands an order to the mission; it enters with the next tick. What stops the robot makes that tick begin now.
+    pub fn order(&self, order: Order) {
+        let is_urgent = matches!(order, Order::Hold | Order::Abort);
+        self.request(Request::Order(order, Instant::now()), is_urgent);
+    }
+
+    /// Whether the robot moves or may begin to, as the screen knows it.
+    pub fn may_move(&self) -> bool {
+        self.may_move.load(Ordering::Relaxed)
+    }
+
+    /// The screen reports whether the robot may move.
+    pub fn set_may_move(&self, may_move: bool) {
+        self.may_move.store(may_move, Ordering::Relaxed);
+    }
+
+    /// Changes the pace.
+    pub fn speed(&self, speed: Speed) {
+        self.request(Request::Speed(speed), false);
+    }
+
+    /// Ends the run and closes its files.
+    pub fn close(&self, within: Duration) {
+        self.request(Request::Close { within }, true);
+    }
+
+    fn request(&self, request: Request, is_urgent: bool) {
+        // An engine that has ended has already sent the reason to the screen.
+        let _ = self.requests.send(request);
+        if is_urgent {
+            self.waker.wake();
+        }
+    }
+}
