@@ -126,6 +126,10 @@ impl Mission {
         &self.phase
     }
 
+    fn is_running(&self) -> bool {
+        matches!(self.phase, Phase::Running(_))
+    }
+
     /// The planner that drives, or that will drive first.
     pub fn planner_id(&self) -> &str {
         &self.active.choice.id
@@ -133,13 +137,12 @@ impl Mission {
 
     /// Everything that decides whether an order is accepted now.
     pub fn standing(&self) -> Standing<'_> {
-        Standing { phase: &self.phase, position: self.position_trust(), planner: self.active.info.as_ref() }
+        Standing { phase: &self.phase, position: self.position_trust(), planner: self.active.known() }
     }
 
     fn position_trust(&self) -> PositionTrust {
         if self.locator.is_lost() {
-            let (error_m, limit_m) = (self.locator.error_95_m(), self.config.position_limit_m);
-            PositionTrust::Lost { error_m, limit_m }
+            PositionTrust::Lost { limit_m: self.config.position_limit_m }
         } else if self.locator.is_alarmed() {
             PositionTrust::Alarmed
         } else {
@@ -209,6 +212,8 @@ impl Mission {
     /// Nothing stops the robot, or nothing lets a held one go on.
     fn go_on_or_help(&mut self) {
         match &self.phase {
+            // A robot that stands for its planner is kept from no corner.
+            Phase::Running(_) if self.robot_waits() => {}
             Phase::Running(_) => self.task.wait(self.config.tick_s),
             Phase::Held(hold) if hold.by.blames_planner() => self.replace_failed_planner(),
             Phase::Waiting | Phase::Held(_) | Phase::Ended(_) => {}
@@ -217,7 +222,7 @@ impl Mission {
 
     /// Whether the robot stands because it has no plan, or no planner, yet.
     fn robot_waits(&self) -> bool {
-        self.active.is_planning() || self.candidate.as_ref().is_some_and(|seat| seat.robot_waits)
+        self.active.is_being_prepared() || self.candidate.as_ref().is_some_and(|seat| seat.robot_waits)
     }
 
     fn carry_out(&mut self, verdict: Verdict) {
@@ -242,7 +247,9 @@ impl Mission {
             if let Some(choice) = self.rules.fallback.update(&self.config, &active) {
                 let mut seat = self.active.successor(choice, Reason::Swap { from: active });
                 seat.prepare = Prepare::Plan;
-                self.drop_candidate();
+                if let Some(candidate) = self.candidate.take() {
+                    self.reject(candidate, format!("the fallback planner {} takes over", seat.choice.id));
+                }
                 self.replace_active(seat);
             }
         } else if resumes.is_never() && !self.config.attended && self.active.prepare == Prepare::No {
@@ -257,10 +264,17 @@ impl Mission {
         }
     }
 
-    fn hold(&mut self, hold: Hold) {
-        let Hold { by, resumes } = hold.clone();
-        self.happened.push(EventKind::Held { by, resumes });
-        self.phase = Phase::Held(hold);
+    /// Holds the robot. If only an order could let it move anyway, or for more than one command, only an order ends this
+    /// hold: the operator's HOLD outlives whatever happens to planners meanwhile.
+    fn hold(&mut self, Hold { by, resumes }: Hold) {
+        let only_by_order = match &self.phase {
+            Phase::Held(before) => before.resumes.is_never(),
+            Phase::Running(gait) => *gait == Gait::OneTick,
+            Phase::Waiting | Phase::Ended(_) => false,
+        };
+        let resumes = if only_by_order { Resumes::Never } else { resumes };
+        self.happened.push(EventKind::Held { by: by.clone(), resumes });
+        self.phase = Phase::Held(Hold { by, resumes });
         self.active.outdate_step();
         if let Some(unsent) = self.active.command.take() {
             self.discard(unsent);

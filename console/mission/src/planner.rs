@@ -191,6 +191,13 @@ pub struct Fault {
     pub plugin_sha256: Option<String>,
 }
 
+impl PlannerInfo {
+    /// Whether it has this parameter and lets it change while the robot moves.
+    pub fn has_live(&self, key: &str) -> bool {
+        self.parameters.iter().any(|param| param.key == key && param.live)
+    }
+}
+
 impl Cause {
     /// Whether the process failed from outside the planner's own logic, or by the clock: computing the run again does
     /// not show it again. After such a fault the process is gone.

@@ -80,11 +80,9 @@ pub enum PositionTrust {
     /// Within the limit.
     #[default]
     Good,
-    /// Its error is beyond the limit.
+    /// Its error is beyond the limit, or there are no fixes any more.
     Lost {
-        /// Half width of the 95 % error, metres.
-        error_m: f64,
-        /// The limit, metres.
+        /// The limit of the 95 % error, metres.
         limit_m: f64,
     },
     /// The ranges contradict each other.
@@ -98,7 +96,7 @@ pub struct Standing<'a> {
     pub phase: &'a Phase,
     /// How far the position can be relied on.
     pub position: PositionTrust,
-    /// The active planner, once it has been opened.
+    /// The planner that was opened last to drive.
     pub planner: Option<&'a PlannerInfo>,
 }
 
@@ -109,11 +107,11 @@ pub struct FoldedStanding {
     pub phase: Phase,
     /// Whether the last order was for a single step.
     is_stepping: bool,
-    /// Position error and limit, metres, while the position counts as lost.
-    lost: Option<(f64, f64)>,
+    /// The limit of the position error, metres, while the position counts as lost.
+    lost: Option<f64>,
     /// Whether the ranges contradict each other.
     is_alarmed: bool,
-    /// The active planner.
+    /// The planner that was opened last to drive.
     planner: Option<Box<PlannerInfo>>,
 }
 
@@ -132,7 +130,7 @@ impl FoldedStanding {
                 self.phase = Phase::Held(Hold { by: by.clone(), resumes: *resumes });
             }
             EventKind::Ended { outcome, .. } => self.phase = Phase::Ended(*outcome),
-            EventKind::PositionLost { error_m, limit_m } => self.lost = Some((*error_m, *limit_m)),
+            EventKind::PositionLost { limit_m, .. } => self.lost = Some(*limit_m),
             EventKind::PositionRegained { .. } => self.lost = None,
             EventKind::PositionAlarmed { .. } => self.is_alarmed = true,
             EventKind::PositionTrusted => self.is_alarmed = false,
@@ -144,7 +142,7 @@ impl FoldedStanding {
     /// Everything that decides whether an order is accepted now.
     pub fn standing(&self) -> Standing<'_> {
         let position = match self.lost {
-            Some((error_m, limit_m)) => PositionTrust::Lost { error_m, limit_m },
+            Some(limit_m) => PositionTrust::Lost { limit_m },
             None if self.is_alarmed => PositionTrust::Alarmed,
             None => PositionTrust::Good,
         };
@@ -172,11 +170,9 @@ pub enum Refusal {
         /// Which parameter.
         key: String,
     },
-    /// The position error is beyond the limit.
+    /// The position error is beyond the limit, or there are no fixes any more.
     PositionLost {
-        /// Half width of the 95 % error, metres.
-        error_m: f64,
-        /// The limit, metres.
+        /// The limit of the 95 % error, metres.
         limit_m: f64,
     },
     /// The ranges contradict each other.
@@ -197,8 +193,8 @@ impl fmt::Display for Refusal {
             Self::NotLive { key } => {
                 write!(f, "parameter `{key}` cannot be changed while the robot is moving; HOLD first")
             }
-            Self::PositionLost { error_m, limit_m } => {
-                write!(f, "the position is lost: 95 % error {error_m:.2} m, limit {limit_m:.2} m")
+            Self::PositionLost { limit_m } => {
+                write!(f, "the position is lost (95 % error limit {limit_m:.2} m); resuming requires a fix")
             }
             Self::PositionAlarmed => {
                 f.write_str("the ranges contradict each other; cannot resume without a consistent fix")
@@ -247,13 +243,13 @@ impl Standing<'_> {
     fn can_move(&self) -> Result<(), Refusal> {
         match self.position {
             PositionTrust::Good => Ok(()),
-            PositionTrust::Lost { error_m, limit_m } => Err(Refusal::PositionLost { error_m, limit_m }),
+            PositionTrust::Lost { limit_m } => Err(Refusal::PositionLost { limit_m }),
             PositionTrust::Alarmed => Err(Refusal::PositionAlarmed),
         }
     }
 
     fn is_live(&self, key: &str) -> bool {
-        self.planner.is_some_and(|info| info.parameters.iter().any(|p| p.key == key && p.live))
+        self.planner.is_some_and(|info| info.has_live(key))
     }
 }
 
@@ -313,7 +309,7 @@ mod tests {
 
     #[test]
     fn hold_and_abort_are_accepted_in_every_phase_that_has_anything_to_stop() {
-        let lost = PositionTrust::Lost { error_m: 1.0, limit_m: 0.3 };
+        let lost = PositionTrust::Lost { limit_m: 0.3 };
         for position in [PositionTrust::Good, lost, PositionTrust::Alarmed] {
             for phase in phases() {
                 let standing = standing(&phase, position);
@@ -327,7 +323,7 @@ mod tests {
 
     #[test]
     fn nothing_that_moves_the_robot_is_accepted_without_a_position() {
-        let lost = PositionTrust::Lost { error_m: 1.0, limit_m: 0.3 };
+        let lost = PositionTrust::Lost { limit_m: 0.3 };
         for position in [lost, PositionTrust::Alarmed] {
             for phase in phases() {
                 for order in [Order::Resume, Order::Step, Order::FlyUncertified] {

@@ -84,6 +84,15 @@ mod tests {
         assert!(checked(&[(2, 1)]).is_err());
     }
 
+    #[test]
+    fn a_path_too_long_to_be_sampled_names_length_and_limit() {
+        let path = |x| vec![Point2::origin(), Point2::new(x, 0.0)];
+        let checked = |x| plan(&Plan { path: path(x), ..Plan::default() });
+        assert_eq!(checked(1e6), Ok(()));
+        assert_eq!(checked(1e12), Err("gave a path of 1000000000000 m, the limit is 1000000 m".into()));
+        assert!(checked(1e308).is_err());
+    }
+
     proptest! {
         #[test]
         fn commands_within_the_limits_pass(v in -0.3..=0.3_f64, w in -1.0..=1.0_f64) {

@@ -112,7 +112,12 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Checks that all points are finite and that the legs lie on the path, in order, and share at most a point.
+    /// Longest path that is accepted, metres. Whoever reads a plan may sample its path at centimetres: a longer one, which no
+    /// robot flies, would exhaust the memory.
+    pub const MOST_LENGTH_M: f64 = 1e6;
+
+    /// Checks that all points are finite, that the path is not absurdly long, and that the legs lie on the path, in order, and
+    /// share at most a point.
     ///
     /// # Errors
     /// What is wrong; the sentence reads on after the planner's name.
@@ -121,10 +126,19 @@ impl Plan {
         if let Some(index) = self.path.iter().position(|p| !is_finite(p)) {
             return Err(format!("gave a path whose point {index} is not finite"));
         }
+        let (length_m, limit_m) = (self.length_m(), Self::MOST_LENGTH_M);
+        // The sum of finite lengths may be infinite, and is refused as well.
+        if length_m > limit_m {
+            return Err(format!("gave a path of {length_m:.0} m, the limit is {limit_m:.0} m"));
+        }
         if !self.cuts.iter().flatten().all(is_finite) {
             return Err("gave a cut with a point that is not finite".to_owned());
         }
         self.check_legs()
+    }
+
+    fn length_m(&self) -> f64 {
+        self.path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
     }
 
     fn check_legs(&self) -> Result<(), String> {

@@ -17,7 +17,7 @@ use crate::{
     run_log::{Closed, RunLog},
     scenario::Scenario,
 };
-use mission::{AskId, Awaits, Event, Order, Phase};
+use mission::{AskId, Awaits, Event, Hold, HoldReason, Order, Phase};
 use planner_host::{Host, PluginDirs, Progress};
 use report::Stops;
 use std::{
@@ -143,13 +143,7 @@ impl EngineThread {
                 return self.close(orders, within);
             }
             if !orders.is_empty() || self.is_under_way() {
-                due = next_due(
-                    due,
-                    Instant::now(),
-                    self.flight.tick_length(),
-                    self.speed,
-                    self.waits(),
-                );
+                due = next_due(due, Instant::now(), self.flight.tick_length(), self.speed, self.waits());
                 self.tick(orders);
             }
         }
@@ -164,9 +158,11 @@ impl EngineThread {
         }
     }
 
-    /// Whether a planner is at work, or only an order can let the robot move.
+    /// Whether a planner is at work or owes an answer, or only an order can let the robot move.
     fn waits(&self) -> bool {
-        self.is_held_for_good() || self.flight.mission().is_preparing()
+        let is_silent =
+            matches!(self.flight.phase(), Phase::Held(Hold { by: HoldReason::PlannerSilent { .. }, .. }));
+        is_silent || self.is_held_for_good() || self.flight.mission().is_preparing()
     }
 
     fn is_held_for_good(&self) -> bool {

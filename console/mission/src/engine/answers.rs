@@ -56,7 +56,7 @@ impl Mission {
             }
             (PendingKind::Plan(asked), Given::Plan(plan)) => self.plan_arrived(ask, asked, plan, said),
             (PendingKind::Step { usable }, Given::Command(command)) => {
-                let usable = usable && matches!(self.phase, Phase::Running(_));
+                let usable = usable && self.is_running();
                 self.take_command(&pending, usable, command, said);
             }
             (PendingKind::Snapshot, Given::State { bytes }) => {
@@ -98,8 +98,8 @@ impl Mission {
     fn open_succeeded(&mut self, ask: AskId, info: PlannerInfo, said: Said) {
         self.pass_on(said, &self.active.choice.id.clone());
         let seat = &mut self.active;
-        let before = seat.info.replace(info.clone()).map(|before| before.id);
-        let (choice, from) = (seat.choice.clone(), before.or_else(|| seat.from.take()));
+        let (choice, from) = (seat.choice.clone(), seat.known().map(|before| before.id.clone()));
+        seat.info = Some(info.clone());
         seat.is_ready = true;
         if seat.prepare == Prepare::Open {
             seat.prepare = Prepare::No;
@@ -157,7 +157,8 @@ impl Mission {
             // It goes on with the values that it has; as a new instance it may take others.
             PendingKind::Reconfigure(choice) if says_no => {
                 let unsupported = cause == Cause::Planner(Code::Unsupported);
-                if unsupported && !matches!(self.phase, Phase::Running(_)) {
+                // A planner that was ordered meanwhile stays ordered.
+                if unsupported && self.candidate.is_none() && !self.is_running() {
                     self.choose(choice, planner_api::Reason::Operator);
                 }
                 return;
@@ -266,14 +267,15 @@ impl Mission {
 
     /// The planner that was being prepared takes over.
     fn promote(&mut self, seat: Seat) {
-        let (choice, from, info) = (seat.choice.clone(), seat.from.clone(), seat.info.clone());
+        let from = seat.before.as_ref().map(|before| before.id.clone());
+        let (choice, info) = (seat.choice.clone(), seat.info.clone());
         self.replace_active(seat);
         if let Some(info) = info {
             self.happened.push(EventKind::PlannerChosen { ask: None, choice, info: Box::new(info), from });
         }
     }
 
-    fn reject(&mut self, mut seat: Seat, why: String) {
+    pub(super) fn reject(&mut self, mut seat: Seat, why: String) {
         self.workers.close(seat.leave_worker());
         self.happened.push(EventKind::PlannerRejected { planner: seat.choice.id, why });
     }

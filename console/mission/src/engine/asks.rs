@@ -3,7 +3,7 @@
 use super::{
     Mission,
     driving::AHEAD_M,
-    seat::{AskedPlan, Pending, PendingKind, PlanState, Prepare, Seat},
+    seat::{AskedPlan, PendingKind, PlanState, Prepare, Seat},
 };
 use crate::{
     ask::{Ask, Awaits, PlanAsk, StepAsk, What},
@@ -26,7 +26,7 @@ impl Mission {
 
     /// What the mission would like to have before the tick ends.
     pub fn awaits(&self) -> Awaits {
-        let is_running = matches!(self.phase, Phase::Running(_));
+        let is_running = self.is_running();
         match &self.active.pending {
             Some(pending) if is_running => match pending.kind {
                 PendingKind::Open | PendingKind::Plan(_) => Awaits::Work,
@@ -45,14 +45,11 @@ impl Mission {
 
     /// Whether a planner is being opened or is making a plan, whether or not the robot stands for it.
     pub fn is_preparing(&self) -> bool {
-        let prepares = |seat: &Seat| {
-            matches!(&seat.pending, Some(Pending { kind: PendingKind::Open | PendingKind::Plan(_), .. }))
-        };
-        prepares(&self.active) || self.candidate.as_ref().is_some_and(prepares)
+        self.active.is_being_prepared() || self.candidate.as_ref().is_some_and(Seat::is_being_prepared)
     }
 
     fn ask_active(&mut self) -> Option<Ask> {
-        let is_running = matches!(self.phase, Phase::Running(_));
+        let is_running = self.is_running();
         let seat = &self.active;
         if seat.pending.is_some() || matches!(self.phase, Phase::Ended(_)) {
             return None;
@@ -64,6 +61,9 @@ impl Mission {
             let parameters = choice.parameters.clone();
             return self.ask_of_active(PendingKind::Reconfigure(choice), What::Reconfigure(parameters));
         }
+        if self.active.snapshot_due {
+            return self.ask_for_snapshot();
+        }
         if let PlanState::Due { reason, from_anchor } = &self.active.plan {
             if !is_running && self.active.prepare < Prepare::Plan {
                 return None;
@@ -72,13 +72,17 @@ impl Mission {
             self.active.found_since.clear();
             return self.ask_of_active(kind, what);
         }
-        if self.active.snapshot_due || (is_running && self.is_snapshot_due()) {
-            (self.active.snapshot_due, self.active.saved_at_s) = (false, Some(self.now_s()));
-            return self.ask_of_active(PendingKind::Snapshot, What::Snapshot);
+        if is_running && self.is_snapshot_due() {
+            return self.ask_for_snapshot();
         }
         let robot_waits = self.candidate.as_ref().is_some_and(|seat| seat.robot_waits);
         let is_step_due = is_running && !robot_waits && self.active.stepped_at != Some(self.tick);
         is_step_due.then(|| self.ask_for_step()).flatten()
+    }
+
+    fn ask_for_snapshot(&mut self) -> Option<Ask> {
+        (self.active.snapshot_due, self.active.saved_at_s) = (false, Some(self.now_s()));
+        self.ask_of_active(PendingKind::Snapshot, What::Snapshot)
     }
 
     fn open_active(&mut self) -> Ask {

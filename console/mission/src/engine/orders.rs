@@ -54,15 +54,20 @@ impl Mission {
 
     /// Another planner, or the same one with other parameters, is to take over.
     ///
-    /// While the one before could drive on it stays until the other has a plan that may be flown; one that could not is
-    /// replaced at once.
+    /// While the one before is ready it stays until the other has a plan that may be flown; one that is not is replaced at
+    /// once. A hold that was to end by itself now ends by an order: nobody who changes planners expects the robot to move.
     pub(super) fn choose(&mut self, choice: PlannerChoice, reason: Reason) {
+        if let Phase::Held(hold) = &self.phase
+            && !hold.resumes.is_never()
+        {
+            self.hold(Hold { by: hold.by.clone(), resumes: Resumes::Never });
+        }
         let waiting = self.phase == Phase::Waiting;
         let reason = if waiting { Reason::Start } else { reason };
         let mut seat = self.active.successor(choice, reason);
         seat.prepare = if waiting { Prepare::Open } else { Prepare::Plan };
         self.drop_candidate();
-        if self.active.can_drive() {
+        if self.active.is_ready && !waiting {
             self.active.snapshot_due = self.can_hand_over_state(&seat);
             self.candidate = Some(seat);
         } else {
@@ -101,13 +106,16 @@ impl Mission {
     fn set_parameter(&mut self, key: &str, value: &ParamValue) {
         // A change on top of a change that is under way.
         let newest = self.candidate.as_ref().filter(|seat| seat.choice.id == self.active.choice.id);
-        let base = newest.map(|seat| &seat.choice).or(self.active.reconfigure.as_ref());
+        let base = newest.map(|seat| &seat.choice).or_else(|| self.active.newest_change());
         let mut choice = base.unwrap_or(&self.active.choice).clone();
         choice.parameters.insert(key.into(), value.clone());
-        let is_live = |info: &crate::PlannerInfo| info.parameters.iter().any(|p| p.key == key && p.live);
-        // A planner that is being opened gets the values once it is there.
-        let is_here = self.active.is_ready || matches!(self.phase, Phase::Running(_));
-        if is_here && newest.is_none() && self.active.info.as_ref().is_some_and(is_live) {
+        // While the mission runs, a planner that is being opened gets the values once it is there, and refuses what it does
+        // not know; while it is held, they are given to it from the start.
+        let takes_it = match &self.active.info {
+            Some(info) => info.has_live(key) && (self.active.is_ready || self.is_running()),
+            None => self.is_running(),
+        };
+        if takes_it && newest.is_none() {
             self.active.reconfigure = Some(choice);
         } else {
             self.choose(choice, Reason::Operator);

@@ -38,7 +38,7 @@ pub(super) struct Seat {
     /// What its live parameters are to become.
     pub reconfigure: Option<PlannerChoice>,
     /// Which planner drove before it.
-    pub from: Option<String>,
+    pub before: Option<PlannerInfo>,
     /// Its plan, for tasks that do not follow it by themselves.
     pub follower: Option<Follower>,
     /// What was found since the plan was asked for that is being made.
@@ -153,14 +153,14 @@ impl Seat {
         let same = choice.id == self.choice.id;
         Self {
             saved: self.saved.filter(|_| same),
-            from: self.info.as_ref().map(|info| info.id.clone()).or_else(|| self.from.clone()),
+            before: self.known().cloned(),
             ..Self::new(choice, reason)
         }
     }
 
-    /// Whether it could drive at once.
-    pub fn can_drive(&self) -> bool {
-        self.is_ready && self.has_plan()
+    /// Who it is, or, until it is opened, who drove before it.
+    pub fn known(&self) -> Option<&PlannerInfo> {
+        self.info.as_ref().or(self.before.as_ref())
     }
 
     /// Whether it has a plan and no other is due.
@@ -207,16 +207,24 @@ impl Seat {
         self.worker.take()
     }
 
-    /// Whether a plan is being made.
-    pub fn is_planning(&self) -> bool {
-        matches!(&self.pending, Some(Pending { kind: PendingKind::Plan(_), .. }))
+    /// Whether it is being opened or is making a plan.
+    pub fn is_being_prepared(&self) -> bool {
+        matches!(&self.pending, Some(Pending { kind: PendingKind::Open | PendingKind::Plan(_), .. }))
+    }
+
+    /// The newest change of live parameters that it has not answered yet.
+    pub fn newest_change(&self) -> Option<&PlannerChoice> {
+        let asked = self.pending.as_ref().and_then(|pending| match &pending.kind {
+            PendingKind::Reconfigure(choice) => Some(choice),
+            _ => None,
+        });
+        self.reconfigure.as_ref().or(asked)
     }
 
     /// For how many ticks it has owed an answer that a moving robot needs.
     pub fn owed_ticks(&self, tick: u64) -> Option<u64> {
         let pending = self.pending.as_ref()?;
-        let is_short = !matches!(pending.kind, PendingKind::Open | PendingKind::Plan(_));
-        is_short.then(|| tick - pending.tick)
+        (!self.is_being_prepared()).then(|| tick - pending.tick)
     }
 
     /// No answer to a step that was asked before is of use any more.

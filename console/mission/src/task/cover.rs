@@ -54,6 +54,7 @@ impl Cover {
         self.before_m += self.lanes.as_ref().map_or(0.0, |lanes| lanes.follower.along_m());
         let stations_m = polyline::stations_m(&plan.path);
         let legs = plan.legs.iter().map(|leg| (leg.tag, stations_m[leg.last])).collect();
+        self.at_corner = (f64::INFINITY, 0.0);
         self.lanes = (!plan.path.is_empty()).then(|| Lanes { follower: Follower::exact(&plan.path), legs });
     }
 

@@ -120,10 +120,11 @@ fn every_hold_stops_the_robot_in_its_tick_and_for_good() {
 
 #[test]
 fn hold_and_another_order_in_one_tick_are_obeyed_in_turn() {
-    for Case { name, mut flight, .. } in cases() {
+    for Case { name, mut flight, clear } in cases() {
         let before = flight.pose;
         flight.tick(&[Order::Hold, swap_to("other"), Order::Hold]);
-        flight.fly(20);
+        clear(&mut flight);
+        flight.fly(80);
         assert_eq!(flight.pose, before, "{name}");
     }
     let mut flight = Flight::new(config());
@@ -155,4 +156,92 @@ fn a_hold_that_only_an_order_ends_keeps_its_reason() {
     let events = flight.tick(&[Order::Hold]);
     assert!(events.iter().any(|kind| matches!(kind, EventKind::Ordered { order: Order::Hold })));
     assert!(matches!(flight.held_by(), Some(HoldReason::Stuck { .. })));
+}
+
+/// A single step, then something that holds the robot for a while: it stays after that one step.
+#[test]
+fn a_single_step_that_is_interrupted_by_a_hold_does_not_become_a_run() {
+    let mut flight = silent_planner();
+    flight.tick(&[Order::Hold]);
+    let before = flight.pose;
+    flight.tick(&[Order::Step]);
+    assert!(matches!(flight.held_by(), Some(HoldReason::PlannerSilent { .. })), "{:?}", flight.held_by());
+    at_once(&mut flight);
+    flight.fly(40);
+    assert_eq!(flight.pose, before);
+    assert!(!flight.mission.phase().may_move(), "{:?}", flight.mission.phase());
+}
+
+/// The operator held the robot and changed planners: one that fails then leaves it to the operator, too.
+#[test]
+fn a_fault_while_only_an_order_ends_the_hold_does_not_hand_over_to_the_fallback() {
+    let mut flight = started(fallback());
+    flight.tick(&[Order::Hold]);
+    flight.tick(&[swap_to("fallback")]);
+    flight.fly(3);
+    flight.tick(&[Order::Resume]);
+    flight.fly(3);
+    flight.planner.fail_at_tick = Some(flight.mission.tick);
+    flight.tick(&[]);
+    flight.tick(&[Order::Hold]);
+    let before = flight.pose;
+    flight.planner.refuse = vec!["other"];
+    flight.tick(&[swap_to("other")]);
+    flight.fly(40);
+    assert_eq!(flight.pose, before, "{:?}", flight.mission.phase());
+    assert!(!flight.mission.phase().may_move(), "{:?}", flight.mission.phase());
+}
+
+#[test]
+fn a_planner_chosen_under_a_hold_that_ends_by_itself_waits_for_an_order() {
+    for (name, mut flight) in
+        [("fallback opening", fallback_under_way()), ("planner silent", silent_planner())]
+    {
+        let before = flight.pose;
+        flight.tick(&[swap_to("other")]);
+        at_once(&mut flight);
+        flight.fly(40);
+        assert_eq!(flight.pose, before, "{name}: {:?}", flight.mission.phase());
+        assert_eq!(flight.mission.planner_id(), "other", "{name}");
+        flight.tick(&[Order::Resume]);
+        flight.fly(10);
+        assert!(flight.pose != before, "{name}: {:?}", flight.mission.phase());
+    }
+}
+
+#[test]
+fn a_planner_chosen_in_the_tick_after_a_fault_is_not_replaced_by_the_fallback() {
+    let mut flight = started(fallback());
+    flight.planner.fail_at_tick = Some(flight.mission.tick);
+    flight.tick(&[]);
+    flight.tick(&[swap_to("other")]);
+    flight.fly(10);
+    assert_eq!(flight.mission.planner_id(), "other");
+    assert_eq!(flight.held_by(), Some(&HoldReason::PlannerReplaced));
+}
+
+#[test]
+fn a_candidate_that_the_fallback_displaces_is_reported() {
+    let mut flight = started(fallback());
+    flight.tick(&[Order::Hold]);
+    flight.delay = Box::new(|ask, tick| match &ask.what {
+        What::Open { choice, .. } if choice.id == "other" => never(ask, tick),
+        _ => 0,
+    });
+    flight.tick(&[swap_to("other")]);
+    flight.tick(&[Order::Resume]);
+    flight.planner.fail_at_tick = Some(flight.mission.tick);
+    flight.fly(5);
+    assert_eq!(flight.mission.planner_id(), "fallback");
+    let is_reported = |kind: &EventKind| matches!(kind, EventKind::PlannerRejected { planner, why } if planner == "other" && why.contains("fallback"));
+    assert_eq!(count(&flight, is_reported), 1);
+}
+
+/// A planner that takes long to open is no robot that is stuck.
+#[test]
+fn a_robot_that_waits_for_a_planner_to_open_is_not_stuck() {
+    let is_open = |ask: &Ask| matches!(ask.what, What::Open { .. });
+    let mut flight = waiting_for(is_open, config());
+    flight.fly(450);
+    assert_eq!(flight.mission.phase(), &Phase::Running(Gait::Steady));
 }
