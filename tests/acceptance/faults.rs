@@ -87,6 +87,16 @@ fn a_planner_in_plain_c_flies() {
 }
 
 #[test]
+fn the_example_of_the_planner_guide_flies() {
+    let bench = Bench::new();
+    let flown = bench.fly(&scenario("goto-single-obstacle.toml"), &["--planner", "straight", "--no-record"]);
+    let report = flown.json();
+    assert_eq!(report["planner"], "straight", "{flown:?}");
+    assert!(report["ticks"].as_u64() > Some(50), "{flown:?}");
+    assert_eq!(report["planner_faults"], 0, "{flown:?}");
+}
+
+#[test]
 fn a_plugin_for_another_abi_is_listed_with_the_remedy() {
     let bench = Bench::new();
     let plugins = bench.path().join("old");
