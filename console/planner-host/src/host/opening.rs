@@ -11,20 +11,20 @@ use crate::wire::body::Writer;
 use crate::wire::kind;
 use mission::planner::{Cause, During};
 use mission::{AskId, Fault, Given, Parameters, PlannerInfo};
-use planner_api::{Caps, Limits, Site};
+use planner_api::{Limits, Site};
 use std::collections::VecDeque;
 use std::time::Instant;
 
 /// A planner that is being opened.
-pub(super) struct Opening {
-    pub(super) planner: String,
-    pub(super) parameters: Parameters,
-    pub(super) site: WrittenSite,
-    pub(super) restore: Option<AskId>,
+pub(crate) struct Opening {
+    planner: String,
+    parameters: Parameters,
+    site: WrittenSite,
+    restore: Option<AskId>,
     /// Plugin files that were not tried yet.
-    pub(super) candidates: VecDeque<Candidate>,
+    candidates: VecDeque<Candidate>,
     /// Whether the plugin files were read for this planner, so that reading them again finds nothing new.
-    pub(super) is_fresh: bool,
+    is_fresh: bool,
     /// Reported when no file has the planner.
     first_fault: Option<Fault>,
 }
@@ -52,14 +52,13 @@ impl Stage {
 /// A planner whose plugin is loaded.
 pub(super) struct Loaded {
     pub(super) info: PlannerInfo,
-    pub(super) saves_state: bool,
-    pub(super) state_version: u32,
+    state_version: u32,
 }
 
 /// The tank as it goes to the worker.
-pub(super) struct WrittenSite {
-    pub(super) bytes: Vec<u8>,
-    pub(super) limits: Limits,
+struct WrittenSite {
+    bytes: Vec<u8>,
+    limits: Limits,
 }
 
 impl WrittenSite {
@@ -72,7 +71,7 @@ impl WrittenSite {
 
 impl Opening {
     /// Nothing was tried yet.
-    pub(super) fn new(
+    pub(crate) fn new(
         planner: &str,
         parameters: &Parameters,
         site: &Site<'_>,
@@ -90,7 +89,7 @@ impl Opening {
     }
 
     /// A file could not be loaded. The remaining files are still tried; the fault is reported if none has the planner.
-    pub(super) fn note(&mut self, failure: Failure, candidate: &Candidate) {
+    fn note(&mut self, failure: Failure, candidate: &Candidate) {
         let fault = fault::of(failure, &self.planner, Phase::Load);
         // While a library loads, no planner of it is to blame yet.
         let (planner, plugin) = (format!("planner {} ", self.planner), format!("plugin {} ", candidate.name));
@@ -102,8 +101,7 @@ impl Opening {
 
 impl Loaded {
     fn new(planner: &answer::Described, loaded: &answer::Loaded, plugin: &str) -> Self {
-        let saves_state = Caps(planner.caps).has(Caps::SNAPSHOT);
-        Self { info: info(planner, loaded, plugin), saves_state, state_version: planner.state_version }
+        Self { info: info(planner, loaded, plugin), state_version: planner.state_version }
     }
 
     /// Its private state, under the number of the ask that it was saved for.
@@ -122,12 +120,22 @@ impl Loaded {
 }
 
 impl Host {
-    /// Begins to open a planner.
-    pub(super) fn open(&mut self, id: AskId, mut opening: Opening) -> Result<(), Fault> {
+    /// Begins to open a planner in place of one that has this worker; what cannot be opened is answered at once.
+    pub(crate) fn open(&mut self, id: AskId, mut opening: Opening) {
+        self.close(id.worker);
         opening.is_fresh = self.catalog.read_once();
         opening.candidates = self.catalog.candidates(&opening.planner).into();
         self.planners.push(Planner::new(id.worker));
-        self.load_next(id, opening)
+        let begun = self.load_next(id, opening);
+        self.close_unless(begun, id);
+    }
+
+    /// Answers that a planner cannot be opened, if it cannot.
+    fn close_unless(&mut self, begun: Result<(), Fault>, id: AskId) {
+        if let Err(fault) = begun {
+            self.close(id.worker);
+            self.answer(id, Err(fault));
+        }
     }
 
     /// Asks a new worker to load the next file that may have the planner.
@@ -206,16 +214,12 @@ impl Host {
                 }
             }
         };
-        if let Err(fault) = begun {
-            self.close(id.worker);
-            self.answer(id, Err(fault));
-        }
+        self.close_unless(begun, id);
     }
 
     /// Shuts down a worker whose planner cannot be opened.
-    fn part(&mut self, mut worker: Worker, fault: Fault) -> Result<(), Fault> {
-        worker.shut_down();
-        self.leave(worker);
+    fn part(&mut self, worker: Worker, fault: Fault) -> Result<(), Fault> {
+        self.dismiss(worker);
         Err(fault)
     }
 
@@ -234,8 +238,7 @@ impl Host {
         let loaded = match found {
             Ok(Some(loaded)) => loaded,
             other => {
-                worker.shut_down();
-                self.leave(worker);
+                self.dismiss(worker);
                 if let Err(failure) = other {
                     opening.note(failure, candidate);
                 }

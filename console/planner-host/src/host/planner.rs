@@ -160,7 +160,7 @@ impl Planner {
 
     /// Whether it can save its state.
     pub(super) fn saves_state(&self) -> bool {
-        self.ready.as_ref().is_some_and(|ready| ready.loaded.saves_state)
+        self.ready.as_ref().is_some_and(|ready| ready.loaded.info.snapshots)
     }
 
     /// Asks for the private state.
