@@ -108,6 +108,6 @@ fn a_planner_that_reports_progress_endlessly_is_killed_like_any_that_hangs() {
     let fault = plan(&mut host).unwrap_err();
     assert_eq!(fault.cause, Cause::Hung, "{fault}");
     let most = 21.0 + 40.0 * asked.elapsed().as_secs_f64();
-    assert!((received.lock().unwrap().len() as f64) < most, "it cannot flood the console");
+    assert!((received.lock().unwrap().len() as f64) <= most, "it cannot flood the console");
     assert_another_drives(&mut host);
 }
