@@ -1,6 +1,6 @@
 //! From a planner's id to a planner that is ready, step by step: load, configure, restore.
 
-use super::find::Candidate;
+use super::find::{Candidate, Search};
 use super::planner::{Asked, Doing, Planner, Ready, must_cover, unless_refused};
 use super::saved::Saved;
 use super::{Host, fault, fault::Phase, numbers};
@@ -23,8 +23,7 @@ pub(crate) struct Opening {
     restore: Option<AskId>,
     /// Plugin files that were not tried yet.
     candidates: VecDeque<Candidate>,
-    /// Whether the plugin files were read for this planner, so that reading them again finds nothing new.
-    is_fresh: bool,
+    search: Search,
     /// Reported when no file has the planner.
     first_fault: Option<Fault>,
 }
@@ -83,7 +82,7 @@ impl Opening {
             site: WrittenSite::of(site),
             restore,
             candidates: VecDeque::new(),
-            is_fresh: false,
+            search: Search::default(),
             first_fault: None,
         }
     }
@@ -121,10 +120,8 @@ impl Loaded {
 
 impl Host {
     /// Begins to open a planner in place of one that has this worker; what cannot be opened is answered at once.
-    pub(crate) fn open(&mut self, id: AskId, mut opening: Opening) {
+    pub(crate) fn open(&mut self, id: AskId, opening: Opening) {
         self.close(id.worker);
-        opening.is_fresh = self.catalog.read_once();
-        opening.candidates = self.catalog.candidates(&opening.planner).into();
         self.planners.push(Planner::new(id.worker));
         let begun = self.load_next(id, opening);
         self.close_unless(begun, id);
@@ -142,17 +139,7 @@ impl Host {
     fn load_next(&mut self, id: AskId, mut opening: Opening) -> Result<(), Fault> {
         loop {
             let Some(candidate) = opening.candidates.pop_front() else {
-                if let Some(fault) = opening.first_fault.take() {
-                    return Err(fault);
-                }
-                if opening.is_fresh {
-                    let message = self.catalog.not_found(&opening.planner);
-                    return Err(fault::new(&opening.planner, During::Load, Cause::Refused, message));
-                }
-                // A plugin may have been built meanwhile.
-                self.catalog.read();
-                opening.is_fresh = true;
-                opening.candidates = self.catalog.candidates(&opening.planner).into();
+                self.search_on(&mut opening)?;
                 continue;
             };
             match self.load(&candidate, &opening.planner) {
@@ -164,6 +151,20 @@ impl Host {
                 Err(failure) => opening.note(failure, &candidate),
             }
         }
+    }
+
+    /// Finds more files to try.
+    ///
+    /// # Errors
+    /// There are none.
+    fn search_on(&mut self, opening: &mut Opening) -> Result<(), Fault> {
+        let Opening { planner, search, first_fault, candidates, .. } = opening;
+        if let Some(files) = self.catalog.search_on(planner, search, first_fault.is_none()) {
+            *candidates = files;
+            return Ok(());
+        }
+        let not_found = || fault::new(planner, During::Load, Cause::Refused, self.catalog.not_found(planner));
+        Err(first_fault.take().unwrap_or_else(not_found))
     }
 
     /// Starts a worker and asks it to load a file.
@@ -197,7 +198,7 @@ impl Host {
         let begun = match stage {
             Stage::Load(candidate) => {
                 let answer = outcome.and_then(|()| worker.take_answer(loaded_of));
-                self.configure(id, worker, opening, &candidate, answer)
+                self.configure(id, worker, opening, candidate, answer)
             }
             Stage::Configure(loaded) => {
                 let answer = outcome.and_then(|()| worker.take_answer(said_of));
@@ -229,7 +230,7 @@ impl Host {
         id: AskId,
         mut worker: Worker,
         mut opening: Opening,
-        candidate: &Candidate,
+        candidate: Candidate,
         answer: Result<answer::Loaded, Failure>,
     ) -> Result<(), Fault> {
         let found = answer.map(|answer| {
@@ -240,12 +241,14 @@ impl Host {
             other => {
                 self.dismiss(worker);
                 if let Err(failure) = other {
-                    opening.note(failure, candidate);
+                    opening.note(failure, &candidate);
                 }
                 return self.load_next(id, opening);
             }
         };
-        self.catalog.learn(&loaded.info.id);
+        // A file before it that failed may work the next time.
+        let first = opening.first_fault.is_none().then_some(candidate);
+        self.catalog.learn(&loaded.info.id, first);
         let coverage =
             if self.config.must_cover { must_cover(&loaded.info, During::Configure) } else { Ok(()) };
         let values = coverage.and_then(|()| numbers(&loaded.info, &opening.parameters));
