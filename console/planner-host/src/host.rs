@@ -14,7 +14,7 @@ use crate::OnProgress;
 use crate::discovery::PluginDirs;
 use crate::parameters;
 use crate::stats::{Durations, HostStats};
-use crate::supervisor::{Failure, Happened, WakeReceiver, Waker, Worker, wait};
+use crate::supervisor::{Failure, Ready, WakeReceiver, Waker, Worker, wait};
 use fault::Phase;
 use find::Catalog;
 use mission::planner::{Cause, During, Fault, Parameters, PlannerInfo};
@@ -39,6 +39,8 @@ pub struct Host {
     /// Workers that nobody asks any more and that have not ended yet.
     leaving: Vec<Worker>,
     answers: VecDeque<Answer>,
+    /// What the last look found, kept for its memory.
+    ready: Vec<Ready>,
     saved: SavedStates,
     wake_ups: WakeReceiver,
     plan_times: Durations,
@@ -75,6 +77,7 @@ impl Host {
             planners: Vec::new(),
             leaving: Vec::new(),
             answers: VecDeque::new(),
+            ready: Vec::new(),
             saved: SavedStates::default(),
             wake_ups: WakeReceiver::new(),
             plan_times: Durations::default(),
@@ -106,7 +109,7 @@ impl Host {
 
     /// Drops pending wake-ups.
     pub fn clear_wake_ups(&mut self) {
-        self.wake_ups.clear();
+        self.wake_ups.take();
     }
 
     /// Begins what is asked. A worker with an open ask takes no other one but [`What::Close`].
@@ -179,6 +182,10 @@ impl Host {
     /// The next answer, as soon as there is one. None when the given time is reached, when the host was woken, or when no
     /// ask is open; without a time it waits as long as it takes. What has already arrived is always processed.
     pub fn next(&mut self, until: Option<Instant>) -> Option<Answer> {
+        if self.answers.is_empty() && self.leaving.is_empty() && !self.is_asked() {
+            self.clear_wake_ups();
+            return None;
+        }
         loop {
             let may_wait = self.answers.is_empty() && self.is_asked();
             if self.look(if may_wait { until } else { Some(Instant::now()) }) {
@@ -210,9 +217,8 @@ impl Host {
     /// Waits until something happens, at most until the given time, and does what is due; whether the host was woken.
     fn look(&mut self, until: Option<Instant>) -> bool {
         let asked = self.planners.iter().filter_map(|planner| planner.worker.as_ref());
-        let workers: Vec<&Worker> = asked.chain(&self.leaving).collect();
-        let Happened { woken, ready } = wait(Some(&self.wake_ups), &workers, until);
-        let (now, mut ready) = (Instant::now(), ready.into_iter());
+        let woken = wait(Some(&self.wake_ups), asked.chain(&self.leaving), until, &mut self.ready);
+        let (now, mut ready) = (Instant::now(), self.ready.iter().copied());
         let mut outcomes = Vec::new();
         for planner in &mut self.planners {
             let Some(worker) = &mut planner.worker else { continue };

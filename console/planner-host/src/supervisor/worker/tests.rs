@@ -3,7 +3,6 @@
 
 use super::*;
 use crate::Progress;
-use crate::supervisor::wait;
 
 /// Long enough for a busy machine to start a shell.
 const PATIENT: Duration = Duration::from_secs(10);
@@ -59,7 +58,7 @@ fn ask(
 /// Waits for the answer.
 fn answer(worker: &mut Worker, on_progress: &mut dyn FnMut(&Progress)) -> Result<u32, Failure> {
     loop {
-        let ready = wait(None, &[worker], None).ready[0];
+        let ready = wait_for_one(worker, None);
         if let Some(outcome) = worker.advance(ready, Instant::now(), on_progress) {
             return outcome.and_then(|()| worker.take_answer(number));
         }
@@ -73,7 +72,7 @@ fn number(body: &mut Body<'_>) -> Read<u32> {
 /// Looks at a worker until it has ended.
 fn see_to_its_end(worker: &mut Worker) {
     while !worker.is_gone() {
-        let ready = wait(None, &[worker], None).ready[0];
+        let ready = wait_for_one(worker, None);
         assert_eq!(worker.advance(ready, Instant::now(), &mut |_| {}), None);
     }
 }
@@ -160,6 +159,22 @@ fn a_request_that_does_not_fit_into_the_socket_is_written_piece_by_piece() {
     assert!(!worker.has_sent(), "nothing waits for room");
     std::fs::write(gate, "").unwrap();
     assert_eq!(answer(&mut worker, &mut |_| {}), Ok(7));
+}
+
+#[test]
+fn a_worker_that_ends_has_died_even_if_a_child_of_it_keeps_its_socket() {
+    let mut worker = worker("exec 3<&0; cat <&3 > /dev/null 2>&1 & exit 3");
+    let how = "ended its own process with exit code 3".to_owned();
+    let died = Failure::Died { how, last_output: String::new() };
+    assert_eq!(ask(&mut worker, kind::STEP, PATIENT, |_| {}), Err(died));
+}
+
+#[test]
+fn a_worker_that_prints_more_than_a_pipe_holds_before_it_answers_is_not_held_up() {
+    let print = "head -c 1000000 /dev/zero";
+    let answer = octal(&done(1));
+    let mut worker = worker(&format!("head -c 13 > /dev/null; {print}; printf '{answer}' >&0; read -r line"));
+    assert_eq!(ask(&mut worker, kind::STEP, PATIENT, |_| {}), Ok(7));
 }
 
 #[test]
