@@ -85,7 +85,6 @@ impl WakeReceiver {
 mod tests {
     use super::*;
     use crate::supervisor::poller::wait;
-    use std::sync::mpsc::{self, TryRecvError};
     use std::thread::spawn;
     use std::time::{Duration, Instant};
 
@@ -114,33 +113,58 @@ mod tests {
         assert!(wake_ups.take() && !wake_ups.take() && !is_woken_now());
     }
 
-    /// Threads that send something and wake the receiver each time; it waits whenever it has received all there is. A
-    /// wake-up that is lost leaves it waiting although something was sent.
+    #[test]
+    fn a_wake_up_that_comes_while_an_earlier_one_is_taken_is_not_lost() {
+        let wake_ups = WakeReceiver::new();
+        wake_ups.waker().wake();
+        // What `take` does, with a wake-up in the middle.
+        assert!(wake_ups.waker.0.is_pending.swap(false, Ordering::AcqRel));
+        wake_ups.waker().wake();
+        wake_ups.empty_socket();
+        wake_ups.waker().wake();
+        assert!(is_woken(&wake_ups));
+    }
+
+    #[test]
+    fn a_wake_up_that_is_taken_before_it_has_written_wakes_nobody_afterwards() {
+        let wake_ups = WakeReceiver::new();
+        let Sender { is_pending, socket } = &*wake_ups.waker.0;
+        // What `wake` does, with a receiver in the middle.
+        is_pending.store(true, Ordering::Release);
+        assert!(wake_ups.take());
+        assert_eq!(socket.as_ref().expect("a socket").write(&[1]).expect("written"), 1);
+        assert!(!is_woken_until(&wake_ups, Instant::now() + Duration::from_millis(5)));
+        wake_ups.waker().wake();
+        assert!(is_woken(&wake_ups));
+    }
+
+    /// Threads that ask for something, wake the receiver and go on when they have it. When a wake-up is lost, all of them
+    /// wait for each other in the end.
     #[test]
     fn no_wake_up_is_lost() {
-        const N_THREADS: u32 = 4;
+        const N_THREADS: usize = 4;
         const N_EACH: u32 = 20_000;
         let wake_ups = WakeReceiver::new();
-        let (sender, receiver) = mpsc::channel();
-        for thread in 0..N_THREADS {
-            let (sender, waker) = (sender.clone(), wake_ups.waker());
+        let asked: Arc<[AtomicBool; N_THREADS]> = Arc::default();
+        for index in 0..N_THREADS {
+            let (asked, waker) = (Arc::clone(&asked), wake_ups.waker());
             spawn(move || {
-                for n in 0..N_EACH {
-                    sender.send(n).expect("the receiver lives");
+                for _ in 0..N_EACH {
+                    asked[index].store(true, Ordering::Release);
                     waker.wake();
-                    // At different rates, so that the receiver waits often.
-                    (0..(n * thread) % 200).for_each(|_| std::hint::spin_loop());
+                    while asked[index].load(Ordering::Acquire) {
+                        std::thread::yield_now();
+                    }
                 }
             });
         }
-        let mut n_received = 0;
-        while n_received < N_THREADS * N_EACH {
-            match receiver.try_recv() {
-                Ok(_) => n_received += 1,
-                // As the console does before it looks for orders: what is dropped here was sent before.
-                Err(TryRecvError::Empty) if n_received % 3 == 0 && wake_ups.take() => {}
-                Err(_) => assert!(is_woken(&wake_ups), "{n_received} received, and nobody woke the receiver"),
+        let mut n_given = 0;
+        while n_given < N_THREADS as u32 * N_EACH {
+            // As the console does before it looks for orders: who is not woken any more has asked before.
+            if n_given % 3 > 0 || !wake_ups.take() {
+                assert!(is_woken(&wake_ups), "nobody woke the receiver, which has given {n_given}");
             }
+            n_given += asked.iter().map(|asked| u32::from(asked.swap(false, Ordering::AcqRel))).sum::<u32>();
         }
     }
 }
