@@ -1,15 +1,12 @@
 //! A host for callers that wait: studies, previews, benches and tests.
 
 use crate::discovery::PluginDirs;
-use crate::host::{Host, HostConfig, Wanted};
+use crate::host::{Host, HostConfig, Opening, Wanted};
 use crate::progress::OnProgress;
 use crate::stats::HostStats;
 use mission::planner::{Cause, During, Fault, Parameters, PlannerInfo};
 use mission::{Answer, AskId, Given, Said, WorkerId};
 use planner_api::{Command, Drawing, LogLevel, Plan, PlanRequest, Sensed, Site};
-
-/// Private state is saved this often, seconds of mission time.
-const SAVE_EVERY_S: f64 = 1.0;
 
 /// An answer with everything the planner drew and said on the way.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,13 +21,11 @@ pub struct Reply<T> {
     pub logs: Vec<(LogLevel, String)>,
 }
 
-/// Runs one planner at a time, and waits for each of its answers.
-///
-/// A planner that is chosen in place of one that died continues from the private state that was saved last.
+/// Runs one planner at a time, and waits for each of its answers. It saves no private state: every planner starts fresh.
 pub struct BlockingHost {
     host: Host,
-    active: Option<Active>,
-    saved: Option<Saved>,
+    /// The worker of the active planner.
+    active: Option<WorkerId>,
     n_asks: u32,
     /// What planners said during calls that have no reply to carry it.
     unheard: Vec<(LogLevel, String)>,
@@ -38,38 +33,10 @@ pub struct BlockingHost {
     n_unanswered: u64,
 }
 
-/// The active planner.
-struct Active {
-    worker: WorkerId,
-    info: PlannerInfo,
-    /// Mission time of the last save, seconds; from the first step on.
-    saved_at_s: Option<f64>,
-}
-
-/// Where the host keeps a private state, and whose it is.
-struct Saved {
-    ask: AskId,
-    planner: String,
-    sha256: String,
-}
-
-impl Saved {
-    fn is_of(&self, info: &PlannerInfo) -> bool {
-        self.planner == info.id && self.sha256 == info.sha256
-    }
-}
-
 impl BlockingHost {
     /// A host that searches these folders when a planner is first chosen.
     pub fn new(dirs: &PluginDirs, config: HostConfig) -> Self {
-        Self {
-            host: Host::new(dirs, config),
-            active: None,
-            saved: None,
-            n_asks: 0,
-            unheard: Vec::new(),
-            n_unanswered: 0,
-        }
+        Self { host: Host::new(dirs, config), active: None, n_asks: 0, unheard: Vec::new(), n_unanswered: 0 }
     }
 
     /// Sets the callback that receives the progress of plans while they are being computed.
@@ -94,39 +61,17 @@ impl BlockingHost {
         parameters: &Parameters,
         site: &Site<'_>,
     ) -> Result<PlannerInfo, Fault> {
-        self.save_state_of(id);
-        let worker = WorkerId(self.active.as_ref().map_or(0, |active| active.worker.0.wrapping_add(1)));
-        let restore = self.saved.as_ref().map(|saved| saved.ask);
-        let opened = self.ask(worker, &Wanted::Open { planner: id, parameters, site, restore });
-        let (Given::Opened(info), said) = opened.inspect_err(|_| self.host.close(worker))? else {
+        let worker = WorkerId(self.active.map_or(0, |active| active.0.wrapping_add(1)));
+        let ask = self.next_ask(worker);
+        self.host.open(ask, Opening::new(id, parameters, site, None));
+        let (Given::Opened(info), said) = self.answer().inspect_err(|_| self.host.close(worker))? else {
             unreachable!("what is opened is answered so")
         };
         self.unheard.extend(said.logs);
-        // The saved state of another planner is of no use to a later one.
-        self.saved = self.saved.take().filter(|saved| saved.is_of(&info));
-        let active = Active { worker, info: (*info).clone(), saved_at_s: None };
-        if let Some(before) = self.active.replace(active) {
-            self.host.close(before.worker);
+        if let Some(before) = self.active.replace(worker) {
+            self.host.close(before);
         }
         Ok(*info)
-    }
-
-    /// When the active planner is opened again, its current state is better than the one saved last.
-    fn save_state_of(&mut self, id: &str) {
-        if self.active.as_ref().is_some_and(|active| active.info.id == id) {
-            // A planner that fails over it is replaced anyway.
-            let _ = self.save_state();
-        }
-    }
-
-    fn save_state(&mut self) -> Result<(), Fault> {
-        let Some(Active { worker, info, .. }) = &self.active else { return Ok(()) };
-        let (worker, planner, sha256) = (*worker, info.id.clone(), info.sha256.clone());
-        if let (Given::State { bytes: 1.. }, _) = self.ask(worker, &Wanted::Snapshot)? {
-            let ask = AskId { worker, n: self.n_asks };
-            self.saved = Some(Saved { ask, planner, sha256 });
-        }
-        Ok(())
     }
 
     /// Gives the planner new values of live parameters.
@@ -152,38 +97,21 @@ impl BlockingHost {
         }
     }
 
-    /// Asks for a command; now and then it asks for the private state first.
+    /// Asks for a command.
     ///
     /// # Errors
     /// The planner failed.
     pub fn step(&mut self, sensed: &Sensed<'_>) -> Result<Reply<Command>, Fault> {
         let worker = self.active(During::Step)?;
-        if self.is_save_due(sensed.t_s) {
-            self.save_state()?;
+        match self.ask(worker, &Wanted::Step(sensed))? {
+            (Given::Command(command), said) => Ok(self.reply(command, said)),
+            _ => unreachable!("a step is answered so"),
         }
-        let (Given::Command(command), said) = self.ask(worker, &Wanted::Step(sensed))? else {
-            unreachable!("a step is answered so")
-        };
-        if let Some(active) = &mut self.active {
-            active.saved_at_s.get_or_insert(sensed.t_s);
-        }
-        Ok(self.reply(command, said))
-    }
-
-    /// Whether it is time to save the private state again, after the first step.
-    fn is_save_due(&mut self, t_s: f64) -> bool {
-        let saving = self.active.as_mut().filter(|active| active.info.snapshots);
-        let last_s = saving.and_then(|active| active.saved_at_s.as_mut());
-        let due = last_s.filter(|last_s| t_s - **last_s >= SAVE_EVERY_S);
-        due.is_some_and(|last_s| {
-            *last_s = t_s;
-            true
-        })
     }
 
     fn active(&mut self, during: During) -> Result<WorkerId, Fault> {
-        if let Some(active) = &self.active {
-            return Ok(active.worker);
+        if let Some(worker) = self.active {
+            return Ok(worker);
         }
         self.n_unanswered += 1;
         Err(Fault {
@@ -198,8 +126,18 @@ impl BlockingHost {
 
     /// Asks, and waits for the answer.
     fn ask(&mut self, worker: WorkerId, wanted: &Wanted<'_>) -> Result<(Given, Said), Fault> {
+        let ask = self.next_ask(worker);
+        self.host.begin(ask, wanted);
+        self.answer()
+    }
+
+    fn next_ask(&mut self, worker: WorkerId) -> AskId {
         self.n_asks = self.n_asks.wrapping_add(1);
-        self.host.begin(AskId { worker, n: self.n_asks }, wanted);
+        AskId { worker, n: self.n_asks }
+    }
+
+    /// Waits for the answer to what was asked.
+    fn answer(&mut self) -> Result<(Given, Said), Fault> {
         let Answer { result, said, .. } = self.host.next(None).expect("what is asked is answered once");
         Ok((result?, said))
     }

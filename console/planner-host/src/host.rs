@@ -8,19 +8,19 @@ mod planner;
 mod saved;
 
 pub use config::HostConfig;
+pub(crate) use opening::Opening;
 
 use crate::OnProgress;
 use crate::discovery::PluginDirs;
 use crate::parameters;
 use crate::stats::{Durations, HostStats};
-use crate::supervisor::{Failure, Happened, WakeReceiver, Waker, Worker, wait};
+use crate::supervisor::{Failure, Ready, WakeReceiver, Waker, Worker, wait};
 use fault::Phase;
 use find::Catalog;
 use mission::planner::{Cause, During, Fault, Parameters, PlannerInfo};
 use mission::{Answer, Ask, AskId, Given, Said, What, WorkerId};
-use opening::Opening;
 use planner::{Asked, Doing, Outcome, Planner};
-use planner_api::{PlanRequest, Sensed, Site};
+use planner_api::{PlanRequest, Sensed};
 use saved::SavedStates;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -39,6 +39,8 @@ pub struct Host {
     /// Workers that nobody asks any more and that have not ended yet.
     leaving: Vec<Worker>,
     answers: VecDeque<Answer>,
+    /// What the last look found, kept for its memory.
+    ready: Vec<Ready>,
     saved: SavedStates,
     wake_ups: WakeReceiver,
     plan_times: Durations,
@@ -47,9 +49,8 @@ pub struct Host {
     on_progress: Option<OnProgress>,
 }
 
-/// What is wanted of a planner, lent.
+/// What is wanted of a planner that was opened, lent.
 pub(crate) enum Wanted<'a> {
-    Open { planner: &'a str, parameters: &'a Parameters, site: &'a Site<'a>, restore: Option<AskId> },
     Reconfigure(&'a Parameters),
     Plan(&'a PlanRequest<'a>),
     Step(&'a Sensed<'a>),
@@ -59,7 +60,6 @@ pub(crate) enum Wanted<'a> {
 impl Wanted<'_> {
     fn phase(&self) -> Phase {
         match self {
-            Self::Open { .. } => Phase::Load,
             Self::Reconfigure(_) => Phase::Configure,
             Self::Plan(_) => Phase::Plan,
             Self::Step(sensed) => Phase::Step(sensed.tick),
@@ -77,6 +77,7 @@ impl Host {
             planners: Vec::new(),
             leaving: Vec::new(),
             answers: VecDeque::new(),
+            ready: Vec::new(),
             saved: SavedStates::default(),
             wake_ups: WakeReceiver::new(),
             plan_times: Durations::default(),
@@ -84,11 +85,6 @@ impl Host {
             n_faults: 0,
             on_progress: None,
         }
-    }
-
-    /// Reads the plugin files now, so that the first planner is opened sooner.
-    pub fn warm_up(&mut self) {
-        self.catalog.read_once();
     }
 
     /// Sets the callback that receives the progress of plans while they are being computed.
@@ -113,17 +109,17 @@ impl Host {
 
     /// Drops pending wake-ups.
     pub fn clear_wake_ups(&mut self) {
-        self.wake_ups.clear();
+        self.wake_ups.take();
     }
 
     /// Begins what is asked. A worker with an open ask takes no other one but [`What::Close`].
     pub fn submit(&mut self, ask: Ask) {
         let id = ask.id;
         match ask.what {
-            What::Open { choice, site, restore } => site.lend(|site| {
-                let (planner, parameters) = (choice.id.as_str(), &choice.parameters);
-                self.begin(id, &Wanted::Open { planner, parameters, site, restore });
-            }),
+            What::Open { choice, site, restore } => {
+                let opening = site.lend(|site| Opening::new(&choice.id, &choice.parameters, site, restore));
+                self.open(id, opening);
+            }
             What::Reconfigure(values) => self.begin(id, &Wanted::Reconfigure(&values)),
             What::Plan(plan) => plan.lend(|request| self.begin(id, &Wanted::Plan(request))),
             What::Step(step) => step.lend(|sensed| self.begin(id, &Wanted::Step(sensed))),
@@ -140,11 +136,6 @@ impl Host {
     }
 
     fn try_begin(&mut self, id: AskId, wanted: &Wanted<'_>) -> Result<(), Fault> {
-        if let Wanted::Open { planner, parameters, site, restore } = *wanted {
-            self.close(id.worker);
-            let opening = Opening::new(planner, parameters, site, restore);
-            return self.open(id, opening).inspect_err(|_| self.close(id.worker));
-        }
         let config = &self.config;
         let Some(planner) = self.planners.iter_mut().find(|planner| planner.id == id.worker) else {
             return Err(fault::of(Failure::Gone, "", wanted.phase()));
@@ -153,7 +144,6 @@ impl Host {
             return Err(planner.busy(wanted.phase()));
         }
         match wanted {
-            Wanted::Open { .. } => Ok(()),
             Wanted::Reconfigure(values) => planner.reconfigure(id, values, config),
             Wanted::Plan(request) => planner.plan(id, request, config),
             Wanted::Step(sensed) => planner.step(id, sensed, config),
@@ -169,12 +159,17 @@ impl Host {
     pub(crate) fn close(&mut self, id: WorkerId) {
         if let Some(index) = self.planners.iter().position(|planner| planner.id == id) {
             let planner = self.planners.swap_remove(index);
-            if let Some(mut worker) = planner.worker {
-                worker.shut_down();
-                self.leave(worker);
+            if let Some(worker) = planner.worker {
+                self.dismiss(worker);
             }
         }
         self.answers.retain(|answer| answer.ask.worker != id);
+    }
+
+    /// Asks a worker to exit by itself, and leaves it to its end.
+    fn dismiss(&mut self, mut worker: Worker) {
+        worker.shut_down();
+        self.leave(worker);
     }
 
     /// Leaves a worker to its end.
@@ -187,6 +182,10 @@ impl Host {
     /// The next answer, as soon as there is one. None when the given time is reached, when the host was woken, or when no
     /// ask is open; without a time it waits as long as it takes. What has already arrived is always processed.
     pub fn next(&mut self, until: Option<Instant>) -> Option<Answer> {
+        if self.answers.is_empty() && self.leaving.is_empty() && !self.is_asked() {
+            self.clear_wake_ups();
+            return None;
+        }
         loop {
             let may_wait = self.answers.is_empty() && self.is_asked();
             if self.look(if may_wait { until } else { Some(Instant::now()) }) {
@@ -218,9 +217,8 @@ impl Host {
     /// Waits until something happens, at most until the given time, and does what is due; whether the host was woken.
     fn look(&mut self, until: Option<Instant>) -> bool {
         let asked = self.planners.iter().filter_map(|planner| planner.worker.as_ref());
-        let workers: Vec<&Worker> = asked.chain(&self.leaving).collect();
-        let Happened { woken, ready } = wait(Some(&self.wake_ups), &workers, until);
-        let (now, mut ready) = (Instant::now(), ready.into_iter());
+        let woken = wait(Some(&self.wake_ups), asked.chain(&self.leaving), until, &mut self.ready);
+        let (now, mut ready) = (Instant::now(), self.ready.iter().copied());
         let mut outcomes = Vec::new();
         for planner in &mut self.planners {
             let Some(worker) = &mut planner.worker else { continue };

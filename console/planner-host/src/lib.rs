@@ -15,6 +15,8 @@
 mod blocking;
 mod checks;
 pub mod discovery;
+#[cfg(test)]
+mod fixture;
 mod host;
 #[cfg(unix)]
 mod loader;

@@ -107,6 +107,7 @@ fn in_range(planner: &str, param: &ParamInfo, x: f64, min: f64, max: f64) -> Res
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixture::info;
 
     fn param(key: &str, unit: &str, kind: ParamKind) -> ParamInfo {
         let [key, unit] = [key, unit].map(str::to_owned);
@@ -124,21 +125,13 @@ mod tests {
     fn planner() -> PlannerInfo {
         let words = ["literal", "gated"].map(str::to_owned);
         PlannerInfo {
-            id: "apf".into(),
-            name: String::new(),
-            version: String::new(),
-            about: String::new(),
-            plugin: String::new(),
-            sha256: String::new(),
-            abi: String::new(),
-            covers: false,
-            snapshots: false,
             parameters: vec![
                 param("k_rep", "m3/s", ParamKind::Float { min: 0.0, max: 10.0, default: 0.4 }),
                 param("n", "", ParamKind::Int { min: 0, max: 4, default: 2 }),
                 param("improved", "", ParamKind::Flag { default: true }),
                 param("mode", "", ParamKind::Choice { options: words.into(), default: "gated".into() }),
             ],
+            ..info()
         }
     }
 

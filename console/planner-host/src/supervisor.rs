@@ -23,7 +23,7 @@ mod worker;
 pub use waker::Waker;
 #[cfg(unix)]
 pub(crate) use {
-    poller::{Happened, wait},
+    poller::{Ready, wait, wait_for_one},
     waker::WakeReceiver,
     worker::Worker,
 };
@@ -31,7 +31,7 @@ pub(crate) use {
 #[cfg(not(unix))]
 pub use unsupported::Waker;
 #[cfg(not(unix))]
-pub(crate) use unsupported::{Happened, WakeReceiver, Worker, wait};
+pub(crate) use unsupported::{Ready, WakeReceiver, Worker, wait, wait_for_one};
 
 use crate::wire::answer::{BAD_OUTPUT, Refusal};
 use planner_api::Code;

@@ -2,7 +2,7 @@
 
 use crate::discovery::{PluginDirs, PluginFile};
 use crate::stamp::Abi;
-use crate::supervisor::{Failure, Happened, Worker, WorkerCommand, wait};
+use crate::supervisor::{Failure, Worker, WorkerCommand, wait_for_one};
 use crate::wire::answer::{Described, Loaded, loaded_of};
 use crate::wire::body::Writer;
 use crate::wire::{self, kind};
@@ -94,11 +94,9 @@ fn probe(plugin: &PluginFile, worker: &WorkerCommand) -> Result<Vec<PlannerInfo>
 /// Waits until a worker has answered.
 fn finished(worker: &mut Worker) -> Result<(), Failure> {
     loop {
-        let Happened { ready, .. } = wait(None, &[worker], None);
-        for ready in ready {
-            if let Some(outcome) = worker.advance(ready, Instant::now(), &mut |_| {}) {
-                return outcome;
-            }
+        let ready = wait_for_one(worker, None);
+        if let Some(outcome) = worker.advance(ready, Instant::now(), &mut |_| {}) {
+            return outcome;
         }
     }
 }

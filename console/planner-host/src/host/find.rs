@@ -2,7 +2,7 @@
 
 use crate::discovery::{PluginDirs, PluginFile};
 use crate::parameters::nearest;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::PathBuf;
 
 /// A plugin file that may have a planner.
@@ -18,35 +18,69 @@ pub(super) struct Candidate {
 pub(super) struct Catalog {
     dirs: PluginDirs,
     plugins: Option<Vec<PluginFile>>,
-    /// Ids of planners that were loaded from them.
-    known: BTreeSet<String>,
+    /// Ids of planners that were loaded, each with the file that is the first to have it since the files were read.
+    known: BTreeMap<String, Option<Candidate>>,
+}
+
+/// How far the search for a planner has come.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(super) enum Search {
+    #[default]
+    NotBegun,
+    /// The file from which it was loaded before.
+    Known(Candidate),
+    /// All files, as they were read for an earlier planner.
+    Remembered,
+    /// All files, as they were read for this planner: reading them again finds nothing new.
+    Fresh,
 }
 
 impl Catalog {
     pub(super) fn new(dirs: PluginDirs) -> Self {
-        Self { dirs, plugins: None, known: BTreeSet::new() }
+        Self { dirs, plugins: None, known: BTreeMap::new() }
     }
 
-    /// Reads the plugin files unless they were read before; whether they were read now.
-    pub(super) fn read_once(&mut self) -> bool {
-        let is_first = self.plugins.is_none();
-        if is_first {
-            self.read();
-        }
-        is_first
+    /// Continues the search for a planner: the files to be tried next, in this order. None when all were tried; as a plugin
+    /// may have been built meanwhile, the files are read again before, if that is wanted.
+    pub(super) fn search_on(
+        &mut self,
+        id: &str,
+        search: &mut Search,
+        may_read_again: bool,
+    ) -> Option<VecDeque<Candidate>> {
+        let (next, files) = match std::mem::take(search) {
+            Search::NotBegun if self.plugins.is_none() => (Search::Fresh, self.read_for(id)),
+            Search::NotBegun => match self.known.get(id).cloned().flatten() {
+                Some(file) => (Search::Known(file.clone()), VecDeque::from([file])),
+                None => (Search::Remembered, self.candidates(id)),
+            },
+            Search::Known(tried) => {
+                let mut others = self.candidates(id);
+                others.retain(|file| *file != tried);
+                (Search::Remembered, others)
+            }
+            Search::Remembered if may_read_again => (Search::Fresh, self.read_for(id)),
+            Search::Remembered | Search::Fresh => return None,
+        };
+        *search = next;
+        Some(files)
     }
 
-    /// Reads the plugin files.
-    pub(super) fn read(&mut self) {
+    /// Reads the plugin files, and gives those that may have this planner.
+    fn read_for(&mut self, id: &str) -> VecDeque<Candidate> {
         self.plugins = Some(self.dirs.plugins());
+        // A new file may come before the one that had a planner so far.
+        self.known.values_mut().for_each(|file| *file = None);
+        self.candidates(id)
     }
 
     fn plugins(&self) -> &[PluginFile] {
         self.plugins.as_deref().unwrap_or_default()
     }
 
-    /// The files that may have this planner, in the order in which they are to be tried.
-    pub(super) fn candidates(&self, id: &str) -> Vec<Candidate> {
+    /// The files that may have this planner, in the order in which they are to be tried. To know that, all of their bytes are
+    /// searched.
+    fn candidates(&self, id: &str) -> VecDeque<Candidate> {
         let may_have = self.plugins().iter().filter(|plugin| plugin.may_have(id));
         may_have
             .map(|plugin| Candidate {
@@ -57,11 +91,9 @@ impl Catalog {
             .collect()
     }
 
-    /// A planner of this id was loaded.
-    pub(super) fn learn(&mut self, id: &str) {
-        if !self.known.contains(id) {
-            self.known.insert(id.to_owned());
-        }
+    /// A planner was loaded, from this file if it is the first that has it.
+    pub(super) fn learn(&mut self, id: &str, file: Option<Candidate>) {
+        self.known.insert(id.to_owned(), file);
     }
 
     /// Why there is no planner of this id: by what is known without loading anything.
@@ -73,7 +105,7 @@ impl Catalog {
             return format!("planner {id} is not there: plugin {} is refused: {why}", plugin.name());
         }
         let plugins: BTreeSet<String> = self.plugins().iter().map(named_after).collect();
-        match nearest(id, self.known.iter().chain(&plugins).map(String::as_str)) {
+        match nearest(id, self.known.keys().chain(&plugins).map(String::as_str)) {
             Some(known) => format!("no plugin has the planner {id}; did you mean `{known}`?"),
             None if plugins.is_empty() => {
                 format!("no plugin has the planner {id}; there are no plugins in the folders searched")
@@ -91,4 +123,64 @@ fn named_after(plugin: &PluginFile) -> String {
     let stem = plugin.path.file_stem().unwrap_or_default().to_string_lossy();
     let name = stem.split_once("planner_").map_or(&*stem, |(_, name)| name);
     name.replace('_', "-")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs::{copy, read, write};
+    use tempfile::TempDir;
+
+    /// A catalog of two files that have the planner `faulty`.
+    fn catalog() -> (TempDir, Catalog) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let built = std::env::current_exe().expect("a path").with_file_name("libplanner_faulty.so");
+        let [first, second] = ["a", "b"].map(|name| folder.path().join(format!("libplanner_{name}.so")));
+        copy(&built, first).expect("copied");
+        write(second, [read(built).expect("read"), vec![0]].concat()).expect("written");
+        let catalog = Catalog::new(PluginDirs(vec![folder.path().to_owned()]));
+        (folder, catalog)
+    }
+
+    /// Names of the files that are found, search by search.
+    fn found(catalog: &mut Catalog, may_read_again: bool) -> Vec<Vec<String>> {
+        let mut search = Search::default();
+        let files = std::iter::from_fn(|| catalog.search_on("faulty", &mut search, may_read_again));
+        files.map(|files| files.into_iter().map(|file| file.name).collect()).collect()
+    }
+
+    const A: &str = "libplanner_a.so";
+    const B: &str = "libplanner_b.so";
+
+    #[test]
+    fn files_are_tried_in_order_and_read_again_when_none_has_the_planner() {
+        let (folder, mut catalog) = catalog();
+        assert_eq!(found(&mut catalog, true), [[A, B]], "read for this planner");
+        copy(folder.path().join(B), folder.path().join("libplanner_0.so")).expect("copied");
+        assert_eq!(found(&mut catalog, false), [[A, B]]);
+        assert_eq!(
+            found(&mut catalog, true),
+            [[A, B], ["libplanner_0.so", A]],
+            "b has the same content as 0"
+        );
+    }
+
+    #[test]
+    fn the_file_that_had_a_planner_is_tried_first_and_alone() {
+        let (_folder, mut catalog) = catalog();
+        let mut search = Search::default();
+        let mut files = catalog.search_on("faulty", &mut search, true).expect("two files");
+        catalog.learn("faulty", files.pop_back());
+        assert_eq!(found(&mut catalog, false), [[B], [A]]);
+        assert_eq!(found(&mut catalog, true), [vec![B], vec![A], vec![A, B]]);
+        assert_eq!(found(&mut catalog, false), [[A, B]], "files that were read again may be others");
+    }
+
+    #[test]
+    fn a_planner_whose_first_file_is_uncertain_is_searched_for_in_all() {
+        let (_folder, mut catalog) = catalog();
+        assert_eq!(found(&mut catalog, false), [[A, B]]);
+        catalog.learn("faulty", None);
+        assert_eq!(found(&mut catalog, false), [[A, B]]);
+    }
 }

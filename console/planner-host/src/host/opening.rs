@@ -1,6 +1,6 @@
 //! From a planner's id to a planner that is ready, step by step: load, configure, restore.
 
-use super::find::Candidate;
+use super::find::{Candidate, Search};
 use super::planner::{Asked, Doing, Planner, Ready, must_cover, unless_refused};
 use super::saved::Saved;
 use super::{Host, fault, fault::Phase, numbers};
@@ -11,20 +11,19 @@ use crate::wire::body::Writer;
 use crate::wire::kind;
 use mission::planner::{Cause, During};
 use mission::{AskId, Fault, Given, Parameters, PlannerInfo};
-use planner_api::{Caps, Limits, Site};
+use planner_api::{Limits, Site};
 use std::collections::VecDeque;
 use std::time::Instant;
 
 /// A planner that is being opened.
-pub(super) struct Opening {
-    pub(super) planner: String,
-    pub(super) parameters: Parameters,
-    pub(super) site: WrittenSite,
-    pub(super) restore: Option<AskId>,
+pub(crate) struct Opening {
+    planner: String,
+    parameters: Parameters,
+    site: WrittenSite,
+    restore: Option<AskId>,
     /// Plugin files that were not tried yet.
-    pub(super) candidates: VecDeque<Candidate>,
-    /// Whether the plugin files were read for this planner, so that reading them again finds nothing new.
-    pub(super) is_fresh: bool,
+    candidates: VecDeque<Candidate>,
+    search: Search,
     /// Reported when no file has the planner.
     first_fault: Option<Fault>,
 }
@@ -52,14 +51,13 @@ impl Stage {
 /// A planner whose plugin is loaded.
 pub(super) struct Loaded {
     pub(super) info: PlannerInfo,
-    pub(super) saves_state: bool,
-    pub(super) state_version: u32,
+    state_version: u32,
 }
 
 /// The tank as it goes to the worker.
-pub(super) struct WrittenSite {
-    pub(super) bytes: Vec<u8>,
-    pub(super) limits: Limits,
+struct WrittenSite {
+    bytes: Vec<u8>,
+    limits: Limits,
 }
 
 impl WrittenSite {
@@ -72,7 +70,7 @@ impl WrittenSite {
 
 impl Opening {
     /// Nothing was tried yet.
-    pub(super) fn new(
+    pub(crate) fn new(
         planner: &str,
         parameters: &Parameters,
         site: &Site<'_>,
@@ -84,13 +82,13 @@ impl Opening {
             site: WrittenSite::of(site),
             restore,
             candidates: VecDeque::new(),
-            is_fresh: false,
+            search: Search::default(),
             first_fault: None,
         }
     }
 
     /// A file could not be loaded. The remaining files are still tried; the fault is reported if none has the planner.
-    pub(super) fn note(&mut self, failure: Failure, candidate: &Candidate) {
+    fn note(&mut self, failure: Failure, candidate: &Candidate) {
         let fault = fault::of(failure, &self.planner, Phase::Load);
         // While a library loads, no planner of it is to blame yet.
         let (planner, plugin) = (format!("planner {} ", self.planner), format!("plugin {} ", candidate.name));
@@ -102,8 +100,7 @@ impl Opening {
 
 impl Loaded {
     fn new(planner: &answer::Described, loaded: &answer::Loaded, plugin: &str) -> Self {
-        let saves_state = Caps(planner.caps).has(Caps::SNAPSHOT);
-        Self { info: info(planner, loaded, plugin), saves_state, state_version: planner.state_version }
+        Self { info: info(planner, loaded, plugin), state_version: planner.state_version }
     }
 
     /// Its private state, under the number of the ask that it was saved for.
@@ -122,29 +119,27 @@ impl Loaded {
 }
 
 impl Host {
-    /// Begins to open a planner.
-    pub(super) fn open(&mut self, id: AskId, mut opening: Opening) -> Result<(), Fault> {
-        opening.is_fresh = self.catalog.read_once();
-        opening.candidates = self.catalog.candidates(&opening.planner).into();
+    /// Begins to open a planner in place of one that has this worker; what cannot be opened is answered at once.
+    pub(crate) fn open(&mut self, id: AskId, opening: Opening) {
+        self.close(id.worker);
         self.planners.push(Planner::new(id.worker));
-        self.load_next(id, opening)
+        let begun = self.load_next(id, opening);
+        self.close_unless(begun, id);
+    }
+
+    /// Answers that a planner cannot be opened, if it cannot.
+    fn close_unless(&mut self, begun: Result<(), Fault>, id: AskId) {
+        if let Err(fault) = begun {
+            self.close(id.worker);
+            self.answer(id, Err(fault));
+        }
     }
 
     /// Asks a new worker to load the next file that may have the planner.
     fn load_next(&mut self, id: AskId, mut opening: Opening) -> Result<(), Fault> {
         loop {
             let Some(candidate) = opening.candidates.pop_front() else {
-                if let Some(fault) = opening.first_fault.take() {
-                    return Err(fault);
-                }
-                if opening.is_fresh {
-                    let message = self.catalog.not_found(&opening.planner);
-                    return Err(fault::new(&opening.planner, During::Load, Cause::Refused, message));
-                }
-                // A plugin may have been built meanwhile.
-                self.catalog.read();
-                opening.is_fresh = true;
-                opening.candidates = self.catalog.candidates(&opening.planner).into();
+                self.search_on(&mut opening)?;
                 continue;
             };
             match self.load(&candidate, &opening.planner) {
@@ -156,6 +151,20 @@ impl Host {
                 Err(failure) => opening.note(failure, &candidate),
             }
         }
+    }
+
+    /// Finds more files to try.
+    ///
+    /// # Errors
+    /// There are none.
+    fn search_on(&mut self, opening: &mut Opening) -> Result<(), Fault> {
+        let Opening { planner, search, first_fault, candidates, .. } = opening;
+        if let Some(files) = self.catalog.search_on(planner, search, first_fault.is_none()) {
+            *candidates = files;
+            return Ok(());
+        }
+        let not_found = || fault::new(planner, During::Load, Cause::Refused, self.catalog.not_found(planner));
+        Err(first_fault.take().unwrap_or_else(not_found))
     }
 
     /// Starts a worker and asks it to load a file.
@@ -189,7 +198,7 @@ impl Host {
         let begun = match stage {
             Stage::Load(candidate) => {
                 let answer = outcome.and_then(|()| worker.take_answer(loaded_of));
-                self.configure(id, worker, opening, &candidate, answer)
+                self.configure(id, worker, opening, candidate, answer)
             }
             Stage::Configure(loaded) => {
                 let answer = outcome.and_then(|()| worker.take_answer(said_of));
@@ -206,16 +215,12 @@ impl Host {
                 }
             }
         };
-        if let Err(fault) = begun {
-            self.close(id.worker);
-            self.answer(id, Err(fault));
-        }
+        self.close_unless(begun, id);
     }
 
     /// Shuts down a worker whose planner cannot be opened.
-    fn part(&mut self, mut worker: Worker, fault: Fault) -> Result<(), Fault> {
-        worker.shut_down();
-        self.leave(worker);
+    fn part(&mut self, worker: Worker, fault: Fault) -> Result<(), Fault> {
+        self.dismiss(worker);
         Err(fault)
     }
 
@@ -225,7 +230,7 @@ impl Host {
         id: AskId,
         mut worker: Worker,
         mut opening: Opening,
-        candidate: &Candidate,
+        candidate: Candidate,
         answer: Result<answer::Loaded, Failure>,
     ) -> Result<(), Fault> {
         let found = answer.map(|answer| {
@@ -234,15 +239,16 @@ impl Host {
         let loaded = match found {
             Ok(Some(loaded)) => loaded,
             other => {
-                worker.shut_down();
-                self.leave(worker);
+                self.dismiss(worker);
                 if let Err(failure) = other {
-                    opening.note(failure, candidate);
+                    opening.note(failure, &candidate);
                 }
                 return self.load_next(id, opening);
             }
         };
-        self.catalog.learn(&loaded.info.id);
+        // A file before it that failed may work the next time.
+        let first = opening.first_fault.is_none().then_some(candidate);
+        self.catalog.learn(&loaded.info.id, first);
         let coverage =
             if self.config.must_cover { must_cover(&loaded.info, During::Configure) } else { Ok(()) };
         let values = coverage.and_then(|()| numbers(&loaded.info, &opening.parameters));

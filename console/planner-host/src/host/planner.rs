@@ -68,11 +68,14 @@ impl Ready {
         Self { loaded, parameters, limits }
     }
 
-    /// Refuses values that are unknown, out of range or not live; all values with the new ones.
+    /// Refuses new values of parameters that are unknown or not live; all values with the new ones.
+    ///
+    /// The mission gives all values that were set by hand, so that most of them are those that the planner has.
     fn merged(&self, changed: &Parameters) -> Result<Parameters, Fault> {
         let info = &self.loaded.info;
         let refuse = |message| fault::new(&info.id, During::Configure, Cause::Refused, message);
-        for key in changed.keys() {
+        let new = changed.iter().filter(|(key, value)| self.parameters.get(*key) != Some(*value));
+        for (key, _) in new {
             let param = parameters::find(info, key).map_err(refuse)?;
             if !param.live {
                 return Err(refuse(format!(
@@ -157,7 +160,7 @@ impl Planner {
 
     /// Whether it can save its state.
     pub(super) fn saves_state(&self) -> bool {
-        self.ready.as_ref().is_some_and(|ready| ready.loaded.saves_state)
+        self.ready.as_ref().is_some_and(|ready| ready.loaded.info.snapshots)
     }
 
     /// Asks for the private state.

@@ -44,22 +44,8 @@ impl SavedStates {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixture::info;
     use mission::WorkerId;
-
-    fn info() -> PlannerInfo {
-        PlannerInfo {
-            id: "apf".into(),
-            name: String::new(),
-            version: String::new(),
-            about: String::new(),
-            plugin: String::new(),
-            sha256: "ab".into(),
-            abi: String::new(),
-            covers: false,
-            snapshots: true,
-            parameters: Vec::new(),
-        }
-    }
 
     fn ask(worker: u16, n: u32) -> AskId {
         AskId { worker: WorkerId(worker), n }
@@ -67,7 +53,7 @@ mod tests {
 
     fn saved(ask: AskId) -> Saved {
         let state = vec![ask.n as u8];
-        Saved { ask, planner: "apf".into(), sha256: "ab".into(), version: 7, state }
+        Saved { ask, planner: info().id, sha256: info().sha256, version: 7, state }
     }
 
     #[test]

@@ -4,7 +4,10 @@ use super::waker::WakeReceiver;
 use super::worker::Worker;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use std::os::fd::BorrowedFd;
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+/// Descriptors of two workers and of the wake-ups.
+const MOST_USUALLY: usize = 7;
 
 /// What a worker's descriptor is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,43 +55,50 @@ impl Ready {
     }
 }
 
-/// What came of waiting.
-#[derive(Debug, Default)]
-pub(crate) struct Happened {
-    /// Whether the host was woken; the wake-up is cleared.
-    pub(crate) woken: bool,
-    /// What has happened to the workers, in their order.
-    pub(crate) ready: Vec<Ready>,
-}
-
 /// Waits until something happens to a worker, a worker has to be looked at, the host is woken, or the given time is
-/// reached, whichever comes first.
-pub(crate) fn wait(wake_ups: Option<&WakeReceiver>, workers: &[&Worker], until: Option<Instant>) -> Happened {
-    let mut watched = Vec::with_capacity(1 + 3 * workers.len());
-    let mut owners = Vec::with_capacity(3 * workers.len());
+/// reached, whichever comes first. Notes what has happened to each of the workers, in their order; whether the host was
+/// woken, which is reported once.
+pub(crate) fn wait<'a>(
+    wake_ups: Option<&WakeReceiver>,
+    workers: impl Iterator<Item = &'a Worker> + Clone,
+    until: Option<Instant>,
+    ready: &mut Vec<Ready>,
+) -> bool {
+    ready.clear();
+    let mut watched = Vec::with_capacity(MOST_USUALLY);
     let wake_up = wake_ups.and_then(WakeReceiver::descriptor);
     watched.extend(wake_up.iter().map(|wake_up| PollFd::from_borrowed_fd(*wake_up, PollFlags::IN)));
-    for (index, worker) in workers.iter().enumerate() {
-        worker.watched(|(source, descriptor, flags)| {
-            watched.push(PollFd::from_borrowed_fd(descriptor, flags));
-            owners.push((index, source));
-        });
+    let mut wake_at = until;
+    for worker in workers.clone() {
+        ready.push(Ready::NOTHING);
+        worker.watched(|(_, descriptor, flags)| watched.push(PollFd::from_borrowed_fd(descriptor, flags)));
+        wake_at = worker.wake_at().into_iter().chain(wake_at).min();
     }
-    let until = workers.iter().filter_map(|worker| worker.wake_at()).chain(until).min();
-    let left = until.map(|until| until.saturating_duration_since(Instant::now()));
+    // From here to the poll nothing may be read from the socket of the wake-ups.
+    let woken = wake_ups.is_some_and(WakeReceiver::take);
+    let left = wake_at.map(|at| at.saturating_duration_since(Instant::now()));
+    let left = if woken { Some(Duration::ZERO) } else { left };
     let timeout = left.and_then(|left| Timespec::try_from(left).ok());
-    let mut ready = vec![Ready::NOTHING; workers.len()];
     // After a signal or a timeout nothing has happened: the caller checks the clock and waits again.
     if !matches!(poll(&mut watched, timeout.as_ref()), Ok(1..)) {
-        return Happened { woken: false, ready };
+        return woken;
     }
     let (wake_up, of_workers) = watched.split_at(usize::from(wake_up.is_some()));
-    for (descriptor, (index, source)) in of_workers.iter().zip(owners) {
-        ready[index].note(source, descriptor.revents());
+    let mut happened = of_workers.iter().map(PollFd::revents);
+    for (worker, ready) in workers.zip(ready) {
+        worker.watched(|(source, ..)| ready.note(source, happened.next().unwrap_or(PollFlags::empty())));
     }
-    let woken = wake_up.iter().any(|wake_up| !wake_up.revents().is_empty());
-    if let Some(wake_ups) = wake_ups.filter(|_| woken) {
-        wake_ups.clear();
-    }
-    Happened { woken, ready }
+    let is_interrupted = wake_up.iter().any(|wake_up| !wake_up.revents().is_empty());
+    woken
+        | wake_ups.filter(|_| is_interrupted).is_some_and(|wake_ups| {
+            wake_ups.empty_socket();
+            wake_ups.take()
+        })
+}
+
+/// Waits for one worker.
+pub(crate) fn wait_for_one(worker: &Worker, until: Option<Instant>) -> Ready {
+    let mut ready = Vec::with_capacity(1);
+    wait(None, std::iter::once(worker), until, &mut ready);
+    ready[0]
 }

@@ -51,16 +51,19 @@ impl Worker {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Ready;
 
-/// What came of waiting.
-#[derive(Debug, Default)]
-pub(crate) struct Happened {
-    pub(crate) woken: bool,
-    pub(crate) ready: Vec<Ready>,
+/// Without workers nobody waits.
+pub(crate) fn wait<'a>(
+    _: Option<&WakeReceiver>,
+    _: impl Iterator<Item = &'a Worker> + Clone,
+    _: Option<Instant>,
+    _: &mut Vec<Ready>,
+) -> bool {
+    false
 }
 
-/// Without workers nobody waits.
-pub(crate) fn wait(_: Option<&WakeReceiver>, _: &[&Worker], _: Option<Instant>) -> Happened {
-    Happened::default()
+/// There is no worker to wait for.
+pub(crate) fn wait_for_one(worker: &Worker, _: Option<Instant>) -> Ready {
+    match *worker {}
 }
 
 /// Has nobody to wake.
@@ -84,5 +87,7 @@ impl WakeReceiver {
         Waker
     }
 
-    pub(crate) fn clear(&self) {}
+    pub(crate) fn take(&self) -> bool {
+        false
+    }
 }

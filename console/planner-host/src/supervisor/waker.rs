@@ -1,21 +1,35 @@
 //! Wakes the thread that waits for planners.
+//!
+//! Whether a wake-up is pending is one flag; the socket beside it only ends a wait that has begun. Who sets the flag writes,
+//! after that. The receiver begins to wait only if it has found the flag cleared and has read nothing since: whoever sets it
+//! from then on writes something that nobody else reads. What a wake-up leaves in the socket that was taken before it had
+//! written ends a wait for nothing, and wakes nobody.
 
 use std::io::{Read, Write};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::net::UnixStream;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Makes the current or the next [`Host::next`](crate::Host::next) return without an answer, once. Can be used from any
 /// thread; pending wake-ups count as one.
 #[derive(Debug, Clone)]
-pub struct Waker(Option<Arc<UnixStream>>);
+pub struct Waker(Arc<Sender>);
+
+#[derive(Debug)]
+struct Sender {
+    is_pending: AtomicBool,
+    /// Absent when the system has no descriptors left; then no worker can be started, and nobody ever waits.
+    socket: Option<UnixStream>,
+}
 
 impl Waker {
     /// Wakes the host; never blocks.
     pub fn wake(&self) {
-        if let Some(mut sender) = self.0.as_deref() {
-            // A full socket already holds a wake-up, and without a host nothing has to be woken.
-            let _ = sender.write(&[1]);
+        let was_pending = self.0.is_pending.swap(true, Ordering::AcqRel);
+        if let Some(mut socket) = self.0.socket.as_ref().filter(|_| !was_pending) {
+            // A full socket already ends the wait, and without a host nothing has to be woken.
+            let _ = socket.write(&[1]);
         }
     }
 }
@@ -23,7 +37,6 @@ impl Waker {
 /// The receiving end of a [`Waker`].
 pub(crate) struct WakeReceiver {
     waker: Waker,
-    /// Absent when the system has no descriptors left; then no worker can be started, and nobody ever waits.
     socket: Option<UnixStream>,
 }
 
@@ -36,7 +49,8 @@ impl WakeReceiver {
             Ok((sender, receiver))
         });
         let (sender, socket) = pair.ok().unzip();
-        Self { waker: Waker(sender.map(Arc::new)), socket }
+        let sender = Sender { is_pending: AtomicBool::new(false), socket: sender };
+        Self { waker: Waker(Arc::new(sender)), socket }
     }
 
     /// The sending end.
@@ -44,16 +58,113 @@ impl WakeReceiver {
         self.waker.clone()
     }
 
-    /// Drops pending wake-ups.
-    pub(crate) fn clear(&self) {
+    /// Drops pending wake-ups; whether there were any. Costs no call of the system when there were none.
+    pub(crate) fn take(&self) -> bool {
+        let was_pending = self.waker.0.is_pending.swap(false, Ordering::AcqRel);
+        if was_pending {
+            self.empty_socket();
+        }
+        was_pending
+    }
+
+    /// Reads what wake-ups have written. What is pending stays so.
+    pub(super) fn empty_socket(&self) {
         let mut bytes = [0; 64];
         if let Some(mut socket) = self.socket.as_ref() {
-            while let Ok(1..) = socket.read(&mut bytes) {}
+            while socket.read(&mut bytes).is_ok_and(|n| n == bytes.len()) {}
         }
     }
 
-    /// Readable while a wake-up is pending.
+    /// Readable when a wake-up has come during a wait.
     pub(super) fn descriptor(&self) -> Option<BorrowedFd<'_>> {
         self.socket.as_ref().map(AsFd::as_fd)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::supervisor::poller::wait;
+    use std::thread::spawn;
+    use std::time::{Duration, Instant};
+
+    /// Waits for a wake-up, however long a busy machine takes.
+    fn is_woken(wake_ups: &WakeReceiver) -> bool {
+        is_woken_until(wake_ups, Instant::now() + Duration::from_mins(1))
+    }
+
+    fn is_woken_until(wake_ups: &WakeReceiver, until: Instant) -> bool {
+        loop {
+            let woken = wait(Some(wake_ups), std::iter::empty(), Some(until), &mut Vec::new());
+            if woken || Instant::now() >= until {
+                return woken;
+            }
+        }
+    }
+
+    #[test]
+    fn pending_wake_ups_count_as_one() {
+        let wake_ups = WakeReceiver::new();
+        let is_woken_now = || is_woken_until(&wake_ups, Instant::now());
+        assert!(!is_woken_now());
+        (0..3).for_each(|_| wake_ups.waker().wake());
+        assert!(is_woken_now() && !is_woken_now());
+        wake_ups.waker().wake();
+        assert!(wake_ups.take() && !wake_ups.take() && !is_woken_now());
+    }
+
+    #[test]
+    fn a_wake_up_that_comes_while_an_earlier_one_is_taken_is_not_lost() {
+        let wake_ups = WakeReceiver::new();
+        wake_ups.waker().wake();
+        // What `take` does, with a wake-up in the middle.
+        assert!(wake_ups.waker.0.is_pending.swap(false, Ordering::AcqRel));
+        wake_ups.waker().wake();
+        wake_ups.empty_socket();
+        wake_ups.waker().wake();
+        assert!(is_woken(&wake_ups));
+    }
+
+    #[test]
+    fn a_wake_up_that_is_taken_before_it_has_written_wakes_nobody_afterwards() {
+        let wake_ups = WakeReceiver::new();
+        let Sender { is_pending, socket } = &*wake_ups.waker.0;
+        // What `wake` does, with a receiver in the middle.
+        is_pending.store(true, Ordering::Release);
+        assert!(wake_ups.take());
+        assert_eq!(socket.as_ref().expect("a socket").write(&[1]).expect("written"), 1);
+        assert!(!is_woken_until(&wake_ups, Instant::now() + Duration::from_millis(5)));
+        wake_ups.waker().wake();
+        assert!(is_woken(&wake_ups));
+    }
+
+    /// Threads that ask for something, wake the receiver and go on when they have it. When a wake-up is lost, all of them
+    /// wait for each other in the end.
+    #[test]
+    fn no_wake_up_is_lost() {
+        const N_THREADS: usize = 4;
+        const N_EACH: u32 = 20_000;
+        let wake_ups = WakeReceiver::new();
+        let asked: Arc<[AtomicBool; N_THREADS]> = Arc::default();
+        for index in 0..N_THREADS {
+            let (asked, waker) = (Arc::clone(&asked), wake_ups.waker());
+            spawn(move || {
+                for _ in 0..N_EACH {
+                    asked[index].store(true, Ordering::Release);
+                    waker.wake();
+                    while asked[index].load(Ordering::Acquire) {
+                        std::thread::yield_now();
+                    }
+                }
+            });
+        }
+        let mut n_given = 0;
+        while n_given < N_THREADS as u32 * N_EACH {
+            // As the console does before it looks for orders: who is not woken any more has asked before.
+            if n_given % 3 > 0 || !wake_ups.take() {
+                assert!(is_woken(&wake_ups), "nobody woke the receiver, which has given {n_given}");
+            }
+            n_given += asked.iter().map(|asked| u32::from(asked.swap(false, Ordering::AcqRel))).sum::<u32>();
+        }
     }
 }

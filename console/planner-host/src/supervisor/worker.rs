@@ -4,7 +4,7 @@ mod state;
 
 use super::ending::{how_it_ended, last_line};
 use super::load::load_of;
-use super::poller::{Ready, Source, Watched};
+use super::poller::{Ready, Source, Watched, wait_for_one};
 use super::process::Process;
 use super::{Failure, SHUT_DOWN_WITHIN, WorkerCommand, soft};
 use crate::Progress;
@@ -376,8 +376,8 @@ impl Drop for Worker {
         self.kill();
         let until = Instant::now() + DIE_WITHIN;
         while !self.is_gone() && Instant::now() < until {
-            let happened = super::poller::wait(None, &[self], Some(until));
-            self.advance(happened.ready[0], Instant::now(), &mut |_| {});
+            let ready = wait_for_one(self, Some(until));
+            self.advance(ready, Instant::now(), &mut |_| {});
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Every way to misbehave ends as a fault with one sentence, and another planner can drive.
 
+use crate::desk::LONG;
 use crate::stand::{assert_another_drives, choose, config, fly, host, impatient, plan, step, words};
 use mission::planner::{During, ParamValue, Parameters};
 use mission::{Cause, Fault};
@@ -115,8 +116,7 @@ fn a_planner_that_does_not_answer_is_killed_in_time() {
         assert_eq!(fault.cause, Cause::Hung, "{kind}");
         let sentence = "planner faulty did not answer step 5 in time and ignored the request to stop; its process was killed";
         assert_eq!(fault.message, sentence, "{kind}");
-        // Deadline, grace, at most 150 ms to reap; the rest is a busy machine.
-        assert!(took < Duration::from_secs(1), "{kind} took {took:?}");
+        assert!(took < LONG, "{kind} took {took:?}");
         assert_eq!(step(&mut host, 6).unwrap_err().cause, Cause::Died, "its process has ended");
         assert_another_drives(&mut host);
     }

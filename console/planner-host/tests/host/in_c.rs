@@ -68,6 +68,19 @@ fn live_values_reach_a_planner_in_c() {
 }
 
 #[test]
+fn a_live_value_may_change_beside_a_fixed_one_that_was_set_before() {
+    let (_folder, mut host) = host();
+    let values = |speed, gain| {
+        let values = [("speed", speed), ("turn_gain", gain)];
+        Parameters::from(values.map(|(key, value)| (key.to_owned(), ParamValue::Float(value))))
+    };
+    choose(&mut host, "direct-c", &values(0.1, 1.0)).unwrap();
+    host.reconfigure(&values(0.1, 0.5)).expect("the fixed value is the one that it has");
+    let fault = host.reconfigure(&values(0.2, 0.5)).unwrap_err();
+    assert_eq!(fault.message, "parameter `speed` of planner direct-c cannot change under way");
+}
+
+#[test]
 fn answers_that_are_none_are_caught() {
     let spoilt = |by: &str| {
         let good = "out->drive = TP_TWIST; out->status = TP_MOVING; out->a = 0.001 * c->count; out->b = 0.0;";

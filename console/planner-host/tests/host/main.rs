@@ -3,9 +3,12 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod asks;
+mod desk;
 mod faults;
 mod files;
 mod in_c;
+mod processes;
 mod progress;
 mod stand;
 mod state;
+mod waiting;

@@ -1,8 +1,10 @@
 //! Private state outlives the process that kept it.
 
-use crate::stand::{choose, config, folder_with, step, words};
+use crate::desk::{Desk, ONE, TWO, opening, step};
+use crate::stand::{self, built, choose, config, folder_with};
 use mission::planner::Parameters;
-use planner_api::Drive;
+use mission::{AskId, Cause, Given, What};
+use planner_api::{Command, Drive};
 use planner_host::{BlockingHost, PluginDirs};
 use tempfile::TempDir;
 
@@ -50,47 +52,116 @@ TP_EXPORT const tp_entry tank_planner_entry = TP_ENTRY(list, 1, "C");
 TP_STAMP(TP_ABI_MAJOR, TP_ABI_MINOR);
 "#;
 
-fn host() -> (TempDir, BlockingHost) {
-    let (folder, PluginDirs(mut dirs)) = folder_with("counter", COUNTER);
-    dirs.extend(crate::stand::built().0);
-    (folder, BlockingHost::new(&PluginDirs(dirs), config()))
-}
-
-/// Its count after a step.
-fn count(host: &mut BlockingHost, tick: u64) -> u32 {
-    match step(host, tick).unwrap().value.drive {
+/// The count that a counter gives with its command.
+pub fn counted(command: &Command) -> u32 {
+    match command.drive {
         Drive::Twist { v_m_per_s, .. } => (v_m_per_s * 1000.0).round() as u32,
         Drive::Velocity(_) => panic!("it drives by twists"),
     }
 }
 
+fn counters() -> (TempDir, Desk) {
+    let (folder, dirs) = folder_with("counter", COUNTER);
+    let desk = Desk::new(&dirs, config());
+    (folder, desk)
+}
+
+fn open(restore: Option<AskId>) -> What {
+    opening("counter", &Parameters::new(), restore)
+}
+
+#[test]
+fn a_state_that_was_saved_under_an_ask_is_restored_in_another_worker() {
+    let (_folder, mut desk) = counters();
+    desk.ask(ONE, open(None)).unwrap();
+    assert_eq!((0..3).map(|tick| desk.count(ONE, tick)).last(), Some(3));
+    let saved = desk.save(ONE);
+    assert_eq!(desk.count(ONE, 3), 4);
+    desk.submit(ONE, What::Close);
+    desk.ask(TWO, open(Some(saved))).unwrap();
+    assert_eq!(desk.count(TWO, 4), 4, "the state outlives its worker");
+    let unknown = AskId { worker: ONE, n: 1 };
+    desk.ask(ONE, open(Some(unknown))).unwrap();
+    assert_eq!(desk.count(ONE, 0), 1, "without a state it starts fresh");
+}
+
 #[test]
 fn a_planner_that_died_goes_on_from_its_last_saved_state() {
-    let (_folder, mut host) = host();
-    choose(&mut host, "counter", &Parameters::new()).unwrap();
-    // The last save within these steps is that of mission time 2 s, after twenty steps.
-    let last = (0..29).map(|tick| count(&mut host, tick)).last();
-    assert_eq!(last, Some(29));
-    step(&mut host, 29).unwrap_err();
-    choose(&mut host, "counter", &Parameters::new()).unwrap();
-    assert_eq!(count(&mut host, 30), 21);
+    let (_folder, mut desk) = counters();
+    desk.ask(ONE, open(None)).unwrap();
+    let mut saved = None;
+    for tick in 0..29 {
+        if tick % 10 == 0 {
+            saved = Some(desk.save(ONE));
+        }
+        assert_eq!(u64::from(desk.count(ONE, tick)), tick + 1);
+    }
+    assert_eq!(desk.ask(ONE, step(29)).unwrap_err().cause, Cause::Died);
+    desk.ask(TWO, open(saved)).unwrap();
+    assert_eq!(desk.count(TWO, 30), 21);
 }
 
 #[test]
-fn a_planner_that_is_made_anew_goes_on_from_what_it_knows_now() {
-    let (_folder, mut host) = host();
-    choose(&mut host, "counter", &Parameters::new()).unwrap();
-    assert_eq!((0..5).map(|tick| count(&mut host, tick)).last(), Some(5));
-    choose(&mut host, "counter", &Parameters::new()).unwrap();
-    assert_eq!(count(&mut host, 5), 6);
+fn a_planner_that_takes_over_from_a_living_one_goes_on_from_what_that_knows() {
+    let (_folder, mut desk) = counters();
+    desk.ask(ONE, open(None)).unwrap();
+    assert_eq!((0..5).map(|tick| desk.count(ONE, tick)).last(), Some(5));
+    let saved = desk.save(ONE);
+    desk.ask(TWO, open(Some(saved))).unwrap();
+    desk.submit(ONE, What::Close);
+    assert_eq!(desk.count(TWO, 5), 6);
 }
 
 #[test]
-fn state_is_forgotten_when_another_planner_took_over() {
-    let (_folder, mut host) = host();
-    choose(&mut host, "counter", &Parameters::new()).unwrap();
-    assert_eq!((0..15).map(|tick| count(&mut host, tick)).last(), Some(15));
-    choose(&mut host, "faulty", &words(&[("fault", "none")])).unwrap();
-    choose(&mut host, "counter", &Parameters::new()).unwrap();
-    assert_eq!(count(&mut host, 20), 1);
+fn the_state_of_another_planner_is_not_restored() {
+    let (_counter, PluginDirs(mut dirs)) = folder_with("counter", COUNTER);
+    let (_twin, twin) = folder_with("twin", &COUNTER.replace("TP_STR(\"counter\")", "TP_STR(\"twin\")"));
+    dirs.extend(twin.0);
+    let mut desk = Desk::new(&PluginDirs(dirs), config());
+    desk.ask(ONE, open(None)).unwrap();
+    assert_eq!((0..15).map(|tick| desk.count(ONE, tick)).last(), Some(15));
+    let saved = desk.save(ONE);
+    desk.ask(TWO, opening("twin", &Parameters::new(), Some(saved))).unwrap();
+    assert_eq!(desk.count(TWO, 15), 1, "it would understand the state");
+    desk.ask(TWO, open(Some(saved))).unwrap();
+    assert_eq!(desk.count(TWO, 16), 16, "whose it is can have it all the same");
+}
+
+#[test]
+fn the_state_of_another_file_is_not_restored() {
+    let (folder, mut desk) = counters();
+    desk.ask(ONE, open(None)).unwrap();
+    assert_eq!((0..15).map(|tick| desk.count(ONE, tick)).last(), Some(15));
+    let saved = desk.save(ONE);
+    // It was built again meanwhile, from other lines.
+    let (newer, _) = folder_with("counter", &COUNTER.replace("TP_STR(\"1\")", "TP_STR(\"2\")"));
+    let file = "libplanner_counter.so";
+    std::fs::rename(newer.path().join(file), folder.path().join(file)).unwrap();
+    assert!(matches!(desk.ask(TWO, open(Some(saved))), Ok(Given::Opened(info)) if info.version == "2"));
+    assert_eq!(desk.count(TWO, 15), 1, "it would understand the state");
+}
+
+#[test]
+fn a_planner_without_a_state_gives_none() {
+    let mut desk = Desk::new(&built(), config());
+    desk.open(ONE, "none");
+    assert_eq!(desk.ask(ONE, What::Snapshot), Ok(Given::State { bytes: 0 }));
+    let refuses = "{ (void)p; (void)h; return TP_E_STATE; }";
+    let gives = "{\n  h->bytes(h->ctx, p, sizeof(uint32_t));\n  return TP_OK;\n}";
+    let (_folder, dirs) = folder_with("counter", &COUNTER.replace(gives, refuses));
+    let mut desk = Desk::new(&dirs, config());
+    desk.ask(ONE, opening("counter", &Parameters::new(), None)).unwrap();
+    assert_eq!(desk.ask(ONE, What::Snapshot), Ok(Given::State { bytes: 0 }));
+    assert_eq!((desk.count(ONE, 0), desk.host.stats().faults), (1, 0));
+}
+
+#[test]
+fn a_host_that_waits_saves_no_state() {
+    let (_folder, dirs) = folder_with("counter", COUNTER);
+    let mut host = BlockingHost::new(&dirs, config());
+    for _ in 0..2 {
+        choose(&mut host, "counter", &Parameters::new()).unwrap();
+        let counts = (0..15).map(|tick| counted(&stand::step(&mut host, tick).unwrap().value));
+        assert_eq!(counts.last(), Some(15));
+    }
 }

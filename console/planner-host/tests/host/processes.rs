@@ -1,0 +1,99 @@
+//! No process of a worker is left behind, neither a running one nor a zombie.
+#![cfg(target_os = "linux")]
+
+use crate::desk::{Desk, LONG, ONE, TWO, plan, soon, step};
+use crate::stand::{built, config, impatient, worker};
+use mission::What;
+use planner_host::{HostConfig, WorkerCommand};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// A host that is dropped waits no longer than this for the end of a worker that it has killed.
+const REAPED_WITHIN: Duration = Duration::from_millis(30);
+
+/// A worker program with a name of its own, so that its processes can be distinguished from those of other tests.
+fn own_worker() -> (TempDir, WorkerCommand, String) {
+    static N_WORKERS: AtomicU32 = AtomicU32::new(0);
+    let name = format!("worker-{}", N_WORKERS.fetch_add(1, Ordering::Relaxed));
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join(&name);
+    std::fs::copy(worker().program, &program).unwrap();
+    (folder, WorkerCommand::new(program), name)
+}
+
+/// States of the processes of this name that this very process has started and not reaped.
+fn states(name: &str) -> Vec<char> {
+    let processes = std::fs::read_dir("/proc").unwrap().flatten();
+    let stats = processes.filter_map(|process| std::fs::read_to_string(process.path().join("stat")).ok());
+    stats.filter_map(|stat| state_of_child(&stat, name)).collect()
+}
+
+fn state_of_child(stat: &str, name: &str) -> Option<char> {
+    let (_, stat) = stat.split_once('(')?;
+    let (program, fields) = stat.rsplit_once(')')?;
+    let mut fields = fields.split_ascii_whitespace();
+    let (state, parent) = (fields.next()?.chars().next()?, fields.next()?);
+    (program == name && parent == std::process::id().to_string()).then_some(state)
+}
+
+#[test]
+fn who_is_closed_or_failed_leaves_no_process_behind() {
+    let (_folder, worker_command, name) = own_worker();
+    let mut desk = Desk::new(&built(), HostConfig { worker_command, ..impatient() });
+    for (fault, what) in [
+        ("none", step(5)),
+        ("plan_hang", plan()),
+        ("hang", step(5)),
+        ("slow", step(5)),
+        ("stop", step(5)),
+        ("panic", step(5)),
+    ] {
+        for closes_at_once in [true, false] {
+            desk.open(ONE, fault);
+            assert_eq!(states(&name).len(), 1, "{fault}");
+            (0..5).for_each(|tick| drop(desk.ask(ONE, step(tick)).unwrap()));
+            desk.submit(ONE, what.clone());
+            if !closes_at_once {
+                assert_eq!(desk.next().result.is_ok(), fault == "none", "{fault}");
+            }
+            if closes_at_once || fault == "none" {
+                desk.submit(ONE, What::Close);
+            }
+            let began = Instant::now();
+            while !states(&name).is_empty() {
+                assert_eq!(desk.host.next(Some(soon())), None);
+                assert!(began.elapsed() < LONG, "{fault}: it is still there");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_closed_worker_ends_also_when_nobody_looks_at_it() {
+    let (_folder, worker_command, name) = own_worker();
+    let mut desk = Desk::new(&built(), HostConfig { worker_command, ..config() });
+    desk.open(ONE, "plan_hang");
+    desk.submit(ONE, plan());
+    desk.submit(ONE, What::Close);
+    let began = Instant::now();
+    // It has ended, and nobody has reaped it.
+    while states(&name) != ['Z'] {
+        assert!(began.elapsed() < LONG, "it still runs");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn a_host_that_is_dropped_takes_its_workers_along() {
+    let (_folder, worker_command, name) = own_worker();
+    let mut desk = Desk::new(&built(), HostConfig { worker_command, ..config() });
+    desk.open(ONE, "plan_hang");
+    desk.open(TWO, "none");
+    desk.submit(ONE, plan());
+    assert_eq!(states(&name).len(), 2);
+    let began = Instant::now();
+    drop(desk);
+    let gave_up = began.elapsed() >= REAPED_WITHIN;
+    assert!(states(&name).is_empty() || gave_up, "{:?}", states(&name));
+}
