@@ -181,9 +181,9 @@ fn planning_is_shown_with_the_time_it_has_taken_while_ticks_go_on() {
     }
     assert_eq!(screen.model.silent_s(), None);
     let expect = |screen: &Screen, text: &str| assert!(shown(screen).contains(text), "{}", shown(screen));
-    expect(&screen, "Planning (rpf), 7 s of 60 s at most. space: HOLD. X: end mission.");
+    expect(&screen, "Planning (rpf), 7 s (limit 60 s). space: HOLD. X: end mission.");
     screen.send(Msg::BusyAt { share: 0.419, what: "candidate 2 of 3".into() });
-    expect(&screen, "Planning (rpf) 41 %, 7 s of 60 s at most. candidate 2 of 3.");
+    expect(&screen, "Planning (rpf) 41 %, 7 s (limit 60 s). candidate 2 of 3.");
     screen.send(Msg::BusyAt { share: 1.0, what: String::new() });
     expect(&screen, "Planning (rpf) 99 %, 7 s");
     screen.send(Msg::Busy(None));
