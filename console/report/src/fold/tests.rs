@@ -196,7 +196,7 @@ fn parameters_are_those_of_the_first_planner_with_defaults_and_changes() {
 fn a_planner_that_the_console_refused_has_not_failed() {
     let failed = |cause: &Cause| {
         let (planner, message) = ("apf".to_owned(), "words".to_owned());
-        let (cause, during) = (cause.clone(), During::Load);
+        let (cause, during) = (*cause, During::Load);
         let fault = Fault { planner, during, cause, message, partial: Vec::new(), plugin_sha256: None };
         (1, json!({ "event": "planner_failed", "fault": fault }))
     };

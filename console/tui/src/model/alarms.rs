@@ -73,14 +73,15 @@ impl Alarm {
         (self.severity, self.text, self.fallen) = (severity, text, None);
     }
 
-    /// Notes that the operator has seen it, and gives the words that were seen.
+    /// Notes that the operator has seen it, and gives the words that were seen. Those of the lower severity were not, and
+    /// may be about something else of the same cause: they are to be acknowledged next.
     fn acknowledge(&mut self) -> String {
-        self.acknowledged = true;
-        let seen = self.text.clone();
-        if let Some((severity, text)) = self.fallen.take() {
-            (self.severity, self.text) = (severity, text);
-        }
-        seen
+        let Some((severity, text)) = self.fallen.take() else {
+            self.acknowledged = true;
+            return self.text.clone();
+        };
+        self.severity = severity;
+        std::mem::replace(&mut self.text, text)
     }
 }
 
@@ -191,6 +192,12 @@ mod tests {
         assert_eq!(alarms.acknowledge(), None);
     }
 
+    /// The only alarm: severity and words, whether it is active and whether it was acknowledged.
+    fn only(alarms: &Alarms) -> Option<(Severity, &str, bool, bool)> {
+        let alarm = alarms.list().first()?;
+        Some((alarm.severity, &alarm.text, alarm.active, alarm.acknowledged))
+    }
+
     #[test]
     fn an_alarm_that_was_not_acknowledged_is_never_lowered() {
         for clears in [false, true] {
@@ -199,18 +206,21 @@ mod tests {
                 alarms.clear(&Cause::PositionLost);
             }
             alarms.raise(Cause::PositionLost, Severity::Warn, "position poor".into(), 2.0);
-            let alarm = alarms.worst().unwrap();
-            assert_eq!((alarm.severity, alarm.text.as_str()), (Severity::Crit, "position lost"));
-            assert!(alarm.active && !alarm.acknowledged);
+            assert_eq!(only(&alarms), Some((Severity::Crit, "position lost", true, false)));
             assert_eq!(alarms.acknowledge().as_deref(), Some("position lost"));
-            let alarm = alarms.worst().unwrap();
-            assert_eq!((alarm.severity, alarm.text.as_str()), (Severity::Warn, "position poor"));
+            assert_eq!(only(&alarms), Some((Severity::Warn, "position poor", true, false)), "not seen yet");
+            assert_eq!(alarms.acknowledge().as_deref(), Some("position poor"));
             alarms.raise(Cause::PositionLost, Severity::Watch, "position fair".into(), 3.0);
-            assert_eq!(
-                alarms.worst().map(|alarm| alarm.severity),
-                Some(Severity::Watch),
-                "it was acknowledged"
-            );
+            assert_eq!(only(&alarms), Some((Severity::Watch, "position fair", true, true)));
         }
+    }
+
+    #[test]
+    fn an_alarm_that_gets_worse_again_forgets_what_it_had_fallen_to() {
+        let mut alarms = raised(Severity::Crit);
+        alarms.raise(Cause::PositionLost, Severity::Warn, "position poor".into(), 2.0);
+        alarms.raise(Cause::PositionLost, Severity::Crit, "lost again".into(), 3.0);
+        alarms.acknowledge();
+        assert_eq!(only(&alarms), Some((Severity::Crit, "lost again", true, true)));
     }
 }
