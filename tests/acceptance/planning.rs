@@ -12,9 +12,7 @@ fn started(fault: &str) -> Session {
     let arguments = format!("console {} --planner faulty --set fault={fault}", goto.display());
     let mut session = Session::open(&arguments, 120, 36);
     session.see("IDLE");
-    session.press("S");
-    session.see("Start mission?");
-    session.press("\r");
+    session.start();
     session.see("Planning (faulty)");
     session
 }
@@ -22,9 +20,12 @@ fn started(fault: &str) -> Session {
 /// Leaves a console whose mission is held or under way, and gives what was written down.
 fn leave(mut session: Session) -> (Session, Vec<Value>) {
     session.press("q");
-    session.see("Enter: leave");
-    session.press("\r");
-    assert_eq!(session.back_in_the_shell(), "code=1");
+    aborted(session)
+}
+
+/// Agrees to leave, and gives what was written down.
+fn aborted(mut session: Session) -> (Session, Vec<Value>) {
+    assert_eq!(session.agree_to_leave(), "code=1");
     let events = journal(&session.run());
     assert_eq!(events.last().unwrap()["outcome"], "aborted");
     session.bench.prove(&session.run());
@@ -41,41 +42,26 @@ fn assert_held_first(events: &[Value]) {
 }
 
 #[test]
-fn a_hold_takes_effect_while_a_plan_is_being_made() {
-    let mut session = started("plan_hang");
-    session.press(" ");
-    session.see("‖ HOLD");
-    let (_, events) = leave(session);
-    assert_held_first(&events);
-    assert!(first_of(&events, "planned").is_none());
-}
-
-#[test]
-fn ctrl_c_holds_while_a_plan_is_being_made_and_the_console_leaves_in_good_order() {
-    let mut session = started("plan_hang");
-    session.press("\x03");
-    session.see("‖ HOLD");
-    let (_, events) = leave(session);
-    assert_held_first(&events);
-}
-
-#[test]
-fn leaving_while_a_plan_is_being_made_holds_first() {
-    let (_, events) = leave(started("plan_hang"));
-    assert_held_first(&events);
+fn every_key_that_stops_holds_while_a_plan_is_being_made_and_the_console_leaves_in_good_order() {
+    for key in [" ", "\x03", "q"] {
+        println!("key {key:?}");
+        let mut session = started("plan_hang");
+        session.press(key);
+        session.see("‖ HOLD");
+        // `q` has asked already whether to leave.
+        let (_, events) = if key == "q" { aborted(session) } else { leave(session) };
+        assert_held_first(&events);
+        assert!(first_of(&events, "planned").is_none());
+    }
 }
 
 #[test]
 fn a_plan_that_was_made_while_the_mission_was_held_is_flown_afterwards() {
     let mut session = started("plan_long");
-    session.press(" ");
-    session.see("‖ HOLD");
+    session.hold();
     session.until("the plan", |session| first_of(&journal(&session.run()), "planned").is_some());
     assert!(session.text().contains("‖ HOLD"), "{}", session.text());
-    session.press(" ");
-    session.see("Resume?");
-    session.press("\r");
-    session.see("▶ RUN");
+    session.resume();
     session.until("a command", |session| first_of(&journal(&session.run()), "commanded").is_some());
     let (_, events) = leave(session);
     assert_held_first(&events);
@@ -88,8 +74,7 @@ fn a_plan_that_was_made_while_the_mission_was_held_is_flown_afterwards() {
 #[test]
 fn a_planner_that_fails_while_the_mission_is_held_does_not_let_it_go() {
     let mut session = started("plan_hang");
-    session.press(" ");
-    session.see("‖ HOLD");
+    session.hold();
     session.until("the fault", |session| first_of(&journal(&session.run()), "planner_failed").is_some());
     session.see("‖ HOLD");
     let (_, events) = leave(session);
@@ -102,20 +87,12 @@ fn another_planner_chosen_before_the_start_is_written_down_and_proven() {
     let goto = scenario("goto-single-obstacle.toml");
     let mut session = Session::open(&format!("console {} --planner apf", goto.display()), 120, 36);
     session.see("IDLE");
-    session.press_until("P", "scanned floor is kept");
-    session.choose("rpf");
-    session.see("Change planner to rpf?");
-    session.press("\r");
+    session.change_planner("rpf");
     session.until("the planner", |session| !session.text().contains("Change planner to"));
     session.see("rpf ");
-    session.press("S");
-    session.see("Start mission?");
-    session.press("\r");
+    session.start();
     session.see("▶ RUN");
-    session.press(">>>>>>");
-    session.see("DONE");
-    session.press("q");
-    assert_eq!(session.back_in_the_shell(), "code=0");
+    session.finish();
     let run = session.run();
     let events = journal(&run);
     let chosen = of_kind(&events, "planner_chosen");
@@ -148,16 +125,12 @@ fn a_run_that_is_deleted_in_flight_is_reported_at_once_and_at_the_end() {
     let mut session = Session::open(&format!("console {}", goto.display()), 120, 36);
     session.see("IDLE");
     session.press("<<<<");
-    session.press("S");
-    session.see("Start mission?");
-    session.press("\r");
+    session.start();
     session.see("REC●");
     std::fs::remove_dir_all(session.run()).unwrap();
     session.see("REC✗");
     session.press("q");
-    session.see("Enter: leave");
-    session.press("\r");
-    assert_eq!(session.back_in_the_shell(), "code=3");
+    assert_eq!(session.agree_to_leave(), "code=3");
     assert!(session.text().contains("NOT kept"), "{}", session.text());
 }
 
@@ -193,23 +166,14 @@ fn after_a_planner_that_cannot_be_opened_another_one_is_chosen_and_flies() {
     let arguments = format!("console {} --planner faulty --set fault=configure_panic", goto.display());
     let mut session = Session::open(&arguments, 120, 36);
     session.see("IDLE");
-    session.press("S\r");
+    session.start();
     session.until("the fault", |session| {
         !session.bench.runs().is_empty() && first_of(&journal(&session.run()), "planner_failed").is_some()
     });
     session.see("‖ HOLD");
-    session.press_until("P", "scanned floor is kept");
-    session.choose("rpf");
-    session.see("Change planner to rpf?");
-    session.press("\r");
+    session.change_planner("rpf");
     session.until("the plan", |session| first_of(&journal(&session.run()), "planned").is_some());
-    session.press(" ");
-    session.see("Resume?");
-    session.press("\r");
-    session.see("▶ RUN");
-    session.press(">>>>>>");
-    session.see("DONE");
-    session.press("q");
-    assert_eq!(session.back_in_the_shell(), "code=0");
+    session.resume();
+    session.finish();
     session.bench.prove(&session.run());
 }

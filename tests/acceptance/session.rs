@@ -123,6 +123,50 @@ impl Session {
         self.press("\r");
     }
 
+    /// Starts the mission and agrees to it.
+    pub fn start(&mut self) {
+        self.press("S");
+        self.see("Start mission?");
+        self.press("\r");
+    }
+
+    /// Holds the robot.
+    pub fn hold(&mut self) {
+        self.press(" ");
+        self.see("‖ HOLD");
+    }
+
+    /// Lets a held robot go on.
+    pub fn resume(&mut self) {
+        self.press(" ");
+        self.see("Resume?");
+        self.press("\r");
+        self.see("▶ RUN");
+    }
+
+    /// Chooses another planner for a robot that stands.
+    pub fn change_planner(&mut self, id: &str) {
+        self.press_until("P", "scanned floor is kept");
+        self.choose(id);
+        self.see(&format!("Change planner to {id}?"));
+        self.press("\r");
+    }
+
+    /// Flies the rest of the mission fast, and leaves the console.
+    pub fn finish(&mut self) {
+        self.press(">>>>>>");
+        self.see("DONE");
+        self.press("q");
+        assert_eq!(self.back_in_the_shell(), "code=0");
+    }
+
+    /// Agrees to leave a mission that is under way, and gives the exit code.
+    pub fn agree_to_leave(&mut self) -> String {
+        self.see("Enter: leave");
+        self.press("\r");
+        self.back_in_the_shell()
+    }
+
     /// Waits for the shell to be back; the terminal must be as it was. Gives the exit code.
     pub fn back_in_the_shell(&mut self) -> String {
         self.until("the shell", |session| {

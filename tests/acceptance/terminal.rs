@@ -16,27 +16,15 @@ fn kinds(run: &Path) -> Vec<String> {
 fn a_mission_is_flown_held_swapped_and_finished_by_hand() {
     let mut session = Session::open("console --planner apf", 120, 36);
     session.see("IDLE");
-    session.press("S");
-    session.see("Start mission?");
-    session.press("\r");
+    session.start();
     session.see("▶ RUN");
-    session.press(" ");
-    session.see("‖ HOLD");
-    session.press_until("P", "scanned floor is kept");
-    session.choose("rpf");
-    session.see("Change planner to rpf?");
-    session.press("\r");
+    session.hold();
+    session.change_planner("rpf");
     session.until("the swap in the journal", |session| {
         kinds(&session.run()).iter().filter(|kind| *kind == "planner_chosen").count() == 2
     });
-    session.press(" ");
-    session.see("Resume?");
-    session.press("\r");
-    session.see("▶ RUN");
-    session.press(">>>>>>");
-    session.see("DONE");
-    session.press("q");
-    assert_eq!(session.back_in_the_shell(), "code=0");
+    session.resume();
+    session.finish();
     let listed = session.bench.tankops(&["runs", "--json"]).json();
     assert_eq!(listed[0]["end"], "complete", "{listed}");
     let verified = session.bench.tankops(&["verify", session.run().to_str().unwrap()]);

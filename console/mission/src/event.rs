@@ -5,7 +5,7 @@
 
 mod log_line;
 
-pub use log_line::{LogLine, Severity};
+pub use log_line::{LogLine, Severity, late_text};
 
 use crate::{
     ask::AskId,
@@ -512,6 +512,40 @@ pub enum HoldReason {
 }
 
 impl HoldReason {
+    /// Every reason once, in the order of their declaration; for tests that go through all of them.
+    #[doc(hidden)]
+    pub fn every(message: &str) -> Vec<Self> {
+        let message = || message.to_owned();
+        let all = vec![
+            Self::Operator,
+            Self::PositionLost,
+            Self::PositionAlarmed,
+            Self::PlannerFault { message: message() },
+            Self::PlannerSilent { message: message() },
+            Self::Stuck { message: message() },
+            Self::Tether { message: message() },
+            Self::PlanRefused { message: message() },
+            Self::Stepped,
+            Self::PlannerReplaced,
+        ];
+        // A new reason does not compile until it is named here; it belongs in the list above as well.
+        for by in &all {
+            match by {
+                Self::Operator
+                | Self::PositionLost
+                | Self::PositionAlarmed
+                | Self::PlannerFault { .. }
+                | Self::PlannerSilent { .. }
+                | Self::Stuck { .. }
+                | Self::Tether { .. }
+                | Self::PlanRefused { .. }
+                | Self::Stepped
+                | Self::PlannerReplaced => {}
+            }
+        }
+        all
+    }
+
     /// Whether the planner is the cause, so that another one may be the remedy.
     pub fn blames_planner(&self) -> bool {
         matches!(self, Self::PlannerFault { .. } | Self::PlannerSilent { .. } | Self::PlanRefused { .. })

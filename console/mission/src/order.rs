@@ -15,7 +15,7 @@ pub enum Order {
     Resume,
     /// While held: move for one tick.
     Step,
-    /// While held for a plan that was refused because of the tether: fly it, and every later plan.
+    /// While held for a plan that was refused because of the tether: fly it, and later plans until one fails.
     FlyUncertified,
     /// End the mission here.
     Abort,

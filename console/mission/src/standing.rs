@@ -187,11 +187,11 @@ impl fmt::Display for Refusal {
             Self::Ended(outcome) => write!(f, "the mission has ended ({})", outcome.word()),
             Self::NotStarted => f.write_str("the mission has not been started"),
             Self::AlreadyStarted => f.write_str("the mission has already been started"),
-            Self::AlreadyMoving => f.write_str("the robot is moving"),
+            Self::AlreadyMoving => f.write_str("the mission is already running"),
             Self::StepNeedsHold => f.write_str("a single step requires HOLD first"),
             Self::SwapNeedsHold => f.write_str("changing the planner requires HOLD first"),
             Self::NotLive { key } => {
-                write!(f, "parameter `{key}` cannot be changed while the robot is moving; HOLD first")
+                write!(f, "parameter `{key}` cannot be changed while the mission is running; HOLD first")
             }
             Self::PositionLost { limit_m } => {
                 write!(f, "the position is lost (95 % error limit {limit_m:.2} m); resuming requires a fix")
@@ -259,24 +259,8 @@ mod tests {
     use crate::config::PlannerChoice;
     use crate::planner::{ParamValue, Parameters};
 
-    fn holds() -> Vec<HoldReason> {
-        let message = || "m".to_owned();
-        vec![
-            HoldReason::Operator,
-            HoldReason::PositionLost,
-            HoldReason::PositionAlarmed,
-            HoldReason::PlannerFault { message: message() },
-            HoldReason::PlannerSilent { message: message() },
-            HoldReason::Stuck { message: message() },
-            HoldReason::Tether { message: message() },
-            HoldReason::PlanRefused { message: message() },
-            HoldReason::Stepped,
-            HoldReason::PlannerReplaced,
-        ]
-    }
-
     fn phases() -> Vec<Phase> {
-        let held = holds().into_iter().flat_map(|by| {
+        let held = HoldReason::every("m").into_iter().flat_map(|by| {
             [Resumes::Never, Resumes::WhenCleared, Resumes::ByFallback]
                 .map(|resumes| Phase::Held(Hold { by: by.clone(), resumes }))
         });

@@ -10,7 +10,7 @@ use crate::{
     turning::Turning,
 };
 use mission::{
-    Event, EventKind, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, TaskConfig,
+    Cause, Event, EventKind, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, TaskConfig,
     event::{RunOpened, TetherAlarm},
 };
 use world::{Obstacle, Pose};
@@ -96,7 +96,11 @@ impl Fold {
                 self.known.obstacles_found += 1;
                 self.find(obstacle);
             }
-            EventKind::PlannerFailed { .. } => self.known.planner_faults += 1,
+            EventKind::PlannerFailed { fault, .. } => {
+                // What the console refused to load or to let drive was not at work, so it has not failed.
+                let refused = matches!(fault.cause, Cause::Refused | Cause::Quarantined);
+                self.known.planner_faults += u64::from(!refused);
+            }
             EventKind::Held { .. } => self.known.holds += 1,
             EventKind::Ended { outcome, reason } => {
                 self.known.outcome = Some(*outcome);

@@ -6,7 +6,7 @@ pub(crate) use floor::lines as floor_lines;
 
 use crate::{
     account::{Account, MissReason, Shares},
-    summary::{Coverage, PlannerCalls, Positioning, Summary, Tether, Tracking},
+    summary::{Coverage, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking},
 };
 use mission::Outcome;
 use std::fmt::{Display, Write};
@@ -42,6 +42,7 @@ pub fn human(run: &Summary) -> String {
     }
     text.some("tether", run.tether.as_ref().map(tether));
     text.some("planner calls", run.planner_calls.as_ref().map(calls));
+    text.some("stops", run.stops.as_ref().map(stops));
     text.some("under way", under_way(run));
     text.some("events sha256", run.events_sha256.as_ref());
     text.some("journal", run.logs.as_ref().and_then(|logs| logs.journal.as_ref()));
@@ -220,6 +221,11 @@ fn calls(calls: &PlannerCalls) -> String {
     let (plans, steps, faults) = (counted(*plan, "plan"), counted(*step, "step"), counted(*faults, "fault"));
     let time = |value: &Option<f64>| value.map_or_else(|| "-".into(), |us| format!("{us:.0} µs"));
     format!("{plans}, {steps} of {} median and {} in 99 %, {faults}", time(p50_us), time(p99_us))
+}
+
+fn stops(stops: &Stops) -> String {
+    let Stops { count, p50_ms, p99_ms, max_ms } = stops;
+    format!("{count}, key to command p50 {p50_ms:.1} ms, p99 {p99_ms:.1} ms, max {max_ms:.1} ms")
 }
 
 fn under_way(run: &Summary) -> Option<String> {

@@ -45,7 +45,7 @@ pub struct Summary {
     pub obstacles_found: u64,
     /// How often the robot was held.
     pub holds: u64,
-    /// How often a planner failed.
+    /// How often a planner failed; one that the console refused has not.
     pub planner_faults: u64,
     /// Bounds of the scenario's `[expect]` that the run did not keep, as sentences; absent if nobody compared.
     #[serde(default)]

@@ -148,6 +148,9 @@ pub struct Planning {
     /// The worker of a planner that is being prepared; its plans are not flown yet.
     #[serde(default)]
     pub candidate: Option<WorkerId>,
+    /// Whether the last plan was of that planner: the certificate that follows says nothing of the plan that is flown.
+    #[serde(default)]
+    pub proposed: bool,
 }
 
 /// The time, by the caller.
@@ -356,7 +359,12 @@ impl Model {
 
     /// Shows the operator a message in the line above the keys.
     pub(crate) fn say(&mut self, severity: Severity, text: impl Into<String>) {
-        let until_mono_s = self.console.now.mono_s + NOTICE_S;
+        self.say_for(NOTICE_S, severity, text);
+    }
+
+    /// Shows the operator a message that is true for so many seconds only.
+    pub(crate) fn say_for(&mut self, seconds: f64, severity: Severity, text: impl Into<String>) {
+        let until_mono_s = self.console.now.mono_s + seconds;
         self.console.notice = Some(Notice { severity, text: text.into(), until_mono_s });
     }
 }

@@ -29,7 +29,7 @@ pub enum Msg {
         /// Rows.
         height: u16,
     },
-    /// The mission resumed.
+    /// Events of the mission.
     Events(Vec<Event>),
     /// The time.
     Time(Times),

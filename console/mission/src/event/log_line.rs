@@ -159,11 +159,17 @@ fn of_planner(kind: &EventKind) -> Option<LogLine> {
         EventKind::PlannerLate { planner, ticks } => line(
             Severity::Watch,
             "plan",
-            format!("planner {planner} answered {ticks} ticks late; the robot stood still meanwhile"),
+            format!("{}; the robot stood still meanwhile", late_text(planner, *ticks)),
         ),
         EventKind::PlannerFailed { fault, .. } => line(fault.severity(), "plan", fault.message.clone()),
         _ => return None,
     })
+}
+
+/// How late a planner answered, without a full stop.
+pub fn late_text(planner: &str, ticks: u64) -> String {
+    let plural = if ticks == 1 { "" } else { "s" };
+    format!("planner {planner} answered {ticks} tick{plural} late")
 }
 
 fn of_tether(kind: &EventKind) -> Option<LogLine> {
@@ -241,5 +247,22 @@ fn exclusion_text(reason: &Exclusion) -> String {
         Exclusion::Residual { residual_m, gate_m } => {
             format!("residual {residual_m:.2} m, gate {gate_m:.2} m")
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_tick_is_not_written_as_ticks() {
+        let late = |ticks| Event {
+            tick: 7,
+            t_s: 0.7,
+            kind: EventKind::PlannerLate { planner: "rpf".into(), ticks },
+        };
+        let text = |ticks| late(ticks).log_line().map(|line| line.text).unwrap_or_default();
+        assert_eq!(text(1), "planner rpf answered 1 tick late; the robot stood still meanwhile");
+        assert_eq!(text(2), "planner rpf answered 2 ticks late; the robot stood still meanwhile");
     }
 }

@@ -5,8 +5,9 @@
 use super::*;
 use crate::{
     human::human,
-    summary::{Logs, PlannerCalls},
+    summary::{Logs, PlannerCalls, Stops},
 };
+use mission::{During, Fault};
 use serde_json::{Value, json};
 use world::Point;
 
@@ -191,6 +192,20 @@ fn parameters_are_those_of_the_first_planner_with_defaults_and_changes() {
     assert_eq!(run.parameters, Some(Parameters::from(expected)));
 }
 
+#[test]
+fn a_planner_that_the_console_refused_has_not_failed() {
+    let failed = |cause: &Cause| {
+        let (planner, message) = ("apf".to_owned(), "words".to_owned());
+        let (cause, during) = (*cause, During::Load);
+        let fault = Fault { planner, during, cause, message, partial: Vec::new(), plugin_sha256: None };
+        (1, json!({ "event": "planner_failed", "fault": fault }))
+    };
+    let faults =
+        |causes: &[Cause]| fold(&causes.iter().map(failed).collect::<Vec<_>>()).summary().planner_faults;
+    assert_eq!(faults(&[Cause::Refused, Cause::Quarantined]), 0);
+    assert_eq!(faults(&[Cause::Panic, Cause::Refused, Cause::Starved]), 2);
+}
+
 /// A run with something of everything.
 fn full_run() -> Summary {
     let mut events = vec![(0, opened()), (0, chosen("rpf"))];
@@ -218,6 +233,7 @@ fn full_run() -> Summary {
             p99_us: Some(88.0),
             faults: 0,
         }),
+        stops: Stops::of(&[0.8, 1.2, 2.4]),
         events_sha256: Some("5e1f".into()),
         logs: Some(Logs { journal: Some("logs/run/events.jsonl".into()), recording: None, error: None }),
         ..fold(&events).summary()

@@ -50,6 +50,39 @@ pub struct Alarm {
     pub active: bool,
     /// Whether the operator has seen it.
     pub acknowledged: bool,
+    /// The lower severity to which it has fallen since, with its words; shown once the operator has seen the worse.
+    #[serde(default)]
+    pub fallen: Option<(Severity, String)>,
+}
+
+impl Alarm {
+    fn new(cause: Cause, severity: Severity, text: String, since_s: f64) -> Self {
+        Self { cause, severity, text, since_s, active: true, acknowledged: false, fallen: None }
+    }
+
+    /// Takes what its cause says now. What the operator has not seen is never replaced by something less severe.
+    fn take(&mut self, severity: Severity, text: String, t_s: f64) {
+        let was_active = std::mem::replace(&mut self.active, true);
+        if !self.acknowledged && severity < self.severity {
+            self.fallen = Some((severity, text));
+            return;
+        }
+        if !was_active || severity > self.severity {
+            (self.acknowledged, self.since_s) = (false, t_s);
+        }
+        (self.severity, self.text, self.fallen) = (severity, text, None);
+    }
+
+    /// Notes that the operator has seen it, and gives the words that were seen. Those of the lower severity were not, and
+    /// may be about something else of the same cause: they are to be acknowledged next.
+    fn acknowledge(&mut self) -> String {
+        let Some((severity, text)) = self.fallen.take() else {
+            self.acknowledged = true;
+            return self.text.clone();
+        };
+        self.severity = severity;
+        std::mem::replace(&mut self.text, text)
+    }
 }
 
 /// What is wrong, in the order in which it came.
@@ -61,16 +94,13 @@ pub struct Alarms {
 }
 
 impl Alarms {
-    /// Raises an alarm; one that is active already only takes the new words.
+    /// Raises an alarm. One that is active already takes the new words; it needs another acknowledgement only if it became
+    /// more severe.
     pub fn raise(&mut self, cause: Cause, severity: Severity, text: String, t_s: f64) {
         if let Some(alarm) = self.list.iter_mut().find(|alarm| alarm.cause == cause) {
-            if !alarm.active || severity > alarm.severity {
-                alarm.acknowledged = false;
-                alarm.since_s = t_s;
-            }
-            (alarm.active, alarm.severity, alarm.text) = (true, severity, text);
+            alarm.take(severity, text, t_s);
         } else if self.list.len() < MAX_ALARMS {
-            self.list.push(Alarm { cause, severity, text, since_s: t_s, active: true, acknowledged: false });
+            self.list.push(Alarm::new(cause, severity, text, t_s));
         }
     }
 
@@ -86,8 +116,7 @@ impl Alarms {
     pub fn acknowledge(&mut self) -> Option<String> {
         let worst = self.list.iter().filter(|alarm| !alarm.acknowledged).map(|alarm| alarm.severity).max()?;
         let alarm = self.list.iter_mut().find(|alarm| !alarm.acknowledged && alarm.severity == worst)?;
-        alarm.acknowledged = true;
-        let text = alarm.text.clone();
+        let text = alarm.acknowledge();
         self.drop_settled();
         Some(text)
     }
@@ -161,5 +190,37 @@ mod tests {
         assert_eq!(alarms.acknowledge().as_deref(), Some("planner failed"));
         assert_eq!(alarms.acknowledge().as_deref(), Some("position lost"));
         assert_eq!(alarms.acknowledge(), None);
+    }
+
+    /// The only alarm: severity and words, whether it is active and whether it was acknowledged.
+    fn only(alarms: &Alarms) -> Option<(Severity, &str, bool, bool)> {
+        let alarm = alarms.list().first()?;
+        Some((alarm.severity, &alarm.text, alarm.active, alarm.acknowledged))
+    }
+
+    #[test]
+    fn an_alarm_that_was_not_acknowledged_is_never_lowered() {
+        for clears in [false, true] {
+            let mut alarms = raised(Severity::Crit);
+            if clears {
+                alarms.clear(&Cause::PositionLost);
+            }
+            alarms.raise(Cause::PositionLost, Severity::Warn, "position poor".into(), 2.0);
+            assert_eq!(only(&alarms), Some((Severity::Crit, "position lost", true, false)));
+            assert_eq!(alarms.acknowledge().as_deref(), Some("position lost"));
+            assert_eq!(only(&alarms), Some((Severity::Warn, "position poor", true, false)), "not seen yet");
+            assert_eq!(alarms.acknowledge().as_deref(), Some("position poor"));
+            alarms.raise(Cause::PositionLost, Severity::Watch, "position fair".into(), 3.0);
+            assert_eq!(only(&alarms), Some((Severity::Watch, "position fair", true, true)));
+        }
+    }
+
+    #[test]
+    fn an_alarm_that_gets_worse_again_forgets_what_it_had_fallen_to() {
+        let mut alarms = raised(Severity::Crit);
+        alarms.raise(Cause::PositionLost, Severity::Warn, "position poor".into(), 2.0);
+        alarms.raise(Cause::PositionLost, Severity::Crit, "lost again".into(), 3.0);
+        alarms.acknowledge();
+        assert_eq!(only(&alarms), Some((Severity::Crit, "lost again", true, true)));
     }
 }

@@ -3,8 +3,7 @@
 use super::{Cause, Model, Overlay, PlanShown, Progress, Raster, Run, Trail, ui::Ask};
 use mission::{
     Event, EventKind, Hold, Order, Outcome, PlannerChoice, PlannerInfo, Severity, TaskConfig,
-    event::HoldReason,
-    event::{RunOpened, TetherAlarm},
+    event::{HoldReason, RunOpened, TetherAlarm, late_text},
 };
 use planner_api::{Command, Drawing};
 use positioning::{AccuracyMap, Exclusion};
@@ -116,9 +115,12 @@ impl Model {
                 self.seat(choice, info);
             }
             EventKind::ParametersChanged { choice, .. } => self.planning.choice = Some(choice.clone()),
-            // One that is being prepared: its plan flies when it takes over.
-            EventKind::Planned { ask: Some(ask), .. } if self.planning.candidate == Some(ask.worker) => {}
-            EventKind::Planned { path, length_m, complete, .. } => {
+            EventKind::Planned { ask, path, length_m, complete, .. } => {
+                // One that is being prepared: its plan flies when it takes over.
+                self.planning.proposed = ask.is_some_and(|ask| self.planning.candidate == Some(ask.worker));
+                if self.planning.proposed {
+                    return;
+                }
                 let path = Trail::thinned(path);
                 let plan = PlanShown { path, length_m: *length_m, complete: *complete, t_s: event.t_s };
                 self.planning.plan = Some(plan);
@@ -139,7 +141,7 @@ impl Model {
             }
             // No alarm: the planner works again, and a fault before may not be acknowledged yet.
             EventKind::PlannerLate { planner, ticks } => {
-                self.say(Severity::Watch, format!("planner {planner} answered {ticks} ticks late"));
+                self.say(Severity::Watch, late_text(planner, *ticks));
             }
             EventKind::PlannerRejected { planner, why } => {
                 self.planning.candidate = None;
@@ -173,6 +175,8 @@ impl Model {
                 }
                 self.alarms.clear(&Cause::Tether(alarm.word().to_owned()));
             }
+            // A planner that is being prepared; why it does not take over is reported when it is rejected.
+            EventKind::Certified { .. } if self.planning.proposed => {}
             EventKind::Certified { planner, refused, certificate } => {
                 self.tether.get_or_insert_default().certified = Some(certificate.certified);
                 if certificate.certified {

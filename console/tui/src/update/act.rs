@@ -105,7 +105,8 @@ fn interrupt(model: &mut Model) -> Vec<Effect> {
     if twice {
         model.ui.overlay = Overlay::Quit;
     } else {
-        model.say(Severity::Info, "Press Ctrl-C again within 2 s to leave");
+        let text = format!("Press Ctrl-C again within {INTERRUPT_TWICE_S} s to leave");
+        model.say_for(INTERRUPT_TWICE_S, Severity::Info, text);
     }
     effects
 }

@@ -65,7 +65,7 @@ fn demand(met: bool, otherwise: &str) -> Result<(), String> {
 
 /// Whether the mission would accept an order, by its own table.
 pub(super) fn accepted(model: &Model, order: &Order) -> Result<(), String> {
-    model.standing.standing().allows(order).map_err(|why| match why.remedy() {
+    model.standing.standing().allows(order).map_err(|why| match remedy(&why, model.phase()) {
         Some(remedy) => format!("{why}; {remedy}"),
         None => why.to_string(),
     })
@@ -115,23 +115,20 @@ fn map(model: &Model) -> Result<(), String> {
 }
 
 /// What would be right, in keys.
-trait Remedy {
-    fn remedy(&self) -> Option<&'static str>;
-}
-
-impl Remedy for Refusal {
-    fn remedy(&self) -> Option<&'static str> {
-        match self {
-            Self::NotStarted => Some("S: start"),
-            Self::AlreadyStarted | Self::AlreadyMoving | Self::StepNeedsHold | Self::SwapNeedsHold => {
-                Some("space: HOLD")
-            }
-            Self::Ended(_) => Some("q: leave"),
-            // These say themselves what would be right, as far as there is anything.
-            Self::NotLive { .. }
-            | Self::PositionLost { .. }
-            | Self::PositionAlarmed
-            | Self::NoPlanRefused => None,
-        }
+fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
+    match why {
+        Refusal::NotStarted => Some("S: start"),
+        // Space asks to resume then.
+        Refusal::AlreadyStarted if matches!(phase, Phase::Held(_)) => None,
+        Refusal::AlreadyStarted
+        | Refusal::AlreadyMoving
+        | Refusal::StepNeedsHold
+        | Refusal::SwapNeedsHold => Some("space: HOLD"),
+        Refusal::Ended(_) => Some("q: leave"),
+        // These say themselves what would be right, as far as there is anything.
+        Refusal::NotLive { .. }
+        | Refusal::PositionLost { .. }
+        | Refusal::PositionAlarmed
+        | Refusal::NoPlanRefused => None,
     }
 }

@@ -40,7 +40,7 @@ fn question(model: &Model) -> Option<Vec<String>> {
         Overlay::Confirm(Ask::FlyUncertified) => vec![
             "Run uncertified plan? Enter: run, Esc: stay held.".into(),
             "Tether may remain deployed.".into(),
-            "Applies to all later plans.".into(),
+            "Applies to later plans until one fails.".into(),
         ],
         Overlay::Confirm(Ask::Abort) => {
             let scanned = format!("{} % of reachable floor scanned.", coverage::shares(model).0);

@@ -3,7 +3,7 @@
 use super::{events, text};
 use crate::model::{Busy, Model};
 use crate::theme::Role;
-use mission::{Hold, Order, Outcome, Phase, PositionTrust, Severity, event::HoldReason};
+use mission::{Hold, Order, Outcome, Phase, PositionTrust, Resumes, Severity, event::HoldReason};
 
 /// How a line looks, and its clauses, the most important one first.
 pub(super) type Clauses = (Role, Vec<String>);
@@ -105,53 +105,101 @@ fn running(model: &Model) -> Clauses {
     (Role::Title, vec![format!("Next target: {at}; task {done} % done."), calm])
 }
 
+/// Why the robot stands, then what ends the hold.
 fn held(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String> {
-    const KEEP: &str = "space: HOLD (stay held).";
     let position = model.standing.standing().position;
-    let clauses: &[&str] = match by {
-        HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced
-            if position == PositionTrust::Alarmed =>
-        {
-            &["HELD by operator; ranges contradict each other.", "Cannot resume without a consistent fix."]
-        }
-        HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced
-            if position != PositionTrust::Good =>
-        {
-            &["HELD by operator; position lost.", "Cannot resume without a position fix."]
-        }
-        HoldReason::Operator => &["HELD by operator.", "space: resume.", "P: change planner."],
-        HoldReason::Stepped => &["HELD after a step.", "space: resume."],
-        HoldReason::PlannerReplaced => &["HELD, planner replaced.", "space: resume.", "P: change planner."],
-        HoldReason::PositionAlarmed => {
-            &["HELD, ranges contradict each other.", "Resumes automatically when they agree.", KEEP]
-        }
-        HoldReason::PositionLost => {
-            &["HELD, position lost.", "Resumes automatically when the position is recovered.", KEEP]
-        }
-        HoldReason::Stuck { message } => &["HELD, stuck.", "P: change planner.", "space: retry.", message],
-        HoldReason::Tether { message } if !resumes.is_never() => {
-            &["HELD, tether.", "Resumes automatically when there is a way home.", KEEP, message]
-        }
-        HoldReason::Tether { message } => {
-            &["HELD, tether.", "space: resume; a scan eases the tether first.", "X: end mission.", message]
-        }
-        HoldReason::PlanRefused { message } if !resumes.is_never() => {
-            &["HELD, plan refused.", "Resumes with fallback planner.", KEEP, message]
-        }
-        HoldReason::PlanRefused { message } => {
-            &["HELD, plan refused.", "P: change planner.", ":fly-uncertified runs it.", message]
-        }
-        HoldReason::PlannerSilent { message } => {
-            &["HELD, planner silent.", "Resumes automatically when it answers.", KEEP, message]
-        }
-        HoldReason::PlannerFault { message } if !resumes.is_never() => {
-            &["HELD, planner failed.", "Resumes with fallback planner.", KEEP, message]
-        }
-        HoldReason::PlannerFault { message } => {
-            &["HELD, planner failed.", "P: change planner.", "space: retry.", message]
-        }
+    let clauses = match trouble(position) {
+        _ if !resumes.is_never() => held_for_now(by, *resumes),
+        Some(trouble) => held_without_position(by, trouble),
+        None => held_for_good(by),
     };
-    clauses.iter().map(|clause| (*clause).to_owned()).collect()
+    clauses.into_iter().chain(message(by)).collect()
+}
+
+/// What is wrong with the position, and what it takes to move again.
+fn trouble(position: PositionTrust) -> Option<(&'static str, &'static str)> {
+    match position {
+        PositionTrust::Good => None,
+        PositionTrust::Lost { .. } => Some(("position lost", "Cannot resume without a position fix.")),
+        PositionTrust::Alarmed => {
+            Some(("ranges contradict each other", "Cannot resume without a consistent fix."))
+        }
+    }
+}
+
+/// A hold that ends by itself. The second clause is short enough for 60 columns: nobody shall be surprised by a robot that
+/// moves.
+fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
+    let when = match (resumes, by) {
+        (Resumes::ByFallback, _) => "Resumes with fallback planner.",
+        (_, HoldReason::PositionLost) => "Resumes automatically when recovered.",
+        (_, HoldReason::Tether { .. }) => "Resumes automatically with a way home.",
+        (_, HoldReason::PlannerSilent { .. }) => "Resumes automatically on its answer.",
+        _ => "Resumes automatically.",
+    };
+    vec![format!("{}.", state(by)), when.into(), "space: HOLD (stay held).".into()]
+}
+
+/// A hold that only an order ends, and none that moves the robot is accepted now.
+fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec<String> {
+    let state = match by {
+        HoldReason::PositionLost | HoldReason::PositionAlarmed => format!("HELD, {trouble}."),
+        by => format!("{}; {trouble}.", state(by)),
+    };
+    let planner = by.blames_planner().then(|| "P: change planner.".to_owned());
+    [state, needs.into()].into_iter().chain(planner).collect()
+}
+
+/// A hold that only an order ends.
+fn held_for_good(by: &HoldReason) -> Vec<String> {
+    const RESUME: &str = "space: resume.";
+    const RETRY: &str = "space: retry.";
+    const PLANNER: &str = "P: change planner.";
+    let (state, remedies): (&str, &[&str]) = match by {
+        // Why the robot was held is over.
+        HoldReason::PositionLost => ("HELD, position recovered", &[RESUME]),
+        HoldReason::PositionAlarmed => ("HELD, ranges agree again", &[RESUME]),
+        HoldReason::Stepped => (state(by), &[RESUME]),
+        HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
+            (state(by), &[RESUME, PLANNER])
+        }
+        HoldReason::Tether { .. } => (state(by), &[RESUME, "X: end mission."]),
+        HoldReason::PlanRefused { .. } => (state(by), &[PLANNER, ":fly-uncertified runs it."]),
+        HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => (state(by), &[PLANNER, RETRY]),
+    };
+    std::iter::once(format!("{state}.")).chain(remedies.iter().map(|remedy| (*remedy).to_owned())).collect()
+}
+
+/// Why the robot stands, without a full stop.
+fn state(by: &HoldReason) -> &'static str {
+    match by {
+        HoldReason::Operator => "HELD by operator",
+        HoldReason::Stepped => "HELD after a step",
+        HoldReason::PlannerReplaced => "HELD, planner replaced",
+        HoldReason::PositionAlarmed => "HELD, ranges contradict each other",
+        HoldReason::PositionLost => "HELD, position lost",
+        HoldReason::Stuck { .. } => "HELD, stuck",
+        HoldReason::Tether { .. } => "HELD, tether",
+        HoldReason::PlanRefused { .. } => "HELD, plan refused",
+        HoldReason::PlannerSilent { .. } => "HELD, planner silent",
+        HoldReason::PlannerFault { .. } => "HELD, planner failed",
+    }
+}
+
+/// The details, where there is room for them.
+fn message(by: &HoldReason) -> Option<String> {
+    match by {
+        HoldReason::PlannerFault { message }
+        | HoldReason::PlannerSilent { message }
+        | HoldReason::Stuck { message }
+        | HoldReason::Tether { message }
+        | HoldReason::PlanRefused { message } => Some(message.clone()),
+        HoldReason::Operator
+        | HoldReason::PositionLost
+        | HoldReason::PositionAlarmed
+        | HoldReason::Stepped
+        | HoldReason::PlannerReplaced => None,
+    }
 }
 
 #[cfg(test)]

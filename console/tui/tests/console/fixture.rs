@@ -3,7 +3,7 @@
 use mission::event::{HoldReason, JOURNAL_VERSION, RunOpened, TetherAlarm, TetherContact};
 use mission::planner::{Cause, During, Fault};
 use mission::{
-    Event, EventKind, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters, PlannerChoice,
+    AskId, Event, EventKind, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters, PlannerChoice,
     PlannerInfo, Resumes, ScanConfig, TaskConfig, TetherConfig,
 };
 use nalgebra::{Matrix2, Matrix3};
@@ -241,20 +241,25 @@ impl ScriptedMission {
         [
             EventKind::Ordered { order: Order::Start },
             EventKind::PlannerChosen { ask: None, choice: choice("rpf"), info, from: None },
-            EventKind::Planned {
-                ask: None,
-                way_home: 0,
-                planner: "rpf".into(),
-                reason: Reason::Start,
-                path: self.path.clone(),
-                length_m: self.length_m,
-                complete: true,
-                legs: vec![],
-                cuts: vec![],
-            },
+            self.planned(None),
         ]
         .map(|kind| self.now(kind))
         .into()
+    }
+
+    /// The plan, in answer to an ask.
+    pub fn planned(&self, ask: Option<AskId>) -> EventKind {
+        EventKind::Planned {
+            ask,
+            way_home: 0,
+            planner: "rpf".into(),
+            reason: Reason::Start,
+            path: self.path.clone(),
+            length_m: self.length_m,
+            complete: true,
+            legs: vec![],
+            cuts: vec![],
+        }
     }
 
     /// The events of some ticks under way.

@@ -3,7 +3,8 @@
 use crate::fixture::{RICH, Screen, choice};
 use crate::screens::{drawn, text};
 use mission::event::HoldReason;
-use mission::{EventKind, Gait, Order, Outcome, ParamValue, Phase, Resumes, Severity};
+use mission::{AskId, EventKind, Gait, Order, Outcome, ParamValue, Phase, Resumes, Severity, WorkerId};
+use tui::actions::ActionId;
 use tui::model::{Overlay, Pane};
 use tui::{Effect, Key, KeyPress, Model, Msg, Recording, Signal, Speed};
 
@@ -29,6 +30,23 @@ fn send_event(screen: &mut Screen, kind: EventKind) -> Vec<Effect> {
 fn obeyed(screen: &mut Screen, order: Order) {
     let events = screen.mission.obeyed(order);
     screen.send(Msg::Events(events));
+}
+
+/// The ask of a planner that is being prepared.
+fn preparing() -> AskId {
+    AskId { worker: WorkerId(2), n: 1 }
+}
+
+fn prepare(screen: &mut Screen, ask: AskId) {
+    let info = Box::new(crate::fixture::planners().remove(2));
+    send_event(screen, EventKind::PlannerPrepared { ask, choice: choice("spiral-tangent"), info });
+}
+
+fn send_certified_plan(screen: &mut Screen, ask: Option<AskId>, reasons: &[&str]) {
+    let planned = screen.mission.planned(ask);
+    send_event(screen, planned);
+    let certified = screen.mission.certified(reasons);
+    screen.send(Msg::Events(vec![certified]));
 }
 
 fn held(by: HoldReason) -> EventKind {
@@ -181,9 +199,9 @@ fn planning_is_shown_with_the_time_it_has_taken_while_ticks_go_on() {
     }
     assert_eq!(screen.model.silent_s(), None);
     let expect = |screen: &Screen, text: &str| assert!(shown(screen).contains(text), "{}", shown(screen));
-    expect(&screen, "Planning (rpf), 7 s of 60 s at most. space: HOLD. X: end mission.");
+    expect(&screen, "Planning (rpf), 7 s (limit 60 s). space: HOLD. X: end mission.");
     screen.send(Msg::BusyAt { share: 0.419, what: "candidate 2 of 3".into() });
-    expect(&screen, "Planning (rpf) 41 %, 7 s of 60 s at most. candidate 2 of 3.");
+    expect(&screen, "Planning (rpf) 41 %, 7 s (limit 60 s). candidate 2 of 3.");
     screen.send(Msg::BusyAt { share: 1.0, what: String::new() });
     expect(&screen, "Planning (rpf) 99 %, 7 s");
     screen.send(Msg::Busy(None));
@@ -210,6 +228,65 @@ fn a_hold_by_the_operator_says_what_keeps_the_robot_from_resuming() {
         let line = format!("HELD by operator; {why}. Cannot resume without a");
         assert!(shown(&screen).contains(&line), "{}", shown(&screen));
     }
+}
+
+#[test]
+fn a_planner_that_was_replaced_is_no_hold_by_the_operator() {
+    let mut screen = Screen::running();
+    send_event(&mut screen, held(HoldReason::PlannerReplaced));
+    send_event(&mut screen, EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
+    let text = shown(&screen);
+    assert!(text.contains("HELD, planner replaced; position lost. Cannot resume without a"), "{text}");
+}
+
+/// The line above the keys of a held mission, on a screen so wide.
+fn line_of_hold(by: &HoldReason, resumes: Resumes, position: Option<EventKind>, size: (u16, u16)) -> String {
+    let mut screen = Screen::running();
+    for kind in position.into_iter().chain([EventKind::Held { by: by.clone(), resumes }]) {
+        send_event(&mut screen, kind);
+    }
+    screen.send(Msg::Resize { width: size.0, height: size.1 });
+    let text = text(&drawn(&screen.model, RICH, size));
+    text.lines().find(|line| line.contains("HELD")).unwrap_or(&text).to_owned()
+}
+
+#[test]
+fn a_hold_that_ends_by_itself_says_so_on_every_screen() {
+    use HoldReason::{PlanRefused, PlannerFault, PlannerSilent, PositionAlarmed, PositionLost, Tether};
+    for by in HoldReason::every(&"details ".repeat(20)) {
+        let resumes = match by {
+            PositionLost | PositionAlarmed | PlannerSilent { .. } | Tether { .. } => Resumes::WhenCleared,
+            PlannerFault { .. } | PlanRefused { .. } => Resumes::ByFallback,
+            // These end by an order only.
+            _ => continue,
+        };
+        for size in [(60, 16), (80, 24), (120, 36)] {
+            let line = line_of_hold(&by, resumes, None, size);
+            assert!(line.contains("Resumes ") && !line.contains('…'), "{by:?} at {size:?}: {line}");
+        }
+    }
+}
+
+#[test]
+fn a_hold_that_an_order_ends_promises_nothing_and_offers_what_is_accepted() {
+    let lost = EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 };
+    let alarmed = EventKind::PositionAlarmed { chi2: 90.0, degrees_of_freedom: 2 };
+    for by in HoldReason::every("details") {
+        for position in [None, Some(lost.clone()), Some(alarmed.clone())] {
+            let line = line_of_hold(&by, Resumes::Never, position.clone(), (120, 36));
+            assert!(!line.contains("automatically") && !line.contains("Resumes"), "{line}");
+            let is_refused = matches!(by, HoldReason::PlanRefused { .. });
+            let offers = line.contains("space: re") || is_refused && line.contains(":fly-uncertified");
+            assert_eq!(offers, position.is_none(), "{line}");
+        }
+    }
+}
+
+#[test]
+fn starting_a_mission_that_is_held_is_refused_without_a_key_that_would_resume() {
+    let why = |screen: &Screen| tui::update::offered(&screen.model, ActionId::Start).unwrap_err();
+    assert_eq!(why(&Screen::held()), "the mission has already been started");
+    assert_eq!(why(&Screen::running()), "the mission has already been started; space: HOLD");
 }
 
 #[test]
@@ -250,10 +327,8 @@ fn a_robot_that_resumes_by_itself_withdraws_the_question() {
 
 #[test]
 fn a_planner_that_is_rejected_or_late_is_reported() {
-    let mut screen = Screen::held();
-    let ask = mission::AskId { worker: mission::WorkerId(2), n: 1 };
-    let info = Box::new(crate::fixture::planners().remove(2));
-    send_event(&mut screen, EventKind::PlannerPrepared { ask, choice: choice("spiral-tangent"), info });
+    let (mut screen, ask) = (Screen::held(), preparing());
+    prepare(&mut screen, ask);
     assert_eq!(screen.model.planner_id(), Some("rpf"), "it does not drive yet");
     let why = "no plan within 60 s".to_owned();
     send_event(&mut screen, EventKind::PlannerRejected { planner: "spiral-tangent".into(), why });
@@ -263,13 +338,41 @@ fn a_planner_that_is_rejected_or_late_is_reported() {
     send_event(&mut screen, EventKind::Discarded { ask });
     send_event(&mut screen, EventKind::Snapshotted { ask, bytes: 12 });
     assert_eq!(screen.model, before, "of no interest to the operator");
-    send_event(&mut screen, EventKind::PlannerLate { planner: "rpf".into(), ticks: 4 });
-    assert_eq!(notice(&screen), "planner rpf answered 4 ticks late");
+    for (ticks, text) in [(1, "planner rpf answered 1 tick late"), (4, "planner rpf answered 4 ticks late")] {
+        send_event(&mut screen, EventKind::PlannerLate { planner: "rpf".into(), ticks });
+        assert_eq!(notice(&screen), text);
+    }
     let events = screen.mission.planner_fails();
     screen.send(Msg::Events(events));
     send_event(&mut screen, EventKind::PlannerLate { planner: "rpf".into(), ticks: 4 });
     obeyed(&mut screen, Order::Resume);
     assert_eq!(screen.model.alarms.unacknowledged(Severity::Crit), 1, "the fault waits to be acknowledged");
+}
+
+#[test]
+fn the_certificate_of_a_planner_that_is_prepared_says_nothing_of_the_plan_that_is_flown() {
+    let (mut screen, ask) = (Screen::tethered(), preparing());
+    prepare(&mut screen, ask);
+    send_certified_plan(&mut screen, Some(ask), &["cable stays out"]);
+    let why = "the plan is not safe for the tether".to_owned();
+    send_event(&mut screen, EventKind::PlannerRejected { planner: "spiral-tangent".into(), why });
+    assert_eq!(screen.model.tether.as_ref().unwrap().certified, Some(true), "the plan that is flown is");
+    assert_eq!(screen.model.alarms.list(), Screen::tethered().model.alarms.list());
+    send_certified_plan(&mut screen, None, &["cable stays out"]);
+    assert_eq!(screen.model.tether.as_ref().unwrap().certified, Some(false));
+    assert_eq!(screen.model.alarms.unacknowledged(Severity::Crit), 1);
+}
+
+#[test]
+fn the_certificate_of_a_planner_that_takes_over_counts() {
+    let (mut screen, ask) = (Screen::tethered(), preparing());
+    prepare(&mut screen, ask);
+    send_certified_plan(&mut screen, Some(ask), &["cable stays out"]);
+    let (choice, info) = (choice("spiral-tangent"), Box::new(crate::fixture::planners().remove(2)));
+    let from = Some("rpf".to_owned());
+    send_event(&mut screen, EventKind::PlannerChosen { ask: None, choice, info, from });
+    send_certified_plan(&mut screen, Some(ask), &["cable stays out"]);
+    assert_eq!(screen.model.tether.as_ref().unwrap().certified, Some(false));
 }
 
 #[test]
@@ -300,7 +403,7 @@ fn a_value_is_checked_again_when_it_is_sent() {
     let Overlay::Parameters { edit: Some(edit), .. } = &screen.model.ui.overlay else {
         panic!("still typing")
     };
-    assert!(edit.refusal.as_ref().is_some_and(|why| why.contains("while the robot is moving")));
+    assert!(edit.refusal.as_ref().is_some_and(|why| why.contains("while the mission is running")));
 }
 
 #[test]
@@ -326,9 +429,8 @@ fn a_bad_value_is_refused_in_place_and_a_good_one_sent() {
 fn what_cannot_change_under_way_says_so() {
     let mut screen = Screen::running();
     screen.press([Key::Char('p'), Key::Down, Key::Down, Key::Down, Key::Enter]);
-    assert!(
-        notice(&screen).contains("parameter `mode` cannot be changed while the robot is moving; HOLD first")
-    );
+    let why = "parameter `mode` cannot be changed while the mission is running; HOLD first";
+    assert!(notice(&screen).contains(why));
     assert!(matches!(screen.model.ui.overlay, Overlay::Parameters { edit: None, .. }));
 }
 
@@ -362,7 +464,11 @@ fn leaving_is_not_asked_where_nothing_is_at_stake() {
 fn control_c_holds_and_only_twice_in_two_seconds_asks_to_leave() {
     let mut screen = Screen::running();
     assert_eq!(screen.press([Key::Ctrl('c')]), [order(Order::Hold)]);
-    screen.pass(3.0);
+    assert_eq!(notice(&screen), "Press Ctrl-C again within 2 s to leave");
+    screen.pass(1.9);
+    assert_ne!(notice(&screen), "");
+    screen.pass(0.2);
+    assert_eq!(notice(&screen), "", "the first one no longer counts");
     screen.press([Key::Ctrl('c')]);
     assert_eq!(screen.model.ui.overlay, Overlay::None);
     screen.pass(1.0);

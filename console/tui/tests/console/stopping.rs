@@ -8,40 +8,8 @@ use tui::{Effect, Key, Model, Msg, Signal, update};
 
 const HOLD: Effect = Effect::Order(Order::Hold);
 
-fn hold_reasons() -> Vec<HoldReason> {
-    let message = || "why".to_owned();
-    let all = vec![
-        HoldReason::Operator,
-        HoldReason::PositionLost,
-        HoldReason::PositionAlarmed,
-        HoldReason::PlannerFault { message: message() },
-        HoldReason::PlannerSilent { message: message() },
-        HoldReason::Stuck { message: message() },
-        HoldReason::Tether { message: message() },
-        HoldReason::PlanRefused { message: message() },
-        HoldReason::Stepped,
-        HoldReason::PlannerReplaced,
-    ];
-    // A new reason does not compile until it is in the list above.
-    for by in &all {
-        match by {
-            HoldReason::Operator
-            | HoldReason::PositionLost
-            | HoldReason::PositionAlarmed
-            | HoldReason::PlannerFault { .. }
-            | HoldReason::PlannerSilent { .. }
-            | HoldReason::Stuck { .. }
-            | HoldReason::Tether { .. }
-            | HoldReason::PlanRefused { .. }
-            | HoldReason::Stepped
-            | HoldReason::PlannerReplaced => {}
-        }
-    }
-    all
-}
-
 fn phases() -> Vec<Phase> {
-    let held = hold_reasons().into_iter().flat_map(|by| {
+    let held = HoldReason::every("why").into_iter().flat_map(|by| {
         [Resumes::Never, Resumes::WhenCleared, Resumes::ByFallback]
             .map(|resumes| Phase::Held(Hold { by: by.clone(), resumes }))
     });
