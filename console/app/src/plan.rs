@@ -9,7 +9,7 @@ use crate::{
     scenario::Scenario,
 };
 use anyhow::Context;
-use mission::{Cause, Fault, MissionConfig, Parameters, TaskConfig, preview, tether::judge_from_start};
+use mission::{Cause, Fault, MissionConfig, Parameters, TaskConfig, preview, tether::certify_from_start};
 use planner_api::{Code, LogLevel, Plan};
 use planner_host::{BlockingHost, HostConfig, PluginDirs, Reply};
 use serde::Serialize;
@@ -190,7 +190,7 @@ fn certificate(scenario: &Scenario, plan: &Plan) -> Option<Certificate> {
     }
     let drawing = scenario.sim.world.as_drawn();
     if let Some(tether) = &scenario.mission.tether {
-        return Some(judge_from_start(tether, &scenario.mission, &plan.path, &plan.cuts, &drawing));
+        return Some(certify_from_start(tether, &scenario.mission, &plan.path, &plan.cuts, &drawing));
     }
     let TaskConfig::Cover { anchor, .. } = &scenario.mission.task else { return None };
     let case = Case {

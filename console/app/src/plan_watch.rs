@@ -103,7 +103,7 @@ impl<A: Answers> Answers for Watched<'_, A> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mission::{PlannerChoice, Reason, ask::preview};
+    use mission::{PlannerChoice, preview};
     use std::sync::{Arc, Mutex};
 
     const LIMIT: Duration = Duration::from_secs(60);
@@ -142,7 +142,7 @@ mod tests {
     fn the_work_of_a_successor_is_shown_when_the_planner_that_drives_has_none() {
         let mut watch = PlanWatch::new(LIMIT, None);
         let ([_, first], [open, second]) = (open_and_plan(1, "rpf"), open_and_plan(2, "apf"));
-        [&open, &second, &first].map(|ask| watch.submitted(ask));
+        [&open, &second, &first].into_iter().for_each(|ask| watch.submitted(ask));
         watch.answered(open.id);
         assert_eq!(watch.current().map(|work| work.ask), Some(first.id));
         watch.answered(first.id);

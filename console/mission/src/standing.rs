@@ -159,13 +159,13 @@ pub enum Refusal {
     NotStarted,
     /// The mission has been started before.
     AlreadyStarted,
-    /// The robot is moving.
+    /// The mission is running.
     AlreadyMoving,
     /// A single step needs a robot that is held.
     StepNeedsHold,
     /// Another planner needs a robot that is held.
     SwapNeedsHold,
-    /// The parameter cannot change while the robot moves.
+    /// The parameter cannot change while the mission runs.
     NotLive {
         /// Which parameter.
         key: String,

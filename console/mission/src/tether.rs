@@ -306,7 +306,7 @@ impl Tether {
 }
 
 /// Judges a plan of a whole mission before anything has moved, on the drawing.
-pub fn judge_from_start(
+pub fn certify_from_start(
     tether: &TetherConfig,
     config: &MissionConfig,
     path: &[Point],

@@ -127,14 +127,14 @@ fn without_way_home(
         Some(Leg { first, last, ..*leg })
     };
     let legs: Option<Vec<Leg>> = own.map(shifted).collect();
-    let legs = legs.ok_or_else(|| impossible("gave a leg that begins on the way home".to_owned()))?;
+    let legs = legs.ok_or_else(|| impossible("gave a leg that begins on the way home"))?;
     let path = path.iter().skip(way_home).copied().collect();
     let plan = Plan { path, complete, legs, cuts: cuts.to_vec(), ..Plan::default() };
-    plan.check().map_err(impossible)?;
+    plan.check().map_err(|what| impossible(&what))?;
     Ok(plan)
 }
 
-fn impossible(what: String) -> Fault {
+fn impossible(what: &str) -> Fault {
     Fault {
         planner: String::new(),
         during: During::Plan,
