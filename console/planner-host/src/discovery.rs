@@ -98,7 +98,8 @@ impl PluginFile {
         self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Whether the bytes of this planner's id are in the file at all; a file without them cannot export it.
+    /// Whether the bytes of this planner's id are in the file at all, so that it is worth loading. Nothing is in a refused
+    /// file, and nobody finds a planner that composes its id only when it is loaded.
     pub fn may_have(&self, id: &str) -> bool {
         !id.is_empty() && self.words.windows(id.len()).any(|window| window == id.as_bytes())
     }

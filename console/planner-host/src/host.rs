@@ -9,18 +9,17 @@ mod saved;
 
 pub use config::HostConfig;
 pub(crate) use opening::Opening;
+pub(crate) use planner::Wanted;
 
 use crate::OnProgress;
 use crate::discovery::PluginDirs;
 use crate::parameters;
 use crate::stats::{Durations, HostStats};
 use crate::supervisor::{Failure, Ready, WakeReceiver, Waker, Worker, wait};
-use fault::Phase;
 use find::Catalog;
 use mission::planner::{Cause, During, Fault, Parameters, PlannerInfo};
 use mission::{Answer, Ask, AskId, Given, Said, What, WorkerId};
 use planner::{Asked, Doing, Outcome, Planner};
-use planner_api::{PlanRequest, Sensed};
 use saved::SavedStates;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -47,25 +46,6 @@ pub struct Host {
     step_times: Durations,
     n_faults: u64,
     on_progress: Option<OnProgress>,
-}
-
-/// What is wanted of a planner that was opened, lent.
-pub(crate) enum Wanted<'a> {
-    Reconfigure(&'a Parameters),
-    Plan(&'a PlanRequest<'a>),
-    Step(&'a Sensed<'a>),
-    Snapshot,
-}
-
-impl Wanted<'_> {
-    fn phase(&self) -> Phase {
-        match self {
-            Self::Reconfigure(_) => Phase::Configure,
-            Self::Plan(_) => Phase::Plan,
-            Self::Step(sensed) => Phase::Step(sensed.tick),
-            Self::Snapshot => Phase::State,
-        }
-    }
 }
 
 impl Host {

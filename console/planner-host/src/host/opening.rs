@@ -1,19 +1,17 @@
-//! From a planner's id to a planner that is ready, step by step: load, configure, restore.
+//! A planner that is being opened: what is known of it from stage to stage.
+
+mod stages;
 
 use super::find::{Candidate, Search};
-use super::planner::{Asked, Doing, Planner, Ready, must_cover, unless_refused};
 use super::saved::Saved;
-use super::{Host, fault, fault::Phase, numbers};
-use crate::supervisor::{Failure, Worker};
-use crate::survey::{info, write_load};
-use crate::wire::answer::{self, Said, loaded_of, said_of};
+use super::{fault, fault::Phase};
+use crate::supervisor::Failure;
+use crate::survey::info;
+use crate::wire::answer::{self, Said};
 use crate::wire::body::Writer;
-use crate::wire::kind;
-use mission::planner::{Cause, During};
-use mission::{AskId, Fault, Given, Parameters, PlannerInfo};
+use mission::{AskId, Fault, Parameters, PlannerInfo};
 use planner_api::{Limits, Site};
 use std::collections::VecDeque;
-use std::time::Instant;
 
 /// A planner that is being opened.
 pub(crate) struct Opening {
@@ -115,198 +113,5 @@ impl Loaded {
 
     fn blamed(&self, fault: Fault) -> Fault {
         Fault { plugin_sha256: Some(self.info.sha256.clone()), ..fault }
-    }
-}
-
-impl Host {
-    /// Begins to open a planner in place of one that has this worker; what cannot be opened is answered at once.
-    pub(crate) fn open(&mut self, id: AskId, opening: Opening) {
-        self.close(id.worker);
-        self.planners.push(Planner::new(id.worker));
-        let begun = self.load_next(id, opening);
-        self.close_unless(begun, id);
-    }
-
-    /// Answers that a planner cannot be opened, if it cannot.
-    fn close_unless(&mut self, begun: Result<(), Fault>, id: AskId) {
-        if let Err(fault) = begun {
-            self.close(id.worker);
-            self.answer(id, Err(fault));
-        }
-    }
-
-    /// Asks a new worker to load the next file that may have the planner.
-    fn load_next(&mut self, id: AskId, mut opening: Opening) -> Result<(), Fault> {
-        loop {
-            let Some(candidate) = opening.candidates.pop_front() else {
-                self.search_on(&mut opening)?;
-                continue;
-            };
-            match self.load(&candidate, &opening.planner) {
-                Ok(worker) => {
-                    let doing = Doing::Open(Box::new(opening), Box::new(Stage::Load(candidate)));
-                    self.wait_for(id, worker, doing);
-                    return Ok(());
-                }
-                Err(failure) => opening.note(failure, &candidate),
-            }
-        }
-    }
-
-    /// Finds more files to try.
-    ///
-    /// # Errors
-    /// There are none.
-    fn search_on(&mut self, opening: &mut Opening) -> Result<(), Fault> {
-        let Opening { planner, search, first_fault, candidates, .. } = opening;
-        if let Some(files) = self.catalog.search_on(planner, search, first_fault.is_none()) {
-            *candidates = files;
-            return Ok(());
-        }
-        let not_found = || fault::new(planner, During::Load, Cause::Refused, self.catalog.not_found(planner));
-        Err(first_fault.take().unwrap_or_else(not_found))
-    }
-
-    /// Starts a worker and asks it to load a file.
-    fn load(&self, candidate: &Candidate, planner: &str) -> Result<Worker, Failure> {
-        let mut worker = Worker::spawn(&self.config.worker_command)?;
-        let memory_limit_bytes = self.config.memory_limit_bytes;
-        worker.ask(kind::LOAD, self.config.load_deadline, |w| {
-            write_load(w, &candidate.path, planner, memory_limit_bytes);
-        })?;
-        Ok(worker)
-    }
-
-    /// Leaves an ask open until its worker has answered.
-    fn wait_for(&mut self, id: AskId, worker: Worker, doing: Doing) {
-        if let Some(planner) = self.planners.iter_mut().find(|planner| planner.id == id.worker) {
-            planner.worker = Some(worker);
-            planner.asked = Some(Asked { id, at: Instant::now(), doing });
-        }
-    }
-
-    /// Takes the outcome of a stage and begins the next one.
-    pub(super) fn go_on_opening(
-        &mut self,
-        id: AskId,
-        opening: Opening,
-        stage: Stage,
-        outcome: Result<(), Failure>,
-    ) {
-        let planner = self.planners.iter_mut().find(|planner| planner.id == id.worker);
-        let Some(mut worker) = planner.and_then(|planner| planner.worker.take()) else { return };
-        let begun = match stage {
-            Stage::Load(candidate) => {
-                let answer = outcome.and_then(|()| worker.take_answer(loaded_of));
-                self.configure(id, worker, opening, candidate, answer)
-            }
-            Stage::Configure(loaded) => {
-                let answer = outcome.and_then(|()| worker.take_answer(said_of));
-                self.restore(id, worker, opening, loaded, answer)
-            }
-            Stage::Restore(loaded, said) => {
-                let answer = outcome.and_then(|()| worker.take_answer(|_| Ok(())));
-                match unless_refused(answer.map_err(|failure| loaded.fault(failure, Phase::State))) {
-                    Ok(_) => {
-                        self.opened(id, worker, opening, loaded, said);
-                        Ok(())
-                    }
-                    Err(fault) => self.part(worker, fault),
-                }
-            }
-        };
-        self.close_unless(begun, id);
-    }
-
-    /// Shuts down a worker whose planner cannot be opened.
-    fn part(&mut self, worker: Worker, fault: Fault) -> Result<(), Fault> {
-        self.dismiss(worker);
-        Err(fault)
-    }
-
-    /// Makes the planner in a worker that has loaded it; else tries the next file.
-    fn configure(
-        &mut self,
-        id: AskId,
-        mut worker: Worker,
-        mut opening: Opening,
-        candidate: Candidate,
-        answer: Result<answer::Loaded, Failure>,
-    ) -> Result<(), Fault> {
-        let found = answer.map(|answer| {
-            answer.planners.first().map(|planner| Loaded::new(planner, &answer, &candidate.name))
-        });
-        let loaded = match found {
-            Ok(Some(loaded)) => loaded,
-            other => {
-                self.dismiss(worker);
-                if let Err(failure) = other {
-                    opening.note(failure, &candidate);
-                }
-                return self.load_next(id, opening);
-            }
-        };
-        // A file before it that failed may work the next time.
-        let first = opening.first_fault.is_none().then_some(candidate);
-        self.catalog.learn(&loaded.info.id, first);
-        let coverage =
-            if self.config.must_cover { must_cover(&loaded.info, During::Configure) } else { Ok(()) };
-        let values = coverage.and_then(|()| numbers(&loaded.info, &opening.parameters));
-        let asked = values.and_then(|values| {
-            let write = |w: &mut Writer| {
-                w.values(&values).written(&opening.site.bytes);
-            };
-            let asked = worker.ask(kind::CONFIGURE, self.config.configure_deadline, write);
-            asked.map_err(|failure| loaded.fault(failure, Phase::Configure))
-        });
-        match asked {
-            Ok(()) => {
-                let doing = Doing::Open(Box::new(opening), Box::new(Stage::Configure(loaded)));
-                self.wait_for(id, worker, doing);
-                Ok(())
-            }
-            Err(fault) => self.part(worker, loaded.blamed(fault)),
-        }
-    }
-
-    /// Gives a planner that was made the state of an earlier one, if there is one that it understands.
-    fn restore(
-        &mut self,
-        id: AskId,
-        mut worker: Worker,
-        opening: Opening,
-        loaded: Loaded,
-        answer: Result<Said, Failure>,
-    ) -> Result<(), Fault> {
-        let said = match answer {
-            Ok(said) => said,
-            Err(failure) => return self.part(worker, loaded.fault(failure, Phase::Configure)),
-        };
-        let fitting = |ask| self.saved.fitting(ask, &loaded.info, loaded.state_version);
-        let Some(state) = opening.restore.and_then(fitting) else {
-            self.opened(id, worker, opening, loaded, said);
-            return Ok(());
-        };
-        let write = |w: &mut Writer| {
-            w.u32(loaded.state_version).bytes(state);
-        };
-        match worker.ask(kind::RESTORE, self.config.state_deadline, write) {
-            Ok(()) => {
-                let doing = Doing::Open(Box::new(opening), Box::new(Stage::Restore(loaded, said)));
-                self.wait_for(id, worker, doing);
-                Ok(())
-            }
-            Err(failure) => self.part(worker, loaded.fault(failure, Phase::State)),
-        }
-    }
-
-    /// The planner is ready.
-    fn opened(&mut self, id: AskId, worker: Worker, opening: Opening, loaded: Loaded, said: Said) {
-        let info = Box::new(loaded.info.clone());
-        if let Some(planner) = self.planners.iter_mut().find(|planner| planner.id == id.worker) {
-            planner.ready = Some(Ready::new(loaded, opening.parameters, opening.site.limits));
-            planner.worker = Some(worker);
-        }
-        self.answer(id, Ok((Given::Opened(info), said)));
     }
 }

@@ -22,6 +22,25 @@ pub(super) struct Planner {
     pub(super) ready: Option<Ready>,
 }
 
+/// What is wanted of a planner that was opened, lent.
+pub(crate) enum Wanted<'a> {
+    Reconfigure(&'a Parameters),
+    Plan(&'a PlanRequest<'a>),
+    Step(&'a Sensed<'a>),
+    Snapshot,
+}
+
+impl Wanted<'_> {
+    pub(super) fn phase(&self) -> Phase {
+        match self {
+            Self::Reconfigure(_) => Phase::Configure,
+            Self::Plan(_) => Phase::Plan,
+            Self::Step(sensed) => Phase::Step(sensed.tick),
+            Self::Snapshot => Phase::State,
+        }
+    }
+}
+
 /// An open ask.
 pub(super) struct Asked {
     pub(super) id: AskId,

@@ -1,5 +1,5 @@
-//! How long the console waits for the current request, measured by the same fair clock: a planner that the machine does
-//! not schedule is not late.
+//! The soft deadline of the current request, as the planner sees it: only what its process computes is charged, so that a
+//! planner that the machine does not schedule is not late. The console's own clock charges a planner that sleeps, too.
 
 use super::progress_reporter::ProgressReporter;
 use crate::Progress;
@@ -13,7 +13,7 @@ use std::os::fd::OwnedFd;
 use std::time::{Duration, Instant};
 
 /// Socket and processor time are looked at no more often than this.
-const LOOK_EVERY: Duration = Duration::from_millis(1);
+const CHECK_PERIOD: Duration = Duration::from_millis(1);
 
 /// Deadline of a request, and whether a CANCEL is waiting behind it.
 pub(super) struct Deadline {
@@ -104,7 +104,7 @@ impl Watch for Deadline {
     fn should_stop(&self) -> u32 {
         let now = Instant::now();
         self.progress.catch_up(now);
-        if now - self.looked.get() >= LOOK_EVERY {
+        if now - self.looked.get() >= CHECK_PERIOD {
             self.looked.set(now);
             self.cancelled.set(self.cancelled.get() || self.is_cancel_waiting());
             self.exhausted.set(self.budget.get().is_some_and(|budget| budget.is_used_up(now)));

@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
-use crate::Progress;
+use crate::supervisor::wait_for_one;
+use crate::wire::body::{Body, Read};
+use crate::wire::kind;
 
 /// Long enough for a busy machine to start a shell.
 const PATIENT: Duration = Duration::from_secs(10);

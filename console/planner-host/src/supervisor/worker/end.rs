@@ -1,0 +1,93 @@
+//! How a worker ends: by itself, on request, or killed; looked at and never waited for, but when it is dropped.
+
+use super::Worker;
+use super::state::{DIE_WITHIN, Dying, State};
+use crate::supervisor::ending::{how_it_ended, last_line};
+use crate::supervisor::poller::{Ready, wait_for_one};
+use crate::supervisor::{Failure, SHUT_DOWN_WITHIN};
+use rustix::process::Signal;
+use std::net::Shutdown;
+use std::os::unix::process::ExitStatusExt;
+use std::time::Instant;
+
+impl Worker {
+    /// Kills the process for this failure.
+    pub(super) fn end(&mut self, failure: Failure) -> Failure {
+        self.kill();
+        failure
+    }
+
+    /// The channel is lost: how the process ended is the outcome.
+    pub(super) fn lose(&mut self, now: Instant) {
+        self.state = State::Dying(Dying::new(now));
+    }
+
+    /// Waits for the end of the process and for its last output; how it ended, once that is known.
+    pub(super) fn advance_dying(&mut self, ready: Ready, now: Instant) -> Option<Failure> {
+        let State::Dying(dying) = &mut self.state else { return None };
+        let may_have_ended = ready.exited || self.process.pidfd().is_none() || now >= dying.until;
+        if !self.process.is_reaped() && may_have_ended && self.process.reap().is_some() {
+            dying.wait_for_output(now);
+        }
+        let is_known = self.process.is_reaped() && self.process.output().is_none();
+        if !is_known && now < dying.until {
+            return None;
+        }
+        if !self.process.is_reaped() && !dying.is_killed {
+            // A process that was slow to end keeps its own reason; only one that lives on is ended by our signal.
+            self.process.kill();
+            dying.wait_for_kill(now);
+            return None;
+        }
+        let by_us = Some(Signal::KILL.as_raw()).filter(|_| dying.is_killed);
+        let status = self.process.reap();
+        self.state = if status.is_some() { State::Gone } else { State::Leaving(None) };
+        let status = status.filter(|status| by_us.is_none() || status.signal() != by_us);
+        Some(Failure::Died { how: how_it_ended(status), last_output: last_line(self.process.tail()) })
+    }
+
+    /// Lets the process exit by itself within a grace period, so that the planner is dropped cleanly; an open request has
+    /// no outcome any more.
+    pub(crate) fn shut_down(&mut self) {
+        let now = Instant::now();
+        match self.state {
+            State::Gone | State::Leaving(_) => return,
+            State::Dying(_) => return self.kill(),
+            State::Busy(_) | State::Cancelling(..) => self.send_cancel(now),
+            State::Idle => {}
+        }
+        match self.socket.shutdown(Shutdown::Write) {
+            // The socket stays open until the worker has ended: it takes a full hang-up for the console's death.
+            Ok(()) => self.state = State::Leaving(Some(now + SHUT_DOWN_WITHIN)),
+            Err(_) => self.kill(),
+        }
+    }
+
+    /// Kills the process; an open request has no outcome any more.
+    pub(crate) fn kill(&mut self) {
+        if !self.is_gone() {
+            self.process.kill();
+            self.state = if self.process.reap().is_some() { State::Gone } else { State::Leaving(None) };
+        }
+    }
+
+    pub(super) fn advance_leaving(&mut self, until: Option<Instant>, now: Instant) {
+        if self.process.reap().is_some() {
+            self.state = State::Gone;
+        } else if until.is_some_and(|until| now >= until) {
+            self.kill();
+        }
+    }
+}
+
+impl Drop for Worker {
+    /// Nobody looks at it any more: it is killed, and reaped unless the system is stuck.
+    fn drop(&mut self) {
+        self.kill();
+        let until = Instant::now() + DIE_WITHIN;
+        while !self.is_gone() && Instant::now() < until {
+            let ready = wait_for_one(self, Some(until));
+            self.advance(ready, Instant::now(), &mut |_| {});
+        }
+    }
+}
