@@ -64,11 +64,14 @@ impl Engine {
             // The receiver lives as long as the host.
             let _ = progress.send((ask, at.clone()));
         }));
+        let flight = Flight::prepare(scenario, true);
+        // Before the thread runs, so that the first frame of the screen shows the scenario and every key counts.
+        screen.send(Msg::Events(vec![flight.opened()]));
         let now = Instant::now();
         let engine = EngineThread {
             scenario: scenario.clone(),
             logs: logs.to_path_buf(),
-            flight: Flight::prepare(scenario, true),
+            flight,
             watch: PlanWatch::new(host.plan_budget(), None),
             host,
             reported,
@@ -135,7 +138,6 @@ struct EngineThread {
 
 impl EngineThread {
     fn fly(mut self) -> Option<Closed> {
-        self.send_events(vec![self.flight.opened()]);
         let mut due = Instant::now();
         loop {
             let (orders, close) = self.wait_until(due);
@@ -235,7 +237,7 @@ impl EngineThread {
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
         assert!(!failing, "drill: the engine fails on purpose");
         self.send_work();
-        self.send_events(events);
+        self.send(Msg::Events(events));
         self.send_health();
         if matches!(self.flight.phase(), Phase::Ended(_)) {
             self.close_log(CLOSE_TIMEOUT);
@@ -319,10 +321,6 @@ impl EngineThread {
         }
         self.close_log(within);
         self.closed
-    }
-
-    fn send_events(&self, events: Vec<Event>) {
-        self.send(Msg::Events(events));
     }
 
     fn send(&self, message: Msg) {
