@@ -127,7 +127,8 @@ fn a_mission_that_covers_floor_is_refused_a_planner_that_does_not() {
     let bench = Bench::new();
     let cover = scenario("cover-circle.toml");
     let refused = bench.tankops(&["run", cover.to_str().unwrap(), "--planner", "navfn"]);
-    let says_why = refused.err.contains("covers no floor") && refused.err.contains("tether-safe");
+    let says_why =
+        refused.err.contains("does not support coverage missions") && refused.err.contains("tether-safe");
     assert!(refused.code == Some(2) && says_why, "{refused:?}");
 }
 

@@ -53,9 +53,10 @@ pub fn fly(
     crate::planners::check_choices(scenario, &crate::planners::found(plugins))?;
     warn_of_clearance(scenario);
     let flight = Flight::prepare(scenario, false);
-    let mut log = match options.record {
-        true => RunLog::create(&logs.logs, scenario, &scenario.mission.planner.id)?,
-        false => RunLog::unwritten()?,
+    let mut log = if options.record {
+        RunLog::create(&logs.logs, scenario, &scenario.mission.planner.id)?
+    } else {
+        RunLog::unwritten()?
     };
     let bar = progress_bar(scenario, options);
     let mut trouble = None;

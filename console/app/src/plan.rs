@@ -162,12 +162,9 @@ fn patience(mission: &MissionConfig) -> Duration {
 /// A plan for a whole floor takes longer than a way to a point, and more memory.
 pub fn patient(config: HostConfig, mission: &MissionConfig) -> HostConfig {
     match mission.task {
-        TaskConfig::Cover { .. } => HostConfig {
-            plan_deadline: COVER_WITHIN,
-            memory_limit_bytes: COVER_MEMORY_BYTES,
-            must_cover: true,
-            ..config
-        },
+        TaskConfig::Cover { .. } => {
+            HostConfig { plan_deadline: COVER_WITHIN, memory_limit_bytes: COVER_MEMORY_BYTES, ..config }
+        }
         TaskConfig::Goto { .. } | TaskConfig::Follow { .. } => config,
     }
 }

@@ -106,7 +106,7 @@ mod tests {
     use mission::{PlannerChoice, preview};
     use std::sync::{Arc, Mutex};
 
-    const LIMIT: Duration = Duration::from_secs(60);
+    const LIMIT: Duration = Duration::from_mins(1);
 
     fn id(worker: u16, n: u32) -> AskId {
         AskId { worker: WorkerId(worker), n }

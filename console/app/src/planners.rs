@@ -51,7 +51,7 @@ fn objections(
     let at = |key: String| format!("{section}.parameters.{key}");
     match choice_of(&choice.id, known) {
         Err(message) => vec![(format!("{section}.id"), message)],
-        Ok(info) if must_cover && !info.covers => {
+        Ok(info) if let Some(why) = info.why_no_coverage().filter(|_| must_cover) => {
             let ids: Vec<&str> =
                 known.iter().filter(|info| info.covers).map(|info| info.id.as_str()).collect();
             let who = if ids.is_empty() {
@@ -59,7 +59,7 @@ fn objections(
             } else {
                 format!("these do: {}", ids.join(", "))
             };
-            vec![(format!("{section}.id"), format!("planner `{}` covers no floor; {who}", info.id))]
+            vec![(format!("{section}.id"), format!("planner `{}` {why}; {who}", info.id))]
         }
         Ok(info) => {
             let problems = parameter_problems(info, &choice.parameters);

@@ -192,6 +192,11 @@ pub struct Fault {
 }
 
 impl PlannerInfo {
+    /// Why it cannot fly a mission over a whole floor, if it cannot; the sentence reads on after the planner's name.
+    pub fn why_no_coverage(&self) -> Option<&'static str> {
+        (!self.covers).then_some("does not support coverage missions")
+    }
+
     /// Whether it has this parameter and lets it change while the robot moves.
     pub fn has_live(&self, key: &str) -> bool {
         self.parameters.iter().any(|param| param.key == key && param.live)

@@ -299,10 +299,10 @@ impl Model {
     }
 
     /// Why a planner cannot fly this mission, if it cannot.
-    pub fn cannot_fly(&self, planner: &PlannerInfo) -> Option<String> {
+    pub fn cannot_fly(&self, planner: &PlannerInfo) -> Option<&'static str> {
         let covers =
             self.run.as_ref().is_some_and(|run| matches!(run.mission.task, TaskConfig::Cover { .. }));
-        (covers && !planner.covers).then(|| "does not support coverage missions".into())
+        if covers { planner.why_no_coverage() } else { None }
     }
 
     /// What is known of the active planner, or of the first one.

@@ -31,7 +31,7 @@ pub fn plan(settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Re
         Task::Cover { .. } => {
             return Err(PlannerError::new(
                 Code::Unsupported,
-                "it flies to points and along paths, it covers no floor",
+                "it flies to points and along paths and does not cover floors",
             ));
         }
     }

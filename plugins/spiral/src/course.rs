@@ -38,7 +38,7 @@ impl Course {
             Task::Goto { goal, tolerance_m } => (vec![goal], tolerance_m),
             Task::Follow { targets, tolerance_m } => (targets.to_vec(), tolerance_m),
             Task::Cover { .. } => {
-                let message = "it flies to points and along paths, it covers no floor";
+                let message = "it flies to points and along paths and does not cover floors";
                 return Err(PlannerError::new(Code::Unsupported, message));
             }
         };

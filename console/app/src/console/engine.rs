@@ -14,6 +14,7 @@ use crate::{
     flight::Flight,
     headless::{self, CLOSE_TIMEOUT},
     plan_watch::{PlanWatch, Watched, Work},
+    run_folder::Kept,
     run_log::{Closed, RunLog},
     scenario::Scenario,
 };
@@ -308,7 +309,7 @@ impl EngineThread {
     fn close_log(&mut self, within: Duration) {
         let Some(log) = self.log.take() else { return };
         let closed = log.close(within, &self.scenario, &self.host, Stops::of(&self.stops_ms));
-        let problem = closed.kept.as_ref().and_then(|kept| kept.problem());
+        let problem = closed.kept.as_ref().and_then(Kept::problem);
         self.closed = Some(closed);
         self.send(Msg::Health(super::screen::closed(problem)));
     }

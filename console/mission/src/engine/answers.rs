@@ -88,8 +88,8 @@ impl Mission {
             );
             return refuse(During::Load, Cause::Quarantined, message);
         }
-        if matches!(self.config.task, TaskConfig::Cover { .. }) && !info.covers {
-            let message = format!("planner {id} does not support coverage missions: choose one that does");
+        if let (TaskConfig::Cover { .. }, Some(why)) = (&self.config.task, info.why_no_coverage()) {
+            let message = format!("planner {id} {why}: choose one that does");
             return refuse(During::Configure, Cause::Refused, message);
         }
         Ok(given)

@@ -26,8 +26,6 @@ pub struct HostConfig {
     pub memory_limit_bytes: u64,
     /// Whether drawings are shown.
     pub wants_drawing: bool,
-    /// Whether the mission covers floor, so that planners that cannot are refused when they are chosen.
-    pub must_cover: bool,
 }
 
 impl HostConfig {
@@ -42,7 +40,6 @@ impl HostConfig {
             state_deadline: Duration::from_millis(100),
             memory_limit_bytes: MEMORY_LIMIT,
             wants_drawing: true,
-            must_cover: false,
         }
     }
 }

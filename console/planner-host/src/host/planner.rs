@@ -160,8 +160,11 @@ impl Planner {
         request: &PlanRequest<'_>,
         config: &HostConfig,
     ) -> Result<(), Fault> {
-        if let (Some(ready), Task::Cover { .. }) = (&self.ready, &request.task) {
-            must_cover(&ready.loaded.info, During::Plan).map_err(|fault| self.blamed(fault))?;
+        if let (Some(ready), Task::Cover { .. }) = (&self.ready, &request.task)
+            && let Some(why) = ready.loaded.info.why_no_coverage()
+        {
+            let message = format!("planner {} {why}: choose one that does", self.name());
+            return Err(self.blamed(fault::new(self.name(), During::Plan, Cause::Refused, message)));
         }
         let write = |w: &mut Writer| {
             w.flag(config.wants_drawing).request(request);
@@ -268,13 +271,4 @@ pub(super) fn unless_refused<T>(answer: Result<T, Fault>) -> Result<Option<T>, F
         Err(Fault { cause: Cause::Planner(_), .. }) => Ok(None),
         Err(fault) => Err(fault),
     }
-}
-
-/// Refuses a planner that covers no floor.
-pub(super) fn must_cover(info: &PlannerInfo, during: During) -> Result<(), Fault> {
-    let refused = || {
-        let message = format!("planner {} covers no floor: choose one that offers coverage", info.id);
-        fault::new(&info.id, during, Cause::Refused, message)
-    };
-    if info.covers { Ok(()) } else { Err(refused()) }
 }

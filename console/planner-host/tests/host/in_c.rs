@@ -152,7 +152,7 @@ fn legs_that_are_none_are_caught() {
 fn a_planner_that_covers_no_floor_is_not_asked_to() {
     let (_folder, mut host) = host();
     choose(&mut host, "direct-c", &Parameters::new()).unwrap();
-    assert_refused(&plan_to_cover(&mut host).unwrap_err(), &["direct-c covers no floor"]);
+    assert_refused(&plan_to_cover(&mut host).unwrap_err(), &["direct-c does not support coverage missions"]);
 }
 
 #[test]

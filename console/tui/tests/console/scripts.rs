@@ -175,7 +175,7 @@ fn a_planner_that_covers_no_floor_is_marked_and_not_asked_to() {
     run.mission.task =
         mission::TaskConfig::Cover { anchor: world::Point::origin(), regions: Vec::new(), tolerance_m: 0.2 };
     let planners = screen.model.console.planners.clone();
-    assert_eq!(screen.model.cannot_fly(&planners[0]).as_deref(), Some("does not support coverage missions"));
+    assert_eq!(screen.model.cannot_fly(&planners[0]), Some("does not support coverage missions"));
     screen.press([Key::Char('P'), Key::Up, Key::Up, Key::Up, Key::Enter]);
     assert_eq!(notice(&screen), format!("planner {} does not support coverage missions", planners[0].id));
     assert!(matches!(screen.model.ui.overlay, Overlay::Planners { .. }), "no question is asked");

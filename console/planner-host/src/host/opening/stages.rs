@@ -2,7 +2,7 @@
 
 use super::{Loaded, Opening, Stage};
 use crate::host::find::Candidate;
-use crate::host::planner::{Asked, Doing, Planner, Ready, must_cover, unless_refused};
+use crate::host::planner::{Asked, Doing, Planner, Ready, unless_refused};
 use crate::host::{Host, fault, fault::Phase, numbers};
 use crate::supervisor::{Failure, Worker};
 use crate::survey::write_load;
@@ -144,9 +144,7 @@ impl Host {
         // A file before it that failed may work the next time.
         let first = opening.first_fault.is_none().then_some(candidate);
         self.catalog.learn(&loaded.info.id, first);
-        let coverage =
-            if self.config.must_cover { must_cover(&loaded.info, During::Configure) } else { Ok(()) };
-        let values = coverage.and_then(|()| numbers(&loaded.info, &opening.parameters));
+        let values = numbers(&loaded.info, &opening.parameters);
         let asked = values.and_then(|values| {
             let write = |w: &mut Writer| {
                 w.values(&values).written(&opening.site.bytes);
