@@ -7,7 +7,7 @@ use crate::wire::answer::{Said, said_of};
 use crate::wire::body::{Body, Read, Writer};
 use crate::wire::kind;
 use crate::{checks, parameters};
-use mission::planner::{Cause, During, Fault, Parameters, PlannerInfo};
+use mission::planner::{Cause, During, Fault, Parameters};
 use mission::{AskId, Given, WorkerId};
 use planner_api::{Limits, PlanRequest, Sensed, Task};
 use std::time::{Duration, Instant};

@@ -46,7 +46,7 @@ mod tests {
         let source = include_str!("lib.rs").split("\n#[cfg(test)]").next().unwrap_or_default();
         let (_, code) = source.split_once("\n\n").expect("a line of documentation comes first");
         assert!(
-            guide.contains(&format!("```rust\n{}```\n", code)),
+            guide.contains(&format!("```rust\n{code}```\n")),
             "console/docs/planner-guide.md shows other code"
         );
     }
