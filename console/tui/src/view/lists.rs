@@ -170,7 +170,7 @@ fn planners(look: &Look, selected: usize, columns: u16) -> List {
             (Role::Text, text::column(&planner.version, 8)),
             match look.model.cannot_fly(planner) {
                 _ if drives => (Role::Good, "active".into()),
-                Some(why.into()) => (Role::Dim, why),
+                Some(why) => (Role::Dim, why.into()),
                 None => (Role::Good, String::new()),
             },
         ]
