@@ -142,7 +142,9 @@ mod tests {
     fn the_work_of_a_successor_is_shown_when_the_planner_that_drives_has_none() {
         let mut watch = PlanWatch::new(LIMIT, None);
         let ([_, first], [open, second]) = (open_and_plan(1, "rpf"), open_and_plan(2, "apf"));
-        [&open, &second, &first].into_iter().for_each(|ask| watch.submitted(ask));
+        for ask in [&open, &second, &first] {
+            watch.submitted(ask);
+        }
         watch.answered(open.id);
         assert_eq!(watch.current().map(|work| work.ask), Some(first.id));
         watch.answered(first.id);
