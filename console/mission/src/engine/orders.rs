@@ -54,8 +54,8 @@ impl Mission {
 
     /// Another planner, or the same one with other parameters, is to take over.
     ///
-    /// While the one before is ready it stays until the other has a plan that may be flown; one that is not is replaced at
-    /// once. A hold that was to end by itself now ends by an order: nobody who changes planners expects the robot to move.
+    /// The one before stays until the other has a plan that may be flown, unless it could not drive on anyway: then it is
+    /// replaced at once, so that the operator can have a plan of the other flown that is refused for the tether. A hold that was to end by itself now ends by an order: nobody who changes planners expects the robot to move.
     pub(super) fn choose(&mut self, choice: PlannerChoice, reason: Reason) {
         if let Phase::Held(hold) = &self.phase
             && !hold.resumes.is_never()
@@ -67,12 +67,18 @@ impl Mission {
         let mut seat = self.active.successor(choice, reason);
         seat.prepare = if waiting { Prepare::Open } else { Prepare::Plan };
         self.drop_candidate();
-        if self.active.is_ready && !waiting {
+        if self.active.is_ready && !waiting && !self.has_active_failed() {
             self.active.snapshot_due = self.can_hand_over_state(&seat);
             self.candidate = Some(seat);
         } else {
             self.replace_active(seat);
         }
+    }
+
+    /// Whether the robot is held because the active planner has no plan that it may fly.
+    fn has_active_failed(&self) -> bool {
+        let is_blamed = matches!(&self.phase, Phase::Held(hold) if hold.by.blames_planner());
+        is_blamed && !self.active.has_plan()
     }
 
     /// Whether a successor can go on from what the active planner knows now.

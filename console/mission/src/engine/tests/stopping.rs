@@ -245,3 +245,19 @@ fn a_robot_that_waits_for_a_planner_to_open_is_not_stuck() {
     flight.fly(450);
     assert_eq!(flight.mission.phase(), &Phase::Running(Gait::Steady));
 }
+
+/// A plan that a new obstacle made due is no reason to let go of a planner that is well, for one that may not even open.
+#[test]
+fn a_planner_that_is_well_stays_when_the_chosen_one_cannot_be_opened() {
+    let mut flight = started(config());
+    flight.tick(&[Order::Hold]);
+    flight.mission.active.want_plan(Reason::MapChanged);
+    flight.planner.refuse = vec!["other"];
+    flight.tick(&[swap_to("other")]);
+    flight.fly(3);
+    assert_eq!(flight.mission.planner_id(), "straight");
+    let before = flight.pose;
+    flight.tick(&[Order::Resume]);
+    flight.fly(5);
+    assert!(flight.pose != before, "{:?}", flight.mission.phase());
+}

@@ -86,6 +86,14 @@ fn a_plan_that_cannot_be_certified_is_refused_until_the_operator_says_otherwise(
         "{events:?}"
     );
     assert!(refusal(&flight.tick(&[Order::FlyUncertified])).is_some_and(|why| why.contains("no plan")));
+    // The refused plan of a planner that was chosen instead can be flown as well.
+    let mut flight = refused_flight(&config);
+    flight.tick(&[Order::Start]);
+    flight.tick(&[swap_to("other")]);
+    flight.fly(3);
+    assert_eq!(flight.mission.planner_id(), "other");
+    let events = flight.tick(&[Order::FlyUncertified]);
+    assert!(events.iter().any(|kind| matches!(kind, EventKind::Certified { refused: false, .. })));
     let mut flight = refused_flight(&MissionConfig { attended: false, ..config });
     flight.tick(&[Order::Start]);
     flight.fly(5);
