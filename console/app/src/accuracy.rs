@@ -6,11 +6,11 @@ use crate::{
     cli::AccuracyArgs,
     failure::{COMPLETE, bad_input},
     output::{say, say_line, warn_line},
-    scenario::Scenario,
 };
 use anyhow::Context;
 use mission::TaskConfig;
 use positioning::{Accuracy, AccuracyMap, Advice, Forecast, advise};
+use scenario::Scenario;
 use serde::Serialize;
 use std::{fmt::Write, process::ExitCode};
 use world::Point;

@@ -5,13 +5,13 @@ use crate::{
     failure::{COMPLETE, bad_input},
     output::{say, say_line},
     run_folder,
-    scenario::Scenario,
     verify::opened,
 };
 use anyhow::Context;
 use mission::{Event, EventKind};
 use recording::{JOURNAL_FILE, RECORDING_FILE, read_journal};
 use report::{Fold, Logs, Summary, account::Area, human, merged, merged::PastRun};
+use scenario::Scenario;
 use std::{
     collections::BTreeSet,
     fmt::Display,

@@ -12,12 +12,12 @@ use crate::{
     cli::{Drill, LogsArg},
     failure::bad_input,
     preflight::{LogsError, check_logs},
-    scenario::Scenario,
 };
 use engine::Engine;
 use inbox::{Inbox, Outbox, inbox};
 use line::EngineHandle;
 use planner_host::PluginDirs;
+use scenario::Scenario;
 use screen::{Left, Screen};
 use std::{
     io::IsTerminal,

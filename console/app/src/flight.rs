@@ -1,10 +1,11 @@
 //! One flight: simulator and mission, tick by tick.
 
-use crate::{answers::Answers, scenario::Scenario};
+use crate::answers::Answers;
 use mission::{
     Event, EventKind, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION,
 };
 use planner_api::Drive;
+use scenario::Scenario;
 use sim::Simulator;
 use std::time::Duration;
 use world::Floor;

@@ -11,7 +11,6 @@ use crate::{
     plan_watch::{PlanWatch, Watched},
     progress,
     run_log::{Closed, RunLog},
-    scenario::Scenario,
     stop_signal::{self, StopSignal},
 };
 use anyhow::Context;
@@ -19,6 +18,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use mission::{Event, EventKind, Order, Outcome, Phase};
 use planner_host::{Host, HostConfig, PluginDirs};
 use report::{PlannerCalls, Summary};
+use scenario::Scenario;
 use std::{io::IsTerminal, process::ExitCode, time::Duration};
 
 /// How long closing the recording may take before it is abandoned with a message.

@@ -19,7 +19,6 @@ mod progress;
 mod reproduce;
 mod run_folder;
 mod run_log;
-mod scenario;
 mod stop_signal;
 mod tune;
 mod verify;

@@ -6,12 +6,12 @@ use crate::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
     output::{say, say_line},
     progress,
-    scenario::Scenario,
 };
 use anyhow::Context;
 use mission::{Cause, Fault, MissionConfig, Parameters, TaskConfig, preview, tether::certify_from_start};
 use planner_api::{Code, LogLevel, Plan};
 use planner_host::{BlockingHost, HostConfig, PluginDirs, Reply};
+use scenario::Scenario;
 use serde::Serialize;
 use std::{
     process::ExitCode,

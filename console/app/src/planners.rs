@@ -4,11 +4,11 @@ use crate::{
     accuracy::warn_of_clearance,
     failure::{BAD_INPUT, COMPLETE, bad_input},
     output::{say, say_line, warn_line},
-    scenario::{Scenario, Settings},
 };
 use anyhow::Context;
 use mission::{ParamInfo, ParamKind, PlannerChoice, PlannerInfo, TaskConfig};
 use planner_host::{PluginDirs, Survey, SurveyedPlugin, WorkerCommand, parameter_problems, survey};
+use scenario::{Scenario, Settings};
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,

@@ -3,12 +3,12 @@
 use crate::{
     headless,
     run_folder::{Kept, RunFolder},
-    scenario::Scenario,
 };
 use mission::Event;
 use planner_host::Host;
 use recording::{Health, JournalWriter, Options, RunRecorder};
 use report::{Fold, Logs, Stops, Summary};
+use scenario::Scenario;
 use std::{
     path::Path,
     time::{Duration, Instant},

@@ -18,7 +18,6 @@ use crate::{
     headless,
     output::say_line,
     run_folder,
-    scenario::Scenario,
 };
 use anyhow::Context;
 use journal::{RecordedTick, Ticks};
@@ -26,6 +25,7 @@ use mission::{Event, EventKind, Order, RunOpened, event::JOURNAL_VERSION};
 use planner_host::PluginDirs;
 use planners::{Asked, Replayed};
 use recording::JOURNAL_FILE;
+use scenario::Scenario;
 use std::{collections::BTreeMap, path::Path, process::ExitCode};
 
 /// What was found.

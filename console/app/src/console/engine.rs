@@ -16,11 +16,11 @@ use crate::{
     plan_watch::{PlanWatch, Watched, Work},
     run_folder::Kept,
     run_log::{Closed, RunLog},
-    scenario::Scenario,
 };
 use mission::{AskId, Awaits, Event, Hold, HoldReason, Order, Phase};
 use planner_host::{Host, PluginDirs, Progress};
 use report::Stops;
+use scenario::Scenario;
 use std::{
     path::{Path, PathBuf},
     sync::{

@@ -7,10 +7,10 @@ use sim::NoiseModel;
 use std::{fs, time::Instant};
 use world::{ObstacleId, Point, Shape};
 
-const DEMO: &str = include_str!("../../../../scenarios/demo.toml");
-const PAPER: &str = include_str!("../../../../scenarios/spiral-paper.toml");
-const GOTO: &str = include_str!("../../../../scenarios/goto-single-obstacle.toml");
-const DOC: &str = include_str!("../../../docs/scenario-format.md");
+const DEMO: &str = include_str!("../../../scenarios/demo.toml");
+const PAPER: &str = include_str!("../../../scenarios/spiral-paper.toml");
+const GOTO: &str = include_str!("../../../scenarios/goto-single-obstacle.toml");
+const DOC: &str = include_str!("../../docs/scenario-format.md");
 
 /// The shortest scenario there is.
 const SMALL: &str = r#"name = "small"
