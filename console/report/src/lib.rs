@@ -1,7 +1,7 @@
 //! Events folded into the summary of a run.
 //!
 //! [`Fold`] reads every event of a run once and gives a [`Summary`]: the object that `run --json` prints, the text of
-//! [`human`], and what [`Expect`] holds to the bounds of a scenario. Wall-clock figures and files are no events; the
+//! [`human()`], and what [`Expect`] holds to the bounds of a scenario. Wall-clock figures and files are no events; the
 //! app fills them in.
 
 pub mod account;

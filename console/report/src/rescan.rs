@@ -56,7 +56,7 @@ impl fmt::Display for NoLane {
 /// what a robot can aim at. What is then smaller than `least_m2` is left. There are no more than `most` boxes; the fewer, the coarser.
 ///
 /// # Errors
-/// As [`crate::merged`].
+/// As [`crate::merged()`].
 pub fn rescan(runs: &[PastRun], least_m2: f64, most: usize) -> Result<Rescan, String> {
     let Joined { run, scanned, evidence } = joined(runs)?;
     let grid = scanned.believed();
