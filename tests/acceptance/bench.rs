@@ -8,38 +8,38 @@ use std::{
 use tempfile::TempDir;
 
 /// The workspace's folder.
-pub fn workspace() -> PathBuf {
+pub(crate) fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
 }
 
 /// A scenario that is shipped.
-pub fn scenario(name: &str) -> PathBuf {
+pub(crate) fn scenario(name: &str) -> PathBuf {
     workspace().join("scenarios").join(name)
 }
 
 /// A fresh folder for runs and files, and the command to work in it.
-pub struct Bench {
+pub(crate) struct Bench {
     folder: TempDir,
 }
 
 impl Bench {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { folder: tempfile::tempdir().unwrap() }
     }
 
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         self.folder.path()
     }
 
     /// Writes a file and gives its path.
-    pub fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+    pub(crate) fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
         let path = self.path().join(name);
         std::fs::write(&path, content).unwrap();
         path
     }
 
     /// `tankops` in this folder; test-only plugins lie in `deps` beside it.
-    pub fn command(&self) -> Command {
+    pub(crate) fn command(&self) -> Command {
         let program = Path::new(env!("CARGO_BIN_EXE_tankops"));
         let mut command = Command::new(program);
         command.current_dir(self.path()).env_remove("TANKOPS_PLUGIN_PATH");
@@ -48,24 +48,24 @@ impl Bench {
     }
 
     /// Runs `tankops` with arguments.
-    pub fn tankops(&self, arguments: &[&str]) -> Ended {
+    pub(crate) fn tankops(&self, arguments: &[&str]) -> Ended {
         Ended::from(self.command().args(arguments).output().unwrap())
     }
 
     /// Flies a scenario headless and gives the report.
-    pub fn fly(&self, scenario: &Path, more: &[&str]) -> Ended {
+    pub(crate) fn fly(&self, scenario: &Path, more: &[&str]) -> Ended {
         let mut command = self.command();
         command.arg("run").arg(scenario).arg("--json").args(more);
         Ended::from(command.output().unwrap())
     }
 
     /// Computes a run again.
-    pub fn verify(&self, run: &Path, more: &[&str]) -> Ended {
+    pub(crate) fn verify(&self, run: &Path, more: &[&str]) -> Ended {
         Ended::from(self.command().arg("verify").arg(run).args(more).output().unwrap())
     }
 
     /// Makes sure that a run is computed again equally, with the planners asked again and without.
-    pub fn prove(&self, run: &Path) {
+    pub(crate) fn prove(&self, run: &Path) {
         for more in [&[][..], &["--from-journal"]] {
             let verified = self.verify(run, more);
             assert!(verified.code == Some(0) && verified.out.contains("equal: "), "{more:?}: {verified:?}");
@@ -73,7 +73,7 @@ impl Bench {
     }
 
     /// Folders of runs, oldest first.
-    pub fn runs(&self) -> Vec<PathBuf> {
+    pub(crate) fn runs(&self) -> Vec<PathBuf> {
         let mut runs: Vec<PathBuf> = std::fs::read_dir(self.path().join("logs"))
             .map(|entries| entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()).collect())
             .unwrap_or_default();
@@ -84,7 +84,7 @@ impl Bench {
 
 /// What a finished `tankops` left.
 #[derive(Debug)]
-pub struct Ended {
+pub(crate) struct Ended {
     pub code: Option<i32>,
     pub out: String,
     pub err: String,
@@ -99,23 +99,23 @@ impl From<Output> for Ended {
 
 impl Ended {
     /// Stdout as JSON.
-    pub fn json(&self) -> Value {
+    pub(crate) fn json(&self) -> Value {
         serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error} in {self:?}"))
     }
 }
 
 /// The lines of a journal.
-pub fn journal(run: &Path) -> Vec<Value> {
+pub(crate) fn journal(run: &Path) -> Vec<Value> {
     let text = std::fs::read_to_string(run.join("events.jsonl")).unwrap();
     text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
 }
 
 /// The events of one kind.
-pub fn of_kind<'a>(events: &'a [Value], kind: &str) -> Vec<&'a Value> {
+pub(crate) fn of_kind<'a>(events: &'a [Value], kind: &str) -> Vec<&'a Value> {
     events.iter().filter(|event| event["event"] == kind).collect()
 }
 
 /// Where the first event of a kind stands in a journal.
-pub fn first_of(events: &[Value], kind: &str) -> Option<usize> {
+pub(crate) fn first_of(events: &[Value], kind: &str) -> Option<usize> {
     events.iter().position(|event| event["event"] == kind)
 }

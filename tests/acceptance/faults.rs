@@ -110,7 +110,7 @@ fn a_plugin_for_another_abi_is_listed_with_the_remedy() {
 }
 
 /// Compiles one of the examples in C into a plugin.
-pub fn compile(example: &str, library: &std::path::Path) {
+pub(crate) fn compile(example: &str, library: &std::path::Path) {
     compile_file(&crate::bench::workspace().join("plugins/examples/direct-c").join(example), library);
 }
 

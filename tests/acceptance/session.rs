@@ -15,7 +15,7 @@ use std::{
 const PATIENCE: Duration = Duration::from_mins(1);
 
 /// A shell in a pseudo terminal that notes `stty -a` before and after `tankops`.
-pub struct Session {
+pub(crate) struct Session {
     pub bench: Bench,
     screen: Arc<Mutex<vt100::Parser>>,
     /// Everything that was ever written to the terminal.
@@ -33,7 +33,7 @@ fn screen_of(width: u16, height: u16) -> vt100::Parser {
 }
 
 impl Session {
-    pub fn open(arguments: &str, width: u16, height: u16) -> Self {
+    pub(crate) fn open(arguments: &str, width: u16, height: u16) -> Self {
         let bench = Bench::new();
         let size = PtySize { rows: height, cols: width, pixel_width: 0, pixel_height: 0 };
         let pair = native_pty_system().openpty(size).unwrap();
@@ -73,16 +73,16 @@ impl Session {
         Self { bench, screen, written, keys, child, master: Some(pair.master), closed }
     }
 
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         self.screen.lock().unwrap().screen().contents()
     }
 
     /// Waits until the screen shows a word.
-    pub fn see(&self, word: &str) {
+    pub(crate) fn see(&self, word: &str) {
         self.until(&format!("`{word}` on the screen"), |session| session.text().contains(word));
     }
 
-    pub fn until(&self, what: &str, is_so: impl Fn(&Self) -> bool) {
+    pub(crate) fn until(&self, what: &str, is_so: impl Fn(&Self) -> bool) {
         let until = Instant::now() + PATIENCE;
         while !is_so(self) {
             assert!(
@@ -94,13 +94,13 @@ impl Session {
         }
     }
 
-    pub fn press(&mut self, keys: &str) {
+    pub(crate) fn press(&mut self, keys: &str) {
         self.keys.write_all(keys.as_bytes()).unwrap();
         self.keys.flush().unwrap();
     }
 
     /// Presses a key until the screen shows a word; on a busy machine the planners are still being looked for.
-    pub fn press_until(&mut self, key: &str, word: &str) {
+    pub(crate) fn press_until(&mut self, key: &str, word: &str) {
         let until = Instant::now() + PATIENCE;
         while !self.text().contains(word) && Instant::now() < until {
             self.press(key);
@@ -110,7 +110,7 @@ impl Session {
     }
 
     /// Goes down an open list to an entry and takes it.
-    pub fn choose(&mut self, entry: &str) {
+    pub(crate) fn choose(&mut self, entry: &str) {
         let chosen = format!(">{entry} ");
         for _ in 0..60 {
             if self.text().contains(&chosen) {
@@ -124,20 +124,20 @@ impl Session {
     }
 
     /// Starts the mission and agrees to it.
-    pub fn start(&mut self) {
+    pub(crate) fn start(&mut self) {
         self.press("S");
         self.see("Start mission?");
         self.press("\r");
     }
 
     /// Holds the robot.
-    pub fn hold(&mut self) {
+    pub(crate) fn hold(&mut self) {
         self.press(" ");
         self.see("‖ HOLD");
     }
 
     /// Lets a held robot go on.
-    pub fn resume(&mut self) {
+    pub(crate) fn resume(&mut self) {
         self.press(" ");
         self.see("Resume?");
         self.press("\r");
@@ -145,7 +145,7 @@ impl Session {
     }
 
     /// Chooses another planner for a robot that stands.
-    pub fn change_planner(&mut self, id: &str) {
+    pub(crate) fn change_planner(&mut self, id: &str) {
         self.press_until("P", "scanned floor is kept");
         self.choose(id);
         self.see(&format!("Change planner to {id}?"));
@@ -153,7 +153,7 @@ impl Session {
     }
 
     /// Flies the rest of the mission fast, and leaves the console.
-    pub fn finish(&mut self) {
+    pub(crate) fn finish(&mut self) {
         self.press(">>>>>>");
         self.see("DONE");
         self.press("q");
@@ -161,14 +161,14 @@ impl Session {
     }
 
     /// Agrees to leave a mission that is under way, and gives the exit code.
-    pub fn agree_to_leave(&mut self) -> String {
+    pub(crate) fn agree_to_leave(&mut self) -> String {
         self.see("Enter: leave");
         self.press("\r");
         self.back_in_the_shell()
     }
 
     /// Waits for the shell to be back; the terminal must be as it was. Gives the exit code.
-    pub fn back_in_the_shell(&mut self) -> String {
+    pub(crate) fn back_in_the_shell(&mut self) -> String {
         self.until("the shell", |session| {
             session.bench.path().join("after").exists() && session.text().contains("SHELL-AGAIN")
         });
@@ -182,32 +182,32 @@ impl Session {
     }
 
     /// Process id of the console, from its parent shell.
-    pub fn console_pid(&self) -> i32 {
+    pub(crate) fn console_pid(&self) -> i32 {
         let shell = self.child.process_id().unwrap();
         let children = std::fs::read_to_string(format!("/proc/{shell}/task/{shell}/children")).unwrap();
         children.split_whitespace().next().unwrap().parse().unwrap()
     }
 
-    pub fn signal_console(&self, signal: rustix::process::Signal) {
+    pub(crate) fn signal_console(&self, signal: rustix::process::Signal) {
         let pid = rustix::process::Pid::from_raw(self.console_pid()).unwrap();
         rustix::process::kill_process(pid, signal).unwrap();
     }
 
     /// Closes the terminal under the console, as a window that is shut.
-    pub fn hang_up(&mut self) {
+    pub(crate) fn hang_up(&mut self) {
         self.closed.store(true, Ordering::SeqCst);
         drop(self.master.take());
         self.keys = Box::new(std::io::sink());
     }
 
     /// Whether the console took the whole screen at any time.
-    pub fn took_the_screen(&self) -> bool {
+    pub(crate) fn took_the_screen(&self) -> bool {
         let written = self.written.lock().unwrap();
         written.windows(8).any(|bytes| bytes == b"\x1b[?1049h")
     }
 
     /// The folder of the run.
-    pub fn run(&self) -> PathBuf {
+    pub(crate) fn run(&self) -> PathBuf {
         self.bench.runs().remove(0)
     }
 }

@@ -55,7 +55,7 @@ struct Place {
 }
 
 /// `tankops accuracy`.
-pub fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
+pub(crate) fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
     let scenario = crate::read_scenario(&args.scenario, &args.changes)?;
     let drawing = scenario.sim.world.as_drawn();
     let forecast = forecast(&scenario);
@@ -81,7 +81,7 @@ pub fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
 /// Warns of a scan with so little clearance that the position error may use it up.
 ///
 /// Costs as much as the map: one forecast for each of some thousand places.
-pub fn warn_of_clearance(scenario: &Scenario) {
+pub(crate) fn warn_of_clearance(scenario: &Scenario) {
     if let Some(warning) = clearance_warning(scenario) {
         warn_line(&format!("warning: {}: {warning}", scenario.shown_name));
     }

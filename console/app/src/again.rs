@@ -62,7 +62,7 @@ impl Past {
 }
 
 /// `tankops report RUN...`.
-pub fn report(
+pub(crate) fn report(
     runs: &[PathBuf],
     logs: &LogsArg,
     json: bool,
@@ -101,7 +101,7 @@ fn scenario_of(events: &[Event]) -> anyhow::Result<Scenario> {
 }
 
 /// `tankops rescan RUN... -o SCENARIO`.
-pub fn rescan(args: &RescanArgs) -> anyhow::Result<ExitCode> {
+pub(crate) fn rescan(args: &RescanArgs) -> anyhow::Result<ExitCode> {
     let output = &args.output;
     if output.exists() {
         return Err(bad_input(format!("{} exists already; choose another name", output.display())));

@@ -11,7 +11,7 @@ use std::{
 };
 
 /// Answers asks of a mission.
-pub trait Answers {
+pub(crate) trait Answers {
     /// Takes an ask.
     fn submit(&mut self, ask: Ask);
 
@@ -21,7 +21,7 @@ pub trait Answers {
 
 /// Waits for every answer, and gives them in the order of the asks. A tick that a [`planner_host::Waker`] interrupts
 /// leaves its asks open for the next one.
-pub struct InOrder {
+pub(crate) struct InOrder {
     host: Host,
     /// Asks without an answer, oldest first.
     open: VecDeque<AskId>,
@@ -31,17 +31,17 @@ pub struct InOrder {
 
 impl InOrder {
     /// The answers of a host.
-    pub fn new(host: Host) -> Self {
+    pub(crate) fn new(host: Host) -> Self {
         Self { host, open: VecDeque::new(), early: Vec::new() }
     }
 
     /// The host.
-    pub fn host(&mut self) -> &mut Host {
+    pub(crate) fn host(&mut self) -> &mut Host {
         &mut self.host
     }
 
     /// The host, after the flight.
-    pub fn into_host(self) -> Host {
+    pub(crate) fn into_host(self) -> Host {
         self.host
     }
 }
@@ -70,7 +70,7 @@ impl Answers for InOrder {
 }
 
 /// Gives each tick a window; what comes later enters a later tick.
-pub struct Windowed<'a> {
+pub(crate) struct Windowed<'a> {
     host: &'a mut Host,
     /// How long a tick waits for the command of the robot; `None` for as long as it takes.
     step: Option<Duration>,
@@ -81,7 +81,7 @@ pub struct Windowed<'a> {
 
 impl<'a> Windowed<'a> {
     /// For the tick that begins now.
-    pub fn new(host: &'a mut Host, window: Window) -> Self {
+    pub(crate) fn new(host: &'a mut Host, window: Window) -> Self {
         Self { host, step: window.step, work: window.work, began: Instant::now() }
     }
 }
@@ -104,7 +104,7 @@ impl Answers for Windowed<'_> {
 
 /// How long a tick waits for answers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Window {
+pub(crate) struct Window {
     /// For the command of the robot; `None` for as long as it takes.
     pub step: Option<Duration>,
     /// For opening a planner or making a plan, for which the robot stands.
@@ -118,19 +118,19 @@ const AT_LEAST: Duration = Duration::from_millis(100);
 
 impl Window {
     /// At the pace of the clock.
-    pub fn real_time(tick: Duration) -> Self {
+    pub(crate) fn real_time(tick: Duration) -> Self {
         let share = tick.mul_f64(SHARE);
         Self { step: Some(share), work: share }
     }
 
     /// Faster than the clock.
-    pub fn faster(tick: Duration) -> Self {
+    pub(crate) fn faster(tick: Duration) -> Self {
         let real_time = Self::real_time(tick);
         Self { step: Some(real_time.work.max(AT_LEAST)), ..real_time }
     }
 
     /// As fast as it goes.
-    pub fn unbounded(tick: Duration) -> Self {
+    pub(crate) fn unbounded(tick: Duration) -> Self {
         Self { step: None, ..Self::real_time(tick) }
     }
 }

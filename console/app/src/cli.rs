@@ -8,7 +8,7 @@ use std::path::PathBuf;
 /// Without a command: the console on the demo scenario, or, with no terminal on stdout, the demo flown headless.
 #[derive(Debug, Parser)]
 #[command(name = "tankops", version, arg_required_else_help = false, max_term_width = 100)]
-pub struct Cli {
+pub(crate) struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
     #[command(flatten)]
@@ -17,14 +17,14 @@ pub struct Cli {
 
 /// Where planners are looked for, besides beside the program and in `$TANKOPS_PLUGIN_PATH`.
 #[derive(Debug, Clone, Default, Args)]
-pub struct PluginArgs {
+pub(crate) struct PluginArgs {
     /// Another folder with planner plugins; may be given several times, searched first.
     #[arg(long, value_name = "DIR", global = true)]
     pub plugin_dir: Vec<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Open the console.
     Console(ConsoleArgs),
     /// Fly a mission headless to its end.
@@ -100,7 +100,7 @@ pub enum Command {
 }
 
 #[derive(Debug, Args)]
-pub struct RescanArgs {
+pub(crate) struct RescanArgs {
     /// Folders of runs, or their names within the logs: a scan and the re-scans that were flown already.
     #[arg(required = true, value_name = "RUN")]
     pub runs: Vec<PathBuf>,
@@ -116,7 +116,7 @@ pub struct RescanArgs {
 
 /// Where runs are kept.
 #[derive(Debug, Clone, Args)]
-pub struct LogsArg {
+pub(crate) struct LogsArg {
     /// Folder that holds the runs.
     #[arg(long, value_name = "DIR", default_value = "logs")]
     pub logs: PathBuf,
@@ -124,7 +124,7 @@ pub struct LogsArg {
 
 /// What may be changed in a scenario from the command line.
 #[derive(Debug, Clone, Default, Args)]
-pub struct Changes {
+pub(crate) struct Changes {
     /// Planner to use instead of the scenario's.
     #[arg(long, value_name = "ID")]
     pub planner: Option<String>,
@@ -137,7 +137,7 @@ pub struct Changes {
 }
 
 #[derive(Debug, Args)]
-pub struct ConsoleArgs {
+pub(crate) struct ConsoleArgs {
     /// Scenario file; the demo if none is given.
     pub scenario: Option<PathBuf>,
     #[command(flatten)]
@@ -151,7 +151,7 @@ pub struct ConsoleArgs {
 
 /// A part of the console that fails on purpose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Drill {
+pub(crate) enum Drill {
     /// The thread that draws panics.
     PanicScreen,
     /// The thread that flies panics.
@@ -159,7 +159,7 @@ pub enum Drill {
 }
 
 #[derive(Debug, Args)]
-pub struct RunArgs {
+pub(crate) struct RunArgs {
     /// Scenario file.
     pub scenario: PathBuf,
     #[command(flatten)]
@@ -179,7 +179,7 @@ pub struct RunArgs {
 }
 
 #[derive(Debug, Args)]
-pub struct PlanArgs {
+pub(crate) struct PlanArgs {
     /// Scenario file.
     pub scenario: PathBuf,
     #[command(flatten)]
@@ -193,7 +193,7 @@ pub struct PlanArgs {
 }
 
 #[derive(Debug, Args)]
-pub struct ReproduceArgs {
+pub(crate) struct ReproduceArgs {
     /// What to reproduce; without it, everything there is is listed.
     pub name: Option<String>,
     /// Number of layouts or draws of each case; each study has a number of its own.
@@ -224,7 +224,7 @@ pub struct ReproduceArgs {
 }
 
 #[derive(Debug, Args)]
-pub struct TuneArgs {
+pub(crate) struct TuneArgs {
     /// Planner to tune.
     #[arg(long, value_name = "ID")]
     pub planner: String,
@@ -264,7 +264,7 @@ pub struct TuneArgs {
 }
 
 #[derive(Debug, Args)]
-pub struct AccuracyArgs {
+pub(crate) struct AccuracyArgs {
     /// Scenario file.
     pub scenario: PathBuf,
     #[command(flatten)]

@@ -31,7 +31,7 @@ use tui::{Caps, Msg, Refused, Speed, terminal};
 const START_SPEED: Speed = Speed::Times(4.0);
 
 /// Opens the console on a scenario; returns when the operator leaves.
-pub fn open(
+pub(crate) fn open(
     scenario: &Scenario,
     logs: &LogsArg,
     plugins: &PluginDirs,

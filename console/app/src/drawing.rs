@@ -1,6 +1,6 @@
 //! Tanks as pictures for people: SVG with the tank frame's x to the right and y up.
 
-pub mod planned;
+pub(crate) mod planned;
 
 use std::fmt::Write;
 use world::{Boundary, Point, Shape};
@@ -11,7 +11,7 @@ const SCALE: f64 = 50.0;
 const RIM_M: f64 = 0.5;
 
 /// A whole picture of a tank: `style` is CSS for the classes of what `body` draws besides tank and obstacles.
-pub fn document(boundary: &Boundary, style: &str, body: &str) -> String {
+pub(crate) fn document(boundary: &Boundary, style: &str, body: &str) -> String {
     let (low, high) = boundary.bounds();
     let (width, height) = (high.x - low.x + 2.0 * RIM_M, high.y - low.y + 2.0 * RIM_M);
     format!(
@@ -39,7 +39,7 @@ pub fn document(boundary: &Boundary, style: &str, body: &str) -> String {
 }
 
 /// The wall of the tank.
-pub fn wall(body: &mut String, boundary: &Boundary) {
+pub(crate) fn wall(body: &mut String, boundary: &Boundary) {
     match boundary {
         Boundary::Circle { radius_m } => circle(body, Point::origin(), *radius_m, "wall"),
         Boundary::Polygon { vertices } => polygon(body, vertices, "wall"),
@@ -47,7 +47,7 @@ pub fn wall(body: &mut String, boundary: &Boundary) {
 }
 
 /// An obstacle, with the margin that the robot's centre keeps from a column.
-pub fn outline(body: &mut String, shape: &Shape, room_m: f64) {
+pub(crate) fn outline(body: &mut String, shape: &Shape, room_m: f64) {
     match shape {
         Shape::Disc { center, radius_m } => {
             circle(body, *center, radius_m + room_m, "margin");
@@ -62,7 +62,7 @@ pub fn outline(body: &mut String, shape: &Shape, room_m: f64) {
 }
 
 /// A circle.
-pub fn circle(body: &mut String, center: Point, radius_m: f64, class: &str) {
+pub(crate) fn circle(body: &mut String, center: Point, radius_m: f64, class: &str) {
     // Writing to a String cannot fail.
     let _ = write!(
         body,
@@ -72,17 +72,17 @@ pub fn circle(body: &mut String, center: Point, radius_m: f64, class: &str) {
 }
 
 /// A closed outline.
-pub fn polygon(body: &mut String, vertices: &[Point], class: &str) {
+pub(crate) fn polygon(body: &mut String, vertices: &[Point], class: &str) {
     let _ = write!(body, r#"<polygon class="{class}" points="{}"/>"#, coordinates(vertices));
 }
 
 /// An open line.
-pub fn polyline(body: &mut String, points: &[Point], class: &str) {
+pub(crate) fn polyline(body: &mut String, points: &[Point], class: &str) {
     line(body, points, &format!(r#"class="{class}""#));
 }
 
 /// An open line with its own style.
-pub fn line(body: &mut String, points: &[Point], style: &str) {
+pub(crate) fn line(body: &mut String, points: &[Point], style: &str) {
     let _ = write!(body, r#"<polyline {style} points="{}"/>"#, coordinates(points));
 }
 

@@ -4,17 +4,17 @@ use crate::output::warn_line;
 use std::{fmt, process::ExitCode};
 
 /// The mission was flown and is complete.
-pub const COMPLETE: u8 = 0;
+pub(crate) const COMPLETE: u8 = 0;
 /// The mission was flown and ended otherwise; also a verification that found a difference.
-pub const ENDED_OTHERWISE: u8 = 1;
+pub(crate) const ENDED_OTHERWISE: u8 = 1;
 /// Usage or input is wrong.
-pub const BAD_INPUT: u8 = 2;
+pub(crate) const BAD_INPUT: u8 = 2;
 /// A fault of the program or the machine.
-pub const INTERNAL: u8 = 3;
+pub(crate) const INTERNAL: u8 = 3;
 
 /// An input error that the user can fix; its text is complete, with place and remedy.
 #[derive(Debug)]
-pub struct BadInput(pub String);
+pub(crate) struct BadInput(pub String);
 
 impl fmt::Display for BadInput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -25,12 +25,12 @@ impl fmt::Display for BadInput {
 impl std::error::Error for BadInput {}
 
 /// A failure of input, as an error.
-pub fn bad_input(text: impl Into<String>) -> anyhow::Error {
+pub(crate) fn bad_input(text: impl Into<String>) -> anyhow::Error {
     BadInput(text.into()).into()
 }
 
 /// Reports a failure on stderr; the exit code distinguishes input errors from internal ones.
-pub fn report(error: &anyhow::Error) -> ExitCode {
+pub(crate) fn report(error: &anyhow::Error) -> ExitCode {
     if let Some(BadInput(text)) = error.downcast_ref() {
         let prefix = if text.starts_with("error") { "" } else { "error: " };
         warn_line(&format!("{prefix}{}", text.trim_end()));

@@ -11,7 +11,7 @@ use std::time::Duration;
 use world::Floor;
 
 /// A scenario being flown.
-pub struct Flight {
+pub(crate) struct Flight {
     simulator: Simulator,
     mission: Mission,
     tick: u64,
@@ -21,7 +21,7 @@ pub struct Flight {
 
 impl Flight {
     /// A flight that waits for its start; `attended` says whether an operator is there.
-    pub fn prepare(scenario: &Scenario, attended: bool) -> Self {
+    pub(crate) fn prepare(scenario: &Scenario, attended: bool) -> Self {
         let config = MissionConfig { attended, ..scenario.mission.clone() };
         let drawing = scenario.sim.world.as_drawn();
         let floor =
@@ -47,27 +47,27 @@ impl Flight {
     }
 
     /// The first event of the run.
-    pub fn opened(&self) -> Event {
+    pub(crate) fn opened(&self) -> Event {
         Event { tick: 0, t_s: 0.0, kind: EventKind::RunOpened(Box::new(self.opened.clone())) }
     }
 
     /// The mission that is flown.
-    pub fn mission(&self) -> &Mission {
+    pub(crate) fn mission(&self) -> &Mission {
         &self.mission
     }
 
     /// What the mission is doing.
-    pub fn phase(&self) -> &Phase {
+    pub(crate) fn phase(&self) -> &Phase {
         self.mission.phase()
     }
 
     /// Length of a tick, mission time.
-    pub fn tick_length(&self) -> Duration {
+    pub(crate) fn tick_length(&self) -> Duration {
         Duration::from_secs_f64(self.tick_s)
     }
 
     /// Flies one tick: sense, ask and be answered, act. The truth goes into the events first, and nowhere else.
-    pub fn tick(&mut self, orders: &[Order], answers: &mut impl Answers) -> Vec<Event> {
+    pub(crate) fn tick(&mut self, orders: &[Order], answers: &mut impl Answers) -> Vec<Event> {
         let readings = self.simulator.sense();
         let mut events = self.truth();
         self.mission.sense(&Input { readings: &readings, orders });

@@ -22,11 +22,11 @@ use scenario::Scenario;
 use std::{io::IsTerminal, process::ExitCode, time::Duration};
 
 /// How long closing the recording may take before it is abandoned with a message.
-pub const CLOSE_TIMEOUT: Duration = Duration::from_secs(10);
+pub(crate) const CLOSE_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Options of a headless run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct RunOptions {
+pub(crate) struct RunOptions {
     /// Print the report as JSON on stdout, and nothing else there.
     pub json: bool,
     /// Write a journal and a recording.
@@ -36,14 +36,14 @@ pub struct RunOptions {
 }
 
 /// `tankops run`.
-pub fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = crate::read_scenario(&args.scenario, &args.changes)?;
     let (json, record, live_deadlines) = (args.json, !args.no_record, args.live_deadlines);
     fly(&scenario, plugins, &args.logs, RunOptions { json, record, live_deadlines })
 }
 
 /// Flies a scenario to its end and prints the result.
-pub fn fly(
+pub(crate) fn fly(
     scenario: &Scenario,
     plugins: &PluginDirs,
     logs: &LogsArg,
@@ -120,12 +120,12 @@ fn fly_to_end(
 }
 
 /// A host for the planners of a scenario.
-pub fn host(scenario: &Scenario, plugins: &PluginDirs) -> Host {
+pub(crate) fn host(scenario: &Scenario, plugins: &PluginDirs) -> Host {
     Host::new(plugins, patient(HostConfig::default(), &scenario.mission))
 }
 
 /// Figures about the planners' calls, by the wall clock.
-pub fn planner_calls(host: &Host) -> PlannerCalls {
+pub(crate) fn planner_calls(host: &Host) -> PlannerCalls {
     let stats = host.stats();
     PlannerCalls {
         plan: stats.plan.calls,

@@ -4,7 +4,7 @@ use anyhow::Context;
 use std::io::{ErrorKind, Write};
 
 /// Writes a text to stdout; a reader that has gone away, as `head` does, is no fault.
-pub fn say(text: &str) -> anyhow::Result<()> {
+pub(crate) fn say(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
@@ -13,12 +13,12 @@ pub fn say(text: &str) -> anyhow::Result<()> {
 }
 
 /// Writes a line to stdout, as [`say`].
-pub fn say_line(line: &str) -> anyhow::Result<()> {
+pub(crate) fn say_line(line: &str) -> anyhow::Result<()> {
     say(&format!("{line}\n"))
 }
 
 /// Writes a line to stderr, in one piece; a line that cannot be written is dropped, because there is no other place to
 /// report that, and the exit code still says how it went.
-pub fn warn_line(line: &str) {
+pub(crate) fn warn_line(line: &str) {
     let _ = std::io::stderr().write_all(format!("{line}\n").as_bytes());
 }

@@ -32,7 +32,7 @@ struct Listed {
 }
 
 /// `tankops runs`.
-pub fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
+pub(crate) fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
     let listed: Vec<Listed> =
         run_folder::past_runs(&logs.logs)?.iter().map(|folder| look_at(folder)).collect();
     if json {
@@ -136,7 +136,7 @@ fn rebuild(journal: &Path) -> (Summary, Option<String>) {
 }
 
 /// `tankops export`.
-pub fn export(run: &Path, rrd: &Path, logs: &LogsArg) -> anyhow::Result<ExitCode> {
+pub(crate) fn export(run: &Path, rrd: &Path, logs: &LogsArg) -> anyhow::Result<ExitCode> {
     let folder = run_folder::find(run, &logs.logs)?;
     if rrd.exists() {
         return Err(bad_input(format!("{} exists already; recordings are never overwritten", rrd.display())));

@@ -64,7 +64,7 @@ struct PlannedFloor {
 
 /// Some points of the path that serve one purpose: index of the first and of the last.
 #[derive(Debug, Serialize)]
-pub struct Leg {
+pub(crate) struct Leg {
     /// What the stretch is for.
     pub tag: &'static str,
     /// Index of its first point.
@@ -74,7 +74,7 @@ pub struct Leg {
 }
 
 /// `tankops plan`.
-pub fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
+pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = crate::read_scenario(&args.scenario, &args.changes)?;
     let planned = make_plan(&scenario, plugins)?;
     print_plan(&planned, args.json)?;
@@ -160,7 +160,7 @@ fn patience(mission: &MissionConfig) -> Duration {
 }
 
 /// A plan for a whole floor takes longer than a way to a point, and more memory.
-pub fn patient(config: HostConfig, mission: &MissionConfig) -> HostConfig {
+pub(crate) fn patient(config: HostConfig, mission: &MissionConfig) -> HostConfig {
     match mission.task {
         TaskConfig::Cover { .. } => {
             HostConfig { plan_deadline: COVER_WITHIN, memory_limit_bytes: COVER_MEMORY_BYTES, ..config }
@@ -245,7 +245,7 @@ fn longest_cable(anchor: Point, world: &World, path: &[Point]) -> Option<Vec<Poi
 }
 
 /// The legs as reported by the planner; a plan without legs has a single one.
-pub fn legs(plan: &Plan) -> Vec<Leg> {
+pub(crate) fn legs(plan: &Plan) -> Vec<Leg> {
     let reported = plan.legs.iter().map(|leg| Leg { tag: leg.tag.word(), first: leg.first, last: leg.last });
     match plan.path.len() {
         0 => vec![],

@@ -6,11 +6,11 @@ use mission::{Answer, Ask, AskId, Mission, What, WorkerId};
 use std::{collections::BTreeMap, time::Duration};
 
 /// Callback for the planners' work: what it is when it begins, `None` when it ends.
-pub type OnWork = Box<dyn FnMut(Option<&Work>) + Send>;
+pub(crate) type OnWork = Box<dyn FnMut(Option<&Work>) + Send>;
 
 /// Work of a planner that takes its time.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Work {
+pub(crate) struct Work {
     /// The ask that it answers.
     pub ask: AskId,
     /// What it is, as shown: `Planning (tether-safe)`.
@@ -20,7 +20,7 @@ pub struct Work {
 }
 
 /// Watches the work of planners.
-pub struct PlanWatch {
+pub(crate) struct PlanWatch {
     plan_limit: Duration,
     names: BTreeMap<WorkerId, String>,
     open: BTreeMap<AskId, Work>,
@@ -29,12 +29,12 @@ pub struct PlanWatch {
 
 impl PlanWatch {
     /// For plans that may take so long; with a callback for every change.
-    pub fn new(plan_limit: Duration, on_work: Option<OnWork>) -> Self {
+    pub(crate) fn new(plan_limit: Duration, on_work: Option<OnWork>) -> Self {
         Self { plan_limit, names: BTreeMap::new(), open: BTreeMap::new(), on_work }
     }
 
     /// The current work: that of the planner that drives before that of one that is being prepared.
-    pub fn current(&self) -> Option<&Work> {
+    pub(crate) fn current(&self) -> Option<&Work> {
         self.open.values().next()
     }
 
@@ -73,14 +73,14 @@ impl PlanWatch {
 }
 
 /// Answers with somebody who watches plans being made.
-pub struct Watched<'a, A> {
+pub(crate) struct Watched<'a, A> {
     answers: &'a mut A,
     watch: &'a mut PlanWatch,
 }
 
 impl<'a, A: Answers> Watched<'a, A> {
     /// These answers, watched.
-    pub fn new(answers: &'a mut A, watch: &'a mut PlanWatch) -> Self {
+    pub(crate) fn new(answers: &'a mut A, watch: &'a mut PlanWatch) -> Self {
         Self { answers, watch }
     }
 }

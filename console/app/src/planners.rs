@@ -15,12 +15,12 @@ use std::{
 };
 
 /// Planners that can be chosen.
-pub fn found(plugins: &PluginDirs) -> Vec<PlannerInfo> {
+pub(crate) fn found(plugins: &PluginDirs) -> Vec<PlannerInfo> {
     survey(plugins, &WorkerCommand::default()).planners().cloned().collect()
 }
 
 /// Planners that can be chosen, and plugins that are refused: file name and reason.
-pub fn surveyed(plugins: &PluginDirs) -> (Vec<PlannerInfo>, Vec<(String, String)>) {
+pub(crate) fn surveyed(plugins: &PluginDirs) -> (Vec<PlannerInfo>, Vec<(String, String)>) {
     let survey = survey(plugins, &WorkerCommand::default());
     let refused =
         survey.plugins.iter().filter_map(|plugin| Some((file_name(&plugin.path), plugin.refused.clone()?)));
@@ -32,7 +32,7 @@ pub fn surveyed(plugins: &PluginDirs) -> (Vec<PlannerInfo>, Vec<(String, String)
 ///
 /// # Errors
 /// Every objection, with its place in the scenario.
-pub fn check_choices(scenario: &Scenario, known: &[PlannerInfo]) -> anyhow::Result<()> {
+pub(crate) fn check_choices(scenario: &Scenario, known: &[PlannerInfo]) -> anyhow::Result<()> {
     let mission = &scenario.mission;
     let fallback = mission.fallback.iter().map(|choice| ("planner.fallback", choice));
     let choices = std::iter::once(("planner", &mission.planner)).chain(fallback);
@@ -72,7 +72,7 @@ fn objections(
 ///
 /// # Errors
 /// One sentence with what there is.
-pub fn choice_of<'a>(id: &str, known: &'a [PlannerInfo]) -> Result<&'a PlannerInfo, String> {
+pub(crate) fn choice_of<'a>(id: &str, known: &'a [PlannerInfo]) -> Result<&'a PlannerInfo, String> {
     known.iter().find(|info| info.id == id).ok_or_else(|| {
         let ids: Vec<&str> = known.iter().map(|info| info.id.as_str()).collect();
         let has = if ids.is_empty() {
@@ -85,7 +85,7 @@ pub fn choice_of<'a>(id: &str, known: &'a [PlannerInfo]) -> Result<&'a PlannerIn
 }
 
 /// `tankops planners`.
-pub fn list(plugins: &PluginDirs, json: bool) -> anyhow::Result<ExitCode> {
+pub(crate) fn list(plugins: &PluginDirs, json: bool) -> anyhow::Result<ExitCode> {
     let survey = survey(plugins, &WorkerCommand::default());
     if json {
         say_line(&serde_json::to_string_pretty(&survey).context("writing the list as JSON")?)?;
@@ -133,7 +133,7 @@ fn parameter_listing(info: &ParamInfo) -> String {
 }
 
 /// `tankops check`.
-pub fn check(files: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
+pub(crate) fn check(files: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let mut sound = true;
     for file in files {
         match check_file(file, plugins) {

@@ -14,7 +14,7 @@ const PROBE: [u8; 4096] = [b'\n'; 4096];
 
 /// Why no run can be kept in a folder.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
-pub enum LogsError {
+pub(crate) enum LogsError {
     /// A part of the path is a file.
     #[error("cannot keep runs in {}: {} is a file, not a folder; choose a folder with --logs", logs.display(), file.display())]
     NotAFolder { logs: PathBuf, file: PathBuf },
@@ -34,7 +34,7 @@ pub enum LogsError {
 
 impl LogsError {
     /// The error for the user, who can correct it.
-    pub fn refuse(self) -> anyhow::Error {
+    pub(crate) fn refuse(self) -> anyhow::Error {
         bad_input(self.to_string())
     }
 }
@@ -43,7 +43,7 @@ impl LogsError {
 ///
 /// # Errors
 /// See [`LogsError`]; each one is for the user to correct, and says how.
-pub fn check_logs(logs: &Path) -> Result<(), LogsError> {
+pub(crate) fn check_logs(logs: &Path) -> Result<(), LogsError> {
     let missing: Vec<PathBuf> =
         logs.ancestors().take_while(|folder| is_missing(folder)).map(Path::to_owned).collect();
     let checked = make_logs(logs);
@@ -59,7 +59,7 @@ pub fn check_logs(logs: &Path) -> Result<(), LogsError> {
 ///
 /// # Errors
 /// See [`LogsError`].
-pub fn make_logs(logs: &Path) -> Result<(), LogsError> {
+pub(crate) fn make_logs(logs: &Path) -> Result<(), LogsError> {
     if let Some(file) = file_on_the_way(logs) {
         return Err(LogsError::NotAFolder { logs: logs.to_owned(), file });
     }

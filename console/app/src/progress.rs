@@ -13,7 +13,7 @@ use std::{
 const EVERY: Duration = Duration::from_millis(250);
 
 /// Shows what is going on, for how long already and its limit; nothing where stderr is no terminal.
-pub fn spinner(work: &str, limit: Duration) -> ProgressBar {
+pub(crate) fn spinner(work: &str, limit: Duration) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
@@ -25,14 +25,14 @@ pub fn spinner(work: &str, limit: Duration) -> ProgressBar {
 }
 
 /// Shows how far a plan is.
-pub fn show_share(bar: &ProgressBar, work: &str, progress: &Progress) {
+pub(crate) fn show_share(bar: &ProgressBar, work: &str, progress: &Progress) {
     if !bar.is_hidden() {
         bar.set_message(format!("{work}: {}", share(progress)));
     }
 }
 
 /// What planners do that takes its time, shown in the bar of something larger: the work, and how far it is.
-pub fn shown_in(bar: &ProgressBar) -> (OnWork, OnProgress) {
+pub(crate) fn shown_in(bar: &ProgressBar) -> (OnWork, OnProgress) {
     let current: Arc<Mutex<Option<Work>>> = Arc::default();
     let (shown, work) = (bar.clone(), Arc::clone(&current));
     let on_work: OnWork = Box::new(move |new| {

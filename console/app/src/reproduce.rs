@@ -15,7 +15,7 @@ use planner_host::PluginDirs;
 use std::{fmt::Write, io::IsTerminal, process::ExitCode};
 
 /// `tankops reproduce`.
-pub fn reproduce(args: &ReproduceArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
+pub(crate) fn reproduce(args: &ReproduceArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let Some(name) = args.name.as_ref().filter(|_| !args.list) else {
         list(args.json)?;
         return Ok(ExitCode::from(COMPLETE));
@@ -97,7 +97,7 @@ fn progress_bar(name: &'static str) -> ProgressBar {
 }
 
 /// Shows that work of unknown length is in progress.
-pub fn spinner(name: &'static str, json: bool) -> ProgressBar {
+pub(crate) fn spinner(name: &'static str, json: bool) -> ProgressBar {
     if json || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
@@ -107,7 +107,7 @@ pub fn spinner(name: &'static str, json: bool) -> ProgressBar {
 }
 
 /// The rows for people: a block for each case and method, its notes below.
-pub fn table(rows: &[Row]) -> String {
+pub(crate) fn table(rows: &[Row]) -> String {
     let mut text = String::new();
     for block in rows.chunk_by(|a, b| (&a.case, &a.method) == (&b.case, &b.method)) {
         // Writing to a String cannot fail.

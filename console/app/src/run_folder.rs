@@ -3,8 +3,8 @@
 mod kept;
 mod standing;
 
-pub use kept::Kept;
-pub use standing::{Standing, end_is_missing, journal_doubt, standing};
+pub(crate) use kept::Kept;
+pub(crate) use standing::{Standing, end_is_missing, journal_doubt, standing};
 
 use crate::{
     failure::bad_input,
@@ -33,7 +33,7 @@ const SIGNS: [&str; 4] = [JOURNAL_FILE, REPORT_FILE, LOCK_FILE, FAILURE_FILE];
 const REPORT_RESERVE: usize = 256 << 10;
 
 /// The folder of a run that is being written; nobody else writes to it.
-pub struct RunFolder {
+pub(crate) struct RunFolder {
     path: PathBuf,
     /// Locked as long as this process lives; a killed process leaves it unlocked.
     _lock: File,
@@ -44,7 +44,7 @@ impl RunFolder {
     ///
     /// # Errors
     /// The folder for runs cannot take one, as [`make_logs`] says.
-    pub fn create(logs: &Path, scenario: &str, planner: &str, seed: u64) -> anyhow::Result<Self> {
+    pub(crate) fn create(logs: &Path, scenario: &str, planner: &str, seed: u64) -> anyhow::Result<Self> {
         make_logs(logs).map_err(LogsError::refuse)?;
         let refused = |error| not_writable(logs, &error);
         let name = format!("{}-{}-{}-{seed}", utc(SystemTime::now()), plain(scenario), plain(planner));
@@ -56,12 +56,12 @@ impl RunFolder {
     }
 
     /// Where it is.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
     /// Writes the report, whole or not at all.
-    pub fn write_report(&self, summary: &Summary) -> anyhow::Result<()> {
+    pub(crate) fn write_report(&self, summary: &Summary) -> anyhow::Result<()> {
         let journal_bytes = fs::metadata(self.path.join(JOURNAL_FILE)).ok().map(|journal| journal.len());
         let report = ReportFile { summary, journal_bytes };
         let text = serde_json::to_string_pretty(&report).context("writing the report as JSON")? + "\n";
@@ -80,7 +80,7 @@ fn replace_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 /// A moment as the names of runs begin; a clock before 1970 or after 9999 counts as the nearest moment between.
-pub fn utc(moment: SystemTime) -> String {
+pub(crate) fn utc(moment: SystemTime) -> String {
     let time = Timestamp::try_from(moment.max(SystemTime::UNIX_EPOCH)).unwrap_or(Timestamp::MAX);
     time.strftime("%Y%m%dT%H%M%SZ").to_string()
 }
@@ -112,7 +112,7 @@ fn plain(name: &str) -> String {
 }
 
 /// SHA-256 of a file, hexadecimal.
-pub fn sha256(path: &Path) -> io::Result<String> {
+pub(crate) fn sha256(path: &Path) -> io::Result<String> {
     let (mut file, mut hasher, mut chunk) = (File::open(path)?, Sha256::new(), vec![0; 1 << 18]);
     loop {
         match file.read(&mut chunk)? {
@@ -128,7 +128,7 @@ pub fn sha256(path: &Path) -> io::Result<String> {
 }
 
 /// Folders of past runs, oldest first; also those that have lost their journal.
-pub fn past_runs(logs: &Path) -> anyhow::Result<Vec<PathBuf>> {
+pub(crate) fn past_runs(logs: &Path) -> anyhow::Result<Vec<PathBuf>> {
     if !logs.exists() {
         return Ok(Vec::new());
     }
@@ -143,7 +143,7 @@ pub fn past_runs(logs: &Path) -> anyhow::Result<Vec<PathBuf>> {
 }
 
 /// The folder of a run that the user named by path or by name.
-pub fn find(run: &Path, logs: &Path) -> anyhow::Result<PathBuf> {
+pub(crate) fn find(run: &Path, logs: &Path) -> anyhow::Result<PathBuf> {
     let candidates = [run.to_path_buf(), logs.join(run)];
     let found = candidates.into_iter().find(|path| path.join(JOURNAL_FILE).exists());
     found.ok_or_else(|| {

@@ -15,7 +15,7 @@ use std::{
 };
 
 /// A run that is being written, or, without a folder, only computed.
-pub struct RunLog {
+pub(crate) struct RunLog {
     folder: Option<RunFolder>,
     recorder: RunRecorder,
     fold: Fold,
@@ -23,7 +23,7 @@ pub struct RunLog {
 }
 
 /// A run that was flown.
-pub struct Closed {
+pub(crate) struct Closed {
     /// Its report.
     pub summary: Summary,
     /// Whether it is on disk; `None` if it was not to be.
@@ -35,7 +35,7 @@ impl RunLog {
     ///
     /// # Errors
     /// They cannot be made.
-    pub fn create(logs: &Path, scenario: &Scenario, planner: &str) -> anyhow::Result<Self> {
+    pub(crate) fn create(logs: &Path, scenario: &Scenario, planner: &str) -> anyhow::Result<Self> {
         let folder = RunFolder::create(logs, &scenario.name, planner, scenario.seed)?;
         let recorder = RunRecorder::start(folder.path(), Options::default())?;
         Ok(Self { folder: Some(folder), recorder, fold: Fold::new(), began: Instant::now() })
@@ -45,14 +45,14 @@ impl RunLog {
     ///
     /// # Errors
     /// The system gives no thread.
-    pub fn unwritten() -> anyhow::Result<Self> {
+    pub(crate) fn unwritten() -> anyhow::Result<Self> {
         let began = Instant::now();
         let recorder = RunRecorder::spawn(JournalWriter::unwritten(began), None)?;
         Ok(Self { folder: None, recorder, fold: Fold::new(), began })
     }
 
     /// Takes the events of a tick; waits while the recorder's queue is full.
-    pub fn keep(&mut self, events: &[Event]) {
+    pub(crate) fn keep(&mut self, events: &[Event]) {
         for event in events {
             self.fold.apply(event);
         }
@@ -60,17 +60,23 @@ impl RunLog {
     }
 
     /// How recording goes.
-    pub fn health(&self) -> Health {
+    pub(crate) fn health(&self) -> Health {
         self.recorder.health()
     }
 
     /// Whether so much waits to be written that the caller should wait before it sends more.
-    pub fn is_behind(&self) -> bool {
+    pub(crate) fn is_behind(&self) -> bool {
         self.recorder.is_behind()
     }
 
     /// Closes the files and writes the report.
-    pub fn close(self, within: Duration, scenario: &Scenario, host: &Host, stops: Option<Stops>) -> Closed {
+    pub(crate) fn close(
+        self,
+        within: Duration,
+        scenario: &Scenario,
+        host: &Host,
+        stops: Option<Stops>,
+    ) -> Closed {
         let Self { folder, recorder, fold, began } = self;
         let finished = recorder.finish(within);
         let logs = folder.is_some().then(|| Logs {

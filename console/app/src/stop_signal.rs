@@ -17,17 +17,17 @@ const SIGNALS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
 
 /// Whether somebody asked this process to stop.
 #[derive(Debug, Clone)]
-pub struct StopSignal(Arc<AtomicBool>);
+pub(crate) struct StopSignal(Arc<AtomicBool>);
 
 impl StopSignal {
     /// Whether a signal has come since listening began.
-    pub fn requested(&self) -> bool {
+    pub(crate) fn requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
 
 /// Listens from now on; the first signal asks, a second one of the same kind ends the process at once.
-pub fn listen() -> StopSignal {
+pub(crate) fn listen() -> StopSignal {
     let asked = Arc::new(AtomicBool::new(false));
     for signal in SIGNALS {
         // The order matters: the second signal finds the flag set by the first.
@@ -41,7 +41,7 @@ pub fn listen() -> StopSignal {
 }
 
 /// Wakes the host at every signal, so that a wait for planners is interrupted.
-pub fn wake_on_signal(waker: Waker) {
+pub(crate) fn wake_on_signal(waker: Waker) {
     let Ok(mut signals) = Signals::new(SIGNALS) else { return };
     let watch = move || signals.forever().for_each(|_| waker.wake());
     // Without the thread the signal is noticed when the planner answers.

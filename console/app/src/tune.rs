@@ -21,7 +21,7 @@ use toml_edit::Value;
 const GROUP: &str = "Field";
 
 /// `tankops tune`.
-pub fn tune(args: &TuneArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
+pub(crate) fn tune(args: &TuneArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let known = planners::found(plugins);
     let planner = planners::choice_of(&args.planner, &known).map_err(bad_input)?;
     let group = Group::named(&args.on).ok_or_else(|| bad_input(no_such_layouts(&args.on)))?;

@@ -61,7 +61,7 @@ struct Difference {
 }
 
 /// `tankops verify RUN`.
-pub fn verify(
+pub(crate) fn verify(
     run: &Path,
     logs: &LogsArg,
     plugins: &PluginDirs,
@@ -195,7 +195,7 @@ fn line(event: &Event) -> anyhow::Result<String> {
 }
 
 /// How the run was opened; a journal that does not begin with it is refused.
-pub fn opened(events: &[Event]) -> anyhow::Result<&RunOpened> {
+pub(crate) fn opened(events: &[Event]) -> anyhow::Result<&RunOpened> {
     journal::opening(events.first())
 }
 

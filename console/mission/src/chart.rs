@@ -18,7 +18,7 @@ const MEMORY: f64 = 50.0;
 const OUT_OF_SIGHT_S: f64 = 2.0;
 
 /// Drawing and found obstacles, with an index for queries.
-pub struct Chart {
+pub(crate) struct Chart {
     world: World,
     found: Vec<Found>,
     /// What is in sight now, where it stands by the pose that is believed in now.
@@ -42,7 +42,7 @@ struct Found {
 }
 
 /// What sightings changed on the chart.
-pub struct Seen {
+pub(crate) struct Seen {
     /// What is new.
     pub events: Vec<EventKind>,
     /// Whether a plan may no longer be right; what merely goes on moving is left to the next steps.
@@ -51,7 +51,7 @@ pub struct Seen {
 
 impl Chart {
     /// The chart at the start: the drawing alone.
-    pub fn new(drawing: World, config: &MissionConfig, seed: u64) -> Self {
+    pub(crate) fn new(drawing: World, config: &MissionConfig, seed: u64) -> Self {
         let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
         Self {
             world: drawing,
@@ -68,12 +68,12 @@ impl Chart {
     }
 
     /// The tank as far as it is known.
-    pub fn world(&self) -> &World {
+    pub(crate) fn world(&self) -> &World {
         &self.world
     }
 
     /// Distances and neighbours on the chart.
-    pub fn map(&self) -> &ObstacleMap {
+    pub(crate) fn map(&self) -> &ObstacleMap {
         &self.map
     }
 
@@ -81,7 +81,7 @@ impl Chart {
     ///
     /// A robot that is wrong about its position sees all the same how far off an obstacle is: what planners steer
     /// round stands where it is seen, not where the chart has it.
-    pub fn sight(&mut self, sightings: &[Sighting], from: &Pose) {
+    pub(crate) fn sight(&mut self, sightings: &[Sighting], from: &Pose) {
         let seen = |s: &Sighting| (s.id, s.shape_in_robot.transformed(&from.tank_from_robot()));
         self.in_sight = sightings.iter().map(seen).collect();
     }
@@ -89,7 +89,7 @@ impl Chart {
     /// Puts sightings on the chart, seen at a time, in seconds, from an estimated pose; gives what is new.
     ///
     /// The obstacle tracker knows the columns of the drawing again, so only others are put in.
-    pub fn see(&mut self, now_s: f64, sightings: &[Sighting], from: &Pose) -> Seen {
+    pub(crate) fn see(&mut self, now_s: f64, sightings: &[Sighting], from: &Pose) -> Seen {
         self.now_s = now_s;
         let mut events = Vec::new();
         let mut changes_plans = false;
@@ -145,7 +145,7 @@ impl Chart {
     }
 
     /// The whole chart in the form that planners read.
-    pub fn site(&self) -> Site {
+    pub(crate) fn site(&self) -> Site {
         Site {
             revision: self.revision,
             boundary: self.world.boundary.clone(),
@@ -165,7 +165,7 @@ impl Chart {
 
     /// The obstacles within sensing range of a point, in the form that planners read: where they are seen now, and where
     /// the chart has them while they are not.
-    pub fn near(&self, point: Point) -> Vec<SiteObstacle> {
+    pub(crate) fn near(&self, point: Point) -> Vec<SiteObstacle> {
         let reach_m = self.limits.sensing_range_m + self.limits.radius_m;
         let near = self.map.within(point, reach_m);
         near.iter()
@@ -198,7 +198,7 @@ impl Chart {
     }
 
     /// Whether an event is about something that moves.
-    pub fn moves(&self, event: &EventKind) -> bool {
+    pub(crate) fn moves(&self, event: &EventKind) -> bool {
         match event {
             EventKind::ObstacleFound { obstacle } | EventKind::ObstacleMoved { obstacle, .. } => {
                 self.velocity(obstacle.id).is_some()

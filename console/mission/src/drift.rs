@@ -16,14 +16,14 @@ const LEAST_WAY_M: f64 = 0.12;
 
 /// Where something was seen of late.
 #[derive(Debug, Clone, Default)]
-pub struct Drift {
+pub(crate) struct Drift {
     places: VecDeque<(f64, Point)>,
     velocity: Option<Vector>,
 }
 
 impl Drift {
     /// Takes a sighting at a time, in seconds.
-    pub fn see(&mut self, t_s: f64, at: Point) {
+    pub(crate) fn see(&mut self, t_s: f64, at: Point) {
         self.places.push_back((t_s, at));
         while self.places.front().is_some_and(|(seen_s, _)| t_s - seen_s > MEMORY_S) {
             self.places.pop_front();
@@ -40,12 +40,12 @@ impl Drift {
     }
 
     /// Its velocity, if it moves, metres per second, tank frame.
-    pub fn velocity(&self) -> Option<Vector> {
+    pub(crate) fn velocity(&self) -> Option<Vector> {
         self.velocity
     }
 
     /// When it was seen last, seconds.
-    pub fn seen_s(&self) -> f64 {
+    pub(crate) fn seen_s(&self) -> f64 {
         self.places.back().map_or(f64::NEG_INFINITY, |(t_s, _)| *t_s)
     }
 

@@ -22,7 +22,7 @@ const EXACT_WINDOW_M: f64 = 0.6;
 
 /// Progress along a path that only grows (nearest point, searched forward).
 #[derive(Debug, Clone)]
-pub struct Follower {
+pub(crate) struct Follower {
     path: Vec<Point>,
     stations_m: Vec<f64>,
     nearest: usize,
@@ -38,7 +38,7 @@ pub struct Follower {
 
 impl Follower {
     /// A follower at the beginning of a path with at least one point.
-    pub fn new(path: Vec<Point>) -> Self {
+    pub(crate) fn new(path: Vec<Point>) -> Self {
         let stations_m = polyline::stations_m(&path);
         let last = path.len().saturating_sub(1);
         let corners = VecDeque::new();
@@ -48,7 +48,7 @@ impl Follower {
 
     /// A follower that goes to every corner of a path before it turns, so that no lane is cut short and no lane is
     /// mistaken for the one beside it. The path has at least one point.
-    pub fn exact(path: &[Point]) -> Self {
+    pub(crate) fn exact(path: &[Point]) -> Self {
         let mut path = path.to_vec();
         path.dedup_by(|next, before| (*next - *before).norm() < 1e-6);
         let follower = Self::new(polyline::resampled(&path, EXACT_SPACING_M));
@@ -60,7 +60,7 @@ impl Follower {
     ///
     /// The target is the first point a little ahead where the robot finds room; points without room are skipped, and
     /// so is the way to them.
-    pub fn advance(&mut self, position: Point, map: &ObstacleMap, room_m: f64) {
+    pub(crate) fn advance(&mut self, position: Point, map: &ObstacleMap, room_m: f64) {
         let free = |index: &usize| map.clearance_m(self.path[*index]) >= room_m;
         let window_end_m = (self.stations_m[self.nearest] + self.window_m).max(self.stations_m[self.target]);
         self.nearest = (self.nearest..=self.next_corner())
@@ -79,12 +79,12 @@ impl Follower {
     }
 
     /// Distance to the next corner, metres; `None` without one.
-    pub fn corner_m(&self, position: Point) -> Option<f64> {
+    pub(crate) fn corner_m(&self, position: Point) -> Option<f64> {
         self.corners.front().map(|corner| (self.path[*corner] - position).norm())
     }
 
     /// Counts the next corner as reached: the robot cannot come nearer.
-    pub fn give_up_corner(&mut self) {
+    pub(crate) fn give_up_corner(&mut self) {
         self.nearest = self.corners.pop_front().unwrap_or(self.nearest);
     }
 
@@ -105,40 +105,40 @@ impl Follower {
     }
 
     /// Where to go next.
-    pub fn target(&self) -> Point {
+    pub(crate) fn target(&self) -> Point {
         self.path[self.target]
     }
 
     /// The path from the target on, at most `length_m` of it.
-    pub fn ahead(&self, length_m: f64) -> &[Point] {
+    pub(crate) fn ahead(&self, length_m: f64) -> &[Point] {
         let end_m = self.stations_m[self.target] + length_m;
         let end = self.stations_m.partition_point(|s| *s <= end_m);
         &self.path[self.target..end.max(self.target + 1)]
     }
 
     /// Everything from the nearest point on.
-    pub fn remaining(&self) -> &[Point] {
+    pub(crate) fn remaining(&self) -> &[Point] {
         &self.path[self.nearest..]
     }
 
     /// Way along the path up to the nearest point, metres.
-    pub fn along_m(&self) -> f64 {
+    pub(crate) fn along_m(&self) -> f64 {
         self.stations_m[self.nearest]
     }
 
     /// Length of the whole path, metres.
-    pub fn length_m(&self) -> f64 {
+    pub(crate) fn length_m(&self) -> f64 {
         self.stations_m.last().copied().unwrap_or(0.0)
     }
 
     /// Distance from a position to the path near the robot, metres.
-    pub fn cross_track_m(&self, position: Point) -> f64 {
+    pub(crate) fn cross_track_m(&self, position: Point) -> f64 {
         let (first, end) = (self.nearest.saturating_sub(1), (self.nearest + 2).min(self.path.len()));
         polyline::distance_m(&self.path[first..end], position)
     }
 
     /// Whether the last point that can be reached is within a tolerance and nothing else is left on the way.
-    pub fn is_done(&self, position: Point, tolerance_m: f64) -> bool {
+    pub(crate) fn is_done(&self, position: Point, tolerance_m: f64) -> bool {
         let left_m = self.stations_m[self.last] - self.stations_m[self.nearest];
         left_m <= tolerance_m && (self.path[self.last] - position).norm() <= tolerance_m
     }

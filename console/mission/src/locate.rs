@@ -9,7 +9,7 @@ use std::{collections::BTreeMap, mem::discriminant};
 use world::{Point, Pose, Readings, StationId, World};
 
 /// The positioner with its memory of which stations were used and whether the position was good.
-pub struct Locator {
+pub(crate) struct Locator {
     positioner: Positioner,
     limit_m: f64,
     left_out: BTreeMap<StationId, Exclusion>,
@@ -20,7 +20,7 @@ pub struct Locator {
 
 impl Locator {
     /// A locator at the surveyed start.
-    pub fn new(config: &MissionConfig, drawing: &World) -> Self {
+    pub(crate) fn new(config: &MissionConfig, drawing: &World) -> Self {
         let locating = &config.locating;
         let normal = RangeNoise::Gaussian { sigma_ratio: config.range_sigma_ratio };
         let positioner = Positioner::new(PositionerConfig {
@@ -51,7 +51,7 @@ impl Locator {
     }
 
     /// Takes what was sensed since the last tick; gives the resulting events.
-    pub fn take(&mut self, readings: &Readings) -> Vec<EventKind> {
+    pub(crate) fn take(&mut self, readings: &Readings) -> Vec<EventKind> {
         self.positioner.predict(&readings.odometry);
         let mut events = if readings.ranging_cycle { self.cycle(readings) } else { Vec::new() };
         events.push(EventKind::Estimated { pose: self.pose_estimate() });
@@ -124,32 +124,32 @@ impl Locator {
     }
 
     /// Whether the ranges contradict each other, so that nobody knows which to believe.
-    pub fn is_alarmed(&self) -> bool {
+    pub(crate) fn is_alarmed(&self) -> bool {
         self.alarmed
     }
 
     /// Whether the position error is beyond the limit.
-    pub fn is_lost(&self) -> bool {
+    pub(crate) fn is_lost(&self) -> bool {
         self.lost
     }
 
     /// The longer half axis of the 95 % ellipse, metres.
-    pub fn error_95_m(&self) -> f64 {
+    pub(crate) fn error_95_m(&self) -> f64 {
         self.positioner.error_95_m()
     }
 
     /// Estimated position, metres.
-    pub fn position(&self) -> Point {
+    pub(crate) fn position(&self) -> Point {
         self.pose().position
     }
 
     /// Estimated pose.
-    pub fn pose(&self) -> Pose {
+    pub(crate) fn pose(&self) -> Pose {
         self.positioner.estimate().pose
     }
 
     /// Estimated pose with its covariance, as planners read it.
-    pub fn pose_estimate(&self) -> PoseEstimate {
+    pub(crate) fn pose_estimate(&self) -> PoseEstimate {
         let estimate = self.positioner.estimate();
         PoseEstimate {
             position: estimate.pose.position,

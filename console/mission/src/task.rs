@@ -2,7 +2,7 @@
 
 mod cover;
 
-pub use cover::Cover;
+pub(crate) use cover::Cover;
 
 use crate::{ask::TaskLeft, config::TaskConfig, follower::Follower};
 use planner_api as api;
@@ -12,7 +12,7 @@ use world::{CoverageGrid, ObstacleMap, Point, Shape};
 const PROGRESS_M: f64 = 0.1;
 
 /// A task under way.
-pub enum Task {
+pub(crate) enum Task {
     /// Reach a point.
     Goto(Goto),
     /// Follow preset points.
@@ -27,7 +27,7 @@ pub enum Task {
 }
 
 /// Progress towards a single goal.
-pub struct Goto {
+pub(crate) struct Goto {
     goal: Point,
     tolerance_m: f64,
     start_m: f64,
@@ -36,7 +36,7 @@ pub struct Goto {
 
 impl Task {
     /// The task at its beginning.
-    pub fn new(config: &TaskConfig, start: Point) -> Self {
+    pub(crate) fn new(config: &TaskConfig, start: Point) -> Self {
         match config {
             TaskConfig::Goto { goal, tolerance_m } => {
                 let start_m = (goal - start).norm().max(f64::EPSILON);
@@ -52,7 +52,7 @@ impl Task {
     }
 
     /// Takes the robot's position.
-    pub fn advance(&mut self, position: Point, map: &ObstacleMap, room_m: f64) {
+    pub(crate) fn advance(&mut self, position: Point, map: &ObstacleMap, room_m: f64) {
         match self {
             Self::Goto(goto) => goto.position = position,
             Self::Follow { follower, .. } => follower.advance(position, map, room_m),
@@ -61,7 +61,7 @@ impl Task {
     }
 
     /// Where to go next.
-    pub fn target(&self) -> Point {
+    pub(crate) fn target(&self) -> Point {
         match self {
             Self::Goto(goto) => goto.goal,
             Self::Follow { follower, .. } => follower.target(),
@@ -70,7 +70,7 @@ impl Task {
     }
 
     /// The targets from the next one on, a few metres of them.
-    pub fn targets_ahead(&self, length_m: f64) -> &[Point] {
+    pub(crate) fn targets_ahead(&self, length_m: f64) -> &[Point] {
         match self {
             Self::Goto(goto) => std::slice::from_ref(&goto.goal),
             Self::Follow { follower, .. } => follower.ahead(length_m),
@@ -79,21 +79,21 @@ impl Task {
     }
 
     /// Takes some time of moving.
-    pub fn wait(&mut self, passed_s: f64) {
+    pub(crate) fn wait(&mut self, passed_s: f64) {
         if let Self::Cover(cover) = self {
             cover.wait(passed_s);
         }
     }
 
     /// Takes a plan that was made for what is left of the task.
-    pub fn take_plan(&mut self, plan: &api::Plan) {
+    pub(crate) fn take_plan(&mut self, plan: &api::Plan) {
         if let Self::Cover(cover) = self {
             cover.take_plan(plan);
         }
     }
 
     /// Reachable cells that are left to scan; none unless the task is to cover.
-    pub fn floor_left(&self, coverage: &CoverageGrid) -> Vec<usize> {
+    pub(crate) fn floor_left(&self, coverage: &CoverageGrid) -> Vec<usize> {
         match self {
             Self::Cover(cover) => cover.floor_left(coverage),
             Self::Goto(_) | Self::Follow { .. } => Vec::new(),
@@ -101,12 +101,12 @@ impl Task {
     }
 
     /// Whether only some of the floor is to be scanned.
-    pub fn is_in_part(&self) -> bool {
+    pub(crate) fn is_in_part(&self) -> bool {
         matches!(self, Self::Cover(cover) if cover.is_in_part())
     }
 
     /// What is left of the lanes, from the point nearest to the robot on; `None` unless there are any.
-    pub fn lanes_left(&self) -> Option<&[Point]> {
+    pub(crate) fn lanes_left(&self) -> Option<&[Point]> {
         match self {
             Self::Cover(cover) => cover.lanes_left(),
             Self::Goto(_) | Self::Follow { .. } => None,
@@ -114,7 +114,7 @@ impl Task {
     }
 
     /// What the stretch of the plan under the robot is for, if the planner says.
-    pub fn leg(&self) -> Option<api::LegTag> {
+    pub(crate) fn leg(&self) -> Option<api::LegTag> {
         match self {
             Self::Cover(cover) => cover.leg(),
             Self::Goto(_) | Self::Follow { .. } => None,
@@ -123,7 +123,7 @@ impl Task {
 
     /// Whether what is left of the task leads the robot's centre nearer than `room_m` to an outline. Planners that go
     /// round obstacles by themselves always want to know of a new one.
-    pub fn is_in_the_way(&self, shape: &Shape, room_m: f64) -> bool {
+    pub(crate) fn is_in_the_way(&self, shape: &Shape, room_m: f64) -> bool {
         match self {
             Self::Cover(cover) => cover.is_in_the_way(shape, room_m),
             Self::Goto(_) | Self::Follow { .. } => true,
@@ -131,7 +131,12 @@ impl Task {
     }
 
     /// What is left of the task, as planners read it.
-    pub fn left(&self, coverage: &CoverageGrid, lane_m: f64, tether: Option<api::TetherLimits>) -> TaskLeft {
+    pub(crate) fn left(
+        &self,
+        coverage: &CoverageGrid,
+        lane_m: f64,
+        tether: Option<api::TetherLimits>,
+    ) -> TaskLeft {
         match self {
             Self::Goto(goto) => TaskLeft::Goto { goal: goto.goal, tolerance_m: goto.tolerance_m },
             Self::Follow { follower, tolerance_m } => {
@@ -142,7 +147,7 @@ impl Task {
     }
 
     /// Share of the task done, 0 to 1.
-    pub fn done(&self) -> f64 {
+    pub(crate) fn done(&self) -> f64 {
         match self {
             Self::Goto(goto) => (1.0 - goto.left_m() / goto.start_m).clamp(0.0, 1.0),
             Self::Follow { follower, .. } if follower.length_m() > 0.0 => {
@@ -154,7 +159,7 @@ impl Task {
     }
 
     /// Way along the preset path, metres; `None` without one.
-    pub fn along_m(&self) -> Option<f64> {
+    pub(crate) fn along_m(&self) -> Option<f64> {
         match self {
             Self::Goto(_) | Self::Cover(_) => None,
             Self::Follow { follower, .. } => Some(follower.along_m()),
@@ -162,7 +167,7 @@ impl Task {
     }
 
     /// Distance from the preset path or the lanes, metres; `None` without one.
-    pub fn cross_track_m(&self, position: Point) -> Option<f64> {
+    pub(crate) fn cross_track_m(&self, position: Point) -> Option<f64> {
         match self {
             Self::Goto(_) => None,
             Self::Follow { follower, .. } => Some(follower.cross_track_m(position)),
@@ -171,7 +176,7 @@ impl Task {
     }
 
     /// Whether the task is done, by the position that `advance` took last.
-    pub fn is_done(&self, position: Point) -> bool {
+    pub(crate) fn is_done(&self, position: Point) -> bool {
         match self {
             Self::Goto(goto) => goto.left_m() <= goto.tolerance_m,
             Self::Follow { follower, tolerance_m } => follower.is_done(position, *tolerance_m),
@@ -199,7 +204,7 @@ impl Goto {
 ///
 /// Twice `patience_s` without coming nearer, or one `patience_s` on the same spot, is stuck: a detour may lead away
 /// from the goal for a while, but it leads somewhere.
-pub struct StuckWatch {
+pub(crate) struct StuckWatch {
     patience_s: f64,
     least_left_m: f64,
     since_progress_s: f64,
@@ -209,17 +214,17 @@ pub struct StuckWatch {
 
 impl StuckWatch {
     /// A watch of some patience.
-    pub fn new(patience_s: f64) -> Self {
+    pub(crate) fn new(patience_s: f64) -> Self {
         Self { patience_s, least_left_m: f64::INFINITY, since_progress_s: 0.0, spot: None, on_spot_s: 0.0 }
     }
 
     /// Forgets what it saw, for a new try.
-    pub fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         *self = Self::new(self.patience_s);
     }
 
     /// Takes one tick of moving; gives whether the robot is stuck.
-    pub fn update(&mut self, task: &Task, position: Point, tick_s: f64) -> bool {
+    pub(crate) fn update(&mut self, task: &Task, position: Point, tick_s: f64) -> bool {
         let left_m = task.left_m();
         self.since_progress_s += tick_s;
         if left_m < self.least_left_m - PROGRESS_M {

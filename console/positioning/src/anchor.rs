@@ -33,12 +33,12 @@ pub(crate) struct View {
 
 impl View {
     /// Residual in its own sigmas.
-    pub fn sigmas(&self) -> f64 {
+    pub(crate) fn sigmas(&self) -> f64 {
         self.residual_m / self.sigma_m
     }
 
     /// Squared residual in its own sigmas.
-    pub fn squared_error(&self) -> f64 {
+    pub(crate) fn squared_error(&self) -> f64 {
         (self.residual_m / self.sigma_m).powi(2)
     }
 }
@@ -47,7 +47,7 @@ impl Anchor {
     /// The station as seen from `position`.
     ///
     /// The scatter of a range is a share of the true distance, so its sigma is taken to the computed distance.
-    pub fn view_from(&self, position: Point) -> View {
+    pub(crate) fn view_from(&self, position: Point) -> View {
         let away = position - self.at;
         let distance_m = away.norm().max(NEAREST_M);
         View {

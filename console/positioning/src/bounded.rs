@@ -69,7 +69,7 @@ pub(crate) struct Likelihood(Vec<Annulus>);
 
 impl Likelihood {
     /// Likelihood of a position up to a factor; 0 where some range cannot be.
-    pub fn at(&self, position: Point) -> f64 {
+    pub(crate) fn at(&self, position: Point) -> f64 {
         region::weight_at(&self.0, position)
     }
 }

@@ -6,10 +6,10 @@ use rand_pcg::Pcg64;
 use world::{Point, RangeSet, Station, StationId};
 
 /// Radius of the paper's tank, metres.
-pub const RADIUS_M: f64 = 10.0;
+pub(crate) const RADIUS_M: f64 = 10.0;
 
 /// Stations at these places, numbered from 1.
-pub fn stations(places: &[(f64, f64)]) -> Vec<Station> {
+pub(crate) fn stations(places: &[(f64, f64)]) -> Vec<Station> {
     (1..)
         .zip(places)
         .map(|(id, (x, y))| Station {
@@ -21,17 +21,17 @@ pub fn stations(places: &[(f64, f64)]) -> Vec<Station> {
 }
 
 /// The layout of Wang et al. 2023; its circumcentre is the origin.
-pub fn paper_stations() -> Vec<Station> {
+pub(crate) fn paper_stations() -> Vec<Station> {
     stations(&[(7.5, 0.0), (-7.5, 0.0), (0.0, 7.5)])
 }
 
 /// A layout without any symmetry.
-pub fn skew_stations() -> Vec<Station> {
+pub(crate) fn skew_stations() -> Vec<Station> {
     stations(&[(8.1, -1.2), (-5.3, 3.9), (1.7, 6.6)])
 }
 
 /// Stations evenly on a ring.
-pub fn ring(n: u32, radius_m: f64) -> Vec<Station> {
+pub(crate) fn ring(n: u32, radius_m: f64) -> Vec<Station> {
     let places: Vec<(f64, f64)> = (0..n)
         .map(|k| f64::from(k) * std::f64::consts::TAU / f64::from(n))
         .map(|angle| (radius_m * angle.cos(), radius_m * angle.sin()))
@@ -40,7 +40,7 @@ pub fn ring(n: u32, radius_m: f64) -> Vec<Station> {
 }
 
 /// Uniform noise of the paper's eq. 13.
-pub struct Draws {
+pub(crate) struct Draws {
     /// Largest error as a share of the distance.
     pub ratio: f64,
     /// Ranges per station.
@@ -50,22 +50,22 @@ pub struct Draws {
 
 impl Draws {
     /// Noise from a seed.
-    pub fn new(ratio: f64, repetitions: usize, seed: u64) -> Self {
+    pub(crate) fn new(ratio: f64, repetitions: usize, seed: u64) -> Self {
         Self { ratio, repetitions, rng: Pcg64::seed_from_u64(seed) }
     }
 
     /// A number evenly between -1 and 1.
-    pub fn even(&mut self) -> f64 {
+    pub(crate) fn even(&mut self) -> f64 {
         self.rng.random_range(-1.0..1.0)
     }
 
     /// A number with mean 0 and variance 1, nearly normal.
-    pub fn bell(&mut self) -> f64 {
+    pub(crate) fn bell(&mut self) -> f64 {
         (0..12).map(|_| self.even() / 2.0).sum()
     }
 
     /// A point evenly on the floor of the paper's tank.
-    pub fn on_disc(&mut self) -> Point {
+    pub(crate) fn on_disc(&mut self) -> Point {
         loop {
             let point = Point::new(self.even(), self.even()) * RADIUS_M;
             if point.coords.norm() <= RADIUS_M {
@@ -75,7 +75,7 @@ impl Draws {
     }
 
     /// One ranging cycle.
-    pub fn cycle(&mut self, stations: &[Station], truth: Point) -> Vec<RangeSet> {
+    pub(crate) fn cycle(&mut self, stations: &[Station], truth: Point) -> Vec<RangeSet> {
         let set = |station: &Station| {
             let distance = (truth - station.position).norm();
             let ranges_m =
@@ -86,13 +86,13 @@ impl Draws {
     }
 
     /// One ranging cycle, aggregated.
-    pub fn rangings(&mut self, stations: &[Station], truth: Point, how: Aggregation) -> Vec<Ranging> {
+    pub(crate) fn rangings(&mut self, stations: &[Station], truth: Point, how: Aggregation) -> Vec<Ranging> {
         let noise = RangeNoise::Uniform { ratio: self.ratio };
         how.aggregate(&self.cycle(stations, truth), &noise).expect("true distances give usable ranges")
     }
 }
 
 /// Ranges without error and with a sigma of 3 cm.
-pub fn exact(stations: &[Station], truth: Point) -> Vec<Ranging> {
+pub(crate) fn exact(stations: &[Station], truth: Point) -> Vec<Ranging> {
     stations.iter().map(|s| Ranging::single(s.id, (truth - s.position).norm(), 0.03)).collect()
 }

@@ -180,7 +180,7 @@ pub(crate) struct Slope {
 }
 
 impl Slope {
-    pub fn at(anchors: &[Anchor], position: Point) -> Self {
+    pub(crate) fn at(anchors: &[Anchor], position: Point) -> Self {
         let mut slope = Self {
             cost: 0.0,
             gradient: Vector::zeros(),
@@ -204,7 +204,7 @@ impl Slope {
     /// The damped Newton step downhill; none if the numbers have run away.
     ///
     /// Damping by the trace also holds where the stations see the position from one direction only.
-    pub fn step(&self, damping: f64) -> Option<Vector> {
+    pub(crate) fn step(&self, damping: f64) -> Option<Vector> {
         let least = Matrix2::identity() * (damping * self.curvature.trace());
         let inverse = inverse_of(&(made_positive(self.curvature + self.bend) + least))?;
         Some(-(inverse * self.gradient)).filter(|step| step.iter().all(|c| c.is_finite()))

@@ -1,7 +1,7 @@
 //! Every name of the recording SDK that this crate uses, so that the SDK can be exchanged in one place.
 
-pub use re_log_encoding::{DecoderApp, Encoder, EncodingOptions};
-pub use rerun::{
+pub(crate) use re_log_encoding::{DecoderApp, Encoder, EncodingOptions};
+pub(crate) use rerun::{
     AnyValues, AsComponents, ComponentIdentifier, RecordingStream, RecordingStreamBuilder,
     RecordingStreamError, SerializationError, SerializedComponentBatch, SerializedComponentColumn, StoreKind,
     TimeCell, TimeColumn,

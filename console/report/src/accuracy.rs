@@ -8,7 +8,7 @@ const CHI2_95: f64 = 5.991_464_547_107_98;
 
 /// An estimated position and how sure it is.
 #[derive(Debug, Clone, Copy)]
-pub struct Estimate {
+pub(crate) struct Estimate {
     /// Position, metres.
     pub position: Point,
     /// Covariance xx, xy, yy, square metres.
@@ -17,7 +17,7 @@ pub struct Estimate {
 
 impl Estimate {
     /// Longer half axis of the 95 % ellipse, metres.
-    pub fn error_95_m(&self) -> f64 {
+    pub(crate) fn error_95_m(&self) -> f64 {
         let [a, b, c] = self.covariance_m2;
         let largest = f64::midpoint(a, c) + (((a - c) / 2.0).powi(2) + b * b).sqrt();
         (CHI2_95 * largest.max(0.0)).sqrt()
@@ -26,7 +26,7 @@ impl Estimate {
 
 /// Errors so far; truth and estimate of a tick are paired in whichever order they come.
 #[derive(Debug, Default)]
-pub struct Accuracy {
+pub(crate) struct Accuracy {
     truth: Option<(u64, Point)>,
     estimate: Option<(u64, Estimate)>,
     errors_m: Vec<f64>,
@@ -37,24 +37,24 @@ pub struct Accuracy {
 
 impl Accuracy {
     /// Where the robot truly was in a tick.
-    pub fn truth(&mut self, tick: u64, position: Point) {
+    pub(crate) fn truth(&mut self, tick: u64, position: Point) {
         self.truth = Some((tick, position));
         self.pair();
     }
 
     /// Where it believed to be.
-    pub fn estimate(&mut self, tick: u64, estimate: Estimate) {
+    pub(crate) fn estimate(&mut self, tick: u64, estimate: Estimate) {
         self.estimate = Some((tick, estimate));
         self.pair();
     }
 
     /// The position counts as lost from now on.
-    pub fn lost(&mut self, t_s: f64) {
+    pub(crate) fn lost(&mut self, t_s: f64) {
         self.lost_since_s.get_or_insert(t_s);
     }
 
     /// The position is good again.
-    pub fn regained(&mut self, t_s: f64) {
+    pub(crate) fn regained(&mut self, t_s: f64) {
         self.lost_s += self.lost_since_s.take().map_or(0.0, |since_s| t_s - since_s);
     }
 
@@ -76,7 +76,7 @@ impl Accuracy {
     }
 
     /// The figures of a run that has come to `now_s`; none if truth and estimate never came together.
-    pub fn positioning(&self, now_s: f64) -> Option<Positioning> {
+    pub(crate) fn positioning(&self, now_s: f64) -> Option<Positioning> {
         let mut sorted = self.errors_m.clone();
         sorted.sort_by(f64::total_cmp);
         let n = sorted.len();

@@ -8,7 +8,7 @@ const AGAIN_SWATHS: f64 = 2.0;
 
 /// The floor with what was scanned so far.
 #[derive(Debug, Clone)]
-pub struct Scanned {
+pub(crate) struct Scanned {
     believed: CoverageGrid,
     truth: CoverageGrid,
     tool: Tool,
@@ -23,7 +23,7 @@ pub struct Scanned {
 
 impl Scanned {
     /// Nothing is scanned yet.
-    pub fn new(floor: Floor, tool: Tool) -> Self {
+    pub(crate) fn new(floor: Floor, tool: Tool) -> Self {
         let last_m = vec![-1.0; floor.len()];
         let believed = CoverageGrid::new(floor);
         let truth = believed.clone();
@@ -31,23 +31,23 @@ impl Scanned {
     }
 
     /// The floor with what the mission believes to have scanned.
-    pub fn believed(&self) -> &CoverageGrid {
+    pub(crate) fn believed(&self) -> &CoverageGrid {
         &self.believed
     }
 
     /// The mission says that it scanned these cells.
-    pub fn believe(&mut self, runs: &[CellRun]) {
+    pub(crate) fn believe(&mut self, runs: &[CellRun]) {
         self.believed.apply(runs);
     }
 
     /// An obstacle that was found changed the floor.
-    pub fn change(&mut self, changes: &[KindRun]) {
+    pub(crate) fn change(&mut self, changes: &[KindRun]) {
         self.believed.change(changes);
         self.truth.change(changes);
     }
 
     /// Takes in what another run scanned of the same floor.
-    pub fn join(&mut self, other: &Self) {
+    pub(crate) fn join(&mut self, other: &Self) {
         let is_in_both = |index: &usize| self.truth.is_covered(*index) && other.truth.is_covered(*index);
         let in_both = (0..self.truth.floor().len().min(other.truth.floor().len())).filter(is_in_both).count();
         // What both scanned, one of them scanned again.
@@ -59,7 +59,7 @@ impl Scanned {
     }
 
     /// The robot truly went from `a` to `b`.
-    pub fn pass(&mut self, a: Pose, b: Pose) {
+    pub(crate) fn pass(&mut self, a: Pose, b: Pose) {
         self.has_truth = true;
         let before_m = self.way_m;
         self.way_m += (b.position - a.position).norm();
@@ -78,7 +78,7 @@ impl Scanned {
     }
 
     /// The figures so far.
-    pub fn coverage(&self) -> Coverage {
+    pub(crate) fn coverage(&self) -> Coverage {
         let counts = self.believed.counts();
         let cell_m2 = self.believed.floor().cell_m.powi(2);
         let by_truth = CoverageByTruth {

@@ -12,7 +12,7 @@ const LEFT_M: f64 = 0.3;
 
 /// The cable of a run so far.
 #[derive(Debug)]
-pub struct Tethered {
+pub(crate) struct Tethered {
     anchor: Point,
     known: Option<Tether>,
     detour_m: f64,
@@ -22,12 +22,12 @@ pub struct Tethered {
 
 impl Tethered {
     /// A run with this tether.
-    pub fn new(config: &TetherConfig) -> Self {
+    pub(crate) fn new(config: &TetherConfig) -> Self {
         Self { anchor: config.anchor, known: None, detour_m: 0.0, catches: 0, caught: false }
     }
 
     /// Takes in how the cable lies in one tick.
-    pub fn lie(&mut self, length_m: f64, max_wrap_rad: f64, sum_wrap_rad: f64, detour_m: f64) {
+    pub(crate) fn lie(&mut self, length_m: f64, max_wrap_rad: f64, sum_wrap_rad: f64, detour_m: f64) {
         let before =
             self.known.map_or((0.0, 0.0, 0.0), |t| (t.max_length_m, t.max_wrap_rad, t.max_total_wrap_rad));
         self.detour_m = detour_m;
@@ -44,13 +44,13 @@ impl Tethered {
     }
 
     /// Takes in that the mission found the cable caught on something unseen, or free of it again.
-    pub fn catch(&mut self, caught: bool) {
+    pub(crate) fn catch(&mut self, caught: bool) {
         self.catches += u64::from(caught);
         self.caught = caught;
     }
 
     /// The figures: entangled is a cable that holds the mission up, or stays out though the robot is back.
-    pub fn tether(&self, robot: Option<Point>, outcome: Option<Outcome>) -> Option<Tether> {
+    pub(crate) fn tether(&self, robot: Option<Point>, outcome: Option<Outcome>) -> Option<Tether> {
         let is_back = robot.is_some_and(|robot| (robot - self.anchor).norm() <= BACK_M);
         let entangled = outcome == Some(Outcome::Entangled) || (is_back && self.detour_m > LEFT_M);
         let (catches, caught) = (self.catches, self.caught);

@@ -18,7 +18,7 @@ const SPACING_M: f64 = 0.25;
 
 /// A preset path and how the true path kept to it so far.
 #[derive(Debug)]
-pub struct Tracker {
+pub(crate) struct Tracker {
     path: Vec<Point>,
     stations_m: Vec<f64>,
     /// Preset points that nobody came near to yet, by the square of the floor they lie in.
@@ -44,7 +44,7 @@ struct Sample {
 
 impl Tracker {
     /// Nobody has moved yet.
-    pub fn new(path: &[Point]) -> Self {
+    pub(crate) fn new(path: &[Point]) -> Self {
         let path = resampled(path, SPACING_M);
         let mut unvisited: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
         for (i, point) in path.iter().enumerate() {
@@ -66,12 +66,12 @@ impl Tracker {
     }
 
     /// How far along the path the mission says it is, metres.
-    pub fn progress(&mut self, along_m: f64) {
+    pub(crate) fn progress(&mut self, along_m: f64) {
         self.claimed_m = self.claimed_m.max(along_m);
     }
 
     /// The robot truly went from `a` to `b`.
-    pub fn pass(&mut self, a: Point, b: Point) {
+    pub(crate) fn pass(&mut self, a: Point, b: Point) {
         self.visit(a, b);
         if self.last.is_none() {
             self.sample(a);
@@ -82,7 +82,7 @@ impl Tracker {
     }
 
     /// The figures so far; none before the robot was seen or for an empty path.
-    pub fn tracking(&self) -> Option<Tracking> {
+    pub(crate) fn tracking(&self) -> Option<Tracking> {
         (self.samples > 0 && !self.path.is_empty()).then(|| Tracking {
             precision: self.near as f64 / self.samples as f64,
             recall: self.visited as f64 / self.path.len() as f64,

@@ -12,7 +12,7 @@ const STRAIGHT_RAD: f64 = TURN_RAD / 2.0;
 
 /// Heading changes of a robot on its true way.
 #[derive(Debug, Default)]
-pub struct Turning {
+pub(crate) struct Turning {
     /// Way and heading, unwrapped, over the last half metre.
     lately: VecDeque<(f64, f64)>,
     last: Option<Pose>,
@@ -25,7 +25,7 @@ pub struct Turning {
 
 impl Turning {
     /// The robot was here.
-    pub fn pass(&mut self, pose: Pose) {
+    pub(crate) fn pass(&mut self, pose: Pose) {
         let before = self.last.replace(pose).unwrap_or(pose);
         let turned_rad = wrap_angle_rad(pose.heading_rad - before.heading_rad);
         self.turned_rad += turned_rad.abs();
@@ -48,12 +48,12 @@ impl Turning {
 
     /// Changes of heading above 30 degrees within half a metre of way; several in a row without a straight piece
     /// between them are one.
-    pub fn turns(&self) -> u64 {
+    pub(crate) fn turns(&self) -> u64 {
         self.turns
     }
 
     /// Sum of all heading changes as whole turns, either way round.
-    pub fn rotation_turns(&self) -> f64 {
+    pub(crate) fn rotation_turns(&self) -> f64 {
         self.turned_rad / TAU
     }
 }

@@ -21,7 +21,7 @@ use world::{Boundary, Obstacle, Point, Pose, Station, World};
 const ON_PATH_M: f64 = 1e-3;
 
 /// Reads every section, checks that they fit together, and gives the scenario or everything that is wrong.
-pub fn assemble(text: &str, shown_name: &str, table: &DeTable<'_>) -> Result<Scenario, Vec<Problem>> {
+pub(crate) fn assemble(text: &str, shown_name: &str, table: &DeTable<'_>) -> Result<Scenario, Vec<Problem>> {
     let source = Source::new(text);
     let scenario = read(&Section::root(&source, table, schema::ROOT), text, shown_name);
     let problems = source.into_problems();

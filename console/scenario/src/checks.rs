@@ -4,19 +4,19 @@ use super::{problem::Complaint, section::Section};
 use world::{Boundary, Obstacle, Point, Zone, ZoneKind};
 
 /// Cells that a coverage grid may have.
-pub const MOST_CELLS: f64 = 4e6;
+pub(crate) const MOST_CELLS: f64 = 4e6;
 
 /// Lanes side by side that a floor may take.
-pub const MOST_LANES: f64 = 600.0;
+pub(crate) const MOST_LANES: f64 = 600.0;
 
 /// Ticks that a run may last.
-pub const MOST_TICKS: f64 = 1e7;
+pub(crate) const MOST_TICKS: f64 = 1e7;
 
 /// Slack for numbers that were written down rounded, metres.
-pub const ROUNDING_M: f64 = 1e-6;
+pub(crate) const ROUNDING_M: f64 = 1e-6;
 
 /// What a robot of some radius may run into.
-pub struct Site<'a> {
+pub(crate) struct Site<'a> {
     /// The wall.
     pub boundary: &'a Boundary,
     /// Obstacles, known or not.
@@ -29,7 +29,7 @@ pub struct Site<'a> {
 
 impl Site<'_> {
     /// Why the robot cannot stand at a place, if it cannot.
-    pub fn objection(&self, place: Point) -> Option<Complaint> {
+    pub(crate) fn objection(&self, place: Point) -> Option<Complaint> {
         self.wall(place).or_else(|| self.obstacle(place)).or_else(|| self.no_go(place))
     }
 
@@ -65,7 +65,7 @@ impl Site<'_> {
 }
 
 /// Complains about a coverage grid with too many cells.
-pub fn check_cells(mission: &Section<'_>, boundary: &Boundary, cell_m: f64) {
+pub(crate) fn check_cells(mission: &Section<'_>, boundary: &Boundary, cell_m: f64) {
     let (low, high) = boundary.bounds();
     let size = high - low;
     let cells = (size.x / cell_m).ceil() * (size.y / cell_m).ceil();
@@ -78,7 +78,7 @@ pub fn check_cells(mission: &Section<'_>, boundary: &Boundary, cell_m: f64) {
 }
 
 /// Complains about a swath that is so narrow, without the overlap, that the floor takes too many lanes.
-pub fn check_lanes(mission: &Section<'_>, boundary: &Boundary, swath_m: f64, overlap_m: f64) {
+pub(crate) fn check_lanes(mission: &Section<'_>, boundary: &Boundary, swath_m: f64, overlap_m: f64) {
     let (low, high) = boundary.bounds();
     let across_m = (high - low).min();
     let lanes = across_m / (swath_m - overlap_m);
@@ -95,7 +95,7 @@ pub fn check_lanes(mission: &Section<'_>, boundary: &Boundary, swath_m: f64, ove
 }
 
 /// Complains about a run with too many ticks, or none.
-pub fn check_ticks(mission: &Section<'_>, tick_s: f64, time_limit_s: f64) {
+pub(crate) fn check_ticks(mission: &Section<'_>, tick_s: f64, time_limit_s: f64) {
     let ticks = time_limit_s / tick_s;
     if ticks > MOST_TICKS {
         let what = Complaint::TooManyTicks { ticks: ticks as u64, tick_s, limit: MOST_TICKS as u64 };
@@ -106,7 +106,7 @@ pub fn check_ticks(mission: &Section<'_>, tick_s: f64, time_limit_s: f64) {
 }
 
 /// Complains about ranging more often than once a tick.
-pub fn check_period(ae: &Section<'_>, tick_s: f64, period_s: f64) {
+pub(crate) fn check_period(ae: &Section<'_>, tick_s: f64, period_s: f64) {
     if period_s < tick_s {
         ae.complain("period_s", at_least_a_tick(tick_s));
     }

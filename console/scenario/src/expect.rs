@@ -5,7 +5,7 @@ use mission::Outcome;
 use report::Expect;
 
 /// Reads `[expect]`; no bounds if it is not there.
-pub fn expect(root: &Section<'_>) -> Option<Expect> {
+pub(crate) fn expect(root: &Section<'_>) -> Option<Expect> {
     let section = root.table_or_empty("expect")?;
     let outcome = section.word("outcome").map(|word| match word {
         "complete" => Outcome::Complete,

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use world::{Boundary, Obstacle, ObstacleId, PlateLayout, Shape, Vector, Zone, ZoneKind};
 
 /// Reads `[tank]`.
-pub fn tank(root: &Section<'_>) -> Option<Boundary> {
+pub(crate) fn tank(root: &Section<'_>) -> Option<Boundary> {
     let section = root.table("tank")?;
     if section.has("map") {
         section.text("map")?;
@@ -30,7 +30,7 @@ pub fn tank(root: &Section<'_>) -> Option<Boundary> {
 }
 
 /// Reads `[plates]`.
-pub fn plates(root: &Section<'_>, boundary: Option<&Boundary>) -> Option<PlateLayout> {
+pub(crate) fn plates(root: &Section<'_>, boundary: Option<&Boundary>) -> Option<PlateLayout> {
     let section = root.table("plates")?;
     let (annular_m, length_m) = (section.number("annular_width_m")?, section.number("plate_length_m")?);
     let width_m = section.number("plate_width_m")?;
@@ -45,7 +45,7 @@ pub fn plates(root: &Section<'_>, boundary: Option<&Boundary>) -> Option<PlateLa
 }
 
 /// Reads `[[obstacles]]` and how they move; those that are wrong are left out.
-pub fn obstacles(root: &Section<'_>, boundary: Option<&Boundary>) -> (Vec<Obstacle>, Vec<Mover>) {
+pub(crate) fn obstacles(root: &Section<'_>, boundary: Option<&Boundary>) -> (Vec<Obstacle>, Vec<Mover>) {
     let mut movers = Vec::new();
     let mut names = Names::default();
     let sections = root.tables("obstacles");
@@ -87,7 +87,7 @@ fn track(section: &Section<'_>) -> Option<Track> {
 }
 
 /// Reads `[[zones]]`; those that are wrong are left out.
-pub fn zones(root: &Section<'_>) -> Vec<Zone> {
+pub(crate) fn zones(root: &Section<'_>) -> Vec<Zone> {
     let mut names = Names::default();
     let sections = root.tables("zones");
     let read = |(i, section): (usize, &Section<'_>)| {
@@ -105,11 +105,11 @@ pub fn zones(root: &Section<'_>) -> Vec<Zone> {
 
 /// Names given so far, so that none is given twice.
 #[derive(Default)]
-pub struct Names(BTreeMap<String, Place>);
+pub(crate) struct Names(BTreeMap<String, Place>);
 
 impl Names {
     /// The name of an entry, or the one made up for it; complains about one that was given before.
-    pub fn of(&mut self, section: &Section<'_>, made_up: impl Fn() -> String) -> Option<String> {
+    pub(crate) fn of(&mut self, section: &Section<'_>, made_up: impl Fn() -> String) -> Option<String> {
         let name = if section.has("name") { section.text("name")? } else { made_up() };
         if let Some(first) = self.0.get(&name) {
             section.complain("name", Complaint::Duplicate { other: first.key.clone() });

@@ -10,7 +10,7 @@ const TRIES_PER_OBSTACLE: usize = 200;
 
 /// Where the centres of random obstacles may lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sampling {
+pub(crate) enum Sampling {
     /// Anywhere on the floor.
     Disk,
     /// Anywhere in the square or box around the tank, as Wang et al. 2023 draw them: one in five stands outside.
@@ -19,7 +19,7 @@ pub enum Sampling {
 
 /// What is asked for.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RandomObstacles {
+pub(crate) struct RandomObstacles {
     /// How many.
     pub count: usize,
     /// Smallest and largest radius, metres.
@@ -37,7 +37,7 @@ pub struct RandomObstacles {
 }
 
 /// Reads `[random_obstacles]`.
-pub fn random_obstacles(section: &Section<'_>, scenario_seed: Option<u64>) -> Option<RandomObstacles> {
+pub(crate) fn random_obstacles(section: &Section<'_>, scenario_seed: Option<u64>) -> Option<RandomObstacles> {
     let (count, radius_m) = (section.whole("count"), section.pair("radius_m"));
     let sampling = section.word("sampling");
     let (min_gap_m, keep_clear_m) = (section.number("min_gap_m"), section.number("keep_clear_m"));
@@ -64,7 +64,7 @@ impl RandomObstacles {
     /// Adds them to `obstacles`; returns how many found room.
     ///
     /// `free` are the places to keep clear.
-    pub fn place(&self, boundary: &Boundary, free: &[Point], obstacles: &mut Vec<Obstacle>) -> usize {
+    pub(crate) fn place(&self, boundary: &Boundary, free: &[Point], obstacles: &mut Vec<Obstacle>) -> usize {
         let mut chance = Pcg64Mcg::seed_from_u64(self.seed);
         let by_hand = ObstacleMap::new(boundary, obstacles);
         let mut placed: Vec<(Point, f64)> = Vec::new();

@@ -22,7 +22,7 @@ struct Rectangle {
 ///
 /// # Errors
 /// The map cannot be read, shows no free floor, or gives more obstacles than a scenario may have.
-pub fn put_in(text: &str, shown_name: &str, folder: &Path) -> Result<String, ScenarioErrors> {
+pub(crate) fn put_in(text: &str, shown_name: &str, folder: &Path) -> Result<String, ScenarioErrors> {
     let Ok(table) = DeTable::parse(text) else { return Ok(text.to_owned()) };
     let tank = table.get_ref().get("tank").and_then(|tank| tank.get_ref().as_table());
     let Some((key, value)) = tank.and_then(|tank| tank.get_key_value("map")) else {

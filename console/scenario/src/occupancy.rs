@@ -13,7 +13,7 @@ const MOST_CELLS: usize = 4000;
 
 /// A map: which cells are solid, row by row from the lower left.
 #[derive(Debug, Clone, PartialEq)]
-pub struct OccupancyMap {
+pub(crate) struct OccupancyMap {
     /// Cells along x.
     pub columns: usize,
     /// Whether a cell is solid.
@@ -28,7 +28,7 @@ pub struct OccupancyMap {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{file}{}{}: {what}", line.map(|line| format!(", line {line}")).unwrap_or_default(),
     key.as_ref().map(|key| format!(", {key}")).unwrap_or_default())]
-pub struct MapError {
+pub(crate) struct MapError {
     /// The file.
     pub file: String,
     /// Line in it, from 1.
@@ -54,7 +54,7 @@ impl OccupancyMap {
     ///
     /// # Errors
     /// File, line and key of what is wrong.
-    pub fn read(yaml: &Path) -> Result<Self, MapError> {
+    pub(crate) fn read(yaml: &Path) -> Result<Self, MapError> {
         let text = read_file(yaml)?;
         let text =
             String::from_utf8(text).map_err(|_| of_file(yaml, "no text, the YAML file of a map is"))?;

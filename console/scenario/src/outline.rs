@@ -11,7 +11,7 @@ const KEYS: [&str; 7] =
 const MOST_CORNERS: usize = 200;
 
 /// Reads the outline whose kind the key `word_key` names.
-pub fn outline(section: &Section<'_>, word_key: &str) -> Option<Shape> {
+pub(crate) fn outline(section: &Section<'_>, word_key: &str) -> Option<Shape> {
     let kind = section.word(word_key)?;
     let used: &[&str] = match kind {
         "circle" => &["center_m", "radius_m"],
@@ -69,7 +69,7 @@ fn polyline(section: &Section<'_>) -> Option<Shape> {
 }
 
 /// The corners of a simple polygon, brought into counter-clockwise order.
-pub fn counter_clockwise(section: &Section<'_>, name: &str) -> Option<Vec<Point>> {
+pub(crate) fn counter_clockwise(section: &Section<'_>, name: &str) -> Option<Vec<Point>> {
     let mut vertices = section.points(name)?;
     vertices.dedup();
     if vertices.len() > 1 && vertices.first() == vertices.last() {
@@ -120,7 +120,7 @@ fn dent(vertices: &[Point]) -> Option<Point> {
 
 /// Points along an outline, close enough together to see whether any of it lies on the floor, and how far the
 /// outline reaches beyond them, metres.
-pub fn samples(shape: &Shape) -> (Vec<Point>, f64) {
+pub(crate) fn samples(shape: &Shape) -> (Vec<Point>, f64) {
     const PIECES: u32 = 16;
     let along = |a: &Point, b: &Point| -> Vec<Point> {
         let (a, b) = (*a, *b);

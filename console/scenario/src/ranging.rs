@@ -10,7 +10,7 @@ use world::{Boundary, Station, StationId};
 const ON_WALL_M: f64 = 0.01;
 
 /// Reads `[ae]` without its stations.
-pub fn ae(section: &Section<'_>) -> Option<AeConfig> {
+pub(crate) fn ae(section: &Section<'_>) -> Option<AeConfig> {
     let (period_s, repetitions) = (section.number("period_s"), section.whole("repetitions"));
     let (noise, dropout) = (noise(section), section.number("dropout"));
     let (outages_s, disturbances) = (section.times("outages_s"), disturbances(section));
@@ -25,7 +25,7 @@ pub fn ae(section: &Section<'_>) -> Option<AeConfig> {
 }
 
 /// How the estimator is to use the ranges; it knows their scatter, but not their faults.
-pub fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating> {
+pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating> {
     let (solver, aggregation) = (section.word("solver"), section.word("aggregation"));
     let calibrates_sound = section.flag("calibrates_sound");
     let noise = match ae.noise {
@@ -90,7 +90,7 @@ fn disturbances(section: &Section<'_>) -> Option<Disturbances> {
 }
 
 /// Reads the faults of single stations.
-pub fn faults(section: &Section<'_>, stations: &[Station]) -> Vec<StationFault> {
+pub(crate) fn faults(section: &Section<'_>, stations: &[Station]) -> Vec<StationFault> {
     section.tables("faults").iter().filter_map(|entry| fault(entry, stations)).collect()
 }
 
@@ -148,7 +148,7 @@ fn noise(section: &Section<'_>) -> Option<NoiseModel> {
 }
 
 /// Standard deviation of one range as a share of it, as the estimator may expect it; never quite zero.
-pub fn range_sigma_ratio(noise: NoiseModel) -> f64 {
+pub(crate) fn range_sigma_ratio(noise: NoiseModel) -> f64 {
     const LEAST: f64 = 1e-3;
     match noise {
         NoiseModel::None => LEAST,
@@ -161,7 +161,7 @@ pub fn range_sigma_ratio(noise: NoiseModel) -> f64 {
 }
 
 /// Reads the stations of `[ae]`.
-pub fn stations(section: &Section<'_>, boundary: Option<&Boundary>) -> Vec<Station> {
+pub(crate) fn stations(section: &Section<'_>, boundary: Option<&Boundary>) -> Vec<Station> {
     let mut names = Names::default();
     let mut stations: Vec<Station> = Vec::new();
     let sections = section.tables("stations");

@@ -6,7 +6,7 @@ use world::{Amphibious, Pace, Point};
 
 /// `[robot]` as read; the start may still follow from the mission.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Robot {
+pub(crate) struct Robot {
     /// What it can do.
     pub limits: Limits,
     /// Largest change of speed, metres per second squared.
@@ -34,25 +34,25 @@ pub struct Robot {
 impl Robot {
     /// Standard deviation of the way as a share of it that the estimator may expect: odometry's own error and slip
     /// together, never less than 2 %.
-    pub fn odometry_sigma_per_m(&self) -> f64 {
+    pub(crate) fn odometry_sigma_per_m(&self) -> f64 {
         let squares = [self.odometry_sigma_ratio, self.slip_mean, self.slip_sigma].map(|share| share * share);
         squares.iter().sum::<f64>().sqrt().max(0.02)
     }
 
     /// Standard deviation of a turn as a share of it that the estimator may expect, never less than 1 %.
-    pub fn turn_sigma_per_rad(&self) -> f64 {
+    pub(crate) fn turn_sigma_per_rad(&self) -> f64 {
         self.odometry_sigma_ratio.max(0.01)
     }
 
     /// Standard deviation of the heading's drift that the estimator may expect, radians per second, never less than
     /// a good gyro's 3 degrees a minute.
-    pub fn gyro_sigma_rad_per_s(&self) -> f64 {
+    pub(crate) fn gyro_sigma_rad_per_s(&self) -> f64 {
         self.gyro_bias_rad_per_s.abs().max(0.05_f64.to_radians())
     }
 }
 
 /// Reads `[robot]`.
-pub fn robot(section: &Section<'_>) -> Option<Robot> {
+pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
     let word = section.word("motion");
     let motion = word.map(|word| if word == "point" { Motion::Point } else { Motion::Unicycle });
     let radius_m = section.number("radius_m");

@@ -7,7 +7,7 @@ use std::fmt;
 
 /// The numbers a key accepts.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Span {
+pub(crate) struct Span {
     low: f64,
     low_is_open: bool,
     high: f64,
@@ -16,28 +16,28 @@ pub struct Span {
 }
 
 /// Every number greater than `low`.
-pub const fn above(low: f64) -> Span {
+pub(crate) const fn above(low: f64) -> Span {
     Span { low, low_is_open: true, high: f64::INFINITY, why: None }
 }
 
 /// Every number from `low` on.
-pub const fn at_least(low: f64) -> Span {
+pub(crate) const fn at_least(low: f64) -> Span {
     Span { low, low_is_open: false, high: f64::INFINITY, why: None }
 }
 
 impl Span {
     /// The same, up to and including `high`.
-    pub const fn up_to(self, high: f64) -> Self {
+    pub(crate) const fn up_to(self, high: f64) -> Self {
         Self { high, ..self }
     }
 
     /// The same, with the reason why nothing less will do: reads on after the bound and a colon.
-    pub const fn because(self, why: &'static str) -> Self {
+    pub(crate) const fn because(self, why: &'static str) -> Self {
         Self { why: Some(why), ..self }
     }
 
     /// What a number must be instead, if it is not accepted: reads on after "must be".
-    pub fn complaint(&self, number: f64, unit: &str) -> Option<String> {
+    pub(crate) fn complaint(&self, number: f64, unit: &str) -> Option<String> {
         let gap = if unit.is_empty() { "" } else { " " };
         if self.low_is_open && number <= self.low {
             Some(format!("greater than {}{gap}{unit}", self.low))
@@ -68,7 +68,7 @@ impl fmt::Display for Span {
 
 /// What a key holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
+pub(crate) enum Kind {
     /// A real number; a whole one will do.
     Number(Span),
     /// A whole number from the first to the last.
@@ -101,7 +101,7 @@ pub enum Kind {
 
 /// What holds when a key is not given.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Default {
+pub(crate) enum Default {
     /// It must be given.
     Required,
     /// Nothing, or something worked out from other keys: in words.
@@ -118,7 +118,7 @@ pub enum Default {
 
 /// One key of a section.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Key {
+pub(crate) struct Key {
     /// As it is written, unit last.
     pub name: &'static str,
     /// Unit of its numbers; empty for pure ones.
@@ -174,7 +174,7 @@ const ANY_LENGTH: Span = at_least(0.0);
 const BY_KIND: &str = "by kind";
 
 /// The whole file.
-pub static ROOT: &[Key] = &[
+pub(crate) static ROOT: &[Key] = &[
     key("name", "", Kind::Slug),
     key("about", "", Kind::Text).or_none("empty"),
     key("seed", "", Kind::Whole(0, i64::MAX)).or_whole(1),
@@ -205,7 +205,7 @@ static PLATES: &[Key] = &[
 ];
 
 /// The outlines an obstacle or a zone may have.
-pub static OUTLINES: &[&str] = &["circle", "box", "polygon", "polyline"];
+pub(crate) static OUTLINES: &[&str] = &["circle", "box", "polygon", "polyline"];
 
 static OBSTACLES: &[Key] = &[
     key("name", "", Kind::Text).or_none("`obstacle 1`, `obstacle 2`, ..."),
@@ -379,7 +379,7 @@ static EXPECT: &[Key] = &[
 ];
 
 /// Every section with its path, the whole file first under the empty path.
-pub fn sections() -> Vec<(String, &'static [Key])> {
+pub(crate) fn sections() -> Vec<(String, &'static [Key])> {
     let mut found = vec![(String::new(), ROOT)];
     let mut next = 0;
     while next < found.len() {
@@ -395,7 +395,7 @@ pub fn sections() -> Vec<(String, &'static [Key])> {
 }
 
 /// A key's path from its section's.
-pub fn joined(section: &str, key: &str) -> String {
+pub(crate) fn joined(section: &str, key: &str) -> String {
     if section.is_empty() { key.to_owned() } else { format!("{section}.{key}") }
 }
 

@@ -22,7 +22,7 @@ const FAR_M: f64 = 10_000.0;
 
 /// Where a value stands, to complain about it later.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Place {
+pub(crate) struct Place {
     /// Path of the key.
     pub key: String,
     /// Bytes of the value.
@@ -30,7 +30,7 @@ pub struct Place {
 }
 
 /// A table of the file with the keys it may have.
-pub struct Section<'a> {
+pub(crate) struct Section<'a> {
     source: &'a Source<'a>,
     table: Option<&'a DeTable<'a>>,
     keys: &'static [Key],
@@ -42,7 +42,7 @@ type Value<'a> = Spanned<DeValue<'a>>;
 
 impl<'a> Section<'a> {
     /// The whole file; complains about unknown keys.
-    pub fn root(source: &'a Source<'a>, table: &'a DeTable<'a>, keys: &'static [Key]) -> Self {
+    pub(crate) fn root(source: &'a Source<'a>, table: &'a DeTable<'a>, keys: &'static [Key]) -> Self {
         let end = source.text.trim_end().len();
         let root = Self { source, table: Some(table), keys, path: String::new(), at: end..end };
         root.refuse_unknown();
@@ -81,33 +81,33 @@ impl<'a> Section<'a> {
     }
 
     /// Path of a key of this section.
-    pub fn path_of(&self, name: &str) -> String {
+    pub(crate) fn path_of(&self, name: &str) -> String {
         joined(&self.path, name)
     }
 
     /// Where a key's value stands; where the section does if the key is not given.
-    pub fn place(&self, name: &str) -> Place {
+    pub(crate) fn place(&self, name: &str) -> Place {
         let at = self.value(name).map_or_else(|| self.at.clone(), Spanned::span);
         Place { key: self.path_of(name), at }
     }
 
     /// Whether the key is given.
-    pub fn has(&self, name: &str) -> bool {
+    pub(crate) fn has(&self, name: &str) -> bool {
         self.value(name).is_some()
     }
 
     /// Whether the key is given as a list of any length.
-    pub fn is_list(&self, name: &str) -> bool {
+    pub(crate) fn is_list(&self, name: &str) -> bool {
         self.value(name).is_some_and(|value| value.get_ref().is_array())
     }
 
     /// Complains about a key.
-    pub fn complain(&self, name: &str, what: Complaint) {
+    pub(crate) fn complain(&self, name: &str, what: Complaint) {
         self.complain_about(&self.place(name), self.has(name), what);
     }
 
     /// Complains about the section as a whole.
-    pub fn complain_whole(&self, what: Complaint) {
+    pub(crate) fn complain_whole(&self, what: Complaint) {
         let place = Place { key: self.path.clone(), at: self.at.clone() };
         self.complain_about(&place, false, what);
     }
@@ -123,7 +123,7 @@ impl<'a> Section<'a> {
     }
 
     /// Complains unless the key, needed beside another one, is given.
-    pub fn require(&self, name: &str, remedy: &str) -> bool {
+    pub(crate) fn require(&self, name: &str, remedy: &str) -> bool {
         if !self.has(name) {
             self.complain(name, Complaint::Missing { remedy: remedy.to_owned() });
         }
@@ -131,7 +131,7 @@ impl<'a> Section<'a> {
     }
 
     /// Complains about each of the keys that is given.
-    pub fn refuse(&self, names: &[&str], beside: &str) {
+    pub(crate) fn refuse(&self, names: &[&str], beside: &str) {
         for name in names.iter().filter(|name| self.has(name)) {
             self.complain(name, Complaint::OutOfPlace { beside: beside.to_owned() });
         }
@@ -156,7 +156,7 @@ impl<'a> Section<'a> {
     }
 
     /// A number; its default if it is not given, `None` if that is absent or something is wrong.
-    pub fn number(&self, name: &str) -> Option<f64> {
+    pub(crate) fn number(&self, name: &str) -> Option<f64> {
         let key = self.key(name);
         let (Kind::Number(span), unit) = (key.kind, key.unit) else {
             panic!("{name} is declared as a number")
@@ -192,7 +192,7 @@ impl<'a> Section<'a> {
     }
 
     /// A whole number; its default if it is not given.
-    pub fn whole(&self, name: &str) -> Option<i64> {
+    pub(crate) fn whole(&self, name: &str) -> Option<i64> {
         let key = self.key(name);
         let Kind::Whole(low, high) = key.kind else { panic!("{name} is declared as a whole number") };
         let Some(value) = self.required(name) else {
@@ -209,7 +209,7 @@ impl<'a> Section<'a> {
     }
 
     /// A flag; its default if it is not given.
-    pub fn flag(&self, name: &str) -> Option<bool> {
+    pub(crate) fn flag(&self, name: &str) -> Option<bool> {
         let Some(value) = self.required(name) else {
             return if let Default::Flag(default) = self.key(name).default { Some(default) } else { None };
         };
@@ -221,7 +221,7 @@ impl<'a> Section<'a> {
     }
 
     /// One of the words; the default if it is not given.
-    pub fn word(&self, name: &str) -> Option<&'static str> {
+    pub(crate) fn word(&self, name: &str) -> Option<&'static str> {
         let key = self.key(name);
         let Kind::Word(words) = key.kind else { panic!("{name} is declared as a word") };
         let Some(value) = self.required(name) else {
@@ -237,7 +237,7 @@ impl<'a> Section<'a> {
     }
 
     /// Text; `None` if it is not given.
-    pub fn text(&self, name: &str) -> Option<String> {
+    pub(crate) fn text(&self, name: &str) -> Option<String> {
         let text = self.required(name)?.get_ref().as_str();
         match text {
             None => self.complain(name, wrong_type("text", "put it between double quotes")),
@@ -251,7 +251,7 @@ impl<'a> Section<'a> {
     }
 
     /// A name that can be part of a file name.
-    pub fn slug(&self, name: &str) -> Option<String> {
+    pub(crate) fn slug(&self, name: &str) -> Option<String> {
         let slug = self.text(name)?;
         let allowed = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
         let starts_well = slug.starts_with(|c: char| c.is_ascii_alphanumeric());
@@ -264,7 +264,7 @@ impl<'a> Section<'a> {
     }
 
     /// A point.
-    pub fn point(&self, name: &str) -> Option<Point> {
+    pub(crate) fn point(&self, name: &str) -> Option<Point> {
         self.checked_point(self.path_of(name), self.required(name)?)
     }
 
@@ -293,7 +293,7 @@ impl<'a> Section<'a> {
     }
 
     /// A list of points, each with its place.
-    pub fn points(&self, name: &str) -> Option<Vec<Point>> {
+    pub(crate) fn points(&self, name: &str) -> Option<Vec<Point>> {
         let Kind::Points(need) = self.key(name).kind else { panic!("{name} is declared as points") };
         let list = self.list(name, "a list of points", "write [[x, y], [x, y], ...] in metres")?;
         if list.len() < need {
@@ -309,7 +309,7 @@ impl<'a> Section<'a> {
     }
 
     /// Boxes as their south west and north east corners.
-    pub fn boxes(&self, name: &str) -> Option<Vec<[Point; 2]>> {
+    pub(crate) fn boxes(&self, name: &str) -> Option<Vec<[Point; 2]>> {
         let remedy = "write [[west, south, east, north], ...] in metres";
         let list = self.list(name, "a list of boxes", remedy)?;
         if list.is_empty() {
@@ -352,14 +352,14 @@ impl<'a> Section<'a> {
     }
 
     /// A pair of numbers.
-    pub fn pair(&self, name: &str) -> Option<[f64; 2]> {
+    pub(crate) fn pair(&self, name: &str) -> Option<[f64; 2]> {
         let key = self.key(name);
         let Kind::Pair(span) = key.kind else { panic!("{name} is declared as a pair") };
         self.checked_pair(self.path_of(name), self.required(name)?, span, key.unit, "write [number, number]")
     }
 
     /// Spans of time, each from an earlier to a later one; none if not given.
-    pub fn times(&self, name: &str) -> Option<Vec<(f64, f64)>> {
+    pub(crate) fn times(&self, name: &str) -> Option<Vec<(f64, f64)>> {
         if !self.has(name) {
             return Some(Vec::new());
         }
@@ -384,13 +384,13 @@ impl<'a> Section<'a> {
     }
 
     /// A table within this one; `None` if it is not given or none.
-    pub fn table(&self, name: &str) -> Option<Self> {
+    pub(crate) fn table(&self, name: &str) -> Option<Self> {
         let Kind::Table(keys) = self.key(name).kind else { panic!("{name} is declared as a table") };
         self.inner(name, keys, self.required(name)?)
     }
 
     /// A table within this one; an empty one if it is not given.
-    pub fn table_or_empty(&self, name: &str) -> Option<Self> {
+    pub(crate) fn table_or_empty(&self, name: &str) -> Option<Self> {
         let Kind::Table(keys) = self.key(name).kind else { panic!("{name} is declared as a table") };
         match self.value(name) {
             Some(value) => self.inner(name, keys, value),
@@ -405,7 +405,7 @@ impl<'a> Section<'a> {
     }
 
     /// The tables of a list; none if it is not given.
-    pub fn tables(&self, name: &str) -> Vec<Self> {
+    pub(crate) fn tables(&self, name: &str) -> Vec<Self> {
         let Kind::Tables(keys) = self.key(name).kind else { panic!("{name} is declared as tables") };
         let remedy = format!("write [[{}]] with double brackets and its keys below", self.path_of(name));
         let list = self.list(name, "a list of tables", &remedy).unwrap_or_default();
@@ -420,7 +420,7 @@ impl<'a> Section<'a> {
     }
 
     /// Planner parameters; none if not given.
-    pub fn parameters(&self, name: &str) -> Option<Parameters> {
+    pub(crate) fn parameters(&self, name: &str) -> Option<Parameters> {
         let Some(value) = self.value(name) else { return Some(Parameters::new()) };
         let DeValue::Table(table) = value.get_ref() else {
             let remedy = format!("write [{}] and its keys below", self.path_of(name));

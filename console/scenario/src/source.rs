@@ -7,7 +7,7 @@ use std::{cell::RefCell, ops::Range};
 const MOST_PROBLEMS: usize = 200;
 
 /// The text and what has been found wrong with it so far.
-pub struct Source<'a> {
+pub(crate) struct Source<'a> {
     /// The whole file.
     pub text: &'a str,
     problems: RefCell<Vec<Problem>>,
@@ -15,31 +15,31 @@ pub struct Source<'a> {
 
 impl<'a> Source<'a> {
     /// Nothing wrong yet.
-    pub fn new(text: &'a str) -> Self {
+    pub(crate) fn new(text: &'a str) -> Self {
         Self { text, problems: RefCell::default() }
     }
 
     /// Notes a problem once, however many readers look at its key, unless there are more than anyone will read.
-    pub fn note(&self, problem: Problem) {
+    pub(crate) fn note(&self, problem: Problem) {
         if !self.is_full() && !self.problems.borrow().contains(&problem) {
             self.problems.borrow_mut().push(problem);
         }
     }
 
     /// Whether further problems go unnoted.
-    pub fn is_full(&self) -> bool {
+    pub(crate) fn is_full(&self) -> bool {
         self.problems.borrow().len() >= MOST_PROBLEMS
     }
 
     /// Everything noted, in the order of the text.
-    pub fn into_problems(self) -> Vec<Problem> {
+    pub(crate) fn into_problems(self) -> Vec<Problem> {
         let mut problems = self.problems.into_inner();
         problems.sort_by_key(|problem| problem.at.as_ref().map(|at| at.start));
         problems
     }
 
     /// The text of a value, on one line and short.
-    pub fn excerpt(&self, at: &Range<usize>) -> String {
+    pub(crate) fn excerpt(&self, at: &Range<usize>) -> String {
         let written = self.text.get(at.clone()).unwrap_or_default();
         let mut line: String = written.split_whitespace().collect::<Vec<_>>().join(" ");
         line.retain(|c| !c.is_control());

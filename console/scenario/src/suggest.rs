@@ -41,7 +41,7 @@ const UNITS: &[(&str, &str, f64)] = &[
 ];
 
 /// The known word nearest to `word`, if any is near.
-pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub(crate) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let reach = (word.chars().count() / 3).clamp(1, 4);
     known
         .into_iter()
@@ -52,7 +52,7 @@ pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
 }
 
 /// What to write instead of an unknown key: the right unit, the nearest name, the right section, or all names.
-pub fn remedy(section: &str, keys: &'static [Key], unknown: &str, value: Option<f64>) -> String {
+pub(crate) fn remedy(section: &str, keys: &'static [Key], unknown: &str, value: Option<f64>) -> String {
     // Names are compared letter by letter; nobody means a known key by a page of text.
     let short: String = unknown.chars().take(64).collect();
     same_quantity(keys, &short, value)

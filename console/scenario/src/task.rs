@@ -12,7 +12,7 @@ const ROUNDING_M: f64 = 1e-6;
 
 /// Reads the task of `[mission]`; a preset path must leave the hull room at the wall, and a coverage mission ends at
 /// `start`.
-pub fn task(
+pub(crate) fn task(
     section: &Section<'_>,
     boundary: Option<&Boundary>,
     radius_m: Option<f64>,
@@ -113,12 +113,12 @@ fn complain_of_wall(section: &Section<'_>, name: &str, path: &[Point], walls: Op
 }
 
 /// Reads a planner's id and parameters, from `[planner]` or its fallback.
-pub fn planner(section: &Section<'_>) -> Option<PlannerChoice> {
+pub(crate) fn planner(section: &Section<'_>) -> Option<PlannerChoice> {
     let (id, parameters) = (section.slug("id"), section.parameters("parameters"));
     Some(PlannerChoice { id: id?, parameters: parameters? })
 }
 
 /// Reads the planner that takes over after a fault; `None` if there is none, or something is wrong with it.
-pub fn fallback(section: &Section<'_>) -> Option<PlannerChoice> {
+pub(crate) fn fallback(section: &Section<'_>) -> Option<PlannerChoice> {
     planner(&section.table("fallback")?)
 }

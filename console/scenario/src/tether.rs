@@ -9,7 +9,7 @@ use mission::TetherConfig;
 use world::{Point, tether::Limits};
 
 /// Reads `[tether]`; the anchor is where the robot starts if nothing else is said.
-pub fn tether(section: &Section<'_>, start: Option<Point>) -> Option<TetherConfig> {
+pub(crate) fn tether(section: &Section<'_>, start: Option<Point>) -> Option<TetherConfig> {
     let anchor = if section.has("anchor_m") { section.point("anchor_m") } else { start };
     let (reel_m, friction) = (section.number("reel_m"), section.number("friction"));
     let (wrap_deg, sum_deg) = (section.number("max_wrap_deg"), section.number("max_sum_wrap_deg"));
@@ -23,7 +23,7 @@ pub fn tether(section: &Section<'_>, start: Option<Point>) -> Option<TetherConfi
 }
 
 /// Complains about an anchor that is not on free floor, and about a reel that does not even reach the start.
-pub fn check(section: &Section<'_>, tether: &TetherConfig, site: &Site<'_>, start: Point) {
+pub(crate) fn check(section: &Section<'_>, tether: &TetherConfig, site: &Site<'_>, start: Point) {
     if section.has("anchor_m")
         && let Some(what) = site.objection(tether.anchor)
     {
@@ -43,7 +43,7 @@ const ASIDE: f64 = 0.5;
 
 /// Complains about an anchor at which a robot that comes back to it has no room: its hull must fit, and all of the
 /// clearance a little beside it.
-pub fn check_room(
+pub(crate) fn check_room(
     (section, key): (&Section<'_>, &str),
     tether: &TetherConfig,
     site: &Site<'_>,

@@ -30,7 +30,7 @@ pub(crate) struct Chance {
 }
 
 impl Chance {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         let stream = |purpose: u64| Pcg64::seed_from_u64(mixed(seed ^ mixed(purpose)));
         Self {
             ranging: stream(1),

@@ -30,7 +30,7 @@ pub(crate) struct Tracks {
 
 impl Tracks {
     /// Tracks at rest. Limits below zero count as zero.
-    pub fn new(robot: &RobotConfig, tick_s: f64) -> Self {
+    pub(crate) fn new(robot: &RobotConfig, tick_s: f64) -> Self {
         Self {
             v_max_m_per_s: robot.v_max_m_per_s.max(0.0),
             w_max_rad_per_s: robot.w_max_rad_per_s.max(0.0),
@@ -41,13 +41,13 @@ impl Tracks {
     }
 
     /// Takes other limits from now on. A robot that is faster than they allow brakes as hard as it can.
-    pub fn limit(&mut self, pace: Pace) {
+    pub(crate) fn limit(&mut self, pace: Pace) {
         self.v_max_m_per_s = pace.v_max_m_per_s.max(0.0);
         self.w_max_rad_per_s = pace.w_max_rad_per_s.max(0.0);
     }
 
     /// Obeys a drive for one tick as far as the limits allow. A drive that is no number means standing still.
-    pub fn drive(&mut self, drive: Drive, pose: &Pose) -> Arc {
+    pub(crate) fn drive(&mut self, drive: Drive, pose: &Pose) -> Arc {
         match drive {
             Drive::Twist { v_m_per_s, w_rad_per_s } => {
                 self.twist(finite(v_m_per_s), finite(w_rad_per_s), pose)
@@ -81,7 +81,7 @@ impl Tracks {
     }
 
     /// The robot ran into something and stands.
-    pub fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         self.velocity = Vector::zeros();
     }
 
@@ -92,13 +92,13 @@ impl Tracks {
 
 impl Arc {
     /// The pose after a share of the arc, 0 to 1.
-    pub fn pose_after(&self, start: &Pose, share: f64) -> Pose {
+    pub(crate) fn pose_after(&self, start: &Pose, share: f64) -> Pose {
         let turned = Pose { heading_rad: start.heading_rad + self.turn_first_rad, ..*start };
         turned.moved(self.way_m * share, 0.0, self.turn_rad * share)
     }
 
     /// The same motion as a single arc from the heading before it: ahead, to the left, change of heading.
-    pub fn seen_from_start(&self) -> (f64, f64, f64) {
+    pub(crate) fn seen_from_start(&self) -> (f64, f64, f64) {
         if self.turn_first_rad == 0.0 {
             return (self.way_m, 0.0, self.turn_rad);
         }

@@ -31,7 +31,7 @@ enum Going {
 
 impl Movers {
     /// Those among these obstacles; movers without an obstacle, or without a finite speed, stand still.
-    pub fn new(movers: &[Mover], obstacles: &[Obstacle]) -> Self {
+    pub(crate) fn new(movers: &[Mover], obstacles: &[Obstacle]) -> Self {
         let index_of = |id: ObstacleId| obstacles.iter().position(|obstacle| obstacle.id == id);
         let moving = |mover: &Mover| {
             let index = index_of(mover.id)?;
@@ -42,12 +42,12 @@ impl Movers {
     }
 
     /// Whether nothing moves.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
     /// Moves them all by some time.
-    pub fn advance(&mut self, obstacles: &mut [Obstacle], boundary: &Boundary, dt_s: f64) {
+    pub(crate) fn advance(&mut self, obstacles: &mut [Obstacle], boundary: &Boundary, dt_s: f64) {
         for moving in &mut self.0 {
             let shape = &mut obstacles[moving.index].shape;
             let by = moving.going.advance(shape, boundary, dt_s);

@@ -17,7 +17,7 @@ const DETOUR: f64 = 6.0;
 const SPARE_STEPS: usize = 2500;
 
 /// The hybrid of potential field and dynamic window, for land and water.
-pub struct ApfDwa {
+pub(crate) struct ApfDwa {
     settings: Settings,
     hybrid: Hybrid,
     ground: Ground,

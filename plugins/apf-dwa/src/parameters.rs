@@ -78,7 +78,7 @@ const STEPS: ParamSpec = int("steps_max", "Steps at most", "", 0, 1_000_000, 0)
     .group("Plan");
 
 /// Every parameter of the planner.
-pub const PARAMS: &[ParamSpec] = &[
+pub(crate) const PARAMS: &[ParamSpec] = &[
     GUIDE,
     K_ATT,
     K_REP,
@@ -107,7 +107,7 @@ pub const PARAMS: &[ParamSpec] = &[
 const SPARE_M: f64 = 0.02;
 
 /// Settings for a site.
-pub fn settings(config: &Config<'_>, site: &Site<'_>) -> Settings {
+pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> Settings {
     let keep_m = site.limits.radius_m + config.float("guard_m").max(site.clearance_m) + SPARE_M;
     let square = SquareLaw {
         k_att: config.float("k_att"),

@@ -14,7 +14,7 @@ use planner_api::{
 use world::{Point, Vector};
 
 /// Attraction, repulsion and, in a minimum, a virtual goal on a square round the goal (Yang et al. 2021).
-pub struct ApfVirtualGoals {
+pub(crate) struct ApfVirtualGoals {
     law: Law,
     flight: GoalFlight,
     goals: VirtualGoals,

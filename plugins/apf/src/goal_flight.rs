@@ -14,7 +14,7 @@ const DETOUR: f64 = 10.0;
 const SPARE_STEPS: usize = 2000;
 
 /// A map and somebody who flies over it.
-pub struct GoalFlight {
+pub(crate) struct GoalFlight {
     /// The map as far as it is known.
     pub ground: Ground,
     /// What of it is near the robot.
@@ -24,7 +24,7 @@ pub struct GoalFlight {
 }
 
 /// A plan's task, checked.
-pub struct Checked {
+pub(crate) struct Checked {
     /// From where to where.
     pub trip: Trip,
     demanded_m: f64,
@@ -32,7 +32,7 @@ pub struct Checked {
 
 impl GoalFlight {
     /// A flight over a site, for a law that reaches so far.
-    pub fn new(site: &Site<'_>, flight: Flight, reach_m: f64) -> Self {
+    pub(crate) fn new(site: &Site<'_>, flight: Flight, reach_m: f64) -> Self {
         let ground = Ground::new(site);
         Self { nearby: Nearby::new(reach_m + ground.hull_m), ground, flight, pilot: Pilot::pursuing(site) }
     }
@@ -41,7 +41,7 @@ impl GoalFlight {
     ///
     /// # Errors
     /// [`Code::Unsupported`] for a preset path, and those of [`offline::check_start`] and [`offline::check_goal`].
-    pub fn check(&mut self, request: &PlanRequest<'_>, id: &str, step_m: f64) -> Result<Checked> {
+    pub(crate) fn check(&mut self, request: &PlanRequest<'_>, id: &str, step_m: f64) -> Result<Checked> {
         let Task::Goto { goal, tolerance_m } = request.task else {
             let message = format!("{id} goes to single goals; for preset paths choose apf or rpf");
             return Err(PlannerError::new(Code::Unsupported, message));
@@ -61,7 +61,7 @@ impl GoalFlight {
     ///
     /// # Errors
     /// When the console wants it to stop.
-    pub fn step(
+    pub(crate) fn step(
         &mut self,
         sensed: &Sensed<'_>,
         ctx: &Ctx<'_>,
@@ -99,7 +99,7 @@ impl GoalFlight {
 
 impl Checked {
     /// A walk as a plan; what is wrong with it is logged.
-    pub fn plan_of(&self, walk: Walk, ground: &Ground, ctx: &Ctx<'_>) -> Plan {
+    pub(crate) fn plan_of(&self, walk: Walk, ground: &Ground, ctx: &Ctx<'_>) -> Plan {
         let clearance_m = ground.path_clearance_m(&walk.path, self.demanded_m + 1.0);
         offline::plan_of(walk, clearance_m, self.demanded_m, ctx)
     }

@@ -9,7 +9,7 @@ use planner_api::{
 /// Attraction, repulsion and a force along the tangent of obstacles, as Xu et al. 2022 compare with.
 ///
 /// It passes single obstacles in the way; in a trap it stops and says so.
-pub struct Tapf {
+pub(crate) struct Tapf {
     law: GoalLaw,
     step_m: f64,
     window_m: f64,

@@ -22,7 +22,7 @@ const BACK_AHEAD_M: f64 = 0.2;
 const FLIGHT_WINDOWS: f64 = 1.5;
 
 /// The potential field of Xu et al. 2022 that builds virtual obstacles.
-pub struct BvoApf {
+pub(crate) struct BvoApf {
     settings: Settings,
     flight: Flight,
     pilot: Pilot,

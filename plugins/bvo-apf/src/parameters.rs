@@ -48,7 +48,7 @@ const ESCAPES: ParamSpec = int("escapes_max", "Escapes at most", "", 1, 1000, 12
     .group(TRAP);
 
 /// Every parameter of the planner.
-pub const PARAMS: &[ParamSpec] = &[
+pub(crate) const PARAMS: &[ParamSpec] = &[
     MODE,
     M,
     RHO_1,
@@ -73,7 +73,7 @@ pub const PARAMS: &[ParamSpec] = &[
 const SPARE_M: f64 = 0.02;
 
 /// Settings for a site and a trip of some length from start to goal, metres.
-pub fn settings(config: &Config<'_>, site: &Site<'_>, trip_m: f64) -> Settings {
+pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>, trip_m: f64) -> Settings {
     let near = if config.choice("near_law") == "printed" { NearLaw::Printed } else { NearLaw::Corrected };
     let tangent_weight = config.float("tangent_weight");
     let keep_m = site.clearance_m + SPARE_M;

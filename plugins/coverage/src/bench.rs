@@ -6,7 +6,7 @@ use planner_api::{
 use trials::tanks::Tank;
 
 /// Plans a tank from its anchor.
-pub fn plan<P: Planner>(
+pub(crate) fn plan<P: Planner>(
     tank: &Tank,
     values: &[(&str, f64)],
     tether: Option<TetherLimits>,
@@ -19,7 +19,7 @@ pub fn plan<P: Planner>(
 }
 
 /// Asserts that the progress a planner reports rises from near zero, in more than a few steps.
-pub fn assert_progress_rises(bench: &Bench) {
+pub(crate) fn assert_progress_rises(bench: &Bench) {
     let progress = bench.progress();
     let shares: Vec<f64> = progress.iter().map(|(share, _)| *share).collect();
     assert!(shares.windows(2).all(|pair| pair[0] <= pair[1]), "{progress:?}");
@@ -31,7 +31,7 @@ pub fn assert_progress_rises(bench: &Bench) {
 }
 
 /// A planner with its plan of a tank.
-pub fn planned<P: Planner>(tank: &Tank, values: &[(&str, f64)]) -> (P, Plan, Bench) {
+pub(crate) fn planned<P: Planner>(tank: &Tank, values: &[(&str, f64)]) -> (P, Plan, Bench) {
     let bench = Bench::new();
     let obstacles = tank.obstacles();
     let mut planner: P = bench.configure(values, &tank.site(&obstacles)).unwrap();

@@ -31,13 +31,13 @@ const TURN_GAIN_PER_S: f64 = 2.5;
 const TURN_FIRST_RAD: f64 = 1.0;
 
 /// Whether an obstacle moves.
-pub fn moves(obstacle: &Obstacle<'_>) -> bool {
+pub(crate) fn moves(obstacle: &Obstacle<'_>) -> bool {
     obstacle.velocity_m_per_s.norm() > STILL_M_PER_S
 }
 
 /// Something that moves.
 #[derive(Debug, Clone)]
-pub struct Mover {
+pub(crate) struct Mover {
     /// As it is now.
     pub body: Body,
     /// Its velocity, metres per second.
@@ -46,7 +46,7 @@ pub struct Mover {
 
 /// What a robot has to keep clear of.
 #[derive(Debug, Clone, Copy)]
-pub struct Around<'a> {
+pub(crate) struct Around<'a> {
     /// What moves.
     pub movers: &'a [Mover],
     /// What stands still.
@@ -69,7 +69,7 @@ struct Outlook {
 }
 
 /// The velocity to take instead of the one wished for.
-pub fn evade(wish: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Vector {
+pub(crate) fn evade(wish: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Vector {
     let v_max = around.limits.v_max_m_per_s;
     let headings = (0..HEADINGS).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(HEADINGS));
     let grid =

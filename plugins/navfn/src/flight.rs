@@ -6,7 +6,7 @@ use planner_api::{Command, Ctx, Drive, Layer, Limits, Result, Sensed, Site, Stat
 use world::Boundary;
 
 /// Follows the plan, half a metre ahead, with the guard's word as the last; what moves is evaded.
-pub struct Flyer {
+pub(crate) struct Flyer {
     flight: Flight,
     pilot: Pilot,
     limits: Limits,
@@ -16,7 +16,7 @@ pub struct Flyer {
 
 impl Flyer {
     /// A flyer at a site.
-    pub fn new(flight: Flight, site: &Site<'_>) -> Self {
+    pub(crate) fn new(flight: Flight, site: &Site<'_>) -> Self {
         Self {
             flight,
             pilot: Pilot::pursuing(site),
@@ -27,7 +27,7 @@ impl Flyer {
     }
 
     /// Takes over changed settings on the way.
-    pub fn set(&mut self, flight: Flight) {
+    pub(crate) fn set(&mut self, flight: Flight) {
         self.flight = flight;
     }
 
@@ -35,7 +35,7 @@ impl Flyer {
     ///
     /// # Errors
     /// When the console wants it to stop.
-    pub fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
+    pub(crate) fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
         let Some(&target) = sensed.path_ahead.first() else { return Ok(Command::still(Status::Waiting)) };
         let (movers, standing) = self.sorted(sensed);

@@ -16,7 +16,7 @@ const SPACING_M: f64 = 0.2;
 
 /// Something solid and what the middle of the robot keeps from it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Solid {
+pub(crate) struct Solid {
     /// Its outline.
     pub shape: Shape,
     /// The distance kept, metres.
@@ -28,7 +28,7 @@ pub struct Solid {
 /// Where the robot stands, or its goal lies, nearer to something than the clearance, it keeps as much from it as there
 /// is: it must be able to get away, and in.
 #[derive(Debug, Clone)]
-pub struct Ground {
+pub(crate) struct Ground {
     /// From where.
     pub start: Point,
     /// To where.
@@ -48,7 +48,7 @@ impl Ground {
     ///
     /// # Errors
     /// The task is not to reach a goal, or the hull touches something at the start or at the goal.
-    pub fn new(request: &PlanRequest<'_>, clearance_m: f64) -> Result<Self> {
+    pub(crate) fn new(request: &PlanRequest<'_>, clearance_m: f64) -> Result<Self> {
         let Task::Goto { goal, .. } = request.task else {
             let message = "plans to single goals only; take a planner for preset paths or coverage";
             return Err(PlannerError::new(Code::Unsupported, message));
@@ -97,7 +97,7 @@ impl Ground {
     ///
     /// The plan leads up to a disc: moving obstacles are seen as discs, and the console replans only for what comes into
     /// the way. Before any other shape the plan ends.
-    pub fn plan_of(&self, way: &Way, ctx: &Ctx<'_>) -> Plan {
+    pub(crate) fn plan_of(&self, way: &Way, ctx: &Ctx<'_>) -> Plan {
         let mut path = polyline::resampled(&way.points(), SPACING_M);
         for (name, solid) in &self.on_goal {
             let what = if matches!(solid.shape, Shape::Disc { .. }) {
@@ -116,7 +116,7 @@ impl Ground {
     }
 
     /// The floor on which the robot is a point.
-    pub fn grown(&self) -> GrownFloor {
+    pub(crate) fn grown(&self) -> GrownFloor {
         GrownFloor::new(&self.boundary, self.wall_keep_m, self.solids.iter().map(|s| (&s.shape, s.keep_m)))
     }
 }
@@ -168,7 +168,7 @@ fn shape_of(outline: &Outline<'_>) -> Shape {
 }
 
 /// Why there is no way, for the console.
-pub fn refusal(no_way: NoWay, ctx: &Ctx<'_>) -> PlannerError {
+pub(crate) fn refusal(no_way: NoWay, ctx: &Ctx<'_>) -> PlannerError {
     let code = match no_way {
         NoWay::StartBlocked { .. } => Code::StartOccupied,
         NoWay::GoalBlocked { .. } => Code::GoalOccupied,

@@ -15,7 +15,7 @@ const STEPS_PER_CELL: usize = 4;
 const STEP_CELLS: f64 = 0.7;
 
 /// Distances to a goal over the cells of a floor.
-pub struct Navigation {
+pub(crate) struct Navigation {
     goal: Point,
     boundary: Boundary,
     wall_keep_m: f64,
@@ -27,7 +27,7 @@ pub struct Navigation {
 
 impl Navigation {
     /// The navigation function of a ground with so many cells along its longer side.
-    pub fn new(ground: &Ground, floor: &GrownFloor, cells: usize) -> Self {
+    pub(crate) fn new(ground: &Ground, floor: &GrownFloor, cells: usize) -> Self {
         let mut raster = Raster::new(&ground.boundary, ground.wall_keep_m, cells);
         for solid in &ground.solids {
             raster.cover(solid, &mut Vec::new());
@@ -44,17 +44,17 @@ impl Navigation {
     }
 
     /// Edge of a cell, metres.
-    pub fn cell_m(&self) -> f64 {
+    pub(crate) fn cell_m(&self) -> f64 {
         self.raster.cell_m()
     }
 
     /// Number of cells settled since the field was made.
-    pub fn n_settled(&self) -> usize {
+    pub(crate) fn n_settled(&self) -> usize {
         self.field.n_settled()
     }
 
     /// Takes over a changed ground; the field is repaired, or recomputed if goal or wall changed.
-    pub fn update(&mut self, ground: &Ground, floor: &GrownFloor, cells: usize) {
+    pub(crate) fn update(&mut self, ground: &Ground, floor: &GrownFloor, cells: usize) {
         let same_wall =
             self.boundary == ground.boundary && (self.wall_keep_m - ground.wall_keep_m).abs() < 1e-12;
         if self.goal != ground.goal || !same_wall || self.cells != cells {
@@ -89,7 +89,7 @@ impl Navigation {
 
     /// A way down the field from a start to the goal; it may cut corners by less than a cell. None if the cells show
     /// no way, which may be their own fault.
-    pub fn way(
+    pub(crate) fn way(
         &mut self,
         start: Point,
         floor: &GrownFloor,

@@ -5,7 +5,7 @@ use world::{Boundary, Point, Shape, Vector};
 
 /// Cells of a floor, with a frame of blocked ones around it, and how many things cover the middle of each.
 #[derive(Debug, Clone)]
-pub struct Raster {
+pub(crate) struct Raster {
     low: Point,
     cell_m: f64,
     columns: usize,
@@ -14,7 +14,7 @@ pub struct Raster {
 
 impl Raster {
     /// The floor within a wall from which `keep_m` is kept, with so many cells along its longer side.
-    pub fn new(boundary: &Boundary, keep_m: f64, cells: usize) -> Self {
+    pub(crate) fn new(boundary: &Boundary, keep_m: f64, cells: usize) -> Self {
         let (low, high) = boundary.bounds();
         let extent = high - low;
         let cell_m = (extent.max() / cells as f64).max(1e-6);
@@ -27,34 +27,34 @@ impl Raster {
     }
 
     /// Edge of a cell, metres.
-    pub fn cell_m(&self) -> f64 {
+    pub(crate) fn cell_m(&self) -> f64 {
         self.cell_m
     }
 
     /// Number of cells along x, the frame included.
-    pub fn columns(&self) -> usize {
+    pub(crate) fn columns(&self) -> usize {
         self.columns
     }
 
     /// Which cells are blocked.
-    pub fn blocked(&self) -> impl Iterator<Item = bool> + '_ {
+    pub(crate) fn blocked(&self) -> impl Iterator<Item = bool> + '_ {
         self.covers.iter().map(|covers| *covers > 0)
     }
 
     /// The middle of a cell.
-    pub fn center(&self, cell: usize) -> Point {
+    pub(crate) fn center(&self, cell: usize) -> Point {
         let (column, row) = (cell % self.columns, cell / self.columns);
         self.low + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m
     }
 
     /// The cell of a point of the floor; one outside is taken to the edge.
-    pub fn cell_at(&self, at: Point) -> usize {
+    pub(crate) fn cell_at(&self, at: Point) -> usize {
         let (column, row) = (self.column(at.x), self.row(at.y));
         row * self.columns + column
     }
 
     /// The free cells around a point, within so many cells, with their distances, metres.
-    pub fn free_near(&self, at: Point, reach: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    pub(crate) fn free_near(&self, at: Point, reach: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let (column, row) = (self.column(at.x), self.row(at.y));
         let n_rows = self.covers.len() / self.columns;
         let rows = row.saturating_sub(reach)..=(row + reach).min(n_rows - 1);
@@ -67,7 +67,7 @@ impl Raster {
     }
 
     /// Puts something solid on the floor; adds the cells that are blocked by it alone.
-    pub fn cover(&mut self, solid: &Solid, blocked: &mut Vec<usize>) {
+    pub(crate) fn cover(&mut self, solid: &Solid, blocked: &mut Vec<usize>) {
         self.visit(solid, |cell, covers| {
             *covers += 1;
             if *covers == 1 {
@@ -77,7 +77,7 @@ impl Raster {
     }
 
     /// Takes something solid away again; adds the cells that are free now.
-    pub fn uncover(&mut self, solid: &Solid, freed: &mut Vec<usize>) {
+    pub(crate) fn uncover(&mut self, solid: &Solid, freed: &mut Vec<usize>) {
         self.visit(solid, |cell, covers| {
             *covers -= 1;
             if *covers == 0 {

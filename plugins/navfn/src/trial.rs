@@ -6,12 +6,12 @@ use trials::traps::{HULL_M, Trap};
 use world::polyline;
 
 /// A planner with these parameters, for a site.
-pub fn planner<P: Planner>(values: &[(&str, f64)], site: &Site<'_>) -> P {
+pub(crate) fn planner<P: Planner>(values: &[(&str, f64)], site: &Site<'_>) -> P {
     Bench::new().configure(values, site).expect("the planner takes its own parameters")
 }
 
 /// The planner's plan at a site.
-pub fn plan<P: Planner>(
+pub(crate) fn plan<P: Planner>(
     planner: &mut P,
     from: Point2<f64>,
     to: Point2<f64>,
@@ -23,20 +23,20 @@ pub fn plan<P: Planner>(
 }
 
 /// The plan of a new planner that knows the whole trap.
-pub fn plan_trap<P: Planner>(trap: &Trap) -> Result<Plan> {
+pub(crate) fn plan_trap<P: Planner>(trap: &Trap) -> Result<Plan> {
     let (corners, obstacles) = (Trap::corners(), trap.obstacles(false));
     let site = Trap::site(&corners, &obstacles, 6.0);
     plan(&mut planner::<P>(&[], &site), trap.start, trap.goal, &site)
 }
 
 /// The least distance between the hull and a disc on the way, metres.
-pub fn clearance_m(path: &[Point2<f64>], trap: &Trap) -> f64 {
+pub(crate) fn clearance_m(path: &[Point2<f64>], trap: &Trap) -> f64 {
     let to_disc = |(at, radius_m): &(Point2<f64>, f64)| polyline::distance_m(path, *at) - radius_m;
     trap.discs.iter().map(to_disc).fold(f64::INFINITY, f64::min) - HULL_M
 }
 
 /// The discs of which some part is within a range, of those that were not seen before.
-pub fn newly_seen(trap: &Trap, seen: &mut [bool], from: Point2<f64>, range_m: f64) -> bool {
+pub(crate) fn newly_seen(trap: &Trap, seen: &mut [bool], from: Point2<f64>, range_m: f64) -> bool {
     let before = seen.iter().filter(|seen| **seen).count();
     for (seen, (at, radius_m)) in seen.iter_mut().zip(&trap.discs) {
         *seen |= (at - from).norm() - radius_m <= range_m;
@@ -45,6 +45,6 @@ pub fn newly_seen(trap: &Trap, seen: &mut [bool], from: Point2<f64>, range_m: f6
 }
 
 /// The obstacles that have been seen.
-pub fn known<'a>(all: &[Obstacle<'a>], seen: &[bool]) -> Vec<Obstacle<'a>> {
+pub(crate) fn known<'a>(all: &[Obstacle<'a>], seen: &[bool]) -> Vec<Obstacle<'a>> {
     all.iter().zip(seen).filter(|(_, seen)| **seen).map(|(obstacle, _)| *obstacle).collect()
 }

@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 use world::{Boundary, Point, Vector, polyline};
 
 /// Length of path over which a change of heading is measured, metres.
-pub const SPAN_M: f64 = 0.2;
+pub(crate) const SPAN_M: f64 = 0.2;
 /// Once a way is found this share of the turn limit is aimed at.
 const TURN_SHARE: f64 = 0.985;
 /// Clearances are kept with this much to spare, metres.
@@ -41,7 +41,7 @@ const SLIDE_SHARE: f64 = 0.5;
 
 /// A point of the course and what holds there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Knot {
+pub(crate) struct Knot {
     /// Where the course is.
     pub at: Point,
     /// How many preset points it stands for.
@@ -54,7 +54,7 @@ pub struct Knot {
 
 /// How long to draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Patience {
+pub(crate) struct Patience {
     /// Sets of rows.
     pub sets: usize,
     /// Growth of the penalties from one set to the next as long as a limit is broken.
@@ -65,7 +65,7 @@ pub struct Patience {
 
 /// A band along a course.
 #[derive(Debug, Clone, Copy)]
-pub struct Band<'a> {
+pub(crate) struct Band<'a> {
     /// Its knots.
     pub knots: &'a [Knot],
     /// Where it may be.
@@ -75,7 +75,7 @@ pub struct Band<'a> {
 impl<'a> Band<'a> {
     /// The way drawn tight from one that passes everything on the sides wanted; `None` if no way within the limits was
     /// found.
-    pub fn drawn(&self, way: &[Point], patience: Patience) -> Option<Vec<Point>> {
+    pub(crate) fn drawn(&self, way: &[Point], patience: Patience) -> Option<Vec<Point>> {
         let solids = self.solids(way);
         let mut places = way.to_vec();
         let mut rows: Vec<Row<'a>> = Vec::new();
@@ -109,12 +109,12 @@ impl<'a> Band<'a> {
     }
 
     /// Sum of the squared distances to the course.
-    pub fn cost(&self, way: &[Point]) -> f64 {
+    pub(crate) fn cost(&self, way: &[Point]) -> f64 {
         way.iter().zip(self.knots).map(|(p, knot)| knot.weight * (p - knot.at).norm_squared()).sum()
     }
 
     /// Whether a way keeps every limit.
-    pub fn is_allowed(&self, way: &[Point]) -> bool {
+    pub(crate) fn is_allowed(&self, way: &[Point]) -> bool {
         way.windows(2).all(|w| self.room.is_free(w[0], w[1])) && self.turns_slowly(way)
     }
 

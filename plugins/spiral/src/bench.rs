@@ -6,10 +6,10 @@ use std::time::Duration;
 use trials::{Distribution, Layout, Safety, Sampling, Score, floor_rmse_m, safety, score};
 
 /// Clearance of the paper's layouts in our tests, metres.
-pub const CLEARANCE_M: f64 = 0.3;
+pub(crate) const CLEARANCE_M: f64 = 0.3;
 
 /// Plans a whole layout.
-pub fn plan<P: Planner>(layout: &Layout, values: &[(&str, f64)]) -> Result<Plan> {
+pub(crate) fn plan<P: Planner>(layout: &Layout, values: &[(&str, f64)]) -> Result<Plan> {
     let bench = Bench::new();
     let obstacles = layout.obstacles();
     let site = layout.site(&obstacles, Motion::Point);
@@ -29,7 +29,7 @@ fn on_cpu() -> Duration {
 
 /// The figures of many plans.
 #[derive(Debug, Default)]
-pub struct Figures {
+pub(crate) struct Figures {
     pub n_layouts: usize,
     pub scores: Vec<Score>,
     pub safeties: Vec<Safety>,
@@ -39,7 +39,7 @@ pub struct Figures {
 }
 
 impl Figures {
-    pub fn of<P: Planner>(
+    pub(crate) fn of<P: Planner>(
         distribution: Distribution,
         seeds: std::ops::Range<u64>,
         values: &[(&str, f64)],
@@ -67,33 +67,33 @@ impl Figures {
         figures
     }
 
-    pub fn ok_rate(&self) -> f64 {
+    pub(crate) fn ok_rate(&self) -> f64 {
         self.safeties.iter().filter(|s| s.is_ok(CLEARANCE_M)).count() as f64 / self.n_layouts as f64
     }
 
-    pub fn mean(&self, figure: fn(&Score) -> f64) -> f64 {
+    pub(crate) fn mean(&self, figure: fn(&Score) -> f64) -> f64 {
         self.scores.iter().map(figure).sum::<f64>() / self.scores.len() as f64
     }
 
-    pub fn floor_m(&self) -> f64 {
+    pub(crate) fn floor_m(&self) -> f64 {
         self.floors_m.iter().sum::<f64>() / self.floors_m.len() as f64
     }
 
-    pub fn least(&self, figure: fn(&Safety) -> f64) -> f64 {
+    pub(crate) fn least(&self, figure: fn(&Safety) -> f64) -> f64 {
         self.safeties.iter().map(figure).fold(f64::INFINITY, f64::min)
     }
 
-    pub fn most(&self, figure: fn(&Safety) -> f64) -> f64 {
+    pub(crate) fn most(&self, figure: fn(&Safety) -> f64) -> f64 {
         self.safeties.iter().map(figure).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    pub fn time_ms(&self, share: f64) -> f64 {
+    pub(crate) fn time_ms(&self, share: f64) -> f64 {
         let mut times = self.times.clone();
         times.sort();
         times[((times.len() - 1) as f64 * share) as usize].as_secs_f64() * 1e3
     }
 
-    pub fn summary(&self) -> String {
+    pub(crate) fn summary(&self) -> String {
         format!(
             "n {} ok {:.4} rmse {:.4} floor {:.4} ratio {:.3} P {:.4} R {:.4} cov {:.4} ct {:.4} Pct {:.4} worst {:.2} \
              clearance {:.4} wall {:.4} turn {:.1} (mean of most {:.1}) ms p50 {:.1} p99 {:.1} max {:.1}\n  refusals {} {:?}",

@@ -18,7 +18,7 @@ const LEAST_PITCH_M: f64 = 1e-3;
 
 /// Points to follow in order.
 #[derive(Debug, Clone)]
-pub struct Course {
+pub(crate) struct Course {
     /// The points; where the robot is comes first.
     pub points: Vec<Point>,
     /// Way along the course to every point, metres.
@@ -32,7 +32,7 @@ impl Course {
     ///
     /// # Errors
     /// [`Code::Invalid`] for points that are missing, no numbers or too many, and for turns on top of each other.
-    pub fn new(request: &PlanRequest<'_>) -> Result<Self> {
+    pub(crate) fn new(request: &PlanRequest<'_>) -> Result<Self> {
         let start = request.start.position;
         let (targets, tolerance_m) = match request.task {
             Task::Goto { goal, tolerance_m } => (vec![goal], tolerance_m),
@@ -63,25 +63,25 @@ impl Course {
     }
 
     /// Index of the last point.
-    pub fn last(&self) -> usize {
+    pub(crate) fn last(&self) -> usize {
         self.points.len() - 1
     }
 
     /// Unit vector along the course at a point.
-    pub fn direction(&self, index: usize) -> Vector {
+    pub(crate) fn direction(&self, index: usize) -> Vector {
         let (before, after) = (index.saturating_sub(1), (index + 1).min(self.last()));
         (self.points[after] - self.points[before]).try_normalize(1e-12).unwrap_or_else(Vector::x)
     }
 
     /// Unit vector from a point to the next one.
-    pub fn leg(&self, index: usize) -> Vector {
+    pub(crate) fn leg(&self, index: usize) -> Vector {
         let from = index.min(self.last().saturating_sub(1));
         let along = self.points[(from + 1).min(self.last())] - self.points[from];
         along.try_normalize(1e-12).unwrap_or_else(Vector::x)
     }
 
     /// How fast the course itself turns about a point, radians per metre.
-    pub fn turn_per_m(&self, index: usize) -> f64 {
+    pub(crate) fn turn_per_m(&self, index: usize) -> f64 {
         let before = self.leg(index.saturating_sub(1));
         let after = self.leg(index);
         let (first, end) = (index.saturating_sub(1), (index + 1).min(self.last()));
@@ -95,7 +95,7 @@ impl Course {
 ///
 /// # Errors
 /// [`Code::Config`] when hull and clearance are larger than the distance between the turns.
-pub fn room(site: &Site<'_>, clearance_m: f64, course: &Course) -> Result<Room> {
+pub(crate) fn room(site: &Site<'_>, clearance_m: f64, course: &Course) -> Result<Room> {
     let hull_m = site.limits.radius_m;
     let obstacle_m = hull_m + site.clearance_m.max(clearance_m);
     check_pitch(obstacle_m, &course.points)?;
@@ -131,7 +131,12 @@ fn invalid(message: impl Into<String>) -> PlannerError {
 ///
 /// # Errors
 /// [`Code::StartOutside`] or [`Code::StartOccupied`].
-pub fn check_start(request: &PlanRequest<'_>, course: &Course, room: &Room, ctx: &Ctx<'_>) -> Result<()> {
+pub(crate) fn check_start(
+    request: &PlanRequest<'_>,
+    course: &Course,
+    room: &Room,
+    ctx: &Ctx<'_>,
+) -> Result<()> {
     let (start, hull_m) = (request.start.position, request.site.limits.radius_m);
     let place = format!("the start ({:.2}, {:.2})", start.x, start.y);
     if room.wall().wall_distance_m(start) < -ROUNDING_M {
@@ -157,7 +162,7 @@ pub fn check_start(request: &PlanRequest<'_>, course: &Course, room: &Room, ctx:
 ///
 /// # Errors
 /// [`Code::Invalid`].
-pub fn check_targets(targets: &[Point]) -> Result<()> {
+pub(crate) fn check_targets(targets: &[Point]) -> Result<()> {
     if targets.is_empty() {
         return Err(invalid("there is no preset point to follow"));
     }
@@ -179,7 +184,7 @@ pub fn check_targets(targets: &[Point]) -> Result<()> {
 ///
 /// # Errors
 /// [`Code::Config`].
-pub fn check_pitch(keep_m: f64, points: &[Point]) -> Result<()> {
+pub(crate) fn check_pitch(keep_m: f64, points: &[Point]) -> Result<()> {
     let Some(pitch_m) = pitch_m(points).filter(|pitch_m| keep_m > *pitch_m) else { return Ok(()) };
     let message = format!(
         "hull and clearance need {keep_m:.2} m, but the turns of the preset path are {pitch_m:.2} m apart; \
@@ -192,7 +197,7 @@ pub fn check_pitch(keep_m: f64, points: &[Point]) -> Result<()> {
 ///
 /// # Errors
 /// [`Code::Config`].
-pub fn check_numbers(config: &Config<'_>, specs: &[ParamSpec]) -> Result<()> {
+pub(crate) fn check_numbers(config: &Config<'_>, specs: &[ParamSpec]) -> Result<()> {
     let is_number = |value: f64| value.is_finite() && value >= 0.0;
     let Some(spec) = specs.iter().find(|spec| !is_number(config.float(spec.key))) else { return Ok(()) };
     let value = config.float(spec.key);
@@ -200,7 +205,7 @@ pub fn check_numbers(config: &Config<'_>, specs: &[ParamSpec]) -> Result<()> {
 }
 
 /// Where a path along a course can begin: its first point, or the nearest free place about it.
-pub fn nearest_free(course: &Course, room: &Room) -> Point {
+pub(crate) fn nearest_free(course: &Course, room: &Room) -> Point {
     let start = course.points[0];
     let rings = (0..80).map(|k| f64::from(k) * 0.025);
     let places = rings.flat_map(|radius_m| {

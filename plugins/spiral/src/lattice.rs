@@ -39,7 +39,7 @@ const OWN_TURN: f64 = 1.15;
 
 /// What the plan is to keep to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
+pub(crate) struct Limits {
     /// Furthest offset from the course, metres.
     pub offset_m: f64,
     /// Largest change of heading per metre of path, radians; infinite for none.
@@ -48,7 +48,7 @@ pub struct Limits {
 
 /// A path beside the course.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Path {
+pub(crate) struct Path {
     /// One point for every point of the course.
     pub points: Vec<Point>,
     /// Indices of the course between which the limit of the heading could not be kept.
@@ -57,7 +57,7 @@ pub struct Path {
 
 /// Why there is no path.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Blocked {
+pub(crate) struct Blocked {
     /// Index of the point of the course that cannot be passed.
     pub station: usize,
     /// The path up to where it leaves the course for the last time.
@@ -109,7 +109,7 @@ struct Search<'a> {
 ///
 /// # Errors
 /// When the console wants it to stop.
-pub fn plan(
+pub(crate) fn plan(
     course: &Course,
     room: &Room,
     limits: Limits,

@@ -9,7 +9,7 @@ use world::{Boundary, Point};
 const REACH_M: f64 = 0.4;
 
 /// Follows a plan, or without one the preset points, with a noisy pose and obstacles discovered on the way.
-pub struct Pursuit {
+pub(crate) struct Pursuit {
     flight: Flight,
     clearance_m: f64,
     pilot: Pilot,
@@ -18,12 +18,12 @@ pub struct Pursuit {
 
 impl Pursuit {
     /// A pursuit at a site that keeps this clearance, or the mission's if that is larger, metres.
-    pub fn new(flight: Flight, clearance_m: f64, site: &Site<'_>) -> Self {
+    pub(crate) fn new(flight: Flight, clearance_m: f64, site: &Site<'_>) -> Self {
         Self { flight, clearance_m, pilot: Pilot::pursuing(site), wall: wall_of(&site.boundary) }
     }
 
     /// Takes over changed settings on the way; what it remembers stays.
-    pub fn set(&mut self, flight: Flight, clearance_m: f64) {
+    pub(crate) fn set(&mut self, flight: Flight, clearance_m: f64) {
         (self.flight, self.clearance_m) = (flight, clearance_m);
     }
 
@@ -31,7 +31,7 @@ impl Pursuit {
     ///
     /// # Errors
     /// When the console wants it to stop.
-    pub fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
+    pub(crate) fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
         let bodies = self.pilot.bodies(sensed);
         let target = sensed.path_ahead.first().copied().unwrap_or(sensed.target);

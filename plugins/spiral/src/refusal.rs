@@ -9,7 +9,7 @@ use planner_api::{PlannerError, Site};
 use world::Point;
 
 /// The refusal of a course that is blocked at a point.
-pub fn no_path(
+pub(crate) fn no_path(
     course: &Course,
     (site, room): (&Site<'_>, &Room),
     station: usize,

@@ -21,7 +21,7 @@ const ROUNDING_M: f64 = 1e-9;
 
 /// What a ring is made of.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Ring {
+pub(crate) struct Ring {
     /// Ids of its obstacles and no-go zones, ascending.
     pub obstacles: Vec<u32>,
     /// Whether the wall is part of it.
@@ -54,7 +54,7 @@ struct Link {
 /// The ring that keeps the two places apart for a hull that keeps these distances, if there is one.
 ///
 /// Exact but for solids that touch to within a billionth of a metre. With more than 3,000 parts nothing is found.
-pub fn between(site: &Site<'_>, keep: Keep, a: Point, b: Point) -> Option<Ring> {
+pub(crate) fn between(site: &Site<'_>, keep: Keep, a: Point, b: Point) -> Option<Ring> {
     let nodes = nodes(site);
     if nodes.len() > MOST_PARTS {
         return None;

@@ -9,7 +9,7 @@ const NOWHERE: u8 = u8::MAX;
 
 /// A place of the course from which offsets are counted.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Station {
+pub(crate) struct Station {
     /// Where the course is.
     pub at: Point,
     /// Unit vector to its left.
@@ -20,7 +20,7 @@ pub struct Station {
 
 /// Offsets that may not be used at a station.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bar {
+pub(crate) struct Bar {
     /// Index of the station.
     pub station: usize,
     /// From this offset, metres to the left.
@@ -31,7 +31,7 @@ pub struct Bar {
 
 /// Where to look for a way.
 #[derive(Debug, Clone, Copy)]
-pub struct Strip<'a> {
+pub(crate) struct Strip<'a> {
     /// The stations, at least two.
     pub stations: &'a [Station],
     /// Distance between neighbouring offsets, metres.
@@ -48,7 +48,7 @@ pub struct Strip<'a> {
 
 /// A way through a strip.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Way {
+pub(crate) struct Way {
     /// Offsets at every station, metres to the left.
     pub offsets_m: Vec<f64>,
     /// Weighted sum of their squares and of those of their changes, square metres.
@@ -67,7 +67,7 @@ impl Strip<'_> {
     ///
     /// # Errors
     /// Index of the first station that no way reaches.
-    pub fn cheapest(&self, room: &Room) -> Result<Way, usize> {
+    pub(crate) fn cheapest(&self, room: &Room) -> Result<Way, usize> {
         let mut front = self.front(room, 0);
         for offset in 0..self.width() {
             let begins = !self.on_course[0] || offset == self.half;

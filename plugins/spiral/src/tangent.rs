@@ -20,7 +20,7 @@ const ROUNDING_M: f64 = 1e-7;
 
 /// A course with the way along it.
 #[derive(Debug, Clone, Copy)]
-pub struct Track<'a> {
+pub(crate) struct Track<'a> {
     /// Its points, at least one.
     pub points: &'a [Point],
     /// Way to every point, metres.
@@ -29,7 +29,7 @@ pub struct Track<'a> {
 
 /// What is known about the surroundings.
 #[derive(Debug, Clone)]
-pub struct Around<'a> {
+pub(crate) struct Around<'a> {
     /// The wall.
     pub wall: &'a Boundary,
     /// Everything sensed, in parts.
@@ -47,7 +47,7 @@ struct Interval {
 
 /// Where a follower is and how it goes round.
 #[derive(Debug, Clone, Copy)]
-pub struct Follower {
+pub(crate) struct Follower {
     /// Where it is.
     pub at: Point,
     /// Index of the nearest point of the course; only moves forward.
@@ -60,23 +60,23 @@ pub struct Follower {
 
 /// What is in range leads on neither side back to the course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Stuck;
+pub(crate) struct Stuck;
 
 impl Around<'_> {
     /// Room left at a place, metres; negative where the middle of the hull may not be.
-    pub fn spare_m(&self, at: Point) -> f64 {
+    pub(crate) fn spare_m(&self, at: Point) -> f64 {
         let wall_m = self.wall.wall_distance_m(at) - self.keep.wall_m + 1e-9;
         self.parts.iter().map(|part| part.distance(at).0 - self.keep.obstacle_m).fold(wall_m, f64::min)
     }
 
     /// Whether the middle of the hull may go straight from one place to another, as far as is known.
-    pub fn is_free(&self, a: Point, b: Point) -> bool {
+    pub(crate) fn is_free(&self, a: Point, b: Point) -> bool {
         self.wall.wall_distance_m(b) >= self.keep.wall_m - 1e-9
             && self.parts.iter().all(|part| part.segment_distance_m(a, b) >= self.keep.obstacle_m)
     }
 
     /// Whether the middle of the hull may go straight from one place to another, touching what it likes.
-    pub fn is_nearly_free(&self, a: Point, b: Point) -> bool {
+    pub(crate) fn is_nearly_free(&self, a: Point, b: Point) -> bool {
         self.wall.wall_distance_m(b) >= self.keep.wall_m - ROUNDING_M
             && self
                 .parts
@@ -104,7 +104,7 @@ impl Around<'_> {
     }
 
     /// The heading nearest to the one wanted, turning only to one side; `None` if all are blocked.
-    pub fn tangent(&self, at: Point, wanted: Vector, reach_m: f64, side: Sense) -> Option<Vector> {
+    pub(crate) fn tangent(&self, at: Point, wanted: Vector, reach_m: f64, side: Sense) -> Option<Vector> {
         let blocked = self.blocked(at, reach_m);
         // Clockwise about what is in the way keeps it on the right hand: turn left.
         let sign = if side == Sense::Clockwise { 1.0 } else { -1.0 };
@@ -150,7 +150,7 @@ fn round_wall(radius_m: f64, at: Point, reach_m: f64) -> Option<Interval> {
 
 impl Follower {
     /// A follower at a place near a point of its course.
-    pub fn new(at: Point, nearest: usize) -> Self {
+    pub(crate) fn new(at: Point, nearest: usize) -> Self {
         Self { at, nearest, side: None, best: nearest, idle: 0 }
     }
 
@@ -158,7 +158,12 @@ impl Follower {
     ///
     /// # Errors
     /// [`Stuck`] when nothing leads on.
-    pub fn advance(&mut self, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> Result<(), Stuck> {
+    pub(crate) fn advance(
+        &mut self,
+        track: &Track<'_>,
+        around: &Around<'_>,
+        step_m: f64,
+    ) -> Result<(), Stuck> {
         self.note_progress(track);
         if self.idle > PATIENCE_MOVES {
             return Err(Stuck);
@@ -181,14 +186,14 @@ impl Follower {
     }
 
     /// Whether the last point of the course is reached, or as nearly as what is known allows.
-    pub fn is_done(&self, track: &Track<'_>, tolerance_m: f64) -> bool {
+    pub(crate) fn is_done(&self, track: &Track<'_>, tolerance_m: f64) -> bool {
         let last = track.points.len() - 1;
         let left_m = track.stations_m[last] - track.stations_m[self.nearest];
         left_m < tolerance_m && (track.points[last] - self.at).norm() < tolerance_m
     }
 
     /// Whether it follows the course and not a way round.
-    pub fn is_on(&self, track: &Track<'_>) -> bool {
+    pub(crate) fn is_on(&self, track: &Track<'_>) -> bool {
         self.off_m(track) < ON_COURSE_M
     }
 

@@ -17,7 +17,7 @@ const DETOUR: f64 = 4.0;
 const ASK_EVERY: usize = 32;
 
 /// A walk along a course by a robot that senses no further than its range.
-pub struct Walk<'a> {
+pub(crate) struct Walk<'a> {
     course: &'a Course,
     room: &'a Room,
     /// Room at the last point, metres.
@@ -47,7 +47,12 @@ enum Left {
 
 impl<'a> Walk<'a> {
     /// A walk from the beginning of a course among these parts.
-    pub fn new(course: &'a Course, room: &'a Room, parts: &'a [Part], (range_m, step_m): (f64, f64)) -> Self {
+    pub(crate) fn new(
+        course: &'a Course,
+        room: &'a Room,
+        parts: &'a [Part],
+        (range_m, step_m): (f64, f64),
+    ) -> Self {
         let follower = Follower::new(course::nearest_free(course, room), 0);
         let around = Around { wall: room.wall(), parts: Vec::new(), keep: room.keep() };
         let (seen, path) = (vec![false; parts.len()], vec![follower.at]);
@@ -61,7 +66,7 @@ impl<'a> Walk<'a> {
     ///
     /// # Errors
     /// When the console wants it to stop.
-    pub fn walked(mut self, ctx: &Ctx<'_>) -> Result<(Vec<Point>, std::result::Result<(), usize>)> {
+    pub(crate) fn walked(mut self, ctx: &Ctx<'_>) -> Result<(Vec<Point>, std::result::Result<(), usize>)> {
         let track = Track { points: &self.course.points, stations_m: &self.course.stations_m };
         let most = (DETOUR * track.stations_m[self.course.last()] / self.step_m) as usize + 4000;
         for turn in 0..most + track.points.len() {

@@ -15,7 +15,7 @@ const PLACES: u32 = 48;
 
 /// A way back to the course.
 #[derive(Debug, Clone, PartialEq)]
-pub struct WayOut {
+pub(crate) struct WayOut {
     /// Its points, from where the robot is.
     pub way: Vec<Point>,
     /// Index of the point of the course that it leads to.
@@ -25,7 +25,7 @@ pub struct WayOut {
 }
 
 /// The floor among what was sensed.
-pub fn floor<'a>(room: &Room, seen: impl Iterator<Item = &'a Part>) -> GrownFloor {
+pub(crate) fn floor<'a>(room: &Room, seen: impl Iterator<Item = &'a Part>) -> GrownFloor {
     let shapes: Vec<Shape> = seen.map(shape_of).collect();
     let keep = room.keep();
     GrownFloor::new(room.wall(), keep.wall_m, shapes.iter().map(|shape| (shape, keep.obstacle_m)))
@@ -33,7 +33,7 @@ pub fn floor<'a>(room: &Room, seen: impl Iterator<Item = &'a Part>) -> GrownFloo
 
 /// The way to the first free piece of the course ahead that can be reached without much of a detour, else to the one
 /// with the shortest way; `None` if all of them are proved to be closed off.
-pub fn onward(
+pub(crate) fn onward(
     track: &Track<'_>,
     follower: &Follower,
     floor: &GrownFloor,

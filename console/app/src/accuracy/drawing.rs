@@ -12,7 +12,7 @@ const STYLE: &str = concat!(
 );
 
 /// The picture as an SVG document; advised places are rings.
-pub fn svg(world: &World, map: &AccuracyMap, limit_m: f64, advised: &[Point]) -> String {
+pub(super) fn svg(world: &World, map: &AccuracyMap, limit_m: f64, advised: &[Point]) -> String {
     let mut body = String::new();
     for (center, cell) in map.floor() {
         let class = match cell.error_95_m {

@@ -8,7 +8,7 @@ use tui::Model;
 /// Writes what the screen knew beside the runs; the error says where, and that the run was closed.
 ///
 /// The file is a model as JSON: it can be opened in a test of the screen.
-pub fn report(logs: &Path, model: &Model) -> anyhow::Error {
+pub(super) fn report(logs: &Path, model: &Model) -> anyhow::Error {
     let name = format!("crash-{}.json", utc(SystemTime::now()));
     let path = logs.join(name);
     let kept = serde_json::to_vec(model).map_err(anyhow::Error::from).and_then(|text| {

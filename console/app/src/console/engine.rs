@@ -44,14 +44,14 @@ const LOOK_AGAIN: Duration = Duration::from_millis(1);
 const LOOK_AFTER: Duration = Duration::from_millis(20);
 
 /// The flying thread, seen from outside.
-pub struct Engine {
+pub(super) struct Engine {
     handle: EngineHandle,
     thread: JoinHandle<Option<Closed>>,
 }
 
 impl Engine {
     /// Starts the thread; nothing moves and nothing is written before the operator starts the mission.
-    pub fn start(
+    pub(super) fn start(
         scenario: &Scenario,
         logs: &Path,
         plugins: &PluginDirs,
@@ -94,12 +94,12 @@ impl Engine {
     }
 
     /// A handle to the engine.
-    pub fn handle(&self) -> EngineHandle {
+    pub(super) fn handle(&self) -> EngineHandle {
         self.handle.clone()
     }
 
     /// Ends the run, closes its files and waits for that; less time is allowed after a signal (`hurry`).
-    pub fn close(self, hurry: bool) -> anyhow::Result<Option<Closed>> {
+    pub(super) fn close(self, hurry: bool) -> anyhow::Result<Option<Closed>> {
         self.handle.close(if hurry { HURRY } else { CLOSE_TIMEOUT });
         self.thread.join().map_err(|panic| anyhow::anyhow!("the engine panicked: {}", words(&*panic)))
     }

@@ -29,31 +29,31 @@ impl Shared {
 }
 
 /// The receiving end; once it is dropped, messages are discarded.
-pub struct Inbox(Arc<Shared>);
+pub(super) struct Inbox(Arc<Shared>);
 
 /// The sending end, for any number of threads.
 #[derive(Clone)]
-pub struct Outbox(Arc<Shared>);
+pub(super) struct Outbox(Arc<Shared>);
 
 /// A connected pair of ends.
-pub fn inbox() -> (Outbox, Inbox) {
+pub(super) fn inbox() -> (Outbox, Inbox) {
     let shared = Arc::new(Shared::default());
     (Outbox(Arc::clone(&shared)), Inbox(shared))
 }
 
 impl Outbox {
     /// Sends a message that comes before all others: a key, a signal, a failure. `false` if the inbox is closed.
-    pub fn send_urgent(&self, msg: Msg) -> bool {
+    pub(super) fn send_urgent(&self, msg: Msg) -> bool {
         self.put(|queues| queues.urgent.push_back(msg))
     }
 
     /// Sends any other message. `false` if the inbox is closed.
-    pub fn send(&self, msg: Msg) -> bool {
+    pub(super) fn send(&self, msg: Msg) -> bool {
         self.put(|queues| queues.normal.push_back(msg))
     }
 
     /// Number of waiting messages that are not urgent.
-    pub fn backlog(&self) -> usize {
+    pub(super) fn backlog(&self) -> usize {
         self.0.queues().normal.len()
     }
 
@@ -71,7 +71,7 @@ impl Outbox {
 
 impl Inbox {
     /// The next message, urgent ones first; waits until the given time, or without one for as long as it takes.
-    pub fn next(&self, until: Option<Instant>) -> Option<Msg> {
+    pub(super) fn next(&self, until: Option<Instant>) -> Option<Msg> {
         let mut queues = self.0.queues();
         loop {
             let next = queues.urgent.pop_front().or_else(|| queues.normal.pop_front());

@@ -13,7 +13,7 @@ use std::{
 use tui::Speed;
 
 /// A request to the engine's thread.
-pub enum Request {
+pub(super) enum Request {
     /// An order, and when it was received.
     Order(Order, Instant),
     /// Change the pace.
@@ -27,7 +27,7 @@ pub enum Request {
 
 /// The sending end.
 #[derive(Clone)]
-pub struct EngineHandle {
+pub(super) struct EngineHandle {
     requests: Sender<Request>,
     waker: Waker,
     /// Whether the robot moves or may begin to, as the screen knows it.
@@ -35,35 +35,35 @@ pub struct EngineHandle {
 }
 
 /// A line to an engine whose planners this waker interrupts.
-pub fn line(waker: Waker) -> (EngineHandle, Receiver<Request>) {
+pub(super) fn line(waker: Waker) -> (EngineHandle, Receiver<Request>) {
     let (requests, asked) = mpsc::channel();
     (EngineHandle { requests, waker, may_move: Arc::default() }, asked)
 }
 
 impl EngineHandle {
     /// Hands an order to the mission; it enters with the next tick. What stops the robot makes that tick begin now.
-    pub fn order(&self, order: Order) {
+    pub(super) fn order(&self, order: Order) {
         let is_urgent = matches!(order, Order::Hold | Order::Abort);
         self.request(Request::Order(order, Instant::now()), is_urgent);
     }
 
     /// Whether the robot moves or may begin to, as the screen knows it.
-    pub fn may_move(&self) -> bool {
+    pub(super) fn may_move(&self) -> bool {
         self.may_move.load(Ordering::Relaxed)
     }
 
     /// The screen reports whether the robot may move.
-    pub fn set_may_move(&self, may_move: bool) {
+    pub(super) fn set_may_move(&self, may_move: bool) {
         self.may_move.store(may_move, Ordering::Relaxed);
     }
 
     /// Changes the pace.
-    pub fn speed(&self, speed: Speed) {
+    pub(super) fn speed(&self, speed: Speed) {
         self.request(Request::Speed(speed), false);
     }
 
     /// Ends the run and closes its files.
-    pub fn close(&self, within: Duration) {
+    pub(super) fn close(&self, within: Duration) {
         self.request(Request::Close { within }, true);
     }
 

@@ -10,7 +10,7 @@ const MOST_LATE: Duration = Duration::from_millis(50);
 /// When the tick after one that was due at `due` is due; time that was lost is not made up for by rushing.
 ///
 /// While the mission waits (`waits`: for a planner, or for an order), its time passes no faster than the clock.
-pub fn next_due(due: Instant, now: Instant, tick: Duration, speed: Speed, waits: bool) -> Instant {
+pub(super) fn next_due(due: Instant, now: Instant, tick: Duration, speed: Speed, waits: bool) -> Instant {
     let pace = match speed {
         Speed::Times(factor) if waits => tick.div_f64(factor.min(1.0)),
         Speed::Times(factor) => tick.div_f64(factor),
@@ -21,7 +21,7 @@ pub fn next_due(due: Instant, now: Instant, tick: Duration, speed: Speed, waits:
 }
 
 /// How long a tick waits for answers.
-pub fn window(tick: Duration, speed: Speed) -> Window {
+pub(super) fn window(tick: Duration, speed: Speed) -> Window {
     match speed {
         Speed::Times(factor) if factor <= 1.0 => Window::real_time(tick),
         Speed::Times(_) => Window::faster(tick),
@@ -31,24 +31,24 @@ pub fn window(tick: Duration, speed: Speed) -> Window {
 
 /// How fast the mission has gone, measured over a period.
 #[derive(Debug, Clone, Copy)]
-pub struct Reached {
+pub(super) struct Reached {
     since: Instant,
     n_ticks: u32,
 }
 
 impl Reached {
     /// Measures from now on.
-    pub fn since(since: Instant) -> Self {
+    pub(super) fn since(since: Instant) -> Self {
         Self { since, n_ticks: 0 }
     }
 
     /// A tick was flown.
-    pub fn count(&mut self) {
+    pub(super) fn count(&mut self) {
         self.n_ticks = self.n_ticks.saturating_add(1);
     }
 
     /// How many times as fast as the clock the mission went, and a new period.
-    pub fn take(&mut self, now: Instant, tick: Duration) -> f64 {
+    pub(super) fn take(&mut self, now: Instant, tick: Duration) -> f64 {
         let wall = now.saturating_duration_since(self.since).max(Duration::from_nanos(1));
         let factor = (tick * self.n_ticks).div_duration_f64(wall);
         *self = Self::since(now);

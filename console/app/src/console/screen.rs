@@ -23,7 +23,7 @@ const BURST_TIME: Duration = Duration::from_millis(5);
 const KEY_FRAME: Duration = Duration::from_millis(8);
 
 /// The screen while the console is open.
-pub struct Screen {
+pub(super) struct Screen {
     terminal: TerminalGuard,
     model: Model,
     caps: Caps,
@@ -40,14 +40,14 @@ pub struct Screen {
 
 /// Why the screen was left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Left {
+pub(super) struct Left {
     /// The signal that asked for it, if one did.
     pub signal: Option<Signal>,
 }
 
 impl Screen {
     /// Takes the terminal over.
-    pub fn open(
+    pub(super) fn open(
         caps: Caps,
         inbox: Inbox,
         engine: EngineHandle,
@@ -76,12 +76,12 @@ impl Screen {
     }
 
     /// What the screen knows, for a crash report.
-    pub fn model(&self) -> &Model {
+    pub(super) fn model(&self) -> &Model {
         &self.model
     }
 
     /// Runs until the operator or a signal wants to leave.
-    pub fn run(&mut self) -> anyhow::Result<Left> {
+    pub(super) fn run(&mut self) -> anyhow::Result<Left> {
         loop {
             if let Some(left) = self.take_burst()? {
                 return Ok(left);
@@ -185,7 +185,7 @@ fn ring() -> anyhow::Result<()> {
 
 impl Left {
     /// Reports on the normal screen how the run ended; the exit code reports it to scripts.
-    pub fn report_end(self, closed: Option<&Closed>) -> ExitCode {
+    pub(super) fn report_end(self, closed: Option<&Closed>) -> ExitCode {
         let kept = closed.and_then(|closed| closed.kept.as_ref());
         // A terminal that was closed shows nothing.
         if let Some(closed) = closed.filter(|_| self.signal != Some(Signal::Hangup)) {
@@ -216,12 +216,12 @@ fn number(signal: Signal) -> u8 {
 }
 
 /// The recorder's health as the screen shows it.
-pub fn health(recorder: &recording::Health, reached_speed: Option<f64>) -> Health {
+pub(super) fn health(recorder: &recording::Health, reached_speed: Option<f64>) -> Health {
     let recording = recorder.error.clone().map_or(Recording::On, Recording::Failed);
     Health { recording, reached_speed }
 }
 
 /// The recorder's health after the run was closed.
-pub fn closed(error: Option<String>) -> Health {
+pub(super) fn closed(error: Option<String>) -> Health {
     Health { recording: error.map_or(Recording::Off, Recording::Failed), reached_speed: None }
 }

@@ -16,7 +16,7 @@ use tui::{Key, Msg, Signal, terminal};
 const GRACE: Duration = Duration::from_secs(1);
 
 /// Keys, pastes and sizes. A key that stops the robot does so from here, whatever the screen is doing.
-pub fn keys(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
+pub(super) fn keys(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     spawn("keys", move || {
         while let Ok(event) = event::read() {
@@ -36,7 +36,7 @@ pub fn keys(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
 }
 
 /// Signals; one that ends the process ends it within [`GRACE`], whatever the other threads do.
-pub fn signals(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
+pub(super) fn signals(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     let mut signals =
         Signals::new([SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT]).context("listening to signals")?;
@@ -85,7 +85,7 @@ fn leave_in_any_case(signal: i32) {
 }
 
 /// A terminal that is closed while SIGHUP is ignored, as under nohup, is noticed here.
-pub fn terminal(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
+pub(super) fn terminal(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     spawn("terminal", move || {
         let stdin = std::io::stdin();

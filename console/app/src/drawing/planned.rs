@@ -8,7 +8,7 @@ use world::{Point, World};
 
 /// What there is to draw.
 #[derive(Debug, Clone, Copy)]
-pub struct Drawn<'a> {
+pub(crate) struct Drawn<'a> {
     /// Tank, obstacles and stations.
     pub world: &'a World,
     /// Room that the middle of the hull needs, metres.
@@ -30,7 +30,7 @@ pub struct Drawn<'a> {
 }
 
 /// The picture as an SVG document; north is up.
-pub fn svg(drawn: &Drawn<'_>) -> String {
+pub(crate) fn svg(drawn: &Drawn<'_>) -> String {
     let Drawn { world, path, legs, swath_m, .. } = drawn;
     let mut body = String::new();
     wall(&mut body, &world.boundary);

@@ -12,7 +12,7 @@ use std::{
 };
 
 /// A folder of pictures, and the first reason why one could not be written.
-pub struct Gallery {
+pub(super) struct Gallery {
     folder: PathBuf,
     failure: Mutex<Option<anyhow::Error>>,
 }
@@ -22,7 +22,7 @@ impl Gallery {
     ///
     /// # Errors
     /// The study has no plans to draw, or the folder cannot be made.
-    pub fn new(study: &Study, folder: &Path) -> anyhow::Result<Self> {
+    pub(super) fn new(study: &Study, folder: &Path) -> anyhow::Result<Self> {
         if !study.has_pictures() {
             let why = "--svg draws plans of whole floors; `pan-maps` and `coverage-suite` make such";
             return Err(bad_input(format!("{}: {why}", study.name)));
@@ -34,7 +34,7 @@ impl Gallery {
     }
 
     /// Draws a plan into a file of its own.
-    pub fn hang(&self, picture: &Picture<'_>) {
+    pub(super) fn hang(&self, picture: &Picture<'_>) {
         let file = self.folder.join(file_name(picture));
         if let Err(error) = std::fs::write(&file, drawn(picture)) {
             let error = bad_input(format!("a drawing cannot be written: {error}: {}", file.display()));
@@ -48,7 +48,7 @@ impl Gallery {
     ///
     /// # Errors
     /// The first picture that could not be written.
-    pub fn close(self) -> anyhow::Result<()> {
+    pub(super) fn close(self) -> anyhow::Result<()> {
         let failure = self.failure.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
         failure.map_or(Ok(()), Err)
     }

@@ -7,20 +7,20 @@ use std::path::PathBuf;
 
 /// Whether everything of a run that ended was written, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Kept {
+pub(crate) struct Kept {
     folder: PathBuf,
     problem: Option<String>,
 }
 
 impl Kept {
     /// `report`: how writing the report ended.
-    pub fn new(folder: &RunFolder, finished: &Finished, report: &anyhow::Result<()>) -> Self {
+    pub(crate) fn new(folder: &RunFolder, finished: &Finished, report: &anyhow::Result<()>) -> Self {
         let unwritten = || report.as_ref().err().map(|error| format!("{error:#}"));
         Self { folder: folder.path().to_owned(), problem: finished.error.clone().or_else(unwritten) }
     }
 
     /// Why the run is not kept; none if it is. Looks at the disk again: the console may stay open long after the end.
-    pub fn problem(&self) -> Option<String> {
+    pub(crate) fn problem(&self) -> Option<String> {
         let mut missing = [JOURNAL_FILE, REPORT_FILE].into_iter().map(|name| self.folder.join(name));
         let missing =
             || missing.find(|path| !path.is_file()).map(|path| format!("{} is missing", path.display()));
@@ -28,7 +28,7 @@ impl Kept {
     }
 
     /// The last line about the run.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let folder = self.folder.display();
         match self.problem() {
             None => format!("run kept in {folder}"),
@@ -37,7 +37,7 @@ impl Kept {
     }
 
     /// The exit code: that of the mission, or [`INTERNAL`] if the run is not kept.
-    pub fn exit_code(&self, mission: u8) -> u8 {
+    pub(crate) fn exit_code(&self, mission: u8) -> u8 {
         if self.problem().is_some() { INTERNAL } else { mission }
     }
 }

@@ -31,7 +31,7 @@ struct Source {
 
 /// How a past run stands.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Standing {
+pub(crate) enum Standing {
     /// It ended, and its report agrees with its journal.
     Ended(Box<Summary>),
     /// It ended, but its journal or its recording is not whole, as the report itself says.
@@ -51,7 +51,7 @@ pub enum Standing {
 ///
 /// The journal is the truth and the report a copy of what it says: a report that cannot be read, or does not fit the
 /// journal, counts for nothing.
-pub fn standing(folder: &Path) -> Standing {
+pub(crate) fn standing(folder: &Path) -> Standing {
     let failure = recorded_failure(folder);
     let doubt = match fs::read_to_string(folder.join(REPORT_FILE)) {
         Ok(text) => match read_report(folder, &text) {
@@ -121,14 +121,14 @@ fn agrees(summary: &Summary, ending: &Event) -> bool {
 }
 
 /// What speaks against the journal of a run whose digest is this: its report names another one.
-pub fn journal_doubt(folder: &Path, sha256: Option<&str>) -> Option<String> {
+pub(crate) fn journal_doubt(folder: &Path, sha256: Option<&str>) -> Option<String> {
     let text = fs::read_to_string(folder.join(REPORT_FILE)).ok()?;
     let source: Source = serde_json::from_str(&text).ok()?;
     (source.events_sha256? != sha256?).then(|| NOT_THE_ONE.to_owned())
 }
 
 /// What contradicts a journal without an end: the run has a report, so it was closed cleanly.
-pub fn end_is_missing(folder: &Path) -> Option<String> {
+pub(crate) fn end_is_missing(folder: &Path) -> Option<String> {
     let report: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(folder.join(REPORT_FILE)).ok()?).ok()?;
     report.get("outcome")?.as_str()?;

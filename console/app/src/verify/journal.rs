@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// The lines of one tick.
 #[derive(Debug, Default)]
-pub struct RecordedTick {
+pub(super) struct RecordedTick {
     pub tick: u64,
     /// Each line as it is in the file, and what it says.
     pub lines: Vec<(Vec<u8>, Event)>,
@@ -17,7 +17,7 @@ pub struct RecordedTick {
 
 impl RecordedTick {
     /// The lines to compare.
-    pub fn to_compare(&self) -> &[(Vec<u8>, Event)] {
+    pub(super) fn to_compare(&self) -> &[(Vec<u8>, Event)] {
         let is_answer = |(_, event): &(Vec<u8>, Event)| {
             let is_said = matches!(
                 event.kind,
@@ -37,7 +37,7 @@ impl RecordedTick {
 ///
 /// # Errors
 /// It is another event, or there is none.
-pub fn opening(first: Option<&Event>) -> anyhow::Result<&RunOpened> {
+pub(super) fn opening(first: Option<&Event>) -> anyhow::Result<&RunOpened> {
     match first.map(|event| &event.kind) {
         Some(EventKind::RunOpened(opened)) => Ok(opened),
         _ => Err(bad_input(
@@ -47,7 +47,7 @@ pub fn opening(first: Option<&Event>) -> anyhow::Result<&RunOpened> {
 }
 
 /// Reads a journal tick by tick.
-pub struct Ticks {
+pub(super) struct Ticks {
     reader: JournalReader,
     /// The first line of the tick that comes next.
     ahead: Option<(Vec<u8>, Event)>,
@@ -60,7 +60,7 @@ impl Ticks {
     ///
     /// # Errors
     /// There is none, or its first line is none of a journal.
-    pub fn open(path: &Path) -> anyhow::Result<Self> {
+    pub(super) fn open(path: &Path) -> anyhow::Result<Self> {
         let reader = JournalReader::open(path).map_err(|error| bad_input(error.to_string()))?;
         let mut ticks = Self { reader, ahead: None, ended: false, no_end: None };
         ticks.ahead = ticks.line()?;
@@ -71,7 +71,7 @@ impl Ticks {
     ///
     /// # Errors
     /// The first line is another event, or there is none.
-    pub fn opened(&self) -> anyhow::Result<&RunOpened> {
+    pub(super) fn opened(&self) -> anyhow::Result<&RunOpened> {
         opening(self.ahead.as_ref().map(|(_, event)| event))
     }
 
@@ -79,7 +79,7 @@ impl Ticks {
     ///
     /// # Errors
     /// A line cannot be understood.
-    pub fn next(&mut self) -> anyhow::Result<Option<RecordedTick>> {
+    pub(super) fn next(&mut self) -> anyhow::Result<Option<RecordedTick>> {
         let Some(first) = self.ahead.take() else { return Ok(None) };
         let mut recorded = RecordedTick { tick: first.1.tick, lines: vec![first], is_cut: false };
         while let Some(line) = self.line()? {
@@ -101,7 +101,7 @@ impl Ticks {
     }
 
     /// Why the journal has no end; to be asked after the last tick.
-    pub fn no_end(&self) -> Option<String> {
+    pub(super) fn no_end(&self) -> Option<String> {
         self.no_end.clone()
     }
 

@@ -7,7 +7,7 @@ use planner_host::Host;
 use std::collections::BTreeMap;
 
 /// Answers asks from the journal, and has planners answer them, too.
-pub struct Replayed {
+pub(super) struct Replayed {
     recorded: RecordedAnswers,
     /// `None` when planners are not asked, or no longer, since one answered otherwise.
     host: Option<Host>,
@@ -19,7 +19,7 @@ pub struct Replayed {
 
 /// What came of asking the planners again.
 #[derive(Debug, Default)]
-pub struct Asked {
+pub(super) struct Asked {
     /// Answers that were compared and are the same.
     pub same: usize,
     /// Answers that cannot be compared: the mission refused them, or made no use of them.
@@ -32,19 +32,19 @@ pub struct Asked {
 
 impl Replayed {
     /// With a host, planners are asked, too.
-    pub fn new(host: Option<Host>) -> Self {
+    pub(super) fn new(host: Option<Host>) -> Self {
         let asked = host.is_some().then(Asked::default);
         Self { recorded: RecordedAnswers::default(), host, early: Vec::new(), asked, tick: 0 }
     }
 
     /// Takes the recorded events of the tick that begins.
-    pub fn begin_tick(&mut self, recorded: &RecordedTick) {
+    pub(super) fn begin_tick(&mut self, recorded: &RecordedTick) {
         self.tick = recorded.tick;
         self.recorded.begin_tick(recorded.lines.iter().map(|(_, event)| &event.kind));
     }
 
     /// What the planners did.
-    pub fn into_asked(self) -> Option<Asked> {
+    pub(super) fn into_asked(self) -> Option<Asked> {
         self.asked
     }
 

@@ -100,7 +100,7 @@ pub(super) struct Rules {
 
 impl Rules {
     /// The rules at the start of a mission.
-    pub fn new(config: &MissionConfig) -> Self {
+    pub(super) fn new(config: &MissionConfig) -> Self {
         Self {
             time_limit: TimeLimitRule::default(),
             lost_position: LostPositionRule::default(),
@@ -111,7 +111,7 @@ impl Rules {
     }
 
     /// One tick of a mission under way; the first rule that has something to say wins.
-    pub fn update(&mut self, seen: &Seen<'_>, phase: &Phase) -> Option<Verdict> {
+    pub(super) fn update(&mut self, seen: &Seen<'_>, phase: &Phase) -> Option<Verdict> {
         let time_is_up = self.time_limit.update(seen, matches!(phase, Phase::Held(_)));
         if seen.touched {
             return Some(Verdict::End(Outcome::Collision, "the bumper touched something".into()));
@@ -148,7 +148,7 @@ impl Rules {
     }
 
     /// The robot is to move again: what was counted before says nothing about what follows.
-    pub fn restart(&mut self) {
+    pub(super) fn restart(&mut self) {
         self.lost_position = LostPositionRule::default();
         self.stuck.restart();
     }

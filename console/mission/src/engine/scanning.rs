@@ -17,7 +17,7 @@ pub(super) struct ScannedFloor {
 
 impl ScannedFloor {
     /// Nothing has been scanned.
-    pub fn new(floor: Floor) -> Self {
+    pub(super) fn new(floor: Floor) -> Self {
         Self { coverage: CoverageGrid::new(floor), surveyor: None }
     }
 }

@@ -94,7 +94,7 @@ impl Default for PlanState {
 
 impl PlanState {
     /// A plan that is wanted from where the robot stands.
-    pub fn due(reason: Reason) -> Self {
+    pub(super) fn due(reason: Reason) -> Self {
         Self::Due { reason, from_anchor: false }
     }
 }
@@ -144,12 +144,12 @@ pub(super) struct Arrived {
 
 impl Seat {
     /// A planner that has not been opened, and why it will be asked for a plan.
-    pub fn new(choice: PlannerChoice, reason: Reason) -> Self {
+    pub(super) fn new(choice: PlannerChoice, reason: Reason) -> Self {
         Self { choice, plan: PlanState::due(reason), ..Self::default() }
     }
 
     /// The same planner with other parameters, or another one, to take this one's place.
-    pub fn successor(&self, choice: PlannerChoice, reason: Reason) -> Self {
+    pub(super) fn successor(&self, choice: PlannerChoice, reason: Reason) -> Self {
         let same = choice.id == self.choice.id;
         Self {
             saved: self.saved.filter(|_| same),
@@ -159,36 +159,36 @@ impl Seat {
     }
 
     /// Who it is, or, until it is opened, who drove before it.
-    pub fn known(&self) -> Option<&PlannerInfo> {
+    pub(super) fn known(&self) -> Option<&PlannerInfo> {
         self.info.as_ref().or(self.before.as_ref())
     }
 
     /// Whether it has a plan and no other is due.
-    pub fn has_plan(&self) -> bool {
+    pub(super) fn has_plan(&self) -> bool {
         matches!(self.plan, PlanState::Flying { .. })
     }
 
     /// Whether its last plan was for all that was left of the task.
-    pub fn is_plan_whole(&self) -> bool {
+    pub(super) fn is_plan_whole(&self) -> bool {
         !matches!(self.plan, PlanState::Flying { is_whole: false })
     }
 
     /// Wants another plan, unless one is wanted already.
-    pub fn want_plan(&mut self, reason: Reason) {
+    pub(super) fn want_plan(&mut self, reason: Reason) {
         if self.has_plan() {
             self.plan = PlanState::due(reason);
         }
     }
 
     /// Has a new worker open this planner.
-    pub fn open(&mut self, worker: WorkerId, tick: u64, site: Site) -> Ask {
+    pub(super) fn open(&mut self, worker: WorkerId, tick: u64, site: Site) -> Ask {
         (self.worker, self.n_asks, self.saved_at_s) = (Some(worker), 0, None);
         let (choice, site, restore) = (self.choice.clone(), Arc::new(site), self.saved);
         self.number(worker, tick, PendingKind::Open, What::Open { choice, site, restore })
     }
 
     /// Asks something of the worker; `None` without one.
-    pub fn ask(&mut self, tick: u64, kind: PendingKind, what: What) -> Option<Ask> {
+    pub(super) fn ask(&mut self, tick: u64, kind: PendingKind, what: What) -> Option<Ask> {
         Some(self.number(self.worker?, tick, kind, what))
     }
 
@@ -201,19 +201,19 @@ impl Seat {
     }
 
     /// Forgets the worker, which is to be closed.
-    pub fn leave_worker(&mut self) -> Option<WorkerId> {
+    pub(super) fn leave_worker(&mut self) -> Option<WorkerId> {
         (self.is_ready, self.snapshot_due) = (false, false);
         (self.pending, self.command, self.reconfigure) = (None, None, None);
         self.worker.take()
     }
 
     /// Whether it is being opened or is making a plan.
-    pub fn is_being_prepared(&self) -> bool {
+    pub(super) fn is_being_prepared(&self) -> bool {
         matches!(&self.pending, Some(Pending { kind: PendingKind::Open | PendingKind::Plan(_), .. }))
     }
 
     /// The newest change of live parameters that it has not answered yet.
-    pub fn newest_change(&self) -> Option<&PlannerChoice> {
+    pub(super) fn newest_change(&self) -> Option<&PlannerChoice> {
         let asked = self.pending.as_ref().and_then(|pending| match &pending.kind {
             PendingKind::Reconfigure(choice) => Some(choice),
             _ => None,
@@ -222,13 +222,13 @@ impl Seat {
     }
 
     /// For how many ticks it has owed an answer that a moving robot needs.
-    pub fn owed_ticks(&self, tick: u64) -> Option<u64> {
+    pub(super) fn owed_ticks(&self, tick: u64) -> Option<u64> {
         let pending = self.pending.as_ref()?;
         (!self.is_being_prepared()).then(|| tick - pending.tick)
     }
 
     /// No answer to a step that was asked before is of use any more.
-    pub fn outdate_step(&mut self) {
+    pub(super) fn outdate_step(&mut self) {
         if let Some(Pending { kind: PendingKind::Step { usable }, .. }) = &mut self.pending {
             *usable = false;
         }

@@ -16,18 +16,18 @@ pub(super) struct Workers {
 
 impl Workers {
     /// A number that no worker had before.
-    pub fn next(&mut self) -> WorkerId {
+    pub(super) fn next(&mut self) -> WorkerId {
         self.next = self.next.wrapping_add(1);
         WorkerId(self.next)
     }
 
     /// Has a worker closed.
-    pub fn close(&mut self, worker: Option<WorkerId>) {
+    pub(super) fn close(&mut self, worker: Option<WorkerId>) {
         self.closing.extend(worker);
     }
 
     /// The next worker to close, as an ask; nobody waits for an answer.
-    pub fn poll(&mut self) -> Option<Ask> {
+    pub(super) fn poll(&mut self) -> Option<Ask> {
         let worker = self.closing.pop_front()?;
         Some(Ask { id: AskId { worker, n: u32::MAX }, what: What::Close })
     }

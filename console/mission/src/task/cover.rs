@@ -15,7 +15,7 @@ const CORNER_PATIENCE_S: f64 = 6.0;
 const NEARER_M: f64 = 0.01;
 
 /// Progress of a coverage mission. What is scanned is kept by the mission's grid, so any planner can go on from here.
-pub struct Cover {
+pub(crate) struct Cover {
     anchor: Point,
     /// What is to be scanned at all; empty for everything.
     regions: Vec<Vec<Point>>,
@@ -37,7 +37,7 @@ struct Lanes {
 
 impl Cover {
     /// Nothing is planned yet.
-    pub fn new(anchor: Point, regions: Vec<Vec<Point>>, tolerance_m: f64, start: Point) -> Self {
+    pub(crate) fn new(anchor: Point, regions: Vec<Vec<Point>>, tolerance_m: f64, start: Point) -> Self {
         Self {
             anchor,
             regions,
@@ -50,7 +50,7 @@ impl Cover {
     }
 
     /// Takes a plan for what is left.
-    pub fn take_plan(&mut self, plan: &Plan) {
+    pub(crate) fn take_plan(&mut self, plan: &Plan) {
         self.before_m += self.lanes.as_ref().map_or(0.0, |lanes| lanes.follower.along_m());
         let stations_m = polyline::stations_m(&plan.path);
         let legs = plan.legs.iter().map(|leg| (leg.tag, stations_m[leg.last])).collect();
@@ -59,7 +59,7 @@ impl Cover {
     }
 
     /// Takes the robot's position.
-    pub fn advance(&mut self, position: Point, map: &ObstacleMap) {
+    pub(crate) fn advance(&mut self, position: Point, map: &ObstacleMap) {
         self.position = position;
         if let Some(lanes) = &mut self.lanes {
             lanes.follower.advance(position, map, 0.0);
@@ -67,7 +67,7 @@ impl Cover {
     }
 
     /// Takes some time of moving: a corner that something keeps the robot away from is given up.
-    pub fn wait(&mut self, passed_s: f64) {
+    pub(crate) fn wait(&mut self, passed_s: f64) {
         let Some(lanes) = &mut self.lanes else { return };
         let corner_m = lanes.follower.corner_m(self.position).filter(|corner_m| *corner_m < NEAR_CORNER_M);
         let (least_m, waited_s) = self.at_corner;
@@ -83,35 +83,35 @@ impl Cover {
     }
 
     /// Where to go next; home without a plan.
-    pub fn target(&self) -> Point {
+    pub(crate) fn target(&self) -> Point {
         self.lanes.as_ref().map_or(self.anchor, |lanes| lanes.follower.target())
     }
 
     /// The plan from the target on.
-    pub fn ahead(&self, length_m: f64) -> &[Point] {
+    pub(crate) fn ahead(&self, length_m: f64) -> &[Point] {
         let home = || std::slice::from_ref(&self.anchor);
         self.lanes.as_ref().map_or_else(home, |lanes| lanes.follower.ahead(length_m))
     }
 
     /// Whether only some of the floor is to be scanned.
-    pub fn is_in_part(&self) -> bool {
+    pub(crate) fn is_in_part(&self) -> bool {
         !self.regions.is_empty()
     }
 
     /// What is left of the plan, from the point nearest to the robot on.
-    pub fn lanes_left(&self) -> Option<&[Point]> {
+    pub(crate) fn lanes_left(&self) -> Option<&[Point]> {
         self.lanes.as_ref().map(|lanes| lanes.follower.remaining())
     }
 
     /// What the stretch under the robot is for.
-    pub fn leg(&self) -> Option<LegTag> {
+    pub(crate) fn leg(&self) -> Option<LegTag> {
         let lanes = self.lanes.as_ref()?;
         let along_m = lanes.follower.along_m();
         lanes.legs.iter().find(|(_, end_m)| along_m < *end_m).or(lanes.legs.last()).map(|(tag, _)| *tag)
     }
 
     /// Whether the rest of the plan comes nearer than `room_m` to an outline.
-    pub fn is_in_the_way(&self, shape: &Shape, room_m: f64) -> bool {
+    pub(crate) fn is_in_the_way(&self, shape: &Shape, room_m: f64) -> bool {
         let (low, high) = shape.bounds();
         let reach = world::Vector::new(room_m, room_m);
         let (low, high) = (low - reach, high + reach);
@@ -141,7 +141,7 @@ impl Cover {
     }
 
     /// Reachable cells that are left to scan.
-    pub fn floor_left(&self, coverage: &CoverageGrid) -> Vec<usize> {
+    pub(crate) fn floor_left(&self, coverage: &CoverageGrid) -> Vec<usize> {
         let floor = coverage.floor();
         let wanted = regions::cells_within(floor, &self.regions);
         let is_wanted = |index: usize| wanted.as_ref().is_none_or(|w| w[index]);
@@ -151,31 +151,36 @@ impl Cover {
     }
 
     /// What is left, as planners read it.
-    pub fn left(&self, coverage: &CoverageGrid, lane_m: f64, tether: Option<api::TetherLimits>) -> TaskLeft {
+    pub(crate) fn left(
+        &self,
+        coverage: &CoverageGrid,
+        lane_m: f64,
+        tether: Option<api::TetherLimits>,
+    ) -> TaskLeft {
         let regions = self.regions_left(coverage, lane_m);
         TaskLeft::Cover { anchor: self.anchor, regions, tether, tolerance_m: self.tolerance_m }
     }
 
     /// Share of the way done, 0 to 1: what was flown along this plan and those before, and what this one has left.
-    pub fn done(&self) -> f64 {
+    pub(crate) fn done(&self) -> f64 {
         let flown_m = self.before_m + self.lanes.as_ref().map_or(0.0, |lanes| lanes.follower.along_m());
         let whole_m = flown_m + self.left_m();
         if self.lanes.is_none() || whole_m <= 0.0 { 0.0 } else { flown_m / whole_m }
     }
 
     /// Way left along the plan, metres.
-    pub fn left_m(&self) -> f64 {
+    pub(crate) fn left_m(&self) -> f64 {
         let left_m = |lanes: &Lanes| lanes.follower.length_m() - lanes.follower.along_m();
         self.lanes.as_ref().map_or_else(|| (self.anchor - self.position).norm(), left_m)
     }
 
     /// Distance from the plan, metres.
-    pub fn cross_track_m(&self, position: Point) -> Option<f64> {
+    pub(crate) fn cross_track_m(&self, position: Point) -> Option<f64> {
         self.lanes.as_ref().map(|lanes| lanes.follower.cross_track_m(position))
     }
 
     /// Whether the plan has been flown to its end and the robot is back at the anchor.
-    pub fn is_done(&self, position: Point) -> bool {
+    pub(crate) fn is_done(&self, position: Point) -> bool {
         let is_back = (self.anchor - position).norm() <= self.tolerance_m;
         is_back && self.lanes.as_ref().is_some_and(|l| l.follower.is_done(position, self.tolerance_m))
     }

@@ -11,48 +11,48 @@ use planner_host::{Host, HostConfig, PluginDirs};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-pub const ONE: WorkerId = WorkerId(1);
-pub const TWO: WorkerId = WorkerId(2);
+pub(crate) const ONE: WorkerId = WorkerId(1);
+pub(crate) const TWO: WorkerId = WorkerId(2);
 /// Far longer than anything here takes, also on a busy machine.
-pub const LONG: Duration = Duration::from_mins(1);
+pub(crate) const LONG: Duration = Duration::from_mins(1);
 
 /// A host, and the mission's count of asks.
-pub struct Desk {
+pub(crate) struct Desk {
     pub host: Host,
     n: u32,
 }
 
 impl Desk {
-    pub fn new(dirs: &PluginDirs, config: HostConfig) -> Self {
+    pub(crate) fn new(dirs: &PluginDirs, config: HostConfig) -> Self {
         Self { host: Host::new(dirs, config), n: 0 }
     }
 
-    pub fn submit(&mut self, worker: WorkerId, what: What) -> AskId {
+    pub(crate) fn submit(&mut self, worker: WorkerId, what: What) -> AskId {
         self.n += 1;
         let id = AskId { worker, n: self.n };
         self.host.submit(Ask { id, what });
         id
     }
 
-    pub fn next(&mut self) -> Answer {
+    pub(crate) fn next(&mut self) -> Answer {
         self.host.next(None).expect("an answer")
     }
 
     /// Asks, and waits for the answer, which is the next one.
-    pub fn ask(&mut self, worker: WorkerId, what: What) -> Result<Given, Fault> {
+    pub(crate) fn ask(&mut self, worker: WorkerId, what: What) -> Result<Given, Fault> {
         let id = self.submit(worker, what);
         let answer = self.next();
         assert_eq!(answer.ask, id);
         answer.result
     }
 
-    pub fn open(&mut self, worker: WorkerId, fault: &str) {
+    pub(crate) fn open(&mut self, worker: WorkerId, fault: &str) {
         let opened = self.ask(worker, opening("faulty", &words(&[("fault", fault)]), None));
         assert!(matches!(opened, Ok(Given::Opened(info)) if info.id == "faulty"));
     }
 
     /// Saves the private state of a worker's planner, and returns the ask that it can be restored by.
-    pub fn save(&mut self, worker: WorkerId) -> AskId {
+    pub(crate) fn save(&mut self, worker: WorkerId) -> AskId {
         let id = self.submit(worker, What::Snapshot);
         let answer = self.next();
         assert_eq!((answer.ask, answer.result), (id, Ok(Given::State { bytes: 4 })));
@@ -60,7 +60,7 @@ impl Desk {
     }
 
     /// The count of a counter after a step.
-    pub fn count(&mut self, worker: WorkerId, tick: u64) -> u32 {
+    pub(crate) fn count(&mut self, worker: WorkerId, tick: u64) -> u32 {
         match self.ask(worker, step(tick)).unwrap() {
             Given::Command(command) => counted(&command),
             other => panic!("{other:?}"),
@@ -81,18 +81,18 @@ fn site() -> Arc<Site> {
     }))
 }
 
-pub fn opening(planner: &str, parameters: &Parameters, restore: Option<AskId>) -> What {
+pub(crate) fn opening(planner: &str, parameters: &Parameters, restore: Option<AskId>) -> What {
     let choice = PlannerChoice { id: planner.to_owned(), parameters: parameters.clone() };
     What::Open { choice, site: site(), restore }
 }
 
-pub fn plan() -> What {
+pub(crate) fn plan() -> What {
     let task = TaskLeft::Goto { goal: GOAL, tolerance_m: 0.1 };
     let (reason, start) = (Reason::Start, pose(Point2::origin()));
     What::Plan(Box::new(PlanAsk { reason, start, task, site: site(), previous: Vec::new() }))
 }
 
-pub fn step(tick: u64) -> What {
+pub(crate) fn step(tick: u64) -> What {
     What::Step(Box::new(sensed(tick, |sensed| StepAsk {
         tick,
         t_s: sensed.t_s,
@@ -108,6 +108,6 @@ pub fn step(tick: u64) -> What {
 }
 
 /// Soon enough to look again often.
-pub fn soon() -> Instant {
+pub(crate) fn soon() -> Instant {
     Instant::now() + Duration::from_millis(20)
 }

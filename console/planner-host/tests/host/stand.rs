@@ -13,20 +13,20 @@ use std::process::Command as Run;
 use std::time::Duration;
 use tempfile::TempDir;
 
-pub const GOAL: Point2<f64> = Point2::new(3.0, 4.0);
+pub(crate) const GOAL: Point2<f64> = Point2::new(3.0, 4.0);
 const TICK_S: f64 = 0.1;
 
-pub fn worker() -> WorkerCommand {
+pub(crate) fn worker() -> WorkerCommand {
     WorkerCommand::new(env!("CARGO_BIN_EXE_planner-worker"))
 }
 
 /// Patient enough for a busy machine.
-pub fn config() -> HostConfig {
+pub(crate) fn config() -> HostConfig {
     HostConfig { worker_command: worker(), ..HostConfig::new(Duration::from_secs(3)) }
 }
 
 /// For planners that shall be late.
-pub fn impatient() -> HostConfig {
+pub(crate) fn impatient() -> HostConfig {
     HostConfig {
         configure_deadline: Duration::from_millis(150),
         plan_deadline: Duration::from_millis(150),
@@ -36,21 +36,21 @@ pub fn impatient() -> HostConfig {
 }
 
 /// A host for the plugins that were built with this test.
-pub fn host(config: HostConfig) -> BlockingHost {
+pub(crate) fn host(config: HostConfig) -> BlockingHost {
     BlockingHost::new(&built(), config)
 }
 
 /// The folder where plugins land that were built with this test.
-pub fn built() -> PluginDirs {
+pub(crate) fn built() -> PluginDirs {
     let deps = std::env::current_exe().unwrap().parent().unwrap().to_owned();
     PluginDirs(vec![deps])
 }
 
-pub fn pose(position: Point2<f64>) -> PoseEstimate {
+pub(crate) fn pose(position: Point2<f64>) -> PoseEstimate {
     PoseEstimate { position, heading_rad: 0.0, covariance: Matrix3::identity() * 1e-4 }
 }
 
-pub fn with_site<R>(call: impl FnOnce(&Site<'_>) -> R) -> R {
+pub(crate) fn with_site<R>(call: impl FnOnce(&Site<'_>) -> R) -> R {
     let column = Outline::Disc { center: Point2::new(5.0, 0.0), radius_m: 0.3 };
     let obstacles = [Obstacle {
         id: 1,
@@ -78,20 +78,24 @@ pub fn with_site<R>(call: impl FnOnce(&Site<'_>) -> R) -> R {
     })
 }
 
-pub fn words(pairs: &[(&str, &str)]) -> Parameters {
+pub(crate) fn words(pairs: &[(&str, &str)]) -> Parameters {
     pairs.iter().map(|(key, word)| ((*key).to_owned(), ParamValue::Word((*word).to_owned()))).collect()
 }
 
-pub fn choose(host: &mut BlockingHost, id: &str, parameters: &Parameters) -> Result<PlannerInfo, Fault> {
+pub(crate) fn choose(
+    host: &mut BlockingHost,
+    id: &str,
+    parameters: &Parameters,
+) -> Result<PlannerInfo, Fault> {
     with_site(|site| host.choose(id, parameters, site))
 }
 
-pub fn plan(host: &mut BlockingHost) -> Result<Reply<Plan>, Fault> {
+pub(crate) fn plan(host: &mut BlockingHost) -> Result<Reply<Plan>, Fault> {
     plan_for(host, Task::Goto { goal: GOAL, tolerance_m: 0.1 })
 }
 
 /// Asks to cover two triangles on a tether.
-pub fn plan_to_cover(host: &mut BlockingHost) -> Result<Reply<Plan>, Fault> {
+pub(crate) fn plan_to_cover(host: &mut BlockingHost) -> Result<Reply<Plan>, Fault> {
     let triangle = [Point2::new(1.0, 0.0), Point2::new(2.0, 0.0), Point2::new(1.0, 1.0)];
     let tether = TetherLimits { reel_m: 40.0, max_wrap_rad: 1.5, max_sum_wrap_rad: 2.5 };
     let regions: [&[_]; 2] = [&triangle, &triangle];
@@ -107,16 +111,20 @@ fn plan_for(host: &mut BlockingHost, task: Task<'_>) -> Result<Reply<Plan>, Faul
 }
 
 /// A step from the origin.
-pub fn step(host: &mut BlockingHost, tick: u64) -> Result<Reply<Command>, Fault> {
+pub(crate) fn step(host: &mut BlockingHost, tick: u64) -> Result<Reply<Command>, Fault> {
     step_at(host, tick, pose(Point2::origin()))
 }
 
-pub fn step_at(host: &mut BlockingHost, tick: u64, pose: PoseEstimate) -> Result<Reply<Command>, Fault> {
+pub(crate) fn step_at(
+    host: &mut BlockingHost,
+    tick: u64,
+    pose: PoseEstimate,
+) -> Result<Reply<Command>, Fault> {
     sensed(tick, |sensed| host.step(&Sensed { pose, ..*sensed }))
 }
 
 /// What is sensed at the origin.
-pub fn sensed<R>(tick: u64, call: impl FnOnce(&Sensed<'_>) -> R) -> R {
+pub(crate) fn sensed<R>(tick: u64, call: impl FnOnce(&Sensed<'_>) -> R) -> R {
     let far = Outline::Disc { center: Point2::new(5.0, 0.0), radius_m: 0.3 };
     call(&Sensed {
         tick,
@@ -138,30 +146,30 @@ pub fn sensed<R>(tick: u64, call: impl FnOnce(&Sensed<'_>) -> R) -> R {
 }
 
 /// Steps until the first fault, ten at most.
-pub fn fly(host: &mut BlockingHost) -> Result<(), Fault> {
+pub(crate) fn fly(host: &mut BlockingHost) -> Result<(), Fault> {
     (0..10).try_for_each(|tick| step(host, tick).map(|_| ()))
 }
 
 /// Whatever happened before, another planner can take over.
-pub fn assert_another_drives(host: &mut BlockingHost) {
+pub(crate) fn assert_another_drives(host: &mut BlockingHost) {
     choose(host, "faulty", &Parameters::new()).unwrap();
     assert!(plan(host).unwrap().value.complete);
     fly(host).unwrap();
 }
 
-pub fn assert_refused(fault: &Fault, words: &[&str]) {
+pub(crate) fn assert_refused(fault: &Fault, words: &[&str]) {
     assert_eq!(fault.cause, Cause::Refused, "{fault}");
     for word in words {
         assert!(fault.message.contains(word), "`{word}` in: {fault}");
     }
 }
 
-pub fn workspace() -> PathBuf {
+pub(crate) fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 /// Compiles C into a plugin of this name in a folder.
-pub fn compile(source: &Path, folder: &Path, name: &str, defines: &[&str]) {
+pub(crate) fn compile(source: &Path, folder: &Path, name: &str, defines: &[&str]) {
     let include = workspace().join("plugins/planner-api/include");
     let compiled = Run::new("cc")
         .args(["-std=c11", "-O1", "-shared", "-fPIC", "-Wall", "-Wextra", "-Werror", "-pedantic"])
@@ -176,12 +184,12 @@ pub fn compile(source: &Path, folder: &Path, name: &str, defines: &[&str]) {
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
 }
 
-pub fn direct_c() -> PathBuf {
+pub(crate) fn direct_c() -> PathBuf {
     workspace().join("plugins/examples/direct-c/direct.c")
 }
 
 /// A folder with one plugin made from these lines.
-pub fn folder_with(name: &str, source: &str) -> (TempDir, PluginDirs) {
+pub(crate) fn folder_with(name: &str, source: &str) -> (TempDir, PluginDirs) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join(format!("{name}.c"));
     std::fs::write(&file, source).unwrap();

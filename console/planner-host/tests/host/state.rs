@@ -9,7 +9,7 @@ use planner_host::{BlockingHost, PluginDirs};
 use tempfile::TempDir;
 
 /// Counts its steps; its speed is the count in millimetres per second. Aborts at the thirtieth step of its process.
-pub const COUNTER: &str = r#"
+pub(crate) const COUNTER: &str = r#"
 #include "tankops_planner.h"
 #include <stdlib.h>
 #include <string.h>
@@ -53,7 +53,7 @@ TP_STAMP(TP_ABI_MAJOR, TP_ABI_MINOR);
 "#;
 
 /// The count that a counter gives with its command.
-pub fn counted(command: &Command) -> u32 {
+pub(crate) fn counted(command: &Command) -> u32 {
     match command.drive {
         Drive::Twist { v_m_per_s, .. } => (v_m_per_s * 1000.0).round() as u32,
         Drive::Velocity(_) => panic!("it drives by twists"),

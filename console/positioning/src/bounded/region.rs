@@ -22,11 +22,11 @@ pub(super) struct Annulus {
 }
 
 impl Annulus {
-    pub fn middle_m(&self) -> f64 {
+    pub(super) fn middle_m(&self) -> f64 {
         f64::midpoint(self.inner_m, self.outer_m)
     }
 
-    pub fn width_m(&self) -> f64 {
+    pub(super) fn width_m(&self) -> f64 {
         self.outer_m - self.inner_m
     }
 }
@@ -40,7 +40,7 @@ pub(super) struct Region {
 
 impl Region {
     /// The overlap of the annuli near a place; `None` if there is none.
-    pub fn around(annuli: &[Annulus], near: Point) -> Option<Self> {
+    pub(super) fn around(annuli: &[Annulus], near: Point) -> Option<Self> {
         match polygon_around(annuli, near) {
             Some(strips) => {
                 Frame::of(&strips).and_then(|frame| frame.summed(annuli, CELLS)).or_else(|| moments(&strips))

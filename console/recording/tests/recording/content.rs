@@ -12,14 +12,14 @@ use rerun::{
 use std::{collections::BTreeMap, fs::File, io::BufReader, path::Path};
 
 /// Entity and component.
-pub type Key = (String, String);
+pub(crate) type Key = (String, String);
 /// Timelines with their times, and the value as text.
-pub type Row = (Vec<(String, i64)>, String);
+pub(crate) type Row = (Vec<(String, i64)>, String);
 /// Every value of a recording, in order of time.
-pub type Content = BTreeMap<Key, Vec<Row>>;
+pub(crate) type Content = BTreeMap<Key, Vec<Row>>;
 
 /// Decodes a recording.
-pub fn content(path: &Path) -> Content {
+pub(crate) fn content(path: &Path) -> Content {
     let mut content = Content::new();
     for message in DecoderApp::decode_lazy(BufReader::new(File::open(path).expect("the file is there"))) {
         if let LogMsg::ArrowMsg(store, arrow) = message.expect("the file is whole")

@@ -23,7 +23,7 @@ const SPEED_M_PER_S: f64 = 0.4;
 const PITCH_M: f64 = 0.9;
 
 /// A run of so many ticks, tick by tick: `RunOpened` in the first batch, `Ended` in the last.
-pub fn run(ticks: u64) -> Vec<Vec<Event>> {
+pub(crate) fn run(ticks: u64) -> Vec<Vec<Event>> {
     let mut robot = Robot::new();
     (0..ticks).map(|tick| robot.tick(tick, ticks)).collect()
 }

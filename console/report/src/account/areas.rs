@@ -8,7 +8,7 @@ const LEAST_M2: f64 = 0.01;
 
 /// The areas of the cells that have a reason, the largest first, and what is too small to be listed. Cells lie
 /// together if they touch, be it at a corner, and have the same reason and plate.
-pub fn areas<R: Copy + PartialEq>(
+pub(crate) fn areas<R: Copy + PartialEq>(
     floor: &Floor,
     plates: Option<&PlateMap>,
     reason_of: impl Fn(usize) -> Option<R>,
@@ -58,7 +58,7 @@ fn take_together<R: Copy + PartialEq>(
 }
 
 /// Some cells as an area.
-pub fn area_of<R>(floor: &Floor, plate: Option<String>, reason: R, cells: &[usize]) -> Area<R> {
+pub(crate) fn area_of<R>(floor: &Floor, plate: Option<String>, reason: R, cells: &[usize]) -> Area<R> {
     let centers = || cells.iter().map(|index| floor.center(*index));
     let half = Vector::new(floor.cell_m, floor.cell_m) / 2.0;
     let start = floor.center(cells[0]);

@@ -64,7 +64,7 @@ fn opened() -> Value {
 }
 
 /// A round tank of 5 m with a column, a robot that keeps 0.45 m from anything and a bar of 0.6 m.
-pub fn round_tank(cell_m: f64) -> RunOpened {
+pub(crate) fn round_tank(cell_m: f64) -> RunOpened {
     let mut run: Value = opened();
     let column = Obstacle {
         id: world::ObstacleId(1),

@@ -10,7 +10,7 @@ const MOST_AREAS: usize = 10;
 const MOST_PLATES: usize = 30;
 
 /// Lines with their labels; every percentage names its floor, and those of one floor sum to 100.0 %.
-pub fn lines(account: &Account) -> Vec<(&'static str, String)> {
+pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
     let mut lines = vec![
         ("floor", format!("whole floor {}", shares(&account.whole))),
         ("floor", format!("reachable floor {}", shares(&account.reachable))),

@@ -22,7 +22,7 @@ const TOLERANCE_M: f64 = 0.3;
 
 /// A plan and its figures.
 #[derive(Debug, Clone, Default)]
-pub struct Measured {
+pub(super) struct Measured {
     /// The figures; none if there is no path.
     pub flown: Option<(Scan, Haul)>,
     /// Why there is no path, or not all of it.
@@ -35,7 +35,7 @@ pub struct Measured {
 ///
 /// # Errors
 /// There is no such planner, or it refuses its parameters: anything else is a result.
-pub fn measure(
+pub(super) fn measure(
     planners: &Planners,
     trial: &Trial,
     gallery: Option<&(dyn Fn(&Picture<'_>) + Sync)>,

@@ -95,7 +95,7 @@ fn is_reeled_in(one: &Measured) -> bool {
 /// The rows of what was measured on layouts of these seeds.
 ///
 /// Rates are shares of all layouts; figures are those of the layouts with a path, and say how many these are.
-pub fn rows(table: &str, case: &str, method: &str, all: &[(u64, &Measured)]) -> Vec<Row> {
+pub(super) fn rows(table: &str, case: &str, method: &str, all: &[(u64, &Measured)]) -> Vec<Row> {
     let row = |metric: &str, ours: Option<f64>, unit: &str| Row::new(table, case, method, metric, ours, unit);
     let mut rows: Vec<Row> = Vec::new();
     for rate in RATES {

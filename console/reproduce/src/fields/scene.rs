@@ -17,7 +17,7 @@ const WALL_OFF_M: f64 = 20.0;
 
 /// A floor with discs.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Scene {
+pub(super) struct Scene {
     /// Id of the case.
     pub id: &'static str,
     /// Where the robot is put down, metres.
@@ -34,7 +34,7 @@ pub struct Scene {
 
 /// What came out of a plan.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Walk {
+pub(super) struct Walk {
     /// The answer.
     pub planned: Planned,
     /// Whether the goal was reached without a touch.
@@ -52,7 +52,7 @@ impl Scene {
     ///
     /// # Errors
     /// The planner is missing, refuses its parameters or broke down.
-    pub fn walk(&self, planners: &Planners, method: &Method, times: usize) -> Result<Walk, Problem> {
+    pub(super) fn walk(&self, planners: &Planners, method: &Method, times: usize) -> Result<Walk, Problem> {
         let mut walks = (0..times.max(1)).map(|_| self.walk_once(planners, method));
         let first = walks.next().expect("it is asked at least once")?;
         walks.try_fold(first, |best, next| {
@@ -127,7 +127,7 @@ impl Scene {
 }
 
 /// A wall of discs along a line through `corners`, each ahead and to the left of `at`, looking along `toward_rad`.
-pub fn wall_of_discs(
+pub(super) fn wall_of_discs(
     corners: &[(f64, f64)],
     at: Point,
     toward_rad: f64,
@@ -142,17 +142,17 @@ pub fn wall_of_discs(
 
 impl Walk {
     /// Where the path ends.
-    pub fn stop(&self) -> Option<Point> {
+    pub(super) fn stop(&self) -> Option<Point> {
         self.planned.path().last().copied()
     }
 
     /// Number of moves.
-    pub fn steps(&self) -> f64 {
+    pub(super) fn steps(&self) -> f64 {
         self.planned.path().len().saturating_sub(1) as f64
     }
 
     /// Everything but what the paper prints.
-    pub fn rows(&self, table: &str, case: &str, method: &Method) -> Vec<Row> {
+    pub(super) fn rows(&self, table: &str, case: &str, method: &Method) -> Vec<Row> {
         let row = |metric: &str, ours: f64, unit: &str| {
             Row::new(table, case, method.id, metric, Some(ours), unit).note(method.note)
         };

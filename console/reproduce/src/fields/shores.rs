@@ -58,7 +58,7 @@ fn methods() -> Vec<(Method, u32)> {
 }
 
 /// Figs 12 to 15 on many layouts.
-pub fn hybrid(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
+pub(super) fn hybrid(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
     let methods: Vec<(Method, u32)> =
         methods().into_iter().filter(|(method, _)| options.has_method(method.id)).collect();
     let groups: Vec<Group> = Group::ALL.into_iter().filter(|group| options.has_case(group.id())).collect();

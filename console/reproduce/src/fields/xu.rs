@@ -130,17 +130,17 @@ fn holistic() -> Scene {
 }
 
 /// Table 1.
-pub fn table1(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
+pub(super) fn table1(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
     rows(study, bench, options, &[behind_an_obstacle()], TABLE1, &PRINTED_TABLE1)
 }
 
 /// Figs 2, 11 and 12.
-pub fn traps(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
+pub(super) fn traps(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
     rows(study, bench, options, &[line(), triangle(), u()], TRAPS, &[])
 }
 
 /// Table 2.
-pub fn table2(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
+pub(super) fn table2(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
     rows(study, bench, options, &[holistic()], TABLE2, &PRINTED_TABLE2)
 }
 

@@ -108,12 +108,12 @@ fn methods(case: &Case) -> [Method; 2] {
 }
 
 /// Table 3.
-pub fn table3(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
+pub(super) fn table3(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
     rows(study, bench, options, &cases_of_table3())
 }
 
 /// Table 4.
-pub fn table4(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
+pub(super) fn table4(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
     rows(study, bench, options, &cases_of_table4())
 }
 

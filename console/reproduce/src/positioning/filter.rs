@@ -19,7 +19,7 @@ use positioning::{
 use sim::NoiseModel;
 use world::{Point, RangeSet, Station};
 
-pub const STUDY: Study = Study {
+pub(super) const STUDY: Study = Study {
     name: "positioning-filter",
     about: "filters over ranges and odometry along the spiral, on the same draws",
     layouts: 30,

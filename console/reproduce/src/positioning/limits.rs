@@ -15,7 +15,7 @@ use sim::NoiseModel;
 use std::time::Instant;
 use world::Point;
 
-pub const STUDY: Study = Study {
+pub(super) const STUDY: Study = Study {
     name: "positioning-limits",
     about: "every estimator over the floor on the same ranges, by stations, noise and repetitions, with the bounds",
     layouts: 10_000,

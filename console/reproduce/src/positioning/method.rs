@@ -10,7 +10,7 @@ type Solve = fn(&[Ranging], &[Station], &RangeNoise) -> Result<Fix, FixError>;
 
 /// An aggregator with a solver.
 #[derive(Clone, Copy)]
-pub struct Method {
+pub(super) struct Method {
     /// Id of the rows.
     pub id: &'static str,
     aggregation: Aggregation,
@@ -19,12 +19,17 @@ pub struct Method {
 
 impl Method {
     /// The fix of one cycle.
-    pub fn fix(&self, sets: &[RangeSet], stations: &[Station], noise: &RangeNoise) -> Result<Fix, FixError> {
+    pub(super) fn fix(
+        &self,
+        sets: &[RangeSet],
+        stations: &[Station],
+        noise: &RangeNoise,
+    ) -> Result<Fix, FixError> {
         (self.solve)(&self.ranges(sets, noise)?, stations, noise)
     }
 
     /// One range for each station.
-    pub fn ranges(&self, sets: &[RangeSet], noise: &RangeNoise) -> Result<Vec<Ranging>, FixError> {
+    pub(super) fn ranges(&self, sets: &[RangeSet], noise: &RangeNoise) -> Result<Vec<Ranging>, FixError> {
         self.aggregation.aggregate(sets, noise)
     }
 }
@@ -35,38 +40,38 @@ fn bounded(ranges: &[Ranging], stations: &[Station], noise: &RangeNoise) -> Resu
 }
 
 /// The paper: the mean of the linear solutions of the single repetitions.
-pub const LINEAR: Method = Method {
+pub(super) const LINEAR: Method = Method {
     id: "linear",
     aggregation: Aggregation::RootMeanSquare,
     solve: |ranges, stations, _| LinearLs.solve(ranges, stations, None),
 };
 /// Weighted linear least squares on the means.
-pub const WEIGHTED: Method = Method {
+pub(super) const WEIGHTED: Method = Method {
     id: "weighted-linear",
     aggregation: Aggregation::Mean,
     solve: |ranges, stations, _| WeightedLinear.solve(ranges, stations, None),
 };
 /// Nonlinear least squares on the means.
-pub const NLS: Method = Method { id: "nls", aggregation: Aggregation::Mean, solve: nls };
+pub(super) const NLS: Method = Method { id: "nls", aggregation: Aggregation::Mean, solve: nls };
 /// The same on the midranges.
-pub const NLS_MIDRANGE: Method =
+pub(super) const NLS_MIDRANGE: Method =
     Method { id: "nls/midrange", aggregation: Aggregation::Midrange, solve: nls };
 /// The same on the posterior means.
-pub const NLS_POSTERIOR: Method =
+pub(super) const NLS_POSTERIOR: Method =
     Method { id: "nls/posterior", aggregation: Aggregation::Posterior, solve: nls };
 /// The same on the trimmed means.
-pub const NLS_TRIMMED: Method =
+pub(super) const NLS_TRIMMED: Method =
     Method { id: "nls/trimmed", aggregation: Aggregation::TrimmedMean, solve: nls };
 /// The same, leaving out one station that contradicts all others.
-pub const NLS_SCREENED: Method = Method {
+pub(super) const NLS_SCREENED: Method = Method {
     id: "nls/screened",
     aggregation: Aggregation::TrimmedMean,
     solve: |ranges, stations, _| Screened(Nls).solve(ranges, stations, None),
 };
 /// The positions within all bounds.
-pub const BOUNDED: Method = Method { id: "bounded", aggregation: Aggregation::Mean, solve: bounded };
+pub(super) const BOUNDED: Method = Method { id: "bounded", aggregation: Aggregation::Mean, solve: bounded };
 /// The same; nonlinear least squares where no position is left.
-pub const BOUNDED_OR_NLS: Method = Method {
+pub(super) const BOUNDED_OR_NLS: Method = Method {
     id: "bounded/or-nls",
     aggregation: Aggregation::TrimmedMean,
     solve: |ranges, stations, noise| {
@@ -74,7 +79,7 @@ pub const BOUNDED_OR_NLS: Method = Method {
     },
 };
 /// What most stations agree on.
-pub const CONSENSUS: Method = Method {
+pub(super) const CONSENSUS: Method = Method {
     id: "consensus",
     aggregation: Aggregation::TrimmedMean,
     solve: |ranges, stations, _| Consensus::default().solve(ranges, stations, None),

@@ -9,14 +9,14 @@ use world::{Odometry, Point, Pose, geometry::wrap_angle_rad};
 /// Scatter of the measured way of a step as a share of it.
 const WAY_SIGMA: f64 = 0.05;
 /// Chance that the tracks slip through in a step.
-pub const SLIP_CHANCE: f64 = 0.02;
+pub(super) const SLIP_CHANCE: f64 = 0.02;
 /// Scatter of the measured turn of a step, radians.
 const TURN_SIGMA_RAD: f64 = 0.01;
 /// Standard deviation of the gyro's bias, radians a step.
 const BIAS_SIGMA_RAD: f64 = 0.001;
 
 /// A drive: true poses and what the odometry made of the steps between them.
-pub struct Drive {
+pub(super) struct Drive {
     /// The first pose is known.
     pub start: Pose,
     /// For each step what was measured and where it truly led.
@@ -25,7 +25,7 @@ pub struct Drive {
 
 /// The spiral driven with slip of 1 to 5 % throughout, 5 % scatter, steps in which the tracks slip through by 30 to
 /// 70 %, and a gyro with a bias.
-pub fn drive(seed: u64) -> Drive {
+pub(super) fn drive(seed: u64) -> Drive {
     let mut rng = chance(seed, 7);
     let truths = spiral();
     let slip = rng.random_range(0.01..0.05);

@@ -15,7 +15,7 @@ use sim::{BehindColumns, Disturbances, NoiseModel, StationFault};
 use std::time::Instant;
 use world::{Point, RangeSet, StationId};
 
-pub const STUDY: Study = Study {
+pub(super) const STUDY: Study = Study {
     name: "positioning-robust",
     about: "estimators on the same ranges with hidden stations, wild pings, echoes, bad surveys and slow sound",
     layouts: 10_000,

@@ -8,13 +8,13 @@ use std::f64::consts::{PI, TAU};
 use world::{Boundary, Obstacle, ObstacleId, Point, RangeSet, Shape, Station, StationId, World};
 
 /// Radius of the paper's tank, metres.
-pub const RADIUS_M: f64 = 10.0;
+pub(super) const RADIUS_M: f64 = 10.0;
 /// Radius of the columns of a case with columns, metres.
 const COLUMN_M: f64 = 0.35;
 
 /// Where stations stand.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Layout {
+pub(super) enum Layout {
     /// The paper's three stations.
     Paper,
     /// So many on a ring of this radius, metres.
@@ -23,7 +23,7 @@ pub enum Layout {
 
 impl Layout {
     /// The stations.
-    pub fn stations(self) -> Vec<Station> {
+    pub(super) fn stations(self) -> Vec<Station> {
         let places: Vec<Point> = match self {
             Self::Paper => vec![Point::new(7.5, 0.0), Point::new(-7.5, 0.0), Point::new(0.0, 7.5)],
             Self::Ring(n, radius_m) => on_ring(n, radius_m, 0.0),
@@ -33,7 +33,7 @@ impl Layout {
     }
 
     /// The part of a case's id.
-    pub fn id(self) -> String {
+    pub(super) fn id(self) -> String {
         match self {
             Self::Paper => "3-stations".into(),
             Self::Ring(n, radius_m) if radius_m >= RADIUS_M => format!("{n}-stations-wall"),
@@ -51,7 +51,7 @@ fn on_ring(n: u32, radius_m: f64, turned_rad: f64) -> Vec<Point> {
 
 /// What is measured how.
 #[derive(Debug, Clone)]
-pub struct Scene {
+pub(super) struct Scene {
     /// The stations where they are believed to be.
     pub stations: Vec<Station>,
     /// The ranging.
@@ -62,7 +62,7 @@ pub struct Scene {
 
 impl Scene {
     /// Ranges of the paper: uniform error of at most `ratio`, so many repetitions.
-    pub fn new(layout: Layout, noise: NoiseModel, repetitions: u32) -> Self {
+    pub(super) fn new(layout: Layout, noise: NoiseModel, repetitions: u32) -> Self {
         let ae = AeConfig {
             period_s: 1.0,
             repetitions,
@@ -76,13 +76,13 @@ impl Scene {
 
     /// The same with things that go wrong.
     #[must_use]
-    pub fn disturbed(mut self, disturbances: Disturbances) -> Self {
+    pub(super) fn disturbed(mut self, disturbances: Disturbances) -> Self {
         self.ae.disturbances = disturbances;
         self
     }
 
     /// What an estimator may know of the noise.
-    pub fn noise(&self) -> RangeNoise {
+    pub(super) fn noise(&self) -> RangeNoise {
         match self.ae.noise {
             NoiseModel::None => RangeNoise::Gaussian { sigma_ratio: 1e-3 },
             NoiseModel::Uniform { ratio } => RangeNoise::Uniform { ratio },
@@ -93,7 +93,7 @@ impl Scene {
     }
 
     /// The obstacles.
-    pub fn obstacles(&self) -> Vec<Obstacle> {
+    pub(super) fn obstacles(&self) -> Vec<Obstacle> {
         if !self.columns {
             return Vec::new();
         }
@@ -107,7 +107,7 @@ impl Scene {
     }
 
     /// What gives the ranges.
-    pub fn sounder(&self, seed: u64) -> Sounder {
+    pub(super) fn sounder(&self, seed: u64) -> Sounder {
         let world = World {
             boundary: Boundary::Circle { radius_m: RADIUS_M },
             obstacles: self.obstacles(),
@@ -119,14 +119,14 @@ impl Scene {
 }
 
 /// A stream of chance for one purpose of one draw.
-pub fn chance(seed: u64, purpose: u64) -> Pcg64 {
+pub(super) fn chance(seed: u64, purpose: u64) -> Pcg64 {
     Pcg64::seed_from_u64(
         seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ purpose.wrapping_mul(0xbf58_476d_1ce4_e5b9),
     )
 }
 
 /// A point evenly on the floor.
-pub fn on_disc(rng: &mut Pcg64) -> Point {
+pub(super) fn on_disc(rng: &mut Pcg64) -> Point {
     loop {
         let point = in_square(rng);
         if point.coords.norm() <= RADIUS_M {
@@ -136,12 +136,12 @@ pub fn on_disc(rng: &mut Pcg64) -> Point {
 }
 
 /// A point evenly in the square around the floor.
-pub fn in_square(rng: &mut Pcg64) -> Point {
+pub(super) fn in_square(rng: &mut Pcg64) -> Point {
     Point::new(rng.random_range(-RADIUS_M..=RADIUS_M), rng.random_range(-RADIUS_M..=RADIUS_M))
 }
 
 /// The paper's spiral of 500 points, from the wall to the middle.
-pub fn spiral() -> Vec<Point> {
+pub(super) fn spiral() -> Vec<Point> {
     (0..500)
         .map(f64::from)
         .map(|k| (RADIUS_M - 0.02 * k, 0.1 * k))
@@ -150,7 +150,7 @@ pub fn spiral() -> Vec<Point> {
 }
 
 /// A cycle of ranges for each truth.
-pub fn cycles(scene: &Scene, truths: &[Point], seed: u64) -> Vec<Vec<RangeSet>> {
+pub(super) fn cycles(scene: &Scene, truths: &[Point], seed: u64) -> Vec<Vec<RangeSet>> {
     let mut sounder = scene.sounder(seed);
     truths.iter().map(|truth| sounder.cycle(0.0, *truth)).collect()
 }

@@ -13,7 +13,7 @@ use crate::{
 };
 use sim::NoiseModel;
 
-pub const STUDY: Study = Study {
+pub(super) const STUDY: Study = Study {
     name: "wang-spiral-fix",
     about: "Wang et al. 2023, section 3.3: positioning error along the spiral, and what is possible with the same ranges",
     layouts: 30,

@@ -4,7 +4,7 @@ use crate::sample::Sample;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Probability of a mean at least this far from 0 if it were 0: one sample, two sides, n - 1 degrees of freedom.
-pub fn p_value(sample: &Sample) -> Option<f64> {
+pub(super) fn p_value(sample: &Sample) -> Option<f64> {
     let n = sample.len() as f64;
     let t = sample.mean()? / (sample.standard_deviation()? / n.sqrt());
     Some(2.0 * StudentsT::new(0.0, 1.0, n - 1.0).ok()?.sf(t.abs()))

@@ -24,7 +24,7 @@ const ENVIRONMENTS: u64 = 12;
 const STATISTICS: [(&str, &str); 5] =
     [("best", "best"), ("mean", "mean_error"), ("worst", "worst"), ("std", "std"), ("ttest_p", "p_value")];
 
-pub const STUDY: Study = Study {
+pub(super) const STUDY: Study = Study {
     name: "wang-table3",
     about: "Wang et al. 2023, Table 3: positioning error of 12 environments at 5 levels of noise, with the t-test",
     layouts: 60,

@@ -6,11 +6,11 @@ use std::f64::consts::{PI, TAU};
 use world::{Point, Station};
 
 /// A fix further off than this without a warning is a danger, metres.
-pub const DANGER_M: f64 = 0.3;
+pub(super) const DANGER_M: f64 = 0.3;
 
 /// What became of one cycle.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Outcome {
+pub(super) struct Outcome {
     /// Distance from the truth, metres; none without a fix.
     pub error_m: Option<f64>,
     /// Whether the truth lies in the 95 % ellipse.
@@ -23,7 +23,7 @@ pub struct Outcome {
 
 impl Outcome {
     /// How a fix compares with the truth.
-    pub fn of(fix: &Result<Fix, FixError>, truth: Point, time_us: f64) -> Self {
+    pub(super) fn of(fix: &Result<Fix, FixError>, truth: Point, time_us: f64) -> Self {
         let Ok(fix) = fix else { return Self { time_us, ..Self::default() } };
         let off = fix.position - truth;
         let squared = fix.covariance.try_inverse().map(|inverse| off.dot(&(inverse * off)));
@@ -37,7 +37,7 @@ impl Outcome {
 }
 
 /// The rows of one method in one case.
-pub fn rows(table: &str, case: &str, method: &str, outcomes: &[Outcome]) -> Vec<Row> {
+pub(super) fn rows(table: &str, case: &str, method: &str, outcomes: &[Outcome]) -> Vec<Row> {
     let n = outcomes.len();
     let errors: Sample = outcomes.iter().filter_map(|o| o.error_m).collect();
     let share = |count: usize, of: usize| (of > 0).then(|| count as f64 / of as f64);
@@ -64,7 +64,12 @@ pub fn rows(table: &str, case: &str, method: &str, outcomes: &[Outcome]) -> Vec<
 ///
 /// A normal error of covariance `C` has the mean length `sqrt(pi / 2)` times the mean over all directions of
 /// `sqrt(a cos^2 + b sin^2)`, with `a` and `b` the eigenvalues of `C`.
-pub fn cramer_rao_m(stations: &[Station], truth: Point, sigma_ratio: f64, repetitions: u32) -> Option<f64> {
+pub(super) fn cramer_rao_m(
+    stations: &[Station],
+    truth: Point,
+    sigma_ratio: f64,
+    repetitions: u32,
+) -> Option<f64> {
     let mut information = nalgebra::Matrix2::zeros();
     for station in stations {
         let away = truth - station.position;

@@ -8,7 +8,7 @@ const ROUNDING_M: f64 = 1e-6;
 
 /// Where rows belong.
 #[derive(Debug, Clone, Copy)]
-pub struct Place<'a> {
+pub(super) struct Place<'a> {
     /// Name of the study.
     pub table: &'a str,
     /// Id of the case.
@@ -21,7 +21,7 @@ pub struct Place<'a> {
 
 /// What counts as success.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Success {
+pub(super) enum Success {
     /// The paper's: arrives, not trapped, lag of a coil at most; collisions do not count.
     Walk,
     /// Ours: arrives, keeps the clearance and the wall.
@@ -39,12 +39,12 @@ impl Success {
 
 impl Place<'_> {
     /// A row of so many layouts.
-    pub fn row(&self, metric: &str, ours: Option<f64>, unit: &str, n: usize) -> Row {
+    pub(super) fn row(&self, metric: &str, ours: Option<f64>, unit: &str, n: usize) -> Row {
         Row::new(self.table, self.case, self.method, metric, ours, unit).of(n).note(self.note)
     }
 
     /// All rows of some plans.
-    pub fn rows(
+    pub(super) fn rows(
         &self,
         plans: &[Measured],
         success: Success,
@@ -132,7 +132,7 @@ impl Place<'_> {
     }
 
     /// The mean, with the printed value beside it, and the median.
-    pub fn mean_and_median(
+    pub(super) fn mean_and_median(
         &self,
         metric: &str,
         sample: &Sample,
@@ -148,12 +148,12 @@ impl Place<'_> {
 }
 
 /// The plans that have a path.
-pub fn with_path(plans: &[Measured]) -> impl Iterator<Item = &Measured> {
+pub(super) fn with_path(plans: &[Measured]) -> impl Iterator<Item = &Measured> {
     plans.iter().filter(|plan| plan.has_path())
 }
 
 /// Two notes as one.
-pub fn join(a: &str, b: &str) -> String {
+pub(super) fn join(a: &str, b: &str) -> String {
     if a.is_empty() || b.is_empty() { format!("{a}{b}") } else { format!("{a}; {b}") }
 }
 

@@ -5,7 +5,7 @@ use mission::{ParamValue, Parameters};
 
 /// A planner set up for a column of a table.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Method {
+pub(super) struct Method {
     /// Its id in rows.
     pub id: String,
     /// The planner.
@@ -22,7 +22,7 @@ pub struct Method {
 
 /// Which preset point a planned point is compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pairing {
+pub(super) enum Pairing {
     /// That of the same index, as the paper's formulas have it.
     Index,
     /// The nearest place of the preset path ahead; for paths with points of their own.
@@ -36,7 +36,7 @@ const FORWARD: &str = "reactive: points of its own, compared with the nearest pl
 const LITERAL: &str = "rotating force always on, as the text has it; cannot give the printed figures";
 
 /// The methods of Table 1, the rotating field in both readings, without and with improved repulsion.
-pub fn of_table1() -> Vec<Method> {
+pub(super) fn of_table1() -> Vec<Method> {
     let both = |improved: bool| {
         let rows = if improved { &printed::TABLE1_IMPROVED } else { &printed::TABLE1_CLASSIC };
         [
@@ -76,7 +76,7 @@ fn method(
 }
 
 /// The rotating field with improved repulsion and the gains of Table 2.
-pub fn of_table2(k_att: f64) -> Method {
+pub(super) fn of_table2(k_att: f64) -> Method {
     let mut method = method("rpf/gated", "rpf", Some("gated"), true, [None; 3], "");
     for (key, value) in [("k_att", k_att), ("k_rot", k_att), ("k_rep", 100.0)] {
         method.parameters.insert(key.into(), ParamValue::Float(value));
@@ -85,7 +85,7 @@ pub fn of_table2(k_att: f64) -> Method {
 }
 
 /// Our own followers; the lattice also without its turn limit, which shows what the limit costs.
-pub fn followers() -> Vec<Method> {
+pub(super) fn followers() -> Vec<Method> {
     let plain = |id: &str, planner: &str, parameters, note, pairing| Method {
         id: id.to_owned(),
         planner: planner.to_owned(),

@@ -17,7 +17,7 @@ const TOLERANCE_M: f64 = 0.2;
 
 /// One plan and its figures.
 #[derive(Debug, Clone)]
-pub struct Measured {
+pub(super) struct Measured {
     /// The path; empty if there is none.
     pub path: Vec<Point>,
     /// Whether the planner says that it achieves the task.
@@ -38,13 +38,13 @@ pub struct Measured {
 
 impl Measured {
     /// Whether there is a path at all.
-    pub fn has_path(&self) -> bool {
+    pub(super) fn has_path(&self) -> bool {
         self.path.len() > 1
     }
 }
 
 /// A method on the layouts of a group.
-pub struct Run {
+pub(super) struct Run {
     /// The method.
     pub method: Method,
     /// The layouts.
@@ -57,7 +57,7 @@ pub struct Run {
 
 impl Run {
     /// A method on the layouts of a group, with the group's range of obstacles.
-    pub fn new(method: &Method, group: Group) -> Self {
+    pub(super) fn new(method: &Method, group: Group) -> Self {
         Self { method: method.clone(), group, rho_0_m: None, is_as_given: false }
     }
 
@@ -85,7 +85,7 @@ impl Run {
 }
 
 /// Plans every run on every layout; one list for each run, in the order of the seeds.
-pub fn plan_all(
+pub(super) fn plan_all(
     bench: &Bench<'_>,
     options: &Options,
     runs: &[Run],

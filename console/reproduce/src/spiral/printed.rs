@@ -2,7 +2,7 @@
 
 /// Precision, recall and root mean square error of one method on one distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Printed {
+pub(super) struct Printed {
     /// P, 0 to 1.
     pub precision: f64,
     /// R, 0 to 1.
@@ -16,29 +16,29 @@ const fn printed(precision_pct: f64, recall_pct: f64, rmse_e2: f64) -> Printed {
 }
 
 /// Table 1, VT, IAPF and RPF; the error is printed a hundredfold, though the head of the table says otherwise.
-pub const TABLE1_CLASSIC: [[Printed; 3]; 3] = [
+pub(super) const TABLE1_CLASSIC: [[Printed; 3]; 3] = [
     [printed(71.07, 66.94, 34.79), printed(84.07, 80.30, 26.38), printed(91.68, 88.09, 14.23)],
     [printed(77.28, 72.79, 30.23), printed(86.02, 81.51, 16.19), printed(92.78, 89.79, 14.17)],
     [printed(77.53, 72.99, 26.64), printed(86.55, 82.12, 15.63), printed(92.55, 90.27, 13.08)],
 ];
 
 /// Table 1, VT, IAPF and RPF with improved repulsion.
-pub const TABLE1_IMPROVED: [[Printed; 3]; 3] = [
+pub(super) const TABLE1_IMPROVED: [[Printed; 3]; 3] = [
     [printed(83.33, 75.66, 33.53), printed(90.25, 85.91, 22.21), printed(94.08, 91.16, 13.70)],
     [printed(85.78, 77.96, 29.48), printed(91.94, 87.08, 13.97), printed(94.54, 91.64, 12.17)],
     [printed(86.04, 78.16, 28.63), printed(92.11, 87.20, 13.65), printed(95.06, 91.76, 11.39)],
 ];
 
 /// Sec. 3.2: time of a plan of RPF and of IAPF with improved repulsion in MATLAB, milliseconds.
-pub const PLAN_TIME_MS: [(&str, f64); 2] = [("rpf/gated+ir", 400.0), ("iapf+ir", 380.0)];
+pub(super) const PLAN_TIME_MS: [(&str, f64); 2] = [("rpf/gated+ir", 400.0), ("iapf+ir", 380.0)];
 
 /// Table 2: attraction gain, equal to the rotation gain; the repulsion gain is 100.
-pub const TABLE2_K_ATT: [f64; 7] = [100.0, 150.0, 200.0, 225.0, 250.0, 275.0, 300.0];
+pub(super) const TABLE2_K_ATT: [f64; 7] = [100.0, 150.0, 200.0, 225.0, 250.0, 275.0, 300.0];
 /// Table 2: range of obstacles, metres.
-pub const TABLE2_RHO_0_M: [f64; 4] = [1.5, 2.0, 2.5, 3.0];
+pub(super) const TABLE2_RHO_0_M: [f64; 4] = [1.5, 2.0, 2.5, 3.0];
 
 /// Table 2, by range and gain; none where planning failed.
-pub const TABLE2: [[Option<Printed>; 7]; 4] = [
+pub(super) const TABLE2: [[Option<Printed>; 7]; 4] = [
     [
         None,
         None,
@@ -78,11 +78,11 @@ pub const TABLE2: [[Option<Printed>; 7]; 4] = [
 ];
 
 /// Thresholds of Fig. 8, metres.
-pub const FIG8_T0_M: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
+pub(super) const FIG8_T0_M: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
 
 /// Fig. 8 has no numbers; the text's differences at T0 = 0 and the point counts of Table 1 give these precisions on
 /// the first distribution.
-pub const FIG8_IMPLIED: [(&str, f64); 2] = [("vt", 0.321), ("vt+ir", 0.515)];
+pub(super) const FIG8_IMPLIED: [(&str, f64); 2] = [("vt", 0.321), ("vt+ir", 0.515)];
 
 #[cfg(test)]
 mod tests {

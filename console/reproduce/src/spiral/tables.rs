@@ -16,7 +16,7 @@ use crate::{
 use trials::precision_recall;
 
 /// Table 1.
-pub fn table1(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
+pub(super) fn table1(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
     let methods = method::of_table1();
     let runs = asked(study, options, &methods)?;
     let plans = plan_all(bench, options, &runs, study.layouts)?;
@@ -78,7 +78,7 @@ fn mean_error(runs: &[Run], plans: &[Vec<Measured>], sampling: &str, method: &st
 }
 
 /// Fig. 8.
-pub fn fig8(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
+pub(super) fn fig8(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
     let methods = method::of_table1();
     let runs = asked(study, options, &methods)?;
     let plans = plan_all(bench, options, &runs, study.layouts)?;
@@ -107,7 +107,7 @@ pub fn fig8(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<R
 }
 
 /// Table 2.
-pub fn table2(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
+pub(super) fn table2(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
     let mut runs = Vec::new();
     let mut cells = Vec::new();
     for group in Group::all().filter(|group| group.column() == 0) {
@@ -139,7 +139,7 @@ pub fn table2(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec
 }
 
 /// Our own planners.
-pub fn followers(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
+pub(super) fn followers(study: &Study, bench: &Bench<'_>, options: &Options) -> Result<Vec<Row>, Problem> {
     let methods = method::followers();
     let runs: Vec<Run> = asked(study, options, &methods)?;
     let plans = plan_all(bench, options, &runs, study.layouts)?;

@@ -42,7 +42,7 @@ struct Journey<'a> {
 ///
 /// # Errors
 /// The planner is missing, refuses its parameters or breaks down.
-pub fn fly(planners: &Planners, method: &Method, trap: &Trap, range_m: f64) -> Result<Gone, Problem> {
+pub(super) fn fly(planners: &Planners, method: &Method, trap: &Trap, range_m: f64) -> Result<Gone, Problem> {
     let all = trap.obstacles(true);
     let mut journey = Journey {
         trap,

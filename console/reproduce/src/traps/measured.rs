@@ -9,13 +9,13 @@ use trials::traps::{HULL_M, Kind, SIDE_M, Trap};
 use world::{Boundary, Point, polyline, shortest::GrownFloor};
 
 /// The goal counts as reached at this distance, metres.
-pub const TOLERANCE_M: f64 = 0.1;
+pub(super) const TOLERANCE_M: f64 = 0.1;
 /// Rounding of clearances, metres.
 const ROUNDING_M: f64 = 1e-6;
 
 /// How a method did on a trap.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
+pub(super) struct Measured {
     /// Whether there is such a planner here.
     pub is_there: bool,
     /// Whether the goal is reached without a touch.
@@ -31,7 +31,12 @@ pub struct Measured {
 }
 
 /// Asks a method to leave a trap.
-pub fn measure(planners: &Planners, method: &Method, kind: Kind, seed: u64) -> Result<Measured, Problem> {
+pub(super) fn measure(
+    planners: &Planners,
+    method: &Method,
+    kind: Kind,
+    seed: u64,
+) -> Result<Measured, Problem> {
     let trap = Trap::random(kind, seed);
     let gone = match method.map {
         Map::Known => planned(planners, method, &trap),
@@ -55,7 +60,7 @@ pub fn measure(planners: &Planners, method: &Method, kind: Kind, seed: u64) -> R
 }
 
 /// The way that was planned or flown.
-pub struct Gone {
+pub(super) struct Gone {
     /// Its points.
     pub path: Vec<Point>,
     /// Times of the plans, milliseconds, the first one first.

@@ -6,7 +6,7 @@ use crate::{row::Row, sample::Sample};
 const MISSING: &str = "no such planner here";
 
 /// The rows of what was measured.
-pub fn rows(table: &str, case: &str, method: &Method, measured: &[&Measured]) -> Vec<Row> {
+pub(super) fn rows(table: &str, case: &str, method: &Method, measured: &[&Measured]) -> Vec<Row> {
     let n = measured.len();
     let row = |metric: &str, ours: Option<f64>, unit: &str, n: usize| {
         Row::new(table, case, method.id, metric, ours, unit).of(n).note(method.note)

@@ -7,7 +7,7 @@ const WIDE: f64 = 100.0;
 
 /// The range of a parameter.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Scale {
+pub(super) struct Scale {
     /// Its key.
     pub key: String,
     low: f64,
@@ -21,7 +21,7 @@ impl Scale {
     ///
     /// # Errors
     /// There is none of this name, or it is no real number.
-    pub fn of(planner: &PlannerInfo, key: &str) -> Result<Self, String> {
+    pub(super) fn of(planner: &PlannerInfo, key: &str) -> Result<Self, String> {
         let floats = || planner.parameters.iter().filter(|p| matches!(p.kind, ParamKind::Float { .. }));
         let Some(info) = planner.parameters.iter().find(|info| info.key == key) else {
             let known: Vec<&str> = floats().map(|info| info.key.as_str()).collect();
@@ -41,7 +41,7 @@ impl Scale {
     }
 
     /// The value at a share of the range, 0 to 1.
-    pub fn value(&self, share: f64) -> f64 {
+    pub(super) fn value(&self, share: f64) -> f64 {
         let value = if self.is_wide {
             self.low * (self.high / self.low).powf(share)
         } else {
@@ -51,7 +51,7 @@ impl Scale {
     }
 
     /// The share of the range at which a parameter stands.
-    pub fn share(&self, parameters: &Parameters) -> f64 {
+    pub(super) fn share(&self, parameters: &Parameters) -> f64 {
         let value = match parameters.get(&self.key) {
             Some(ParamValue::Float(value)) => *value,
             Some(ParamValue::Int(value)) => *value as f64,

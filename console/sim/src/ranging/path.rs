@@ -30,7 +30,7 @@ pub(crate) struct Surroundings {
 }
 
 impl Surroundings {
-    pub fn new(world: &World) -> Self {
+    pub(super) fn new(world: &World) -> Self {
         let map = |obstacles: &[Obstacle]| ObstacleMap::new(&world.boundary, obstacles);
         let alone = |o: &Obstacle| (map(std::slice::from_ref(o)), outline_points(&o.shape));
         Self {
@@ -41,7 +41,7 @@ impl Surroundings {
     }
 
     /// The way from a robot to a station; `None` if nothing is heard.
-    pub fn way(&self, from: Point, to: Point, behind: BehindColumns) -> Option<Way> {
+    pub(super) fn way(&self, from: Point, to: Point, behind: BehindColumns) -> Option<Way> {
         let direct_m = (to - from).norm();
         if behind == BehindColumns::Heard || !is_blocked(&self.all, from, to) {
             return Some(Way { length_m: direct_m, is_late: false });

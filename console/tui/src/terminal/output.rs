@@ -12,7 +12,7 @@ const END: &[u8] = b"\x1b[?2026l";
 ///
 /// Once the terminal was given back, whatever is still flushed is dropped: after a panic or at the end, half a frame
 /// must not reach the shell's screen.
-pub struct FrameOutput<W: Write = Stdout> {
+pub(super) struct FrameOutput<W: Write = Stdout> {
     bytes: Vec<u8>,
     to: W,
     is_ours: fn() -> bool,

@@ -21,7 +21,7 @@ pub(super) struct Window {
 
 impl Window {
     /// A window about a point.
-    pub fn new(center: Point, column_m: f64, size: (u16, u16)) -> Self {
+    pub(super) fn new(center: Point, column_m: f64, size: (u16, u16)) -> Self {
         let half_x = f64::from(size.0) * column_m / 2.0;
         let half_y = f64::from(size.1) * column_m;
         Self {

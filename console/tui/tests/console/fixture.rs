@@ -20,12 +20,12 @@ use world::{
 };
 
 /// Length of a tick, seconds.
-pub const TICK_S: f64 = 0.5;
+pub(crate) const TICK_S: f64 = 0.5;
 /// Distance driven in a tick, metres.
 const STEP_M: f64 = 0.1;
 
 /// The tank.
-pub fn world() -> World {
+pub(crate) fn world() -> World {
     let columns = [(5.0, 0.0), (-4.0, 3.0), (0.0, -6.0), (3.5, 4.5), (-5.5, -3.5)];
     let mut obstacles: Vec<Obstacle> = columns
         .iter()
@@ -55,18 +55,18 @@ pub fn world() -> World {
 }
 
 /// The obstacle that is not on the drawing.
-pub fn found() -> Obstacle {
+pub(crate) fn found() -> Obstacle {
     let shape = Shape::Disc { center: Point::new(-1.0, 8.2), radius_m: 0.3 };
     Obstacle { id: ObstacleId(40), name: "debris".into(), shape, known: false }
 }
 
 /// The preset path.
-pub fn spiral() -> Vec<Point> {
+pub(crate) fn spiral() -> Vec<Point> {
     Spiral { outer_radius_m: 9.4, inner_radius_m: 0.1, pitch_m: 0.6, step_rad: 0.05 }.points()
 }
 
 /// The mission.
-pub fn config() -> MissionConfig {
+pub(crate) fn config() -> MissionConfig {
     MissionConfig {
         task: TaskConfig::Follow { path: spiral(), tolerance_m: 0.2 },
         start: Pose::new(9.4, 0.0, FRAC_PI_2),
@@ -101,13 +101,13 @@ pub fn config() -> MissionConfig {
 }
 
 /// A tether from the eastern shell.
-pub fn tether() -> TetherConfig {
+pub(crate) fn tether() -> TetherConfig {
     let limits = world::tether::Limits { reel_m: 30.0, max_wrap_rad: PI, max_sum_wrap_rad: TAU };
     TetherConfig { anchor: Point::new(9.4, 0.0), limits, friction: 0.3, fly_uncertified: false }
 }
 
 /// A planner with nothing set by hand.
-pub fn choice(id: &str) -> PlannerChoice {
+pub(crate) fn choice(id: &str) -> PlannerChoice {
     PlannerChoice { id: id.into(), parameters: Parameters::new() }
 }
 
@@ -117,7 +117,7 @@ fn parameter(key: &str, label: &str, unit: &str, help: &str, kind: ParamKind, li
 }
 
 /// A planner as the host describes it.
-pub fn planner(id: &str, version: &str, about: &str) -> PlannerInfo {
+pub(crate) fn planner(id: &str, version: &str, about: &str) -> PlannerInfo {
     let float = |min, max, default| ParamKind::Float { min, max, default };
     let gain =
         "Strength of the rotating field near a column. Higher keeps a wider berth and makes a longer path.";
@@ -173,7 +173,7 @@ pub fn planner(id: &str, version: &str, about: &str) -> PlannerInfo {
 }
 
 /// The planners that were found.
-pub fn planners() -> Vec<PlannerInfo> {
+pub(crate) fn planners() -> Vec<PlannerInfo> {
     vec![
         planner("apf", "1.2", "Artificial potential field for goals and preset paths"),
         planner("rpf", "1.2", "Rotating potential field along the preset spiral"),
@@ -182,7 +182,7 @@ pub fn planners() -> Vec<PlannerInfo> {
 }
 
 /// The first event.
-pub fn opened() -> EventKind {
+pub(crate) fn opened() -> EventKind {
     let (world, mission) = (world(), config());
     let floor = Floor::new(
         &world.as_drawn(),
@@ -206,7 +206,7 @@ pub fn opened() -> EventKind {
 
 /// A scripted mission that yields its events tick by tick.
 #[derive(Clone)]
-pub struct ScriptedMission {
+pub(crate) struct ScriptedMission {
     path: Vec<Point>,
     grid: CoverageGrid,
     tick: u64,
@@ -218,7 +218,7 @@ pub struct ScriptedMission {
 
 impl ScriptedMission {
     /// Before the first tick.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let EventKind::RunOpened(run) = opened() else { unreachable!("the run opens first") };
         let path = world::polyline::resampled(&spiral(), STEP_M);
         let length_m = world::polyline::length_m(&path);
@@ -226,17 +226,17 @@ impl ScriptedMission {
     }
 
     /// An event of now.
-    pub fn now(&self, kind: EventKind) -> Event {
+    pub(crate) fn now(&self, kind: EventKind) -> Event {
         Event { tick: self.tick, t_s: self.tick as f64 * TICK_S, kind }
     }
 
     /// The events before anything moves.
-    pub fn opening(&self) -> Vec<Event> {
+    pub(crate) fn opening(&self) -> Vec<Event> {
         vec![self.now(opened()), self.now(self.estimated())]
     }
 
     /// The events of the start.
-    pub fn start(&self) -> Vec<Event> {
+    pub(crate) fn start(&self) -> Vec<Event> {
         let info = Box::new(planners().remove(1));
         [
             EventKind::Ordered { order: Order::Start },
@@ -248,7 +248,7 @@ impl ScriptedMission {
     }
 
     /// The plan, in answer to an ask.
-    pub fn planned(&self, ask: Option<AskId>) -> EventKind {
+    pub(crate) fn planned(&self, ask: Option<AskId>) -> EventKind {
         EventKind::Planned {
             ask,
             way_home: 0,
@@ -263,12 +263,12 @@ impl ScriptedMission {
     }
 
     /// The events of some ticks under way.
-    pub fn drive(&mut self, ticks: usize) -> Vec<Event> {
+    pub(crate) fn drive(&mut self, ticks: usize) -> Vec<Event> {
         (0..ticks).flat_map(|_| self.tick()).collect()
     }
 
     /// The events of some ticks standing still.
-    pub fn wait(&mut self, ticks: usize) -> Vec<Event> {
+    pub(crate) fn wait(&mut self, ticks: usize) -> Vec<Event> {
         (0..ticks)
             .map(|_| {
                 self.tick += 1;
@@ -360,23 +360,23 @@ impl ScriptedMission {
     }
 
     /// Station 4 is left out.
-    pub fn excluded(&self) -> Event {
+    pub(crate) fn excluded(&self) -> Event {
         let reason = Exclusion::Residual { residual_m: 0.42, gate_m: 0.15 };
         self.now(EventKind::StationExcluded { station: StationId(4), reason })
     }
 
     /// A hold that only an order ends.
-    pub fn held(&self, by: HoldReason) -> Event {
+    pub(crate) fn held(&self, by: HoldReason) -> Event {
         self.held_until(by, Resumes::Never)
     }
 
     /// A hold.
-    pub fn held_until(&self, by: HoldReason, resumes: Resumes) -> Event {
+    pub(crate) fn held_until(&self, by: HoldReason, resumes: Resumes) -> Event {
         self.now(EventKind::Held { by, resumes })
     }
 
     /// The operator's order, and what follows from it.
-    pub fn obeyed(&self, order: Order) -> Vec<Event> {
+    pub(crate) fn obeyed(&self, order: Order) -> Vec<Event> {
         let after = match order {
             Order::Hold => Some(EventKind::Held { by: HoldReason::Operator, resumes: Resumes::Never }),
             Order::Resume | Order::Step | Order::FlyUncertified => Some(EventKind::Resumed),
@@ -386,7 +386,7 @@ impl ScriptedMission {
     }
 
     /// The planner fails and the robot is held.
-    pub fn planner_fails(&self) -> Vec<Event> {
+    pub(crate) fn planner_fails(&self) -> Vec<Event> {
         let message = "planner rpf panicked during step".to_owned();
         let fault = Fault {
             planner: "rpf".into(),
@@ -403,7 +403,7 @@ impl ScriptedMission {
     }
 
     /// How the cable lies between an anchor at the eastern shell and the robot.
-    pub fn cable(&self) -> Event {
+    pub(crate) fn cable(&self) -> Event {
         let (world, config) = (world().as_drawn(), tether());
         let shapes: Vec<Shape> = world.obstacles.iter().map(|o| o.shape.clone()).collect();
         let mut cable = Cable::new(config.anchor, &world.boundary, &shapes).expect("an anchor on the floor");
@@ -428,7 +428,7 @@ impl ScriptedMission {
     }
 
     /// The reel has paid out more than the map explains, and the robot is held.
-    pub fn caught(&mut self) -> Vec<Event> {
+    pub(crate) fn caught(&mut self) -> Vec<Event> {
         let alarm = TetherAlarm::Snag { paid_out_m: 14.2, explained_m: 12.6 };
         let message = alarm.to_string();
         let mut cable = self.cable();
@@ -440,7 +440,7 @@ impl ScriptedMission {
     }
 
     /// The certificate of a plan.
-    pub fn certified(&self, reasons: &[&str]) -> Event {
+    pub(crate) fn certified(&self, reasons: &[&str]) -> Event {
         let certificate = Certificate {
             certified: reasons.is_empty(),
             reasons: reasons.iter().map(|reason| (*reason).to_owned()).collect(),
@@ -450,21 +450,21 @@ impl ScriptedMission {
     }
 
     /// A plan cannot be certified and the robot is held.
-    pub fn plan_refused(&self) -> Vec<Event> {
+    pub(crate) fn plan_refused(&self) -> Vec<Event> {
         let reason = "31.4 m of cable stay out on return, hooked round C3";
         let message = format!("the plan of rpf is not safe for the tether: {reason}");
         vec![self.certified(&[reason]), self.held(HoldReason::PlanRefused { message })]
     }
 
     /// The end.
-    pub fn ended(&self, outcome: Outcome, reason: &str) -> Event {
+    pub(crate) fn ended(&self, outcome: Outcome, reason: &str) -> Event {
         self.now(EventKind::Ended { outcome, reason: reason.into() })
     }
 }
 
 /// A screen that shows a scripted mission.
 #[derive(Clone)]
-pub struct Screen {
+pub(crate) struct Screen {
     /// Its model.
     pub model: Model,
     /// The mission that it shows.
@@ -474,7 +474,7 @@ pub struct Screen {
 
 impl Screen {
     /// A run that is open and waits.
-    pub fn idle() -> Self {
+    pub(crate) fn idle() -> Self {
         static MADE: OnceLock<Screen> = OnceLock::new();
         MADE.get_or_init(Self::make_idle).clone()
     }
@@ -494,7 +494,7 @@ impl Screen {
     }
 
     /// A run two thirds done.
-    pub fn running() -> Self {
+    pub(crate) fn running() -> Self {
         static MADE: OnceLock<Screen> = OnceLock::new();
         MADE.get_or_init(Self::make_running).clone()
     }
@@ -513,7 +513,7 @@ impl Screen {
     }
 
     /// The same on a tether.
-    pub fn tethered() -> Self {
+    pub(crate) fn tethered() -> Self {
         let mut screen = Self::running();
         if let Some(run) = &mut screen.model.run {
             run.mission.tether = Some(tether());
@@ -524,7 +524,7 @@ impl Screen {
     }
 
     /// The same, held by the operator.
-    pub fn held() -> Self {
+    pub(crate) fn held() -> Self {
         let mut screen = Self::running();
         let events = screen.mission.obeyed(Order::Hold);
         screen.send(Msg::Events(events));
@@ -532,30 +532,30 @@ impl Screen {
     }
 
     /// Sends a message to the model.
-    pub fn send(&mut self, msg: Msg) -> Vec<tui::Effect> {
+    pub(crate) fn send(&mut self, msg: Msg) -> Vec<tui::Effect> {
         update(&mut self.model, msg)
     }
 
     /// Presses keys, one after the other.
-    pub fn press(&mut self, keys: impl IntoIterator<Item = tui::Key>) -> Vec<tui::Effect> {
+    pub(crate) fn press(&mut self, keys: impl IntoIterator<Item = tui::Key>) -> Vec<tui::Effect> {
         keys.into_iter().flat_map(|key| self.send(Msg::Key(key.into()))).collect()
     }
 
     /// Types characters.
-    pub fn type_text(&mut self, text: &str) -> Vec<tui::Effect> {
+    pub(crate) fn type_text(&mut self, text: &str) -> Vec<tui::Effect> {
         self.press(text.chars().map(tui::Key::Char))
     }
 
     /// Lets time pass on the console's own clock.
-    pub fn pass(&mut self, seconds: f64) -> Vec<tui::Effect> {
+    pub(crate) fn pass(&mut self, seconds: f64) -> Vec<tui::Effect> {
         self.mono_s += seconds;
         self.send(Msg::Time(Times { mono_s: self.mono_s, wall_unix_s: 1_795_264_000.0 + self.mono_s }))
     }
 }
 
 /// A terminal with everything.
-pub const RICH: Caps = Caps { colours: Colours::True, glyphs: Glyphs::Braille, ssh: false };
+pub(crate) const RICH: Caps = Caps { colours: Colours::True, glyphs: Glyphs::Braille, ssh: false };
 /// A terminal without colours.
-pub const PLAIN: Caps = Caps { colours: Colours::None, glyphs: Glyphs::Braille, ssh: false };
+pub(crate) const PLAIN: Caps = Caps { colours: Colours::None, glyphs: Glyphs::Braille, ssh: false };
 /// A terminal with letters only.
-pub const ASCII: Caps = Caps { colours: Colours::None, glyphs: Glyphs::Ascii, ssh: false };
+pub(crate) const ASCII: Caps = Caps { colours: Colours::None, glyphs: Glyphs::Ascii, ssh: false };

@@ -12,14 +12,14 @@ use tui::{Caps, Key, Model, Msg, Recording, Theme, view, view_with};
 const SIZES: [(u16, u16); 4] = [(120, 36), (80, 24), (60, 16), (44, 10)];
 
 /// Draws a model.
-pub fn drawn(model: &Model, caps: Caps, size: (u16, u16)) -> Buffer {
+pub(crate) fn drawn(model: &Model, caps: Caps, size: (u16, u16)) -> Buffer {
     let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).unwrap();
     terminal.draw(|frame| view(model, &caps, frame)).unwrap();
     terminal.backend().buffer().clone()
 }
 
 /// The characters of a screen.
-pub fn text(buffer: &Buffer) -> String {
+pub(crate) fn text(buffer: &Buffer) -> String {
     rows(buffer, |cell| cell.symbol().to_owned())
 }
 

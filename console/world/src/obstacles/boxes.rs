@@ -12,20 +12,20 @@ const SLACK: f64 = 1e-9;
 
 /// Boxes in a tree; a query costs the logarithm of their number plus what it finds.
 #[derive(Debug, Clone)]
-pub struct Boxes {
+pub(crate) struct Boxes {
     tree: Bvh,
 }
 
 impl Boxes {
     /// Boxes by their lowest and highest corners.
-    pub fn new(boxes: impl IntoIterator<Item = (Point, Point)>) -> Self {
+    pub(crate) fn new(boxes: impl IntoIterator<Item = (Point, Point)>) -> Self {
         let boxes: Vec<Aabb> =
             boxes.into_iter().map(|(low, high)| Aabb::new(low.into(), high.into())).collect();
         Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
     }
 
     /// Indices of the boxes that come within `room_m` of a segment, perhaps of some more, in no order.
-    pub fn near(&self, a: Point, b: Point, room_m: f64) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn near(&self, a: Point, b: Point, room_m: f64) -> impl Iterator<Item = usize> + '_ {
         let (a, b): (DVec2, DVec2) = (a.into(), b.into());
         let (middle, half) = ((a + b) / 2.0, (b - a) / 2.0);
         let reach = half.abs() + DVec2::splat(room_m);

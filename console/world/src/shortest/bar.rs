@@ -19,7 +19,7 @@ pub(super) struct Bar {
 
 impl Bar {
     /// Distance from a point to the outline, metres; negative inside.
-    pub fn distance_m(&self, at: Point) -> f64 {
+    pub(super) fn distance_m(&self, at: Point) -> f64 {
         (at - nearest_on_segment(self.a, self.b, at)).norm() - self.radius_m
     }
 
@@ -66,17 +66,17 @@ impl fmt::Debug for Bars {
 }
 
 impl Bars {
-    pub fn new(all: Vec<Bar>) -> Self {
+    pub(super) fn new(all: Vec<Bar>) -> Self {
         let boxes: Vec<Aabb> = all.iter().map(Bar::bounds).collect();
         Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), all }
     }
 
-    pub fn iter(&self) -> impl Iterator<Item = &Bar> {
+    pub(super) fn iter(&self) -> impl Iterator<Item = &Bar> {
         self.all.iter()
     }
 
     /// Whether any blocks a segment.
-    pub fn block(&self, a: Point, b: Point) -> bool {
+    pub(super) fn block(&self, a: Point, b: Point) -> bool {
         let (low, high): (DVec2, DVec2) = (a.inf(&b).into(), a.sup(&b).into());
         let normal = DVec2::new(a.y - b.y, b.x - a.x);
         let offset = normal.dot(a.into());
@@ -91,7 +91,7 @@ impl Bars {
     }
 
     /// Those whose boxes meet that of a circle.
-    pub fn near(&self, center: Point, radius_m: f64) -> impl Iterator<Item = &Bar> {
+    pub(super) fn near(&self, center: Point, radius_m: f64) -> impl Iterator<Item = &Bar> {
         let (low, high) = (DVec2::from(center) - radius_m, DVec2::from(center) + radius_m);
         let near =
             self.tree.leaves(move |node| node.mins().cmple(high).all() && node.maxs().cmpge(low).all());

@@ -63,7 +63,7 @@ pub(super) struct Corner {
 }
 
 impl Corner {
-    pub fn new(center: Point, radius_m: f64, bars: &Bars, round_wall_m: Option<f64>) -> Self {
+    pub(super) fn new(center: Point, radius_m: f64, bars: &Bars, round_wall_m: Option<f64>) -> Self {
         let circle = Circle { center, radius_m };
         let mut covered = Vec::new();
         for bar in bars.near(center, radius_m) {
@@ -79,13 +79,13 @@ impl Corner {
     }
 
     /// Whether the bearing of a unit vector is free.
-    pub fn is_free(&self, direction: Vector) -> bool {
+    pub(super) fn is_free(&self, direction: Vector) -> bool {
         let is_whole = self.free.first().is_some_and(|span| span.to_rad - span.from_rad >= TAU);
         is_whole || self.sectors.iter().any(|sector| sector.contains(direction))
     }
 
     /// How far one can turn from a bearing, counter-clockwise and clockwise, radians; none where it is not free.
-    pub fn room_rad(&self, bearing_rad: f64) -> Option<(f64, f64)> {
+    pub(super) fn room_rad(&self, bearing_rad: f64) -> Option<(f64, f64)> {
         let (span, past_rad) = self.span(bearing_rad)?;
         if span.to_rad - span.from_rad >= TAU {
             return Some((TAU, TAU));

@@ -101,7 +101,7 @@ pub(super) struct Search<'a> {
 
 impl<'a> Search<'a> {
     /// A search among the ways that bend about some of the floor's corners.
-    pub fn new(floor: &'a GrownFloor, start: Point, goal: Point, corners: &[usize]) -> Self {
+    pub(super) fn new(floor: &'a GrownFloor, start: Point, goal: Point, corners: &[usize]) -> Self {
         let n_turns = 2 * floor.corners.len();
         let mut search = Self {
             floor,
@@ -124,7 +124,7 @@ impl<'a> Search<'a> {
         search
     }
 
-    pub fn run(mut self, keep_going: &mut dyn FnMut() -> bool) -> Result<Way, NoWay> {
+    pub(super) fn run(mut self, keep_going: &mut dyn FnMut() -> bool) -> Result<Way, NoWay> {
         let mut n_taken = 0_usize;
         while let Some(candidate) = self.queue.pop() {
             n_taken += 1;

@@ -10,7 +10,7 @@ use spade::{
 };
 
 /// A triangulated floor and the edges that a way has crossed and not crossed back.
-pub struct Funnel {
+pub(super) struct Funnel {
     floor: ConstrainedDelaunayTriangulation<Point2<f64>>,
     crossed: Vec<Portal>,
     anchor: Point,
@@ -29,7 +29,7 @@ fn theirs(p: Point) -> Point2<f64> {
 
 impl Funnel {
     /// A floor with polygonal holes, within 100 m.
-    pub fn new(anchor: Point, rings: &[Vec<Point>]) -> Self {
+    pub(super) fn new(anchor: Point, rings: &[Vec<Point>]) -> Self {
         let mut floor = ConstrainedDelaunayTriangulation::new();
         for (x, y) in [(-100., -100.), (101., -103.), (102., 104.), (-105., 106.)] {
             floor.insert(Point2::new(x, y)).unwrap();
@@ -43,7 +43,7 @@ impl Funnel {
         Self { floor, crossed: Vec::new(), anchor, tip: anchor }
     }
 
-    pub fn drag_to(&mut self, to: Point) {
+    pub(super) fn drag_to(&mut self, to: Point) {
         let from = self.tip;
         let mut met: Vec<Portal> = Vec::new();
         for crossing in LineIntersectionIterator::new(&self.floor, theirs(from), theirs(to)) {
@@ -69,12 +69,12 @@ impl Funnel {
     }
 
     /// Length of the taut cable, metres.
-    pub fn length_m(&self) -> f64 {
+    pub(super) fn length_m(&self) -> f64 {
         crate::polyline::length_m(&self.line())
     }
 
     /// The taut cable (the funnel algorithm of Lee and Preparata, in its simple form).
-    pub fn line(&self) -> Vec<Point> {
+    pub(super) fn line(&self) -> Vec<Point> {
         let mut gates: Vec<(Point, Point)> = self.crossed.iter().map(|p| (p.left, p.right)).collect();
         gates.push((self.tip, self.tip));
         let mut line = vec![self.anchor];

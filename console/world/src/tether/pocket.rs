@@ -12,7 +12,7 @@ const LEAST_M2: f64 = 0.05;
 
 /// The largest sealed pocket and the area of all.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sealed {
+pub(super) struct Sealed {
     pub area_m2: f64,
     pub at: Point,
 }
@@ -23,7 +23,7 @@ pub struct Sealed {
 /// no cells but block the step between the middles of two neighbours, so they take no floor away.
 ///
 /// A gate narrower than a cell can look shut: what seems to be sealed is looked at again with finer cells.
-pub fn sealed(case: &Case<'_>) -> Option<Sealed> {
+pub(super) fn sealed(case: &Case<'_>) -> Option<Sealed> {
     let (low, high) = case.boundary.bounds();
     let cell_m = CELL_M.max((high - low).max() / MOST_CELLS);
     let mut sealed = sealed_in(case, &Grid::new(case, cell_m))?;

@@ -18,7 +18,7 @@ const DEEPEST: usize = 6;
 
 /// The solids that a way must not enter.
 #[derive(Debug, Clone)]
-pub struct Sidestep {
+pub(super) struct Sidestep {
     solids: Vec<Solid>,
     boxes: Boxes,
     /// Whether the ends of a way round are led out to the outline first.
@@ -30,13 +30,13 @@ impl Sidestep {
     ///
     /// With `leads_out` a move between two places at a solid keeps off it: right where solids are grown, so that robots
     /// stand in them. Without, such a move is a chord of the solid, as a taut cable drawn with chords is.
-    pub fn new(solids: Vec<Solid>, leads_out: bool) -> Self {
+    pub(super) fn new(solids: Vec<Solid>, leads_out: bool) -> Self {
         let boxes = Boxes::new(solids.iter().map(Solid::bounds));
         Self { solids, boxes, leads_out }
     }
 
     /// The nearest point that lies in no solid, as far as a few steps find one.
-    pub fn outside(&self, point: Point) -> Point {
+    pub(super) fn outside(&self, point: Point) -> Point {
         let mut at = point;
         for _ in 0..DEEPEST {
             let pushed = self.near(at, at).filter_map(|(k, solid)| Some((k, solid.pushed_out(at, TOUCH_M)?)));
@@ -49,27 +49,27 @@ impl Sidestep {
     }
 
     /// Whether a point lies in a solid.
-    pub fn holds(&self, point: Point) -> bool {
+    pub(super) fn holds(&self, point: Point) -> bool {
         self.near(point, point).any(|(_, solid)| solid.pushed_out(point, TOUCH_M).is_some())
     }
 
     /// Whether a segment enters no solid.
-    pub fn is_open(&self, from: Point, to: Point) -> bool {
+    pub(super) fn is_open(&self, from: Point, to: Point) -> bool {
         !self.near(from, to).any(|(_, solid)| solid.is_entered_by(from, to, TOUCH_M))
     }
 
     /// Whether at most one solid comes near to a disc.
-    pub fn is_alone(&self, center: Point, radius_m: f64) -> bool {
+    pub(super) fn is_alone(&self, center: Point, radius_m: f64) -> bool {
         self.boxes.near(center, center, radius_m + TOUCH_M).nth(1).is_none()
     }
 
     /// The parts of a segment that lie in solids or touch them, as shares of its length.
-    pub fn inside(&self, from: Point, to: Point) -> impl Iterator<Item = (f64, f64)> + '_ {
+    pub(super) fn inside(&self, from: Point, to: Point) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.solids.iter().filter_map(move |solid| solid.inside(from, to))
     }
 
     /// Calls `go` with the ends of the straight pieces that lead from one point to another round every solid.
-    pub fn along(&self, from: Point, to: Point, mut go: impl FnMut(Point)) {
+    pub(super) fn along(&self, from: Point, to: Point, mut go: impl FnMut(Point)) {
         let to = self.outside(to);
         if self.first_entered(from, to).is_none() {
             return go(to);

@@ -14,7 +14,7 @@ const ON_EDGE_M: f64 = 1e-9;
 
 /// All points within a radius of a point, a segment or a convex polygon.
 #[derive(Debug, Clone)]
-pub struct Solid {
+pub(super) struct Solid {
     /// One point, two points, or a convex polygon, counter-clockwise.
     core: Vec<Point>,
     radius_m: f64,
@@ -26,7 +26,7 @@ pub struct Solid {
 
 impl Solid {
     /// The solid about a core that is not empty.
-    pub fn new(mut core: Vec<Point>, radius_m: f64) -> Self {
+    pub(super) fn new(mut core: Vec<Point>, radius_m: f64) -> Self {
         if core.len() > 2 && ring_area_m2(&core) < 0.0 {
             core.reverse();
         }
@@ -38,7 +38,7 @@ impl Solid {
     }
 
     /// Lowest and highest corner of the box around it.
-    pub fn bounds(&self) -> (Point, Point) {
+    pub(super) fn bounds(&self) -> (Point, Point) {
         let far = Vector::new(self.radius_m, self.radius_m);
         let first = self.core[0];
         let low = self.core.iter().fold(first, |low, p| low.inf(p));
@@ -47,14 +47,14 @@ impl Solid {
     }
 
     /// Whether a segment surely stays further away than `room_m`.
-    pub fn is_far_from(&self, a: Point, b: Point, room_m: f64) -> bool {
+    pub(super) fn is_far_from(&self, a: Point, b: Point, room_m: f64) -> bool {
         let nearest = nearest_on_segment(a, b, self.middle);
         let far = self.reach_m + room_m;
         (nearest - self.middle).norm_squared() > far * far
     }
 
     /// Distance from a segment to the solid, metres; not above zero if it enters.
-    pub fn distance_m(&self, a: Point, b: Point) -> f64 {
+    pub(super) fn distance_m(&self, a: Point, b: Point) -> f64 {
         if let [only] = self.core[..] {
             return (nearest_on_segment(a, b, only) - only).norm() - self.radius_m;
         }
@@ -65,7 +65,7 @@ impl Solid {
     }
 
     /// Whether a segment goes through the solid, more than touching it.
-    pub fn is_entered_by(&self, a: Point, b: Point, slack_m: f64) -> bool {
+    pub(super) fn is_entered_by(&self, a: Point, b: Point, slack_m: f64) -> bool {
         if self.is_far_from(a, b, 0.0) {
             return false;
         }
@@ -76,17 +76,17 @@ impl Solid {
     }
 
     /// The part of a segment within the outline, as shares of its length.
-    pub fn inside(&self, a: Point, b: Point) -> Option<(f64, f64)> {
+    pub(super) fn inside(&self, a: Point, b: Point) -> Option<(f64, f64)> {
         if self.is_far_from(a, b, 0.0) { None } else { clip(&self.outline, a, b, 0.0) }
     }
 
     /// Share of the segment at which it comes near; for sorting.
-    pub fn met_at(&self, a: Point, b: Point) -> f64 {
+    pub(super) fn met_at(&self, a: Point, b: Point) -> f64 {
         clip(&self.outline, a, b, 0.0).map_or(0.0, |(first, _)| first)
     }
 
     /// The nearest point outside for a point inside; `None` for a point that is outside already.
-    pub fn pushed_out(&self, point: Point, slack_m: f64) -> Option<Point> {
+    pub(super) fn pushed_out(&self, point: Point, slack_m: f64) -> Option<Point> {
         if self.is_far_from(point, point, 0.0) || self.distance_m(point, point) >= -slack_m {
             return None;
         }
@@ -103,13 +103,13 @@ impl Solid {
     }
 
     /// Corners of the shorter way round, for a segment that goes through.
-    pub fn way_round(&self, a: Point, b: Point) -> Vec<Point> {
+    pub(super) fn way_round(&self, a: Point, b: Point) -> Vec<Point> {
         self.way_between_feet(a, b).map_or_else(Vec::new, |(_, way, _)| way)
     }
 
     /// The shorter way round with both ends led out to the outline first: from there the way beside the solid is clear,
     /// while the last corner may see an end between solid and outline only through the solid.
-    pub fn way_round_outside(&self, a: Point, b: Point) -> Vec<Point> {
+    pub(super) fn way_round_outside(&self, a: Point, b: Point) -> Vec<Point> {
         let Some((enter, mut way, leave)) = self.way_between_feet(a, b) else { return Vec::new() };
         way.insert(0, enter);
         way.push(leave);

@@ -8,7 +8,7 @@ use crate::geometry::{Point, Vector, wrap_angle_rad};
 
 /// What the free piece leaves from: the anchor, or the last post.
 #[derive(Debug, Clone, Copy)]
-pub struct Base {
+pub(super) struct Base {
     pub center: Point,
     pub radius_m: f64,
     /// 1: the cable turns counter-clockwise round it; -1: clockwise; 0: the anchor.
@@ -21,7 +21,7 @@ pub struct Base {
 
 /// What comes next in a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Event {
+pub(super) enum Event {
     /// Nothing: the end gets where it goes.
     Arrive,
     /// The last bend is wound off.
@@ -32,19 +32,19 @@ pub enum Event {
 
 impl Base {
     /// Where the free piece begins when it has some bearing.
-    pub fn leaves_at(&self, bearing_rad: f64) -> Point {
+    pub(super) fn leaves_at(&self, bearing_rad: f64) -> Point {
         tangent_point(self.center, self.radius_m, self.side, bearing_rad)
     }
 
     /// Bearing of the free piece to a point; `None` if the point is the base itself.
-    pub fn bearing_to(&self, point: Point) -> Option<f64> {
+    pub(super) fn bearing_to(&self, point: Point) -> Option<f64> {
         let way = point - self.center;
         let far = way.norm();
         (far > 1e-12).then(|| way.y.atan2(way.x) + (self.side * self.radius_m / far).clamp(-1.0, 1.0).asin())
     }
 
     /// Angle by which the free piece turns until its end is at `to`, radians, on a move from `from`.
-    pub fn turn_to(&self, from: Point, to: Point) -> f64 {
+    pub(super) fn turn_to(&self, from: Point, to: Point) -> f64 {
         let Some(bearing_rad) = self.bearing_to(to) else { return self.turn_to_end_here() };
         let turn = wrap_angle_rad(bearing_rad - self.out_rad);
         // Seen from close by, a move can turn it by nearly half a turn; the sense is that of the motion.
@@ -75,14 +75,14 @@ impl Base {
     }
 }
 
-pub fn direction(bearing_rad: f64) -> Vector {
+pub(super) fn direction(bearing_rad: f64) -> Vector {
     Vector::new(bearing_rad.cos(), bearing_rad.sin())
 }
 
 /// The first event of a move that still has to turn the free piece by `turn_rad`.
 ///
 /// `let_go` are posts that this very move has wound off: a straight move cannot meet them again.
-pub fn next_event(
+pub(super) fn next_event(
     ground: &Ground,
     base: &Base,
     from: Point,

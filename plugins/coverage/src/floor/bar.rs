@@ -39,7 +39,7 @@ impl From<Range<usize>> for Run {
 }
 
 /// The first index that is not below a place.
-pub fn index_from(place: f64) -> usize {
+pub(super) fn index_from(place: f64) -> usize {
     // Truncation is quicker than rounding up, and negative places become 0.
     let below = (place as i64).max(0);
     (below + i64::from(place > below as f64)) as usize

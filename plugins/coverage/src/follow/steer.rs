@@ -25,7 +25,7 @@ const CORNER_S: f64 = 0.6;
 const LEAST_M_PER_S: f64 = 0.08;
 
 /// The twist along the arc that leaves along the heading and ends at the aim, with the speed of a wanted velocity.
-pub fn twist(wanted: Vector, heading_rad: f64, reach_m: f64, limits: &Limits) -> Drive {
+pub(super) fn twist(wanted: Vector, heading_rad: f64, reach_m: f64, limits: &Limits) -> Drive {
     let speed = wanted.norm();
     if speed < 1e-9 {
         return Drive::STILL;
@@ -42,7 +42,7 @@ pub fn twist(wanted: Vector, heading_rad: f64, reach_m: f64, limits: &Limits) ->
 }
 
 /// The speed at which a corner ahead can still be turned at, metres per second; infinite without one in sight.
-pub fn corner_speed(at: Point, ahead: &[Point]) -> f64 {
+pub(super) fn corner_speed(at: Point, ahead: &[Point]) -> f64 {
     let mut along_m = 0.0;
     let mut from = at;
     for (k, point) in ahead.iter().enumerate() {

@@ -6,7 +6,7 @@ use world::{Point, Vector};
 const BUCKET_M: f64 = 1.0;
 
 /// Indices of points in buckets; good as long as the points stay as they are.
-pub struct Places {
+pub(super) struct Places {
     low: Point,
     columns: usize,
     rows: usize,
@@ -17,7 +17,7 @@ pub struct Places {
 
 impl Places {
     /// Sorts points into buckets.
-    pub fn new(points: &[Point]) -> Self {
+    pub(super) fn new(points: &[Point]) -> Self {
         let first = points.first().copied().unwrap_or_else(Point::origin);
         let low = points.iter().fold(first, |low, p| low.inf(p));
         let high = points.iter().fold(first, |high, p| high.sup(p));
@@ -52,7 +52,7 @@ impl Places {
     }
 
     /// Indices of all points within a distance of a place, and of some more; each once, in no order.
-    pub fn near(&self, at: Point, reach_m: f64) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn near(&self, at: Point, reach_m: f64) -> impl Iterator<Item = usize> + '_ {
         let reach = Vector::new(reach_m, reach_m);
         let (from, to) = (self.column_and_row(at - reach), self.column_and_row(at + reach));
         (from.1..=to.1)

@@ -3,7 +3,7 @@
 use world::Vector;
 
 /// A symmetric positive matrix with few diagonals, and its Cholesky factor in its place.
-pub struct Banded {
+pub(super) struct Banded {
     width: usize,
     /// Row by row, from the diagonal back.
     cells: Vec<f64>,
@@ -11,12 +11,12 @@ pub struct Banded {
 
 impl Banded {
     /// Zeros: so many rows, so many diagonals from the main one on.
-    pub fn new(size: usize, width: usize) -> Self {
+    pub(super) fn new(size: usize, width: usize) -> Self {
         Self { width, cells: vec![0.0; size * width] }
     }
 
     /// Adds the square of a combination of neighbours.
-    pub fn add(&mut self, first: usize, factors: &[f64], weight: f64) {
+    pub(super) fn add(&mut self, first: usize, factors: &[f64], weight: f64) {
         for (i, a) in factors.iter().enumerate() {
             for (j, b) in factors[..=i].iter().enumerate() {
                 self.cells[(first + i) * self.width + i - j] += weight * a * b;
@@ -25,7 +25,7 @@ impl Banded {
     }
 
     /// Replaces the matrix by its Cholesky factor.
-    pub fn factorise(&mut self) {
+    pub(super) fn factorise(&mut self) {
         let (n, width) = (self.cells.len() / self.width, self.width);
         for row in 0..n {
             for back in (0..width.min(row + 1)).rev() {
@@ -43,7 +43,7 @@ impl Banded {
     }
 
     /// Solves for both coordinates at once, in place, with the factor.
-    pub fn solve(&self, values: &mut [Vector]) {
+    pub(super) fn solve(&self, values: &mut [Vector]) {
         let (n, width) = (values.len(), self.width);
         for row in 0..n {
             let mut sum = values[row];

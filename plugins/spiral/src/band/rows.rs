@@ -11,7 +11,7 @@ const REACH_M: f64 = 0.25;
 
 /// Where a combination of points has to be.
 #[derive(Debug, Clone, Copy)]
-pub enum Limit<'a> {
+pub(super) enum Limit<'a> {
     /// No further to either side in a direction than this.
     Across(Vector, f64),
     /// So far from the origin in a direction.
@@ -24,7 +24,7 @@ pub enum Limit<'a> {
 
 /// A linear combination of neighbouring points with its limit and multiplier.
 #[derive(Debug, Clone)]
-pub struct Row<'a> {
+pub(super) struct Row<'a> {
     /// Which limit of which place it is, so that the multiplier survives.
     pub key: (u32, u32),
     /// Index of the first point.
@@ -43,25 +43,25 @@ pub struct Row<'a> {
 
 impl<'a> Row<'a> {
     /// A row whose multiplier is zero and whose target is the origin.
-    pub fn new(key: (u32, u32), first: usize, factors: Vec<f64>, limit: Limit<'a>) -> Self {
+    pub(super) fn new(key: (u32, u32), first: usize, factors: Vec<f64>, limit: Limit<'a>) -> Self {
         let penalty = if matches!(limit, Limit::Across(..)) { TURN_PENALTY } else { SOLID_PENALTY };
         Row { key, first, factors, limit, penalty, multiplier: Vector::zeros(), target: Vector::zeros() }
     }
 
     /// The combination of these vectors.
-    pub fn of(&self, vector: impl Fn(usize) -> Vector) -> Vector {
+    pub(super) fn of(&self, vector: impl Fn(usize) -> Vector) -> Vector {
         self.factors.iter().enumerate().map(|(k, factor)| vector(self.first + k) * *factor).sum()
     }
 
     /// The combination of the points of a way.
-    pub fn value(&self, way: &[Point]) -> Vector {
+    pub(super) fn value(&self, way: &[Point]) -> Vector {
         self.of(|index| way[index].coords)
     }
 }
 
 impl Limit<'_> {
     /// The nearest vector that keeps the limit.
-    pub fn nearest(&self, value: Vector) -> Vector {
+    pub(super) fn nearest(&self, value: Vector) -> Vector {
         match *self {
             Self::Across(direction, most_m) => {
                 let across_m = direction.dot(&value);
@@ -81,7 +81,7 @@ impl Limit<'_> {
 
 /// What keeps a way away from a part.
 #[derive(Debug, Clone, Copy)]
-pub enum Solid<'a> {
+pub(super) enum Solid<'a> {
     /// A circle that no piece of the way may enter.
     Circle(Point, f64),
     /// Straight sides, from which the ends of its pieces keep this far.
@@ -89,7 +89,7 @@ pub enum Solid<'a> {
 }
 
 /// What keeps a way this far from a part: its corners from all of the way, its sides from the ends of its pieces.
-pub fn solids_of(part: &Part, keep_m: f64) -> Vec<Solid<'_>> {
+pub(super) fn solids_of(part: &Part, keep_m: f64) -> Vec<Solid<'_>> {
     match part {
         Part::Capsule { a, b, half_width_m } if a == b => vec![Solid::Circle(*a, keep_m + half_width_m)],
         Part::Capsule { a, b, half_width_m } => {
@@ -108,7 +108,7 @@ impl<'a> Solid<'a> {
     ///
     /// A piece that lies beyond a tangent keeps out of a circle. The middle of the piece determines which
     /// tangent: by its nearest point, two pieces that meet on the circle would hold each other straight.
-    pub fn rows(&self, kind: u32, way: &[Point], rows: &mut Vec<Row<'a>>) {
+    pub(super) fn rows(&self, kind: u32, way: &[Point], rows: &mut Vec<Row<'a>>) {
         match *self {
             Self::Circle(center, radius_m) => {
                 for (index, w) in way.windows(2).enumerate() {

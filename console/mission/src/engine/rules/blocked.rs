@@ -23,7 +23,13 @@ pub(in crate::engine) struct BlockedRule {
 
 impl BlockedRule {
     /// One command of a planner, a tick after the one before; `in_lanes` says whether it follows lanes.
-    pub fn update(&mut self, status: Status, here: Point, in_lanes: bool, tick_s: f64) -> Option<Verdict> {
+    pub(crate) fn update(
+        &mut self,
+        status: Status,
+        here: Point,
+        in_lanes: bool,
+        tick_s: f64,
+    ) -> Option<Verdict> {
         self.blocked_s = if status == Status::Stuck { self.blocked_s + tick_s } else { 0.0 };
         if self.blocked_s < BLOCKED_S || !in_lanes {
             return None;

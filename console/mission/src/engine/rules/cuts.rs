@@ -17,13 +17,13 @@ pub(in crate::engine) struct CutsRule {
 
 impl CutsRule {
     /// The cuts of a plan that is to be flown from here, bound to them from a point on.
-    pub fn new(lines: &[Vec<Point>], from: Option<Point>, here: Point) -> Self {
+    pub(crate) fn new(lines: &[Vec<Point>], from: Option<Point>, here: Point) -> Self {
         Self { lines: lines.iter().map(|line| (line.clone(), false)).collect(), from, seen_at: here }
     }
 
     /// One tick with a position that can be relied on: whether the robot has strayed across a cut by more than its hull. On
     /// the line itself the estimate may scatter from side to side.
-    pub fn update(&mut self, here: Point, radius_m: f64) -> bool {
+    pub(crate) fn update(&mut self, here: Point, radius_m: f64) -> bool {
         let before = std::mem::replace(&mut self.seen_at, here);
         if self.from.is_some_and(|from| (here - from).norm() > HOME_M) {
             return false;
@@ -36,7 +36,7 @@ impl CutsRule {
     }
 
     /// The plan is given up, and its cuts with it.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.lines.clear();
     }
 }

@@ -17,7 +17,7 @@ impl FallbackRule {
     }
 
     /// Whether a hold because of this planner ends by itself.
-    pub fn resumes(&self, config: &MissionConfig, active: &str) -> Resumes {
+    pub(crate) fn resumes(&self, config: &MissionConfig, active: &str) -> Resumes {
         match self.available(config, active) {
             Some(_) => Resumes::ByFallback,
             None => Resumes::Never,
@@ -25,7 +25,7 @@ impl FallbackRule {
     }
 
     /// The planner that takes over from this one; it does so once.
-    pub fn update(&mut self, config: &MissionConfig, active: &str) -> Option<PlannerChoice> {
+    pub(crate) fn update(&mut self, config: &MissionConfig, active: &str) -> Option<PlannerChoice> {
         let choice = self.available(config, active)?.clone();
         self.used = true;
         Some(choice)

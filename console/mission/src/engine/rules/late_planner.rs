@@ -19,20 +19,20 @@ pub(in crate::engine) struct LatePlannerRule {
 
 impl LatePlannerRule {
     /// A command arrived so many ticks after it was asked for: whether a row of late ones begins with it.
-    pub fn arrived(&mut self, ticks: u64) -> bool {
+    pub(crate) fn arrived(&mut self, ticks: u64) -> bool {
         let begins = ticks > 0 && !self.was_late;
         self.was_late = ticks > 0;
         begins
     }
 
     /// Whether a command of this age, in seconds, may still be sent.
-    pub fn is_fresh(age_s: f64) -> bool {
+    pub(crate) fn is_fresh(age_s: f64) -> bool {
         // Ages are multiples of a tick, as floating point numbers.
         age_s <= STALE_S + 1e-9
     }
 
     /// One tick of a running robot: holds it when its planner has owed an answer for too long.
-    pub fn update(planner: &PlannerSeen<'_>) -> Option<Verdict> {
+    pub(crate) fn update(planner: &PlannerSeen<'_>) -> Option<Verdict> {
         let is_silent = planner.owed_s.is_some_and(|owed_s| owed_s >= SILENT_S - 1e-9);
         is_silent.then(|| {
             let message = format!("planner {} has not answered for {SILENT_S} s", planner.id);

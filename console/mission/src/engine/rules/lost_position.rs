@@ -14,7 +14,7 @@ pub(in crate::engine) struct LostPositionRule {
 
 impl LostPositionRule {
     /// One tick of a running robot: holds it when the position has been bad for long enough.
-    pub fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
+    pub(crate) fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
         self.lost_s = if seen.is_position_good() { 0.0 } else { self.lost_s + seen.config.tick_s };
         let by = match seen.position {
             PositionTrust::Good => return None,
@@ -26,7 +26,7 @@ impl LostPositionRule {
     }
 
     /// One tick of a robot that this rule holds.
-    pub fn update_held(seen: &Seen<'_>) -> Option<Verdict> {
+    pub(crate) fn update_held(seen: &Seen<'_>) -> Option<Verdict> {
         seen.is_position_good().then_some(Verdict::Resume)
     }
 }

@@ -18,17 +18,17 @@ pub(in crate::engine) struct StuckRule {
 
 impl StuckRule {
     /// A rule of some patience, seconds.
-    pub fn new(patience_s: f64) -> Self {
+    pub(crate) fn new(patience_s: f64) -> Self {
         Self { watch: StuckWatch::new(patience_s), replanned_at: None }
     }
 
     /// Forgets the progress seen so far: another plan leads another way.
-    pub fn restart(&mut self) {
+    pub(crate) fn restart(&mut self) {
         self.watch.reset();
     }
 
     /// One tick of a robot that was free to move.
-    pub fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
+    pub(crate) fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
         if !self.watch.update(seen.task, seen.here, seen.config.tick_s) {
             return None;
         }

@@ -34,7 +34,7 @@ struct Caught {
 
 impl TetherRule {
     /// One tick of a running robot in which the cable reached a limit.
-    pub fn update(&mut self, seen: &Seen<'_>, alarm: &TetherAlarm) -> Verdict {
+    pub(crate) fn update(&mut self, seen: &Seen<'_>, alarm: &TetherAlarm) -> Verdict {
         self.waited_s = 0.0;
         let message = alarm.to_string();
         match alarm {
@@ -72,7 +72,7 @@ impl TetherRule {
 
     /// One tick of a robot that this rule holds until it has a way home; with nobody there to help the mission ends after
     /// a while.
-    pub fn update_held(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
+    pub(crate) fn update_held(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
         if seen.can_go_home {
             return Some(Verdict::Resume);
         }

@@ -12,7 +12,7 @@ pub(in crate::engine) struct TimeLimitRule {
 
 impl TimeLimitRule {
     /// One tick of a mission under way.
-    pub fn update(&mut self, seen: &Seen<'_>, is_held: bool) -> Option<Verdict> {
+    pub(crate) fn update(&mut self, seen: &Seen<'_>, is_held: bool) -> Option<Verdict> {
         if seen.config.attended && is_held {
             self.waited_s += seen.config.tick_s;
         }

@@ -4,7 +4,7 @@ use super::*;
 use planner_api::{Leg, LegTag};
 
 /// Straight lanes over the regions, or over everything; round obstacles they leave a gap and pass it to the north.
-pub fn lanes(request: &PlanAsk, anchor: Point) -> Plan {
+pub(super) fn lanes(request: &PlanAsk, anchor: Point) -> Plan {
     let room_m = request.site.limits.radius_m + request.site.clearance_m;
     let mut path = vec![request.start.position];
     let mut legs = Vec::new();
@@ -52,7 +52,7 @@ fn beside(request: &PlanAsk, point: Point, room_m: f64) -> Point {
     point
 }
 
-pub fn covering() -> MissionConfig {
+pub(super) fn covering() -> MissionConfig {
     let start = Pose::new(0.0, -4.4, 0.0);
     let task = TaskConfig::Cover { anchor: start.position, regions: vec![], tolerance_m: 0.2 };
     MissionConfig { task, start, time_limit_s: 1000.0, ..config() }

@@ -8,7 +8,7 @@ use crate::{
 use planner_api::{Leg, LegTag};
 use world::{Obstacle, ObstacleId, Shape, tether::Limits};
 
-pub fn tethered(reel_m: f64) -> MissionConfig {
+pub(super) fn tethered(reel_m: f64) -> MissionConfig {
     let limits = Limits { reel_m, max_wrap_rad: 1.0, max_sum_wrap_rad: 2.0 };
     let tether = TetherConfig { anchor: Point::new(-3.0, 0.0), limits, friction: 0.3, fly_uncertified: true };
     MissionConfig { tether: Some(tether), ..config() }
@@ -127,7 +127,7 @@ fn an_obstacle_found_across_the_cable_is_passed_on_the_side_that_was_driven() {
 }
 
 /// Any wrap and length will do.
-pub fn loosely_tethered() -> MissionConfig {
+pub(super) fn loosely_tethered() -> MissionConfig {
     let mut config = MissionConfig { attended: false, ..tethered(99.0) };
     let limits = &mut config.tether.as_mut().unwrap().limits;
     (limits.max_wrap_rad, limits.max_sum_wrap_rad) = (99.0, 99.0);
@@ -145,7 +145,7 @@ fn fly_before_barrier(flight: &mut Flight, ticks: usize, shift_m: impl Fn(usize)
     }
 }
 
-pub fn holds(flight: &Flight) -> usize {
+pub(super) fn holds(flight: &Flight) -> usize {
     let is_hold =
         |event: &&Event| matches!(event.kind, EventKind::Held { by: HoldReason::Tether { .. }, .. });
     flight.events.iter().filter(is_hold).count()

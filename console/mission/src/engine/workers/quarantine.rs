@@ -16,7 +16,7 @@ pub(in crate::engine) struct Quarantine {
 
 impl Quarantine {
     /// A plugin failed at this mission time.
-    pub fn note(&mut self, sha256: &str, t_s: f64) {
+    pub(crate) fn note(&mut self, sha256: &str, t_s: f64) {
         let recent = self.faults_s.entry(sha256.to_owned()).or_default();
         recent.push(t_s);
         recent.retain(|earlier| t_s - earlier < WINDOW_S);
@@ -26,7 +26,7 @@ impl Quarantine {
     }
 
     /// Whether a plugin may not drive again.
-    pub fn holds(&self, sha256: &str) -> bool {
+    pub(crate) fn holds(&self, sha256: &str) -> bool {
         self.closed.contains(sha256)
     }
 }
