@@ -2,6 +2,8 @@
 
 #[path = "recording/content.rs"]
 mod content;
+#[path = "recording/damaged.rs"]
+mod damaged;
 #[path = "recording/disk.rs"]
 mod disk;
 #[path = "recording/journal.rs"]
