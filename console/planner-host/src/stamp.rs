@@ -161,4 +161,24 @@ mod tests {
         );
         assert!(accept(Abi { major: 1, minor: 99 }).is_ok(), "a newer minor version is accepted");
     }
+
+    proptest::proptest! {
+        #![proptest_config(proptest::prelude::ProptestConfig::with_cases(200))]
+
+        /// A damaged library is refused or read; headers are at its beginning, tables at its end.
+        #[test]
+        fn a_damaged_library_is_refused_or_read(
+            at_end in proptest::prelude::any::<bool>(),
+            damage in mutations::mutations(),
+        ) {
+            let program = std::env::current_exe().and_then(std::fs::read).expect("this program");
+            let (head, tail) = program.split_at(if at_end { program.len() - 8192 } else { 4096 });
+            let damaged = if at_end {
+                [head, &mutations::mutated(tail, &damage)].concat()
+            } else {
+                [&mutations::mutated(head, &damage), tail].concat()
+            };
+            let _ = read(&damaged);
+        }
+    }
 }

@@ -7,6 +7,8 @@
 
 pub(crate) mod answer;
 pub(crate) mod body;
+#[cfg(test)]
+mod damaged;
 #[cfg(unix)]
 pub(crate) mod frame;
 pub(crate) mod input;
