@@ -192,3 +192,48 @@ fn a_run_of_version_2_is_listed_reported_and_exported_but_not_recomputed() {
         assert_eq!((refused.err.trim().lines().count(), refused.out.as_str()), (1, ""), "{refused:?}");
     }
 }
+
+/// The text with what stands between two marks replaced, in the first line with both.
+fn with_part(text: &str, (from, to): (&str, &str), part: &str) -> String {
+    let at = text.find(from).unwrap() + from.len();
+    let end = at + text[at..].find(to).unwrap();
+    [&text[..at], part, &text[end..]].concat()
+}
+
+#[test]
+fn sizes_in_a_journal_that_was_changed_take_neither_memory_nor_time() {
+    let bench = Bench::new();
+    bench.fly(&scenario("cover-circle.toml"), &["--set", "mission.time_limit_s=20"]);
+    let run = bench.runs().remove(0);
+    let text = text_of(&run);
+    let path = ("\"path\":[", "],\"length_m\"");
+    let changes = [
+        ("no path", with_part(&text, path, "")),
+        ("a point far away", with_part(&text, path, "[0.0,0.0],[1e12,0.0]")),
+        ("a point beyond all numbers", with_part(&text, path, "[0.0,0.0],[1e300,0.0]")),
+        ("a wide floor", with_part(&text, ("\"width\":", ","), "4294967295")),
+        ("a long run of cells", with_part(&text, ("\"runs\":[[\"outside\",", "]"), "4294967295")),
+    ];
+    for (what, changed) in changes {
+        std::fs::write(run.join("events.jsonl"), changed).unwrap();
+        let name = run.to_str().unwrap();
+        for command in [&["verify", name][..], &["verify", name, "--from-journal"]] {
+            let verified = bench.tankops(command);
+            assert!(matches!(verified.code, Some(1 | 2)), "{what}: {command:?}: {verified:?}");
+        }
+        for command in [&["report", name][..], &["runs"], &["export", name, "--rrd", "again.rrd"]] {
+            let read = bench.tankops(command);
+            assert!(matches!(read.code, Some(0..=2)), "{what}: {command:?}: {read:?}");
+            let _ = std::fs::remove_file(bench.path().join("again.rrd"));
+        }
+    }
+}
+
+#[test]
+fn a_report_that_is_damaged_speaks_against_its_journal() {
+    let bench = Bench::new();
+    let run = flown(&bench);
+    std::fs::write(run.join("report.json"), "{\"a\":").unwrap();
+    let verified = bench.verify(&run, &[]);
+    assert!(verified.code == Some(1) && verified.out.contains("report.json is damaged"), "{verified:?}");
+}

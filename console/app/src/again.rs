@@ -4,11 +4,12 @@ use crate::{
     cli::{LogsArg, RescanArgs},
     failure::{COMPLETE, bad_input},
     output::{say, say_line},
-    run_folder,
+    planners, run_folder,
     verify::opened,
 };
 use anyhow::Context;
-use mission::{Event, EventKind};
+use mission::{Event, EventKind, PlannerInfo};
+use planner_host::PluginDirs;
 use recording::{JOURNAL_FILE, RECORDING_FILE, read_journal};
 use report::{Fold, Logs, Summary, account::Area, human, merged, merged::PastRun};
 use scenario::Scenario;
@@ -101,7 +102,7 @@ fn scenario_of(events: &[Event]) -> anyhow::Result<Scenario> {
 }
 
 /// `tankops rescan RUN... -o SCENARIO`.
-pub(crate) fn rescan(args: &RescanArgs) -> anyhow::Result<ExitCode> {
+pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let output = &args.output;
     if output.exists() {
         return Err(bad_input(format!("{} exists already; choose another name", output.display())));
@@ -125,15 +126,27 @@ pub(crate) fn rescan(args: &RescanArgs) -> anyhow::Result<ExitCode> {
     }
     let names: Vec<&str> = past.iter().map(|run| run.name.as_str()).collect();
     let text = scenario_for(&events, &names, &again.boxes)?;
-    Scenario::parse(&text, &output.display().to_string()).map_err(|errors| bad_input(errors.render()))?;
+    let scenario = Scenario::parse(&text, &output.display().to_string());
+    let scenario = scenario.map_err(|errors| bad_input(errors.render()))?;
     fs::write(output, &text).map_err(|error| {
         bad_input(format!("the scenario cannot be written: {error}: {}", output.display()))
     })?;
-    print_rescan(&again, args, &names)?;
+    print_rescan(&again, args)?;
+    print_advice(args, &names, &planners_instead(&scenario, plugins))?;
     Ok(ExitCode::from(COMPLETE))
 }
 
-fn print_rescan(again: &report::Rescan, args: &RescanArgs, names: &[&str]) -> anyhow::Result<()> {
+/// The planners that can fly the re-scan, if the one that flew the scan cannot.
+fn planners_instead(scenario: &Scenario, plugins: &PluginDirs) -> Vec<String> {
+    let found = planners::found(plugins);
+    let cannot = |info: &PlannerInfo| info.id == scenario.mission.planner.id && !info.covers;
+    if !found.iter().any(cannot) {
+        return Vec::new();
+    }
+    found.into_iter().filter(|info| info.covers).map(|info| info.id).collect()
+}
+
+fn print_rescan(again: &report::Rescan, args: &RescanArgs) -> anyhow::Result<()> {
     let missed_m2: f64 = again.areas.iter().map(|area| area.area_m2).sum();
     let boxes_m2: f64 = again.boxes.iter().map(|[low, high]| (high.x - low.x) * (high.y - low.y)).sum();
     say_line(&format!(
@@ -148,11 +161,23 @@ fn print_rescan(again: &report::Rescan, args: &RescanArgs, names: &[&str]) -> an
     if again.not_asked_m2 > 0.0 {
         say_line(&format!("left: {:.2} m² that no mission was to scan", again.not_asked_m2))?;
     }
+    Ok(())
+}
+
+/// How the re-scan is flown.
+fn print_advice(args: &RescanArgs, names: &[&str], instead: &[String]) -> anyhow::Result<()> {
+    let (logs, output) = (args.logs.logs.display(), args.output.display());
+    let option = if instead.is_empty() { "" } else { " --planner PLANNER" };
+    if !instead.is_empty() {
+        say_line(&format!(
+            "the planner of the run does not support coverage missions; PLANNER is one of {}",
+            instead.join(", ")
+        ))?;
+    }
     say_line(&format!(
-        "fly it with `tankops run {logs} {}`; then `tankops report {logs} {} RUN` shows all of them together",
-        args.output.display(),
+        "fly it with `tankops run --logs {logs} {output}{option}`; then `tankops report --logs {logs} {} RUN` shows all of them \
+         together",
         names.join(" "),
-        logs = format_args!("--logs {}", args.logs.logs.display()),
     ))
 }
 

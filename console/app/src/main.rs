@@ -80,7 +80,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Report { runs, json, output, logs }) => {
             again::report(&runs, &logs, json, output.as_deref())
         }
-        Some(Command::Rescan(args)) => again::rescan(&args),
+        Some(Command::Rescan(args)) => again::rescan(&args, &plugins),
         Some(Command::Worker) => Ok(planner_host::worker_main()),
     }
 }

@@ -113,6 +113,9 @@ fn plain(name: &str) -> String {
 
 /// SHA-256 of a file, hexadecimal.
 pub(crate) fn sha256(path: &Path) -> io::Result<String> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file"));
+    }
     let (mut file, mut hasher, mut chunk) = (File::open(path)?, Sha256::new(), vec![0; 1 << 18]);
     loop {
         match file.read(&mut chunk)? {

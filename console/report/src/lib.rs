@@ -11,6 +11,7 @@ pub mod fold;
 pub mod human;
 pub mod merged;
 pub mod rescan;
+mod sampled;
 mod scanned;
 pub mod summary;
 mod tethered;

@@ -1,10 +1,10 @@
 //! How closely the true path keeps to a preset path.
 
-use crate::summary::Tracking;
+use crate::{sampled::sampled, summary::Tracking};
 use std::collections::BTreeMap;
 use world::{
     Point,
-    polyline::{nearest_on_segment, resampled, stations_m},
+    polyline::{nearest_on_segment, stations_m},
 };
 
 /// Way between two samples of the true path, metres.
@@ -45,7 +45,7 @@ struct Sample {
 impl Tracker {
     /// Nobody has moved yet.
     pub(crate) fn new(path: &[Point]) -> Self {
-        let path = resampled(path, SPACING_M);
+        let path = sampled(path, SPACING_M);
         let mut unvisited: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
         for (i, point) in path.iter().enumerate() {
             unvisited.entry(square(*point)).or_default().push(i);
@@ -153,11 +153,11 @@ mod tests {
     use super::*;
 
     fn east(length_m: f64) -> Vec<Point> {
-        resampled(&[Point::new(0.0, 0.0), Point::new(length_m, 0.0)], 0.1)
+        sampled(&[Point::new(0.0, 0.0), Point::new(length_m, 0.0)], 0.1)
     }
 
     fn fly(tracker: &mut Tracker, path: &[Point]) {
-        let fine = resampled(path, 0.02);
+        let fine = sampled(path, 0.02);
         for pair in fine.windows(2) {
             tracker.pass(pair[0], pair[1]);
         }
@@ -222,7 +222,7 @@ mod tests {
 
     #[test]
     fn the_neighbouring_turn_is_no_pair() {
-        let preset = resampled(
+        let preset = sampled(
             &[Point::new(0.0, 0.0), Point::new(5.0, 0.0), Point::new(5.0, 0.5), Point::new(0.0, 0.5)],
             0.1,
         );

@@ -1,10 +1,10 @@
 //! Whether the sections fit together: start, goal, sizes of the grid and of the run.
 
 use super::{problem::Complaint, section::Section};
-use world::{Boundary, Obstacle, Point, Zone, ZoneKind};
+use world::{Boundary, Floor, Obstacle, Point, Zone, ZoneKind};
 
 /// Cells that a coverage grid may have.
-pub(crate) const MOST_CELLS: f64 = 4e6;
+pub(crate) const MOST_CELLS: f64 = Floor::MOST_CELLS as f64;
 
 /// Lanes side by side that a floor may take.
 pub(crate) const MOST_LANES: f64 = 600.0;

@@ -181,10 +181,16 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
     }
 }
 
-/// Reports a key that has no action here.
+/// Reports a key that has no action here. It cancels a question: who types something else than an answer has not read it, and
+/// a later Enter must not agree to it.
 fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
-    if model.ui.overlay == Overlay::None {
-        model.say(Severity::Info, format!("Key {key} is not assigned (?: show keys)"));
+    match model.ui.overlay {
+        Overlay::None => model.say(Severity::Info, format!("Key {key} is not assigned (?: show keys)")),
+        Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping => {
+            model.ui.overlay = Overlay::None;
+            model.say(Severity::Info, format!("Cancelled: key {key} is not an answer"));
+        }
+        _ => {}
     }
     Vec::new()
 }

@@ -120,11 +120,17 @@ fn agrees(summary: &Summary, ending: &Event) -> bool {
         && summary.ticks == Some(ending.tick)
 }
 
-/// What speaks against the journal of a run whose digest is this: its report names another one.
+/// What speaks against the journal of a run whose digest is this: its report names another one, or cannot be read.
 pub(crate) fn journal_doubt(folder: &Path, sha256: Option<&str>) -> Option<String> {
-    let text = fs::read_to_string(folder.join(REPORT_FILE)).ok()?;
-    let source: Source = serde_json::from_str(&text).ok()?;
-    (source.events_sha256? != sha256?).then(|| NOT_THE_ONE.to_owned())
+    let text = match fs::read_to_string(folder.join(REPORT_FILE)) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
+        Err(error) => return Some(format!("{REPORT_FILE} cannot be read: {error}")),
+    };
+    match serde_json::from_str::<Source>(&text) {
+        Ok(source) => (source.events_sha256? != sha256?).then(|| NOT_THE_ONE.to_owned()),
+        Err(error) => Some(format!("{REPORT_FILE} is damaged: {error}")),
+    }
 }
 
 /// What contradicts a journal without an end: the run has a report, so it was closed cleanly.

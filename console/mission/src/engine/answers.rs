@@ -75,8 +75,16 @@ impl Mission {
 
     /// Refuses a planner that may not or cannot fly this mission, although it could be opened.
     fn checked(&self, seat: &Seat, given: Given) -> Result<Given, Fault> {
-        let Given::Opened(info) = &given else { return Ok(given) };
         let id = &seat.choice.id;
+        if let Given::Plan(plan) = &given
+            && let Err(what) = self.check_extent(plan)
+        {
+            let (message, partial) = (format!("planner {id} {what}"), Vec::new());
+            let plugin_sha256 = seat.info.as_ref().map(|info| info.sha256.clone());
+            let (during, cause) = (During::Plan, Cause::BadOutput);
+            return Err(Fault { planner: id.clone(), during, cause, message, partial, plugin_sha256 });
+        }
+        let Given::Opened(info) = &given else { return Ok(given) };
         let refuse = |during, cause, message| {
             let plugin_sha256 = Some(info.sha256.clone());
             Err(Fault { planner: id.clone(), during, cause, message, partial: Vec::new(), plugin_sha256 })

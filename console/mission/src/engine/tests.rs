@@ -37,6 +37,8 @@ struct Straight {
     regions_m2: Vec<f64>,
     /// What plans to cover keep to.
     cut: Option<Vec<Point>>,
+    /// Its plans end so far from the middle of the tank, metres.
+    plans_to_m: Option<f64>,
     /// Its coverage plans are a single point.
     leads_nowhere: bool,
     /// It has a live parameter `gain` that it cannot change under way.
@@ -124,6 +126,7 @@ impl Straight {
             return Plan { cuts, ..covering::lanes(request, *anchor) };
         }
         let mut path = vec![request.start.position];
+        path.extend(self.plans_to_m.map(|x_m| Point::new(x_m, 0.0)));
         if let TaskLeft::Goto { goal, .. } = request.task
             && self.plans_to_goal
         {
@@ -617,4 +620,24 @@ fn a_live_parameter_that_the_planner_cannot_change_under_way_makes_a_new_instanc
     flight.tick(&[Order::Hold]);
     assert_eq!(refusal(&flight.tick(&[gain()])), None);
     assert_eq!((flight.planner.chosen.len(), flight.planner.plans), (2, 2));
+}
+
+#[test]
+fn a_plan_that_has_nothing_to_do_with_the_tank_is_a_fault_of_its_planner() {
+    let why = |x_m: f64| {
+        let mut flight = Flight::new(config());
+        flight.planner.plans_to_m = Some(x_m);
+        let events = flight.tick(&[Order::Start]);
+        let is_fault = |kind: &EventKind| match kind {
+            EventKind::PlannerFailed { fault, .. } => Some(fault.message.clone()),
+            _ => None,
+        };
+        assert!(!events.iter().any(|kind| matches!(kind, EventKind::Planned { .. })) || x_m < 15.0);
+        events.iter().find_map(is_fault)
+    };
+    assert_eq!(why(14.0), None, "a planner may begin or end beside the tank");
+    assert_eq!(
+        why(1e9).as_deref(),
+        Some("planner straight gave a path whose point 1, 1000000000.0, 0.0 m, is far outside the tank")
+    );
 }

@@ -1,8 +1,8 @@
 //! How a journal ends, without reading all of it.
 
+use super::reader::opened;
 use mission::{Event, EventKind};
 use std::{
-    fs::File,
     io::{self, Read, Seek, SeekFrom},
     path::Path,
 };
@@ -17,7 +17,7 @@ const TAIL_BYTES: u64 = 64 * 1024;
 /// # Errors
 /// The file cannot be read.
 pub fn read_ending(path: &Path) -> io::Result<Option<Event>> {
-    let mut file = File::open(path)?;
+    let mut file = opened(path)?;
     let length = file.metadata()?.len();
     file.seek(SeekFrom::Start(length.saturating_sub(TAIL_BYTES)))?;
     let mut tail = Vec::new();

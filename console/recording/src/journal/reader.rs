@@ -5,7 +5,7 @@ use mission::{Event, event::JOURNAL_VERSION};
 use serde::Deserialize;
 use std::{
     fs::File,
-    io::{BufRead, BufReader},
+    io::{self, BufRead, BufReader},
     path::{Path, PathBuf},
 };
 
@@ -53,6 +53,13 @@ pub struct JournalReader {
     unended_bytes: u64,
 }
 
+/// Opens a regular file: a device or a pipe may never end.
+pub(super) fn opened(path: &Path) -> io::Result<File> {
+    let not_regular = || io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
+    // Looked at before it is opened, since opening a pipe waits for a writer.
+    if std::fs::metadata(path)?.is_file() { File::open(path) } else { Err(not_regular()) }
+}
+
 /// What the first line of a journal of any version contains.
 #[derive(Deserialize)]
 struct Head {
@@ -66,7 +73,7 @@ impl JournalReader {
     /// # Errors
     /// [`JournalError::Read`] if there is none.
     pub fn open(path: &Path) -> Result<Self, JournalError> {
-        let file = File::open(path).map_err(|error| read_error(path, &error))?;
+        let file = opened(path).map_err(|error| read_error(path, &error))?;
         Ok(Self {
             lines: Box::new(BufReader::with_capacity(1 << 18, file)),
             path: path.to_owned(),
@@ -197,6 +204,6 @@ fn without_position(error: &serde_json::Error) -> String {
     text.split_once(" at line ").map_or(text.clone(), |(sentence, _)| sentence.to_owned())
 }
 
-fn read_error(path: &Path, error: &std::io::Error) -> JournalError {
+fn read_error(path: &Path, error: &io::Error) -> JournalError {
     JournalError::Read { why: error.to_string(), path: path.to_owned() }
 }

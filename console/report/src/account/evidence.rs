@@ -1,6 +1,7 @@
 //! Evidence of why floor was missed: where plans led, where the robot went, where its position was uncertain.
 
 use super::{CRITICAL_ZONE_M, MissReason};
+use crate::sampled::sampled;
 use mission::{TaskConfig, event::RunOpened};
 use world::{
     CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, ShellFigures, ShellZone, Tool, tether::Reach,
@@ -57,7 +58,7 @@ impl Evidence {
     /// A plan was made for what is left; it takes the place of the one before.
     pub fn plan(&mut self, path: &[Point], is_whole: bool) {
         self.leave_behind();
-        let path = world::polyline::resampled(path, PIECE_M);
+        let path = sampled(path, PIECE_M);
         let stations_m = world::polyline::stations_m(&path);
         let mut plan = Planned {
             length_m: stations_m.last().copied().unwrap_or(0.0),
@@ -65,7 +66,9 @@ impl Evidence {
             is_whole,
             ..Planned::none(self.grid.len())
         };
-        for (pair, end_m) in path.windows(2).zip(&stations_m[1..]).filter(|(pair, _)| pair[0] != pair[1]) {
+        for (pair, end_m) in
+            path.windows(2).zip(stations_m.iter().skip(1)).filter(|(pair, _)| pair[0] != pair[1])
+        {
             let ahead = pair[1] - pair[0];
             let at = |position| Pose { position, heading_rad: ahead.y.atan2(ahead.x) };
             for index in self.grid.cells_under(self.tool, at(pair[0]), at(pair[1])) {

@@ -226,3 +226,15 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_plan_without_a_path_or_with_one_that_cannot_be_leads_to_no_floor() {
+    let run = round_tank(0.2);
+    for path in [vec![], vec![Point::origin()], vec![Point::origin(), Point::new(1e12, 0.0)]] {
+        let (grid, mut evidence) = (CoverageGrid::new(run.floor.clone()), Evidence::new(&run));
+        evidence.plan(&path, true);
+        evidence.fly_share(0.5);
+        let account = account(&run, &grid, &evidence);
+        assert!((account.reachable.missed - 1.0).abs() < 1e-12, "{path:?}");
+    }
+}

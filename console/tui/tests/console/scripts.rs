@@ -680,3 +680,15 @@ fn a_model_can_be_saved_and_opened_again() {
     let opened: Model = serde_json::from_str(&saved).unwrap();
     assert_eq!(opened, screen.model);
 }
+
+#[test]
+fn a_key_that_is_no_answer_cancels_the_question_so_that_enter_cannot_agree_to_it() {
+    for question in [" ", ".", "X", "q"] {
+        let mut screen = Screen::held();
+        screen.type_text(question);
+        assert!(screen.model.ui.overlay != Overlay::None, "{question:?} asks");
+        assert_eq!(screen.type_text("P"), [], "{question:?}");
+        assert_eq!(notice(&screen), "Cancelled: key P is not an answer");
+        assert_eq!(screen.press([Key::Enter]), [], "{question:?}: Enter agrees to nothing");
+    }
+}

@@ -31,7 +31,7 @@ pub enum Cell {
 /// A cell is floor if its centre is. It is reachable if the tool covers its centre from some place to which the
 /// robot's centre can drive from the start. Stored and written as runs of equal cells.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(from = "FloorRuns", into = "FloorRuns")]
+#[serde(try_from = "FloorRuns", into = "FloorRuns")]
 pub struct Floor {
     /// South west corner of cell 0, metres.
     pub origin: Point,
@@ -53,6 +53,9 @@ pub struct CellRun(pub u32, pub u32);
 pub struct KindRun(pub Cell, pub u32, pub u32);
 
 impl Floor {
+    /// More cells than this are refused, here and where scenarios are checked.
+    pub const MOST_CELLS: usize = 4_000_000;
+
     /// The floor of a tank for a robot whose centre keeps `room_m` (hull and clearance) from anything solid, with a
     /// tool of some swath, driving from `start`.
     ///
@@ -196,21 +199,20 @@ impl From<Floor> for FloorRuns {
     }
 }
 
-impl From<FloorRuns> for Floor {
-    fn from(written: FloorRuns) -> Self {
-        let mut cells: Vec<Cell> = written
-            .runs
-            .iter()
-            .flat_map(|(cell, count)| std::iter::repeat_n(*cell, *count as usize))
-            .collect();
-        // A damaged file must not make later look-ups run past the end.
-        cells.resize(written.width * written.height, Cell::Outside);
-        Self {
-            origin: written.origin,
-            cell_m: written.cell_m,
-            width: written.width,
-            height: written.height,
-            cells,
+impl TryFrom<FloorRuns> for Floor {
+    type Error = String;
+
+    /// A damaged file must neither take all the memory nor make later look-ups run past the end.
+    fn try_from(written: FloorRuns) -> Result<Self, String> {
+        let FloorRuns { origin, cell_m, width, height, runs } = written;
+        let count = width.checked_mul(height).filter(|count| *count <= Self::MOST_CELLS);
+        let most = Self::MOST_CELLS;
+        let count = count.ok_or_else(|| format!("a floor of {width} by {height} cells; at most {most}"))?;
+        let in_runs: u64 = runs.iter().map(|(_, length)| u64::from(*length)).sum();
+        if in_runs != count as u64 {
+            return Err(format!("a floor of {width} by {height} cells with {in_runs} in its runs"));
         }
+        let cells = runs.iter().flat_map(|(cell, length)| std::iter::repeat_n(*cell, *length as usize));
+        Ok(Self { origin, cell_m, width, height, cells: cells.collect() })
     }
 }

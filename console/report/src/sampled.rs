@@ -1,0 +1,26 @@
+//! Paths as points that lie close together.
+
+use world::{Point, polyline};
+
+/// No mission accepts a longer path, metres: one that is comes from a journal that was changed.
+const MOST_LENGTH_M: f64 = 1e6;
+
+/// A path with a point at least every so many metres; nothing of one that no mission can have had, which would take all the
+/// memory.
+pub(crate) fn sampled(path: &[Point], spacing_m: f64) -> Vec<Point> {
+    let length_m = polyline::length_m(path);
+    if length_m <= MOST_LENGTH_M { polyline::resampled(path, spacing_m) } else { Vec::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_that_cannot_be_is_none() {
+        let to = |x_m| sampled(&[Point::origin(), Point::new(x_m, 0.0)], 0.5).len();
+        assert_eq!(to(2.0), 5);
+        assert_eq!((to(1e12), to(1e308), to(f64::NAN), to(f64::INFINITY)), (0, 0, 0, 0));
+        assert_eq!(sampled(&[], 0.5), []);
+    }
+}
