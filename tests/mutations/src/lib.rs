@@ -65,7 +65,9 @@ pub fn mutations() -> impl Strategy<Value = Vec<Mutation>> {
 /// The bytes after these changes.
 pub fn mutated(bytes: &[u8], mutations: &[Mutation]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
-    mutations.iter().for_each(|mutation| apply(&mut bytes, mutation));
+    for mutation in mutations {
+        apply(&mut bytes, mutation);
+    }
     bytes
 }
 
