@@ -3,9 +3,13 @@
 //! Journal, recording, screen and report are folds over this one enum. Events are past tense, self-contained and
 //! carry neither wall-clock time nor anything else that would differ between two equal runs.
 
+mod hold_reason;
 mod log_line;
+mod tether;
 
+pub use hold_reason::HoldReason;
 pub use log_line::{LogLine, Severity, late_text};
+pub use tether::{TetherAlarm, TetherContact};
 
 use crate::{
     ask::AskId,
@@ -17,7 +21,6 @@ use crate::{
 use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, PoseEstimate, Reason};
 use positioning::{Exclusion, Fix, FixError, Ranging};
 use serde::{Deserialize, Serialize};
-use std::fmt;
 use world::tether::Certificate;
 use world::{CellRun, KindRun, Obstacle, ObstacleId, Point, Pose, StationId, World};
 
@@ -356,96 +359,6 @@ fn is_zero(n: &usize) -> bool {
     *n == 0
 }
 
-/// Where the cable bears on an obstacle.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct TetherContact {
-    /// Name of the obstacle.
-    pub on: String,
-    /// Angle by which the cable turns there, radians, counter-clockwise.
-    pub wrap_rad: f64,
-    /// Last point of contact, seen from the anchor.
-    pub at: Point,
-}
-
-/// What may be wrong with the cable.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TetherAlarm {
-    /// The reel runs out.
-    Reel {
-        /// Cable out, metres.
-        out_m: f64,
-        /// Cable there is, metres.
-        reel_m: f64,
-    },
-    /// The cable wraps one obstacle.
-    Wrap {
-        /// Its name.
-        on: String,
-        /// Angle, radians, without sign.
-        wrap_rad: f64,
-        /// Largest angle allowed, radians.
-        limit_rad: f64,
-    },
-    /// All wraps together.
-    SumOfWraps {
-        /// Their sum, radians.
-        sum_rad: f64,
-        /// Largest sum allowed, radians.
-        limit_rad: f64,
-    },
-    /// The reel has paid out more than the cable needs among all obstacles on the map.
-    Snag {
-        /// Cable paid out, metres.
-        paid_out_m: f64,
-        /// Cable that the map explains, metres.
-        explained_m: f64,
-    },
-    /// The hull does not fit along the cable.
-    NoWayHome,
-    /// The robot has left its plan across a line that the plan never crosses: another plan is due.
-    Strayed,
-}
-
-impl TetherAlarm {
-    /// The kind in a word.
-    pub fn word(&self) -> &'static str {
-        match self {
-            Self::Reel { .. } => "reel",
-            Self::Wrap { .. } => "wrap",
-            Self::SumOfWraps { .. } => "sum of wraps",
-            Self::Snag { .. } => "snag",
-            Self::NoWayHome => "way home",
-            Self::Strayed => "stray",
-        }
-    }
-}
-
-impl fmt::Display for TetherAlarm {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Reel { out_m, reel_m } => {
-                write!(f, "{out_m:.1} m of cable out, the reel holds {reel_m:.1} m")
-            }
-            Self::Wrap { on, wrap_rad, limit_rad } => {
-                let (wrap, limit) = (wrap_rad.to_degrees(), limit_rad.to_degrees());
-                write!(f, "the cable wraps {wrap:.0} deg round {on}, limit {limit:.0} deg")
-            }
-            Self::SumOfWraps { sum_rad, limit_rad } => {
-                let (sum, limit) = (sum_rad.to_degrees(), limit_rad.to_degrees());
-                write!(f, "all wraps together reach {sum:.0} deg, limit {limit:.0} deg")
-            }
-            Self::Snag { paid_out_m, explained_m } => write!(
-                f,
-                "the reel has paid out {paid_out_m:.1} m, the map explains {explained_m:.1} m: the cable has caught on \
-                 something that is not on the map"
-            ),
-            Self::Strayed => f.write_str("the robot strayed across a cut of its plan; planning again"),
-            Self::NoWayHome => f.write_str("the hull does not fit back along the cable: no way home"),
-        }
-    }
-}
-
 /// Everything needed to repeat a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunOpened {
@@ -468,106 +381,6 @@ pub struct RunOpened {
     /// How the plates of the floor lie, if the drawing shows them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plates: Option<world::PlateLayout>,
-}
-
-/// Why the robot stands still.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum HoldReason {
-    /// The operator said so.
-    Operator,
-    /// The position is lost.
-    PositionLost,
-    /// The ranges contradict each other.
-    PositionAlarmed,
-    /// The planner failed.
-    PlannerFault {
-        /// The fault's sentence.
-        message: String,
-    },
-    /// The planner has not answered for long.
-    PlannerSilent {
-        /// Which, as a sentence.
-        message: String,
-    },
-    /// The robot gets nowhere.
-    Stuck {
-        /// Where, as a sentence.
-        message: String,
-    },
-    /// The cable has reached a limit.
-    Tether {
-        /// Which, as a sentence.
-        message: String,
-    },
-    /// The plan cannot be certified for the tether.
-    PlanRefused {
-        /// Why, as a sentence.
-        message: String,
-    },
-    /// A single step is done.
-    Stepped,
-    /// The reason went with the planner that was replaced; the operator decides when the robot moves again.
-    PlannerReplaced,
-}
-
-impl HoldReason {
-    /// Every reason once, in the order of their declaration; for tests that go through all of them.
-    #[doc(hidden)]
-    pub fn every(message: &str) -> Vec<Self> {
-        let message = || message.to_owned();
-        let all = vec![
-            Self::Operator,
-            Self::PositionLost,
-            Self::PositionAlarmed,
-            Self::PlannerFault { message: message() },
-            Self::PlannerSilent { message: message() },
-            Self::Stuck { message: message() },
-            Self::Tether { message: message() },
-            Self::PlanRefused { message: message() },
-            Self::Stepped,
-            Self::PlannerReplaced,
-        ];
-        // A new reason does not compile until it is named here; it belongs in the list above as well.
-        for by in &all {
-            match by {
-                Self::Operator
-                | Self::PositionLost
-                | Self::PositionAlarmed
-                | Self::PlannerFault { .. }
-                | Self::PlannerSilent { .. }
-                | Self::Stuck { .. }
-                | Self::Tether { .. }
-                | Self::PlanRefused { .. }
-                | Self::Stepped
-                | Self::PlannerReplaced => {}
-            }
-        }
-        all
-    }
-
-    /// Whether the planner is the cause, so that another one may be the remedy.
-    pub fn blames_planner(&self) -> bool {
-        matches!(self, Self::PlannerFault { .. } | Self::PlannerSilent { .. } | Self::PlanRefused { .. })
-    }
-}
-
-impl fmt::Display for HoldReason {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Operator => f.write_str("held by the operator"),
-            Self::PositionLost => f.write_str("held because the position is lost"),
-            Self::PositionAlarmed => f.write_str("held because the ranges contradict each other"),
-            Self::PlannerFault { message } | Self::PlannerSilent { message } => {
-                write!(f, "held because of the planner: {message}")
-            }
-            Self::Stuck { message } => write!(f, "held because the robot is stuck: {message}"),
-            Self::Tether { message } => write!(f, "held because of the tether: {message}"),
-            Self::PlanRefused { message } => write!(f, "held because a plan was refused: {message}"),
-            Self::Stepped => f.write_str("held after a single step"),
-            Self::PlannerReplaced => f.write_str("held until resumed: the planner was replaced"),
-        }
-    }
 }
 
 /// How a run ended.

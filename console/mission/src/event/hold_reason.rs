@@ -1,0 +1,104 @@
+//! Why a robot stands still.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Why the robot stands still.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum HoldReason {
+    /// The operator said so.
+    Operator,
+    /// The position is lost.
+    PositionLost,
+    /// The ranges contradict each other.
+    PositionAlarmed,
+    /// The planner failed.
+    PlannerFault {
+        /// The fault's sentence.
+        message: String,
+    },
+    /// The planner has not answered for long.
+    PlannerSilent {
+        /// Which, as a sentence.
+        message: String,
+    },
+    /// The robot gets nowhere.
+    Stuck {
+        /// Where, as a sentence.
+        message: String,
+    },
+    /// The cable has reached a limit.
+    Tether {
+        /// Which, as a sentence.
+        message: String,
+    },
+    /// The plan cannot be certified for the tether.
+    PlanRefused {
+        /// Why, as a sentence.
+        message: String,
+    },
+    /// A single step is done.
+    Stepped,
+    /// The reason went with the planner that was replaced; the operator decides when the robot moves again.
+    PlannerReplaced,
+}
+
+impl HoldReason {
+    /// Every reason once, in the order of their declaration; for tests that go through all of them.
+    #[doc(hidden)]
+    pub fn every(message: &str) -> Vec<Self> {
+        let message = || message.to_owned();
+        let all = vec![
+            Self::Operator,
+            Self::PositionLost,
+            Self::PositionAlarmed,
+            Self::PlannerFault { message: message() },
+            Self::PlannerSilent { message: message() },
+            Self::Stuck { message: message() },
+            Self::Tether { message: message() },
+            Self::PlanRefused { message: message() },
+            Self::Stepped,
+            Self::PlannerReplaced,
+        ];
+        // A new reason does not compile until it is named here; it belongs in the list above as well.
+        for by in &all {
+            match by {
+                Self::Operator
+                | Self::PositionLost
+                | Self::PositionAlarmed
+                | Self::PlannerFault { .. }
+                | Self::PlannerSilent { .. }
+                | Self::Stuck { .. }
+                | Self::Tether { .. }
+                | Self::PlanRefused { .. }
+                | Self::Stepped
+                | Self::PlannerReplaced => {}
+            }
+        }
+        all
+    }
+
+    /// Whether the planner is the cause, so that another one may be the remedy.
+    pub fn blames_planner(&self) -> bool {
+        matches!(self, Self::PlannerFault { .. } | Self::PlannerSilent { .. } | Self::PlanRefused { .. })
+    }
+}
+
+impl fmt::Display for HoldReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Operator => f.write_str("held by the operator"),
+            Self::PositionLost => f.write_str("held because the position is lost"),
+            Self::PositionAlarmed => f.write_str("held because the ranges contradict each other"),
+            Self::PlannerFault { message } | Self::PlannerSilent { message } => {
+                write!(f, "held because of the planner: {message}")
+            }
+            Self::Stuck { message } => write!(f, "held because the robot is stuck: {message}"),
+            Self::Tether { message } => write!(f, "held because of the tether: {message}"),
+            Self::PlanRefused { message } => write!(f, "held because a plan was refused: {message}"),
+            Self::Stepped => f.write_str("held after a single step"),
+            Self::PlannerReplaced => f.write_str("held until resumed: the planner was replaced"),
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! What events say of the tether.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use world::Point;
+
+/// Where the cable bears on an obstacle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TetherContact {
+    /// Name of the obstacle.
+    pub on: String,
+    /// Angle by which the cable turns there, radians, counter-clockwise.
+    pub wrap_rad: f64,
+    /// Last point of contact, seen from the anchor.
+    pub at: Point,
+}
+
+/// What may be wrong with the cable.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TetherAlarm {
+    /// The reel runs out.
+    Reel {
+        /// Cable out, metres.
+        out_m: f64,
+        /// Cable there is, metres.
+        reel_m: f64,
+    },
+    /// The cable wraps one obstacle.
+    Wrap {
+        /// Its name.
+        on: String,
+        /// Angle, radians, without sign.
+        wrap_rad: f64,
+        /// Largest angle allowed, radians.
+        limit_rad: f64,
+    },
+    /// All wraps together.
+    SumOfWraps {
+        /// Their sum, radians.
+        sum_rad: f64,
+        /// Largest sum allowed, radians.
+        limit_rad: f64,
+    },
+    /// The reel has paid out more than the cable needs among all obstacles on the map.
+    Snag {
+        /// Cable paid out, metres.
+        paid_out_m: f64,
+        /// Cable that the map explains, metres.
+        explained_m: f64,
+    },
+    /// The hull does not fit along the cable.
+    NoWayHome,
+    /// The robot has left its plan across a line that the plan never crosses: another plan is due.
+    Strayed,
+}
+
+impl TetherAlarm {
+    /// The kind in a word.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Reel { .. } => "reel",
+            Self::Wrap { .. } => "wrap",
+            Self::SumOfWraps { .. } => "sum of wraps",
+            Self::Snag { .. } => "snag",
+            Self::NoWayHome => "way home",
+            Self::Strayed => "stray",
+        }
+    }
+}
+
+impl fmt::Display for TetherAlarm {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reel { out_m, reel_m } => {
+                write!(f, "{out_m:.1} m of cable out, the reel holds {reel_m:.1} m")
+            }
+            Self::Wrap { on, wrap_rad, limit_rad } => {
+                let (wrap, limit) = (wrap_rad.to_degrees(), limit_rad.to_degrees());
+                write!(f, "the cable wraps {wrap:.0} deg round {on}, limit {limit:.0} deg")
+            }
+            Self::SumOfWraps { sum_rad, limit_rad } => {
+                let (sum, limit) = (sum_rad.to_degrees(), limit_rad.to_degrees());
+                write!(f, "all wraps together reach {sum:.0} deg, limit {limit:.0} deg")
+            }
+            Self::Snag { paid_out_m, explained_m } => write!(
+                f,
+                "the reel has paid out {paid_out_m:.1} m, the map explains {explained_m:.1} m: the cable has caught on \
+                 something that is not on the map"
+            ),
+            Self::Strayed => f.write_str("the robot strayed across a cut of its plan; planning again"),
+            Self::NoWayHome => f.write_str("the hull does not fit back along the cable: no way home"),
+        }
+    }
+}
