@@ -4,7 +4,7 @@ use crate::answers::Answers;
 use mission::{
     Event, EventKind, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION,
 };
-use planner_api::Drive;
+
 use scenario::Scenario;
 use sim::Simulator;
 use std::time::Duration;
@@ -79,10 +79,7 @@ impl Flight {
             self.mission.answer(answer);
         }
         let step = self.mission.act();
-        self.simulator.act(match step.drive {
-            Drive::Twist { v_m_per_s, w_rad_per_s } => sim::Drive::Twist { v_m_per_s, w_rad_per_s },
-            Drive::Velocity(velocity) => sim::Drive::Velocity(velocity),
-        });
+        self.simulator.act(step.drive);
         events.extend(step.events);
         self.tick += 1;
         events

@@ -2,9 +2,10 @@
 
 mod cover;
 
-pub(crate) use cover::Cover;
+use cover::Cover;
+pub(crate) use geometry::PathFollower;
 
-use crate::{ask::TaskLeft, config::TaskConfig, follower::Follower};
+use crate::{ask::TaskLeft, config::TaskConfig};
 use planner_api as api;
 use world::{CoverageGrid, ObstacleMap, Point, Shape};
 
@@ -18,7 +19,7 @@ pub(crate) enum Task {
     /// Follow preset points.
     Follow {
         /// Progress along them.
-        follower: Follower,
+        follower: PathFollower,
         /// Distance at which the last one counts as reached, metres.
         tolerance_m: f64,
     },
@@ -43,7 +44,7 @@ impl Task {
                 Self::Goto(Goto { goal: *goal, tolerance_m: *tolerance_m, start_m, position: start })
             }
             TaskConfig::Follow { path, tolerance_m } => {
-                Self::Follow { follower: Follower::new(path.clone()), tolerance_m: *tolerance_m }
+                Self::Follow { follower: PathFollower::new(path.clone()), tolerance_m: *tolerance_m }
             }
             TaskConfig::Cover { anchor, regions, tolerance_m } => {
                 Self::Cover(Cover::new(*anchor, regions.clone(), *tolerance_m, start))
@@ -55,7 +56,7 @@ impl Task {
     pub(crate) fn advance(&mut self, position: Point, map: &ObstacleMap, room_m: f64) {
         match self {
             Self::Goto(goto) => goto.position = position,
-            Self::Follow { follower, .. } => follower.advance(position, map, room_m),
+            Self::Follow { follower, .. } => follower.advance(position, |at| map.clearance_m(at) >= room_m),
             Self::Cover(cover) => cover.advance(position, map),
         }
     }

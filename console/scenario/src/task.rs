@@ -2,7 +2,7 @@
 
 use super::{problem::Complaint, section::Section};
 use mission::{PlannerChoice, TaskConfig};
-use world::{Boundary, Point, coverage::regions, spiral::Spiral};
+use world::{Boundary, Point, shape, spiral::Spiral};
 
 /// Points that a path may have.
 const MOST_POINTS: u64 = 200_000;
@@ -30,7 +30,7 @@ pub(crate) fn task(
         section.refuse(&["spiral", "path_m", "goal_m"], &beside);
         let boxes = if section.has("boxes_m") { section.boxes("boxes_m")? } else { Vec::new() };
         complain_of_boxes_outside(section, boundary, &boxes);
-        let regions = boxes.iter().map(|[low, high]| regions::rectangle(*low, *high)).collect();
+        let regions = boxes.iter().map(|[low, high]| shape::rectangle(*low, *high)).collect();
         return Some(TaskConfig::Cover { anchor: start?, regions, tolerance_m: tolerance_m? });
     }
     section.refuse(&["goal_m", "boxes_m"], &beside);

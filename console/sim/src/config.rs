@@ -183,20 +183,6 @@ pub struct SimConfig {
     pub reel_m: Option<f64>,
 }
 
-/// What the robot is sent.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Drive {
-    /// A unicycle: speed ahead, metres per second, and turn rate, radians per second.
-    Twist {
-        /// Speed ahead.
-        v_m_per_s: f64,
-        /// Turn rate.
-        w_rad_per_s: f64,
-    },
-    /// A point robot: velocity in the tank frame, metres per second.
-    Velocity(Vector2<f64>),
-}
-
 /// The truth of one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Truth {

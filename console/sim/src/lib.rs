@@ -16,8 +16,8 @@ mod chance;
 mod sight;
 
 pub use config::{
-    AeConfig, BehindColumns, Disturbances, Drive, Mover, NoiseModel, RobotConfig, SimConfig, StationFault,
-    Track, Truth,
+    AeConfig, BehindColumns, Disturbances, Mover, NoiseModel, RobotConfig, SimConfig, StationFault, Track,
+    Truth,
 };
 pub use ranging::Sounder;
 pub use simulator::Simulator;

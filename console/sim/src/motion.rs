@@ -1,7 +1,8 @@
 //! From the drive command to the arc that the tracks run in one tick.
 
-use crate::config::{Drive, RobotConfig};
-use world::{Pace, Pose, Vector, geometry::wrap_angle_rad};
+use crate::config::RobotConfig;
+use geometry::{Drive, Pose, Vector, wrap_angle_rad};
+use world::Pace;
 
 /// No motion of one tick is longer than this, metres or radians; keeps absurd settings finite.
 const LONGEST: f64 = 1e6;

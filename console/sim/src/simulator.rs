@@ -2,13 +2,14 @@
 
 use crate::{
     chance::{Chance, normal},
-    config::{Drive, SimConfig, TetherTruth, Truth},
+    config::{SimConfig, TetherTruth, Truth},
     motion::{Arc, Tracks, bounded},
     movers::Movers,
     ranging::Sounder,
     sight::sightings,
     sweep::sweep,
 };
+use geometry::Drive;
 use world::{Medium, Mode, ObstacleMap, Odometry, Point, Pose, Readings, tether::Cable};
 
 /// A hull that touched something keeps touching it until the gap is wider than this, metres.

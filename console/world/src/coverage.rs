@@ -13,7 +13,7 @@ pub use percents::percents;
 pub use shell::{ShellFigures, ShellZone};
 pub use tool::Tool;
 
-use crate::geometry::{Point, Pose};
+use geometry::{Point, Pose};
 use serde::{Deserialize, Serialize};
 
 /// How many cells of each kind there are and how many of them have been scanned.

@@ -5,13 +5,10 @@
 //! Cost: distance queries go through a bounding volume hierarchy and grow with the logarithm of the obstacle count.
 
 pub mod coverage;
-pub mod geometry;
 pub mod medium;
 pub mod obstacles;
 pub mod plates;
-pub mod polyline;
 pub mod readings;
-pub mod shape;
 pub mod shortest;
 pub mod spiral;
 pub mod tank;
@@ -20,10 +17,10 @@ pub mod tether;
 pub use coverage::{
     Cell, CellRun, Counts, CoverageGrid, Floor, FloorMaker, KindRun, ShellFigures, ShellZone, Tool,
 };
-pub use geometry::{Point, Pose, Vector};
+/// The ground floor, so that whoever knows the tank need not name two crates.
+pub use geometry::{self, Boundary, Point, Pose, Shape, Vector, polyline, shape};
 pub use medium::{Amphibious, Medium, Mode, Pace};
 pub use obstacles::{Near, ObstacleMap};
 pub use plates::{Plate, PlateKind, PlateLayout, PlateMap};
 pub use readings::{Odometry, RangeSet, Readings, Sighting};
-pub use shape::Shape;
-pub use tank::{Boundary, Obstacle, ObstacleId, Station, StationId, World, Zone, ZoneKind};
+pub use tank::{Obstacle, ObstacleId, Station, StationId, World, Zone, ZoneKind};

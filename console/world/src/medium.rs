@@ -103,7 +103,7 @@ impl Mode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::Shape;
+    use geometry::shape::Shape;
 
     fn zone(kind: ZoneKind, radius_m: f64) -> Zone {
         Zone { name: String::new(), kind, shape: Shape::Disc { center: Point::origin(), radius_m } }

@@ -9,10 +9,11 @@ mod boxes;
 pub(crate) use boxes::Boxes;
 
 use crate::{
+    Boundary,
     geometry::{Point, Vector},
     polyline::nearest_on_segment,
     shape::Shape,
-    tank::{Boundary, Obstacle, ObstacleId},
+    tank::{Obstacle, ObstacleId},
 };
 use glam::DVec2;
 use parry2d_f64::{
@@ -179,7 +180,7 @@ fn geometries(shape: &Shape) -> Vec<Geometry> {
 
 impl Geometry {
     fn of_ring(vertices: &[Point]) -> Vec<Self> {
-        crate::shape::edges(vertices)
+        geometry::polyline::edges(vertices)
             .map(|(a, b)| Self::Solid { shape: SharedShape::segment(a.into(), b.into()) })
             .collect()
     }

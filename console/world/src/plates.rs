@@ -5,9 +5,9 @@
 //! plate.
 
 use crate::{
+    Boundary,
     coverage::Floor,
     geometry::{Point, wrap_angle_rad},
-    tank::Boundary,
 };
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, f64::consts::TAU};

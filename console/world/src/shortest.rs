@@ -15,10 +15,11 @@ mod search;
 mod tangent;
 
 use crate::{
+    Boundary,
     geometry::{Point, Vector},
+    polyline::edges,
     polyline::nearest_on_segment,
-    shape::{Shape, edges, ring_area_m2, ring_contains},
-    tank::Boundary,
+    shape::{Shape, ring_area_m2, ring_contains},
 };
 use bar::{Bar, Bars};
 use corner::Corner;
@@ -137,10 +138,11 @@ impl GrownFloor {
         let wall_m = match &self.wall {
             Wall::Round { radius_m } => radius_m - at.coords.norm(),
             Wall::Straight { vertices } if ring_contains(vertices, at) => f64::INFINITY,
-            Wall::Straight { vertices } => -crate::polyline::distance_to_ring_m(vertices, at),
+            Wall::Straight { vertices } => -geometry::polyline::distance_to_ring_m(vertices, at),
         };
         let inside = self.rings.iter().filter(|ring| ring_contains(ring, at));
-        let ring_m = inside.map(|ring| -crate::polyline::distance_to_ring_m(ring, at)).fold(wall_m, f64::min);
+        let ring_m =
+            inside.map(|ring| -geometry::polyline::distance_to_ring_m(ring, at)).fold(wall_m, f64::min);
         self.bars.iter().map(|bar| bar.distance_m(at)).fold(ring_m, f64::min)
     }
 

@@ -1,6 +1,6 @@
 //! The preset Archimedean spiral from the wall to the centre (Wang et al. 2023, eq. 2, with the radius corrected).
 
-use crate::geometry::Point;
+use geometry::Point;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -55,7 +55,7 @@ mod tests {
     fn the_papers_spiral_has_2477_points_and_250_metres() {
         let points = Spiral::WANG_2023.points();
         assert_eq!(points.len(), 2477);
-        assert!((crate::polyline::length_m(&points) - 250.0).abs() < 1.0);
+        assert!((geometry::polyline::length_m(&points) - 250.0).abs() < 1.0);
         assert_eq!(points[0], Point::new(10.0, 0.0));
     }
 

@@ -7,10 +7,10 @@ use crate::{
 };
 use field::{Ground, Scene, body::Body, drawing, offline, outcome, scene::no_go, stall::Stall};
 use planner_api::{
-    Caps, Code, Command, Config, Ctx, Drive, Layer, LogLevel, Motion, Outline, ParamSpec, Plan, PlanRequest,
-    Planner, PlannerError, Result, Sensed, Site, Status, Task, Vector2, ZoneKind,
+    Caps, Code, Command, Config, Ctx, Drive, Layer, LogLevel, Motion, ParamSpec, Plan, PlanRequest, Planner,
+    PlannerError, Result, Sensed, Site, Status, Task, Vector2, ZoneKind,
 };
-use world::{Point, Pose, Shape, Zone};
+use world::{Pose, Zone};
 
 /// Steps allowed for a plan, as a multiple of the straight way at the slower pace, and some more.
 const DETOUR: f64 = 6.0;
@@ -167,20 +167,9 @@ fn zones(site: &Site<'_>) -> Vec<Zone> {
     let zone = |zone: &planner_api::Zone<'_>| Zone {
         name: String::new(),
         kind: kind(zone.kind),
-        shape: shape_of(&zone.outline),
+        shape: zone.outline.to_owned(),
     };
     site.zones.iter().map(zone).collect()
-}
-
-fn shape_of(outline: &Outline<'_>) -> Shape {
-    let points = |points: &[Point]| points.to_vec();
-    match *outline {
-        Outline::Disc { center, radius_m } => Shape::Disc { center, radius_m },
-        Outline::Polygon { vertices } => Shape::Polygon { vertices: points(vertices) },
-        Outline::Polyline { points: line, half_width_m } => {
-            Shape::Polyline { points: points(line), half_width_m }
-        }
-    }
 }
 
 #[cfg(test)]

@@ -164,7 +164,7 @@ impl Guide {
 
 /// The corners of the shortest way from a place, the goal last; only the goal if no way is found.
 pub fn shortest_way(ground: &Ground, at: Point, goal: Point, keep_m: f64) -> Vec<Point> {
-    let shapes: Vec<Shape> = ground.solids.iter().map(|solid| shape_of(&solid.part)).collect();
+    let shapes: Vec<Shape> = ground.solids.iter().map(|solid| solid.part.to_shape()).collect();
     for attempt in 0..ATTEMPTS {
         let room_m = if attempt + 1 == ATTEMPTS { 0.0 } else { ROOM_M / f64::from(1 << attempt) };
         // A robot that stands, or is to stand, nearer than that finds a way with less room.
@@ -181,18 +181,6 @@ fn way_with(ground: &Ground, shapes: &[Shape], at: Point, goal: Point, keep_m: f
     let floor = GrownFloor::new(wall, keep_m, shapes.iter().map(|shape| (shape, keep_m)));
     let way = floor.shortest(at, goal, &mut || true).ok()?;
     Some(way.points().into_iter().skip(1).collect())
-}
-
-fn shape_of(part: &field::part::Part) -> Shape {
-    match part {
-        field::part::Part::Capsule { a, b, half_width_m } if a == b => {
-            Shape::Disc { center: *a, radius_m: *half_width_m }
-        }
-        field::part::Part::Capsule { a, b, half_width_m } => {
-            Shape::Polyline { points: vec![*a, *b], half_width_m: *half_width_m }
-        }
-        field::part::Part::Polygon { vertices } => Shape::Polygon { vertices: vertices.clone() },
-    }
 }
 
 #[cfg(test)]

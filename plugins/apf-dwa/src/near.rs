@@ -1,6 +1,7 @@
 //! What is near enough to matter within the horizon of a window.
 
-use field::{Ground, Solid, part::Part};
+use field::{Ground, Solid};
+use geometry::convex::Part;
 use world::{Boundary, Point, Vector};
 
 /// A round thing, perhaps moving.

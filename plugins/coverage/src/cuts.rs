@@ -9,7 +9,7 @@ use crate::{
     lanes::Pattern,
     slit::{SNAPPED_M, Slit},
 };
-use field::part::{Part, crossing};
+use geometry::convex::{Part, crossing};
 use world::{Boundary, Point, Vector};
 
 /// Beyond the distance to keep, a cut stays this far away from obstacles it does not belong to, metres.

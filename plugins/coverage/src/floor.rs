@@ -5,7 +5,7 @@
 //! otherwise keep off every straight wall by the half cell that no row of centres represents.
 
 use crate::{ground::Ground, slit::Slit};
-use world::{Boundary, Point, Vector};
+use world::{Boundary, Point, Vector, shape};
 
 mod bar;
 pub use bar::Run;
@@ -47,7 +47,7 @@ fn bounds_along(wall: &Boundary, ahead: Vector) -> (Point, Point) {
         Boundary::Circle { .. } => wall.bounds(),
         Boundary::Polygon { vertices } => {
             let turned = vertices.iter().map(|v| Point::new(ahead.dot(&v.coords), ahead.perp(&v.coords)));
-            Boundary::Polygon { vertices: turned.collect() }.bounds()
+            shape::bounds_of(&turned.collect::<Vec<Point>>())
         }
     }
 }

@@ -9,7 +9,6 @@ mod steer;
 use field::{
     Flight, Pilot, params as p,
     pilot::{Tick, position_sigma_m},
-    scene::wall_of,
 };
 use planner_api::{
     Command, Config, Ctx, Drive, LegTag, LogLevel, Motion, ParamSpec, Plan, Result, Sensed, Site, Status,
@@ -74,7 +73,7 @@ impl Follow {
         Self {
             flight: Flight { guard_m, ..flight },
             pilot: Pilot::pursuing(&Site { clearance_m: guard_m - PILOT_SPARE_M, ..*site }),
-            wall: wall_of(&site.boundary),
+            wall: site.boundary.to_owned(),
             keep_m: site.limits.radius_m,
             cuts: Vec::new(),
             from: None,

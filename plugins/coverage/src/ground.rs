@@ -1,11 +1,8 @@
 //! The floor as a coverage planner sees it: wall, solid parts, and where the middle of the hull may be.
 
 use crate::slit::Bare;
-use field::{
-    Keep, Room,
-    part::{Part, parts_of},
-    scene::{solids, wall_of},
-};
+use field::{Keep, Room, scene::solids};
+use geometry::convex::{Part, parts_of};
 use planner_api::{Code, PlannerError, Result, Site};
 use std::{f64::consts::TAU, sync::OnceLock};
 use world::{Boundary, Point, Vector};
@@ -53,7 +50,7 @@ impl Ground {
         if !(anchor.x.is_finite() && anchor.y.is_finite()) {
             return wrong(Code::Invalid, "the anchor is not a number".to_owned());
         }
-        let wall = wall_of(&site.boundary);
+        let wall = site.boundary.to_owned();
         let parts: Vec<Part> = solids(site).flat_map(|(_, outline)| parts_of(&outline)).collect();
         if wall.wall_distance_m(anchor) < 0.0 {
             let place = format!("the anchor ({:.2}, {:.2}) lies outside the floor", anchor.x, anchor.y);

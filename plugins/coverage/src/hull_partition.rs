@@ -246,7 +246,7 @@ impl HullPartition {
     }
 }
 
-fn column(part: &field::part::Part) -> (Point, f64) {
+fn column(part: &geometry::convex::Part) -> (Point, f64) {
     let at = middle(part);
     (at, part.corners().iter().map(|c| (c.0 - at).norm() + c.1).fold(0.0, f64::max))
 }

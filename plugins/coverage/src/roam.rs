@@ -1,7 +1,7 @@
 //! Ways for a robot without a tether: the shortest, on either side of whatever stands between.
 
 use crate::ground::{Ground, SLACK_M};
-use field::part::Part;
+use geometry::convex::Part;
 use planner_api::{Ctx, Result};
 use world::{Point, Shape, shortest::GrownFloor};
 

@@ -132,7 +132,7 @@ fn runs(slit: &Slit, cuts: &[Cut], points: &[Point]) -> Vec<Lane> {
 
 fn crosses(cuts: &[Cut], a: Point, b: Point) -> bool {
     let mut sides = cuts.iter().flat_map(|cut| cut.line.windows(2));
-    sides.any(|side| field::part::crossing(a, b, side[0], side[1]).is_some())
+    sides.any(|side| geometry::convex::crossing(a, b, side[0], side[1]).is_some())
 }
 
 #[cfg(test)]

@@ -1,9 +1,7 @@
 //! A sensed obstacle as the pilot sees it.
 
-use crate::{
-    contact::{Contact, Source},
-    part::{Gap, Part, parts_of},
-};
+use crate::contact::{Contact, Source};
+use geometry::convex::{Gap, Part, parts_of};
 use planner_api::Outline;
 use world::Point;
 

@@ -3,11 +3,8 @@
 //! Wang et al. 2023 turn counter-clockwise about single points, which pushes back at half of them and cancels between
 //! two. Here obstacles that leave no passage between them, or to the wall, are gone round as one.
 
-use crate::{
-    body::Body,
-    laws::Sense,
-    part::{Part, crossing},
-};
+use crate::{body::Body, laws::Sense};
+use geometry::convex::{Part, crossing};
 use std::collections::BTreeSet;
 use world::{Point, Vector, geometry::wrap_angle_rad, polyline::nearest_on_segment};
 

@@ -2,10 +2,10 @@
 
 use crate::{
     body::Body,
-    part::{Part, parts_of},
-    scene::{solids, wall_of},
+    scene::solids,
     tangents::{self, Side, Tangent},
 };
+use geometry::convex::{Part, parts_of};
 use planner_api::Site;
 use world::{Point, Vector};
 
@@ -96,7 +96,7 @@ impl Ground {
             solids(site).flat_map(|(id, outline)| parts_of(&outline).into_iter().map(move |p| (id, p)));
         Self {
             solids: parts.map(|(id, part)| Solid::new(id, part)).collect(),
-            wall: wall_of(&site.boundary),
+            wall: site.boundary.to_owned(),
             hull_m: site.limits.radius_m,
         }
     }

@@ -1,8 +1,8 @@
 //! The force laws as pure functions, each with its source. Forces are newtons in name only: the planners use their
 //! direction, so scaling all gains together changes nothing.
 
-use crate::contact::{Contact, direction_or};
-use world::{Point, Vector};
+use crate::contact::Contact;
+use geometry::{Point, Vector, direction_or};
 
 /// Smallest distance a law divides by, metres: a preset point may lie on an obstacle, and the laws are singular there.
 pub const FLOOR_M: f64 = 1e-6;

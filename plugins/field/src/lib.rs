@@ -27,7 +27,6 @@ pub mod offline;
 pub mod oscillation;
 pub mod outcome;
 pub mod params;
-pub mod part;
 pub mod pilot;
 pub mod pull;
 pub mod rollout;

@@ -9,13 +9,13 @@ use crate::{
     guard,
     law::{Forces, Law, RotationForm},
     laws::Sense,
-    part::Part,
-    scene::{no_go, wall_contacts, wall_of},
+    scene::{no_go, wall_contacts},
     settings::{Flight, Settings, Steering},
     stall::{Remedy, Stall},
     trap::TrapDetector,
     turning::{Reading, SenseRule, Turning},
 };
+use geometry::convex::Part;
 use planner_api::{Command, Ctx, Drive, Layer, Limits, Motion, PoseEstimate, Result, Sensed, Site, Status};
 use world::{Point, Vector};
 
@@ -104,7 +104,7 @@ impl Pilot {
         Self {
             limits: site.limits,
             clearance_m: site.clearance_m,
-            wall: wall_of(&site.boundary),
+            wall: site.boundary.to_owned(),
             no_go: no_go(site).filter_map(|(id, outline)| Body::new(id, &outline)).collect(),
             gate: Gate {
                 turning,

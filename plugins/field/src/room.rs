@@ -1,9 +1,7 @@
 //! Where the middle of the hull may be: hard clearances to everything solid and to the wall.
 
-use crate::{
-    part::{Part, parts_of},
-    scene::{solids, wall_of},
-};
+use crate::scene::solids;
+use geometry::convex::{Part, parts_of};
 use planner_api::Site;
 use world::{Boundary, Point};
 
@@ -47,7 +45,7 @@ impl Room {
     /// The floor of a site, no-go zones left out.
     pub fn new(site: &Site<'_>, keep: Keep) -> Self {
         let parts = solids(site).flat_map(|(_, outline)| parts_of(&outline));
-        Self::of_parts(wall_of(&site.boundary), parts, keep)
+        Self::of_parts(site.boundary.to_owned(), parts, keep)
     }
 
     /// The floor between some parts.

@@ -2,11 +2,12 @@
 
 use crate::{
     body::Body,
-    contact::{Contact, Source, away_from, direction_or},
+    contact::{Contact, Source},
     law::Law,
 };
-use planner_api::{Boundary, Outline, Site, ZoneKind};
-use world::{ObstacleId, ObstacleMap, Point, Shape, Vector, polyline::nearest_on_segment};
+use geometry::{Point, Vector, convex::away_from, direction_or, polyline::nearest_on_segment};
+use planner_api::{Outline, Site, ZoneKind};
+use world::{ObstacleId, ObstacleMap};
 
 /// Ids of no-go zones are counted down from here, so that they never meet those of obstacles.
 const LAST_ID: u32 = u32::MAX;
@@ -33,23 +34,15 @@ pub fn no_go<'a>(site: &Site<'a>) -> impl Iterator<Item = (u32, Outline<'a>)> {
     zones.enumerate().map(|(index, zone)| (LAST_ID - index as u32, zone.outline))
 }
 
-/// The wall in the terms of the world.
-pub fn wall_of(boundary: &Boundary<'_>) -> world::Boundary {
-    match *boundary {
-        Boundary::Circle { radius_m } => world::Boundary::Circle { radius_m },
-        Boundary::Polygon { vertices } => world::Boundary::Polygon { vertices: vertices.to_vec() },
-    }
-}
-
 impl Scene {
     /// The map of a site; costs `n log n` once.
     pub fn new(site: &Site<'_>) -> Self {
-        let wall = wall_of(&site.boundary);
+        let wall = site.boundary.to_owned();
         let obstacles: Vec<world::Obstacle> = solids(site)
             .map(|(id, outline)| world::Obstacle {
                 id: ObstacleId(id),
                 name: String::new(),
-                shape: shape_of(&outline),
+                shape: outline.to_owned(),
                 known: true,
             })
             .collect();
@@ -122,14 +115,4 @@ pub fn wall_contacts(wall: &world::Boundary, at: Point, hull_m: f64, reach_m: f6
         }
     };
     all.into_iter().filter(|c: &Contact| c.distance_m < reach_m).collect()
-}
-
-fn shape_of(outline: &Outline<'_>) -> Shape {
-    match *outline {
-        Outline::Disc { center, radius_m } => Shape::Disc { center, radius_m },
-        Outline::Polygon { vertices } => Shape::Polygon { vertices: vertices.to_vec() },
-        Outline::Polyline { points, half_width_m } => {
-            Shape::Polyline { points: points.to_vec(), half_width_m }
-        }
-    }
 }

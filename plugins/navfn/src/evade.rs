@@ -6,8 +6,11 @@
 //! Fox et al. 1997.
 
 use field::body::Body;
-use planner_api::{Limits, Motion, Obstacle, PoseEstimate};
-use world::{Boundary, Point, Vector, geometry::wrap_angle_rad};
+use geometry::{
+    Boundary, Drive, Limits, Point, Vector,
+    motion::{TURN_FIRST_RAD, drive_for, heading_error_rad},
+};
+use planner_api::{Obstacle, PoseEstimate};
 
 /// Slower than this an obstacle stands still, metres per second.
 const STILL_M_PER_S: f64 = 0.02;
@@ -26,9 +29,6 @@ const LIKED_M: f64 = 0.8;
 const DOUBT_M_PER_S: f64 = 0.04;
 /// What a metre of missing room is worth in metres per second of deviation from the wish.
 const WORTH_PER_S: f64 = 0.25;
-/// As the console turns a robot: gain of the turn rate, and the error beyond which it turns on the spot.
-const TURN_GAIN_PER_S: f64 = 2.5;
-const TURN_FIRST_RAD: f64 = 1.0;
 
 /// Whether an obstacle moves.
 pub(crate) fn moves(obstacle: &Obstacle<'_>) -> bool {
@@ -118,29 +118,26 @@ fn outlook(velocity: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Outloo
     Outlook { until_s: HORIZON_S, room_m }
 }
 
-/// Place and heading a step later, with the console's way of turning a robot into a velocity.
+/// Place and heading a step later, by the console's law of turning a robot into a velocity.
 fn moved(at: Point, heading_rad: f64, velocity: Vector, limits: &Limits) -> (Point, f64) {
-    if limits.motion == Motion::Point {
-        return (at + velocity * STEP_S, heading_rad);
+    match drive_for(Drive::Velocity(velocity), heading_rad, limits, TURN_FIRST_RAD) {
+        Drive::Velocity(velocity) => (at + velocity * STEP_S, heading_rad),
+        Drive::Twist { v_m_per_s, w_rad_per_s } => {
+            // No further than the error: a step is long.
+            let error_rad = heading_error_rad(velocity, heading_rad);
+            let turn_rad = (w_rad_per_s * STEP_S).clamp(-error_rad.abs(), error_rad.abs());
+            let middle_rad = heading_rad + turn_rad / 2.0;
+            let direction = Vector::new(middle_rad.cos(), middle_rad.sin());
+            (at + direction * (v_m_per_s * STEP_S), heading_rad + turn_rad)
+        }
     }
-    let speed = velocity.norm();
-    if speed < 1e-9 {
-        return (at, heading_rad);
-    }
-    let error_rad = wrap_angle_rad(velocity.y.atan2(velocity.x) - heading_rad);
-    let ahead = if error_rad.abs() > TURN_FIRST_RAD { 0.0 } else { speed * error_rad.cos() };
-    let turn_rad =
-        (TURN_GAIN_PER_S * error_rad).clamp(-limits.w_max_rad_per_s, limits.w_max_rad_per_s) * STEP_S;
-    // No further than the error: a step is long.
-    let turn_rad = if turn_rad.abs() > error_rad.abs() { error_rad } else { turn_rad };
-    let middle_rad = heading_rad + turn_rad / 2.0;
-    (at + Vector::new(middle_rad.cos(), middle_rad.sin()) * (ahead * STEP_S), heading_rad + turn_rad)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use field::trial::exact_pose;
+    use geometry::{Motion, wrap_angle_rad};
     use planner_api::Outline;
 
     const LIMITS: Limits = Limits {

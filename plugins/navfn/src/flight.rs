@@ -1,7 +1,7 @@
 //! Flying along a plan.
 
 use crate::evade::{self, Around, Mover};
-use field::{Flight, Pilot, body::Body, drawing, pilot::Tick, scene::wall_of};
+use field::{Flight, Pilot, body::Body, drawing, pilot::Tick};
 use planner_api::{Command, Ctx, Drive, Layer, Limits, Result, Sensed, Site, Status};
 use world::Boundary;
 
@@ -21,7 +21,7 @@ impl Flyer {
             flight,
             pilot: Pilot::pursuing(site),
             limits: site.limits,
-            wall: wall_of(&site.boundary),
+            wall: site.boundary.to_owned(),
             clearance_m: site.clearance_m,
         }
     }

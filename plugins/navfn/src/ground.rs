@@ -2,7 +2,7 @@
 
 use crate::evade;
 use planner_api::{
-    Code, Ctx, LogLevel, Outline, Plan, PlanRequest, PlannerError, Reason, Result, Site, Task, ZoneKind,
+    Code, Ctx, LogLevel, Plan, PlanRequest, PlannerError, Reason, Result, Site, Task, ZoneKind,
 };
 use world::{
     Boundary, Point, Shape, polyline,
@@ -61,7 +61,7 @@ impl Ground {
         let wanted_m = hull_m + site.clearance_m.max(clearance_m) + ROUNDING_M;
         // Under way the estimate may have the hull touch what it does not touch.
         let least_at_start_m = if *request.reason == Reason::Start { hull_m } else { 0.0 };
-        let boundary = field::scene::wall_of(&site.boundary);
+        let boundary = site.boundary.to_owned();
         let keep_m = |distance_m: &dyn Fn(Point) -> f64, what: &str| {
             fitting(distance_m(start), wanted_m, least_at_start_m)
                 .ok_or_else(|| refused(site, start, distance_m(start), &format!("start touches {what}")))
@@ -152,19 +152,9 @@ fn shapes<'a>(site: &'a Site<'_>) -> impl Iterator<Item = (String, bool, Shape)>
         .obstacles
         .iter()
         .filter(|o| !evade::moves(o))
-        .map(|o| (format!("obstacle {}", o.id), o.discovered, shape_of(&o.outline)));
+        .map(|o| (format!("obstacle {}", o.id), o.discovered, o.outline.to_owned()));
     let zones = site.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
-    obstacles.chain(zones.map(|zone| ("a no-go zone".to_owned(), false, shape_of(&zone.outline))))
-}
-
-fn shape_of(outline: &Outline<'_>) -> Shape {
-    match *outline {
-        Outline::Disc { center, radius_m } => Shape::Disc { center, radius_m },
-        Outline::Polygon { vertices } => Shape::Polygon { vertices: vertices.to_vec() },
-        Outline::Polyline { points, half_width_m } => {
-            Shape::Polyline { points: points.to_vec(), half_width_m }
-        }
-    }
+    obstacles.chain(zones.map(|zone| ("a no-go zone".to_owned(), false, zone.outline.to_owned())))
 }
 
 /// Why there is no way, for the console.

@@ -1,27 +1,7 @@
 //! What a planner commands the robot to do.
 
+use geometry::Drive;
 use nalgebra::Vector2;
-
-/// How the robot shall move until the next step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-pub enum Drive {
-    /// Speed ahead and turn rate, for planners that think in tracks and wheels.
-    Twist {
-        /// Speed along the robot's heading, metres per second; negative is backward.
-        v_m_per_s: f64,
-        /// Turn rate, radians per second, counter-clockwise.
-        w_rad_per_s: f64,
-    },
-    /// Velocity in the tank frame, metres per second; the console turns the robot into it. For planners that think
-    /// in forces and directions, so that each need not bring its own heading control.
-    Velocity(Vector2<f64>),
-}
-
-impl Drive {
-    /// Standing still.
-    pub const STILL: Self = Self::Twist { v_m_per_s: 0.0, w_rad_per_s: 0.0 };
-}
 
 /// How the planner sees its own task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

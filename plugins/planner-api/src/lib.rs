@@ -21,16 +21,18 @@ pub mod export;
 #[doc(hidden)]
 pub mod glue;
 
-pub use command::{Command, Drive, Status, Stopping};
+pub use command::{Command, Status, Stopping};
 pub use ctx::{Ctx, LogLevel, Services, StopReason};
 pub use drawing::{Drawing, Layer};
 pub use error::{Code, PlannerError};
+/// Points, poses, shapes, paths and motion: what a planner shares with the console.
+pub use geometry::{self, Drive, Limits, Motion};
 pub use glue::on_own_thread;
 pub use nalgebra::{Point2, Vector2};
 pub use params::{Config, Kind, ParamSpec, Value, choice, flag, float, int};
 pub use planner::{Caps, Planner};
 pub use request::{Leg, LegTag, Plan, PlanRequest, PoseEstimate, Reason, Sensed, Task, TetherLimits};
-pub use site::{Boundary, Limits, Motion, Obstacle, Outline, Site, Zone, ZoneKind};
+pub use site::{Boundary, Obstacle, Outline, Site, Zone, ZoneKind};
 
 /// The result of a planner's call.
 pub type Result<T> = std::result::Result<T, PlannerError>;

@@ -1,45 +1,12 @@
 //! Where the mission takes place, as far as the drawing shows it.
 
+use geometry::Limits;
 use nalgebra::{Point2, Vector2};
 
-/// The wall of the tank.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Boundary<'a> {
-    /// A round tank about the origin.
-    Circle {
-        /// Inner radius, metres.
-        radius_m: f64,
-    },
-    /// Straight walls; simple polygon, counter-clockwise.
-    Polygon {
-        /// Corners.
-        vertices: &'a [Point2<f64>],
-    },
-}
-
-/// The outline of an obstacle or zone.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Outline<'a> {
-    /// A disc; radius zero is a point obstacle.
-    Disc {
-        /// Centre.
-        center: Point2<f64>,
-        /// Radius, metres.
-        radius_m: f64,
-    },
-    /// A convex polygon, counter-clockwise.
-    Polygon {
-        /// Corners.
-        vertices: &'a [Point2<f64>],
-    },
-    /// A line of some thickness.
-    Polyline {
-        /// Corners of the centre line.
-        points: &'a [Point2<f64>],
-        /// Half the thickness, metres.
-        half_width_m: f64,
-    },
-}
+/// The wall of the tank, its corners borrowed from the console.
+pub type Boundary<'a> = geometry::Boundary<&'a [Point2<f64>]>;
+/// The outline of an obstacle or zone, its corners borrowed from the console.
+pub type Outline<'a> = geometry::Shape<&'a [Point2<f64>]>;
 
 /// Something the robot must not touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,33 +41,6 @@ pub struct Zone<'a> {
     pub kind: ZoneKind,
     /// Its outline.
     pub outline: Outline<'a>,
-}
-
-/// How the robot moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[repr(u32)]
-pub enum Motion {
-    /// In any direction at once, as the papers' point robots.
-    Point = 0,
-    /// Ahead and turning, as tracked and wheeled robots.
-    Unicycle = 1,
-}
-
-/// What the robot can do.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Limits {
-    /// How it moves.
-    pub motion: Motion,
-    /// Largest speed, metres per second.
-    pub v_max_m_per_s: f64,
-    /// Largest turn rate, radians per second.
-    pub w_max_rad_per_s: f64,
-    /// Radius of the smallest circle around the robot, metres.
-    pub radius_m: f64,
-    /// How far it sees obstacles, metres.
-    pub sensing_range_m: f64,
 }
 
 /// The drawing of the tank, the robot and the margins that the mission demands.

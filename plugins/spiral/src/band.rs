@@ -10,6 +10,7 @@ mod rows;
 
 use banded::Banded;
 use field::Room;
+use geometry::convex::Part;
 use rows::{Limit, Row, Solid, solids_of};
 use std::f64::consts::PI;
 use world::{Boundary, Point, Vector, polyline};
@@ -139,7 +140,7 @@ impl<'a> Band<'a> {
 
     /// What is near, each once.
     fn solids(&self, way: &[Point]) -> Vec<Solid<'a>> {
-        let mut parts: Vec<(&'a field::part::Part, f64)> = Vec::new();
+        let mut parts: Vec<(&'a Part, f64)> = Vec::new();
         for place in way {
             for (part, keep_m) in self.room.parts_near(*place) {
                 if !parts.iter().any(|(known, _)| std::ptr::eq(*known, part)) {

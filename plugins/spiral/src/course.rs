@@ -1,6 +1,7 @@
 //! The course to follow: preset points with stations and directions, checked once.
 
-use field::{Keep, Room, part::parts_of, scene::solids};
+use field::{Keep, Room, scene::solids};
+use geometry::convex::parts_of;
 use planner_api::{Code, Config, Ctx, LogLevel, ParamSpec, PlanRequest, PlannerError, Result, Site, Task};
 use std::f64::consts::TAU;
 use world::{Point, Vector, geometry::wrap_angle_rad, polyline};
@@ -99,7 +100,7 @@ pub(crate) fn room(site: &Site<'_>, clearance_m: f64, course: &Course) -> Result
     let hull_m = site.limits.radius_m;
     let obstacle_m = hull_m + site.clearance_m.max(clearance_m);
     check_pitch(obstacle_m, &course.points)?;
-    let wall = field::scene::wall_of(&site.boundary);
+    let wall = site.boundary.to_owned();
     let nearest_m = course.points.iter().map(|p| wall.wall_distance_m(*p)).fold(f64::INFINITY, f64::min);
     let wall_m = (hull_m + site.clearance_m).min(nearest_m.max(hull_m));
     Ok(Room::new(site, Keep { obstacle_m, wall_m }))

@@ -1,7 +1,8 @@
 //! Flying along a plan or a preset path: straight to the next point, past what is in the way along its tangent.
 
 use crate::tangent::Around;
-use field::{Flight, Keep, Pilot, drawing, part::Part, pilot::Tick, scene::wall_of};
+use field::{Flight, Keep, Pilot, drawing, pilot::Tick};
+use geometry::convex::Part;
 use planner_api::{Command, Ctx, Drive, Result, Sensed, Site};
 use world::{Boundary, Point};
 
@@ -19,7 +20,7 @@ pub(crate) struct Pursuit {
 impl Pursuit {
     /// A pursuit at a site that keeps this clearance, or the mission's if that is larger, metres.
     pub(crate) fn new(flight: Flight, clearance_m: f64, site: &Site<'_>) -> Self {
-        Self { flight, clearance_m, pilot: Pilot::pursuing(site), wall: wall_of(&site.boundary) }
+        Self { flight, clearance_m, pilot: Pilot::pursuing(site), wall: site.boundary.to_owned() }
     }
 
     /// Takes over changed settings on the way; what it remembers stays.

@@ -5,11 +5,8 @@
 //! goes round one of them and not round the other, that is, which a straight line between them crosses more often in
 //! one direction than in the other. Counting crossings along a spanning tree finds such a curve without trying all.
 
-use field::{
-    Keep,
-    part::{Part, parts_of},
-    scene::{solids, wall_of},
-};
+use field::{Keep, scene::solids};
+use geometry::convex::{Part, parts_of};
 use planner_api::Site;
 use std::collections::{BTreeSet, VecDeque};
 use world::{Boundary, Point, Vector};
@@ -59,7 +56,7 @@ pub(crate) fn between(site: &Site<'_>, keep: Keep, a: Point, b: Point) -> Option
     if nodes.len() > MOST_PARTS {
         return None;
     }
-    let links = links(&nodes, keep, &wall_of(&site.boundary), (a, b));
+    let links = links(&nodes, keep, &site.boundary.to_owned(), (a, b));
     let chain = odd_cycle(&links)?;
     let id = |node: &usize| if let Node::Obstacle { id, .. } = nodes[*node] { Some(id) } else { None };
     let obstacles: BTreeSet<u32> = chain.iter().filter_map(id).collect();
@@ -71,7 +68,7 @@ fn nodes(site: &Site<'_>) -> Vec<Node> {
     let obstacle =
         |(id, outline)| parts_of(&outline).into_iter().map(move |part| Node::Obstacle { id, part });
     let mut nodes: Vec<Node> = solids(site).flat_map(obstacle).collect();
-    match wall_of(&site.boundary) {
+    match site.boundary.to_owned() {
         Boundary::Circle { .. } => nodes.push(Node::RoundWall),
         Boundary::Polygon { vertices } => {
             let edges = vertices.iter().zip(vertices.iter().cycle().skip(1));

@@ -6,11 +6,8 @@ use crate::{
     refusal,
     walk::Walk,
 };
-use field::{
-    params as p,
-    part::{Part, parts_of},
-    scene::solids,
-};
+use field::{params as p, scene::solids};
+use geometry::convex::{Part, parts_of};
 use planner_api::{
     Caps, Code, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result,
     Sensed, Site, float,

@@ -1,7 +1,8 @@
 //! Following a course by what is sensed: straight to its next free point, and past what is in the way along the
 //! tangents of the headings that it blocks.
 
-use field::{Keep, Sense, part::Part};
+use field::{Keep, Sense};
+use geometry::convex::Part;
 use std::f64::consts::TAU;
 use world::{Boundary, Point, Vector, geometry::wrap_angle_rad};
 

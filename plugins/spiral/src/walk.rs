@@ -5,7 +5,8 @@ use crate::{
     tangent::{Around, Follower, Track},
     way_out::{self, WayOut},
 };
-use field::{Room, part::Part};
+use field::Room;
+use geometry::convex::Part;
 use planner_api::{Ctx, Result};
 use world::{Point, polyline};
 

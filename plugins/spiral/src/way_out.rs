@@ -1,7 +1,8 @@
 //! Out of a pocket: the shortest way among all that was sensed so far to the course beyond.
 
 use crate::tangent::{Follower, Track};
-use field::{Room, part::Part};
+use field::Room;
+use geometry::convex::Part;
 use std::f64::consts::TAU;
 use world::{Point, Shape, Vector, shortest::GrownFloor};
 
@@ -26,7 +27,7 @@ pub(crate) struct WayOut {
 
 /// The floor among what was sensed.
 pub(crate) fn floor<'a>(room: &Room, seen: impl Iterator<Item = &'a Part>) -> GrownFloor {
-    let shapes: Vec<Shape> = seen.map(shape_of).collect();
+    let shapes: Vec<Shape> = seen.map(Part::to_shape).collect();
     let keep = room.keep();
     GrownFloor::new(room.wall(), keep.wall_m, shapes.iter().map(|shape| (shape, keep.obstacle_m)))
 }
@@ -79,14 +80,4 @@ fn nearest_free(blocked: Point, floor: &GrownFloor) -> Option<Point> {
         bearings.map(move |a| blocked + Vector::new(a.cos(), a.sin()) * radius_m)
     });
     places.find(|place| floor.spare_m(*place) >= 0.0)
-}
-
-fn shape_of(part: &Part) -> Shape {
-    match part {
-        Part::Capsule { a, b, half_width_m } if a == b => Shape::Disc { center: *a, radius_m: *half_width_m },
-        Part::Capsule { a, b, half_width_m } => {
-            Shape::Polyline { points: vec![*a, *b], half_width_m: *half_width_m }
-        }
-        Part::Polygon { vertices } => Shape::Polygon { vertices: vertices.clone() },
-    }
 }

@@ -53,14 +53,11 @@ impl Site {
         let zones: Vec<api::Zone<'_>> = self
             .zones
             .iter()
-            .map(|zone| api::Zone { kind: zone.kind, outline: outline_of(&zone.shape) })
+            .map(|zone| api::Zone { kind: zone.kind, outline: zone.shape.as_ref() })
             .collect();
         call(&api::Site {
             revision: self.revision,
-            boundary: match &self.boundary {
-                Boundary::Circle { radius_m } => api::Boundary::Circle { radius_m: *radius_m },
-                Boundary::Polygon { vertices } => api::Boundary::Polygon { vertices },
-            },
+            boundary: self.boundary.as_ref(),
             obstacles: &obstacles,
             zones: &zones,
             limits: self.limits,
@@ -76,19 +73,9 @@ impl SiteObstacle {
     pub fn lend(&self) -> api::Obstacle<'_> {
         api::Obstacle {
             id: self.id,
-            outline: outline_of(&self.shape),
+            outline: self.shape.as_ref(),
             discovered: self.discovered,
             velocity_m_per_s: self.velocity_m_per_s,
-        }
-    }
-}
-
-fn outline_of(shape: &Shape) -> api::Outline<'_> {
-    match shape {
-        Shape::Disc { center, radius_m } => api::Outline::Disc { center: *center, radius_m: *radius_m },
-        Shape::Polygon { vertices } => api::Outline::Polygon { vertices },
-        Shape::Polyline { points, half_width_m } => {
-            api::Outline::Polyline { points, half_width_m: *half_width_m }
         }
     }
 }

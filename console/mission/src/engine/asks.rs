@@ -146,7 +146,8 @@ impl Mission {
         let here = pose.position;
         self.keep_trail();
         if let Some(plan) = &mut self.active.follower {
-            plan.advance(here, self.chart.map(), 0.0);
+            let map = self.chart.map();
+            plan.advance(here, |at| map.clearance_m(at) >= 0.0);
         }
         let (v_m_per_s, w_rad_per_s) = match self.happened.last_drive {
             Drive::Twist { v_m_per_s, w_rad_per_s } => (v_m_per_s, w_rad_per_s),

@@ -7,11 +7,11 @@ use super::{
 };
 use crate::{
     ask::Said,
-    drive::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD, drive_for},
     event::{EventKind, HoldReason},
     standing::{Gait, Hold, Phase, Resumes},
     task::Task,
 };
+use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD, drive_for};
 use planner_api::{Command, Drive};
 
 /// How much of the targets and of the plan a planner sees ahead, metres.

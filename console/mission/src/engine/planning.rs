@@ -4,9 +4,9 @@ use super::{Mission, rules::CutsRule, seat::AskedPlan, seat::PlanState};
 use crate::{
     ask::{AskId, Said},
     event::EventKind,
-    follower::Follower,
     tether::{Tether, way_home_ends},
 };
+use geometry::PathFollower;
 use planner_api::{Leg, LegTag, Plan, Reason};
 use world::{Point, polyline};
 
@@ -124,7 +124,7 @@ impl Mission {
         let seat = &mut self.active;
         seat.plan = PlanState::Flying { is_whole: plan.complete };
         seat.cuts = CutsRule::new(lines, plan.path.get(from).copied(), here);
-        seat.follower = (!plan.path.is_empty()).then(|| Follower::new(plan.path.clone()));
+        seat.follower = (!plan.path.is_empty()).then(|| PathFollower::new(plan.path.clone()));
         seat.outdate_step();
         self.doubt_fresh_plan();
     }

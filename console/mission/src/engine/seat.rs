@@ -4,9 +4,9 @@ use super::rules::{BlockedRule, CutsRule, LatePlannerRule};
 use crate::{
     ask::{Ask, AskId, Said, Site, What, WorkerId},
     config::PlannerChoice,
-    follower::Follower,
     planner::PlannerInfo,
 };
+use geometry::PathFollower;
 use planner_api::{Command, Reason};
 use std::sync::Arc;
 use world::{Point, Shape};
@@ -40,7 +40,7 @@ pub(super) struct Seat {
     /// Which planner drove before it.
     pub before: Option<PlannerInfo>,
     /// Its plan, for tasks that do not follow it by themselves.
-    pub follower: Option<Follower>,
+    pub follower: Option<PathFollower>,
     /// What was found since the plan was asked for that is being made.
     pub found_since: Vec<Shape>,
     /// Whether the robot stands until it has planned: by the time that it had, the robot had gone on.

@@ -1,6 +1,7 @@
 //! Scanning the floor along the legs of a plan, and coming back to the anchor.
 
-use crate::{ask::TaskLeft, follower::Follower};
+use crate::ask::TaskLeft;
+use geometry::PathFollower;
 use planner_api::{self as api, LegTag, Plan};
 use world::{CoverageGrid, ObstacleMap, Point, Shape, coverage::regions, polyline};
 
@@ -30,7 +31,7 @@ pub(crate) struct Cover {
 
 /// A plan under way.
 struct Lanes {
-    follower: Follower,
+    follower: PathFollower,
     /// What the stretches are for, with the stations at which they end, metres.
     legs: Vec<(LegTag, f64)>,
 }
@@ -55,14 +56,15 @@ impl Cover {
         let stations_m = polyline::stations_m(&plan.path);
         let legs = plan.legs.iter().map(|leg| (leg.tag, stations_m[leg.last])).collect();
         self.at_corner = (f64::INFINITY, 0.0);
-        self.lanes = (!plan.path.is_empty()).then(|| Lanes { follower: Follower::exact(&plan.path), legs });
+        self.lanes =
+            (!plan.path.is_empty()).then(|| Lanes { follower: PathFollower::exact(&plan.path), legs });
     }
 
     /// Takes the robot's position.
     pub(crate) fn advance(&mut self, position: Point, map: &ObstacleMap) {
         self.position = position;
         if let Some(lanes) = &mut self.lanes {
-            lanes.follower.advance(position, map, 0.0);
+            lanes.follower.advance(position, |at| map.clearance_m(at) >= 0.0);
         }
     }
 

@@ -5,6 +5,7 @@ use super::{
     measured::{Gone, TOLERANCE_M},
 };
 use crate::{planners::Planners, study::Problem};
+use geometry::PathFollower;
 use mission::Cause;
 use nalgebra::Matrix3;
 use planner_api::{
@@ -15,12 +16,8 @@ use std::time::Instant;
 use trials::traps::{HULL_M, STEP_M, Trap};
 use world::{Point, polyline};
 
-/// The planner is given what lies ahead on its plan, from this far on, metres.
-const AHEAD_M: f64 = 0.5;
-/// So much of it, metres.
+/// The planner is given so much of its plan ahead of the robot, metres.
 const SHOWN_M: f64 = 4.0;
-/// The plan is searched this far ahead for the place where the robot is, metres.
-const WINDOW_M: f64 = 1.5;
 /// A flight ends after so many times the moves of the straight way.
 const PATIENCE: f64 = 30.0;
 /// It ends, too, when the planner says so many times in a row that it is stuck.
@@ -34,7 +31,7 @@ struct Journey<'a> {
     known: Vec<Obstacle<'static>>,
     range_m: f64,
     flown: Vec<Point>,
-    plan: Course,
+    plan: Option<PathFollower>,
     plan_times_ms: Vec<f64>,
 }
 
@@ -51,7 +48,7 @@ pub(super) fn fly(planners: &Planners, method: &Method, trap: &Trap, range_m: f6
         known: Vec::new(),
         range_m,
         flown: vec![trap.start],
-        plan: Course::default(),
+        plan: None,
         plan_times_ms: Vec::new(),
     };
     journey.look();
@@ -110,9 +107,12 @@ impl Journey<'_> {
         let answer = host.plan(&request);
         self.plan_times_ms.push(asked.elapsed().as_secs_f64() * 1e3);
         match answer {
-            Ok(reply) => self.plan = Course::new(&reply.value.path),
+            Ok(reply) => {
+                let path = polyline::resampled(&reply.value.path, STEP_M);
+                self.plan = (!path.is_empty()).then(|| PathFollower::new(path));
+            }
             // A planner that finds no plan may still know how to move.
-            Err(fault) if matches!(fault.cause, Cause::Planner(_)) => self.plan = Course::default(),
+            Err(fault) if matches!(fault.cause, Cause::Planner(_)) => self.plan = None,
             Err(fault) => {
                 return Err(Problem::Planner { case: method.id.to_owned(), fault: Box::new(fault) });
             }
@@ -122,7 +122,9 @@ impl Journey<'_> {
 
     fn step(&mut self, host: &mut BlockingHost, tick: u64, method: &Method) -> Result<Status, Problem> {
         let here = self.here();
-        self.plan.advance(here);
+        if let Some(plan) = &mut self.plan {
+            plan.advance(here, |_| true);
+        }
         let near: Vec<Obstacle<'static>> =
             self.known.iter().filter(|obstacle| self.is_in_range(obstacle)).copied().collect();
         let goal = self.trap.goal;
@@ -135,7 +137,7 @@ impl Journey<'_> {
             w_rad_per_s: 0.0,
             target: goal,
             targets_ahead: std::slice::from_ref(&goal),
-            path_ahead: self.plan.ahead(),
+            path_ahead: self.plan.as_ref().map_or(&[], |plan| plan.ahead(SHOWN_M)),
             obstacles: &near,
         };
         let command = match host.step(&sensed) {
@@ -161,55 +163,5 @@ impl Journey<'_> {
             }
             _ => true,
         }
-    }
-}
-
-/// A plan and how far along it the robot is.
-#[derive(Default)]
-struct Course {
-    path: Vec<Point>,
-    stations_m: Vec<f64>,
-    nearest: usize,
-}
-
-impl Course {
-    fn new(path: &[Point]) -> Self {
-        let path = polyline::resampled(path, STEP_M);
-        Self { stations_m: polyline::stations_m(&path), path, nearest: 0 }
-    }
-
-    fn advance(&mut self, at: Point) {
-        let Some(from_m) = self.stations_m.get(self.nearest) else { return };
-        let end_m = from_m + WINDOW_M;
-        let window = (self.nearest..self.path.len()).take_while(|k| self.stations_m[*k] <= end_m);
-        let distance_m = |k: usize| (self.path[k] - at).norm();
-        self.nearest =
-            window.min_by(|a, b| distance_m(*a).total_cmp(&distance_m(*b))).unwrap_or(self.nearest);
-    }
-
-    /// The plan from a little ahead of the robot on.
-    fn ahead(&self) -> &[Point] {
-        let Some(here_m) = self.stations_m.get(self.nearest) else { return &[] };
-        let last = self.path.len() - 1;
-        let from = self.stations_m.partition_point(|s| *s < here_m + AHEAD_M).min(last);
-        let to = self.stations_m.partition_point(|s| *s <= self.stations_m[from] + SHOWN_M);
-        &self.path[from..to.max(from + 1)]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_lies_ahead_begins_half_a_metre_on_and_ends_with_the_plan() {
-        let mut course = Course::new(&[Point::origin(), Point::new(3.0, 0.0)]);
-        course.advance(Point::new(1.0, 0.1));
-        let ahead = course.ahead();
-        assert!((ahead[0].x - 1.5).abs() < 1e-9 && (ahead[ahead.len() - 1].x - 3.0).abs() < 1e-9);
-        course.advance(Point::new(2.4, 0.0));
-        course.advance(Point::new(3.0, 0.0));
-        assert_eq!(course.ahead().len(), 1);
-        assert!(Course::default().ahead().is_empty());
     }
 }

@@ -3,17 +3,12 @@
 use super::Floor;
 use crate::{
     geometry::{Point, Vector},
-    shape::{bounds_of, ring_contains},
+    shape::{bounds_of, rectangle, ring_contains},
 };
 
 /// A square about a point, counter-clockwise.
 pub fn square(center: Point, edge_m: f64) -> Vec<Point> {
     rectangle(center - Vector::new(edge_m, edge_m) / 2.0, center + Vector::new(edge_m, edge_m) / 2.0)
-}
-
-/// A box from its south west and north east corners, counter-clockwise.
-pub fn rectangle(low: Point, high: Point) -> Vec<Point> {
-    vec![low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)]
 }
 
 /// Which cells have their centre in one of some polygons; `None` for no polygons, which stand for everything.

@@ -3,9 +3,9 @@
 
 use super::Tool;
 use crate::{
+    Boundary,
     geometry::{Point, Pose, Vector},
     shape::Shape,
-    tank::Boundary,
 };
 use std::{collections::BTreeMap, f64::consts::TAU};
 

@@ -1,6 +1,6 @@
 //! Many boxes, and which of them a segment meets.
 
-use crate::geometry::Point;
+use geometry::Point;
 use glam::DVec2;
 use parry2d_f64::{
     bounding_volume::Aabb,

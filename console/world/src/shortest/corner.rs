@@ -4,7 +4,7 @@ use super::{
     TOUCH_M,
     bar::{Bar, Bars},
 };
-use crate::geometry::{Point, Vector};
+use geometry::{Point, Vector};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Bearings differ by rounding only up to this, radians.

@@ -5,7 +5,7 @@ use super::{
     corner::{ROUNDING_RAD, turned_rad},
     tangent::{Tangent, Turn, tangent},
 };
-use crate::geometry::{Point, Vector};
+use geometry::{Point, Vector};
 use std::{cmp::Ordering, collections::BinaryHeap};
 
 /// The caller is asked after so many tangents.

@@ -1,7 +1,7 @@
 //! Common tangents of circles that are turned about.
 
 use super::TOUCH_M;
-use crate::geometry::{Point, Vector};
+use geometry::{Point, Vector};
 
 /// A circle and the sense in which a way turns about it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,9 +6,9 @@ use super::{
     word::Word,
 };
 use crate::{
+    Boundary,
     geometry::{Point, Vector},
     shape::Shape,
-    tank::Boundary,
 };
 use serde::{Deserialize, Serialize};
 use std::{ops::ControlFlow, sync::Arc};

@@ -9,9 +9,10 @@ use super::{
     solid::Solid,
 };
 use crate::{
+    Boundary,
     geometry::Point,
     obstacles::{Boxes, wall_clearance_m},
-    tank::{Boundary, Obstacle},
+    tank::Obstacle,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

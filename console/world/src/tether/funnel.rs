@@ -3,7 +3,7 @@
 //! Columns become polygons with many corners; for polygons the answer is exact. Test code: it costs more than the
 //! cable and needs a triangulation.
 
-use crate::geometry::Point;
+use geometry::Point;
 use spade::{
     ConstrainedDelaunayTriangulation, Intersection, LineIntersectionIterator, Point2, Triangulation,
     handles::FixedUndirectedEdgeHandle,
@@ -70,7 +70,7 @@ impl Funnel {
 
     /// Length of the taut cable, metres.
     pub(super) fn length_m(&self) -> f64 {
-        crate::polyline::length_m(&self.line())
+        geometry::polyline::length_m(&self.line())
     }
 
     /// The taut cable (the funnel algorithm of Lee and Preparata, in its simple form).

@@ -5,7 +5,7 @@ use super::{
     ground::{Ground, Post},
     sweep::direction,
 };
-use crate::geometry::{Point, wrap_angle_rad};
+use geometry::{Point, wrap_angle_rad};
 use std::{
     cmp::{Ordering, Reverse},
     collections::BinaryHeap,

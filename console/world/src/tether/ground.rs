@@ -9,10 +9,11 @@
 
 use super::{cable::Bearing, sidestep::Sidestep, solid::Solid, word::Rays};
 use crate::{
+    Boundary,
     geometry::{Point, Vector},
     obstacles::Boxes,
-    shape::{Shape, edges, ring_area_m2},
-    tank::Boundary,
+    polyline::edges,
+    shape::{Shape, ring_area_m2},
 };
 
 /// Sine of the angle up to which a line along an edge does not enter the solid.

@@ -1,7 +1,7 @@
 //! Pockets: floor that cuts seal off.
 
 use super::certificate::Case;
-use crate::{geometry::Point, tank::Boundary};
+use crate::{Boundary, geometry::Point};
 use std::ops::Range;
 
 /// Smallest edge of a cell, metres, and most cells along one side.
@@ -150,7 +150,7 @@ impl Grid {
         let mut north = east.clone();
         for pair in cuts.iter().flat_map(|cut| cut.windows(2)) {
             // In units of cells, with the middles of cells at whole numbers.
-            let to_cells = |p: Point| (p - self.low) / self.cell_m - crate::geometry::Vector::new(0.5, 0.5);
+            let to_cells = |p: Point| (p - self.low) / self.cell_m - geometry::Vector::new(0.5, 0.5);
             let (a, b) = (to_cells(pair[0]), to_cells(pair[1]));
             for (row, column) in steps_crossed(a.y, b.y, a.x, b.x, self.height) {
                 self.block(&mut east, column, row);

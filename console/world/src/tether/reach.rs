@@ -1,7 +1,7 @@
 //! What floor a cable of some length leads to.
 
 use super::{geodesic::Geodesic, ground::Ground};
-use crate::{geometry::Point, shape::Shape, tank::Boundary};
+use crate::{Boundary, geometry::Point, shape::Shape};
 use std::sync::Arc;
 
 /// The floor to which the shortest way from an anchor is no longer than the cable.

@@ -2,8 +2,8 @@
 
 use crate::{
     geometry::{Point, Vector},
-    polyline::nearest_on_segment,
-    shape::{edges, ring_area_m2},
+    polyline::{edges, nearest_on_segment},
+    shape::ring_area_m2,
 };
 use std::f64::consts::TAU;
 

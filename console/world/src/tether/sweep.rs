@@ -4,7 +4,7 @@ use super::{
     cable::{SLACK_M, tangent_point},
     ground::{Ground, Post},
 };
-use crate::geometry::{Point, Vector, wrap_angle_rad};
+use geometry::{Point, Vector, wrap_angle_rad};
 
 /// What the free piece leaves from: the anchor, or the last post.
 #[derive(Debug, Clone, Copy)]

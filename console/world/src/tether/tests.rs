@@ -1,8 +1,8 @@
 use super::{funnel::Funnel, *};
 use crate::{
+    Boundary,
     geometry::{Point, Vector},
     shape::Shape,
-    tank::Boundary,
 };
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -122,7 +122,7 @@ fn a_cable_round_a_pipe_and_a_box_bears_once_on_each() {
     let on: Vec<Bearing> = cable.contacts().iter().map(|c| c.on).collect();
     assert_eq!(on, [Bearing::Obstacle(0), Bearing::Obstacle(1)]);
     assert!(cable.contacts()[0].wrap_rad < -PI / 4.0 && cable.contacts()[1].wrap_rad > PI / 2.0);
-    assert!((crate::polyline::length_m(&cable.taut_line()) - cable.length_m()).abs() < 1e-3);
+    assert!((geometry::polyline::length_m(&cable.taut_line()) - cable.length_m()).abs() < 1e-3);
 }
 
 #[test]
@@ -302,7 +302,7 @@ proptest! {
         for point in walk(anchor, &goals, &shapes, 0.0) {
             cable.drag_to(point);
             let line = cable.taut_line();
-            prop_assert!((crate::polyline::length_m(&line) - cable.length_m()).abs() < 1e-3 * cable.length_m().max(1.0));
+            prop_assert!((geometry::polyline::length_m(&line) - cable.length_m()).abs() < 1e-3 * cable.length_m().max(1.0));
             for pair in line.windows(2) {
                 let middle = pair[0] + (pair[1] - pair[0]) * 0.5;
                 prop_assert!(shapes.iter().all(|s| s.distance_m(middle) > -2e-3));
@@ -336,7 +336,7 @@ proptest! {
     ) {
         let (anchor, hull_m) = (Point::new(0.05, -0.03), 0.25);
         let shapes = apart(at.iter().map(|(x, y)| disc(*x, *y, radius)).collect(), anchor, 2.0 * hull_m);
-        let way = crate::polyline::resampled(&walk(anchor, &goals, &shapes, hull_m), 0.3);
+        let way = geometry::polyline::resampled(&walk(anchor, &goals, &shapes, hull_m), 0.3);
         let (mut truth, mut guess) = (cable(anchor, &shapes), cable(anchor, &shapes));
         for (k, point) in way.iter().enumerate() {
             let (share, bearing) = noise[k % noise.len()];

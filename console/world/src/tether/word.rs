@@ -4,7 +4,7 @@
 //! into each other without lifting the cable over an obstacle exactly if their reduced words are equal (the word is
 //! an element of the free group over the obstacles). Cheap and exact, but it knows neither lengths nor angles.
 
-use crate::geometry::{Point, Vector};
+use geometry::{Point, Vector};
 
 /// Bearing of the rays: none that drawings have.
 const BEARING_RAD: f64 = 1.134_567_891;

@@ -2,7 +2,8 @@
 
 use super::*;
 use field::trial::exact_pose;
-use planner_api::{Obstacle, Reason, testing::Bench};
+use geometry::Point;
+use planner_api::{Obstacle, Outline, Reason, testing::Bench};
 use proptest::prelude::*;
 use trials::shore::{Group, Shore};
 

@@ -1,6 +1,6 @@
 //! The limits of a band: linear combinations of its points and where they have to be.
 
-use field::part::Part;
+use geometry::convex::Part;
 use world::{Point, Vector, polyline};
 
 /// Penalties of solids and of turns.

@@ -140,7 +140,7 @@ fn plans_for_column_across_cable(max_wrap_rad: f64) -> Vec<Reason> {
     while flight.pose.position.y < 0.5 {
         flight.tick(&[]);
     }
-    let column = Shape::Disc { center: Point::new(0.0, -2.45), radius_m: 0.05 };
+    let column: Shape = Shape::Disc { center: Point::new(0.0, -2.45), radius_m: 0.05 };
     let shape_in_robot = column.transformed(&flight.pose.tank_from_robot().inverse());
     flight.sightings = vec![Sighting { id: ObstacleId(7), shape_in_robot }];
     flight.events.clear();

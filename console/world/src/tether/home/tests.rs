@@ -1,9 +1,10 @@
 use super::*;
 use crate::{
+    Boundary,
     geometry::Vector,
     polyline,
     shape::Shape,
-    tank::{Boundary, Obstacle, ObstacleId},
+    tank::{Obstacle, ObstacleId},
 };
 use proptest::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Paths that try to get a certificate they do not deserve, and harmless ones that look odd.
 
 use super::*;
-use crate::geometry::Vector;
+use geometry::Vector;
 use std::f64::consts::PI;
 
 /// A second opinion: the reduced word by rays of another bearing, with none of the certificate's code.

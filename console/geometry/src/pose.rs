@@ -1,7 +1,6 @@
 //! Points, vectors and poses of the tank frame.
 
 use nalgebra::{Isometry2, Point2, Rotation2, Vector2};
-use serde::{Deserialize, Serialize};
 
 /// A place on the tank floor, metres, tank frame.
 pub type Point = Point2<f64>;
@@ -9,7 +8,8 @@ pub type Point = Point2<f64>;
 pub type Vector = Vector2<f64>;
 
 /// Where a robot stands and which way it looks.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose {
     /// Position of the robot's centre, metres, tank frame.
     pub position: Point,
@@ -49,6 +49,12 @@ pub fn wrap_angle_rad(angle_rad: f64) -> f64 {
     let turn = std::f64::consts::TAU;
     let wrapped = angle_rad.rem_euclid(turn);
     if wrapped > std::f64::consts::PI { wrapped - turn } else { wrapped }
+}
+
+/// Unit vector along `vector`, or `fallback` where it has no direction.
+pub fn direction_or(vector: Vector, fallback: Vector) -> Vector {
+    let length = vector.norm();
+    if length > 1e-9 { vector / length } else { fallback }
 }
 
 #[cfg(test)]

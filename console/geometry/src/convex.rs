@@ -1,8 +1,10 @@
-//! Outlines in simple parts, for the few obstacles that a robot senses at a time.
+//! Outlines in convex parts: signed distances, gaps and the way out.
 
-use crate::contact::{away_from, direction_or};
-use planner_api::Outline;
-use world::{Point, Vector, polyline::nearest_on_segment};
+use crate::{
+    Point, Shape, Vector, direction_or,
+    polyline::{edges, nearest_on_segment},
+    shape::mean_of,
+};
 
 /// A convex part of an outline.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,20 +36,36 @@ pub struct Gap {
     pub to: Point,
 }
 
-/// The parts of an outline.
-pub fn parts_of(outline: &Outline<'_>) -> Vec<Part> {
-    match *outline {
-        Outline::Disc { center, radius_m } => {
-            vec![Part::Capsule { a: center, b: center, half_width_m: radius_m }]
-        }
-        Outline::Polygon { vertices } => vec![Part::Polygon { vertices: vertices.to_vec() }],
-        Outline::Polyline { points, half_width_m } => {
+/// The convex parts of a shape; none for a line of fewer than two points.
+pub fn parts_of<P: AsRef<[Point]>>(shape: &Shape<P>) -> Vec<Part> {
+    match shape.as_ref() {
+        Shape::Disc { center, radius_m } => vec![Part::disc(center, radius_m)],
+        Shape::Polygon { vertices } => vec![Part::Polygon { vertices: vertices.to_vec() }],
+        Shape::Polyline { points, half_width_m } => {
             points.windows(2).map(|w| Part::Capsule { a: w[0], b: w[1], half_width_m }).collect()
         }
     }
 }
 
 impl Part {
+    /// A disc.
+    pub fn disc(center: Point, radius_m: f64) -> Self {
+        Self::Capsule { a: center, b: center, half_width_m: radius_m }
+    }
+
+    /// The part as a shape of its own.
+    pub fn to_shape(&self) -> Shape {
+        match self {
+            Self::Capsule { a, b, half_width_m } if a == b => {
+                Shape::Disc { center: *a, radius_m: *half_width_m }
+            }
+            Self::Capsule { a, b, half_width_m } => {
+                Shape::Polyline { points: vec![*a, *b], half_width_m: *half_width_m }
+            }
+            Self::Polygon { vertices } => Shape::Polygon { vertices: vertices.clone() },
+        }
+    }
+
     /// Signed distance from a point to the outline, negative inside, and the way out.
     pub fn distance(&self, point: Point) -> (f64, Vector) {
         match self {
@@ -60,7 +78,7 @@ impl Part {
             Self::Polygon { vertices } => {
                 let (closest, distance_m) = nearest_on_ring(vertices, point);
                 let signed_m = if is_inside(vertices, point) { -distance_m } else { distance_m };
-                (signed_m, away_from(point, signed_m, closest, mean(vertices)))
+                (signed_m, away_from(point, signed_m, closest, mean_of(vertices)))
             }
         }
     }
@@ -69,7 +87,7 @@ impl Part {
     pub fn middle(&self) -> Point {
         match self {
             Self::Capsule { a, b, .. } => nalgebra::center(a, b),
-            Self::Polygon { vertices } => mean(vertices),
+            Self::Polygon { vertices } => mean_of(vertices),
         }
     }
 
@@ -87,8 +105,8 @@ impl Part {
     /// The shortest way to another part that it does not contain.
     pub fn gap(&self, other: &Self) -> Gap {
         let mut best = Gap { width_m: f64::INFINITY, from: Point::origin(), to: Point::origin() };
-        for (a, b) in self.edges() {
-            for (c, d) in other.edges() {
+        for (a, b) in self.pieces() {
+            for (c, d) in other.pieces() {
                 let (from, to) = closest_of_segments(a, b, c, d);
                 let width_m = (to - from).norm() - self.half_width_m() - other.half_width_m();
                 if width_m < best.width_m {
@@ -114,25 +132,16 @@ impl Part {
         }
     }
 
-    fn edges(&self) -> Vec<(Point, Point)> {
+    fn pieces(&self) -> Vec<(Point, Point)> {
         match self {
             Self::Capsule { a, b, .. } => vec![(*a, *b)],
-            Self::Polygon { vertices } => ring(vertices).collect(),
+            Self::Polygon { vertices } => edges(vertices).collect(),
         }
     }
 }
 
-fn ring(vertices: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
-    vertices.iter().copied().zip(vertices.iter().copied().cycle().skip(1))
-}
-
-fn mean(vertices: &[Point]) -> Point {
-    let sum: Vector = vertices.iter().map(|v| v.coords).sum();
-    Point::from(sum / vertices.len().max(1) as f64)
-}
-
 fn nearest_on_ring(vertices: &[Point], point: Point) -> (Point, f64) {
-    ring(vertices)
+    edges(vertices)
         .map(|(a, b)| nearest_on_segment(a, b, point))
         .map(|closest| (closest, (point - closest).norm()))
         .min_by(|x, y| x.1.total_cmp(&y.1))
@@ -141,7 +150,7 @@ fn nearest_on_ring(vertices: &[Point], point: Point) -> (Point, f64) {
 
 /// Whether a point lies inside a convex polygon.
 fn is_inside(vertices: &[Point], point: Point) -> bool {
-    vertices.len() > 2 && ring(vertices).all(|(a, b)| (b - a).perp(&(point - a)) > 0.0)
+    vertices.len() > 2 && edges(vertices).all(|(a, b)| (b - a).perp(&(point - a)) > 0.0)
 }
 
 /// The nearest points of two segments; the same point twice where they cross.
@@ -158,6 +167,16 @@ fn closest_of_segments(a: Point, b: Point, c: Point, d: Point) -> (Point, Point)
     let shorter =
         |x: (Point, Point), y: (Point, Point)| if (y.1 - y.0).norm() < (x.1 - x.0).norm() { y } else { x };
     pairs.into_iter().reduce(shorter).expect("there are four pairs")
+}
+
+/// Unit vector out of an outline through `point`.
+///
+/// `signed_m` is the distance to the outline, negative inside, `closest` the outline's nearest point and `center` what
+/// stands for its middle: on the outline itself, the way out is away from there.
+pub fn away_from(point: Point, signed_m: f64, closest: Point, center: Point) -> Vector {
+    let outward = (point - closest) * signed_m.signum();
+    let from_center = direction_or(point - center, Vector::x());
+    direction_or(outward, from_center)
 }
 
 /// Where two segments cross, unless they are parallel.
@@ -178,7 +197,7 @@ mod tests {
     use super::*;
 
     fn disc(x: f64, y: f64, radius_m: f64) -> Part {
-        Part::Capsule { a: Point::new(x, y), b: Point::new(x, y), half_width_m: radius_m }
+        Part::disc(Point::new(x, y), radius_m)
     }
 
     fn square() -> Part {
@@ -206,5 +225,15 @@ mod tests {
         let (a, b) = (Point::new(-1.0, 1.0), Point::new(3.0, 1.0));
         assert!(square().segment_distance_m(a, b) <= 0.0);
         assert!((disc(1.0, 3.0, 0.5).segment_distance_m(a, b) - 1.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_way_out_points_outward_inside_on_and_outside_the_outline() {
+        let center = Point::origin();
+        let closest = Point::new(1.0, 0.0);
+        for (x, signed_m) in [(0.5, -0.5), (1.0, 0.0), (1.5, 0.5)] {
+            assert!((away_from(Point::new(x, 0.0), signed_m, closest, center) - Vector::x()).norm() < 1e-12);
+        }
+        assert!((away_from(center, 0.0, center, center).norm() - 1.0).abs() < 1e-12);
     }
 }

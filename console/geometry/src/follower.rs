@@ -1,7 +1,7 @@
 //! How far along a path the robot is, and where to go next.
 
+use crate::{Point, polyline, wrap_angle_rad};
 use std::collections::VecDeque;
-use world::{ObstacleMap, Point, geometry::wrap_angle_rad, polyline};
 
 /// Distance ahead of the robot at which it aims, metres.
 const LOOKAHEAD_M: f64 = 0.5;
@@ -22,7 +22,7 @@ const EXACT_WINDOW_M: f64 = 0.6;
 
 /// Progress along a path that only grows (nearest point, searched forward).
 #[derive(Debug, Clone)]
-pub(crate) struct Follower {
+pub struct PathFollower {
     path: Vec<Point>,
     stations_m: Vec<f64>,
     nearest: usize,
@@ -36,9 +36,9 @@ pub(crate) struct Follower {
     corners: VecDeque<usize>,
 }
 
-impl Follower {
+impl PathFollower {
     /// A follower at the beginning of a path with at least one point.
-    pub(crate) fn new(path: Vec<Point>) -> Self {
+    pub fn new(path: Vec<Point>) -> Self {
         let stations_m = polyline::stations_m(&path);
         let last = path.len().saturating_sub(1);
         let corners = VecDeque::new();
@@ -48,7 +48,7 @@ impl Follower {
 
     /// A follower that goes to every corner of a path before it turns, so that no lane is cut short and no lane is
     /// mistaken for the one beside it. The path has at least one point.
-    pub(crate) fn exact(path: &[Point]) -> Self {
+    pub fn exact(path: &[Point]) -> Self {
         let mut path = path.to_vec();
         path.dedup_by(|next, before| (*next - *before).norm() < 1e-6);
         let follower = Self::new(polyline::resampled(&path, EXACT_SPACING_M));
@@ -60,8 +60,8 @@ impl Follower {
     ///
     /// The target is the first point a little ahead where the robot finds room; points without room are skipped, and
     /// so is the way to them.
-    pub(crate) fn advance(&mut self, position: Point, map: &ObstacleMap, room_m: f64) {
-        let free = |index: &usize| map.clearance_m(self.path[*index]) >= room_m;
+    pub fn advance(&mut self, position: Point, has_room: impl Fn(Point) -> bool) {
+        let free = |index: &usize| has_room(self.path[*index]);
         let window_end_m = (self.stations_m[self.nearest] + self.window_m).max(self.stations_m[self.target]);
         self.nearest = (self.nearest..=self.next_corner())
             .take_while(|index| self.stations_m[*index] <= window_end_m)
@@ -79,12 +79,12 @@ impl Follower {
     }
 
     /// Distance to the next corner, metres; `None` without one.
-    pub(crate) fn corner_m(&self, position: Point) -> Option<f64> {
+    pub fn corner_m(&self, position: Point) -> Option<f64> {
         self.corners.front().map(|corner| (self.path[*corner] - position).norm())
     }
 
     /// Counts the next corner as reached: the robot cannot come nearer.
-    pub(crate) fn give_up_corner(&mut self) {
+    pub fn give_up_corner(&mut self) {
         self.nearest = self.corners.pop_front().unwrap_or(self.nearest);
     }
 
@@ -105,40 +105,40 @@ impl Follower {
     }
 
     /// Where to go next.
-    pub(crate) fn target(&self) -> Point {
+    pub fn target(&self) -> Point {
         self.path[self.target]
     }
 
     /// The path from the target on, at most `length_m` of it.
-    pub(crate) fn ahead(&self, length_m: f64) -> &[Point] {
+    pub fn ahead(&self, length_m: f64) -> &[Point] {
         let end_m = self.stations_m[self.target] + length_m;
         let end = self.stations_m.partition_point(|s| *s <= end_m);
         &self.path[self.target..end.max(self.target + 1)]
     }
 
     /// Everything from the nearest point on.
-    pub(crate) fn remaining(&self) -> &[Point] {
+    pub fn remaining(&self) -> &[Point] {
         &self.path[self.nearest..]
     }
 
     /// Way along the path up to the nearest point, metres.
-    pub(crate) fn along_m(&self) -> f64 {
+    pub fn along_m(&self) -> f64 {
         self.stations_m[self.nearest]
     }
 
     /// Length of the whole path, metres.
-    pub(crate) fn length_m(&self) -> f64 {
+    pub fn length_m(&self) -> f64 {
         self.stations_m.last().copied().unwrap_or(0.0)
     }
 
     /// Distance from a position to the path near the robot, metres.
-    pub(crate) fn cross_track_m(&self, position: Point) -> f64 {
+    pub fn cross_track_m(&self, position: Point) -> f64 {
         let (first, end) = (self.nearest.saturating_sub(1), (self.nearest + 2).min(self.path.len()));
         polyline::distance_m(&self.path[first..end], position)
     }
 
     /// Whether the last point that can be reached is within a tolerance and nothing else is left on the way.
-    pub(crate) fn is_done(&self, position: Point, tolerance_m: f64) -> bool {
+    pub fn is_done(&self, position: Point, tolerance_m: f64) -> bool {
         let left_m = self.stations_m[self.last] - self.stations_m[self.nearest];
         left_m <= tolerance_m && (self.path[self.last] - position).norm() <= tolerance_m
     }
@@ -156,26 +156,20 @@ fn corners(path: &[Point]) -> VecDeque<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use world::{Boundary, Obstacle, ObstacleId, Shape, spiral::Spiral};
 
-    fn map(columns: &[(f64, f64)]) -> ObstacleMap {
-        let obstacles: Vec<Obstacle> = columns
-            .iter()
-            .enumerate()
-            .map(|(i, (x, y))| Obstacle {
-                id: ObstacleId(i as u32),
-                name: String::new(),
-                shape: Shape::Disc { center: Point::new(*x, *y), radius_m: 0.3 },
-                known: true,
-            })
-            .collect();
-        ObstacleMap::new(&Boundary::Circle { radius_m: 11.0 }, &obstacles)
+    fn anywhere(_: Point) -> bool {
+        true
+    }
+
+    /// A column of radius 0.3 m at (x, 0), and 0.3 m of room for the robot.
+    fn past_column(x: f64) -> impl Fn(Point) -> bool {
+        move |at| (at - Point::new(x, 0.0)).norm() >= 0.6
     }
 
     #[test]
     fn a_robot_on_the_path_aims_half_a_metre_ahead() {
-        let mut follower = Follower::new((0..50).map(|i| Point::new(f64::from(i) * 0.1, 0.0)).collect());
-        follower.advance(Point::new(1.0, 0.05), &map(&[]), 0.3);
+        let mut follower = PathFollower::new((0..50).map(|i| Point::new(f64::from(i) * 0.1, 0.0)).collect());
+        follower.advance(Point::new(1.0, 0.05), anywhere);
         assert!((follower.along_m() - 1.0).abs() < 1e-9);
         assert!((follower.target().x - 1.5).abs() < 1e-9);
         assert!((follower.cross_track_m(Point::new(1.0, 0.05)) - 0.05).abs() < 1e-9);
@@ -185,15 +179,15 @@ mod tests {
     fn an_exact_follower_goes_to_the_end_of_a_lane_before_it_turns_into_the_next() {
         let lanes: Vec<Point> =
             [(0.0, 0.0), (5.0, 0.0), (5.0, 0.4), (0.0, 0.4)].map(|(x, y)| Point::new(x, y)).to_vec();
-        let mut follower = Follower::exact(&lanes);
+        let mut follower = PathFollower::exact(&lanes);
         // Nearer to the second lane than to the first, but on the way along the first.
         for step in 0..=24 {
-            follower.advance(Point::new(0.2 * f64::from(step), 0.25), &map(&[]), 0.0);
+            follower.advance(Point::new(0.2 * f64::from(step), 0.25), anywhere);
             assert!(follower.target().y < 0.01, "{}", follower.target());
         }
-        follower.advance(Point::new(5.02, 0.1), &map(&[]), 0.0);
+        follower.advance(Point::new(5.02, 0.1), anywhere);
         assert!((follower.along_m() - 5.0).abs() < 1e-9 && follower.target().x > 4.99);
-        follower.advance(Point::new(5.0, 0.39), &map(&[]), 0.0);
+        follower.advance(Point::new(5.0, 0.39), anywhere);
         assert!(follower.target().x < 4.9, "{}", follower.target());
         assert!(!follower.is_done(Point::new(0.0, 0.4), 0.2));
     }
@@ -205,11 +199,11 @@ mod tests {
             Point::new(0.25 * angle.cos(), 0.25 * angle.sin())
         };
         let path: Vec<Point> = (0..=40).map(ring).chain([Point::new(1.0, 0.0)]).collect();
-        let mut follower = Follower::exact(&path);
+        let mut follower = PathFollower::exact(&path);
         // The position is off by up to 10 cm.
         for k in 0..=36 {
-            let off = world::Vector::new(0.1, 0.0) * f64::from(k % 3 - 1);
-            follower.advance(ring(k) + off, &map(&[]), 0.0);
+            let off = crate::Vector::new(0.1, 0.0) * f64::from(k % 3 - 1);
+            follower.advance(ring(k) + off, anywhere);
             let along_m = 0.25 * std::f64::consts::TAU * f64::from(k) / 40.0;
             assert!((follower.along_m() - along_m).abs() < 0.35, "{k}: {} of {along_m}", follower.along_m());
         }
@@ -217,28 +211,32 @@ mod tests {
 
     #[test]
     fn a_target_in_a_column_is_skipped() {
-        let mut follower = Follower::new((0..50).map(|i| Point::new(f64::from(i) * 0.1, 0.0)).collect());
-        follower.advance(Point::new(1.0, 0.0), &map(&[(1.6, 0.0)]), 0.3);
+        let mut follower = PathFollower::new((0..50).map(|i| Point::new(f64::from(i) * 0.1, 0.0)).collect());
+        follower.advance(Point::new(1.0, 0.0), past_column(1.6));
         assert!(follower.target().x > 2.1);
     }
 
     #[test]
     fn a_path_that_ends_in_a_column_is_done_at_its_last_free_point() {
-        let mut follower = Follower::new((0..=20).map(|i| Point::new(f64::from(i) * 0.1, 0.0)).collect());
-        let map = map(&[(2.0, 0.0)]);
+        let mut follower = PathFollower::new((0..=20).map(|i| Point::new(f64::from(i) * 0.1, 0.0)).collect());
         let stop = Point::new(1.35, 0.0);
         for x in [0.0, 0.7, 1.35] {
-            follower.advance(Point::new(x, 0.0), &map, 0.3);
+            follower.advance(Point::new(x, 0.0), past_column(2.0));
         }
         assert!(follower.is_done(stop, 0.2));
     }
 
     #[test]
     fn a_robot_that_follows_a_spiral_never_jumps_to_the_next_turn() {
-        let path = Spiral { outer_radius_m: 5.0, inner_radius_m: 0.3, pitch_m: 0.8, step_rad: 0.02 }.points();
-        let mut follower = Follower::new(path.clone());
+        let at = |k: i32| {
+            let angle = 0.02 * f64::from(k);
+            let radius_m = 5.0 - 0.8 * angle / std::f64::consts::TAU;
+            Point::new(radius_m * angle.cos(), radius_m * angle.sin())
+        };
+        let path: Vec<Point> = (0..1800).map(at).collect();
+        let mut follower = PathFollower::new(path.clone());
         for (i, point) in path.iter().enumerate() {
-            follower.advance(*point, &map(&[]), 0.3);
+            follower.advance(*point, anywhere);
             assert!(follower.nearest.abs_diff(i) <= 1, "at {i}: {}", follower.nearest);
         }
         assert!(follower.is_done(path[path.len() - 1], 0.1));

@@ -1,6 +1,6 @@
 //! Paths: lengths, nearest points, walking along.
 
-use crate::geometry::Point;
+use crate::Point;
 
 /// Length of a path, metres.
 pub fn length_m(path: &[Point]) -> f64 {
@@ -29,9 +29,14 @@ pub fn distance_m(path: &[Point], point: Point) -> f64 {
     }
 }
 
+/// The edges of a closed polygon.
+pub fn edges(vertices: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
+    vertices.iter().copied().zip(vertices.iter().copied().cycle().skip(1)).take(vertices.len())
+}
+
 /// Distance from a point to the edges of a closed polygon, metres.
 pub fn distance_to_ring_m(vertices: &[Point], point: Point) -> f64 {
-    crate::shape::edges(vertices)
+    edges(vertices)
         .map(|(a, b)| (point - nearest_on_segment(a, b, point)).norm())
         .fold(f64::INFINITY, f64::min)
 }

@@ -1,13 +1,17 @@
 //! Outlines of obstacles and zones.
 
-use crate::geometry::Point;
+use crate::{
+    Point, Vector,
+    polyline::{self, edges},
+};
 use nalgebra::Isometry2;
-use serde::{Deserialize, Serialize};
 
 /// The outline of an obstacle or a zone.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Shape {
+///
+/// `P` is where the corners lie: `Shape` has its own, `Shape<&[Point]>` borrows them, as planners see it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+pub enum Shape<P = Vec<Point>> {
     /// A round column or pipe.
     Disc {
         /// Centre, metres.
@@ -18,27 +22,47 @@ pub enum Shape {
     /// A convex polygon, counter-clockwise.
     Polygon {
         /// Corners, metres.
-        vertices: Vec<Point>,
+        vertices: P,
     },
     /// A pipe or wall of some thickness along straight pieces.
     Polyline {
         /// Corners of the centre line, metres.
-        points: Vec<Point>,
+        points: P,
         /// Half the thickness, metres.
         half_width_m: f64,
     },
 }
 
-impl Shape {
+impl<P: AsRef<[Point]>> Shape<P> {
+    /// The same shape with its corners borrowed.
+    pub fn as_ref(&self) -> Shape<&[Point]> {
+        match self {
+            Self::Disc { center, radius_m } => Shape::Disc { center: *center, radius_m: *radius_m },
+            Self::Polygon { vertices } => Shape::Polygon { vertices: vertices.as_ref() },
+            Self::Polyline { points, half_width_m } => {
+                Shape::Polyline { points: points.as_ref(), half_width_m: *half_width_m }
+            }
+        }
+    }
+
+    /// The same shape with corners of its own.
+    pub fn to_owned(&self) -> Shape {
+        self.map(|point| *point)
+    }
+
     /// The same shape after a rigid motion.
     #[must_use]
-    pub fn transformed(&self, motion: &Isometry2<f64>) -> Self {
-        let all = |points: &[Point]| points.iter().map(|p| motion * p).collect();
+    pub fn transformed(&self, motion: &Isometry2<f64>) -> Shape {
+        self.map(|point| motion * point)
+    }
+
+    fn map(&self, place: impl Fn(&Point) -> Point) -> Shape {
+        let all = |points: &P| points.as_ref().iter().map(&place).collect();
         match self {
-            Self::Disc { center, radius_m } => Self::Disc { center: motion * center, radius_m: *radius_m },
-            Self::Polygon { vertices } => Self::Polygon { vertices: all(vertices) },
+            Self::Disc { center, radius_m } => Shape::Disc { center: place(center), radius_m: *radius_m },
+            Self::Polygon { vertices } => Shape::Polygon { vertices: all(vertices) },
             Self::Polyline { points, half_width_m } => {
-                Self::Polyline { points: all(points), half_width_m: *half_width_m }
+                Shape::Polyline { points: all(points), half_width_m: *half_width_m }
             }
         }
     }
@@ -47,45 +71,43 @@ impl Shape {
     pub fn center(&self) -> Point {
         match self {
             Self::Disc { center, .. } => *center,
-            Self::Polygon { vertices } => mean_of(vertices),
-            Self::Polyline { points, .. } => mean_of(points),
+            Self::Polygon { vertices: points } | Self::Polyline { points, .. } => mean_of(points.as_ref()),
         }
     }
 
-    /// Distance from a point to the outline; negative inside.
+    /// Distance from a point to the outline, metres; negative inside.
     pub fn distance_m(&self, point: Point) -> f64 {
-        match self {
-            Self::Disc { center, radius_m } => (point - center).norm() - radius_m,
-            Self::Polygon { vertices } => {
-                let distance = crate::polyline::distance_to_ring_m(vertices, point);
+        match self.as_ref() {
+            Shape::Disc { center, radius_m } => (point - center).norm() - radius_m,
+            Shape::Polygon { vertices } => {
+                let distance = polyline::distance_to_ring_m(vertices, point);
                 if ring_contains(vertices, point) { -distance } else { distance }
             }
-            Self::Polyline { points, half_width_m } => {
-                crate::polyline::distance_m(points, point) - half_width_m
-            }
+            Shape::Polyline { points, half_width_m } => polyline::distance_m(points, point) - half_width_m,
         }
     }
 
-    /// The smallest axis-aligned box around it.
+    /// The smallest axis-aligned box around it: south west and north east corner.
     pub fn bounds(&self) -> (Point, Point) {
         let (corners, margin): (&[Point], f64) = match self {
             Self::Disc { center, radius_m } => (std::slice::from_ref(center), *radius_m),
-            Self::Polygon { vertices } => (vertices, 0.0),
-            Self::Polyline { points, half_width_m } => (points, *half_width_m),
+            Self::Polygon { vertices } => (vertices.as_ref(), 0.0),
+            Self::Polyline { points, half_width_m } => (points.as_ref(), *half_width_m),
         };
         let (low, high) = bounds_of(corners);
-        let grow = crate::geometry::Vector::new(margin, margin);
+        let grow = Vector::new(margin, margin);
         (low - grow, high + grow)
     }
 }
 
-fn mean_of(points: &[Point]) -> Point {
-    let sum: crate::geometry::Vector = points.iter().map(|p| p.coords).sum();
+/// The mean of some points; the origin without any.
+pub(crate) fn mean_of(points: &[Point]) -> Point {
+    let sum: Vector = points.iter().map(|p| p.coords).sum();
     Point::from(sum / points.len().max(1) as f64)
 }
 
 /// The smallest axis-aligned box around some points.
-pub(crate) fn bounds_of(points: &[Point]) -> (Point, Point) {
+pub fn bounds_of(points: &[Point]) -> (Point, Point) {
     let far = f64::INFINITY;
     points
         .iter()
@@ -93,7 +115,7 @@ pub(crate) fn bounds_of(points: &[Point]) -> (Point, Point) {
 }
 
 /// Whether a point lies inside a simple polygon (crossing number).
-pub(crate) fn ring_contains(vertices: &[Point], point: Point) -> bool {
+pub fn ring_contains(vertices: &[Point], point: Point) -> bool {
     edges(vertices).fold(false, |inside, (a, b)| {
         let crosses =
             (a.y > point.y) != (b.y > point.y) && point.x < (b.x - a.x) * (point.y - a.y) / (b.y - a.y) + a.x;
@@ -101,14 +123,14 @@ pub(crate) fn ring_contains(vertices: &[Point], point: Point) -> bool {
     })
 }
 
+/// A box from its south west and north east corners, counter-clockwise.
+pub fn rectangle(low: Point, high: Point) -> Vec<Point> {
+    vec![low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)]
+}
+
 /// Signed area of a simple polygon, positive when counter-clockwise.
 pub fn ring_area_m2(vertices: &[Point]) -> f64 {
     edges(vertices).map(|(a, b)| a.coords.perp(&b.coords)).sum::<f64>() / 2.0
-}
-
-/// The edges of a closed polygon.
-pub(crate) fn edges(vertices: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
-    vertices.iter().copied().zip(vertices.iter().copied().cycle().skip(1)).take(vertices.len())
 }
 
 #[cfg(test)]
@@ -129,7 +151,7 @@ mod tests {
 
     #[test]
     fn a_moved_disc_keeps_its_radius() {
-        let disc = Shape::Disc { center: Point::new(1.0, 0.0), radius_m: 0.5 };
+        let disc: Shape = Shape::Disc { center: Point::new(1.0, 0.0), radius_m: 0.5 };
         let moved =
             disc.transformed(&Isometry2::new(nalgebra::Vector2::new(0.0, 1.0), std::f64::consts::FRAC_PI_2));
         assert!((moved.center() - Point::new(0.0, 2.0)).norm() < 1e-12);

@@ -1,0 +1,19 @@
+//! Points, poses, shapes, paths and motion on a tank floor: the ground floor that the console, the planner API and the
+//! planners stand on.
+//!
+//! Frame: the tank frame, origin at the tank's centre, x east, y north, metres; angles in radians, counter-clockwise from
+//! east; SI units throughout.
+
+pub mod boundary;
+pub mod convex;
+pub mod follower;
+pub mod motion;
+pub mod polyline;
+pub mod pose;
+pub mod shape;
+
+pub use boundary::Boundary;
+pub use follower::PathFollower;
+pub use motion::{Drive, Limits, Motion};
+pub use pose::{Point, Pose, Vector, direction_or, wrap_angle_rad};
+pub use shape::Shape;
