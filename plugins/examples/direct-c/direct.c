@@ -1,7 +1,8 @@
 /* direct.c - a planner in plain C: turn to the target, drive there. It looks at no obstacle.
  *
  * Build it into a folder that the console searches:
- *     cc -std=c11 -O2 -shared -fPIC -I plugins/planner-api/include direct.c -o libplanner_direct_c.so -lm
+ *     cc -std=c11 -O2 -shared -fPIC -I plugins/planner-api/include plugins/examples/direct-c/direct.c \
+ *         -o libplanner_direct_c.so -lm
  */
 #include "tankops_planner.h"
 

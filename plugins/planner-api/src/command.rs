@@ -29,16 +29,39 @@ pub struct Command {
 
 impl Command {
     /// Move with this velocity in the tank frame.
+    ///
+    /// ```
+    /// use planner_api::{Command, Drive, Status, Vector2};
+    ///
+    /// let command = Command::velocity(Vector2::new(0.3, 0.4));
+    /// assert!(matches!(command.drive, Drive::Velocity(v) if v.norm() == 0.5));
+    /// assert_eq!(command.status, Status::Moving);
+    /// ```
     pub fn velocity(velocity: Vector2<f64>) -> Self {
         Self { drive: Drive::Velocity(velocity), status: Status::Moving }
     }
 
     /// Move with this speed and turn rate.
+    ///
+    /// ```
+    /// use planner_api::{Command, Drive, Status};
+    ///
+    /// let backward = Command::twist(-0.1, 0.0);
+    /// assert_eq!(backward.status, Status::Moving);
+    /// assert_eq!(Command::twist(0.0, 0.0).drive, Drive::STILL);
+    /// ```
     pub fn twist(v_m_per_s: f64, w_rad_per_s: f64) -> Self {
         Self { drive: Drive::Twist { v_m_per_s, w_rad_per_s }, status: Status::Moving }
     }
 
     /// Stand still and say why.
+    ///
+    /// ```
+    /// use planner_api::{Command, Drive, Status};
+    ///
+    /// let arrived = Command::still(Status::Arrived);
+    /// assert_eq!((arrived.drive, arrived.status), (Drive::STILL, Status::Arrived));
+    /// ```
     pub fn still(status: Status) -> Self {
         Self { drive: Drive::STILL, status }
     }

@@ -39,6 +39,13 @@ impl Layer {
     ];
 
     /// The layer of a number that came over the boundary; `Other` for unknown ones.
+    ///
+    /// ```
+    /// use planner_api::Layer;
+    ///
+    /// assert_eq!(Layer::from_number(Layer::Path as u32), Layer::Path);
+    /// assert_eq!(Layer::from_number(99), Layer::Other);
+    /// ```
     pub fn from_number(number: u32) -> Self {
         Self::ALL.get(number as usize).copied().unwrap_or(Self::Other)
     }

@@ -59,6 +59,13 @@ impl Code {
     ];
 
     /// The code of a number that came over the boundary, if it is one.
+    ///
+    /// ```
+    /// use planner_api::Code;
+    ///
+    /// assert_eq!(Code::from_number(7), Some(Code::NoPath));
+    /// assert_eq!(Code::from_number(0), None, "0 is success");
+    /// ```
     pub fn from_number(number: i32) -> Option<Self> {
         Self::ALL.into_iter().find(|code| *code as i32 == number)
     }
@@ -77,16 +84,37 @@ pub struct PlannerError {
 
 impl PlannerError {
     /// A refusal with a code and a sentence.
+    ///
+    /// ```
+    /// use planner_api::{Code, PlannerError};
+    ///
+    /// let refusal = PlannerError::new(Code::GoalOccupied, "the goal lies in column N");
+    /// assert_eq!(refusal.to_string(), "the goal lies in column N");
+    /// ```
     pub fn new(code: Code, message: impl Into<String>) -> Self {
         Self { code, message: message.into(), partial: Vec::new() }
     }
 
     /// This planner does not offer what was asked.
+    ///
+    /// ```
+    /// use planner_api::{Code, PlannerError};
+    ///
+    /// assert_eq!(PlannerError::unsupported().code, Code::Unsupported);
+    /// ```
     pub fn unsupported() -> Self {
         Self::new(Code::Unsupported, "not offered by this planner")
     }
 
     /// No way through, but this far one gets.
+    ///
+    /// ```
+    /// use planner_api::{Code, Point2, PlannerError};
+    ///
+    /// let as_far_as = vec![Point2::new(0.0, 0.0), Point2::new(2.5, 0.0)];
+    /// let refusal = PlannerError::no_path_but("walled in at x = 2.5 m", as_far_as);
+    /// assert_eq!((refusal.code, refusal.partial.len()), (Code::NoPath, 2));
+    /// ```
     pub fn no_path_but(message: impl Into<String>, partial: Vec<nalgebra::Point2<f64>>) -> Self {
         Self { code: Code::NoPath, message: message.into(), partial }
     }

@@ -6,6 +6,7 @@ use crate::{Kind, ParamSpec, Planner, glue};
 /// Exports planners from a crate of type `cdylib`; the whole of a plugin's boilerplate.
 ///
 /// The author's crate may `#![forbid(unsafe_code)]`. Ids and parameters are checked while it compiles.
+/// [`Planner`] shows an example.
 #[macro_export]
 macro_rules! export_planners {
     ($($planner:ty),+ $(,)?) => {
@@ -65,6 +66,13 @@ pub const fn table<P: Planner>(version: &'static str) -> abi::Planner {
 }
 
 /// Whether a text may be a planner's id: 1 to 32 of a-z, 0-9, `_` and `-`.
+///
+/// ```
+/// use planner_api::export::is_id;
+///
+/// assert!(is_id("apf-dwa") && is_id("planner_2"));
+/// assert!(!is_id("") && !is_id("Straight") && !is_id("two words"));
+/// ```
 pub const fn is_id(id: &str) -> bool {
     let bytes = id.as_bytes();
     let mut i = 0;

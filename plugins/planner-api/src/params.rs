@@ -36,6 +36,14 @@ pub enum Kind {
 }
 
 /// One parameter of a planner.
+///
+/// ```
+/// use planner_api::{ParamSpec, float};
+///
+/// const GAIN: ParamSpec =
+///     float("k_rep", "Repulsion gain", "m3/s", 0.0, 10.0, 0.4).help("More keeps a larger distance.");
+/// assert_eq!((GAIN.key, GAIN.unit, GAIN.live), ("k_rep", "m3/s", false));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParamSpec {
     /// Name in scenarios and on the command line.
@@ -60,18 +68,33 @@ impl ParamSpec {
     }
 
     /// Adds the help text.
+    ///
+    /// ```
+    /// let mode = planner_api::flag("gated", "Gated", true).help("Only obstacles ahead repel.");
+    /// assert_eq!(mode.help, "Only obstacles ahead repel.");
+    /// ```
     #[must_use]
     pub const fn help(self, help: &'static str) -> Self {
         Self { help, ..self }
     }
 
     /// Puts it under a heading.
+    ///
+    /// ```
+    /// let gain = planner_api::float("k_att", "Attraction gain", "1/s", 0.0, 5.0, 1.0).group("Field");
+    /// assert_eq!(gain.group, "Field");
+    /// ```
     #[must_use]
     pub const fn group(self, group: &'static str) -> Self {
         Self { group, ..self }
     }
 
     /// Lets it change while the mission runs, through [`crate::Planner::reconfigure`].
+    ///
+    /// ```
+    /// let gain = planner_api::float("k_att", "Attraction gain", "1/s", 0.0, 5.0, 1.0).live();
+    /// assert!(gain.live);
+    /// ```
     #[must_use]
     pub const fn live(self) -> Self {
         Self { live: true, ..self }
@@ -79,6 +102,13 @@ impl ParamSpec {
 }
 
 /// A real parameter: `float("k_rep", "Repulsion gain", "m3/s", 0.0, 10.0, 0.4)`.
+///
+/// ```
+/// use planner_api::{Kind, float};
+///
+/// let gain = float("k_rep", "Repulsion gain", "m3/s", 0.0, 10.0, 0.4);
+/// assert_eq!(gain.kind, Kind::Float { min: 0.0, max: 10.0, default: 0.4 });
+/// ```
 pub const fn float(
     key: &'static str,
     label: &'static str,
@@ -91,6 +121,13 @@ pub const fn float(
 }
 
 /// A whole-number parameter.
+///
+/// ```
+/// use planner_api::{Kind, int};
+///
+/// let candidates = int("candidates", "Candidates", "", 1, 64, 8);
+/// assert_eq!(candidates.kind, Kind::Int { min: 1, max: 64, default: 8 });
+/// ```
 pub const fn int(
     key: &'static str,
     label: &'static str,
@@ -103,11 +140,24 @@ pub const fn int(
 }
 
 /// A parameter that is on or off.
+///
+/// ```
+/// use planner_api::{Kind, flag};
+///
+/// assert_eq!(flag("gated", "Gated", true).kind, Kind::Flag { default: true });
+/// ```
 pub const fn flag(key: &'static str, label: &'static str, default: bool) -> ParamSpec {
     ParamSpec::new(key, label, "", Kind::Flag { default })
 }
 
 /// A parameter that is one of some words; the default is given by its index.
+///
+/// ```
+/// use planner_api::{Kind, choice};
+///
+/// let mode = choice("mode", "Mode", &["literal", "gated"], 1);
+/// assert!(matches!(mode.kind, Kind::Choice { options, default } if options[default] == "gated"));
+/// ```
 pub const fn choice(
     key: &'static str,
     label: &'static str,
@@ -127,6 +177,21 @@ pub struct Value<'a> {
 }
 
 /// The values of all parameters; the host has filled the defaults and checked the ranges.
+///
+/// ```
+/// use planner_api::{Config, Value, choice, flag, float, int};
+///
+/// let params = [
+///     float("k_rep", "Repulsion gain", "m3/s", 0.0, 10.0, 0.4),
+///     int("candidates", "Candidates", "", 1, 64, 8),
+///     flag("gated", "Gated", true),
+///     choice("mode", "Mode", &["literal", "hull"], 0),
+/// ];
+/// let values = [Value { key: "k_rep", number: 2.0 }, Value { key: "mode", number: 1.0 }];
+/// let config = Config::new(&params, &values);
+/// assert_eq!((config.float("k_rep"), config.int("candidates")), (2.0, 8));
+/// assert_eq!((config.flag("gated"), config.choice("mode")), (true, "hull"));
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Config<'a> {
     specs: &'a [ParamSpec],
@@ -180,6 +245,13 @@ impl<'a> Config<'a> {
 }
 
 /// The default of a parameter as it crosses the boundary.
+///
+/// ```
+/// use planner_api::{choice, flag, params::default_number};
+///
+/// assert_eq!(default_number(&flag("gated", "Gated", true).kind), 1.0);
+/// assert_eq!(default_number(&choice("mode", "Mode", &["literal", "hull"], 1).kind), 1.0);
+/// ```
 pub fn default_number(kind: &Kind) -> f64 {
     match *kind {
         Kind::Float { default, .. } => default,

@@ -21,12 +21,26 @@ impl Caps {
     pub const LIVE_PARAMS: Self = Self(16);
 
     /// Both sets together.
+    ///
+    /// ```
+    /// use planner_api::Caps;
+    ///
+    /// const CAPS: Caps = Caps::GLOBAL.and(Caps::COVERAGE);
+    /// assert!(CAPS.has(Caps::COVERAGE) && !CAPS.has(Caps::LOCAL));
+    /// ```
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
     /// Whether everything in `other` is offered.
+    ///
+    /// ```
+    /// use planner_api::Caps;
+    ///
+    /// let caps = Caps::LOCAL.and(Caps::LIVE_PARAMS);
+    /// assert!(caps.has(Caps::LOCAL) && !caps.has(Caps::LOCAL.and(Caps::SNAPSHOT)));
+    /// ```
     pub const fn has(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
@@ -36,6 +50,34 @@ impl Caps {
 ///
 /// One instance is called from one thread, one call at a time. What another planner needs to take over (path flown,
 /// targets left, coverage) is kept by the console, so a planner need only keep what is its own.
+///
+/// ```
+/// use planner_api::*;
+///
+/// struct Wait;
+///
+/// impl Planner for Wait {
+///     const ID: &'static str = "wait";
+///     const NAME: &'static str = "Stands still";
+///     const CAPS: Caps = Caps::LOCAL;
+///     const PARAMS: &'static [ParamSpec] = &[];
+///
+///     fn configure(_: &Config<'_>, _: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
+///         Ok(Self)
+///     }
+///
+///     fn plan(&mut self, _: &PlanRequest<'_>, _: &Ctx<'_>) -> Result<Plan> {
+///         Ok(Plan::default())
+///     }
+///
+///     fn step(&mut self, _: &Sensed<'_>, _: &Ctx<'_>) -> Result<Command> {
+///         Ok(Command::still(Status::Waiting))
+///     }
+/// }
+///
+/// export_planners!(Wait);
+/// assert!(Wait.snapshot().is_err(), "it keeps no state of its own");
+/// ```
 pub trait Planner: Sized + 'static {
     /// Stable name in recordings and scenarios: `[a-z0-9_-]{1,32}`.
     const ID: &'static str;

@@ -80,6 +80,16 @@ pub struct TetherLimits {
 }
 
 /// A request for a plan.
+///
+/// ```
+/// # use planner_api::{PlanRequest, Point2, Task};
+/// # fn path_to_goal(request: &PlanRequest<'_>) -> Option<Vec<Point2<f64>>> {
+/// let Task::Goto { goal, tolerance_m } = request.task else { return None };
+/// let start = request.start.position;
+/// let arrived = (goal - start).norm() <= tolerance_m;
+/// Some(if arrived { vec![start] } else { vec![start, goal] })
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanRequest<'a> {
     /// Why.
@@ -95,6 +105,14 @@ pub struct PlanRequest<'a> {
 }
 
 /// A path to fly.
+///
+/// ```
+/// use planner_api::{Plan, Point2};
+///
+/// let path = vec![Point2::new(0.0, 0.0), Point2::new(3.0, 4.0)];
+/// let plan = Plan { path, cost: 5.0, complete: true, ..Plan::default() };
+/// assert_eq!((plan.check(), plan.legs.len()), (Ok(()), 0));
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Plan {
@@ -118,6 +136,15 @@ impl Plan {
 
     /// Checks that all points are finite, that the path is not absurdly long, and that the legs lie on the path, in order, and
     /// share at most a point.
+    ///
+    /// ```
+    /// use planner_api::{Leg, LegTag, Plan, Point2};
+    ///
+    /// let path = vec![Point2::new(0.0, 0.0), Point2::new(1.0, 0.0)];
+    /// let legs = vec![Leg { tag: LegTag::Swath, first: 0, last: 2 }];
+    /// let error = Plan { path, legs, ..Plan::default() }.check().unwrap_err();
+    /// assert_eq!(error, "gave leg 0 from point 0 to 2 of a path of 2 points");
+    /// ```
     ///
     /// # Errors
     /// What is wrong; the sentence reads on after the planner's name.
@@ -186,6 +213,10 @@ pub struct Leg {
 
 impl LegTag {
     /// The word that scripts and people read.
+    ///
+    /// ```
+    /// assert_eq!(planner_api::LegTag::Retract.word(), "retract");
+    /// ```
     pub fn word(self) -> &'static str {
         match self {
             Self::Swath => "swath",
@@ -196,6 +227,13 @@ impl LegTag {
     }
 
     /// The tag of a number that came over the boundary, if it is one.
+    ///
+    /// ```
+    /// use planner_api::LegTag;
+    ///
+    /// assert_eq!(LegTag::from_number(1), Some(LegTag::Connector));
+    /// assert_eq!(LegTag::from_number(4), None);
+    /// ```
     pub fn from_number(number: u32) -> Option<Self> {
         [Self::Swath, Self::Connector, Self::Retract, Self::Travel]
             .into_iter()
@@ -204,6 +242,20 @@ impl LegTag {
 }
 
 /// What is known in one tick.
+///
+/// ```
+/// use planner_api::{Command, Drive, Sensed};
+/// # use planner_api::{Point2, PoseEstimate};
+/// # let covariance = nalgebra::Matrix3::zeros();
+/// # let pose = PoseEstimate { position: Point2::origin(), heading_rad: 0.0, covariance };
+/// # let (tick, t_s, dt_s, v_m_per_s, w_rad_per_s, target) = (0, 0.0, 0.1, 0.0, 0.0, Point2::new(3.0, 4.0));
+/// # let sensed = Sensed {
+/// #     tick, t_s, dt_s, pose, v_m_per_s, w_rad_per_s, target, targets_ahead: &[], path_ahead: &[], obstacles: &[],
+/// # };
+///
+/// let step = |sensed: &Sensed<'_>| Command::velocity((sensed.target - sensed.pose.position) * 0.1);
+/// assert!(matches!(step(&sensed).drive, Drive::Velocity(v) if v.norm() == 0.5));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensed<'a> {
     /// Number of the tick, from 0.

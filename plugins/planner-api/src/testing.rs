@@ -40,17 +40,51 @@ impl Default for Bench {
 
 impl Bench {
     /// A bench with nothing on it yet.
+    ///
+    /// ```
+    /// let bench = planner_api::testing::Bench::new();
+    /// assert!(bench.drawings().is_empty() && bench.logs().is_empty());
+    /// ```
     pub fn new() -> Self {
         Self::default()
     }
 
     /// The services as a planner sees them.
+    ///
+    /// ```
+    /// let bench = planner_api::testing::Bench::new();
+    /// assert!(bench.ctx().wants_drawing() && bench.ctx().check().is_ok());
+    /// ```
     pub fn ctx(&self) -> Ctx<'_> {
         Ctx::new(self)
     }
 
     /// Makes a planner with these parameter values (flags 0 or 1, choices the index of the word); the others take
     /// their defaults.
+    ///
+    /// ```
+    /// # use planner_api::*;
+    /// # struct Cruise { speed_m_per_s: f64 }
+    /// # impl Planner for Cruise {
+    /// #     const ID: &'static str = "cruise";
+    /// #     const NAME: &'static str = "Cruise";
+    /// #     const CAPS: Caps = Caps::LOCAL;
+    /// #     const PARAMS: &'static [ParamSpec] = &[float("speed", "Speed", "m/s", 0.0, 1.0, 0.2)];
+    /// #     fn configure(config: &Config<'_>, _: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
+    /// #         Ok(Self { speed_m_per_s: config.float("speed") })
+    /// #     }
+    /// #     fn plan(&mut self, _: &PlanRequest<'_>, _: &Ctx<'_>) -> Result<Plan> { Ok(Plan::default()) }
+    /// #     fn step(&mut self, _: &Sensed<'_>, _: &Ctx<'_>) -> Result<Command> { Ok(Command::twist(0.0, 0.0)) }
+    /// # }
+    /// # let (v_max_m_per_s, w_max_rad_per_s, radius_m, sensing_range_m) = (0.4, 1.0, 0.25, 3.0);
+    /// # let limits = Limits { motion: Motion::Point, v_max_m_per_s, w_max_rad_per_s, radius_m, sensing_range_m };
+    /// # let (boundary, obstacles, zones) = (Boundary::Circle { radius_m: 5.0 }, &[], &[]);
+    /// # let site = Site { revision: 1, boundary, obstacles, zones, limits, swath_m: 0.5, clearance_m: 0.1, seed: 1 };
+    /// let bench = testing::Bench::new();
+    /// let cruise: Cruise = bench.configure(&[("speed", 0.3)], &site)?;
+    /// assert_eq!(cruise.speed_m_per_s, 0.3);
+    /// # Ok::<(), PlannerError>(())
+    /// ```
     ///
     /// # Errors
     /// What the planner's `configure` refuses.
@@ -60,11 +94,27 @@ impl Bench {
     }
 
     /// From now on [`Ctx::check`] fails for this reason; `None` lets the planner work again.
+    ///
+    /// ```
+    /// use planner_api::{StopReason, testing::Bench};
+    ///
+    /// let bench = Bench::new();
+    /// bench.stop_with(StopReason::Timeout);
+    /// assert!(bench.ctx().check().is_err());
+    /// bench.stop_with(None);
+    /// assert!(bench.ctx().check().is_ok());
+    /// ```
     pub fn stop_with(&self, reason: impl Into<Option<StopReason>>) {
         self.stop.set(reason.into());
     }
 
     /// From now on nobody looks at drawings; they are still collected.
+    ///
+    /// ```
+    /// let bench = planner_api::testing::Bench::new();
+    /// bench.look_away();
+    /// assert!(!bench.ctx().wants_drawing());
+    /// ```
     pub fn look_away(&self) {
         self.watched.set(false);
     }
@@ -80,6 +130,13 @@ impl Bench {
     }
 
     /// The newest value of a named figure.
+    ///
+    /// ```
+    /// let bench = planner_api::testing::Bench::new();
+    /// bench.ctx().scalar("clearance", 0.4, "m");
+    /// bench.ctx().scalar("clearance", 0.3, "m");
+    /// assert_eq!((bench.scalar("clearance"), bench.scalar("speed")), (Some(0.3), None));
+    /// ```
     pub fn scalar(&self, name: &str) -> Option<f64> {
         self.scalars.borrow().iter().rev().find(|(known, ..)| known == name).map(|(_, value, _)| *value)
     }
@@ -95,6 +152,15 @@ impl Bench {
     }
 
     /// Forgets everything that was drawn, reported and said.
+    ///
+    /// ```
+    /// use planner_api::{LogLevel, testing::Bench};
+    ///
+    /// let bench = Bench::new();
+    /// bench.ctx().log(LogLevel::Info, "three candidates");
+    /// bench.clear();
+    /// assert!(bench.logs().is_empty());
+    /// ```
     pub fn clear(&self) {
         self.drawings.borrow_mut().clear();
         self.scalars.borrow_mut().clear();

@@ -43,6 +43,16 @@ pub(super) fn quietly(call: impl FnOnce()) {
 /// Work on a thread that a planner started: a panic comes back as the error of the call that waits for it, so that the
 /// console receives its place and text as of any other. A panic that only ends its thread would lose both.
 ///
+/// ```
+/// use planner_api::{Code, on_own_thread};
+///
+/// let half = std::thread::spawn(|| on_own_thread(|| Ok(0.5))).join().unwrap();
+/// assert_eq!(half, Ok(0.5));
+/// let panicked = on_own_thread::<()>(|| panic!("no such candidate")).unwrap_err();
+/// assert_eq!(panicked.code, Code::Panic);
+/// assert!(panicked.message.ends_with("no such candidate"));
+/// ```
+///
 /// # Errors
 /// What the work returns, or [`Code::Panic`] with `file:line: payload`.
 pub fn on_own_thread<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
