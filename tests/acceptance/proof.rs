@@ -4,6 +4,7 @@ use crate::{
     bench::{Bench, journal, scenario, workspace},
     faults::compile,
 };
+use mission::event::JOURNAL_VERSION;
 use std::path::{Path, PathBuf};
 
 /// A short run that was flown to its end.
@@ -163,33 +164,44 @@ fn a_run_whose_planner_is_not_installed_is_proven_from_its_journal() {
 }
 
 #[test]
-fn a_run_of_version_2_is_listed_reported_and_exported_but_not_recomputed() {
-    let bench = Bench::new();
-    let logs = workspace().join("tests/acceptance/fixtures/v2");
-    let at = ["--logs", logs.to_str().unwrap()];
-    let listed = bench.tankops(&[&["runs", "--json"][..], &at].concat()).json();
-    assert_eq!((listed.as_array().unwrap().len(), &listed[0]["end"]), (1, &"complete".into()), "{listed}");
-    let name = listed[0]["name"].as_str().unwrap();
-    let reported = bench.tankops(&[&["report", name, "--json"][..], &at].concat());
-    let report = reported.json();
-    assert_eq!((&report["outcome"], &report["ticks"]), (&"complete".into(), &45.into()), "{reported:?}");
-    let then = std::fs::read_to_string(logs.join(name).join("report.json")).unwrap();
-    let then: serde_json::Value = serde_json::from_str(&then).unwrap();
-    for key in ["planner", "parameters", "path_length_m", "coverage", "positioning", "events_sha256", "unmet"]
-    {
-        assert_eq!(report[key], then[key], "{key}");
-    }
-    let exported = bench.tankops(&[&["export", name, "--rrd", "again.rrd"][..], &at].concat());
-    assert_eq!(exported.code, Some(0), "{exported:?}");
-    assert!(!recording::inspect(&bench.path().join("again.rrd")).unwrap().entities.is_empty());
-    for more in [&[][..], &["--from-journal"]] {
-        let refused = bench.tankops(&[&["verify", name][..], &at, more].concat());
-        assert_eq!(refused.code, Some(2), "{refused:?}");
-        assert!(
-            refused.err.contains("the journal has version 2") && refused.err.contains("version 3"),
-            "{refused:?}"
-        );
-        assert_eq!((refused.err.trim().lines().count(), refused.out.as_str()), (1, ""), "{refused:?}");
+fn runs_of_earlier_versions_are_listed_reported_exported_and_rescanned_but_not_recomputed() {
+    for (version, end, ticks) in [(2, "complete", 45), (3, "time_limit", 60)] {
+        let bench = Bench::new();
+        let logs = workspace().join(format!("tests/acceptance/fixtures/v{version}"));
+        let at = ["--logs", logs.to_str().unwrap()];
+        let listed = bench.tankops(&[&["runs", "--json"][..], &at].concat()).json();
+        assert_eq!((listed.as_array().unwrap().len(), &listed[0]["end"]), (1, &end.into()), "{listed}");
+        let name = listed[0]["name"].as_str().unwrap();
+        let reported = bench.tankops(&[&["report", name, "--json"][..], &at].concat());
+        let report = reported.json();
+        assert_eq!((&report["outcome"], &report["ticks"]), (&end.into(), &ticks.into()), "{reported:?}");
+        let then = std::fs::read_to_string(logs.join(name).join("report.json")).unwrap();
+        let then = recording::with_todays_names(serde_json::from_str(&then).unwrap());
+        for key in [
+            "planner",
+            "parameters",
+            "path_length_m",
+            "coverage",
+            "positioning",
+            "tether",
+            "events_sha256",
+            "violations",
+        ] {
+            assert_eq!(report[key], then[key], "{key}");
+        }
+        let exported = bench.tankops(&[&["export", name, "--rrd", "again.rrd"][..], &at].concat());
+        assert_eq!(exported.code, Some(0), "{exported:?}");
+        assert!(!recording::inspect(&bench.path().join("again.rrd")).unwrap().entities.is_empty());
+        for more in [&[][..], &["--from-journal"]] {
+            let refused = bench.tankops(&[&["verify", name][..], &at, more].concat());
+            assert_eq!(refused.code, Some(2), "{refused:?}");
+            let is_clear = refused.err.contains(&format!("the journal has version {version}"))
+                && refused.err.contains(&format!("version {JOURNAL_VERSION}"));
+            assert!(is_clear, "{refused:?}");
+            assert_eq!((refused.err.trim().lines().count(), refused.out.as_str()), (1, ""), "{refused:?}");
+        }
+        let rescan = bench.tankops(&[&["rescan", name, "-o", "again.toml"][..], &at].concat());
+        assert_eq!(rescan.code, Some(if version == 2 { 2 } else { 0 }), "{rescan:?}");
     }
 }
 

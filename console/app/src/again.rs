@@ -12,7 +12,7 @@ use mission::{Event, EventKind, PlannerInfo};
 use planner_host::PluginDirs;
 use recording::{JOURNAL_FILE, RECORDING_FILE, read_journal};
 use report::{Fold, Logs, Summary, account::Area, human, merged, merged::PastRun};
-use scenario::Scenario;
+use scenario::{Scenario, with_todays_keys};
 use std::{
     collections::BTreeSet,
     fmt::Display,
@@ -97,8 +97,8 @@ fn to_json(what: &impl serde::Serialize) -> anyhow::Result<String> {
 }
 
 fn scenario_of(events: &[Event]) -> anyhow::Result<Scenario> {
-    let text = &opened(events)?.scenario_toml;
-    Scenario::parse(text, "the scenario in the journal").map_err(|errors| bad_input(errors.render()))
+    let text = with_todays_keys(&opened(events)?.scenario_toml);
+    Scenario::parse(&text, "the scenario in the journal").map_err(|errors| bad_input(errors.render()))
 }
 
 /// `tankops rescan RUN... -o SCENARIO`.
@@ -232,7 +232,8 @@ fn scenario_for(
 ) -> anyhow::Result<String> {
     let last = events.last().context("there is no run")?;
     let opened = opened(last)?;
-    let mut document: DocumentMut = opened.scenario_toml.parse().context("reading the scenario again")?;
+    let text = with_todays_keys(&opened.scenario_toml);
+    let mut document: DocumentMut = text.parse().context("reading the scenario again")?;
     let first_name = opened.scenario.strip_suffix("-rescan").unwrap_or(&opened.scenario);
     document["name"] = value(format!("{first_name}-rescan"));
     document["about"] = value(format!("What {} missed", names.join(" and ")));

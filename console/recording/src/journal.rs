@@ -5,10 +5,12 @@
 
 mod ending;
 mod reader;
+mod upgrade;
 mod writer;
 
 pub use ending::read_ending;
 pub use reader::{Journal, JournalLine, JournalReader, read_journal};
+pub use upgrade::with_todays_names;
 pub use writer::{JournalEnd, JournalWriter};
 
 use crate::file::FileChange;

@@ -29,6 +29,7 @@ pub use identity::Identity;
 pub use inspect::{Summary, inspect};
 pub use journal::{
     Journal, JournalEnd, JournalError, JournalLine, JournalReader, JournalWriter, read_ending, read_journal,
+    with_todays_names,
 };
 pub use marker::{FAILURE_FILE, recorded_failure};
 pub use recorder::Recorder;

@@ -16,6 +16,7 @@ mod outline;
 mod planner_keys;
 mod problem;
 mod ranging;
+mod renamed;
 mod render;
 mod robot;
 mod schema;
@@ -27,6 +28,7 @@ mod task;
 mod tether;
 
 pub use problem::{Complaint, Problem, ScenarioErrors};
+pub use renamed::with_todays_keys;
 pub use settings::Settings;
 
 use mission::MissionConfig;

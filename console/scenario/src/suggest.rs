@@ -1,6 +1,9 @@
 //! What was probably meant by a key that does not exist.
 
-use super::schema::{Key, sections};
+use super::{
+    renamed::todays_name,
+    schema::{Key, sections},
+};
 
 /// Units people write, as the end of a key, with the unit they measure in and how many of that they are.
 const UNITS: &[(&str, &str, f64)] = &[
@@ -55,7 +58,9 @@ pub(crate) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) 
 pub(crate) fn remedy(section: &str, keys: &'static [Key], unknown: &str, value: Option<f64>) -> String {
     // Names are compared letter by letter; nobody means a known key by a page of text.
     let short: String = unknown.chars().take(64).collect();
-    same_quantity(keys, &short, value)
+    let renamed = todays_name(section, &short).map(|name| format!("the key is now called `{name}`"));
+    renamed
+        .or_else(|| same_quantity(keys, &short, value))
         .or_else(|| {
             nearest(&short, keys.iter().map(|key| key.name)).map(|name| format!("did you mean `{name}`?"))
         })

@@ -84,7 +84,8 @@ fn is_locked(folder: &Path) -> bool {
 /// The report, if it can be read and fits the journal.
 fn read_report(folder: &Path, text: &str) -> Result<Box<Summary>, String> {
     let damaged = |error: serde_json::Error| format!("{REPORT_FILE} is damaged: {error}");
-    let summary: Summary = serde_json::from_str(text).map_err(damaged)?;
+    let report = serde_json::from_str(text).map(recording::with_todays_names).map_err(damaged)?;
+    let summary: Summary = serde_json::from_value(report).map_err(damaged)?;
     let source: Source = serde_json::from_str(text).map_err(damaged)?;
     // A report that says itself that the journal is not whole claims nothing about it.
     let Some(then) = &source.events_sha256 else { return Ok(Box::new(summary)) };
@@ -107,10 +108,11 @@ const NOT_THE_ONE: &str =
 ///
 /// This is for lists; whoever must be sure reads the journal ([`journal_doubt`]).
 fn is_untouched(folder: &Path, source: &Source) -> io::Result<bool> {
+    // In one tick of the file system's clock both may have been written, or the journal changed.
     let (journal, report) =
         (fs::metadata(folder.join(JOURNAL_FILE))?, fs::metadata(folder.join(REPORT_FILE))?);
     let written = |file: &Metadata| file.modified().unwrap_or(SystemTime::UNIX_EPOCH);
-    Ok(source.journal_bytes == Some(journal.len()) && written(&journal) <= written(&report))
+    Ok(source.journal_bytes == Some(journal.len()) && written(&journal) < written(&report))
 }
 
 fn agrees(summary: &Summary, ending: &Event) -> bool {

@@ -1,6 +1,6 @@
 //! Reading a journal, also one whose writer was killed.
 
-use super::JournalError;
+use super::{JournalError, upgrade};
 use mission::{Event, event::JOURNAL_VERSION};
 use serde::Deserialize;
 use std::{
@@ -161,7 +161,9 @@ impl JournalReader {
         if self.line == 1 {
             self.version = Some(self.check_head()?);
         }
-        serde_json::from_slice(&self.text).map_err(|error| self.misunderstood(&error))
+        let is_old = self.version.is_some_and(|version| version < upgrade::RENAMED_IN);
+        let event = if is_old { upgrade::event(&self.text) } else { serde_json::from_slice(&self.text) };
+        event.map_err(|error| self.misunderstood(&error))
     }
 
     fn misunderstood(&self, error: &serde_json::Error) -> JournalError {

@@ -67,7 +67,7 @@ impl Scene {
             period_s: 1.0,
             repetitions,
             noise,
-            dropout: 0.0,
+            dropout_probability: 0.0,
             outages_s: Vec::new(),
             disturbances: Disturbances::default(),
         };
