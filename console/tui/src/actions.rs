@@ -1,7 +1,10 @@
 //! Everything the operator can do, in one table: keys, footer, help, command list and tests come from it.
 
+pub mod context;
+pub mod find;
+
 use crate::keys::Key;
-use crate::model::{Model, Overlay, Pane};
+use context::Context;
 
 /// Names an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -106,55 +109,9 @@ impl Risk {
     pub fn word(self) -> &'static str {
         match self {
             Self::Safe => "safe",
-            Self::Moves => "moves, asks first",
-            Self::Destroys => "ends, asks first",
+            Self::Moves => "MOVES",
+            Self::Destroys => "ENDS",
         }
-    }
-}
-
-/// Where keys mean something.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Context {
-    /// On every screen, in every list and line.
-    Anywhere,
-    /// On the mission screen.
-    Mission,
-    /// On the mission screen, while the map takes the arrow keys.
-    Map,
-    /// On the mission screen, while the events take the arrow keys.
-    Events,
-    /// In a list.
-    List,
-    /// In the list of parameters.
-    Parameters,
-    /// In a line where text is typed.
-    Text,
-    /// In a list that is filtered by typing.
-    Commands,
-    /// In the line that asks before something moves or ends.
-    Confirm,
-    /// In the line for single steps.
-    Stepping,
-}
-
-impl Context {
-    /// Every context, in the order in which help shows them.
-    pub const ALL: [Self; 10] = [
-        Self::Anywhere,
-        Self::Mission,
-        Self::Map,
-        Self::Events,
-        Self::List,
-        Self::Parameters,
-        Self::Text,
-        Self::Commands,
-        Self::Confirm,
-        Self::Stepping,
-    ];
-
-    /// Whether its actions are commands of their own, and no mere steps within a list or a line.
-    pub fn has_commands(self) -> bool {
-        matches!(self, Self::Anywhere | Self::Mission | Self::Map | Self::Events)
     }
 }
 
@@ -200,6 +157,11 @@ impl Action {
 
     const fn repeats(self) -> Self {
         Self { repeats: true, ..self }
+    }
+
+    /// Whether its keys work in one of some contexts.
+    pub fn works_in(&self, contexts: &[Context]) -> bool {
+        self.contexts.iter().any(|context| contexts.contains(context))
     }
 
     /// Whether it can be run by its name.
@@ -263,70 +225,6 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Down, "down", "Select the line below", &[Key::Down], &[Context::Commands]).repeats(),
 ];
 
-/// The contexts whose keys work now.
-pub fn contexts(model: &Model) -> Vec<Context> {
-    let here: &[Context] = match &model.ui.overlay {
-        Overlay::None => match model.ui.pane {
-            Pane::Map => &[Context::Mission, Context::Map],
-            Pane::Events => &[Context::Mission, Context::Events],
-            _ => &[Context::Mission],
-        },
-        Overlay::Confirm(_) | Overlay::Quit => &[Context::Confirm],
-        Overlay::Stepping => &[Context::Stepping],
-        Overlay::Commands { .. } => &[Context::Text, Context::Commands],
-        Overlay::Parameters { edit: Some(_), .. } | Overlay::Filter => &[Context::Text],
-        Overlay::Parameters { edit: None, .. } => &[Context::List, Context::Parameters],
-        Overlay::Planners { .. } | Overlay::Layers { .. } => &[Context::List],
-    };
-    [&[Context::Anywhere], here].concat()
-}
-
-/// The action of a key in some contexts.
-pub fn action_for(key: Key, contexts: &[Context]) -> Option<&'static Action> {
-    ACTIONS.iter().find(|action| {
-        action.keys.contains(&key) && action.contexts.iter().any(|context| contexts.contains(context))
-    })
-}
-
-/// The commands whose name or description contains the letters of `typed` in that order, best first.
-pub fn matching(typed: &str) -> Vec<&'static Action> {
-    let mut found: Vec<(usize, &Action)> = ACTIONS
-        .iter()
-        .filter(|action| action.is_command())
-        .filter_map(|action| {
-            let by_name = distance(typed, action.name);
-            // A hit in the name beats any hit in the description.
-            let by_about = distance(typed, action.about).map(|far| far + 1000);
-            by_name.or(by_about).map(|far| (far, action))
-        })
-        .collect();
-    found.sort_by_key(|(far, _)| *far);
-    found.into_iter().map(|(_, action)| action).collect()
-}
-
-/// The command list for what was typed; with nothing typed, the keys of a pane that is not in focus come last.
-pub fn listed(typed: &str, pane: Pane) -> Vec<&'static Action> {
-    let mut found = matching(typed);
-    if typed.is_empty() {
-        let away = if pane == Pane::Events { Context::Map } else { Context::Events };
-        found.sort_by_key(|action| action.contexts.contains(&away));
-    }
-    found
-}
-
-/// How far the letters of `typed` are spread over `text`, and how far in they begin; `None` if they are not there.
-fn distance(typed: &str, text: &str) -> Option<usize> {
-    let text: Vec<char> = text.to_lowercase().chars().collect();
-    let mut at = 0;
-    let mut first = None;
-    for letter in typed.to_lowercase().chars().filter(|c| !c.is_whitespace()) {
-        at += text[at..].iter().position(|c| *c == letter)? + 1;
-        first.get_or_insert(at);
-    }
-    let first = first.unwrap_or(0);
-    Some(2 * (at - first) + first)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -346,8 +244,7 @@ mod tests {
     #[test]
     fn no_two_actions_share_a_key_where_both_work() {
         for contexts in TOGETHER {
-            let here: Vec<&Action> =
-                ACTIONS.iter().filter(|a| a.contexts.iter().any(|c| contexts.contains(c))).collect();
+            let here: Vec<&Action> = ACTIONS.iter().filter(|action| action.works_in(contexts)).collect();
             for (index, one) in here.iter().enumerate() {
                 for other in &here[index + 1..] {
                     let shared = one.keys.iter().find(|key| other.keys.contains(key));
@@ -366,25 +263,6 @@ mod tests {
             }
             assert!(!action.repeats, "{} follows a repeating key", action.name);
         }
-    }
-
-    #[test]
-    fn every_command_is_found_first_by_its_name() {
-        for action in ACTIONS.iter().filter(|action| action.is_command()) {
-            assert_eq!(
-                matching(action.name).first().map(|found| found.id),
-                Some(action.id),
-                "{}",
-                action.name
-            );
-        }
-    }
-
-    #[test]
-    fn a_command_is_found_by_letters_in_order() {
-        assert_eq!(matching("zin").first().map(|a| a.name), Some("zoom-in"));
-        assert!(matching("xyzzy").is_empty());
-        assert_eq!(matching("").len(), ACTIONS.iter().filter(|a| a.is_command()).count());
     }
 
     #[test]

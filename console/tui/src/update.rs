@@ -1,116 +1,20 @@
 //! Messages into the model; what has to be done outside comes back as effects.
 
 mod act;
+mod message;
 mod offer;
 mod overlay;
+mod send;
 
 pub use act::act;
+pub use message::{Effect, Msg, Signal};
 pub use offer::offered;
 
-use crate::actions::{self, ActionId};
+use crate::actions::{ActionId, context::contexts, find};
 use crate::keys::{Key, KeyPress};
-use crate::model::{
-    Busy, Cause, Health, Model, Overlay, Pane, Recording, Refused, Speed, Times, ui::Arrangement,
-};
-use mission::{Event, Order, PlannerInfo, Severity};
-use serde::{Deserialize, Serialize};
-
-/// What reaches the model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Msg {
-    /// A key went down.
-    Key(KeyPress),
-    /// Text was pasted.
-    Paste(String),
-    /// The terminal has this size now.
-    Resize {
-        /// Columns.
-        width: u16,
-        /// Rows.
-        height: u16,
-    },
-    /// Events of the mission.
-    Events(Vec<Event>),
-    /// The time.
-    Time(Times),
-    /// How the console does.
-    Health(Health),
-    /// Which planners were found, and which plugins were not accepted.
-    Planners {
-        /// Planners to choose from.
-        found: Vec<PlannerInfo>,
-        /// Plugins that cannot be chosen.
-        refused: Vec<Refused>,
-    },
-    /// News of the console itself; a CRIT one becomes an alarm.
-    Notice {
-        /// How much it asks of the operator.
-        severity: Severity,
-        /// What, as a sentence.
-        text: String,
-    },
-    /// An order did not reach the mission.
-    OrderFailed {
-        /// Which.
-        order: Order,
-        /// Why, as a sentence.
-        why: String,
-    },
-    /// What a planner is doing that takes its time (`Planning (rpf)`), and how long that may take, seconds; `None` when
-    /// it is done.
-    Busy(Option<(String, Option<f64>)>),
-    /// How far that is.
-    BusyAt {
-        /// Share done, 0 to 1.
-        share: f64,
-        /// What is being done, a few words; may be empty.
-        what: String,
-    },
-    /// The process was sent a signal.
-    Signal(Signal),
-    /// A thread of the console panicked.
-    ThreadPanicked {
-        /// Its name.
-        thread: String,
-        /// What it said.
-        message: String,
-    },
-}
-
-/// A signal to the process.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Signal {
-    /// SIGINT: as Ctrl-C.
-    Interrupt,
-    /// SIGTERM: hold and leave.
-    Terminate,
-    /// SIGHUP, or the terminal was closed: hold and leave.
-    Hangup,
-    /// SIGTSTP: hold and give the terminal back for a while.
-    Stop,
-    /// SIGCONT: redraw.
-    Continue,
-}
-
-/// What the caller has to do, in order.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Effect {
-    /// Give the mission an order.
-    Order(Order),
-    /// Change the pace of the simulation.
-    Speed(Speed),
-    /// Redraw every cell.
-    Redraw,
-    /// Give the terminal back and stop the process until SIGCONT.
-    Suspend,
-    /// Ring the terminal's bell.
-    Bell,
-    /// Close the recording and leave. Orders before it in the list are to be obeyed first.
-    Quit {
-        /// The signal that asked for it, if one did.
-        signal: Option<Signal>,
-    },
-}
+use crate::model::{Busy, Cause, Health, Model, Overlay, Pane, Recording, Refused, ui::Arrangement};
+use mission::{PlannerInfo, Severity};
+use send::hold_now;
 
 /// Takes in one message and answers what has to be done outside.
 ///
@@ -170,7 +74,7 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
         overlay::type_key(model, press.key);
         return Vec::new();
     }
-    let Some(action) = actions::action_for(press.key, &actions::contexts(model)) else {
+    let Some(action) = find::action_for(press.key, &contexts(model)) else {
         return if overlay::type_key(model, press.key) { Vec::new() } else { unknown(model, press.key) };
     };
     match action.id {
@@ -193,16 +97,6 @@ fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
         _ => {}
     }
     Vec::new()
-}
-
-/// Sends HOLD whenever the mission would accept it, and after an order that makes the robot move.
-fn hold_now(model: &mut Model) -> Vec<Effect> {
-    let is_accepted = model.standing.standing().allows(&Order::Hold).is_ok();
-    if !is_accepted && model.console.asked.is_none() {
-        return Vec::new();
-    }
-    model.console.hold_asked = true;
-    vec![Effect::Order(Order::Hold)]
 }
 
 fn resize(model: &mut Model, width: u16, height: u16) -> Vec<Effect> {

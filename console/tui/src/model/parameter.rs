@@ -1,6 +1,6 @@
 //! A planner's parameters as the operator reads and types them.
 
-use super::Planning;
+use super::planning::Planning;
 use mission::{ParamInfo, ParamKind, ParamValue};
 
 /// The value that a parameter has now: set by hand, or its default.

@@ -1,8 +1,9 @@
 //! What can be done now, and why not otherwise. Footer and keys ask the same question.
 
+use super::message::Effect;
 use crate::actions::ActionId;
 use crate::model::{Model, Speed, ui::MAX_ZOOM};
-use mission::{Order, Phase, PlannerChoice, Refusal};
+use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 
 /// Whether an action can be done now.
 ///
@@ -57,6 +58,12 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::Down
         | ActionId::Edit => Ok(()),
     }
+}
+
+/// Shows the operator why something is not done.
+pub(super) fn refuse(model: &mut Model, why: String) -> Vec<Effect> {
+    model.say(Severity::Watch, why);
+    Vec::new()
 }
 
 fn demand(met: bool, otherwise: &str) -> Result<(), String> {

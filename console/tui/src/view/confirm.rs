@@ -1,7 +1,8 @@
 //! The line above the keys: a question if one is open, else what comes next.
 
+use super::look::Look;
 use super::next::{self, Clauses};
-use super::{Look, coverage, text};
+use super::{coverage, text};
 use crate::model::{Model, Overlay, ui::Ask};
 use crate::theme::Role;
 use ratatui::Frame;

@@ -1,6 +1,7 @@
 //! The coverage pane: how much has been scanned, of which floor, and what is left.
 
-use super::{Look, fill, text};
+use super::look::{Look, fill};
+use super::text;
 use crate::model::coverage::Division;
 use crate::model::{Model, Pane, Speed};
 use crate::theme::Role;

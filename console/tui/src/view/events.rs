@@ -1,6 +1,7 @@
 //! The events pane, newest line first.
 
-use super::{Look, fill, text};
+use super::look::{Look, fill};
+use super::text;
 use crate::model::{Entry, Pane};
 use crate::theme::Role;
 use mission::Severity;

@@ -1,6 +1,7 @@
 //! The planner pane: the active planner, its target, and the last command.
 
-use super::{Look, fill, text};
+use super::look::{Look, fill};
+use super::text;
 use crate::model::{Model, Pane};
 use crate::theme::Role;
 use planner_api::{Drive, Status};

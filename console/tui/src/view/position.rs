@@ -1,6 +1,7 @@
 //! The position pane: the AE stations' measurements, and how far to trust them.
 
-use super::{Look, fill, text};
+use super::look::{Look, fill};
+use super::text;
 use crate::model::{Model, Pane, position::HISTORY_S};
 use crate::theme::Role;
 use positioning::{Exclusion, Integrity};

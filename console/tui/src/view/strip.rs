@@ -1,7 +1,9 @@
 //! The control strip of a terminal too small for a map: state, alarm, position, and the keys that matter.
 
+use super::look::Look;
 use super::next::Clauses;
-use super::{Look, asks, confirm, coverage, footer, next, text, top};
+use super::{confirm, coverage, footer, next, text, top};
+use crate::model::{Model, Overlay};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -64,4 +66,9 @@ fn position(look: &Look) -> String {
 fn wrapped(look: &Look, (role, clauses): &Clauses, columns: usize) -> Vec<Line<'static>> {
     let lines = text::wrap(&clauses.join(" "), columns.saturating_sub(1));
     lines.into_iter().map(|line| Line::from(look.span(*role, format!(" {line}")))).collect()
+}
+
+/// Whether a question about moving or leaving is open.
+fn asks(model: &Model) -> bool {
+    matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping)
 }

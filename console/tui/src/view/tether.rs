@@ -1,6 +1,7 @@
 //! The tether pane: how much is out, round what, and whether there is a way home.
 
-use super::{Look, fill, text};
+use super::look::{Look, Parts, fill};
+use super::text;
 use crate::{model::Tether, theme::Role};
 use ratatui::{Frame, layout::Rect, text::Line};
 
@@ -15,8 +16,6 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
     let lines = lines.into_iter().map(|parts| cut(look, parts, columns)).collect();
     fill(frame, area, block, lines);
 }
-
-type Parts = Vec<(Role, String)>;
 
 fn cut(look: &Look, parts: Parts, columns: usize) -> Line<'static> {
     let mut room = columns;

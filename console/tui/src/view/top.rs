@@ -1,6 +1,7 @@
 //! The line on top: who is in charge, what runs, whether it is recorded, what is wrong.
 
-use super::{Look, text};
+use super::look::{Look, Parts};
+use super::text;
 use crate::model::{Model, Recording, ui::Arrangement};
 use crate::theme::Role;
 use mission::{Hold, Outcome, Phase, Severity, event::HoldReason};
@@ -8,8 +9,6 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use world::Boundary;
-
-type Parts = Vec<(Role, String)>;
 
 /// The name of the screen, at the right end.
 const SCREEN: &str = "Mission ";
