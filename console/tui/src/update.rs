@@ -57,7 +57,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Signal(signal) => obey_signal(model, signal),
         Msg::ThreadPanicked { thread, message } => {
             let mut effects = hold_now(model);
-            let text = format!("thread {thread} of the console failed: {message}");
+            let text = format!("console thread {thread} failed: {message}");
             effects.extend(news(model, Cause::Console, Severity::Crit, text));
             effects
         }
@@ -89,10 +89,10 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
 /// a later Enter must not agree to it.
 fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
     match model.ui.overlay {
-        Overlay::None => model.say(Severity::Info, format!("Key {key} is not assigned (?: show keys)")),
+        Overlay::None => model.say(Severity::Info, format!("key {key} is not assigned (?: show keys)")),
         Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping => {
             model.ui.overlay = Overlay::None;
-            model.say(Severity::Info, format!("Cancelled: key {key} is not an answer"));
+            model.say(Severity::Info, format!("cancelled: key {key} is not an answer"));
         }
         _ => {}
     }

@@ -31,7 +31,7 @@ impl Model {
             EventKind::Ordered { order } => self.answered(order),
             EventKind::OrderRefused { order, why } => {
                 self.answered(order);
-                self.say(Severity::Warn, format!("the mission refused: {why}"));
+                self.say(Severity::Warn, format!("order refused: {why}"));
             }
             EventKind::Ranged { .. }
             | EventKind::Fixed { .. }
@@ -189,14 +189,14 @@ impl Model {
             Outcome::Stuck | Outcome::TimeLimit | Outcome::Entangled => Severity::Warn,
             Outcome::Collision => Severity::Crit,
         };
-        self.raise(event, Cause::Ended, severity, format!("ended {}: {reason}", outcome.word()));
+        self.raise(event, Cause::Ended, severity, format!("ended ({}): {reason}", outcome.word()));
     }
 
     /// Takes back a question that was asked under circumstances that no longer hold.
     fn withdraw_question(&mut self) {
         if matches!(self.ui.overlay, Overlay::Confirm(_) | Overlay::Stepping) {
             self.ui.overlay = Overlay::None;
-            self.say(Severity::Warn, "Confirmation cancelled: the situation has changed");
+            self.say(Severity::Warn, "question cancelled: conditions have changed");
         }
     }
 }

@@ -103,9 +103,9 @@ impl MapLayer {
     pub fn name(self) -> &'static str {
         match self {
             Self::Scanned => "scanned floor",
-            Self::Trail => "trail of the robot",
+            Self::Trail => "robot trail",
             Self::Plan => "plan",
-            Self::Drawings => "drawings of the planner",
+            Self::Drawings => "planner drawings",
             Self::Stations => "AE stations",
             Self::Accuracy => "accuracy forecast",
         }

@@ -88,7 +88,7 @@ fn hold(model: &mut Model) -> Vec<Effect> {
     if model.ui.overlay == Overlay::None {
         return ask(model, Ask::Resume);
     }
-    model.say(Severity::Info, "Already held");
+    model.say(Severity::Info, "already held");
     Vec::new()
 }
 
@@ -101,7 +101,7 @@ fn interrupt(model: &mut Model) -> Vec<Effect> {
     if twice {
         model.ui.overlay = Overlay::Quit;
     } else {
-        let text = format!("Press Ctrl-C again within {INTERRUPT_TWICE_S} s to leave");
+        let text = format!("press Ctrl-C again within {INTERRUPT_TWICE_S} s to quit");
         model.say_for(INTERRUPT_TWICE_S, Severity::Info, text);
     }
     effects

@@ -175,7 +175,7 @@ pub(super) fn type_key(model: &mut Model, key: Key) -> bool {
 /// Puts pasted text into the line that is open; without one it goes nowhere, so that no paste is ever a command.
 pub(super) fn paste(model: &mut Model, pasted: &str) -> Vec<Effect> {
     let Some(text) = typed(model) else {
-        model.say(Severity::Info, "Nowhere to paste");
+        model.say(Severity::Info, "nowhere to paste");
         return Vec::new();
     };
     let room = MAX_TYPED.saturating_sub(text.chars().count());

@@ -91,7 +91,15 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Accept, Overlay::Parameters { edit: None, .. }) => "edit",
         (ActionId::Accept, Overlay::Parameters { edit: Some(_), .. }) => "send",
         (ActionId::Accept, Overlay::Filter) => "keep",
+        (ActionId::Accept, Overlay::Stepping) => "step",
         (ActionId::Cancel, Overlay::Filter) => "clear",
+        (
+            ActionId::Cancel,
+            Overlay::Commands { .. }
+            | Overlay::Planners { .. }
+            | Overlay::Layers { .. }
+            | Overlay::Parameters { edit: None, .. },
+        ) => "close",
         _ => action.label,
     };
     word.into()

@@ -40,5 +40,5 @@ fn layers(look: &Look, selected: usize) -> List {
         let mark = if look.model.ui.layers.shows(layer) { "[x]" } else { "[ ]" };
         vec![(Role::Text, format!("{mark} {}", layer.name()))]
     });
-    List { title: "Layers of the map".into(), rows: rows.collect(), selected, ..List::default() }
+    List { title: "Map layers".into(), rows: rows.collect(), selected, ..List::default() }
 }

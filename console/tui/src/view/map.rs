@@ -35,7 +35,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         let scale = Some(scale(window)).filter(|scale| text::width(scale) < room).unwrap_or_default();
         frame.render_widget(Line::from(look.span(Role::Dim, scale)), below);
     } else {
-        frame.render_widget(Line::from(look.span(Role::Dim, " the tank is not known yet")), floor);
+        frame.render_widget(Line::from(look.span(Role::Dim, " no tank loaded yet")), floor);
     }
     frame.render_widget(look.line([readout]).right_aligned(), below);
     if inner.width >= 70 && inner.height >= 20 {
@@ -46,7 +46,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 fn title(model: &Model) -> String {
     let zoom =
         if model.ui.map.zoom > 0 { format!("  ×{}", 1_u32 << model.ui.map.zoom) } else { String::new() };
-    let follow = if model.ui.map.follow { "  follows the robot" } else { "" };
+    let follow = if model.ui.map.follow { "  following robot" } else { "" };
     format!("Map{zoom}{follow}")
 }
 

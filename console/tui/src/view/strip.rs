@@ -32,7 +32,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     lines.push(Line::from(look.span(Role::Text, text::fit(&position(look), columns))));
     lines.push(footer::line(look, columns));
     lines.push(Line::from(
-        look.span(Role::Dim, text::fit(" The map needs 60x16. Control works here.", columns)),
+        look.span(Role::Dim, text::fit(" Map requires 60x16. Controls work here.", columns)),
     ));
     frame.render_widget(Paragraph::new(lines), inner);
 }

@@ -66,6 +66,12 @@ pub(super) fn fit(text: &str, columns: usize) -> String {
     cut
 }
 
+/// A sentence without its full stop, with a capital letter.
+pub(super) fn capitalized(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// Text of exactly some columns, padded on the right.
 pub(super) fn column(text: &str, columns: usize) -> String {
     let cut = fit(text, columns);

@@ -64,7 +64,7 @@ fn names(model: &Model, wide: bool, gap: &str, room: usize) -> Parts {
         _ => String::new(),
     };
     let tank = model.run.as_ref().map_or_else(
-        || "no run yet".into(),
+        || "no run".into(),
         |run| match (&run.world.boundary, wide) {
             (Boundary::Circle { radius_m }, true) => {
                 format!("{} Ø{} m", run.scenario, text::number(2.0 * radius_m, 0))

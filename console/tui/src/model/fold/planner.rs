@@ -49,7 +49,7 @@ impl Model {
             }
             EventKind::PlannerRejected { planner, why } => {
                 self.planning.candidate = None;
-                self.say(Severity::Warn, format!("planner {planner} does not take over: {why}"));
+                self.say(Severity::Warn, format!("planner {planner} will not take over: {why}"));
             }
             _ => {}
         }

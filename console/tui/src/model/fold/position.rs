@@ -3,7 +3,7 @@
 use crate::model::{Cause, Model};
 use mission::{Event, EventKind, Severity};
 use positioning::Exclusion;
-use world::{Station, StationId};
+use world::StationId;
 
 impl Model {
     /// Takes in an event of the robot's position.
@@ -49,7 +49,7 @@ impl Model {
     }
 
     fn exclude(&mut self, event: &Event, station: StationId, reason: &Exclusion) {
-        let name = self.station(station).map_or_else(|| format!("station {}", station.0), |s| s.name.clone());
+        let name = self.station_name(station);
         let why = match reason {
             Exclusion::Silent => "not heard".to_owned(),
             Exclusion::Residual { residual_m, gate_m } => {
@@ -59,8 +59,9 @@ impl Model {
         self.raise(event, Cause::Station(station), Severity::Watch, format!("{name} rejected: {why}"));
     }
 
-    /// The station of that id.
-    pub(crate) fn station(&self, id: StationId) -> Option<&Station> {
-        self.run.as_ref()?.world.stations.iter().find(|station| station.id == id)
+    /// Name of a station.
+    pub(crate) fn station_name(&self, id: StationId) -> String {
+        let found = self.run.iter().flat_map(|run| &run.world.stations).find(|station| station.id == id);
+        found.map_or_else(|| format!("station {}", id.0), |station| station.name.clone())
     }
 }

@@ -33,10 +33,10 @@ pub(super) fn list(look: &Look, help: bool, filter: &str, selected: usize, colum
     let below = if help {
         rules(usize::from(columns).saturating_sub(3))
     } else {
-        vec![hint(" Enter: run   Esc: close   -: not available")]
+        vec![hint(" Enter: run  Esc: close  -: not available")]
     };
     List {
-        title: if help { "Keys and commands" } else { "Command" }.into(),
+        title: if help { "Keys and commands" } else { "Commands" }.into(),
         note: "type to filter",
         above: vec![vec![
             (Role::Title, format!(" > {filter}_")),
@@ -59,11 +59,11 @@ fn rules(columns: usize) -> Vec<Row> {
             .unwrap_or_default()
     };
     let (up, down, accept) = (keys(ActionId::Up), keys(ActionId::Down), keys(ActionId::Accept));
-    let lists = format!("{up} {down}: select, {accept}: run, Esc: close, -: not available now.");
+    let lists = format!("{up} {down}: select, {accept}: run, Esc: close, -: not available.");
     [
         lists.as_str(),
         "Stopping never asks first; what MOVES the robot or ENDS the mission does.",
-        "Alarms: C critical, W warning, w watch, * unacknowledged.",
+        "Alarms: C crit, W warn, w watch, * not acknowledged.",
     ]
     .into_iter()
     .flat_map(|rule| paragraph(Role::Dim, rule, columns))

@@ -28,7 +28,7 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
         text::column("value", widths.value + 2),
         text::column("default", widths.default),
         text::column("unit", widths.unit),
-        "changes".into(),
+        "set when".into(),
     ];
     let mut below = Vec::new();
     let mut needed_below = 0;
@@ -37,8 +37,8 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
         needed_below = below.len();
         // A refusal names the range already.
         if edit.is_none_or(|edit| edit.refusal.is_none()) {
-            let takes = format!(" {} takes {}", info.key, parameter::range(info));
-            below.push(vec![(Role::Dim, text::fit(&takes, room))]);
+            let allowed = format!(" {}: {}", info.key, parameter::range(info));
+            below.push(vec![(Role::Dim, text::fit(&allowed, room))]);
         }
         let about = format!("{}. {}", info.label, info.help);
         below.extend(paragraph(Role::Text, &about, room));

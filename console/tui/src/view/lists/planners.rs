@@ -36,7 +36,7 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
             .into_iter()
             .chain(about)
             .chain(refused)
-            .chain([hint(" Enter: change planner (asks first); scanned floor is kept.")])
+            .chain([hint(" Enter: change planner (asks first); coverage is kept.")])
             .collect(),
         ..List::default()
     }

@@ -23,7 +23,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let entries = [
         (layers.shows(MapLayer::Scanned), Role::Scanned, swatch("▒▒"), "scanned"),
         (layers.shows(MapLayer::Scanned), Role::Partly, swatch("░░"), "partial"),
-        (layers.shows(MapLayer::Accuracy), Role::Crit, if plain { "%%" } else { "██" }, "bad fixes"),
+        (layers.shows(MapLayer::Accuracy), Role::Crit, if plain { "%%" } else { "██" }, "poor fix"),
         (layers.shows(MapLayer::Trail), Role::Trail, line("⠤⠤", ".."), "trail"),
         (layers.shows(MapLayer::Plan), Role::Plan, line("⠄⠠", ",,"), "plan"),
         (look.model.tether.is_some(), Role::Tether, line("⠤⠤", "~~"), "tether"),
