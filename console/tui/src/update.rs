@@ -21,47 +21,37 @@ use send::hold_now;
 /// Pure: the same model and message give the same model and effects.
 pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
     let alarms_before = model.alarms.unacknowledged(Severity::Crit);
-    let mut effects = match msg {
-        Msg::Key(press) => press_key(model, press),
+    let mut effects = Vec::new();
+    match msg {
+        Msg::Key(press) => effects = press_key(model, press),
+        Msg::Signal(signal) => effects = obey_signal(model, signal),
+        Msg::ThreadPanicked { thread, message } => {
+            effects = hold_now(model);
+            let text = format!("console thread {thread} failed: {message}");
+            news(model, Cause::Console, Severity::Crit, text);
+        }
         Msg::Paste(text) => overlay::paste(model, &text),
         Msg::Resize { width, height } => resize(model, width, height),
-        Msg::Events(events) => {
-            for event in &events {
-                model.fold(event);
-            }
-            Vec::new()
-        }
-        Msg::Time(now) => {
-            model.console.now = now;
-            Vec::new()
-        }
+        Msg::Events(events) => events.iter().for_each(|event| model.fold(event)),
+        Msg::Time(now) => model.console.now = now,
         Msg::Health(health) => take_health(model, health),
         Msg::Planners { found, refused } => take_planners(model, found, refused),
         Msg::Notice { severity, text } => news(model, Cause::Console, severity, text),
         Msg::OrderFailed { order, why } => {
             model.answered(&order);
-            news(model, Cause::Console, Severity::Crit, why)
+            news(model, Cause::Console, Severity::Crit, why);
         }
         Msg::Busy(work) => {
             let since_mono_s = model.console.now.mono_s;
             model.console.busy = work.map(|(work, limit_s)| Busy { work, limit_s, since_mono_s, at: None });
-            Vec::new()
         }
         Msg::BusyAt { share, what } => {
             // Progress that is reported after the work is done is ignored.
             if let Some(busy) = &mut model.console.busy {
                 busy.at = Some((share, what));
             }
-            Vec::new()
         }
-        Msg::Signal(signal) => obey_signal(model, signal),
-        Msg::ThreadPanicked { thread, message } => {
-            let mut effects = hold_now(model);
-            let text = format!("console thread {thread} failed: {message}");
-            effects.extend(news(model, Cause::Console, Severity::Crit, text));
-            effects
-        }
-    };
+    }
     if model.alarms.unacknowledged(Severity::Crit) > alarms_before {
         effects.push(Effect::Bell);
     }
@@ -75,7 +65,10 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
         return Vec::new();
     }
     let Some(action) = find::action_for(press.key, &contexts(model)) else {
-        return if overlay::type_key(model, press.key) { Vec::new() } else { unknown(model, press.key) };
+        if !overlay::type_key(model, press.key) {
+            unknown(model, press.key);
+        }
+        return Vec::new();
     };
     match action.id {
         // A key that is held down stops the robot, too, and does nothing else.
@@ -87,7 +80,7 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
 
 /// Reports a key that has no action here. It cancels a question: who types something else than an answer has not read it, and
 /// a later Enter must not agree to it.
-fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
+fn unknown(model: &mut Model, key: Key) {
     match model.ui.overlay {
         Overlay::None => model.say(Severity::Info, format!("key {key} is not assigned (?: show keys)")),
         Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping => {
@@ -96,51 +89,42 @@ fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
         }
         _ => {}
     }
-    Vec::new()
 }
 
-fn resize(model: &mut Model, width: u16, height: u16) -> Vec<Effect> {
+fn resize(model: &mut Model, width: u16, height: u16) {
     (model.ui.width, model.ui.height) = (width, height);
     let whole = matches!(model.ui.arrangement(), Arrangement::Wide | Arrangement::Narrow);
     if whole && !model.ui.panes().contains(&model.ui.pane) {
         model.ui.pane = Pane::Map;
     }
-    Vec::new()
 }
 
-fn take_health(model: &mut Model, health: Health) -> Vec<Effect> {
-    let effects = match (&health.recording, &model.console.health.recording) {
-        (Recording::Failed(why), before) if *before != health.recording => {
-            let text = format!("recording failed: {why}");
-            news(model, Cause::Recording, Severity::Crit, text)
+fn take_health(model: &mut Model, health: Health) {
+    match &health.recording {
+        Recording::Failed(why) if health.recording != model.console.health.recording => {
+            news(model, Cause::Recording, Severity::Crit, format!("recording failed: {why}"));
         }
-        (Recording::Failed(_), _) => Vec::new(),
-        _ => {
-            model.alarms.clear(&Cause::Recording);
-            Vec::new()
-        }
-    };
+        Recording::Failed(_) => {}
+        Recording::On | Recording::Off => model.alarms.clear(&Cause::Recording),
+    }
     model.console.health = health;
-    effects
 }
 
-fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<Refused>) -> Vec<Effect> {
+fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<Refused>) {
     for plugin in refused.iter().filter(|plugin| !model.console.refused.contains(plugin)) {
         let text = format!("plugin {} refused: {}", plugin.plugin, plugin.reason);
         model.log.add(model.clock.t_s, Severity::Watch, "plan", text);
     }
     (model.console.planners, model.console.refused) = (found, refused);
-    Vec::new()
 }
 
 /// Writes news of the console into the log and the line above the keys; what is critical becomes an alarm.
-fn news(model: &mut Model, cause: Cause, severity: Severity, text: String) -> Vec<Effect> {
+fn news(model: &mut Model, cause: Cause, severity: Severity, text: String) {
     model.log.add(model.clock.t_s, severity, "console", text.clone());
     if severity == Severity::Crit {
         model.alarms.raise(cause, severity, text.clone(), model.clock.t_s);
     }
     model.say(severity, text);
-    Vec::new()
 }
 
 fn obey_signal(model: &mut Model, signal: Signal) -> Vec<Effect> {

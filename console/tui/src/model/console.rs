@@ -22,26 +22,20 @@ pub enum Speed {
     Max,
 }
 
-impl Speed {
-    /// Every speed the operator can choose, slowest first.
-    pub const STEPS: [Self; 10] = [
-        Self::Times(0.25),
-        Self::Times(0.5),
-        Self::Times(1.0),
-        Self::Times(2.0),
-        Self::Times(4.0),
-        Self::Times(8.0),
-        Self::Times(16.0),
-        Self::Times(32.0),
-        Self::Times(64.0),
-        Self::Max,
-    ];
+/// Slowest and fastest multiple of the clock that the operator can choose.
+const SLOWEST: f64 = 0.25;
+const FASTEST: f64 = 64.0;
 
-    /// The next speed up or down, if there is one.
+impl Speed {
+    /// Twice or half as fast, if there is such a speed.
     pub fn stepped(self, faster: bool) -> Option<Self> {
-        let at = Self::STEPS.iter().position(|step| *step == self).unwrap_or(2);
-        let next = if faster { at.checked_add(1) } else { at.checked_sub(1) };
-        next.and_then(|index| Self::STEPS.get(index)).copied()
+        match (self, faster) {
+            (Self::Times(factor), true) if factor < FASTEST => Some(Self::Times(2.0 * factor)),
+            (Self::Times(_), true) => Some(Self::Max),
+            (Self::Times(factor), false) => (factor > SLOWEST).then_some(Self::Times(factor / 2.0)),
+            (Self::Max, true) => None,
+            (Self::Max, false) => Some(Self::Times(FASTEST)),
+        }
     }
 }
 

@@ -247,20 +247,11 @@ impl Ui {
         Arrangement::of(self.width, self.height)
     }
 
-    /// Whether the map can be seen.
-    pub fn shows_map(&self) -> bool {
+    /// Whether a pane can be seen.
+    pub fn shows(&self, pane: Pane) -> bool {
         match self.arrangement() {
             Arrangement::Wide | Arrangement::Narrow => true,
-            Arrangement::Paged => self.pane == Pane::Map,
-            Arrangement::Strip => false,
-        }
-    }
-
-    /// Whether the events can be seen.
-    pub fn shows_events(&self) -> bool {
-        match self.arrangement() {
-            Arrangement::Wide | Arrangement::Narrow => true,
-            Arrangement::Paged => self.pane == Pane::Events,
+            Arrangement::Paged => self.pane == pane,
             Arrangement::Strip => false,
         }
     }

@@ -38,9 +38,6 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
             Some(id) => act(model, id),
             None => overlay::accept(model),
         },
-        ActionId::Cancel => overlay::cancel(model),
-        ActionId::Up => overlay::select(model, -1),
-        ActionId::Down => overlay::select(model, 1),
         ActionId::Edit => overlay::edit(model),
         ActionId::ChoosePlanner => open(model, Overlay::Planners { selected: driving(model) }),
         ActionId::Parameters => open(model, Overlay::Parameters { selected: 0, edit: None }),
@@ -55,6 +52,9 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
 /// Changes what the operator looks at, and nothing else.
 fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
     match id {
+        ActionId::Cancel => overlay::cancel(model),
+        ActionId::Up => overlay::select(model, -1),
+        ActionId::Down => overlay::select(model, 1),
         ActionId::NextPane => turn_to(model, 1),
         ActionId::PreviousPane => turn_to(model, -1),
         ActionId::ZoomIn => zoom(model, 1),

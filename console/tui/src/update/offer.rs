@@ -2,7 +2,7 @@
 
 use super::message::Effect;
 use crate::actions::ActionId;
-use crate::model::{Model, Speed, ui::MAX_ZOOM};
+use crate::model::{Model, Pane, ui::MAX_ZOOM};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 
 /// Whether an action can be done now.
@@ -40,7 +40,7 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::PageOlder
         | ActionId::Newest
         | ActionId::Oldest => {
-            demand(model.ui.shows_events(), "the events are not shown; Tab: next pane (needs 60x16)")
+            demand(model.ui.shows(Pane::Events), "the events are not shown; Tab: next pane (needs 60x16)")
         }
         ActionId::NextPane | ActionId::PreviousPane => {
             demand(!model.ui.panes().is_empty(), "panes require a 60x16 terminal")
@@ -113,11 +113,11 @@ fn parameters(model: &Model) -> Result<(), String> {
 fn speed(model: &Model, faster: bool) -> Result<(), String> {
     demand(!model.has_ended(), "the mission has ended")?;
     let end = if faster { "already at maximum speed" } else { "already at minimum speed" };
-    demand(model.console.speed.stepped(faster).is_some_and(|next: Speed| next != model.console.speed), end)
+    demand(model.console.speed.stepped(faster).is_some(), end)
 }
 
 fn map(model: &Model) -> Result<(), String> {
-    demand(model.ui.shows_map(), "the map is not shown; Tab: next pane (needs 60x16)")
+    demand(model.ui.shows(Pane::Map), "the map is not shown; Tab: next pane (needs 60x16)")
 }
 
 /// What would be right, in keys.

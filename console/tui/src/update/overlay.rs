@@ -58,7 +58,7 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
 }
 
 /// Back without doing anything.
-pub(super) fn cancel(model: &mut Model) -> Vec<Effect> {
+pub(super) fn cancel(model: &mut Model) {
     match &mut model.ui.overlay {
         Overlay::Parameters { edit, .. } if edit.is_some() => *edit = None,
         Overlay::Filter => {
@@ -67,7 +67,6 @@ pub(super) fn cancel(model: &mut Model) -> Vec<Effect> {
         }
         other => *other = Overlay::None,
     }
-    Vec::new()
 }
 
 /// Checks again at the moment of the answer: things may have changed since the question.
@@ -140,7 +139,7 @@ fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
 }
 
 /// Selects another line, so many further down.
-pub(super) fn select(model: &mut Model, by: isize) -> Vec<Effect> {
+pub(super) fn select(model: &mut Model, by: isize) {
     let lines = match &model.ui.overlay {
         Overlay::Commands { filter, .. } => find::listed(filter, model.ui.pane).len(),
         Overlay::Planners { .. } => model.console.planners.len(),
@@ -155,7 +154,6 @@ pub(super) fn select(model: &mut Model, by: isize) -> Vec<Effect> {
     {
         *selected = selected.saturating_add_signed(by).min(lines.saturating_sub(1));
     }
-    Vec::new()
 }
 
 /// Types a key into the line that is open; whether there is such a line and the key can be typed.
@@ -173,15 +171,11 @@ pub(super) fn type_key(model: &mut Model, key: Key) -> bool {
 }
 
 /// Puts pasted text into the line that is open; without one it goes nowhere, so that no paste is ever a command.
-pub(super) fn paste(model: &mut Model, pasted: &str) -> Vec<Effect> {
-    let Some(text) = typed(model) else {
-        model.say(Severity::Info, "nowhere to paste");
-        return Vec::new();
-    };
+pub(super) fn paste(model: &mut Model, pasted: &str) {
+    let Some(text) = typed(model) else { return model.say(Severity::Info, "nowhere to paste") };
     let room = MAX_TYPED.saturating_sub(text.chars().count());
     text.extend(pasted.chars().filter(|letter| !letter.is_control()).take(room));
     typing_changed(model);
-    Vec::new()
 }
 
 /// Whether a line is open in which text is typed.

@@ -91,7 +91,7 @@ fn readout(look: &Look, width: u16) -> (Role, String) {
     let position = &look.model.position;
     let name = if width >= 60 { "robot " } else { "" };
     let Some(pose) = &position.pose else { return (Role::Dim, "robot: no position yet ".into()) };
-    let at = format!("{}, {} m", text::number(pose.position.x, 2), text::number(pose.position.y, 2));
+    let at = text::place(pose.position);
     let error = text::number(position.error_m().unwrap_or(f64::NAN), 2);
     let stale = if position.is_fix_stale(look.model.clock.t_s) { "◌ " } else { "" };
     let role = if position.lost { Role::Crit } else { Role::Text };

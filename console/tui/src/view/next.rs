@@ -105,8 +105,7 @@ fn running(model: &Model) -> Clauses {
     let Some(progress) = &model.progress else {
         return (Role::Title, vec!["Waiting for first command.".into(), calm]);
     };
-    let at = format!("{}, {} m", text::number(progress.target.x, 2), text::number(progress.target.y, 2));
-    let done = text::percent(progress.done);
+    let (at, done) = (text::place(progress.target), text::percent(progress.done));
     (Role::Title, vec![format!("Next target: {at}; task {done} % done."), calm])
 }
 
@@ -199,11 +198,7 @@ fn message(by: &HoldReason) -> Option<String> {
         | HoldReason::Stuck { message }
         | HoldReason::Tether { message }
         | HoldReason::PlanRefused { message } => Some(format!("{}.", text::capitalized(message))),
-        HoldReason::Operator
-        | HoldReason::PositionLost
-        | HoldReason::PositionAlarmed
-        | HoldReason::Stepped
-        | HoldReason::PlannerReplaced => None,
+        _ => None,
     }
 }
 

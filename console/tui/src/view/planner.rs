@@ -76,12 +76,7 @@ fn target(model: &Model) -> String {
 }
 
 fn target_at(model: &Model) -> String {
-    model.progress.as_ref().map_or_else(
-        || "-".into(),
-        |progress| {
-            format!("{}, {} m", text::number(progress.target.x, 2), text::number(progress.target.y, 2))
-        },
-    )
+    model.progress.as_ref().map_or_else(|| "-".into(), |progress| text::place(progress.target))
 }
 
 fn target_in(model: &Model) -> String {

@@ -2,6 +2,7 @@
 
 use crate::model::Speed;
 use ratatui::text::Span;
+use world::Point;
 
 /// A share as a percentage without its sign.
 pub(super) fn percent(share: f64) -> String {
@@ -20,6 +21,11 @@ pub(super) fn number(value: f64, decimals: usize) -> String {
     } else {
         text
     }
+}
+
+/// A place on the floor.
+pub(super) fn place(point: Point) -> String {
+    format!("{}, {} m", number(point.x, 2), number(point.y, 2))
 }
 
 /// A span of time as hours, minutes and seconds.

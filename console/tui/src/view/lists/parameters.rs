@@ -11,23 +11,28 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
         return List { title: "Parameters".into(), ..List::default() };
     };
     let room = usize::from(columns).saturating_sub(3);
-    let widths = Columns::of(columns);
+    // A narrow list goes without defaults.
+    let (name, value, default, unit) = match columns {
+        74.. => (20, 13, 15, 10),
+        56.. => (16, 9, 11, 8),
+        _ => (14, 9, 0, 8),
+    };
     let rows = planner.parameters.iter().map(|info| {
-        let (now, default) = (parameter::value(&look.model.planning, info), parameter::default(&info.kind));
-        let changed = if now == default { " " } else { "*" };
+        let (now, unset) = (parameter::value(&look.model.planning, info), parameter::default(&info.kind));
+        let changed = if now == unset { " " } else { "*" };
         vec![
-            (Role::Text, text::column(&info.key, widths.name)),
-            (Role::Title, format!("{}{changed} ", text::column(&now.to_string(), widths.value))),
-            (Role::Dim, text::column(&default.to_string(), widths.default)),
-            (Role::Dim, text::column(parameter::unit(info), widths.unit)),
+            (Role::Text, text::column(&info.key, name)),
+            (Role::Title, format!("{}{changed} ", text::column(&now.to_string(), value))),
+            (Role::Dim, text::column(&unset.to_string(), default)),
+            (Role::Dim, text::column(parameter::unit(info), unit)),
             (Role::Dim, if info.live { "any time" } else { "held" }.into()),
         ]
     });
     let head = [
-        text::column("name", widths.name),
-        text::column("value", widths.value + 2),
-        text::column("default", widths.default),
-        text::column("unit", widths.unit),
+        text::column("name", name),
+        text::column("value", value + 2),
+        text::column("default", default),
+        text::column("unit", unit),
         "set when".into(),
     ];
     let mut below = Vec::new();
@@ -51,24 +56,6 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
         selected,
         below,
         needed_below,
-    }
-}
-
-/// Widths of the columns of the parameter list; a narrow one goes without defaults.
-struct Columns {
-    name: usize,
-    value: usize,
-    default: usize,
-    unit: usize,
-}
-
-impl Columns {
-    fn of(columns: u16) -> Self {
-        match columns {
-            74.. => Self { name: 20, value: 13, default: 15, unit: 10 },
-            56.. => Self { name: 16, value: 9, default: 11, unit: 8 },
-            _ => Self { name: 14, value: 9, default: 0, unit: 8 },
-        }
     }
 }
 
