@@ -229,9 +229,8 @@ fn certificate_text(planner: &str, refused: bool, certificate: &Certificate) -> 
         (true, _) => format!("plan of {planner} refused: {reasons}"),
         (false, false) => format!("plan of {planner} runs uncertified: {reasons}"),
         (false, true) => {
-            let left = certificate
-                .left_out_m
-                .map_or_else(String::new, |m| format!(", {m:.1} m still out on return"));
+            let left =
+                certificate.left_out_m.map_or_else(String::new, |m| format!(", {m:.1} m out after return"));
             format!(
                 "plan of {planner} certified: at most {:.1} m of tether out{left}",
                 certificate.max_cable_m

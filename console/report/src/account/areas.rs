@@ -37,7 +37,9 @@ impl<R: fmt::Display> fmt::Display for Area<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { at, area_m2, plate, reason, .. } = self;
         let plate = plate.as_ref().map(|name| format!(", plate {name}")).unwrap_or_default();
-        write!(f, "{area_m2:.2} m² at {:.1}, {:.1} m{plate}: {reason}", at.x, at.y)
+        // Rounded before it is written: a coordinate near zero has no sign.
+        let [x, y] = [at.x, at.y].map(|m| (10.0 * m).round() / 10.0 + 0.0);
+        write!(f, "{area_m2:.2} m² at {x:.1}, {y:.1} m{plate}: {reason}")
     }
 }
 

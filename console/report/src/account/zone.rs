@@ -43,7 +43,7 @@ impl CriticalZone {
             _ if scanned <= 0.0 => Some("none of it scanned".to_owned()),
             gap_m => {
                 let rest = if gap_m >= CRITICAL_ZONE_M - 1e-9 {
-                    "most of the rest not at all".to_owned()
+                    "the rest mostly unscanned".to_owned()
                 } else {
                     format!("the rest from {:.0} mm off the shell (median)", 1000.0 * gap_m)
                 };

@@ -68,7 +68,7 @@ fn critical_zone(account: &Account) -> String {
 fn basis(account: &Account) -> String {
     let Account { cell_m, swath_m, position_limit_m, .. } = account;
     format!(
-        "cell {cell_m} m, swath {swath_m} m; scanned counts where the 95 % position error was within {position_limit_m} m"
+        "cell {cell_m} m, swath {swath_m} m; counted as scanned where the 95 % position error was within {position_limit_m} m"
     )
 }
 

@@ -72,6 +72,9 @@ fn planner(model: &Model) -> Value {
 }
 
 fn target(model: &Model) -> String {
+    if model.progress.is_none() {
+        return "-".into();
+    }
     format!("{}, {} away", target_at(model), target_in(model))
 }
 

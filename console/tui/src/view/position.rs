@@ -78,13 +78,13 @@ fn error(model: &Model, wide: bool) -> (Role, String) {
         Some(error_m) if error_m > 0.8 * limit_m => Role::Warn,
         _ => Role::Text,
     };
-    let error = error_m.map_or_else(|| "-".into(), |error_m| text::number(error_m, 2));
+    let error = error_m.map_or_else(|| "-".into(), |error_m| format!("±{}", text::number(error_m, 2)));
     let limit = text::number(limit_m, 2);
     let lost = if model.position.lost { " LOST" } else { "" };
     if wide {
-        (role, format!("±{error} m (95 %)  limit {limit} m{lost}"))
+        (role, format!("{error} m (95 %)  limit {limit} m{lost}"))
     } else {
-        (role, format!("±{error} m (max {limit}){lost}"))
+        (role, format!("{error} m (max {limit}){lost}"))
     }
 }
 
@@ -96,7 +96,7 @@ fn curve(look: &Look, columns: usize) -> Line<'static> {
     look.line([(Role::Text, " ".into()), (Role::Watch, curve), (Role::Dim, note)])
 }
 
-pub(super) fn age(model: &Model) -> (Role, String) {
+fn age(model: &Model) -> (Role, String) {
     let t_s = model.clock.t_s;
     match model.position.fix_age_s(t_s) {
         None => (Role::Text, "none yet".into()),
