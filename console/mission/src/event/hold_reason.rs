@@ -91,12 +91,11 @@ impl fmt::Display for HoldReason {
             Self::Operator => f.write_str("held by operator"),
             Self::PositionLost => f.write_str("held: position lost"),
             Self::PositionAlarmed => f.write_str("held: ranges contradict each other"),
-            Self::PlannerFault { message } | Self::PlannerSilent { message } => {
-                write!(f, "held: {message}")
-            }
+            Self::PlannerFault { message }
+            | Self::PlannerSilent { message }
+            | Self::Tether { message }
+            | Self::PlanRefused { message } => write!(f, "held: {message}"),
             Self::Stuck { message } => write!(f, "held: robot stuck, {message}"),
-            Self::Tether { message } => write!(f, "held: {message}"),
-            Self::PlanRefused { message } => write!(f, "held: {message}"),
             Self::Stepped => f.write_str("held after single step"),
             Self::PlannerReplaced => f.write_str("held: planner replaced"),
         }
