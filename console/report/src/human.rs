@@ -63,8 +63,10 @@ fn warnings(run: &Summary) -> Vec<String> {
     if let n @ 1.. = run.planner_faults {
         found.push(counted(n, "planner fault"));
     }
-    if let Some(lost_s) = run.positioning.map(|p| p.lost_s).filter(|lost_s| *lost_s > 0.0) {
-        found.push(format!("position lost for {lost_s:.1} s"));
+    if let Some(position_lost_s) =
+        run.positioning.map(|p| p.position_lost_s).filter(|position_lost_s| *position_lost_s > 0.0)
+    {
+        found.push(format!("position lost for {position_lost_s:.1} s"));
     }
     if let Some(p) = run.positioning.filter(|p| p.in_95_ellipse < 0.85) {
         let share = percent(p.in_95_ellipse);
@@ -81,7 +83,7 @@ fn warnings(run: &Summary) -> Vec<String> {
         ));
     }
     found.extend(run.logs.as_ref().and_then(|logs| logs.error.clone()));
-    found.extend(run.unmet.iter().flatten().map(|miss| format!("not met: {miss}")));
+    found.extend(run.violations.iter().flatten().map(|miss| format!("not met: {miss}")));
     found
 }
 
@@ -107,7 +109,7 @@ fn mission_time(run: &Summary) -> Option<String> {
 
 fn path(run: &Summary) -> Option<String> {
     let mut parts = vec![format!("{:.2} m", run.path_length_m?)];
-    parts.extend(run.min_clearance_m.map(|least_m| format!("minimum clearance {least_m:.3} m")));
+    parts.extend(run.clearance_min_m.map(|least_m| format!("minimum clearance {least_m:.3} m")));
     parts.extend(run.turns.map(|turns| counted(turns, "turn")));
     parts.extend(run.rotation_turns.map(|turns| format!("{turns:.1} rotations in total")));
     parts.extend(run.collisions.map(|n| counted(n, "collision")));
@@ -138,31 +140,33 @@ fn tracking(tracking: &Tracking) -> Vec<String> {
 }
 
 fn positioning(positioning: &Positioning) -> Vec<String> {
-    let Positioning { mean_error_m, p50_m, p95_m, max_m, in_95_ellipse, lost_s } = positioning;
+    let Positioning { mean_error_m, p50_m, p95_m, max_m, in_95_ellipse, position_lost_s } = positioning;
     let inside = percent(*in_95_ellipse);
     vec![
         format!(
             "error {mean_error_m:.3} m mean, {p50_m:.3} m median, {p95_m:.3} m p95, {max_m:.3} m maximum"
         ),
-        format!("true position inside the 95 % ellipse in {inside} of ticks, lost for {lost_s:.1} s"),
+        format!(
+            "true position inside the 95 % ellipse in {inside} of ticks, lost for {position_lost_s:.1} s"
+        ),
     ]
 }
 
 fn tether(tether: &Tether) -> String {
     let state = match tether {
         Tether { entangled: true, .. } => "ENTANGLED",
-        Tether { caught: true, .. } => "SNAGGED",
+        Tether { snagged: true, .. } => "SNAGGED",
         _ => "free",
     };
-    let snags = match tether.catches {
+    let snags = match tether.snags {
         0 => String::new(),
         n => format!(", {}", counted(n, "snag")),
     };
     format!(
         "{state}, {:.1} m out at the end, {:.1} m maximum, largest wrap {:.0}°, {}{snags}",
         tether.end_length_m,
-        tether.max_length_m,
-        tether.max_wrap_rad.to_degrees(),
+        tether.tether_length_max_m,
+        tether.wrap_max_rad.to_degrees(),
         counted(tether.loops, "loop")
     )
 }

@@ -36,13 +36,13 @@ impl Model {
             EventKind::Ranged { .. }
             | EventKind::Fixed { .. }
             | EventKind::FixFailed { .. }
-            | EventKind::StationExcluded { .. }
-            | EventKind::StationRegained { .. }
+            | EventKind::StationRejected { .. }
+            | EventKind::StationRestored { .. }
             | EventKind::Estimated { .. }
             | EventKind::PositionLost { .. }
             | EventKind::PositionRegained { .. }
-            | EventKind::PositionAlarmed { .. }
-            | EventKind::PositionTrusted => self.locate(event),
+            | EventKind::RangesInconsistent { .. }
+            | EventKind::RangesConsistent => self.locate(event),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
             EventKind::PlannerPrepared { .. }
@@ -84,8 +84,8 @@ impl Model {
                 });
             }
             EventKind::Tethered { .. }
-            | EventKind::TetherAlarmed { .. }
-            | EventKind::TetherEased { .. }
+            | EventKind::TetherAlarmRaised { .. }
+            | EventKind::TetherAlarmCleared { .. }
             | EventKind::Certified { .. } => self.tethered(event),
             EventKind::Held { by, resumes } => self.hold(event, &Hold { by: by.clone(), resumes: *resumes }),
             EventKind::Resumed => {
@@ -100,7 +100,7 @@ impl Model {
             | EventKind::TetherTruth { .. }
             | EventKind::Snapshotted { .. }
             | EventKind::Discarded { .. }
-            | EventKind::PlannerSaid { .. }
+            | EventKind::PlannerLogged { .. }
             | EventKind::Uncounted { .. } => {}
         }
     }

@@ -36,7 +36,8 @@ fn note(look: &Look) -> &'static str {
 
 fn wide_lines(look: &Look, tether: &Tether) -> Vec<Parts> {
     let row = |label: &str, value: (Role, String)| vec![(Role::Dim, format!(" {label:<12}")), value];
-    let of = limits(look).map_or_else(String::new, |limits| format!(" of {} m", metres(limits.reel_m)));
+    let of =
+        limits(look).map_or_else(String::new, |limits| format!(" of {} m", metres(limits.reel_length_m)));
     let out = format!("{} m{of}, {} m left", metres(tether.length_m), metres(tether.free_m));
     let still_out = format!("{} m still out", metres(tether.length_m));
     vec![
@@ -72,12 +73,12 @@ fn degrees(rad: f64) -> String {
 }
 
 fn out_role(look: &Look, tether: &Tether) -> Role {
-    beside_limit(tether.length_m, limits(look).map(|limits| limits.reel_m))
+    beside_limit(tether.length_m, limits(look).map(|limits| limits.reel_length_m))
 }
 
 fn wrap_role(look: &Look, tether: &Tether) -> Role {
     let most_rad = tether.contacts.iter().map(|contact| contact.wrap_rad.abs()).fold(0.0, f64::max);
-    beside_limit(most_rad, limits(look).map(|limits| limits.max_wrap_rad))
+    beside_limit(most_rad, limits(look).map(|limits| limits.wrap_max_rad))
 }
 
 fn beside_limit(value: f64, limit: Option<f64>) -> Role {
@@ -90,20 +91,20 @@ fn beside_limit(value: f64, limit: Option<f64>) -> Role {
 
 /// The largest wrap and where it is.
 fn worst(look: &Look, tether: &Tether) -> String {
-    if tether.is_caught {
+    if tether.is_snagged {
         return "unknown, tether snagged".into();
     }
     let Some(most) = tether.contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()))
     else {
         return "none, tether straight".into();
     };
-    let limit = limits(look).map_or_else(|| "-".into(), |limits| degrees(limits.max_wrap_rad));
+    let limit = limits(look).map_or_else(|| "-".into(), |limits| degrees(limits.wrap_max_rad));
     let sign = if most.wrap_rad > 0.0 { "+" } else { "" };
     format!("{sign}{}° on {}, max {limit}°", degrees(most.wrap_rad), most.on)
 }
 
 fn total(tether: &Tether) -> String {
-    format!("{}°, pull ×{}", degrees(tether.sum_wrap_rad), text::number(tether.pull_factor, 2))
+    format!("{}°, pull ×{}", degrees(tether.wrap_total_rad), text::number(tether.pull_factor, 2))
 }
 
 fn contacts(tether: &Tether) -> String {
@@ -114,8 +115,8 @@ fn contacts(tether: &Tether) -> String {
 }
 
 fn home(tether: &Tether) -> (Role, String) {
-    match tether.way_home_m {
-        _ if tether.is_caught => (Role::Crit, "UNKNOWN".into()),
+    match tether.return_length_m {
+        _ if tether.is_snagged => (Role::Crit, "UNKNOWN".into()),
         Some(way_m) => (Role::Good, format!("CLEAR, {} m", metres(way_m))),
         None => (Role::Crit, "BLOCKED".into()),
     }

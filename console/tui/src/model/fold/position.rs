@@ -19,8 +19,8 @@ impl Model {
                 self.position.failure = Some(error.to_string());
                 self.raise(event, Cause::NoFix, Severity::Watch, format!("no fix: {error}"));
             }
-            EventKind::StationExcluded { station, reason } => self.exclude(event, *station, reason),
-            EventKind::StationRegained { station } => self.alarms.clear(&Cause::Station(*station)),
+            EventKind::StationRejected { station, reason } => self.exclude(event, *station, reason),
+            EventKind::StationRestored { station } => self.alarms.clear(&Cause::Station(*station)),
             EventKind::Estimated { pose } => {
                 self.position.estimated(event.t_s, *pose);
                 self.trail.add(pose.position);
@@ -34,7 +34,7 @@ impl Model {
                 self.position.lost = false;
                 self.alarms.clear(&Cause::PositionLost);
             }
-            EventKind::PositionAlarmed { .. } => {
+            EventKind::RangesInconsistent { .. } => {
                 self.raise(
                     event,
                     Cause::Contradiction,
@@ -43,7 +43,7 @@ impl Model {
                 );
                 self.withdraw_question();
             }
-            EventKind::PositionTrusted => self.alarms.clear(&Cause::Contradiction),
+            EventKind::RangesConsistent => self.alarms.clear(&Cause::Contradiction),
             _ => {}
         }
     }

@@ -7,15 +7,15 @@ impl Model {
     /// Takes in an event of the tether.
     pub(super) fn tethered(&mut self, event: &Event) {
         match &event.kind {
-            EventKind::TetherAlarmed { alarm, .. } => {
+            EventKind::TetherAlarmRaised { alarm, .. } => {
                 if matches!(alarm, TetherAlarm::Snag { .. }) {
-                    self.tether.get_or_insert_default().is_caught = true;
+                    self.tether.get_or_insert_default().is_snagged = true;
                 }
                 self.raise_as_logged(event, Cause::Tether(alarm.word().to_owned()));
             }
-            EventKind::TetherEased { alarm } => {
+            EventKind::TetherAlarmCleared { alarm } => {
                 if matches!(alarm, TetherAlarm::Snag { .. }) {
-                    self.tether.get_or_insert_default().is_caught = false;
+                    self.tether.get_or_insert_default().is_snagged = false;
                 }
                 self.alarms.clear(&Cause::Tether(alarm.word().to_owned()));
             }
