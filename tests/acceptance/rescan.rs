@@ -91,7 +91,7 @@ fn runs_that_do_not_fit_together_are_refused_with_the_reason() {
     bench.fly(&scenario("goto-single-obstacle.toml"), &[]);
     let goto = bench.runs().into_iter().find(|run| run.to_str().unwrap().contains("goto")).unwrap();
     let point = rescan(&bench, &[&goto], "again.toml");
-    assert!(point.code == Some(2) && point.err.contains("leads to a point"), "{point:?}");
+    assert!(point.code == Some(2) && point.err.contains("its task is to reach a goal"), "{point:?}");
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn the_figures_of_a_run_that_was_cut_off_are_held_to_no_bounds() {
     std::fs::write(&journal, kept.join("\n") + "\n").unwrap();
     std::fs::remove_file(run.join("report.json")).unwrap();
     let report = bench.tankops(&["report", run.to_str().unwrap()]);
-    assert!(report.out.contains("cut off") && !report.out.contains("not as expected"), "{report:?}");
+    assert!(report.out.contains("cut off") && !report.out.contains("not met"), "{report:?}");
 }
 
 #[test]

@@ -146,7 +146,7 @@ impl Session {
 
     /// Chooses another planner for a robot that stands.
     pub(crate) fn change_planner(&mut self, id: &str) {
-        self.press_until("P", "scanned floor is kept");
+        self.press_until("P", "coverage is kept");
         self.choose(id);
         self.see(&format!("Change planner to {id}?"));
         self.press("\r");
@@ -160,9 +160,9 @@ impl Session {
         assert_eq!(self.back_in_the_shell(), "code=0");
     }
 
-    /// Agrees to leave a mission that is under way, and gives the exit code.
+    /// Agrees to quit a mission that is under way, and gives the exit code.
     pub(crate) fn agree_to_leave(&mut self) -> String {
-        self.see("Enter: leave");
+        self.see("Enter: quit");
         self.press("\r");
         self.back_in_the_shell()
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 /// Console for robots that inspect the floors of oil storage tanks.
 ///
-/// Without a command: the console on the demo scenario, or, with no terminal on stdout, the demo flown headless.
+/// Without a command, opens the console on the demo scenario; if stdout is not a terminal, runs the demo headless.
 #[derive(Debug, Parser)]
 #[command(name = "tankops", version, arg_required_else_help = false, max_term_width = 100)]
 pub(crate) struct Cli {
@@ -18,7 +18,7 @@ pub(crate) struct Cli {
 /// Where planners are looked for, besides beside the program and in `$TANKOPS_PLUGIN_PATH`.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct PluginArgs {
-    /// Another folder with planner plugins; may be given several times, searched first.
+    /// Additional folder of planner plugins, searched first; repeatable.
     #[arg(long, value_name = "DIR", global = true)]
     pub plugin_dir: Vec<PathBuf>,
 }
@@ -27,13 +27,13 @@ pub(crate) struct PluginArgs {
 pub(crate) enum Command {
     /// Open the console.
     Console(ConsoleArgs),
-    /// Fly a mission headless to its end.
+    /// Run a mission headless to its end.
     Run(RunArgs),
-    /// Plan on the known map without flying.
+    /// Plan a mission on the drawing without running it.
     Plan(PlanArgs),
-    /// Forecast how well the stations will locate the robot, and advise where they should stand.
+    /// Forecast the position accuracy that the stations give, and advise where to place them.
     Accuracy(AccuracyArgs),
-    /// List the planners found, and the plugins refused with the reason.
+    /// List the planners found, and the plugins refused with reasons.
     Planners {
         /// Print JSON.
         #[arg(long)]
@@ -45,9 +45,9 @@ pub(crate) enum Command {
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },
-    /// Reproduce a table or figure of a paper, our values beside the printed ones.
+    /// Reproduce a table or figure of a paper, with the printed values beside ours.
     Reproduce(ReproduceArgs),
-    /// Search for better parameters of a planner on one set of layouts, and evaluate them on another.
+    /// Optimize planner parameters on one set of layouts, and evaluate them on another.
     Tune(TuneArgs),
     /// List past runs.
     Runs {
@@ -57,11 +57,11 @@ pub(crate) enum Command {
         #[command(flatten)]
         logs: LogsArg,
     },
-    /// Compute a past run again and prove that its journal is equal.
+    /// Recompute a past run and prove that its journal is identical.
     Verify {
-        /// Folder of the run, or its name within the logs.
+        /// Run folder, or its name in the logs folder.
         run: PathBuf,
-        /// Take the planners' answers from the journal instead of asking the planners again: for a plugin that is not
+        /// Take the planners' answers from the journal instead of asking the planners again, for a plugin that is not
         /// available. The output states what this proves and what it does not.
         #[arg(long)]
         from_journal: bool,
@@ -70,7 +70,7 @@ pub(crate) enum Command {
     },
     /// Regenerate the recording of a past run from its journal.
     Export {
-        /// Folder of the run, or its name within the logs.
+        /// Run folder, or its name in the logs folder.
         run: PathBuf,
         /// File to write; must not exist.
         #[arg(long, value_name = "FILE")]
@@ -80,19 +80,19 @@ pub(crate) enum Command {
     },
     /// Show the result of a past run, or of a scan and its re-scans together.
     Report {
-        /// Folders of runs, or their names within the logs; several must be of one floor.
+        /// Run folders, or their names in the logs folder; several must be of one floor.
         #[arg(required = true, value_name = "RUN")]
         runs: Vec<PathBuf>,
         /// Print JSON.
         #[arg(long)]
         json: bool,
-        /// Write into this file instead of to stdout.
+        /// Write to this file instead of stdout.
         #[arg(short = 'o', long, value_name = "FILE")]
         output: Option<PathBuf>,
         #[command(flatten)]
         logs: LogsArg,
     },
-    /// Make a scenario that scans what a past run, or several together, missed, with a plan of its own.
+    /// Create a scenario that scans what one or more past runs missed.
     Rescan(RescanArgs),
     /// A planner's own process; started by the console.
     #[command(hide = true)]
@@ -101,13 +101,13 @@ pub(crate) enum Command {
 
 #[derive(Debug, Args)]
 pub(crate) struct RescanArgs {
-    /// Folders of runs, or their names within the logs: a scan and the re-scans that were flown already.
+    /// Run folders, or their names in the logs folder: a scan and its re-scans so far.
     #[arg(required = true, value_name = "RUN")]
     pub runs: Vec<PathBuf>,
     /// Scenario file to write; must not exist.
     #[arg(short = 'o', long, value_name = "SCENARIO")]
     pub output: PathBuf,
-    /// Missed areas smaller than this, with what lies closely beside them, are left, in square metres.
+    /// Skip missed areas smaller than this, square metres; areas close together count as one.
     #[arg(long, value_name = "AREA", default_value_t = 0.05)]
     pub least_m2: f64,
     #[command(flatten)]
@@ -131,14 +131,14 @@ pub(crate) struct Changes {
     /// Set a planner parameter (`k_rep=2`) or any key of the scenario (`mission.swath_m=0.5`).
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Start of every random choice, instead of the scenario's.
+    /// Random seed to use instead of the scenario's.
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct ConsoleArgs {
-    /// Scenario file; the demo if none is given.
+    /// Scenario file; default: the demo.
     pub scenario: Option<PathBuf>,
     #[command(flatten)]
     pub changes: Changes,
@@ -169,8 +169,8 @@ pub(crate) struct RunArgs {
     /// Write neither journal nor recording.
     #[arg(long)]
     pub no_record: bool,
-    /// Wait for planners no longer than the console does at the pace of the clock, for authors of planners: a step that is
-    /// not answered within 60 % of a tick is late. The result then depends on the machine; the journal still verifies.
+    /// Hold planners to the console's real-time deadlines (for planner authors): a step that is not answered within 60 %
+    /// of a tick is late. The result then depends on the machine; the journal still verifies.
     #[arg(long)]
     pub live_deadlines: bool,
     /// Print the report as JSON on stdout, and nothing else.
@@ -187,35 +187,35 @@ pub(crate) struct PlanArgs {
     /// Print the plan as JSON on stdout.
     #[arg(long)]
     pub json: bool,
-    /// Draw tank, obstacles, preset and planned path into this file.
+    /// Draw the tank, obstacles, preset path and planned path to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct ReproduceArgs {
-    /// What to reproduce; without it, everything there is is listed.
+    /// What to reproduce; default: list everything.
     pub name: Option<String>,
-    /// Number of layouts or draws of each case; each study has a number of its own.
+    /// Number of layouts or draws per case; the default depends on the study.
     #[arg(long, value_name = "N")]
     pub layouts: Option<usize>,
     /// Seed of the first layout; the others follow.
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     pub first_seed: u64,
-    /// Only cases whose ids begin so (`d1/disk`); may be given several times.
+    /// Only cases whose ids start with this (`d1/disk`); repeatable.
     #[arg(long, value_name = "CASE")]
     pub case: Vec<String>,
-    /// Only methods whose ids begin so (`rpf/gated`); may be given several times.
+    /// Only methods whose ids start with this (`rpf/gated`); repeatable.
     #[arg(long, value_name = "METHOD")]
     pub method: Vec<String>,
-    /// Threads to work with; 0 is one for each core. Figures do not depend on it, times do.
+    /// Number of threads; 0: one per core. Affects times, not results.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
-    /// Folder to draw every plan into, one file for each layout and method; it is made if it does not exist. Only
-    /// for studies of whole floors.
+    /// Folder for drawings of every plan, one file per layout and method; created if missing. Only for studies of
+    /// whole floors.
     #[arg(long, value_name = "DIR")]
     pub svg: Option<PathBuf>,
-    /// Print an array of rows as JSON on stdout.
+    /// Print the rows as a JSON array on stdout.
     #[arg(long)]
     pub json: bool,
     /// List everything that can be reproduced.
@@ -228,13 +228,13 @@ pub(crate) struct TuneArgs {
     /// Planner to tune.
     #[arg(long, value_name = "ID")]
     pub planner: String,
-    /// Layouts: wang-d1, wang-d2, wang-d3, drawn in the disk, or wang-d1-square and so on.
+    /// Layouts: wang-d1, wang-d2 or wang-d3 (in the disk), wang-d1-square and so on (in the square).
     #[arg(long, value_name = "LAYOUTS")]
     pub on: String,
-    /// Parameter to tune; may be given several times. Without it, every real number of the group "Field".
+    /// Parameter to tune; repeatable. Default: every real-valued parameter of the group "Field".
     #[arg(long, value_name = "KEY")]
     pub tune: Vec<String>,
-    /// Value to start from, or of a parameter that is not tuned (`reading=gated`).
+    /// Initial value, or value of a parameter that is not tuned (`reading=gated`).
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Number of layouts to tune on.
@@ -255,7 +255,7 @@ pub(crate) struct TuneArgs {
     /// Seed of the search.
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub seed: u64,
-    /// Threads to work with; 0 is one for each core. The result does not depend on it.
+    /// Number of threads; 0: one per core. Does not affect the result.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
     /// Print values, losses and rows as JSON on stdout.
@@ -272,10 +272,10 @@ pub(crate) struct AccuracyArgs {
     /// Print the forecast of every cell as JSON on stdout.
     #[arg(long)]
     pub json: bool,
-    /// Draw the forecast into this file.
+    /// Draw the forecast to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
-    /// Find the best places on the wall for so many stations, 3 to 32.
+    /// Find the best places on the wall for this many stations, 3 to 32.
     #[arg(long, value_name = "N")]
     pub advise: Option<usize>,
 }

@@ -259,7 +259,7 @@ impl Mission {
             else {
                 return;
             };
-            let reason = format!("nobody attended the hold: {message}");
+            let reason = format!("unattended hold: {message}");
             self.end(Outcome::Aborted, reason);
         }
     }

@@ -191,13 +191,13 @@ impl fmt::Display for Refusal {
             Self::StepNeedsHold => f.write_str("a single step requires HOLD first"),
             Self::SwapNeedsHold => f.write_str("changing the planner requires HOLD first"),
             Self::NotLive { key } => {
-                write!(f, "parameter `{key}` cannot be changed while the mission is running; HOLD first")
+                write!(f, "parameter `{key}` cannot be changed while running; HOLD first")
             }
             Self::PositionLost { limit_m } => {
                 write!(f, "the position is lost (95 % error limit {limit_m:.2} m); resuming requires a fix")
             }
             Self::RangesInconsistent => {
-                f.write_str("the ranges contradict each other; cannot resume without a consistent fix")
+                f.write_str("the ranges contradict each other; resuming requires a consistent fix")
             }
             Self::NoPlanRefused => f.write_str("no plan has been refused because of the tether"),
         }

@@ -300,8 +300,8 @@ impl Tether {
         cable.drag_to(self.config.anchor);
         let left_m = cable.length_m();
         let on: Vec<String> = cable.contacts().iter().map(|c| name_of(world, c.on)).collect();
-        let names = on.first().map_or_else(String::new, |first| format!(", hooked round {first}"));
-        (left_m > LEFT_M).then(|| format!("{left_m:.1} m of cable are left out{names}"))
+        let names = on.first().map_or_else(String::new, |first| format!(", hooked around {first}"));
+        (left_m > LEFT_M).then(|| format!("{left_m:.1} m of tether still out{names}"))
     }
 }
 
@@ -351,7 +351,7 @@ fn certified(
         cuts,
     };
     if path.is_empty() {
-        return Certificate::refused("the planner gave no path that could be evaluated".into());
+        return Certificate::refused("the planner returned no usable path".into());
     }
     certify(&case).unwrap_or_else(|error| Certificate::refused(error.to_string()))
 }

@@ -64,8 +64,8 @@ pub struct Miss {
 
 impl fmt::Display for Miss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let found = self.found.as_deref().unwrap_or("nothing to compare it with");
-        write!(f, "expect.{} = {}: got {found}", self.key, self.bound)
+        let found = self.found.as_deref().unwrap_or("no value");
+        write!(f, "expect.{} = {}, got {found}", self.key, self.bound)
     }
 }
 
@@ -183,7 +183,7 @@ mod tests {
         let misses: Vec<String> = expect.check(&run).iter().map(ToString::to_string).collect();
         assert_eq!(
             misses,
-            ["expect.outcome = complete: got stuck", "expect.path_length_max_m = 70: got 70.12345"]
+            ["expect.outcome = complete, got stuck", "expect.path_length_max_m = 70, got 70.12345"]
         );
     }
 
@@ -191,6 +191,6 @@ mod tests {
     fn a_figure_that_is_absent_keeps_no_bound() {
         let expect = Expect { recall_min: Some(0.0), ..Expect::default() };
         let misses = expect.check(&Summary::default());
-        assert_eq!(misses[0].to_string(), "expect.recall_min = 0: got nothing to compare it with");
+        assert_eq!(misses[0].to_string(), "expect.recall_min = 0, got no value");
     }
 }

@@ -9,6 +9,7 @@ mod accuracy;
 pub mod expect;
 pub mod fold;
 pub mod human;
+mod joined;
 pub mod merged;
 pub mod rescan;
 mod sampled;
@@ -22,7 +23,8 @@ pub use account::Account;
 pub use expect::{Expect, Miss};
 pub use fold::Fold;
 pub use human::human;
-pub use merged::{Merged, MergedRun, PastRun, merged};
+pub use joined::PastRun;
+pub use merged::{Merged, MergedRun, merged};
 pub use rescan::{NoLane, Rescan, rescan};
 pub use summary::{
     Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking,

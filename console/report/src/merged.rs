@@ -1,16 +1,16 @@
 //! The result of several runs on one floor: a scan and the re-scans of what it missed.
 
+pub use crate::joined::PastRun;
 use crate::{
-    account::{Account, Evidence, account},
-    fold::Fold,
-    human::floor_lines,
-    scanned::Scanned,
-    summary::{Coverage, Logs, Summary},
+    account::{Account, account},
+    human::{
+        floor,
+        text::{Text, percent},
+    },
+    joined::{Joined, joined},
+    summary::{Coverage, Summary},
 };
-use mission::event::RunOpened;
 use serde::Serialize;
-use std::{collections::BTreeSet, fmt::Write};
-use world::{Floor, FloorMaker, Obstacle, ObstacleId, Shape};
 
 /// What several runs scanned together. Every run keeps its own recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -38,29 +38,6 @@ pub struct MergedRun {
     pub position_limit_m: f64,
     /// Its own figures, without the account of the floor.
     pub summary: Summary,
-}
-
-/// A past run: its name, its files and what is known of it.
-#[derive(Debug)]
-pub struct PastRun {
-    /// Name of its folder.
-    pub name: String,
-    /// Its files.
-    pub logs: Logs,
-    /// SHA-256 of its journal, hexadecimal.
-    pub journal_sha256: Option<String>,
-    /// SHA-256 of its recording, hexadecimal.
-    pub recording_sha256: Option<String>,
-    /// Its events, folded.
-    pub fold: Fold,
-}
-
-/// What several runs on one floor scanned together.
-pub(crate) struct Joined<'a> {
-    /// The last of the runs, as it was opened.
-    pub(crate) run: &'a RunOpened,
-    pub(crate) scanned: Scanned,
-    pub(crate) evidence: Evidence,
 }
 
 /// Takes several runs together.
@@ -91,136 +68,44 @@ pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
     })
 }
 
-/// What several runs scanned together, on the floor as all of them found it.
-pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
-    let (last, before) = runs.split_last().ok_or("there is no run to report")?;
-    let Parts { run, mut scanned, mut evidence } = parts(last)?;
-    let known: BTreeSet<ObstacleId> = evidence
-        .found()
-        .map(|(id, _)| *id)
-        .chain(run.world.obstacles.iter().filter(|o| o.known).map(|o| o.id))
-        .collect();
-    for (index, past) in before.iter().enumerate() {
-        if let Some(other) = runs[index + 1..].iter().find(|other| other.name == past.name) {
-            return Err(format!("run {} is given twice", other.name));
-        }
-        let other = parts(past)?;
-        fit_together((&past.name, &other), (&last.name, run, &scanned))?;
-        scanned.join(&other.scanned);
-        evidence.join(&other.evidence);
-    }
-    let more: Vec<Shape> =
-        evidence.found().filter(|(id, _)| !known.contains(id)).map(|(_, shape)| shape.clone()).collect();
-    if !more.is_empty() {
-        // What only the other runs found is no floor either.
-        scanned
-            .change(&updated_floor(run, scanned.believed().floor(), &evidence, run.mission.swath_m).kinds());
-    }
-    Ok(Joined { run, scanned, evidence })
-}
-
-/// What is known of one run.
-struct Parts<'a> {
-    run: &'a RunOpened,
-    scanned: Scanned,
-    evidence: Evidence,
-}
-
-fn parts(past: &PastRun) -> Result<Parts<'_>, String> {
-    let PastRun { name, fold, .. } = past;
-    let found = fold.scanned.clone().zip(fold.evidence.clone()).zip(fold.run.as_deref());
-    let ((scanned, evidence), run) =
-        found.ok_or_else(|| format!("run {name} did not scan a floor: its mission leads to a point"))?;
-    Ok(Parts { run, scanned, evidence })
-}
-
-/// Refuses runs of which one contains nothing about the floor of the other.
-fn fit_together(
-    (name, other): (&str, &Parts<'_>),
-    (last_name, last, scanned): (&str, &RunOpened, &Scanned),
-) -> Result<(), String> {
-    let names = format!("run {name} and run {last_name} have no floor in common");
-    if other.run.world.boundary != last.world.boundary {
-        return Err(format!("{names}: the walls of their tanks differ"));
-    }
-    let (a, b) = (other.run.floor.cell_m, last.floor.cell_m);
-    if !scanned.believed().floor().is_aligned_with(other.scanned.believed().floor()) {
-        return Err(format!(
-            "{names}: their cells are {a} m and {b} m wide; fly both with the same mission.cell_m"
-        ));
-    }
-    let outlines = |run: &RunOpened| -> Vec<Shape> {
-        run.world.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect()
-    };
-    if outlines(other.run) != outlines(last) {
-        return Err(format!("{names}: other obstacles stand in their tanks"));
-    }
-    if other.run.world.zones != last.world.zones {
-        return Err(format!("{names}: their zones differ"));
-    }
-    Ok(())
-}
-
-/// The floor with everything that any of the runs found.
-pub(crate) fn updated_floor(run: &RunOpened, grid: &Floor, evidence: &Evidence, swath_m: f64) -> Floor {
-    let mut world = run.world.as_drawn();
-    let drawn: BTreeSet<ObstacleId> = world.obstacles.iter().map(|obstacle| obstacle.id).collect();
-    for (id, shape) in evidence.found().filter(|(id, _)| !drawn.contains(id)) {
-        world.obstacles.push(Obstacle { id: *id, name: String::new(), shape: shape.clone(), known: true });
-    }
-    let mission = &run.mission;
-    FloorMaker::of(grid, &world, mission.room_m(), swath_m, mission.start.position).into_floor()
-}
-
 impl Merged {
     /// The result as text for people.
     pub fn human(&self) -> String {
-        let mut text = String::from("result of several runs on one floor\n\n");
-        let mut line = |label: &str, what: String| {
-            writeln!(text, "{label:<15}{what}").expect("writing to a string");
-        };
+        let mut text = Text::new("combined result of several runs on one floor");
         for run in &self.runs {
-            for (label, what) in run_lines(run) {
-                line(label, what);
-            }
+            run.write(&mut text);
         }
-        if let Some(truth) = self.coverage.by_truth {
-            let (reachable, whole) = (100.0 * truth.reachable, 100.0 * truth.whole);
-            line(
-                "by truth",
-                format!("{reachable:.1} % of the reachable floor, {whole:.1} % of the whole floor"),
-            );
-        }
-        if let Some(overlap) = self.coverage.overlap {
-            line("overlap", format!("{:.1} % of the scanned floor scanned again", 100.0 * overlap));
-        }
-        let mut before = "";
-        for (label, what) in floor_lines(&self.floor) {
-            line(if label == before { "" } else { label }, what);
-            before = label;
-        }
-        text
+        text.some(
+            "true position",
+            self.coverage.by_truth.map(|truth| {
+                let (reachable, whole) = (percent(truth.reachable), percent(truth.whole));
+                format!("{reachable} of reachable floor, {whole} of whole floor")
+            }),
+        );
+        let overlap = self.coverage.overlap;
+        text.some("overlap", overlap.map(|share| format!("{} of scanned floor", percent(share))));
+        text.lines(floor::lines(&self.floor));
+        text.0
     }
 }
 
-fn run_lines(run: &MergedRun) -> Vec<(&'static str, String)> {
-    let word = run.summary.outcome.map_or("cut off", mission::Outcome::word);
-    let share = run.summary.coverage.as_ref().map_or(0.0, |coverage| 100.0 * coverage.reachable);
-    let mut lines =
-        vec![("run", format!("{}: {word}, {share:.1} % of the reachable floor by itself", run.run))];
-    let files = run.summary.logs.as_ref();
-    let file = |kind: &str, path: Option<&String>, sha256: Option<&String>| {
-        let sha256 = sha256.map(|sha256| format!(", sha256 {sha256}")).unwrap_or_default();
-        ("", path.map_or_else(|| format!("{kind} none"), |path| format!("{kind} {path}{sha256}")))
-    };
-    lines.push(file(
-        "recording",
-        files.and_then(|logs| logs.recording.as_ref()),
-        run.recording_sha256.as_ref(),
-    ));
-    lines.push(file("journal", files.and_then(|logs| logs.journal.as_ref()), run.journal_sha256.as_ref()));
-    lines.extend(files.and_then(|logs| logs.error.clone()).map(|error| ("WARNING", error)));
-    lines
+impl MergedRun {
+    fn write(&self, text: &mut Text) {
+        let word = self.summary.outcome.map_or("cut off", mission::Outcome::word);
+        let share = percent(self.summary.coverage.as_ref().map_or(0.0, |coverage| coverage.reachable));
+        text.line("run", format!("{}: {word}, {share} of reachable floor on its own", self.run));
+        let files = self.summary.logs.as_ref();
+        let mut file = |kind: &str, path: Option<&String>, sha256: &Option<String>| {
+            let sha256 = sha256.as_ref().map(|sha256| format!(", sha256 {sha256}")).unwrap_or_default();
+            text.line(
+                "",
+                path.map_or_else(|| format!("{kind} none"), |path| format!("{kind} {path}{sha256}")),
+            );
+        };
+        file("recording", files.and_then(|logs| logs.recording.as_ref()), &self.recording_sha256);
+        file("journal", files.and_then(|logs| logs.journal.as_ref()), &self.journal_sha256);
+        text.some("WARNING", files.and_then(|logs| logs.error.as_ref()));
+    }
 }
 
 #[cfg(test)]
@@ -228,9 +113,12 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
     use super::*;
-    use crate::fold::tests::round_tank;
-    use mission::{Event, EventKind};
-    use world::CellRun;
+    use crate::{
+        fold::{Fold, tests::round_tank},
+        summary::Logs,
+    };
+    use mission::{Event, EventKind, RunOpened};
+    use world::{CellRun, FloorMaker, Obstacle, ObstacleId, Shape};
 
     fn opened(name: &str, run: RunOpened, events: Vec<EventKind>) -> PastRun {
         let mut fold = Fold::new();
@@ -271,14 +159,14 @@ mod tests {
             merged(&[opened("a", a, vec![]), opened("b", b, vec![])]).unwrap_err()
         };
         let coarse = refused(round_tank(0.1), round_tank(0.2));
-        assert!(coarse.contains("their cells are 0.1 m and 0.2 m wide"), "{coarse}");
+        assert!(coarse.contains("cells of 0.1 m and 0.2 m"), "{coarse}");
         let mut other = round_tank(0.1);
         other.world.boundary = world::Boundary::Circle { radius_m: 5.01 };
         let walls = refused(round_tank(0.1), other.clone());
-        assert!(walls.contains("run a and run b have no floor in common: the walls"), "{walls}");
+        assert!(walls.contains("runs a and b are not of one floor: the tank boundaries"), "{walls}");
         (other.world.boundary, other.world.obstacles) = (round_tank(0.1).world.boundary, vec![]);
         let columns = refused(round_tank(0.1), other);
-        assert!(columns.contains("other obstacles stand in their tanks"), "{columns}");
+        assert!(columns.contains("the obstacles differ"), "{columns}");
         let twice = merged(&[run("a", 0.1, 0, 1), run("a", 0.1, 0, 1)]).unwrap_err();
         assert_eq!(twice, "run a is given twice");
     }

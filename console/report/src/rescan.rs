@@ -5,7 +5,7 @@ use crate::{
         Area, MissReason,
         areas::{area_of, areas as areas_of},
     },
-    merged::{Joined, PastRun, joined, updated_floor},
+    joined::{Joined, PastRun, joined, updated_floor},
 };
 use std::{collections::VecDeque, fmt};
 use world::{Floor, Point, coverage::regions};
@@ -44,7 +44,7 @@ pub enum NoLane {
 impl fmt::Display for NoLane {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Narrow => "lanes are laid for the swath less the overlap, which does not reach there",
+            Self::Narrow => "beyond the lanes, which are laid for the swath less the overlap",
             Self::Reel => "beyond the reel",
         })
     }

@@ -1,7 +1,10 @@
 //! Everything the operator can do, in one table: keys, footer, help, command list and tests come from it.
 
+pub mod context;
+pub mod find;
+
 use crate::keys::Key;
-use crate::model::{Model, Overlay, Pane};
+use context::Context;
 
 /// Names an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -106,55 +109,9 @@ impl Risk {
     pub fn word(self) -> &'static str {
         match self {
             Self::Safe => "safe",
-            Self::Moves => "moves, asks first",
-            Self::Destroys => "ends, asks first",
+            Self::Moves => "MOVES",
+            Self::Destroys => "ENDS",
         }
-    }
-}
-
-/// Where keys mean something.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Context {
-    /// On every screen, in every list and line.
-    Anywhere,
-    /// On the mission screen.
-    Mission,
-    /// On the mission screen, while the map takes the arrow keys.
-    Map,
-    /// On the mission screen, while the events take the arrow keys.
-    Events,
-    /// In a list.
-    List,
-    /// In the list of parameters.
-    Parameters,
-    /// In a line where text is typed.
-    Text,
-    /// In a list that is filtered by typing.
-    Commands,
-    /// In the line that asks before something moves or ends.
-    Confirm,
-    /// In the line for single steps.
-    Stepping,
-}
-
-impl Context {
-    /// Every context, in the order in which help shows them.
-    pub const ALL: [Self; 10] = [
-        Self::Anywhere,
-        Self::Mission,
-        Self::Map,
-        Self::Events,
-        Self::List,
-        Self::Parameters,
-        Self::Text,
-        Self::Commands,
-        Self::Confirm,
-        Self::Stepping,
-    ];
-
-    /// Whether its actions are commands of their own, and no mere steps within a list or a line.
-    pub fn has_commands(self) -> bool {
-        matches!(self, Self::Anywhere | Self::Mission | Self::Map | Self::Events)
     }
 }
 
@@ -202,6 +159,11 @@ impl Action {
         Self { repeats: true, ..self }
     }
 
+    /// Whether its keys work in one of some contexts.
+    pub fn works_in(&self, contexts: &[Context]) -> bool {
+        self.contexts.iter().any(|context| contexts.contains(context))
+    }
+
     /// Whether it can be run by its name.
     pub fn is_command(&self) -> bool {
         self.contexts.iter().any(|context| context.has_commands())
@@ -216,116 +178,52 @@ impl Action {
 /// Every action, in the order of the footer and of help.
 #[rustfmt::skip]
 pub const ACTIONS: &[Action] = &[
-    action(ActionId::Hold, "hold", "HOLD now; when held: ask to resume", &[Key::Char(' ')], &[Context::Anywhere]).label("HOLD"),
-    action(ActionId::Interrupt, "interrupt", "HOLD now; twice: ask to leave", &[Key::Ctrl('c')], &[Context::Anywhere]),
+    action(ActionId::Hold, "hold", "HOLD now; if held, ask to resume", &[Key::Char(' ')], &[Context::Anywhere]).label("HOLD"),
+    action(ActionId::Interrupt, "interrupt", "HOLD now; twice: ask to quit", &[Key::Ctrl('c')], &[Context::Anywhere]),
     action(ActionId::Start, "start", "Start the mission", &[Key::Char('S')], &[Context::Mission]).label("start").risk(Risk::Moves),
     action(ActionId::Resume, "resume", "Resume after a hold", &[], &[Context::Mission]).risk(Risk::Moves),
-    action(ActionId::FlyUncertified, "fly-uncertified", "Fly a plan refused because of the tether", &[], &[Context::Mission]).risk(Risk::Moves),
-    action(ActionId::Step, "step", "Move for one tick while held", &[Key::Char('.')], &[Context::Mission]).label("step").risk(Risk::Moves),
-    action(ActionId::Slower, "slower", "Simulate slower", &[Key::Char('<')], &[Context::Mission]).label("speed").repeats(),
-    action(ActionId::Faster, "faster", "Simulate faster", &[Key::Char('>')], &[Context::Mission]).label("speed").repeats(),
-    action(ActionId::Abort, "end", "Hold, then ask to end the mission", &[Key::Char('X')], &[Context::Mission]).label("end").risk(Risk::Destroys),
-    action(ActionId::ChoosePlanner, "planner", "Change the planner, while held", &[Key::Char('P')], &[Context::Mission]).label("planner").risk(Risk::Moves),
-    action(ActionId::Parameters, "parameters", "See and change the planner's parameters", &[Key::Char('p')], &[Context::Mission]).label("parameters"),
-    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the worst alarm", &[Key::Char('a')], &[Context::Mission]).label("ack"),
-    action(ActionId::Commands, "commands", "Find a command by its name", &[Key::Char(':'), Key::Ctrl('p')], &[Context::Mission]).label("command"),
+    action(ActionId::FlyUncertified, "fly-uncertified", "Run a plan refused because of the tether", &[], &[Context::Mission]).risk(Risk::Moves),
+    action(ActionId::Step, "step", "Move for one tick (while held)", &[Key::Char('.')], &[Context::Mission]).label("step").risk(Risk::Moves),
+    action(ActionId::Slower, "slower", "Slower simulation", &[Key::Char('<')], &[Context::Mission]).label("speed").repeats(),
+    action(ActionId::Faster, "faster", "Faster simulation", &[Key::Char('>')], &[Context::Mission]).label("speed").repeats(),
+    action(ActionId::Abort, "end", "HOLD, then ask to end the mission", &[Key::Char('X')], &[Context::Mission]).label("end").risk(Risk::Destroys),
+    action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[Context::Mission]).label("planner").risk(Risk::Moves),
+    action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[Context::Mission]).label("parameters"),
+    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &[Context::Mission]).label("ack"),
+    action(ActionId::Commands, "commands", "Find a command by name", &[Key::Char(':'), Key::Ctrl('p')], &[Context::Mission]).label("command"),
     action(ActionId::Help, "help", "Show keys and commands", &[Key::Char('?'), Key::F(1)], &[Context::Mission]).label("keys"),
     action(ActionId::NextPane, "next-pane", "Go to the next pane", &[Key::Tab], &[Context::Mission]).label("pane").repeats(),
     action(ActionId::PreviousPane, "previous-pane", "Go to the previous pane", &[Key::BackTab], &[Context::Mission]).repeats(),
-    action(ActionId::Leave, "leave", "Leave; a running mission is held first", &[Key::Char('q')], &[Context::Mission]).label("leave"),
-    action(ActionId::ZoomIn, "zoom-in", "Enlarge the map", &[Key::Char('z')], &[Context::Mission]).repeats(),
-    action(ActionId::ZoomOut, "zoom-out", "Reduce the map", &[Key::Char('Z')], &[Context::Mission]).repeats(),
+    action(ActionId::Leave, "quit", "Quit; a running mission is held first", &[Key::Char('q')], &[Context::Mission]).label("quit"),
+    action(ActionId::ZoomIn, "zoom-in", "Zoom in", &[Key::Char('z')], &[Context::Mission]).repeats(),
+    action(ActionId::ZoomOut, "zoom-out", "Zoom out", &[Key::Char('Z')], &[Context::Mission]).repeats(),
     action(ActionId::WholeTank, "whole-tank", "Show the whole tank", &[Key::Char('0')], &[Context::Mission]),
-    action(ActionId::Follow, "follow", "Keep the robot in the map's middle", &[Key::Char('f')], &[Context::Mission]),
-    action(ActionId::Layers, "layers", "Choose what the map shows", &[Key::Char('L')], &[Context::Mission]),
-    action(ActionId::Severity, "severity", "Least severity of the events shown", &[Key::Char('m')], &[Context::Mission]),
-    action(ActionId::Filter, "filter", "Show only events with some text", &[Key::Char('/')], &[Context::Mission]),
-    action(ActionId::PanLeft, "pan-west", "Move the map's window west", &[Key::Left, Key::Char('h')], &[Context::Map]).repeats(),
-    action(ActionId::PanRight, "pan-east", "Move the map's window east", &[Key::Right, Key::Char('l')], &[Context::Map]).repeats(),
-    action(ActionId::PanUp, "pan-north", "Move the map's window north", &[Key::Up, Key::Char('k')], &[Context::Map]).repeats(),
-    action(ActionId::PanDown, "pan-south", "Move the map's window south", &[Key::Down, Key::Char('j')], &[Context::Map]).repeats(),
-    action(ActionId::Newer, "newer", "Towards newer events", &[Key::Up, Key::Char('k')], &[Context::Events]).repeats(),
-    action(ActionId::Older, "older", "Towards older events", &[Key::Down, Key::Char('j')], &[Context::Events]).repeats(),
-    action(ActionId::PageNewer, "page-newer", "A page towards newer events", &[Key::PageUp, Key::Ctrl('u')], &[Context::Events]).repeats(),
-    action(ActionId::PageOlder, "page-older", "A page towards older events", &[Key::PageDown, Key::Ctrl('d')], &[Context::Events]).repeats(),
-    action(ActionId::Newest, "newest", "The newest event", &[Key::Home, Key::Char('g')], &[Context::Events]),
-    action(ActionId::Oldest, "oldest", "The oldest event", &[Key::End, Key::Char('G')], &[Context::Events]),
+    action(ActionId::Follow, "follow", "Keep the map centred on the robot", &[Key::Char('f')], &[Context::Mission]),
+    action(ActionId::Layers, "layers", "Show or hide map layers", &[Key::Char('L')], &[Context::Mission]),
+    action(ActionId::Severity, "severity", "Minimum severity of the events shown", &[Key::Char('m')], &[Context::Mission]),
+    action(ActionId::Filter, "filter", "Filter events by text", &[Key::Char('/')], &[Context::Mission]),
+    action(ActionId::PanLeft, "pan-west", "Pan the map west", &[Key::Left, Key::Char('h')], &[Context::Map]).repeats(),
+    action(ActionId::PanRight, "pan-east", "Pan the map east", &[Key::Right, Key::Char('l')], &[Context::Map]).repeats(),
+    action(ActionId::PanUp, "pan-north", "Pan the map north", &[Key::Up, Key::Char('k')], &[Context::Map]).repeats(),
+    action(ActionId::PanDown, "pan-south", "Pan the map south", &[Key::Down, Key::Char('j')], &[Context::Map]).repeats(),
+    action(ActionId::Newer, "newer", "Scroll to newer events", &[Key::Up, Key::Char('k')], &[Context::Events]).repeats(),
+    action(ActionId::Older, "older", "Scroll to older events", &[Key::Down, Key::Char('j')], &[Context::Events]).repeats(),
+    action(ActionId::PageNewer, "page-newer", "Scroll one page to newer events", &[Key::PageUp, Key::Ctrl('u')], &[Context::Events]).repeats(),
+    action(ActionId::PageOlder, "page-older", "Scroll one page to older events", &[Key::PageDown, Key::Ctrl('d')], &[Context::Events]).repeats(),
+    action(ActionId::Newest, "newest", "Go to the newest event", &[Key::Home, Key::Char('g')], &[Context::Events]),
+    action(ActionId::Oldest, "oldest", "Go to the oldest event", &[Key::End, Key::Char('G')], &[Context::Events]),
     action(ActionId::Redraw, "redraw", "Redraw the screen", &[Key::Ctrl('l')], &[Context::Anywhere]),
-    action(ActionId::Suspend, "suspend", "HOLD, then back to the shell until fg", &[Key::Ctrl('z')], &[Context::Anywhere]),
-    action(ActionId::Edit, "edit", "Type a value", &[Key::Char('e')], &[Context::Parameters]).label("edit"),
+    action(ActionId::Suspend, "suspend", "HOLD, then suspend to the shell (fg)", &[Key::Ctrl('z')], &[Context::Anywhere]),
+    action(ActionId::Edit, "edit", "Edit the value", &[Key::Char('e')], &[Context::Parameters]).label("edit"),
     action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::List, Context::Text, Context::Confirm, Context::Stepping]).label("yes"),
-    action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("one more tick").risk(Risk::Moves),
-    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc], &[Context::Text, Context::Stepping]).label("back"),
-    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm]).label("back"),
+    action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("step").risk(Risk::Moves),
+    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc], &[Context::Text, Context::Stepping]).label("cancel"),
+    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm]).label("cancel"),
     action(ActionId::Up, "up", "Select the line above", &[Key::Up, Key::Char('k')], &[Context::List]).repeats(),
     action(ActionId::Down, "down", "Select the line below", &[Key::Down, Key::Char('j')], &[Context::List]).repeats(),
     action(ActionId::Up, "up", "Select the line above", &[Key::Up], &[Context::Commands]).repeats(),
     action(ActionId::Down, "down", "Select the line below", &[Key::Down], &[Context::Commands]).repeats(),
 ];
-
-/// The contexts whose keys work now.
-pub fn contexts(model: &Model) -> Vec<Context> {
-    let here: &[Context] = match &model.ui.overlay {
-        Overlay::None => match model.ui.pane {
-            Pane::Map => &[Context::Mission, Context::Map],
-            Pane::Events => &[Context::Mission, Context::Events],
-            _ => &[Context::Mission],
-        },
-        Overlay::Confirm(_) | Overlay::Quit => &[Context::Confirm],
-        Overlay::Stepping => &[Context::Stepping],
-        Overlay::Commands { .. } => &[Context::Text, Context::Commands],
-        Overlay::Parameters { edit: Some(_), .. } | Overlay::Filter => &[Context::Text],
-        Overlay::Parameters { edit: None, .. } => &[Context::List, Context::Parameters],
-        Overlay::Planners { .. } | Overlay::Layers { .. } => &[Context::List],
-    };
-    [&[Context::Anywhere], here].concat()
-}
-
-/// The action of a key in some contexts.
-pub fn action_for(key: Key, contexts: &[Context]) -> Option<&'static Action> {
-    ACTIONS.iter().find(|action| {
-        action.keys.contains(&key) && action.contexts.iter().any(|context| contexts.contains(context))
-    })
-}
-
-/// The commands whose name or description contains the letters of `typed` in that order, best first.
-pub fn matching(typed: &str) -> Vec<&'static Action> {
-    let mut found: Vec<(usize, &Action)> = ACTIONS
-        .iter()
-        .filter(|action| action.is_command())
-        .filter_map(|action| {
-            let by_name = distance(typed, action.name);
-            // A hit in the name beats any hit in the description.
-            let by_about = distance(typed, action.about).map(|far| far + 1000);
-            by_name.or(by_about).map(|far| (far, action))
-        })
-        .collect();
-    found.sort_by_key(|(far, _)| *far);
-    found.into_iter().map(|(_, action)| action).collect()
-}
-
-/// The command list for what was typed; with nothing typed, the keys of a pane that is not in focus come last.
-pub fn listed(typed: &str, pane: Pane) -> Vec<&'static Action> {
-    let mut found = matching(typed);
-    if typed.is_empty() {
-        let away = if pane == Pane::Events { Context::Map } else { Context::Events };
-        found.sort_by_key(|action| action.contexts.contains(&away));
-    }
-    found
-}
-
-/// How far the letters of `typed` are spread over `text`, and how far in they begin; `None` if they are not there.
-fn distance(typed: &str, text: &str) -> Option<usize> {
-    let text: Vec<char> = text.to_lowercase().chars().collect();
-    let mut at = 0;
-    let mut first = None;
-    for letter in typed.to_lowercase().chars().filter(|c| !c.is_whitespace()) {
-        at += text[at..].iter().position(|c| *c == letter)? + 1;
-        first.get_or_insert(at);
-    }
-    let first = first.unwrap_or(0);
-    Some(2 * (at - first) + first)
-}
 
 #[cfg(test)]
 mod tests {
@@ -346,8 +244,7 @@ mod tests {
     #[test]
     fn no_two_actions_share_a_key_where_both_work() {
         for contexts in TOGETHER {
-            let here: Vec<&Action> =
-                ACTIONS.iter().filter(|a| a.contexts.iter().any(|c| contexts.contains(c))).collect();
+            let here: Vec<&Action> = ACTIONS.iter().filter(|action| action.works_in(contexts)).collect();
             for (index, one) in here.iter().enumerate() {
                 for other in &here[index + 1..] {
                     let shared = one.keys.iter().find(|key| other.keys.contains(key));
@@ -366,25 +263,6 @@ mod tests {
             }
             assert!(!action.repeats, "{} follows a repeating key", action.name);
         }
-    }
-
-    #[test]
-    fn every_command_is_found_first_by_its_name() {
-        for action in ACTIONS.iter().filter(|action| action.is_command()) {
-            assert_eq!(
-                matching(action.name).first().map(|found| found.id),
-                Some(action.id),
-                "{}",
-                action.name
-            );
-        }
-    }
-
-    #[test]
-    fn a_command_is_found_by_letters_in_order() {
-        assert_eq!(matching("zin").first().map(|a| a.name), Some("zoom-in"));
-        assert!(matching("xyzzy").is_empty());
-        assert_eq!(matching("").len(), ACTIONS.iter().filter(|a| a.is_command()).count());
     }
 
     #[test]

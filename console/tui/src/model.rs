@@ -1,28 +1,28 @@
 //! Everything the screen knows, as plain data.
 
 pub mod alarms;
+pub mod console;
 pub mod coverage;
 pub mod fold;
 pub mod log;
 pub mod parameter;
+pub mod planning;
 pub mod position;
 pub mod tether;
 pub mod trail;
 pub mod ui;
 
 pub use alarms::{Alarm, Alarms, Cause};
+pub use console::{Busy, Console, Health, Notice, Recording, Refused, Speed, Times};
 pub use coverage::Raster;
 pub use log::{Entry, Log};
+pub use planning::{PlanShown, Planning};
 pub use position::Position;
 pub use tether::Tether;
 pub use trail::Trail;
 pub use ui::{Overlay, Pane, Ui};
 
-use mission::{
-    FoldedStanding, MissionConfig, Order, Phase, PlannerChoice, PlannerInfo, Severity, TaskConfig, WorkerId,
-    planner::Fault,
-};
-use planner_api::{Command, Drawing};
+use mission::{FoldedStanding, MissionConfig, Phase, PlannerInfo, Severity, TaskConfig};
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
 use world::{Point, World};
@@ -111,175 +111,6 @@ pub struct Progress {
     pub covered_reachable: f64,
     /// Scanned share of the whole floor, 0 to 1.
     pub covered_whole: f64,
-}
-
-/// A plan, thinned out for drawing.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PlanShown {
-    /// Points of the path.
-    pub path: Vec<Point>,
-    /// Length of the whole path, metres.
-    pub length_m: f64,
-    /// Whether it achieves the whole task.
-    pub complete: bool,
-    /// Mission time at which it was made, seconds.
-    pub t_s: f64,
-}
-
-/// The planner and what it last did.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Planning {
-    /// The active planner, with the parameters set by hand.
-    pub choice: Option<PlannerChoice>,
-    /// Who it is.
-    pub info: Option<PlannerInfo>,
-    /// Its plan.
-    pub plan: Option<PlanShown>,
-    /// Its last command, with the mission time of it, seconds.
-    pub command: Option<(f64, Command)>,
-    /// Its last drawings.
-    pub drawings: Vec<Drawing>,
-    /// The tick of these.
-    pub drawings_tick: u64,
-    /// Its last figures: name, value, unit.
-    pub scalars: Vec<(String, f64, String)>,
-    /// Its last failure, until it is active again.
-    pub fault: Option<Fault>,
-    /// The worker of a planner that is being prepared; its plans are not flown yet.
-    #[serde(default)]
-    pub candidate: Option<WorkerId>,
-    /// Whether the last plan was of that planner: the certificate that follows says nothing of the plan that is flown.
-    #[serde(default)]
-    pub proposed: bool,
-}
-
-/// The time, by the caller.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Times {
-    /// Seconds on a clock that never jumps.
-    pub mono_s: f64,
-    /// Seconds since 1970, UTC.
-    pub wall_unix_s: f64,
-}
-
-/// How fast a simulated mission goes.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Speed {
-    /// So many times as fast as the clock on the wall.
-    Times(f64),
-    /// As fast as it goes.
-    Max,
-}
-
-impl Speed {
-    /// Every speed the operator can choose, slowest first.
-    pub const STEPS: [Self; 10] = [
-        Self::Times(0.25),
-        Self::Times(0.5),
-        Self::Times(1.0),
-        Self::Times(2.0),
-        Self::Times(4.0),
-        Self::Times(8.0),
-        Self::Times(16.0),
-        Self::Times(32.0),
-        Self::Times(64.0),
-        Self::Max,
-    ];
-
-    /// The next speed up or down, if there is one.
-    pub fn stepped(self, faster: bool) -> Option<Self> {
-        let at = Self::STEPS.iter().position(|step| *step == self).unwrap_or(2);
-        let next = if faster { at.checked_add(1) } else { at.checked_sub(1) };
-        next.and_then(|index| Self::STEPS.get(index)).copied()
-    }
-}
-
-impl Default for Speed {
-    fn default() -> Self {
-        Self::Times(1.0)
-    }
-}
-
-/// Whether the run is being written down.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Recording {
-    /// Nobody asked for it.
-    #[default]
-    Off,
-    /// Everything is being written.
-    On,
-    /// It failed, and why.
-    Failed(String),
-}
-
-/// How the console itself does.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Health {
-    /// Whether the run is being written down.
-    pub recording: Recording,
-    /// The speed that is really reached, as a multiple of the wall clock; `None` when not measured.
-    pub reached_speed: Option<f64>,
-}
-
-/// A plugin that was found and not accepted.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Refused {
-    /// File name of the plugin, without the folder.
-    pub plugin: String,
-    /// Why, as a sentence.
-    pub reason: String,
-}
-
-/// A message for the operator that disappears by itself.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Notice {
-    /// How much it asks of the operator.
-    pub severity: Severity,
-    /// What, as a sentence.
-    pub text: String,
-    /// When it goes, on the console's own clock, seconds.
-    pub until_mono_s: f64,
-}
-
-/// A planner's work that takes time; ticks and HOLD continue meanwhile.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Busy {
-    /// What it is, such as `Planning (rpf)`.
-    pub work: String,
-    /// How long it may take, seconds; not known for what is short.
-    pub limit_s: Option<f64>,
-    /// When it began, on the console's own clock, seconds.
-    pub since_mono_s: f64,
-    /// How far it is: the share done, 0 to 1, and what is being done; `None` if it is not reported.
-    #[serde(default)]
-    pub at: Option<(f64, String)>,
-}
-
-/// The console itself.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Console {
-    /// The time, by the last message.
-    pub now: Times,
-    /// How fast the mission shall go.
-    pub speed: Speed,
-    /// How the console does.
-    pub health: Health,
-    /// Planners to choose from.
-    pub planners: Vec<PlannerInfo>,
-    /// Plugins that cannot be chosen.
-    pub refused: Vec<Refused>,
-    /// What a planner is working on.
-    pub busy: Option<Busy>,
-    /// What was last said to the operator.
-    pub notice: Option<Notice>,
-    /// An order that makes the robot move and was not answered yet.
-    pub asked: Option<Order>,
-    /// Whether HOLD was sent and not answered yet.
-    pub hold_asked: bool,
-    /// When Ctrl-C was last pressed, on the console's own clock, seconds.
-    pub interrupted_mono_s: Option<f64>,
 }
 
 impl Model {

@@ -3,111 +3,88 @@
 use crate::caps::{Caps, Colours};
 use ratatui::style::{Color, Modifier, Style};
 
-/// What a mark on the screen stands for. The view speaks only in roles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Role {
-    /// Plain text.
-    Text,
-    /// Text of less weight: units, hints.
-    Dim,
-    /// Title of a pane.
-    Title,
-    /// Frame of a pane.
-    Border,
-    /// Frame of the pane that takes the arrow keys.
-    Focus,
-    /// Name of a key.
-    Key,
-    /// All is well.
-    Good,
-    /// Worth watching.
-    Watch,
-    /// Needs attention.
-    Warn,
-    /// Needs action now.
-    Crit,
-    /// The robot moves by itself.
-    Run,
-    /// The robot is held.
-    Hold,
-    /// A value older than it should be.
-    Stale,
-    /// The selected line of a list.
-    Selected,
-    /// The line that asks before the robot moves.
-    Confirm,
-    /// Floor that has been scanned.
-    Scanned,
-    /// Floor of which a part has been scanned.
-    Partly,
-    /// The tank's wall.
-    Wall,
-    /// An obstacle of the drawing.
-    Obstacle,
-    /// An obstacle that was discovered.
-    Found,
-    /// A no-go zone.
-    NoGo,
-    /// An acoustic-emission station.
-    Station,
-    /// Where the robot has been.
-    Trail,
-    /// Where the plan leads.
-    Plan,
-    /// Where the robot goes next.
-    Target,
-    /// What the planner drew: pulls.
-    Pull,
-    /// What the planner drew: pushes.
-    Push,
-    /// What the planner drew: anything else.
-    Drawn,
-    /// The robot.
-    Robot,
-    /// The tether.
-    Tether,
+/// Makes the roles, each with the letter for it in the stored screens of the tests.
+macro_rules! roles {
+    ($($(#[$doc:meta])* $role:ident $letter:literal,)*) => {
+        /// What a mark on the screen stands for. The view speaks only in roles.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+        pub enum Role {
+            $($(#[$doc])* $role,)*
+        }
+
+        impl Role {
+            /// Every role.
+            pub const ALL: [Self; [$($letter),*].len()] = [$(Self::$role),*];
+
+            /// One letter for the role, as the stored screens of the tests show it.
+            pub fn letter(self) -> char {
+                [$($letter),*][self as usize]
+            }
+        }
+    };
 }
 
-impl Role {
-    /// Every role.
-    pub const ALL: [Self; 30] = [
-        Self::Text,
-        Self::Dim,
-        Self::Title,
-        Self::Border,
-        Self::Focus,
-        Self::Key,
-        Self::Good,
-        Self::Watch,
-        Self::Warn,
-        Self::Crit,
-        Self::Run,
-        Self::Hold,
-        Self::Stale,
-        Self::Selected,
-        Self::Confirm,
-        Self::Scanned,
-        Self::Partly,
-        Self::Wall,
-        Self::Obstacle,
-        Self::Found,
-        Self::NoGo,
-        Self::Station,
-        Self::Trail,
-        Self::Plan,
-        Self::Target,
-        Self::Pull,
-        Self::Push,
-        Self::Drawn,
-        Self::Robot,
-        Self::Tether,
-    ];
-
-    /// One letter for the role, as the stored screens of the tests show it.
-    pub fn letter(self) -> char {
-        const LETTERS: &[u8; 30] = b".dTbFkgwWCRH~sc%:o#?z*-px+=D@t";
-        char::from(LETTERS[self as usize])
-    }
+roles! {
+    /// Plain text.
+    Text '.',
+    /// Text of less weight: units, hints.
+    Dim 'd',
+    /// Title of a pane.
+    Title 'T',
+    /// Frame of a pane.
+    Border 'b',
+    /// Frame of the pane that takes the arrow keys.
+    Focus 'F',
+    /// Name of a key.
+    Key 'k',
+    /// All is well.
+    Good 'g',
+    /// Worth watching.
+    Watch 'w',
+    /// Needs attention.
+    Warn 'W',
+    /// Needs action now.
+    Crit 'C',
+    /// The robot moves by itself.
+    Run 'R',
+    /// The robot is held.
+    Hold 'H',
+    /// A value older than it should be.
+    Stale '~',
+    /// The selected line of a list.
+    Selected 's',
+    /// The line that asks before the robot moves.
+    Confirm 'c',
+    /// Floor that has been scanned.
+    Scanned '%',
+    /// Floor of which a part has been scanned.
+    Partly ':',
+    /// The tank's wall.
+    Wall 'o',
+    /// An obstacle of the drawing.
+    Obstacle '#',
+    /// An obstacle that was discovered.
+    Found '?',
+    /// A no-go zone.
+    NoGo 'z',
+    /// An acoustic-emission station.
+    Station '*',
+    /// Where the robot has been.
+    Trail '-',
+    /// Where the plan leads.
+    Plan 'p',
+    /// Where the robot goes next.
+    Target 'x',
+    /// What the planner drew: pulls.
+    Pull '+',
+    /// What the planner drew: pushes.
+    Push '=',
+    /// What the planner drew: anything else.
+    Drawn 'D',
+    /// The robot.
+    Robot '@',
+    /// The tether.
+    Tether 't',
 }
 
 /// The style of every role.

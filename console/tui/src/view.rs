@@ -6,23 +6,22 @@ mod coverage;
 mod events;
 mod footer;
 mod lists;
+mod look;
 mod map;
 mod next;
 mod planner;
 mod position;
-mod shapes;
 mod strip;
 mod tether;
 mod text;
 mod top;
 
 use crate::caps::{Caps, Glyphs};
-use crate::model::{Model, Overlay, Pane, ui::Arrangement};
-use crate::theme::{Role, Theme};
+use crate::model::{Model, Pane, ui::Arrangement};
+use crate::theme::Theme;
+use look::Look;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
-use ratatui::text::{Line, Span};
-use ratatui::widgets::{Block, Paragraph};
 
 /// Draws the model.
 ///
@@ -47,43 +46,6 @@ pub fn view_with(model: &Model, caps: &Caps, theme: &Theme, frame: &mut Frame) {
     lists::draw(&look, frame, area);
     if caps.glyphs == Glyphs::Ascii {
         ascii::reduce(frame.buffer_mut());
-    }
-}
-
-/// What every part of the view needs.
-#[derive(Clone, Copy)]
-struct Look<'a> {
-    model: &'a Model,
-    caps: Caps,
-    theme: &'a Theme,
-}
-
-impl Look<'_> {
-    fn span<'t>(&self, role: Role, text: impl Into<std::borrow::Cow<'t, str>>) -> Span<'t> {
-        Span::styled(text, self.theme.style(role))
-    }
-
-    fn line<'t>(&self, parts: impl IntoIterator<Item = (Role, String)>) -> Line<'t> {
-        Line::from(parts.into_iter().map(|(role, text)| self.span(role, text)).collect::<Vec<_>>())
-    }
-
-    fn pane<'t>(&self, pane: Pane, title: &str, note: &str) -> Block<'t> {
-        let focus = self.model.ui.pane == pane && self.model.ui.panes().contains(&pane);
-        let border = if focus { Role::Focus } else { Role::Border };
-        self.block(border, title, note)
-    }
-
-    fn block<'t>(&self, border: Role, title: &str, note: &str) -> Block<'t> {
-        let block = Block::bordered()
-            .border_style(self.theme.style(border))
-            .title_top(Line::from(vec![Span::raw("─"), self.span(Role::Title, format!(" {title} "))]));
-        if note.is_empty() {
-            block
-        } else {
-            block.title_top(
-                Line::from(vec![self.span(Role::Dim, format!(" {note} ")), Span::raw("─")]).right_aligned(),
-            )
-        }
     }
 }
 
@@ -163,14 +125,4 @@ fn above_tether(look: &Look, frame: &mut Frame, area: Rect, wide: bool) -> Rect 
     let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
     tether::draw(look, frame, below, wide);
     above
-}
-
-/// Lines in a pane, cut where it ends.
-fn fill(frame: &mut Frame, area: Rect, block: Block<'_>, lines: Vec<Line<'_>>) {
-    frame.render_widget(Paragraph::new(lines).block(block), area);
-}
-
-/// Whether a question about moving or leaving is open.
-fn asks(model: &Model) -> bool {
-    matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping)
 }

@@ -297,7 +297,7 @@ fn mismatch(planner: &str) -> Fault {
         planner: planner.to_owned(),
         during: During::Step,
         cause: Cause::Protocol,
-        message: format!("planner {planner} sent an answer to another question"),
+        message: format!("planner {planner} sent an answer that does not match the request"),
         partial: Vec::new(),
         plugin_sha256: None,
     }

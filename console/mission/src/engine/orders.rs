@@ -26,7 +26,7 @@ impl Mission {
             Order::Hold => self.hold_by_order(),
             Order::Resume => self.resume(Gait::Steady),
             Order::Step => self.resume(Gait::OneTick),
-            Order::Abort => self.end(Outcome::Aborted, "ended by the operator".into()),
+            Order::Abort => self.end(Outcome::Aborted, "ended by operator".into()),
             Order::ChoosePlanner(choice) => {
                 let from = self.active.choice.id.clone();
                 self.choose(choice.clone(), Reason::Swap { from });

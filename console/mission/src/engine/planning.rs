@@ -91,7 +91,7 @@ impl Mission {
         let refused = !certificate.certified && !tether.flies_uncertified();
         let why = certificate.reasons.join("; ");
         events.push(EventKind::Certified { planner: planner.to_owned(), refused, certificate });
-        let message = || format!("the plan of {planner} is not safe for the tether: {why}");
+        let message = || format!("plan of {planner} is not safe for the tether: {why}");
         refused.then(|| Objection { by_tether: true, message: message() })
     }
 
@@ -105,8 +105,8 @@ impl Mission {
         let left_m2 = self.task.floor_left(coverage).len() as f64 * coverage.floor().cell_m2();
         let message = || {
             format!(
-                "the plan of {planner} scans nothing of the {left_m2:.2} m² to be scanned: no lane reaches them; another planner, less \
-                 mission.overlap_m or other mission.boxes_m may"
+                "plan of {planner} scans none of the remaining {left_m2:.2} m²: no lane reaches it; try another planner, a smaller \
+                 mission.overlap_m or other mission.boxes_m"
             )
         };
         (left_m2 > 0.0).then(|| Objection { by_tether: false, message: message() })

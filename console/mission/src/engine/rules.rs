@@ -114,7 +114,7 @@ impl Rules {
     pub(super) fn update(&mut self, seen: &Seen<'_>, phase: &Phase) -> Option<Verdict> {
         let time_is_up = self.time_limit.update(seen, matches!(phase, Phase::Held(_)));
         if seen.touched {
-            return Some(Verdict::End(Outcome::Collision, "the bumper touched something".into()));
+            return Some(Verdict::End(Outcome::Collision, "bumper contact".into()));
         }
         match phase {
             _ if time_is_up.is_some() => time_is_up,

@@ -125,7 +125,7 @@ impl Mission {
     /// Why a task counts as done, as a sentence.
     pub(super) fn done_reason(&self) -> String {
         match &self.task {
-            Task::Goto(_) | Task::Follow { .. } => "the task is done".into(),
+            Task::Goto(_) | Task::Follow { .. } => "task complete".into(),
             Task::Cover(_) => {
                 let share = 100.0 * self.floor.coverage.fraction_reachable();
                 let base_m2 =
@@ -136,7 +136,7 @@ impl Mission {
                 let asked = if self.task.is_in_part() {
                     let n_left = self.task.floor_left(&self.floor.coverage).len();
                     let left_m2 = n_left as f64 * self.floor.coverage.floor().cell_m2();
-                    format!(", all but {left_m2:.2} m² of what was asked for")
+                    format!(", {left_m2:.2} m² of the requested floor missed")
                 } else {
                     String::new()
                 };
@@ -157,9 +157,7 @@ impl Mission {
         let beyond_m2 = beyond as f64 * floor.cell_m2();
         let reel_length_m = self.config.tether.as_ref()?.limits.reel_length_m;
         (beyond_m2 > WORTH_TELLING_M2).then(|| {
-            format!(
-                "NOT all of it: {beyond_m2:.1} m² beyond the reel of {reel_length_m} m were left out of the plan"
-            )
+            format!("INCOMPLETE: {beyond_m2:.1} m² beyond the reel of {reel_length_m} m not planned")
         })
     }
 }

@@ -88,17 +88,16 @@ impl HoldReason {
 impl fmt::Display for HoldReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Operator => f.write_str("held by the operator"),
-            Self::PositionLost => f.write_str("held because the position is lost"),
-            Self::RangesInconsistent => f.write_str("held because the ranges contradict each other"),
-            Self::PlannerFault { message } | Self::PlannerSilent { message } => {
-                write!(f, "held because of the planner: {message}")
-            }
-            Self::Stuck { message } => write!(f, "held because the robot is stuck: {message}"),
-            Self::Tether { message } => write!(f, "held because of the tether: {message}"),
-            Self::PlanRefused { message } => write!(f, "held because a plan was refused: {message}"),
-            Self::Stepped => f.write_str("held after a single step"),
-            Self::PlannerReplaced => f.write_str("held until resumed: the planner was replaced"),
+            Self::Operator => f.write_str("held by operator"),
+            Self::PositionLost => f.write_str("held: position lost"),
+            Self::RangesInconsistent => f.write_str("held: ranges contradict each other"),
+            Self::PlannerFault { message }
+            | Self::PlannerSilent { message }
+            | Self::Tether { message }
+            | Self::PlanRefused { message } => write!(f, "held: {message}"),
+            Self::Stuck { message } => write!(f, "held: robot stuck, {message}"),
+            Self::Stepped => f.write_str("held after single step"),
+            Self::PlannerReplaced => f.write_str("held: planner replaced"),
         }
     }
 }

@@ -52,10 +52,10 @@ impl Event {
             EventKind::StationRejected { station, reason } => line(
                 Severity::Watch,
                 "ae",
-                format!("station {} left out: {}", station.0, exclusion_text(reason)),
+                format!("station {} rejected: {}", station.0, exclusion_text(reason)),
             ),
             EventKind::StationRestored { station } => {
-                line(Severity::Info, "ae", format!("station {} used again", station.0))
+                line(Severity::Info, "ae", format!("station {} back in use", station.0))
             }
             EventKind::PositionLost { error_m, limit_m } => line(
                 Severity::Crit,
@@ -63,7 +63,7 @@ impl Event {
                 format!("position lost: 95 % error {error_m:.2} m, limit {limit_m:.2} m"),
             ),
             EventKind::PositionRegained { error_m } => {
-                line(Severity::Info, "ae", format!("position regained: 95 % error {error_m:.2} m"))
+                line(Severity::Info, "ae", format!("position recovered: 95 % error {error_m:.2} m"))
             }
             EventKind::RangesInconsistent { chi2, degrees_of_freedom } => line(
                 Severity::Crit,
@@ -78,7 +78,7 @@ impl Event {
                 line(
                     Severity::Watch,
                     "map",
-                    format!("obstacle not on the drawing at {:.2}, {:.2} m", at.x, at.y),
+                    format!("new obstacle at {:.2}, {:.2} m, not on the drawing", at.x, at.y),
                 )
             }
             EventKind::PlannerChosen { .. }
@@ -95,10 +95,10 @@ impl Event {
                 format!("collision at {:.2}, {:.2} m", pose.position.x, pose.position.y),
             ),
             EventKind::Held { by, .. } => line(hold_severity(by), "mission", by.to_string()),
-            EventKind::Resumed => line(Severity::Info, "mission", "moving again".into()),
+            EventKind::Resumed => line(Severity::Info, "mission", "resumed".into()),
             EventKind::Ended { outcome, reason } => {
                 let severity = if *outcome == Outcome::Complete { Severity::Info } else { Severity::Warn };
-                line(severity, "mission", format!("ended {}: {reason}", outcome.word()))
+                line(severity, "mission", format!("ended ({}): {reason}", outcome.word()))
             }
             EventKind::TetherAlarmRaised { .. }
             | EventKind::TetherAlarmCleared { .. }
@@ -132,17 +132,17 @@ fn of_planner(kind: &EventKind) -> Option<LogLine> {
     Some(match kind {
         EventKind::PlannerChosen { choice, info, from, .. } => {
             let before = match from {
-                Some(id) if *id == choice.id => ", started again".to_owned(),
+                Some(id) if *id == choice.id => ", restarted".to_owned(),
                 Some(id) => format!(", took over from {id}"),
                 None => String::new(),
             };
-            line(Severity::Info, "plan", format!("planner {} {} drives{before}", choice.id, info.version))
+            line(Severity::Info, "plan", format!("planner {} {} active{before}", choice.id, info.version))
         }
         EventKind::ParametersChanged { choice, .. } => {
             line(Severity::Info, "plan", format!("parameters of {} changed", choice.id))
         }
         EventKind::Planned { planner, length_m, complete, .. } => {
-            let part = if *complete { "" } else { ", only part of the way" };
+            let part = if *complete { "" } else { " (partial)" };
             line(Severity::Info, "plan", format!("{planner} planned {length_m:.1} m{part}"))
         }
         EventKind::PlannerLogged { planner, level, message } => match level {
@@ -151,16 +151,14 @@ fn of_planner(kind: &EventKind) -> Option<LogLine> {
             LogLevel::Warn => line(Severity::Watch, "plan", format!("{planner}: {message}")),
         },
         EventKind::PlannerPrepared { choice, info, .. } => {
-            line(Severity::Info, "plan", format!("planner {} {} is being prepared", choice.id, info.version))
+            line(Severity::Info, "plan", format!("preparing planner {} {}", choice.id, info.version))
         }
         EventKind::PlannerRejected { planner, why } => {
-            line(Severity::Warn, "plan", format!("planner {planner} does not take over: {why}"))
+            line(Severity::Warn, "plan", format!("planner {planner} will not take over: {why}"))
         }
-        EventKind::PlannerLate { planner, ticks } => line(
-            Severity::Watch,
-            "plan",
-            format!("{}; the robot stood still meanwhile", late_text(planner, *ticks)),
-        ),
+        EventKind::PlannerLate { planner, ticks } => {
+            line(Severity::Watch, "plan", format!("{}; the robot stood still", late_text(planner, *ticks)))
+        }
         EventKind::PlannerFailed { fault, .. } => line(fault.severity(), "plan", fault.message.clone()),
         _ => return None,
     })
@@ -176,11 +174,11 @@ fn of_tether(kind: &EventKind) -> Option<LogLine> {
     Some(match kind {
         EventKind::TetherAlarmRaised { alarm, reached } => {
             let severity = if *reached { Severity::Crit } else { Severity::Warn };
-            let near = if *reached || *alarm == TetherAlarm::Strayed { "" } else { "near a limit: " };
+            let near = if *reached || *alarm == TetherAlarm::Strayed { "" } else { "near limit: " };
             line(severity, "tether", format!("{near}{alarm}"))
         }
         EventKind::TetherAlarmCleared { alarm } => {
-            line(Severity::Info, "tether", format!("{} well within its limit again", alarm.word()))
+            line(Severity::Info, "tether", format!("{} back within limit", alarm.word()))
         }
         EventKind::Certified { planner, refused, certificate } => line(
             certificate_severity(*refused, certificate),
@@ -210,9 +208,9 @@ fn order_text(order: &Order) -> String {
         Order::Hold => "hold".into(),
         Order::Resume => "resume".into(),
         Order::Step => "single step".into(),
-        Order::FlyUncertified => "fly without a certificate".into(),
-        Order::Abort => "end the mission".into(),
-        Order::ChoosePlanner(choice) => format!("choose planner {}", choice.id),
+        Order::FlyUncertified => "run uncertified plan".into(),
+        Order::Abort => "end mission".into(),
+        Order::ChoosePlanner(choice) => format!("change planner to {}", choice.id),
         Order::SetParameter { key, value } => format!("set {key} = {value}"),
     }
 }
@@ -229,13 +227,12 @@ fn certificate_text(planner: &str, refused: bool, certificate: &Certificate) -> 
     let reasons = certificate.reasons.join("; ");
     match (refused, certificate.certified) {
         (true, _) => format!("plan of {planner} refused: {reasons}"),
-        (false, false) => format!("plan of {planner} flies without a certificate: {reasons}"),
+        (false, false) => format!("plan of {planner} runs uncertified: {reasons}"),
         (false, true) => {
-            let left = certificate
-                .end_length_m
-                .map_or_else(String::new, |m| format!(", {m:.1} m left out on return"));
+            let left =
+                certificate.end_length_m.map_or_else(String::new, |m| format!(", {m:.1} m out after return"));
             format!(
-                "plan of {planner} certified: at most {:.1} m of cable out{left}",
+                "plan of {planner} certified: at most {:.1} m of tether out{left}",
                 certificate.tether_length_max_m
             )
         }
@@ -263,7 +260,7 @@ mod tests {
             kind: EventKind::PlannerLate { planner: "rpf".into(), ticks },
         };
         let text = |ticks| late(ticks).log_line().map(|line| line.text).unwrap_or_default();
-        assert_eq!(text(1), "planner rpf answered 1 tick late; the robot stood still meanwhile");
-        assert_eq!(text(2), "planner rpf answered 2 ticks late; the robot stood still meanwhile");
+        assert_eq!(text(1), "planner rpf answered 1 tick late; the robot stood still");
+        assert_eq!(text(2), "planner rpf answered 2 ticks late; the robot stood still");
     }
 }

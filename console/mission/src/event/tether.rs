@@ -61,7 +61,7 @@ impl TetherAlarm {
         match self {
             Self::Reel { .. } => "reel",
             Self::Wrap { .. } => "wrap",
-            Self::WrapTotal { .. } => "sum of wraps",
+            Self::WrapTotal { .. } => "total wrap",
             Self::Snag { .. } => "snag",
             Self::NoReturnPath => "way home",
             Self::Strayed => "stray",
@@ -73,23 +73,22 @@ impl fmt::Display for TetherAlarm {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Reel { out_m, reel_length_m } => {
-                write!(f, "{out_m:.1} m of cable out, the reel holds {reel_length_m:.1} m")
+                write!(f, "{out_m:.1} m of tether out, reel holds {reel_length_m:.1} m")
             }
             Self::Wrap { on, wrap_rad, limit_rad } => {
                 let (wrap, limit) = (wrap_rad.to_degrees(), limit_rad.to_degrees());
-                write!(f, "the cable wraps {wrap:.0} deg round {on}, limit {limit:.0} deg")
+                write!(f, "tether wraps {wrap:.0}° around {on}, limit {limit:.0}°")
             }
             Self::WrapTotal { sum_rad, limit_rad } => {
                 let (sum, limit) = (sum_rad.to_degrees(), limit_rad.to_degrees());
-                write!(f, "all wraps together reach {sum:.0} deg, limit {limit:.0} deg")
+                write!(f, "total tether wrap {sum:.0}°, limit {limit:.0}°")
             }
             Self::Snag { paid_out_m, explained_m } => write!(
                 f,
-                "the reel has paid out {paid_out_m:.1} m, the map explains {explained_m:.1} m: the cable has caught on \
-                 something that is not on the map"
+                "tether snagged on an unmapped object: {paid_out_m:.1} m paid out, {explained_m:.1} m expected"
             ),
-            Self::Strayed => f.write_str("the robot strayed across a cut of its plan; planning again"),
-            Self::NoReturnPath => f.write_str("the hull does not fit back along the cable: no way home"),
+            Self::Strayed => f.write_str("robot crossed a cut of its plan; replanning"),
+            Self::NoReturnPath => f.write_str("no way home: hull does not fit along tether"),
         }
     }
 }

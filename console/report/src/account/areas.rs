@@ -1,10 +1,47 @@
 //! Cells that lie together, as areas with a place and a reason.
 
-use super::{Area, Slivers};
+use serde::{Deserialize, Serialize};
+use std::fmt;
 use world::{Floor, PlateMap, Point, Vector};
 
 /// Areas smaller than this are not listed but only summed, square metres.
 const LEAST_M2: f64 = 0.01;
+
+/// Cells that lie together.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Area<R> {
+    /// A place in it, metres: the cell nearest to its middle.
+    pub at: Point,
+    /// South west corner of the box around it, metres.
+    pub low: Point,
+    /// North east corner of the box around it, metres.
+    pub high: Point,
+    /// Area, square metres.
+    pub area_m2: f64,
+    /// The plate that it lies on; absent if the layout of the plates is not known.
+    pub plate: Option<String>,
+    /// Why.
+    pub reason: R,
+}
+
+/// What is too small to be listed.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Slivers {
+    /// How many.
+    pub count: usize,
+    /// Their area together, square metres.
+    pub area_m2: f64,
+}
+
+impl<R: fmt::Display> fmt::Display for Area<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { at, area_m2, plate, reason, .. } = self;
+        let plate = plate.as_ref().map(|name| format!(", plate {name}")).unwrap_or_default();
+        // Rounded before it is written: a coordinate near zero has no sign.
+        let [x, y] = [at.x, at.y].map(|m| (10.0 * m).round() / 10.0 + 0.0);
+        write!(f, "{area_m2:.2} m² at {x:.1}, {y:.1} m{plate}: {reason}")
+    }
+}
 
 /// The areas of the cells that have a reason, the largest first, and what is too small to be listed. Cells lie
 /// together if they touch, be it at a corner, and have the same reason and plate.

@@ -1,6 +1,6 @@
 //! Evidence of why floor was missed: where plans led, where the robot went, where its position was uncertain.
 
-use super::{CRITICAL_ZONE_M, MissReason};
+use super::{reason::MissReason, zone::CRITICAL_ZONE_M};
 use crate::sampled::sampled;
 use mission::{TaskConfig, event::RunOpened};
 use world::{

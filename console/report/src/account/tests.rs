@@ -3,7 +3,7 @@
 use super::*;
 use crate::fold::tests::round_tank;
 use proptest::prelude::*;
-use world::{CellRun, Pose, Tool};
+use world::{CellRun, Point, Pose, Tool};
 
 /// Lanes from west to east and back, as a plan.
 fn lanes() -> Vec<Point> {
@@ -159,7 +159,7 @@ fn the_critical_zone_is_named_as_not_done_with_the_reason() {
     let (grid, evidence) = scanned(&run, 14);
     let zone = account(&run, &grid, &evidence).critical_zone;
     assert!(!zone.done && zone.scanned.is_some_and(|share| share < 0.05), "{zone:?}");
-    assert_eq!(zone.why.as_deref(), Some("nothing of it was scanned"));
+    assert_eq!(zone.why.as_deref(), Some("none of it scanned"));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The account of the floor as lines for people.
 
-use super::counted;
+use super::text::counted;
 use crate::account::{Account, Area, Percent, PlateAccount, Shares, Slivers};
 use std::fmt::Display;
 
@@ -19,8 +19,8 @@ pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
     ];
     lines.extend(areas(&account.missed).into_iter().map(|line| ("missed", line)));
     lines.extend(slivers(account.slivers).into_iter().map(|line| ("missed", line)));
-    lines.extend(areas(&account.unreachable).into_iter().map(|line| ("out of reach", line)));
-    lines.extend(slivers(account.unreachable_slivers).into_iter().map(|line| ("out of reach", line)));
+    lines.extend(areas(&account.unreachable).into_iter().map(|line| ("unreachable", line)));
+    lines.extend(slivers(account.unreachable_slivers).into_iter().map(|line| ("unreachable", line)));
     lines.extend(plates(&account.plates).into_iter().map(|line| ("plates", line)));
     lines
 }
@@ -39,11 +39,11 @@ fn plates(plates: &[PlateAccount]) -> Vec<String> {
     let left = worst.split_off(worst.len().min(MOST_PLATES));
     worst.sort_unstable();
     let mut lines =
-        vec![format!("{whole} of {} with nothing missed; the report as JSON has all", plates.len())];
+        vec![format!("{whole} of {} with nothing missed; all are in the JSON report", plates.len())];
     lines.extend(worst.into_iter().map(|index| line(&plates[index])));
     if !left.is_empty() {
         let area_m2: f64 = left.iter().map(missed_m2).sum();
-        lines.push(format!("{} more with less missed each, {area_m2:.2} m² in all", left.len()));
+        lines.push(format!("{} more, each with less missed, {area_m2:.2} m² in total", left.len()));
     }
     lines
 }
@@ -61,31 +61,27 @@ fn shares(shares: &Shares) -> String {
 
 fn critical_zone(account: &Account) -> String {
     let zone = &account.critical_zone;
-    let state = match &zone.why {
-        None => "done".to_owned(),
-        Some(why) => format!("NOT done: {why}"),
-    };
-    format!("critical zone of {:.0} mm at the shell {state}", 1000.0 * zone.width_m)
+    let state = zone.why.as_ref().map_or_else(|| "done".to_owned(), |why| format!("NOT done, {why}"));
+    format!("critical zone, {:.0} mm along the shell: {state}", 1000.0 * zone.width_m)
 }
 
 fn basis(account: &Account) -> String {
     let Account { cell_m, swath_m, position_limit_m, .. } = account;
     format!(
-        "cells of {cell_m} m, swath {swath_m} m; counted where the 95 % position error was within {position_limit_m} m"
+        "cell {cell_m} m, swath {swath_m} m; counted as scanned where the 95 % position error was within {position_limit_m} m"
     )
 }
 
 fn slivers(slivers: Slivers) -> Option<String> {
     let Slivers { count, area_m2 } = slivers;
-    (count > 0)
-        .then(|| format!("{area_m2:.2} m² in {} too small to be listed", counted(count as u64, "place")))
+    (count > 0).then(|| format!("{area_m2:.2} m² in {} too small to list", counted(count as u64, "area")))
 }
 
 fn areas<R: Display>(areas: &[Area<R>]) -> Vec<String> {
     let mut lines: Vec<String> = areas.iter().take(MOST_AREAS).map(ToString::to_string).collect();
     if let Some(rest) = areas.get(MOST_AREAS..).filter(|rest| !rest.is_empty()) {
         let area_m2: f64 = rest.iter().map(|area| area.area_m2).sum();
-        lines.push(format!("{area_m2:.2} m² in {}", counted(rest.len() as u64, "more place")));
+        lines.push(format!("{area_m2:.2} m² in {}", counted(rest.len() as u64, "more area")));
     }
     lines
 }
@@ -96,7 +92,7 @@ mod tests {
     use world::PlateKind;
 
     #[test]
-    fn one_place_more_is_one_place() {
+    fn one_area_more_is_one_area() {
         let area = || Area {
             at: world::Point::origin(),
             low: world::Point::origin(),
@@ -106,10 +102,10 @@ mod tests {
             reason: "so",
         };
         let rest = |count: usize| areas(&(0..count).map(|_| area()).collect::<Vec<_>>()).pop();
-        assert_eq!(rest(11).as_deref(), Some("0.02 m² in 1 more place"));
-        assert_eq!(rest(12).as_deref(), Some("0.04 m² in 2 more places"));
+        assert_eq!(rest(11).as_deref(), Some("0.02 m² in 1 more area"));
+        assert_eq!(rest(12).as_deref(), Some("0.04 m² in 2 more areas"));
         let sliver = slivers(Slivers { count: 1, area_m2: 0.001 });
-        assert_eq!(sliver.as_deref(), Some("0.00 m² in 1 place too small to be listed"));
+        assert_eq!(sliver.as_deref(), Some("0.00 m² in 1 area too small to list"));
     }
 
     #[test]
@@ -127,6 +123,6 @@ mod tests {
         let lines = plates(&many);
         assert!(lines.len() == 32 && lines[0].starts_with("45 of 90 with nothing missed"), "{lines:?}");
         assert!(lines[1].starts_with("R-31") && lines[30].starts_with("R-89"), "{lines:?}");
-        assert!(lines[31].starts_with("15 more with less missed each, 2.25 m²"), "{lines:?}");
+        assert!(lines[31].starts_with("15 more, each with less missed, 2.25 m²"), "{lines:?}");
     }
 }

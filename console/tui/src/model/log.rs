@@ -76,7 +76,7 @@ mod tests {
     fn the_same_line_again_is_counted_and_not_repeated() {
         let mut log = Log::default();
         for t_s in [1.0, 2.0, 3.0] {
-            log.add(t_s, Severity::Watch, "ae", "station 2 left out".into());
+            log.add(t_s, Severity::Watch, "ae", "station 2 rejected".into());
         }
         let lines: Vec<&Entry> = log.shown(Severity::Info, "").collect();
         assert_eq!((lines.len(), lines[0].count, lines[0].t_s), (1, 3, 3.0));

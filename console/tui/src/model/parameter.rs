@@ -1,6 +1,6 @@
 //! A planner's parameters as the operator reads and types them.
 
-use super::Planning;
+use super::planning::Planning;
 use mission::{ParamInfo, ParamKind, ParamValue};
 
 /// The value that a parameter has now: set by hand, or its default.
@@ -24,7 +24,7 @@ pub fn range(info: &ParamInfo) -> String {
     let unit = if info.unit.is_empty() { String::new() } else { format!(" {}", info.unit) };
     match &info.kind {
         ParamKind::Float { min, max, .. } => format!("{min} to {max}{unit}"),
-        ParamKind::Int { min, max, .. } => format!("a whole number, {min} to {max}{unit}"),
+        ParamKind::Int { min, max, .. } => format!("integer, {min} to {max}{unit}"),
         ParamKind::Flag { .. } => "true or false".into(),
         ParamKind::Choice { options, .. } => options.join(", "),
     }
@@ -41,28 +41,28 @@ pub fn unit(info: &ParamInfo) -> &str {
 /// What is wrong with it and what would be right, as a sentence.
 pub fn parse(info: &ParamInfo, text: &str) -> Result<ParamValue, String> {
     let text = text.trim();
-    let wrong = |what: &str| Err(format!("{what}; {} takes {}", info.key, range(info)));
+    let wrong = |what: &str| Err(format!("{what}; allowed: {}", range(info)));
     let beyond = || wrong(&format!("{text} is out of range"));
     match &info.kind {
-        _ if text.is_empty() => wrong("nothing was typed"),
+        _ if text.is_empty() => wrong("no value entered"),
         ParamKind::Float { min, max, .. } => match text.parse::<f64>() {
             Ok(number) if (*min..=*max).contains(&number) => Ok(ParamValue::Float(number)),
             Ok(_) => beyond(),
-            Err(_) => wrong(&format!("`{text}` is no number")),
+            Err(_) => wrong(&format!("`{text}` is not a number")),
         },
         ParamKind::Int { min, max, .. } => match text.parse::<i64>() {
             Ok(number) if (*min..=*max).contains(&number) => Ok(ParamValue::Int(number)),
             Ok(_) => beyond(),
-            Err(_) => wrong(&format!("`{text}` is no whole number")),
+            Err(_) => wrong(&format!("`{text}` is not an integer")),
         },
         ParamKind::Flag { .. } => match text {
             "true" | "on" | "yes" => Ok(ParamValue::Flag(true)),
             "false" | "off" | "no" => Ok(ParamValue::Flag(false)),
-            _ => wrong(&format!("`{text}` is neither true nor false")),
+            _ => wrong(&format!("`{text}` is not true or false")),
         },
         ParamKind::Choice { options, .. } => match options.iter().find(|option| *option == text) {
             Some(word) => Ok(ParamValue::Word(word.clone())),
-            None => wrong(&format!("there is no `{text}`")),
+            None => wrong(&format!("`{text}` is not an option")),
         },
     }
 }
@@ -87,9 +87,9 @@ mod tests {
     fn a_value_out_of_range_is_refused_with_the_range() {
         let gain = info(ParamKind::Float { min: 0.0, max: 10.0, default: 0.4 });
         assert_eq!(parse(&gain, "1.2"), Ok(ParamValue::Float(1.2)));
-        assert_eq!(parse(&gain, "12"), Err("12 is out of range; k_rep takes 0 to 10 m3/s".into()));
-        assert_eq!(parse(&gain, "NaN"), Err("NaN is out of range; k_rep takes 0 to 10 m3/s".into()));
-        assert_eq!(parse(&gain, "much"), Err("`much` is no number; k_rep takes 0 to 10 m3/s".into()));
+        assert_eq!(parse(&gain, "12"), Err("12 is out of range; allowed: 0 to 10 m3/s".into()));
+        assert_eq!(parse(&gain, "NaN"), Err("NaN is out of range; allowed: 0 to 10 m3/s".into()));
+        assert_eq!(parse(&gain, "much"), Err("`much` is not a number; allowed: 0 to 10 m3/s".into()));
     }
 
     #[test]

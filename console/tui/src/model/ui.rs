@@ -103,9 +103,9 @@ impl MapLayer {
     pub fn name(self) -> &'static str {
         match self {
             Self::Scanned => "scanned floor",
-            Self::Trail => "trail of the robot",
+            Self::Trail => "robot trail",
             Self::Plan => "plan",
-            Self::Drawings => "drawings of the planner",
+            Self::Drawings => "planner drawings",
             Self::Stations => "AE stations",
             Self::Accuracy => "accuracy forecast",
         }
@@ -247,20 +247,11 @@ impl Ui {
         Arrangement::of(self.width, self.height)
     }
 
-    /// Whether the map can be seen.
-    pub fn shows_map(&self) -> bool {
+    /// Whether a pane can be seen.
+    pub fn shows(&self, pane: Pane) -> bool {
         match self.arrangement() {
             Arrangement::Wide | Arrangement::Narrow => true,
-            Arrangement::Paged => self.pane == Pane::Map,
-            Arrangement::Strip => false,
-        }
-    }
-
-    /// Whether the events can be seen.
-    pub fn shows_events(&self) -> bool {
-        match self.arrangement() {
-            Arrangement::Wide | Arrangement::Narrow => true,
-            Arrangement::Paged => self.pane == Pane::Events,
+            Arrangement::Paged => self.pane == pane,
             Arrangement::Strip => false,
         }
     }

@@ -68,9 +68,9 @@ pub fn install_panic_hook(on_panic: impl Fn(&str, &str) + Send + Sync + 'static)
             .downcast_ref::<&str>()
             .copied()
             .or_else(|| payload.downcast_ref::<String>().map(String::as_str))
-            .unwrap_or("a panic without a message");
+            .unwrap_or("panic without a message");
         let place = info.location().map(|at| format!(" ({}:{})", at.file(), at.line())).unwrap_or_default();
-        on_panic(thread::current().name().unwrap_or("without a name"), &format!("{said}{place}"));
+        on_panic(thread::current().name().unwrap_or("unnamed"), &format!("{said}{place}"));
     }));
 }
 

@@ -1,6 +1,9 @@
 //! Actions into changes and effects.
 
-use super::{Effect, hold_now, offered, overlay};
+use super::message::Effect;
+use super::offer::{offered, refuse};
+use super::overlay::{self, ask, open};
+use super::send::{hold_now, send};
 use crate::actions::ActionId;
 use crate::model::ui::{Ask, MAX_ZOOM, MapView};
 use crate::model::{Model, Overlay, Pane};
@@ -15,8 +18,7 @@ const PAGE: usize = 10;
 /// Carries out an action, or shows the operator why it is not available.
 pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
     if let Err(why) = offered(model, id) {
-        model.say(Severity::Watch, why);
-        return Vec::new();
+        return refuse(model, why);
     }
     match id {
         ActionId::Hold => hold(model),
@@ -32,9 +34,11 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Slower => change_speed(model, false),
         ActionId::Faster => change_speed(model, true),
         ActionId::Acknowledge => acknowledge(model),
-        ActionId::Accept | ActionId::Cancel | ActionId::Up | ActionId::Down | ActionId::Edit => {
-            overlay::act(model, id)
-        }
+        ActionId::Accept => match overlay::chosen(model) {
+            Some(id) => act(model, id),
+            None => overlay::accept(model),
+        },
+        ActionId::Edit => overlay::edit(model),
         ActionId::ChoosePlanner => open(model, Overlay::Planners { selected: driving(model) }),
         ActionId::Parameters => open(model, Overlay::Parameters { selected: 0, edit: None }),
         ActionId::Layers => open(model, Overlay::Layers { selected: 0 }),
@@ -48,6 +52,9 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
 /// Changes what the operator looks at, and nothing else.
 fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
     match id {
+        ActionId::Cancel => overlay::cancel(model),
+        ActionId::Up => overlay::select(model, -1),
+        ActionId::Down => overlay::select(model, 1),
         ActionId::NextPane => turn_to(model, 1),
         ActionId::PreviousPane => turn_to(model, -1),
         ActionId::ZoomIn => zoom(model, 1),
@@ -70,17 +77,6 @@ fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
     Vec::new()
 }
 
-fn open(model: &mut Model, overlay: Overlay) -> Vec<Effect> {
-    model.ui.overlay = overlay;
-    Vec::new()
-}
-
-/// Opens the line that asks; the robot does not move yet.
-pub(super) fn ask(model: &mut Model, ask: Ask) -> Vec<Effect> {
-    model.console.notice = None;
-    open(model, Overlay::Confirm(ask))
-}
-
 fn commands(help: bool) -> Overlay {
     Overlay::Commands { help, filter: String::new(), selected: 0 }
 }
@@ -92,7 +88,7 @@ fn hold(model: &mut Model) -> Vec<Effect> {
     if model.ui.overlay == Overlay::None {
         return ask(model, Ask::Resume);
     }
-    model.say(Severity::Info, "Already held");
+    model.say(Severity::Info, "already held");
     Vec::new()
 }
 
@@ -105,7 +101,7 @@ fn interrupt(model: &mut Model) -> Vec<Effect> {
     if twice {
         model.ui.overlay = Overlay::Quit;
     } else {
-        let text = format!("Press Ctrl-C again within {INTERRUPT_TWICE_S} s to leave");
+        let text = format!("press Ctrl-C again within {INTERRUPT_TWICE_S} s to quit");
         model.say_for(INTERRUPT_TWICE_S, Severity::Info, text);
     }
     effects
@@ -129,7 +125,7 @@ fn step(model: &mut Model) -> Vec<Effect> {
     if model.console.asked.is_some() {
         return Vec::new();
     }
-    overlay::send(model, Order::Step)
+    send(model, Order::Step)
 }
 
 fn change_speed(model: &mut Model, faster: bool) -> Vec<Effect> {

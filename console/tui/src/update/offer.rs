@@ -1,8 +1,9 @@
 //! What can be done now, and why not otherwise. Footer and keys ask the same question.
 
+use super::message::Effect;
 use crate::actions::ActionId;
-use crate::model::{Model, Speed, ui::MAX_ZOOM};
-use mission::{Order, Phase, PlannerChoice, Refusal};
+use crate::model::{Model, Pane, ui::MAX_ZOOM};
+use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 
 /// Whether an action can be done now.
 ///
@@ -20,15 +21,14 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Parameters => parameters(model),
         ActionId::Acknowledge => {
             let waiting = model.alarms.list().iter().any(|alarm| !alarm.acknowledged);
-            demand(waiting, "no unacknowledged alarm")
+            demand(waiting, "no unacknowledged alarms")
         }
         ActionId::Slower => speed(model, false),
         ActionId::Faster => speed(model, true),
-        ActionId::ZoomIn => map(model).and(demand(model.ui.map.zoom < MAX_ZOOM, "maximum zoom")),
+        ActionId::ZoomIn => map(model).and(demand(model.ui.map.zoom < MAX_ZOOM, "already at maximum zoom")),
         ActionId::ZoomOut => map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is already shown")),
         ActionId::WholeTank | ActionId::Layers => map(model),
-        ActionId::Follow => map(model)
-            .and(demand(model.position.pose.is_some(), "the position of the robot is not known yet")),
+        ActionId::Follow => map(model).and(demand(model.position.pose.is_some(), "no position estimate yet")),
         ActionId::PanLeft | ActionId::PanRight | ActionId::PanUp | ActionId::PanDown => {
             map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is shown; z: zoom in first"))
         }
@@ -40,10 +40,10 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::PageOlder
         | ActionId::Newest
         | ActionId::Oldest => {
-            demand(model.ui.shows_events(), "the events are not shown; Tab: next pane (needs 60x16)")
+            demand(model.ui.shows(Pane::Events), "the events are not shown; Tab: next pane (needs 60x16)")
         }
         ActionId::NextPane | ActionId::PreviousPane => {
-            demand(!model.ui.panes().is_empty(), "panes need at least 60x16")
+            demand(!model.ui.panes().is_empty(), "panes require a 60x16 terminal")
         }
         ActionId::Interrupt
         | ActionId::Redraw
@@ -57,6 +57,12 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::Down
         | ActionId::Edit => Ok(()),
     }
+}
+
+/// Shows the operator why something is not done.
+pub(super) fn refuse(model: &mut Model, why: String) -> Vec<Effect> {
+    model.say(Severity::Watch, why);
+    Vec::new()
 }
 
 fn demand(met: bool, otherwise: &str) -> Result<(), String> {
@@ -84,7 +90,7 @@ fn start(model: &Model) -> Result<(), String> {
 /// Ending a mission that was never started would leave a run of nothing.
 fn abort(model: &Model) -> Result<(), String> {
     let is_waiting = *model.phase() == Phase::Waiting && !model.may_move();
-    demand(!is_waiting, "the mission has not been started; q: leave")?;
+    demand(!is_waiting, "the mission has not been started; q: quit")?;
     accepted(model, &Order::Abort)
 }
 
@@ -94,24 +100,24 @@ fn swap(model: &Model) -> Result<(), String> {
     if !model.console.hold_asked {
         accepted(model, &Order::ChoosePlanner(choice))?;
     }
-    demand(!model.console.planners.is_empty(), "no planner found yet")
+    demand(!model.console.planners.is_empty(), "no planners found yet")
 }
 
 fn parameters(model: &Model) -> Result<(), String> {
     match model.planner() {
-        None => Err("the planner is not known yet".into()),
+        None => Err("no planner loaded yet".into()),
         Some(info) => demand(!info.parameters.is_empty(), &format!("planner {} has no parameters", info.id)),
     }
 }
 
 fn speed(model: &Model, faster: bool) -> Result<(), String> {
     demand(!model.has_ended(), "the mission has ended")?;
-    let end = if faster { "Maximum speed" } else { "Minimum speed" };
-    demand(model.console.speed.stepped(faster).is_some_and(|next: Speed| next != model.console.speed), end)
+    let end = if faster { "already at maximum speed" } else { "already at minimum speed" };
+    demand(model.console.speed.stepped(faster).is_some(), end)
 }
 
 fn map(model: &Model) -> Result<(), String> {
-    demand(model.ui.shows_map(), "the map is not shown; Tab: next pane (needs 60x16)")
+    demand(model.ui.shows(Pane::Map), "the map is not shown; Tab: next pane (needs 60x16)")
 }
 
 /// What would be right, in keys.
@@ -124,7 +130,7 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::AlreadyMoving
         | Refusal::StepNeedsHold
         | Refusal::SwapNeedsHold => Some("space: HOLD"),
-        Refusal::Ended(_) => Some("q: leave"),
+        Refusal::Ended(_) => Some("q: quit"),
         // These say themselves what would be right, as far as there is anything.
         Refusal::NotLive { .. }
         | Refusal::PositionLost { .. }

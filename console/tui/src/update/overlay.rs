@@ -1,44 +1,49 @@
 //! Keys within lists, lines and questions.
 
-use super::{Effect, act as do_action, act::ask, offered};
-use crate::actions::{self, ActionId};
+use super::message::Effect;
+use super::offer::{accepted, offered, refuse};
+use super::send::send;
+use crate::actions::{ActionId, find};
 use crate::keys::Key;
 use crate::model::ui::{Ask, Edit, MapLayer};
 use crate::model::{Model, Overlay, parameter};
-use mission::{Order, PlannerChoice, Severity};
+use mission::{Order, Parameters, PlannerChoice, Severity};
 
 /// Longest text that can be typed.
 const MAX_TYPED: usize = 64;
 
-/// Agreeing, going back and selecting.
-pub(super) fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
-    match id {
-        ActionId::Accept => accept(model),
-        ActionId::Cancel => cancel(model),
-        ActionId::Up => select(model, -1),
-        ActionId::Down => select(model, 1),
-        ActionId::Edit => edit(model),
-        _ => Vec::new(),
+/// Puts something over the screen.
+pub(super) fn open(model: &mut Model, overlay: Overlay) -> Vec<Effect> {
+    model.ui.overlay = overlay;
+    Vec::new()
+}
+
+/// Opens the line that asks; the robot does not move yet.
+pub(super) fn ask(model: &mut Model, ask: Ask) -> Vec<Effect> {
+    model.console.notice = None;
+    open(model, Overlay::Confirm(ask))
+}
+
+/// The action that Enter runs in the line or list that is open; the list of commands closes for it.
+pub(super) fn chosen(model: &mut Model) -> Option<ActionId> {
+    match &model.ui.overlay {
+        Overlay::Stepping => Some(ActionId::Step),
+        Overlay::Commands { filter, selected, .. } => {
+            let action = find::listed(filter, model.ui.pane).get(*selected).copied()?;
+            model.ui.overlay = Overlay::None;
+            Some(action.id)
+        }
+        _ => None,
     }
 }
 
-/// Sends an order and remembers that an answer is due if it makes the robot move.
-pub(super) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
-    if matches!(order, Order::Start | Order::Resume | Order::FlyUncertified | Order::Step) {
-        model.console.asked = Some(order.clone());
-        // A HOLD that was sent before it does not stop what comes after it.
-        model.console.hold_asked = false;
-    }
-    vec![Effect::Order(order)]
-}
-
-fn accept(model: &mut Model) -> Vec<Effect> {
+/// Agrees, or takes the selected line.
+pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
     match model.ui.overlay.clone() {
-        Overlay::None => Vec::new(),
+        Overlay::None | Overlay::Stepping => Vec::new(),
         Overlay::Confirm(ask) => agree(model, &ask),
-        Overlay::Stepping => do_action(model, ActionId::Step),
         Overlay::Quit => quit(model),
-        Overlay::Commands { filter, selected, .. } => run_command(model, &filter, selected),
+        Overlay::Commands { filter, .. } => refuse(model, format!("no command matches `{filter}`")),
         Overlay::Planners { selected } => choose_planner(model, selected),
         Overlay::Parameters { selected, edit: Some(edit) } => take_value(model, selected, edit),
         Overlay::Parameters { edit: None, .. } => edit(model),
@@ -48,16 +53,12 @@ fn accept(model: &mut Model) -> Vec<Effect> {
             }
             Vec::new()
         }
-        Overlay::Filter => close(model),
+        Overlay::Filter => open(model, Overlay::None),
     }
 }
 
-fn close(model: &mut Model) -> Vec<Effect> {
-    model.ui.overlay = Overlay::None;
-    Vec::new()
-}
-
-fn cancel(model: &mut Model) -> Vec<Effect> {
+/// Back without doing anything.
+pub(super) fn cancel(model: &mut Model) {
     match &mut model.ui.overlay {
         Overlay::Parameters { edit, .. } if edit.is_some() => *edit = None,
         Overlay::Filter => {
@@ -66,7 +67,6 @@ fn cancel(model: &mut Model) -> Vec<Effect> {
         }
         other => *other = Overlay::None,
     }
-    Vec::new()
 }
 
 /// Checks again at the moment of the answer: things may have changed since the question.
@@ -81,10 +81,7 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
     };
     match offered(model, id) {
         Ok(()) => send(model, ask.order()),
-        Err(why) => {
-            model.say(Severity::Watch, why);
-            Vec::new()
-        }
+        Err(why) => refuse(model, why),
     }
 }
 
@@ -94,35 +91,25 @@ fn quit(model: &mut Model) -> Vec<Effect> {
     end.into_iter().chain([Effect::Quit { signal: None }]).collect()
 }
 
-fn run_command(model: &mut Model, filter: &str, selected: usize) -> Vec<Effect> {
-    let Some(action) = actions::listed(filter, model.ui.pane).get(selected).copied() else {
-        model.say(Severity::Watch, format!("No command matches `{filter}`"));
-        return Vec::new();
-    };
-    model.ui.overlay = Overlay::None;
-    do_action(model, action.id)
-}
-
 fn choose_planner(model: &mut Model, selected: usize) -> Vec<Effect> {
     let Some(planner) = model.console.planners.get(selected) else { return Vec::new() };
     if let Some(why) = model.cannot_fly(planner) {
-        let text = format!("planner {} {why}", planner.id);
-        model.say(Severity::Watch, text);
-        return Vec::new();
+        let why = format!("planner {} {why}", planner.id);
+        return refuse(model, why);
     }
-    let choice = PlannerChoice { id: planner.id.clone(), parameters: mission::Parameters::new() };
+    let choice = PlannerChoice { id: planner.id.clone(), parameters: Parameters::new() };
     ask(model, Ask::Swap(choice))
 }
 
-fn edit(model: &mut Model) -> Vec<Effect> {
+/// Opens the line in which a value is typed.
+pub(super) fn edit(model: &mut Model) -> Vec<Effect> {
     let Overlay::Parameters { selected, .. } = model.ui.overlay else { return Vec::new() };
     let info = model.planner().and_then(|info| info.parameters.get(selected));
     let Some(info) = info else { return Vec::new() };
     let value = parameter::value(&model.planning, info);
     let order = Order::SetParameter { key: info.key.clone(), value: value.clone() };
-    if let Err(why) = super::offer::accepted(model, &order) {
-        model.say(Severity::Watch, why);
-        return Vec::new();
+    if let Err(why) = accepted(model, &order) {
+        return refuse(model, why);
     }
     let text = value.to_string();
     model.ui.overlay = Overlay::Parameters { selected, edit: Some(Edit { text, refusal: None }) };
@@ -131,11 +118,11 @@ fn edit(model: &mut Model) -> Vec<Effect> {
 
 fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
     let info = model.planner().and_then(|info| info.parameters.get(selected));
-    let Some(info) = info else { return close(model) };
+    let Some(info) = info else { return open(model, Overlay::None) };
     let order = |value| Order::SetParameter { key: info.key.clone(), value };
     // Checked again: the mission may have changed while the value was typed.
     let checked = parameter::parse(info, &edit.text).map(order).and_then(|order| {
-        super::offer::accepted(model, &order)?;
+        accepted(model, &order)?;
         Ok(order)
     });
     match checked {
@@ -151,9 +138,10 @@ fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
     }
 }
 
-fn select(model: &mut Model, by: isize) -> Vec<Effect> {
+/// Selects another line, so many further down.
+pub(super) fn select(model: &mut Model, by: isize) {
     let lines = match &model.ui.overlay {
-        Overlay::Commands { filter, .. } => actions::listed(filter, model.ui.pane).len(),
+        Overlay::Commands { filter, .. } => find::listed(filter, model.ui.pane).len(),
         Overlay::Planners { .. } => model.console.planners.len(),
         Overlay::Parameters { .. } => model.planner().map_or(0, |info| info.parameters.len()),
         Overlay::Layers { .. } => MapLayer::ALL.len(),
@@ -166,7 +154,6 @@ fn select(model: &mut Model, by: isize) -> Vec<Effect> {
     {
         *selected = selected.saturating_add_signed(by).min(lines.saturating_sub(1));
     }
-    Vec::new()
 }
 
 /// Types a key into the line that is open; whether there is such a line and the key can be typed.
@@ -184,15 +171,11 @@ pub(super) fn type_key(model: &mut Model, key: Key) -> bool {
 }
 
 /// Puts pasted text into the line that is open; without one it goes nowhere, so that no paste is ever a command.
-pub(super) fn paste(model: &mut Model, pasted: &str) -> Vec<Effect> {
-    let Some(text) = typed(model) else {
-        model.say(Severity::Info, "Nowhere to paste");
-        return Vec::new();
-    };
+pub(super) fn paste(model: &mut Model, pasted: &str) {
+    let Some(text) = typed(model) else { return model.say(Severity::Info, "nowhere to paste") };
     let room = MAX_TYPED.saturating_sub(text.chars().count());
     text.extend(pasted.chars().filter(|letter| !letter.is_control()).take(room));
     typing_changed(model);
-    Vec::new()
 }
 
 /// Whether a line is open in which text is typed.

@@ -1,7 +1,8 @@
 //! The line above the keys: a question if one is open, else what comes next.
 
+use super::look::Look;
 use super::next::{self, Clauses};
-use super::{Look, coverage, text};
+use super::{coverage, text};
 use crate::model::{Model, Overlay, ui::Ask};
 use crate::theme::Role;
 use ratatui::Frame;
@@ -23,7 +24,7 @@ pub(super) fn clauses(model: &Model) -> Clauses {
 
 /// What is asked and which keys answer come in the first clause: they are never left out.
 fn question(model: &Model) -> Option<Vec<String>> {
-    let planner = model.planner_id().unwrap_or("the planner");
+    let planner = model.planner_id().unwrap_or("unknown");
     let clauses = match &model.ui.overlay {
         Overlay::Confirm(Ask::Start) => {
             vec![
@@ -40,11 +41,11 @@ fn question(model: &Model) -> Option<Vec<String>> {
         Overlay::Confirm(Ask::FlyUncertified) => vec![
             "Run uncertified plan? Enter: run, Esc: stay held.".into(),
             "Tether may remain deployed.".into(),
-            "Applies to later plans until one fails.".into(),
+            "Applies to later plans too, until one fails.".into(),
         ],
         Overlay::Confirm(Ask::Abort) => {
             let scanned = format!("{} % of reachable floor scanned.", coverage::shares(model).0);
-            vec!["End mission? Enter: end for good, Esc: cancel.".into(), scanned]
+            vec!["End mission for good? Enter: end, Esc: cancel.".into(), scanned]
         }
         Overlay::Confirm(Ask::Swap(choice)) => {
             let next = text::fit(&choice.id, 18);
@@ -70,9 +71,9 @@ fn question(model: &Model) -> Option<Vec<String>> {
 
 fn quit(model: &Model) -> Vec<String> {
     if !model.is_under_way() {
-        return vec!["Leave console? Enter: leave, Esc: stay.".into(), "No mission under way.".into()];
+        return vec!["Quit console? Enter: quit, Esc: stay.".into(), "No mission in progress.".into()];
     }
-    let question = "Leave and abort mission? Enter: leave, Esc: stay held.".to_owned();
+    let question = "Quit and abort mission? Enter: quit, Esc: stay held.".to_owned();
     let planning = model.console.busy.as_ref().map(|_| "Planning will be cancelled.".to_owned());
     std::iter::once(question).chain(planning).collect()
 }

@@ -1,6 +1,7 @@
 //! The coverage pane: how much has been scanned, of which floor, and what is left.
 
-use super::{Look, fill, text};
+use super::look::{Look, fill};
+use super::text;
 use crate::model::coverage::Division;
 use crate::model::{Model, Pane, Speed};
 use crate::theme::Role;
@@ -9,42 +10,59 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use world::coverage::percents;
 
+/// What the two columns of shares are shares of, on a wide screen.
+const BASES: &str = "reachable  whole floor";
+/// Columns of a label, of a share of the whole floor, and of the bar on a narrow screen.
+const LABEL: usize = 13;
+const WHOLE: usize = 13;
+const BAR: usize = 8;
+
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
-    let block = look.pane(Pane::Coverage, "Coverage", "");
-    let lines = if wide { wide_lines(look, area.width) } else { narrow_lines(look, area.width) };
+    let block = look.pane(Pane::Coverage, "Coverage", if wide { BASES } else { "" });
+    let columns = usize::from(block.inner(area).width);
+    let lines = if wide { wide_lines(look, columns) } else { narrow_lines(look) };
     fill(frame, area, block, lines);
 }
 
-fn wide_lines(look: &Look, width: u16) -> Vec<Line<'static>> {
+fn wide_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
     let model = look.model;
     let (reachable, whole) = shares(model);
     let [_, to_do, margin, unreachable] = division(model);
-    let row =
-        |label: &str, value: String| look.line([(Role::Dim, format!(" {label:<12}")), (Role::Text, value)]);
+    let row = |label: &str, value: String| {
+        look.line([(Role::Dim, format!(" {label:<LABEL$}")), (Role::Text, value)])
+    };
+    // Each share ends below the name of its floor.
+    let first = columns.saturating_sub(LABEL + WHOLE + 3);
+    let row_of_shares = |label: &str, of_reachable: String, of_whole: &str| {
+        row(label, format!("{of_reachable:>first$}{:>WHOLE$}", format!("{of_whole} %")))
+    };
     vec![
-        row("scanned", format!("{reachable:>5} % of reachable floor")),
-        row("", format!("{whole:>5} % of whole floor")),
-        look.line([(Role::Good, format!(" {}", bar(model, width)))]),
-        row(to_do_label(model), format!("{:>5} % reach, {to_do} % whole", to_do_reachable(model))),
-        row("unreachable", format!("{unreachable:>5} % whole, {margin} % margin")),
-        row("rate", format!("{}   {}", rate(model), area(model))),
+        row_of_shares("scanned", format!("{reachable} %"), &whole),
+        look.line([(Role::Good, format!(" {}", bar(model, columns.saturating_sub(2))))]),
+        row_of_shares(to_do_label(model), format!("{} %", to_do_reachable(model)), &to_do),
+        row_of_shares("unreachable", String::new(), &unreachable),
+        row_of_shares("shell margin", String::new(), &margin),
+        row("rate", format!("{}, {}", rate(model), area(model))),
         row(way_label(model), way(model)),
-        row("left", left(model, true)),
+        row("time left", left(model, true)),
     ]
 }
 
-fn narrow_lines(look: &Look, width: u16) -> Vec<Line<'static>> {
+fn narrow_lines(look: &Look) -> Vec<Line<'static>> {
     let model = look.model;
     let (reachable, whole) = shares(model);
     let text = |value: String| look.line([(Role::Text, format!(" {value}"))]);
     let left_or_missed = if model.has_ended() {
-        format!("missed {} % of reach", to_do_reachable(model))
+        format!("missed {} % of reachable", to_do_reachable(model))
     } else {
         format!("left {}", left(model, false))
     };
     vec![
-        text(format!("{reachable} % reach  {whole} % whole")),
-        look.line([(Role::Good, format!(" {}", bar(model, width)))]),
+        look.line([
+            (Role::Good, format!(" {}", bar(model, BAR))),
+            (Role::Text, format!(" {reachable:>5} % reachable")),
+        ]),
+        text(format!("{:BAR$} {whole:>5} % whole", "")),
         text(format!("{} {}", way_label(model), way(model))),
         text(left_or_missed),
     ]
@@ -58,9 +76,8 @@ pub(super) fn shares(model: &Model) -> (String, String) {
     )
 }
 
-fn bar(model: &Model, width: u16) -> String {
-    let share = model.progress.as_ref().map_or(0.0, |progress| progress.covered_reachable);
-    text::bar(share, usize::from(width).saturating_sub(4))
+fn bar(model: &Model, columns: usize) -> String {
+    text::bar(model.progress.as_ref().map_or(0.0, |progress| progress.covered_reachable), columns)
 }
 
 /// How the whole floor divides, in per cent that sum to 100.0: scanned, to do, shell margin, out of reach elsewhere.

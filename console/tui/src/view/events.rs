@@ -1,6 +1,7 @@
 //! The events pane, newest line first.
 
-use super::{Look, fill, text};
+use super::look::{Look, fill};
+use super::text;
 use crate::model::{Entry, Pane};
 use crate::theme::Role;
 use mission::Severity;
@@ -11,9 +12,9 @@ use ratatui::text::Line;
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let ui = &look.model.ui;
     let filter =
-        if ui.needle.is_empty() { String::new() } else { format!(" with `{}`", text::fit(&ui.needle, 16)) };
-    let back = if ui.scroll > 0 { format!("  {} newer above", ui.scroll) } else { String::new() };
-    let title = format!("Events from {}{filter}{back}", word(ui.least));
+        if ui.needle.is_empty() { String::new() } else { format!(", `{}`", text::fit(&ui.needle, 16)) };
+    let back = if ui.scroll > 0 { format!(", {} newer", ui.scroll) } else { String::new() };
+    let title = format!("Events, {} and above{filter}{back}", word(ui.least));
     let note = if area.width >= 60 { "m severity  / filter" } else { "" };
     let block = look.pane(Pane::Events, &title, note);
     let inner = block.inner(area);

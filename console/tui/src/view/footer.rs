@@ -1,7 +1,11 @@
 //! The keys that do something now, from the one table.
 
-use super::{Look, text};
-use crate::actions::{self, ACTIONS, Action, ActionId, Context};
+use super::look::Look;
+use super::text;
+use crate::actions::{
+    ACTIONS, Action, ActionId,
+    context::{Context, contexts},
+};
 use crate::model::{Model, Overlay, ui::Arrangement};
 use crate::theme::Role;
 use crate::update::offered;
@@ -56,7 +60,7 @@ fn width(hints: &[Hint]) -> usize {
 
 /// The keys that do something now; keys with the same label stand together.
 fn hints(model: &Model) -> Vec<Hint> {
-    let contexts = actions::contexts(model);
+    let contexts = contexts(model);
     let mut hints: Vec<Hint> = Vec::new();
     for action in ACTIONS.iter().filter(|action| shown(action, &contexts, model)) {
         let key = action.keys.first().map(ToString::to_string).unwrap_or_default();
@@ -73,10 +77,9 @@ fn hints(model: &Model) -> Vec<Hint> {
 }
 
 fn shown(action: &Action, contexts: &[Context], model: &Model) -> bool {
-    let here = action.contexts.iter().any(|context| contexts.contains(context));
     // In a list the space bar only stops, so there it is shown only while something can be stopped.
     let idle_hold = action.id == ActionId::Hold && !contexts.contains(&Context::Mission) && !model.may_move();
-    here && !idle_hold && !action.label.is_empty() && offered(model, action.id).is_ok()
+    action.works_in(contexts) && !idle_hold && !action.label.is_empty() && offered(model, action.id).is_ok()
 }
 
 fn label(action: &Action, model: &Model) -> String {
@@ -88,7 +91,15 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Accept, Overlay::Parameters { edit: None, .. }) => "edit",
         (ActionId::Accept, Overlay::Parameters { edit: Some(_), .. }) => "send",
         (ActionId::Accept, Overlay::Filter) => "keep",
+        (ActionId::Accept, Overlay::Stepping) => "step",
         (ActionId::Cancel, Overlay::Filter) => "clear",
+        (
+            ActionId::Cancel,
+            Overlay::Commands { .. }
+            | Overlay::Planners { .. }
+            | Overlay::Layers { .. }
+            | Overlay::Parameters { edit: None, .. },
+        ) => "close",
         _ => action.label,
     };
     word.into()

@@ -13,7 +13,7 @@ pub(super) fn clauses(model: &Model) -> Clauses {
     if let Some(notice) = model.notice() {
         let role =
             if notice.severity == Severity::Info { Role::Title } else { events::role(notice.severity) };
-        return (role, vec![notice.text.clone()]);
+        return (role, vec![text::capitalized(&notice.text)]);
     }
     if let Some(silent_s) = model.silent_s() {
         let news = format!("◌ No data from the mission for {} s: values are stale.", silent_s as u64);
@@ -45,11 +45,12 @@ pub(super) fn clauses(model: &Model) -> Clauses {
             None => running(model),
         },
         (None, Phase::Ended(Outcome::Complete)) => {
-            (Role::Good, vec![format!("DONE: {}.", model.end_reason), "q: leave.".into()])
+            (Role::Good, vec![format!("DONE: {}.", model.end_reason), "q: quit.".into()])
         }
-        (None, Phase::Ended(outcome)) => {
-            (Role::Warn, vec![format!("ENDED {}: {}.", outcome.word(), model.end_reason), "q: leave.".into()])
-        }
+        (None, Phase::Ended(outcome)) => (
+            Role::Warn,
+            vec![format!("ENDED ({}): {}.", outcome.word(), model.end_reason), "q: quit.".into()],
+        ),
     }
 }
 
@@ -61,7 +62,11 @@ fn work(model: &Model, busy: &Busy) -> Vec<String> {
     let share = busy.at.as_ref().map_or_else(String::new, |(share, _)| percent(*share));
     let time = |limit_s: f64| format!(", {passed_s} s (limit {} s)", limit_s as u64);
     let first = format!("{}{share}{}.", busy.work, busy.limit_s.map_or_else(String::new, time));
-    let what = busy.at.iter().filter(|(_, what)| !what.is_empty()).map(|(_, what)| format!("{what}."));
+    let what = busy
+        .at
+        .iter()
+        .filter(|(_, what)| !what.is_empty())
+        .map(|(_, what)| format!("{}.", text::capitalized(what)));
     std::iter::once(first).chain(what).collect()
 }
 
@@ -81,7 +86,7 @@ fn idle(model: &Model) -> Clauses {
     if model.run.is_none() {
         return (Role::Title, vec!["Loading scenario...".into()]);
     }
-    let who = model.planner_id().unwrap_or("the planner");
+    let who = model.planner_id().unwrap_or("unknown");
     (Role::Title, vec![format!("Press S to start (planner {who}).")])
 }
 
@@ -98,10 +103,9 @@ fn running(model: &Model) -> Clauses {
     }
     let calm = "No action required.".to_owned();
     let Some(progress) = &model.progress else {
-        return (Role::Title, vec!["Waiting for the first command.".into(), calm]);
+        return (Role::Title, vec!["Waiting for first command.".into(), calm]);
     };
-    let at = format!("{}, {} m", text::number(progress.target.x, 2), text::number(progress.target.y, 2));
-    let done = text::percent(progress.done);
+    let (at, done) = (text::place(progress.target), text::percent(progress.done));
     (Role::Title, vec![format!("Next target: {at}; task {done} % done."), calm])
 }
 
@@ -134,7 +138,7 @@ fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
         (Resumes::ByFallback, _) => "Resumes with fallback planner.",
         (_, HoldReason::PositionLost) => "Resumes automatically when recovered.",
         (_, HoldReason::Tether { .. }) => "Resumes automatically with a way home.",
-        (_, HoldReason::PlannerSilent { .. }) => "Resumes automatically on its answer.",
+        (_, HoldReason::PlannerSilent { .. }) => "Resumes automatically on answer.",
         _ => "Resumes automatically.",
     };
     vec![format!("{}.", state(by)), when.into(), "space: HOLD (stay held).".into()]
@@ -143,7 +147,7 @@ fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
 /// A hold that only an order ends, and none that moves the robot is accepted now.
 fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec<String> {
     let state = match by {
-        HoldReason::PositionLost | HoldReason::RangesInconsistent => format!("HELD, {trouble}."),
+        HoldReason::PositionLost | HoldReason::RangesInconsistent => format!("HELD: {trouble}."),
         by => format!("{}; {trouble}.", state(by)),
     };
     let planner = by.blames_planner().then(|| "P: change planner.".to_owned());
@@ -157,8 +161,8 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
     const PLANNER: &str = "P: change planner.";
     let (state, remedies): (&str, &[&str]) = match by {
         // Why the robot was held is over.
-        HoldReason::PositionLost => ("HELD, position recovered", &[RESUME]),
-        HoldReason::RangesInconsistent => ("HELD, ranges agree again", &[RESUME]),
+        HoldReason::PositionLost => ("HELD: position recovered", &[RESUME]),
+        HoldReason::RangesInconsistent => ("HELD: ranges agree again", &[RESUME]),
         HoldReason::Stepped => (state(by), &[RESUME]),
         HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
             (state(by), &[RESUME, PLANNER])
@@ -174,15 +178,15 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
 fn state(by: &HoldReason) -> &'static str {
     match by {
         HoldReason::Operator => "HELD by operator",
-        HoldReason::Stepped => "HELD after a step",
-        HoldReason::PlannerReplaced => "HELD, planner replaced",
-        HoldReason::RangesInconsistent => "HELD, ranges contradict each other",
-        HoldReason::PositionLost => "HELD, position lost",
-        HoldReason::Stuck { .. } => "HELD, stuck",
-        HoldReason::Tether { .. } => "HELD, tether",
-        HoldReason::PlanRefused { .. } => "HELD, plan refused",
-        HoldReason::PlannerSilent { .. } => "HELD, planner silent",
-        HoldReason::PlannerFault { .. } => "HELD, planner failed",
+        HoldReason::Stepped => "HELD after single step",
+        HoldReason::PlannerReplaced => "HELD: planner replaced",
+        HoldReason::RangesInconsistent => "HELD: ranges contradict each other",
+        HoldReason::PositionLost => "HELD: position lost",
+        HoldReason::Stuck { .. } => "HELD: robot stuck",
+        HoldReason::Tether { .. } => "HELD: tether alarm",
+        HoldReason::PlanRefused { .. } => "HELD: plan refused",
+        HoldReason::PlannerSilent { .. } => "HELD: planner silent",
+        HoldReason::PlannerFault { .. } => "HELD: planner failed",
     }
 }
 
@@ -193,12 +197,8 @@ fn message(by: &HoldReason) -> Option<String> {
         | HoldReason::PlannerSilent { message }
         | HoldReason::Stuck { message }
         | HoldReason::Tether { message }
-        | HoldReason::PlanRefused { message } => Some(message.clone()),
-        HoldReason::Operator
-        | HoldReason::PositionLost
-        | HoldReason::RangesInconsistent
-        | HoldReason::Stepped
-        | HoldReason::PlannerReplaced => None,
+        | HoldReason::PlanRefused { message } => Some(format!("{}.", text::capitalized(message))),
+        _ => None,
     }
 }
 

@@ -1,6 +1,7 @@
 //! The planner pane: the active planner, its target, and the last command.
 
-use super::{Look, fill, text};
+use super::look::{Look, fill};
+use super::text;
 use crate::model::{Model, Pane};
 use crate::theme::Role;
 use planner_api::{Drive, Status};
@@ -19,7 +20,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
     let block = look.pane(Pane::Planner, "Planner and robot", note);
     let inner = block.inner(area);
     let (columns, rows) = (usize::from(inner.width), usize::from(inner.height));
-    let labels = if wide { 12 } else { 7 };
+    let labels = if wide { 12 } else { 8 };
     let room = columns.saturating_sub(labels + 1);
     let mut lines: Vec<Line> = rows_of(look.model, wide, room)
         .into_iter()
@@ -46,17 +47,16 @@ fn rows_of(model: &Model, wide: bool, room: usize) -> Vec<(&'static str, Value)>
             ("target", (Role::Text, target(model))),
             ("cross-track", (Role::Text, cross_track(model))),
             ("speed", (Role::Text, speed(model))),
-            ("heading", (Role::Text, format!("{} (ccw)", heading(model)))),
+            ("heading", (Role::Text, heading(model))),
             ("command", command(model)),
             ("plan", (Role::Text, plan(model))),
         ]);
     } else {
-        rows[0].0 = "active";
         rows.extend([
-            ("to", (Role::Text, target_at(model))),
-            ("in", (Role::Text, format!("{}, off {}", target_in(model), off(model)))),
+            ("target", (Role::Text, target_at(model))),
+            ("away", (Role::Text, format!("{}, off {}", target_in(model), off(model)))),
             ("speed", (Role::Text, speed(model))),
-            ("head", (Role::Text, heading(model))),
+            ("heading", (Role::Text, heading(model))),
             ("plan", (Role::Text, plan(model))),
         ]);
     }
@@ -72,16 +72,14 @@ fn planner(model: &Model) -> Value {
 }
 
 fn target(model: &Model) -> String {
-    format!("{}  in {}", target_at(model), target_in(model))
+    if model.progress.is_none() {
+        return "-".into();
+    }
+    format!("{}, {} away", target_at(model), target_in(model))
 }
 
 fn target_at(model: &Model) -> String {
-    model.progress.as_ref().map_or_else(
-        || "-".into(),
-        |progress| {
-            format!("{}, {} m", text::number(progress.target.x, 2), text::number(progress.target.y, 2))
-        },
-    )
+    model.progress.as_ref().map_or_else(|| "-".into(), |progress| text::place(progress.target))
 }
 
 fn target_in(model: &Model) -> String {
@@ -100,24 +98,24 @@ fn off(model: &Model) -> String {
 
 fn cross_track(model: &Model) -> String {
     let preset = model.run.as_ref().is_none_or(|run| run.preset_m.is_some());
-    if preset { format!("{} off the preset path", off(model)) } else { "- (no preset path)".into() }
+    if preset { format!("{} from preset path", off(model)) } else { "- (no preset path)".into() }
 }
 
 fn speed(model: &Model) -> String {
     let speed = model.position.speed_m_per_s();
-    speed.map_or_else(|| "- m/s".into(), |speed| format!("{} m/s est.", text::number(speed, 2)))
+    speed.map_or_else(|| "- m/s".into(), |speed| format!("{} m/s (est.)", text::number(speed, 2)))
 }
 
 fn heading(model: &Model) -> String {
     let pose = model.position.pose.as_ref();
-    pose.map_or_else(|| "-".into(), |pose| format!("{}° from E", text::degrees(pose.heading_rad)))
+    pose.map_or_else(|| "-".into(), |pose| format!("{}° CCW from E", text::degrees(pose.heading_rad)))
 }
 
 fn command(model: &Model) -> Value {
     let Some((t_s, command)) = &model.planning.command else { return (Role::Text, "-".into()) };
     let tick_s = model.run.as_ref().map_or(0.1, |run| run.mission.tick_s);
     if !model.is_running() || model.clock.t_s - t_s > STALE_TICKS * tick_s {
-        return (Role::Text, "stand still".into());
+        return (Role::Text, "standing still".into());
     }
     let drive = match command.drive {
         Drive::Twist { v_m_per_s, w_rad_per_s } => {
@@ -126,7 +124,7 @@ fn command(model: &Model) -> Value {
         }
         Drive::Velocity(velocity) => {
             let course = text::degrees(velocity.y.atan2(velocity.x));
-            format!("{} m/s to {course}° from E", text::number(velocity.norm(), 2))
+            format!("{} m/s to {course}° CCW from E", text::number(velocity.norm(), 2))
         }
     };
     match command.status {
@@ -139,8 +137,8 @@ fn command(model: &Model) -> Value {
 
 fn plan(model: &Model) -> String {
     let Some(plan) = &model.planning.plan else { return "none yet".into() };
-    let part = if plan.complete { "whole task" } else { "PART of the way" };
-    format!("{} m, {part}", text::number(plan.length_m, 1))
+    let part = if plan.complete { "full" } else { "PARTIAL" };
+    format!("{} m ({part})", text::number(plan.length_m, 1))
 }
 
 fn scalars(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {

@@ -1,17 +1,18 @@
 //! The position pane: the AE stations' measurements, and how far to trust them.
 
-use super::{Look, fill, text};
+use super::look::{Look, Parts, fill};
+use super::text;
 use crate::model::{Model, Pane, position::HISTORY_S};
 use crate::theme::Role;
 use positioning::{Exclusion, Integrity};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
-use world::Station;
+use world::{Station, StationId};
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
     let note = if look.model.position.lost { "LOST" } else { "" };
-    let block = look.pane(Pane::Position, if wide { "AE position" } else { "AE" }, note);
+    let block = look.pane(Pane::Position, "AE position", note);
     let inner = block.inner(area);
     let lines = if wide { wide_lines(look, inner) } else { narrow_lines(look, inner) };
     fill(frame, area, block, lines);
@@ -37,14 +38,12 @@ fn wide_lines(look: &Look, inner: Rect) -> Vec<Line<'static>> {
 }
 
 fn narrow_lines(look: &Look, inner: Rect) -> Vec<Line<'static>> {
-    let trouble = look.model.position.fix.as_ref().and_then(|fix| fix.excluded.first()).map(|(id, why)| {
-        let name = look.model.station(*id).map_or_else(|| id.0.to_string(), |station| station.name.clone());
-        (
-            Role::Watch,
-            text::fit(&format!("{name} OUT {}", reason(why)), usize::from(inner.width).saturating_sub(1)),
-        )
-    });
-    let last = trouble.unwrap_or_else(|| (Role::Text, format!("residual {}", residual(look.model))));
+    let columns = usize::from(inner.width).saturating_sub(1);
+    let first = look.model.position.fix.as_ref().and_then(|fix| fix.excluded.first());
+    let last = match first {
+        Some((id, why)) => (Role::Watch, text::fit(&rejected(look.model, *id, why), columns)),
+        None => (Role::Text, format!("residual {}", residual(look.model))),
+    };
     vec![
         look.line([(Role::Text, format!(" {} ", heard(look.model, "/"))), error(look.model, false)]),
         look.line([(Role::Text, " ".into()), last]),
@@ -64,7 +63,7 @@ fn heard(model: &Model, of: &str) -> String {
 
 fn residual(model: &Model) -> String {
     let rms = model.position.residual_rms_m();
-    rms.map_or_else(|| "- mm".into(), |rms_m| format!("{} mm rms", text::number(rms_m * 1000.0, 0)))
+    rms.map_or_else(|| "- mm".into(), |rms_m| format!("{} mm RMS", text::number(rms_m * 1000.0, 0)))
 }
 
 fn limit_m(model: &Model) -> f64 {
@@ -79,28 +78,28 @@ fn error(model: &Model, wide: bool) -> (Role, String) {
         Some(error_m) if error_m > 0.8 * limit_m => Role::Warn,
         _ => Role::Text,
     };
-    let error = error_m.map_or_else(|| "-".into(), |error_m| text::number(error_m, 2));
+    let error = error_m.map_or_else(|| "-".into(), |error_m| format!("±{}", text::number(error_m, 2)));
     let limit = text::number(limit_m, 2);
     let lost = if model.position.lost { " LOST" } else { "" };
     if wide {
-        (role, format!("±{error} m (95 %)  limit {limit} m{lost}"))
+        (role, format!("{error} m (95 %)  limit {limit} m{lost}"))
     } else {
-        (role, format!("±{error} m (lim {limit}){lost}"))
+        (role, format!("{error} m (max {limit}){lost}"))
     }
 }
 
 fn curve(look: &Look, columns: usize) -> Line<'static> {
     let limit_m = limit_m(look.model);
-    let note = format!(" 2 min, to {} m", text::number(limit_m, 2));
+    let note = format!(" 2 min, 0-{} m", text::number(limit_m, 2));
     let room = columns.saturating_sub(text::width(&note) + 2);
     let curve = text::sparkline(look.model.position.history_m(), limit_m, room, HISTORY_S);
     look.line([(Role::Text, " ".into()), (Role::Watch, curve), (Role::Dim, note)])
 }
 
-pub(super) fn age(model: &Model) -> (Role, String) {
+fn age(model: &Model) -> (Role, String) {
     let t_s = model.clock.t_s;
     match model.position.fix_age_s(t_s) {
-        None => (Role::Text, "no fix yet".into()),
+        None => (Role::Text, "none yet".into()),
         Some(age_s) if model.position.is_fix_stale(t_s) => {
             (Role::Stale, format!("◌ {} s old", text::number(age_s, 1)))
         }
@@ -121,22 +120,18 @@ fn integrity(model: &Model) -> &'static str {
     }
 }
 
-/// One word per station: its residual, or why it is left out; those left out come first.
+/// A few words per station: its residual, or why it was rejected; those rejected come first.
 fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
-    let mut words: Vec<(Role, String)> = Vec::new();
+    let mut words = Parts::new();
     if let Some(fix) = &look.model.position.fix {
-        let name =
-            |id| look.model.station(id).map_or_else(|| format!("station {}", id.0), |s| s.name.clone());
-        words.extend(
-            fix.excluded.iter().map(|(id, why)| (Role::Watch, format!("{} OUT {}", name(*id), reason(why)))),
-        );
+        words.extend(fix.excluded.iter().map(|(id, why)| (Role::Watch, rejected(look.model, *id, why))));
         words.extend(fix.residuals.iter().map(|residual| {
             let residual_mm = text::number(residual.residual_m * 1000.0, 0);
             let sign = if residual.residual_m >= 0.0005 { "+" } else { "" };
-            (Role::Text, format!("{} ok {sign}{residual_mm} mm", name(residual.station)))
+            (Role::Text, format!("{} ok {sign}{residual_mm} mm", look.model.station_name(residual.station)))
         }));
     }
-    let mut lines: Vec<Vec<(Role, String)>> = Vec::new();
+    let mut lines: Vec<Parts> = Vec::new();
     let mut used = columns;
     for (role, word) in words {
         let word = text::fit(&format!(" {word} "), columns);
@@ -152,11 +147,13 @@ fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>>
     lines.into_iter().take(rows).map(|line| look.line(line)).collect()
 }
 
-fn reason(why: &Exclusion) -> String {
+/// A station that has no part in the fix, and why.
+fn rejected(model: &Model, id: StationId, why: &Exclusion) -> String {
+    let name = model.station_name(id);
     match why {
-        Exclusion::Silent => "not heard".into(),
+        Exclusion::Silent => format!("{name} not heard"),
         Exclusion::Residual { residual_m, gate_m } => {
-            format!("{} m (gate {} m)", text::number(*residual_m, 2), text::number(*gate_m, 2))
+            format!("{name} rejected: {} > {} m", text::number(*residual_m, 2), text::number(*gate_m, 2))
         }
     }
 }

@@ -1,7 +1,9 @@
 //! The control strip of a terminal too small for a map: state, alarm, position, and the keys that matter.
 
+use super::look::Look;
 use super::next::Clauses;
-use super::{Look, asks, confirm, coverage, footer, next, text, top};
+use super::{confirm, coverage, footer, next, text, top};
+use crate::model::{Model, Overlay};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -30,7 +32,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     lines.push(Line::from(look.span(Role::Text, text::fit(&position(look), columns))));
     lines.push(footer::line(look, columns));
     lines.push(Line::from(
-        look.span(Role::Dim, text::fit(" The map needs 60x16. Control works here.", columns)),
+        look.span(Role::Dim, text::fit(" Map requires 60x16. Controls work here.", columns)),
     ));
     frame.render_widget(Paragraph::new(lines), inner);
 }
@@ -64,4 +66,9 @@ fn position(look: &Look) -> String {
 fn wrapped(look: &Look, (role, clauses): &Clauses, columns: usize) -> Vec<Line<'static>> {
     let lines = text::wrap(&clauses.join(" "), columns.saturating_sub(1));
     lines.into_iter().map(|line| Line::from(look.span(*role, format!(" {line}")))).collect()
+}
+
+/// Whether a question about moving or leaving is open.
+fn asks(model: &Model) -> bool {
+    matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping)
 }

@@ -1,6 +1,7 @@
 //! The tether pane: how much is out, round what, and whether there is a way home.
 
-use super::{Look, fill, text};
+use super::look::{Look, Parts, fill};
+use super::text;
 use crate::{model::Tether, theme::Role};
 use ratatui::{Frame, layout::Rect, text::Line};
 
@@ -15,8 +16,6 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
     let lines = lines.into_iter().map(|parts| cut(look, parts, columns)).collect();
     fill(frame, area, block, lines);
 }
-
-type Parts = Vec<(Role, String)>;
 
 fn cut(look: &Look, parts: Parts, columns: usize) -> Line<'static> {
     let mut room = columns;
@@ -37,31 +36,27 @@ fn note(look: &Look) -> &'static str {
 
 fn wide_lines(look: &Look, tether: &Tether) -> Vec<Parts> {
     let row = |label: &str, value: (Role, String)| vec![(Role::Dim, format!(" {label:<12}")), value];
-    let out = format!("{} m   free {} m", text::number(tether.length_m, 1), free(tether));
-    let of = limits(look)
-        .map_or_else(String::new, |limits| format!(" of {}", text::number(limits.reel_length_m, 1)));
-    let sum = format!("{}°", degrees(tether.wrap_total_rad));
+    let of =
+        limits(look).map_or_else(String::new, |limits| format!(" of {} m", metres(limits.reel_length_m)));
+    let out = format!("{} m{of}, {} m left", metres(tether.length_m), metres(tether.free_m));
+    let still_out = format!("{} m still out", metres(tether.length_m));
     vec![
-        row("out", (out_role(look, tether), out + &of)),
-        row("wraps", (wrap_role(look, tether), worst(look, tether, true))),
-        row("in sum", (Role::Text, format!("{sum}   pull ×{}", text::number(tether.pull_factor, 2)))),
+        row("paid out", (out_role(look, tether), out)),
+        row("wrap", (wrap_role(look, tether), worst(look, tether))),
+        row("total wrap", (Role::Text, total(tether))),
         row("contacts", (Role::Text, contacts(tether))),
-        row("way home", home(tether, true)),
-        row("on return", (Role::Text, returned(look))),
+        row("way home", home(tether)),
+        row("at end", (Role::Text, if look.model.has_ended() { still_out } else { "-".into() })),
     ]
 }
 
 fn narrow_lines(look: &Look, tether: &Tether) -> Vec<Parts> {
-    let out = format!(" {} m out  {} m free", text::number(tether.length_m, 1), free(tether));
-    let (role, way) = home(tether, false);
+    let out = format!(" {} m out, {} m left", metres(tether.length_m), metres(tether.free_m));
     vec![
         vec![(out_role(look, tether), out)],
-        vec![(Role::Text, " wrap ".into()), (wrap_role(look, tether), worst(look, tether, false))],
-        vec![
-            (Role::Text, format!(" sum {}°", degrees(tether.wrap_total_rad))),
-            (Role::Text, format!("  pull ×{}", text::number(tether.pull_factor, 2))),
-        ],
-        vec![(Role::Text, " way home ".into()), (role, way)],
+        vec![(Role::Text, " wrap ".into()), (wrap_role(look, tether), worst(look, tether))],
+        vec![(Role::Text, format!(" total {}", total(tether)))],
+        vec![(Role::Text, " way home ".into()), home(tether)],
     ]
 }
 
@@ -69,8 +64,8 @@ fn limits(look: &Look) -> Option<world::tether::Limits> {
     Some(look.model.run.as_ref()?.mission.tether.as_ref()?.limits)
 }
 
-fn free(tether: &Tether) -> String {
-    text::number(tether.free_m, 1)
+fn metres(length_m: f64) -> String {
+    text::number(length_m, 1)
 }
 
 fn degrees(rad: f64) -> String {
@@ -78,24 +73,24 @@ fn degrees(rad: f64) -> String {
 }
 
 fn out_role(look: &Look, tether: &Tether) -> Role {
-    match limits(look) {
-        Some(limits) if tether.length_m > limits.reel_length_m => Role::Crit,
-        Some(limits) if tether.length_m > 0.8 * limits.reel_length_m => Role::Warn,
-        _ => Role::Text,
-    }
+    beside_limit(tether.length_m, limits(look).map(|limits| limits.reel_length_m))
 }
 
 fn wrap_role(look: &Look, tether: &Tether) -> Role {
-    let most = tether.contacts.iter().map(|contact| contact.wrap_rad.abs()).fold(0.0, f64::max);
-    match limits(look) {
-        Some(limits) if most > limits.wrap_max_rad => Role::Crit,
-        Some(limits) if most > 0.8 * limits.wrap_max_rad => Role::Warn,
+    let most_rad = tether.contacts.iter().map(|contact| contact.wrap_rad.abs()).fold(0.0, f64::max);
+    beside_limit(most_rad, limits(look).map(|limits| limits.wrap_max_rad))
+}
+
+fn beside_limit(value: f64, limit: Option<f64>) -> Role {
+    match limit {
+        Some(limit) if value > limit => Role::Crit,
+        Some(limit) if value > 0.8 * limit => Role::Warn,
         _ => Role::Text,
     }
 }
 
 /// The largest wrap and where it is.
-fn worst(look: &Look, tether: &Tether, wide: bool) -> String {
+fn worst(look: &Look, tether: &Tether) -> String {
     if tether.is_snagged {
         return "unknown, tether snagged".into();
     }
@@ -105,31 +100,24 @@ fn worst(look: &Look, tether: &Tether, wide: bool) -> String {
     };
     let limit = limits(look).map_or_else(|| "-".into(), |limits| degrees(limits.wrap_max_rad));
     let sign = if most.wrap_rad > 0.0 { "+" } else { "" };
-    let (angle, of) = (degrees(most.wrap_rad), if wide { "limit" } else { "lim" });
-    format!("{sign}{angle}° at {} ({of} {limit}°)", most.on)
+    format!("{sign}{}° on {}, max {limit}°", degrees(most.wrap_rad), most.on)
+}
+
+fn total(tether: &Tether) -> String {
+    format!("{}°, pull ×{}", degrees(tether.wrap_total_rad), text::number(tether.pull_factor, 2))
 }
 
 fn contacts(tether: &Tether) -> String {
     if tether.contacts.is_empty() {
-        return "-".into();
+        return "none".into();
     }
     tether.contacts.iter().map(|contact| contact.on.as_str()).collect::<Vec<_>>().join(", ")
 }
 
-fn home(tether: &Tether, wide: bool) -> (Role, String) {
+fn home(tether: &Tether) -> (Role, String) {
     match tether.return_length_m {
-        _ if tether.is_snagged && wide => (Role::Crit, "UNKNOWN: tether snagged".into()),
-        _ if tether.is_snagged => (Role::Crit, "UNKNOWN, snagged".into()),
-        Some(way_m) if wide => (Role::Good, format!("{} m, along the tether: YES", text::number(way_m, 1))),
-        Some(way_m) => (Role::Good, format!("{} m  YES", text::number(way_m, 1))),
-        None => (Role::Crit, "NO: the hull does not fit".into()),
-    }
-}
-
-/// What stays out when the mission is over.
-fn returned(look: &Look) -> String {
-    match (&look.model.tether, look.model.has_ended()) {
-        (Some(tether), true) => format!("{} m still deployed", text::number(tether.length_m, 1)),
-        _ => "-".into(),
+        _ if tether.is_snagged => (Role::Crit, "UNKNOWN".into()),
+        Some(way_m) => (Role::Good, format!("CLEAR, {} m", metres(way_m))),
+        None => (Role::Crit, "BLOCKED".into()),
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::model::Speed;
 use ratatui::text::Span;
+use world::Point;
 
 /// A share as a percentage without its sign.
 pub(super) fn percent(share: f64) -> String {
@@ -20,6 +21,11 @@ pub(super) fn number(value: f64, decimals: usize) -> String {
     } else {
         text
     }
+}
+
+/// A place on the floor.
+pub(super) fn place(point: Point) -> String {
+    format!("{}, {} m", number(point.x, 2), number(point.y, 2))
 }
 
 /// A span of time as hours, minutes and seconds.
@@ -64,6 +70,12 @@ pub(super) fn fit(text: &str, columns: usize) -> String {
         cut.push('…');
     }
     cut
+}
+
+/// A sentence without its full stop, with a capital letter.
+pub(super) fn capitalized(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// Text of exactly some columns, padded on the right.

@@ -1,6 +1,7 @@
 //! The line on top: who is in charge, what runs, whether it is recorded, what is wrong.
 
-use super::{Look, text};
+use super::look::{Look, Parts};
+use super::text;
 use crate::model::{Model, Recording, ui::Arrangement};
 use crate::theme::Role;
 use mission::{Hold, Outcome, Phase, Severity, event::HoldReason};
@@ -8,8 +9,6 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use world::Boundary;
-
-type Parts = Vec<(Role, String)>;
 
 /// The name of the screen, at the right end.
 const SCREEN: &str = "Mission ";
@@ -65,7 +64,7 @@ fn names(model: &Model, wide: bool, gap: &str, room: usize) -> Parts {
         _ => String::new(),
     };
     let tank = model.run.as_ref().map_or_else(
-        || "no run yet".into(),
+        || "no run".into(),
         |run| match (&run.world.boundary, wide) {
             (Boundary::Circle { radius_m }, true) => {
                 format!("{} Ø{} m", run.scenario, text::number(2.0 * radius_m, 0))

@@ -359,7 +359,7 @@ impl ScriptedMission {
         }
     }
 
-    /// Station 4 is left out.
+    /// Station 4 is rejected.
     pub(crate) fn excluded(&self) -> Event {
         let reason = Exclusion::Residual { residual_m: 0.42, gate_m: 0.15 };
         self.now(EventKind::StationRejected { station: StationId(4), reason })
@@ -452,7 +452,7 @@ impl ScriptedMission {
     /// A plan cannot be certified and the robot is held.
     pub(crate) fn plan_refused(&self) -> Vec<Event> {
         let reason = "31.4 m of cable stay out on return, hooked round C3";
-        let message = format!("the plan of rpf is not safe for the tether: {reason}");
+        let message = format!("plan of rpf is not safe for the tether: {reason}");
         vec![self.certified(&[reason]), self.held(HoldReason::PlanRefused { message })]
     }
 

@@ -113,7 +113,7 @@ fn turn() -> impl Strategy<Value = Msg> {
         vec![mission.held(refused())],
         mission.obeyed(Order::Hold),
         mission.obeyed(Order::Resume),
-        vec![mission.ended(Outcome::Complete, "the task is done")],
+        vec![mission.ended(Outcome::Complete, "task complete")],
     ];
     prop::sample::select(turns).prop_map(Msg::Events)
 }
@@ -247,7 +247,7 @@ fn nothing_but_style_is_lost_without_colour() {
     unrecorded.send(Msg::Health(Health { recording: Recording::Failed("full".into()), reached_speed: None }));
     let cases: Vec<(&str, Screen, &[&str])> = vec![
         ("idle", Screen::idle(), &["■ IDLE", "REC●", "Press S"]),
-        ("running", Screen::running(), &["▶ RUN", "2w", "OUT 0.42 m", "found"]),
+        ("running", Screen::running(), &["▶ RUN", "2w", "rejected: 0.42", "found"]),
         ("held", Screen::held(), &["‖ HOLD", "HELD by operator"]),
         ("lost", lost, &["‖ HOLD", "LOST", "1C*", "CRIT"]),
         ("failed", failed, &["‖ HOLD", "FAILED", "1C*", "CRIT"]),

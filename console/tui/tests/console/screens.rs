@@ -164,7 +164,7 @@ fn planner_fault() {
 #[test]
 fn ended() {
     let mut screen = Screen::running();
-    let events = vec![screen.mission.ended(Outcome::Complete, "the task is done")];
+    let events = vec![screen.mission.ended(Outcome::Complete, "task complete")];
     screen.send(Msg::Events(events));
     store("ended", &mut screen);
 }
@@ -172,7 +172,7 @@ fn ended() {
 #[test]
 fn ended_in_a_collision_without_recording() {
     let mut screen = Screen::running();
-    let events = vec![screen.mission.ended(Outcome::Collision, "the bumper touched something")];
+    let events = vec![screen.mission.ended(Outcome::Collision, "bumper contact")];
     let recording = Recording::Failed("the disk is full".into());
     screen.send(Msg::Events(events));
     screen.send(Msg::Health(tui::Health { recording, reached_speed: None }));

@@ -149,7 +149,7 @@ fn the_pace_goes_in_steps_and_says_where_it_ends() {
     assert_eq!(screen.type_text(">>"), [Effect::Speed(Speed::Times(2.0)), Effect::Speed(Speed::Times(4.0))]);
     assert_eq!(screen.type_text(">>>>>").last(), Some(&Effect::Speed(Speed::Max)));
     assert_eq!(screen.type_text(">"), []);
-    assert!(notice(&screen).contains("Maximum speed"));
+    assert!(notice(&screen).contains("already at maximum speed"));
     assert_eq!(screen.type_text("<<<<<<<<<").last(), Some(&Effect::Speed(Speed::Times(0.25))));
     assert_eq!(screen.type_text("<"), []);
 }
@@ -201,7 +201,7 @@ fn planning_is_shown_with_the_time_it_has_taken_while_ticks_go_on() {
     let expect = |screen: &Screen, text: &str| assert!(shown(screen).contains(text), "{}", shown(screen));
     expect(&screen, "Planning (rpf), 7 s (limit 60 s). space: HOLD. X: end mission.");
     screen.send(Msg::BusyAt { share: 0.419, what: "candidate 2 of 3".into() });
-    expect(&screen, "Planning (rpf) 41 %, 7 s (limit 60 s). candidate 2 of 3.");
+    expect(&screen, "Planning (rpf) 41 %, 7 s (limit 60 s). Candidate 2 of 3.");
     screen.send(Msg::BusyAt { share: 1.0, what: String::new() });
     expect(&screen, "Planning (rpf) 99 %, 7 s");
     screen.send(Msg::Busy(None));
@@ -236,7 +236,7 @@ fn a_planner_that_was_replaced_is_no_hold_by_the_operator() {
     send_event(&mut screen, held(HoldReason::PlannerReplaced));
     send_event(&mut screen, EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
     let text = shown(&screen);
-    assert!(text.contains("HELD, planner replaced; position lost. Cannot resume without a"), "{text}");
+    assert!(text.contains("HELD: planner replaced; position lost. Cannot resume without a"), "{text}");
 }
 
 /// The line above the keys of a held mission, on a screen so wide.
@@ -332,7 +332,7 @@ fn a_planner_that_is_rejected_or_late_is_reported() {
     assert_eq!(screen.model.planner_id(), Some("rpf"), "it does not drive yet");
     let why = "no plan within 60 s".to_owned();
     send_event(&mut screen, EventKind::PlannerRejected { planner: "spiral-tangent".into(), why });
-    assert!(notice(&screen).contains("spiral-tangent does not take over: no plan within 60 s"));
+    assert!(notice(&screen).contains("spiral-tangent will not take over: no plan within 60 s"));
     let mut screen = Screen::running();
     let before = screen.model.clone();
     send_event(&mut screen, EventKind::Discarded { ask });
@@ -354,7 +354,7 @@ fn the_certificate_of_a_planner_that_is_prepared_says_nothing_of_the_plan_that_i
     let (mut screen, ask) = (Screen::tethered(), preparing());
     prepare(&mut screen, ask);
     send_certified_plan(&mut screen, Some(ask), &["cable stays out"]);
-    let why = "the plan is not safe for the tether".to_owned();
+    let why = "plan is not safe for the tether".to_owned();
     send_event(&mut screen, EventKind::PlannerRejected { planner: "spiral-tangent".into(), why });
     assert_eq!(screen.model.tether.as_ref().unwrap().certified, Some(true), "the plan that is flown is");
     assert_eq!(screen.model.alarms.list(), Screen::tethered().model.alarms.list());
@@ -403,7 +403,7 @@ fn a_value_is_checked_again_when_it_is_sent() {
     let Overlay::Parameters { edit: Some(edit), .. } = &screen.model.ui.overlay else {
         panic!("still typing")
     };
-    assert!(edit.refusal.as_ref().is_some_and(|why| why.contains("while the mission is running")));
+    assert!(edit.refusal.as_ref().is_some_and(|why| why.contains("while running")));
 }
 
 #[test]
@@ -429,7 +429,7 @@ fn a_bad_value_is_refused_in_place_and_a_good_one_sent() {
 fn what_cannot_change_under_way_says_so() {
     let mut screen = Screen::running();
     screen.press([Key::Char('p'), Key::Down, Key::Down, Key::Down, Key::Enter]);
-    let why = "parameter `mode` cannot be changed while the mission is running; HOLD first";
+    let why = "parameter `mode` cannot be changed while running; HOLD first";
     assert!(notice(&screen).contains(why));
     assert!(matches!(screen.model.ui.overlay, Overlay::Parameters { edit: None, .. }));
 }
@@ -455,7 +455,7 @@ fn leaving_a_running_mission_holds_first_and_ends_it_only_when_agreed() {
 fn leaving_is_not_asked_where_nothing_is_at_stake() {
     assert_eq!(Screen::idle().type_text("q"), [Effect::Quit { signal: None }]);
     let mut screen = Screen::running();
-    let ended = screen.mission.ended(Outcome::Complete, "the task is done");
+    let ended = screen.mission.ended(Outcome::Complete, "task complete");
     screen.send(Msg::Events(vec![ended]));
     assert_eq!(screen.type_text("q"), [Effect::Quit { signal: None }]);
 }
@@ -464,7 +464,7 @@ fn leaving_is_not_asked_where_nothing_is_at_stake() {
 fn control_c_holds_and_only_twice_in_two_seconds_asks_to_leave() {
     let mut screen = Screen::running();
     assert_eq!(screen.press([Key::Ctrl('c')]), [order(Order::Hold)]);
-    assert_eq!(notice(&screen), "Press Ctrl-C again within 2 s to leave");
+    assert_eq!(notice(&screen), "press Ctrl-C again within 2 s to quit");
     screen.pass(1.9);
     assert_ne!(notice(&screen), "");
     screen.pass(0.2);
@@ -688,7 +688,7 @@ fn a_key_that_is_no_answer_cancels_the_question_so_that_enter_cannot_agree_to_it
         screen.type_text(question);
         assert!(screen.model.ui.overlay != Overlay::None, "{question:?} asks");
         assert_eq!(screen.type_text("P"), [], "{question:?}");
-        assert_eq!(notice(&screen), "Cancelled: key P is not an answer");
+        assert_eq!(notice(&screen), "cancelled: key P is not an answer");
         assert_eq!(screen.press([Key::Enter]), [], "{question:?}: Enter agrees to nothing");
     }
 }

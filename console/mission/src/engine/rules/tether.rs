@@ -66,7 +66,7 @@ impl TetherRule {
         } else if attended {
             Verdict::Hold(held(message, resumes))
         } else {
-            Verdict::End(outcome, format!("nobody attended the hold: {message}"))
+            Verdict::End(outcome, format!("unattended hold: {message}"))
         }
     }
 
@@ -78,7 +78,7 @@ impl TetherRule {
         }
         if !seen.config.attended && self.waited_s >= WAIT_FOR_HOME_S {
             let message = TetherAlarm::NoReturnPath.to_string();
-            return Some(Verdict::End(Outcome::Entangled, format!("nobody attended the hold: {message}")));
+            return Some(Verdict::End(Outcome::Entangled, format!("unattended hold: {message}")));
         }
         self.waited_s += seen.config.tick_s;
         None

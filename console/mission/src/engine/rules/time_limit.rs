@@ -18,6 +18,6 @@ impl TimeLimitRule {
         }
         let limit_s = seen.config.time_limit_s;
         (seen.now_s - self.waited_s >= limit_s)
-            .then(|| Verdict::End(Outcome::TimeLimit, format!("time is up after {limit_s:.0} s")))
+            .then(|| Verdict::End(Outcome::TimeLimit, format!("time limit of {limit_s:.0} s reached")))
     }
 }

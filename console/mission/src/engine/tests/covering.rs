@@ -183,7 +183,7 @@ fn a_plan_that_scans_nothing_of_what_is_asked_is_refused_with_the_reason() {
     let Some(HoldReason::PlannerFault { message }) = flight.held_by() else {
         panic!("{:?}", flight.mission.phase())
     };
-    assert!(message.contains("scans nothing"), "{message}");
+    assert!(message.contains("scans none of the remaining"), "{message}");
     assert!(refusal(&flight.tick(&[Order::FlyUncertified])).is_some());
 }
 

@@ -235,7 +235,7 @@ fn a_robot_back_at_the_anchor_with_cable_left_out_is_entangled() {
         lie.drag_to(Point::new(x, y));
     }
     let why = lie.left_out(&world).unwrap();
-    assert!(why.contains("of cable are left out, hooked round C1"), "{why}");
+    assert!(why.contains("of tether still out, hooked around C1"), "{why}");
 }
 
 #[test]

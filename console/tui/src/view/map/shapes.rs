@@ -1,7 +1,5 @@
 //! Shapes that the map draws dot by dot.
 
-use crate::model::Raster;
-use positioning::AccuracyMap;
 use ratatui::style::Color;
 use ratatui::widgets::canvas::{Painter, Shape};
 use world::{Point, Vector};
@@ -56,75 +54,26 @@ impl Window {
     }
 }
 
-/// Scanned floor, in dots of one or half a character.
-pub(super) struct Scanned<'a> {
-    pub raster: &'a Raster,
+/// Shaded floor, in dots of one or half a character.
+pub(super) struct Shaded<F> {
     pub window: Window,
     /// Dots per row of characters: 1 or 2.
     pub rows_per_row: u16,
-    /// Colours of what is scanned wholly and in part; `None` leaves these dots out.
-    pub whole: Option<Color>,
-    pub partly: Option<Color>,
+    /// The colour of the dot about a point, of some edge in metres; `None` leaves it out.
+    pub color_at: F,
 }
 
-impl Scanned<'_> {
-    /// Above this share a dot counts as scanned, above the other as scanned in part.
-    const WHOLE: f64 = 0.95;
-    const PARTLY: f64 = 0.05;
-}
-
-impl Shape for Scanned<'_> {
+impl<F: Fn(Point, f64) -> Option<Color>> Shape for Shaded<F> {
     fn draw(&self, painter: &mut Painter) {
         let (columns, rows) = (self.window.size.0, self.window.size.1 * self.rows_per_row);
         let step =
             |span: [f64; 2], count: u16| (span[1] - span[0]) / f64::from(count.saturating_sub(1).max(1));
         let (step_x, step_y) = (step(self.window.x, columns), step(self.window.y, rows));
         let edge_m = f64::midpoint(step_x, step_y);
-        for row in 0..rows {
-            for column in 0..columns {
-                let x = self.window.x[0] + f64::from(column) * step_x;
-                let y = self.window.y[1] - f64::from(row) * step_y;
-                let color = match self.raster.scanned_share(Point::new(x, y), edge_m) {
-                    Some(share) if share >= Self::WHOLE => self.whole,
-                    Some(share) if share >= Self::PARTLY => self.partly,
-                    _ => None,
-                };
-                if let Some(color) = color {
-                    painter.paint(usize::from(column), usize::from(row), color);
-                }
-            }
-        }
-    }
-}
-
-/// Where a forecast is bad, in dots of one or half a character.
-pub(super) struct Forecast<'a> {
-    pub map: &'a AccuracyMap,
-    pub limit_m: f64,
-    pub window: Window,
-    /// Dots per row of characters: 1 or 2.
-    pub rows_per_row: u16,
-    /// Colours of what is beyond the limit and beyond half of it; `None` leaves these dots out.
-    pub beyond: Option<Color>,
-    pub near: Option<Color>,
-}
-
-impl Shape for Forecast<'_> {
-    fn draw(&self, painter: &mut Painter) {
-        let (columns, rows) = (self.window.size.0, self.window.size.1 * self.rows_per_row);
-        let step =
-            |span: [f64; 2], count: u16| (span[1] - span[0]) / f64::from(count.saturating_sub(1).max(1));
-        let (step_x, step_y) = (step(self.window.x, columns), step(self.window.y, rows));
         for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
             let x = self.window.x[0] + f64::from(column) * step_x;
             let y = self.window.y[1] - f64::from(row) * step_y;
-            let Some(cell) = self.map.at(Point::new(x, y)) else { continue };
-            let color = match cell.error_95_m {
-                Some(error_m) if error_m <= self.limit_m / 2.0 => None,
-                Some(error_m) if error_m <= self.limit_m => self.near,
-                _ => self.beyond,
-            };
-            if let Some(color) = color {
+            if let Some(color) = (self.color_at)(Point::new(x, y), edge_m) {
                 painter.paint(usize::from(column), usize::from(row), color);
             }
         }

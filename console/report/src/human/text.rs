@@ -1,0 +1,44 @@
+//! Labelled lines and numbers for people.
+
+use std::fmt::{Display, Write};
+
+/// Width of the column of labels.
+const LABEL: usize = 15;
+
+/// Lines with a label each.
+pub(crate) struct Text(pub(crate) String);
+
+impl Text {
+    /// A text under a title.
+    pub(crate) fn new(title: &str) -> Self {
+        Self(format!("{title}\n\n"))
+    }
+
+    pub(crate) fn line(&mut self, label: &str, what: impl Display) {
+        writeln!(self.0, "{label:<LABEL$}{what}").expect("writing to a string");
+    }
+
+    pub(crate) fn some(&mut self, label: &str, what: Option<impl Display>) {
+        if let Some(what) = what {
+            self.line(label, what);
+        }
+    }
+
+    /// Lines of one label; it is not repeated.
+    pub(crate) fn lines(&mut self, lines: impl IntoIterator<Item = (&'static str, String)>) {
+        for (label, what) in lines {
+            let begun = self.0.lines().any(|line| line.starts_with(&format!("{label:<LABEL$}")));
+            self.line(if begun { "" } else { label }, what);
+        }
+    }
+}
+
+/// So many of something.
+pub(crate) fn counted(n: u64, what: &str) -> String {
+    if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
+}
+
+/// A share in per cent.
+pub(crate) fn percent(share: f64) -> String {
+    format!("{:.1} %", share * 100.0)
+}

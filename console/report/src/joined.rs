@@ -1,0 +1,99 @@
+//! Several runs on one floor as if they were one.
+
+use crate::{account::Evidence, fold::Fold, scanned::Scanned, summary::Logs};
+use mission::event::RunOpened;
+use std::collections::BTreeSet;
+use world::{Floor, FloorMaker, Obstacle, ObstacleId, Shape};
+
+/// A past run: its name, its files and what is known of it.
+#[derive(Debug)]
+pub struct PastRun {
+    /// Name of its folder.
+    pub name: String,
+    /// Its files.
+    pub logs: Logs,
+    /// SHA-256 of its journal, hexadecimal.
+    pub journal_sha256: Option<String>,
+    /// SHA-256 of its recording, hexadecimal.
+    pub recording_sha256: Option<String>,
+    /// Its events, folded.
+    pub fold: Fold,
+}
+
+/// What several runs on one floor scanned together.
+pub(crate) struct Joined<'a> {
+    /// The last of the runs, as it was opened.
+    pub(crate) run: &'a RunOpened,
+    pub(crate) scanned: Scanned,
+    pub(crate) evidence: Evidence,
+}
+
+/// What several runs scanned together, on the floor as all of them found it.
+pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
+    let (last, before) = runs.split_last().ok_or("no run to report")?;
+    let mut all = alone(last)?;
+    let drawn = all.run.world.obstacles.iter().filter(|obstacle| obstacle.known).map(|obstacle| obstacle.id);
+    let known: BTreeSet<ObstacleId> = all.evidence.found().map(|(id, _)| *id).chain(drawn).collect();
+    for (index, past) in before.iter().enumerate() {
+        if let Some(other) = runs[index + 1..].iter().find(|other| other.name == past.name) {
+            return Err(format!("run {} is given twice", other.name));
+        }
+        let other = alone(past)?;
+        fit_together((&past.name, &other), (&last.name, &all))?;
+        all.scanned.join(&other.scanned);
+        all.evidence.join(&other.evidence);
+    }
+    if all.evidence.found().any(|(id, _)| !known.contains(id)) {
+        // What only the other runs found is no floor either.
+        let grid = all.scanned.believed().floor();
+        let changes = updated_floor(all.run, grid, &all.evidence, all.run.mission.swath_m).kinds();
+        all.scanned.change(&changes);
+    }
+    Ok(all)
+}
+
+/// What one run scanned.
+fn alone(past: &PastRun) -> Result<Joined<'_>, String> {
+    let PastRun { name, fold, .. } = past;
+    let found = fold.scanned.clone().zip(fold.evidence.clone()).zip(fold.run.as_deref());
+    found
+        .map(|((scanned, evidence), run)| Joined { run, scanned, evidence })
+        .ok_or_else(|| format!("run {name} scans no floor: its task is to reach a goal"))
+}
+
+/// Refuses runs of which one contains nothing about the floor of the other.
+fn fit_together(
+    (name, other): (&str, &Joined<'_>),
+    (last_name, all): (&str, &Joined<'_>),
+) -> Result<(), String> {
+    let names = format!("runs {name} and {last_name} are not of one floor");
+    let last = all.run;
+    if other.run.world.boundary != last.world.boundary {
+        return Err(format!("{names}: the tank boundaries differ"));
+    }
+    let (a, b) = (other.run.floor.cell_m, last.floor.cell_m);
+    if !all.scanned.believed().floor().is_aligned_with(other.scanned.believed().floor()) {
+        return Err(format!("{names}: cells of {a} m and {b} m; run both with the same mission.cell_m"));
+    }
+    let outlines = |run: &RunOpened| -> Vec<Shape> {
+        run.world.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect()
+    };
+    if outlines(other.run) != outlines(last) {
+        return Err(format!("{names}: the obstacles differ"));
+    }
+    if other.run.world.zones != last.world.zones {
+        return Err(format!("{names}: the zones differ"));
+    }
+    Ok(())
+}
+
+/// The floor with everything that any of the runs found.
+pub(crate) fn updated_floor(run: &RunOpened, grid: &Floor, evidence: &Evidence, swath_m: f64) -> Floor {
+    let mut world = run.world.as_drawn();
+    let drawn: BTreeSet<ObstacleId> = world.obstacles.iter().map(|obstacle| obstacle.id).collect();
+    for (id, shape) in evidence.found().filter(|(id, _)| !drawn.contains(id)) {
+        world.obstacles.push(Obstacle { id: *id, name: String::new(), shape: shape.clone(), known: true });
+    }
+    let mission = &run.mission;
+    FloorMaker::of(grid, &world, mission.room_m(), swath_m, mission.start.position).into_floor()
+}

@@ -1,0 +1,84 @@
+//! Events of planners into the model.
+
+use crate::model::{Cause, Model, PlanShown, Trail};
+use mission::{Event, EventKind, PlannerChoice, PlannerInfo, Severity, event::late_text};
+use planner_api::{Command, Drawing};
+
+/// Most drawings kept of one tick.
+const MAX_DRAWINGS: usize = 512;
+/// Most figures kept of one tick.
+const MAX_SCALARS: usize = 32;
+
+impl Model {
+    /// Takes in an event of a planner.
+    pub(super) fn planned(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::PlannerPrepared { ask, .. } => self.planning.candidate = Some(ask.worker),
+            EventKind::PlannerChosen { choice, info, .. } => {
+                self.planning.candidate = None;
+                self.seat(choice, info);
+            }
+            EventKind::ParametersChanged { choice, .. } => self.planning.choice = Some(choice.clone()),
+            EventKind::Planned { ask, path, length_m, complete, .. } => {
+                // One that is being prepared: its plan flies when it takes over.
+                self.planning.proposed = ask.is_some_and(|ask| self.planning.candidate == Some(ask.worker));
+                if self.planning.proposed {
+                    return;
+                }
+                let path = Trail::thinned(path);
+                let plan = PlanShown { path, length_m: *length_m, complete: *complete, t_s: event.t_s };
+                self.planning.plan = Some(plan);
+                self.planner_works();
+            }
+            EventKind::Commanded { command, .. } => self.command(event.t_s, *command),
+            EventKind::Drawn { drawings } => self.draw(event.tick, drawings),
+            EventKind::Scalars { scalars } => {
+                self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
+            }
+            EventKind::PlannerFailed { fault, .. } => {
+                // A planner that was refused does not replace the active one.
+                if self.planner_id() == Some(fault.planner.as_str()) {
+                    self.planning.fault = Some(fault.clone());
+                }
+                self.raise_as_logged(event, Cause::Planner);
+                self.withdraw_question();
+            }
+            // No alarm: the planner works again, and a fault before may not be acknowledged yet.
+            EventKind::PlannerLate { planner, ticks } => {
+                self.say(Severity::Watch, late_text(planner, *ticks));
+            }
+            EventKind::PlannerRejected { planner, why } => {
+                self.planning.candidate = None;
+                self.say(Severity::Warn, format!("planner {planner} will not take over: {why}"));
+            }
+            _ => {}
+        }
+    }
+
+    /// Another planner becomes active.
+    fn seat(&mut self, choice: &PlannerChoice, info: &PlannerInfo) {
+        (self.planning.choice, self.planning.info) = (Some(choice.clone()), Some(info.clone()));
+        self.planning.scalars.clear();
+        self.planning.drawings.clear();
+        self.planner_works();
+    }
+
+    fn draw(&mut self, tick: u64, drawings: &[Drawing]) {
+        if self.planning.drawings_tick != tick {
+            self.planning.drawings.clear();
+        }
+        self.planning.drawings_tick = tick;
+        let room = MAX_DRAWINGS.saturating_sub(self.planning.drawings.len());
+        self.planning.drawings.extend(drawings.iter().take(room).copied());
+    }
+
+    fn command(&mut self, t_s: f64, command: Command) {
+        self.planner_works();
+        self.planning.command = Some((t_s, command));
+    }
+
+    pub(super) fn planner_works(&mut self) {
+        self.planning.fault = None;
+        self.alarms.clear(&Cause::Planner);
+    }
+}

@@ -1,0 +1,38 @@
+//! Events of the tether into the model.
+
+use crate::model::{Cause, Model};
+use mission::{Event, EventKind, Severity, event::TetherAlarm};
+
+impl Model {
+    /// Takes in an event of the tether.
+    pub(super) fn tethered(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::TetherAlarmRaised { alarm, .. } => {
+                if matches!(alarm, TetherAlarm::Snag { .. }) {
+                    self.tether.get_or_insert_default().is_snagged = true;
+                }
+                self.raise_as_logged(event, Cause::Tether(alarm.word().to_owned()));
+            }
+            EventKind::TetherAlarmCleared { alarm } => {
+                if matches!(alarm, TetherAlarm::Snag { .. }) {
+                    self.tether.get_or_insert_default().is_snagged = false;
+                }
+                self.alarms.clear(&Cause::Tether(alarm.word().to_owned()));
+            }
+            // A planner that is being prepared; why it does not take over is reported when it is rejected.
+            EventKind::Certified { .. } if self.planning.proposed => {}
+            EventKind::Certified { planner, refused, certificate } => {
+                self.tether.get_or_insert_default().certified = Some(certificate.certified);
+                if certificate.certified {
+                    self.alarms.clear(&Cause::Certificate);
+                } else {
+                    let severity = if *refused { Severity::Crit } else { Severity::Warn };
+                    let reasons = certificate.reasons.join("; ");
+                    let text = format!("plan of {planner} not certified: {reasons}");
+                    self.raise(event, Cause::Certificate, severity, text);
+                }
+            }
+            other => self.tether.get_or_insert_default().lie(other),
+        }
+    }
+}

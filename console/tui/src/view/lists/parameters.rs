@@ -1,0 +1,68 @@
+//! The list of the planner's parameters, and the line in which a value is typed.
+
+use super::list::{List, hint, paragraph};
+use crate::model::{parameter, ui::Edit};
+use crate::theme::Role;
+use crate::view::look::{Look, Parts as Row};
+use crate::view::text;
+
+pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u16) -> List {
+    let Some(planner) = look.model.planner() else {
+        return List { title: "Parameters".into(), ..List::default() };
+    };
+    let room = usize::from(columns).saturating_sub(3);
+    // A narrow list goes without defaults.
+    let (name, value, default, unit) = match columns {
+        74.. => (20, 13, 15, 10),
+        56.. => (16, 9, 11, 8),
+        _ => (14, 9, 0, 8),
+    };
+    let rows = planner.parameters.iter().map(|info| {
+        let (now, unset) = (parameter::value(&look.model.planning, info), parameter::default(&info.kind));
+        let changed = if now == unset { " " } else { "*" };
+        vec![
+            (Role::Text, text::column(&info.key, name)),
+            (Role::Title, format!("{}{changed} ", text::column(&now.to_string(), value))),
+            (Role::Dim, text::column(&unset.to_string(), default)),
+            (Role::Dim, text::column(parameter::unit(info), unit)),
+            (Role::Dim, if info.live { "any time" } else { "held" }.into()),
+        ]
+    });
+    let head = [
+        text::column("name", name),
+        text::column("value", value + 2),
+        text::column("default", default),
+        text::column("unit", unit),
+        "set when".into(),
+    ];
+    let mut below = Vec::new();
+    let mut needed_below = 0;
+    if let Some(info) = planner.parameters.get(selected) {
+        below.extend(edit_rows(info, edit, room));
+        needed_below = below.len();
+        // A refusal names the range already.
+        if edit.is_none_or(|edit| edit.refusal.is_none()) {
+            let allowed = format!(" {}: {}", info.key, parameter::range(info));
+            below.push(vec![(Role::Dim, text::fit(&allowed, room))]);
+        }
+        let about = format!("{}. {}", info.label, info.help);
+        below.extend(paragraph(Role::Text, &about, room));
+    }
+    List {
+        title: format!("Parameters of {} {}", planner.id, planner.version),
+        note: "* changed",
+        above: vec![hint(&format!(" {}", head.concat()))],
+        rows: rows.collect(),
+        selected,
+        below,
+        needed_below,
+    }
+}
+
+/// The value being typed, and why it was refused.
+fn edit_rows(info: &mission::ParamInfo, edit: Option<&Edit>, room: usize) -> Vec<Row> {
+    let Some(edit) = edit else { return Vec::new() };
+    let typed = vec![(Role::Confirm, text::fit(&format!(" {} = {}_ ", info.key, edit.text), room))];
+    let why = edit.refusal.iter().flat_map(|why| paragraph(Role::Warn, &format!("REFUSED: {why}"), room));
+    [typed].into_iter().chain(why).collect()
+}

@@ -1,0 +1,43 @@
+//! The list of planners, and of the plugins that were refused.
+
+use super::list::{List, hint, paragraph};
+use crate::theme::Role;
+use crate::view::look::{Look, Parts as Row};
+use crate::view::text::{self, wrap};
+
+pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
+    let driving = look.model.planner_id();
+    let rows = look.model.console.planners.iter().map(|planner| {
+        let drives = Some(planner.id.as_str()) == driving;
+        vec![
+            (Role::Title, text::column(&planner.id, 18)),
+            (Role::Text, text::column(&planner.version, 8)),
+            match look.model.cannot_fly(planner) {
+                _ if drives => (Role::Good, "active".into()),
+                Some(why) => (Role::Dim, why.into()),
+                None => (Role::Good, String::new()),
+            },
+        ]
+    });
+    let room = usize::from(columns).saturating_sub(2 + 1);
+    let about =
+        look.model.console.planners.get(selected).map(|planner| planner.about.as_str()).unwrap_or_default();
+    let about = paragraph(Role::Text, about, room);
+    let refused = look.model.console.refused.iter().flat_map(|plugin| {
+        let name = vec![(Role::Warn, text::fit(&format!(" REFUSED {}", plugin.plugin), room))];
+        let why = wrap(&plugin.reason, room.saturating_sub(2));
+        [name].into_iter().chain(why.into_iter().map(|line| vec![(Role::Text, format!("   {line}"))]))
+    });
+    List {
+        title: "Planners".into(),
+        rows: rows.collect(),
+        selected,
+        below: [Row::new()]
+            .into_iter()
+            .chain(about)
+            .chain(refused)
+            .chain([hint(" Enter: change planner (asks first); coverage is kept.")])
+            .collect(),
+        ..List::default()
+    }
+}

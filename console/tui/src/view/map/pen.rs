@@ -1,0 +1,242 @@
+//! What the model has, drawn on the canvas of the map.
+
+use super::shapes::{Filled, Shaded, Stroke, Window, ellipse};
+use crate::caps::Glyphs;
+use crate::model::{Model, position, ui::MapLayer};
+use crate::theme::Role;
+use crate::view::look::Look;
+use planner_api::{Drawing, Layer};
+use ratatui::symbols::Marker;
+use ratatui::text::Line;
+use ratatui::widgets::canvas::Context;
+use world::{Boundary, Point, ZoneKind};
+
+/// Pieces of a round wall.
+const WALL_PIECES: u32 = 256;
+/// Columns that a pass of the tool must be wide for all passes to be drawn.
+const PASS_COLUMNS: f64 = 2.0;
+/// Length of trail and plan where not all of it is drawn, in columns.
+const REACH_COLUMNS: f64 = 40.0;
+/// From this share on a dot of floor counts as scanned, and from the other as scanned in part.
+const WHOLLY_SCANNED: f64 = 0.95;
+const PARTLY_SCANNED: f64 = 0.05;
+
+/// Draws on the canvas what the model has.
+pub(super) struct Pen<'a> {
+    pub look: Look<'a>,
+    pub window: Window,
+}
+
+impl Pen<'_> {
+    fn model(&self) -> &Model {
+        self.look.model
+    }
+
+    /// Without braille each kind of line has a character of its own, on a layer of its own.
+    fn take_up(&self, ctx: &mut Context<'_>, plain: char) {
+        if self.look.caps.glyphs != Glyphs::Braille {
+            ctx.marker(Marker::Custom(plain));
+        }
+    }
+
+    fn stroke(&self, ctx: &mut Context<'_>, points: &[Point], role: Role, dotted: bool) {
+        let color = self.look.theme.color(role);
+        ctx.draw(&Stroke { points, window: self.window, dotted, color });
+    }
+
+    pub(super) fn scanned(&self, ctx: &mut Context<'_>) {
+        let shown = self.model().ui.layers.shows(MapLayer::Scanned);
+        let Some(raster) = self.model().coverage.as_ref().filter(|_| shown) else { return };
+        self.shade(ctx, [(Role::Scanned, '▒'), (Role::Partly, '░')], |at, edge_m| {
+            match raster.scanned_share(at, edge_m)? {
+                share if share >= WHOLLY_SCANNED => Some(Role::Scanned),
+                share if share >= PARTLY_SCANNED => Some(Role::Partly),
+                _ => None,
+            }
+        });
+    }
+
+    /// Where the stations are forecast to locate badly: beyond the limit, and beyond half of it.
+    pub(super) fn forecast(&self, ctx: &mut Context<'_>) {
+        let shown = self.model().ui.layers.shows(MapLayer::Accuracy);
+        let map = self.model().accuracy.as_ref().filter(|_| shown);
+        let (Some(map), Some(run)) = (map, &self.model().run) else { return };
+        let limit_m = run.mission.position_limit_m;
+        self.shade(ctx, [(Role::Crit, '%'), (Role::Warn, ':')], |at, _| match map.at(at)?.error_95_m {
+            Some(error_m) if error_m <= limit_m / 2.0 => None,
+            Some(error_m) if error_m <= limit_m => Some(Role::Warn),
+            _ => Some(Role::Crit),
+        });
+    }
+
+    /// Shades the floor: in half characters, and with a letter for each shade where there are no colours or glyphs for that.
+    fn shade(
+        &self,
+        ctx: &mut Context<'_>,
+        shades: [(Role, char); 2],
+        role_at: impl Fn(Point, f64) -> Option<Role>,
+    ) {
+        let (window, theme) = (self.window, self.look.theme);
+        if self.look.is_plain() {
+            for (shade, letter) in shades {
+                ctx.marker(Marker::Custom(letter));
+                let is_shade = |at, edge_m| role_at(at, edge_m).filter(|role| *role == shade);
+                let color_at = |at, edge_m| is_shade(at, edge_m).map(|role| theme.color(role));
+                ctx.draw(&Shaded { window, rows_per_row: 1, color_at });
+            }
+        } else {
+            ctx.marker(Marker::HalfBlock);
+            let color_at = |at, edge_m| role_at(at, edge_m).map(|role| theme.color(role));
+            ctx.draw(&Shaded { window, rows_per_row: 2, color_at });
+        }
+        ctx.layer();
+    }
+
+    pub(super) fn zones(&self, ctx: &mut Context<'_>) {
+        let Some(run) = &self.model().run else { return };
+        self.take_up(ctx, 'x');
+        for zone in run.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo) {
+            let color = self.look.theme.color(Role::NoGo);
+            ctx.draw(&Filled { shape: &zone.shape, window: self.window, hatched: true, color });
+        }
+    }
+
+    pub(super) fn paths(&self, ctx: &mut Context<'_>) {
+        let model = self.model();
+        let reach_m = self.reach_m();
+        if let Some(plan) = model.planning.plan.as_ref().filter(|_| model.ui.layers.shows(MapLayer::Plan)) {
+            self.take_up(ctx, ',');
+            let from = model.progress.as_ref().map_or(0, |progress| nearest(&plan.path, progress.target));
+            let ahead = reach_m.map_or(plan.path.as_slice(), |reach_m| within(&plan.path[from..], reach_m));
+            self.stroke(ctx, ahead, Role::Plan, true);
+        }
+        if model.ui.layers.shows(MapLayer::Trail) {
+            self.take_up(ctx, '.');
+            let newest: Vec<Point> = model.trail.points().iter().rev().copied().collect();
+            let behind = reach_m.map_or(newest.as_slice(), |reach_m| within(&newest, reach_m));
+            self.stroke(ctx, behind, Role::Trail, false);
+        }
+    }
+
+    /// How much of plan and trail is drawn, metres: where neighbouring passes would merge on the map, only what lies
+    /// close before and behind the robot. The scanned cells show the rest.
+    fn reach_m(&self) -> Option<f64> {
+        let swath_m = self.model().run.as_ref()?.mission.swath_m;
+        (swath_m < PASS_COLUMNS * self.window.column_m).then_some(REACH_COLUMNS * self.window.column_m)
+    }
+
+    pub(super) fn drawings(&self, ctx: &mut Context<'_>) {
+        let planning = &self.model().planning;
+        let old = self.model().clock.tick.saturating_sub(planning.drawings_tick) > 10;
+        if old || !self.model().ui.layers.shows(MapLayer::Drawings) {
+            return;
+        }
+        self.take_up(ctx, '\'');
+        for drawing in &planning.drawings {
+            let (layer, points) = match *drawing {
+                Drawing::Arrow { layer, at, vector } => (layer, vec![at, at + vector]),
+                Drawing::Line { layer, from, to } => (layer, vec![from, to]),
+                Drawing::Circle { layer, center, radius_m } => {
+                    (layer, ellipse(center, (radius_m, radius_m), 0.0, 32))
+                }
+            };
+            let role = match layer {
+                Layer::Attraction => Role::Pull,
+                Layer::Repulsion => Role::Push,
+                _ => Role::Drawn,
+            };
+            self.stroke(ctx, &points, role, false);
+        }
+    }
+
+    pub(super) fn solid(&self, ctx: &mut Context<'_>) {
+        let Some(run) = &self.model().run else { return };
+        self.take_up(ctx, 'o');
+        let wall = match &run.world.boundary {
+            Boundary::Circle { radius_m } => {
+                ellipse(Point::origin(), (*radius_m, *radius_m), 0.0, WALL_PIECES)
+            }
+            Boundary::Polygon { vertices } => vertices.iter().chain(vertices.first()).copied().collect(),
+        };
+        self.stroke(ctx, &wall, Role::Wall, false);
+        self.take_up(ctx, '#');
+        for obstacle in &run.world.obstacles {
+            let color = self.look.theme.color(if obstacle.known { Role::Obstacle } else { Role::Found });
+            ctx.draw(&Filled { shape: &obstacle.shape, window: self.window, hatched: false, color });
+        }
+    }
+
+    /// The taut cable, above all else that does not move.
+    pub(super) fn tether(&self, ctx: &mut Context<'_>) {
+        if let Some(tether) = &self.model().tether {
+            self.take_up(ctx, '~');
+            self.stroke(ctx, &tether.line, Role::Tether, false);
+        }
+    }
+
+    /// The hull and the 95 % error, where they are large enough to be seen.
+    pub(super) fn robot(&self, ctx: &mut Context<'_>) {
+        let Some(pose) = &self.model().position.pose else { return };
+        self.take_up(ctx, '+');
+        let radius_m = self.model().run.as_ref().map_or(0.0, |run| run.mission.limits.radius_m);
+        if radius_m > self.window.column_m {
+            self.stroke(ctx, &ellipse(pose.position, (radius_m, radius_m), 0.0, 48), Role::Robot, false);
+        }
+        let (long_m, short_m, turned_rad) = position::ellipse_95(pose);
+        if long_m > self.window.column_m {
+            self.stroke(ctx, &ellipse(pose.position, (long_m, short_m), turned_rad, 64), Role::Warn, false);
+        }
+    }
+
+    pub(super) fn labels(&self, ctx: &mut Context<'_>) {
+        let model = self.model();
+        let mut print = |at: Point, role: Role, text: String| {
+            ctx.print(at.x, at.y, Line::styled(text, self.look.theme.style(role)));
+        };
+        let Some(run) = &model.run else { return };
+        for obstacle in &run.world.obstacles {
+            let (role, mark) = if obstacle.known { (Role::Obstacle, "#") } else { (Role::Found, "?") };
+            print(obstacle.shape.center(), role, mark.into());
+        }
+        for station in run.world.stations.iter().filter(|_| model.ui.layers.shows(MapLayer::Stations)) {
+            let named = model.ui.map.zoom > 0 && station.name.len() <= 4;
+            print(station.position, Role::Station, if named { station.name.clone() } else { "S".into() });
+        }
+        if let Some(progress) = model.progress.as_ref().filter(|_| !model.has_ended()) {
+            print(progress.target, Role::Target, "×".into());
+        }
+        let start = &run.mission.start;
+        let estimated = model.position.pose.as_ref().map(|pose| (pose.position, pose.heading_rad));
+        let (at, heading_rad) = estimated.unwrap_or((start.position, start.heading_rad));
+        let role = if model.position.lost { Role::Crit } else { Role::Robot };
+        print(at, role, arrow(self.look.caps.glyphs, heading_rad).into());
+    }
+}
+
+/// The first points of a path up to some length.
+fn within(path: &[Point], length_m: f64) -> &[Point] {
+    let mut walked_m = 0.0;
+    let steps = path.windows(2).take_while(|pair| {
+        walked_m += (pair[1] - pair[0]).norm();
+        walked_m <= length_m
+    });
+    let last = steps.count();
+    path.get(..=last).unwrap_or(path)
+}
+
+/// Index of the point of a path that is nearest to a place; 0 for an empty path.
+fn nearest(path: &[Point], place: Point) -> usize {
+    let distance = |point: &Point| (point - place).norm_squared();
+    let best = path.iter().enumerate().min_by(|one, other| distance(one.1).total_cmp(&distance(other.1)));
+    best.map_or(0, |(index, _)| index)
+}
+
+/// The robot, looking where it looks.
+fn arrow(glyphs: Glyphs, heading_rad: f64) -> &'static str {
+    const ARROWS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
+    if glyphs == Glyphs::Ascii || !heading_rad.is_finite() {
+        return "@";
+    }
+    let eighth = (heading_rad / std::f64::consts::FRAC_PI_4).round().rem_euclid(8.0);
+    ARROWS[(eighth as usize) % 8]
+}
