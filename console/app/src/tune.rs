@@ -4,64 +4,54 @@ use crate::{
     cli::TuneArgs,
     failure::{COMPLETE, bad_input},
     output::{say, say_line},
-    planners, reproduce,
+    planners,
+    reproduce::shown,
 };
-use ::reproduce::{
-    Bench,
-    spiral::Group,
-    tune::{Tuned, Tuning, tune as search},
-};
+use ::reproduce::{Runner, tune::Tuning};
 use anyhow::Context;
-use mission::{ParamKind, ParamValue, Parameters, PlannerInfo};
+use indicatif::ProgressBar;
+use mission::{ParamValue, Parameters};
 use planner_host::{PluginDirs, check_parameters};
 use std::process::ExitCode;
 use toml_edit::Value;
-
-/// Parameters of this group are tuned if none is named.
-const GROUP: &str = "Field";
 
 /// `tankops tune`.
 pub(crate) fn tune(args: &TuneArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let known = planners::found(plugins);
     let planner = planners::choice_of(&args.planner, &known).map_err(bad_input)?;
-    let group = Group::named(&args.on).ok_or_else(|| bad_input(no_such_layouts(&args.on)))?;
     let start = start(&args.set).and_then(|start| check_parameters(planner, &start).map(|()| start));
     let start = start.map_err(bad_input)?;
-    for (name, number) in
-        [("layouts", args.layouts), ("test-layouts", args.test_layouts), ("generations", args.generations)]
-    {
-        if number == 0 {
-            return Err(bad_input(format!("--{name} 0 tunes nothing; give at least 1")));
-        }
-    }
-    let keys = if args.tune.is_empty() { keys_of_the_field(planner) } else { args.tune.clone() };
     let tuning = Tuning {
         planner,
         start: &start,
-        keys: &keys,
-        group,
+        keys: &args.tune,
+        on: &args.on,
         training: (args.layouts, args.first_seed),
         test: (args.test_layouts, args.test_first_seed),
         generations: args.generations,
         seed: args.seed,
     };
-    let bar = reproduce::spinner("tune", args.json);
+    let bar = if args.json { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
+    let bar = shown(bar, "tune", "{spinner} {prefix}  {elapsed}");
     let progress = |_: usize, _: usize| bar.tick();
-    let tuned = Bench::new(plugins, args.threads, &progress).and_then(|bench| search(&tuning, &bench));
-    let tuned = tuned.map_err(|problem| bad_input(problem.to_string()))?;
+    let tuned = Runner::new(plugins, args.threads, &progress).and_then(|runner| tuning.search(&runner));
     bar.finish_and_clear();
-    print_result(&tuned, args)?;
+    let tuned = tuned.map_err(bad_input)?;
+    if args.json {
+        let (before, after) = tuned.loss;
+        let answer = serde_json::json!({
+            "planner": args.planner,
+            "on": args.on,
+            "parameters": tuned.values,
+            "training_loss": { "start": before, "tuned": after },
+            "evaluations": tuned.evaluations,
+            "rows": tuned.rows,
+        });
+        say_line(&serde_json::to_string(&answer).context("writing the result as JSON")?)?;
+    } else {
+        say(&tuned.text(&tuning))?;
+    }
     Ok(ExitCode::from(COMPLETE))
-}
-
-fn no_such_layouts(name: &str) -> String {
-    format!("there are no layouts `{name}`; there are wang-d1, wang-d2, wang-d3, and the same with -square")
-}
-
-fn keys_of_the_field(planner: &PlannerInfo) -> Vec<String> {
-    let is_real = |kind: &ParamKind| matches!(kind, ParamKind::Float { .. });
-    let of_field = planner.parameters.iter().filter(|info| info.group == GROUP && is_real(&info.kind));
-    of_field.map(|info| info.key.clone()).collect()
 }
 
 /// The values to start from.
@@ -84,32 +74,6 @@ fn value(written: &str) -> ParamValue {
         Ok(Value::String(word)) => ParamValue::Word(word.into_value()),
         _ => ParamValue::Word(written.to_owned()),
     }
-}
-
-fn print_result(tuned: &Tuned, args: &TuneArgs) -> anyhow::Result<()> {
-    let (before, after) = tuned.loss;
-    if args.json {
-        let answer = serde_json::json!({
-            "planner": args.planner,
-            "on": args.on,
-            "parameters": tuned.values,
-            "training_loss": { "start": before, "tuned": after },
-            "evaluations": tuned.evaluations,
-            "rows": tuned.rows,
-        });
-        return say_line(&serde_json::to_string(&answer).context("writing the result as JSON")?);
-    }
-    let values: Vec<String> = tuned.values.iter().map(|(key, value)| format!("{key} = {value}")).collect();
-    say(&format!(
-        "Loss on {} training layouts (cross-track error in m, lost clearance, 1 for each that does not arrive): \
-         {before:.4} at the start, {after:.4} tuned; {} sets of values tried.\n\n[planner.parameters]\n{}\n\n\
-         On {} test layouts:\n\n{}",
-        args.layouts,
-        tuned.evaluations,
-        values.join("\n"),
-        args.test_layouts,
-        reproduce::table(&tuned.rows),
-    ))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use planner_apf_dwa::{
     guide::{Field, GuideBy},
     near::NearThings,
 };
-use trials::shore::{Group, HULL_M, Shore};
+use trials::amphibious::{AmphibiousLayout, Group, HULL_M};
 use world::{Amphibious, Pose, Vector};
 
 const KEEP_M: f64 = HULL_M + 0.12;
@@ -38,10 +38,11 @@ fn settings() -> Settings {
 }
 
 fn step(criterion: &mut Criterion) {
-    let shore = Shore::random(Group::Block, 5);
-    let (corners, obstacles, water) = (Shore::corners(), shore.obstacles(), Shore::water());
-    let zones = Shore::zones(&water);
-    let ground = Ground::new(&Shore::site(&corners, &obstacles, &zones));
+    let layout = AmphibiousLayout::random(Group::Block, 5);
+    let (corners, obstacles, water) =
+        (AmphibiousLayout::corners(), layout.obstacles(), AmphibiousLayout::water());
+    let zones = AmphibiousLayout::zones(&water);
+    let ground = Ground::new(&AmphibiousLayout::site(&corners, &obstacles, &zones));
     let pose = Pose::new(-1.0, -2.4, 0.8);
     let twist = Twist { v_m_per_s: 0.2, w_rad_per_s: 0.0 };
     let near = NearThings::of(&ground, pose.position, 20.0, |_| Vector::zeros());
@@ -52,7 +53,7 @@ fn step(criterion: &mut Criterion) {
     let mut hybrid = Hybrid::new(settings(), Vec::new(), HULL_M);
     criterion.bench_function("dwa_step", |bencher| {
         let state = State { pose, twist };
-        bencher.iter(|| hybrid.decide(&state, shore.goal, &ground, |_| Vector::zeros()));
+        bencher.iter(|| hybrid.decide(&state, layout.goal, &ground, |_| Vector::zeros()));
     });
 }
 

@@ -5,17 +5,18 @@ use field::trial::exact_pose;
 use geometry::Point;
 use planner_api::{Obstacle, Outline, Reason, testing::Bench};
 use proptest::prelude::*;
-use trials::shore::{Group, Shore};
+use trials::amphibious::{AmphibiousLayout, Group};
 
 fn with_planner<T>(
     values: &[(&str, f64)],
     seed: u64,
     act: impl FnOnce(&mut ApfDwa, &Site<'_>, &Bench) -> T,
 ) -> T {
-    let (bench, shore) = (Bench::new(), Shore::random(Group::Free, seed));
-    let (corners, obstacles, water) = (Shore::corners(), shore.obstacles(), Shore::water());
-    let zones = Shore::zones(&water);
-    let site = Shore::site(&corners, &obstacles, &zones);
+    let (bench, layout) = (Bench::new(), AmphibiousLayout::random(Group::Free, seed));
+    let (corners, obstacles, water) =
+        (AmphibiousLayout::corners(), layout.obstacles(), AmphibiousLayout::water());
+    let zones = AmphibiousLayout::zones(&water);
+    let site = AmphibiousLayout::site(&corners, &obstacles, &zones);
     let mut planner = bench.configure(values, &site).unwrap();
     act(&mut planner, &site, &bench)
 }
@@ -65,8 +66,8 @@ fn sensed<'a>(pose: Pose, tick: u64, twist: Twist, obstacles: &'a [Obstacle<'a>]
 
 /// Flies with a shaking pose; `new_at` puts a new planner in its place at a tick.
 fn fly(seed: u64, new_at: Option<u64>) -> (bool, f64) {
-    let shore = Shore::random(Group::Block, seed);
-    let obstacles = shore.obstacles();
+    let layout = AmphibiousLayout::random(Group::Block, seed);
+    let obstacles = layout.obstacles();
     with_planner(&[], seed, |_, site, bench| {
         let blind = Site { obstacles: &[], ..*site };
         let mut planner: ApfDwa = bench.configure(&[], &blind).unwrap();
@@ -91,7 +92,7 @@ fn fly(seed: u64, new_at: Option<u64>) -> (bool, f64) {
             let Drive::Twist { v_m_per_s, w_rad_per_s } = command.drive else { panic!("a twist") };
             twist = Twist { v_m_per_s, w_rad_per_s };
             pose = moved(&pose, twist, 0.1);
-            clearance_m = clearance_m.min(shore.hull_clearance_m(pose.position));
+            clearance_m = clearance_m.min(layout.hull_clearance_m(pose.position));
         }
         (false, clearance_m)
     })
@@ -126,7 +127,7 @@ proptest! {
         on_top in any::<bool>(),
     ) {
         with_planner(&[], 3, |planner, site, bench| {
-            let place = if on_top { Shore::random(Group::Free, 3).discs[0].0 } else { Point::new(at.0, at.1) };
+            let place = if on_top { AmphibiousLayout::random(Group::Free, 3).discs[0].0 } else { Point::new(at.0, at.1) };
             let pose = Pose { position: place, heading_rad: heading };
             let twist = Twist { v_m_per_s: v, w_rad_per_s: w };
             let command = planner.step(&sensed(pose, 0, twist, site.obstacles), &bench.ctx()).unwrap();

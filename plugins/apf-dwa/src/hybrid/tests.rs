@@ -3,8 +3,8 @@
 use super::*;
 use crate::{guide::GuideBy, window::Weights};
 use field::{GoalLaw, Pull, TangentUse, virtual_goals::SquareLaw};
-use trials::shore::{Group, HULL_M, Shore};
-use world::{Boundary, Shape, ZoneKind, polyline, shortest::GrownFloor};
+use trials::amphibious::{AmphibiousLayout, Group, HULL_M};
+use world::{Shape, ZoneKind, polyline};
 
 const KEEP_M: f64 = HULL_M + 0.12;
 
@@ -32,35 +32,32 @@ fn settings(by: GuideBy, transition_steps: u32) -> Settings {
     }
 }
 
-fn runs(group: Group, seed: u64, settings: Settings) -> (Shore, Run) {
-    let shore = Shore::random(group, seed);
-    let (corners, obstacles, water) = (Shore::corners(), shore.obstacles(), Shore::water());
-    let zones = Shore::zones(&water);
-    let ground = Ground::new(&Shore::site(&corners, &obstacles, &zones));
+fn runs(group: Group, seed: u64, settings: Settings) -> (AmphibiousLayout, Run) {
+    let layout = AmphibiousLayout::random(group, seed);
+    let (corners, obstacles, water) =
+        (AmphibiousLayout::corners(), layout.obstacles(), AmphibiousLayout::water());
+    let zones = AmphibiousLayout::zones(&water);
+    let ground = Ground::new(&AmphibiousLayout::site(&corners, &obstacles, &zones));
     let flooded = Zone {
         name: String::new(),
         kind: ZoneKind::Underwater,
-        shape: Shape::Polygon { vertices: water.to_vec() },
+        shape: Shape::Polygon { vertices: water.clone() },
     };
     let mut hybrid = Hybrid::new(settings, vec![flooded], HULL_M);
-    let start = Pose { position: shore.start, heading_rad: std::f64::consts::FRAC_PI_4 };
-    let run = run::<()>(&mut hybrid, start, shore.goal, 0.15, 4000, &ground, || Ok(())).unwrap();
-    (shore, run)
+    let start = Pose { position: layout.start, heading_rad: std::f64::consts::FRAC_PI_4 };
+    let run = run::<()>(&mut hybrid, start, layout.goal, 0.15, 4000, &ground, || Ok(())).unwrap();
+    (layout, run)
 }
 
 #[test]
-fn on_random_shores_it_arrives_on_nearly_the_shortest_way_and_keeps_clear() {
+fn on_random_layouts_it_arrives_on_nearly_the_shortest_path_and_keeps_clear() {
     for group in Group::ALL {
         let mut ratios = Vec::new();
         for seed in 500..515 {
-            let (shore, run) = runs(group, seed, settings(GuideBy::Corners, 20));
+            let (layout, run) = runs(group, seed, settings(GuideBy::Corners, 20));
             assert!(run.arrived, "{group:?} {seed} {:?}", run.path.last());
-            assert!(run.path.iter().all(|p| shore.hull_clearance_m(*p) >= 0.1));
-            let shapes = shore.shapes();
-            let wall = Boundary::Polygon { vertices: Shore::corners().to_vec() };
-            let floor = GrownFloor::new(&wall, HULL_M, shapes.iter().map(|shape| (shape, HULL_M)));
-            let shortest_m = floor.shortest(shore.start, shore.goal, &mut || true).unwrap().length_m;
-            ratios.push(polyline::length_m(&run.path) / shortest_m);
+            assert!(run.path.iter().all(|p| layout.hull_clearance_m(*p) >= 0.1));
+            ratios.push(polyline::length_m(&run.path) / layout.shortest_path().unwrap().length_m);
         }
         assert!(ratios.iter().sum::<f64>() / 15.0 < 1.1, "{ratios:?}");
     }
@@ -75,10 +72,10 @@ fn changing_over_in_twenty_steps_it_never_exceeds_its_limit_and_at_once_it_does(
 
 #[test]
 fn the_published_square_passes_most_free_floors_and_never_touches_anything() {
-    let all: Vec<(Shore, Run)> =
+    let all: Vec<(AmphibiousLayout, Run)> =
         (700..715).map(|seed| runs(Group::Free, seed, settings(GuideBy::Square, 20))).collect();
     assert!(all.iter().filter(|(_, run)| run.arrived).count() >= 12);
-    for (shore, run) in &all {
-        assert!(run.path.iter().all(|p| shore.hull_clearance_m(*p) >= 0.1));
+    for (layout, run) in &all {
+        assert!(run.path.iter().all(|p| layout.hull_clearance_m(*p) >= 0.1));
     }
 }

@@ -5,7 +5,7 @@ use crate::thought::{Walked, ahead_of_traps, walk};
 use field::{GoalLaw, NearLaw, Pull, Solid, TangentUse};
 use proptest::prelude::*;
 use trials::traps::{HULL_M, Kind, Trap};
-use world::{Boundary, Shape, polyline, shortest::GrownFloor};
+use world::{Boundary, polyline};
 
 const MODES: [Mode; 4] = [Mode::Literal, Mode::Hull, Mode::Rollout, Mode::Pre];
 
@@ -28,7 +28,7 @@ fn ground(discs: &[(Point, f64)]) -> Ground {
     let disc = |(id, (center, radius_m)): (usize, &(Point, f64))| Solid::disc(id as u32, *center, *radius_m);
     Ground {
         solids: discs.iter().enumerate().map(disc).collect(),
-        wall: Boundary::Polygon { vertices: Trap::corners().to_vec() },
+        wall: Boundary::Polygon { vertices: Trap::corners() },
         hull_m: HULL_M,
     }
 }
@@ -107,18 +107,11 @@ fn every_mode_leaves_random_traps_without_a_touch_and_pre_is_nearly_the_shortest
             let walked = walked(&mut machine, trap.start, trap.goal);
             assert!(walked.arrived, "{mode:?} {:?}", machine.news);
             assert!(least_clearance_m(&walked.path, &trap.discs) > 0.0);
-            ratios.push(polyline::length_m(&walked.path) / shortest_m(&trap));
+            ratios.push(polyline::length_m(&walked.path) / trap.shortest_path().unwrap().length_m);
         }
         let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
         assert!(mean < if mode == Mode::Pre { 1.05 } else { 2.0 }, "{mode:?} {mean}");
     }
-}
-
-fn shortest_m(trap: &Trap) -> f64 {
-    let shapes: Vec<Shape> = trap.shapes();
-    let wall = Boundary::Polygon { vertices: Trap::corners().to_vec() };
-    let floor = GrownFloor::new(&wall, HULL_M, shapes.iter().map(|shape| (shape, HULL_M)));
-    floor.shortest(trap.start, trap.goal, &mut || true).unwrap().length_m
 }
 
 proptest! {

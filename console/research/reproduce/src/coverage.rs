@@ -1,0 +1,26 @@
+//! Coverage planners and the tether: tanks like those of the study behind them, and random ones.
+//!
+//! Pan 2025 prints no figures of its own; nothing is beside ours. Figures are those of `trials::tanks`: a flat bar
+//! across the heading, cells of 0.05 m, swath 0.6 m, hull and clearance 0.3 m together, the return included.
+
+mod measured;
+mod rows;
+mod suite;
+
+use crate::study::Study;
+
+/// The studies.
+pub(crate) const STUDIES: &[Study] = &[
+    Study {
+        name: "pan-maps",
+        about: "after Pan 2025: round tanks with 14 and 28 columns and a square with 18, every coverage planner",
+        layouts: 10,
+        run: suite::pan_maps,
+    },
+    Study {
+        name: "coverage-suite",
+        about: "random tanks of radius 5 to 50 m with 0 to 120 columns, every coverage planner and its tether",
+        layouts: 20,
+        run: suite::random,
+    },
+];

@@ -1,0 +1,86 @@
+//! What one planner makes of one tank.
+
+use crate::study::{Method, Picture, Planned, Planners, Result, Runner, StudyError};
+use mission::{Cause, Fault};
+use planner_api::{Code, Task};
+use trials::{
+    Entanglement, Scan,
+    tanks::{CELL_M, CLEARANCE_M, HULL_M, SWATH_M, Tank},
+};
+use world::{Pose, tether::TetherError};
+
+/// Cells of large tanks are coarser, so that the count takes no longer than the plan, metres.
+const COARSE_CELL_M: f64 = 0.1;
+/// Radius from which a tank counts as large, metres.
+const LARGE_M: f64 = 20.0;
+/// Distance from the anchor at which the robot is back, metres.
+const TOLERANCE_M: f64 = 0.3;
+
+/// A plan and its figures.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Measured {
+    /// The figures; none if there is no path.
+    pub figures: Option<(Scan, Entanglement)>,
+    /// Why there is no path, or not all of it.
+    pub reason: Option<String>,
+    /// Time between question and answer, milliseconds; none without an answer.
+    pub plan_time_ms: Option<f64>,
+}
+
+/// Lets a planner plan a tank, given with case and seed, and draws the plan if plans are to be drawn.
+///
+/// # Errors
+/// There is no such planner, or it refuses its parameters: anything else is a result.
+pub(super) fn measure(
+    runner: &Runner<'_>,
+    planners: &Planners,
+    (case, seed, tank): (&str, u64, &Tank),
+    method: &Method,
+) -> Result<Measured> {
+    let planned = match plan(planners, method, tank) {
+        Err(StudyError::Planner { fault, .. }) if is_result(&fault) => {
+            return Ok(Measured { reason: Some(fault.message), ..Measured::default() });
+        }
+        planned => planned?,
+    };
+    if !planned.has_path() {
+        let reason = planned.reason.or_else(|| Some("the plan has no path".into()));
+        return Ok(Measured { reason, ..Measured::default() });
+    }
+    let plan_time_ms = Some(planned.plan_time_ms);
+    match figures(tank, &planned) {
+        Err(error) => Ok(Measured { figures: None, reason: Some(error.to_string()), plan_time_ms }),
+        Ok((scan, entanglement)) => {
+            runner.draw(&Picture {
+                case,
+                seed,
+                method: &method.id,
+                world: &tank.world(),
+                anchor: tank.anchor,
+                room_m: HULL_M + CLEARANCE_M,
+                swath_m: SWATH_M,
+                plan: &planned.plan,
+                cable: &entanglement.longest,
+            });
+            Ok(Measured { figures: Some((scan, entanglement)), reason: planned.reason, plan_time_ms })
+        }
+    }
+}
+
+/// A planner that breaks down on a tank is a result; one that is not there, or refuses its parameters, is a mistake.
+fn is_result(fault: &Fault) -> bool {
+    !matches!(fault.cause, Cause::Refused | Cause::Planner(Code::Config))
+}
+
+fn plan(planners: &Planners, method: &Method, tank: &Tank) -> Result<Planned> {
+    let obstacles = tank.obstacles();
+    let start = Pose { position: tank.anchor, heading_rad: 0.0 };
+    let task = Task::Cover { anchor: tank.anchor, regions: &[], tether: None, tolerance_m: TOLERANCE_M };
+    planners.plan(method, start, task, &tank.site(&obstacles))
+}
+
+fn figures(tank: &Tank, planned: &Planned) -> Result<(Scan, Entanglement), TetherError> {
+    let (low, high) = tank.boundary.bounds();
+    let cell_m = if high.x - low.x > 2.0 * LARGE_M { COARSE_CELL_M } else { CELL_M };
+    Ok((tank.score(planned.path(), &planned.plan.cuts, cell_m)?, tank.entanglement(planned.path())?))
+}

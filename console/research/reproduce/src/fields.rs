@@ -1,0 +1,52 @@
+//! Potential fields toward a goal: Xu et al. 2022 (virtual obstacles) and Yang et al. 2021 (virtual goals, dynamic
+//! window).
+//!
+//! Of all layouts the papers print only one obstacle; the others are reconstructed so that the printed stops and
+//! lengths come out, so agreement there shows consistency and no more. The notes say where a paper's formula is wrong.
+
+mod amphibious;
+mod layout;
+mod xu;
+mod yang;
+
+use crate::study::Study;
+
+/// The studies.
+pub(crate) const STUDIES: &[Study] = &[
+    Study {
+        name: "xu-table1",
+        about: "Xu et al. 2022, Table 1: a goal behind an obstacle that pushes the robot past it",
+        layouts: 1,
+        run: xu::table1,
+    },
+    Study {
+        name: "xu-traps",
+        about: "Xu et al. 2022, Figs 2, 11, 12: an obstacle on the line, a triangle and a U in the way",
+        layouts: 1,
+        run: xu::traps,
+    },
+    Study {
+        name: "xu-table2",
+        about: "Xu et al. 2022, Table 2: a U in the way and obstacles round the goal",
+        layouts: 1,
+        run: xu::table2,
+    },
+    Study {
+        name: "yang-table3",
+        about: "Yang et al. 2021, Table 3: a free path and two goals with an obstacle behind them",
+        layouts: 1,
+        run: yang::table3,
+    },
+    Study {
+        name: "yang-table4",
+        about: "Yang et al. 2021, Table 4: two minima before obstacles",
+        layouts: 1,
+        run: yang::table4,
+    },
+    Study {
+        name: "yang-hybrid",
+        about: "Yang et al. 2021, Figs 12 to 15: from water to land among ten obstacles, with 0, 20 and 60 steps of transition",
+        layouts: 200,
+        run: amphibious::hybrid,
+    },
+];

@@ -1,0 +1,134 @@
+//! A floor with discs, a start and a goal, and what a planner makes of it.
+
+use crate::study::{Block, Method, Planned, Planners, Result, Row, StudyError};
+use planner_api::{Boundary, Limits, Motion, Site, Task};
+use trials::discs;
+use world::{Point, Pose, Vector, polyline, shape::rectangle};
+
+/// The wall stands this far from everything: the papers have none, metres.
+const WALL_OFF_M: f64 = 20.0;
+/// Every plan is made this many times, and the fastest counts.
+const TIMED: usize = 5;
+
+/// A floor with discs.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct GotoLayout {
+    /// Id of the case.
+    pub id: &'static str,
+    /// Where the robot is put down, metres.
+    pub start: Point,
+    /// Where it is to go.
+    pub goal: Point,
+    /// Centres and radii, metres; radius 0 is a point.
+    pub discs: Vec<(Point, f64)>,
+    /// Radius of the robot, metres.
+    pub hull_m: f64,
+    /// Distance at which the goal counts as reached, metres.
+    pub tolerance_m: f64,
+}
+
+/// The figures of a plan.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Measured {
+    /// The answer.
+    pub planned: Planned,
+    /// Whether the goal was reached without a collision.
+    pub arrived: bool,
+    /// Least distance between hull and discs, metres.
+    pub clearance_m: f64,
+    /// Length, metres.
+    pub length_m: f64,
+    /// Length over that of the shortest path.
+    pub ratio: f64,
+}
+
+impl GotoLayout {
+    /// Asks a planner for a plan, several times for the sake of the plan's time.
+    ///
+    /// # Errors
+    /// The planner is missing, refuses its parameters or broke down.
+    pub(super) fn measure(&self, planners: &Planners, method: &Method) -> Result<Measured> {
+        let mut best = self.plan(planners, method)?;
+        for _ in 1..TIMED {
+            let next = self.plan(planners, method)?;
+            best = if next.plan_time_ms < best.plan_time_ms { next } else { best };
+        }
+        self.measured(best)
+    }
+
+    fn plan(&self, planners: &Planners, method: &Method) -> Result<Planned> {
+        let (corners, obstacles) = (self.corners(), discs::obstacles(&self.discs));
+        let site = Site {
+            revision: 0,
+            boundary: Boundary::Polygon { vertices: &corners },
+            obstacles: &obstacles,
+            zones: &[],
+            limits: Limits {
+                motion: Motion::Point,
+                v_max_m_per_s: 1.0,
+                w_max_rad_per_s: 1.0,
+                radius_m: self.hull_m,
+                sensing_range_m: 100.0,
+            },
+            swath_m: 1.0,
+            clearance_m: 0.0,
+            seed: 0,
+        };
+        let start = Pose { position: self.start, heading_rad: 0.0 };
+        let task = Task::Goto { goal: self.goal, tolerance_m: self.tolerance_m };
+        planners.plan(method, start, task, &site)
+    }
+
+    fn measured(&self, planned: Planned) -> Result<Measured> {
+        let clearance_m = discs::path_distance_m(&self.discs, planned.path()) - self.hull_m;
+        let length_m = polyline::length_m(planned.path());
+        let off_m = (self.goal - planned.end(self.start)).norm();
+        let arrived = off_m <= self.tolerance_m + 1e-6 && clearance_m >= 0.0;
+        let shortest = discs::shortest_path(&self.corners(), &self.discs, self.hull_m, self.start, self.goal);
+        let shortest = shortest.map_err(|no| StudyError::Refused(format!("{}: {no}", self.id)))?;
+        Ok(Measured { planned, arrived, clearance_m, length_m, ratio: length_m / shortest.length_m })
+    }
+
+    fn corners(&self) -> Vec<Point> {
+        let all = || self.discs.iter().map(|disc| disc.0).chain([self.start, self.goal]);
+        let off = Vector::new(WALL_OFF_M, WALL_OFF_M);
+        let low = all().reduce(|a, b| a.inf(&b)).unwrap_or(self.start) - off;
+        let high = all().reduce(|a, b| a.sup(&b)).unwrap_or(self.start) + off;
+        rectangle(low, high)
+    }
+}
+
+/// A wall of discs along a line through `corners`, each ahead and to the left of `at`, looking along `toward_rad`.
+pub(super) fn wall_of_discs(
+    corners: &[(f64, f64)],
+    at: Point,
+    toward_rad: f64,
+    radius_m: f64,
+    spacing_m: f64,
+) -> Vec<(Point, f64)> {
+    let ahead = Vector::new(toward_rad.cos(), toward_rad.sin());
+    let left = Vector::new(-ahead.y, ahead.x);
+    let line: Vec<Point> = corners.iter().map(|(x, y)| at + ahead * *x + left * *y).collect();
+    polyline::resampled(&line, spacing_m).into_iter().map(|center| (center, radius_m)).collect()
+}
+
+impl Measured {
+    /// Everything but what the paper prints.
+    pub(super) fn rows(&self, block: &Block<'_>) -> Vec<Row> {
+        let row = |metric: &str, ours: f64, unit: &str| block.row(metric, ours, unit, 1);
+        let mut rows = vec![row("success_rate", f64::from(u8::from(self.arrived)), "")];
+        if let Some(stop) = self.planned.path().last() {
+            rows.extend([row("stop_x", stop.x, "m"), row("stop_y", stop.y, "m")]);
+        }
+        rows.extend([
+            row("steps", self.planned.n_steps(), ""),
+            row("length_m", self.length_m, "m"),
+            row("min_clearance", self.clearance_m, "m"),
+            row("plan_time_ms", self.planned.plan_time_ms, "ms"),
+        ]);
+        if self.arrived {
+            rows.push(row("length_ratio_mean", self.ratio, ""));
+        }
+        rows
+    }
+}

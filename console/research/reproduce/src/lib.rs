@@ -1,0 +1,20 @@
+//! The papers' tables and figures, ours beside the printed values, and the tuning of parameters.
+//!
+//! A [`Study`] draws layouts or measurements from a seed, asks planners over the plugin boundary as the console does,
+//! and gives [`Row`]s. Layouts run in parallel; rows do not depend on the number of threads, except times. The
+//! registry ([`study`], [`studies`]) is on top: no study knows it, or another study.
+#![forbid(unsafe_code)]
+
+mod coverage;
+mod fields;
+mod positioning;
+mod registry;
+mod spiral;
+mod study;
+mod table;
+mod traps;
+pub mod tune;
+
+pub use registry::{gallery, list, studies, study};
+pub use study::{Gallery, Options, Picture, Result, Row, Runner, Study, StudyError};
+pub use table::table;

@@ -1,0 +1,19 @@
+//! Wang et al. 2023: acoustic-emission positioning, and how far it is from what is possible.
+
+mod bound;
+mod estimator;
+mod filter;
+mod limits;
+mod odometry;
+mod outcome;
+mod robust;
+mod setup;
+mod significance;
+mod spiral;
+mod table3;
+
+use crate::study::Study;
+
+/// The studies.
+pub(crate) const STUDIES: &[Study] =
+    &[table3::STUDY, spiral::STUDY, limits::STUDY, robust::STUDY, filter::STUDY];

@@ -1,0 +1,72 @@
+//! Every study. Studies do not know the registry.
+
+use crate::{
+    coverage, fields, positioning, spiral,
+    study::{Gallery, Picture, Result, Study, StudyError},
+    traps,
+};
+use std::path::Path;
+
+/// Every study, by what it is about.
+const STUDIES: [&[Study]; 5] =
+    [spiral::STUDIES, traps::STUDIES, fields::STUDIES, positioning::STUDIES, coverage::STUDIES];
+
+/// Every study.
+pub fn studies() -> impl Iterator<Item = &'static Study> {
+    STUDIES.into_iter().flatten()
+}
+
+/// The study of this name.
+///
+/// # Errors
+/// There is none; the message has the name that is most like it.
+pub fn study(name: &str) -> Result<&'static Study> {
+    studies().find(|study| study.name == name).ok_or_else(|| StudyError::Refused(unknown(name)))
+}
+
+fn unknown(name: &str) -> String {
+    let near = studies().map(|study| (strsim::jaro_winkler(name, study.name), study.name));
+    let nearest = near.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(likeness, _)| *likeness > 0.8);
+    let hint = nearest.map(|(_, known)| format!("; did you mean `{known}`?")).unwrap_or_default();
+    format!("there is no study `{name}`{hint}; `tankops reproduce --list` lists them all")
+}
+
+/// The list of all studies for people.
+pub fn list() -> String {
+    let width = studies().map(|study| study.name.len()).max().unwrap_or_default();
+    let line = |study: &Study| format!("{:width$}  {} ({})\n", study.name, study.about, study.layouts);
+    let lines: String = studies().map(line).collect();
+    format!("{lines}\nIn brackets: layouts or draws of each case unless --layouts says otherwise.\n")
+}
+
+/// A gallery in a folder for the plans of a study; `svg` draws them.
+///
+/// # Errors
+/// The study has no plans to draw, or the folder cannot be created.
+pub fn gallery(study: &Study, folder: &Path, svg: fn(&Picture<'_>) -> String) -> Result<Gallery> {
+    if coverage::STUDIES.iter().all(|drawn| drawn.name != study.name) {
+        let drawn: Vec<String> = coverage::STUDIES.iter().map(|drawn| format!("`{}`", drawn.name)).collect();
+        let why = format!("--svg draws coverage plans; only {} have them", drawn.join(" and "));
+        return Err(StudyError::Refused(format!("{}: {why}", study.name)));
+    }
+    Gallery::new(folder, svg)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_study_has_a_name_of_its_own() {
+        let names: Vec<&str> = studies().map(|study| study.name).collect();
+        assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
+        assert!(names.iter().all(|name| study(name).is_ok()));
+    }
+
+    #[test]
+    fn a_misspelt_name_is_answered_with_the_nearest() {
+        assert!(unknown("wang-tabel1").contains("did you mean `wang-table1`"));
+        assert!(!unknown("zzz").contains("did you mean"));
+    }
+}

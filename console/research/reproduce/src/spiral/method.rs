@@ -1,0 +1,86 @@
+//! The paper's methods as planners of ours with their parameters.
+
+use super::printed::{self, Printed};
+use crate::study::Method;
+
+/// A column of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Entry {
+    /// The planner, without the range of obstacles.
+    pub method: Method,
+    /// What the paper prints for the three distributions; none where planning failed or nothing is printed.
+    pub printed: [Option<Printed>; 3],
+    /// Which preset point a planned point belongs to.
+    pub pairing: Pairing,
+}
+
+/// Which preset point a planned point is compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pairing {
+    /// That of the same index, as the paper's formulas have it.
+    Index,
+    /// The nearest place of the preset path ahead; for paths with points of their own.
+    Forward,
+}
+
+const RECONSTRUCTED: &str = "the cited source is not available: reconstructed from one sentence";
+const GATED: &str =
+    "rotating force only in a trap; nearest to the printed level, though the text has it always on";
+const FORWARD: &str = "reactive: points of its own, compared with the nearest place of the preset path ahead";
+const LITERAL: &str = "rotating force always on, as the text has it; cannot give the printed figures";
+
+/// The methods of Table 1, the rotating field in both readings, without and with improved repulsion.
+pub(super) fn of_table1() -> Vec<Entry> {
+    let both = |improved: bool| {
+        let rows = if improved { &printed::TABLE1_IMPROVED } else { &printed::TABLE1_CLASSIC };
+        let entry = |id: &str, reading, row: Option<usize>, note| {
+            let printed = row.map_or([None; 3], |row| rows[row].map(Some));
+            Entry { method: method(id, reading, improved, note), printed, pairing: Pairing::Index }
+        };
+        [
+            entry("apf", None, None, "fails in the paper too"),
+            entry("vt", None, Some(0), RECONSTRUCTED),
+            entry("iapf", None, Some(1), RECONSTRUCTED),
+            entry("rpf", Some("gated"), Some(2), GATED),
+            entry("rpf", Some("literal"), Some(2), LITERAL),
+        ]
+    };
+    [both(false), both(true)].concat()
+}
+
+fn method(planner: &str, reading: Option<&str>, improved: bool, note: &'static str) -> Method {
+    let reading_id = reading.map(|reading| format!("/{reading}")).unwrap_or_default();
+    let id = format!("{planner}{reading_id}{}", if improved { "+ir" } else { "" });
+    let gains = [("k_att", 200.0), ("k_rep", 200.0), ("step_m", 0.2), ("wall_gain", 0.0)];
+    let method = gains.iter().fold(Method::new(id, planner, note), |m, (key, value)| m.number(key, *value));
+    let method = method.word("repulsion", if improved { "improved" } else { "classic" });
+    let Some(reading) = reading else { return method };
+    let words = [
+        ("reading", reading),
+        ("rotation", "literal"),
+        ("sense", "counter-clockwise"),
+        ("planning", "lock-step"),
+    ];
+    words.iter().fold(method, |m, (key, word)| m.word(key, word)).number("k_rot", 200.0)
+}
+
+/// The rotating field with improved repulsion and the gains of Table 2.
+pub(super) fn of_table2(k_att: f64, rho_0_m: f64, note: &'static str) -> Method {
+    let gains = [("k_att", k_att), ("k_rot", k_att), ("k_rep", 100.0), ("rho_0_m", rho_0_m)];
+    let method = method("rpf", Some("gated"), true, note);
+    gains.iter().fold(method, |method, (key, value)| method.number(key, *value))
+}
+
+/// Our own followers; the lattice also without its turn limit, which shows what the limit costs.
+pub(super) fn followers() -> Vec<Entry> {
+    let entry = |method, pairing| Entry { method, printed: [None; 3], pairing };
+    let lattice = |id: &str, note| Method::new(id, "spiral-lattice", note);
+    vec![
+        entry(lattice("spiral-lattice", ""), Pairing::Index),
+        entry(
+            lattice("spiral-lattice/turn-free", "without its turn limit").number("turn_deg", 0.0),
+            Pairing::Index,
+        ),
+        entry(Method::new("spiral-tangent", "spiral-tangent", FORWARD), Pairing::Forward),
+    ]
+}

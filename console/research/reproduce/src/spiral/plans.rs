@@ -1,0 +1,95 @@
+//! Plans of many layouts.
+
+use super::{
+    group::{CLEARANCE_M, Group},
+    method::{Entry, Pairing},
+    printed::Printed,
+};
+use crate::study::{Block, Job, Method, Planned, Planners, Result, Runner, StudyError};
+use planner_api::{Motion, Task};
+use trials::{Layout, Safety, Score, WalkOutcome, floor_rmse_m, safety, score};
+use world::Pose;
+
+/// The spiral is at its end this near to the centre, metres; the paper's `d0`.
+const TOLERANCE_M: f64 = 0.2;
+
+/// One plan and its figures.
+#[derive(Debug, Clone)]
+pub(super) struct Measured {
+    /// The answer.
+    pub planned: Planned,
+    /// Figures against the preset path.
+    pub score: Score,
+    /// Clearances and turns.
+    pub safety: Safety,
+    /// The paper's success, as far as it can be defined.
+    pub walk: WalkOutcome,
+    /// The least root mean square error possible with the clearance, metres.
+    pub floor_m: f64,
+}
+
+impl Measured {
+    fn of(planned: Planned, layout: &Layout) -> Self {
+        let path = planned.path();
+        Self {
+            score: score(path, &layout.path),
+            safety: safety(path, &layout.path, &layout.columns, layout.radius_m),
+            walk: WalkOutcome::of(path, &layout.path),
+            floor_m: floor_rmse_m(&layout.path, &layout.columns, CLEARANCE_M),
+            planned,
+        }
+    }
+
+    /// Whether there is a path at all.
+    pub(super) fn has_path(&self) -> bool {
+        self.planned.has_path()
+    }
+}
+
+/// A method on the layouts of a group.
+pub(super) struct Run {
+    /// Id of the case.
+    pub case: String,
+    /// The method, with all its parameters.
+    pub method: Method,
+    /// The layouts.
+    pub group: Group,
+    /// What the paper prints; none where planning failed or nothing is printed.
+    pub printed: Option<Printed>,
+    /// Which preset point a planned point belongs to.
+    pub pairing: Pairing,
+}
+
+impl Run {
+    /// A column of a table on the layouts of a group, with the group's range of obstacles.
+    pub(super) fn new(entry: &Entry, group: Group) -> Self {
+        let mut method = entry.method.clone();
+        // Our own planners know a clearance, not a range of obstacles.
+        if method.parameters.contains_key("k_att") {
+            method = method.number("rho_0_m", group.distribution.rho_0_m());
+        }
+        let printed = entry.printed[group.column()];
+        Self { case: group.id(), method, group, printed, pairing: entry.pairing }
+    }
+
+    /// The rows of the run.
+    pub(super) fn block(&self, job: &Job<'_>) -> Block<'_> {
+        job.block(&self.case, &self.method.id, self.method.note)
+    }
+
+    fn plan(&self, planners: &Planners, seed: u64) -> Result<Measured> {
+        let layout = self.group.distribution.layout(self.group.sampling, seed, CLEARANCE_M);
+        let obstacles = layout.obstacles();
+        let site = layout.site(&obstacles, Motion::Point);
+        let start = Pose { position: layout.path[0], heading_rad: 0.0 };
+        let task = Task::Follow { targets: &layout.path, tolerance_m: TOLERANCE_M };
+        let planned = planners.plan(&self.method, start, task, &site);
+        let in_case = |e: StudyError| e.in_case(format!("{} seed {seed}, {}", self.case, self.method.id));
+        Ok(Measured::of(planned.map_err(in_case)?, &layout))
+    }
+}
+
+/// Plans every run on every layout; one list for each run, in the order of the seeds.
+pub(super) fn plan_all(runner: &Runner<'_>, seeds: &[u64], runs: &[Run]) -> Result<Vec<Vec<Measured>>> {
+    runner.grid(runs, seeds, |planners, run, seed| run.plan(planners, *seed))
+}

@@ -1,0 +1,174 @@
+//! What every study is made of: its cases and methods, who runs them, and the rows that come out.
+
+mod error;
+mod gallery;
+mod method;
+mod planners;
+mod row;
+mod runner;
+mod sample;
+
+pub use error::{Result, StudyError};
+pub use gallery::{Gallery, Picture};
+pub(crate) use method::Method;
+pub(crate) use planners::{Planned, Planners};
+pub(crate) use row::Block;
+pub use row::Row;
+pub use runner::Runner;
+pub(crate) use sample::Sample;
+
+/// Number of cases or methods that an error names.
+const KNOWN_SHOWN: usize = 20;
+
+/// A table or figure.
+#[derive(Debug, Clone, Copy)]
+pub struct Study {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// One sentence: what it is, and of which paper.
+    pub about: &'static str,
+    /// Number of layouts or draws unless another is given.
+    pub layouts: usize,
+    pub(crate) run: fn(&Job<'_>) -> Result<Vec<Row>>,
+}
+
+/// What a study is asked for.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Number of layouts or draws; the study's own if none.
+    pub layouts: Option<usize>,
+    /// Seed of the first layout; the others follow.
+    pub first_seed: u64,
+    /// Cases whose ids begin with one of these; all if empty.
+    pub cases: Vec<String>,
+    /// Methods whose ids begin with one of these; all if empty.
+    pub methods: Vec<String>,
+}
+
+impl Study {
+    /// The rows of what is asked for.
+    ///
+    /// # Errors
+    /// A planner is missing or broke down, or nothing is left to measure.
+    pub fn rows(&self, runner: &Runner<'_>, options: &Options) -> Result<Vec<Row>> {
+        if options.layouts == Some(0) {
+            return Err(StudyError::Refused("--layouts 0 measures nothing; give at least 1".into()));
+        }
+        let rows = (self.run)(&Job { study: self, runner, options }).map_err(|error| match error {
+            StudyError::Planner { case, fault } => {
+                StudyError::Planner { case: format!("{}: {case}", self.name), fault }
+            }
+            refused @ StudyError::Refused(_) => refused,
+        })?;
+        if rows.is_empty() {
+            return Err(StudyError::Refused(format!(
+                "{}: no row has the given --case and --method",
+                self.name
+            )));
+        }
+        Ok(rows)
+    }
+}
+
+/// A study that is being carried out.
+pub(crate) struct Job<'a> {
+    pub runner: &'a Runner<'a>,
+    study: &'a Study,
+    options: &'a Options,
+}
+
+impl Job<'_> {
+    /// Whether a case is asked for.
+    pub(crate) fn has_case(&self, id: &str) -> bool {
+        is_asked(&self.options.cases, id)
+    }
+
+    /// Whether a method is asked for.
+    pub(crate) fn has_method(&self, id: &str) -> bool {
+        is_asked(&self.options.methods, id)
+    }
+
+    /// Those cases that are asked for; an error if there are none.
+    pub(crate) fn cases<C>(
+        &self,
+        all: impl IntoIterator<Item = C>,
+        id: impl Fn(&C) -> String,
+    ) -> Result<Vec<C>> {
+        self.asked("case", &self.options.cases, all, id)
+    }
+
+    /// Those methods that are asked for; an error if there are none.
+    pub(crate) fn methods<M>(
+        &self,
+        all: impl IntoIterator<Item = M>,
+        id: impl Fn(&M) -> String,
+    ) -> Result<Vec<M>> {
+        self.asked("method", &self.options.methods, all, id)
+    }
+
+    fn asked<T>(
+        &self,
+        what: &str,
+        prefixes: &[String],
+        all: impl IntoIterator<Item = T>,
+        id: impl Fn(&T) -> String,
+    ) -> Result<Vec<T>> {
+        let (asked, others): (Vec<T>, Vec<T>) = all.into_iter().partition(|one| is_asked(prefixes, &id(one)));
+        if !asked.is_empty() {
+            return Ok(asked);
+        }
+        let known: Vec<String> = others.iter().map(id).take(KNOWN_SHOWN).collect();
+        let more = if others.len() > KNOWN_SHOWN { ", ..." } else { "" };
+        let (name, prefixes, known) = (self.study.name, prefixes.join(", "), known.join(", "));
+        let why = format!("{name}: no {what} begins with --{what} {prefixes}; known are {known}{more}");
+        Err(StudyError::Refused(why))
+    }
+
+    /// The seeds of the layouts.
+    pub(crate) fn seeds(&self) -> Vec<u64> {
+        let n = self.options.layouts.unwrap_or(self.study.layouts) as u64;
+        (0..n).map(|k| self.options.first_seed.wrapping_add(k)).collect()
+    }
+
+    /// The rows of a method in a case, which all have this note.
+    pub(crate) fn block<'b>(&self, case: &'b str, method: &'b str, note: &'b str) -> Block<'b> {
+        Block { table: self.study.name, case, method, note }
+    }
+}
+
+fn is_asked(prefixes: &[String], id: &str) -> bool {
+    prefixes.is_empty() || prefixes.iter().any(|prefix| id.starts_with(prefix.as_str()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use planner_host::PluginDirs;
+
+    const STUDY: Study = Study { name: "pan-maps", about: "", layouts: 1, run: |_| Ok(Vec::new()) };
+
+    fn chosen(options: &Options, ids: [&'static str; 3]) -> [Result<Vec<&'static str>>; 2] {
+        let runner = Runner::new(&PluginDirs(Vec::new()), 1, &|_, _| ()).unwrap();
+        let job = Job { study: &STUDY, runner: &runner, options };
+        let id = |id: &&str| (*id).to_owned();
+        [job.cases(ids, id), job.methods(ids, id)]
+    }
+
+    #[test]
+    fn a_prefix_that_fits_nothing_is_answered_with_what_there_is() {
+        let unknown = vec!["nope".into(), "c".into()];
+        let options = Options { cases: unknown.clone(), methods: unknown, ..Options::default() };
+        let [cases, methods] =
+            chosen(&options, ["E1", "E2", "E3"]).map(|chosen| chosen.unwrap_err().to_string());
+        assert_eq!(cases, "pan-maps: no case begins with --case nope, c; known are E1, E2, E3");
+        assert_eq!(methods, "pan-maps: no method begins with --method nope, c; known are E1, E2, E3");
+    }
+
+    #[test]
+    fn prefixes_choose_cases() {
+        let options = Options { cases: vec!["d1/".into(), "d2/disk".into()], ..Options::default() };
+        let [cases, methods] = chosen(&options, ["d1/square", "d2/disk", "d2/square"]);
+        assert_eq!(cases.unwrap(), ["d1/square", "d2/disk"]);
+        assert_eq!(methods.unwrap().len(), 3);
+    }
+}

@@ -1,0 +1,43 @@
+//! Why a study has no rows.
+
+use mission::Fault;
+
+/// What a study gives, or why it gives nothing.
+pub type Result<T, E = StudyError> = std::result::Result<T, E>;
+
+/// Why a study has no rows.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StudyError {
+    /// A planner is missing, refuses its parameters or broke down; with the case it was asked for.
+    #[error("{case}: {fault}")]
+    Planner {
+        /// Layout and method.
+        case: String,
+        /// What happened.
+        fault: Box<Fault>,
+    },
+    /// The study cannot be carried out as requested, and why.
+    #[error("{0}")]
+    Refused(String),
+}
+
+impl From<StudyError> for String {
+    fn from(error: StudyError) -> Self {
+        error.to_string()
+    }
+}
+
+impl StudyError {
+    /// A fault of a planner in a case.
+    pub(crate) fn planner(case: impl Into<String>, fault: Fault) -> Self {
+        Self::Planner { case: case.into(), fault: Box::new(fault) }
+    }
+
+    /// The same; a fault of a planner names this case.
+    pub(crate) fn in_case(self, case: String) -> Self {
+        match self {
+            Self::Planner { fault, .. } => Self::Planner { case, fault },
+            refused @ Self::Refused(_) => refused,
+        }
+    }
+}

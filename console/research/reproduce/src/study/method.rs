@@ -1,0 +1,48 @@
+//! A planner set up for a study.
+
+use mission::{ParamValue, Parameters};
+
+/// A planner set up for a study.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Method {
+    /// Id in rows: the planner, its mode after a slash.
+    pub id: String,
+    /// Id of the planner.
+    pub planner: String,
+    /// Values that differ from its defaults.
+    pub parameters: Parameters,
+    /// What a reader must know; empty if nothing.
+    pub note: &'static str,
+}
+
+impl Method {
+    /// A planner with its defaults.
+    pub(crate) fn new(id: impl Into<String>, planner: impl Into<String>, note: &'static str) -> Self {
+        Self { id: id.into(), planner: planner.into(), parameters: Parameters::new(), note }
+    }
+
+    /// With a real number.
+    pub(crate) fn number(self, key: &str, value: f64) -> Self {
+        self.with(key, ParamValue::Float(value))
+    }
+
+    /// With one of the words of a choice.
+    pub(crate) fn word(self, key: &str, value: &str) -> Self {
+        self.with(key, ParamValue::Word(value.to_owned()))
+    }
+
+    /// With a whole number.
+    pub(crate) fn int(self, key: &str, value: i64) -> Self {
+        self.with(key, ParamValue::Int(value))
+    }
+
+    /// With a switch.
+    pub(crate) fn flag(self, key: &str, value: bool) -> Self {
+        self.with(key, ParamValue::Flag(value))
+    }
+
+    fn with(mut self, key: &str, value: ParamValue) -> Self {
+        self.parameters.insert(key.to_owned(), value);
+        self
+    }
+}

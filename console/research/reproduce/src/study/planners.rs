@@ -1,0 +1,119 @@
+//! Planners, asked over the plugin boundary as the console asks them.
+
+use super::{
+    error::{Result, StudyError},
+    method::Method,
+};
+use mission::{Cause, Fault};
+use nalgebra::Matrix3;
+use planner_api::{Code, Plan, PlanRequest, PoseEstimate, Reason, Site, Task};
+use planner_host::{BlockingHost, HostConfig, PluginDirs};
+use std::time::{Duration, Instant};
+use world::{Point, Pose};
+
+/// A study waits this long for a plan.
+const PLAN_WITHIN: Duration = Duration::from_mins(5);
+
+/// And lets a planner use this much memory, as much as a mission over a whole floor does.
+const MEMORY_BYTES: u64 = 1 << 30;
+
+/// A planner's answer.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Planned {
+    /// The plan; where none was found, as much as there is of it.
+    pub plan: Plan,
+    /// Why the plan is not complete.
+    pub reason: Option<String>,
+    /// Time between question and answer, milliseconds.
+    pub plan_time_ms: f64,
+}
+
+impl Planned {
+    /// Points of the path.
+    pub(crate) fn path(&self) -> &[Point] {
+        &self.plan.path
+    }
+
+    /// Whether there is a path at all.
+    pub(crate) fn has_path(&self) -> bool {
+        self.path().len() > 1
+    }
+
+    /// Number of moves between its points.
+    pub(crate) fn n_steps(&self) -> f64 {
+        self.path().len().saturating_sub(1) as f64
+    }
+
+    /// Where the path ends; `start` if it has no points.
+    pub(crate) fn end(&self, start: Point) -> Point {
+        self.path().last().copied().unwrap_or(start)
+    }
+
+    fn refused(fault: Fault, plan_time_ms: f64) -> Self {
+        let plan = Plan { path: fault.partial, ..Plan::default() };
+        Self { plan, reason: Some(fault.message), plan_time_ms }
+    }
+}
+
+/// Planners of one thread, each in a worker process of its own.
+pub(crate) struct Planners {
+    dirs: PluginDirs,
+}
+
+impl Planners {
+    /// Planners from these folders.
+    pub(crate) fn new(dirs: &PluginDirs) -> Self {
+        Self { dirs: dirs.clone() }
+    }
+
+    /// A planner that knows the site, and nothing of what others were asked before.
+    pub(crate) fn prepare(&self, method: &Method, site: &Site<'_>) -> Result<BlockingHost, Fault> {
+        let config = HostConfig {
+            plan_deadline: PLAN_WITHIN,
+            memory_limit_bytes: MEMORY_BYTES,
+            wants_drawing: false,
+            ..HostConfig::new(Duration::from_secs(1))
+        };
+        let mut host = BlockingHost::new(&self.dirs, config);
+        host.choose(&method.planner, &method.parameters, site)?;
+        Ok(host)
+    }
+
+    /// Asks a planner for a plan from a start known exactly; where it finds none, the answer has the reason.
+    ///
+    /// # Errors
+    /// It is missing, refuses the parameters or broke down.
+    pub(crate) fn plan(
+        &self,
+        method: &Method,
+        start: Pose,
+        task: Task<'_>,
+        site: &Site<'_>,
+    ) -> Result<Planned> {
+        let Pose { position, heading_rad } = start;
+        let start = PoseEstimate { position, heading_rad, covariance: Matrix3::zeros() };
+        let request = PlanRequest { reason: &Reason::Start, start, task, site, previous: &[] };
+        let failed = |fault| StudyError::planner(&method.planner, fault);
+        let mut host = match self.prepare(method, site) {
+            Err(fault) if is_refusal(&fault) => return Ok(Planned::refused(fault, 0.0)),
+            prepared => prepared.map_err(failed)?,
+        };
+        let asked = Instant::now();
+        let answer = host.plan(&request);
+        let plan_time_ms = asked.elapsed().as_secs_f64() * 1e3;
+        match answer {
+            Ok(reply) => {
+                let said = reply.logs.into_iter().map(|(_, message)| message).next_back();
+                let reason = said.filter(|_| !reply.value.complete);
+                Ok(Planned { plan: reply.value, reason, plan_time_ms })
+            }
+            Err(fault) if is_refusal(&fault) => Ok(Planned::refused(fault, plan_time_ms)),
+            Err(fault) => Err(failed(fault)),
+        }
+    }
+}
+
+/// Whether a planner refuses for a valid reason; bad parameters are a fault of the study.
+fn is_refusal(fault: &Fault) -> bool {
+    matches!(fault.cause, Cause::Planner(code) if code != Code::Config)
+}

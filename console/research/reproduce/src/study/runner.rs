@@ -1,0 +1,102 @@
+//! Runs cases on all cores.
+
+use super::{
+    error::{Result, StudyError},
+    gallery::{Gallery, Picture},
+    planners::Planners,
+};
+use planner_host::PluginDirs;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// More threads than this do not help, and each starts planners of its own.
+const THREADS_MAX: usize = 256;
+
+/// Runs the cases of a study.
+pub struct Runner<'a> {
+    planners: Planners,
+    threads: rayon::ThreadPool,
+    progress: &'a (dyn Fn(usize, usize) + Sync),
+    gallery: Option<&'a Gallery>,
+}
+
+impl<'a> Runner<'a> {
+    /// A runner with planners from these folders on so many threads (0: one for each core), which reports to
+    /// `progress` how many cases of how many are done.
+    ///
+    /// # Errors
+    /// There are too many threads, or they cannot be started.
+    pub fn new(
+        dirs: &PluginDirs,
+        n_threads: usize,
+        progress: &'a (dyn Fn(usize, usize) + Sync),
+    ) -> Result<Self> {
+        if n_threads > THREADS_MAX {
+            return Err(StudyError::Refused(format!(
+                "--threads {n_threads}: at most {THREADS_MAX}; 0 is one for each core"
+            )));
+        }
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build();
+        let threads = threads
+            .map_err(|error| StudyError::Refused(format!("the threads cannot be started: {error}")))?;
+        Ok(Self { planners: Planners::new(dirs), threads, progress, gallery: None })
+    }
+
+    /// The same, drawing every plan into a gallery; only some studies have plans to draw.
+    #[must_use]
+    pub fn with_gallery(self, gallery: Option<&'a Gallery>) -> Self {
+        Self { gallery, ..self }
+    }
+
+    /// Draws a plan, if plans are to be drawn.
+    pub(crate) fn draw(&self, picture: &Picture<'_>) {
+        if let Some(gallery) = self.gallery {
+            gallery.add(picture);
+        }
+    }
+
+    /// Computes every case; the answers keep the order of the cases, whichever thread computed them.
+    ///
+    /// # Errors
+    /// The first error in the order of the cases.
+    pub(crate) fn map<C: Sync, T: Send>(
+        &self,
+        cases: &[C],
+        compute: impl Fn(&Planners, &C) -> Result<T> + Sync,
+    ) -> Result<Vec<T>> {
+        let done = AtomicUsize::new(0);
+        (self.progress)(0, cases.len());
+        let one = |case: &C| {
+            let answer = compute(&self.planners, case);
+            (self.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, cases.len());
+            answer
+        };
+        self.threads.install(|| {
+            let answers: Vec<Result<T, StudyError>> = cases.par_iter().map(one).collect();
+            answers.into_iter().collect()
+        })
+    }
+
+    /// Computes every case for every draw; one list for each case, in the order of the draws.
+    ///
+    /// Draw by draw, so that the progress is that of the whole study.
+    ///
+    /// # Errors
+    /// The first error in the order of the draws.
+    pub(crate) fn grid<C: Sync, D: Sync, T: Send>(
+        &self,
+        cases: &[C],
+        draws: &[D],
+        compute: impl Fn(&Planners, &C, &D) -> Result<T> + Sync,
+    ) -> Result<Vec<Vec<T>>> {
+        let pairs: Vec<(&D, &C)> =
+            draws.iter().flat_map(|draw| cases.iter().map(move |case| (draw, case))).collect();
+        let mut answers =
+            self.map(&pairs, |planners, (draw, case)| compute(planners, case, draw))?.into_iter();
+        let mut lists: Vec<Vec<T>> = cases.iter().map(|_| Vec::with_capacity(draws.len())).collect();
+        for _ in draws {
+            lists.iter_mut().zip(&mut answers).for_each(|(list, answer)| list.push(answer));
+        }
+        Ok(lists)
+    }
+}

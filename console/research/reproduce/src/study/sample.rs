@@ -1,0 +1,90 @@
+//! Figures of many values.
+
+/// Values of one figure over many layouts or draws.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Sample {
+    sorted: Vec<f64>,
+}
+
+impl FromIterator<f64> for Sample {
+    /// Values that are not finite are left out; [`Sample::len`] gives the number behind a figure.
+    fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
+        let mut sorted: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        Self { sorted }
+    }
+}
+
+impl Sample {
+    /// Number of values.
+    pub(crate) fn len(&self) -> usize {
+        self.sorted.len()
+    }
+
+    /// Whether there are none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.sorted.is_empty()
+    }
+
+    /// Mean; summed in order of size, so that the order of the values does not matter.
+    pub(crate) fn mean(&self) -> Option<f64> {
+        (!self.is_empty()).then(|| self.sorted.iter().sum::<f64>() / self.len() as f64)
+    }
+
+    /// Median.
+    pub(crate) fn median(&self) -> Option<f64> {
+        self.quantile(0.5)
+    }
+
+    /// The value below which a share of the values lies, 0 to 1, interpolated.
+    pub(crate) fn quantile(&self, share: f64) -> Option<f64> {
+        let at = share.clamp(0.0, 1.0) * self.len().checked_sub(1)? as f64;
+        let (low, high) = (self.sorted[at.floor() as usize], self.sorted[at.ceil() as usize]);
+        Some(low + (high - low) * at.fract())
+    }
+
+    /// Least value.
+    pub(crate) fn min(&self) -> Option<f64> {
+        self.sorted.first().copied()
+    }
+
+    /// Largest value.
+    pub(crate) fn max(&self) -> Option<f64> {
+        self.sorted.last().copied()
+    }
+
+    /// Standard deviation of the values, with n - 1.
+    pub(crate) fn standard_deviation(&self) -> Option<f64> {
+        let mean = self.mean().filter(|_| self.len() > 1)?;
+        let squares: f64 = self.sorted.iter().map(|value| (value - mean).powi(2)).sum();
+        Some((squares / (self.len() - 1) as f64).sqrt())
+    }
+
+    /// Half width of the 95 % confidence interval of the mean, by the normal distribution.
+    pub(crate) fn mean_margin_95(&self) -> Option<f64> {
+        Some(1.96 * self.standard_deviation()? / (self.len() as f64).sqrt())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_figures_of_four_values_are_known() {
+        let sample: Sample = [4.0, 1.0, 3.0, 2.0, f64::NAN].into_iter().collect();
+        assert_eq!(sample.len(), 4);
+        assert_eq!((sample.mean(), sample.median()), (Some(2.5), Some(2.5)));
+        assert_eq!((sample.min(), sample.max()), (Some(1.0), Some(4.0)));
+        assert_eq!(sample.quantile(1.0 / 3.0), Some(2.0));
+        let deviation = sample.standard_deviation().expect("four values");
+        assert!((deviation - (5.0_f64 / 3.0).sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn nothing_has_no_figures() {
+        let sample = Sample::default();
+        assert!(sample.is_empty());
+        assert_eq!([sample.mean(), sample.median(), sample.max(), sample.mean_margin_95()], [None; 4]);
+    }
+}

@@ -1,0 +1,47 @@
+//! Discs on a floor (centre and radius, metres), as planners and the world have them, and paths among them.
+
+use planner_api::{Obstacle, Outline};
+use world::{
+    Boundary, Point, Shape, Vector, polyline,
+    shortest::{GrownFloor, NoWay, Way},
+};
+
+/// The discs as a planner gets them, from the drawing; ids from 0.
+pub fn obstacles(discs: &[(Point, f64)]) -> Vec<Obstacle<'static>> {
+    let obstacle = |(id, &(center, radius_m)): (usize, &(Point, f64))| Obstacle {
+        id: id as u32,
+        outline: Outline::Disc { center, radius_m },
+        discovered: false,
+        velocity_m_per_s: Vector::zeros(),
+    };
+    discs.iter().enumerate().map(obstacle).collect()
+}
+
+/// Distance from a place to the nearest disc, metres; negative inside one, infinite without discs.
+pub fn distance_m(discs: &[(Point, f64)], at: Point) -> f64 {
+    discs.iter().map(|(center, radius_m)| (at - center).norm() - radius_m).fold(f64::INFINITY, f64::min)
+}
+
+/// The least distance from a path to a disc, metres; negative through one, infinite without discs.
+pub fn path_distance_m(discs: &[(Point, f64)], path: &[Point]) -> f64 {
+    let from_path = |(center, radius_m): &(Point, f64)| polyline::distance_m(path, *center) - radius_m;
+    discs.iter().map(from_path).fold(f64::INFINITY, f64::min)
+}
+
+/// The exact shortest path of a round robot among discs on a floor with these corners.
+///
+/// # Errors
+/// There is no path, or an end has no room.
+pub fn shortest_path(
+    corners: &[Point],
+    discs: &[(Point, f64)],
+    hull_m: f64,
+    start: Point,
+    goal: Point,
+) -> Result<Way, NoWay> {
+    let wall = Boundary::Polygon { vertices: corners.to_vec() };
+    let shape = |&(center, radius_m): &(Point, f64)| Shape::Disc { center, radius_m };
+    let shapes: Vec<Shape> = discs.iter().map(shape).collect();
+    let floor = GrownFloor::new(&wall, hull_m, shapes.iter().map(|shape| (shape, hull_m)));
+    floor.shortest(start, goal, &mut || true)
+}

@@ -1,0 +1,146 @@
+//! Entanglement of the tether along a path by graded measures, and the cable at its longest.
+//!
+//! Measures after the survey of Battocletti et al. 2024: contact (E0), detour (E1), hook (E2). They are shares of the
+//! path's length, sampled every 0.2 m; what is left out on return and the wraps are in the certificate.
+
+use crate::tanks::Tank;
+use std::{f64::consts::PI, sync::Arc};
+use world::{
+    Point, Vector, polyline,
+    tether::{Cable, Contact, Ground, TetherError, geodesic::Geodesic},
+};
+
+/// Distance between the places at which the cable is looked at, metres.
+const STEP_M: f64 = 0.2;
+/// Cable beyond the least possible that counts as a detour, metres.
+const DETOUR_M: f64 = 0.05;
+/// A robot that drives within this of straight at its own cable may roll on it, radians.
+const AHEAD_RAD: f64 = PI / 6.0;
+
+/// How a taut cable lay along a path.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Entanglement {
+    /// Most cable out beyond the least that would do, metres.
+    pub max_excess_m: f64,
+    /// Most places at which it bore at one time.
+    pub max_contacts: usize,
+    /// Share of the path on which it bore on anything.
+    pub contact_share: f64,
+    /// Share of the path on which it was more than 5 cm longer than the least that would do.
+    pub detour_share: f64,
+    /// Share of the path on which it doubled back round an obstacle: half a turn or more on one.
+    pub hook_share: f64,
+    /// Share of the path driven within 30 degrees of straight at the cable.
+    pub own_cable_share: f64,
+    /// The cable when it was longest, from the anchor to the robot.
+    pub longest: Vec<Point>,
+}
+
+impl Tank {
+    /// Drags a taut cable from the anchor along a path.
+    ///
+    /// # Errors
+    /// The tether has no anchor.
+    pub fn entanglement(&self, path: &[Point]) -> Result<Entanglement, TetherError> {
+        let shapes: Vec<_> = self.world().obstacles.into_iter().map(|obstacle| obstacle.shape).collect();
+        let ground = Arc::new(Ground::new(&self.boundary, &shapes));
+        let mut cable = Cable::on(self.anchor, Arc::clone(&ground))?;
+        let least = Geodesic::new(self.anchor, ground);
+        let longest = cable.clone().at_longest(path).taut_line();
+        let mut measured = Entanglement { longest, ..Entanglement::default() };
+        let mut way_m = 0.0;
+        let fine = polyline::resampled(path, STEP_M);
+        cable.drag_along(&fine[..fine.len().min(1)]);
+        for pair in fine.windows(2) {
+            let (piece_m, before) = ((pair[1] - pair[0]).norm(), cable.contacts());
+            way_m += piece_m;
+            if is_ahead(&cable, &before, pair[1] - pair[0]) {
+                measured.own_cable_share += piece_m;
+            }
+            cable.drag_to(pair[1]);
+            let (contacts, length_m) = (cable.contacts(), cable.length_m());
+            measured.add(&contacts, piece_m);
+            let excess_m = excess_m(&cable, length_m, &least);
+            measured.max_excess_m = measured.max_excess_m.max(excess_m);
+            measured.detour_share += if excess_m > DETOUR_M { piece_m } else { 0.0 };
+        }
+        measured.in_shares_of(way_m);
+        Ok(measured)
+    }
+}
+
+impl Entanglement {
+    fn add(&mut self, contacts: &[Contact], piece_m: f64) {
+        self.max_contacts = self.max_contacts.max(contacts.len());
+        self.contact_share += if contacts.is_empty() { 0.0 } else { piece_m };
+        let is_hooked = contacts.iter().any(|contact| contact.wrap_rad.abs() >= PI);
+        self.hook_share += if is_hooked { piece_m } else { 0.0 };
+    }
+
+    fn in_shares_of(&mut self, way_m: f64) {
+        if way_m > 0.0 {
+            let Self { contact_share, detour_share, hook_share, own_cable_share, .. } = self;
+            for share in [contact_share, detour_share, hook_share, own_cable_share] {
+                *share /= way_m;
+            }
+        }
+    }
+}
+
+/// Cable beyond the least that would do; 0 for less than 5 cm where that needs no search.
+fn excess_m(cable: &Cable, length_m: f64, least: &Geodesic) -> f64 {
+    let most_m = length_m - (cable.tip() - cable.anchor()).norm();
+    if most_m <= DETOUR_M { 0.0 } else { (length_m - least.distance_m(cable.tip())).max(0.0) }
+}
+
+/// Whether a move leads at the cable that lies before the robot.
+fn is_ahead(cable: &Cable, contacts: &[Contact], move_m: Vector) -> bool {
+    let from = contacts.last().map_or(cable.anchor(), |contact| contact.last);
+    let back = from - cable.tip();
+    // On the last centimetres there is no cable to roll on.
+    back.norm() > DETOUR_M && back.perp(&move_m).atan2(back.dot(&move_m)).abs() <= AHEAD_RAD
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tanks::Known;
+
+    fn tank() -> Tank {
+        Tank { columns: vec![(Point::new(4.0, 0.0), 0.3)], ..Known::E1.tank(0) }
+    }
+
+    fn points(of: &[(f64, f64)]) -> Vec<Point> {
+        of.iter().map(|(x, y)| Point::new(*x, *y)).collect()
+    }
+
+    #[test]
+    fn out_and_back_on_one_line_the_way_back_leads_along_the_cable() {
+        let measured = tank().entanglement(&points(&[(0.0, 0.0), (0.0, 8.0), (0.0, 0.0)])).unwrap();
+        assert!((measured.own_cable_share - 0.5).abs() < 0.02, "{measured:?}");
+        assert_eq!((measured.max_contacts, measured.contact_share, measured.detour_share), (0, 0.0, 0.0));
+        assert!((polyline::length_m(&measured.longest) - 8.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn round_a_column_the_cable_bears_then_is_too_long_then_hooked() {
+        let round = points(&[(0.0, 0.0), (4.0, 2.0), (8.0, 0.0), (4.0, -2.0), (2.0, 0.0)]);
+        let measured = tank().entanglement(&round).unwrap();
+        assert_eq!(measured.max_contacts, 1);
+        assert!(
+            measured.contact_share > measured.detour_share && measured.detour_share > measured.hook_share,
+            "{measured:?}"
+        );
+        assert!(measured.hook_share > 0.03, "{measured:?}");
+        // Out to the column, round it and back to two metres from the anchor.
+        assert!((measured.max_excess_m - 4.8).abs() < 0.3, "{measured:?}");
+    }
+
+    #[test]
+    fn no_path_does_nothing() {
+        for path in [&points(&[])[..], &points(&[(0.0, 0.0)])] {
+            let measured = Entanglement { longest: Vec::new(), ..tank().entanglement(path).unwrap() };
+            assert_eq!(measured, Entanglement::default());
+        }
+    }
+}

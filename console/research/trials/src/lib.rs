@@ -1,0 +1,27 @@
+//! Trials of planners: layouts drawn from a seed as the papers draw them, and the figures of a path on them.
+//!
+//! Pure: the same seed gives the same layout, everywhere. `reproduce` measures planners with it over the plugin
+//! boundary; the planners' own tests use the same layouts and the same figures.
+//!
+//! Frame: the tank frame, metres, radians.
+#![forbid(unsafe_code)]
+
+pub mod amphibious;
+pub mod discs;
+pub mod entanglement;
+pub mod paper;
+pub mod scan;
+pub mod score;
+pub mod spiral;
+pub mod tanks;
+pub mod traps;
+pub mod walk;
+
+pub use amphibious::AmphibiousLayout;
+pub use entanglement::Entanglement;
+pub use paper::{Distribution, Sampling};
+pub use scan::Scan;
+pub use score::{Safety, Score, floor_rmse_m, precision_recall, safety, score};
+pub use spiral::Layout;
+pub use traps::Trap;
+pub use walk::WalkOutcome;

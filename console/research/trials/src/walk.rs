@@ -1,0 +1,67 @@
+//! Whether a walk along the spiral succeeds, since the paper says "success" and defines none.
+
+use crate::score::ARRIVED_M;
+use world::Point;
+
+/// A walk is trapped when so many moves in a row ...
+const TRAP_MOVES: usize = 25;
+/// ... gain less than this, metres, ...
+const TRAP_GAIN_M: f64 = 0.2;
+/// ... while the preset point is further away than this, metres, at all of them.
+const TRAP_LAG_M: f64 = 0.2;
+/// A walk that falls further behind skips floor: one coil of the paper's spiral, metres.
+const COIL_M: f64 = 0.4 * std::f64::consts::PI;
+
+/// How a walk went.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WalkOutcome {
+    /// Ends within 0.4 m of the last preset point.
+    pub arrives: bool,
+    /// Stood still for 25 moves while its preset point went on.
+    pub is_trapped: bool,
+    /// Furthest distance to the preset point of the same index, metres.
+    pub lag_m: f64,
+}
+
+impl WalkOutcome {
+    /// The outcome of a walk whose k-th point belongs to the k-th preset point.
+    pub fn of(path: &[Point], preset: &[Point]) -> Self {
+        let lags: Vec<f64> = path.iter().zip(preset).map(|(p, q)| (p - q).norm()).collect();
+        let stands = |k: usize| {
+            (path[k + TRAP_MOVES] - path[k]).norm() < TRAP_GAIN_M
+                && lags[k..=k + TRAP_MOVES].iter().all(|lag| *lag > TRAP_LAG_M)
+                && lags[k + TRAP_MOVES] > 2.0 * TRAP_LAG_M
+        };
+        Self {
+            arrives: path.last().zip(preset.last()).is_some_and(|(p, q)| (p - q).norm() <= ARRIVED_M),
+            is_trapped: (0..lags.len().saturating_sub(TRAP_MOVES)).any(stands),
+            lag_m: lags.iter().copied().fold(0.0, f64::max),
+        }
+    }
+
+    /// Arrives, was never trapped and never lagged by more than a coil.
+    pub fn is_ok(&self) -> bool {
+        self.arrives && !self.is_trapped && self.lag_m <= COIL_M
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use world::spiral::Spiral;
+
+    #[test]
+    fn the_preset_path_itself_is_ok() {
+        let preset = Spiral::WANG_2023.points();
+        let outcome = WalkOutcome::of(&preset, &preset);
+        assert!(outcome.is_ok() && outcome.lag_m == 0.0);
+    }
+
+    #[test]
+    fn a_walk_that_stays_where_it_is_is_trapped() {
+        let preset = Spiral::WANG_2023.points();
+        let path: Vec<Point> = preset.iter().enumerate().map(|(k, p)| preset[k.min(300)] + (p - p)).collect();
+        let outcome = WalkOutcome::of(&path, &preset);
+        assert!(outcome.is_trapped && !outcome.arrives && !outcome.is_ok());
+    }
+}
