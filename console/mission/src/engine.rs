@@ -7,7 +7,9 @@
 
 mod answers;
 mod asks;
+mod candidate;
 mod driving;
+mod floor;
 mod orders;
 mod planning;
 mod rules;
@@ -19,16 +21,17 @@ mod workers;
 use crate::{
     chart::Chart,
     config::MissionConfig,
-    event::{Event, EventKind, HoldReason, Outcome, TetherAlarm},
+    event::{Event, EventKind, TetherAlarm},
     locate::Locator,
     order::Order,
-    standing::{Gait, Hold, Phase, PositionTrust, Resumes, Standing},
+    phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
+    standing::{PositionTrust, Standing},
     task::Task,
     tether::Tether,
 };
+use floor::ScannedFloor;
 use planner_api::{Drive, Reason};
 use rules::{PlannerSeen, Rules, Seen, Verdict};
-use scanning::ScannedFloor;
 use seat::{Prepare, Seat};
 use workers::Workers;
 use world::{Floor, Point, Readings, World};

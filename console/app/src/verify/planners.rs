@@ -2,7 +2,7 @@
 
 use super::journal::RecordedTick;
 use crate::answers::Answers;
-use mission::{Answer, Ask, AskId, Cause, Fault, Given, Mission, What, ask::RecordedAnswers};
+use mission::{Answer, Ask, AskId, Cause, Fault, Given, Mission, What, event::RecordedAnswers};
 use planner_host::Host;
 use std::collections::BTreeMap;
 

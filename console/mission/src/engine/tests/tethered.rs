@@ -2,8 +2,9 @@
 
 use super::*;
 use crate::{
+    config::TetherConfig,
     event::TetherAlarm,
-    tether::{Tether, TetherConfig, way_home_ends},
+    tether::{Tether, way_home_ends},
 };
 use planner_api::{Leg, LegTag};
 use world::{Obstacle, ObstacleId, Shape, tether::Limits};

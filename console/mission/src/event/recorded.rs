@@ -1,8 +1,8 @@
 //! The answers that a journal holds: each event that closes an ask carries what a mission needs to repeat it.
 
-use super::{Answer, Ask, AskId, Given, Said, What};
+use super::EventKind;
 use crate::{
-    event::EventKind,
+    ask::{Answer, Ask, AskId, Given, Said, What},
     planner::{Cause, During, Fault},
 };
 use planner_api::{Command, Leg, Plan, Status};
