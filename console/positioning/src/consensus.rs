@@ -1,10 +1,10 @@
 //! The position that most stations agree on.
 
 use crate::{
-    anchor::{Anchor, anchored},
+    anchor::{Anchor, anchored, on_near_circle},
     fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Ranging},
     linear::solve_linear,
-    nonlinear::{Slope, on_near_circle, solve_anchors},
+    nonlinear::{Slope, solve_anchors},
 };
 use nalgebra::Matrix2;
 use world::{Point, Station};

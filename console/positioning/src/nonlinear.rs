@@ -1,14 +1,13 @@
 //! Weighted nonlinear least squares on the ranges themselves.
 
 use crate::{
-    anchor::{Anchor, anchored},
+    anchor::{Anchor, anchored, on_near_circle},
     fix::{Fix, FixError, PositionSolver, Ranging},
     linear::{conditioning, solve_linear},
     pair::solve_pair,
     quality::{assess, inverse_of},
 };
-use nalgebra::{Matrix2, Rotation2};
-use std::f64::consts::TAU;
+use nalgebra::Matrix2;
 use world::{Point, Station, Vector};
 
 /// Steps tried before giving up; five are usual.
@@ -17,10 +16,6 @@ const MAX_ITERATIONS: usize = 60;
 const STEP_TOLERANCE: f64 = 1e-9;
 /// Stations nearer to a line than this condition number leave a second position that has to be looked at.
 const MIRROR_CONDITIONING: f64 = 5.0;
-/// A range is short if it is less than this share of the longest one.
-const SHORT_RANGE: f64 = 0.2;
-/// Starts tried around a station that is close by.
-const CIRCLE_STARTS: u32 = 36;
 /// A second position fits nearly as well if its chi-squared is worse by less than this.
 const MIRROR_MARGIN: f64 = 9.0;
 
@@ -84,17 +79,6 @@ fn around_the_nearest(anchors: &[Anchor], start: Point) -> Point {
         .chain(on_near_circle(anchors))
         .min_by(|a, b| cost(*a).total_cmp(&cost(*b)))
         .unwrap_or(start)
-}
-
-/// Places on the range circle of a station that is close by; none if there is no such station.
-pub(crate) fn on_near_circle(anchors: &[Anchor]) -> impl Iterator<Item = Point> {
-    let longest_m = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
-    let nearest = anchors.iter().min_by(|a, b| a.range_m.total_cmp(&b.range_m)).copied();
-    nearest.filter(|n| n.range_m < SHORT_RANGE * longest_m).into_iter().flat_map(|nearest| {
-        (0..CIRCLE_STARTS)
-            .map(|k| Rotation2::new(TAU * f64::from(k) / f64::from(CIRCLE_STARTS)) * Vector::x())
-            .map(move |direction| nearest.at + direction * nearest.range_m)
-    })
 }
 
 /// Where a descent ended.
