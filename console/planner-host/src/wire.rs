@@ -9,7 +9,6 @@ pub(crate) mod answer;
 pub(crate) mod body;
 #[cfg(test)]
 mod damaged;
-#[cfg(unix)]
 pub(crate) mod frame;
 pub(crate) mod input;
 
