@@ -1,10 +1,10 @@
 //! Reading a journal, also one whose writer was killed.
 
 use super::JournalError;
+use crate::file::open_regular;
 use mission::{Event, event::JOURNAL_VERSION};
 use serde::Deserialize;
 use std::{
-    fs::File,
     io::{self, BufRead, BufReader},
     path::{Path, PathBuf},
 };
@@ -53,13 +53,6 @@ pub struct JournalReader {
     unended_bytes: u64,
 }
 
-/// Opens a regular file: a device or a pipe may never end.
-pub(super) fn opened(path: &Path) -> io::Result<File> {
-    let not_regular = || io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
-    // Looked at before it is opened, since opening a pipe waits for a writer.
-    if std::fs::metadata(path)?.is_file() { File::open(path) } else { Err(not_regular()) }
-}
-
 /// What the first line of a journal of any version contains.
 #[derive(Deserialize)]
 struct Head {
@@ -73,7 +66,7 @@ impl JournalReader {
     /// # Errors
     /// [`JournalError::Read`] if there is none.
     pub fn open(path: &Path) -> Result<Self, JournalError> {
-        let file = opened(path).map_err(|error| read_error(path, &error))?;
+        let file = open_regular(path).map_err(|error| read_error(path, &error))?;
         Ok(Self {
             lines: Box::new(BufReader::with_capacity(1 << 18, file)),
             path: path.to_owned(),

@@ -3,13 +3,13 @@
 //! The layout is embedded in the recording. The SDK's builders lack some view properties (bounds, background, axes,
 //! trails); they are appended to the same blueprint store by the paths that the viewer reads them from.
 
+use super::{
+    paths,
+    stream::{APPLICATION, SIM_TIME, TICK},
+    style,
+};
 use crate::{
     error::RecordingError,
-    recorder::{
-        paths,
-        stream::{APPLICATION, SIM_TIME, TICK},
-        style,
-    },
     rr::{self, bp, datatypes, view, view_part},
 };
 use mission::{TaskConfig, event::RunOpened};
