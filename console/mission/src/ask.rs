@@ -6,8 +6,10 @@
 //!
 //! Lengths are metres, angles radians, counter-clockwise from the x axis, in the tank frame.
 
+mod comparison;
 mod site;
 
+pub use comparison::Comparison;
 pub use site::{Site, SiteObstacle, SiteZone};
 
 use crate::planner::{Fault, Parameters, PlannerChoice, PlannerInfo};

@@ -1,6 +1,7 @@
 //! Tanks as pictures for people: SVG with the tank frame's x to the right and y up.
 
-pub(crate) mod planned;
+pub(crate) mod forecast;
+pub mod plan;
 
 use std::fmt::Write;
 use world::{Boundary, Point, Shape};

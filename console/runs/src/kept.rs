@@ -1,26 +1,25 @@
 //! Whether a run is on disk, as it is said last.
 
-use super::{REPORT_FILE, RunFolder};
-use crate::failure::INTERNAL;
+use crate::{error::RunError, files::REPORT_FILE, folder::RunFolder};
 use recording::{Finished, JOURNAL_FILE};
 use std::path::PathBuf;
 
 /// Whether everything of a run that ended was written, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Kept {
+pub struct Kept {
     folder: PathBuf,
     problem: Option<String>,
 }
 
 impl Kept {
     /// `report`: how writing the report ended.
-    pub(crate) fn new(folder: &RunFolder, finished: &Finished, report: &anyhow::Result<()>) -> Self {
-        let unwritten = || report.as_ref().err().map(|error| format!("{error:#}"));
+    pub(crate) fn new(folder: &RunFolder, finished: &Finished, report: &Result<(), RunError>) -> Self {
+        let unwritten = || report.as_ref().err().map(ToString::to_string);
         Self { folder: folder.path().to_owned(), problem: finished.error.clone().or_else(unwritten) }
     }
 
     /// Why the run is not kept; none if it is. Looks at the disk again: the console may stay open long after the end.
-    pub(crate) fn problem(&self) -> Option<String> {
+    pub fn problem(&self) -> Option<String> {
         let mut missing = [JOURNAL_FILE, REPORT_FILE].into_iter().map(|name| self.folder.join(name));
         let missing =
             || missing.find(|path| !path.is_file()).map(|path| format!("{} is missing", path.display()));
@@ -28,24 +27,18 @@ impl Kept {
     }
 
     /// The last line about the run.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let folder = self.folder.display();
         match self.problem() {
             None => format!("run kept in {folder}"),
             Some(why) => format!("run NOT kept in {folder}: {why}"),
         }
     }
-
-    /// The exit code: that of the mission, or [`INTERNAL`] if the run is not kept.
-    pub(crate) fn exit_code(&self, mission: u8) -> u8 {
-        if self.problem().is_some() { INTERNAL } else { mission }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::failure::COMPLETE;
     use recording::{Options, RunRecorder};
     use report::Summary;
     use std::{fs, time::Duration};
@@ -65,10 +58,10 @@ mod tests {
         let logs = tempfile::tempdir().unwrap();
         let (folder, kept) = ended(logs.path(), |_| {});
         assert_eq!(kept.text(), format!("run kept in {}", folder.path().display()));
-        assert_eq!(kept.exit_code(COMPLETE), COMPLETE);
+        assert_eq!(kept.problem(), None);
         fs::remove_dir_all(folder.path()).unwrap();
         assert!(kept.text().contains("NOT kept") && kept.text().contains("is missing"), "{}", kept.text());
-        assert_eq!(kept.exit_code(COMPLETE), INTERNAL);
+        assert!(kept.problem().is_some());
     }
 
     #[test]
@@ -78,6 +71,6 @@ mod tests {
         assert!(kept.text().contains("NOT kept") && kept.text().contains("was deleted"), "{}", kept.text());
         let (_, kept) = ended(logs.path(), |folder| fs::create_dir(folder.path().join(REPORT_FILE)).unwrap());
         assert!(kept.text().contains("NOT kept") && kept.text().contains(REPORT_FILE), "{}", kept.text());
-        assert_eq!(kept.exit_code(COMPLETE), INTERNAL);
+        assert!(kept.problem().is_some());
     }
 }

@@ -1,51 +1,50 @@
-//! `tankops runs` and `tankops export`.
+//! Past runs, listed.
 
 use crate::{
-    cli::LogsArg,
-    failure::{COMPLETE, bad_input},
-    output::say_line,
-    run_folder::{self, Standing},
+    error::RunError,
+    folder::past_runs,
+    standing::{Standing, standing},
 };
-use anyhow::Context;
-use recording::{JOURNAL_FILE, JournalError, JournalReader, RecordingError};
+use recording::{JOURNAL_FILE, JournalReader};
 use report::{Fold, Summary};
 use serde::Serialize;
-use std::{
-    path::{Path, PathBuf},
-    process::ExitCode,
-};
+use std::path::{Path, PathBuf};
 
 /// A past run as it is listed.
 #[derive(Debug, Serialize)]
-struct Listed {
-    name: String,
+pub struct Listed {
+    /// Name of its folder.
+    pub name: String,
     /// `complete`, `stuck`, …, `RUNNING`, `CRASHED`, `RECORDING FAILED` or `UNREADABLE`.
-    end: String,
-    scenario: Option<String>,
-    planner: Option<String>,
-    seed: Option<u64>,
-    mission_time_s: Option<f64>,
-    coverage_reachable: Option<f64>,
-    folder: PathBuf,
+    pub end: String,
+    /// Name of its scenario.
+    pub scenario: Option<String>,
+    /// Id of the planner that drove first.
+    pub planner: Option<String>,
+    /// Start of every random choice.
+    pub seed: Option<u64>,
+    /// Mission time that passed, seconds.
+    pub mission_time_s: Option<f64>,
+    /// Scanned share of the reachable floor.
+    pub coverage_reachable: Option<f64>,
+    /// Its folder.
+    pub folder: PathBuf,
     /// What is wrong with it.
-    note: Option<String>,
+    pub note: Option<String>,
 }
 
-/// `tankops runs`.
-pub(crate) fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
-    let listed: Vec<Listed> =
-        run_folder::past_runs(&logs.logs)?.iter().map(|folder| look_at(folder)).collect();
-    if json {
-        say_line(&serde_json::to_string_pretty(&listed).context("writing the list as JSON")?)?;
-    } else if listed.is_empty() {
-        say_line(&format!("no runs in {}", logs.logs.display()))?;
-    } else {
-        say_line(&format!("{:<16} {:>8} {:>22}  run", "end", "T+ s", "% of reachable floor"))?;
-        for run in &listed {
-            say_line(&row(run))?;
-        }
-    }
-    Ok(ExitCode::from(COMPLETE))
+/// The past runs in a folder, oldest first; also those that have lost their journal.
+///
+/// # Errors
+/// The folder cannot be read.
+pub fn list(logs: &Path) -> Result<Vec<Listed>, RunError> {
+    Ok(past_runs(logs)?.iter().map(|folder| look_at(folder)).collect())
+}
+
+/// Past runs as lines for people.
+pub fn table(runs: &[Listed]) -> String {
+    let head = format!("{:<16} {:>8} {:>22}  run\n", "end", "T+ s", "% of reachable floor");
+    std::iter::once(head).chain(runs.iter().map(row)).collect()
 }
 
 fn row(run: &Listed) -> String {
@@ -53,7 +52,7 @@ fn row(run: &Listed) -> String {
         |value: Option<f64>, scale: f64| value.map_or_else(|| "-".into(), |v| format!("{:.1}", v * scale));
     let note = run.note.as_ref().map(|note| format!("  ({note})")).unwrap_or_default();
     format!(
-        "{:<16} {:>8} {:>22}  {}{note}",
+        "{:<16} {:>8} {:>22}  {}{note}\n",
         run.end,
         number(run.mission_time_s, 1.0),
         number(run.coverage_reachable, 100.0),
@@ -62,7 +61,7 @@ fn row(run: &Listed) -> String {
 }
 
 fn look_at(folder: &Path) -> Listed {
-    match run_folder::standing(folder) {
+    match standing(folder) {
         Standing::Ended(summary) => {
             let note = summary.logs.as_ref().and_then(|logs| logs.error.clone());
             listed(folder, word(&summary), Some(&summary), note)
@@ -133,34 +132,4 @@ fn rebuild(journal: &Path) -> (Summary, Option<String>) {
         })
     });
     (fold.summary(), damage.err().map(|error| error.to_string()))
-}
-
-/// `tankops export`.
-pub(crate) fn export(run: &Path, rrd: &Path, logs: &LogsArg) -> anyhow::Result<ExitCode> {
-    let folder = run_folder::find(run, &logs.logs)?;
-    if rrd.exists() {
-        return Err(bad_input(format!("{} exists already; recordings are never overwritten", rrd.display())));
-    }
-    let path = folder.join(JOURNAL_FILE);
-    let damaged = |error: JournalError| bad_input(error.to_string());
-    let first =
-        JournalReader::open(&path).and_then(|mut reader| reader.next().transpose()).map_err(damaged)?;
-    crate::verify::opened(first.as_slice())?;
-    let made = recording::export(&path, rrd);
-    if made.is_err() {
-        // What was begun must not stand in the way of the next try.
-        let _ = std::fs::remove_file(rrd);
-    }
-    if let Err(RecordingError::Journal(error)) = made {
-        return Err(damaged(error));
-    }
-    let sha256 = run_folder::sha256(&path).ok();
-    if let Some(doubt) = run_folder::journal_doubt(&folder, sha256.as_deref()) {
-        say_line(&format!("note: {doubt}; the recording holds what it holds"))?;
-    }
-    if let Some(damage) = made.context("regenerating the recording")? {
-        say_line(&format!("note: the journal stops early ({damage}); the recording holds what it holds"))?;
-    }
-    say_line(&format!("{} regenerated from {}", rrd.display(), path.display()))?;
-    Ok(ExitCode::from(COMPLETE))
 }

@@ -1,21 +1,19 @@
 //! What is written about a run while it is flown: journal, recording and, at its end, the report.
 
-use crate::{
-    headless,
-    run_folder::{Kept, RunFolder},
-};
+use crate::{error::RunError, folder::RunFolder, kept::Kept};
 use mission::Event;
-use planner_host::Host;
 use recording::{Health, JournalWriter, Options, RunRecorder};
-use report::{Fold, Logs, Stops, Summary};
-use scenario::Scenario;
+use report::{Expect, Fold, Logs, PlannerCalls, Stops, Summary};
 use std::{
     path::Path,
     time::{Duration, Instant},
 };
 
+/// How long closing a run may take before it is abandoned with a message.
+pub const CLOSE_TIMEOUT: Duration = Duration::from_secs(10);
+
 /// A run that is being written, or, without a folder, only computed.
-pub(crate) struct RunLog {
+pub struct RunLog {
     folder: Option<RunFolder>,
     recorder: RunRecorder,
     fold: Fold,
@@ -23,7 +21,7 @@ pub(crate) struct RunLog {
 }
 
 /// A run that was flown.
-pub(crate) struct Closed {
+pub struct Closed {
     /// Its report.
     pub summary: Summary,
     /// Whether it is on disk; `None` if it was not to be.
@@ -35,8 +33,8 @@ impl RunLog {
     ///
     /// # Errors
     /// They cannot be made.
-    pub(crate) fn create(logs: &Path, scenario: &Scenario, planner: &str) -> anyhow::Result<Self> {
-        let folder = RunFolder::create(logs, &scenario.name, planner, scenario.seed)?;
+    pub fn create(logs: &Path, scenario: &str, planner: &str, seed: u64) -> Result<Self, RunError> {
+        let folder = RunFolder::create(logs, scenario, planner, seed)?;
         let recorder = RunRecorder::start(folder.path(), Options::default())?;
         Ok(Self { folder: Some(folder), recorder, fold: Fold::new(), began: Instant::now() })
     }
@@ -45,14 +43,14 @@ impl RunLog {
     ///
     /// # Errors
     /// The system gives no thread.
-    pub(crate) fn unwritten() -> anyhow::Result<Self> {
+    pub fn unwritten() -> Result<Self, RunError> {
         let began = Instant::now();
         let recorder = RunRecorder::spawn(JournalWriter::unwritten(began), None)?;
         Ok(Self { folder: None, recorder, fold: Fold::new(), began })
     }
 
     /// Takes the events of a tick; waits while the recorder's queue is full.
-    pub(crate) fn keep(&mut self, events: &[Event]) {
+    pub fn keep(&mut self, events: &[Event]) {
         for event in events {
             self.fold.apply(event);
         }
@@ -60,22 +58,23 @@ impl RunLog {
     }
 
     /// How recording goes.
-    pub(crate) fn health(&self) -> Health {
+    pub fn health(&self) -> Health {
         self.recorder.health()
     }
 
     /// Whether so much waits to be written that the caller should wait before it sends more.
-    pub(crate) fn is_behind(&self) -> bool {
+    pub fn is_behind(&self) -> bool {
         self.recorder.is_behind()
     }
 
-    /// Closes the files and writes the report.
-    pub(crate) fn close(
+    /// Closes the files, and writes the report with what is no event: figures about the planners' calls and about stops, by
+    /// the wall clock, and what a scenario expects.
+    pub fn close(
         self,
         within: Duration,
-        scenario: &Scenario,
-        host: &Host,
+        calls: PlannerCalls,
         stops: Option<Stops>,
+        expect: &Expect,
     ) -> Closed {
         let Self { folder, recorder, fold, began } = self;
         let finished = recorder.finish(within);
@@ -87,12 +86,12 @@ impl RunLog {
         let summary = Summary {
             wall_time_s: Some(began.elapsed().as_secs_f64()),
             events_sha256: finished.events_sha256.clone(),
-            planner_calls: Some(headless::planner_calls(host)),
+            planner_calls: Some(calls),
             stops,
             logs,
             ..fold.summary()
         };
-        let summary = scenario.expect.evaluated(summary);
+        let summary = expect.evaluated(summary);
         let kept = folder.map(|folder| {
             let report = folder.write_report(&summary);
             Kept::new(&folder, &finished, &report)

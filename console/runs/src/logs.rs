@@ -1,6 +1,5 @@
 //! Whether runs can be kept in the folder for logs, found out before a terminal is taken over or anything moves.
 
-use crate::failure::bad_input;
 use std::{
     fs::{self, File},
     io::{self, Write},
@@ -14,36 +13,51 @@ const PROBE: [u8; 4096] = [b'\n'; 4096];
 
 /// Why no run can be kept in a folder.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
-pub(crate) enum LogsError {
+pub enum LogsError {
     /// A part of the path is a file.
     #[error("cannot keep runs in {}: {} is a file, not a folder; choose a folder with --logs", logs.display(), file.display())]
-    NotAFolder { logs: PathBuf, file: PathBuf },
+    NotAFolder {
+        /// The folder for runs.
+        logs: PathBuf,
+        /// The file.
+        file: PathBuf,
+    },
     /// The folder does not exist, and the system refuses to create it.
     #[error("cannot keep runs in {}: the folder cannot be created ({why}); choose another one with --logs", logs.display())]
-    CannotCreate { logs: PathBuf, why: String },
+    CannotCreate {
+        /// The folder for runs.
+        logs: PathBuf,
+        /// What the system says.
+        why: String,
+    },
     /// The system refuses to create, write or remove a file in it.
     #[error("cannot keep runs in {}: the folder is not writable ({why}); choose another one with --logs", logs.display())]
-    NotWritable { logs: PathBuf, why: String },
+    NotWritable {
+        /// The folder for runs.
+        logs: PathBuf,
+        /// What the system says.
+        why: String,
+    },
     /// There is too little space.
     #[error(
         "cannot keep runs in {}: {} MB are free, at least {} MB are needed; free some space or choose another folder with \
          --logs", logs.display(), megabytes(*free_bytes), megabytes(*needed_bytes)
     )]
-    NoSpace { logs: PathBuf, free_bytes: u64, needed_bytes: u64 },
+    NoSpace {
+        /// The folder for runs.
+        logs: PathBuf,
+        /// Space that is free, bytes.
+        free_bytes: u64,
+        /// Space that a run must find, bytes.
+        needed_bytes: u64,
+    },
 }
 
-impl LogsError {
-    /// The error for the user, who can correct it.
-    pub(crate) fn refuse(self) -> anyhow::Error {
-        bad_input(self.to_string())
-    }
-}
-
-/// Checks that runs can be kept in a folder, as [`make_logs`] does, and leaves nothing behind.
+/// Checks that runs can be kept in a folder, as a run that begins does, and leaves nothing behind.
 ///
 /// # Errors
 /// See [`LogsError`]; each one is for the user to correct, and says how.
-pub(crate) fn check_logs(logs: &Path) -> Result<(), LogsError> {
+pub fn check_logs(logs: &Path) -> Result<(), LogsError> {
     let missing: Vec<PathBuf> =
         logs.ancestors().take_while(|folder| is_missing(folder)).map(Path::to_owned).collect();
     let checked = make_logs(logs);

@@ -1,6 +1,6 @@
 //! The forecast as a picture: green where a fix is good, red towards the limit, dark where there is none.
 
-use crate::drawing::{circle, document, outline, wall};
+use super::{circle, document, outline, wall};
 use positioning::AccuracyMap;
 use std::fmt::Write;
 use world::{Point, World};
@@ -12,7 +12,7 @@ const STYLE: &str = concat!(
 );
 
 /// The picture as an SVG document; advised places are rings.
-pub(super) fn svg(world: &World, map: &AccuracyMap, limit_m: f64, advised: &[Point]) -> String {
+pub(crate) fn svg(world: &World, map: &AccuracyMap, limit_m: f64, advised: &[Point]) -> String {
     let mut body = String::new();
     for (center, cell) in map.floor() {
         let class = match cell.error_95_m {

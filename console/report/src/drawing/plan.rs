@@ -3,12 +3,12 @@
 //! is longest.
 
 use super::{circle, document, line, outline, polyline, wall};
-use crate::plan::Leg;
+use crate::leg::Leg;
 use world::{Point, World};
 
 /// What there is to draw.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Drawn<'a> {
+pub struct Drawn<'a> {
     /// Tank, obstacles and stations.
     pub world: &'a World,
     /// Room that the middle of the hull needs, metres.
@@ -30,7 +30,7 @@ pub(crate) struct Drawn<'a> {
 }
 
 /// The picture as an SVG document; north is up.
-pub(crate) fn svg(drawn: &Drawn<'_>) -> String {
+pub fn svg(drawn: &Drawn<'_>) -> String {
     let Drawn { world, path, legs, swath_m, .. } = drawn;
     let mut body = String::new();
     wall(&mut body, &world.boundary);

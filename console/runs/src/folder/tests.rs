@@ -1,6 +1,10 @@
 use super::*;
+use crate::{
+    report_file::journal_doubt,
+    standing::{Standing, standing},
+};
 use mission::{Event, EventKind, Outcome};
-use recording::{Finished, Options, RunRecorder};
+use recording::{Finished, Options, RunRecorder, sha256};
 use report::{Fold, Logs};
 use std::time::{Duration, UNIX_EPOCH};
 

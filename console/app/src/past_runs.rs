@@ -1,0 +1,91 @@
+//! `tankops runs`, `tankops report` and `tankops export`: what past runs hold.
+
+use crate::{
+    cli::LogsArg,
+    failure::{COMPLETE, bad_input},
+    output::{pretty_json, say, say_line, write_file},
+};
+use anyhow::Context;
+use recording::{JOURNAL_FILE, RecordingError, Ticks, sha256};
+use report::{PastRun, Summary, human, merged};
+use runs::{Past, find, journal_doubt};
+use scenario::Scenario;
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+/// `tankops runs`.
+pub(crate) fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
+    let listed = runs::list(&logs.logs)?;
+    say(&if json {
+        pretty_json("the list", &listed)?
+    } else if listed.is_empty() {
+        format!("no runs in {}\n", logs.logs.display())
+    } else {
+        runs::table(&listed)
+    })?;
+    Ok(ExitCode::from(COMPLETE))
+}
+
+/// `tankops report RUN...`.
+pub(crate) fn report(
+    runs: &[PathBuf],
+    logs: &LogsArg,
+    json: bool,
+    output: Option<&Path>,
+) -> anyhow::Result<ExitCode> {
+    let past = read_all(runs, logs)?;
+    let text = if let [only] = &past[..] {
+        one(only, json)?
+    } else {
+        let past: Vec<PastRun> = past.into_iter().map(|past| past.run).collect();
+        let merged = merged(&past).map_err(bad_input)?;
+        if json { pretty_json("the report", &merged)? } else { merged.human() }
+    };
+    match output {
+        None => say(&text)?,
+        Some(file) => write_file("the report", file, &text)?,
+    }
+    Ok(ExitCode::from(COMPLETE))
+}
+
+/// Past runs that the user named.
+pub(crate) fn read_all(runs: &[PathBuf], logs: &LogsArg) -> anyhow::Result<Vec<Past>> {
+    runs.iter().map(|run| Ok(Past::read(&find(run, &logs.logs)?)?)).collect()
+}
+
+fn one(Past { opened, run, .. }: &Past, json: bool) -> anyhow::Result<String> {
+    let scenario = Scenario::parse(&opened.scenario_toml, "the scenario in the journal");
+    let expect = scenario.map_err(|errors| bad_input(errors.render()))?.expect;
+    let (logs, events_sha256) = (Some(run.logs.clone()), run.journal_sha256.clone());
+    let summary = expect.evaluated(Summary { logs, events_sha256, ..run.fold.summary() });
+    if json { pretty_json("the report", &summary) } else { Ok(human(&summary)) }
+}
+
+/// `tankops export`.
+pub(crate) fn export(run: &Path, rrd: &Path, logs: &LogsArg) -> anyhow::Result<ExitCode> {
+    let folder = find(run, &logs.logs)?;
+    if rrd.exists() {
+        return Err(bad_input(format!("{} exists already; recordings are never overwritten", rrd.display())));
+    }
+    let path = folder.join(JOURNAL_FILE);
+    Ticks::open(&path)?.opened()?;
+    let made = recording::export(&path, rrd);
+    if made.is_err() {
+        // What was begun must not stand in the way of the next try.
+        let _ = std::fs::remove_file(rrd);
+    }
+    if let Err(RecordingError::Journal(error)) = made {
+        return Err(error.into());
+    }
+    let sha256 = sha256(&path).ok();
+    if let Some(doubt) = journal_doubt(&folder, sha256.as_deref()) {
+        say_line(&format!("note: {doubt}; the recording holds what it holds"))?;
+    }
+    if let Some(damage) = made.context("regenerating the recording")? {
+        say_line(&format!("note: the journal stops early ({damage}); the recording holds what it holds"))?;
+    }
+    say_line(&format!("{} regenerated from {}", rrd.display(), path.display()))?;
+    Ok(ExitCode::from(COMPLETE))
+}
