@@ -17,7 +17,7 @@ use engine::Engine;
 use inbox::{Inbox, Outbox, inbox};
 use line::EngineHandle;
 use planner_host::PluginDirs;
-use runs::{RunError, check_logs};
+use runs::check_logs;
 use scenario::Scenario;
 use screen::{Left, Screen};
 use std::{
@@ -38,7 +38,7 @@ pub(crate) fn open(
     check_terminal()?;
     let (found, refused) = surveyed(plugins);
     check_choices(scenario, &found)?;
-    check_logs(&logs.logs).map_err(RunError::from)?;
+    check_logs(&logs.logs)?;
     let (outbox, inbox) = inbox();
     let engine = Engine::start(scenario, &logs.logs, plugins, outbox.clone(), drill)?;
     let refused = refused.into_iter().map(|(plugin, reason)| Refused { plugin, reason }).collect();

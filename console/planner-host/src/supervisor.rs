@@ -51,9 +51,6 @@ impl Default for WorkerCommand {
     }
 }
 
-/// A worker that is asked to shut down is given this long to drop its planner cleanly.
-pub(crate) const SHUT_DOWN_WITHIN: Duration = Duration::from_millis(100);
-
 /// The deadline that a planner sees. It is earlier than the enforced one, so that a planner that watches its time still
 /// answers before it is killed.
 fn soft(deadline: Duration) -> Duration {

@@ -2,7 +2,7 @@
 
 use crate::{
     anchor::{Anchor, anchored, on_near_circle},
-    fix::{Fix, FixError, PositionSolver, Ranging},
+    fix::{Fix, FixError, PositionSolver, Prior, Ranging},
     linear::{conditioning, solve_linear},
     pair::solve_pair,
     quality::{assess, inverse_of},
@@ -32,21 +32,13 @@ const MIRROR_MARGIN: f64 = 9.0;
 pub struct Nls;
 
 impl PositionSolver for Nls {
-    fn solve(
-        &self,
-        ranges: &[Ranging],
-        stations: &[Station],
-        prior: Option<(Point, Matrix2<f64>)>,
-    ) -> Result<Fix, FixError> {
+    fn solve(&self, ranges: &[Ranging], stations: &[Station], prior: Option<Prior>) -> Result<Fix, FixError> {
         solve_anchors(&anchored(ranges, stations)?, prior)
     }
 }
 
 /// The least squares fit to anchors; two of them leave both crossings of their circles, and a prior chooses.
-pub(crate) fn solve_anchors(
-    anchors: &[Anchor],
-    prior: Option<(Point, Matrix2<f64>)>,
-) -> Result<Fix, FixError> {
+pub(crate) fn solve_anchors(anchors: &[Anchor], prior: Option<Prior>) -> Result<Fix, FixError> {
     let prior = prior.filter(|(at, covariance)| at.iter().chain(covariance.iter()).all(|c| c.is_finite()));
     match anchors {
         [first, second] => solve_pair(first, second, prior.map(|(near, _)| near)),
@@ -55,7 +47,7 @@ pub(crate) fn solve_anchors(
     }
 }
 
-fn solve_many(anchors: &[Anchor], prior: Option<(Point, Matrix2<f64>)>) -> Result<Fix, FixError> {
+fn solve_many(anchors: &[Anchor], prior: Option<Prior>) -> Result<Fix, FixError> {
     let start = match (solve_linear(anchors), prior) {
         (Ok(linear), _) => linear.position,
         (Err(FixError::Collinear { .. }), Some((near, _))) => near,
@@ -91,11 +83,7 @@ struct Minimum {
 }
 
 /// Looks for a second minimum behind the line of the stations; the better one first.
-fn choose_side(
-    anchors: &[Anchor],
-    found: Minimum,
-    prior: Option<(Point, Matrix2<f64>)>,
-) -> (Minimum, Option<Point>) {
+fn choose_side(anchors: &[Anchor], found: Minimum, prior: Option<Prior>) -> (Minimum, Option<Point>) {
     let Ok(other) = descend(anchors, reflected(anchors, found.position)) else {
         return (found, None);
     };
@@ -115,7 +103,7 @@ fn choose_side(
 }
 
 /// Squared distance from a prior in its own sigmas; metres squared if it has no usable covariance.
-fn surprise_to((near, covariance): (Point, Matrix2<f64>), position: Point) -> f64 {
+fn surprise_to((near, covariance): Prior, position: Point) -> f64 {
     let away = position - near;
     let inverse = inverse_of(&covariance).unwrap_or_else(Matrix2::identity);
     away.dot(&(inverse * away))

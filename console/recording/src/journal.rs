@@ -9,7 +9,7 @@ mod ticks;
 mod writer;
 
 pub use ending::read_ending;
-pub use reader::{Journal, JournalLine, JournalReader, read_journal};
+pub use reader::{JournalLine, JournalReader};
 pub use ticks::{Difference, RecordedTick, Ticks};
 pub use writer::{JournalEnd, JournalWriter};
 

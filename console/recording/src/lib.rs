@@ -27,8 +27,8 @@ pub use file::{FileChange, sha256};
 pub use identity::Identity;
 pub use inspect::{Summary, inspect};
 pub use journal::{
-    Difference, JOURNAL_FILE, Journal, JournalEnd, JournalError, JournalLine, JournalReader, JournalWriter,
-    RecordedTick, Ticks, read_ending, read_journal,
+    Difference, JOURNAL_FILE, JournalEnd, JournalError, JournalLine, JournalReader, JournalWriter,
+    RecordedTick, Ticks, read_ending,
 };
 pub use marker::{FAILURE_FILE, recorded_failure};
 pub use recorder::{RECORDING_FILE, Recorder};

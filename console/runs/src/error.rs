@@ -1,15 +1,14 @@
 //! What can go wrong with runs on disk.
 
-use crate::logs::LogsError;
 use recording::{JOURNAL_FILE, JournalError, RecordingError};
 use std::{io, path::PathBuf};
 
 /// Why a run cannot be kept, found or read.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// The folder for runs takes none.
-    #[error(transparent)]
-    Logs(#[from] LogsError),
+    /// The folder for runs takes none: why, and what to do.
+    #[error("{0}")]
+    Logs(String),
     /// There is no such run.
     #[error(
         "there is no run {}: neither a folder with {JOURNAL_FILE} nor a name in {}; `tankops runs` lists them",

@@ -1,5 +1,6 @@
 //! Whether runs can be kept in the folder for logs, found out before a terminal is taken over or anything moves.
 
+use crate::error::RunError;
 use std::{
     fs::{self, File},
     io::{self, Write},
@@ -13,51 +14,33 @@ const PROBE: [u8; 4096] = [b'\n'; 4096];
 
 /// Why no run can be kept in a folder.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
-pub enum LogsError {
+pub(crate) enum LogsError {
     /// A part of the path is a file.
     #[error("cannot keep runs in {}: {} is a file, not a folder; choose a folder with --logs", logs.display(), file.display())]
-    NotAFolder {
-        /// The folder for runs.
-        logs: PathBuf,
-        /// The file.
-        file: PathBuf,
-    },
+    NotAFolder { logs: PathBuf, file: PathBuf },
     /// The folder does not exist, and the system refuses to create it.
     #[error("cannot keep runs in {}: the folder cannot be created ({why}); choose another one with --logs", logs.display())]
-    CannotCreate {
-        /// The folder for runs.
-        logs: PathBuf,
-        /// What the system says.
-        why: String,
-    },
+    CannotCreate { logs: PathBuf, why: String },
     /// The system refuses to create, write or remove a file in it.
     #[error("cannot keep runs in {}: the folder is not writable ({why}); choose another one with --logs", logs.display())]
-    NotWritable {
-        /// The folder for runs.
-        logs: PathBuf,
-        /// What the system says.
-        why: String,
-    },
+    NotWritable { logs: PathBuf, why: String },
     /// There is too little space.
     #[error(
         "cannot keep runs in {}: {} MB are free, at least {} MB are needed; free some space or choose another folder with \
          --logs", logs.display(), megabytes(*free_bytes), megabytes(*needed_bytes)
     )]
-    NoSpace {
-        /// The folder for runs.
-        logs: PathBuf,
-        /// Space that is free, bytes.
-        free_bytes: u64,
-        /// Space that a run must find, bytes.
-        needed_bytes: u64,
-    },
+    NoSpace { logs: PathBuf, free_bytes: u64, needed_bytes: u64 },
 }
 
 /// Checks that runs can be kept in a folder, as a run that begins does, and leaves nothing behind.
 ///
 /// # Errors
-/// See [`LogsError`]; each one is for the user to correct, and says how.
-pub fn check_logs(logs: &Path) -> Result<(), LogsError> {
+/// [`RunError::Logs`].
+pub fn check_logs(logs: &Path) -> Result<(), RunError> {
+    Ok(check(logs)?)
+}
+
+fn check(logs: &Path) -> Result<(), LogsError> {
     let missing: Vec<PathBuf> =
         logs.ancestors().take_while(|folder| is_missing(folder)).map(Path::to_owned).collect();
     let checked = make_logs(logs);
@@ -66,6 +49,12 @@ pub fn check_logs(logs: &Path) -> Result<(), LogsError> {
         let _ = fs::remove_dir(folder);
     }
     checked
+}
+
+impl From<LogsError> for RunError {
+    fn from(error: LogsError) -> Self {
+        Self::Logs(error.to_string())
+    }
 }
 
 /// Creates the folder for runs if there is none, and checks that a file can be written there and removed, and that
@@ -124,8 +113,8 @@ mod tests {
     #[test]
     fn a_folder_that_can_be_created_is_fine_and_not_left_behind() {
         let place = tempfile::tempdir().unwrap();
-        assert_eq!(check_logs(place.path()), Ok(()));
-        assert_eq!(check_logs(&place.path().join("a/b/logs")), Ok(()));
+        assert_eq!(check(place.path()), Ok(()));
+        assert_eq!(check(&place.path().join("a/b/logs")), Ok(()));
         assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
     }
 
@@ -135,7 +124,7 @@ mod tests {
         let file = place.path().join("file");
         fs::write(&file, "precious").unwrap();
         for logs in [file.clone(), file.join("logs")] {
-            let error = check_logs(&logs).expect_err("it is a file");
+            let error = check(&logs).expect_err("it is a file");
             assert_eq!(error, LogsError::NotAFolder { logs, file: file.clone() });
             assert!(error.to_string().contains("is a file, not a folder"), "{error}");
         }
@@ -145,9 +134,9 @@ mod tests {
     #[test]
     fn a_folder_that_takes_no_file_is_refused() {
         // Not even root creates files in it.
-        let error = check_logs(Path::new("/proc/self")).expect_err("nothing can be written");
+        let error = check(Path::new("/proc/self")).expect_err("nothing can be written");
         assert!(matches!(error, LogsError::NotWritable { .. }), "{error}");
-        let error = check_logs(Path::new("/proc/self/logs")).expect_err("nothing can be created");
+        let error = check(Path::new("/proc/self/logs")).expect_err("nothing can be created");
         assert!(matches!(error, LogsError::CannotCreate { .. }), "{error}");
     }
 

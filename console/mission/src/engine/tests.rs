@@ -10,6 +10,7 @@ use super::*;
 use crate::{
     ask::{Answer, Ask, Given, PlanAsk, Said, StepAsk, TaskLeft, What},
     config::{ScanConfig, TaskConfig},
+    phase::{Gait, Hold, HoldReason, Outcome},
     planner::{
         Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
     },

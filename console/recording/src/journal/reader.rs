@@ -9,27 +9,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A journal in memory.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Journal {
-    /// Its events, oldest first.
-    pub events: Vec<Event>,
-    /// Version of its format; absent if it is empty or its first line is cut off.
-    pub version: Option<u32>,
-    /// If it is empty or its last line is cut off, because the writer was killed or the disk was full: what is missing.
-    pub truncated: Option<String>,
-}
-
-/// Reads a whole journal.
-///
-/// # Errors
-/// See [`JournalError`]; a last line that is cut off is no error.
-pub fn read_journal(path: &Path) -> Result<Journal, JournalError> {
-    let mut reader = JournalReader::open(path)?;
-    let events = reader.by_ref().collect::<Result<_, _>>()?;
-    Ok(Journal { events, version: reader.version, truncated: reader.truncated })
-}
-
 /// A line of a journal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JournalLine<'a> {
