@@ -17,6 +17,7 @@ mod planner_keys;
 mod problem;
 mod ranging;
 mod render;
+mod rescan;
 mod robot;
 mod schema;
 mod section;
@@ -27,6 +28,7 @@ mod task;
 mod tether;
 
 pub use problem::{Complaint, Problem, ScenarioErrors};
+pub use rescan::rescan;
 pub use settings::Settings;
 
 use mission::MissionConfig;

@@ -1,11 +1,11 @@
 //! Plans of a study, drawn into a folder.
 
-use crate::{
-    drawing::planned::{Drawn, svg},
-    failure::bad_input,
-    plan::legs,
-};
+use crate::failure::bad_input;
 use ::reproduce::{Picture, Study};
+use report::{
+    drawing::plan::{Drawn, svg},
+    leg::legs,
+};
 use std::{
     path::{Path, PathBuf},
     sync::Mutex,

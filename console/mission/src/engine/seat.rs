@@ -3,9 +3,8 @@
 use super::rules::{BlockedRule, CutsRule, LatePlannerRule};
 use crate::{
     ask::{Ask, AskId, Said, Site, What, WorkerId},
-    config::PlannerChoice,
     follower::Follower,
-    planner::PlannerInfo,
+    planner::{PlannerChoice, PlannerInfo},
 };
 use planner_api::{Command, Reason};
 use std::sync::Arc;

@@ -2,8 +2,8 @@
 
 use super::{Cause, Model, Overlay, PlanShown, Progress, Raster, Run, Trail, ui::Ask};
 use mission::{
-    Event, EventKind, Hold, Order, Outcome, PlannerChoice, PlannerInfo, Severity, TaskConfig,
-    event::{HoldReason, RunOpened, TetherAlarm, late_text},
+    Event, EventKind, Hold, HoldReason, Order, Outcome, PlannerChoice, PlannerInfo, Severity, TaskConfig,
+    event::{RunOpened, TetherAlarm, late_text},
 };
 use planner_api::{Command, Drawing};
 use positioning::{AccuracyMap, Exclusion};

@@ -3,7 +3,7 @@
 use super::{Look, text};
 use crate::model::{Model, Recording, ui::Arrangement};
 use crate::theme::Role;
-use mission::{Hold, Outcome, Phase, Severity, event::HoldReason};
+use mission::{Hold, HoldReason, Outcome, Phase, Severity};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
