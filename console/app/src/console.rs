@@ -11,12 +11,13 @@ mod watch;
 use crate::{
     cli::{Drill, LogsArg},
     failure::bad_input,
-    preflight::{LogsError, check_logs},
+    planners::{check_choices, surveyed},
 };
 use engine::Engine;
 use inbox::{Inbox, Outbox, inbox};
 use line::EngineHandle;
 use planner_host::PluginDirs;
+use runs::check_logs;
 use scenario::Scenario;
 use screen::{Left, Screen};
 use std::{
@@ -25,10 +26,7 @@ use std::{
     path::Path,
     process::ExitCode,
 };
-use tui::{Caps, Msg, Refused, Speed, terminal};
-
-/// How fast a simulated mission goes at first.
-const START_SPEED: Speed = Speed::Times(4.0);
+use tui::{Caps, Msg, Refused, terminal};
 
 /// Opens the console on a scenario; returns when the operator leaves.
 pub(crate) fn open(
@@ -38,9 +36,9 @@ pub(crate) fn open(
     drill: Option<Drill>,
 ) -> anyhow::Result<ExitCode> {
     check_terminal()?;
-    let (found, refused) = crate::planners::surveyed(plugins);
-    crate::planners::check_choices(scenario, &found)?;
-    check_logs(&logs.logs).map_err(LogsError::refuse)?;
+    let (found, refused) = surveyed(plugins);
+    check_choices(scenario, &found)?;
+    check_logs(&logs.logs)?;
     let (outbox, inbox) = inbox();
     let engine = Engine::start(scenario, &logs.logs, plugins, outbox.clone(), drill)?;
     let refused = refused.into_iter().map(|(plugin, reason)| Refused { plugin, reason }).collect();

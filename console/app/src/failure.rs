@@ -1,7 +1,8 @@
 //! Failures by who has to act: the user or the developers.
 
-use crate::output::warn_line;
-use std::{fmt, process::ExitCode};
+use recording::JournalError;
+use runs::{Kept, RunError};
+use std::fmt;
 
 /// The mission was flown and is complete.
 pub(crate) const COMPLETE: u8 = 0;
@@ -29,13 +30,13 @@ pub(crate) fn bad_input(text: impl Into<String>) -> anyhow::Error {
     BadInput(text.into()).into()
 }
 
-/// Reports a failure on stderr; the exit code distinguishes input errors from internal ones.
-pub(crate) fn report(error: &anyhow::Error) -> ExitCode {
-    if let Some(BadInput(text)) = error.downcast_ref() {
-        let prefix = if text.starts_with("error") { "" } else { "error: " };
-        warn_line(&format!("{prefix}{}", text.trim_end()));
-        return ExitCode::from(BAD_INPUT);
-    }
-    warn_line(&format!("error: {error:#}"));
-    ExitCode::from(INTERNAL)
+/// Whether a failure is one of input: also a journal that cannot be read, or a folder that takes no run.
+pub(crate) fn is_input(error: &anyhow::Error) -> bool {
+    let of_run = error.downcast_ref::<RunError>().is_some_and(RunError::is_input);
+    of_run || error.is::<BadInput>() || error.is::<JournalError>()
+}
+
+/// The exit code of a run with this result of its mission: a run that was to be kept and is not is a fault.
+pub(crate) fn exit_code(mission: u8, kept: Option<&Kept>) -> u8 {
+    if kept.is_some_and(|kept| kept.problem().is_some()) { INTERNAL } else { mission }
 }

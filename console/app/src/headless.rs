@@ -4,25 +4,20 @@ use crate::{
     accuracy::warn_of_clearance,
     answers::{InOrder, Window, Windowed},
     cli::{LogsArg, RunArgs},
-    failure::{COMPLETE, ENDED_OTHERWISE},
+    failure::{COMPLETE, ENDED_OTHERWISE, exit_code},
     flight::Flight,
-    output::{say, say_line, warn_line},
-    plan::patient,
+    hosts::{self, host},
+    output::{pretty_json, say, say_line, warn_line},
     plan_watch::{PlanWatch, Watched},
-    progress,
-    run_log::{Closed, RunLog},
+    planners, progress, scenarios,
     stop_signal::{self, StopSignal},
 };
-use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use mission::{Event, EventKind, Order, Outcome, Phase};
-use planner_host::{Host, HostConfig, PluginDirs};
-use report::{PlannerCalls, Summary};
+use planner_host::{Host, PluginDirs};
+use runs::{CLOSE_TIMEOUT, Closed, RunLog};
 use scenario::Scenario;
-use std::{io::IsTerminal, process::ExitCode, time::Duration};
-
-/// How long closing the recording may take before it is abandoned with a message.
-pub(crate) const CLOSE_TIMEOUT: Duration = Duration::from_secs(10);
+use std::{io::IsTerminal, process::ExitCode};
 
 /// Options of a headless run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +32,7 @@ pub(crate) struct RunOptions {
 
 /// `tankops run`.
 pub(crate) fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
-    let scenario = crate::read_scenario(&args.scenario, &args.changes)?;
+    let scenario = scenarios::read(&args.scenario, &args.changes)?;
     let (json, record, live_deadlines) = (args.json, !args.no_record, args.live_deadlines);
     fly(&scenario, plugins, &args.logs, RunOptions { json, record, live_deadlines })
 }
@@ -50,11 +45,11 @@ pub(crate) fn fly(
     options: RunOptions,
 ) -> anyhow::Result<ExitCode> {
     let stop = stop_signal::listen();
-    crate::planners::check_choices(scenario, &crate::planners::found(plugins))?;
+    planners::check_choices(scenario, &planners::found(plugins))?;
     warn_of_clearance(scenario);
     let flight = Flight::prepare(scenario, false);
     let mut log = if options.record {
-        RunLog::create(&logs.logs, scenario, &scenario.mission.planner.id)?
+        RunLog::create(&logs.logs, &scenario.name, &scenario.mission.planner.id, scenario.seed)?
     } else {
         RunLog::unwritten()?
     };
@@ -68,15 +63,15 @@ pub(crate) fn fly(
     take(vec![flight.opened()]);
     let host = fly_to_end(flight, host(scenario, plugins), take, (&bar, &stop), options.live_deadlines);
     bar.finish_and_clear();
-    let Closed { summary, kept } = log.close(CLOSE_TIMEOUT, scenario, &host, None);
-    print_summary(&summary, options)?;
+    let Closed { summary, kept } = log.close(CLOSE_TIMEOUT, hosts::calls(&host), None, &scenario.expect);
+    say(&if options.json { pretty_json("the report", &summary)? } else { report::human(&summary) })?;
     match &kept {
         Some(kept) if kept.problem().is_some() => warn_line(&kept.text()),
         Some(kept) if !options.json => say_line(&kept.text())?,
         _ => {}
     }
-    let code = exit_code(&summary);
-    Ok(ExitCode::from(kept.map_or(code, |kept| kept.exit_code(code))))
+    let code = if summary.outcome == Some(Outcome::Complete) { COMPLETE } else { ENDED_OTHERWISE };
+    Ok(ExitCode::from(exit_code(code, kept.as_ref())))
 }
 
 /// Reports on stderr, once each, that recording fails and that it has resumed.
@@ -119,23 +114,6 @@ fn fly_to_end(
     answers.into_host()
 }
 
-/// A host for the planners of a scenario.
-pub(crate) fn host(scenario: &Scenario, plugins: &PluginDirs) -> Host {
-    Host::new(plugins, patient(HostConfig::default(), &scenario.mission))
-}
-
-/// Figures about the planners' calls, by the wall clock.
-pub(crate) fn planner_calls(host: &Host) -> PlannerCalls {
-    let stats = host.stats();
-    PlannerCalls {
-        plan: stats.plan.calls,
-        step: stats.step.calls,
-        p50_us: stats.step.p50_us,
-        p99_us: stats.step.p99_us,
-        faults: stats.faults,
-    }
-}
-
 fn progress_bar(scenario: &Scenario, options: RunOptions) -> ProgressBar {
     if options.json || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
@@ -162,16 +140,4 @@ fn show_progress(bar: &ProgressBar, events: &[Event]) {
             bar.println(format!("T+{:.1} s  {}  {}", event.t_s, line.source, line.text));
         }
     }
-}
-
-fn print_summary(summary: &Summary, options: RunOptions) -> anyhow::Result<()> {
-    if options.json {
-        say_line(&serde_json::to_string_pretty(summary).context("writing the report as JSON")?)
-    } else {
-        say(&report::human(summary))
-    }
-}
-
-fn exit_code(summary: &Summary) -> u8 {
-    if summary.outcome == Some(Outcome::Complete) { COMPLETE } else { ENDED_OTHERWISE }
 }

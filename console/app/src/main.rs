@@ -1,42 +1,32 @@
 //! tankops: console for robots that inspect the floors of oil storage tanks.
 
 mod accuracy;
-mod again;
 mod answers;
 mod cli;
 mod console;
-mod drawing;
 mod failure;
 mod flight;
 mod headless;
+mod hosts;
 mod output;
 mod past_runs;
 mod plan;
 mod plan_watch;
 mod planners;
-mod preflight;
 mod progress;
 mod reproduce;
-mod run_folder;
-mod run_log;
+mod rescan;
+mod scenarios;
 mod stop_signal;
 mod tune;
 mod verify;
 
 use clap::Parser;
-use cli::{Changes, Cli, Command, ConsoleArgs, LogsArg};
-use failure::bad_input;
+use cli::{Cli, Command, LogsArg};
+use failure::{BAD_INPUT, INTERNAL, bad_input, is_input};
+use output::warn_line;
 use planner_host::PluginDirs;
-use scenario::{Scenario, Settings};
-use std::{
-    io::IsTerminal,
-    path::{Path, PathBuf},
-    process::ExitCode,
-    sync::Arc,
-};
-
-/// The demo, so that `tankops` shows something wherever it is started.
-const DEMO: &str = include_str!("../../../scenarios/demo.toml");
+use std::{io::IsTerminal, path::PathBuf, process::ExitCode, sync::Arc};
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -44,7 +34,19 @@ fn main() -> ExitCode {
         return planner_host::worker_main();
     }
     survive_file_size_limit();
-    dispatch(cli).unwrap_or_else(|error| failure::report(&error))
+    dispatch(cli).unwrap_or_else(|error| fail(&error))
+}
+
+/// Reports a failure on stderr; the exit code distinguishes input errors from internal ones.
+fn fail(error: &anyhow::Error) -> ExitCode {
+    if is_input(error) {
+        let text = error.to_string();
+        let prefix = if text.starts_with("error") { "" } else { "error: " };
+        warn_line(&format!("{prefix}{}", text.trim_end()));
+        return ExitCode::from(BAD_INPUT);
+    }
+    warn_line(&format!("error: {error:#}"));
+    ExitCode::from(INTERNAL)
 }
 
 /// A file that may not grow (`ulimit -f`) is an error of the write, as a full disk is, and not the end of the process.
@@ -63,7 +65,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
     match cli.command {
         None => by_default(&plugins),
         Some(Command::Console(args)) => {
-            console::open(&console_scenario(&args)?, &args.logs, &plugins, args.drill)
+            console::open(&scenarios::of_console(&args)?, &args.logs, &plugins, args.drill)
         }
         Some(Command::Run(args)) => headless::run(&args, &plugins),
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
@@ -78,16 +80,16 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         }
         Some(Command::Export { run, rrd, logs }) => past_runs::export(&run, &rrd, &logs),
         Some(Command::Report { runs, json, output, logs }) => {
-            again::report(&runs, &logs, json, output.as_deref())
+            past_runs::report(&runs, &logs, json, output.as_deref())
         }
-        Some(Command::Rescan(args)) => again::rescan(&args, &plugins),
+        Some(Command::Rescan(args)) => rescan::rescan(&args, &plugins),
         Some(Command::Worker) => Ok(planner_host::worker_main()),
     }
 }
 
 /// The console on the demo, or, without a terminal, the demo flown headless.
 fn by_default(plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
-    let (scenario, logs) = (demo()?, LogsArg { logs: PathBuf::from("logs") });
+    let (scenario, logs) = (scenarios::demo()?, LogsArg { logs: PathBuf::from("logs") });
     if std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
         return console::open(&scenario, &logs, plugins, None);
     }
@@ -97,25 +99,4 @@ fn by_default(plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
         &logs,
         headless::RunOptions { json: false, record: true, live_deadlines: false },
     )
-}
-
-fn demo() -> anyhow::Result<Scenario> {
-    Scenario::parse(DEMO, "the demo scenario").map_err(|errors| bad_input(errors.render()))
-}
-
-fn console_scenario(args: &ConsoleArgs) -> anyhow::Result<Scenario> {
-    match &args.scenario {
-        Some(path) => read_scenario(path, &args.changes),
-        None => Scenario::parse_with(DEMO, "the demo scenario", &settings(&args.changes))
-            .map_err(|errors| bad_input(errors.render())),
-    }
-}
-
-/// Reads a scenario with what the command line changes in it.
-fn read_scenario(path: &Path, changes: &Changes) -> anyhow::Result<Scenario> {
-    Scenario::read_with(path, &settings(changes)).map_err(|errors| bad_input(errors.render()))
-}
-
-fn settings(changes: &Changes) -> Settings {
-    Settings { planner: changes.planner.clone(), seed: changes.seed, set: changes.set.clone() }
 }

@@ -1,9 +1,12 @@
 //! What reaches stdout and stderr.
 
+use crate::failure::bad_input;
 use anyhow::Context;
+use serde::Serialize;
 use std::{
     borrow::Cow,
     io::{ErrorKind, Write},
+    path::Path,
 };
 
 /// Writes a text to stdout, without what would control the terminal; a reader that has gone away, as `head` does, is no
@@ -19,6 +22,23 @@ pub(crate) fn say(text: &str) -> anyhow::Result<()> {
 /// Writes a line to stdout, as [`say`].
 pub(crate) fn say_line(line: &str) -> anyhow::Result<()> {
     say(&format!("{line}\n"))
+}
+
+/// A value as JSON for people to read; `name` is what an error calls it.
+pub(crate) fn pretty_json(name: &str, value: &impl Serialize) -> anyhow::Result<String> {
+    let text = serde_json::to_string_pretty(value).with_context(|| format!("writing {name} as JSON"))?;
+    Ok(text + "\n")
+}
+
+/// Writes a value to stdout as a line of JSON; `name` is what an error calls it.
+pub(crate) fn say_json(name: &str, value: &impl Serialize) -> anyhow::Result<()> {
+    say_line(&serde_json::to_string(value).with_context(|| format!("writing {name} as JSON"))?)
+}
+
+/// Writes a file that the user asked for; `name` is what an error calls it.
+pub(crate) fn write_file(name: &str, file: &Path, text: &str) -> anyhow::Result<()> {
+    std::fs::write(file, text)
+        .map_err(|error| bad_input(format!("{name} cannot be written: {error}: {}", file.display())))
 }
 
 /// Writes a line to stderr, in one piece; a line that cannot be written is dropped, because there is no other place to

@@ -114,7 +114,7 @@ mod tests {
 
     /// The asks that open a planner and have it plan.
     fn open_and_plan(worker: u16, name: &str) -> [Ask; 2] {
-        let scenario = crate::demo().unwrap();
+        let scenario = crate::scenarios::demo().unwrap();
         let plan = preview(&scenario.mission, &scenario.sim.world.as_drawn(), scenario.seed);
         let choice = PlannerChoice { id: name.into(), ..scenario.mission.planner.clone() };
         let open = What::Open { choice, site: Arc::clone(&plan.site), restore: None };

@@ -3,9 +3,8 @@
 use crate::{
     accuracy::warn_of_clearance,
     failure::{BAD_INPUT, COMPLETE, bad_input},
-    output::{say, say_line, warn_line},
+    output::{pretty_json, say, say_line, warn_line},
 };
-use anyhow::Context;
 use mission::{ParamInfo, ParamKind, PlannerChoice, PlannerInfo, TaskConfig};
 use planner_host::{PluginDirs, Survey, SurveyedPlugin, WorkerCommand, parameter_problems, survey};
 use scenario::{Scenario, Settings};
@@ -87,11 +86,7 @@ pub(crate) fn choice_of<'a>(id: &str, known: &'a [PlannerInfo]) -> Result<&'a Pl
 /// `tankops planners`.
 pub(crate) fn list(plugins: &PluginDirs, json: bool) -> anyhow::Result<ExitCode> {
     let survey = survey(plugins, &WorkerCommand::default());
-    if json {
-        say_line(&serde_json::to_string_pretty(&survey).context("writing the list as JSON")?)?;
-    } else {
-        say(&listing(&survey, plugins))?;
-    }
+    say(&if json { pretty_json("the list", &survey)? } else { listing(&survey, plugins) })?;
     Ok(ExitCode::from(COMPLETE))
 }
 

@@ -8,23 +8,21 @@
 //!
 //! The journal is read tick by tick; memory does not grow with it.
 
-mod journal;
 mod planners;
 
 use crate::{
     cli::LogsArg,
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
     flight::Flight,
-    headless,
+    hosts::host,
     output::say_line,
-    run_folder,
 };
 use anyhow::Context;
-use journal::{RecordedTick, Ticks};
-use mission::{Event, EventKind, Order, RunOpened, event::JOURNAL_VERSION};
+use mission::{PlannerInfo, event::JOURNAL_VERSION};
 use planner_host::PluginDirs;
 use planners::{Asked, Replayed};
-use recording::JOURNAL_FILE;
+use recording::{Difference, JOURNAL_FILE, Ticks, sha256};
+use runs::{end_is_missing, find, journal_doubt};
 use scenario::Scenario;
 use std::{collections::BTreeMap, path::Path, process::ExitCode};
 
@@ -40,24 +38,9 @@ struct Findings {
     /// What the planners did when they were asked again; `None` if they were not.
     planners: Option<Asked>,
     /// The planners of the run, by id.
-    builds: BTreeMap<String, Build>,
+    builds: BTreeMap<String, PlannerInfo>,
     events: usize,
     last_tick: u64,
-}
-
-/// Which build of a planner flew the run.
-#[derive(Debug)]
-struct Build {
-    version: String,
-    sha256: String,
-}
-
-/// Where journal and computation part.
-#[derive(Debug)]
-struct Difference {
-    tick: u64,
-    recorded: String,
-    computed: String,
 }
 
 /// `tankops verify RUN`.
@@ -67,12 +50,12 @@ pub(crate) fn verify(
     plugins: &PluginDirs,
     from_journal: bool,
 ) -> anyhow::Result<ExitCode> {
-    let folder = run_folder::find(run, &logs.logs)?;
+    let folder = find(run, &logs.logs)?;
     let path = folder.join(JOURNAL_FILE);
     let mut findings = compare(&path, (!from_journal).then_some(plugins))?;
-    let sha256 = run_folder::sha256(&path).with_context(|| format!("reading {}", path.display()))?;
-    findings.doubt = run_folder::journal_doubt(&folder, Some(&sha256))
-        .or_else(|| findings.no_end.as_ref().and_then(|_| run_folder::end_is_missing(&folder)));
+    let sha256 = sha256(&path).with_context(|| format!("reading {}", path.display()))?;
+    findings.doubt = journal_doubt(&folder, Some(&sha256))
+        .or_else(|| findings.no_end.as_ref().and_then(|_| end_is_missing(&folder)));
     print_findings(&findings, plugins)?;
     Ok(ExitCode::from(if findings.are_equal() { COMPLETE } else { ENDED_OTHERWISE }))
 }
@@ -151,18 +134,18 @@ fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings
     let scenario = Scenario::parse(&opened.scenario_toml, "the scenario in the journal")
         .map_err(|errors| bad_input(errors.render()))?;
     let mut flight = Flight::prepare(&scenario, opened.mission.attended);
-    let mut replayed = Replayed::new(plugins.map(|plugins| headless::host(&scenario, plugins)));
+    let mut replayed = Replayed::new(plugins.map(|plugins| host(&scenario, plugins)));
     let mut findings = Findings::default();
     let mut head = vec![flight.opened()];
     while findings.difference.is_none()
-        && let Some(recorded) = ticks.next()?
+        && let Some(recorded) = ticks.next_tick()?
     {
         replayed.begin_tick(&recorded);
-        findings.builds.extend(recorded.builds());
+        findings.builds.extend(recorded.opened_planners().map(|info| (info.id.clone(), info.clone())));
         let mut computed = std::mem::take(&mut head);
         computed.extend(flight.tick(&recorded.orders(), &mut replayed));
-        findings.difference = difference(&recorded, &computed)?;
-        findings.events += recorded.to_compare().len();
+        findings.difference = recorded.difference(&computed).context("writing an event as JSON")?;
+        findings.events += recorded.n_compared();
         findings.last_tick = recorded.tick;
     }
     findings.no_end = ticks.no_end();
@@ -170,39 +153,10 @@ fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings
     Ok(findings)
 }
 
-/// The first line of a tick that is not the recorded one.
-fn difference(recorded: &RecordedTick, computed: &[Event]) -> anyhow::Result<Option<Difference>> {
-    let (tick, lines) = (recorded.tick, recorded.to_compare());
-    let end = if recorded.is_cut { lines.len() } else { lines.len().max(computed.len()) };
-    for index in 0..end {
-        let ours = computed.get(index).map(line).transpose()?;
-        let theirs = lines.get(index).map(|(raw, _)| raw.as_slice());
-        if ours.as_deref().map(str::as_bytes) != theirs {
-            let theirs = theirs.map(|raw| String::from_utf8_lossy(raw).into_owned());
-            let nothing = || "nothing more in this tick".to_owned();
-            return Ok(Some(Difference {
-                tick,
-                recorded: theirs.unwrap_or_else(nothing),
-                computed: ours.unwrap_or_else(nothing),
-            }));
-        }
-    }
-    Ok(None)
-}
-
-fn line(event: &Event) -> anyhow::Result<String> {
-    serde_json::to_string(event).context("writing an event as JSON")
-}
-
-/// How the run was opened; a journal that does not begin with it is refused.
-pub(crate) fn opened(events: &[Event]) -> anyhow::Result<&RunOpened> {
-    journal::opening(events.first())
-}
-
 /// Planners of the run whose plugin is another file now.
-fn planner_changes(builds: &BTreeMap<String, Build>, plugins: &PluginDirs) -> Vec<String> {
+fn planner_changes(builds: &BTreeMap<String, PlannerInfo>, plugins: &PluginDirs) -> Vec<String> {
     let now = crate::planners::found(plugins);
-    let changed = |(id, then): (&String, &Build)| match now.iter().find(|info| info.id == *id) {
+    let changed = |(id, then): (&String, &PlannerInfo)| match now.iter().find(|info| info.id == *id) {
         None => Some(format!("planner {id} of the run is not installed; --from-journal does without it")),
         Some(info) if info.sha256 != then.sha256 => Some(format!(
             "planner {id} is another build than in the run ({} then); --from-journal does without it",
@@ -211,25 +165,4 @@ fn planner_changes(builds: &BTreeMap<String, Build>, plugins: &PluginDirs) -> Ve
         Some(_) => None,
     };
     builds.iter().filter_map(changed).collect()
-}
-
-impl RecordedTick {
-    /// The orders of the tick, those that were refused too.
-    fn orders(&self) -> Vec<Order> {
-        let order = |(_, event): &(Vec<u8>, Event)| match &event.kind {
-            EventKind::Ordered { order } | EventKind::OrderRefused { order, .. } => Some(order.clone()),
-            _ => None,
-        };
-        self.lines.iter().filter_map(order).collect()
-    }
-
-    /// The planners that were opened in this tick.
-    fn builds(&self) -> impl Iterator<Item = (String, Build)> {
-        self.lines.iter().filter_map(|(_, event)| match &event.kind {
-            EventKind::PlannerChosen { info, .. } | EventKind::PlannerPrepared { info, .. } => {
-                Some((info.id.clone(), Build { version: info.version.clone(), sha256: info.sha256.clone() }))
-            }
-            _ => None,
-        })
-    }
 }

@@ -6,16 +6,13 @@
 //!
 //! Lengths are metres, angles radians, counter-clockwise from the x axis, in the tank frame.
 
-mod recorded;
+mod comparison;
 mod site;
 
-pub use recorded::RecordedAnswers;
+pub use comparison::Comparison;
 pub use site::{Site, SiteObstacle, SiteZone};
 
-use crate::{
-    config::PlannerChoice,
-    planner::{Fault, Parameters, PlannerInfo},
-};
+use crate::planner::{Fault, Parameters, PlannerChoice, PlannerInfo};
 use planner_api::{self as api, Command, Drawing, LogLevel, Plan, PoseEstimate, Reason, TetherLimits};
 use serde::{Deserialize, Serialize};
 use std::{fmt, sync::Arc};

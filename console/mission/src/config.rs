@@ -1,20 +1,10 @@
 //! What a mission is to do, and within which limits.
 
-use crate::{planner::Parameters, tether::TetherConfig};
+use crate::planner::PlannerChoice;
 use planner_api::{Limits, Motion, TetherLimits};
 use positioning::{Aggregation, Forecast, RangeNoise, SolverKind};
 use serde::{Deserialize, Serialize};
-use world::{Point, Pose, coverage::Tool};
-
-/// Which planner drives, with the parameters that differ from their defaults.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct PlannerChoice {
-    /// The planner's id.
-    pub id: String,
-    /// Values set by hand; the others take their defaults.
-    #[serde(default)]
-    pub parameters: Parameters,
-}
+use world::{Point, Pose, coverage::Tool, tether};
 
 /// What is to be achieved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -97,6 +87,28 @@ impl Default for Locating {
             repetitions: 20,
             needs_line_of_sight: false,
         }
+    }
+}
+
+/// A tether as scenarios describe it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TetherConfig {
+    /// Where the cable comes out: the start, a manhole, the place below a roof hatch; metres.
+    pub anchor: Point,
+    /// What the cable may do.
+    pub limits: tether::Limits,
+    /// Friction of cable on steel, for the pull; the shape of the cable does not depend on it.
+    pub friction: f64,
+    /// Whether plans fly that cannot be certified.
+    #[serde(default)]
+    pub allow_uncertified: bool,
+}
+
+impl TetherConfig {
+    /// The limits as planners read them.
+    pub fn as_request(&self) -> TetherLimits {
+        let tether::Limits { reel_length_m, wrap_max_rad, wrap_total_max_rad } = self.limits;
+        TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad }
     }
 }
 
@@ -189,9 +201,7 @@ impl MissionConfig {
     pub fn tether_limits(&self) -> Option<TetherLimits> {
         self.tether.as_ref().map(TetherConfig::as_request)
     }
-}
 
-impl MissionConfig {
     /// What a forecast of the accuracy has to know, for cells of this edge.
     pub fn forecast(&self, cell_m: f64) -> Forecast {
         let normal = RangeNoise::Gaussian { sigma_ratio: self.range_sigma_ratio };

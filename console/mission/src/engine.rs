@@ -7,7 +7,10 @@
 
 mod answers;
 mod asks;
+mod candidate;
 mod driving;
+mod floor;
+mod holding;
 mod orders;
 mod planning;
 mod rules;
@@ -19,17 +22,18 @@ mod workers;
 use crate::{
     chart::Chart,
     config::MissionConfig,
-    event::{Event, EventKind, HoldReason, Outcome, TetherAlarm},
+    event::{Event, EventKind, TetherAlarm},
     locate::Locator,
     order::Order,
-    standing::{Gait, Hold, Phase, PositionTrust, Resumes, Standing},
+    phase::Phase,
+    standing::{PositionTrust, Standing},
     task::Task,
     tether::Tether,
 };
+use floor::ScannedFloor;
 use planner_api::{Drive, Reason};
-use rules::{PlannerSeen, Rules, Seen, Verdict};
-use scanning::ScannedFloor;
-use seat::{Prepare, Seat};
+use rules::{PlannerSeen, Rules, Seen};
+use seat::Seat;
 use workers::Workers;
 use world::{Floor, Point, Readings, World};
 
@@ -223,81 +227,6 @@ impl Mission {
     /// Whether the robot stands because it has no plan, or no planner, yet.
     fn robot_waits(&self) -> bool {
         self.active.is_being_prepared() || self.candidate.as_ref().is_some_and(|seat| seat.robot_waits)
-    }
-
-    fn carry_out(&mut self, verdict: Verdict) {
-        match verdict {
-            Verdict::Hold(hold) => self.hold(hold),
-            Verdict::HoldAndReplan(hold) => {
-                self.active.want_plan(Reason::Blocked);
-                self.hold(hold);
-            }
-            Verdict::Resume => self.go_on(Gait::Steady),
-            Verdict::Replan(reason) => self.active.want_plan(reason),
-            Verdict::Done => self.end_done(),
-            Verdict::End(outcome, reason) => self.end(outcome, reason),
-        }
-    }
-
-    /// After a fault: the fallback takes over, if there is one; with nobody there to help the mission ends.
-    fn replace_failed_planner(&mut self) {
-        let Phase::Held(Hold { by, resumes }) = &self.phase else { return };
-        if *resumes == Resumes::ByFallback {
-            let active = self.active.choice.id.clone();
-            if let Some(choice) = self.rules.fallback.update(&self.config, &active) {
-                let mut seat = self.active.successor(choice, Reason::Swap { from: active });
-                seat.prepare = Prepare::Plan;
-                if let Some(candidate) = self.candidate.take() {
-                    self.reject(candidate, format!("the fallback planner {} takes over", seat.choice.id));
-                }
-                self.replace_active(seat);
-            }
-        } else if resumes.is_never() && !self.config.attended && self.active.prepare == Prepare::No {
-            let (HoldReason::PlannerFault { message }
-            | HoldReason::PlanRefused { message }
-            | HoldReason::PlannerSilent { message }) = by
-            else {
-                return;
-            };
-            let reason = format!("unattended hold: {message}");
-            self.end(Outcome::Aborted, reason);
-        }
-    }
-
-    /// Holds the robot. If only an order could let it move anyway, or for more than one command, only an order ends this
-    /// hold: the operator's HOLD outlives whatever happens to planners meanwhile.
-    fn hold(&mut self, Hold { by, resumes }: Hold) {
-        let only_by_order = match &self.phase {
-            Phase::Held(before) => before.resumes.is_never(),
-            Phase::Running(gait) => *gait == Gait::OneTick,
-            Phase::Waiting | Phase::Ended(_) => false,
-        };
-        let resumes = if only_by_order { Resumes::Never } else { resumes };
-        self.happened.push(EventKind::Held { by: by.clone(), resumes });
-        self.phase = Phase::Held(Hold { by, resumes });
-        self.active.outdate_step();
-        if let Some(unsent) = self.active.command.take() {
-            self.discard(unsent);
-        }
-    }
-
-    /// Lets the robot move again, for good or for one tick.
-    fn resume(&mut self, gait: Gait) {
-        self.active.prepare = Prepare::No;
-        self.go_on(gait);
-    }
-
-    fn go_on(&mut self, gait: Gait) {
-        self.rules.restart();
-        self.happened.push(EventKind::Resumed);
-        self.phase = Phase::Running(gait);
-    }
-
-    fn end(&mut self, outcome: Outcome, reason: String) {
-        self.happened.ending = Some(EventKind::Ended { outcome, reason });
-        self.phase = Phase::Ended(outcome);
-        self.drop_candidate();
-        self.close_active();
     }
 }
 

@@ -3,20 +3,22 @@
 //! Journal, recording, screen and report are folds over this one enum. Events are past tense, self-contained and
 //! carry neither wall-clock time nor anything else that would differ between two equal runs.
 
-mod hold_reason;
 mod log_line;
+mod recorded;
+mod severity;
 mod tether;
 
-pub use hold_reason::HoldReason;
-pub use log_line::{LogLine, Severity, late_text};
+pub use log_line::{LogLine, late_text};
+pub use recorded::RecordedAnswers;
+pub use severity::Severity;
 pub use tether::{TetherAlarm, TetherContact};
 
 use crate::{
     ask::AskId,
-    config::{MissionConfig, PlannerChoice},
+    config::MissionConfig,
     order::Order,
-    planner::{Fault, PlannerInfo},
-    standing::Resumes,
+    phase::{HoldReason, Outcome, Resumes},
+    planner::{Fault, PlannerChoice, PlannerInfo},
 };
 use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, PoseEstimate, Reason};
 use positioning::{Exclusion, Fix, FixError, Ranging};
@@ -381,36 +383,4 @@ pub struct RunOpened {
     /// How the plates of the floor lie, if the drawing shows them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plates: Option<world::PlateLayout>,
-}
-
-/// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Outcome {
-    /// The task is done.
-    Complete,
-    /// No progress, or the planner sees no way on.
-    Stuck,
-    /// The robot touched something.
-    Collision,
-    /// Time is up.
-    TimeLimit,
-    /// Back at the anchor with cable left out, or held by the cable with nobody there to help.
-    Entangled,
-    /// Ended by the operator, or because nobody was there to help.
-    Aborted,
-}
-
-impl Outcome {
-    /// The word that scripts and people read.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Complete => "complete",
-            Self::Stuck => "stuck",
-            Self::Collision => "collision",
-            Self::TimeLimit => "time_limit",
-            Self::Entangled => "entangled",
-            Self::Aborted => "aborted",
-        }
-    }
 }

@@ -4,7 +4,8 @@
 //! run reads [`Event`]s; nothing else leaves the engine but the commands to the robot.
 //!
 //! Read in this order: [`engine`] (the tick), [`event`] (what leaves it), [`order`] and [`config`] (what enters),
-//! [`standing`] (which orders are accepted when), [`ask`] (the port to planners).
+//! [`phase`] and [`standing`] (what the mission is doing, and which orders it accepts then), [`ask`] (the port to
+//! planners).
 
 pub mod ask;
 mod chart;
@@ -14,6 +15,7 @@ pub mod engine;
 pub mod event;
 mod locate;
 pub mod order;
+pub mod phase;
 pub mod planner;
 mod preview;
 pub mod standing;
@@ -21,11 +23,13 @@ mod task;
 pub mod tether;
 
 pub use ask::{Answer, Ask, AskId, Awaits, Given, Said, What, WorkerId};
-pub use config::{Locating, MissionConfig, PlannerChoice, ScanConfig, TaskConfig};
+pub use config::{Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
 pub use engine::{Input, Mission, Step};
-pub use event::{Event, EventKind, HoldReason, LogLine, Outcome, RunOpened, Severity};
+pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
 pub use order::Order;
-pub use planner::{Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo};
+pub use phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes};
+pub use planner::{
+    Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
+};
 pub use preview::preview;
-pub use standing::{FoldedStanding, Gait, Hold, Phase, PositionTrust, Refusal, Resumes, Standing};
-pub use tether::TetherConfig;
+pub use standing::{FoldedStanding, PositionTrust, Refusal, Standing};

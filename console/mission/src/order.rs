@@ -1,6 +1,6 @@
 //! The operator's orders; they enter at the top of the next tick.
 
-use crate::{config::PlannerChoice, planner::ParamValue};
+use crate::planner::{ParamValue, PlannerChoice};
 use serde::{Deserialize, Serialize};
 
 /// One order.

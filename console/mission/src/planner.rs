@@ -1,6 +1,5 @@
 //! Planners as the mission knows them: who they are, what parameters they take, how they fail.
 
-use crate::event::Severity;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -32,6 +31,16 @@ impl fmt::Display for ParamValue {
 
 /// Parameter values by key, in a fixed order.
 pub type Parameters = BTreeMap<String, ParamValue>;
+
+/// Which planner drives, with the parameters that differ from their defaults.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct PlannerChoice {
+    /// The planner's id.
+    pub id: String,
+    /// Values set by hand; the others take their defaults.
+    #[serde(default)]
+    pub parameters: Parameters,
+}
 
 /// What values a parameter takes; the owned form of [`planner_api::Kind`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -116,6 +125,18 @@ pub struct PlannerInfo {
     pub parameters: Vec<ParamInfo>,
 }
 
+impl PlannerInfo {
+    /// Why it cannot fly a mission over a whole floor, if it cannot; the sentence reads on after the planner's name.
+    pub fn why_no_coverage(&self) -> Option<&'static str> {
+        (!self.covers).then_some("does not support coverage missions")
+    }
+
+    /// Whether it has this parameter and lets it change while the robot moves.
+    pub fn has_live(&self, key: &str) -> bool {
+        self.parameters.iter().any(|param| param.key == key && param.live)
+    }
+}
+
 /// During which call a planner failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -168,6 +189,14 @@ pub enum Cause {
     Quarantined,
 }
 
+impl Cause {
+    /// Whether the process failed from outside the planner's own logic, or by the clock: computing the run again does
+    /// not show it again. After such a fault the process is gone.
+    pub fn is_external(self) -> bool {
+        matches!(self, Self::Died | Self::Hung | Self::Late | Self::Starved)
+    }
+}
+
 /// A planner's failure, worded so that an operator knows what happened.
 ///
 /// `message` names planner, cause and step, and carries no figure that differs between two equal runs (no
@@ -189,35 +218,4 @@ pub struct Fault {
     /// SHA-256 of the plugin's file, hexadecimal, as far as it is known by then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plugin_sha256: Option<String>,
-}
-
-impl PlannerInfo {
-    /// Why it cannot fly a mission over a whole floor, if it cannot; the sentence reads on after the planner's name.
-    pub fn why_no_coverage(&self) -> Option<&'static str> {
-        (!self.covers).then_some("does not support coverage missions")
-    }
-
-    /// Whether it has this parameter and lets it change while the robot moves.
-    pub fn has_live(&self, key: &str) -> bool {
-        self.parameters.iter().any(|param| param.key == key && param.live)
-    }
-}
-
-impl Cause {
-    /// Whether the process failed from outside the planner's own logic, or by the clock: computing the run again does
-    /// not show it again. After such a fault the process is gone.
-    pub fn is_external(self) -> bool {
-        matches!(self, Self::Died | Self::Hung | Self::Late | Self::Starved)
-    }
-}
-
-impl Fault {
-    /// How much it asks of the operator: what came too late may be the machine's doing, and what was refused has not
-    /// driven the robot.
-    pub fn severity(&self) -> Severity {
-        match self.cause {
-            Cause::Late | Cause::Starved | Cause::Refused => Severity::Warn,
-            _ => Severity::Crit,
-        }
-    }
 }

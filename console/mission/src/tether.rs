@@ -10,69 +10,35 @@
 //! An obstacle found later may lie across the taut line: on which side the cable passes it is then decided by the way
 //! driven, which is kept and driven again in thought among all obstacles known now.
 
+mod alarms;
+mod certifying;
+mod driven;
 mod payout;
 
+pub use certifying::certify_from_start;
+pub(crate) use certifying::{ends_at_anchor, return_path_ends};
+
 use crate::{
-    config::MissionConfig,
+    config::TetherConfig,
     event::{EventKind, TetherAlarm, TetherContact},
 };
+use alarms::Alarms;
+use certifying::certified;
+use driven::Driven;
 use payout::{Explained, Payout};
-use planner_api::{LegTag, Plan, TetherLimits};
-use serde::{Deserialize, Serialize};
-use std::{collections::BTreeMap, sync::Arc};
+use planner_api::Plan;
+use std::sync::Arc;
 use world::{
     ObstacleMap, Point, Shape, World,
-    tether::{Bearing, Cable, Case, Certificate, Ground, Limits, TetherError, capstan_factor, certify},
+    tether::{Bearing, Cable, Certificate, Ground, TetherError, capstan_factor},
 };
 
-/// Distance between the points of the way driven that are kept, metres.
-const KEPT_M: f64 = 0.05;
-/// Coming this near to the point before the last one undoes the last step, metres: no obstacle stands in so small a loop of
-/// the hull.
-const UNDONE_M: f64 = 0.08;
-/// Share of a limit from which the operator is warned.
-const NEAR: f64 = 0.8;
-/// Share of a limit below which an alarm is over.
-const EASED: f64 = 0.75;
-/// Distance from the anchor within which a task ends at it, metres.
-const AT_ANCHOR_M: f64 = 0.3;
 /// Room that a way home may lack beside what is on the chart, metres: found obstacles are placed about this well.
 const CHART_M: f64 = 0.05;
 /// The hull has to find no way home for this long before that is an alarm, seconds.
 const NO_HOME_S: f64 = 3.0;
 /// Cable beyond the straight line to the robot that counts as left out at the end, metres.
 const LEFT_M: f64 = 0.3;
-
-/// A tether as scenarios describe it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct TetherConfig {
-    /// Where the cable comes out: the start, a manhole, the place below a roof hatch; metres.
-    pub anchor: Point,
-    /// What the cable may do.
-    pub limits: Limits,
-    /// Friction of cable on steel, for the pull; the shape of the cable does not depend on it.
-    pub friction: f64,
-    /// Whether plans fly that cannot be certified.
-    #[serde(default)]
-    pub allow_uncertified: bool,
-}
-
-impl TetherConfig {
-    /// The limits as planners read them.
-    pub fn as_request(&self) -> TetherLimits {
-        let Limits { reel_length_m, wrap_max_rad, wrap_total_max_rad } = self.limits;
-        TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad }
-    }
-}
-
-/// How far an alarm has gone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
-enum Level {
-    #[default]
-    Calm,
-    Near,
-    Reached,
-}
 
 /// The tether under way.
 pub struct Tether {
@@ -84,8 +50,8 @@ pub struct Tether {
     /// For how long there has been no way home, seconds.
     without_home_s: f64,
     payout: Payout,
-    driven: Vec<Point>,
-    levels: BTreeMap<&'static str, Level>,
+    driven: Driven,
+    alarms: Alarms,
 }
 
 impl Tether {
@@ -104,8 +70,8 @@ impl Tether {
             roomy: Arc::new(Ground::grown(&world.boundary, &shapes, home_room_m(hull_m))),
             without_home_s: 0.0,
             payout: Payout::default(),
-            driven: vec![start],
-            levels: BTreeMap::new(),
+            driven: Driven::new(start),
+            alarms: Alarms::default(),
         })
     }
 
@@ -125,7 +91,7 @@ impl Tether {
         let ground = Arc::new(Ground::new(&world.boundary, &shapes));
         // An obstacle on top of the anchor is an error of the estimate: the cable stays as it was.
         if let Ok(mut cable) = Cable::on(self.config.anchor, ground) {
-            cable.drag_along(&self.driven);
+            cable.drag_along(self.driven.points());
             cable.drag_to(self.cable.tip());
             self.cable = cable;
             self.roomy = Arc::new(Ground::grown(&world.boundary, &shapes, home_room_m(self.hull_m)));
@@ -134,28 +100,14 @@ impl Tether {
 
     /// Drags the cable to where the robot is believed to be.
     pub fn drag_to(&mut self, here: Point) {
-        self.keep(here);
+        self.driven.keep(here);
         self.cable.drag_to(here);
-    }
-
-    /// Keeps the way driven. A step back over the last one undoes it: what is left is the way without its there-and-back.
-    fn keep(&mut self, here: Point) {
-        let far_from =
-            |point: Option<&Point>, apart_m: f64| point.is_none_or(|p| (here - p).norm() >= apart_m);
-        if far_from(self.driven.last(), KEPT_M) {
-            let before = self.driven.len().checked_sub(2).and_then(|k| self.driven.get(k));
-            if far_from(before, UNDONE_M) {
-                self.driven.push(here);
-            } else {
-                self.driven.pop();
-            }
-        }
     }
 
     /// Takes in what the reel has paid out, metres, after some time; `error_m` is the error of the position by which the
     /// cable lies, metres, `None` while that position is lost.
     pub fn measure(&mut self, paid_out_m: Option<f64>, error_m: Option<f64>, passed_s: f64) {
-        let (length_m, points) = (self.cable.length_m(), self.driven.len());
+        let (length_m, points) = (self.cable.length_m(), self.driven.points().len());
         let explained = error_m.map(|error_m| Explained { length_m, error_m, points });
         self.payout.take(paid_out_m, explained, self.config.limits.reel_length_m, passed_s);
     }
@@ -169,8 +121,9 @@ impl Tether {
     /// the map explained all cable, and from there home along it with some room for the middle of the hull, metres.
     /// What the cable had caught on lies beside that second piece.
     pub fn way_out(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
-        let first = self.payout.points_to_go_back_to(self.driven.len());
-        let mut way: Vec<Point> = self.driven[first..].iter().rev().copied().collect();
+        let driven = self.driven.points();
+        let first = self.payout.points_to_go_back_to(driven.len());
+        let mut way: Vec<Point> = driven[first..].iter().rev().copied().collect();
         let mut freed = self.cable.clone();
         freed.drag_along(&way);
         way.extend(way_along(&freed, world, room_m)?);
@@ -196,8 +149,8 @@ impl Tether {
             return_length_m,
             line: self.cable.taut_line(),
         }];
-        for (alarm, share) in self.alarms(world) {
-            events.extend(self.check(alarm, share));
+        for (alarm, share) in self.alarms_with_shares(world) {
+            events.extend(self.alarms.check(alarm, share));
         }
         events
     }
@@ -207,7 +160,8 @@ impl Tether {
         self.without_home_s == 0.0
     }
 
-    fn alarms(&self, world: &World) -> [(TetherAlarm, f64); 5] {
+    /// What may be wrong, and how far it has gone as a share of its limit.
+    fn alarms_with_shares(&self, world: &World) -> [(TetherAlarm, f64); 5] {
         let limits = self.config.limits;
         let contacts = self.cable.contacts();
         let most = contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()));
@@ -224,29 +178,6 @@ impl Tether {
             // There is no such thing as nearly caught.
             (TetherAlarm::Snag { paid_out_m: out_m, explained_m }, if self.is_snagged() { 2.0 } else { 0.0 }),
         ]
-    }
-
-    fn check(&mut self, alarm: TetherAlarm, share: f64) -> Option<EventKind> {
-        let level = self.levels.entry(alarm.word()).or_default();
-        let now = match share {
-            share if share > 1.0 => Level::Reached,
-            share if share > NEAR => Level::Near,
-            _ => Level::Calm,
-        };
-        if now > *level {
-            *level = now;
-            return Some(EventKind::TetherAlarmRaised { alarm, reached: now == Level::Reached });
-        }
-        if *level == Level::Reached && share <= 1.0 && share > EASED {
-            // Raised again if the limit is passed again.
-            *level = Level::Near;
-            return Some(EventKind::TetherAlarmRaised { alarm, reached: false });
-        }
-        let eased = *level > Level::Calm && share <= EASED;
-        eased.then(|| {
-            *level = Level::Calm;
-            EventKind::TetherAlarmCleared { alarm }
-        })
     }
 
     fn contacts(&self, world: &World) -> Vec<TetherContact> {
@@ -303,57 +234,6 @@ impl Tether {
         let names = on.first().map_or_else(String::new, |first| format!(", hooked around {first}"));
         (left_m > LEFT_M).then(|| format!("{left_m:.1} m of tether still out{names}"))
     }
-}
-
-/// Judges a plan of a whole mission before anything has moved, on the drawing.
-pub fn certify_from_start(
-    tether: &TetherConfig,
-    config: &MissionConfig,
-    path: &[Point],
-    cuts: &[Vec<Point>],
-    drawing: &World,
-) -> Certificate {
-    let returns = ends_at_anchor(tether, config);
-    certified(tether, config.limits.radius_m, None, path, cuts, drawing, returns)
-}
-
-/// Index of the point of a plan's path at which a way home along the cable ends; 0 without one. A way that ends away
-/// from the anchor is none, whatever the planner calls it.
-pub(crate) fn return_path_ends(plan: &Plan, anchor: Point) -> usize {
-    let is_home = |last: usize| plan.path.get(last).is_some_and(|end| (end - anchor).norm() <= AT_ANCHOR_M);
-    let first = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract && leg.first == 0);
-    first.map(|leg| leg.last).filter(|last| is_home(*last)).unwrap_or(0)
-}
-
-/// Whether the task ends where the tether is made fast.
-pub(crate) fn ends_at_anchor(tether: &TetherConfig, config: &MissionConfig) -> bool {
-    config.task.end().is_some_and(|end| (end - tether.anchor).norm() <= AT_ANCHOR_M)
-}
-
-fn certified(
-    config: &TetherConfig,
-    hull_m: f64,
-    cable: Option<&Cable>,
-    path: &[Point],
-    cuts: &[Vec<Point>],
-    world: &World,
-    returns: bool,
-) -> Certificate {
-    let case = Case {
-        path,
-        anchor: config.anchor,
-        cable,
-        boundary: &world.boundary,
-        obstacles: &world.obstacles,
-        room_m: hull_m,
-        limits: config.limits,
-        returns,
-        cuts,
-    };
-    if path.is_empty() {
-        return Certificate::refused("the planner returned no usable path".into());
-    }
-    certify(&case).unwrap_or_else(|error| Certificate::refused(error.to_string()))
 }
 
 /// The way along a cable to its anchor with some room for the middle of the hull, metres.

@@ -13,12 +13,10 @@ pub(crate) use planner::Wanted;
 
 use crate::OnProgress;
 use crate::discovery::PluginDirs;
-use crate::parameters;
 use crate::stats::{Durations, HostStats};
 use crate::supervisor::{Failure, Ready, WakeReceiver, Waker, Worker, wait};
 use find::Catalog;
-use mission::planner::{Cause, During, Fault, Parameters, PlannerInfo};
-use mission::{Answer, Ask, AskId, Given, Said, What, WorkerId};
+use mission::{Answer, Ask, AskId, Fault, Given, Said, What, WorkerId};
 use planner::{Asked, Doing, Outcome, Planner};
 use saved::SavedStates;
 use std::collections::VecDeque;
@@ -277,10 +275,4 @@ impl Drop for Host {
         let asked = self.planners.iter_mut().filter_map(|planner| planner.worker.as_mut());
         asked.chain(&mut self.leaving).for_each(Worker::kill);
     }
-}
-
-/// Whether the values set by hand are right for a planner, as a fault.
-fn numbers(info: &PlannerInfo, parameters: &Parameters) -> Result<Vec<(String, f64)>, Fault> {
-    parameters::numbers(info, parameters)
-        .map_err(|message| fault::new(&info.id, During::Configure, Cause::Refused, message))
 }

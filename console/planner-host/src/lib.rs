@@ -6,7 +6,7 @@
 //!
 //! [`Host`] answers what the mission asks and waits only where the caller requests it; [`BlockingHost`] is for callers with
 //! nothing else to do than wait; [`survey`] lists what was found; [`worker_main`] is what the hidden
-//! command `worker` runs. Planners run on Unix systems; elsewhere every choice is refused with a sentence.
+//! command `worker` runs. All of it needs a Unix system.
 //!
 //! Frames and units are those of `planner_api`.
 
@@ -18,7 +18,6 @@ pub mod discovery;
 #[cfg(test)]
 mod fixture;
 mod host;
-#[cfg(unix)]
 mod loader;
 mod parameters;
 mod progress;
@@ -27,7 +26,6 @@ mod stats;
 mod supervisor;
 mod survey;
 mod wire;
-#[cfg(unix)]
 mod worker;
 
 pub use blocking::{BlockingHost, Reply};
@@ -38,11 +36,4 @@ pub use progress::{OnProgress, Progress};
 pub use stats::{CallStats, HostStats};
 pub use supervisor::{Waker, WorkerCommand};
 pub use survey::{Survey, SurveyedPlugin, check_plugin, survey};
-#[cfg(unix)]
 pub use worker::worker_main;
-
-/// Planners need processes and sockets that this system does not have.
-#[cfg(not(unix))]
-pub fn worker_main() -> std::process::ExitCode {
-    std::process::ExitCode::from(2)
-}

@@ -6,6 +6,7 @@ mod sink;
 mod stage;
 
 pub(crate) use instance::Instance;
+use sink::{LONGEST_TEXT, plain};
 pub(crate) use sink::{Sink, Watch};
 
 use crate::discovery::sha256_hex;
@@ -19,8 +20,6 @@ use std::path::Path;
 
 /// Most planners in a library.
 const MOST_PLANNERS: u32 = 64;
-/// Longest text of a table, bytes.
-const LONGEST_TEXT: usize = 4096;
 
 /// A library that was loaded; it stays loaded until the process ends.
 pub(crate) struct Plugin {
@@ -115,7 +114,7 @@ fn read_table(entry: &abi::Entry, index: usize) -> Result<Table, String> {
         check_size(&format!("the table of planner number {index}"), size, size_of::<abi::Planner>())?;
         abi::copy_sized(table)
     };
-    let text = |raw| sink::plain(raw, LONGEST_TEXT);
+    let text = |raw| plain(raw, LONGEST_TEXT);
     let id = text(raw.id);
     if !planner_api::export::is_id(&id) {
         return Err(format!("`{id}` is no planner id; ids are 1 to 32 of a-z, 0-9, _ and -"));

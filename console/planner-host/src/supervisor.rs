@@ -2,36 +2,22 @@
 //!
 //! Nothing here waits but [`wait`], for all workers at once.
 
-#[cfg(unix)]
 mod clock;
-#[cfg(unix)]
 mod ending;
-#[cfg(unix)]
 mod load;
-#[cfg(unix)]
 mod poller;
-#[cfg(unix)]
 mod process;
-#[cfg(not(unix))]
-mod unsupported;
-#[cfg(unix)]
+mod ready;
 mod waker;
-#[cfg(unix)]
 mod worker;
 
-#[cfg(unix)]
 pub use waker::Waker;
-#[cfg(unix)]
 pub(crate) use {
-    poller::{Ready, wait, wait_for_one},
+    poller::{wait, wait_for_one},
+    ready::Ready,
     waker::WakeReceiver,
     worker::Worker,
 };
-
-#[cfg(not(unix))]
-pub use unsupported::Waker;
-#[cfg(not(unix))]
-pub(crate) use unsupported::{Ready, WakeReceiver, Worker, wait, wait_for_one};
 
 use crate::wire::answer::{BAD_OUTPUT, Refusal};
 use planner_api::Code;
@@ -65,13 +51,8 @@ impl Default for WorkerCommand {
     }
 }
 
-/// A worker that is asked to shut down is given this long to drop its planner cleanly.
-#[cfg(unix)]
-pub(crate) const SHUT_DOWN_WITHIN: Duration = Duration::from_millis(100);
-
 /// The deadline that a planner sees. It is earlier than the enforced one, so that a planner that watches its time still
 /// answers before it is killed.
-#[cfg(unix)]
 fn soft(deadline: Duration) -> Duration {
     deadline * 9 / 10
 }
@@ -106,7 +87,6 @@ pub(crate) enum Failure {
 
 impl Failure {
     /// Whether the planner cannot be asked again after this, or ran out of time: then its process ends.
-    #[cfg(unix)]
     fn ends_the_process(&self) -> bool {
         let Self::Planner(refusal) = self else { return false };
         match Code::from_number(refusal.code) {

@@ -9,14 +9,19 @@ pub(crate) mod answer;
 pub(crate) mod body;
 #[cfg(test)]
 mod damaged;
-#[cfg(unix)]
 pub(crate) mod frame;
 pub(crate) mod input;
+
+use std::time::Duration;
 
 /// Raised whenever a frame changes its form: console and worker must be of one build.
 pub(crate) const VERSION: u32 = 3;
 /// Longest frame, bytes.
 pub(crate) const LONGEST: usize = 16 << 20;
+/// Exit code of a worker that cannot talk to its console any more.
+pub(crate) const CHANNEL_LOST: u8 = 70;
+/// A worker that is asked to shut down is given this long to drop its planner cleanly.
+pub(crate) const SHUT_DOWN_WITHIN: Duration = Duration::from_millis(100);
 
 /// Kinds of frames.
 pub(crate) mod kind {

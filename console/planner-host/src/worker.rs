@@ -6,16 +6,13 @@ mod progress_reporter;
 mod session;
 
 use crate::wire::frame::{Incoming, Received};
-use crate::wire::{answer::BAD_OUTPUT, answer::Refusal, body::Writer, kind};
+use crate::wire::{CHANNEL_LOST, answer::BAD_OUTPUT, answer::Refusal, body::Writer, kind};
 use deadline::Deadline;
 use session::{Session, Trouble};
 use std::io::Write;
 use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
 use std::process::ExitCode;
-
-/// Exit code of a worker that cannot talk to its console any more.
-pub(crate) const CHANNEL_LOST: u8 = 70;
 
 /// Runs a worker: takes the socket that it was given as standard input and answers until the console hangs up.
 pub fn worker_main() -> ExitCode {

@@ -4,10 +4,16 @@ use crate::{
     aggregate::{RANGE_LIMIT_M, is_usable},
     fix::{FixError, Ranging},
 };
+use nalgebra::Rotation2;
+use std::f64::consts::TAU;
 use world::{Point, Station, StationId, Vector};
 
 /// Distances below this count as this, metres: the direction is undefined this close to a station.
 const NEAREST_M: f64 = 1e-3;
+/// A range is short if it is less than this share of the longest one.
+const SHORT_RANGE: f64 = 0.2;
+/// Starts tried around a station that is close by.
+const CIRCLE_STARTS: u32 = 36;
 
 /// A range and where it was measured from.
 #[derive(Debug, Clone, Copy)]
@@ -81,4 +87,15 @@ fn anchor(ranging: &Ranging, stations: &[Station]) -> Result<Anchor, FixError> {
         return Err(FixError::UnknownStation { station });
     }
     Ok(Anchor { station, at, range_m, sigma_m })
+}
+
+/// Places on the range circle of a station that is close by; none if there is no such station.
+pub(crate) fn on_near_circle(anchors: &[Anchor]) -> impl Iterator<Item = Point> {
+    let longest_m = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
+    let nearest = anchors.iter().min_by(|a, b| a.range_m.total_cmp(&b.range_m)).copied();
+    nearest.filter(|n| n.range_m < SHORT_RANGE * longest_m).into_iter().flat_map(|nearest| {
+        (0..CIRCLE_STARTS)
+            .map(|k| Rotation2::new(TAU * f64::from(k) / f64::from(CIRCLE_STARTS)) * Vector::x())
+            .map(move |direction| nearest.at + direction * nearest.range_m)
+    })
 }

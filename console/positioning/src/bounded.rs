@@ -4,7 +4,7 @@ mod region;
 
 use crate::{
     anchor::{Anchor, anchored},
-    fix::{Fix, FixError, PositionSolver, Ranging},
+    fix::{Fix, FixError, PositionSolver, Prior, Ranging},
     linear::conditioning,
     nonlinear::solve_anchors,
     quality::assess,
@@ -32,12 +32,7 @@ pub struct Bounded {
 }
 
 impl PositionSolver for Bounded {
-    fn solve(
-        &self,
-        ranges: &[Ranging],
-        stations: &[Station],
-        prior: Option<(Point, Matrix2<f64>)>,
-    ) -> Result<Fix, FixError> {
+    fn solve(&self, ranges: &[Ranging], stations: &[Station], prior: Option<Prior>) -> Result<Fix, FixError> {
         let anchors = anchored(ranges, stations)?;
         let annuli = anchors.iter().map(|a| self.annulus(a, ranges)).collect::<Option<Vec<_>>>();
         let empty = FixError::EmptySet { ratio: self.reported_ratio() };

@@ -2,7 +2,7 @@
 
 use crate::{
     anchor::{Anchor, anchored},
-    fix::{FixError, Ranging},
+    fix::{FixError, Prior, Ranging},
     nonlinear::solve_anchors,
     quality::{ALARM_Z, chi_squared_quantile},
 };
@@ -114,11 +114,7 @@ impl Calibration {
     ///
     /// # Errors
     /// See [`FixError`]: a cycle without a position contributes nothing.
-    pub fn take(
-        &mut self,
-        ranges: &[Ranging],
-        near: Option<(Point, Matrix2<f64>)>,
-    ) -> Result<bool, FixError> {
+    pub fn take(&mut self, ranges: &[Ranging], near: Option<Prior>) -> Result<bool, FixError> {
         let anchors = anchored(ranges, &self.stations())?;
         if anchors.len() < 4 {
             return Ok(false);
@@ -187,11 +183,7 @@ struct Cycle {
 
 impl Cycle {
     /// The cycle at the given scale; `None` if it contradicts itself even with its scale free.
-    fn fitted(
-        anchors: &[Anchor],
-        scale: f64,
-        near: Option<(Point, Matrix2<f64>)>,
-    ) -> Result<Option<Self>, FixError> {
+    fn fitted(anchors: &[Anchor], scale: f64, near: Option<Prior>) -> Result<Option<Self>, FixError> {
         let shrunk: Vec<Anchor> = anchors
             .iter()
             .map(|a| Anchor { range_m: a.range_m / (1.0 + scale), sigma_m: a.sigma_m / (1.0 + scale), ..*a })

@@ -1,12 +1,11 @@
 //! The position that most stations agree on.
 
 use crate::{
-    anchor::{Anchor, anchored},
-    fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Ranging},
+    anchor::{Anchor, anchored, on_near_circle},
+    fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Prior, Ranging},
     linear::solve_linear,
-    nonlinear::{Slope, on_near_circle, solve_anchors},
+    nonlinear::{Slope, solve_anchors},
 };
-use nalgebra::Matrix2;
 use world::{Point, Station};
 
 /// A residual of more sigmas than this speaks for a wrong range.
@@ -45,12 +44,7 @@ pub struct Consensus {
 }
 
 impl PositionSolver for Consensus {
-    fn solve(
-        &self,
-        ranges: &[Ranging],
-        stations: &[Station],
-        prior: Option<(Point, Matrix2<f64>)>,
-    ) -> Result<Fix, FixError> {
+    fn solve(&self, ranges: &[Ranging], stations: &[Station], prior: Option<Prior>) -> Result<Fix, FixError> {
         let anchors = anchored(ranges, stations)?;
         if anchors.len() < NEEDED {
             return solve_anchors(&anchors, prior);
@@ -80,7 +74,7 @@ impl Answer {
 
 impl Consensus {
     /// The best answers, the best first.
-    fn answers(self, anchors: &[Anchor], prior: Option<(Point, Matrix2<f64>)>) -> Vec<Answer> {
+    fn answers(self, anchors: &[Anchor], prior: Option<Prior>) -> Vec<Answer> {
         let mut tries: Vec<(f64, Point)> = subsets(anchors.len())
             .filter_map(|[i, j, k]| fit_three(&[anchors[i], anchors[j], anchors[k]]))
             .chain(on_near_circle(anchors))
@@ -101,12 +95,7 @@ impl Consensus {
     }
 
     /// Fits to the agreeing stations until they no longer change.
-    fn refined(
-        self,
-        anchors: &[Anchor],
-        start: Point,
-        prior: Option<(Point, Matrix2<f64>)>,
-    ) -> Option<Answer> {
+    fn refined(self, anchors: &[Anchor], start: Point, prior: Option<Prior>) -> Option<Answer> {
         let mut agreeing = self.agreeing(anchors, start);
         let mut answer = None;
         for _ in 0..ROUNDS {

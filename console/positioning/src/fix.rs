@@ -210,19 +210,16 @@ pub enum FixError {
     },
 }
 
+/// A position that is already believed, metres, with its covariance, square metres.
+pub type Prior = (Point, Matrix2<f64>);
+
 /// A way from ranges to a fix.
 pub trait PositionSolver {
     /// Computes the position from the ranges.
     ///
-    /// `prior` is a position with its covariance that is already believed; solvers use it to choose between mirror
-    /// solutions, and with fewer than three stations need it.
+    /// Solvers use the prior to choose between mirror solutions, and with fewer than three stations need it.
     ///
     /// # Errors
     /// See [`FixError`]; never panics and never returns a number that is not finite.
-    fn solve(
-        &self,
-        ranges: &[Ranging],
-        stations: &[Station],
-        prior: Option<(Point, Matrix2<f64>)>,
-    ) -> Result<Fix, FixError>;
+    fn solve(&self, ranges: &[Ranging], stations: &[Station], prior: Option<Prior>) -> Result<Fix, FixError>;
 }

@@ -37,7 +37,7 @@ pub use bounded::Bounded;
 pub use calibration::{Calibration, Unknowns};
 pub use consensus::{Consensus, WrongRanges};
 pub use ekf::{Ekf, MotionNoise};
-pub use fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Ranging, Residual};
+pub use fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Prior, Ranging, Residual};
 pub use fixed_lag::FixedLag;
 pub use linear::LinearLs;
 pub use noise::RangeNoise;

@@ -2,7 +2,7 @@
 
 use crate::{
     anchor::{Anchor, anchored},
-    fix::{Fix, FixError, PositionSolver, Ranging},
+    fix::{Fix, FixError, PositionSolver, Prior, Ranging},
     quality::assess,
 };
 use nalgebra::Matrix2;
@@ -26,7 +26,7 @@ impl PositionSolver for LinearLs {
         &self,
         ranges: &[Ranging],
         stations: &[Station],
-        _prior: Option<(Point, Matrix2<f64>)>,
+        _prior: Option<Prior>,
     ) -> Result<Fix, FixError> {
         let anchors = anchored(ranges, stations)?;
         let solution = solve_linear(&anchors)?;

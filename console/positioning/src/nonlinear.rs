@@ -1,14 +1,13 @@
 //! Weighted nonlinear least squares on the ranges themselves.
 
 use crate::{
-    anchor::{Anchor, anchored},
-    fix::{Fix, FixError, PositionSolver, Ranging},
+    anchor::{Anchor, anchored, on_near_circle},
+    fix::{Fix, FixError, PositionSolver, Prior, Ranging},
     linear::{conditioning, solve_linear},
     pair::solve_pair,
     quality::{assess, inverse_of},
 };
-use nalgebra::{Matrix2, Rotation2};
-use std::f64::consts::TAU;
+use nalgebra::Matrix2;
 use world::{Point, Station, Vector};
 
 /// Steps tried before giving up; five are usual.
@@ -17,10 +16,6 @@ const MAX_ITERATIONS: usize = 60;
 const STEP_TOLERANCE: f64 = 1e-9;
 /// Stations nearer to a line than this condition number leave a second position that has to be looked at.
 const MIRROR_CONDITIONING: f64 = 5.0;
-/// A range is short if it is less than this share of the longest one.
-const SHORT_RANGE: f64 = 0.2;
-/// Starts tried around a station that is close by.
-const CIRCLE_STARTS: u32 = 36;
 /// A second position fits nearly as well if its chi-squared is worse by less than this.
 const MIRROR_MARGIN: f64 = 9.0;
 
@@ -37,21 +32,13 @@ const MIRROR_MARGIN: f64 = 9.0;
 pub struct Nls;
 
 impl PositionSolver for Nls {
-    fn solve(
-        &self,
-        ranges: &[Ranging],
-        stations: &[Station],
-        prior: Option<(Point, Matrix2<f64>)>,
-    ) -> Result<Fix, FixError> {
+    fn solve(&self, ranges: &[Ranging], stations: &[Station], prior: Option<Prior>) -> Result<Fix, FixError> {
         solve_anchors(&anchored(ranges, stations)?, prior)
     }
 }
 
 /// The least squares fit to anchors; two of them leave both crossings of their circles, and a prior chooses.
-pub(crate) fn solve_anchors(
-    anchors: &[Anchor],
-    prior: Option<(Point, Matrix2<f64>)>,
-) -> Result<Fix, FixError> {
+pub(crate) fn solve_anchors(anchors: &[Anchor], prior: Option<Prior>) -> Result<Fix, FixError> {
     let prior = prior.filter(|(at, covariance)| at.iter().chain(covariance.iter()).all(|c| c.is_finite()));
     match anchors {
         [first, second] => solve_pair(first, second, prior.map(|(near, _)| near)),
@@ -60,7 +47,7 @@ pub(crate) fn solve_anchors(
     }
 }
 
-fn solve_many(anchors: &[Anchor], prior: Option<(Point, Matrix2<f64>)>) -> Result<Fix, FixError> {
+fn solve_many(anchors: &[Anchor], prior: Option<Prior>) -> Result<Fix, FixError> {
     let start = match (solve_linear(anchors), prior) {
         (Ok(linear), _) => linear.position,
         (Err(FixError::Collinear { .. }), Some((near, _))) => near,
@@ -86,17 +73,6 @@ fn around_the_nearest(anchors: &[Anchor], start: Point) -> Point {
         .unwrap_or(start)
 }
 
-/// Places on the range circle of a station that is close by; none if there is no such station.
-pub(crate) fn on_near_circle(anchors: &[Anchor]) -> impl Iterator<Item = Point> {
-    let longest_m = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
-    let nearest = anchors.iter().min_by(|a, b| a.range_m.total_cmp(&b.range_m)).copied();
-    nearest.filter(|n| n.range_m < SHORT_RANGE * longest_m).into_iter().flat_map(|nearest| {
-        (0..CIRCLE_STARTS)
-            .map(|k| Rotation2::new(TAU * f64::from(k) / f64::from(CIRCLE_STARTS)) * Vector::x())
-            .map(move |direction| nearest.at + direction * nearest.range_m)
-    })
-}
-
 /// Where a descent ended.
 #[derive(Debug, Clone, Copy)]
 struct Minimum {
@@ -107,11 +83,7 @@ struct Minimum {
 }
 
 /// Looks for a second minimum behind the line of the stations; the better one first.
-fn choose_side(
-    anchors: &[Anchor],
-    found: Minimum,
-    prior: Option<(Point, Matrix2<f64>)>,
-) -> (Minimum, Option<Point>) {
+fn choose_side(anchors: &[Anchor], found: Minimum, prior: Option<Prior>) -> (Minimum, Option<Point>) {
     let Ok(other) = descend(anchors, reflected(anchors, found.position)) else {
         return (found, None);
     };
@@ -131,7 +103,7 @@ fn choose_side(
 }
 
 /// Squared distance from a prior in its own sigmas; metres squared if it has no usable covariance.
-fn surprise_to((near, covariance): (Point, Matrix2<f64>), position: Point) -> f64 {
+fn surprise_to((near, covariance): Prior, position: Point) -> f64 {
     let away = position - near;
     let inverse = inverse_of(&covariance).unwrap_or_else(Matrix2::identity);
     away.dot(&(inverse * away))

@@ -6,16 +6,16 @@ use crate::{
     calibration::{Calibration, Unknowns},
     consensus::Consensus,
     ekf::{Ekf, MotionNoise},
-    fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Ranging},
+    fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Prior, Ranging},
     linear::LinearLs,
     noise::RangeNoise,
     nonlinear::Nls,
     screened::Screened,
     weighted::WeightedLinear,
 };
-use nalgebra::{Matrix2, Matrix3};
+use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
-use world::{Boundary, Odometry, Point, Pose, RangeSet, Station, StationId};
+use world::{Boundary, Odometry, Pose, RangeSet, Station, StationId};
 
 /// So many sound fixes in a row that contradict the filter prove the filter wrong.
 const PATIENCE: u32 = 3;
@@ -50,7 +50,7 @@ impl SolverKind {
         ranges: &[Ranging],
         stations: &[Station],
         noise: &RangeNoise,
-        prior: Option<(Point, Matrix2<f64>)>,
+        prior: Option<Prior>,
     ) -> Result<Fix, FixError> {
         match (self, noise.bound_ratio()) {
             (Self::Linear, _) => Screened(LinearLs).solve(ranges, stations, prior),
@@ -183,11 +183,6 @@ impl Positioner {
     /// Where the robot is believed to be.
     pub fn estimate(&self) -> Estimate {
         Estimate { pose: self.filter.pose(), covariance: self.filter.covariance() }
-    }
-
-    /// By how much too long all ranges are, as a share, and its standard deviation; if it is being found out.
-    pub fn sound_scale(&self) -> Option<(f64, f64)> {
-        self.config.calibrate_sound_speed.then(|| self.sound.scale())
     }
 
     /// Longer half axis of the 95 % ellipse of the position, metres.

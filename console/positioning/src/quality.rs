@@ -1,9 +1,8 @@
 //! How good a position is: residuals, dilution, the chi-squared test.
 
 use crate::{
-    anchor::Anchor,
+    anchor::{Anchor, on_near_circle},
     fix::{Fix, FixError, Integrity, Residual},
-    nonlinear::on_near_circle,
 };
 use nalgebra::Matrix2;
 use world::Point;

@@ -1,11 +1,10 @@
 //! A solver with an eye on its residuals: leaves out the one station that contradicts all others.
 
 use crate::{
-    fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Ranging},
+    fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Prior, Ranging},
     quality::residual_gate_m,
 };
-use nalgebra::Matrix2;
-use world::{Point, Station};
+use world::Station;
 
 /// Stations needed to find out which one is wrong.
 const NEEDED_TO_EXCLUDE: usize = 5;
@@ -18,12 +17,7 @@ const NEEDED_TO_EXCLUDE: usize = 5;
 pub struct Screened<S>(pub S);
 
 impl<S: PositionSolver> PositionSolver for Screened<S> {
-    fn solve(
-        &self,
-        ranges: &[Ranging],
-        stations: &[Station],
-        prior: Option<(Point, Matrix2<f64>)>,
-    ) -> Result<Fix, FixError> {
+    fn solve(&self, ranges: &[Ranging], stations: &[Station], prior: Option<Prior>) -> Result<Fix, FixError> {
         let fix = self.0.solve(ranges, stations, prior)?;
         if fix.integrity != Integrity::Alarm || ranges.len() < NEEDED_TO_EXCLUDE {
             return Ok(fix);
@@ -51,7 +45,7 @@ impl<S: PositionSolver> Screened<S> {
         left_out: &Ranging,
         ranges: &[Ranging],
         stations: &[Station],
-        prior: Option<(Point, Matrix2<f64>)>,
+        prior: Option<Prior>,
     ) -> Option<Fix> {
         let others: Vec<Ranging> = ranges.iter().filter(|r| r.station != left_out.station).copied().collect();
         let mut fix = self.0.solve(&others, stations, prior).ok()?;
@@ -72,7 +66,7 @@ mod tests {
         Aggregation, Nls,
         draws::{Draws, ring},
     };
-    use world::StationId;
+    use world::{Point, StationId};
 
     #[test]
     fn a_station_off_by_a_metre_never_misleads_unnoticed() {

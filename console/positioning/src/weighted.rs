@@ -2,7 +2,7 @@
 
 use crate::{
     anchor::{Anchor, anchored},
-    fix::{Fix, FixError, PositionSolver, Ranging},
+    fix::{Fix, FixError, PositionSolver, Prior, Ranging},
     linear::{MAX_CONDITIONING, conditioning},
     quality::{assess, inverse_of},
 };
@@ -22,7 +22,7 @@ impl PositionSolver for WeightedLinear {
         &self,
         ranges: &[Ranging],
         stations: &[Station],
-        _prior: Option<(Point, Matrix2<f64>)>,
+        _prior: Option<Prior>,
     ) -> Result<Fix, FixError> {
         let anchors = anchored(ranges, stations)?;
         if anchors.len() < 3 {

@@ -1,14 +1,37 @@
-//! A file that is being written, and whether its path still shows that file.
+//! Files of a run: read, hashed, and whether the path of one that is being written still shows it.
 //!
 //! A file that is deleted, replaced or truncated while it is open takes every further write without an error; only a
 //! comparison with what the path shows finds it.
 
+use crate::identity::hexadecimal;
+use sha2::{Digest, Sha256};
 use std::{
     fs::{self, File, OpenOptions},
-    io,
+    io::{self, Read},
     os::unix::fs::MetadataExt,
     path::{Path, PathBuf},
 };
+
+/// Opens a regular file: a device or a pipe may never end.
+pub(crate) fn open_regular(path: &Path) -> io::Result<File> {
+    let not_regular = || io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
+    // Looked at before it is opened, since opening a pipe waits for a writer.
+    if fs::metadata(path)?.is_file() { File::open(path) } else { Err(not_regular()) }
+}
+
+/// SHA-256 of a file, hexadecimal.
+///
+/// # Errors
+/// It is no regular file, or cannot be read.
+pub fn sha256(path: &Path) -> io::Result<String> {
+    let (mut file, mut hasher, mut chunk) = (open_regular(path)?, Sha256::new(), vec![0; 1 << 18]);
+    loop {
+        match file.read(&mut chunk)? {
+            0 => return Ok(hexadecimal(&hasher.finalize())),
+            length => hasher.update(&chunk[..length]),
+        }
+    }
+}
 
 /// How a file on disk differs from the one that was opened and written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

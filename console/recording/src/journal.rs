@@ -5,16 +5,21 @@
 
 mod ending;
 mod reader;
+mod ticks;
 mod upgrade;
 mod writer;
 
 pub use ending::read_ending;
-pub use reader::{Journal, JournalLine, JournalReader, read_journal};
+pub use reader::{JournalLine, JournalReader};
+pub use ticks::{Difference, RecordedTick, Ticks};
 pub use upgrade::with_todays_names;
 pub use writer::{JournalEnd, JournalWriter};
 
 use crate::file::FileChange;
 use std::path::PathBuf;
+
+/// Name of the journal in the folder of a run.
+pub const JOURNAL_FILE: &str = "events.jsonl";
 
 /// Why a journal cannot be written or read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -64,6 +69,9 @@ pub enum JournalError {
         /// Which file.
         path: PathBuf,
     },
+    /// It holds nothing, not even how the run was opened.
+    #[error("the journal does not begin with the opening of a run, so it cannot be computed again")]
+    NotOpened,
     /// It was written by a newer tankops.
     #[error(
         "the journal has version {theirs} and this tankops reads up to {ours}; use the tankops that wrote it \

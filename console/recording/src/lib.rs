@@ -15,7 +15,6 @@ pub mod file;
 pub mod identity;
 pub mod inspect;
 pub mod journal;
-mod layout;
 pub mod marker;
 pub mod recorder;
 mod rr;
@@ -24,19 +23,14 @@ pub mod thread;
 
 pub use error::RecordingError;
 pub use export::export;
-pub use file::FileChange;
+pub use file::{FileChange, sha256};
 pub use identity::Identity;
 pub use inspect::{Summary, inspect};
 pub use journal::{
-    Journal, JournalEnd, JournalError, JournalLine, JournalReader, JournalWriter, read_ending, read_journal,
-    with_todays_names,
+    Difference, JOURNAL_FILE, JournalEnd, JournalError, JournalLine, JournalReader, JournalWriter,
+    RecordedTick, Ticks, read_ending, with_todays_names,
 };
 pub use marker::{FAILURE_FILE, recorded_failure};
-pub use recorder::Recorder;
+pub use recorder::{RECORDING_FILE, Recorder};
 pub use sink::SinkHealth;
 pub use thread::{Finished, Health, Options, RunRecorder};
-
-/// Name of the journal in the folder of a run.
-pub const JOURNAL_FILE: &str = "events.jsonl";
-/// Name of the recording in the folder of a run.
-pub const RECORDING_FILE: &str = "recording.rrd";

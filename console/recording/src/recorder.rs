@@ -4,13 +4,16 @@ mod document;
 mod drawings;
 mod fold;
 mod lane;
+mod layout;
 pub(crate) mod paths;
+mod ranging;
 mod raster;
 mod scene;
+mod series;
 mod states;
 pub(crate) mod stream;
 pub(crate) mod style;
-mod tether;
+mod table;
 mod tick;
 
 use crate::{
@@ -29,6 +32,8 @@ use std::{
 };
 use stream::Stream;
 
+/// Name of the recording in the folder of a run.
+pub const RECORDING_FILE: &str = "recording.rrd";
 /// Rows are sent to the file after this many ticks,
 const SEND_TICKS: u32 = 500;
 /// or after this time, whichever comes first.

@@ -1,37 +1,34 @@
 //! The thread that writes journal and recording while the mission goes on.
 
+mod shared;
+mod writer;
+
 use crate::{
-    JOURNAL_FILE, RECORDING_FILE,
     error::RecordingError,
-    file::FileChange,
     identity::Identity,
-    journal::{JournalEnd, JournalError, JournalWriter},
+    journal::{JOURNAL_FILE, JournalEnd, JournalWriter},
     marker::FailureMarker,
-    recorder::Recorder,
+    recorder::{RECORDING_FILE, Recorder},
     sink::SinkHealth,
 };
 use mission::Event;
+use shared::Shared;
 use std::{
     path::{Path, PathBuf},
     sync::{
-        Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicU64, Ordering},
+        Arc, Mutex, PoisonError,
+        atomic::Ordering,
         mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
     },
     thread,
     time::{Duration, Instant},
 };
+use writer::Writer;
 
 /// Batches of events that may wait; when so many do, the sender waits.
 const QUEUE: usize = 8192;
-/// How long the thread sleeps at most, so that what waits to be written is written when nothing happens.
-const IDLE: Duration = Duration::from_millis(100);
 /// How long a recorder that is dropped without being finished is waited for.
 const DROP_TIMEOUT: Duration = Duration::from_secs(2);
-/// How often the files on disk are compared with those that are being written; with [`IDLE`] and the half second
-/// after which a screen asks, an operator knows within a second.
-const WATCH_PERIOD: Duration = Duration::from_millis(400);
-
 /// What to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
@@ -76,44 +73,6 @@ pub struct Finished {
     pub error: Option<String>,
 }
 
-/// Figures that the thread and everyone else share.
-#[derive(Default)]
-struct Shared {
-    sent: AtomicU64,
-    done: AtomicU64,
-    journal_bytes: AtomicU64,
-    /// Errors with which something is lost, each once.
-    losses: Mutex<Vec<String>>,
-    /// What is wrong now and may be over later.
-    trouble: Mutex<Option<String>>,
-}
-
-impl Shared {
-    fn lose(&self, error: &impl ToString) {
-        let (mut losses, error) = (locked(&self.losses), error.to_string());
-        if !losses.contains(&error) {
-            losses.push(error);
-        }
-    }
-
-    fn set_trouble(&self, trouble: Option<String>) {
-        *locked(&self.trouble) = trouble;
-    }
-
-    fn error(&self) -> Option<String> {
-        let mut errors = locked(&self.losses).clone();
-        let trouble = locked(&self.trouble).clone();
-        // A file that has ended is also in trouble.
-        errors.extend(trouble.filter(|trouble| !errors.contains(trouble)));
-        (!errors.is_empty()).then(|| errors.join("; "))
-    }
-}
-
-/// What is shared holds no invariant that a panic could break.
-fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 /// Writes journal and recording of a run in a thread of its own.
 ///
 /// [`RunRecorder::send`] hands over events and returns at once, unless 8192 batches wait: then the simulation waits
@@ -128,16 +87,6 @@ pub struct RunRecorder {
     sink: Option<Arc<SinkHealth>>,
     journal: Option<PathBuf>,
     recording: Option<PathBuf>,
-}
-
-/// What the thread owns.
-struct Writer {
-    journal: Option<JournalWriter>,
-    recorder: Option<Recorder>,
-    marker: Option<FailureMarker>,
-    shared: Arc<Shared>,
-    watched: Instant,
-    changed: Option<String>,
 }
 
 impl RunRecorder {
@@ -180,14 +129,7 @@ impl RunRecorder {
         let sink = recorder.as_ref().map(Recorder::health);
         let (sender, batches) = sync_channel(QUEUE);
         let (end_sender, ended) = sync_channel(1);
-        let writer = Writer {
-            journal: Some(journal),
-            recorder,
-            marker,
-            shared: Arc::clone(&shared),
-            watched: Instant::now(),
-            changed: None,
-        };
+        let writer = Writer::new(journal, recorder, marker, Arc::clone(&shared));
         let thread = thread::Builder::new().name("recorder".into());
         let handle = thread.spawn(move || {
             let end = writer.run(&batches);
@@ -265,92 +207,5 @@ impl RunRecorder {
 impl Drop for RunRecorder {
     fn drop(&mut self) {
         self.close(DROP_TIMEOUT);
-    }
-}
-
-impl Writer {
-    /// Writes until nobody sends any more.
-    fn run(mut self, batches: &Receiver<Arc<[Event]>>) -> Option<JournalEnd> {
-        loop {
-            match batches.recv_timeout(IDLE) {
-                Ok(events) => self.write(&events),
-                Err(RecvTimeoutError::Timeout) => self.idle(),
-                Err(RecvTimeoutError::Disconnected) => return self.close(),
-            }
-        }
-    }
-
-    fn write(&mut self, events: &[Event]) {
-        let now = Instant::now();
-        for event in events {
-            // What the journal reports is asked for below.
-            let _ = self.journal.as_mut().map(|journal| journal.append(event, now));
-            if let Some(Err(error)) = self.recorder.as_mut().map(|recorder| recorder.push(event, now)) {
-                self.shared.lose(&error);
-            }
-        }
-        self.shared.done.fetch_add(1, Ordering::Relaxed);
-        self.look(now);
-    }
-
-    fn idle(&mut self) {
-        let now = Instant::now();
-        let _ = self.journal.as_mut().map(|journal| journal.tick(now));
-        if let Some(Err(error)) = self.recorder.as_mut().map(|recorder| recorder.idle(now)) {
-            self.shared.lose(&error);
-        }
-        self.look(now);
-    }
-
-    /// Looks at both files, and shares what it sees.
-    fn look(&mut self, now: Instant) {
-        if now.saturating_duration_since(self.watched) >= WATCH_PERIOD {
-            self.watched = now;
-            self.changed = self.check_files().err();
-        }
-        let bytes = self.journal.as_ref().map_or(0, JournalWriter::written_bytes);
-        self.shared.journal_bytes.store(bytes, Ordering::Relaxed);
-        self.shared.set_trouble(self.trouble());
-        self.mark();
-    }
-
-    fn check_files(&self) -> Result<(), String> {
-        let as_text = |error: RecordingError| error.to_string();
-        let journal = self.journal.as_ref().map_or(Ok(()), JournalWriter::check_file);
-        journal.map_err(|change| as_text(JournalError::from(change).into()))?;
-        let recording = self.recorder.as_ref().map_or(Ok(()), Recorder::check_file);
-        recording.map_err(|change: FileChange| as_text(change.into()))
-    }
-
-    fn trouble(&self) -> Option<String> {
-        let journal = self.journal.as_ref().and_then(JournalWriter::trouble).map(|error| error.to_string());
-        let recording = || self.recorder.as_ref().and_then(Recorder::trouble).map(|error| error.to_string());
-        journal.or_else(recording).or_else(|| self.changed.clone())
-    }
-
-    /// Leaves a sign of what is wrong in the folder of the run, or takes it away.
-    fn mark(&mut self) {
-        if let Some(marker) = &mut self.marker {
-            marker.show(self.shared.error().as_deref());
-        }
-    }
-
-    fn close(&mut self) -> Option<JournalEnd> {
-        let journal = self.journal.take().map(JournalWriter::finish).transpose();
-        let recording = self.recorder.take().map_or(Ok(()), Recorder::finish);
-        let end = journal.unwrap_or_else(|error| {
-            self.shared.lose(&error);
-            None
-        });
-        if let Err(error) = recording {
-            self.shared.lose(&error);
-        }
-        if let Some(end) = &end {
-            self.shared.journal_bytes.store(end.bytes, Ordering::Relaxed);
-        }
-        // How each file ended is clear now; what was wrong on the way and is over does not matter any more.
-        self.shared.set_trouble(None);
-        self.mark();
-        end
     }
 }

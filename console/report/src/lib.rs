@@ -1,16 +1,20 @@
-//! Events folded into the summary of a run.
+//! What people and scripts read: of a run, of several together, of a plan, of a forecast of the accuracy.
 //!
 //! [`Fold`] reads every event of a run once and gives a [`Summary`]: the object that `run --json` prints, the text of
 //! [`human()`], and what [`Expect`] holds to the bounds of a scenario. Wall-clock figures and files are no events; the
-//! app fills them in.
+//! app fills them in. Plans ([`plan`]) and forecasts ([`forecast`]) are pictures, too ([`drawing`]).
 
 pub mod account;
 mod accuracy;
+pub mod drawing;
 pub mod expect;
 pub mod fold;
+pub mod forecast;
 pub mod human;
 mod joined;
+pub mod leg;
 pub mod merged;
+pub mod plan;
 pub mod rescan;
 mod sampled;
 mod scanned;

@@ -1,5 +1,7 @@
 //! What of a floor is worth being scanned again after one run or several.
 
+mod text;
+
 use crate::{
     account::{
         Area, MissReason,
@@ -7,8 +9,11 @@ use crate::{
     },
     joined::{Joined, PastRun, joined, updated_floor},
 };
-use std::{collections::VecDeque, fmt};
-use world::{Floor, Point, coverage::regions};
+use std::{
+    collections::{BTreeSet, VecDeque},
+    fmt,
+};
+use world::{Floor, ObstacleId, Point, coverage::regions};
 
 /// Missed floor this near to other missed floor belongs to it, as a share of the swath.
 const TOGETHER_SWATHS: f64 = 0.5;
@@ -30,6 +35,8 @@ pub struct Rescan {
     pub out_of_reach: Vec<Area<NoLane>>,
     /// Missed floor that none of the runs was asked to scan, square metres.
     pub not_asked_m2: f64,
+    /// Obstacles that the runs found.
+    pub found: BTreeSet<ObstacleId>,
 }
 
 /// Why no lane leads to floor that was missed.
@@ -108,6 +115,7 @@ pub fn rescan(runs: &[PastRun], least_m2: f64, most: usize) -> Result<Rescan, St
         left,
         out_of_reach,
         not_asked_m2: not_asked as f64 * floor.cell_m2(),
+        found: evidence.found().map(|(id, _)| *id).collect(),
     })
 }
 

@@ -18,6 +18,7 @@ mod problem;
 mod ranging;
 mod renamed;
 mod render;
+mod rescan;
 mod robot;
 mod schema;
 mod section;
@@ -29,6 +30,7 @@ mod tether;
 
 pub use problem::{Complaint, Problem, ScenarioErrors};
 pub use renamed::with_todays_keys;
+pub use rescan::rescan;
 pub use settings::Settings;
 
 use mission::MissionConfig;

@@ -1,7 +1,7 @@
 //! What is kept when the screen itself fails.
 
-use crate::run_folder::utc;
 use anyhow::anyhow;
+use runs::utc;
 use std::{path::Path, time::SystemTime};
 use tui::Model;
 

@@ -3,45 +3,38 @@
 //! It never waits in a planner, for the screen or for the disk. Whatever it waits for (the next tick, an answer, room in the
 //! screen's inbox or in the recorder's queue), an order to hold or to end ends the wait at once.
 
+mod keeping;
+mod waiting;
+
 use super::{
     inbox::Outbox,
     line::{EngineHandle, Request, line},
-    pace::{Reached, next_due, window},
+    pace::{Reached, START_SPEED, next_due, window},
 };
 use crate::{
     answers::{Window, Windowed},
     cli::Drill,
     flight::Flight,
-    headless::{self, CLOSE_TIMEOUT},
+    hosts::host,
     plan_watch::{PlanWatch, Watched, Work},
-    run_folder::Kept,
-    run_log::{Closed, RunLog},
 };
 use mission::{AskId, Awaits, Event, Hold, HoldReason, Order, Phase};
 use planner_host::{Host, PluginDirs, Progress};
-use report::Stops;
+use runs::{CLOSE_TIMEOUT, Closed, RunLog};
 use scenario::Scenario;
 use std::{
     path::{Path, PathBuf},
     sync::{
         Arc,
-        mpsc::{self, Receiver, RecvTimeoutError},
+        mpsc::{self, Receiver},
     },
     thread::{self, JoinHandle},
     time::{Duration, Instant},
 };
 use tui::{Msg, Speed};
 
-/// How often the recorder's health is sent to the screen.
-const HEALTH_PERIOD: Duration = Duration::from_millis(500);
 /// Time limit for closing the recording when a signal has asked the process to exit.
 const HURRY: Duration = Duration::from_millis(900);
-/// With this many messages waiting for the screen, the simulation waits for it.
-const MOST_BACKLOG: usize = 64;
-/// How long it waits then before it looks again, unless an order comes.
-const LOOK_AGAIN: Duration = Duration::from_millis(1);
-/// How often workers that are being ended are looked after while no ticks pass.
-const LOOK_AFTER: Duration = Duration::from_millis(20);
 
 /// The flying thread, seen from outside.
 pub(super) struct Engine {
@@ -58,7 +51,7 @@ impl Engine {
         screen: Outbox,
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
-        let mut host = headless::host(scenario, plugins);
+        let mut host = host(scenario, plugins);
         let (handle, asked) = line(host.waker());
         let (progress, reported) = mpsc::channel();
         host.set_on_progress(Arc::new(move |ask, at| {
@@ -79,7 +72,7 @@ impl Engine {
             shown_work: None,
             asked,
             screen,
-            speed: super::START_SPEED,
+            speed: START_SPEED,
             early: Vec::new(),
             stop_asked: None,
             stops_ms: Vec::new(),
@@ -172,60 +165,6 @@ impl EngineThread {
         matches!(self.flight.phase(), Phase::Held(hold) if hold.resumes.is_never())
     }
 
-    /// Whether screen or recorder is so far behind that the simulation waits for it.
-    fn is_ahead(&self) -> bool {
-        self.screen.backlog() > MOST_BACKLOG || self.log.as_ref().is_some_and(RunLog::is_behind)
-    }
-
-    /// Waits for the next tick, or, while no ticks pass, for a request; gives the orders that came and whether to
-    /// close.
-    fn wait_until(&mut self, due: Instant) -> (Vec<Order>, Option<Duration>) {
-        // A wake-up from here on belongs to a request that has not been taken yet.
-        self.host.clear_wake_ups();
-        let mut orders = Vec::new();
-        loop {
-            let is_ahead = self.is_ahead();
-            let due = if is_ahead { due.max(Instant::now() + LOOK_AGAIN) } else { due };
-            let wait = due.saturating_duration_since(Instant::now());
-            let request = if self.is_under_way() {
-                self.asked.recv_timeout(wait)
-            } else if orders.is_empty() {
-                self.wait_for_request()
-            } else {
-                return (orders, None);
-            };
-            match request {
-                // Key and screen both order a hold; the second one has nothing left to stop.
-                Ok(Request::Order(Order::Hold, _)) if orders.is_empty() && self.is_held_for_good() => {}
-                // What stops the robot does not wait for the tick that is due: the tick comes now.
-                Ok(Request::Order(order @ (Order::Hold | Order::Abort), at)) => {
-                    if self.flight.phase().may_move() {
-                        self.stop_asked.get_or_insert(at);
-                    }
-                    orders.push(order);
-                    return (orders, None);
-                }
-                Ok(Request::Order(order, _)) => orders.push(order),
-                Ok(Request::Speed(speed)) => self.speed = speed,
-                Ok(Request::Close { within }) => return (orders, Some(within)),
-                Err(RecvTimeoutError::Timeout) if is_ahead => {}
-                Err(RecvTimeoutError::Timeout) => return (orders, None),
-                Err(RecvTimeoutError::Disconnected) => return (orders, Some(CLOSE_TIMEOUT)),
-            }
-        }
-    }
-
-    /// Waits while no ticks pass; looks after workers that are being ended meanwhile.
-    fn wait_for_request(&mut self) -> Result<Request, RecvTimeoutError> {
-        while self.host.look_after_leaving() {
-            match self.asked.recv_timeout(LOOK_AFTER) {
-                Err(RecvTimeoutError::Timeout) => {}
-                request => return request,
-            }
-        }
-        self.asked.recv().map_err(|_| RecvTimeoutError::Disconnected)
-    }
-
     fn tick(&mut self, mut orders: Vec<Order>) {
         let starts = self.log.is_none() && self.closed.is_none() && orders.contains(&Order::Start);
         if starts && let Err(error) = self.open_log() {
@@ -271,47 +210,6 @@ impl EngineThread {
         if let Some((_, Progress { share, what })) = last {
             self.send(Msg::BusyAt { share, what });
         }
-    }
-
-    fn open_log(&mut self) -> anyhow::Result<()> {
-        let log = RunLog::create(&self.logs, &self.scenario, self.flight.mission().planner_id())?;
-        self.log = Some(log);
-        self.health_sent_at = Instant::now();
-        self.reached = Reached::since(self.health_sent_at);
-        self.keep(&[self.flight.opened()]);
-        let early = std::mem::take(&mut self.early);
-        self.keep(&early);
-        Ok(())
-    }
-
-    fn keep(&mut self, events: &[Event]) {
-        match &mut self.log {
-            Some(log) => log.keep(events),
-            None if self.closed.is_none() => self.early.extend_from_slice(events),
-            None => {}
-        }
-    }
-
-    fn send_health(&mut self) {
-        let Some(log) = &self.log else { return };
-        let now = Instant::now();
-        if now.saturating_duration_since(self.health_sent_at) < HEALTH_PERIOD {
-            return;
-        }
-        self.health_sent_at = now;
-        let reached = self.reached.take(now, self.flight.tick_length());
-        // While the mission waits, its pace says nothing of how it will go on.
-        let health = super::screen::health(&log.health(), (!self.waits()).then_some(reached));
-        self.send(Msg::Health(health));
-    }
-
-    /// Closes journal and recording and writes the report.
-    fn close_log(&mut self, within: Duration) {
-        let Some(log) = self.log.take() else { return };
-        let closed = log.close(within, &self.scenario, &self.host, Stops::of(&self.stops_ms));
-        let problem = closed.kept.as_ref().and_then(Kept::problem);
-        self.closed = Some(closed);
-        self.send(Msg::Health(super::screen::closed(problem)));
     }
 
     /// Ends the mission in a tick that waits for nobody, and closes its files.

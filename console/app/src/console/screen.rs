@@ -1,19 +1,19 @@
 //! The drawing thread: messages in, model updated, effects carried out, a frame when something changed.
 
-use super::{inbox::Inbox, line::EngineHandle};
+use super::{inbox::Inbox, line::EngineHandle, pace::START_SPEED};
 use crate::{
     cli::Drill,
-    failure::{COMPLETE, ENDED_OTHERWISE},
-    run_log::Closed,
+    failure::{COMPLETE, ENDED_OTHERWISE, exit_code},
 };
 use anyhow::Context;
 use mission::{EventKind, Outcome};
+use runs::Closed;
 use std::{
     io::Write,
     process::ExitCode,
     time::{Duration, Instant, SystemTime},
 };
-use tui::{Caps, Effect, Health, Model, Msg, Recording, Signal, Times, terminal::TerminalGuard, update};
+use tui::{Caps, Effect, Model, Msg, Signal, Times, terminal::TerminalGuard, update};
 
 /// Messages that are taken in before the next frame, at most.
 const BURST: usize = 256;
@@ -55,7 +55,7 @@ impl Screen {
     ) -> anyhow::Result<Self> {
         let terminal = TerminalGuard::enter().context("taking over the terminal")?;
         let mut model = Model::default();
-        model.console.speed = super::START_SPEED;
+        model.console.speed = START_SPEED;
         let (width, height) = crossterm::terminal::size().unwrap_or((80, 24));
         update(&mut model, Msg::Resize { width, height });
         let now = Instant::now();
@@ -200,7 +200,7 @@ impl Left {
             None | Some(Outcome::Complete) => COMPLETE,
             Some(_) => ENDED_OTHERWISE,
         };
-        ExitCode::from(kept.map_or(code, |kept| kept.exit_code(code)))
+        ExitCode::from(exit_code(code, kept))
     }
 }
 
@@ -213,15 +213,4 @@ fn number(signal: Signal) -> u8 {
         Signal::Continue => signal_hook::consts::SIGCONT,
     };
     number.unsigned_abs() as u8
-}
-
-/// The recorder's health as the screen shows it.
-pub(super) fn health(recorder: &recording::Health, reached_speed: Option<f64>) -> Health {
-    let recording = recorder.error.clone().map_or(Recording::On, Recording::Failed);
-    Health { recording, reached_speed }
-}
-
-/// The recorder's health after the run was closed.
-pub(super) fn closed(error: Option<String>) -> Health {
-    Health { recording: error.map_or(Recording::Off, Recording::Failed), reached_speed: None }
 }

@@ -1,9 +1,9 @@
 //! Recorded answers, and the planners asked the same again.
 
-use super::journal::RecordedTick;
 use crate::answers::Answers;
-use mission::{Answer, Ask, AskId, Cause, Fault, Given, Mission, What, ask::RecordedAnswers};
+use mission::{Answer, Ask, AskId, Mission, What, ask::Comparison, event::RecordedAnswers};
 use planner_host::Host;
+use recording::RecordedTick;
 use std::collections::BTreeMap;
 
 /// Answers asks from the journal, and has planners answer them, too.
@@ -40,7 +40,7 @@ impl Replayed {
     /// Takes the recorded events of the tick that begins.
     pub(super) fn begin_tick(&mut self, recorded: &RecordedTick) {
         self.tick = recorded.tick;
-        self.recorded.begin_tick(recorded.lines.iter().map(|(_, event)| &event.kind));
+        self.recorded.begin_tick(recorded.events());
     }
 
     /// What the planners did.
@@ -73,15 +73,15 @@ impl Replayed {
         }
         let own = self.own_answer(recorded.ask);
         let Some(asked) = &mut self.asked else { return };
-        let verdict = match own {
-            None => Verdict::Different("gave no answer".to_owned()),
-            Some(_) if !is_used => Verdict::NotComparable,
-            Some(own) => verdict(&own, recorded, mission),
+        let comparison = match own {
+            None => Comparison::Different("gave no answer".to_owned()),
+            Some(_) if !is_used => Comparison::NotComparable,
+            Some(own) => Comparison::of(&own, recorded, |command| mission.as_sent(command)),
         };
-        match verdict {
-            Verdict::Same => asked.same += 1,
-            Verdict::NotComparable => asked.not_comparable += 1,
-            Verdict::Different(why) => {
+        match comparison {
+            Comparison::Same => asked.same += 1,
+            Comparison::NotComparable => asked.not_comparable += 1,
+            Comparison::Different(why) => {
                 let (ask, tick) = (recorded.ask, self.tick);
                 asked.difference =
                     Some(format!("a planner answers ask {ask} in tick {tick} otherwise: it {why}"));
@@ -108,49 +108,4 @@ impl Answers for Replayed {
         self.compare(&answer, mission, is_used);
         Some(answer)
     }
-}
-
-/// What comes of comparing a planner's own answer with the recorded one.
-enum Verdict {
-    Same,
-    /// The recorded answer is not the planner's.
-    NotComparable,
-    /// The sentence reads on after "it".
-    Different(String),
-}
-
-fn verdict(own: &Answer, recorded: &Answer, mission: &Mission) -> Verdict {
-    let why = match (&own.result, &recorded.result) {
-        (Ok(Given::Opened(_)), Err(Fault { cause: Cause::Quarantined | Cause::Refused, .. })) => {
-            return Verdict::NotComparable;
-        }
-        (Ok(own_given), Ok(given)) => differs(own_given, given, mission)
-            .or_else(|| (own.said != recorded.said).then(|| "logs or draws something else".to_owned())),
-        (Err(own), Err(fault)) => {
-            (own != fault).then(|| format!("fails with \"{}\" instead of \"{}\"", own.message, fault.message))
-        }
-        (Ok(_), Err(fault)) => Some(format!("does not fail (\"{}\" then)", fault.message)),
-        (Err(own), Ok(_)) => Some(format!("fails: {}", own.message)),
-    };
-    why.map_or(Verdict::Same, Verdict::Different)
-}
-
-fn differs(own: &Given, recorded: &Given, mission: &Mission) -> Option<String> {
-    let what = match (own, recorded) {
-        (Given::Opened(own), Given::Opened(then)) => {
-            (own != then).then_some("is another build or offers something else")
-        }
-        (Given::Command(own), Given::Command(then)) => {
-            (mission.as_sent(*own) != *then).then_some("commands something else")
-        }
-        (Given::Plan(own), Given::Plan(then)) => {
-            let is_same = own.path == then.path
-                && own.complete == then.complete
-                && own.legs == then.legs
-                && own.cuts == then.cuts;
-            (!is_same).then_some("plans another path")
-        }
-        (own, then) => (own != then).then_some("gives something else"),
-    };
-    what.map(str::to_owned)
 }

@@ -9,14 +9,11 @@ use super::{
 use crate::{
     ask::{Answer, AskId, Given, Said},
     config::TaskConfig,
-    event::{EventKind, HoldReason},
+    event::EventKind,
+    phase::{Gait, Hold, HoldReason, Phase, Resumes},
     planner::{Cause, During, Fault, PlannerInfo},
-    standing::{Gait, Hold, Phase, Resumes},
 };
 use planner_api::{Code, Plan};
-
-/// A candidate whose plan begins further from the robot than this plans again, metres.
-const NEAR_PLAN_M: f64 = 0.5;
 
 /// A fault with what it belongs to.
 struct Failed {
@@ -74,7 +71,7 @@ impl Mission {
     }
 
     /// Refuses a planner that may not or cannot fly this mission, although it could be opened.
-    fn checked(&self, seat: &Seat, given: Given) -> Result<Given, Fault> {
+    pub(super) fn checked(&self, seat: &Seat, given: Given) -> Result<Given, Fault> {
         let id = &seat.choice.id;
         if let Given::Plan(plan) = &given
             && let Err(what) = self.check_extent(plan)
@@ -140,12 +137,12 @@ impl Mission {
     }
 
     /// Whether a plan that was refused for the tether is asked for once more, from the anchor.
-    fn may_try_from_anchor(&self, asked: &AskedPlan) -> bool {
+    pub(super) fn may_try_from_anchor(&self, asked: &AskedPlan) -> bool {
         asked.return_path.is_empty() && !asked.from_anchor && self.way_to_anchor().is_some()
     }
 
     /// The active planner has a plan that flies: a hold that it was to end, or that blamed another planner, is over.
-    fn plan_is_there(&mut self) {
+    pub(super) fn plan_is_there(&mut self) {
         let was_ordered = std::mem::take(&mut self.active.prepare) == Prepare::Plan;
         let Phase::Held(hold) = &self.phase else { return };
         if hold.resumes == Resumes::ByFallback {
@@ -198,7 +195,7 @@ impl Mission {
     }
 
     /// Reports a fault, and counts it against its plugin if it is of the kind that counts.
-    fn note_fault(&mut self, ask: AskId, fault: Fault, sha256: Option<String>) {
+    pub(super) fn note_fault(&mut self, ask: AskId, fault: Fault, sha256: Option<String>) {
         let counts =
             !matches!(fault.cause, Cause::Planner(_) | Cause::Refused | Cause::Quarantined | Cause::Starved);
         if let Some(sha256) = fault.plugin_sha256.clone().or(sha256).filter(|_| counts) {
@@ -207,92 +204,10 @@ impl Mission {
         }
         self.happened.push(EventKind::PlannerFailed { ask: Some(ask), fault });
     }
-
-    /// Takes an answer of the planner that is being prepared; gives it back unless it has taken over or is closed.
-    fn answer_candidate(
-        &mut self,
-        mut seat: Seat,
-        pending: Pending,
-        Answer { ask, result, said }: Answer,
-    ) -> Option<Seat> {
-        match (pending.kind, result.and_then(|given| self.checked(&seat, given))) {
-            (PendingKind::Open, Ok(Given::Opened(info))) => {
-                self.pass_on(said, &seat.choice.id);
-                (seat.info, seat.is_ready) = (Some((*info).clone()), true);
-                self.happened.push(EventKind::PlannerPrepared { ask, choice: seat.choice.clone(), info });
-                Some(seat)
-            }
-            (PendingKind::Plan(asked), Ok(Given::Plan(plan))) => {
-                self.candidate_planned(seat, ask, asked, plan, said)
-            }
-            (_, result) => {
-                let fault = result.err().unwrap_or_else(|| mismatch(&seat.choice.id));
-                self.pass_on(said, &seat.choice.id);
-                let message = fault.message.clone();
-                self.note_fault(ask, fault, seat.info.as_ref().map(|info| info.sha256.clone()));
-                self.reject(seat, message);
-                None
-            }
-        }
-    }
-
-    fn candidate_planned(
-        &mut self,
-        mut seat: Seat,
-        ask: AskId,
-        asked: AskedPlan,
-        plan: Plan,
-        said: Said,
-    ) -> Option<Seat> {
-        let id = seat.choice.id.clone();
-        if (self.locator.position() - asked.here).norm() > NEAR_PLAN_M {
-            // The robot went on meanwhile. It plans again from here, and this time the robot waits for it.
-            self.pass_on(said, &id);
-            self.happened.push(EventKind::Discarded { ask });
-            seat.robot_waits = true;
-            return Some(seat);
-        }
-        let Evaluated { plan, events, objection } = self.evaluate(ask, &id, &asked, plan);
-        if objection.is_none() {
-            self.promote(seat);
-            self.pass_on(said, &id);
-            self.happened.extend(events);
-            self.take_plan(&plan);
-            self.plan_is_there();
-            return None;
-        }
-        self.pass_on(said, &id);
-        self.happened.extend(events);
-        match objection {
-            Some(objection) if !(objection.by_tether && self.may_try_from_anchor(&asked)) => {
-                self.reject(seat, objection.message);
-                None
-            }
-            _ => {
-                seat.plan = PlanState::Due { reason: asked.reason, from_anchor: true };
-                Some(seat)
-            }
-        }
-    }
-
-    /// The planner that was being prepared takes over.
-    fn promote(&mut self, seat: Seat) {
-        let from = seat.before.as_ref().map(|before| before.id.clone());
-        let (choice, info) = (seat.choice.clone(), seat.info.clone());
-        self.replace_active(seat);
-        if let Some(info) = info {
-            self.happened.push(EventKind::PlannerChosen { ask: None, choice, info: Box::new(info), from });
-        }
-    }
-
-    pub(super) fn reject(&mut self, mut seat: Seat, why: String) {
-        self.workers.close(seat.leave_worker());
-        self.happened.push(EventKind::PlannerRejected { planner: seat.choice.id, why });
-    }
 }
 
 /// An answer of another kind than the ask.
-fn mismatch(planner: &str) -> Fault {
+pub(super) fn mismatch(planner: &str) -> Fault {
     Fault {
         planner: planner.to_owned(),
         during: During::Step,

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     ask::{Ask, Awaits, PlanAsk, StepAsk, What},
-    standing::Phase,
+    phase::Phase,
     task::Task,
 };
 use planner_api::{Drive, PoseEstimate, Reason};

@@ -7,8 +7,8 @@ use super::{
 };
 use crate::{
     ask::Said,
-    event::{EventKind, HoldReason},
-    standing::{Gait, Hold, Phase, Resumes},
+    event::EventKind,
+    phase::{Gait, Hold, HoldReason, Phase, Resumes},
     task::Task,
 };
 use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD, drive_for};

@@ -5,11 +5,10 @@ use super::{
     seat::{Prepare, Seat},
 };
 use crate::{
-    config::PlannerChoice,
-    event::{EventKind, HoldReason, Outcome},
+    event::EventKind,
     order::Order,
-    planner::ParamValue,
-    standing::{Gait, Hold, Phase, Resumes},
+    phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
+    planner::{ParamValue, PlannerChoice},
 };
 use planner_api::Reason;
 

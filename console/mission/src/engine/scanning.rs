@@ -1,26 +1,12 @@
 //! What one tick of looking around and scanning adds to the map and to the coverage.
 
 use super::Mission;
-use crate::{chart::Seen, event::EventKind, standing::Phase, task::Task};
+use crate::{chart::Seen, event::EventKind, phase::Phase, task::Task};
 use planner_api::Reason;
-use world::{CellRun, CoverageGrid, Floor, FloorMaker, Pose, Readings, Shape, tether::Reach};
+use world::{CellRun, Pose, Readings, Shape, tether::Reach};
 
 /// Floor left out below this is not worth a word at the end, square metres.
 const WORTH_TELLING_M2: f64 = 0.05;
-
-/// The floor and what of it has been scanned.
-pub(super) struct ScannedFloor {
-    pub coverage: CoverageGrid,
-    /// Recomputes the floor when an obstacle is found; created for the first one.
-    surveyor: Option<FloorMaker>,
-}
-
-impl ScannedFloor {
-    /// Nothing has been scanned.
-    pub(super) fn new(floor: Floor) -> Self {
-        Self { coverage: CoverageGrid::new(floor), surveyor: None }
-    }
-}
 
 impl Mission {
     /// Puts what is seen on the chart; whether the chart has changed.
@@ -48,7 +34,10 @@ impl Mission {
             self.candidate.iter_mut().for_each(|seat| seat.found_since.extend_from_slice(&shapes));
         }
         self.happened.extend(events);
-        self.survey(&shapes);
+        let changes = self.floor.survey(&self.config, &self.chart, &shapes);
+        if !changes.is_empty() {
+            self.happened.push(EventKind::FloorChanged { changes });
+        }
         true
     }
 
@@ -64,27 +53,6 @@ impl Mission {
                 self.task.is_in_the_way(&obstacle.shape, radius_m + clearance_m)
             }
             _ => false,
-        }
-    }
-
-    /// What stands where is no floor, and what is beside it cannot be reached.
-    fn survey(&mut self, shapes: &[Shape]) {
-        let (config, world) = (&self.config, self.chart.world());
-        let ScannedFloor { coverage, surveyor } = &mut self.floor;
-        let surveyor = surveyor.get_or_insert_with(|| {
-            FloorMaker::of(
-                coverage.floor(),
-                // As it was before the first find; finds are applied below.
-                &world.as_drawn(),
-                config.room_m(),
-                config.swath_m,
-                config.start.position,
-            )
-        });
-        let changes = surveyor.update(world, self.chart.map(), shapes);
-        if !changes.is_empty() {
-            coverage.change(&changes);
-            self.happened.push(EventKind::FloorChanged { changes });
         }
     }
 

@@ -3,8 +3,7 @@
 use super::rules::{BlockedRule, CutsRule, LatePlannerRule};
 use crate::{
     ask::{Ask, AskId, Said, Site, What, WorkerId},
-    config::PlannerChoice,
-    planner::PlannerInfo,
+    planner::{PlannerChoice, PlannerInfo},
 };
 use geometry::PathFollower;
 use planner_api::{Command, Reason};

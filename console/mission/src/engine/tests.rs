@@ -9,8 +9,11 @@ mod tethered;
 use super::*;
 use crate::{
     ask::{Answer, Ask, Given, PlanAsk, Said, StepAsk, TaskLeft, What},
-    config::{PlannerChoice, ScanConfig, TaskConfig},
-    planner::{Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo},
+    config::{ScanConfig, TaskConfig},
+    phase::{Gait, Hold, HoldReason, Outcome},
+    planner::{
+        Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
+    },
 };
 use planner_api::{self as api, Command, Limits, Motion, Plan, Status};
 use world::tether::Cable;

@@ -2,7 +2,8 @@
 
 use super::{Mission, rules::HOME_M};
 use crate::{
-    event::{EventKind, Outcome, TetherAlarm},
+    event::{EventKind, TetherAlarm},
+    phase::Outcome,
     task::Task,
     tether::ends_at_anchor,
 };

@@ -1,25 +1,13 @@
 //! Events as lines for people: the screen's log, the recording and the command line read the same words.
 
-use super::{Event, EventKind, HoldReason, Outcome, TetherAlarm};
-use crate::order::Order;
+use super::{
+    Event, EventKind, TetherAlarm,
+    severity::{self, Severity},
+};
+use crate::{order::Order, phase::Outcome};
 use planner_api::LogLevel;
 use positioning::Exclusion;
-use serde::{Deserialize, Serialize};
 use world::tether::Certificate;
-
-/// How much an event asks of the operator.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Severity {
-    /// Worth knowing.
-    Info,
-    /// Worth watching.
-    Watch,
-    /// Needs attention.
-    Warn,
-    /// Needs action now.
-    Crit,
-}
 
 /// A line of the event log: how much it matters, who speaks, what.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -94,7 +82,7 @@ impl Event {
                 "robot",
                 format!("collision at {:.2}, {:.2} m", pose.position.x, pose.position.y),
             ),
-            EventKind::Held { by, .. } => line(hold_severity(by), "mission", by.to_string()),
+            EventKind::Held { by, .. } => line(severity::of_hold(by), "mission", by.to_string()),
             EventKind::Resumed => line(Severity::Info, "mission", "resumed".into()),
             EventKind::Ended { outcome, reason } => {
                 let severity = if *outcome == Outcome::Complete { Severity::Info } else { Severity::Warn };
@@ -181,25 +169,12 @@ fn of_tether(kind: &EventKind) -> Option<LogLine> {
             line(Severity::Info, "tether", format!("{} back within limit", alarm.word()))
         }
         EventKind::Certified { planner, refused, certificate } => line(
-            certificate_severity(*refused, certificate),
+            severity::of_certificate(*refused, certificate),
             "tether",
             certificate_text(planner, *refused, certificate),
         ),
         _ => return None,
     })
-}
-
-fn hold_severity(by: &HoldReason) -> Severity {
-    match by {
-        HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced => Severity::Info,
-        HoldReason::PositionLost
-        | HoldReason::RangesInconsistent
-        | HoldReason::PlannerFault { .. }
-        | HoldReason::PlannerSilent { .. }
-        | HoldReason::PlanRefused { .. }
-        | HoldReason::Tether { .. }
-        | HoldReason::Stuck { .. } => Severity::Warn,
-    }
 }
 
 fn order_text(order: &Order) -> String {
@@ -212,14 +187,6 @@ fn order_text(order: &Order) -> String {
         Order::Abort => "end mission".into(),
         Order::ChoosePlanner(choice) => format!("change planner to {}", choice.id),
         Order::SetParameter { key, value } => format!("set {key} = {value}"),
-    }
-}
-
-fn certificate_severity(refused: bool, certificate: &Certificate) -> Severity {
-    match (refused, certificate.certified) {
-        (true, _) => Severity::Crit,
-        (false, true) => Severity::Info,
-        (false, false) => Severity::Warn,
     }
 }
 

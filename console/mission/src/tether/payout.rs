@@ -4,7 +4,7 @@
 //! Only the encoder of the reel can reveal that. Two taut cables that lie alike among the same obstacles differ
 //! by no more than their ends do, so more than the position error is a cable that lies otherwise.
 
-use super::KEPT_M;
+use super::driven::KEPT_M;
 
 /// Cable beyond what the map explains that errors of the map may cause, metres; the position error is added.
 const SLACK_M: f64 = 0.2;

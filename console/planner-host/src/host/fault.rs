@@ -47,6 +47,11 @@ pub(super) fn new(planner: &str, during: During, cause: Cause, message: String) 
     Fault { planner: planner.to_owned(), during, cause, message, partial: Vec::new(), plugin_sha256: None }
 }
 
+/// Values of parameters that a planner does not take.
+pub(super) fn of_parameters(planner: &str, message: String) -> Fault {
+    new(planner, During::Configure, Cause::Refused, message)
+}
+
 /// A planner's answer that no robot can follow; `what` reads on after the planner's name.
 pub(super) fn bad_output(planner: &str, phase: Phase, what: &str) -> Fault {
     new(planner, phase.during(), Cause::BadOutput, format!("planner {planner} {what} during {phase}"))

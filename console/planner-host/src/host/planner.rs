@@ -1,7 +1,7 @@
 //! A planner in its worker: what it is asked, and what it gives.
 
 use super::opening::{Loaded, Opening, Stage};
-use super::{HostConfig, fault, fault::Phase, numbers};
+use super::{HostConfig, fault, fault::Phase};
 use crate::supervisor::{Failure, Worker};
 use crate::wire::answer::{Said, said_of};
 use crate::wire::body::{Body, Read, Writer};
@@ -92,7 +92,7 @@ impl Ready {
     /// The mission gives all values that were set by hand, so that most of them are those that the planner has.
     fn merged(&self, changed: &Parameters) -> Result<Parameters, Fault> {
         let info = &self.loaded.info;
-        let refuse = |message| fault::new(&info.id, During::Configure, Cause::Refused, message);
+        let refuse = |message| fault::of_parameters(&info.id, message);
         let new = changed.iter().filter(|(key, value)| self.parameters.get(*key) != Some(*value));
         for (key, _) in new {
             let param = parameters::find(info, key).map_err(refuse)?;
@@ -146,7 +146,9 @@ impl Planner {
     ) -> Result<(), Fault> {
         let Some(ready) = &self.ready else { return Err(self.fault(Failure::Gone, Phase::Configure)) };
         let merged = ready.merged(changed).map_err(|fault| self.blamed(fault))?;
-        let values = numbers(&ready.loaded.info, &merged).map_err(|fault| self.blamed(fault))?;
+        let info = &ready.loaded.info;
+        let values = parameters::numbers(info, &merged)
+            .map_err(|message| self.blamed(fault::of_parameters(&info.id, message)))?;
         let write = |w: &mut Writer| {
             w.values(&values);
         };

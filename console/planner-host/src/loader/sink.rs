@@ -17,6 +17,8 @@ const MOST_PARAMS: usize = 256;
 const MOST_SCALARS: usize = 256;
 const MOST_LOGS: usize = 64;
 const LONGEST_MESSAGE: usize = 1024;
+/// Longest text of a table, bytes.
+pub(super) const LONGEST_TEXT: usize = 4096;
 
 /// Deadline and wishes of the console during a call.
 pub(crate) trait Watch {
@@ -227,7 +229,7 @@ unsafe extern "C" fn take_param(ctx: *mut c_void, param: *const Param) {
 }
 
 fn param_info(raw: &Param) -> ParamInfo {
-    let text = |raw| plain(raw, super::LONGEST_TEXT);
+    let text = |raw| plain(raw, LONGEST_TEXT);
     let (min, max, default) = (raw.min, raw.max, raw.default);
     let kind = match raw.kind {
         output::PARAM_INT => ParamKind::Int { min: min as i64, max: max as i64, default: default as i64 },

@@ -1,6 +1,6 @@
 //! How a process ended, in words that are the same in every run.
 
-use crate::worker::CHANNEL_LOST;
+use crate::wire::CHANNEL_LOST;
 use rustix::process::Signal;
 use std::os::unix::process::ExitStatusExt;
 use std::process::ExitStatus;

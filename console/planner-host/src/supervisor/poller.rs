@@ -1,59 +1,13 @@
 //! The one place where the console waits for workers: a single `poll(2)` over all of them.
 
+use super::ready::Ready;
 use super::waker::WakeReceiver;
 use super::worker::Worker;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use std::os::fd::BorrowedFd;
 use std::time::{Duration, Instant};
 
 /// Descriptors of two workers and of the wake-ups.
 const MOST_USUALLY: usize = 7;
-
-/// What a worker's descriptor is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Source {
-    /// Answers, and room for requests.
-    Socket,
-    /// The end of the process.
-    Exit,
-    /// What it prints.
-    Output,
-}
-
-/// A descriptor to wait for, and for what.
-pub(super) type Watched<'a> = (Source, BorrowedFd<'a>, PollFlags);
-
-/// What has happened to a worker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Ready {
-    socket: PollFlags,
-    /// The process has ended.
-    pub(super) exited: bool,
-    /// It printed something, or closed its output.
-    pub(super) printed: bool,
-}
-
-impl Ready {
-    const NOTHING: Self = Self { socket: PollFlags::empty(), exited: false, printed: false };
-
-    /// Something arrived, or the other side hung up.
-    pub(super) fn readable(self) -> bool {
-        !self.socket.difference(PollFlags::OUT).is_empty()
-    }
-
-    /// There is room for more of the request.
-    pub(super) fn writable(self) -> bool {
-        self.socket.contains(PollFlags::OUT)
-    }
-
-    fn note(&mut self, source: Source, happened: PollFlags) {
-        match source {
-            Source::Socket => self.socket = happened,
-            Source::Exit => self.exited = !happened.is_empty(),
-            Source::Output => self.printed = !happened.is_empty(),
-        }
-    }
-}
 
 /// Waits until something happens to a worker, a worker has to be looked at, the host is woken, or the given time is
 /// reached, whichever comes first. Notes what has happened to each of the workers, in their order; whether the host was

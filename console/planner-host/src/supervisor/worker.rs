@@ -4,8 +4,8 @@ mod end;
 mod exchange;
 mod state;
 
-use super::poller::{Ready, Source, Watched};
 use super::process::Process;
+use super::ready::{Ready, Source, Watched};
 use super::{Failure, WorkerCommand, soft};
 use crate::Progress;
 use crate::wire::body::Writer;

@@ -25,7 +25,6 @@ impl Writer {
     }
 
     /// The frame that was finished last.
-    #[cfg(unix)]
     pub(crate) fn frame(&self) -> &[u8] {
         &self.0
     }

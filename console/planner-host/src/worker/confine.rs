@@ -1,6 +1,6 @@
 //! The privileges and resources that a worker drops before it loads anything.
 
-use crate::supervisor::SHUT_DOWN_WITHIN;
+use crate::wire::SHUT_DOWN_WITHIN;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::process::{Resource, Rlimit, Signal, getpid, getrlimit, kill_process, setrlimit};
 use std::io;

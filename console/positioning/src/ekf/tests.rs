@@ -1,6 +1,7 @@
 use super::*;
 use crate::draws::Draws;
 use proptest::prelude::*;
+use world::Odometry;
 
 fn ahead(forward_m: f64, turn_rad: f64) -> Odometry {
     Odometry { forward_m, sideways_m: 0.0, turn_rad }

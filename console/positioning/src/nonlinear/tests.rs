@@ -5,7 +5,9 @@ use crate::{
     Aggregation, Integrity, LinearLs,
     draws::{Draws, exact, paper_stations, ring, skew_stations, stations},
 };
+use nalgebra::Rotation2;
 use proptest::prelude::*;
+use std::f64::consts::TAU;
 
 proptest! {
     #[test]

@@ -1,6 +1,6 @@
 //! How a journal ends, without reading all of it.
 
-use super::reader::opened;
+use crate::file::open_regular;
 use mission::{Event, EventKind};
 use std::{
     io::{self, Read, Seek, SeekFrom},
@@ -17,7 +17,7 @@ const TAIL_BYTES: u64 = 64 * 1024;
 /// # Errors
 /// The file cannot be read.
 pub fn read_ending(path: &Path) -> io::Result<Option<Event>> {
-    let mut file = opened(path)?;
+    let mut file = open_regular(path)?;
     let length = file.metadata()?.len();
     file.seek(SeekFrom::Start(length.saturating_sub(TAIL_BYTES)))?;
     let mut tail = Vec::new();

@@ -1,34 +1,13 @@
 //! Reading a journal, also one whose writer was killed.
 
 use super::{JournalError, upgrade};
+use crate::file::open_regular;
 use mission::{Event, event::JOURNAL_VERSION};
 use serde::Deserialize;
 use std::{
-    fs::File,
     io::{self, BufRead, BufReader},
     path::{Path, PathBuf},
 };
-
-/// A journal in memory.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Journal {
-    /// Its events, oldest first.
-    pub events: Vec<Event>,
-    /// Version of its format; absent if it is empty or its first line is cut off.
-    pub version: Option<u32>,
-    /// If it is empty or its last line is cut off, because the writer was killed or the disk was full: what is missing.
-    pub truncated: Option<String>,
-}
-
-/// Reads a whole journal.
-///
-/// # Errors
-/// See [`JournalError`]; a last line that is cut off is no error.
-pub fn read_journal(path: &Path) -> Result<Journal, JournalError> {
-    let mut reader = JournalReader::open(path)?;
-    let events = reader.by_ref().collect::<Result<_, _>>()?;
-    Ok(Journal { events, version: reader.version, truncated: reader.truncated })
-}
 
 /// A line of a journal.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,13 +32,6 @@ pub struct JournalReader {
     unended_bytes: u64,
 }
 
-/// Opens a regular file: a device or a pipe may never end.
-pub(super) fn opened(path: &Path) -> io::Result<File> {
-    let not_regular = || io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
-    // Looked at before it is opened, since opening a pipe waits for a writer.
-    if std::fs::metadata(path)?.is_file() { File::open(path) } else { Err(not_regular()) }
-}
-
 /// What the first line of a journal of any version contains.
 #[derive(Deserialize)]
 struct Head {
@@ -73,7 +45,7 @@ impl JournalReader {
     /// # Errors
     /// [`JournalError::Read`] if there is none.
     pub fn open(path: &Path) -> Result<Self, JournalError> {
-        let file = opened(path).map_err(|error| read_error(path, &error))?;
+        let file = open_regular(path).map_err(|error| read_error(path, &error))?;
         Ok(Self {
             lines: Box::new(BufReader::with_capacity(1 << 18, file)),
             path: path.to_owned(),

@@ -3,18 +3,18 @@
 use super::{
     document::Document,
     drawings::Drawings,
-    paths,
+    layout, paths, ranging,
     raster::Raster,
     scene,
     states::States,
     stream::{At, Stream},
     style,
-    tether::Tether,
-    tick::{Tick, Ticks},
+    table::Table,
+    tick::Tick,
 };
-use crate::{error::RecordingError, layout, rr};
+use crate::{error::RecordingError, rr};
 use mission::{Event, EventKind, Severity, event::RunOpened};
-use world::{Obstacle, Point};
+use world::{Obstacle, Point, Station};
 
 type Done = Result<(), RecordingError>;
 
@@ -27,11 +27,11 @@ pub(crate) struct Fold {
 /// The state of a recording whose world is known.
 struct Opened {
     tick: Tick,
-    ticks: Ticks,
+    table: Table,
+    stations: Vec<Station>,
     drawings: Drawings,
     raster: Raster,
     states: States,
-    tether: Option<Tether>,
     document: Document,
     target: Option<Point>,
     /// Whether the plan before had lines that are never crossed.
@@ -66,7 +66,7 @@ impl Fold {
         let Some(opened) = &mut self.opened else { return Ok(()) };
         let at = opened.tick.at;
         opened.close_tick(stream, at)?;
-        opened.ticks.finish();
+        opened.table.finish();
         opened.raster.picture(stream, at)?;
         opened.states.finish(stream)
     }
@@ -74,10 +74,7 @@ impl Fold {
     /// Sends waiting rows.
     pub(crate) fn send(&mut self, stream: &Stream) -> Done {
         let Some(opened) = &mut self.opened else { return Ok(()) };
-        opened.ticks.send(stream)?;
-        if let Some(tether) = &mut opened.tether {
-            tether.send(stream)?;
-        }
+        opened.table.send(stream)?;
         opened.drawings.send(stream)
     }
 }
@@ -95,12 +92,12 @@ impl Opened {
         )?;
         let (low, high) = run.world.boundary.bounds();
         let opened = Self {
-            tick: Tick::new(at),
-            ticks: Ticks::open(stream, run)?,
+            tick: Tick::first(at, run.mission.start.position),
+            table: Table::open(stream, run)?,
+            stations: run.world.stations.clone(),
             drawings: Drawings::new((high.x - low.x).min(high.y - low.y)),
             raster: Raster::open(stream, run)?,
             states: States::open(stream, at)?,
-            tether: Tether::open(stream, run)?,
             document,
             target: None,
             has_cuts: false,
@@ -111,9 +108,6 @@ impl Opened {
 
     fn apply(&mut self, event: &Event, at: At, stream: &Stream) -> Done {
         self.states.apply(&event.kind, at);
-        if let Some(tether) = &mut self.tether {
-            tether.apply(&event.kind, at);
-        }
         match &event.kind {
             EventKind::Covered { runs } => self.raster.mark(runs),
             EventKind::FloorChanged { changes } => self.raster.change(changes),
@@ -160,10 +154,12 @@ impl Opened {
     }
 
     fn close_tick(&mut self, stream: &Stream, next: At) -> Done {
-        let tick = std::mem::replace(&mut self.tick, Tick::new(next));
+        let next = self.tick.next(next);
+        let tick = std::mem::replace(&mut self.tick, next);
         self.drawings.show(stream, tick.at, &tick.drawings)?;
         self.raster.picture_if_due(stream, tick.at)?;
-        self.ticks.push(stream, &tick)
+        ranging::draw(stream, &self.stations, &tick)?;
+        self.table.push(stream, &tick)
     }
 
     fn write_document(&self, stream: &Stream, at: At) -> Done {

@@ -98,11 +98,9 @@ impl Row for Ellipse {
 }
 
 /// A number.
-pub(crate) struct Number(pub f64);
-
-impl Row for Number {
+impl Row for f64 {
     fn columns(rows: &[Self]) -> Result<Vec<rr::SerializedComponentColumn>, rr::SerializationError> {
-        Ok(rr::Scalars::new(rows.iter().map(|row| row.0)).columns_of_unit_batches()?.collect())
+        Ok(rr::Scalars::new(rows.iter().copied()).columns_of_unit_batches()?.collect())
     }
 }
 

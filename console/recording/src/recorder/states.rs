@@ -10,7 +10,7 @@ use super::{
     style,
 };
 use crate::{error::RecordingError, rr};
-use mission::{EventKind, Order, Outcome, event::HoldReason};
+use mission::{EventKind, HoldReason, Order, Outcome};
 
 type Done = Result<(), RecordingError>;
 

@@ -11,7 +11,7 @@ pub(crate) const TICK: &str = "tick";
 pub(crate) const SIM_TIME: &str = "sim_time";
 
 /// A moment of the mission on both timelines.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct At {
     /// Number of the tick.
     pub tick: i64,

@@ -1,9 +1,9 @@
 //! Damaged journals: read as far as they go, or refused with a message; never a panic.
 
-use crate::events;
+use crate::{events, journal::read_journal};
 use mutations::{mutated, mutations};
 use proptest::prelude::*;
-use recording::{JournalReader, JournalWriter, read_ending, read_journal};
+use recording::{JournalReader, JournalWriter, read_ending};
 use std::{fs, time::Instant};
 
 fn journal() -> Vec<u8> {

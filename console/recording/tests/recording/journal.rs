@@ -1,8 +1,8 @@
 //! The journal, whole, torn and damaged.
 
 use crate::events;
-use mission::event::JOURNAL_VERSION;
-use recording::{JournalError, JournalReader, JournalWriter, read_ending, read_journal};
+use mission::{Event, event::JOURNAL_VERSION};
+use recording::{JournalError, JournalReader, JournalWriter, read_ending};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -20,6 +20,20 @@ fn written(ticks: u64) -> (TempDir, PathBuf) {
     }
     journal.finish().expect("room on the disk");
     (folder, path)
+}
+
+/// A journal in memory.
+#[derive(Debug)]
+pub(crate) struct Journal {
+    pub events: Vec<Event>,
+    version: Option<u32>,
+    pub truncated: Option<String>,
+}
+
+pub(crate) fn read_journal(path: &Path) -> Result<Journal, JournalError> {
+    let mut reader = JournalReader::open(path)?;
+    let events = reader.by_ref().collect::<Result<_, _>>()?;
+    Ok(Journal { events, version: reader.version(), truncated: reader.truncated().map(str::to_owned) })
 }
 
 fn change(path: &Path, change: impl FnOnce(String) -> String) {

@@ -4,9 +4,9 @@
 //! potential field, an obstacle to discover, a station that falls silent, a hold, a second planner and an end.
 
 use mission::{
-    AskId, Cause, During, Event, EventKind, Fault, MissionConfig, Order, Outcome, ParamInfo, ParamKind,
-    ParamValue, Parameters, PlannerChoice, PlannerInfo, Resumes, ScanConfig, TaskConfig, WorkerId,
-    event::{HoldReason, JOURNAL_VERSION, RunOpened},
+    AskId, Cause, During, Event, EventKind, Fault, HoldReason, MissionConfig, Order, Outcome, ParamInfo,
+    ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, Resumes, ScanConfig, TaskConfig, WorkerId,
+    event::{JOURNAL_VERSION, RunOpened},
 };
 use nalgebra::{Matrix2, Matrix3};
 use planner_api::{Command, Drawing, Layer, Limits, LogLevel, Motion, PoseEstimate, Reason};

@@ -1,7 +1,7 @@
 //! The recorder's thread.
 
-use crate::{events, synthetic};
-use recording::{FAILURE_FILE, JournalWriter, Options, RunRecorder, inspect, read_journal, recorded_failure};
+use crate::{events, journal::read_journal, synthetic};
+use recording::{FAILURE_FILE, JournalWriter, Options, RunRecorder, inspect, recorded_failure};
 use std::{
     fs,
     io::{self, Write},

@@ -3,7 +3,7 @@
 use super::{events, text};
 use crate::model::{Busy, Model};
 use crate::theme::Role;
-use mission::{Hold, Order, Outcome, Phase, PositionTrust, Resumes, Severity, event::HoldReason};
+use mission::{Hold, HoldReason, Order, Outcome, Phase, PositionTrust, Resumes, Severity};
 
 /// How a line looks, and its clauses, the most important one first.
 pub(super) type Clauses = (Role, Vec<String>);

@@ -4,7 +4,7 @@ use super::look::{Look, Parts};
 use super::text;
 use crate::model::{Model, Recording, ui::Arrangement};
 use crate::theme::Role;
-use mission::{Hold, Outcome, Phase, Severity, event::HoldReason};
+use mission::{Hold, HoldReason, Outcome, Phase, Severity};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;

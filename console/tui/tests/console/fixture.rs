@@ -1,10 +1,10 @@
 //! A spiral mission in a tank with columns, as scripted events without an engine.
 
-use mission::event::{HoldReason, JOURNAL_VERSION, RunOpened, TetherAlarm, TetherContact};
+use mission::event::{JOURNAL_VERSION, RunOpened, TetherAlarm, TetherContact};
 use mission::planner::{Cause, During, Fault};
 use mission::{
-    AskId, Event, EventKind, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters, PlannerChoice,
-    PlannerInfo, Resumes, ScanConfig, TaskConfig, TetherConfig,
+    AskId, Event, EventKind, HoldReason, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters,
+    PlannerChoice, PlannerInfo, Resumes, ScanConfig, TaskConfig, TetherConfig,
 };
 use nalgebra::{Matrix2, Matrix3};
 use planner_api::{Command, Drawing, Layer, Limits, Motion, PoseEstimate, Reason};

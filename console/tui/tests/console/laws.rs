@@ -2,8 +2,7 @@
 
 use crate::fixture::{ASCII, PLAIN, RICH, Screen, choice, planner};
 use crate::screens::{drawn, text};
-use mission::event::HoldReason;
-use mission::{AskId, Event, EventKind, Order, Outcome, Resumes, Severity, WorkerId};
+use mission::{AskId, Event, EventKind, HoldReason, Order, Outcome, Resumes, Severity, WorkerId};
 use proptest::prelude::*;
 use ratatui::style::Style;
 use tui::{Caps, Effect, Health, Key, KeyPress, Model, Msg, Recording, Signal, Times};

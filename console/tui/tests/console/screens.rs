@@ -1,8 +1,7 @@
 //! Stored screens: the text, and beside it what each cell stands for.
 
 use crate::fixture::{ASCII, PLAIN, RICH, Screen};
-use mission::event::HoldReason;
-use mission::{EventKind, Order, Outcome, Resumes};
+use mission::{EventKind, HoldReason, Order, Outcome, Resumes};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;

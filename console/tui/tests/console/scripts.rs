@@ -2,8 +2,9 @@
 
 use crate::fixture::{RICH, Screen, choice};
 use crate::screens::{drawn, text};
-use mission::event::HoldReason;
-use mission::{AskId, EventKind, Gait, Order, Outcome, ParamValue, Phase, Resumes, Severity, WorkerId};
+use mission::{
+    AskId, EventKind, Gait, HoldReason, Order, Outcome, ParamValue, Phase, Resumes, Severity, WorkerId,
+};
 use tui::actions::ActionId;
 use tui::model::{Overlay, Pane};
 use tui::{Effect, Key, KeyPress, Model, Msg, Recording, Signal, Speed};

@@ -1,10 +1,9 @@
 //! A planner that cannot go on along its lanes is asked for new ones from where the robot stands; not at once again, for
 //! the robot may have to turn or to be seen better first.
 
+use super::seen::Verdict;
 use planner_api::{Reason, Status};
 use world::Point;
-
-use super::Verdict;
 
 /// A planner that has been stuck in its lanes for this long is asked for new ones, seconds.
 const BLOCKED_S: f64 = 1.0;

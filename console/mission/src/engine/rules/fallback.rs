@@ -1,9 +1,6 @@
 //! After a fault of the planner another one may take over, once.
 
-use crate::{
-    config::{MissionConfig, PlannerChoice},
-    standing::Resumes,
-};
+use crate::{config::MissionConfig, phase::Resumes, planner::PlannerChoice};
 
 /// Whether the automatic replacement after a fault has been used.
 #[derive(Debug, Default)]

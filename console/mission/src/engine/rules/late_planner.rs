@@ -1,10 +1,7 @@
 //! A planner that does not answer in time: the robot stands still meanwhile; after a while it is held.
 
-use super::{PlannerSeen, Verdict};
-use crate::{
-    event::HoldReason,
-    standing::{Hold, Resumes},
-};
+use super::seen::{PlannerSeen, Verdict};
+use crate::phase::{Hold, HoldReason, Resumes};
 
 /// A command that is older than this is of no use, seconds.
 const STALE_S: f64 = 0.2;

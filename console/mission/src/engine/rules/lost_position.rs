@@ -1,9 +1,9 @@
 //! A robot whose position cannot be relied on is held until it can be.
 
-use super::{Seen, Verdict};
+use super::seen::{Seen, Verdict};
 use crate::{
-    event::HoldReason,
-    standing::{Hold, PositionTrust, Resumes},
+    phase::{Hold, HoldReason, Resumes},
+    standing::PositionTrust,
 };
 
 /// For how long the position could not be relied on, seconds.

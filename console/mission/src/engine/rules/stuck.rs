@@ -1,9 +1,8 @@
 //! A robot that gets nowhere gets another plan in its lanes, once at each place; else an operator must help.
 
-use super::{SAME_PLACE_M, Seen, Verdict};
+use super::seen::{SAME_PLACE_M, Seen, Verdict};
 use crate::{
-    event::{HoldReason, Outcome},
-    standing::{Hold, Resumes},
+    phase::{Hold, HoldReason, Outcome, Resumes},
     task::{StuckWatch, Task},
 };
 use planner_api::Reason;

@@ -1,9 +1,9 @@
 //! A cable that has reached a limit, or has caught on something, holds the robot.
 
-use super::{SAME_PLACE_M, Seen, Verdict};
+use super::seen::{SAME_PLACE_M, Seen, Verdict};
 use crate::{
-    event::{HoldReason, Outcome, TetherAlarm},
-    standing::{Hold, Resumes},
+    event::TetherAlarm,
+    phase::{Hold, HoldReason, Outcome, Resumes},
 };
 use world::Point;
 

@@ -1,7 +1,7 @@
 //! The mission ends unfinished when its time is up.
 
-use super::{Seen, Verdict};
-use crate::event::Outcome;
+use super::seen::{Seen, Verdict};
+use crate::phase::Outcome;
 
 /// Counts the time that an operator has let the mission wait: while somebody looks after a mission that is held, its time
 /// does not run out.

@@ -1,7 +1,7 @@
 //! Answers that come when they come: the mission waits for none of them, and the journal repeats every one.
 
 use super::{covering::covering, *};
-use crate::{Awaits, FoldedStanding, ask::RecordedAnswers};
+use crate::{Awaits, FoldedStanding, event::RecordedAnswers};
 use proptest::prelude::*;
 
 fn step_delay(ticks: u64, from: u64, to: u64) -> Delay {

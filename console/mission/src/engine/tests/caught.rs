@@ -5,7 +5,7 @@ use super::{
     tethered::{holds, loosely_tethered, tethered},
     *,
 };
-use crate::{event::TetherAlarm, tether::TetherConfig};
+use crate::{config::TetherConfig, event::TetherAlarm};
 use planner_api::LegTag;
 use world::{Shape, tether};
 

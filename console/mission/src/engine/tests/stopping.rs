@@ -2,7 +2,7 @@
 //! arrives, and nothing but an order lets it move again.
 
 use super::{covering::covering, tethered::tethered, *};
-use crate::standing::Resumes;
+use crate::phase::Resumes;
 
 /// A flight in some state, with whatever would let the robot move again if nobody held it.
 struct Case {

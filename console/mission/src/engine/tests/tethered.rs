@@ -2,8 +2,9 @@
 
 use super::*;
 use crate::{
+    config::TetherConfig,
     event::TetherAlarm,
-    tether::{Tether, TetherConfig, return_path_ends},
+    tether::{Tether, return_path_ends},
 };
 use planner_api::{Leg, LegTag};
 use world::{Obstacle, ObstacleId, Shape, tether::Limits};

@@ -3,7 +3,8 @@
 use super::{Loaded, Opening, Stage};
 use crate::host::find::Candidate;
 use crate::host::planner::{Asked, Doing, Planner, Ready, unless_refused};
-use crate::host::{Host, fault, fault::Phase, numbers};
+use crate::host::{Host, fault, fault::Phase};
+use crate::parameters;
 use crate::supervisor::{Failure, Worker};
 use crate::survey::write_load;
 use crate::wire::answer::{self, Said, loaded_of, said_of};
@@ -144,7 +145,9 @@ impl Host {
         // A file before it that failed may work the next time.
         let first = opening.first_fault.is_none().then_some(candidate);
         self.catalog.learn(&loaded.info.id, first);
-        let values = numbers(&loaded.info, &opening.parameters);
+        let info = &loaded.info;
+        let values = parameters::numbers(info, &opening.parameters);
+        let values = values.map_err(|message| fault::of_parameters(&info.id, message));
         let asked = values.and_then(|values| {
             let write = |w: &mut Writer| {
                 w.values(&values).written(&opening.site.bytes);

@@ -2,9 +2,11 @@
 
 use super::Worker;
 use super::state::{DIE_WITHIN, Dying, State};
+use crate::supervisor::Failure;
 use crate::supervisor::ending::{how_it_ended, last_line};
-use crate::supervisor::poller::{Ready, wait_for_one};
-use crate::supervisor::{Failure, SHUT_DOWN_WITHIN};
+use crate::supervisor::poller::wait_for_one;
+use crate::supervisor::ready::Ready;
+use crate::wire::SHUT_DOWN_WITHIN;
 use rustix::process::Signal;
 use std::net::Shutdown;
 use std::os::unix::process::ExitStatusExt;

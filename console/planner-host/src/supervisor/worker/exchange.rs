@@ -5,7 +5,7 @@ use super::state::{Budgeted, State};
 use crate::Progress;
 use crate::supervisor::Failure;
 use crate::supervisor::load::load_of;
-use crate::supervisor::poller::Ready;
+use crate::supervisor::ready::Ready;
 use crate::wire::body::{Body, Malformed, Read};
 use crate::wire::frame::Filled;
 use crate::wire::kind;

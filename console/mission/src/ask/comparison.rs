@@ -1,0 +1,119 @@
+//! A planner's answer beside the one that is recorded.
+
+use super::{Answer, Given};
+use crate::planner::{Cause, Fault};
+use planner_api::Command;
+
+/// What comes of comparing a planner's own answer with the recorded one.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Comparison {
+    /// They are the same.
+    Same,
+    /// The recorded answer is not the planner's.
+    NotComparable,
+    /// They differ; the sentence reads on after "it".
+    Different(String),
+}
+
+impl Comparison {
+    /// Compares two answers to one ask. `as_sent` is what a command becomes on its way to the robot: that is what is
+    /// recorded.
+    pub fn of(own: &Answer, recorded: &Answer, as_sent: impl Fn(Command) -> Command) -> Self {
+        let why = match (&own.result, &recorded.result) {
+            (Ok(Given::Opened(_)), Err(Fault { cause: Cause::Quarantined | Cause::Refused, .. })) => {
+                return Self::NotComparable;
+            }
+            (Ok(own_given), Ok(given)) => differs(own_given, given, as_sent)
+                .or_else(|| (own.said != recorded.said).then_some("logs or draws something else"))
+                .map(str::to_owned),
+            (Err(own), Err(fault)) => (own != fault)
+                .then(|| format!("fails with \"{}\" instead of \"{}\"", own.message, fault.message)),
+            (Ok(_), Err(fault)) => Some(format!("does not fail (\"{}\" then)", fault.message)),
+            (Err(own), Ok(_)) => Some(format!("fails: {}", own.message)),
+        };
+        why.map_or(Self::Same, Self::Different)
+    }
+}
+
+fn differs(own: &Given, recorded: &Given, as_sent: impl Fn(Command) -> Command) -> Option<&'static str> {
+    match (own, recorded) {
+        (Given::Opened(own), Given::Opened(then)) => {
+            (own != then).then_some("is another build or offers something else")
+        }
+        (Given::Command(own), Given::Command(then)) => {
+            (as_sent(*own) != *then).then_some("commands something else")
+        }
+        (Given::Plan(own), Given::Plan(then)) => {
+            let is_same = own.path == then.path
+                && own.complete == then.complete
+                && own.legs == then.legs
+                && own.cuts == then.cuts;
+            (!is_same).then_some("plans another path")
+        }
+        (own, then) => (own != then).then_some("gives something else"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        ask::{AskId, Said, WorkerId},
+        planner::During,
+    };
+    use planner_api::{LogLevel, Plan, Status};
+
+    fn answer(result: Result<Given, Fault>) -> Answer {
+        Answer { ask: AskId { worker: WorkerId(1), n: 1 }, result, said: Said::default() }
+    }
+
+    fn fault(cause: Cause, message: &str) -> Fault {
+        let (planner, message) = ("apf".into(), message.into());
+        Fault { planner, during: During::Step, cause, message, partial: Vec::new(), plugin_sha256: None }
+    }
+
+    fn compared(own: Result<Given, Fault>, recorded: Result<Given, Fault>) -> Comparison {
+        Comparison::of(&answer(own), &answer(recorded), |command| command)
+    }
+
+    fn is_different(comparison: &Comparison, how: &str) -> bool {
+        matches!(comparison, Comparison::Different(why) if why == how)
+    }
+
+    #[test]
+    fn a_command_is_the_same_when_it_is_sent_the_same() {
+        let (waiting, stuck) = (Command::still(Status::Waiting), Command::still(Status::Stuck));
+        let given = |command| answer(Ok(Given::Command(command)));
+        assert_eq!(Comparison::of(&given(waiting), &given(stuck), |_| stuck), Comparison::Same);
+        let other = Comparison::of(&given(waiting), &given(stuck), |command| command);
+        assert!(is_different(&other, "commands something else"));
+    }
+
+    #[test]
+    fn a_plan_is_compared_without_its_cost_which_is_not_recorded() {
+        let plan = Plan { complete: true, ..Plan::default() };
+        let dearer = Plan { cost: plan.cost + 1.0, ..plan.clone() };
+        assert_eq!(compared(Ok(Given::Plan(dearer)), Ok(Given::Plan(plan.clone()))), Comparison::Same);
+        let other = compared(Ok(Given::Plan(Plan::default())), Ok(Given::Plan(plan)));
+        assert!(is_different(&other, "plans another path"));
+    }
+
+    #[test]
+    fn the_same_answer_with_other_words_is_a_difference() {
+        let (quiet, mut loud) = (answer(Ok(Given::Reconfigured)), answer(Ok(Given::Reconfigured)));
+        loud.said.logs.push((LogLevel::Warn, "narrow".into()));
+        let other = Comparison::of(&loud, &quiet, |command| command);
+        assert!(is_different(&other, "logs or draws something else"));
+    }
+
+    #[test]
+    fn faults_are_compared_and_what_the_mission_refused_is_not() {
+        let (panic, other) = (fault(Cause::Panic, "it panicked"), fault(Cause::BadOutput, "it gave NaN"));
+        assert_eq!(compared(Err(panic.clone()), Err(panic.clone())), Comparison::Same);
+        let different = compared(Err(other), Err(panic.clone()));
+        assert!(is_different(&different, "fails with \"it gave NaN\" instead of \"it panicked\""));
+        let well = compared(Ok(Given::Reconfigured), Err(panic.clone()));
+        assert!(is_different(&well, "does not fail (\"it panicked\" then)"));
+        assert!(is_different(&compared(Err(panic), Ok(Given::Reconfigured)), "fails: it panicked"));
+    }
+}

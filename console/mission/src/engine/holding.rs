@@ -1,0 +1,85 @@
+//! What the verdicts of rules do: the robot is held, moves again, or the mission ends.
+
+use super::{Mission, rules::Verdict, seat::Prepare};
+use crate::{
+    event::EventKind,
+    phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
+};
+use planner_api::Reason;
+
+impl Mission {
+    pub(super) fn carry_out(&mut self, verdict: Verdict) {
+        match verdict {
+            Verdict::Hold(hold) => self.hold(hold),
+            Verdict::HoldAndReplan(hold) => {
+                self.active.want_plan(Reason::Blocked);
+                self.hold(hold);
+            }
+            Verdict::Resume => self.go_on(Gait::Steady),
+            Verdict::Replan(reason) => self.active.want_plan(reason),
+            Verdict::Done => self.end_done(),
+            Verdict::End(outcome, reason) => self.end(outcome, reason),
+        }
+    }
+
+    /// After a fault: the fallback takes over, if there is one; with nobody there to help the mission ends.
+    pub(super) fn replace_failed_planner(&mut self) {
+        let Phase::Held(Hold { by, resumes }) = &self.phase else { return };
+        if *resumes == Resumes::ByFallback {
+            let active = self.active.choice.id.clone();
+            if let Some(choice) = self.rules.fallback.update(&self.config, &active) {
+                let mut seat = self.active.successor(choice, Reason::Swap { from: active });
+                seat.prepare = Prepare::Plan;
+                if let Some(candidate) = self.candidate.take() {
+                    self.reject(candidate, format!("the fallback planner {} takes over", seat.choice.id));
+                }
+                self.replace_active(seat);
+            }
+        } else if resumes.is_never() && !self.config.attended && self.active.prepare == Prepare::No {
+            let (HoldReason::PlannerFault { message }
+            | HoldReason::PlanRefused { message }
+            | HoldReason::PlannerSilent { message }) = by
+            else {
+                return;
+            };
+            let reason = format!("unattended hold: {message}");
+            self.end(Outcome::Aborted, reason);
+        }
+    }
+
+    /// Holds the robot. If only an order could let it move anyway, or for more than one command, only an order ends this
+    /// hold: the operator's HOLD outlives whatever happens to planners meanwhile.
+    pub(super) fn hold(&mut self, Hold { by, resumes }: Hold) {
+        let only_by_order = match &self.phase {
+            Phase::Held(before) => before.resumes.is_never(),
+            Phase::Running(gait) => *gait == Gait::OneTick,
+            Phase::Waiting | Phase::Ended(_) => false,
+        };
+        let resumes = if only_by_order { Resumes::Never } else { resumes };
+        self.happened.push(EventKind::Held { by: by.clone(), resumes });
+        self.phase = Phase::Held(Hold { by, resumes });
+        self.active.outdate_step();
+        if let Some(unsent) = self.active.command.take() {
+            self.discard(unsent);
+        }
+    }
+
+    /// Lets the robot move again, for good or for one tick.
+    pub(super) fn resume(&mut self, gait: Gait) {
+        self.active.prepare = Prepare::No;
+        self.go_on(gait);
+    }
+
+    pub(super) fn go_on(&mut self, gait: Gait) {
+        self.rules.restart();
+        self.happened.push(EventKind::Resumed);
+        self.phase = Phase::Running(gait);
+    }
+
+    pub(super) fn end(&mut self, outcome: Outcome, reason: String) {
+        self.happened.ending = Some(EventKind::Ended { outcome, reason });
+        self.phase = Phase::Ended(outcome);
+        self.drop_candidate();
+        self.close_active();
+    }
+}

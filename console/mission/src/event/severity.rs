@@ -1,0 +1,56 @@
+//! How much events ask of the operator.
+
+use crate::{
+    phase::HoldReason,
+    planner::{Cause, Fault},
+};
+use serde::{Deserialize, Serialize};
+use world::tether::Certificate;
+
+/// How much an event asks of the operator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Severity {
+    /// Worth knowing.
+    Info,
+    /// Worth watching.
+    Watch,
+    /// Needs attention.
+    Warn,
+    /// Needs action now.
+    Crit,
+}
+
+impl Fault {
+    /// How much it asks of the operator: what came too late may be the machine's doing, and what was refused has not
+    /// driven the robot.
+    pub fn severity(&self) -> Severity {
+        match self.cause {
+            Cause::Late | Cause::Starved | Cause::Refused => Severity::Warn,
+            _ => Severity::Crit,
+        }
+    }
+}
+
+/// How much a hold asks of the operator.
+pub(super) fn of_hold(by: &HoldReason) -> Severity {
+    match by {
+        HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced => Severity::Info,
+        HoldReason::PositionLost
+        | HoldReason::RangesInconsistent
+        | HoldReason::PlannerFault { .. }
+        | HoldReason::PlannerSilent { .. }
+        | HoldReason::PlanRefused { .. }
+        | HoldReason::Tether { .. }
+        | HoldReason::Stuck { .. } => Severity::Warn,
+    }
+}
+
+/// How much the certificate of a plan asks of the operator; `refused`: the plan is not flown.
+pub(super) fn of_certificate(refused: bool, certificate: &Certificate) -> Severity {
+    match (refused, certificate.certified) {
+        (true, _) => Severity::Crit,
+        (false, true) => Severity::Info,
+        (false, false) => Severity::Warn,
+    }
+}

@@ -1,0 +1,60 @@
+//! The standing of a mission, folded from its events.
+
+use super::{PositionTrust, Standing};
+use crate::{
+    event::EventKind,
+    order::Order,
+    phase::{Gait, Hold, Phase},
+    planner::PlannerInfo,
+};
+use serde::{Deserialize, Serialize};
+
+/// The standing of a mission as it follows from its events, for those who see nothing else of the mission.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct FoldedStanding {
+    /// What the mission is doing.
+    pub phase: Phase,
+    /// Whether the last order was for a single step.
+    is_stepping: bool,
+    /// The limit of the position error, metres, while the position counts as lost.
+    lost: Option<f64>,
+    /// Whether the ranges contradict each other.
+    is_alarmed: bool,
+    /// The planner that was opened last to drive.
+    planner: Option<Box<PlannerInfo>>,
+}
+
+impl FoldedStanding {
+    /// Takes in one event; they must come in the order of the journal.
+    pub fn apply(&mut self, event: &EventKind) {
+        match event {
+            EventKind::RunOpened(_) => *self = Self::default(),
+            EventKind::Ordered { order: Order::Start } => self.phase = Phase::Running(Gait::Steady),
+            EventKind::Ordered { order } => self.is_stepping = *order == Order::Step,
+            EventKind::Resumed => {
+                let gait = if std::mem::take(&mut self.is_stepping) { Gait::OneTick } else { Gait::Steady };
+                self.phase = Phase::Running(gait);
+            }
+            EventKind::Held { by, resumes } => {
+                self.phase = Phase::Held(Hold { by: by.clone(), resumes: *resumes });
+            }
+            EventKind::Ended { outcome, .. } => self.phase = Phase::Ended(*outcome),
+            EventKind::PositionLost { limit_m, .. } => self.lost = Some(*limit_m),
+            EventKind::PositionRegained { .. } => self.lost = None,
+            EventKind::RangesInconsistent { .. } => self.is_alarmed = true,
+            EventKind::RangesConsistent => self.is_alarmed = false,
+            EventKind::PlannerChosen { info, .. } => self.planner = Some(info.clone()),
+            _ => {}
+        }
+    }
+
+    /// Everything that decides whether an order is accepted now.
+    pub fn standing(&self) -> Standing<'_> {
+        let position = match self.lost {
+            Some(limit_m) => PositionTrust::Lost { limit_m },
+            None if self.is_alarmed => PositionTrust::Alarmed,
+            None => PositionTrust::Good,
+        };
+        Standing { phase: &self.phase, position, planner: self.planner.as_deref() }
+    }
+}

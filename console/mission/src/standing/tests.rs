@@ -1,0 +1,82 @@
+use super::*;
+use crate::{
+    phase::{Gait, Outcome, Resumes},
+    planner::{ParamValue, Parameters, PlannerChoice},
+};
+
+fn phases() -> Vec<Phase> {
+    let held = HoldReason::every("m").into_iter().flat_map(|by| {
+        [Resumes::Never, Resumes::WhenCleared, Resumes::ByFallback]
+            .map(|resumes| Phase::Held(Hold { by: by.clone(), resumes }))
+    });
+    let others = [
+        Phase::Waiting,
+        Phase::Running(Gait::Steady),
+        Phase::Running(Gait::OneTick),
+        Phase::Ended(Outcome::Complete),
+    ];
+    others.into_iter().chain(held).collect()
+}
+
+fn orders() -> Vec<Order> {
+    let choice = PlannerChoice { id: "apf".into(), parameters: Parameters::new() };
+    vec![
+        Order::Start,
+        Order::Hold,
+        Order::Resume,
+        Order::Step,
+        Order::FlyUncertified,
+        Order::Abort,
+        Order::ChoosePlanner(choice),
+        Order::SetParameter { key: "gain".into(), value: ParamValue::Flag(true) },
+    ]
+}
+
+fn standing(phase: &Phase, position: PositionTrust) -> Standing<'_> {
+    Standing { phase, position, planner: None }
+}
+
+#[test]
+fn hold_and_abort_are_accepted_in_every_phase_that_has_anything_to_stop() {
+    let lost = PositionTrust::Lost { limit_m: 0.3 };
+    for position in [PositionTrust::Good, lost, PositionTrust::Alarmed] {
+        for phase in phases() {
+            let standing = standing(&phase, position);
+            let under_way = matches!(phase, Phase::Running(_) | Phase::Held(_));
+            assert_eq!(standing.allows(&Order::Hold).is_ok(), under_way, "{phase:?}");
+            assert_eq!(standing.allows(&Order::Abort).is_ok(), !matches!(phase, Phase::Ended(_)));
+            assert!(!phase.may_move() || standing.allows(&Order::Hold).is_ok(), "{phase:?}");
+        }
+    }
+}
+
+#[test]
+fn nothing_that_moves_the_robot_is_accepted_without_a_position() {
+    let lost = PositionTrust::Lost { limit_m: 0.3 };
+    for position in [lost, PositionTrust::Alarmed] {
+        for phase in phases() {
+            for order in [Order::Resume, Order::Step, Order::FlyUncertified] {
+                assert!(standing(&phase, position).allows(&order).is_err(), "{phase:?} {order:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_whole_table() {
+    let word = |text: &str| text.split(['(', ' ', '{']).next().unwrap_or_default().to_owned();
+    let mut table = Vec::new();
+    for phase in phases().iter().filter(|phase| !matches!(phase, Phase::Held(h) if !h.resumes.is_never())) {
+        for order in orders() {
+            let answer = match standing(phase, PositionTrust::Good).allows(&order) {
+                Ok(()) => "accepted".to_owned(),
+                Err(why) => why.to_string(),
+            };
+            let (order, phase) = (format!("{order:?}"), format!("{phase:?}"));
+            let by = phase.split("by: ").nth(1).map(|by| format!(" {}", word(by))).unwrap_or_default();
+            let (phase, by) = (word(&phase), by.trim_end_matches(','));
+            table.push(format!("{phase}{by}: {}: {answer}", word(&order)));
+        }
+    }
+    insta::assert_snapshot!(table.join("\n"));
+}

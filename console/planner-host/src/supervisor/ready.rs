@@ -1,0 +1,52 @@
+//! What may happen to a worker, and what has.
+
+use rustix::event::PollFlags;
+use std::os::fd::BorrowedFd;
+
+/// What a worker's descriptor is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Source {
+    /// Answers, and room for requests.
+    Socket,
+    /// The end of the process.
+    Exit,
+    /// What it prints.
+    Output,
+}
+
+/// A descriptor to wait for, and for what.
+pub(super) type Watched<'a> = (Source, BorrowedFd<'a>, PollFlags);
+
+/// What has happened to a worker.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Ready {
+    socket: PollFlags,
+    /// The process has ended.
+    pub(super) exited: bool,
+    /// It printed something, or closed its output.
+    pub(super) printed: bool,
+}
+
+impl Ready {
+    /// What is known before the first look.
+    pub(super) const NOTHING: Self = Self { socket: PollFlags::empty(), exited: false, printed: false };
+
+    /// Something arrived, or the other side hung up.
+    pub(super) fn readable(self) -> bool {
+        !self.socket.difference(PollFlags::OUT).is_empty()
+    }
+
+    /// There is room for more of the request.
+    pub(super) fn writable(self) -> bool {
+        self.socket.contains(PollFlags::OUT)
+    }
+
+    /// Notes what has happened to one of its descriptors.
+    pub(super) fn note(&mut self, source: Source, happened: PollFlags) {
+        match source {
+            Source::Socket => self.socket = happened,
+            Source::Exit => self.exited = !happened.is_empty(),
+            Source::Output => self.printed = !happened.is_empty(),
+        }
+    }
+}

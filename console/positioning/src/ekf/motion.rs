@@ -1,0 +1,89 @@
+//! How the belief moves with the odometry.
+
+use super::{Covariance, Ekf, SLIP, State, TURN_BIAS};
+use nalgebra::Vector2;
+use world::Odometry;
+
+/// Odometry of one tick beyond this is no motion of a robot, metres or radians.
+const MOTION_LIMIT: f64 = 1e3;
+/// Part of the odometry error that is fresh in every metre, as a share of the part that stays the same.
+const FRESH_SHARE: f64 = 0.3;
+/// Fresh odometry error across the way as a share of that along it.
+const ACROSS_SHARE: f64 = 0.3;
+/// Change of slip and turn error within a metre, as a share of what they may be.
+const WANDER_SHARE: f64 = 0.05;
+
+impl Ekf {
+    /// Moves the belief by what the odometry says.
+    pub fn predict(&mut self, odometry: &Odometry) {
+        self.moved_by(odometry);
+    }
+
+    /// Moves the belief; gives what the state after the motion depends on of the state before.
+    pub(crate) fn moved_by(&mut self, odometry: &Odometry) -> Covariance {
+        let Odometry { forward_m, sideways_m, turn_rad } = *odometry;
+        if ![forward_m, sideways_m, turn_rad].iter().all(|m| m.abs() <= MOTION_LIMIT) {
+            return Covariance::identity();
+        }
+        let before = self.pose();
+        let kept = 1.0 - self.state[SLIP];
+        let after = before.moved(forward_m * kept, sideways_m * kept, turn_rad - self.state[TURN_BIAS]);
+        let unslipped = before.moved(forward_m, sideways_m, turn_rad).position - before.position;
+        let step = after.position - before.position;
+        self.state.fixed_rows_mut::<2>(0).copy_from(&after.position.coords);
+        self.state[2] = after.heading_rad;
+
+        let mut by_state = Covariance::identity();
+        let by_heading = Vector2::new(-step.y, step.x);
+        by_state.fixed_view_mut::<2, 1>(0, 2).copy_from(&by_heading);
+        by_state.fixed_view_mut::<2, 1>(0, SLIP).copy_from(&-unslipped);
+        // The heading turns evenly on the way, so the position sees half of it.
+        by_state.fixed_view_mut::<2, 1>(0, TURN_BIAS).copy_from(&(by_heading * -0.5));
+        by_state[(2, TURN_BIAS)] = -1.0;
+        let gained = self.gained_m2_rad2(forward_m.hypot(sideways_m), turn_rad);
+        self.covariance =
+            by_state * self.covariance * by_state.transpose() + Covariance::from_diagonal(&gained);
+        self.narrow_across(step, gained[0]);
+        self.last_way = step;
+        self.keep_sound();
+        by_state
+    }
+
+    /// Takes back most of the fresh variance across the way: tracks err along it, and the heading does the rest.
+    fn narrow_across(&mut self, step: Vector2<f64>, gained_m2: f64) {
+        if let Some(along) = step.try_normalize(1e-9) {
+            let across = Vector2::new(-along.y, along.x);
+            let taken = across * across.transpose() * (gained_m2 * (1.0 - ACROSS_SHARE.powi(2)));
+            let mut position = self.covariance.fixed_view_mut::<2, 2>(0, 0);
+            position -= taken;
+        }
+    }
+
+    /// Variances that a motion adds.
+    fn gained_m2_rad2(&self, way_m: f64, turn_rad: f64) -> State {
+        let noise = &self.noise;
+        let by_way =
+            (FRESH_SHARE * noise.sigma_per_m).powi(2) * way_m + (noise.way_sigma_ratio * way_m).powi(2);
+        let by_turn = (noise.turn_sigma_ratio * turn_rad).powi(2) + noise.heading_sigma_per_tick_rad.powi(2);
+        let wander = WANDER_SHARE.powi(2) * way_m;
+        State::new(
+            by_way,
+            by_way,
+            by_turn,
+            noise.sigma_per_m.powi(2) * wander,
+            noise.heading_sigma_per_tick_rad.powi(2) * wander,
+        )
+    }
+
+    /// Makes the position as uncertain as if the tracks had slipped all the way of the last motion.
+    ///
+    /// For a filter whose ranges were refused while the solver finds them sound.
+    pub fn doubt_motion(&mut self, odometry: &Odometry) {
+        let way_m = odometry.forward_m.hypot(odometry.sideways_m);
+        if way_m <= MOTION_LIMIT {
+            self.covariance[(0, 0)] += way_m * way_m;
+            self.covariance[(1, 1)] += way_m * way_m;
+            self.keep_sound();
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! A journal, read tick by tick, to be compared with what is computed again.
+
+use super::{JournalError, JournalLine, JournalReader};
+use mission::{Event, EventKind, Order, PlannerInfo, RunOpened};
+use std::path::Path;
+
+/// A line as it is in the file, and what it says.
+type Line = (Vec<u8>, Event);
+
+/// The lines of one tick.
+#[derive(Debug, Default)]
+pub struct RecordedTick {
+    /// Its number.
+    pub tick: u64,
+    lines: Vec<Line>,
+    /// Whether the journal stops in this tick: then only the lines that come before all answers of planners are compared.
+    is_cut: bool,
+}
+
+/// Where a journal and what is computed again part.
+#[derive(Debug, PartialEq)]
+pub struct Difference {
+    /// In which tick.
+    pub tick: u64,
+    /// The line of the journal.
+    pub recorded: String,
+    /// The line that is computed.
+    pub computed: String,
+}
+
+impl RecordedTick {
+    /// What happened.
+    pub fn events(&self) -> impl Iterator<Item = &EventKind> {
+        self.lines.iter().map(|(_, event)| &event.kind)
+    }
+
+    /// The orders of the tick, those that were refused too.
+    pub fn orders(&self) -> Vec<Order> {
+        let order = |event: &EventKind| match event {
+            EventKind::Ordered { order } | EventKind::OrderRefused { order, .. } => Some(order.clone()),
+            _ => None,
+        };
+        self.events().filter_map(order).collect()
+    }
+
+    /// The planners that were opened in this tick.
+    pub fn opened_planners(&self) -> impl Iterator<Item = &PlannerInfo> {
+        self.events().filter_map(|event| match event {
+            EventKind::PlannerChosen { info, .. } | EventKind::PlannerPrepared { info, .. } => Some(&**info),
+            _ => None,
+        })
+    }
+
+    /// How many of its lines can be compared.
+    pub fn n_compared(&self) -> usize {
+        self.to_compare().len()
+    }
+
+    /// The first line that is not, byte for byte, the one that is computed; `None` if all are.
+    ///
+    /// # Errors
+    /// A computed event cannot be written as JSON.
+    pub fn difference(&self, computed: &[Event]) -> Result<Option<Difference>, serde_json::Error> {
+        let lines = self.to_compare();
+        let end = if self.is_cut { lines.len() } else { lines.len().max(computed.len()) };
+        for index in 0..end {
+            let ours = computed.get(index).map(serde_json::to_string).transpose()?;
+            let theirs = lines.get(index).map(|(raw, _)| raw.as_slice());
+            if ours.as_deref().map(str::as_bytes) != theirs {
+                let theirs = theirs.map(|raw| String::from_utf8_lossy(raw).into_owned());
+                let nothing = || "nothing more in this tick".to_owned();
+                return Ok(Some(Difference {
+                    tick: self.tick,
+                    recorded: theirs.unwrap_or_else(nothing),
+                    computed: ours.unwrap_or_else(nothing),
+                }));
+            }
+        }
+        Ok(None)
+    }
+
+    fn to_compare(&self) -> &[Line] {
+        let is_answer = |(_, event): &Line| {
+            let is_said = matches!(
+                event.kind,
+                EventKind::Drawn { .. }
+                    | EventKind::Scalars { .. }
+                    | EventKind::PlannerLogged { .. }
+                    | EventKind::PlannerLate { .. }
+            );
+            is_said || event.kind.closes().is_some()
+        };
+        let end = if self.is_cut { self.lines.iter().position(is_answer) } else { None };
+        &self.lines[..end.unwrap_or(self.lines.len())]
+    }
+}
+
+/// Reads a journal tick by tick.
+pub struct Ticks {
+    reader: JournalReader,
+    /// The first line of the tick that comes next.
+    ahead: Option<Line>,
+    ended: bool,
+    no_end: Option<String>,
+}
+
+impl Ticks {
+    /// Opens a journal.
+    ///
+    /// # Errors
+    /// There is none, or its first line is none of a journal.
+    pub fn open(path: &Path) -> Result<Self, JournalError> {
+        let reader = JournalReader::open(path)?;
+        let mut ticks = Self { reader, ahead: None, ended: false, no_end: None };
+        ticks.ahead = ticks.line()?;
+        Ok(ticks)
+    }
+
+    /// How the run was opened; to be asked before the first tick.
+    ///
+    /// # Errors
+    /// [`JournalError::NotOpened`].
+    pub fn opened(&self) -> Result<&RunOpened, JournalError> {
+        match self.ahead.as_ref().map(|(_, event)| &event.kind) {
+            Some(EventKind::RunOpened(opened)) => Ok(opened),
+            _ => Err(JournalError::NotOpened),
+        }
+    }
+
+    /// The next tick; `None` after the last one.
+    ///
+    /// # Errors
+    /// A line cannot be understood.
+    pub fn next_tick(&mut self) -> Result<Option<RecordedTick>, JournalError> {
+        let Some(first) = self.ahead.take() else { return Ok(None) };
+        let mut recorded = RecordedTick { tick: first.1.tick, lines: vec![first], is_cut: false };
+        while let Some(line) = self.line()? {
+            if line.1.tick != recorded.tick {
+                self.ahead = Some(line);
+                return Ok(Some(recorded));
+            }
+            recorded.lines.push(line);
+        }
+        let ends =
+            recorded.lines.last().is_some_and(|(_, event)| matches!(event.kind, EventKind::Ended { .. }));
+        if ends && self.reader.truncated().is_none() {
+            return Ok(Some(recorded));
+        }
+        let torn = self.reader.truncated().map(|why| format!("{why}, ")).unwrap_or_default();
+        self.no_end = Some(format!("{torn}it stops in tick {}", recorded.tick));
+        recorded.is_cut = true;
+        Ok(Some(recorded))
+    }
+
+    /// Why the journal has no end; to be asked after the last tick.
+    pub fn no_end(&self) -> Option<String> {
+        self.no_end.clone()
+    }
+
+    fn line(&mut self) -> Result<Option<Line>, JournalError> {
+        if self.ended {
+            return Ok(None);
+        }
+        let line = self.reader.next_line()?;
+        self.ended = line.is_none();
+        Ok(line.map(|JournalLine { raw, event }| (raw.to_vec(), event)))
+    }
+}
+
+#[cfg(test)]
+mod tests;

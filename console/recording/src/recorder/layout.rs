@@ -1,0 +1,207 @@
+//! How the viewer opens a recording: map on the left, figures, states and log on the right.
+//!
+//! The layout is embedded in the recording. The SDK's builders lack some view properties (bounds, background, axes,
+//! trails); they are appended to the same blueprint store by the paths that the viewer reads them from.
+
+use super::{
+    paths,
+    stream::{APPLICATION, SIM_TIME, TICK},
+    style,
+};
+use crate::{
+    error::RecordingError,
+    rr::{self, bp, datatypes, view, view_part},
+};
+use mission::{TaskConfig, event::RunOpened};
+use rr::AsComponents;
+
+/// How far back the trails of the robot reach, seconds of mission time.
+const TRAIL_S: f64 = 60.0;
+/// Margin around the tank as a share of its size.
+const MARGIN: f64 = 0.06;
+
+/// A property of a view that the SDK's builders do not know.
+struct Extra {
+    path: String,
+    what: Vec<rr::SerializedComponentBatch>,
+}
+
+/// Views, and the properties to append.
+#[derive(Default)]
+struct Sketch {
+    extras: Vec<Extra>,
+}
+
+/// The layout of a run as messages for the recording.
+pub(crate) fn messages(
+    run: &RunOpened,
+) -> Result<(Vec<rr::LogMsg>, rr::BlueprintActivationCommand), RecordingError> {
+    let mut sketch = Sketch::default();
+    let blueprint = sketch.blueprint(run);
+    build(&blueprint, sketch.extras).map_err(|error| RecordingError::sdk(&error))
+}
+
+fn build(
+    blueprint: &bp::Blueprint,
+    extras: Vec<Extra>,
+) -> Result<(Vec<rr::LogMsg>, rr::BlueprintActivationCommand), rr::RecordingStreamError> {
+    let activation = bp::BlueprintActivation { make_active: true, make_default: true };
+    let (scratch, store) =
+        rr::RecordingStreamBuilder::new(APPLICATION).enabled(true).send_properties(false).memory()?;
+    blueprint.send(&scratch, activation)?;
+    let mut messages = store.take();
+    let id =
+        messages.iter().map(rr::LogMsg::store_id).find(|id| id.kind() == rr::StoreKind::Blueprint).cloned();
+    let id = id.expect("a blueprint that was sent has a store");
+    messages.retain(|m| *m.store_id() == id && !matches!(m, rr::LogMsg::BlueprintActivationCommand(_)));
+    let (patch, store) =
+        rr::RecordingStreamBuilder::from_store_id(&id).enabled(true).send_properties(false).memory()?;
+    patch.set_time_sequence("blueprint", 0);
+    for extra in extras {
+        patch.log_serialized_batches(extra.path, false, extra.what)?;
+    }
+    messages.extend(store.take().into_iter().filter(|message| matches!(message, rr::LogMsg::ArrowMsg(..))));
+    Ok((messages, rr::BlueprintActivationCommand { blueprint_id: id, make_active: true, make_default: true }))
+}
+
+impl Sketch {
+    fn blueprint(&mut self, run: &RunOpened) -> bp::Blueprint {
+        let map = self.map(run);
+        let right = self.right(run);
+        let root = bp::Horizontal::new([map, right]).with_column_shares(vec![1.15, 1.0]);
+        bp::Blueprint::new(root)
+            .with_auto_views(false)
+            .with_auto_layout(false)
+            .with_blueprint_panel(bp::BlueprintPanel::from_state(view_part::PanelState::Collapsed))
+            .with_selection_panel(bp::SelectionPanel::from_state(view_part::PanelState::Collapsed))
+            .with_time_panel(
+                bp::TimePanel::new()
+                    .with_state(view_part::PanelState::Collapsed)
+                    .with_timeline(SIM_TIME)
+                    .with_play_state(view_part::PlayState::Following),
+            )
+    }
+
+    fn map(&mut self, run: &RunOpened) -> bp::ContainerLike {
+        let map = bp::Spatial2DView::new("Map")
+            .with_origin(format!("/{}", paths::MAP))
+            .with_contents(["$origin/**"])
+            .into();
+        let path = view_path(&map);
+        self.add(&path, "VisualBounds2D", &bounds(run));
+        let background = view::Background::new(view_part::BackgroundKind::SolidColor);
+        self.add(&path, "Background", &background.with_color(style::color(style::FLOOR)));
+        let trail = trail(TRAIL_S, run.mission.tick_s);
+        let way = since_the_start();
+        for (entity, ranges) in [
+            (paths::TRUE, &trail),
+            (paths::ESTIMATE, &trail),
+            (paths::WAY_TRUE, &way),
+            (paths::WAY_ESTIMATE, &way),
+        ] {
+            self.add(&path, &format!("ViewContents/overrides/{entity}/visualizers"), ranges);
+        }
+        map
+    }
+
+    fn right(&mut self, run: &RunOpened) -> bp::ContainerLike {
+        let error = self.plot("Position error [m]", &[paths::ERROR, paths::ERROR_95], None);
+        let covered = self.plot("Coverage of the reachable floor [%]", &[paths::COVERED], Some([0.0, 105.0]));
+        let speeds = [paths::SPEED, paths::SPEED_SENT, paths::CLEARANCE];
+        let motion = self.plot("Speed [m/s] and clearance [m]", &speeds, None);
+        let planning = self.planning(&run.mission.task, run.mission.tether.is_some());
+        let states = bp::StateTimelineView::new("States")
+            .with_origin(format!("/{}", paths::STATE))
+            .with_contents(["$origin/**"])
+            .into();
+        let log = bp::TextLogView::new("Events").with_origin(format!("/{}", paths::LOG)).into();
+        let mission = bp::TextDocumentView::new("Mission").with_origin(format!("/{}", paths::SUMMARY)).into();
+        let scenario =
+            bp::TextDocumentView::new("Scenario").with_origin(format!("/{}", paths::SCENARIO)).into();
+        bp::Vertical::new([
+            bp::Horizontal::new([error, covered]).into(),
+            bp::Horizontal::new([motion, planning]).into(),
+            states,
+            bp::Tabs::new([log, mission, scenario]).into(),
+        ])
+        .with_row_shares(vec![2.0, 2.0, 1.8, 2.2])
+        .into()
+    }
+
+    /// How the planner does its work: one plot at a time, the most informative first.
+    fn planning(&mut self, task: &TaskConfig, has_tether: bool) -> bp::ContainerLike {
+        let forces = self.plot("Forces [N]", &[paths::FORCE_SIZES], None);
+        let figures = self.plot("Planner", &[&format!("{}/**", paths::PLANNER_SCALARS)], None);
+        match task {
+            _ if has_tether => {
+                let out = [paths::TETHER_OUT, paths::TETHER_OUT_TRUE, paths::TETHER_HOME];
+                let out = self.plot("Tether [m]", &out, None);
+                let wraps = self.plot("Wraps [deg]", &[paths::TETHER_WRAP, paths::TETHER_SUM], None);
+                let cross_track = self.plot("Cross-track [m]", &[paths::CROSS_TRACK], None);
+                bp::Tabs::new([out, wraps, cross_track, forces, figures]).into()
+            }
+            TaskConfig::Follow { .. } | TaskConfig::Cover { .. } => {
+                let cross_track = self.plot("Cross-track [m]", &[paths::CROSS_TRACK], None);
+                bp::Tabs::new([cross_track, forces, figures]).into()
+            }
+            TaskConfig::Goto { .. } => bp::Tabs::new([forces, figures]).into(),
+        }
+    }
+
+    fn plot(&mut self, name: &str, entities: &[&str], range: Option<[f64; 2]>) -> bp::ContainerLike {
+        let plot = bp::TimeSeriesView::new(name)
+            .with_origin(format!("/{}", paths::SCALARS))
+            .with_contents(entities.iter().map(|entity| format!("/{entity}")))
+            .into();
+        let path = view_path(&plot);
+        if let Some(range) = range {
+            self.add(&path, "ScalarAxis", &view::ScalarAxis::new().with_range(datatypes::Range1D(range)));
+        }
+        let whole = datatypes::TimeRange {
+            start: datatypes::TimeRangeBoundary::Infinite,
+            end: datatypes::TimeRangeBoundary::Infinite,
+        };
+        self.add(&path, "TimeAxis", &view::TimeAxis::new().with_view_range(whole));
+        self.add(&path, "PlotLegend", &view::PlotLegend::new().with_corner(view_part::Corner2D::LeftTop));
+        plot
+    }
+
+    fn add(&mut self, view: &str, property: &str, what: &dyn AsComponents) {
+        self.extras.push(Extra { path: format!("{view}/{property}"), what: what.as_serialized_batches() });
+    }
+}
+
+fn view_path(view: &bp::ContainerLike) -> String {
+    match view {
+        bp::ContainerLike::View(view) => view.blueprint_path().to_string(),
+        _ => unreachable!("a view was made just before"),
+    }
+}
+
+/// The part of the map that is seen at first: the tank with a margin, turned over like the map itself.
+fn bounds(run: &RunOpened) -> view::VisualBounds2D {
+    let (low, high) = run.world.boundary.bounds();
+    let margin = MARGIN * (high - low).max();
+    view::VisualBounds2D::new(view_part::VisualBounds2D(datatypes::Range2D {
+        x_range: [low.x - margin, high.x + margin].into(),
+        y_range: [-high.y - margin, -low.y + margin].into(),
+    }))
+}
+
+fn trail(seconds: f64, tick_s: f64) -> view::VisibleTimeRanges {
+    let back = |by: f64| datatypes::TimeRangeBoundary::CursorRelative(datatypes::TimeInt(-by.round() as i64));
+    view::VisibleTimeRanges::new([
+        until_now(TICK, back(seconds / tick_s)),
+        until_now(SIM_TIME, back(seconds * 1e9)),
+    ])
+}
+
+fn since_the_start() -> view::VisibleTimeRanges {
+    let start = || datatypes::TimeRangeBoundary::Infinite;
+    view::VisibleTimeRanges::new([until_now(TICK, start()), until_now(SIM_TIME, start())])
+}
+
+fn until_now(timeline: &str, start: datatypes::TimeRangeBoundary) -> datatypes::VisibleTimeRange {
+    let end = datatypes::TimeRangeBoundary::CursorRelative(datatypes::TimeInt(0));
+    datatypes::VisibleTimeRange { timeline: timeline.into(), range: datatypes::TimeRange { start, end } }
+}

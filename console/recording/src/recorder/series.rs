@@ -1,0 +1,90 @@
+//! Rows that each tick adds to an entity.
+
+use super::{
+    lane::{Flat, Lane, Row, Strip, flat},
+    stream::{At, Stream},
+    tick::Tick,
+};
+use crate::error::RecordingError;
+use world::Point;
+
+/// Points of a piece of the way that is sent as one line.
+const WAY_POINTS: usize = 32;
+
+/// One entity, filled tick by tick.
+pub(crate) trait Series: Send {
+    /// Takes in a tick that is over.
+    fn push(&mut self, tick: &Tick);
+
+    /// Closes what is open at the end of the run.
+    fn finish(&mut self) {}
+
+    /// Sends the waiting rows.
+    fn send(&mut self, stream: &Stream) -> Result<(), RecordingError>;
+}
+
+/// A row for each tick that has one.
+struct Rows<T> {
+    lane: Lane<T>,
+    of: fn(&Tick) -> Option<T>,
+}
+
+/// A series of what each tick shows, if it shows it.
+pub(crate) fn rows<T: Row + Send + 'static>(path: &str, of: fn(&Tick) -> Option<T>) -> Box<dyn Series> {
+    Box::new(Rows { lane: Lane::new(path), of })
+}
+
+impl<T: Row + Send> Series for Rows<T> {
+    fn push(&mut self, tick: &Tick) {
+        if let Some(row) = (self.of)(tick) {
+            self.lane.push(tick.at, row);
+        }
+    }
+
+    fn send(&mut self, stream: &Stream) -> Result<(), RecordingError> {
+        self.lane.send(stream)
+    }
+}
+
+/// A way that grows piece by piece, so that all of it can be drawn at every moment.
+pub(crate) struct Way {
+    lane: Lane<Strip>,
+    of: fn(&Tick) -> Option<Point>,
+    spacing_m: f32,
+    points: Vec<Flat>,
+    last: Option<At>,
+}
+
+impl Way {
+    /// The way of a position, its points this far apart.
+    pub(crate) fn new(path: &str, spacing_m: f64, of: fn(&Tick) -> Option<Point>) -> Self {
+        Self { lane: Lane::new(path), of, spacing_m: spacing_m as f32, points: Vec::new(), last: None }
+    }
+}
+
+impl Series for Way {
+    fn push(&mut self, tick: &Tick) {
+        let Some(place) = (self.of)(tick).map(flat) else { return };
+        let near = |last: &Flat| (place[0] - last[0]).hypot(place[1] - last[1]) < self.spacing_m;
+        if self.points.last().is_some_and(near) {
+            return;
+        }
+        self.points.push(place);
+        self.last = Some(tick.at);
+        if self.points.len() >= WAY_POINTS {
+            self.finish();
+        }
+    }
+
+    fn finish(&mut self) {
+        if let (Some(at), true) = (self.last, self.points.len() > 1) {
+            // The next piece begins where this one ends.
+            let next = self.points[self.points.len() - 1..].to_vec();
+            self.lane.push(at, Strip(std::mem::replace(&mut self.points, next)));
+        }
+    }
+
+    fn send(&mut self, stream: &Stream) -> Result<(), RecordingError> {
+        self.lane.send(stream)
+    }
+}

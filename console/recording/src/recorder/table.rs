@@ -1,0 +1,130 @@
+//! Everything that is recorded of a tick in rows: one table, each series with its place and with what it shows of a tick.
+
+use super::{
+    lane::{Ellipse, Lane, Placed, Spot, Spots, Strip, flat},
+    paths,
+    series::{Series, Way, rows},
+    stream::{At, Stream},
+    style,
+    tick::Tick,
+};
+use crate::{error::RecordingError, rr};
+use mission::event::RunOpened;
+use std::collections::BTreeMap;
+
+type Done = Result<(), RecordingError>;
+
+/// A figure: its place, its name and colour in the plots, and its value in a tick.
+type Figure = (&'static str, &'static str, [u8; 4], fn(&Tick) -> Option<f64>);
+
+const FIGURES: [Figure; 7] = [
+    (paths::ERROR, "error", style::ESTIMATE, Tick::error_m),
+    (paths::ERROR_95, "95 % bound", style::FIGURE, |tick| Some(tick.estimate?.ellipse_95.0)),
+    (paths::COVERED, "reachable floor", style::PLAN, |tick| Some(100.0 * tick.covered?)),
+    (paths::SPEED, "speed", style::TRUE, Tick::speed_m_per_s),
+    (paths::SPEED_SENT, "speed sent", style::FIGURE, |tick| tick.speed_sent_m_per_s),
+    (paths::CLEARANCE, "clearance", style::WARNING, |tick| Some(tick.truth?.clearance_m)),
+    (paths::CROSS_TRACK, "cross-track", style::ESTIMATE, |tick| tick.cross_track_m),
+];
+
+const TETHER_FIGURES: [Figure; 5] = [
+    (paths::TETHER_OUT, "cable out", style::ESTIMATE, |tick| Some(tick.tether.as_ref()?.length_m)),
+    (paths::TETHER_OUT_TRUE, "cable out, truly", style::TRUE, |tick| tick.true_tether_m),
+    // A gap in the curve: there is no way home.
+    (paths::TETHER_HOME, "way home", style::FIGURE, |tick| tick.tether.as_ref()?.return_length_m),
+    (paths::TETHER_WRAP, "largest wrap", style::WARNING, |tick| Some(tick.tether.as_ref()?.wrap_max_deg)),
+    (paths::TETHER_SUM, "sum of wraps", style::FIGURE, |tick| Some(tick.tether.as_ref()?.wrap_total_deg)),
+];
+
+/// What moves on the map.
+fn moving(run: &RunOpened) -> Vec<Box<dyn Series>> {
+    let spacing_m = run.mission.cell_m;
+    vec![
+        rows(paths::TRUE, |tick| Some(Spot(flat(tick.truth?.pose.position)))),
+        rows(paths::BODY, |tick| {
+            let pose = tick.truth?.pose;
+            Some(Placed { at: flat(pose.position), angle_rad: pose.heading_rad as f32 })
+        }),
+        rows(paths::ESTIMATE, |tick| Some(Spot(flat(tick.estimate?.position)))),
+        rows(paths::COVARIANCE, |tick| {
+            let (long_m, short_m, angle_rad) = tick.estimate?.ellipse_95;
+            let placed = Placed { at: flat(tick.estimate?.position), angle_rad: angle_rad as f32 };
+            Some(Ellipse { placed, half_axes_m: (long_m as f32, short_m as f32) })
+        }),
+        Box::new(Way::new(paths::WAY_TRUE, spacing_m, |tick| Some(tick.truth?.pose.position))),
+        Box::new(Way::new(paths::WAY_ESTIMATE, spacing_m, |tick| Some(tick.estimate?.position))),
+    ]
+}
+
+/// The tether on the map.
+fn tether() -> Vec<Box<dyn Series>> {
+    vec![
+        rows(paths::TETHER, |tick| Some(Strip(tick.tether.as_ref()?.line.clone()))),
+        rows(paths::TETHER_CONTACTS, |tick| Some(Spots(tick.tether.as_ref()?.contacts.clone()))),
+    ]
+}
+
+/// The rows of a run that wait to be sent.
+pub(crate) struct Table {
+    series: Vec<Box<dyn Series>>,
+    /// Figures that planners report, by name.
+    reported: BTreeMap<String, Lane<f64>>,
+}
+
+impl Table {
+    /// The series of a run, and how the figures among them look in the plots.
+    pub(crate) fn open(stream: &Stream, run: &RunOpened) -> Result<Self, RecordingError> {
+        let mut series = moving(run);
+        let mut figures = FIGURES.to_vec();
+        if run.mission.tether.is_some() {
+            series.extend(tether());
+            figures.extend(TETHER_FIGURES);
+        }
+        for (path, name, color, value) in figures {
+            stream.always(path, &curve(name, color))?;
+            series.push(rows(path, value));
+        }
+        Ok(Self { series, reported: BTreeMap::new() })
+    }
+
+    /// Takes in a tick that is over.
+    pub(crate) fn push(&mut self, stream: &Stream, tick: &Tick) -> Done {
+        self.series.iter_mut().for_each(|series| series.push(tick));
+        tick.scalars
+            .iter()
+            .try_for_each(|(name, value, unit)| self.push_reported(stream, tick.at, name, *value, unit))
+    }
+
+    /// Closes what is open at the end of the run.
+    pub(crate) fn finish(&mut self) {
+        self.series.iter_mut().for_each(|series| series.finish());
+    }
+
+    /// Sends the waiting rows.
+    pub(crate) fn send(&mut self, stream: &Stream) -> Done {
+        self.series.iter_mut().try_for_each(|series| series.send(stream))?;
+        self.reported.values_mut().try_for_each(|lane| lane.send(stream))
+    }
+
+    fn push_reported(&mut self, stream: &Stream, at: At, name: &str, value: f64, unit: &str) -> Done {
+        if !self.reported.contains_key(name) {
+            let lane = Lane::new(format!("{}/{}", paths::PLANNER_SCALARS, entity_name(name)));
+            let color = style::SERIES[self.reported.len() % style::SERIES.len()];
+            let label = if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") };
+            stream.always(lane.path(), &curve(&label, color))?;
+            self.reported.insert(name.to_owned(), lane);
+        }
+        self.reported.get_mut(name).expect("a lane was made above").push(at, value);
+        Ok(())
+    }
+}
+
+fn curve(name: &str, color: [u8; 4]) -> rr::SeriesLines {
+    rr::SeriesLines::new().with_names([name]).with_colors([style::color(color)]).with_widths([1.5])
+}
+
+/// A planner's name for a figure as one part of an entity path.
+fn entity_name(name: &str) -> String {
+    let plain = |c: char| if c.is_alphanumeric() || matches!(c, '_' | '-' | '.') { c } else { '_' };
+    name.chars().map(plain).collect()
+}

@@ -1,0 +1,133 @@
+//! The thread's own part: writes both files, and looks at them.
+
+use super::shared::Shared;
+use crate::{
+    error::RecordingError,
+    file::FileChange,
+    journal::{JournalEnd, JournalError, JournalWriter},
+    marker::FailureMarker,
+    recorder::Recorder,
+};
+use mission::Event;
+use std::{
+    sync::{
+        Arc,
+        atomic::Ordering,
+        mpsc::{Receiver, RecvTimeoutError},
+    },
+    time::{Duration, Instant},
+};
+
+/// How long the thread sleeps at most, so that what waits to be written is written when nothing happens.
+const IDLE: Duration = Duration::from_millis(100);
+/// How often the files on disk are compared with those that are being written; with [`IDLE`] and the half second
+/// after which a screen asks, an operator knows within a second.
+const WATCH_PERIOD: Duration = Duration::from_millis(400);
+
+/// What the thread owns.
+pub(super) struct Writer {
+    journal: Option<JournalWriter>,
+    recorder: Option<Recorder>,
+    marker: Option<FailureMarker>,
+    shared: Arc<Shared>,
+    watched: Instant,
+    changed: Option<String>,
+}
+
+impl Writer {
+    /// A writer of files that were begun.
+    pub(super) fn new(
+        journal: JournalWriter,
+        recorder: Option<Recorder>,
+        marker: Option<FailureMarker>,
+        shared: Arc<Shared>,
+    ) -> Self {
+        let journal = Some(journal);
+        Self { journal, recorder, marker, shared, watched: Instant::now(), changed: None }
+    }
+
+    /// Writes until nobody sends any more.
+    pub(super) fn run(mut self, batches: &Receiver<Arc<[Event]>>) -> Option<JournalEnd> {
+        loop {
+            match batches.recv_timeout(IDLE) {
+                Ok(events) => self.write(&events),
+                Err(RecvTimeoutError::Timeout) => self.idle(),
+                Err(RecvTimeoutError::Disconnected) => return self.close(),
+            }
+        }
+    }
+
+    fn write(&mut self, events: &[Event]) {
+        let now = Instant::now();
+        for event in events {
+            // What the journal reports is asked for below.
+            let _ = self.journal.as_mut().map(|journal| journal.append(event, now));
+            if let Some(Err(error)) = self.recorder.as_mut().map(|recorder| recorder.push(event, now)) {
+                self.shared.lose(&error);
+            }
+        }
+        self.shared.done.fetch_add(1, Ordering::Relaxed);
+        self.look(now);
+    }
+
+    fn idle(&mut self) {
+        let now = Instant::now();
+        let _ = self.journal.as_mut().map(|journal| journal.tick(now));
+        if let Some(Err(error)) = self.recorder.as_mut().map(|recorder| recorder.idle(now)) {
+            self.shared.lose(&error);
+        }
+        self.look(now);
+    }
+
+    /// Looks at both files, and shares what it sees.
+    fn look(&mut self, now: Instant) {
+        if now.saturating_duration_since(self.watched) >= WATCH_PERIOD {
+            self.watched = now;
+            self.changed = self.check_files().err();
+        }
+        let bytes = self.journal.as_ref().map_or(0, JournalWriter::written_bytes);
+        self.shared.journal_bytes.store(bytes, Ordering::Relaxed);
+        self.shared.set_trouble(self.trouble());
+        self.mark();
+    }
+
+    fn check_files(&self) -> Result<(), String> {
+        let as_text = |error: RecordingError| error.to_string();
+        let journal = self.journal.as_ref().map_or(Ok(()), JournalWriter::check_file);
+        journal.map_err(|change| as_text(JournalError::from(change).into()))?;
+        let recording = self.recorder.as_ref().map_or(Ok(()), Recorder::check_file);
+        recording.map_err(|change: FileChange| as_text(change.into()))
+    }
+
+    fn trouble(&self) -> Option<String> {
+        let journal = self.journal.as_ref().and_then(JournalWriter::trouble).map(|error| error.to_string());
+        let recording = || self.recorder.as_ref().and_then(Recorder::trouble).map(|error| error.to_string());
+        journal.or_else(recording).or_else(|| self.changed.clone())
+    }
+
+    /// Leaves a sign of what is wrong in the folder of the run, or takes it away.
+    fn mark(&mut self) {
+        if let Some(marker) = &mut self.marker {
+            marker.show(self.shared.error().as_deref());
+        }
+    }
+
+    fn close(&mut self) -> Option<JournalEnd> {
+        let journal = self.journal.take().map(JournalWriter::finish).transpose();
+        let recording = self.recorder.take().map_or(Ok(()), Recorder::finish);
+        let end = journal.unwrap_or_else(|error| {
+            self.shared.lose(&error);
+            None
+        });
+        if let Err(error) = recording {
+            self.shared.lose(&error);
+        }
+        if let Some(end) = &end {
+            self.shared.journal_bytes.store(end.bytes, Ordering::Relaxed);
+        }
+        // How each file ended is clear now; what was wrong on the way and is over does not matter any more.
+        self.shared.set_trouble(None);
+        self.mark();
+        end
+    }
+}

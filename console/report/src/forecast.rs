@@ -1,0 +1,160 @@
+//! How well the stations will locate the robot, place by place, and where they should stand: for scripts and people, and
+//! as a picture.
+
+use crate::drawing::forecast::svg;
+use mission::{MissionConfig, TaskConfig};
+use positioning::{Accuracy, AccuracyMap, Advice, Forecast};
+use serde::Serialize;
+use std::fmt::Write;
+use world::{Point, World};
+
+/// Cells along the longer side of the floor.
+const CELLS: f64 = 80.0;
+/// The largest error of a whole scan, fixes and odometry filtered, as a share of a single fix's 95 % error; as measured in
+/// flights.
+const FILTERED: f64 = 0.65;
+/// Places beyond the limit that people are shown.
+const MOST_SHOWN: usize = 12;
+
+/// A forecast as scripts read it.
+#[derive(Debug, Serialize)]
+pub struct ForecastReport<'a> {
+    scenario: &'a str,
+    limit_m: f64,
+    stations: Vec<Placed<'a>>,
+    mean_error_95_m: Option<f64>,
+    p95_error_95_m: Option<f64>,
+    worst_error_95_m: Option<f64>,
+    blind_share: f64,
+    beyond_limit_share: f64,
+    beyond_limit_area_m2: f64,
+    /// The worst first.
+    beyond_limit: Vec<Place>,
+    map: &'a AccuracyMap,
+    advice: Option<Advice>,
+}
+
+#[derive(Debug, Serialize)]
+struct Placed<'a> {
+    name: &'a str,
+    at: Point,
+}
+
+#[derive(Debug, Serialize)]
+struct Place {
+    at: Point,
+    #[serde(flatten)]
+    accuracy: Accuracy,
+}
+
+impl<'a> ForecastReport<'a> {
+    /// The forecast of a scenario of this name over a map of its drawing.
+    pub fn new(
+        scenario: &'a str,
+        mission: &MissionConfig,
+        drawing: &'a World,
+        map: &'a AccuracyMap,
+        advice: Option<Advice>,
+    ) -> Self {
+        let limit_m = mission.position_limit_m;
+        let mut errors: Vec<f64> = map.floor().filter_map(|(_, cell)| cell.error_95_m).collect();
+        errors.sort_by(f64::total_cmp);
+        let n_floor = map.floor().count().max(1) as f64;
+        let beyond: Vec<Place> =
+            map.beyond(limit_m).into_iter().map(|(at, accuracy)| Place { at, accuracy }).collect();
+        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+        Self {
+            scenario,
+            limit_m,
+            stations: drawing
+                .stations
+                .iter()
+                .map(|station| Placed { name: &station.name, at: station.position })
+                .collect(),
+            mean_error_95_m: (!errors.is_empty()).then_some(mean),
+            p95_error_95_m: errors.get(errors.len() * 95 / 100).copied(),
+            worst_error_95_m: errors.last().copied(),
+            blind_share: 1.0 - errors.len() as f64 / n_floor,
+            beyond_limit_share: beyond.len() as f64 / n_floor,
+            beyond_limit_area_m2: beyond.len() as f64 * map.cell_m * map.cell_m,
+            beyond_limit: beyond,
+            map,
+            advice,
+        }
+    }
+
+    /// The forecast as a picture, an SVG document; advised places are rings.
+    pub fn svg(&self, drawing: &World) -> String {
+        let places = self.advice.as_ref().map_or(&[][..], |advice| &advice.places);
+        svg(drawing, self.map, self.limit_m, places)
+    }
+
+    /// The forecast for people.
+    pub fn human(&self) -> String {
+        let mut text = String::new();
+        // Writing to a String cannot fail.
+        let metres = |value: Option<f64>| value.map_or("none".into(), |m| format!("{m:.3} m"));
+        let percent = |share: f64| share * 100.0;
+        let _ = writeln!(text, "95 % error of a single fix, by the scatter of the ranges");
+        let _ = writeln!(text, "mean      {}", metres(self.mean_error_95_m));
+        let _ = writeln!(text, "p95       {}", metres(self.p95_error_95_m));
+        let _ = writeln!(text, "worst     {}", metres(self.worst_error_95_m));
+        let _ = writeln!(text, "no fix    {:.1} % of the floor", percent(self.blind_share));
+        let _ = writeln!(
+            text,
+            "beyond    {:.1} % of the floor, {:.1} m2, above the limit of {:.2} m or without a fix",
+            percent(self.beyond_limit_share),
+            self.beyond_limit_area_m2,
+            self.limit_m
+        );
+        for place in self.beyond_limit.iter().take(MOST_SHOWN) {
+            let error = place.accuracy.error_95_m.map_or("no fix".into(), |m| format!("{m:.3} m"));
+            let _ = writeln!(
+                text,
+                "  at {:6.2}, {:6.2} m  {error:9}  {} stations heard",
+                place.at.x, place.at.y, place.accuracy.heard
+            );
+        }
+        let rest = self.beyond_limit.len().saturating_sub(MOST_SHOWN);
+        if rest > 0 {
+            let _ = writeln!(text, "  and {rest} more cells of {:.2} m", self.map.cell_m);
+        }
+        if let Some(advice) = &self.advice {
+            let _ = writeln!(
+                text,
+                "advice    {} stations on the wall: mean {:.3} m, worst {:.3} m, no fix on {:.1} % of the floor",
+                advice.places.len(),
+                advice.mean_error_95_m,
+                advice.worst_error_95_m,
+                percent(advice.blind_share)
+            );
+            for place in &advice.places {
+                let _ = writeln!(text, "  at_m = [{:.3}, {:.3}]", place.x, place.y);
+            }
+        }
+        text
+    }
+}
+
+/// Warns of a scan with so little clearance that the position error may use it up: the robot sees how far off columns are,
+/// but not walls.
+///
+/// Costs as much as the map: one forecast for each of some thousand places.
+pub fn clearance_warning(mission: &MissionConfig, drawing: &World) -> Option<String> {
+    let TaskConfig::Cover { .. } = mission.task else { return None };
+    let clearance_m = mission.clearance_m;
+    let map = AccuracyMap::new(drawing, &forecast(mission, drawing));
+    let expected_m = FILTERED * ForecastReport::new("", mission, drawing, &map, None).p95_error_95_m?;
+    (clearance_m < expected_m).then(|| {
+        format!(
+            "mission.clearance_m is {clearance_m:.2} m, and the position will be off by up to about {expected_m:.2} m: the \
+             hull may touch a wall; more clearance or better stations are right (`tankops accuracy`)"
+        )
+    })
+}
+
+/// What the mission's own estimator may expect of its stations.
+pub fn forecast(mission: &MissionConfig, drawing: &World) -> Forecast {
+    let (low, high) = drawing.boundary.bounds();
+    mission.forecast((high - low).amax() / CELLS)
+}

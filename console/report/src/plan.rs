@@ -1,0 +1,223 @@
+//! A plan that was made without flying: its figures for scripts and people, and its picture.
+
+use crate::{
+    drawing::plan::{Drawn, svg},
+    leg::{Leg, legs},
+};
+use mission::{MissionConfig, Parameters, TaskConfig, tether::certify_from_start};
+use planner_api::Plan;
+use serde::Serialize;
+use world::{
+    Cell, Floor, Point, Shape, World, polyline,
+    tether::{Cable, Case, Certificate, Limits, certify},
+};
+
+/// A plan as scripts read it.
+#[derive(Debug, Serialize)]
+pub struct Planned {
+    planner: String,
+    parameters: Parameters,
+    path: Vec<Point>,
+    legs: Vec<Leg>,
+    /// Lines that the tethered robot never crosses.
+    cuts: Vec<Vec<Point>>,
+    length_m: f64,
+    plan_time_ms: f64,
+    complete: bool,
+    /// Why it is not complete.
+    reason: Option<String>,
+    /// What the planner warned of: floor that it leaves out and why, ways of its own where the method has none.
+    warnings: Vec<String>,
+    /// The floor that is to be scanned as reports count it; absent for other missions.
+    floor: Option<PlannedFloor>,
+    /// What the path does to the tether, or, without one, to a tether that would run from the anchor of a coverage
+    /// mission; absent for other missions.
+    certificate: Option<Certificate>,
+}
+
+/// A floor as reports count it: by the whole swath, what lanes overlap included.
+#[derive(Debug, Serialize)]
+struct PlannedFloor {
+    /// Width of floor scanned in one pass, metres.
+    swath_m: f64,
+    /// Floor that the tool can reach, square metres.
+    reachable_m2: f64,
+    /// Floor along the shell that it cannot reach, square metres.
+    shell_margin_m2: f64,
+}
+
+/// What a planner gave.
+#[derive(Debug)]
+pub struct Made {
+    /// The plan.
+    pub plan: Plan,
+    /// Time that it took, milliseconds.
+    pub plan_time_ms: f64,
+    /// Why it is not complete.
+    pub reason: Option<String>,
+    /// What the planner warned of: floor that it leaves out and why, ways of its own where the method has none.
+    pub warnings: Vec<String>,
+}
+
+impl Planned {
+    /// A plan for a mission on the drawing.
+    pub fn new(mission: &MissionConfig, drawing: &World, made: Made) -> Self {
+        let Made { plan, plan_time_ms, reason, warnings } = made;
+        Self {
+            planner: mission.planner.id.clone(),
+            parameters: mission.planner.parameters.clone(),
+            legs: legs(&plan),
+            length_m: polyline::length_m(&plan.path),
+            plan_time_ms,
+            complete: plan.complete,
+            reason,
+            warnings,
+            floor: planned_floor(mission, drawing),
+            certificate: certificate(mission, drawing, &plan),
+            cuts: plan.cuts,
+            path: plan.path,
+        }
+    }
+
+    /// Whether the plan achieves the whole task, and its mission would not refuse it for what it does to the tether.
+    pub fn flies(&self, mission: &MissionConfig) -> bool {
+        let must_be_certified = mission.tether.as_ref().is_some_and(|tether| !tether.allow_uncertified);
+        let is_certified = self.certificate.as_ref().is_some_and(|certificate| certificate.certified);
+        self.complete && (is_certified || !must_be_certified)
+    }
+
+    /// The plan as a picture, an SVG document.
+    pub fn svg(&self, mission: &MissionConfig, drawing: &World) -> String {
+        let preset = match &mission.task {
+            TaskConfig::Follow { path, .. } => Some(path.as_slice()),
+            TaskConfig::Cover { .. } | TaskConfig::Goto { .. } => None,
+        };
+        let anchor = anchor(mission);
+        let cable = anchor.and_then(|anchor| longest_cable(anchor, drawing, &self.path)).unwrap_or_default();
+        svg(&Drawn {
+            world: drawing,
+            room_m: mission.room_m(),
+            swath_m: mission.swath_m,
+            preset,
+            anchor,
+            path: &self.path,
+            legs: &self.legs,
+            cuts: &self.cuts,
+            cable: &cable,
+        })
+    }
+
+    /// The figures for people.
+    pub fn human(&self) -> String {
+        let reason = self.reason.as_ref().map(|reason| format!("reason    {reason}\n")).unwrap_or_default();
+        format!(
+            "planner   {}\nlength    {:.2} m, {} points\n{}time      {:.2} ms\ncomplete  {}\n{reason}{}{}{}",
+            self.planner,
+            self.length_m,
+            self.path.len(),
+            lengths(self),
+            self.plan_time_ms,
+            if self.complete { "yes" } else { "no" },
+            warnings(self),
+            self.floor.as_ref().map(floor).unwrap_or_default(),
+            self.certificate.as_ref().map(certified).unwrap_or_default(),
+        )
+    }
+}
+
+fn planned_floor(mission: &MissionConfig, drawing: &World) -> Option<PlannedFloor> {
+    let TaskConfig::Cover { .. } = &mission.task else { return None };
+    let (start, swath_m) = (mission.start.position, mission.swath_m);
+    let floor = Floor::new(drawing, mission.cell_m, mission.room_m(), swath_m, start);
+    let area_m2 = |kind: Cell| {
+        (0..floor.len()).filter(|index| floor.kind(*index) == kind).count() as f64 * floor.cell_m2()
+    };
+    let (reachable_m2, shell_margin_m2) = (area_m2(Cell::Reachable), area_m2(Cell::Margin));
+    Some(PlannedFloor { swath_m, reachable_m2, shell_margin_m2 })
+}
+
+/// What the path does to the tether, certified independently of its planner; without a tether, what it would do to one of
+/// unlimited length.
+fn certificate(mission: &MissionConfig, drawing: &World, plan: &Plan) -> Option<Certificate> {
+    if plan.path.is_empty() {
+        return None;
+    }
+    if let Some(tether) = &mission.tether {
+        return Some(certify_from_start(tether, mission, &plan.path, &plan.cuts, drawing));
+    }
+    let TaskConfig::Cover { anchor, .. } = &mission.task else { return None };
+    let case = Case {
+        path: &plan.path,
+        anchor: *anchor,
+        cable: None,
+        boundary: &drawing.boundary,
+        obstacles: &drawing.obstacles,
+        room_m: mission.room_m(),
+        limits: Limits {
+            reel_length_m: f64::INFINITY,
+            wrap_max_rad: f64::INFINITY,
+            wrap_total_max_rad: f64::INFINITY,
+        },
+        returns: true,
+        cuts: &plan.cuts,
+    };
+    certify(&case).ok()
+}
+
+/// Where the tether comes in, or would.
+fn anchor(mission: &MissionConfig) -> Option<Point> {
+    match (&mission.tether, &mission.task) {
+        (Some(tether), _) => Some(tether.anchor),
+        (None, TaskConfig::Cover { anchor, .. }) => Some(*anchor),
+        (None, TaskConfig::Goto { .. } | TaskConfig::Follow { .. }) => None,
+    }
+}
+
+fn longest_cable(anchor: Point, world: &World, path: &[Point]) -> Option<Vec<Point>> {
+    let shapes: Vec<Shape> = world.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect();
+    let cable = Cable::new(anchor, &world.boundary, &shapes).ok()?;
+    Some(cable.at_longest(path).taut_line())
+}
+
+/// Lengths by tag, for people.
+fn lengths(planned: &Planned) -> String {
+    let length_m = |tag| -> f64 {
+        let legs = planned.legs.iter().filter(|leg| leg.tag == tag);
+        legs.map(|leg| polyline::length_m(&planned.path[leg.first..=leg.last])).sum()
+    };
+    let by_tag = ["swath", "connector", "retract", "travel"].map(|tag| (tag, length_m(tag)));
+    let parts: Vec<String> = by_tag
+        .iter()
+        .filter(|(_, length_m)| *length_m > 0.0)
+        .map(|(tag, length_m)| format!("{tag} {length_m:.1} m"))
+        .collect();
+    if parts.is_empty() { String::new() } else { format!("legs      {}\n", parts.join(", ")) }
+}
+
+/// The warnings, for people, except the one already printed as the reason.
+fn warnings(planned: &Planned) -> String {
+    let fresh = planned.warnings.iter().filter(|warning| Some(*warning) != planned.reason.as_ref());
+    fresh.map(|warning| format!("warning   {warning}\n")).collect::<Vec<_>>().concat()
+}
+
+/// The floor, for people.
+fn floor(floor: &PlannedFloor) -> String {
+    let PlannedFloor { swath_m, reachable_m2, shell_margin_m2 } = floor;
+    format!(
+        "floor     {reachable_m2:.1} m² reachable, {shell_margin_m2:.2} m² shell margin by the whole swath of {swath_m} m, as reports count\n"
+    )
+}
+
+/// The certificate, for people.
+fn certified(certificate: &Certificate) -> String {
+    let Certificate { tether_length_max_m, eccentricity_m, wrap_max_rad, wrap_total_max_rad, .. } =
+        certificate;
+    let reasons: Vec<String> = certificate.reasons.iter().map(|why| format!("          {why}\n")).collect();
+    format!(
+        "tether    {}, cable {tether_length_max_m:.2} m at most ({eccentricity_m:.2} m the least possible), wrap {:.0} deg on one obstacle, {:.0} deg in sum\n{}",
+        if certificate.certified { "certified" } else { "NOT certified" },
+        wrap_max_rad.to_degrees(),
+        wrap_total_max_rad.to_degrees(),
+        reasons.concat(),
+    )
+}

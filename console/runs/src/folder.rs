@@ -1,0 +1,119 @@
+//! The folder of a run: made, found, listed.
+
+use crate::{
+    error::RunError,
+    files::{LOCK_FILE, REPORT_FILE, plain, utc},
+    logs::{LogsError, make_logs},
+    report_file::ReportFile,
+};
+use recording::{FAILURE_FILE, JOURNAL_FILE};
+use report::Summary;
+use std::{
+    fs::{self, File, OpenOptions},
+    io::{self, Write},
+    path::{Path, PathBuf},
+    time::SystemTime,
+};
+
+const REPORT_DRAFT: &str = "report.json.part";
+/// A folder with one of these files is that of a run.
+const SIGNS: [&str; 4] = [JOURNAL_FILE, REPORT_FILE, LOCK_FILE, FAILURE_FILE];
+/// Space that is taken for the report when a run starts, bytes, so that a disk that is full at the end has room for it.
+const REPORT_RESERVE: usize = 256 << 10;
+
+/// The folder of a run that is being written; nobody else writes to it.
+pub struct RunFolder {
+    path: PathBuf,
+    /// Locked as long as this process lives; a killed process leaves it unlocked.
+    _lock: File,
+}
+
+impl RunFolder {
+    /// Makes a new folder `<utc>-<scenario>-<planner>-<seed>`, with a number behind it if that exists.
+    ///
+    /// # Errors
+    /// The folder for runs cannot take one.
+    pub fn create(logs: &Path, scenario: &str, planner: &str, seed: u64) -> Result<Self, RunError> {
+        make_logs(logs)?;
+        let refused = |error| not_writable(logs, &error);
+        let name = format!("{}-{}-{}-{seed}", utc(SystemTime::now()), plain(scenario), plain(planner));
+        let path = fresh_folder(logs, &name)?;
+        let lock = File::create_new(path.join(LOCK_FILE)).map_err(refused)?;
+        let locking = || format!("locking the folder of the run: {}", path.display());
+        lock.try_lock().map_err(io::Error::from).map_err(RunError::during(locking()))?;
+        fs::write(path.join(REPORT_DRAFT), vec![b'\n'; REPORT_RESERVE]).map_err(refused)?;
+        Ok(Self { path, _lock: lock })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes the report, whole or not at all.
+    ///
+    /// # Errors
+    /// The system refuses.
+    pub fn write_report(&self, summary: &Summary) -> Result<(), RunError> {
+        let journal_bytes = fs::metadata(self.path.join(JOURNAL_FILE)).ok().map(|journal| journal.len());
+        let (draft, final_name) = (self.path.join(REPORT_DRAFT), self.path.join(REPORT_FILE));
+        let writing = |file: &Path| RunError::during(format!("writing {}", file.display()));
+        let text = serde_json::to_string_pretty(&ReportFile { summary, journal_bytes });
+        let text = text.map_err(io::Error::from).map_err(writing(&draft))? + "\n";
+        replace_bytes(&draft, text.as_bytes()).map_err(writing(&draft))?;
+        fs::rename(&draft, &final_name).map_err(writing(&final_name))
+    }
+}
+
+/// Writes over the bytes of a file, so that the space they take is used, then cuts off what is left of them.
+fn replace_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+    file.write_all(bytes)?;
+    file.set_len(bytes.len() as u64)?;
+    file.sync_all()
+}
+
+fn not_writable(logs: &Path, error: &io::Error) -> RunError {
+    LogsError::NotWritable { logs: logs.to_owned(), why: error.to_string() }.into()
+}
+
+fn fresh_folder(logs: &Path, name: &str) -> Result<PathBuf, RunError> {
+    for attempt in 1..1000 {
+        let numbered = if attempt == 1 { name.to_owned() } else { format!("{name}-{attempt}") };
+        let path = logs.join(numbered);
+        match fs::create_dir(&path) {
+            Ok(()) => return Ok(path),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(not_writable(logs, &error)),
+        }
+    }
+    Err(RunError::NoName { name: name.to_owned(), logs: logs.to_owned() })
+}
+
+/// Folders of past runs, oldest first; also those that have lost their journal.
+pub(crate) fn past_runs(logs: &Path) -> Result<Vec<PathBuf>, RunError> {
+    if !logs.exists() {
+        return Ok(Vec::new());
+    }
+    let reading = format!("reading the folder of runs: {}", logs.display());
+    let entries = fs::read_dir(logs).map_err(RunError::during(reading))?;
+    let mut folders: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| SIGNS.iter().any(|name| path.join(name).exists()))
+        .collect();
+    folders.sort();
+    Ok(folders)
+}
+
+/// The folder of a run that the user named by path or by name.
+///
+/// # Errors
+/// [`RunError::NoRun`].
+pub fn find(run: &Path, logs: &Path) -> Result<PathBuf, RunError> {
+    let candidates = [run.to_path_buf(), logs.join(run)];
+    let found = candidates.into_iter().find(|path| path.join(JOURNAL_FILE).exists());
+    found.ok_or_else(|| RunError::NoRun { run: run.to_owned(), logs: logs.to_owned() })
+}
+
+#[cfg(test)]
+mod tests;

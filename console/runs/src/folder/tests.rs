@@ -1,0 +1,149 @@
+use super::*;
+use crate::{
+    report_file::journal_doubt,
+    standing::{Standing, standing},
+};
+use mission::{Event, EventKind, Outcome};
+use recording::{Finished, Options, RunRecorder, sha256};
+use report::{Fold, Logs};
+use std::time::{Duration, UNIX_EPOCH};
+
+#[test]
+fn a_folder_that_is_being_written_is_running_and_then_crashed() {
+    let logs = tempfile::tempdir().unwrap();
+    let folder = RunFolder::create(logs.path(), "demo tank/7", "rpf", 1).unwrap();
+    let name = folder.path().file_name().unwrap().to_str().unwrap().to_owned();
+    assert!(name.ends_with("-demo-tank-7-rpf-1"), "{name}");
+    assert_eq!(standing(folder.path()), Standing::Running);
+    let path = folder.path().to_path_buf();
+    drop(folder);
+    assert_eq!(standing(&path), Standing::JournalOnly { doubt: None, failure: None });
+}
+
+#[test]
+fn two_runs_in_one_second_get_two_folders() {
+    let logs = tempfile::tempdir().unwrap();
+    let folders: Vec<RunFolder> =
+        (0..3).map(|_| RunFolder::create(logs.path(), "demo", "rpf", 1).unwrap()).collect();
+    assert_ne!(folders[0].path(), folders[1].path());
+    assert_ne!(folders[1].path(), folders[2].path());
+}
+
+#[test]
+fn a_clock_out_of_range_is_clamped() {
+    assert_eq!(utc(UNIX_EPOCH), "19700101T000000Z");
+    assert_eq!(utc(UNIX_EPOCH - Duration::from_secs(1)), "19700101T000000Z");
+    assert_eq!(utc(UNIX_EPOCH - Duration::from_secs(1 << 40)), "19700101T000000Z");
+    let latest = utc(UNIX_EPOCH + Duration::from_secs(1 << 40));
+    assert!(latest.starts_with("9999"), "{latest}");
+}
+
+/// A run of one event that ended, in a folder of its own; `journal` gives back the digest of the journal.
+fn ended(logs: &Path) -> (PathBuf, Finished, Summary) {
+    let folder = RunFolder::create(logs, "demo", "rpf", 1).unwrap();
+    let recorder = RunRecorder::start(folder.path(), Options { rrd: false, journal: true }).unwrap();
+    let kind = EventKind::Ended { outcome: Outcome::Complete, reason: "all scanned".into() };
+    let event = Event { tick: 7, t_s: 0.7, kind };
+    recorder.send(vec![event.clone()]);
+    let finished = recorder.finish(Duration::from_secs(20));
+    let mut fold = Fold::new();
+    fold.apply(&event);
+    let logs = Logs { journal: None, recording: None, error: finished.error.clone() };
+    let events_sha256 = finished.events_sha256.clone();
+    let summary = Summary { events_sha256, logs: Some(logs), ..fold.summary() };
+    folder.write_report(&summary).unwrap();
+    (folder.path().to_owned(), finished, summary)
+}
+
+fn doubt(folder: &Path) -> String {
+    match standing(folder) {
+        Standing::JournalOnly { doubt: Some(doubt), .. } => doubt,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn change(path: &Path, old: &str, new: &str) {
+    let text = fs::read_to_string(path).unwrap();
+    assert!(text.contains(old), "{text}");
+    fs::write(path, text.replace(old, new)).unwrap();
+}
+
+#[test]
+fn a_report_is_believed_as_long_as_it_fits_the_journal() {
+    let logs = tempfile::tempdir().unwrap();
+    let (folder, _, summary) = ended(logs.path());
+    assert_eq!(standing(&folder), Standing::Ended(Box::new(summary.clone())));
+    // Touched, so that it is hashed; the bytes are the same.
+    let journal = folder.join(JOURNAL_FILE);
+    fs::write(&journal, fs::read(&journal).unwrap()).unwrap();
+    assert_eq!(standing(&folder), Standing::Ended(Box::new(summary)));
+}
+
+#[test]
+fn a_changed_report_is_not_believed() {
+    let logs = tempfile::tempdir().unwrap();
+    let (folder, ..) = ended(logs.path());
+    change(&folder.join(REPORT_FILE), "\"complete\"", "\"stuck\"");
+    assert!(doubt(&folder).contains("was changed"), "{}", doubt(&folder));
+}
+
+#[test]
+fn a_damaged_report_does_not_hide_the_journal() {
+    let logs = tempfile::tempdir().unwrap();
+    let (folder, ..) = ended(logs.path());
+    fs::write(folder.join(REPORT_FILE), "{").unwrap();
+    assert!(doubt(&folder).contains("damaged"), "{}", doubt(&folder));
+    fs::write(folder.join(REPORT_FILE), [0xff, 0xfe]).unwrap();
+    assert!(doubt(&folder).contains("cannot be read"), "{}", doubt(&folder));
+}
+
+#[test]
+fn a_changed_journal_is_noticed_whatever_its_length() {
+    let logs = tempfile::tempdir().unwrap();
+    for new in ["all scanneD", "everything scanned"] {
+        let (folder, ..) = ended(logs.path());
+        change(&folder.join(JOURNAL_FILE), "all scanned", new);
+        assert!(doubt(&folder).contains("not the one that was written"), "{}", doubt(&folder));
+        assert_eq!(
+            journal_doubt(&folder, sha256(&folder.join(JOURNAL_FILE)).ok().as_deref()),
+            Some(doubt(&folder))
+        );
+    }
+}
+
+#[test]
+fn a_lost_journal_is_noticed_and_the_run_still_listed() {
+    let logs = tempfile::tempdir().unwrap();
+    let (folder, ..) = ended(logs.path());
+    fs::remove_file(folder.join(JOURNAL_FILE)).unwrap();
+    assert!(doubt(&folder).contains("events.jsonl cannot be read"), "{}", doubt(&folder));
+    assert_eq!(past_runs(logs.path()).unwrap(), [folder]);
+}
+
+#[test]
+fn a_run_whose_writer_failed_is_distinguished_from_one_that_was_killed() {
+    let logs = tempfile::tempdir().unwrap();
+    let (folder, _, summary) = ended(logs.path());
+    fs::remove_file(folder.join(REPORT_FILE)).unwrap();
+    fs::write(folder.join(FAILURE_FILE), "the disk is full\n").unwrap();
+    let failure = Some("the disk is full".to_owned());
+    assert_eq!(standing(&folder), Standing::JournalOnly { doubt: None, failure });
+    // With a report that could still be written.
+    let (folder, ..) = ended(logs.path());
+    let logs = Logs { journal: None, recording: None, error: Some("the disk is full".into()) };
+    let summary = Summary { events_sha256: None, logs: Some(logs), ..summary };
+    fs::write(folder.join(REPORT_FILE), serde_json::to_string(&summary).unwrap()).unwrap();
+    assert_eq!(standing(&folder), Standing::NotRecorded(Box::new(summary), "the disk is full".into()));
+}
+
+#[test]
+fn the_report_takes_the_space_that_was_reserved_for_it() {
+    let logs = tempfile::tempdir().unwrap();
+    let folder = RunFolder::create(logs.path(), "demo", "rpf", 1).unwrap();
+    let draft = folder.path().join(REPORT_DRAFT);
+    assert_eq!(fs::metadata(&draft).unwrap().len(), REPORT_RESERVE as u64);
+    folder.write_report(&Summary::default()).unwrap();
+    assert!(!draft.exists());
+    let text = fs::read_to_string(folder.path().join(REPORT_FILE)).unwrap();
+    assert_eq!(serde_json::from_str::<Summary>(&text).unwrap(), Summary::default());
+}

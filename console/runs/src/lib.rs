@@ -1,0 +1,27 @@
+//! Runs on disk: the folder of each, what is written to it, whether it was kept, and what past ones hold.
+//!
+//! A run that is flown is written by a [`RunLog`] into a [`RunFolder`] of its own: journal and recording while it is under
+//! way, the report at its end. The journal is the truth; the report is a copy of what it says, and is believed as long as it
+//! fits it ([`standing()`]).
+
+mod error;
+mod files;
+mod folder;
+mod kept;
+mod list;
+mod log;
+mod logs;
+mod past;
+mod report_file;
+mod standing;
+
+pub use error::RunError;
+pub use files::utc;
+pub use folder::{RunFolder, find};
+pub use kept::Kept;
+pub use list::{Listed, list, table};
+pub use log::{CLOSE_TIMEOUT, Closed, RunLog};
+pub use logs::check_logs;
+pub use past::Past;
+pub use report_file::{end_is_missing, journal_doubt};
+pub use standing::{Standing, standing};

@@ -1,0 +1,135 @@
+//! Past runs, listed.
+
+use crate::{
+    error::RunError,
+    folder::past_runs,
+    standing::{Standing, standing},
+};
+use recording::{JOURNAL_FILE, JournalReader};
+use report::{Fold, Summary};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// A past run as it is listed.
+#[derive(Debug, Serialize)]
+pub struct Listed {
+    /// Name of its folder.
+    pub name: String,
+    /// `complete`, `stuck`, …, `RUNNING`, `CRASHED`, `RECORDING FAILED` or `UNREADABLE`.
+    pub end: String,
+    /// Name of its scenario.
+    pub scenario: Option<String>,
+    /// Id of the planner that drove first.
+    pub planner: Option<String>,
+    /// Start of every random choice.
+    pub seed: Option<u64>,
+    /// Mission time that passed, seconds.
+    pub mission_time_s: Option<f64>,
+    /// Scanned share of the reachable floor.
+    pub coverage_reachable: Option<f64>,
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What is wrong with it.
+    pub note: Option<String>,
+}
+
+/// The past runs in a folder, oldest first; also those that have lost their journal.
+///
+/// # Errors
+/// The folder cannot be read.
+pub fn list(logs: &Path) -> Result<Vec<Listed>, RunError> {
+    Ok(past_runs(logs)?.iter().map(|folder| look_at(folder)).collect())
+}
+
+/// Past runs as lines for people.
+pub fn table(runs: &[Listed]) -> String {
+    let head = format!("{:<16} {:>8} {:>22}  run\n", "end", "T+ s", "% of reachable floor");
+    std::iter::once(head).chain(runs.iter().map(row)).collect()
+}
+
+fn row(run: &Listed) -> String {
+    let number =
+        |value: Option<f64>, scale: f64| value.map_or_else(|| "-".into(), |v| format!("{:.1}", v * scale));
+    let note = run.note.as_ref().map(|note| format!("  ({note})")).unwrap_or_default();
+    format!(
+        "{:<16} {:>8} {:>22}  {}{note}\n",
+        run.end,
+        number(run.mission_time_s, 1.0),
+        number(run.coverage_reachable, 100.0),
+        run.name.replace(char::is_control, "?")
+    )
+}
+
+fn look_at(folder: &Path) -> Listed {
+    match standing(folder) {
+        Standing::Ended(summary) => {
+            let note = summary.logs.as_ref().and_then(|logs| logs.error.clone());
+            listed(folder, word(&summary), Some(&summary), note)
+        }
+        Standing::NotRecorded(summary, why) => {
+            let note = format!("ended as {}, but not kept: {why}", word(&summary));
+            listed(folder, "RECORDING FAILED", Some(&summary), Some(note))
+        }
+        Standing::Running => listed(folder, "RUNNING", None, None),
+        Standing::JournalOnly { doubt, failure } => by_journal(folder, doubt.as_deref(), failure),
+    }
+}
+
+fn listed(folder: &Path, end: &str, summary: Option<&Summary>, note: Option<String>) -> Listed {
+    Listed {
+        name: folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default(),
+        end: end.to_owned(),
+        scenario: summary.and_then(|summary| summary.scenario.clone()),
+        planner: summary.and_then(|summary| summary.planner.clone()),
+        seed: summary.and_then(|summary| summary.seed),
+        mission_time_s: summary.and_then(|summary| summary.mission_time_s),
+        coverage_reachable: summary.and_then(|summary| summary.coverage.as_ref()).map(|c| c.reachable),
+        folder: folder.to_path_buf(),
+        note,
+    }
+}
+
+fn word(summary: &Summary) -> &'static str {
+    summary.outcome.map_or("unknown", mission::Outcome::word)
+}
+
+/// A run of which only the journal says what happened.
+fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>) -> Listed {
+    let (summary, damage) = rebuild(&folder.join(JOURNAL_FILE));
+    let with = |more: &str| Some(doubt.map_or_else(|| more.to_owned(), |doubt| format!("{doubt}; {more}")));
+    // Whatever became of the report: the journal has the run to its end.
+    let ended = summary.outcome.filter(|_| damage.is_none());
+    match (ended, failure, damage) {
+        (Some(outcome), ..) => {
+            let source = doubt.map_or("without a report", |_| "shown as the journal has it");
+            listed(folder, outcome.word(), Some(&summary), with(source))
+        }
+        (None, _, Some(damage)) => listed(folder, "UNREADABLE", Some(&summary), with(&damage)),
+        (None, Some(why), None) => {
+            listed(folder, "RECORDING FAILED", Some(&summary), with(&format!("{why}; {}", held(&summary))))
+        }
+        (None, None, None) => {
+            listed(folder, "CRASHED", Some(&summary), with(&format!("killed; {}", held(&summary))))
+        }
+    }
+}
+
+/// Up to when a journal that stops early goes.
+fn held(summary: &Summary) -> String {
+    summary.mission_time_s.map_or_else(
+        || "the journal holds nothing".into(),
+        |until_s| format!("the journal holds everything up to T+{until_s:.1} s"),
+    )
+}
+
+/// What a journal says, up to the first damage, and what the damage is.
+fn rebuild(journal: &Path) -> (Summary, Option<String>) {
+    let mut fold = Fold::new();
+    let damage = JournalReader::open(journal).and_then(|reader| {
+        reader.into_iter().try_for_each(|event| {
+            fold.apply(&event?);
+            Ok(())
+        })
+    });
+    (fold.summary(), damage.err().map(|error| error.to_string()))
+}

@@ -1,0 +1,101 @@
+//! What is written about a run while it is flown: journal, recording and, at its end, the report.
+
+use crate::{error::RunError, folder::RunFolder, kept::Kept};
+use mission::Event;
+use recording::{Health, JournalWriter, Options, RunRecorder};
+use report::{Expect, Fold, Logs, PlannerCalls, Stops, Summary};
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+/// How long closing a run may take before it is abandoned with a message.
+pub const CLOSE_TIMEOUT: Duration = Duration::from_secs(10);
+
+/// A run that is being written, or, without a folder, only computed.
+pub struct RunLog {
+    folder: Option<RunFolder>,
+    recorder: RunRecorder,
+    fold: Fold,
+    began: Instant,
+}
+
+/// A run that was flown.
+pub struct Closed {
+    /// Its report.
+    pub summary: Summary,
+    /// Whether it is on disk; `None` if it was not to be.
+    pub kept: Option<Kept>,
+}
+
+impl RunLog {
+    /// Makes the folder of the run and begins its files.
+    ///
+    /// # Errors
+    /// They cannot be made.
+    pub fn create(logs: &Path, scenario: &str, planner: &str, seed: u64) -> Result<Self, RunError> {
+        let folder = RunFolder::create(logs, scenario, planner, seed)?;
+        let recorder = RunRecorder::start(folder.path(), Options::default())?;
+        Ok(Self { folder: Some(folder), recorder, fold: Fold::new(), began: Instant::now() })
+    }
+
+    /// Writes nothing, but computes report and hash.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn unwritten() -> Result<Self, RunError> {
+        let began = Instant::now();
+        let recorder = RunRecorder::spawn(JournalWriter::unwritten(began), None)?;
+        Ok(Self { folder: None, recorder, fold: Fold::new(), began })
+    }
+
+    /// Takes the events of a tick; waits while the recorder's queue is full.
+    pub fn keep(&mut self, events: &[Event]) {
+        for event in events {
+            self.fold.apply(event);
+        }
+        self.recorder.send(events);
+    }
+
+    /// How recording goes.
+    pub fn health(&self) -> Health {
+        self.recorder.health()
+    }
+
+    /// Whether so much waits to be written that the caller should wait before it sends more.
+    pub fn is_behind(&self) -> bool {
+        self.recorder.is_behind()
+    }
+
+    /// Closes the files, and writes the report with what is no event: figures about the planners' calls and about stops, by
+    /// the wall clock, and what a scenario expects.
+    pub fn close(
+        self,
+        within: Duration,
+        calls: PlannerCalls,
+        stops: Option<Stops>,
+        expect: &Expect,
+    ) -> Closed {
+        let Self { folder, recorder, fold, began } = self;
+        let finished = recorder.finish(within);
+        let logs = folder.is_some().then(|| Logs {
+            journal: finished.journal.as_ref().map(|path| path.display().to_string()),
+            recording: finished.recording.as_ref().map(|path| path.display().to_string()),
+            error: finished.error.clone(),
+        });
+        let summary = Summary {
+            wall_time_s: Some(began.elapsed().as_secs_f64()),
+            events_sha256: finished.events_sha256.clone(),
+            planner_calls: Some(calls),
+            stops,
+            logs,
+            ..fold.summary()
+        };
+        let summary = expect.evaluated(summary);
+        let kept = folder.map(|folder| {
+            let report = folder.write_report(&summary);
+            Kept::new(&folder, &finished, &report)
+        });
+        Closed { summary, kept }
+    }
+}

@@ -1,0 +1,149 @@
+//! Whether runs can be kept in the folder for logs, found out before a terminal is taken over or anything moves.
+
+use crate::error::RunError;
+use std::{
+    fs::{self, File},
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+/// Free space that a run must find, bytes. A mission takes about 100 MB an hour, so this is ten minutes of it.
+const MIN_FREE_BYTES: u64 = 16 << 20;
+/// What is written to see whether writing works, bytes: one block on common file systems.
+const PROBE: [u8; 4096] = [b'\n'; 4096];
+
+/// Why no run can be kept in a folder.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum LogsError {
+    /// A part of the path is a file.
+    #[error("cannot keep runs in {}: {} is a file, not a folder; choose a folder with --logs", logs.display(), file.display())]
+    NotAFolder { logs: PathBuf, file: PathBuf },
+    /// The folder does not exist, and the system refuses to create it.
+    #[error("cannot keep runs in {}: the folder cannot be created ({why}); choose another one with --logs", logs.display())]
+    CannotCreate { logs: PathBuf, why: String },
+    /// The system refuses to create, write or remove a file in it.
+    #[error("cannot keep runs in {}: the folder is not writable ({why}); choose another one with --logs", logs.display())]
+    NotWritable { logs: PathBuf, why: String },
+    /// There is too little space.
+    #[error(
+        "cannot keep runs in {}: {} MB are free, at least {} MB are needed; free some space or choose another folder with \
+         --logs", logs.display(), megabytes(*free_bytes), megabytes(*needed_bytes)
+    )]
+    NoSpace { logs: PathBuf, free_bytes: u64, needed_bytes: u64 },
+}
+
+/// Checks that runs can be kept in a folder, as a run that begins does, and leaves nothing behind.
+///
+/// # Errors
+/// [`RunError::Logs`].
+pub fn check_logs(logs: &Path) -> Result<(), RunError> {
+    Ok(check(logs)?)
+}
+
+fn check(logs: &Path) -> Result<(), LogsError> {
+    let missing: Vec<PathBuf> =
+        logs.ancestors().take_while(|folder| is_missing(folder)).map(Path::to_owned).collect();
+    let checked = make_logs(logs);
+    for folder in missing {
+        // Only what was created above, and only while it is empty: another run may have begun in it.
+        let _ = fs::remove_dir(folder);
+    }
+    checked
+}
+
+impl From<LogsError> for RunError {
+    fn from(error: LogsError) -> Self {
+        Self::Logs(error.to_string())
+    }
+}
+
+/// Creates the folder for runs if there is none, and checks that a file can be written there and removed, and that
+/// there is space for ten minutes of a mission.
+///
+/// # Errors
+/// See [`LogsError`].
+pub(crate) fn make_logs(logs: &Path) -> Result<(), LogsError> {
+    if let Some(file) = file_on_the_way(logs) {
+        return Err(LogsError::NotAFolder { logs: logs.to_owned(), file });
+    }
+    fs::create_dir_all(logs)
+        .map_err(|error| LogsError::CannotCreate { logs: logs.to_owned(), why: error.to_string() })?;
+    check_folder(logs)
+}
+
+fn check_folder(logs: &Path) -> Result<(), LogsError> {
+    // A file system that does not know its size does not say that it is full.
+    if let Some(free_bytes) = free_bytes(logs).filter(|free_bytes| *free_bytes < MIN_FREE_BYTES) {
+        return Err(LogsError::NoSpace { logs: logs.to_owned(), free_bytes, needed_bytes: MIN_FREE_BYTES });
+    }
+    probe(logs).map_err(|error| LogsError::NotWritable { logs: logs.to_owned(), why: error.to_string() })
+}
+
+/// The first part of a path that is a file, if one is.
+fn file_on_the_way(path: &Path) -> Option<PathBuf> {
+    let existing = path.ancestors().find(|part| part.exists())?;
+    (!existing.is_dir()).then(|| existing.to_owned())
+}
+
+fn is_missing(folder: &Path) -> bool {
+    !folder.as_os_str().is_empty() && folder.symlink_metadata().is_err()
+}
+
+fn free_bytes(folder: &Path) -> Option<u64> {
+    let space = rustix::fs::statvfs(folder).ok()?;
+    (space.f_blocks > 0).then(|| space.f_bavail.saturating_mul(space.f_frsize))
+}
+
+/// Creates a file, writes to it and removes it: permissions alone do not reveal quotas and read-only mounts.
+fn probe(folder: &Path) -> io::Result<()> {
+    let path = folder.join(format!(".probe-{}-{:?}", std::process::id(), std::thread::current().id()));
+    let mut file = File::create_new(&path)?;
+    let written = file.write_all(&PROBE).and_then(|()| file.flush());
+    written.and(fs::remove_file(&path))
+}
+
+fn megabytes(bytes: u64) -> String {
+    format!("{:.1}", bytes as f64 / f64::from(1 << 20))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_that_can_be_created_is_fine_and_not_left_behind() {
+        let place = tempfile::tempdir().unwrap();
+        assert_eq!(check(place.path()), Ok(()));
+        assert_eq!(check(&place.path().join("a/b/logs")), Ok(()));
+        assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn a_file_instead_of_a_folder_is_named() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("file");
+        fs::write(&file, "precious").unwrap();
+        for logs in [file.clone(), file.join("logs")] {
+            let error = check(&logs).expect_err("it is a file");
+            assert_eq!(error, LogsError::NotAFolder { logs, file: file.clone() });
+            assert!(error.to_string().contains("is a file, not a folder"), "{error}");
+        }
+        assert_eq!(fs::read(&file).unwrap(), b"precious");
+    }
+
+    #[test]
+    fn a_folder_that_takes_no_file_is_refused() {
+        // Not even root creates files in it.
+        let error = check(Path::new("/proc/self")).expect_err("nothing can be written");
+        assert!(matches!(error, LogsError::NotWritable { .. }), "{error}");
+        let error = check(Path::new("/proc/self/logs")).expect_err("nothing can be created");
+        assert!(matches!(error, LogsError::CannotCreate { .. }), "{error}");
+    }
+
+    #[test]
+    fn too_little_space_is_reported_in_numbers() {
+        let (logs, free_bytes) = (PathBuf::from("logs"), 943_718);
+        let error = LogsError::NoSpace { logs, free_bytes, needed_bytes: MIN_FREE_BYTES };
+        assert!(error.to_string().contains("0.9 MB are free, at least 16.0 MB are needed"), "{error}");
+    }
+}

@@ -1,0 +1,92 @@
+//! The report of a run on disk, and whether it fits the journal.
+
+use crate::files::REPORT_FILE;
+use mission::{Event, EventKind};
+use recording::{JOURNAL_FILE, read_ending, sha256};
+use report::Summary;
+use serde::{Deserialize, Serialize};
+use std::{
+    fs::{self, Metadata},
+    io,
+    path::Path,
+    time::SystemTime,
+};
+
+/// A report as it is written to disk: with the length of the journal that it was made from.
+#[derive(Serialize)]
+pub(crate) struct ReportFile<'a> {
+    #[serde(flatten)]
+    pub summary: &'a Summary,
+    /// Absent if there is no journal any more.
+    pub journal_bytes: Option<u64>,
+}
+
+/// What a report says of the journal that it was made from.
+#[derive(Deserialize)]
+struct Source {
+    events_sha256: Option<String>,
+    #[serde(default)]
+    journal_bytes: Option<u64>,
+}
+
+/// The report, if it can be read and fits the journal.
+pub(crate) fn read_report(folder: &Path, text: &str) -> Result<Box<Summary>, String> {
+    let damaged = |error: serde_json::Error| format!("{REPORT_FILE} is damaged: {error}");
+    let report = serde_json::from_str(text).map(recording::with_todays_names).map_err(damaged)?;
+    let summary: Summary = serde_json::from_value(report).map_err(damaged)?;
+    let source: Source = serde_json::from_str(text).map_err(damaged)?;
+    // A report that says itself that the journal is not whole claims nothing about it.
+    let Some(then) = &source.events_sha256 else { return Ok(Box::new(summary)) };
+    let path = folder.join(JOURNAL_FILE);
+    let no_journal = |error| format!("{JOURNAL_FILE} cannot be read: {error}");
+    if !is_untouched(folder, &source).map_err(no_journal)? && sha256(&path).map_err(no_journal)? != *then {
+        return Err(NOT_THE_ONE.to_owned());
+    }
+    match read_ending(&path).map_err(no_journal)? {
+        Some(ending) if agrees(&summary, &ending) => Ok(Box::new(summary)),
+        _ => Err(format!("{REPORT_FILE} was changed: it does not end as the journal does")),
+    }
+}
+
+/// What is said of a journal that its report was not made from.
+const NOT_THE_ONE: &str =
+    "the journal is not the one that was written: it does not have the SHA-256 of the report";
+
+/// Whether the journal has the length that the report names and was not written after it; then it is not hashed.
+///
+/// This is for lists; whoever must be sure reads the journal ([`journal_doubt`]).
+fn is_untouched(folder: &Path, source: &Source) -> io::Result<bool> {
+    // In one tick of the file system's clock both may have been written, or the journal changed.
+    let (journal, report) =
+        (fs::metadata(folder.join(JOURNAL_FILE))?, fs::metadata(folder.join(REPORT_FILE))?);
+    let written = |file: &Metadata| file.modified().unwrap_or(SystemTime::UNIX_EPOCH);
+    Ok(source.journal_bytes == Some(journal.len()) && written(&journal) < written(&report))
+}
+
+fn agrees(summary: &Summary, ending: &Event) -> bool {
+    let EventKind::Ended { outcome, reason } = &ending.kind else { return false };
+    summary.outcome == Some(*outcome)
+        && summary.reason.as_ref() == Some(reason)
+        && summary.ticks == Some(ending.tick)
+}
+
+/// What speaks against the journal of a run whose digest is this: its report names another one, or cannot be read.
+pub fn journal_doubt(folder: &Path, sha256: Option<&str>) -> Option<String> {
+    let text = match fs::read_to_string(folder.join(REPORT_FILE)) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
+        Err(error) => return Some(format!("{REPORT_FILE} cannot be read: {error}")),
+    };
+    match serde_json::from_str::<Source>(&text) {
+        Ok(source) => (source.events_sha256? != sha256?).then(|| NOT_THE_ONE.to_owned()),
+        Err(error) => Some(format!("{REPORT_FILE} is damaged: {error}")),
+    }
+}
+
+/// What contradicts a journal without an end: the run has a report, so it was closed cleanly.
+pub fn end_is_missing(folder: &Path) -> Option<String> {
+    let report: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.join(REPORT_FILE)).ok()?).ok()?;
+    report.get("outcome")?.as_str()?;
+    Some("the run has a report, so it came to its end, but the journal has none".to_owned())
+}

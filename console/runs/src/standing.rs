@@ -1,0 +1,65 @@
+//! How a past run stands, by its report, its journal and the signs that its writer left.
+
+use crate::{
+    files::{LOCK_FILE, REPORT_FILE},
+    report_file::read_report,
+};
+use recording::recorded_failure;
+use report::Summary;
+use std::{
+    fs::{self, File, TryLockError},
+    io,
+    path::Path,
+};
+
+/// How a past run stands.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Standing {
+    /// It ended, and its report agrees with its journal.
+    Ended(Box<Summary>),
+    /// It ended, but its journal or its recording is not whole, as the report itself says.
+    NotRecorded(Box<Summary>, String),
+    /// Somebody is writing to it.
+    Running,
+    /// It has no report that can be believed: only the journal says what happened.
+    JournalOnly {
+        /// What is wrong with its report; absent if there is none.
+        doubt: Option<String>,
+        /// Why its writer could not write, if it could not; otherwise it was killed.
+        failure: Option<String>,
+    },
+}
+
+/// How the run in a folder stands.
+///
+/// The journal is the truth and the report a copy of what it says: a report that cannot be read, or does not fit the
+/// journal, counts for nothing.
+pub fn standing(folder: &Path) -> Standing {
+    let failure = recorded_failure(folder);
+    let doubt = match fs::read_to_string(folder.join(REPORT_FILE)) {
+        Ok(text) => match read_report(folder, &text) {
+            Ok(summary) => return reported(summary, failure),
+            Err(why) => Some(why),
+        },
+        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        Err(error) => Some(format!("{REPORT_FILE} cannot be read: {error}")),
+    };
+    if doubt.is_none() && is_locked(folder) {
+        return Standing::Running;
+    }
+    Standing::JournalOnly { doubt, failure }
+}
+
+fn reported(summary: Box<Summary>, failure: Option<String>) -> Standing {
+    if summary.events_sha256.is_some() {
+        return Standing::Ended(summary);
+    }
+    let error = summary.logs.as_ref().and_then(|logs| logs.error.clone()).or(failure);
+    Standing::NotRecorded(summary, error.unwrap_or_else(|| "the journal is not whole".into()))
+}
+
+fn is_locked(folder: &Path) -> bool {
+    let locked = File::open(folder.join(LOCK_FILE))
+        .map(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)));
+    locked.unwrap_or(false)
+}

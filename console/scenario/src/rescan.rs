@@ -1,0 +1,72 @@
+//! The scenario that scans again what runs have missed.
+
+use crate::with_todays_keys;
+use mission::RunOpened;
+use std::collections::BTreeSet;
+use toml_edit::{Array, DocumentMut, Item, Table, TableLike, TomlError, Value, value};
+use world::{ObstacleId, Point};
+
+/// The scenario of a past run, changed into a mission that scans some boxes, from south west to north east, metres; obstacles
+/// that were found are on the drawing now. `names` are the runs that missed what is in the boxes.
+///
+/// # Errors
+/// The scenario of the run cannot be parsed: its journal was changed.
+pub fn rescan(
+    opened: &RunOpened,
+    names: &[&str],
+    boxes: &[[Point; 2]],
+    found: &BTreeSet<ObstacleId>,
+) -> Result<String, TomlError> {
+    let mut document: DocumentMut = with_todays_keys(&opened.scenario_toml).parse()?;
+    let first_name = opened.scenario.strip_suffix("-rescan").unwrap_or(&opened.scenario);
+    document["name"] = value(format!("{first_name}-rescan"));
+    document["about"] = value(format!("What {} missed", names.join(" and ")));
+    document.remove("expect");
+    let start = opened.mission.start;
+    if document.get("robot").is_none() {
+        document["robot"] = Item::Table(Table::new());
+    }
+    document["robot"]["start_m"] = pair(start.position.x, start.position.y);
+    let mission = &mut document["mission"];
+    for key in ["spiral", "path_m", "goal_m"] {
+        mission.as_table_like_mut().and_then(|table| table.remove(key));
+    }
+    mission["kind"] = value("cover");
+    mission["boxes_m"] = value(boxes.iter().map(numbers).collect::<Array>());
+    put_on_drawing(&mut document, found);
+    Ok(document.to_string())
+}
+
+/// Obstacles that stand in the scenario and were found are known from now on.
+fn put_on_drawing(document: &mut DocumentMut, found: &BTreeSet<ObstacleId>) {
+    let know = |index: usize, table: &mut dyn TableLike| {
+        // Obstacles are numbered from 1 in the order of the file.
+        if found.contains(&ObstacleId(index as u32 + 1)) {
+            table.remove("known");
+        }
+    };
+    match document.get_mut("obstacles") {
+        Some(Item::ArrayOfTables(tables)) => {
+            tables.iter_mut().enumerate().for_each(|(index, table)| know(index, table));
+        }
+        Some(Item::Value(Value::Array(list))) => {
+            let tables = list.iter_mut().map(Value::as_inline_table_mut).enumerate();
+            tables.for_each(|(index, table)| {
+                if let Some(table) = table {
+                    know(index, table);
+                }
+            });
+        }
+        _ => {}
+    }
+}
+
+fn pair(x: f64, y: f64) -> Item {
+    value([x, y].into_iter().collect::<Array>())
+}
+
+/// West, south, east, north, in millimetres at the finest.
+fn numbers([low, high]: &[Point; 2]) -> Value {
+    let rounded = |number: f64| (number * 1000.0).round() / 1000.0;
+    Value::Array([low.x, low.y, high.x, high.y].map(rounded).into_iter().collect())
+}
