@@ -6,8 +6,8 @@ mod tether;
 
 use super::{Cause, Model, Overlay, Progress, Raster, Run, ui::Ask};
 use mission::{
-    Event, EventKind, Hold, Order, Outcome, Severity, TaskConfig,
-    event::{HoldReason, RunOpened},
+    Event, EventKind, Hold, HoldReason, Order, Outcome, Severity, TaskConfig,
+    event::RunOpened,
 };
 use positioning::AccuracyMap;
 use world::{Obstacle, ObstacleId};
