@@ -24,23 +24,13 @@ pub(super) fn clauses(model: &Model) -> Clauses {
 
 /// What is asked and which keys answer come in the first clause: they are never left out.
 fn question(model: &Model) -> Option<Vec<String>> {
-    let planner = model.planner_id().unwrap_or("unknown");
+    let moves = || format!("Robot will move (planner {}).", model.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
-        Overlay::Confirm(Ask::Start) => {
-            vec![
-                "Start mission? Enter: start, Esc: cancel.".into(),
-                format!("Robot will move (planner {planner})."),
-            ]
-        }
-        Overlay::Confirm(Ask::Resume) => {
-            vec![
-                "Resume? Enter: resume, Esc: stay held.".into(),
-                format!("Robot will move (planner {planner})."),
-            ]
-        }
+        Overlay::Confirm(Ask::Start) => vec!["Start mission? Enter: start, Esc: cancel.".into(), moves()],
+        Overlay::Confirm(Ask::Resume) => vec!["Resume? Enter: resume, Esc: stay held.".into(), moves()],
         Overlay::Confirm(Ask::FlyUncertified) => vec![
             "Run uncertified plan? Enter: run, Esc: stay held.".into(),
-            "Tether may remain deployed.".into(),
+            "Tether may stay out on return.".into(),
             "Applies to later plans too, until one fails.".into(),
         ],
         Overlay::Confirm(Ask::Abort) => {

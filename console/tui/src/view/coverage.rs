@@ -2,7 +2,7 @@
 
 use super::look::{Look, fill};
 use super::text;
-use crate::model::coverage::Division;
+use crate::model::coverage::{Division, Raster};
 use crate::model::{Model, Pane, Speed};
 use crate::theme::Role;
 use ratatui::Frame;
@@ -42,7 +42,7 @@ fn wide_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
         row_of_shares(to_do_label(model), format!("{} %", to_do_reachable(model)), &to_do),
         row_of_shares("unreachable", String::new(), &unreachable),
         row_of_shares("shell margin", String::new(), &margin),
-        row("rate", format!("{}, {}", rate(model), area(model))),
+        row("rate", rate(model)),
         row(way_label(model), way(model)),
         row("time left", left(model, true)),
     ]
@@ -99,18 +99,10 @@ fn to_do_reachable(model: &Model) -> String {
 }
 
 fn rate(model: &Model) -> String {
+    let scanned_m2 = model.coverage.as_ref().map_or(0.0, Raster::scanned_m2);
     let minutes = model.clock.moving_s / 60.0;
-    match &model.coverage {
-        Some(raster) if minutes > 0.2 => format!("{} m²/min", text::number(raster.scanned_m2() / minutes, 1)),
-        _ => "- m²/min".into(),
-    }
-}
-
-fn area(model: &Model) -> String {
-    model
-        .coverage
-        .as_ref()
-        .map_or_else(String::new, |raster| format!("{} m² scanned", text::number(raster.scanned_m2(), 0)))
+    let rate = if minutes > 0.2 { text::number(scanned_m2 / minutes, 1) } else { "-".into() };
+    format!("{rate} m²/min, {} m² scanned", text::number(scanned_m2, 0))
 }
 
 fn way_label(model: &Model) -> &'static str {

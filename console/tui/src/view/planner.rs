@@ -72,10 +72,8 @@ fn planner(model: &Model) -> Value {
 }
 
 fn target(model: &Model) -> String {
-    if model.progress.is_none() {
-        return "-".into();
-    }
-    format!("{}, {} away", target_at(model), target_in(model))
+    let away = || format!("{}, {} away", target_at(model), target_in(model));
+    model.progress.as_ref().map_or_else(|| "-".into(), |_| away())
 }
 
 fn target_at(model: &Model) -> String {
