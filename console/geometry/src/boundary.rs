@@ -2,7 +2,13 @@
 
 use crate::{Point, polyline, shape};
 
-/// The wall of the tank.
+/// The wall of the tank; `P` stores the corners, as for [`Shape`](crate::Shape).
+///
+/// ```
+/// use geometry::{Boundary, Point};
+/// let tank: Boundary = Boundary::Circle { radius_m: 10.0 };
+/// assert_eq!(tank.wall_distance_m(Point::new(6.0, 8.0)), 0.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Boundary<P = Vec<Point>> {
@@ -11,7 +17,7 @@ pub enum Boundary<P = Vec<Point>> {
         /// Inner radius, metres.
         radius_m: f64,
     },
-    /// A tank with straight walls; simple polygon, counter-clockwise.
+    /// A tank with straight walls: a simple polygon, counter-clockwise.
     Polygon {
         /// Corners, metres.
         vertices: P,
@@ -20,6 +26,13 @@ pub enum Boundary<P = Vec<Point>> {
 
 impl<P: AsRef<[Point]>> Boundary<P> {
     /// The same wall with its corners borrowed.
+    ///
+    /// ```
+    /// use geometry::{Boundary, Point, shape::rectangle};
+    /// let vertices = rectangle(Point::new(0.0, 0.0), Point::new(3.0, 2.0));
+    /// let tank = Boundary::Polygon { vertices: vertices.clone() };
+    /// assert_eq!(tank.as_ref(), Boundary::Polygon { vertices: &vertices[..] });
+    /// ```
     pub fn as_ref(&self) -> Boundary<&[Point]> {
         match self {
             Self::Circle { radius_m } => Boundary::Circle { radius_m: *radius_m },
@@ -27,7 +40,14 @@ impl<P: AsRef<[Point]>> Boundary<P> {
         }
     }
 
-    /// The same wall with corners of its own.
+    /// The same wall with its own corners.
+    ///
+    /// ```
+    /// use geometry::{Boundary, Point, shape::rectangle};
+    /// let vertices = rectangle(Point::new(0.0, 0.0), Point::new(3.0, 2.0));
+    /// let tank = Boundary::Polygon { vertices: &vertices[..] }.to_owned();
+    /// assert_eq!(tank.area_m2(), 6.0);
+    /// ```
     pub fn to_owned(&self) -> Boundary {
         match self {
             Self::Circle { radius_m } => Boundary::Circle { radius_m: *radius_m },
@@ -35,12 +55,25 @@ impl<P: AsRef<[Point]>> Boundary<P> {
         }
     }
 
-    /// Whether a point lies on the floor.
+    /// Whether a point lies on the floor or on the wall.
+    ///
+    /// ```
+    /// use geometry::{Boundary, Point};
+    /// let tank: Boundary = Boundary::Circle { radius_m: 10.0 };
+    /// assert!(tank.contains(Point::new(9.0, 0.0)) && !tank.contains(Point::new(9.0, 9.0)));
+    /// ```
     pub fn contains(&self, point: Point) -> bool {
         self.wall_distance_m(point) >= 0.0
     }
 
-    /// Distance to the wall; negative outside the tank.
+    /// Distance to the wall, metres; negative outside the tank.
+    ///
+    /// ```
+    /// use geometry::{Boundary, Point, shape::rectangle};
+    /// let tank = Boundary::Polygon { vertices: rectangle(Point::new(0.0, 0.0), Point::new(3.0, 2.0)) };
+    /// assert_eq!(tank.wall_distance_m(Point::new(1.5, 0.5)), 0.5);
+    /// assert_eq!(tank.wall_distance_m(Point::new(4.0, 1.0)), -1.0);
+    /// ```
     pub fn wall_distance_m(&self, point: Point) -> f64 {
         match self {
             Self::Circle { radius_m } => radius_m - point.coords.norm(),
@@ -52,7 +85,13 @@ impl<P: AsRef<[Point]>> Boundary<P> {
         }
     }
 
-    /// The smallest axis-aligned box around the floor: lower left and upper right corner.
+    /// The smallest axis-aligned box around the floor: south-west and north-east corner.
+    ///
+    /// ```
+    /// let tank: geometry::Boundary = geometry::Boundary::Circle { radius_m: 10.0 };
+    /// let (low, high) = tank.bounds();
+    /// assert_eq!((low.x, high.y), (-10.0, 10.0));
+    /// ```
     pub fn bounds(&self) -> (Point, Point) {
         match self {
             Self::Circle { radius_m } => (Point::new(-radius_m, -radius_m), Point::new(*radius_m, *radius_m)),
@@ -60,7 +99,17 @@ impl<P: AsRef<[Point]>> Boundary<P> {
         }
     }
 
-    /// Whether a box, given by its south west and north east corners, holds some of the floor.
+    /// Whether a box, given by its south-west and north-east corners, contains some floor.
+    ///
+    /// Walls are sampled at half the shorter side of the box, so a corner of the floor that reaches less far into the
+    /// box can be missed.
+    ///
+    /// ```
+    /// use geometry::{Boundary, Point};
+    /// let tank: Boundary = Boundary::Circle { radius_m: 10.0 };
+    /// assert!(tank.meets_box(Point::new(9.0, -1.0), Point::new(12.0, 1.0)));
+    /// assert!(!tank.meets_box(Point::new(9.0, 9.0), Point::new(12.0, 12.0)));
+    /// ```
     pub fn meets_box(&self, low: Point, high: Point) -> bool {
         let in_box = |p: &Point| low.x < p.x && p.x < high.x && low.y < p.y && p.y < high.y;
         match self {
@@ -72,19 +121,23 @@ impl<P: AsRef<[Point]>> Boundary<P> {
                 let vertices = vertices.as_ref();
                 let corners = shape::rectangle(low, high);
                 let middle = nalgebra::center(&low, &high);
-                let enters = |(a, b): (&Point, &Point)| {
+                let enters = |(a, b): (Point, Point)| {
                     let size = (high - low).min();
                     let steps = ((b - a).norm() / size * 2.0).ceil().clamp(1.0, 1e4) as usize;
                     (0..=steps).any(|k| in_box(&(a + (b - a) * (k as f64 / steps as f64))))
                 };
-                let sides = vertices.iter().zip(vertices.iter().cycle().skip(1));
                 corners.iter().chain([&middle]).any(|p| shape::ring_contains(vertices, *p))
-                    || sides.into_iter().any(enters)
+                    || polyline::edges(vertices).any(enters)
             }
         }
     }
 
-    /// Area of the whole floor, square metres.
+    /// Area of the floor within the wall, obstacles included, square metres.
+    ///
+    /// ```
+    /// let tank: geometry::Boundary = geometry::Boundary::Circle { radius_m: 2.0 };
+    /// assert!((tank.area_m2() - 12.566).abs() < 1e-3);
+    /// ```
     pub fn area_m2(&self) -> f64 {
         match self {
             Self::Circle { radius_m } => std::f64::consts::PI * radius_m * radius_m,

@@ -1,4 +1,4 @@
-//! Outlines in convex parts: signed distances, gaps and the way out.
+//! Shapes as convex parts: signed distances, gaps and outward directions.
 
 use crate::{
     Point, Shape, Vector, direction_or,
@@ -6,10 +6,16 @@ use crate::{
     shape::mean_of,
 };
 
-/// A convex part of an outline.
+/// A convex part of a shape.
+///
+/// ```
+/// use geometry::{Point, convex::Part};
+/// let pipe = Part::Capsule { a: Point::new(0.0, 0.0), b: Point::new(4.0, 0.0), half_width_m: 0.1 };
+/// assert_eq!(pipe.distance(Point::new(2.0, 1.0)).0, 0.9);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Part {
-    /// Everything within `half_width_m` of a segment; a disc when both ends are one.
+    /// Everything within `half_width_m` of a segment; a disc when both ends coincide.
     Capsule {
         /// One end.
         a: Point,
@@ -25,18 +31,24 @@ pub enum Part {
     },
 }
 
-/// The shortest way between two parts.
+/// The shortest segment between two parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gap {
     /// Its length, metres; not above zero when they touch.
     pub width_m: f64,
-    /// Its end on the first part's centre line or edge.
+    /// Its end on the centre line of the first part (capsule) or on its edge (polygon).
     pub from: Point,
-    /// Its end on the second part's centre line or edge.
+    /// Its end on the second part, likewise.
     pub to: Point,
 }
 
-/// The convex parts of a shape; none for a line of fewer than two points.
+/// The convex parts of a shape: one, or one for each segment of a polyline.
+///
+/// ```
+/// use geometry::{Point, Shape, convex::parts_of};
+/// let points = vec![Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)];
+/// assert_eq!(parts_of(&Shape::Polyline { points, half_width_m: 0.1 }).len(), 2);
+/// ```
 pub fn parts_of<P: AsRef<[Point]>>(shape: &Shape<P>) -> Vec<Part> {
     match shape.as_ref() {
         Shape::Disc { center, radius_m } => vec![Part::disc(center, radius_m)],
@@ -48,12 +60,23 @@ pub fn parts_of<P: AsRef<[Point]>>(shape: &Shape<P>) -> Vec<Part> {
 }
 
 impl Part {
-    /// A disc.
+    /// A disc of a radius in metres.
+    ///
+    /// ```
+    /// use geometry::{Point, convex::Part};
+    /// assert_eq!(Part::disc(Point::new(2.0, 0.0), 0.5).middle(), Point::new(2.0, 0.0));
+    /// ```
     pub fn disc(center: Point, radius_m: f64) -> Self {
         Self::Capsule { a: center, b: center, half_width_m: radius_m }
     }
 
-    /// The part as a shape of its own.
+    /// The part as a shape.
+    ///
+    /// ```
+    /// use geometry::{Point, Shape, convex::Part};
+    /// let center = Point::new(2.0, 0.0);
+    /// assert_eq!(Part::disc(center, 0.5).to_shape(), Shape::Disc { center, radius_m: 0.5 });
+    /// ```
     pub fn to_shape(&self) -> Shape {
         match self {
             Self::Capsule { a, b, half_width_m } if a == b => {
@@ -66,7 +89,13 @@ impl Part {
         }
     }
 
-    /// Signed distance from a point to the outline, negative inside, and the way out.
+    /// Distance from a point to the outline, metres, negative inside, and the outward unit vector there.
+    ///
+    /// ```
+    /// use geometry::{Point, Vector, convex::Part};
+    /// let column = Part::disc(Point::origin(), 0.5);
+    /// assert_eq!(column.distance(Point::new(2.0, 0.0)), (1.5, Vector::x()));
+    /// ```
     pub fn distance(&self, point: Point) -> (f64, Vector) {
         match self {
             Self::Capsule { a, b, half_width_m } => {
@@ -83,7 +112,13 @@ impl Part {
         }
     }
 
-    /// A place inside.
+    /// A point inside: the middle of a capsule, the mean of a polygon's corners.
+    ///
+    /// ```
+    /// use geometry::{Point, convex::Part};
+    /// let pipe = Part::Capsule { a: Point::new(0.0, 0.0), b: Point::new(4.0, 0.0), half_width_m: 0.1 };
+    /// assert_eq!(pipe.middle(), Point::new(2.0, 0.0));
+    /// ```
     pub fn middle(&self) -> Point {
         match self {
             Self::Capsule { a, b, .. } => nalgebra::center(a, b),
@@ -92,6 +127,12 @@ impl Part {
     }
 
     /// Distance from a segment to the outline, metres; not above zero when they touch.
+    ///
+    /// ```
+    /// use geometry::{Point, convex::Part};
+    /// let column = Part::disc(Point::new(0.0, 2.0), 0.5);
+    /// assert_eq!(column.segment_distance_m(Point::new(-3.0, 0.0), Point::new(3.0, 0.0)), 1.5);
+    /// ```
     pub fn segment_distance_m(&self, a: Point, b: Point) -> f64 {
         if let Self::Capsule { a: center, b: other, half_width_m } = self
             && center == other
@@ -102,7 +143,13 @@ impl Part {
         if inside { 0.0 } else { self.gap(&Self::Capsule { a, b, half_width_m: 0.0 }).width_m }
     }
 
-    /// The shortest way to another part that it does not contain.
+    /// The shortest segment to another part; neither may contain the other.
+    ///
+    /// ```
+    /// use geometry::{Point, convex::Part};
+    /// let gap = Part::disc(Point::new(0.0, 0.0), 0.5).gap(&Part::disc(Point::new(3.0, 0.0), 1.0));
+    /// assert_eq!((gap.width_m, gap.to), (1.5, Point::new(3.0, 0.0)));
+    /// ```
     pub fn gap(&self, other: &Self) -> Gap {
         let mut best = Gap { width_m: f64::INFINITY, from: Point::origin(), to: Point::origin() };
         for (a, b) in self.pieces() {
@@ -117,7 +164,13 @@ impl Part {
         best
     }
 
-    /// Points and radii whose hull is the part, for its extent as seen from somewhere.
+    /// Discs (centre, radius in metres) whose convex hull is the part.
+    ///
+    /// ```
+    /// use geometry::{Point, convex::Part};
+    /// let pipe = Part::Capsule { a: Point::new(0.0, 0.0), b: Point::new(4.0, 0.0), half_width_m: 0.1 };
+    /// assert_eq!(pipe.corners()[1], (Point::new(4.0, 0.0), 0.1));
+    /// ```
     pub fn corners(&self) -> Vec<(Point, f64)> {
         match self {
             Self::Capsule { a, b, half_width_m } => vec![(*a, *half_width_m), (*b, *half_width_m)],
@@ -169,17 +222,32 @@ fn closest_of_segments(a: Point, b: Point, c: Point, d: Point) -> (Point, Point)
     pairs.into_iter().reduce(shorter).expect("there are four pairs")
 }
 
-/// Unit vector out of an outline through `point`.
+/// Outward unit vector of an outline at a point: along the line through `point` and `closest`, the nearest point of the
+/// outline.
 ///
-/// `signed_m` is the distance to the outline, negative inside, `closest` the outline's nearest point and `center` what
-/// stands for its middle: on the outline itself, the way out is away from there.
+/// `signed_m` is the distance to the outline, metres, negative inside. On the outline itself, where the two points
+/// coincide, the vector points away from `center`, a point inside.
+///
+/// ```
+/// use geometry::{Point, Vector, convex::away_from};
+/// let (center, closest) = (Point::origin(), Point::new(1.0, 0.0));
+/// assert_eq!(away_from(Point::new(0.5, 0.0), -0.5, closest, center), Vector::x());
+/// assert_eq!(away_from(closest, 0.0, closest, center), Vector::x());
+/// ```
 pub fn away_from(point: Point, signed_m: f64, closest: Point, center: Point) -> Vector {
     let outward = (point - closest) * signed_m.signum();
     let from_center = direction_or(point - center, Vector::x());
     direction_or(outward, from_center)
 }
 
-/// Where two segments cross, unless they are parallel.
+/// The point at which two segments meet, their ends included; `None` for parallel ones.
+///
+/// ```
+/// use geometry::{Point, convex::crossing};
+/// let (a, b) = (Point::new(-1.0, 0.0), Point::new(1.0, 0.0));
+/// let up = crossing(a, b, Point::new(0.5, -1.0), Point::new(0.5, 1.0));
+/// assert_eq!(up, Some(Point::new(0.5, 0.0)));
+/// ```
 pub fn crossing(a: Point, b: Point, c: Point, d: Point) -> Option<Point> {
     let (along, across) = (b - a, d - c);
     let turn = along.perp(&across);
@@ -195,6 +263,8 @@ pub fn crossing(a: Point, b: Point, c: Point, d: Point) -> Option<Point> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shape::tests::any_shape;
+    use proptest::prelude::*;
 
     fn disc(x: f64, y: f64, radius_m: f64) -> Part {
         Part::disc(Point::new(x, y), radius_m)
@@ -225,6 +295,24 @@ mod tests {
         let (a, b) = (Point::new(-1.0, 1.0), Point::new(3.0, 1.0));
         assert!(square().segment_distance_m(a, b) <= 0.0);
         assert!((disc(1.0, 3.0, 0.5).segment_distance_m(a, b) - 1.5).abs() < 1e-12);
+    }
+
+    proptest! {
+        #[test]
+        fn outside_the_nearest_part_is_as_far_as_the_shape(shape in any_shape(), x in -9.0..9.0_f64, y in -9.0..9.0_f64) {
+            let point = Point::new(x, y);
+            prop_assume!(shape.distance_m(point) > 0.0);
+            let parts = parts_of(&shape);
+            let nearest_m = parts.iter().map(|part| part.distance(point).0).fold(f64::INFINITY, f64::min);
+            prop_assert!((nearest_m - shape.distance_m(point)).abs() < 1e-9);
+        }
+
+        #[test]
+        fn a_part_is_the_only_part_of_its_shape(shape in any_shape()) {
+            for part in parts_of(&shape) {
+                prop_assert_eq!(parts_of(&part.to_shape()), [part]);
+            }
+        }
     }
 
     #[test]

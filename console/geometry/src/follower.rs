@@ -1,43 +1,56 @@
-//! How far along a path the robot is, and where to go next.
+//! Following a path: how far along it the robot is, and where to go next.
 
 use crate::{Point, polyline, wrap_angle_rad};
 use std::collections::VecDeque;
 
 /// Distance ahead of the robot at which it aims, metres.
 const LOOKAHEAD_M: f64 = 0.5;
-/// The same along a path that is to be followed exactly, metres.
+/// The same on a path that is followed exactly, metres.
 const EXACT_LOOKAHEAD_M: f64 = 0.25;
-/// Distance between the points of a path that is to be followed exactly, metres.
+/// Spacing of the points of a path that is followed exactly, metres.
 const EXACT_SPACING_M: f64 = 0.1;
-/// Turn of a path above which the robot goes to the corner before it turns, radians.
+/// Change of direction above which a point of the path is a corner: the robot drives to it before it turns, radians.
 const CORNER_RAD: f64 = 0.5;
 /// Distance at which a corner counts as reached, metres.
 const CORNER_M: f64 = 0.05;
-/// Distance from a corner within which having gone past it counts as having reached it, metres.
+/// Distance from a corner within which having passed it counts as having reached it, metres.
 const BESIDE_CORNER_M: f64 = 0.4;
-/// Length of path that is searched for the nearest point, metres; shorter than one turn of any useful spiral.
+/// Length of path searched for the nearest point, metres; shorter than one turn of any useful spiral.
 const WINDOW_M: f64 = 1.5;
-/// The same along a path that is to be followed exactly, metres: shorter than a lap of the smallest ring worth scanning.
+/// The same on a path that is followed exactly, metres: shorter than a lap of the smallest ring worth scanning.
 const EXACT_WINDOW_M: f64 = 0.6;
 
-/// Progress along a path that only grows (nearest point, searched forward).
+/// Progress along a path; it only grows, because the nearest point is searched forward from the last one.
+///
+/// ```
+/// use geometry::{PathFollower, Point};
+/// let mut follower = PathFollower::exact(&[Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
+/// follower.advance(Point::new(0.5, 0.1), |_| true);
+/// assert!((follower.along_m() - 0.5).abs() < 1e-9);
+/// ```
 #[derive(Debug, Clone)]
 pub struct PathFollower {
     path: Vec<Point>,
     stations_m: Vec<f64>,
     nearest: usize,
     target: usize,
-    /// Last point that the robot can stand on; later ones lie in obstacles.
+    /// Last point with room for the robot; later ones lie in obstacles.
     last: usize,
     lookahead_m: f64,
     window_m: f64,
-    /// Points that are reached before the path beyond them is looked at, the next one first; empty when corners may
-    /// be cut.
+    /// Points to be reached before the path beyond them is considered, the next one first; empty when corners may be cut.
     corners: VecDeque<usize>,
 }
 
 impl PathFollower {
-    /// A follower at the beginning of a path with at least one point.
+    /// A follower at the start of a path of at least one point; it cuts corners by its lookahead of 0.5 m.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let mut follower = PathFollower::new(vec![Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(2.0, 0.0)]);
+    /// follower.advance(Point::new(0.2, 0.0), |_| true);
+    /// assert_eq!(follower.target(), Point::new(1.0, 0.0));
+    /// ```
     pub fn new(path: Vec<Point>) -> Self {
         let stations_m = polyline::stations_m(&path);
         let last = path.len().saturating_sub(1);
@@ -46,8 +59,15 @@ impl PathFollower {
         Self { path, stations_m, nearest: 0, target: 0, last, lookahead_m, window_m, corners }
     }
 
-    /// A follower that goes to every corner of a path before it turns, so that no lane is cut short and no lane is
-    /// mistaken for the one beside it. The path has at least one point.
+    /// A follower that reaches every corner of a path before it turns, so that no lane is cut short or mistaken for the one
+    /// beside it. The path has at least one point.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let mut follower = PathFollower::exact(&[Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
+    /// (0..40).for_each(|k| follower.advance(Point::new(0.1 * f64::from(k), 0.0), |_| true));
+    /// assert!((follower.target() - Point::new(4.0, 0.0)).norm() < 1e-9);
+    /// ```
     pub fn exact(path: &[Point]) -> Self {
         let mut path = path.to_vec();
         path.dedup_by(|next, before| (*next - *before).norm() < 1e-6);
@@ -56,10 +76,18 @@ impl PathFollower {
         Self { lookahead_m: EXACT_LOOKAHEAD_M, window_m: EXACT_WINDOW_M, corners, ..follower }
     }
 
-    /// Takes the robot's position: moves on along the path and chooses the next target.
+    /// Advances to the robot's position, tank frame, and chooses the next target.
     ///
-    /// The target is the first point a little ahead where the robot finds room; points without room are skipped, and
-    /// so is the way to them.
+    /// The target is the first point at least the lookahead ahead at which `has_room` holds; points without room are
+    /// skipped.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let mut follower = PathFollower::new((0..9).map(|k| Point::new(0.5 * f64::from(k), 0.0)).collect());
+    /// // A column stands about (1, 0).
+    /// follower.advance(Point::new(0.5, 0.0), |at| (at.x - 1.0).abs() > 0.7);
+    /// assert_eq!(follower.target(), Point::new(2.0, 0.0));
+    /// ```
     pub fn advance(&mut self, position: Point, has_room: impl Fn(Point) -> bool) {
         let free = |index: &usize| has_room(self.path[*index]);
         let window_end_m = (self.stations_m[self.nearest] + self.window_m).max(self.stations_m[self.target]);
@@ -78,12 +106,28 @@ impl PathFollower {
             .min(self.next_corner());
     }
 
-    /// Distance to the next corner, metres; `None` without one.
+    /// Distance to the next corner, metres; `None` if there is none left.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let mut follower = PathFollower::exact(&[Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
+    /// follower.advance(Point::new(0.5, 0.1), |_| true);
+    /// let corner_m = follower.corner_m(Point::new(1.0, 0.0));
+    /// assert!(corner_m.is_some_and(|m| (m - 3.0).abs() < 1e-9));
+    /// ```
     pub fn corner_m(&self, position: Point) -> Option<f64> {
         self.corners.front().map(|corner| (self.path[*corner] - position).norm())
     }
 
-    /// Counts the next corner as reached: the robot cannot come nearer.
+    /// Counts the next corner as reached, for a robot that cannot come nearer.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let mut follower = PathFollower::exact(&[Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
+    /// follower.advance(Point::new(0.5, 0.1), |_| true);
+    /// follower.give_up_corner();
+    /// assert_eq!(follower.corner_m(Point::origin()), None);
+    /// ```
     pub fn give_up_corner(&mut self) {
         self.nearest = self.corners.pop_front().unwrap_or(self.nearest);
     }
@@ -93,8 +137,8 @@ impl PathFollower {
         self.corners.front().copied().unwrap_or(self.path.len() - 1)
     }
 
-    /// Whether a position is at a corner, or a little beside it and past it. One that lies further along the path is not
-    /// reached by passing it on the way.
+    /// Whether a position is at a corner, or beside and past it. A corner far ahead along the path is not reached by passing
+    /// it on an earlier lane.
     fn has_reached(&self, corner: usize, position: Point) -> bool {
         if self.stations_m[corner] - self.stations_m[self.nearest] > self.window_m {
             return false;
@@ -104,47 +148,96 @@ impl PathFollower {
         off.norm() <= CORNER_M || (off.norm() <= BESIDE_CORNER_M && off.dot(&into) >= 0.0)
     }
 
-    /// Where to go next.
+    /// The point to drive to, tank frame.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let mut follower = PathFollower::exact(&[Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
+    /// follower.advance(Point::new(0.5, 0.1), |_| true);
+    /// assert!((follower.target() - Point::new(0.8, 0.0)).norm() < 1e-9);
+    /// ```
     pub fn target(&self) -> Point {
         self.path[self.target]
     }
 
-    /// The path from the target on, at most `length_m` of it.
+    /// The points of the path from the target on, within `length_m` of it along the path; at least the target.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let mut follower = PathFollower::exact(&[Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
+    /// follower.advance(Point::new(0.5, 0.1), |_| true);
+    /// assert_eq!(follower.ahead(0.5)[0], follower.target());
+    /// ```
     pub fn ahead(&self, length_m: f64) -> &[Point] {
         let end_m = self.stations_m[self.target] + length_m;
         let end = self.stations_m.partition_point(|s| *s <= end_m);
         &self.path[self.target..end.max(self.target + 1)]
     }
 
-    /// Everything from the nearest point on.
+    /// The points of the path from the nearest one on.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let mut follower = PathFollower::exact(&[Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
+    /// follower.advance(Point::new(0.5, 0.1), |_| true);
+    /// assert!((follower.remaining()[0] - Point::new(0.5, 0.0)).norm() < 1e-9);
+    /// ```
     pub fn remaining(&self) -> &[Point] {
         &self.path[self.nearest..]
     }
 
-    /// Way along the path up to the nearest point, metres.
+    /// Distance along the path from its start to the nearest point, metres.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let mut follower = PathFollower::exact(&[Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
+    /// follower.advance(Point::new(0.5, 0.1), |_| true);
+    /// assert!((follower.along_m() - 0.5).abs() < 1e-9);
+    /// ```
     pub fn along_m(&self) -> f64 {
         self.stations_m[self.nearest]
     }
 
     /// Length of the whole path, metres.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let mut follower = PathFollower::exact(&[Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
+    /// follower.advance(Point::new(0.5, 0.1), |_| true);
+    /// assert!((follower.length_m() - 7.0).abs() < 1e-9);
+    /// ```
     pub fn length_m(&self) -> f64 {
         self.stations_m.last().copied().unwrap_or(0.0)
     }
 
-    /// Distance from a position to the path near the robot, metres.
+    /// Distance from a position to the path around the nearest point, metres.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let mut follower = PathFollower::exact(&[Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
+    /// follower.advance(Point::new(0.5, 0.1), |_| true);
+    /// assert!((follower.cross_track_m(Point::new(0.5, 0.1)) - 0.1).abs() < 1e-9);
+    /// ```
     pub fn cross_track_m(&self, position: Point) -> f64 {
         let (first, end) = (self.nearest.saturating_sub(1), (self.nearest + 2).min(self.path.len()));
         polyline::distance_m(&self.path[first..end], position)
     }
 
-    /// Whether the last point that can be reached is within a tolerance and nothing else is left on the way.
+    /// Whether the last point with room is within a tolerance, metres, both in a straight line and along the path.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let mut follower = PathFollower::exact(&[Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
+    /// follower.advance(Point::new(0.5, 0.1), |_| true);
+    /// assert!(!follower.is_done(Point::new(1.0, 0.1), 0.2));
+    /// ```
     pub fn is_done(&self, position: Point, tolerance_m: f64) -> bool {
         let left_m = self.stations_m[self.last] - self.stations_m[self.nearest];
         left_m <= tolerance_m && (self.path[self.last] - position).norm() <= tolerance_m
     }
 }
 
-/// The points at which a path turns sharply, the first point apart.
+/// Indices of the points at which a path turns sharply; never the first or the last.
 fn corners(path: &[Point]) -> VecDeque<usize> {
     let bearing = |from: Point, to: Point| (to.y - from.y).atan2(to.x - from.x);
     let turns = |trio: &[Point]| {
@@ -156,6 +249,7 @@ fn corners(path: &[Point]) -> VecDeque<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     fn anywhere(_: Point) -> bool {
         true
@@ -206,6 +300,20 @@ mod tests {
             follower.advance(ring(k) + off, anywhere);
             let along_m = 0.25 * std::f64::consts::TAU * f64::from(k) / 40.0;
             assert!((follower.along_m() - along_m).abs() < 0.35, "{k}: {} of {along_m}", follower.along_m());
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn progress_only_grows(positions in prop::collection::vec((-1.0..6.0_f64, -1.0..2.0_f64), 1..40)) {
+            let lanes = [(0.0, 0.0), (5.0, 0.0), (5.0, 0.4), (0.0, 0.4)].map(|(x, y)| Point::new(x, y));
+            for mut follower in [PathFollower::new(lanes.to_vec()), PathFollower::exact(&lanes)] {
+                for (x, y) in &positions {
+                    let before_m = follower.along_m();
+                    follower.advance(Point::new(*x, *y), anywhere);
+                    prop_assert!(before_m <= follower.along_m() && follower.along_m() <= follower.length_m());
+                }
+            }
         }
     }
 

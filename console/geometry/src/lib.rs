@@ -1,5 +1,4 @@
-//! Points, poses, shapes, paths and motion on a tank floor: the ground floor that the console, the planner API and the
-//! planners stand on.
+//! Points, poses, shapes, paths and motion on a tank floor: what the console, the planner API and the planners share.
 //!
 //! Frame: the tank frame, origin at the tank's centre, x east, y north, metres; angles in radians, counter-clockwise from
 //! east; SI units throughout.
@@ -15,5 +14,5 @@ pub mod shape;
 pub use boundary::Boundary;
 pub use follower::PathFollower;
 pub use motion::{Drive, Limits, Motion};
-pub use pose::{Point, Pose, Vector, direction_or, wrap_angle_rad};
+pub use pose::{Point, Pose, Vector, direction_or, unit_vector, wrap_angle_rad};
 pub use shape::Shape;

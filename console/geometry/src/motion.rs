@@ -1,15 +1,15 @@
-//! How a robot moves, what it can do, and the one law from a planner's command to what its drives can do.
+//! How a robot moves, its limits, and the control law that turns a planner's command into a drive within them.
 
-use crate::{Vector, wrap_angle_rad};
+use crate::{Vector, unit_vector, wrap_angle_rad};
 
-/// Heading error beyond which a unicycle turns on the spot, radians.
+/// Heading error above which a unicycle turns on the spot before it drives, radians.
 pub const TURN_FIRST_RAD: f64 = 1.0;
-/// The same along lanes that are to be followed exactly: a wide curve at the end of a lane leads into the wall.
+/// The same on lanes that are followed exactly, radians: a wide curve at the end of a lane leads into the wall.
 pub const TURN_FIRST_IN_LANES_RAD: f64 = 0.25;
-/// Turn rate per heading error, 1/s: a 0.5 rad error is gone in about a second.
+/// Turn rate per heading error, 1/s: a 0.5 rad error decays in about a second.
 const HEADING_GAIN_PER_S: f64 = 2.5;
 
-/// Share by which a speed may exceed the limit by rounding.
+/// Share by which rounding may leave a speed above the limit.
 const ROUNDING: f64 = 1e-12;
 
 /// How the robot moves.
@@ -17,13 +17,25 @@ const ROUNDING: f64 = 1e-12;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[repr(u32)]
 pub enum Motion {
-    /// In any direction at once, as the papers' point robots.
+    /// In any direction without turning, like the papers' point robots.
     Point = 0,
-    /// Ahead and turning, as tracked and wheeled robots.
+    /// Along its heading and turning, like tracked and wheeled robots.
     Unicycle = 1,
 }
 
 /// What the robot can do.
+///
+/// ```
+/// use geometry::{Limits, Motion};
+/// let limits = Limits {
+///     motion: Motion::Unicycle,
+///     v_max_m_per_s: 0.4,
+///     w_max_rad_per_s: 1.0,
+///     radius_m: 0.25,
+///     sensing_range_m: 2.0,
+/// };
+/// assert_eq!(limits.motion as u32, 1);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Limits {
@@ -33,25 +45,30 @@ pub struct Limits {
     pub v_max_m_per_s: f64,
     /// Largest turn rate, radians per second.
     pub w_max_rad_per_s: f64,
-    /// Radius of the smallest circle around the robot, metres.
+    /// Radius of the hull, a disc about the robot's centre, metres.
     pub radius_m: f64,
-    /// How far it sees obstacles, metres.
+    /// Range at which it sees obstacles, metres.
     pub sensing_range_m: f64,
 }
 
 /// How a robot is to move until the next tick.
+///
+/// ```
+/// use geometry::Drive;
+/// assert_eq!(Drive::STILL, Drive::Twist { v_m_per_s: 0.0, w_rad_per_s: 0.0 });
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Drive {
-    /// Speed ahead and turn rate, for planners that think in tracks and wheels.
+    /// Speed and turn rate, for planners that command tracks or wheels.
     Twist {
         /// Speed along the robot's heading, metres per second; negative is backward.
         v_m_per_s: f64,
         /// Turn rate, radians per second, counter-clockwise.
         w_rad_per_s: f64,
     },
-    /// Velocity in the tank frame, metres per second; the console turns the robot into it. For planners that think
-    /// in forces and directions, so that each need not bring its own heading control.
+    /// Velocity in the tank frame, metres per second, for planners that compute directions: [`drive_for`] controls the
+    /// heading, so that they need not.
     Velocity(Vector),
 }
 
@@ -60,17 +77,28 @@ impl Drive {
     pub const STILL: Self = Self::Twist { v_m_per_s: 0.0, w_rad_per_s: 0.0 };
 }
 
-/// What the robot is sent for a planner's command: within its limits and in its own way of moving.
+/// The drive that is sent to the robot for a planner's command: within its limits, and as its kind of motion needs it.
 ///
-/// A unicycle turns into a velocity, on the spot above `turn_first_rad`, and slows down as the cosine of the heading
-/// error; a point robot takes a twist as a velocity along its heading.
+/// A unicycle is given a turn rate proportional to the error between `heading_rad` and the direction of the velocity, and
+/// the cosine of that error as its share of the speed; above `turn_first_rad` it turns on the spot. A point robot takes a
+/// twist as a velocity along its heading. A drive that was sent comes back unchanged.
+///
+/// ```
+/// use geometry::{Drive, Limits, Motion, Vector, motion::{TURN_FIRST_RAD, drive_for}};
+/// # let (motion, radius_m, sensing_range_m) = (Motion::Unicycle, 0.25, 2.0);
+/// let limits = Limits { motion, v_max_m_per_s: 0.4, w_max_rad_per_s: 1.0, radius_m, sensing_range_m };
+/// let east = Drive::Velocity(Vector::new(0.3, 0.0));
+/// let sent = drive_for(east, 0.2, &limits, TURN_FIRST_RAD);
+/// let Drive::Twist { w_rad_per_s, .. } = sent else { unreachable!("a unicycle takes twists") };
+/// assert!((w_rad_per_s + 0.5).abs() < 1e-12);
+/// ```
 pub fn drive_for(command: Drive, heading_rad: f64, limits: &Limits, turn_first_rad: f64) -> Drive {
     match (limits.motion, command) {
         (Motion::Point, Drive::Velocity(velocity)) => {
             Drive::Velocity(at_most(velocity, limits.v_max_m_per_s))
         }
         (Motion::Point, Drive::Twist { v_m_per_s, .. }) => {
-            let velocity = Vector::new(heading_rad.cos(), heading_rad.sin()) * v_m_per_s;
+            let velocity = unit_vector(heading_rad) * v_m_per_s;
             Drive::Velocity(at_most(velocity, limits.v_max_m_per_s))
         }
         (Motion::Unicycle, Drive::Twist { v_m_per_s, w_rad_per_s }) => twist(v_m_per_s, w_rad_per_s, limits),
@@ -81,6 +109,11 @@ pub fn drive_for(command: Drive, heading_rad: f64, limits: &Limits, turn_first_r
 }
 
 /// The angle from a heading to the direction of a velocity, radians in (-pi, pi].
+///
+/// ```
+/// use geometry::{Vector, motion::heading_error_rad};
+/// assert_eq!(heading_error_rad(Vector::new(1.0, 1.0), 0.0), std::f64::consts::FRAC_PI_4);
+/// ```
 pub fn heading_error_rad(velocity: Vector, heading_rad: f64) -> f64 {
     wrap_angle_rad(velocity.y.atan2(velocity.x) - heading_rad)
 }
@@ -102,8 +135,8 @@ fn twist(v_m_per_s: f64, w_rad_per_s: f64, limits: &Limits) -> Drive {
     }
 }
 
-/// Shortens a velocity to a speed. What was shortened once may be longer than that by rounding and stays as it is, so that
-/// a command that was sent can be fed in again.
+/// The velocity, shortened to a speed if it exceeds it by more than rounding: a velocity that was shortened before stays as
+/// it is to the bit.
 fn at_most(velocity: Vector, speed_m_per_s: f64) -> Vector {
     let speed = velocity.norm();
     if speed > speed_m_per_s * (1.0 + ROUNDING) { velocity * (speed_m_per_s / speed) } else { velocity }
@@ -119,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_unicycle_that_looks_the_wrong_way_turns_on_the_spot() {
+    fn a_unicycle_that_faces_the_wrong_way_turns_on_the_spot() {
         let drive = drive_for(
             Drive::Velocity(Vector::new(-0.4, 0.01)),
             0.0,
@@ -139,6 +172,23 @@ mod tests {
                     prop_assert_eq!(drive_for(sent, heading, &limits(motion), TURN_FIRST_RAD), sent);
                 }
             }
+        }
+
+        #[test]
+        fn a_turn_by_the_heading_error_points_along_the_velocity(
+            x in -9.0..9.0_f64, y in -9.0..9.0_f64, heading in -4.0..4.0_f64,
+        ) {
+            let velocity = Vector::new(x, y);
+            let ahead = unit_vector(heading + heading_error_rad(velocity, heading));
+            prop_assert!((ahead * velocity.norm() - velocity).norm() < 1e-9);
+        }
+
+        #[test]
+        fn a_point_robot_keeps_the_direction_of_a_velocity(x in -9.0..9.0_f64, y in -9.0..9.0_f64) {
+            let velocity = Vector::new(x, y);
+            let sent = drive_for(Drive::Velocity(velocity), 0.7, &limits(Motion::Point), TURN_FIRST_RAD);
+            let Drive::Velocity(sent) = sent else { panic!("a point robot takes velocities") };
+            prop_assert!(sent.perp(&velocity).abs() < 1e-9 && sent.dot(&velocity) >= 0.0);
         }
 
         #[test]

@@ -1,13 +1,26 @@
-//! Paths: lengths, nearest points, walking along.
+//! Open paths and closed rings of straight segments: lengths, distances, resampling.
 
 use crate::Point;
 
 /// Length of a path, metres.
+///
+/// ```
+/// use geometry::{Point, polyline::length_m};
+/// let path = [Point::new(0.0, 0.0), Point::new(3.0, 0.0), Point::new(3.0, 4.0)];
+/// assert_eq!(length_m(&path), 7.0);
+/// ```
 pub fn length_m(path: &[Point]) -> f64 {
     path.windows(2).map(|w| (w[1] - w[0]).norm()).sum()
 }
 
-/// The point of a segment that is nearest to `point`.
+/// The point of the segment from `a` to `b` that is nearest to `point`.
+///
+/// ```
+/// use geometry::{Point, polyline::nearest_on_segment};
+/// let (a, b) = (Point::new(0.0, 0.0), Point::new(4.0, 0.0));
+/// assert_eq!(nearest_on_segment(a, b, Point::new(1.0, 2.0)), Point::new(1.0, 0.0));
+/// assert_eq!(nearest_on_segment(a, b, Point::new(9.0, 2.0)), b);
+/// ```
 pub fn nearest_on_segment(a: Point, b: Point, point: Point) -> Point {
     let along = b - a;
     let squared = along.norm_squared();
@@ -18,6 +31,13 @@ pub fn nearest_on_segment(a: Point, b: Point, point: Point) -> Point {
 }
 
 /// Distance from a point to an open path, metres; infinite for an empty path.
+///
+/// ```
+/// use geometry::{Point, polyline::distance_m};
+/// let path = [Point::new(0.0, 0.0), Point::new(4.0, 0.0)];
+/// assert_eq!(distance_m(&path, Point::new(1.0, 2.0)), 2.0);
+/// assert!(distance_m(&[], Point::origin()).is_infinite());
+/// ```
 pub fn distance_m(path: &[Point], point: Point) -> f64 {
     match path {
         [] => f64::INFINITY,
@@ -29,19 +49,50 @@ pub fn distance_m(path: &[Point], point: Point) -> f64 {
     }
 }
 
-/// The edges of a closed polygon.
+/// Whether two segments cross, each with its ends strictly on both sides of the other; segments that touch do not.
+///
+/// ```
+/// use geometry::{Point, polyline::segments_cross};
+/// let at = Point::new;
+/// assert!(segments_cross(at(-1.0, 0.0), at(1.0, 0.0), at(0.0, -1.0), at(0.0, 1.0)));
+/// assert!(!segments_cross(at(-1.0, 0.0), at(1.0, 0.0), at(0.0, 0.0), at(0.0, 1.0)));
+/// ```
+pub fn segments_cross(a: Point, b: Point, c: Point, d: Point) -> bool {
+    let side = |from: Point, to: Point, at: Point| (to - from).perp(&(at - from));
+    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+}
+
+/// The edges of a closed polygon, the one from the last corner to the first included; none without corners.
+///
+/// ```
+/// use geometry::{Point, polyline::edges};
+/// let triangle = [Point::new(0.0, 0.0), Point::new(3.0, 0.0), Point::new(0.0, 4.0)];
+/// assert_eq!(edges(&triangle).map(|(a, b)| (b - a).norm()).sum::<f64>(), 12.0);
+/// ```
 pub fn edges(vertices: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
     vertices.iter().copied().zip(vertices.iter().copied().cycle().skip(1)).take(vertices.len())
 }
 
-/// Distance from a point to the edges of a closed polygon, metres.
+/// Distance from a point to the edges of a closed polygon, metres, from inside as from outside; infinite without corners.
+///
+/// ```
+/// use geometry::{Point, polyline::distance_to_ring_m, shape::rectangle};
+/// let square = rectangle(Point::new(-1.0, -1.0), Point::new(1.0, 1.0));
+/// assert_eq!(distance_to_ring_m(&square, Point::new(0.25, 0.0)), 0.75);
+/// ```
 pub fn distance_to_ring_m(vertices: &[Point], point: Point) -> f64 {
     edges(vertices)
         .map(|(a, b)| (point - nearest_on_segment(a, b, point)).norm())
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Distance travelled from the start of a path to each of its points, metres.
+/// Distance along a path from its start to each of its points, metres.
+///
+/// ```
+/// use geometry::{Point, polyline::stations_m};
+/// let path = [Point::new(0.0, 0.0), Point::new(3.0, 0.0), Point::new(3.0, 4.0)];
+/// assert_eq!(stations_m(&path), [0.0, 3.0, 7.0]);
+/// ```
 pub fn stations_m(path: &[Point]) -> Vec<f64> {
     let mut travelled = 0.0;
     let mut previous = path.first().copied();
@@ -54,7 +105,14 @@ pub fn stations_m(path: &[Point]) -> Vec<f64> {
         .collect()
 }
 
-/// The path without its first and last metres; empty if there is nothing between.
+/// The path without its first and its last `end_m` metres; empty if it is no longer than both together.
+///
+/// ```
+/// use geometry::{Point, polyline::without_ends};
+/// let path = [Point::new(0.0, 0.0), Point::new(5.0, 0.0)];
+/// assert_eq!(without_ends(&path, 1.0), [Point::new(1.0, 0.0), Point::new(4.0, 0.0)]);
+/// assert!(without_ends(&path, 3.0).is_empty());
+/// ```
 pub fn without_ends(path: &[Point], end_m: f64) -> Vec<Point> {
     let stations_m = stations_m(path);
     let (first_m, last_m) = (end_m, stations_m.last().copied().unwrap_or(0.0) - end_m);
@@ -71,7 +129,14 @@ pub fn without_ends(path: &[Point], end_m: f64) -> Vec<Point> {
     std::iter::once(at(first_m)).chain(between).chain(std::iter::once(at(last_m))).collect()
 }
 
-/// The path with straight pieces split so that no two neighbours are further apart than `spacing_m`.
+/// The path with its segments divided evenly so that neighbouring points are at most `spacing_m` apart.
+///
+/// ```
+/// use geometry::{Point, polyline::resampled};
+/// let fine = resampled(&[Point::new(0.0, 0.0), Point::new(1.0, 0.0)], 0.3);
+/// assert_eq!(fine.len(), 5);
+/// assert_eq!(fine[1], Point::new(0.25, 0.0));
+/// ```
 pub fn resampled(path: &[Point], spacing_m: f64) -> Vec<Point> {
     let mut points: Vec<Point> = path.first().copied().into_iter().collect();
     for pair in path.windows(2) {

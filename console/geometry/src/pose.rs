@@ -4,10 +4,15 @@ use nalgebra::{Isometry2, Point2, Rotation2, Vector2};
 
 /// A place on the tank floor, metres, tank frame.
 pub type Point = Point2<f64>;
-/// A displacement, velocity or force on the tank floor.
+/// A displacement (metres), velocity (metres per second) or force in the tank frame.
 pub type Vector = Vector2<f64>;
 
-/// Where a robot stands and which way it looks.
+/// Position and heading of a robot.
+///
+/// ```
+/// let pose = geometry::Pose::new(2.0, 1.0, std::f64::consts::FRAC_PI_2);
+/// assert_eq!(pose.position.y, 1.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose {
@@ -18,22 +23,50 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// A pose from its three numbers.
+    /// A pose from its coordinates, metres, and its heading, radians; all in the tank frame.
+    ///
+    /// ```
+    /// use geometry::{Point, Pose};
+    /// assert_eq!(Pose::new(2.0, 1.0, 0.5).position, Point::new(2.0, 1.0));
+    /// ```
     pub fn new(x_m: f64, y_m: f64, heading_rad: f64) -> Self {
         Self { position: Point::new(x_m, y_m), heading_rad }
     }
 
-    /// Unit vector of the heading.
+    /// Unit vector of the heading, tank frame.
+    ///
+    /// ```
+    /// use geometry::{Pose, Vector};
+    /// let north = Pose::new(0.0, 0.0, std::f64::consts::FRAC_PI_2);
+    /// assert!((north.direction() - Vector::y()).norm() < 1e-12);
+    /// ```
     pub fn direction(&self) -> Vector {
-        Vector::new(self.heading_rad.cos(), self.heading_rad.sin())
+        unit_vector(self.heading_rad)
     }
 
-    /// The transform that takes points of the robot frame (x ahead, y left) to the tank frame.
+    /// The transform from the robot frame (x ahead, y left) to the tank frame.
+    ///
+    /// ```
+    /// use geometry::{Point, Pose};
+    /// let north = Pose::new(2.0, 1.0, std::f64::consts::FRAC_PI_2);
+    /// let ahead = north.tank_from_robot() * Point::new(3.0, 0.0);
+    /// assert!((ahead - Point::new(2.0, 4.0)).norm() < 1e-12);
+    /// ```
     pub fn tank_from_robot(&self) -> Isometry2<f64> {
         Isometry2::new(self.position.coords, self.heading_rad)
     }
 
-    /// The pose after moving along the robot's own axes while they turn evenly by `turn_rad`: an arc.
+    /// The pose after an arc: `forward_m` and `sideways_m` along the robot's own axes, metres, while they turn at a
+    /// constant rate by `turn_rad`, radians.
+    ///
+    /// ```
+    /// use geometry::{Point, Pose};
+    /// use std::f64::consts::PI;
+    /// // Half a circle of radius 1 m to the left.
+    /// let end = Pose::new(0.0, 0.0, 0.0).moved(PI, 0.0, PI);
+    /// assert!((end.position - Point::new(0.0, 2.0)).norm() < 1e-12);
+    /// assert!((end.heading_rad - PI).abs() < 1e-12);
+    /// ```
     #[must_use]
     pub fn moved(&self, forward_m: f64, sideways_m: f64, turn_rad: f64) -> Self {
         let half = turn_rad / 2.0;
@@ -44,14 +77,35 @@ impl Pose {
     }
 }
 
-/// An angle brought into (-pi, pi].
+/// Unit vector of a bearing in radians, counter-clockwise from east.
+///
+/// ```
+/// use geometry::{Vector, unit_vector};
+/// assert_eq!(unit_vector(0.0), Vector::x());
+/// ```
+pub fn unit_vector(bearing_rad: f64) -> Vector {
+    Vector::new(bearing_rad.cos(), bearing_rad.sin())
+}
+
+/// The equivalent angle in (-pi, pi], radians.
+///
+/// ```
+/// use std::f64::consts::PI;
+/// assert!((geometry::wrap_angle_rad(1.5 * PI) + 0.5 * PI).abs() < 1e-12);
+/// ```
 pub fn wrap_angle_rad(angle_rad: f64) -> f64 {
     let turn = std::f64::consts::TAU;
     let wrapped = angle_rad.rem_euclid(turn);
     if wrapped > std::f64::consts::PI { wrapped - turn } else { wrapped }
 }
 
-/// Unit vector along `vector`, or `fallback` where it has no direction.
+/// Unit vector along `vector`, or `fallback` if `vector` is shorter than 1e-9.
+///
+/// ```
+/// use geometry::{Vector, direction_or};
+/// assert_eq!(direction_or(Vector::new(0.0, 3.0), Vector::x()), Vector::y());
+/// assert_eq!(direction_or(Vector::zeros(), Vector::x()), Vector::x());
+/// ```
 pub fn direction_or(vector: Vector, fallback: Vector) -> Vector {
     let length = vector.norm();
     if length > 1e-9 { vector / length } else { fallback }

@@ -6,9 +6,15 @@ use crate::{
 };
 use nalgebra::Isometry2;
 
-/// The outline of an obstacle or a zone.
+/// The outline of an obstacle or a zone, tank frame unless stated otherwise.
 ///
-/// `P` is where the corners lie: `Shape` has its own, `Shape<&[Point]>` borrows them, as planners see it.
+/// `P` stores the corners: `Shape` owns them, `Shape<&[Point]>` borrows them, as planners do.
+///
+/// ```
+/// use geometry::{Point, Shape};
+/// let pipe: Shape = Shape::Polyline { points: vec![Point::new(0.0, 0.0), Point::new(4.0, 0.0)], half_width_m: 0.1 };
+/// assert_eq!(pipe.distance_m(Point::new(2.0, 1.0)), 0.9);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Shape<P = Vec<Point>> {
@@ -16,7 +22,7 @@ pub enum Shape<P = Vec<Point>> {
     Disc {
         /// Centre, metres.
         center: Point,
-        /// Radius, metres; may be zero for a point obstacle as the papers have it.
+        /// Radius, metres; zero for the point obstacles of the papers.
         radius_m: f64,
     },
     /// A convex polygon, counter-clockwise.
@@ -24,7 +30,7 @@ pub enum Shape<P = Vec<Point>> {
         /// Corners, metres.
         vertices: P,
     },
-    /// A pipe or wall of some thickness along straight pieces.
+    /// A pipe or a wall: everything within half its thickness of a chain of segments.
     Polyline {
         /// Corners of the centre line, metres.
         points: P,
@@ -35,6 +41,13 @@ pub enum Shape<P = Vec<Point>> {
 
 impl<P: AsRef<[Point]>> Shape<P> {
     /// The same shape with its corners borrowed.
+    ///
+    /// ```
+    /// use geometry::{Point, Shape};
+    /// let corners = vec![Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(0.0, 1.0)];
+    /// let shape = Shape::Polygon { vertices: corners.clone() };
+    /// assert_eq!(shape.as_ref(), Shape::Polygon { vertices: &corners[..] });
+    /// ```
     pub fn as_ref(&self) -> Shape<&[Point]> {
         match self {
             Self::Disc { center, radius_m } => Shape::Disc { center: *center, radius_m: *radius_m },
@@ -45,12 +58,27 @@ impl<P: AsRef<[Point]>> Shape<P> {
         }
     }
 
-    /// The same shape with corners of its own.
+    /// The same shape with its own corners.
+    ///
+    /// ```
+    /// use geometry::{Point, Shape};
+    /// let corners = [Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(0.0, 1.0)];
+    /// let shape = Shape::Polygon { vertices: &corners[..] }.to_owned();
+    /// assert_eq!(shape, Shape::Polygon { vertices: corners.to_vec() });
+    /// ```
     pub fn to_owned(&self) -> Shape {
         self.map(|point| *point)
     }
 
-    /// The same shape after a rigid motion.
+    /// The same shape after a rigid motion, for example from the robot frame to the tank frame.
+    ///
+    /// ```
+    /// use geometry::{Point, Pose, Shape};
+    /// let ahead: Shape = Shape::Disc { center: Point::new(2.0, 0.0), radius_m: 0.5 };
+    /// let north = Pose::new(1.0, 0.0, std::f64::consts::FRAC_PI_2);
+    /// let in_tank = ahead.transformed(&north.tank_from_robot());
+    /// assert!((in_tank.center() - Point::new(1.0, 2.0)).norm() < 1e-12);
+    /// ```
     #[must_use]
     pub fn transformed(&self, motion: &Isometry2<f64>) -> Shape {
         self.map(|point| motion * point)
@@ -67,7 +95,13 @@ impl<P: AsRef<[Point]>> Shape<P> {
         }
     }
 
-    /// A point that stands for the whole: the centre of a disc, the mean of the corners otherwise.
+    /// The centre of a disc, the mean of the corners otherwise.
+    ///
+    /// ```
+    /// use geometry::{Point, Shape};
+    /// let pipe = Shape::Polyline { points: vec![Point::new(0.0, 0.0), Point::new(4.0, 2.0)], half_width_m: 0.1 };
+    /// assert_eq!(pipe.center(), Point::new(2.0, 1.0));
+    /// ```
     pub fn center(&self) -> Point {
         match self {
             Self::Disc { center, .. } => *center,
@@ -75,7 +109,15 @@ impl<P: AsRef<[Point]>> Shape<P> {
         }
     }
 
-    /// Distance from a point to the outline, metres; negative inside.
+    /// Distance from a point to the outline, metres; negative inside. Within a bend of a polyline the depth is that of the
+    /// nearer segment alone.
+    ///
+    /// ```
+    /// use geometry::{Point, Shape};
+    /// let column: Shape = Shape::Disc { center: Point::origin(), radius_m: 0.5 };
+    /// assert_eq!(column.distance_m(Point::new(3.0, 4.0)), 4.5);
+    /// assert_eq!(column.distance_m(Point::origin()), -0.5);
+    /// ```
     pub fn distance_m(&self, point: Point) -> f64 {
         match self.as_ref() {
             Shape::Disc { center, radius_m } => (point - center).norm() - radius_m,
@@ -87,7 +129,13 @@ impl<P: AsRef<[Point]>> Shape<P> {
         }
     }
 
-    /// The smallest axis-aligned box around it: south west and north east corner.
+    /// The smallest axis-aligned box around the shape: south-west and north-east corner.
+    ///
+    /// ```
+    /// use geometry::{Point, Shape};
+    /// let column: Shape = Shape::Disc { center: Point::new(2.0, 0.0), radius_m: 0.5 };
+    /// assert_eq!(column.bounds(), (Point::new(1.5, -0.5), Point::new(2.5, 0.5)));
+    /// ```
     pub fn bounds(&self) -> (Point, Point) {
         let (corners, margin): (&[Point], f64) = match self {
             Self::Disc { center, radius_m } => (std::slice::from_ref(center), *radius_m),
@@ -101,12 +149,24 @@ impl<P: AsRef<[Point]>> Shape<P> {
 }
 
 /// The mean of some points; the origin without any.
-pub(crate) fn mean_of(points: &[Point]) -> Point {
+///
+/// ```
+/// use geometry::{Point, shape::mean_of};
+/// assert_eq!(mean_of(&[Point::new(0.0, 0.0), Point::new(2.0, 4.0)]), Point::new(1.0, 2.0));
+/// ```
+pub fn mean_of(points: &[Point]) -> Point {
     let sum: Vector = points.iter().map(|p| p.coords).sum();
     Point::from(sum / points.len().max(1) as f64)
 }
 
-/// The smallest axis-aligned box around some points.
+/// The smallest axis-aligned box around some points: south-west and north-east corner; without any, corners at
+/// infinity with the first beyond the second.
+///
+/// ```
+/// use geometry::{Point, shape::bounds_of};
+/// let (low, high) = bounds_of(&[Point::new(0.0, 3.0), Point::new(2.0, -1.0)]);
+/// assert_eq!((low, high), (Point::new(0.0, -1.0), Point::new(2.0, 3.0)));
+/// ```
 pub fn bounds_of(points: &[Point]) -> (Point, Point) {
     let far = f64::INFINITY;
     points
@@ -114,7 +174,14 @@ pub fn bounds_of(points: &[Point]) -> (Point, Point) {
         .fold((Point::new(far, far), Point::new(-far, -far)), |(low, high), p| (low.inf(p), high.sup(p)))
 }
 
-/// Whether a point lies inside a simple polygon (crossing number).
+/// Whether a point lies inside a simple polygon, by the crossing number; on an edge the answer may be either.
+///
+/// ```
+/// use geometry::{Point, shape::{rectangle, ring_contains}};
+/// let square = rectangle(Point::new(0.0, 0.0), Point::new(2.0, 2.0));
+/// assert!(ring_contains(&square, Point::new(1.0, 1.0)));
+/// assert!(!ring_contains(&square, Point::new(3.0, 1.0)));
+/// ```
 pub fn ring_contains(vertices: &[Point], point: Point) -> bool {
     edges(vertices).fold(false, |inside, (a, b)| {
         let crosses =
@@ -123,19 +190,83 @@ pub fn ring_contains(vertices: &[Point], point: Point) -> bool {
     })
 }
 
-/// A box from its south west and north east corners, counter-clockwise.
+/// The corners of a box, counter-clockwise from the south-west one, given that one and the north-east one.
+///
+/// ```
+/// use geometry::{Point, shape::rectangle};
+/// assert_eq!(rectangle(Point::new(0.0, 0.0), Point::new(3.0, 2.0))[1], Point::new(3.0, 0.0));
+/// ```
 pub fn rectangle(low: Point, high: Point) -> Vec<Point> {
     vec![low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)]
 }
 
-/// Signed area of a simple polygon, positive when counter-clockwise.
+/// Signed area of a simple polygon, square metres, positive when counter-clockwise (shoelace formula).
+///
+/// ```
+/// use geometry::{Point, shape::{rectangle, ring_area_m2}};
+/// assert_eq!(ring_area_m2(&rectangle(Point::new(0.0, 0.0), Point::new(3.0, 2.0))), 6.0);
+/// ```
 pub fn ring_area_m2(vertices: &[Point]) -> f64 {
     edges(vertices).map(|(a, b)| a.coords.perp(&b.coords)).sum::<f64>() / 2.0
 }
 
+/// Indices of the corners at which a simple polygon, of either sense, has an interior angle above 180 degrees.
+///
+/// ```
+/// use geometry::{Point, shape::reflex_corners};
+/// let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 2.0), (0.0, 4.0)];
+/// let ring = corners.map(|(x, y)| Point::new(x, y));
+/// assert_eq!(reflex_corners(&ring).collect::<Vec<_>>(), [3]);
+/// ```
+pub fn reflex_corners(vertices: &[Point]) -> impl Iterator<Item = usize> + '_ {
+    let (n, sense) = (vertices.len(), ring_area_m2(vertices).signum());
+    (0..n).filter(move |&k| {
+        let (before, here, after) = (vertices[(k + n - 1) % n], vertices[k], vertices[(k + 1) % n]);
+        sense * (here - before).perp(&(after - here)) < 0.0
+    })
+}
+
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    /// Discs, boxes and pipes with a bend.
+    pub(crate) fn any_shape() -> impl Strategy<Value = Shape> {
+        let at = || (-8.0..8.0_f64, -8.0..8.0_f64).prop_map(|(x, y)| Point::new(x, y));
+        let size = || (0.1..3.0_f64, 0.1..3.0_f64).prop_map(|(x, y)| Vector::new(x, y));
+        prop_oneof![
+            (at(), 0.0..1.0_f64).prop_map(|(center, radius_m)| Shape::Disc { center, radius_m }),
+            (at(), size()).prop_map(|(low, size)| Shape::Polygon { vertices: rectangle(low, low + size) }),
+            ([at(), at(), at()], 0.01..0.5_f64)
+                .prop_map(|(points, half_width_m)| Shape::Polyline { points: points.to_vec(), half_width_m }),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn a_borrowed_shape_is_the_same_shape(shape in any_shape(), x in -9.0..9.0_f64, y in -9.0..9.0_f64) {
+            let point = Point::new(x, y);
+            prop_assert_eq!(shape.as_ref().distance_m(point).to_bits(), shape.distance_m(point).to_bits());
+            prop_assert_eq!(shape.as_ref().bounds(), shape.bounds());
+            prop_assert_eq!(shape.as_ref().to_owned(), shape);
+        }
+
+        #[test]
+        fn a_rigid_motion_keeps_distances(
+            shape in any_shape(), at in (-9.0..9.0_f64, -9.0..9.0_f64), angle in -4.0..4.0_f64,
+        ) {
+            let (point, motion) = (Point::new(at.0, at.1), Isometry2::new(Vector::new(at.1, at.0), angle));
+            let moved_m = shape.transformed(&motion).distance_m(motion * point);
+            prop_assert!((moved_m - shape.distance_m(point)).abs() < 1e-9);
+        }
+
+        #[test]
+        fn no_point_of_a_shape_lies_outside_its_box(shape in any_shape(), x in -12.0..12.0_f64, y in -12.0..12.0_f64) {
+            let ((low, high), point) = (shape.bounds(), Point::new(x, y));
+            prop_assert!(shape.distance_m(point) > 0.0 || point.sup(&low).inf(&high) == point);
+        }
+    }
 
     fn square() -> Vec<Point> {
         vec![Point::new(0.0, 0.0), Point::new(2.0, 0.0), Point::new(2.0, 2.0), Point::new(0.0, 2.0)]

@@ -30,7 +30,7 @@ use planner_api::Plan;
 use std::sync::Arc;
 use world::{
     ObstacleMap, Point, Shape, World,
-    tether::{Bearing, Cable, Certificate, Ground, TetherError, capstan_factor},
+    tether::{Bearing, Cable, CableObstacles, Certificate, TetherError, capstan_factor},
 };
 
 /// Room that a way home may lack beside what is on the chart, metres: found obstacles are placed about this well.
@@ -46,7 +46,7 @@ pub struct Tether {
     hull_m: f64,
     cable: Cable,
     /// The ground as the middle of the hull meets it on its way home.
-    roomy: Arc<Ground>,
+    roomy: Arc<CableObstacles>,
     /// For how long there has been no way home, seconds.
     without_home_s: f64,
     payout: Payout,
@@ -67,7 +67,7 @@ impl Tether {
             config: config.clone(),
             hull_m,
             cable,
-            roomy: Arc::new(Ground::grown(&world.boundary, &shapes, home_room_m(hull_m))),
+            roomy: Arc::new(CableObstacles::grown(&world.boundary, &shapes, home_room_m(hull_m))),
             without_home_s: 0.0,
             payout: Payout::default(),
             driven: Driven::new(start),
@@ -88,13 +88,13 @@ impl Tether {
     /// Puts the cable among the obstacles known now, as the way driven leads.
     pub fn lay_anew(&mut self, world: &World) {
         let shapes = shapes(world);
-        let ground = Arc::new(Ground::new(&world.boundary, &shapes));
+        let obstacles = Arc::new(CableObstacles::new(&world.boundary, &shapes));
         // An obstacle on top of the anchor is an error of the estimate: the cable stays as it was.
-        if let Ok(mut cable) = Cable::on(self.config.anchor, ground) {
+        if let Ok(mut cable) = Cable::on(self.config.anchor, obstacles) {
             cable.drag_along(self.driven.points());
             cable.drag_to(self.cable.tip());
             self.cable = cable;
-            self.roomy = Arc::new(Ground::grown(&world.boundary, &shapes, home_room_m(self.hull_m)));
+            self.roomy = Arc::new(CableObstacles::grown(&world.boundary, &shapes, home_room_m(self.hull_m)));
         }
     }
 
@@ -238,7 +238,7 @@ impl Tether {
 
 /// The way along a cable to its anchor with some room for the middle of the hull, metres.
 fn way_along(cable: &Cable, world: &World, room_m: f64) -> Option<Vec<Point>> {
-    let roomy = Arc::new(Ground::grown(&world.boundary, &shapes(world), room_m));
+    let roomy = Arc::new(CableObstacles::grown(&world.boundary, &shapes(world), room_m));
     cable.return_path(&roomy, &ObstacleMap::new(&world.boundary, &world.obstacles), room_m)
 }
 

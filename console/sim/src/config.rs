@@ -34,14 +34,14 @@ pub enum NoiseModel {
     },
 }
 
-/// What a station hears of a robot that stands behind something solid.
+/// What a station hears of a robot behind something solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BehindColumns {
     /// The direct sound, as if nothing were there.
     #[default]
     Heard,
-    /// The sound that creeps around the column.
+    /// The wave that creeps around the column.
     Creeping,
     /// The direct sound, later by an exponential delay of mean [`Disturbances::excess_range_mean_m`].
     Late,
@@ -51,7 +51,7 @@ pub enum BehindColumns {
     Silent,
 }
 
-/// One station misbehaves for a while.
+/// A temporary fault of one station.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StationFault {
     /// Which station.
@@ -67,23 +67,23 @@ pub struct StationFault {
 /// Everything that goes wrong with ranges besides their scatter. The default is nothing.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Disturbances {
-    /// Chance that a single range of a station is missing, 0 to 1.
+    /// Probability that a single range of a station is missing, 0 to 1.
     pub ping_dropout_probability: f64,
-    /// Chance that a range scatters [`Self::outlier_factor`] times as far, 0 to 1.
+    /// Probability that a range scatters [`Self::outlier_factor`] times as far, 0 to 1.
     pub outlier_probability: f64,
     /// How much further outliers scatter.
     pub outlier_factor: f64,
-    /// Chance that a single range comes late, 0 to 1.
+    /// Probability that a single range is late, 0 to 1.
     pub late_ping_probability: f64,
-    /// Chance that all ranges of a station come late in a cycle, because something hides it, 0 to 1.
+    /// Probability that all ranges of a station are late in a cycle, because it is not in line of sight, 0 to 1.
     pub nlos_probability: f64,
-    /// Mean of the exponential delay of what is late, metres.
+    /// Mean of the exponential delay of late ranges, metres.
     pub excess_range_mean_m: f64,
     /// What is heard of a robot behind a column.
     pub behind_columns: BehindColumns,
-    /// Standard deviation of the surveyed station places in x and in y, metres; drawn once for a run.
+    /// Standard deviation of the surveyed station positions in x and in y, metres; drawn once per run.
     pub survey_sigma_m: f64,
-    /// How much too long all ranges are because the sound is slower than was assumed, as a share.
+    /// Share by which all ranges are too long because sound is slower than assumed.
     pub sound_speed_error_ratio: f64,
     /// Faults of single stations.
     pub faults: Vec<StationFault>,
@@ -98,9 +98,9 @@ pub struct AeConfig {
     pub repetitions: u32,
     /// How they scatter.
     pub noise: NoiseModel,
-    /// Chance that a station is not heard in a cycle, 0 to 1.
+    /// Probability that a station is not heard in a cycle, 0 to 1.
     pub dropout_probability: f64,
-    /// Spans of mission time without any answer, seconds: from, to.
+    /// Intervals of mission time without any ranges, seconds: from, to.
     pub outages_s: Vec<(f64, f64)>,
     /// What else goes wrong.
     pub disturbances: Disturbances,
@@ -119,17 +119,17 @@ pub struct RobotConfig {
     pub w_max_rad_per_s: f64,
     /// Largest change of speed, metres per second squared.
     pub acceleration_m_per_s2: f64,
-    /// How far it sees obstacles, metres.
+    /// Range at which it sees obstacles, metres.
     pub sensing_range_m: f64,
-    /// Share of the commanded way that is lost to slip, on average.
+    /// Mean share of the commanded distance that is lost to slip.
     pub slip_mean: f64,
     /// Standard deviation of the slip from tick to tick.
     pub slip_sigma: f64,
-    /// Standard deviation of the odometry's own error as a share of the way.
+    /// Standard deviation of the odometry's own error, as a share of the distance.
     pub odometry_sigma_ratio: f64,
-    /// Constant error of the gyro, radians per second.
+    /// Constant bias of the gyro, radians per second.
     pub gyro_bias_rad_per_s: f64,
-    /// For a robot that walks and swims: limits that take the place of those above, by the zone it is in.
+    /// For a robot that walks and swims: the limits that replace those above, depending on its zone.
     #[serde(default)]
     pub amphibious: Option<Amphibious>,
 }
@@ -143,7 +143,7 @@ pub struct Mover {
     pub track: Track,
 }
 
-/// How an obstacle moves; it does not turn, and nothing stops it but the wall.
+/// How an obstacle moves; it does not turn, and only the wall stops it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Track {
@@ -152,9 +152,9 @@ pub enum Track {
         /// Metres per second, tank frame.
         velocity_m_per_s: Vector2<f64>,
     },
-    /// From where it stands to one place after the other, and back the same way, for ever.
+    /// From its initial position to one point after the other, and back the same way, forever.
     Waypoints {
-        /// The places, metres.
+        /// The points, metres, tank frame.
         points: Vec<Point>,
         /// Metres per second.
         speed_m_per_s: f64,
@@ -175,10 +175,10 @@ pub struct SimConfig {
     /// Obstacles that move.
     #[serde(default)]
     pub movers: Vec<Mover>,
-    /// Where the tether is made fast, metres; `None` for a robot without one.
+    /// Where the tether enters the tank, metres, tank frame; `None` for a robot without one.
     #[serde(default)]
     pub tether_anchor: Option<Point>,
-    /// Cable on the reel, metres; `None` for an endless one. A robot at its end pulls in vain.
+    /// Length of the tether on the reel, metres; `None` for no limit. A robot at its end cannot move on.
     #[serde(default)]
     pub reel_length_m: Option<f64>,
 }
@@ -188,23 +188,23 @@ pub struct SimConfig {
 pub struct Truth {
     /// True pose.
     pub pose: Pose,
-    /// Distance from the hull to the nearest solid thing, metres; negative in a collision.
+    /// Distance from the hull to the nearest solid, metres; negative in a collision.
     pub clearance_m: f64,
     /// Whether the hull began to touch something in this tick.
     pub collided: bool,
-    /// How the cable lies; `None` without one.
+    /// How the tether lies; `None` without one.
     pub tether: Option<TetherTruth>,
 }
 
-/// How the cable truly lies.
+/// How the tether truly lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TetherTruth {
-    /// Cable between anchor and robot, metres.
+    /// Length between anchor and robot, metres.
     pub length_m: f64,
     /// Largest wrap on one obstacle, radians.
     pub wrap_max_rad: f64,
-    /// Sum of all wraps, radians.
+    /// Total wrap, radians.
     pub wrap_total_rad: f64,
-    /// Cable beyond the straight line from the anchor to the robot, metres.
+    /// Length beyond the straight line from the anchor to the robot, metres.
     pub detour_m: f64,
 }

@@ -1,20 +1,20 @@
-//! From the drive command to the arc that the tracks run in one tick.
+//! From the drive command to the arc that the tracks drive in one tick.
 
 use crate::config::RobotConfig;
-use geometry::{Drive, Pose, Vector, wrap_angle_rad};
+use geometry::{Drive, Pose, Vector, unit_vector, wrap_angle_rad};
 use world::Pace;
 
-/// No motion of one tick is longer than this, metres or radians; keeps absurd settings finite.
+/// Most motion of one tick, metres or radians; keeps absurd settings finite.
 const LONGEST: f64 = 1e6;
 
-/// What the tracks do in one tick, as seen from the robot: a way ahead while the heading turns evenly.
+/// What the tracks do in one tick, robot frame: drive ahead while the heading turns at a constant rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Arc {
-    /// Change of heading before setting out, radians; a point robot turns at once.
+    /// Change of heading before the start, radians; a point robot turns instantly.
     pub turn_first_rad: f64,
-    /// Way ahead, metres; negative backwards.
+    /// Distance ahead, metres; negative backwards.
     pub way_m: f64,
-    /// Change of heading on the way, radians.
+    /// Change of heading along the arc, radians.
     pub turn_rad: f64,
 }
 
@@ -25,7 +25,7 @@ pub(crate) struct Tracks {
     w_max_rad_per_s: f64,
     acceleration_m_per_s2: f64,
     tick_s: f64,
-    /// Velocity of the tracks over ground without slip, tank frame.
+    /// Velocity of the tracks without slip, tank frame.
     velocity: Vector,
 }
 
@@ -41,19 +41,19 @@ impl Tracks {
         }
     }
 
-    /// Takes other limits from now on. A robot that is faster than they allow brakes as hard as it can.
-    pub(crate) fn limit(&mut self, pace: Pace) {
+    /// Sets other limits. A robot that is faster than they allow brakes as hard as it can.
+    pub(crate) fn set_limits(&mut self, pace: Pace) {
         self.v_max_m_per_s = pace.v_max_m_per_s.max(0.0);
         self.w_max_rad_per_s = pace.w_max_rad_per_s.max(0.0);
     }
 
-    /// Obeys a drive for one tick as far as the limits allow. A drive that is no number means standing still.
+    /// Obeys a drive for one tick as far as the limits allow. A number that is not finite counts as zero.
     pub(crate) fn drive(&mut self, drive: Drive, pose: &Pose) -> Arc {
         match drive {
             Drive::Twist { v_m_per_s, w_rad_per_s } => {
                 self.twist(finite(v_m_per_s), finite(w_rad_per_s), pose)
             }
-            Drive::Velocity(velocity) => self.glide(velocity.map(finite), pose),
+            Drive::Velocity(velocity) => self.translate(velocity.map(finite), pose),
         }
     }
 
@@ -65,11 +65,11 @@ impl Tracks {
         let turn = w_rad_per_s.clamp(-self.w_max_rad_per_s, self.w_max_rad_per_s) * self.tick_s;
         let arc = Arc { turn_first_rad: 0.0, way_m: bounded(speed * self.tick_s), turn_rad: bounded(turn) };
         let heading = pose.heading_rad + arc.turn_rad;
-        self.velocity = Vector::new(heading.cos(), heading.sin()) * speed;
+        self.velocity = unit_vector(heading) * speed;
         arc
     }
 
-    fn glide(&mut self, wanted: Vector, pose: &Pose) -> Arc {
+    fn translate(&mut self, wanted: Vector, pose: &Pose) -> Arc {
         let change = (shortened(wanted, self.v_max_m_per_s) - self.velocity).map(bounded);
         self.velocity += shortened(change, self.change_m_per_s());
         let speed = self.velocity.norm();
@@ -81,7 +81,7 @@ impl Tracks {
         }
     }
 
-    /// The robot ran into something and stands.
+    /// Stops the robot, because it ran into something.
     pub(crate) fn stop(&mut self) {
         self.velocity = Vector::zeros();
     }
@@ -98,12 +98,12 @@ impl Arc {
         turned.moved(self.way_m * share, 0.0, self.turn_rad * share)
     }
 
-    /// The same motion as a single arc from the heading before it: ahead, to the left, change of heading.
+    /// The same motion as a single arc from the previous heading: metres ahead, metres to the left, change of heading.
     pub(crate) fn seen_from_start(&self) -> (f64, f64, f64) {
         if self.turn_first_rad == 0.0 {
             return (self.way_m, 0.0, self.turn_rad);
         }
-        // A chord of the way's length, half the turn away from the old heading; an arc is longer than its chord.
+        // A chord as long as the distance, at half the turn from the previous heading; an arc is longer than its chord.
         let half = self.turn_first_rad / 2.0;
         let length = self.way_m * if half.abs() < 1e-6 { 1.0 } else { half / half.sin() };
         (length * half.cos(), length * half.sin(), self.turn_first_rad)
@@ -157,7 +157,7 @@ mod tests {
                 prop_assert!(arc.way_m.abs() <= 0.05 + 1e-12);
                 prop_assert!(arc.turn_rad.abs() <= 0.1 + 1e-12);
                 prop_assert!(matches!(drive, Drive::Velocity(_)) || arc.turn_first_rad == 0.0);
-                // Tracks cannot keep a velocity across their axis: switching from gliding loses that part at once.
+                // Tracks cannot keep a velocity across their axis: switching from a velocity loses that part at once.
                 let change = tracks.velocity.norm() - speed_before;
                 prop_assert!(change <= 0.08 + 1e-9, "{change}");
                 pose = arc.pose_after(&pose, 1.0);
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_robot_looks_where_it_goes() {
+    fn a_point_robot_faces_where_it_goes() {
         let mut tracks = tracks();
         let arc = tracks.drive(Drive::Velocity(Vector::new(0.0, 0.05)), &Pose::new(0.0, 0.0, 0.0));
         let pose = arc.pose_after(&Pose::new(0.0, 0.0, 0.0), 1.0);

@@ -4,25 +4,25 @@ use crate::config::{Mover, Track};
 use nalgebra::{Isometry2, Vector2};
 use world::{Boundary, Obstacle, ObstacleId, Point, Shape};
 
-/// The movers of a tank under way.
+/// All moving obstacles of a tank.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Movers(Vec<Moving>);
 
-/// One of them.
+/// One moving obstacle.
 #[derive(Debug, Clone)]
 struct Moving {
     /// Index into the obstacles.
     index: usize,
-    going: Going,
+    course: Course,
 }
 
 #[derive(Debug, Clone)]
-enum Going {
+enum Course {
     Straight {
         velocity_m_per_s: Vector2<f64>,
     },
-    /// Places there and back again, and which one is next.
-    Round {
+    /// Along the stops in a cycle; `next` is the index of the one ahead.
+    Stops {
         stops: Vec<Point>,
         next: usize,
         speed_m_per_s: f64,
@@ -30,13 +30,13 @@ enum Going {
 }
 
 impl Movers {
-    /// Those among these obstacles; movers without an obstacle, or without a finite speed, stand still.
+    /// The movers among these obstacles; those without an obstacle or a finite speed are ignored.
     pub(crate) fn new(movers: &[Mover], obstacles: &[Obstacle]) -> Self {
         let index_of = |id: ObstacleId| obstacles.iter().position(|obstacle| obstacle.id == id);
         let moving = |mover: &Mover| {
             let index = index_of(mover.id)?;
-            let going = Going::new(&mover.track, obstacles[index].shape.center())?;
-            Some(Moving { index, going })
+            let course = Course::new(&mover.track, obstacles[index].shape.center())?;
+            Some(Moving { index, course })
         };
         Self(movers.iter().filter_map(moving).collect())
     }
@@ -46,17 +46,17 @@ impl Movers {
         self.0.is_empty()
     }
 
-    /// Moves them all by some time.
+    /// Moves them all for `dt_s` seconds.
     pub(crate) fn advance(&mut self, obstacles: &mut [Obstacle], boundary: &Boundary, dt_s: f64) {
         for moving in &mut self.0 {
             let shape = &mut obstacles[moving.index].shape;
-            let by = moving.going.advance(shape, boundary, dt_s);
+            let by = moving.course.advance(shape, boundary, dt_s);
             *shape = shape.transformed(&Isometry2::new(by, 0.0));
         }
     }
 }
 
-impl Going {
+impl Course {
     fn new(track: &Track, from: Point) -> Option<Self> {
         match track {
             Track::Straight { velocity_m_per_s } => {
@@ -68,12 +68,12 @@ impl Going {
                 let back = points.iter().rev().skip(1).copied();
                 let stops: Vec<Point> = there.chain(back).collect();
                 let is_fine = speed_m_per_s.is_finite() && stops.iter().all(|p| p.coords.norm().is_finite());
-                is_fine.then_some(Self::Round { stops, next: 1, speed_m_per_s: *speed_m_per_s })
+                is_fine.then_some(Self::Stops { stops, next: 1, speed_m_per_s: *speed_m_per_s })
             }
         }
     }
 
-    /// The displacement in some time.
+    /// The displacement in `dt_s` seconds, metres.
     fn advance(&mut self, shape: &Shape, boundary: &Boundary, dt_s: f64) -> Vector2<f64> {
         let at = shape.center();
         match self {
@@ -87,9 +87,9 @@ impl Going {
                 }
                 *velocity_m_per_s * dt_s
             }
-            Self::Round { stops, next, speed_m_per_s } => {
+            Self::Stops { stops, next, speed_m_per_s } => {
                 let (mut here, mut left_m) = (at, *speed_m_per_s * dt_s);
-                // Each stop at most once in a tick, or stops on one spot would be visited for ever.
+                // Each stop at most once in a tick, or coincident stops would be visited forever.
                 for _ in 0..stops.len() {
                     let way = stops[*next % stops.len()] - here;
                     if way.norm() > left_m {

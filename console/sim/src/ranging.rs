@@ -1,49 +1,49 @@
-//! Acoustic-emission ranging: when a cycle ends and what it brings.
+//! Acoustic-emission ranging: when a cycle ends, and its ranges.
 
 mod path;
 
 use crate::{
-    chance::{Chance, normal, reported_m},
     config::{AeConfig, StationFault},
+    random::{RandomStreams, normal, reported_m},
 };
-use path::Surroundings;
+use path::Propagation;
 use rand::RngExt;
 use rand_distr::{Distribution, Exp1};
 use world::{Point, RangeSet, Station, Vector, World};
 
-/// Slack when time is compared with a multiple of the period, as a share of the period.
+/// Tolerance when time is compared with a multiple of the period, as a share of the period.
 const SLACK: f64 = 1e-6;
 
-/// The stations of a tank as they really are, and the chance that their ranges are subject to.
+/// The stations of a tank as they really are, and the random errors of their ranges.
 ///
-/// The same configuration, tank, seed and places give the same ranges on every machine.
+/// The same configuration, tank, seed and positions give the same ranges on every machine.
 #[derive(Clone)]
 pub struct Sounder {
     config: AeConfig,
-    /// At their true places.
+    /// At their true positions.
     stations: Vec<Station>,
-    around: Surroundings,
-    chance: Chance,
+    propagation: Propagation,
+    streams: RandomStreams,
     ended: f64,
 }
 
 impl Sounder {
-    /// The stations of `world`, put where they really are by the survey error of `config`.
+    /// The stations of `world`, moved to their true positions by the survey error of `config`.
     pub fn new(config: AeConfig, world: &World, seed: u64) -> Self {
-        let mut chance = Chance::new(seed);
+        let mut streams = RandomStreams::new(seed);
         let mut stations = world.stations.clone();
         for station in &mut stations {
-            let error = Vector::new(normal(&mut chance.survey), normal(&mut chance.survey));
+            let error = Vector::new(normal(&mut streams.survey), normal(&mut streams.survey));
             station.position += error * config.disturbances.survey_sigma_m;
         }
-        let around = Surroundings::new(world);
-        Self { config, stations, around, chance, ended: 0.0 }
+        let propagation = Propagation::new(world);
+        Self { config, stations, propagation, streams, ended: 0.0 }
     }
 
     /// The ranges of a cycle, if one ends at time `t_s`; empty if no station was heard.
     ///
     /// The first cycle ends after one period. A period shorter than a tick means one cycle in every tick.
-    pub fn due_cycle(&mut self, t_s: f64, truth: Point) -> Option<Vec<RangeSet>> {
+    pub(crate) fn due_cycle(&mut self, t_s: f64, truth: Point) -> Option<Vec<RangeSet>> {
         let period_s = self.config.period_s.max(1e-9);
         let cycles = (t_s / period_s + SLACK).floor();
         if cycles <= self.ended {
@@ -55,13 +55,15 @@ impl Sounder {
 
     /// The ranges of one cycle that ends at time `t_s`.
     pub fn cycle(&mut self, t_s: f64, truth: Point) -> Vec<RangeSet> {
-        let Self { config, stations, around, chance, .. } = self;
-        // Chance is drawn for every station, heard or not, so that a loss leaves all later ranges as they were.
+        let Self { config, stations, propagation, streams, .. } = self;
+        // Numbers are drawn for every station, heard or not, so that a loss leaves all later ranges as they were.
         let mut sets: Vec<RangeSet> =
-            stations.iter().map(|station| measure(config, around, station, truth, chance)).collect();
-        sets.retain(|_| chance.dropout.random::<f64>() >= config.dropout_probability);
+            stations.iter().map(|station| measure(config, propagation, station, truth, streams)).collect();
+        sets.retain(|_| streams.dropout.random::<f64>() >= config.dropout_probability);
         for fault in config.disturbances.faults.iter().filter(|f| (f.from_s..f.to_s).contains(&t_s)) {
-            sets.iter_mut().filter(|set| set.station == fault.station).for_each(|set| spoil(set, fault));
+            sets.iter_mut()
+                .filter(|set| set.station == fault.station)
+                .for_each(|set| apply_fault(set, fault));
         }
         sets.retain(|set| !set.ranges_m.is_empty());
         if config.outages_s.iter().any(|(from, to)| (*from..*to).contains(&t_s)) {
@@ -71,7 +73,7 @@ impl Sounder {
     }
 }
 
-fn spoil(set: &mut RangeSet, fault: &StationFault) {
+fn apply_fault(set: &mut RangeSet, fault: &StationFault) {
     match fault.excess_range_m {
         Some(excess_range_m) => {
             set.ranges_m.iter_mut().for_each(|range_m| *range_m = reported_m(*range_m + excess_range_m))
@@ -82,35 +84,36 @@ fn spoil(set: &mut RangeSet, fault: &StationFault) {
 
 fn measure(
     config: &AeConfig,
-    around: &Surroundings,
+    propagation: &Propagation,
     station: &Station,
     truth: Point,
-    chance: &mut Chance,
+    streams: &mut RandomStreams,
 ) -> RangeSet {
     let what = &config.disturbances;
-    let way = around.way(truth, station.position, what.behind_columns);
-    let is_late = chance.detour.random::<f64>() < what.nlos_probability || way.is_some_and(|way| way.is_late);
-    let excess_range_m = if is_late { what.excess_range_mean_m * exponential(chance) } else { 0.0 };
+    let path = propagation.path(truth, station.position, what.behind_columns);
+    let is_late =
+        streams.disturbance.random::<f64>() < what.nlos_probability || path.is_some_and(|path| path.is_late);
+    let excess_range_m = if is_late { what.excess_range_mean_m * exponential(streams) } else { 0.0 };
     let mut ranges_m = Vec::with_capacity(config.repetitions as usize);
     for _ in 0..config.repetitions {
-        let mut error = config.noise.error_ratio(&mut chance.ranging);
-        if chance.detour.random::<f64>() < what.outlier_probability {
+        let mut error = config.noise.error_ratio(&mut streams.ranging);
+        if streams.disturbance.random::<f64>() < what.outlier_probability {
             error *= what.outlier_factor;
         }
-        let is_ping_late = chance.detour.random::<f64>() < what.late_ping_probability;
-        let ping_late_m = if is_ping_late { what.excess_range_mean_m * exponential(chance) } else { 0.0 };
-        let is_heard = chance.detour.random::<f64>() >= what.ping_dropout_probability;
-        if let Some(way) = way.filter(|_| is_heard) {
+        let is_ping_late = streams.disturbance.random::<f64>() < what.late_ping_probability;
+        let ping_late_m = if is_ping_late { what.excess_range_mean_m * exponential(streams) } else { 0.0 };
+        let is_heard = streams.disturbance.random::<f64>() >= what.ping_dropout_probability;
+        if let Some(path) = path.filter(|_| is_heard) {
             let scale = 1.0 + what.sound_speed_error_ratio;
-            ranges_m.push(reported_m(way.length_m * (1.0 + error) * scale + excess_range_m + ping_late_m));
+            ranges_m.push(reported_m(path.length_m * (1.0 + error) * scale + excess_range_m + ping_late_m));
         }
     }
     RangeSet { station: station.id, ranges_m }
 }
 
 /// An exponential number with mean 1.
-fn exponential(chance: &mut Chance) -> f64 {
-    Exp1.sample(&mut chance.detour)
+fn exponential(streams: &mut RandomStreams) -> f64 {
+    Exp1.sample(&mut streams.disturbance)
 }
 
 #[cfg(test)]

@@ -1,13 +1,17 @@
 //! Which obstacles the robot sees.
 
+use geometry::{
+    polyline::{edges, segments_cross},
+    unit_vector,
+};
 use world::{Boundary, Obstacle, ObstacleMap, Point, Pose, Shape, Sighting};
 
-/// A ray that ends this near to an outline has hit it, metres.
+/// Distance from an outline within which a ray has hit it, metres.
 const TOUCH_M: f64 = 1e-6;
-/// Points of a round outline that are looked at.
+/// Points of a round outline that are tested.
 const ROUND_POINTS: u32 = 24;
 
-/// The obstacles of which some part is within `range_m` of the hull and in line of sight of the robot's centre.
+/// The obstacles of which some part is within `reach_m` of the robot's centre and in its line of sight.
 pub(crate) fn sightings(
     map: &ObstacleMap,
     boundary: &Boundary,
@@ -35,7 +39,7 @@ pub(crate) fn sightings(
         .collect()
 }
 
-/// Whether a ray towards a point of an obstacle's outline meets that obstacle before any other.
+/// Whether a ray toward a point of an obstacle's outline hits that obstacle before any other.
 fn is_first_hit(map: &ObstacleMap, shape: &Shape, eye: Point, point: Point) -> bool {
     let way = point - eye;
     let distance = way.norm();
@@ -49,12 +53,12 @@ fn is_first_hit(map: &ObstacleMap, shape: &Shape, eye: Point, point: Point) -> b
     }
 }
 
-/// Some points of an outline: enough to see an obstacle whose nearest point is hidden.
+/// Points of an outline, enough to see an obstacle whose nearest point is hidden.
 pub(crate) fn outline_points(shape: &Shape) -> Vec<Point> {
     match shape {
         Shape::Disc { center, radius_m } => (0..ROUND_POINTS)
             .map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(ROUND_POINTS))
-            .map(|angle| center + world::Vector::new(angle.cos(), angle.sin()) * *radius_m)
+            .map(|angle| center + unit_vector(angle) * *radius_m)
             .collect(),
         Shape::Polygon { vertices } => with_midpoints(vertices, vertices.first()),
         Shape::Polyline { points, .. } => with_midpoints(points, None),
@@ -70,10 +74,7 @@ fn with_midpoints(points: &[Point], closing: Option<&Point>) -> Vec<Point> {
 /// Whether a straight wall stands between two points; a round wall never does.
 fn is_behind_wall(boundary: &Boundary, a: Point, b: Point) -> bool {
     let Boundary::Polygon { vertices } = boundary else { return false };
-    let side = |from: Point, to: Point, point: Point| (to - from).perp(&(point - from));
-    let ends = vertices.iter().zip(vertices.iter().cycle().skip(1));
-    ends.into_iter()
-        .any(|(c, d)| side(a, b, *c) * side(a, b, *d) < 0.0 && side(*c, *d, a) * side(*c, *d, b) < 0.0)
+    edges(vertices).any(|(c, d)| segments_cross(a, b, c, d))
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! The simulator: sense and act.
 
 use crate::{
-    chance::{Chance, normal},
     config::{SimConfig, TetherTruth, Truth},
     motion::{Arc, Tracks, bounded},
     movers::Movers,
+    random::{RandomStreams, normal},
     ranging::Sounder,
     sight::sightings,
     sweep::sweep,
@@ -17,13 +17,13 @@ const CONTACT_GAP_M: f64 = 1e-3;
 
 /// One robot in one tank; time is the number of ticks.
 ///
-/// Every tick: [`Simulator::sense`] once, then [`Simulator::act`] once.
+/// In every tick call [`Simulator::sense`] once, then [`Simulator::act`] once.
 #[derive(Clone)]
 pub struct Simulator {
     config: SimConfig,
     map: ObstacleMap,
     movers: Movers,
-    chance: Chance,
+    streams: RandomStreams,
     tracks: Tracks,
     sounder: Option<Sounder>,
     mode: Mode,
@@ -36,18 +36,18 @@ pub struct Simulator {
 }
 
 impl Simulator {
-    /// A robot at rest at its start; `seed` is the start of all chance.
+    /// A robot at rest at its start; `seed` determines all randomness.
     pub fn new(config: SimConfig, seed: u64) -> Self {
         let map = ObstacleMap::new(&config.world.boundary, &config.world.obstacles);
         let mut simulator = Self {
             map,
             movers: Movers::new(&config.movers, &config.world.obstacles),
-            chance: Chance::new(seed),
+            streams: RandomStreams::new(seed),
             tracks: Tracks::new(&config.robot, config.tick_s),
             sounder: config.ae.clone().map(|ae| Sounder::new(ae, &config.world, seed)),
             mode: Mode::of(Medium::at(&config.world.zones, config.robot.start.position)),
             pose: config.robot.start,
-            cable: cable(&config),
+            cable: initial_cable(&config),
             odometry: Odometry::default(),
             in_contact: false,
             collided: false,
@@ -59,7 +59,7 @@ impl Simulator {
         simulator
     }
 
-    /// What the robot senses at the top of this tick; to be called once per tick, because it draws chance.
+    /// What the robot senses at the start of this tick; to be called once per tick, because it draws random numbers.
     pub fn sense(&mut self) -> Readings {
         let world = &self.config.world;
         let t_s = self.tick as f64 * self.config.tick_s.max(0.0);
@@ -79,31 +79,31 @@ impl Simulator {
 
     /// Moves the truth by one tick.
     pub fn act(&mut self, drive: Drive) {
-        self.adapt();
+        self.update_mode();
         let by_tracks = self.tracks.drive(drive, &self.pose);
         let driven = Arc { way_m: by_tracks.way_m * (1.0 - self.draw_slip()), ..by_tracks };
         let reached = sweep(&self.map, self.radius_m(), &self.pose, &driven);
         let cable = self.cable.as_ref().map(|cable| dragged(cable, reached.pose.position));
-        let is_at_its_end = self.is_at_its_end(cable.as_ref());
-        self.pose = if is_at_its_end {
+        let is_reel_empty = self.is_reel_empty(cable.as_ref());
+        self.pose = if is_reel_empty {
             Pose { heading_rad: reached.pose.heading_rad, ..self.pose }
         } else {
             self.cable = cable;
             reached.pose
         };
-        self.odometry = self.measured(&by_tracks);
+        self.odometry = self.measure_odometry(&by_tracks);
         let touched_before = self.in_contact;
-        let is_run_into = self.move_obstacles();
+        let is_hit = self.move_obstacles();
         self.in_contact =
-            reached.is_blocked || is_run_into || (touched_before && self.clearance_m() < CONTACT_GAP_M);
+            reached.is_blocked || is_hit || (touched_before && self.clearance_m() < CONTACT_GAP_M);
         self.collided = self.in_contact && !touched_before;
-        if reached.is_blocked || is_at_its_end {
+        if reached.is_blocked || is_reel_empty {
             self.tracks.stop();
         }
         self.tick += 1;
     }
 
-    /// The truth at the top of this tick.
+    /// The truth at the start of this tick.
     pub fn truth(&self) -> Truth {
         Truth {
             pose: self.pose,
@@ -123,15 +123,15 @@ impl Simulator {
         self.tick
     }
 
-    /// Changes a little from walking to swimming or back, as the floor under the robot asks for.
-    fn adapt(&mut self) {
+    /// Takes one step of a transition between walking and swimming, if the floor under the robot calls for it.
+    fn update_mode(&mut self) {
         let Some(amphibious) = self.config.robot.amphibious else { return };
         let medium = Medium::at(&self.config.world.zones, self.pose.position);
         self.mode = self.mode.toward(medium, amphibious.transition_steps);
-        self.tracks.limit(amphibious.pace(self.mode));
+        self.tracks.set_limits(amphibious.pace(self.mode));
     }
 
-    /// Moves what moves; whether something runs into the hull.
+    /// Moves the moving obstacles; returns whether one runs into the hull.
     fn move_obstacles(&mut self) -> bool {
         if self.movers.is_empty() {
             return false;
@@ -142,8 +142,8 @@ impl Simulator {
         self.clearance_m() < 0.0
     }
 
-    /// Whether the reel does not hold the cable that a move asks for. The robot can always come back.
-    fn is_at_its_end(&self, moved: Option<&Cable>) -> bool {
+    /// Whether a move needs more tether than the reel holds. A move that needs less than before is always possible.
+    fn is_reel_empty(&self, moved: Option<&Cable>) -> bool {
         let (Some(reel_length_m), Some(before), Some(after)) =
             (self.config.reel_length_m, &self.cable, moved)
         else {
@@ -160,17 +160,17 @@ impl Simulator {
         self.map.clearance_m(self.pose.position) - self.radius_m()
     }
 
-    /// Share of the way that is lost in this tick; never less than nothing, never more than all.
+    /// Share of the commanded distance that is lost in this tick, 0 to 1.
     fn draw_slip(&mut self) -> f64 {
         let robot = &self.config.robot;
-        (robot.slip_mean + robot.slip_sigma * normal(&mut self.chance.slip)).clamp(0.0, 1.0)
+        (robot.slip_mean + robot.slip_sigma * normal(&mut self.streams.slip)).clamp(0.0, 1.0)
     }
 
     /// The odometry of a motion: tracks sense neither slip nor that the robot was stopped; the gyro measures the turn
     /// but drifts.
-    fn measured(&mut self, by_tracks: &Arc) -> Odometry {
+    fn measure_odometry(&mut self, by_tracks: &Arc) -> Odometry {
         let robot = &self.config.robot;
-        let mut erring = || bounded(1.0 + robot.odometry_sigma_ratio * normal(&mut self.chance.odometry));
+        let mut erring = || bounded(1.0 + robot.odometry_sigma_ratio * normal(&mut self.streams.odometry));
         let (of_way, of_turn) = (erring(), erring());
         let (forward_m, sideways_m, turn_rad) = by_tracks.seen_from_start();
         Odometry {
@@ -187,8 +187,8 @@ fn dragged(cable: &Cable, to: Point) -> Cable {
     cable
 }
 
-/// The cable from its anchor straight to the robot; none if the anchor cannot be.
-fn cable(config: &SimConfig) -> Option<Cable> {
+/// The cable from its anchor straight to the robot; none if the anchor is invalid.
+fn initial_cable(config: &SimConfig) -> Option<Cable> {
     let shapes: Vec<_> = config.world.obstacles.iter().map(|o| o.shape.clone()).collect();
     let mut cable = Cable::new(config.tether_anchor?, &config.world.boundary, &shapes).ok()?;
     cable.drag_to(config.robot.start.position);

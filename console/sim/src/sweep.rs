@@ -1,11 +1,11 @@
-//! How far a robot gets along an arc before its hull touches something.
+//! How far a robot moves along an arc before its hull touches something.
 
 use crate::motion::Arc;
 use world::{ObstacleMap, Pose};
 
-/// Shortest step along an arc, metres; at a contact the gap that is left is smaller.
+/// Shortest step along an arc, metres; the gap that remains at a contact is smaller.
 const STEP_M: f64 = 1e-4;
-/// Steps along one arc; more are only needed by motions that no robot makes.
+/// Most steps along one arc; only motions that no robot makes would need more.
 const MAX_STEPS: usize = 20_000;
 
 /// Where an arc ended.
@@ -15,11 +15,11 @@ pub(crate) struct Reached {
     pub is_blocked: bool,
 }
 
-/// Runs along an arc until the end or the first contact.
+/// Moves along an arc to its end or to the first contact.
 ///
-/// Every step is as long as the gap to the nearest solid thing, so nothing however thin is passed. The heading turns
-/// to the end even when the way is blocked: a round hull turns on the spot. A hull that already overlaps something can
-/// move wherever the overlap does not grow.
+/// Every step is as long as the gap to the nearest solid, so nothing is passed, however thin. The heading turns to the end
+/// even when the robot is blocked: a round hull turns on the spot. A hull that already overlaps something can move wherever
+/// the overlap does not grow.
 pub(crate) fn sweep(map: &ObstacleMap, radius_m: f64, start: &Pose, arc: &Arc) -> Reached {
     let length_m = arc.way_m.abs();
     let gap_m = |share: f64| map.clearance_m(arc.pose_after(start, share).position) - radius_m;
@@ -30,7 +30,7 @@ pub(crate) fn sweep(map: &ObstacleMap, radius_m: f64, start: &Pose, arc: &Arc) -
         }
         let next = (share + gap.max(STEP_M) / length_m).min(1.0);
         let next_gap = gap_m(next);
-        // Also true for what is no number.
+        // False also for a gap that is not a number.
         let is_free = next_gap >= gap.min(0.0);
         if !is_free {
             break;

@@ -1,14 +1,15 @@
-//! Which of the floor has been scanned, in square cells.
+//! Which part of the floor has been scanned, in square cells.
 
 mod floor;
-mod making;
+mod floor_maker;
 mod percents;
 pub mod regions;
 mod shell;
 mod tool;
 
+pub(crate) use floor::neighbours;
 pub use floor::{Cell, CellRun, Floor, KindRun};
-pub use making::FloorMaker;
+pub use floor_maker::FloorMaker;
 pub use percents::percents;
 pub use shell::{ShellFigures, ShellZone};
 pub use tool::Tool;
@@ -16,7 +17,7 @@ pub use tool::Tool;
 use geometry::{Point, Pose};
 use serde::{Deserialize, Serialize};
 
-/// How many cells of each kind there are and how many of them have been scanned.
+/// Number of cells of each kind, and how many of them have been scanned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Counts {
     /// Cells of floor.
@@ -29,7 +30,17 @@ pub struct Counts {
     pub covered_reachable: usize,
 }
 
-/// A floor with the scanned cells marked.
+/// A floor with its scanned cells marked.
+///
+/// ```
+/// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+/// # let boundary = Boundary::Circle { radius_m: 5.0 };
+/// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+/// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+/// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+/// grid.mark(Tool::Bar { swath_m: 0.6 }, Pose::new(0.0, 0.0, 0.0), Pose::new(2.0, 0.0, 0.0));
+/// assert!((grid.counts().covered as f64 * grid.floor().cell_m2() - 1.2).abs() < 0.1);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CoverageGrid {
     floor: Floor,
@@ -39,6 +50,15 @@ pub struct CoverageGrid {
 
 impl CoverageGrid {
     /// A floor of which nothing has been scanned.
+    ///
+    /// ```
+    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// assert_eq!(grid.counts().covered, 0);
+    /// ```
     pub fn new(floor: Floor) -> Self {
         let covered = vec![false; floor.len()];
         let mut grid = Self { floor, covered, counts: Counts::default() };
@@ -57,18 +77,49 @@ impl CoverageGrid {
         }
     }
 
-    /// Makes some cells another kind of floor; what has been scanned stays scanned.
+    /// Changes the kind of some cells; scanned cells stay scanned.
+    ///
+    /// ```
+    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// let before = grid.counts().reachable;
+    /// grid.change(&[world::KindRun(world::Cell::Outside, 5050, 4)]);
+    /// assert_eq!(grid.counts().reachable, before - 4);
+    /// ```
     pub fn change(&mut self, changes: &[KindRun]) {
         self.floor.change(changes);
         self.count();
     }
 
-    /// The floor beneath.
+    /// The floor itself.
+    ///
+    /// ```
+    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// assert_eq!(grid.floor().width, 100);
+    /// ```
     pub fn floor(&self) -> &Floor {
         &self.floor
     }
 
-    /// Marks what a disc of some diameter scans on its way from `a` to `b`; returns the floor cells that are new.
+    /// Marks what a disc with a diameter of `swath_m` scans from `a` to `b`; returns the cells of floor that are new.
+    ///
+    /// ```
+    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// let (a, b) = (Point::new(-2.0, 0.0), Point::new(2.0, 0.0));
+    /// assert!(!grid.mark_swath(a, b, 0.6).is_empty());
+    /// assert!(grid.mark_swath(a, b, 0.6).is_empty());
+    /// ```
     pub fn mark_swath(&mut self, a: Point, b: Point, swath_m: f64) -> Vec<CellRun> {
         let at = |position| Pose { position, heading_rad: 0.0 };
         let runs = self.not_covered_under(Tool::Disc { swath_m }, at(a), at(b));
@@ -76,19 +127,50 @@ impl CoverageGrid {
         runs
     }
 
-    /// Marks what a tool scans on its way from `a` to `b`.
+    /// Marks what a tool scans between two poses that are close together.
+    ///
+    /// ```
+    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// grid.mark(Tool::Bar { swath_m: 0.6 }, Pose::new(0.0, 0.0, 0.0), Pose::new(2.0, 0.0, 0.0));
+    /// assert!(grid.is_covered(grid.floor().cell_at(Point::new(1.0, 0.2)).unwrap()));
+    /// ```
     pub fn mark(&mut self, tool: Tool, a: Pose, b: Pose) {
         let runs = self.not_covered_under(tool, a, b);
         self.apply(&runs);
     }
 
-    /// The floor cells that a tool would scan on its way from `a` to `b` and that have not been scanned.
+    /// The cells of floor that a tool would scan between two poses and that have not been scanned.
+    ///
+    /// ```
+    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// let (a, b) = (Pose::new(0.0, 0.0, 0.0), Pose::new(2.0, 0.0, 0.0));
+    /// let new = grid.not_covered_under(Tool::Bar { swath_m: 0.6 }, a, b);
+    /// assert_eq!(new.len(), 6, "one run in each row");
+    /// ```
     pub fn not_covered_under(&self, tool: Tool, a: Pose, b: Pose) -> Vec<CellRun> {
         let is_new = |index: &usize| !self.covered[*index] && self.floor.is_floor(*index);
         runs_of(self.floor.cells_under(tool, a, b).into_iter().filter(is_new))
     }
 
     /// Marks cells as scanned; cells beyond the grid are ignored.
+    ///
+    /// ```
+    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// grid.apply(&[world::CellRun(5050, 4)]);
+    /// assert_eq!(grid.counts().covered_reachable, 4);
+    /// ```
     pub fn apply(&mut self, runs: &[CellRun]) {
         for CellRun(first, count) in runs {
             let end = (*first as usize + *count as usize).min(self.floor.len());
@@ -101,28 +183,79 @@ impl CoverageGrid {
         }
     }
 
-    /// Marks everything that has been scanned on another grid with the same cells.
+    /// Marks everything that has been scanned on an aligned grid.
+    ///
+    /// ```
+    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// let mut other = grid.clone();
+    /// other.apply(&[world::CellRun(5050, 4)]);
+    /// grid.join(&other);
+    /// assert_eq!(grid.counts().covered, 4);
+    /// ```
     pub fn join(&mut self, other: &Self) {
         let covered = other.covered.iter().enumerate().filter(|(_, covered)| **covered);
         self.apply(&runs_of(covered.map(|(index, _)| index)));
     }
 
     /// Whether a cell has been scanned.
+    ///
+    /// ```
+    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// grid.apply(&[world::CellRun(5050, 4)]);
+    /// assert!(grid.is_covered(5053) && !grid.is_covered(5054));
+    /// ```
     pub fn is_covered(&self, index: usize) -> bool {
         self.covered[index]
     }
 
-    /// How many cells of each kind.
+    /// Number of cells of each kind.
+    ///
+    /// ```
+    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// assert!(grid.counts().reachable < grid.counts().floor);
+    /// ```
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
     /// Scanned share of the floor that the tool can reach, 0 to 1.
+    ///
+    /// ```
+    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// grid.apply(&[world::CellRun(0, 10_000)]);
+    /// assert_eq!(grid.fraction_reachable(), 1.0);
+    /// ```
     pub fn fraction_reachable(&self) -> f64 {
         share(self.counts.covered_reachable, self.counts.reachable)
     }
 
     /// Scanned share of the whole floor, 0 to 1.
+    ///
+    /// ```
+    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// grid.mark(Tool::Bar { swath_m: 0.6 }, Pose::new(0.0, 0.0, 0.0), Pose::new(2.0, 0.0, 0.0));
+    /// assert!((grid.fraction_whole() - 1.2 / 78.54).abs() < 0.002);
+    /// ```
     pub fn fraction_whole(&self) -> f64 {
         share(self.counts.covered, self.counts.floor)
     }
@@ -132,7 +265,12 @@ fn share(part: usize, whole: usize) -> f64 {
     if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
 }
 
-/// Cells in order of their index as runs.
+/// Cells in ascending order of their index, as runs.
+///
+/// ```
+/// use world::{CellRun, coverage::runs_of};
+/// assert_eq!(runs_of([3, 4, 5, 9]), [CellRun(3, 3), CellRun(9, 1)]);
+/// ```
 pub fn runs_of(sorted: impl IntoIterator<Item = usize>) -> Vec<CellRun> {
     let mut runs: Vec<CellRun> = Vec::new();
     for index in sorted {

@@ -1,5 +1,5 @@
-//! The tank floor and everything on it: boundary, obstacles, stations, zones, what a robot senses there, the
-//! coverage grid and the preset spiral.
+//! The tank floor and everything on it: boundary, obstacles, stations, zones, what a robot senses there, the coverage
+//! grid, shortest paths, the tether and the preset spiral.
 //!
 //! Frame: the tank frame, origin at the tank's centre, x east, y north, metres; angles in radians, counter-clockwise.
 //! Cost: distance queries go through a bounding volume hierarchy and grow with the logarithm of the obstacle count.
@@ -13,11 +13,12 @@ pub mod shortest;
 pub mod spiral;
 pub mod tank;
 pub mod tether;
+mod total;
 
 pub use coverage::{
     Cell, CellRun, Counts, CoverageGrid, Floor, FloorMaker, KindRun, ShellFigures, ShellZone, Tool,
 };
-/// The ground floor, so that whoever knows the tank need not name two crates.
+/// Points, poses and shapes, so that a crate that uses the tank need not name two crates.
 pub use geometry::{self, Boundary, Point, Pose, Shape, Vector, polyline, shape};
 pub use medium::{Amphibious, Medium, Mode, Pace};
 pub use obstacles::{Near, ObstacleMap};

@@ -1,12 +1,10 @@
 //! Dry and flooded floor, and a robot that moves differently in each.
 
-use crate::{
-    geometry::Point,
-    tank::{Zone, ZoneKind},
-};
+use crate::tank::{Zone, ZoneKind};
+use geometry::Point;
 use serde::{Deserialize, Serialize};
 
-/// What the floor is covered with.
+/// What covers the floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Medium {
@@ -25,25 +23,33 @@ pub struct Pace {
     pub w_max_rad_per_s: f64,
 }
 
-/// The two ways an amphibious robot moves.
+/// The limits of an amphibious robot in both of its modes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Amphibious {
     /// On dry floor.
     pub land: Pace,
     /// Under water.
     pub underwater: Pace,
-    /// Steps in which one becomes the other; 0 is at once.
+    /// Ticks for a complete change of mode; 0 for an instant one.
     pub transition_steps: u32,
 }
 
-/// How far a robot has changed from walking (0) to swimming (1).
+/// The mode of an amphibious robot, from walking (weight 0) to swimming (weight 1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mode {
     weight: f64,
 }
 
 impl Medium {
-    /// The medium at a place; the last zone of either kind counts, and dry floor where there is none.
+    /// The medium at a point, tank frame: that of the last zone of either kind around it; dry floor without one.
+    ///
+    /// ```
+    /// use world::{Medium, Point, Shape, Zone, ZoneKind};
+    /// let shape = Shape::Disc { center: Point::origin(), radius_m: 3.0 };
+    /// let sump = [Zone { name: "sump".into(), kind: ZoneKind::Underwater, shape }];
+    /// assert_eq!(Medium::at(&sump, Point::new(1.0, 0.0)), Medium::Underwater);
+    /// assert_eq!(Medium::at(&sump, Point::new(4.0, 0.0)), Medium::Land);
+    /// ```
     pub fn at(zones: &[Zone], place: Point) -> Self {
         let here = zones.iter().rev().filter(|zone| zone.kind != ZoneKind::NoGo);
         let kind = here.filter(|zone| zone.shape.distance_m(place) <= 0.0).map(|zone| zone.kind).next();
@@ -52,14 +58,20 @@ impl Medium {
 }
 
 impl Amphibious {
-    /// The limits of Yang et al. 2021, Table 1, and their 20 steps of transition.
+    /// The limits of Yang et al. 2021, Table 1, with their transition of 20 steps.
     pub const YANG_2021: Self = Self {
         land: Pace { v_max_m_per_s: 0.13, w_max_rad_per_s: 0.12 },
         underwater: Pace { v_max_m_per_s: 0.23, w_max_rad_per_s: 0.31 },
         transition_steps: 20,
     };
 
-    /// What the robot may do in a mode: between both paces, in proportion.
+    /// The limits in a mode, interpolated linearly between both.
+    ///
+    /// ```
+    /// use world::{Amphibious, Medium, Mode};
+    /// let robot = Amphibious::YANG_2021;
+    /// assert_eq!(robot.pace(Mode::of(Medium::Underwater)).v_max_m_per_s, 0.23);
+    /// ```
     pub fn pace(&self, mode: Mode) -> Pace {
         let between = |land: f64, underwater: f64| land + (underwater - land) * mode.weight;
         Pace {
@@ -68,7 +80,13 @@ impl Amphibious {
         }
     }
 
-    /// The faster of both paces.
+    /// The larger limits of both modes.
+    ///
+    /// ```
+    /// use world::Amphibious;
+    /// let robot = Amphibious::YANG_2021;
+    /// assert_eq!(robot.fastest().w_max_rad_per_s, 0.31);
+    /// ```
     pub fn fastest(&self) -> Pace {
         Pace {
             v_max_m_per_s: self.land.v_max_m_per_s.max(self.underwater.v_max_m_per_s),
@@ -78,12 +96,23 @@ impl Amphibious {
 }
 
 impl Mode {
-    /// All of one.
+    /// The mode that a medium calls for.
+    ///
+    /// ```
+    /// use world::{Amphibious, Medium, Mode};
+    /// assert_eq!(Amphibious::YANG_2021.pace(Mode::of(Medium::Land)).v_max_m_per_s, 0.13);
+    /// ```
     pub fn of(medium: Medium) -> Self {
         Self { weight: if medium == Medium::Underwater { 1.0 } else { 0.0 } }
     }
 
-    /// One step toward what a medium asks for.
+    /// The mode one tick later: one step of the transition toward the mode that a medium calls for.
+    ///
+    /// ```
+    /// use world::{Amphibious, Medium, Mode};
+    /// let mode = Mode::of(Medium::Land).toward(Medium::Underwater, 20);
+    /// assert!((Amphibious::YANG_2021.pace(mode).v_max_m_per_s - 0.135).abs() < 1e-12);
+    /// ```
     #[must_use]
     pub fn toward(self, medium: Medium, transition_steps: u32) -> Self {
         let wanted = Self::of(medium);
@@ -95,6 +124,11 @@ impl Mode {
     }
 
     /// Share of swimming, 0 to 1.
+    ///
+    /// ```
+    /// use world::{Medium, Mode};
+    /// assert_eq!(Mode::of(Medium::Underwater).weight(), 1.0);
+    /// ```
     pub fn weight(self) -> f64 {
         self.weight
     }
@@ -103,7 +137,7 @@ impl Mode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::shape::Shape;
+    use geometry::Shape;
 
     fn zone(kind: ZoneKind, radius_m: f64) -> Zone {
         Zone { name: String::new(), kind, shape: Shape::Disc { center: Point::origin(), radius_m } }
@@ -127,7 +161,7 @@ mod tests {
         for _ in 0..10 {
             mode = mode.toward(Medium::Land, robot.transition_steps);
         }
-        assert!(mode.weight().abs() < 1e-12);
+        assert!(mode.weight.abs() < 1e-12);
         assert_eq!(mode.toward(Medium::Underwater, 0), Mode::of(Medium::Underwater));
     }
 }

@@ -1,19 +1,17 @@
 //! Distances, rays and neighbours among many obstacles.
 //!
-//! parry2d does the geometry (and speaks glam); this module is the one border where nalgebra's points become glam's.
-//! Cost: every query descends a bounding volume hierarchy, so it grows with the logarithm of the obstacle count
-//! plus the number of obstacles actually near.
+//! parry2d does the geometry, in the types of glam; only this file and `boxes` convert between nalgebra and glam.
+//! Cost: every query descends a bounding volume hierarchy, so it grows with the logarithm of the number of obstacles plus
+//! the number of those nearby.
 
 mod boxes;
 
 pub(crate) use boxes::Boxes;
 
-use crate::{
-    Boundary,
-    geometry::{Point, Vector},
-    polyline::nearest_on_segment,
-    shape::Shape,
-    tank::{Obstacle, ObstacleId},
+use crate::tank::{Obstacle, ObstacleId};
+use geometry::{
+    Boundary, Point, Shape, Vector,
+    polyline::{edges, nearest_on_segment},
 };
 use glam::DVec2;
 use parry2d_f64::{
@@ -26,87 +24,128 @@ use parry2d_f64::{
 
 /// One convex part of an obstacle.
 #[derive(Clone)]
-struct Piece {
+struct ObstaclePart {
     /// Index into the obstacles.
     owner: usize,
-    geometry: Geometry,
+    outline: Outline,
 }
 
 #[derive(Clone)]
-enum Geometry {
-    // The papers' obstacles may be points: a ball of radius zero has no direction in parry, a disc here has.
+enum Outline {
+    // The papers' obstacles may be points, and from a ball of radius zero parry gives no outward direction.
     Disc { center: Point, radius_m: f64 },
-    Solid { shape: SharedShape },
+    Parry(SharedShape),
 }
 
 /// An obstacle near a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Near {
-    /// Index into the obstacles that the map was made of.
+    /// Index into the obstacles of which the map was made.
     pub index: usize,
     /// Its id.
     pub id: ObstacleId,
     /// Distance from the point to its outline, metres; negative inside.
     pub distance_m: f64,
-    /// Nearest point of its outline.
+    /// Nearest point of its outline, tank frame.
     pub closest: Point,
 }
 
-/// Obstacles and wall, ready for queries.
+/// Obstacles and wall, ready for queries; all points in the tank frame.
+///
+/// ```
+/// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, Vector};
+/// # let shape = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+/// # let column = Obstacle { id: ObstacleId(7), name: "C7".into(), shape, known: true };
+/// // A column of radius 0.5 m at (4, 0).
+/// let map = ObstacleMap::new(&Boundary::Circle { radius_m: 10.0 }, &[column]);
+/// assert_eq!(map.clearance_m(Point::origin()), 3.5);
+/// ```
 #[derive(Clone)]
 pub struct ObstacleMap {
     boundary: Boundary,
     ids: Vec<ObstacleId>,
-    pieces: Vec<Piece>,
+    parts: Vec<ObstaclePart>,
     tree: Bvh,
 }
 
 impl ObstacleMap {
     /// A map of these obstacles within this wall; costs `n log n` once.
+    ///
+    /// ```
+    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, Vector};
+    /// # let shape = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let column = Obstacle { id: ObstacleId(7), name: "C7".into(), shape, known: true };
+    /// // A column of radius 0.5 m at (4, 0).
+    /// let map = ObstacleMap::new(&Boundary::Circle { radius_m: 10.0 }, &[column]);
+    /// assert_eq!(map.within(Point::origin(), 4.0).len(), 1);
+    /// ```
     pub fn new(boundary: &Boundary, obstacles: &[Obstacle]) -> Self {
-        let pieces: Vec<Piece> = obstacles
+        let parts: Vec<ObstaclePart> = obstacles
             .iter()
             .enumerate()
             .flat_map(|(owner, o)| {
-                geometries(&o.shape).into_iter().map(move |geometry| Piece { owner, geometry })
+                outlines(&o.shape).into_iter().map(move |outline| ObstaclePart { owner, outline })
             })
             .collect();
-        let boxes: Vec<Aabb> = pieces.iter().map(|piece| piece.geometry.bounds()).collect();
+        let boxes: Vec<Aabb> = parts.iter().map(|part| part.outline.bounds()).collect();
         Self {
             boundary: boundary.clone(),
             ids: obstacles.iter().map(|o| o.id).collect(),
-            pieces,
+            parts,
             tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes),
         }
     }
 
     /// Distance to the nearest obstacle or the wall, metres; negative inside an obstacle or outside the tank.
+    ///
+    /// ```
+    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, Vector};
+    /// # let shape = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let column = Obstacle { id: ObstacleId(7), name: "C7".into(), shape, known: true };
+    /// // A column of radius 0.5 m at (4, 0).
+    /// let map = ObstacleMap::new(&Boundary::Circle { radius_m: 10.0 }, &[column]);
+    /// assert_eq!(map.clearance_m(Point::new(8.0, 0.0)), 2.0);
+    /// ```
     pub fn clearance_m(&self, point: Point) -> f64 {
         self.boundary.wall_distance_m(point).min(self.obstacle_distance_m(point))
     }
 
     /// Distance to the nearest obstacle, metres; negative inside one, infinite without any.
+    ///
+    /// ```
+    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, Vector};
+    /// # let shape = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let column = Obstacle { id: ObstacleId(7), name: "C7".into(), shape, known: true };
+    /// // A column of radius 0.5 m at (4, 0).
+    /// let map = ObstacleMap::new(&Boundary::Circle { radius_m: 10.0 }, &[column]);
+    /// assert_eq!(map.obstacle_distance_m(Point::new(8.0, 0.0)), 3.5);
+    /// ```
     pub fn obstacle_distance_m(&self, point: Point) -> f64 {
-        self.nearest(point).map_or(f64::INFINITY, |near| near.distance_m)
+        let at: DVec2 = point.into();
+        let nearest = self.tree.find_best(
+            f64::MAX,
+            |node, _| node.aabb().distance_to_local_point(at, true),
+            |leaf, _| Some(self.parts[leaf as usize].outline.project(point).0),
+        );
+        nearest.map_or(f64::INFINITY, |(_, distance_m)| distance_m)
     }
 
     /// The wall around them.
-    pub fn boundary(&self) -> &Boundary {
+    pub(crate) fn boundary(&self) -> &Boundary {
         &self.boundary
     }
 
-    /// The nearest obstacle.
-    pub fn nearest(&self, point: Point) -> Option<Near> {
-        let at: DVec2 = point.into();
-        let (leaf, _) = self.tree.find_best(
-            f64::MAX,
-            |node, _| node.aabb().distance_to_local_point(at, true),
-            |leaf, _| Some(self.pieces[leaf as usize].geometry.project(point).0),
-        )?;
-        Some(self.near(leaf, point))
-    }
-
-    /// The obstacles within a range of a point, each once, in order of their index.
+    /// The obstacles within a range of a point, metres, each once, in order of their index.
+    ///
+    /// ```
+    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, Vector};
+    /// # let shape = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let column = Obstacle { id: ObstacleId(7), name: "C7".into(), shape, known: true };
+    /// // A column of radius 0.5 m at (4, 0).
+    /// let map = ObstacleMap::new(&Boundary::Circle { radius_m: 10.0 }, &[column]);
+    /// assert_eq!(map.within(Point::origin(), 3.4), []);
+    /// assert_eq!(map.within(Point::origin(), 3.6)[0].distance_m, 3.5);
+    /// ```
     pub fn within(&self, point: Point, range_m: f64) -> Vec<Near> {
         let around = Aabb::from_half_extents(point.into(), DVec2::splat(range_m));
         let mut found: Vec<Near> = self
@@ -123,66 +162,85 @@ impl ObstacleMap {
     /// Distance along a ray to the first obstacle, metres; `None` if there is none within `max_m`.
     ///
     /// `direction` is a unit vector; a ray that starts inside an obstacle hits at 0.
+    ///
+    /// ```
+    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, Vector};
+    /// # let shape = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let column = Obstacle { id: ObstacleId(7), name: "C7".into(), shape, known: true };
+    /// // A column of radius 0.5 m at (4, 0).
+    /// let map = ObstacleMap::new(&Boundary::Circle { radius_m: 10.0 }, &[column]);
+    /// assert_eq!(map.ray_m(Point::origin(), Vector::x(), 12.0), Some(3.5));
+    /// assert_eq!(map.ray_m(Point::origin(), Vector::y(), 12.0), None);
+    /// ```
     pub fn ray_m(&self, from: Point, direction: Vector, max_m: f64) -> Option<f64> {
         let ray = Ray::new(from.into(), direction.into());
         let hit = self.tree.cast_ray(&ray, max_m, |leaf, best| {
-            self.pieces[leaf as usize].geometry.ray_m(&ray, from, direction, best.min(max_m))
+            self.parts[leaf as usize].outline.ray_m(&ray, from, direction, best.min(max_m))
         });
         hit.map(|(_, distance)| distance).filter(|distance| *distance <= max_m)
     }
 
     /// Smallest distance from any point of a segment to an obstacle or the wall, metres; not above zero if it touches.
+    ///
+    /// ```
+    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, Vector};
+    /// # let shape = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let column = Obstacle { id: ObstacleId(7), name: "C7".into(), shape, known: true };
+    /// // A column of radius 0.5 m at (4, 0).
+    /// let map = ObstacleMap::new(&Boundary::Circle { radius_m: 10.0 }, &[column]);
+    /// let (a, b) = (Point::new(0.0, 2.0), Point::new(6.0, 2.0));
+    /// assert_eq!(map.segment_clearance_m(a, b), 1.5);
+    /// ```
     pub fn segment_clearance_m(&self, a: Point, b: Point) -> f64 {
         self.obstacle_clearance_m(a, b).min(wall_clearance_m(&self.boundary, a, b))
     }
 
     /// The same to obstacles alone; infinite without any.
-    pub fn obstacle_clearance_m(&self, a: Point, b: Point) -> f64 {
+    pub(crate) fn obstacle_clearance_m(&self, a: Point, b: Point) -> f64 {
         let around = segment_box(a, b);
         let nearest = self.tree.find_best(
             f64::MAX,
             |node, _| box_gap(&node.aabb(), &around),
-            |leaf, _| Some(self.pieces[leaf as usize].geometry.segment_distance_m(a, b)),
+            |leaf, _| Some(self.parts[leaf as usize].outline.segment_distance_m(a, b)),
         );
         nearest.map_or(f64::INFINITY, |(_, distance)| distance)
     }
 
     fn near(&self, leaf: u32, point: Point) -> Near {
-        let piece = &self.pieces[leaf as usize];
-        let (distance_m, closest) = piece.geometry.project(point);
-        Near { index: piece.owner, id: self.ids[piece.owner], distance_m, closest }
+        let part = &self.parts[leaf as usize];
+        let (distance_m, closest) = part.outline.project(point);
+        Near { index: part.owner, id: self.ids[part.owner], distance_m, closest }
     }
 }
 
-/// A wall keeps its distance between the ends of a segment only if it is round: the distance to a circle from
-/// inside is concave along a line, so its least value is at an end.
+/// Smallest distance from any point of a segment to the wall, metres.
+///
+/// The distance to a round wall from inside is concave along a segment, so its least value is at an end.
 pub(crate) fn wall_clearance_m(boundary: &Boundary, a: Point, b: Point) -> f64 {
     let ends = boundary.wall_distance_m(a).min(boundary.wall_distance_m(b));
     let Boundary::Polygon { vertices } = boundary else { return ends };
-    let pieces = Geometry::of_ring(vertices);
-    pieces.iter().map(|piece| piece.segment_distance_m(a, b)).fold(ends, f64::min)
+    let parts = Outline::of_ring(vertices);
+    parts.iter().map(|part| part.segment_distance_m(a, b)).fold(ends, f64::min)
 }
 
-fn geometries(shape: &Shape) -> Vec<Geometry> {
+fn outlines(shape: &Shape) -> Vec<Outline> {
     match shape {
-        Shape::Disc { center, radius_m } => vec![Geometry::Disc { center: *center, radius_m: *radius_m }],
+        Shape::Disc { center, radius_m } => vec![Outline::Disc { center: *center, radius_m: *radius_m }],
         Shape::Polygon { vertices } => {
             let corners: Vec<DVec2> = vertices.iter().map(|p| (*p).into()).collect();
             let solid = SharedShape::convex_polyline(corners);
-            solid.map_or_else(|| Geometry::of_ring(vertices), |shape| vec![Geometry::Solid { shape }])
+            solid.map_or_else(|| Outline::of_ring(vertices), |shape| vec![Outline::Parry(shape)])
         }
         Shape::Polyline { points, half_width_m } => points
             .windows(2)
-            .map(|w| Geometry::Solid { shape: SharedShape::capsule(w[0].into(), w[1].into(), *half_width_m) })
+            .map(|w| Outline::Parry(SharedShape::capsule(w[0].into(), w[1].into(), *half_width_m)))
             .collect(),
     }
 }
 
-impl Geometry {
+impl Outline {
     fn of_ring(vertices: &[Point]) -> Vec<Self> {
-        geometry::polyline::edges(vertices)
-            .map(|(a, b)| Self::Solid { shape: SharedShape::segment(a.into(), b.into()) })
-            .collect()
+        edges(vertices).map(|(a, b)| Self::Parry(SharedShape::segment(a.into(), b.into()))).collect()
     }
 
     fn bounds(&self) -> Aabb {
@@ -190,7 +248,7 @@ impl Geometry {
             Self::Disc { center, radius_m } => {
                 Aabb::from_half_extents((*center).into(), DVec2::splat(*radius_m))
             }
-            Self::Solid { shape } => shape.compute_aabb(&ParryPose::IDENTITY),
+            Self::Parry(shape) => shape.compute_aabb(&ParryPose::IDENTITY),
         }
     }
 
@@ -203,7 +261,7 @@ impl Geometry {
                 let outward = if distance > 0.0 { from_center / distance } else { Vector::x() };
                 (distance - radius_m, center + outward * *radius_m)
             }
-            Self::Solid { shape } => {
+            Self::Parry(shape) => {
                 let projection = shape.project_local_point(point.into(), false);
                 let closest: Point = projection.point.into();
                 let distance = (point - closest).norm();
@@ -222,7 +280,7 @@ impl Geometry {
                 let hit = if inside { 0.0 } else { ahead - half_chord.max(0.0).sqrt() };
                 (inside || (half_chord >= 0.0 && ahead >= 0.0)).then_some(hit).filter(|m| *m <= max_m)
             }
-            Self::Solid { shape } => shape.cast_local_ray(ray, max_m, true),
+            Self::Parry(shape) => shape.cast_local_ray(ray, max_m, true),
         }
     }
 
@@ -230,7 +288,7 @@ impl Geometry {
         match self {
             Self::Disc { center, radius_m } => (center - nearest_on_segment(a, b, *center)).norm() - radius_m,
             _ if a == b => self.project(a).0,
-            Self::Solid { shape } => {
+            Self::Parry(shape) => {
                 let (here, segment) = (ParryPose::IDENTITY, Segment::new(a.into(), b.into()));
                 query::distance(&here, &segment, &here, &**shape)
                     .map_or_else(|_| self.project(a).0.min(self.project(b).0), |found| found.distance)

@@ -1,23 +1,25 @@
 //! The plates that a tank floor is made of.
 //!
-//! A ring of annular plates lies along the shell; the rest is covered by rows of rectangular plates from south to
-//! north, every second row shifted by half a plate. Where the ring cuts a rectangle, what is left of it is a sketch
-//! plate.
+//! A ring of annular plates lies along the shell; the rest is covered by rows of rectangular plates from south to north,
+//! every second row shifted by half a plate. The rest of a rectangle that the ring cuts is a sketch plate.
 
-use crate::{
-    Boundary,
-    coverage::Floor,
-    geometry::{Point, wrap_angle_rad},
-};
+use crate::coverage::Floor;
+use geometry::{Boundary, Point, Vector, shape::rectangle, wrap_angle_rad};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, f64::consts::TAU};
 
-/// How the plates of a floor lie.
+/// The layout of the plates of a floor.
+///
+/// ```
+/// use world::PlateLayout;
+/// let layout = PlateLayout { annular_m: 0.75, n_annular: 12, length_m: 6.0, width_m: 1.8 };
+/// assert!((layout.length_m * layout.width_m - 10.8).abs() < 1e-9);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PlateLayout {
     /// Width of the annular ring from the shell inwards, metres; 0 without one.
     pub annular_m: f64,
-    /// How many plates the ring has; the first one begins due east.
+    /// Number of plates in the ring; the first one begins due east.
     pub n_annular: u32,
     /// Length of a rectangular plate from west to east, metres.
     pub length_m: f64,
@@ -25,7 +27,7 @@ pub struct PlateLayout {
     pub width_m: f64,
 }
 
-/// What a plate is.
+/// Kind of a plate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PlateKind {
@@ -40,14 +42,14 @@ pub enum PlateKind {
 /// One plate.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Plate {
-    /// What it is.
+    /// Its kind.
     pub kind: PlateKind,
-    /// `A-07`: the seventh annular plate, counter-clockwise from east; `R-03-05`, `S-03-01`: rectangular or sketch
-    /// plate of the third row from the south, counted from the west.
+    /// `A-07`: the seventh annular plate, counter-clockwise from east; `R-03-05`, `S-03-01`: a rectangular or sketch plate
+    /// of the third row from the south, fifth or first from the west.
     pub name: String,
 }
 
-/// Which plate every cell of a floor belongs to.
+/// The plate of every cell of a floor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlateMap {
     /// The plates that have floor, in order of kind and name.
@@ -56,12 +58,12 @@ pub struct PlateMap {
     of_cell: Vec<Option<u32>>,
 }
 
-/// Where a plate lies: in the ring, or in a row.
+/// Where a plate lies: its kind, its row from 1 (0 in the ring), its number from 1.
 type Place = (PlateKind, i64, i64);
 
 impl PlateLayout {
-    /// The plate under a point of the floor: kind, row (0 in the ring) and number, both from 1.
-    pub fn place_of(&self, boundary: &Boundary, point: Point) -> (PlateKind, i64, i64) {
+    /// The plate under a point of the floor.
+    fn place_of(&self, boundary: &Boundary, point: Point) -> Place {
         if boundary.wall_distance_m(point) < self.annular_m {
             let share = wrap_angle_rad(point.y.atan2(point.x)).rem_euclid(TAU) / TAU;
             let last = f64::from(self.n_annular.max(1)) - 1.0;
@@ -82,15 +84,22 @@ impl PlateLayout {
         (kind, row as i64 + 1, number as i64 + 1)
     }
 
-    /// Whether all of a rectangle, given by its south west corner, lies within the ring.
+    /// Whether all of a rectangle, given by its south-west corner, lies within the ring.
     fn is_whole(&self, boundary: &Boundary, corner: Point) -> bool {
-        [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].iter().all(|(east, north)| {
-            let corner = corner + nalgebra::Vector2::new(east * self.length_m, north * self.width_m);
-            boundary.wall_distance_m(corner) >= self.annular_m
-        })
+        let corners = rectangle(corner, corner + Vector::new(self.length_m, self.width_m));
+        corners.iter().all(|corner| boundary.wall_distance_m(*corner) >= self.annular_m)
     }
 
-    /// The plates of a floor, and which of them each cell belongs to.
+    /// The plates of a floor, and the plate of each of its cells.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, PlateLayout, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 10.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// let floor = Floor::new(&tank, 0.2, 0.3, 0.6, Point::origin());
+    /// let layout = PlateLayout { annular_m: 0.75, n_annular: 12, length_m: 6.0, width_m: 1.8 };
+    /// assert_eq!(layout.map(&tank.boundary, &floor).plates[0].name, "A-01");
+    /// ```
     pub fn map(&self, boundary: &Boundary, floor: &Floor) -> PlateMap {
         let places: Vec<Option<Place>> = (0..floor.len())
             .map(|index| floor.is_floor(index).then(|| self.place_of(boundary, floor.center(index))))
@@ -119,7 +128,17 @@ impl PlateLayout {
 }
 
 impl PlateMap {
-    /// The index of a cell's plate.
+    /// Index of a cell's plate; `None` where there is no floor.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, PlateLayout, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 10.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// let floor = Floor::new(&tank, 0.2, 0.3, 0.6, Point::origin());
+    /// let layout = PlateLayout { annular_m: 0.75, n_annular: 12, length_m: 6.0, width_m: 1.8 };
+    /// let east = floor.cell_at(Point::new(9.5, 0.1)).unwrap();
+    /// assert_eq!(layout.map(&tank.boundary, &floor).plate_of(east), Some(0));
+    /// ```
     pub fn plate_of(&self, cell: usize) -> Option<usize> {
         self.of_cell.get(cell).copied().flatten().map(|index| index as usize)
     }

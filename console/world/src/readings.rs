@@ -1,12 +1,10 @@
 //! What a robot senses in one tick. Nothing here carries the truth.
 
-use crate::{
-    shape::Shape,
-    tank::{ObstacleId, StationId},
-};
+use crate::tank::{ObstacleId, StationId};
+use geometry::Shape;
 use serde::{Deserialize, Serialize};
 
-/// The repeated ranges from one station to the robot, from one ranging cycle.
+/// The repeated ranges between one station and the robot in one ranging cycle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RangeSet {
     /// Which station was heard.
@@ -15,7 +13,7 @@ pub struct RangeSet {
     pub ranges_m: Vec<f64>,
 }
 
-/// What the tracks say the robot did since the last tick.
+/// Motion since the last tick by track encoders and gyro, robot frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Odometry {
     /// Distance along the robot's x axis, metres.
@@ -26,21 +24,26 @@ pub struct Odometry {
     pub turn_rad: f64,
 }
 
-/// An obstacle within sensing range that is seen for the first time or again.
+/// An obstacle within sensing range, seen for the first time or again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sighting {
-    /// The tracker's name for it; the same obstacle keeps its id.
+    /// Its id; the sensor's tracker gives the same obstacle the same one.
     pub id: ObstacleId,
     /// Its outline in the robot frame: x ahead, y left, metres.
     pub shape_in_robot: Shape,
 }
 
 /// Everything sensed in one tick.
+///
+/// ```
+/// let readings = world::Readings::default();
+/// assert_eq!((readings.ranges.len(), readings.odometry.forward_m), (0, 0.0));
+/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Readings {
     /// Ranges of a cycle that ended in this tick; empty between cycles.
     pub ranges: Vec<RangeSet>,
-    /// Whether a ranging cycle ended in this tick, with or without answers.
+    /// Whether a ranging cycle ended in this tick, with or without ranges.
     pub ranging_cycle: bool,
     /// Motion since the last tick.
     pub odometry: Odometry,
@@ -48,7 +51,7 @@ pub struct Readings {
     pub sightings: Vec<Sighting>,
     /// Whether the bumper is pressed.
     pub contact: bool,
-    /// Cable that the reel has paid out, as measured by its encoder, metres; `None` without a tether or without an encoder.
+    /// Length of tether that the reel has paid out, by its encoder, metres; `None` without a tether or an encoder.
     #[serde(default)]
     pub paid_out_m: Option<f64>,
 }

@@ -1,18 +1,24 @@
 //! The preset Archimedean spiral from the wall to the centre (Wang et al. 2023, eq. 2, with the radius corrected).
 
-use geometry::Point;
+use geometry::{Point, unit_vector};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// An inward, counter-clockwise Archimedean spiral about the tank's centre.
 ///
 /// `theta_i = i * step_rad`, `r_i = outer_radius_m - pitch_m * theta_i / (2 pi)`. The paper prints the radius without
-/// the index, which would be a circle; its own Section 3.3 uses the form given here.
+/// the index, which would be a circle; its Section 3.3 uses the form given here.
+///
+/// ```
+/// use world::spiral::Spiral;
+/// let spiral = Spiral { outer_radius_m: 5.0, inner_radius_m: 0.1, pitch_m: 0.5, step_rad: 0.02 };
+/// assert_eq!(spiral.points()[0], world::Point::new(5.0, 0.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Spiral {
     /// Radius of the first point, metres.
     pub outer_radius_m: f64,
-    /// Radius below which the list ends, metres (the paper's lists end at 0.1).
+    /// Radius below which the list of points ends, metres (0.1 in the paper).
     pub inner_radius_m: f64,
     /// Distance between neighbouring turns, metres.
     pub pitch_m: f64,
@@ -29,7 +35,11 @@ impl Spiral {
         step_rad: 0.02,
     };
 
-    /// The preset points: every `r_i >= inner_radius_m` and the first one below it.
+    /// The preset points, tank frame: all with `r_i >= inner_radius_m` and the first one below it.
+    ///
+    /// ```
+    /// assert_eq!(world::spiral::Spiral::WANG_2023.points().len(), 2477);
+    /// ```
     pub fn points(&self) -> Vec<Point> {
         let radius_at = |i: usize| self.outer_radius_m - self.pitch_m * (i as f64 * self.step_rad) / TAU;
         let mut points = Vec::new();
@@ -38,7 +48,7 @@ impl Spiral {
             if radius < 0.0 {
                 break;
             }
-            points.push(Point::new(radius * theta.cos(), radius * theta.sin()));
+            points.push(Point::from(unit_vector(theta) * radius));
             if radius < self.inner_radius_m {
                 break;
             }

@@ -1,9 +1,9 @@
-//! What stands on the floor: obstacles, stations, zones.
+//! The tank: wall, obstacles, stations and zones.
 
 use geometry::{Boundary, Point, Shape};
 use serde::{Deserialize, Serialize};
 
-/// Names an obstacle within one world.
+/// Identifies an obstacle within one world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ObstacleId(pub u32);
 
@@ -12,26 +12,26 @@ pub struct ObstacleId(pub u32);
 pub struct Obstacle {
     /// Unique within the world.
     pub id: ObstacleId,
-    /// What the drawing calls it, for people.
+    /// Its name on the drawing, for people.
     pub name: String,
-    /// Its outline in the tank frame.
+    /// Its outline, tank frame.
     pub shape: Shape,
     /// Whether it is on the drawing; the robot must discover the others.
     pub known: bool,
 }
 
-/// Names an acoustic-emission station.
+/// Identifies an acoustic-emission station within one world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct StationId(pub u32);
 
-/// An acoustic-emission sensor at a surveyed place.
+/// An acoustic-emission sensor at a surveyed position.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Station {
     /// Unique within the world.
     pub id: StationId,
-    /// What the drawing calls it, for people.
+    /// Its name on the drawing, for people.
     pub name: String,
-    /// Surveyed position, metres.
+    /// Surveyed position, metres, tank frame.
     pub position: Point,
 }
 
@@ -47,18 +47,26 @@ pub enum ZoneKind {
     Underwater,
 }
 
-/// A part of the floor with a meaning of its own.
+/// A part of the floor with special properties.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Zone {
-    /// What the drawing calls it.
+    /// Its name on the drawing.
     pub name: String,
     /// What is special about it.
     pub kind: ZoneKind,
-    /// Its outline.
+    /// Its outline, tank frame.
     pub shape: Shape,
 }
 
-/// The tank as it is on the drawing, or as it truly is.
+/// The tank as drawn, as known, or as it truly is.
+///
+/// ```
+/// use world::{Boundary, Station, StationId, Point, World};
+/// let position = Point::new(9.5, 0.0);
+/// let stations = vec![Station { id: StationId(1), name: "S1".into(), position }];
+/// let tank = World { boundary: Boundary::Circle { radius_m: 10.0 }, obstacles: vec![], stations, zones: vec![] };
+/// assert_eq!(tank.boundary.wall_distance_m(tank.stations[0].position), 0.5);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct World {
     /// The wall.
@@ -67,12 +75,23 @@ pub struct World {
     pub obstacles: Vec<Obstacle>,
     /// Acoustic-emission stations, in order of their ids.
     pub stations: Vec<Station>,
-    /// Zones, later ones on top.
+    /// Zones; where they overlap, the last one counts.
     pub zones: Vec<Zone>,
 }
 
 impl World {
-    /// The world as the drawing has it: without the obstacles that must be discovered.
+    /// The tank as drawn: without the obstacles that must be discovered.
+    ///
+    /// ```
+    /// use world::{Boundary, Obstacle, ObstacleId, Point, Shape, World};
+    /// let column = |id, known| {
+    ///     let shape = Shape::Disc { center: Point::new(f64::from(id), 0.0), radius_m: 0.3 };
+    ///     Obstacle { id: ObstacleId(id), name: format!("C{id}"), shape, known }
+    /// };
+    /// let (boundary, obstacles) = (Boundary::Circle { radius_m: 9.0 }, vec![column(1, true), column(2, false)]);
+    /// let tank = World { boundary, obstacles, stations: vec![], zones: vec![] };
+    /// assert_eq!(tank.as_drawn().obstacles.len(), 1);
+    /// ```
     #[must_use]
     pub fn as_drawn(&self) -> Self {
         let obstacles = self.obstacles.iter().filter(|o| o.known).cloned().collect();

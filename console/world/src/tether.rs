@@ -1,33 +1,41 @@
 //! The tether: a taut cable from an anchor to the robot, among columns, pipes and walls.
 //!
-//! Model (one sentence each): the cable cannot stretch, a reel at the anchor takes up all slack, friction does not
-//! change its shape, it may touch obstacles, the floor is flat. It is then the one shortest line that can be reached
-//! from the way driven without lifting the cable over an obstacle. Slack and dragged cable are not bounded by it.
+//! Model: the cable cannot stretch; a reel at the anchor takes up all slack; friction does not change its shape; it may
+//! touch obstacles; the floor is flat. The cable is then the one shortest line that can be reached from the path driven
+//! without lifting it over an obstacle. The model does not bound slack or dragged tether.
 //!
-//! Read in this order: [`cable`] (the exact taut line), [`ground`] (what it can bear on), [`certificate`] (what a whole
-//! path does to the cable), [`word`] (the cheap second answer), [`geodesic`] (the least cable that would do).
+//! Read the files in this order: `cable` (the exact taut line), `cable_obstacles` (what it can bear on), `certify` (what a
+//! whole path does to it), `homotopy` (the cheap second answer), `geodesic` (the shortest cable that would do).
 
-pub mod cable;
-pub mod certificate;
+mod cable;
+mod cable_obstacles;
+mod case;
+mod certificate;
+mod certify;
+mod clearance;
 mod cuts;
-pub mod geodesic;
-pub mod ground;
+mod geodesic;
 mod home;
-mod pocket;
+mod homotopy;
 mod reach;
+mod reasons;
+mod replay;
+mod rounded_polygon;
+mod sealed_region;
 mod sidestep;
-mod solid;
 mod sweep;
-pub mod word;
 
 #[cfg(test)]
 mod funnel;
 #[cfg(test)]
 mod tests;
 
-pub use cable::{Bearing, Cable, Contact, TetherError, capstan_factor};
-pub use certificate::{Case, Certificate, Limits, certify};
+pub use cable::{Cable, Contact, TetherError, capstan_factor};
+pub use cable_obstacles::{Bearing, CableObstacles};
+pub use case::{Case, Limits};
+pub use certificate::Certificate;
+pub use certify::certify;
 pub use cuts::crossings;
-pub use ground::Ground;
+pub use geodesic::Geodesic;
+pub use homotopy::{HomotopySignature, RayCrossing, Rays};
 pub use reach::Reach;
-pub use word::Word;

@@ -103,7 +103,7 @@ fn add_leg(plan: &mut Plan, tag: LegTag, points: &[Point]) {
 pub fn return_path(ground: &Ground, site: &Site<'_>, cable: &Cable) -> Option<Vec<Point>> {
     let obstacles = crate::candidate::solids(site);
     let shapes: Vec<Shape> = obstacles.iter().map(|o| o.shape.clone()).collect();
-    let roomy = Arc::new(tether::Ground::grown(&ground.wall, &shapes, ground.keep_m));
+    let roomy = Arc::new(tether::CableObstacles::grown(&ground.wall, &shapes, ground.keep_m));
     let map = ObstacleMap::new(&ground.wall, &obstacles);
     cable.return_path(&roomy, &map, ground.keep_m)
 }

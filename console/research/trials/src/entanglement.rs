@@ -7,7 +7,7 @@ use crate::tanks::Tank;
 use std::{f64::consts::PI, sync::Arc};
 use world::{
     Point, Vector, polyline,
-    tether::{Cable, Contact, Ground, TetherError, geodesic::Geodesic},
+    tether::{Cable, CableObstacles, Contact, Geodesic, TetherError},
 };
 
 /// Distance between the places at which the cable is looked at, metres.
@@ -43,9 +43,9 @@ impl Tank {
     /// The tether has no anchor.
     pub fn entanglement(&self, path: &[Point]) -> Result<Entanglement, TetherError> {
         let shapes: Vec<_> = self.world().obstacles.into_iter().map(|obstacle| obstacle.shape).collect();
-        let ground = Arc::new(Ground::new(&self.boundary, &shapes));
-        let mut cable = Cable::on(self.anchor, Arc::clone(&ground))?;
-        let least = Geodesic::new(self.anchor, ground);
+        let obstacles = Arc::new(CableObstacles::new(&self.boundary, &shapes));
+        let mut cable = Cable::on(self.anchor, Arc::clone(&obstacles))?;
+        let least = Geodesic::new(self.anchor, obstacles);
         let longest = cable.clone().at_longest(path).taut_line();
         let mut measured = Entanglement { longest, ..Entanglement::default() };
         let mut way_m = 0.0;

@@ -1,35 +1,36 @@
-//! Which way the sound takes from the robot to a station.
+//! The path of sound from the robot to a station.
 
 use crate::{config::BehindColumns, sight::outline_points};
+use geometry::{polyline::edges, unit_vector};
 use std::f64::consts::TAU;
 use world::{Boundary, Obstacle, ObstacleMap, Point, Vector, World};
 
-/// A ray that ends this near to a station has reached it, metres: stations may sit on a column.
+/// Distance from a station within which a ray has reached it, metres: stations may be mounted on a column.
 const REACHED_M: f64 = 1e-3;
-/// Points of a round wall that are tried for an echo.
+/// Points of a round wall that are tested for an echo.
 const WALL_POINTS: u32 = 720;
-/// An echo from nearer to the station than this is the direct sound, metres.
+/// Distance from a station within which an echo counts as the direct sound, metres.
 const OWN_WALL_M: f64 = 0.1;
 
-/// The way of a sound.
+/// A path of sound.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Way {
+pub(crate) struct SoundPath {
     /// Its length, metres.
     pub length_m: f64,
-    /// Whether the sound is late besides.
+    /// Whether the sound is delayed besides.
     pub is_late: bool,
 }
 
-/// Everything that sound meets.
+/// Wall and obstacles as sound meets them.
 #[derive(Clone)]
-pub(crate) struct Surroundings {
+pub(crate) struct Propagation {
     boundary: Boundary,
     all: ObstacleMap,
     /// Each obstacle alone, with points of its outline.
     single: Vec<(ObstacleMap, Vec<Point>)>,
 }
 
-impl Surroundings {
+impl Propagation {
     pub(super) fn new(world: &World) -> Self {
         let map = |obstacles: &[Obstacle]| ObstacleMap::new(&world.boundary, obstacles);
         let alone = |o: &Obstacle| (map(std::slice::from_ref(o)), outline_points(&o.shape));
@@ -40,11 +41,11 @@ impl Surroundings {
         }
     }
 
-    /// The way from a robot to a station; `None` if nothing is heard.
-    pub(super) fn way(&self, from: Point, to: Point, behind: BehindColumns) -> Option<Way> {
+    /// The path from a robot to a station; `None` if nothing is heard.
+    pub(super) fn path(&self, from: Point, to: Point, behind: BehindColumns) -> Option<SoundPath> {
         let direct_m = (to - from).norm();
         if behind == BehindColumns::Heard || !is_blocked(&self.all, from, to) {
-            return Some(Way { length_m: direct_m, is_late: false });
+            return Some(SoundPath { length_m: direct_m, is_late: false });
         }
         let (length_m, is_late) = match behind {
             BehindColumns::Silent => return None,
@@ -52,10 +53,10 @@ impl Surroundings {
             BehindColumns::Creeping => (self.creeping_m(from, to), false),
             BehindColumns::Late | BehindColumns::Heard => (direct_m, true),
         };
-        Some(Way { length_m, is_late })
+        Some(SoundPath { length_m, is_late })
     }
 
-    /// Length of a taut line around everything in the way, on the shorter side.
+    /// Length of a taut line around all obstacles between them, on the shorter side.
     fn creeping_m(&self, from: Point, to: Point) -> f64 {
         let direct = to - from;
         let outline: Vec<Point> = self
@@ -108,12 +109,9 @@ fn taut_m(from: Point, to: Point, mut around: Vec<Point>, sign: f64) -> f64 {
     chain.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
 }
 
-/// Where the way over a round wall is shorter or longer than over the wall beside: there sound is reflected.
+/// Echoes of a round wall: sound is reflected where the path by way of the wall has an extreme length (Fermat's principle).
 fn round_echoes(radius_m: f64, from: Point, to: Point) -> Vec<(f64, Point)> {
-    let at = |k: u32| {
-        let angle = TAU * f64::from(k) / f64::from(WALL_POINTS);
-        Point::from(Vector::new(angle.cos(), angle.sin()) * radius_m)
-    };
+    let at = |k: u32| Point::from(unit_vector(TAU * f64::from(k) / f64::from(WALL_POINTS)) * radius_m);
     let length_m = |p: Point| (p - from).norm() + (to - p).norm();
     (0..WALL_POINTS)
         .map(|k| (k + WALL_POINTS - 1, k, k + 1))
@@ -127,19 +125,19 @@ fn round_echoes(radius_m: f64, from: Point, to: Point) -> Vec<(f64, Point)> {
 
 /// Echoes of straight walls by their mirror images.
 fn straight_echoes(vertices: &[Point], from: Point, to: Point) -> Vec<(f64, Point)> {
-    let ends = vertices.iter().zip(vertices.iter().cycle().skip(1));
-    ends.filter_map(|(a, b)| {
-        let along = (b - a).try_normalize(1e-9)?;
-        let across = Vector::new(-along.y, along.x);
-        let (d1, d2) = (across.dot(&(from - a)), across.dot(&(to - a)));
-        let share = d1 / (d1 + d2);
-        let foot = |p: Point| along.dot(&(p - a));
-        let s = foot(from) + (foot(to) - foot(from)) * share;
-        let is_on_wall = d1 * d2 > 0.0 && (0.0..=(b - a).norm()).contains(&s);
-        let at = a + along * s;
-        is_on_wall.then(|| ((at - from).norm() + (to - at).norm(), at))
-    })
-    .collect()
+    edges(vertices)
+        .filter_map(|(a, b)| {
+            let along = (b - a).try_normalize(1e-9)?;
+            let across = Vector::new(-along.y, along.x);
+            let (d1, d2) = (across.dot(&(from - a)), across.dot(&(to - a)));
+            let share = d1 / (d1 + d2);
+            let foot = |p: Point| along.dot(&(p - a));
+            let s = foot(from) + (foot(to) - foot(from)) * share;
+            let is_on_wall = d1 * d2 > 0.0 && (0.0..=(b - a).norm()).contains(&s);
+            let at = a + along * s;
+            is_on_wall.then(|| ((at - from).norm() + (to - at).norm(), at))
+        })
+        .collect()
 }
 
 #[cfg(test)]
@@ -147,10 +145,10 @@ mod tests {
     use super::*;
     use world::{ObstacleId, Shape};
 
-    fn around(boundary: Boundary, shapes: Vec<Shape>) -> Surroundings {
+    fn around(boundary: Boundary, shapes: Vec<Shape>) -> Propagation {
         let obstacle = |(id, shape)| Obstacle { id: ObstacleId(id), name: String::new(), shape, known: true };
         let obstacles = (1..).zip(shapes).map(obstacle).collect();
-        Surroundings::new(&World { boundary, obstacles, stations: vec![], zones: vec![] })
+        Propagation::new(&World { boundary, obstacles, stations: vec![], zones: vec![] })
     }
 
     fn column(radius_m: f64) -> Vec<Shape> {
@@ -162,7 +160,7 @@ mod tests {
     #[test]
     fn sound_creeps_around_a_column_by_tangents_and_an_arc() {
         let around = around(ROUND, column(1.0));
-        let way = around.way(Point::new(-5.0, 0.0), Point::new(5.0, 0.0), BehindColumns::Creeping);
+        let way = around.path(Point::new(-5.0, 0.0), Point::new(5.0, 0.0), BehindColumns::Creeping);
         let touch = (1.0_f64 / 5.0).asin();
         let expected = 2.0 * (24.0_f64.sqrt() + touch);
         let length_m = way.expect("heard").length_m;
@@ -190,7 +188,7 @@ mod tests {
     #[test]
     fn a_station_on_a_column_hears_its_own_side() {
         let around = around(ROUND, column(1.0));
-        let hears = |from: Point| around.way(from, Point::new(1.0, 0.0), BehindColumns::Silent).is_some();
+        let hears = |from: Point| around.path(from, Point::new(1.0, 0.0), BehindColumns::Silent).is_some();
         assert!(hears(Point::new(5.0, 0.5)));
         assert!(!hears(Point::new(-5.0, 0.5)));
     }

@@ -284,7 +284,7 @@ fn a_cycle_without_an_answer_is_reported() {
 }
 
 /// A robot that goes from the flooded west to the dry east at the greatest speed it is allowed.
-fn speeds_across_the_shore(transition_steps: u32) -> Vec<(f64, f64)> {
+fn speeds_across_the_waterline(transition_steps: u32) -> Vec<(f64, f64)> {
     let amphibious = Amphibious { transition_steps, ..Amphibious::YANG_2021 };
     let water =
         vec![Point::new(-9.0, -9.0), Point::new(0.0, -9.0), Point::new(0.0, 9.0), Point::new(-9.0, 9.0)];
@@ -310,15 +310,15 @@ fn speeds_across_the_shore(transition_steps: u32) -> Vec<(f64, f64)> {
 }
 
 #[test]
-fn an_amphibious_robot_swims_faster_than_it_walks_and_brakes_at_the_shore() {
-    let speeds = speeds_across_the_shore(20);
+fn an_amphibious_robot_swims_faster_than_it_walks_and_brakes_at_the_waterline() {
+    let speeds = speeds_across_the_waterline(20);
     assert!(speeds.iter().any(|(x, speed)| *x < 0.0 && (speed - 0.23).abs() < 1e-9));
     assert!((speeds[199].1 - 0.13).abs() < 1e-9);
     // In 20 steps the limit falls by 0.005 m/s each, half of what the brakes can do.
     let falls = speeds.windows(2).map(|w| w[0].1 - w[1].1).fold(0.0, f64::max);
     assert!((falls - 0.005).abs() < 1e-9, "{falls}");
-    let ashore_at_once = speeds_across_the_shore(0);
-    let first = ashore_at_once.iter().find(|(x, _)| *x > 0.0).map(|(_, speed)| speed - 0.13);
+    let instant = speeds_across_the_waterline(0);
+    let first = instant.iter().find(|(x, _)| *x > 0.0).map(|(_, speed)| speed - 0.13);
     assert!(first.is_some_and(|over| over > 0.08), "{first:?}");
 }
 

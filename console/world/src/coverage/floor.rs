@@ -1,11 +1,7 @@
 //! The floor as a grid, and what each cell of it is.
 
-use super::Tool;
-use crate::{
-    geometry::{Point, Pose},
-    polyline::nearest_on_segment,
-    tank::World,
-};
+use super::tool::Tool;
+use geometry::{Point, Pose, Vector};
 use serde::{Deserialize, Serialize};
 
 /// What a cell of the floor is.
@@ -14,11 +10,11 @@ use serde::{Deserialize, Serialize};
 pub enum Cell {
     /// Not floor: outside the tank or inside an obstacle.
     Outside,
-    /// Floor to which no way leads that is wide enough for the robot.
+    /// Floor to which no passage leads that is wide enough for the robot.
     Unreachable,
-    /// Floor along the shell that the tool cannot reach, because the robot keeps its distance from the wall.
+    /// Floor along the shell that the tool cannot reach, because the hull keeps clear of the wall.
     Margin,
-    /// Floor beside obstacles that the tool cannot reach, because the robot keeps its distance from them.
+    /// Floor beside obstacles that the tool cannot reach, because the hull keeps clear of them.
     Beside,
     /// Floor in a zone that the robot must not enter, beyond the reach of the tool.
     NoGo,
@@ -26,14 +22,24 @@ pub enum Cell {
     Reachable,
 }
 
-/// The floor as a grid of square cells, row by row from the south west corner.
+/// The floor as a grid of square cells, row by row from the south-west corner, tank frame.
 ///
-/// A cell is floor if its centre is. It is reachable if the tool covers its centre from some place to which the
-/// robot's centre can drive from the start. Stored and written as runs of equal cells.
+/// A cell is floor if its centre is. It is reachable if the tool covers its centre from some position to which the
+/// robot can drive from the start. Written as runs of equal cells.
+///
+/// ```
+/// use world::{Boundary, Floor, Point, World};
+/// # let boundary = Boundary::Circle { radius_m: 5.0 };
+/// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+/// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+/// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+/// let east = floor.cell_at(Point::new(4.9, 0.0)).unwrap();
+/// assert_eq!(floor.kind(east), world::Cell::Margin);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "FloorRuns", into = "FloorRuns")]
 pub struct Floor {
-    /// South west corner of cell 0, metres.
+    /// South-west corner of cell 0, metres.
     pub origin: Point,
     /// Edge of a cell, metres.
     pub cell_m: f64,
@@ -53,25 +59,37 @@ pub struct CellRun(pub u32, pub u32);
 pub struct KindRun(pub Cell, pub u32, pub u32);
 
 impl Floor {
-    /// More cells than this are refused, here and where scenarios are checked.
+    /// Most cells of a floor; more are refused, here and where scenarios are checked.
     pub const MOST_CELLS: usize = 4_000_000;
 
-    /// The floor of a tank for a robot whose centre keeps `room_m` (hull and clearance) from anything solid, with a
-    /// tool of some swath, driving from `start`.
+    /// Whether another floor has its cells at the same positions.
     ///
-    /// Costs one distance query per cell and a flood fill.
-    pub fn new(world: &World, cell_m: f64, room_m: f64, swath_m: f64, start: Point) -> Self {
-        super::FloorMaker::new(world, cell_m, room_m, swath_m, start).into_floor()
-    }
-
-    /// Whether another floor has its cells in the same places.
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// let coarse = Floor::new(&tank, 0.2, 0.5, 0.6, Point::origin());
+    /// assert!(floor.is_aligned_with(&floor.clone()) && !floor.is_aligned_with(&coarse));
+    /// ```
     pub fn is_aligned_with(&self, other: &Self) -> bool {
         self.width == other.width
             && self.height == other.height
             && (self.origin, self.cell_m) == (other.origin, other.cell_m)
     }
 
-    /// The cell under a point, if it lies in the grid.
+    /// Index of the cell under a point; `None` outside the grid.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// assert_eq!(floor.cell_at(Point::origin()), Some(50 * 100 + 50));
+    /// assert_eq!(floor.cell_at(Point::new(6.0, 0.0)), None);
+    /// ```
     pub fn cell_at(&self, point: Point) -> Option<usize> {
         let offset = (point - self.origin) / self.cell_m;
         let inside = |at: f64, count: usize| at >= 0.0 && at < count as f64;
@@ -80,32 +98,90 @@ impl Floor {
     }
 
     /// Centre of a cell, metres.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// assert!((floor.center(0) - Point::new(-4.95, -4.95)).norm() < 1e-9);
+    /// ```
     pub fn center(&self, index: usize) -> Point {
         let (column, row) = (index % self.width, index / self.width);
-        self.origin + nalgebra::Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m
+        self.origin + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m
     }
 
     /// What a cell is.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// assert_eq!(floor.kind(0), world::Cell::Outside);
+    /// ```
     pub fn kind(&self, index: usize) -> Cell {
         self.cells[index]
     }
 
-    /// Whether a cell is floor.
+    /// Whether a cell is floor of any kind.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// let n_floor = (0..floor.len()).filter(|cell| floor.is_floor(*cell)).count();
+    /// assert!((n_floor as f64 * floor.cell_m2() - 78.54).abs() < 0.5);
+    /// ```
     pub fn is_floor(&self, index: usize) -> bool {
         self.cells[index] != Cell::Outside
     }
 
     /// Whether the tool can reach a cell.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// let is_reachable = |x| floor.is_reachable(floor.cell_at(Point::new(x, 0.0)).unwrap());
+    /// assert!(is_reachable(4.5) && !is_reachable(4.9));
+    /// ```
     pub fn is_reachable(&self, index: usize) -> bool {
         self.cells[index] == Cell::Reachable
     }
 
     /// Area of a cell, square metres.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// assert!((floor.cell_m2() - 0.01).abs() < 1e-12);
+    /// ```
     pub fn cell_m2(&self) -> f64 {
         self.cell_m * self.cell_m
     }
 
-    /// Makes some cells another kind; cells beyond the grid are ignored.
+    /// Changes the kind of some cells; cells beyond the grid are ignored.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// let mut floor = floor;
+    /// floor.change(&[world::KindRun(world::Cell::NoGo, 5000, 3)]);
+    /// assert_eq!(floor.kind(5002), world::Cell::NoGo);
+    /// ```
     pub fn change(&mut self, changes: &[KindRun]) {
         for KindRun(kind, first, count) in changes {
             let end = (*first as usize).saturating_add(*count as usize).min(self.cells.len());
@@ -114,56 +190,90 @@ impl Floor {
         }
     }
 
-    /// All of it as runs of equal cells: what [`Floor::change`] makes it of any floor with the same cells.
+    /// The whole floor as runs of equal cells; [`Floor::change`] with them turns any aligned floor into this one.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// let mut other = Floor::new(&tank, 0.1, 1.0, 0.6, Point::origin());
+    /// other.change(&floor.kinds());
+    /// assert_eq!(other, floor);
+    /// ```
     pub fn kinds(&self) -> Vec<KindRun> {
-        let mut runs: Vec<KindRun> = Vec::new();
-        for (index, cell) in self.cells.iter().enumerate() {
-            match runs.last_mut() {
-                Some(KindRun(kind, _, count)) if kind == cell => *count += 1,
-                _ => runs.push(KindRun(*cell, index as u32, 1)),
-            }
-        }
-        runs
+        kind_runs(self.cells.iter().copied().enumerate())
     }
 
-    /// How many cells the grid has.
+    /// Number of cells of the grid.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// assert_eq!(floor.len(), floor.width * floor.height);
+    /// ```
     pub fn len(&self) -> usize {
         self.cells.len()
     }
 
     /// Whether the grid has no cells.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// assert!(!floor.is_empty());
+    /// ```
     pub fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }
 
     pub(super) fn neighbours(&self, index: usize) -> impl Iterator<Item = usize> + use<> {
-        let (column, row, width, height) = (index % self.width, index / self.width, self.width, self.height);
-        let west = (column > 0).then(|| index - 1);
-        let east = (column + 1 < width).then(|| index + 1);
-        let south = (row > 0).then(|| index - width);
-        let north = (row + 1 < height).then(|| index + width);
-        [west, east, south, north].into_iter().flatten()
+        neighbours(index, self.width, self.cells.len())
     }
 
     /// Cells whose centre lies within `reach_m` of the segment from `a` to `b`, in order of their index.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// let disc = floor.cells_near(Point::origin(), Point::origin(), 1.0);
+    /// assert!((disc.len() as f64 * floor.cell_m2() - 3.14).abs() < 0.05);
+    /// ```
     pub fn cells_near(&self, a: Point, b: Point, reach_m: f64) -> Vec<usize> {
-        let reach = nalgebra::Vector2::new(reach_m, reach_m);
-        self.cells_in(a.inf(&b) - reach, a.sup(&b) + reach)
-            .filter(|index| {
-                let center = self.center(*index);
-                (center - nearest_on_segment(a, b, center)).norm() <= reach_m
-            })
-            .collect()
+        let at = |position| Pose { position, heading_rad: 0.0 };
+        self.cells_under(Tool::Disc { swath_m: 2.0 * reach_m }, at(a), at(b))
     }
 
-    /// Cells whose centre comes under a tool on its way from `a` to `b`, in order of their index.
+    /// Cells whose centre comes under a tool between two poses that are close together, in order of their index.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// use world::{Pose, Tool};
+    /// let (a, b) = (Pose::new(0.0, 0.0, 0.0), Pose::new(1.0, 0.0, 0.0));
+    /// let cells = floor.cells_under(Tool::Bar { swath_m: 0.6 }, a, b);
+    /// assert!((cells.len() as f64 * floor.cell_m2() - 0.6).abs() < 0.05);
+    /// ```
     pub fn cells_under(&self, tool: Tool, a: Pose, b: Pose) -> Vec<usize> {
         let passage = tool.passage(a, b);
         let (low, high) = passage.bounds();
         self.cells_in(low, high).filter(|index| passage.contains(self.center(*index))).collect()
     }
 
-    /// The cells of a box and perhaps some beside it, in order of their index.
+    /// The cells of a box, perhaps with some beside it, in order of their index.
     pub(super) fn cells_in(&self, low: Point, high: Point) -> impl Iterator<Item = usize> + use<> {
         let first = (low - self.origin) / self.cell_m;
         let last = (high - self.origin) / self.cell_m;
@@ -174,6 +284,29 @@ impl Floor {
         span(first.y, last.y, self.height)
             .flat_map(move |row| columns.clone().map(move |column| row * width + column))
     }
+}
+
+/// The four neighbours of a cell in a grid of rows `width` cells long, `count` cells in all, as far as they exist.
+pub(crate) fn neighbours(index: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
+    let column = index % width;
+    let west = (column > 0).then(|| index - 1);
+    let east = (column + 1 < width).then_some(index + 1);
+    let (south, north) = (index.checked_sub(width), Some(index + width).filter(|north| *north < count));
+    [west, east, south, north].into_iter().flatten()
+}
+
+/// Cells in order of their index, as runs of neighbours of one kind.
+pub(super) fn kind_runs(cells: impl Iterator<Item = (usize, Cell)>) -> Vec<KindRun> {
+    let mut runs: Vec<KindRun> = Vec::new();
+    for (index, cell) in cells {
+        match runs.last_mut() {
+            Some(KindRun(kind, first, count)) if *kind == cell && (*first + *count) as usize == index => {
+                *count += 1;
+            }
+            _ => runs.push(KindRun(cell, index as u32, 1)),
+        }
+    }
+    runs
 }
 
 /// The written form of a [`Floor`].
@@ -188,13 +321,7 @@ struct FloorRuns {
 
 impl From<Floor> for FloorRuns {
     fn from(floor: Floor) -> Self {
-        let mut runs: Vec<(Cell, u32)> = Vec::new();
-        for cell in floor.cells {
-            match runs.last_mut() {
-                Some((kind, count)) if *kind == cell => *count += 1,
-                _ => runs.push((cell, 1)),
-            }
-        }
+        let runs = floor.kinds().into_iter().map(|KindRun(kind, _, count)| (kind, count)).collect();
         Self { origin: floor.origin, cell_m: floor.cell_m, width: floor.width, height: floor.height, runs }
     }
 }
@@ -202,7 +329,7 @@ impl From<Floor> for FloorRuns {
 impl TryFrom<FloorRuns> for Floor {
     type Error = String;
 
-    /// A damaged file must neither take all the memory nor make later look-ups run past the end.
+    /// A damaged file must neither exhaust the memory nor make later look-ups run past the end.
     fn try_from(written: FloorRuns) -> Result<Self, String> {
         let FloorRuns { origin, cell_m, width, height, runs } = written;
         let count = width.checked_mul(height).filter(|count| *count <= Self::MOST_CELLS);

@@ -1,9 +1,14 @@
-//! Shares as people read them.
+//! Percentages that sum to 100.
 
-/// Shares as per cent with one decimal that sum to 100.0 if the shares sum to 1.
+/// Shares as percentages with one decimal; they sum to 100.0 if the shares sum to 1 (largest remainder method).
 ///
-/// The first share is rounded as usual, so that it reads the same wherever it stands alone; what rounding down takes
-/// from the others goes to those that it hurts most.
+/// The first share is rounded as usual, so that it reads the same where it stands alone. The others are rounded down, and
+/// the tenths that are then missing go to those with the largest remainders.
+///
+/// ```
+/// use world::coverage::percents;
+/// assert_eq!(percents([1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0]), [33.3, 33.4, 33.3]);
+/// ```
 pub fn percents<const N: usize>(shares: [f64; N]) -> [f64; N] {
     let exact = shares.map(|share| share * 1000.0);
     let mut parts = exact.map(|part| (part + 1e-9).floor());

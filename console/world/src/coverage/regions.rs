@@ -1,17 +1,33 @@
 //! Cells of the floor as polygons, and polygons as cells.
 
-use super::Floor;
-use crate::{
-    geometry::{Point, Vector},
+use super::floor::Floor;
+use geometry::{
+    Point, Vector,
     shape::{bounds_of, rectangle, ring_contains},
 };
 
-/// A square about a point, counter-clockwise.
+/// The corners of a square about a point, counter-clockwise from the south-west one.
+///
+/// ```
+/// use world::{Point, coverage::regions::square};
+/// assert_eq!(square(Point::new(1.0, 1.0), 2.0)[2], Point::new(2.0, 2.0));
+/// ```
 pub fn square(center: Point, edge_m: f64) -> Vec<Point> {
     rectangle(center - Vector::new(edge_m, edge_m) / 2.0, center + Vector::new(edge_m, edge_m) / 2.0)
 }
 
-/// Which cells have their centre in one of some polygons; `None` for no polygons, which stand for everything.
+/// For every cell whether its centre lies in one of some polygons; `None` without polygons, which stands for all cells.
+///
+/// ```
+/// use world::{Boundary, Floor, Point, World};
+/// # let boundary = Boundary::Circle { radius_m: 5.0 };
+/// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+/// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+/// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+/// use world::coverage::regions::{cells_within, square};
+/// let within = cells_within(&floor, &[square(Point::origin(), 1.0)]).unwrap();
+/// assert_eq!(within.iter().filter(|is_within| **is_within).count(), 100);
+/// ```
 pub fn cells_within(floor: &Floor, polygons: &[Vec<Point>]) -> Option<Vec<bool>> {
     if polygons.is_empty() {
         return None;
@@ -28,15 +44,26 @@ pub fn cells_within(floor: &Floor, polygons: &[Vec<Point>]) -> Option<Vec<bool>>
 
 /// Wanted cells as boxes that do not overlap, made of square blocks of `block` by `block` cells.
 ///
-/// A block is taken if at least half of its floor is wanted, so slivers fall out and ragged edges are evened. Blocks
-/// of one row are joined, and rows of equal length with those below. Costs one look at every cell.
+/// A block is taken if at least half of its floor is wanted: slivers are dropped and ragged edges straightened.
+/// Neighbouring blocks of one row are joined, and equal stretches of consecutive rows. Costs one look at every cell.
+///
+/// ```
+/// use world::{Boundary, Floor, Point, World};
+/// # let boundary = Boundary::Circle { radius_m: 5.0 };
+/// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+/// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+/// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+/// let boxes = world::coverage::regions::boxes(&floor, 1, |cell| floor.is_floor(cell));
+/// let area_m2: f64 = boxes.iter().map(|b| world::shape::ring_area_m2(b)).sum();
+/// assert!((area_m2 - 78.54).abs() < 0.5);
+/// ```
 pub fn boxes(floor: &Floor, block: usize, is_wanted: impl Fn(usize) -> bool) -> Vec<Vec<Point>> {
     let (columns, rows) = (floor.width.div_ceil(block), floor.height.div_ceil(block));
-    let mut done: Vec<Box2> = Vec::new();
-    let mut open: Vec<Box2> = Vec::new();
+    let mut done: Vec<BlockBox> = Vec::new();
+    let mut open: Vec<BlockBox> = Vec::new();
     for row in 0..rows {
         let spans = spans(columns, |column| is_taken(floor, block, column, row, &is_wanted));
-        let (mut kept, closed): (Vec<Box2>, Vec<Box2>) =
+        let (mut kept, closed): (Vec<BlockBox>, Vec<BlockBox>) =
             open.into_iter().partition(|b| spans.contains(&(b.first, b.end)));
         done.extend(closed);
         for b in &mut kept {
@@ -44,7 +71,7 @@ pub fn boxes(floor: &Floor, block: usize, is_wanted: impl Fn(usize) -> bool) -> 
         }
         for (first, end) in spans {
             if !kept.iter().any(|b| b.first == first) {
-                kept.push(Box2 { first, end, bottom: row, top: row + 1 });
+                kept.push(BlockBox { first, end, bottom: row, top: row + 1 });
             }
         }
         open = kept;
@@ -56,15 +83,15 @@ pub fn boxes(floor: &Floor, block: usize, is_wanted: impl Fn(usize) -> bool) -> 
     done.iter().map(|b| rectangle(corner(b.first, b.bottom), corner(b.end, b.top))).collect()
 }
 
-/// A box of blocks; `end` and `top` are one beyond.
-struct Box2 {
+/// A box of blocks; `end` and `top` are exclusive.
+struct BlockBox {
     first: usize,
     end: usize,
     bottom: usize,
     top: usize,
 }
 
-/// Runs of taken columns: first and one beyond the last.
+/// Runs of taken columns: the first and, exclusive, the end.
 fn spans(columns: usize, is_taken: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
     let mut spans: Vec<(usize, usize)> = Vec::new();
     for column in (0..columns).filter(|column| is_taken(*column)) {

@@ -1,53 +1,56 @@
-//! The zone along the shell, where the floor plate meets it: too narrow for the cells of a floor, so it is looked at
-//! by itself, place by place along the wall.
+//! The critical zone along the shell, where the floor plate meets it. It is too narrow for the cells of a floor, so it is
+//! recorded separately, in short stretches of the wall.
 
-use super::Tool;
-use crate::{
-    Boundary,
-    geometry::{Point, Pose, Vector},
-    shape::Shape,
-};
+use super::tool::Tool;
+use geometry::{Boundary, Point, Pose, Shape, Vector, polyline::edges, unit_vector};
 use std::{collections::BTreeMap, f64::consts::TAU};
 
-/// Distance between two places along the wall, metres; more where the wall is so long that it takes too many.
+/// Length of a stretch, metres; more where the wall is so long that there would be too many.
 const SPACING_M: f64 = 0.025;
-/// Most places along the wall.
-const MOST_PLACES: f64 = 20_000.0;
+/// Most stretches of a wall.
+const MOST_STRETCHES: f64 = 20_000.0;
 /// Layers into which the zone is divided from the shell inwards.
 const LAYERS: usize = 15;
-/// Edge of the squares by which places are found, metres.
+/// Edge of the squares by which stretches are found, metres.
 const BUCKET_M: f64 = 0.5;
 
-/// The zone along the shell with what a tool has passed of it.
+/// The zone along the shell, and which of it a tool has passed.
 ///
-/// Passes that come nowhere near the wall cost two distances; the others one look at each place beside them.
+/// A pass far from the wall costs two distance queries; any other one test for each stretch beside it.
+///
+/// ```
+/// use world::{Boundary, Pose, ShellZone, Tool};
+/// let mut zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
+/// zone.pass(Tool::Bar { swath_m: 0.6 }, Pose::new(4.7, -0.1, 1.57), Pose::new(4.7, 0.1, 1.57));
+/// assert!((zone.figures(|_| false).done_m - 0.2).abs() < 0.06);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShellZone {
     boundary: Boundary,
     width_m: f64,
-    places: Vec<Place>,
-    /// Which places lie in which square, by row and column from the south west corner; squares without any are left
-    /// out, so a tank costs by its shell and not by its area.
+    stretches: Vec<Stretch>,
+    /// The stretches in each square, by row and column from the south-west corner; squares without any are left out, so
+    /// the cost of a tank grows with its shell and not with its area.
     squares: BTreeMap<(usize, usize), Vec<u32>>,
     origin: Point,
 }
 
 /// A short stretch of the wall and the floor before it.
 #[derive(Debug, Clone, PartialEq)]
-struct Place {
-    /// On the wall, metres.
+struct Stretch {
+    /// Its middle, on the wall, metres.
     at: Point,
-    /// Across the zone, a layer long, metres.
+    /// Inward, one layer thick, metres.
     step: Vector,
-    /// Length of the stretch, metres.
+    /// Its length, metres.
     length_m: f64,
-    /// Layers that lie in the tank.
+    /// Layers that lie in the tank, one bit each.
     inside: u32,
-    /// Layers that were passed.
+    /// Layers that were passed, one bit each.
     passed: u32,
 }
 
-/// How much of the zone was scanned.
+/// How much of the critical zone was scanned.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ShellFigures {
     /// Length of the shell beside free floor, metres.
@@ -56,32 +59,52 @@ pub struct ShellFigures {
     pub done_m: f64,
     /// Scanned share of the zone's area, 0 to 1.
     pub scanned: f64,
-    /// Distance from the shell to where the scanned floor begins, the median along the shell where the zone is not
-    /// done, metres; the zone's width where nothing of it was scanned, 0 if all of it is done.
+    /// Distance from the shell to the scanned floor, metres: the median along the part of the shell where the zone is not
+    /// done. It is the width of the zone where nothing was scanned, and 0 if all of it is done.
     pub gap_m: f64,
 }
 
 impl ShellZone {
-    /// The zone of some width along a wall, of which nothing was scanned yet.
+    /// The zone of some width along a wall, metres, of which nothing has been scanned.
+    ///
+    /// ```
+    /// use world::{Boundary, Pose, ShellZone, Tool};
+    /// let mut zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
+    /// assert!((zone.figures(|_| false).length_m - 31.416).abs() < 1e-3);
+    /// ```
     pub fn new(boundary: &Boundary, width_m: f64) -> Self {
         let (origin, _) = boundary.bounds();
-        let places = places(boundary, width_m);
+        let stretches = stretches(boundary, width_m);
         let mut squares: BTreeMap<(usize, usize), Vec<u32>> = BTreeMap::new();
-        for (index, place) in (0..).zip(&places) {
-            let square = (bucket(place.at.y - origin.y), bucket(place.at.x - origin.x));
+        for (index, stretch) in (0..).zip(&stretches) {
+            let square = (bucket(stretch.at.y - origin.y), bucket(stretch.at.x - origin.x));
             squares.entry(square).or_default().push(index);
         }
-        Self { boundary: boundary.clone(), width_m, places, squares, origin }
+        Self { boundary: boundary.clone(), width_m, stretches, squares, origin }
     }
 
-    /// Whether an outline may reach into the zone.
+    /// Whether a shape may reach into the zone; a cheap test that may say so of one nearby.
+    ///
+    /// ```
+    /// use world::{Boundary, Pose, ShellZone, Tool};
+    /// let mut zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
+    /// let column = |x| world::Shape::Disc { center: world::Point::new(x, 0.0), radius_m: 0.5 };
+    /// assert!(zone.is_beside(&column(4.5)) && !zone.is_beside(&column(3.0)));
+    /// ```
     pub fn is_beside(&self, shape: &Shape) -> bool {
         let (low, high) = shape.bounds();
         let reach_m = (high - low).norm() / 2.0 + self.width_m;
         self.boundary.wall_distance_m(nalgebra::center(&low, &high)) <= reach_m
     }
 
-    /// A tool went from `a` to `b`.
+    /// Marks what a tool passes between two poses that are close together.
+    ///
+    /// ```
+    /// use world::{Boundary, Pose, ShellZone, Tool};
+    /// let mut zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
+    /// zone.pass(Tool::Bar { swath_m: 0.6 }, Pose::new(4.7, 0.0, 1.57), Pose::new(4.7, 0.2, 1.57));
+    /// assert!(zone.figures(|_| false).scanned > 0.0);
+    /// ```
     pub fn pass(&mut self, tool: Tool, a: Pose, b: Pose) {
         let reach_m = tool.swath_m() / 2.0 + self.width_m;
         let wall_m = |pose: Pose| self.boundary.wall_distance_m(pose.position);
@@ -95,41 +118,58 @@ impl ShellZone {
         let (west, east) = (bucket(first.x), bucket(last.x));
         let north = self.squares.last_key_value().map_or(0, |((row, _), _)| *row);
         for row in bucket(first.y)..=bucket(last.y).min(north) {
-            for index in self.squares.range((row, west)..=(row, east)).flat_map(|(_, places)| places) {
-                let place = &mut self.places[*index as usize];
-                let passed = |layer: &usize| passage.contains(place.in_layer(*layer));
-                place.passed |= (0..LAYERS).filter(passed).fold(0, |bits, layer| bits | 1 << layer);
+            for index in self.squares.range((row, west)..=(row, east)).flat_map(|(_, stretches)| stretches) {
+                let stretch = &mut self.stretches[*index as usize];
+                let passed = |layer: &usize| passage.contains(stretch.in_layer(*layer));
+                stretch.passed |= (0..LAYERS).filter(passed).fold(0, |bits, layer| bits | 1 << layer);
             }
         }
     }
 
-    /// Takes in what was passed on another way along the same wall.
+    /// Adds what was passed in another record of the same zone.
+    ///
+    /// ```
+    /// use world::{Boundary, Pose, ShellZone, Tool};
+    /// let mut zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
+    /// let mut other = zone.clone();
+    /// other.pass(Tool::Bar { swath_m: 0.6 }, Pose::new(4.7, 0.0, 1.57), Pose::new(4.7, 0.2, 1.57));
+    /// zone.join(&other);
+    /// assert_eq!(zone, other);
+    /// ```
     pub fn join(&mut self, other: &Self) {
-        for (own, other) in self.places.iter_mut().zip(&other.places) {
+        for (own, other) in self.stretches.iter_mut().zip(&other.stretches) {
             own.passed |= other.passed;
         }
     }
 
-    /// The figures, without what lies in something solid.
+    /// How much of the zone was scanned, apart from points that `is_solid` excludes.
+    ///
+    /// ```
+    /// use world::{Boundary, Pose, ShellZone, Tool};
+    /// let mut zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
+    /// let half = zone.figures(|point| point.y < 0.0);
+    /// assert!((half.length_m - 15.71).abs() < 0.1 && half.gap_m == 0.075);
+    /// ```
     pub fn figures(&self, is_solid: impl Fn(Point) -> bool) -> ShellFigures {
         let mut figures = ShellFigures::default();
         let (mut of_m, mut scanned_m) = (0.0, 0.0);
         let mut gaps: Vec<(f64, f64)> = Vec::new();
-        for place in &self.places {
-            let is_free = |layer: &usize| place.inside & 1 << layer != 0 && !is_solid(place.in_layer(*layer));
+        for stretch in &self.stretches {
+            let is_free =
+                |layer: &usize| stretch.inside & 1 << layer != 0 && !is_solid(stretch.in_layer(*layer));
             let free = (0..LAYERS).filter(is_free).fold(0_u32, |bits, layer| bits | 1 << layer);
             if free == 0 {
                 continue;
             }
-            let passed = place.passed & free;
-            figures.length_m += place.length_m;
-            of_m += place.length_m * f64::from(free.count_ones());
-            scanned_m += place.length_m * f64::from(passed.count_ones());
+            let passed = stretch.passed & free;
+            figures.length_m += stretch.length_m;
+            of_m += stretch.length_m * f64::from(free.count_ones());
+            scanned_m += stretch.length_m * f64::from(passed.count_ones());
             if passed == free {
-                figures.done_m += place.length_m;
+                figures.done_m += stretch.length_m;
             } else {
                 let layers = passed.trailing_zeros().min(LAYERS as u32);
-                gaps.push((f64::from(layers) / LAYERS as f64 * self.width_m, place.length_m));
+                gaps.push((f64::from(layers) / LAYERS as f64 * self.width_m, stretch.length_m));
             }
         }
         figures.scanned = if of_m > 0.0 { scanned_m / of_m } else { 0.0 };
@@ -138,55 +178,53 @@ impl ShellZone {
     }
 }
 
-impl Place {
-    /// The middle of a layer; the first one lies along the shell.
+impl Stretch {
+    /// The middle of a layer; the first layer lies along the shell.
     fn in_layer(&self, layer: usize) -> Point {
         self.at + self.step * (layer as f64 + 0.5)
     }
 }
 
-/// The column or row of squares at some distance from the first one's edge.
+/// The column or row of squares at some distance from the edge of the first one.
 fn bucket(offset_m: f64) -> usize {
     (offset_m / BUCKET_M).max(0.0) as usize
 }
 
-fn places(boundary: &Boundary, width_m: f64) -> Vec<Place> {
-    let place = |at: Point, inward: Vector, length_m: f64| {
-        let mut place =
-            Place { at, step: inward * (width_m / LAYERS as f64), length_m, inside: 0, passed: 0 };
-        let is_inside = |layer: &usize| boundary.contains(place.in_layer(*layer));
-        place.inside = (0..LAYERS).filter(is_inside).fold(0, |bits, layer| bits | 1 << layer);
-        place
+fn stretches(boundary: &Boundary, width_m: f64) -> Vec<Stretch> {
+    let stretch = |at: Point, inward: Vector, length_m: f64| {
+        let step = inward * (width_m / LAYERS as f64);
+        let mut stretch = Stretch { at, step, length_m, inside: 0, passed: 0 };
+        let is_inside = |layer: &usize| boundary.contains(stretch.in_layer(*layer));
+        stretch.inside = (0..LAYERS).filter(is_inside).fold(0, |bits, layer| bits | 1 << layer);
+        stretch
     };
     match boundary {
         Boundary::Circle { radius_m } => {
             let length_m = TAU * radius_m;
-            let count = (length_m / SPACING_M).min(MOST_PLACES).ceil().max(1.0);
-            let outward = |k: usize| {
-                let angle = TAU * (k as f64 + 0.5) / count;
-                Vector::new(angle.cos(), angle.sin())
-            };
+            let count = (length_m / SPACING_M).min(MOST_STRETCHES).ceil().max(1.0);
+            let outward = |k: usize| unit_vector(TAU * (k as f64 + 0.5) / count);
             let at = |k| Point::from(outward(k) * *radius_m);
-            (0..count as usize).map(|k| place(at(k), -outward(k), length_m / count)).collect()
+            (0..count as usize).map(|k| stretch(at(k), -outward(k), length_m / count)).collect()
         }
         Boundary::Polygon { vertices } => {
-            let sides = || vertices.iter().zip(vertices.iter().cycle().skip(1));
-            let length_m: f64 = sides().map(|(a, b)| (b - a).norm()).sum();
-            let spacing_m = SPACING_M.max(length_m / MOST_PLACES);
-            let along = |(a, b): (&Point, &Point)| {
+            let length_m: f64 = edges(vertices).map(|(a, b)| (b - a).norm()).sum();
+            let spacing_m = SPACING_M.max(length_m / MOST_STRETCHES);
+            let along = |(a, b): (Point, Point)| {
                 let side_m = (b - a).norm();
                 let (count, way) = ((side_m / spacing_m).ceil(), b - a);
                 let inward = Vector::new(-way.y, way.x) / side_m.max(f64::MIN_POSITIVE);
-                let start = *a;
                 (0..count as usize)
-                    .map(move |k| (start + way * ((k as f64 + 0.5) / count), inward, side_m / count))
+                    .map(move |k| (a + way * ((k as f64 + 0.5) / count), inward, side_m / count))
             };
-            sides().flat_map(along).map(|(at, inward, length_m)| place(at, inward, length_m)).collect()
+            edges(vertices)
+                .flat_map(along)
+                .map(|(at, inward, length_m)| stretch(at, inward, length_m))
+                .collect()
         }
     }
 }
 
-/// The middle of some values with their weights; 0 for none.
+/// The weighted median of some values, each with its weight; 0 for none.
 fn median(mut values: Vec<(f64, f64)>) -> f64 {
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     let half = values.iter().map(|(_, weight)| weight).sum::<f64>() / 2.0;
@@ -253,12 +291,12 @@ mod tests {
     }
 
     #[test]
-    fn a_huge_tank_costs_by_its_shell_and_not_by_its_area() {
+    fn the_cost_of_a_huge_tank_grows_with_its_shell_and_not_with_its_area() {
         let radius_m = 1e5;
         let mut zone = ShellZone::new(&Boundary::Circle { radius_m }, 0.075);
-        assert!(zone.squares.len() <= zone.places.len());
-        let (place_m, east_m) = (zone.places[0].length_m, radius_m - 0.3);
-        zone.pass(BAR, Pose::new(east_m, 0.0, FRAC_PI_2), Pose::new(east_m, place_m, FRAC_PI_2));
+        assert!(zone.squares.len() <= zone.stretches.len());
+        let (stretch_m, east_m) = (zone.stretches[0].length_m, radius_m - 0.3);
+        zone.pass(BAR, Pose::new(east_m, 0.0, FRAC_PI_2), Pose::new(east_m, stretch_m, FRAC_PI_2));
         let figures = zone.figures(|_| false);
         assert!(figures.scanned > 0.0 && near(figures.length_m, TAU * radius_m, 1e-3), "{figures:?}");
     }

@@ -1,16 +1,17 @@
 //! The scanning tool and the floor that it passes.
 
-use crate::{
-    geometry::{Point, Pose, Vector},
-    polyline::nearest_on_segment,
-};
+use geometry::{Point, Pose, Vector, polyline::nearest_on_segment, shape::bounds_of};
 use serde::{Deserialize, Serialize};
 
 /// What the robot scans with.
+///
+/// ```
+/// assert_eq!(world::Tool::Bar { swath_m: 0.6 }.swath_m(), 0.6);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tool {
-    /// A bar across the heading, through the robot's centre: what inspection robots have.
+    /// A bar across the heading, through the robot's centre, as inspection robots have.
     Bar {
         /// Its length, metres.
         swath_m: f64,
@@ -23,14 +24,18 @@ pub enum Tool {
 }
 
 impl Tool {
-    /// Width of the floor that is scanned in one pass, metres.
+    /// Width of the strip that is scanned in one pass, metres.
+    ///
+    /// ```
+    /// assert_eq!(world::Tool::Disc { swath_m: 0.6 }.swath_m(), 0.6);
+    /// ```
     pub fn swath_m(self) -> f64 {
         match self {
             Self::Bar { swath_m } | Self::Disc { swath_m } => swath_m,
         }
     }
 
-    /// What it passes on its way between two poses that are close together.
+    /// The area that it sweeps between two poses that are close together.
     pub(super) fn passage(self, from: Pose, to: Pose) -> Passage {
         match self {
             Self::Bar { swath_m } => Passage::Bar(Swept::new(swath_m, from, to)),
@@ -41,14 +46,14 @@ impl Tool {
     }
 }
 
-/// What a tool passes.
+/// The area that a tool sweeps.
 pub(super) enum Passage {
     Bar(Swept),
     Disc { from: Point, to: Point, reach_m: f64 },
 }
 
 impl Passage {
-    /// South west and north east corners of the box around it.
+    /// South-west and north-east corners of the box around it.
     pub(super) fn bounds(&self) -> (Point, Point) {
         match self {
             Self::Bar(swept) => swept.bounds(),
@@ -69,7 +74,7 @@ impl Passage {
     }
 }
 
-/// What a bar passes on its way between two poses that are close together: two triangles for each half.
+/// The area that a bar sweeps between two poses that are close together: two triangles for each half.
 pub(super) struct Swept([[Point; 3]; 4]);
 
 /// A point this far outside a triangle still counts, metres: neighbouring triangles leave no seam.
@@ -85,8 +90,7 @@ impl Swept {
     }
 
     fn bounds(&self) -> (Point, Point) {
-        let corners = self.0.iter().flatten();
-        corners.fold((self.0[0][0], self.0[0][0]), |(low, high), p| (low.inf(p), high.sup(p)))
+        bounds_of(self.0.as_flattened())
     }
 
     fn contains(&self, point: Point) -> bool {

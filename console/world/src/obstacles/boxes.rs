@@ -7,10 +7,10 @@ use parry2d_f64::{
     partitioning::{Bvh, BvhBuildStrategy},
 };
 
-/// What rounding may take off in any test, metres and square metres: a segment that only touches a box meets it.
+/// Allowance for rounding in every test, metres and square metres: a segment that only touches a box meets it.
 const SLACK: f64 = 1e-9;
 
-/// Boxes in a tree; a query costs the logarithm of their number plus what it finds.
+/// Boxes in a tree; a query costs the logarithm of their number plus the number found.
 #[derive(Debug, Clone)]
 pub(crate) struct Boxes {
     tree: Bvh,
@@ -24,7 +24,7 @@ impl Boxes {
         Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
     }
 
-    /// Indices of the boxes that come within `room_m` of a segment, perhaps of some more, in no order.
+    /// Indices of the boxes that come within `room_m` of a segment, perhaps of some more, in the order of the tree.
     pub(crate) fn near(&self, a: Point, b: Point, room_m: f64) -> impl Iterator<Item = usize> + '_ {
         let (a, b): (DVec2, DVec2) = (a.into(), b.into());
         let (middle, half) = ((a + b) / 2.0, (b - a) / 2.0);

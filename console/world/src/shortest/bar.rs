@@ -1,15 +1,15 @@
-//! What blocks the way: everything within a radius of a segment.
+//! What blocks the robot: everything within a radius of a segment.
 
-use super::TOUCH_M;
-use crate::{geometry::Point, polyline::nearest_on_segment};
-use glam::DVec2;
-use parry2d_f64::{
-    bounding_volume::Aabb,
-    partitioning::{Bvh, BvhBuildStrategy},
+use crate::obstacles::Boxes;
+use geometry::{
+    Point, Vector,
+    polyline::{nearest_on_segment, segments_cross},
 };
-use std::fmt;
 
-/// Everything within `radius_m` of a segment; a disc when both ends are one.
+/// Overlap up to which two outlines count as touching, metres.
+pub(super) const TOUCH_M: f64 = 1e-9;
+
+/// Everything within `radius_m` of a segment; a disc when both ends coincide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bar {
     pub a: Point,
@@ -23,7 +23,7 @@ impl Bar {
         (at - nearest_on_segment(self.a, self.b, at)).norm() - self.radius_m
     }
 
-    /// Whether a segment leads through it, by more than a touch.
+    /// Whether a segment enters it by more than a touch.
     fn blocks(&self, a: Point, b: Point) -> bool {
         let least_m = self.radius_m - TOUCH_M;
         let is_near = |p: Point, q: Point, at: Point| {
@@ -36,39 +36,25 @@ impl Bar {
             || is_near(a, b, self.b)
             || is_near(self.a, self.b, a)
             || is_near(self.a, self.b, b)
-            || cross(a, b, self.a, self.b)
+            || segments_cross(a, b, self.a, self.b)
     }
 
-    fn bounds(&self) -> Aabb {
-        let margin = DVec2::splat(self.radius_m);
-        let (low, high): (DVec2, DVec2) = (self.a.inf(&self.b).into(), self.a.sup(&self.b).into());
-        Aabb::new(low - margin, high + margin)
+    fn bounds(&self) -> (Point, Point) {
+        let margin = Vector::new(self.radius_m, self.radius_m);
+        (self.a.inf(&self.b) - margin, self.a.sup(&self.b) + margin)
     }
-}
-
-/// Whether two segments cross.
-fn cross(a: Point, b: Point, c: Point, d: Point) -> bool {
-    let side = |from: Point, to: Point, at: Point| (to - from).perp(&(at - from));
-    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
 /// Many bars, found through a bounding volume hierarchy.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub(super) struct Bars {
     all: Vec<Bar>,
-    tree: Bvh,
-}
-
-impl fmt::Debug for Bars {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_list().entries(&self.all).finish()
-    }
+    boxes: Boxes,
 }
 
 impl Bars {
     pub(super) fn new(all: Vec<Bar>) -> Self {
-        let boxes: Vec<Aabb> = all.iter().map(Bar::bounds).collect();
-        Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), all }
+        Self { boxes: Boxes::new(all.iter().map(Bar::bounds)), all }
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = &Bar> {
@@ -77,24 +63,11 @@ impl Bars {
 
     /// Whether any blocks a segment.
     pub(super) fn block(&self, a: Point, b: Point) -> bool {
-        let (low, high): (DVec2, DVec2) = (a.inf(&b).into(), a.sup(&b).into());
-        let normal = DVec2::new(a.y - b.y, b.x - a.x);
-        let offset = normal.dot(a.into());
-        let meets = |mins: DVec2, maxs: DVec2| {
-            let (center, half) = ((mins + maxs) * 0.5, (maxs - mins) * 0.5);
-            let apart = (normal.dot(center) - offset).abs() > normal.abs().dot(half) + f64::EPSILON;
-            !apart && mins.cmple(high).all() && maxs.cmpge(low).all()
-        };
-        let near = self.tree.leaves(|node| meets(node.mins(), node.maxs()));
-        let mut near = near.map(|leaf| &self.all[leaf as usize]);
-        near.any(|bar| bar.blocks(a, b))
+        self.boxes.near(a, b, 0.0).any(|index| self.all[index].blocks(a, b))
     }
 
-    /// Those whose boxes meet that of a circle.
+    /// Those whose boxes come within a radius of a point, perhaps some more.
     pub(super) fn near(&self, center: Point, radius_m: f64) -> impl Iterator<Item = &Bar> {
-        let (low, high) = (DVec2::from(center) - radius_m, DVec2::from(center) + radius_m);
-        let near =
-            self.tree.leaves(move |node| node.mins().cmple(high).all() && node.maxs().cmpge(low).all());
-        near.map(|leaf| &self.all[leaf as usize])
+        self.boxes.near(center, center, radius_m).map(|index| &self.all[index])
     }
 }

@@ -1,25 +1,22 @@
-//! What a way can bend about: circles, and which of their bearings are free.
+//! What a path can turn about: circles, and which of their bearings are free.
 
-use super::{
-    TOUCH_M,
-    bar::{Bar, Bars},
-};
-use geometry::{Point, Vector};
+use super::bar::{Bar, Bars, TOUCH_M};
+use geometry::{Point, Vector, unit_vector};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Bearings differ by rounding only up to this, radians.
+/// Difference of bearings that counts as rounding, radians.
 pub(super) const ROUNDING_RAD: f64 = 1e-7;
 
-/// Bearings from one to another, counter-clockwise.
+/// An interval of bearings, counter-clockwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Span {
     /// In [0, 2 pi).
     pub from_rad: f64,
-    /// Not less than that, and at most a turn more.
+    /// Not less than that, and at most a full turn more.
     pub to_rad: f64,
 }
 
-/// A span by its directions, for a test without angles.
+/// A span as directions, for tests without angles.
 #[derive(Debug, Clone, Copy)]
 struct Sector {
     from: Vector,
@@ -30,12 +27,11 @@ struct Sector {
 
 impl Sector {
     fn new(span: &Span) -> Self {
-        let towards = |rad: f64| Vector::new(rad.cos(), rad.sin());
         let is_wide = span.to_rad - span.from_rad > PI;
         Self {
-            from: towards(span.from_rad),
-            middle: towards(f64::midpoint(span.from_rad, span.to_rad)),
-            to: towards(span.to_rad),
+            from: unit_vector(span.from_rad),
+            middle: unit_vector(f64::midpoint(span.from_rad, span.to_rad)),
+            to: unit_vector(span.to_rad),
             is_wide,
         }
     }
@@ -45,19 +41,19 @@ impl Sector {
         if self.is_wide {
             after >= -ROUNDING_RAD || before >= -ROUNDING_RAD
         } else {
-            // A narrow one must not be taken for its opposite.
+            // A narrow sector must not be mistaken for its opposite.
             let is_ahead = self.middle.dot(&direction) >= -ROUNDING_RAD;
             after >= -ROUNDING_RAD && before >= -ROUNDING_RAD && is_ahead
         }
     }
 }
 
-/// A circle that ways can bend about.
+/// A circle that paths can turn about.
 #[derive(Debug, Clone)]
 pub(super) struct Corner {
     pub center: Point,
     pub radius_m: f64,
-    /// The bearings at which nothing else covers it; one span of a whole turn if nothing does.
+    /// The bearings at which nothing else covers it; one span of a full turn if nothing does.
     pub free: Vec<Span>,
     sectors: Vec<Sector>,
 }
@@ -84,7 +80,7 @@ impl Corner {
         is_whole || self.sectors.iter().any(|sector| sector.contains(direction))
     }
 
-    /// How far one can turn from a bearing, counter-clockwise and clockwise, radians; none where it is not free.
+    /// How far a path can turn from a bearing, counter-clockwise and clockwise, radians; none where it is not free.
     pub(super) fn room_rad(&self, bearing_rad: f64) -> Option<(f64, f64)> {
         let (span, past_rad) = self.span(bearing_rad)?;
         if span.to_rad - span.from_rad >= TAU {
@@ -102,8 +98,8 @@ impl Corner {
     }
 }
 
-/// The angle from one bearing to another, counter-clockwise (`turn` 1) or clockwise (-1), in [0, 2 pi); almost a
-/// whole turn counts as none.
+/// The angle from one bearing to another, counter-clockwise (`turn` 1) or clockwise (-1), in [0, 2 pi); almost a full
+/// turn counts as none.
 pub(super) fn turned_rad(from_rad: f64, to_rad: f64, turn: f64) -> f64 {
     ((to_rad - from_rad) * turn + ROUNDING_RAD).rem_euclid(TAU) - ROUNDING_RAD
 }
@@ -115,13 +111,13 @@ struct Circle {
 
 impl Circle {
     fn at(&self, bearing_rad: f64) -> Point {
-        self.center + Vector::new(bearing_rad.cos(), bearing_rad.sin()) * self.radius_m
+        self.center + unit_vector(bearing_rad) * self.radius_m
     }
 
     /// Adds the bearings that a bar covers.
     fn cover(&self, bar: &Bar, covered: &mut Vec<Span>) {
         let along = bar.b - bar.a;
-        // The circle at one end of a bar of the same thickness: the half that looks along it.
+        // For the circle at an end of a bar of the same thickness, the half that faces along the bar.
         if (bar.radius_m - self.radius_m).abs() < TOUCH_M {
             for (end, along) in [(bar.a, along), (bar.b, -along)] {
                 if end == self.center {
@@ -143,7 +139,7 @@ impl Circle {
         self.split(&cuts, covered, |at| bar.distance_m(at) < -TOUCH_M);
     }
 
-    /// Adds the pieces between cuts whose middle is covered.
+    /// Adds the intervals between cuts whose middle is covered.
     fn split(&self, cuts: &[f64], covered: &mut Vec<Span>, is_covered: impl Fn(Point) -> bool) {
         let mut cuts: Vec<f64> = cuts.iter().map(|cut| cut.rem_euclid(TAU)).collect();
         cuts.sort_by(f64::total_cmp);
@@ -161,7 +157,7 @@ impl Circle {
         }
     }
 
-    /// Bearings at which another circle is met.
+    /// Bearings at which another circle intersects.
     fn cuts_with_circle(&self, center: Point, radius_m: f64) -> Vec<f64> {
         let way = center - self.center;
         let apart_m = way.norm();
@@ -173,7 +169,7 @@ impl Circle {
         around(way, cos)
     }
 
-    /// Bearings at which a line is met, given by a point and its unit normal.
+    /// Bearings at which a line intersects, given by a point and its unit normal.
     fn cuts_with_line(&self, on: Point, normal: Vector) -> Vec<f64> {
         around(normal, (on - self.center).dot(&normal) / self.radius_m)
     }
@@ -201,7 +197,7 @@ fn complement(mut covered: Vec<Span>) -> Vec<Span> {
     let Some(first) = covered.first() else {
         return vec![Span { from_rad: 0.0, to_rad: TAU }];
     };
-    // Once round, beginning where the first one begins; what reaches over the end is seen again a turn later.
+    // One full turn from the start of the first span; a span that reaches beyond the end is carried over to the start.
     let begin_rad = first.from_rad;
     let carried_rad = covered.iter().map(|span| span.to_rad - TAU).fold(begin_rad, f64::max);
     let mut reached_rad = carried_rad;

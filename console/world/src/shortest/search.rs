@@ -1,23 +1,25 @@
 //! A* over tangents and arcs.
 
 use super::{
-    GrownFloor, NoWay, Piece, Way,
     corner::{ROUNDING_RAD, turned_rad},
+    grown_floor::GrownFloor,
     tangent::{Tangent, Turn, tangent},
+    way::{NoWay, Piece, Way},
 };
+use crate::total::Total;
 use geometry::{Point, Vector};
-use std::{cmp::Ordering, collections::BinaryHeap};
+use std::{cmp::Reverse, collections::BinaryHeap};
 
-/// The caller is asked after so many tangents.
+/// Number of tangents after which the caller is asked again.
 const ASK_EVERY: usize = 64;
-/// Of two ways to the same place one must be shorter by more than this, metres.
+/// Difference of lengths that counts as rounding, metres.
 const ROUNDING_M: f64 = 1e-12;
 
 fn bearing_rad(direction: Vector) -> f64 {
     direction.y.atan2(direction.x)
 }
 
-/// A way can turn about a corner in two senses: turn `2 c` is corner `c` counter-clockwise, `2 c + 1` clockwise.
+/// A path can turn about a corner in two senses: turn `2 c` is corner `c` counter-clockwise, `2 c + 1` clockwise.
 type TurnId = usize;
 
 /// Where a tangent leads.
@@ -42,48 +44,27 @@ struct Exit {
     test: Test,
 }
 
-/// A way that has met a turn.
+/// A path that has met a turn.
 struct Arrival {
     turn: Option<TurnId>,
     bearing_rad: f64,
-    /// How far the way can turn from there, radians.
+    /// How far the path can turn from there, radians.
     room_rad: f64,
     at: Point,
     way_m: f64,
-    /// The arrival before, and by which of its exits.
+    /// The previous arrival, and the exit by which it was left.
     from: Option<(usize, usize)>,
 }
 
-/// A way that would leave an arrival by an exit.
+/// A path that would leave an arrival by an exit; the order of the fields is that of the queue.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Candidate {
-    /// Length so far with the straight rest to the goal, metres: no way by this exit is shorter.
-    least_m: f64,
-    way_m: f64,
+    /// Length so far and straight on to the goal, metres: no path by this exit is shorter.
+    least_m: Total,
     arrival: usize,
     exit: usize,
+    way_m: Total,
 }
-
-impl Ord for Candidate {
-    /// The shortest comes first out of a heap; equal ones in the order in which they were found.
-    fn cmp(&self, other: &Self) -> Ordering {
-        let order = other.least_m.total_cmp(&self.least_m);
-        order.then(other.arrival.cmp(&self.arrival)).then(other.exit.cmp(&self.exit))
-    }
-}
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Candidate {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Candidate {}
 
 pub(super) struct Search<'a> {
     floor: &'a GrownFloor,
@@ -95,12 +76,12 @@ pub(super) struct Search<'a> {
     arrivals: Vec<Arrival>,
     /// Arrivals at every turn.
     met: Vec<Vec<usize>>,
-    queue: BinaryHeap<Candidate>,
+    queue: BinaryHeap<Reverse<Candidate>>,
     n_tested: usize,
 }
 
 impl<'a> Search<'a> {
-    /// A search among the ways that bend about some of the floor's corners.
+    /// A search among the paths that turn about some of the floor's corners.
     pub(super) fn new(floor: &'a GrownFloor, start: Point, goal: Point, corners: &[usize]) -> Self {
         let n_turns = 2 * floor.corners.len();
         let mut search = Self {
@@ -126,7 +107,7 @@ impl<'a> Search<'a> {
 
     pub(super) fn run(mut self, keep_going: &mut dyn FnMut() -> bool) -> Result<Way, NoWay> {
         let mut n_taken = 0_usize;
-        while let Some(candidate) = self.queue.pop() {
+        while let Some(Reverse(candidate)) = self.queue.pop() {
             n_taken += 1;
             if n_taken.is_multiple_of(ASK_EVERY) && !keep_going() {
                 return Err(NoWay::Stopped);
@@ -135,7 +116,7 @@ impl<'a> Search<'a> {
                 continue;
             }
             let exit = self.exit(candidate.arrival, candidate.exit);
-            let way_m = candidate.way_m + exit.tangent.length_m;
+            let way_m = candidate.way_m.0 + exit.tangent.length_m;
             match exit.end {
                 End::Goal => return Ok(self.way(&candidate, way_m)),
                 End::Turn { id, bearing_rad } => {
@@ -158,7 +139,7 @@ impl<'a> Search<'a> {
         &self.exits[slot].as_ref().expect("what was left by was made on arrival")[exit]
     }
 
-    /// Tests a tangent, unless that was done before.
+    /// Whether a tangent is free; each is tested once.
     fn is_free(&mut self, candidate: &Candidate) -> bool {
         let slot = self.slot(self.arrivals[candidate.arrival].turn);
         let floor = self.floor;
@@ -172,7 +153,7 @@ impl<'a> Search<'a> {
         exit.test == Test::Free
     }
 
-    /// Goes on from an arrival, unless an earlier one gets everywhere it could, by a way that is no longer.
+    /// Continues from an arrival, unless an earlier one reaches everything it could by a path that is no longer.
     fn arrive(&mut self, arrival: Arrival) {
         let slot = self.slot(arrival.turn);
         if let Some(id) = arrival.turn {
@@ -189,8 +170,9 @@ impl<'a> Search<'a> {
         for (number, exit) in exits.iter().enumerate().filter(|(_, exit)| exit.test != Test::Blocked) {
             if let Some(arc_m) = self.arc_m(&arrival, exit.bearing_rad) {
                 let way_m = arrival.way_m + arc_m;
-                let least_m = way_m + exit.tangent.length_m + (self.goal - exit.tangent.to).norm();
-                self.queue.push(Candidate { least_m, way_m, arrival: index, exit: number });
+                let least_m = Total(way_m + exit.tangent.length_m + (self.goal - exit.tangent.to).norm());
+                let candidate = Candidate { least_m, arrival: index, exit: number, way_m: Total(way_m) };
+                self.queue.push(Reverse(candidate));
             }
         }
         self.arrivals.push(arrival);
@@ -204,7 +186,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Length of the arc from an arrival to a bearing, in the sense of its turn; none if something is in the way.
+    /// Length of the arc from an arrival to a bearing, in the sense of its turn; none if something blocks it.
     fn arc_m(&self, arrival: &Arrival, bearing_rad: f64) -> Option<f64> {
         let Some(id) = arrival.turn else { return Some(0.0) };
         let turn = self.turn(id);
@@ -212,7 +194,7 @@ impl<'a> Search<'a> {
         (arc_rad <= arrival.room_rad + ROUNDING_RAD).then_some(arc_rad.max(0.0) * turn.signed_m.abs())
     }
 
-    /// How far a way that meets a turn at a bearing can follow it, radians.
+    /// How far a path that meets a turn at a bearing can follow it, radians.
     fn room_rad(&self, id: TurnId, bearing_rad: f64) -> f64 {
         let (ahead_rad, back_rad) = self.floor.corners[id / 2].room_rad(bearing_rad).unwrap_or_default();
         if id.is_multiple_of(2) { ahead_rad } else { back_rad }
@@ -249,7 +231,7 @@ impl<'a> Search<'a> {
         to_goal.into_iter().chain(to_turns).collect()
     }
 
-    /// The way that ends with a candidate's exit.
+    /// The path that ends with a candidate's exit.
     fn way(&self, last: &Candidate, length_m: f64) -> Way {
         let mut pieces = Vec::new();
         let mut step = Some((last.arrival, last.exit));

@@ -1,36 +1,36 @@
-//! Common tangents of circles that are turned about.
+//! Common tangents of the circles that paths turn about.
 
-use super::TOUCH_M;
+use super::bar::TOUCH_M;
 use geometry::{Point, Vector};
 
-/// A circle and the sense in which a way turns about it.
+/// A circle and the sense in which a path turns about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turn {
     pub center: Point,
-    /// Radius, metres: positive for counter-clockwise, negative for clockwise, zero for an end of the way.
+    /// Radius, metres: positive for counter-clockwise, negative for clockwise, zero for an end of the path.
     pub signed_m: f64,
 }
 
-/// A straight piece that leaves one circle and meets another.
+/// A segment that leaves one circle and meets another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Tangent {
     pub from: Point,
     pub to: Point,
     pub length_m: f64,
-    /// From the first centre to `from`, over the radius, and the same for the second.
+    /// Unit vectors from the first centre to `from` and from the second to `to`.
     pub leave: Vector,
     pub meet: Vector,
 }
 
-/// The tangent by which a way passes from one turn to another; none if the circles are too near for it.
+/// The tangent by which a path passes from one turn to another; none if the circles are too close for it.
 ///
-/// With the centres `e` apart and the signed radii `s`, the way runs at an angle `asin((s_j - s_i) / |e|)` to `e`.
+/// With the vector `e` between the centres and the signed radii `s`, it runs at an angle `asin((s_j - s_i) / |e|)` to `e`.
 pub(super) fn tangent(i: Turn, j: Turn) -> Option<Tangent> {
     let way = j.center - i.center;
     let squared = way.norm_squared();
     let grown_m = j.signed_m - i.signed_m;
     let length_squared = squared - grown_m * grown_m;
-    // An end of the way may lie on the circle, up to rounding: then it leaves along it.
+    // An end of the path may lie on the circle, up to rounding: then the path leaves along it.
     if length_squared <= -4.0 * TOUCH_M * grown_m.abs() || squared == 0.0 {
         return None;
     }

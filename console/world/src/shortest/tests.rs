@@ -1,8 +1,9 @@
 use super::*;
 use crate::{
-    ObstacleMap, polyline,
+    ObstacleMap,
     tank::{Obstacle, ObstacleId},
 };
+use geometry::{Boundary, Shape, Vector, polyline};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 

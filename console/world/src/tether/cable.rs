@@ -1,46 +1,41 @@
 //! The exact taut cable, dragged move by move.
 
 use super::{
-    ground::Ground,
-    sweep::{Base, Event, next_event},
-    word::Word,
+    cable_obstacles::{Bearing, CableObstacles, tangent_point},
+    homotopy::HomotopySignature,
+    sweep::{Base, Event, SLACK_M, next_event},
 };
-use crate::{
-    Boundary,
-    geometry::{Point, Vector},
-    shape::Shape,
-};
+use geometry::{Boundary, Point, Shape};
 use serde::{Deserialize, Serialize};
 use std::{ops::ControlFlow, sync::Arc};
 
-/// Lateral slack of a contact, metres: it ends once the robot is this far on its free side, and begins half of this
-/// early. So rounding never lets a cable slip through a corner that it has just touched.
-pub(super) const SLACK_M: f64 = 1e-8;
 /// Wraps below this do not count as contacts, radians.
 const LEAST_WRAP_RAD: f64 = 1e-7;
-/// Angle between the points that stand for an arc in a drawn line, radians.
+/// Angle between the points of an arc in a drawn line, radians.
 const ARC_STEP_RAD: f64 = 0.1;
 
-/// What a cable bears on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Bearing {
-    /// The obstacle with this index in the list that the ground was made of.
-    Obstacle(usize),
-    /// An inward corner of the wall.
-    Wall,
-}
-
-/// Where a cable bears on one obstacle, from its first to its last point there.
+/// Where a cable bears on one obstacle.
+///
+/// ```
+/// use world::{Boundary, Point, Shape, tether::Cable};
+/// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+/// # let wall = Boundary::Circle { radius_m: 10.0 };
+/// // Around a column of radius 0.5 m at (4, 0), on its north side.
+/// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+/// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+/// let contact = cable.contacts()[0];
+/// assert_eq!(contact.on, world::tether::Bearing::Obstacle(0));
+/// assert!((contact.wrap_rad + 0.2507).abs() < 1e-4, "clockwise");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// What it bears on.
     pub on: Bearing,
-    /// Angle by which the cable turns there, radians, counter-clockwise; more than a turn for loops.
+    /// Angle by which the cable turns there, radians, positive counter-clockwise; more than a full turn for loops.
     pub wrap_rad: f64,
-    /// First point of contact, seen from the anchor.
+    /// First point of contact, seen from the anchor, tank frame.
     pub first: Point,
-    /// Last point of contact.
+    /// Last point of contact, tank frame.
     pub last: Point,
 }
 
@@ -68,7 +63,7 @@ pub enum TetherError {
     AnchorNotFinite,
 }
 
-/// One post that the cable goes round.
+/// One post around which the cable bends.
 #[derive(Debug, Clone, Copy)]
 struct Bend {
     post: usize,
@@ -89,74 +84,134 @@ impl Bend {
 
 /// The taut cable from an anchor to a robot that has been dragging it.
 ///
-/// Event-driven: the free piece of cable sweeps over the floor while the robot moves in a straight line; where it
-/// becomes tangent to a post it bends there (push), where a wrap falls to nothing the bend ends (pop). Angles are
-/// accumulated, never read off the last pose, so any number of loops is kept. One move costs one look at every post
-/// per event.
+/// Event-driven: the free span of the cable sweeps over the floor while the robot moves in a straight line. Where it
+/// becomes tangent to a post it bends there (push); where a wrap falls to zero the bend ends (pop). Angles are
+/// accumulated, never derived from the last pose alone, so any number of loops is kept. One move costs one look at the
+/// posts nearby per event.
+///
+/// ```
+/// use world::{Boundary, Point, Shape, tether::Cable};
+/// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+/// # let wall = Boundary::Circle { radius_m: 10.0 };
+/// // Around a column of radius 0.5 m at (4, 0), on its north side.
+/// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+/// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+/// assert!((cable.length_m() - 8.0626).abs() < 1e-4);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Cable {
-    ground: Arc<Ground>,
+    obstacles: Arc<CableObstacles>,
     anchor: Point,
     tip: Point,
     /// Bearing at the anchor, radians.
     start_rad: f64,
     bends: Vec<Bend>,
-    word: Word,
+    signature: HomotopySignature,
 }
 
 impl Cable {
-    /// A cable of length 0: the robot stands at the anchor.
+    /// A cable of length 0, with the robot at the anchor; everything in the tank frame.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Cable};
+    /// let wall = Boundary::Circle { radius_m: 10.0 };
+    /// let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// assert_eq!(Cable::new(Point::origin(), &wall, &[column.clone()]).unwrap().length_m(), 0.0);
+    /// assert!(Cable::new(Point::new(4.1, 0.0), &wall, &[column]).is_err());
+    /// ```
     ///
     /// # Errors
-    /// The anchor lies outside the wall, inside an obstacle, or nowhere.
+    /// [`TetherError`]: the anchor lies outside the wall or inside an obstacle, or has a coordinate that is not finite.
     pub fn new(anchor: Point, boundary: &Boundary, shapes: &[Shape]) -> Result<Self, TetherError> {
         if !boundary.contains(anchor) && boundary.wall_distance_m(anchor) < -1e-6 {
             return Err(TetherError::AnchorOutside { x: anchor.x, y: anchor.y });
         }
-        Self::on(anchor, Arc::new(Ground::new(boundary, shapes)))
+        Self::on(anchor, Arc::new(CableObstacles::new(boundary, shapes)))
     }
 
-    /// The same on a ground that is shared with other cables.
+    /// The same among obstacles that are shared with other cables.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use world::{Boundary, Point, tether::{Cable, CableObstacles}};
+    /// let obstacles = Arc::new(CableObstacles::new(&Boundary::Circle { radius_m: 10.0 }, &[]));
+    /// let mut cable = Cable::on(Point::origin(), obstacles).unwrap();
+    /// cable.drag_to(Point::new(3.0, 4.0));
+    /// assert_eq!(cable.length_m(), 5.0);
+    /// ```
     ///
     /// # Errors
-    /// The anchor lies inside an obstacle, or nowhere.
-    pub fn on(anchor: Point, ground: Arc<Ground>) -> Result<Self, TetherError> {
+    /// [`TetherError`]: the anchor lies inside an obstacle, or has a coordinate that is not finite.
+    pub fn on(anchor: Point, obstacles: Arc<CableObstacles>) -> Result<Self, TetherError> {
         let Point { coords } = anchor;
         if !(coords.x.is_finite() && coords.y.is_finite()) {
             return Err(TetherError::AnchorNotFinite);
         }
-        if ground.sidestep.holds(anchor) {
+        if obstacles.sidestep.holds(anchor) {
             return Err(TetherError::AnchorInside { x: anchor.x, y: anchor.y });
         }
-        Ok(Self { ground, anchor, tip: anchor, start_rad: 0.0, bends: Vec::new(), word: Word::default() })
+        let signature = HomotopySignature::default();
+        Ok(Self { obstacles, anchor, tip: anchor, start_rad: 0.0, bends: Vec::new(), signature })
     }
 
     /// Drags the cable to where the robot is now, straight from where it was.
     ///
-    /// A move through an obstacle goes round it the shorter way, and a place inside one counts as the nearest place
-    /// outside: see the module `sidestep`. Places that are not finite are passed over.
+    /// A move through an obstacle takes the shorter detour around it, and a point inside one counts as the nearest point
+    /// outside: see the module `sidestep`. A position that is not finite is ignored.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Cable};
+    /// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let wall = Boundary::Circle { radius_m: 10.0 };
+    /// // Around a column of radius 0.5 m at (4, 0), on its north side.
+    /// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+    /// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+    /// cable.drag_to(Point::new(8.0, 4.0));
+    /// assert!((cable.length_m() - 80.0_f64.sqrt()).abs() < 1e-9);
+    /// ```
     pub fn drag_to(&mut self, robot: Point) {
         if !(robot.x.is_finite() && robot.y.is_finite()) {
             return;
         }
-        let ground = Arc::clone(&self.ground);
-        ground.sidestep.along(self.tip, robot, |next| self.sweep_to(next));
+        let obstacles = Arc::clone(&self.obstacles);
+        obstacles.sidestep.along(self.tip, robot, |next| self.sweep_to(next));
     }
 
-    /// Drags the cable along a way.
-    pub fn drag_along(&mut self, way: &[Point]) {
-        for point in way {
+    /// Drags the cable along a path.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Cable};
+    /// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let wall = Boundary::Circle { radius_m: 10.0 };
+    /// // Around a column of radius 0.5 m at (4, 0), on its north side.
+    /// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+    /// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+    /// assert_eq!(cable.tip(), Point::new(8.0, 0.0));
+    /// ```
+    pub fn drag_along(&mut self, path: &[Point]) {
+        for point in path {
             self.drag_to(*point);
         }
     }
 
-    /// The cable as it lies when it is longest on a way.
+    /// The cable as it lies where it is longest on a path.
     ///
-    /// Along a straight move its length is convex, so it is longest at a corner of the way.
+    /// Along a straight move its length is convex, so it is longest at a point of the path.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Cable};
+    /// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let wall = Boundary::Circle { radius_m: 10.0 };
+    /// // Around a column of radius 0.5 m at (4, 0), on its north side.
+    /// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+    /// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+    /// let further = [Point::new(9.0, 0.0), Point::new(8.0, 4.0)];
+    /// assert_eq!(cable.at_longest(&further).tip(), further[0]);
+    /// ```
     #[must_use]
-    pub fn at_longest(mut self, way: &[Point]) -> Self {
+    pub fn at_longest(mut self, path: &[Point]) -> Self {
         let mut longest = self.clone();
-        for point in way {
+        for point in path {
             self.drag_to(*point);
             if self.length_m() > longest.length_m() {
                 longest.clone_from(&self);
@@ -165,33 +220,74 @@ impl Cable {
         longest
     }
 
-    /// Where the cable begins.
+    /// Where the cable begins, tank frame.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Cable};
+    /// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let wall = Boundary::Circle { radius_m: 10.0 };
+    /// // Around a column of radius 0.5 m at (4, 0), on its north side.
+    /// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+    /// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+    /// assert_eq!(cable.anchor(), Point::origin());
+    /// ```
     pub fn anchor(&self) -> Point {
         self.anchor
     }
 
-    /// Where the cable ends: the robot, or the nearest free place to it.
+    /// Where the cable ends, tank frame: the robot, or the nearest free point to it.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Cable};
+    /// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let wall = Boundary::Circle { radius_m: 10.0 };
+    /// // Around a column of radius 0.5 m at (4, 0), on its north side.
+    /// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+    /// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+    /// cable.drag_to(Point::new(4.4, 0.0));
+    /// assert!((cable.tip() - Point::new(4.5, 0.0)).norm() < 1e-6, "out of the column");
+    /// ```
     pub fn tip(&self) -> Point {
         self.tip
     }
 
-    /// The ground that it lies on.
-    pub fn ground(&self) -> &Arc<Ground> {
-        &self.ground
+    /// The obstacles among which it lies.
+    pub(super) fn obstacles(&self) -> &Arc<CableObstacles> {
+        &self.obstacles
     }
 
-    /// Length of cable between anchor and robot, metres.
+    /// Length between anchor and robot, metres.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Cable};
+    /// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let wall = Boundary::Circle { radius_m: 10.0 };
+    /// // Around a column of radius 0.5 m at (4, 0), on its north side.
+    /// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+    /// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+    /// assert!((cable.length_m() - 8.0626).abs() < 1e-4);
+    /// ```
     pub fn length_m(&self) -> f64 {
         let base = self.base();
         self.up_to_base_m() + (self.tip - base.leaves_at(base.out_rad)).norm()
     }
 
-    /// Where the cable bears, from the anchor on; several posts of one obstacle in a row are one contact.
+    /// Where the cable bears, from the anchor on; consecutive posts of one obstacle make one contact.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Cable};
+    /// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let wall = Boundary::Circle { radius_m: 10.0 };
+    /// // Around a column of radius 0.5 m at (4, 0), on its north side.
+    /// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+    /// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+    /// assert_eq!(cable.contacts().len(), 1);
+    /// ```
     pub fn contacts(&self) -> Vec<Contact> {
         let mut contacts: Vec<Contact> = Vec::new();
         for bend in self.bends.iter().filter(|bend| bend.wrap_rad() > LEAST_WRAP_RAD) {
             let (first, last) = self.touches(bend);
-            let (on, wrap_rad) = (self.ground.posts[bend.post].of, bend.side * bend.wrap_rad());
+            let (on, wrap_rad) = (self.obstacles.posts[bend.post].of, bend.side * bend.wrap_rad());
             match contacts.last_mut() {
                 Some(before) if before.on == on && before.wrap_rad * wrap_rad > 0.0 => {
                     before.wrap_rad += wrap_rad;
@@ -204,10 +300,20 @@ impl Cable {
     }
 
     /// Largest wrap on one obstacle, radians, without sign; loops count in full.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Cable};
+    /// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let wall = Boundary::Circle { radius_m: 10.0 };
+    /// // Around a column of radius 0.5 m at (4, 0), on its north side.
+    /// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+    /// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+    /// assert!((cable.wrap_max_rad() - 0.2507).abs() < 1e-4);
+    /// ```
     pub fn wrap_max_rad(&self) -> f64 {
         let (mut most, mut current, mut before) = (0.0_f64, 0.0, None);
         for bend in &self.bends {
-            let here = (self.ground.posts[bend.post].of, bend.side > 0.0);
+            let here = (self.obstacles.posts[bend.post].of, bend.side > 0.0);
             current = if before == Some(here) { current + bend.wrap_rad() } else { bend.wrap_rad() };
             before = Some(here);
             most = most.max(current);
@@ -215,26 +321,69 @@ impl Cable {
         most
     }
 
-    /// Sum of all wraps, radians, without signs.
+    /// Total wrap: the sum of the wraps on all obstacles, radians, without signs.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Cable};
+    /// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let wall = Boundary::Circle { radius_m: 10.0 };
+    /// // Around a column of radius 0.5 m at (4, 0), on its north side.
+    /// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+    /// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+    /// assert!((cable.wrap_total_rad() - 0.2507).abs() < 1e-4);
+    /// ```
     pub fn wrap_total_rad(&self) -> f64 {
         self.bends.iter().map(|bend| bend.wrap_rad().max(0.0)).sum()
     }
 
-    /// Whether no obstacle holds the cable: it runs straight from the anchor to the robot.
+    /// Whether the cable bears on nothing and runs straight from the anchor to the robot.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Cable};
+    /// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let wall = Boundary::Circle { radius_m: 10.0 };
+    /// // Around a column of radius 0.5 m at (4, 0), on its north side.
+    /// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+    /// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+    /// assert!(!cable.is_straight());
+    /// cable.drag_to(Point::new(8.0, 4.0));
+    /// assert!(cable.is_straight());
+    /// ```
     pub fn is_straight(&self) -> bool {
         self.bends.iter().all(|bend| bend.wrap_rad() <= LEAST_WRAP_RAD)
     }
 
-    /// The reduced crossing word of the way driven; empty at the anchor exactly if the cable can be reeled in.
-    pub fn word(&self) -> &Word {
-        &self.word
+    /// The homotopy signature of the path driven; at the anchor it is empty exactly if the cable can be reeled in.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Cable};
+    /// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let wall = Boundary::Circle { radius_m: 10.0 };
+    /// // Around a column of radius 0.5 m at (4, 0), on its north side.
+    /// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+    /// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+    /// assert_eq!(cable.signature().crossings().len(), 1);
+    /// ```
+    pub fn signature(&self) -> &HomotopySignature {
+        &self.signature
     }
 
-    /// The cable as a line from the anchor to the robot; arcs become chords of a tenth of a radian.
+    /// The cable as a line from the anchor to the robot, tank frame; arcs become chords of at most 0.1 rad.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Cable};
+    /// # let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// # let wall = Boundary::Circle { radius_m: 10.0 };
+    /// // Around a column of radius 0.5 m at (4, 0), on its north side.
+    /// let mut cable = Cable::new(Point::origin(), &wall, &[column]).unwrap();
+    /// cable.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+    /// let line_m = world::polyline::length_m(&cable.taut_line());
+    /// assert!((line_m - cable.length_m()).abs() < 1e-3);
+    /// ```
     pub fn taut_line(&self) -> Vec<Point> {
         let mut line = vec![self.anchor];
         for bend in &self.bends {
-            let post = self.ground.posts[bend.post];
+            let post = self.obstacles.posts[bend.post];
             let steps =
                 if post.radius_m > 0.0 { (bend.wrap_rad() / ARC_STEP_RAD).ceil().max(1.0) } else { 0.0 };
             line.extend((0..=steps as usize).map(|k| {
@@ -248,7 +397,7 @@ impl Cable {
     }
 
     fn touches(&self, bend: &Bend) -> (Point, Point) {
-        let post = self.ground.posts[bend.post];
+        let post = self.obstacles.posts[bend.post];
         let at = |bearing_rad| tangent_point(post.center, post.radius_m, bend.side, bearing_rad);
         (at(bend.into_rad), at(bend.out_rad))
     }
@@ -264,7 +413,7 @@ impl Cable {
                 post: None,
             },
             Some(bend) => {
-                let post = self.ground.posts[bend.post];
+                let post = self.obstacles.posts[bend.post];
                 Base {
                     center: post.center,
                     radius_m: post.radius_m,
@@ -279,7 +428,7 @@ impl Cable {
 
     fn up_to_base_m(&self) -> f64 {
         self.bends.last().map_or(0.0, |bend| {
-            bend.before_m + self.ground.posts[bend.post].radius_m * bend.wrap_rad().max(0.0)
+            bend.before_m + self.obstacles.posts[bend.post].radius_m * bend.wrap_rad().max(0.0)
         })
     }
 
@@ -290,15 +439,15 @@ impl Cable {
         }
     }
 
-    /// One straight move that enters no solid.
+    /// One straight move that enters no obstacle.
     fn sweep_to(&mut self, to: Point) {
         let from = self.tip;
         if from == to {
             return;
         }
-        self.word.go(from, to, &self.ground.rays);
+        self.signature.extend(from, to, &self.obstacles.rays);
         if self.bends.is_empty() && (from - self.anchor).norm() <= SLACK_M {
-            // Without length the cable has no bearing: it takes the one of the move.
+            // A cable of no length has no bearing: it takes that of the move.
             self.start_rad = self.base().bearing_to(to).unwrap_or(self.start_rad);
         } else {
             self.turn(from, to);
@@ -307,11 +456,11 @@ impl Cable {
     }
 
     fn turn(&mut self, from: Point, to: Point) {
-        let mut let_go: Vec<usize> = Vec::new();
-        // More events than posts and bends cannot come of one straight move; rounding must not loop for ever.
-        let most = 2 * (self.bends.len() + self.ground.posts.len()) + 8;
+        let mut released: Vec<usize> = Vec::new();
+        // One straight move causes no more events than this; rounding must not make it loop for ever.
+        let most = 2 * (self.bends.len() + self.obstacles.posts.len()) + 8;
         for _ in 0..most {
-            if self.advance(from, to, &mut let_go).is_break() {
+            if self.advance(from, to, &mut released).is_break() {
                 return;
             }
         }
@@ -319,17 +468,17 @@ impl Cable {
         self.turn_base_to(base.out_rad + base.turn_to(from, to));
     }
 
-    fn advance(&mut self, from: Point, to: Point, let_go: &mut Vec<usize>) -> ControlFlow<()> {
+    fn advance(&mut self, from: Point, to: Point, released: &mut Vec<usize>) -> ControlFlow<()> {
         let base = self.base();
         let turn_rad = base.turn_to(from, to);
-        match next_event(&self.ground, &base, from, to, turn_rad, let_go) {
+        match next_event(&self.obstacles, &base, from, to, turn_rad, released) {
             Event::Arrive => {
                 self.turn_base_to(base.out_rad + turn_rad);
                 return ControlFlow::Break(());
             }
-            Event::LetGo => {
-                let bend = self.bends.pop().expect("only a bend can be let go");
-                let_go.push(bend.post);
+            Event::Release => {
+                let bend = self.bends.pop().expect("only a bend can be released");
+                released.push(bend.post);
             }
             Event::Touch { post, side, bearing_rad, at } => {
                 self.turn_base_to(bearing_rad);
@@ -341,13 +490,13 @@ impl Cable {
     }
 }
 
-/// Where a line of some bearing touches a disc; `side` 1 has the disc on its left, -1 on its right.
-pub(super) fn tangent_point(center: Point, radius_m: f64, side: f64, bearing_rad: f64) -> Point {
-    let left = Vector::new(-bearing_rad.sin(), bearing_rad.cos());
-    center - left * (side * radius_m)
-}
-
-/// How many times harder a cable must be pulled for all its wraps: e to the (friction times sum of wraps).
+/// Factor by which the total wrap multiplies the force that pulls the cable: the capstan equation (Euler-Eytelwein),
+/// e to the power of friction coefficient times total wrap in radians.
+///
+/// ```
+/// let half_a_turn = std::f64::consts::PI;
+/// assert!((world::tether::capstan_factor(0.3, half_a_turn) - 2.566).abs() < 1e-3);
+/// ```
 pub fn capstan_factor(friction: f64, wrap_total_rad: f64) -> f64 {
     (friction * wrap_total_rad).exp()
 }

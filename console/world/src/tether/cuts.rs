@@ -1,26 +1,32 @@
 //! Crossings of cuts: lines that a tethered robot never crosses.
 
-use crate::{
-    geometry::{Point, Vector},
-    obstacles::Boxes,
-};
+use crate::obstacles::Boxes;
+use geometry::{Point, Vector};
 
-/// How often a path crosses some lines; touching a line without changing sides is no crossing.
+/// How often a path crosses some cuts, all in the tank frame. A change of sides counts once; a touch without one counts
+/// not at all or twice.
+///
+/// ```
+/// use world::{Point, tether::crossings};
+/// let cut = vec![Point::new(4.0, 0.0), Point::new(10.0, 0.0)];
+/// let path = [Point::new(3.0, -1.0), Point::new(3.0, 1.0), Point::new(6.0, 1.0), Point::new(6.0, -1.0)];
+/// assert_eq!(crossings(&path, &[cut]), 1);
+/// ```
 pub fn crossings(path: &[Point], cuts: &[Vec<Point>]) -> usize {
-    let pieces: Vec<(Point, Point)> =
+    let segments: Vec<(Point, Point)> =
         cuts.iter().flat_map(|cut| cut.windows(2).map(|pair| (pair[0], pair[1]))).collect();
-    let boxes = Boxes::new(pieces.iter().map(|(p, q)| (p.inf(q), p.sup(q))));
+    let boxes = Boxes::new(segments.iter().map(|(p, q)| (p.inf(q), p.sup(q))));
     let crossed = |a: Point, b: Point| {
-        let near = boxes.near(a, b, 0.0).map(|k| pieces[k]);
+        let near = boxes.near(a, b, 0.0).map(|k| segments[k]);
         near.filter(|(p, q)| cross(a, b, *p, *q)).count()
     };
     path.windows(2).map(|pair| crossed(pair[0], pair[1])).sum()
 }
 
-/// Whether a piece of the path crosses a piece of a cut.
+/// Whether a segment of the path crosses a segment of a cut.
 ///
-/// The path counts as shifted by a hair, the same for all of it (Edelsbrunner and Mücke 1990): so each change of sides
-/// counts once, also through corners and along pieces of a cut.
+/// The whole path counts as shifted by one infinitesimal displacement (simulation of simplicity, Edelsbrunner and Mücke
+/// 1990): so each change of sides counts once, even through corners and along segments of a cut.
 fn cross(a: Point, b: Point, p: Point, q: Point) -> bool {
     let apart = |low: f64, high: f64, from: f64, to: f64| low.max(high) < from.min(to);
     if apart(a.x, b.x, p.x, q.x)
@@ -35,8 +41,8 @@ fn cross(a: Point, b: Point, p: Point, q: Point) -> bool {
     shift_of_path(p, q, a) != shift_of_path(p, q, b) && shift_of_cut(a, b, p) != shift_of_cut(a, b, q)
 }
 
-/// Whether a place is left of a line through the origin; one on the line counts as shifted to the east or west by a hair,
-/// and by a hair of that to the north or south.
+/// Whether a point is left of a line through the origin; one on the line counts as shifted infinitesimally to the east or
+/// west, and by infinitely less to the north or south.
 fn is_left(along: Vector, at: Vector, shift: f64) -> bool {
     let sides = [along.perp(&at), -along.y * shift, along.x * shift];
     sides.into_iter().find(|side| *side != 0.0).is_some_and(|side| side > 0.0)

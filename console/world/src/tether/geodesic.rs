@@ -1,13 +1,10 @@
-//! Shortest ways from the anchor to anywhere, with no regard to how the robot got there: the least cable that would do.
+//! Shortest paths from the anchor to anywhere, whatever path the robot took: the shortest cable that would do.
 
-use super::{
-    cable::tangent_point,
-    ground::{Ground, Post},
-    sweep::direction,
-};
-use geometry::{Point, wrap_angle_rad};
+use super::cable_obstacles::{CableObstacles, Post, tangent_point};
+use crate::total::Total;
+use geometry::{Point, unit_vector, wrap_angle_rad};
 use std::{
-    cmp::{Ordering, Reverse},
+    cmp::Reverse,
     collections::BinaryHeap,
     f64::consts::{PI, TAU},
     sync::Arc,
@@ -16,22 +13,31 @@ use std::{
 /// Differences of length that do not matter, metres.
 const SAME_M: f64 = 1e-9;
 
-/// The tangent graph of the posts, searched once from the anchor.
+/// The tangent graph of the posts, searched once from the anchor by Dijkstra's algorithm.
+///
+/// ```
+/// use std::sync::Arc;
+/// use world::{Boundary, Point, Shape, tether::{CableObstacles, Geodesic}};
+/// let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+/// let obstacles = Arc::new(CableObstacles::new(&Boundary::Circle { radius_m: 10.0 }, &[column]));
+/// let paths = Geodesic::new(Point::origin(), obstacles);
+/// assert!((paths.distance_m(Point::new(8.0, 0.0)) - 8.0626).abs() < 1e-4);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Geodesic {
-    ground: Arc<Ground>,
+    obstacles: Arc<CableObstacles>,
     anchor: Point,
     arrivals: Vec<Arrival>,
-    /// Those at each post, by twice its index, plus one for the left-hand side.
+    /// The same by post and side: at twice the index of the post, plus one for the left-hand side.
     at_post: Vec<Vec<Arrival>>,
 }
 
-/// A shortest way that has come to touch a post.
+/// A shortest path that has come to touch a post.
 #[derive(Debug, Clone, Copy)]
 struct Arrival {
-    /// Where its last straight piece begins, and where it ends.
-    piece: (Point, Point),
-    /// Index of the arrival that it goes on from.
+    /// Its last segment.
+    segment: (Point, Point),
+    /// Index of the arrival that it continues.
     from: Option<usize>,
     post: usize,
     side: f64,
@@ -45,58 +51,47 @@ impl Arrival {
     }
 }
 
-/// Ways to posts that wait for their turn, the shortest first.
+/// Paths to posts that wait for their turn, the shortest first.
 #[derive(Default)]
 struct Waiting {
-    ways: Vec<Arrival>,
-    queue: BinaryHeap<Reverse<Turn>>,
-}
-
-/// The length of a waiting way, what breaks ties, and its index.
-struct Turn(f64, (usize, bool), usize);
-
-impl PartialEq for Turn {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Turn {}
-impl PartialOrd for Turn {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Turn {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.0.total_cmp(&other.0).then_with(|| (self.1, self.2).cmp(&(other.1, other.2)))
-    }
+    paths: Vec<Arrival>,
+    /// Their lengths, what breaks ties, and their indices.
+    queue: BinaryHeap<Reverse<(Total, usize, bool, usize)>>,
 }
 
 impl Waiting {
-    fn add(&mut self, way: Arrival) {
-        self.queue.push(Reverse(Turn(way.length_m, (way.post, way.side > 0.0), self.ways.len())));
-        self.ways.push(way);
+    fn add(&mut self, path: Arrival) {
+        self.queue.push(Reverse((Total(path.length_m), path.post, path.side > 0.0, self.paths.len())));
+        self.paths.push(path);
     }
 
     fn shortest(&mut self) -> Option<Arrival> {
-        self.queue.pop().map(|Reverse(Turn(_, _, index))| self.ways[index])
+        self.queue.pop().map(|Reverse((_, _, _, index))| self.paths[index])
     }
 }
 
 impl Geodesic {
-    /// All shortest ways from an anchor; costs about `posts^2` tangents and as many lines of sight.
-    pub fn new(anchor: Point, ground: Arc<Ground>) -> Self {
-        let at_post = vec![Vec::new(); 2 * ground.posts.len()];
-        let mut found = Self { ground, anchor, arrivals: Vec::new(), at_post };
+    /// All shortest paths from an anchor, tank frame; costs about `posts^2` tangents and as many lines of sight.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use world::{Boundary, Point, tether::{CableObstacles, Geodesic}};
+    /// let empty = Arc::new(CableObstacles::new(&Boundary::Circle { radius_m: 10.0 }, &[]));
+    /// assert_eq!(Geodesic::new(Point::origin(), empty).distance_m(Point::new(3.0, 4.0)), 5.0);
+    /// ```
+    pub fn new(anchor: Point, obstacles: Arc<CableObstacles>) -> Self {
+        let at_post = vec![Vec::new(); 2 * obstacles.posts.len()];
+        let mut found = Self { obstacles, anchor, arrivals: Vec::new(), at_post };
         found.search();
         found
     }
 
-    /// Dijkstra's search; whether a tangent is free is looked at only when its turn comes.
+    /// Dijkstra's algorithm; whether a tangent is free is tested only when its turn comes.
     fn search(&mut self) {
-        let in_sight: Vec<bool> = self.ground.posts.iter().map(|post| self.is_in_plain_sight(post)).collect();
+        let in_sight: Vec<bool> =
+            self.obstacles.posts.iter().map(|post| self.is_in_plain_sight(post)).collect();
         let mut waiting = Waiting::default();
-        self.onward(None, |_| true).for_each(|way| waiting.add(way));
+        self.onward(None, |_| true).for_each(|path| waiting.add(path));
         while let Some(next) = waiting.shortest() {
             if self.is_beaten(&next) || !self.is_free(&next) {
                 continue;
@@ -104,20 +99,21 @@ impl Geodesic {
             let index = self.arrivals.len();
             self.arrivals.push(next);
             self.at_post[next.slot()].push(next);
-            for way in self.onward(Some(index), |post| !in_sight[post]).filter(|way| !self.is_beaten(way)) {
-                waiting.add(way);
+            for path in self.onward(Some(index), |post| !in_sight[post]).filter(|path| !self.is_beaten(path))
+            {
+                waiting.add(path);
             }
         }
     }
 
-    /// Whether nothing stands between the anchor and a round post, nor touches it: then the shortest way to any point of
-    /// its outline is straight, or straight to a tangent and along the outline, and no way leads there round another post.
+    /// Whether nothing stands between the anchor and a round post, nor touches it: then the shortest path to any point of
+    /// its outline is straight, or straight to a tangent and along the outline, and never leads around another post.
     fn is_in_plain_sight(&self, post: &Post) -> bool {
         let way = post.center - self.anchor;
         let far = way.norm();
         if post.radius_m <= 0.0
             || far <= post.radius_m
-            || !self.ground.sidestep.is_alone(post.center, post.radius_m)
+            || !self.obstacles.sidestep.is_alone(post.center, post.radius_m)
         {
             return false;
         }
@@ -127,23 +123,23 @@ impl Geodesic {
         let is_open = |side: f64, bearing_rad: f64| {
             self.sees(self.anchor, tangent_point(post.center, post.radius_m, side, bearing_rad))
         };
-        let (low, high) = (direction(right), direction(left));
+        let (low, high) = (unit_vector(right), unit_vector(left));
         let is_between = |other: &Post| {
             let at = other.center - self.anchor;
             low.perp(&at) >= 0.0 && high.perp(&at) <= 0.0 && at.norm() < far
         };
-        is_open(1.0, right) && is_open(-1.0, left) && !self.ground.posts.iter().any(is_between)
+        is_open(1.0, right) && is_open(-1.0, left) && !self.obstacles.posts.iter().any(is_between)
     }
 
-    /// The tangents that go on from an arrival, or from the anchor, to some of the posts.
+    /// The tangents that continue an arrival, or leave the anchor, to some of the posts.
     fn onward(&self, from: Option<usize>, is_meant: impl Fn(usize) -> bool) -> impl Iterator<Item = Arrival> {
-        let base = from.map(|index| (self.arrivals[index], self.ground.posts[self.arrivals[index].post]));
+        let base = from.map(|index| (self.arrivals[index], self.obstacles.posts[self.arrivals[index].post]));
         let start = base.map_or((self.anchor, 0.0, 0.0), |(a, post)| (post.center, post.radius_m, a.side));
-        (0..self.ground.posts.len())
+        (0..self.obstacles.posts.len())
             .filter(move |post| base.is_none_or(|(a, _)| a.post != *post) && is_meant(*post))
             .flat_map(|post| [(post, 1.0), (post, -1.0)])
             .filter_map(move |(post, side)| {
-                let target = self.ground.posts[post];
+                let target = self.obstacles.posts[post];
                 let bearing_rad = tangent(start, (target.center, target.radius_m, side))?;
                 let at = tangent_point(target.center, target.radius_m, side, bearing_rad);
                 let leaves = tangent_point(start.0, start.1, start.2, bearing_rad);
@@ -152,65 +148,74 @@ impl Geodesic {
                     Some((a, here)) => a.length_m + here.radius_m * wrap_of(&a, bearing_rad)?,
                 };
                 let length_m = before_m + (at - leaves).norm();
-                Some(Arrival { piece: (leaves, at), from, post, side, bearing_rad, length_m })
+                Some(Arrival { segment: (leaves, at), from, post, side, bearing_rad, length_m })
             })
     }
 
     fn is_free(&self, arrival: &Arrival) -> bool {
-        let (leaves, at) = arrival.piece;
+        let (leaves, at) = arrival.segment;
         self.sees(leaves, at)
             && arrival.from.is_none_or(|index| {
                 let from = &self.arrivals[index];
-                self.arc_is_clear(&self.ground.posts[from.post], from, arrival.bearing_rad)
+                self.arc_is_clear(&self.obstacles.posts[from.post], from, arrival.bearing_rad)
             })
     }
 
-    /// Whether a way that came to the same post before is as short all the way from there.
+    /// Whether a path that came to the same post before is as short from there on.
     fn is_beaten(&self, by: &Arrival) -> bool {
-        let radius_m = self.ground.posts[by.post].radius_m;
+        let radius_m = self.obstacles.posts[by.post].radius_m;
         self.at_post[by.slot()].iter().any(|a| {
             wrap_of(a, by.bearing_rad)
                 .is_some_and(|wrap_rad| a.length_m + radius_m * wrap_rad <= by.length_m + SAME_M)
         })
     }
 
-    /// Length of the way that leaves a post at some bearing and ends at a point; `None` if it would not be taut.
+    /// Length of the path that leaves a post at some bearing and ends at a point; `None` if it would not be taut.
     fn leave(&self, from: &Arrival, bearing_rad: f64, to: Point) -> Option<f64> {
-        let post = &self.ground.posts[from.post];
+        let post = &self.obstacles.posts[from.post];
         let wrap_rad = wrap_of(from, bearing_rad)?;
         let leaves = tangent_point(post.center, post.radius_m, from.side, bearing_rad);
         Some(from.length_m + post.radius_m * wrap_rad + (to - leaves).norm())
     }
 
     fn is_clear(&self, from: &Arrival, bearing_rad: f64, to: Point) -> bool {
-        let post = &self.ground.posts[from.post];
+        let post = &self.obstacles.posts[from.post];
         self.sees(tangent_point(post.center, post.radius_m, from.side, bearing_rad), to)
             && self.arc_is_clear(post, from, bearing_rad)
     }
 
-    /// Overlapping obstacles can block the way along an outline.
+    /// Overlapping obstacles can block the arc along an outline.
     fn arc_is_clear(&self, post: &Post, from: &Arrival, bearing_rad: f64) -> bool {
         let wrap_rad = wrap_of(from, bearing_rad).unwrap_or(0.0);
         let steps = if post.radius_m > 0.0 { (wrap_rad / 0.5).ceil() as u32 } else { 0 };
         (0..steps).all(|k| {
             let bearing_rad =
                 from.bearing_rad + from.side * wrap_rad * (f64::from(k) + 0.5) / f64::from(steps);
-            !self.ground.sidestep.holds(tangent_point(post.center, post.radius_m, from.side, bearing_rad))
+            !self.obstacles.sidestep.holds(tangent_point(post.center, post.radius_m, from.side, bearing_rad))
         })
     }
 
     fn sees(&self, a: Point, b: Point) -> bool {
-        self.ground.is_open(a, b)
+        self.obstacles.is_open(a, b)
     }
 
-    /// Length of the shortest way from the anchor to a point, metres; infinite if there is none.
+    /// Length of the shortest path from the anchor to a point, metres; infinite if there is none.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use world::{Boundary, Point, Shape, tether::{CableObstacles, Geodesic}};
+    /// let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// let obstacles = Arc::new(CableObstacles::new(&Boundary::Circle { radius_m: 10.0 }, &[column]));
+    /// let paths = Geodesic::new(Point::origin(), obstacles);
+    /// assert!(paths.distance_m(Point::new(4.0, 0.0)).is_infinite(), "inside the column");
+    /// ```
     pub fn distance_m(&self, point: Point) -> f64 {
         if self.sees(self.anchor, point) {
             return (point - self.anchor).norm();
         }
         let mut least_m = f64::INFINITY;
         for from in &self.arrivals {
-            let post = &self.ground.posts[from.post];
+            let post = &self.obstacles.posts[from.post];
             let way = point - post.center;
             let far = way.norm();
             if far + from.length_m - post.radius_m >= least_m || far < post.radius_m {
@@ -228,7 +233,15 @@ impl Geodesic {
         least_m
     }
 
-    /// The largest distance from the anchor to any of some points, each with a length that surely reaches it, metres.
+    /// The largest of the distances to some points, metres; each point comes with an upper bound of its own, metres.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use world::{Boundary, Point, tether::{CableObstacles, Geodesic}};
+    /// let empty = Arc::new(CableObstacles::new(&Boundary::Circle { radius_m: 10.0 }, &[]));
+    /// let points = [(Point::new(3.0, 4.0), 6.0), (Point::new(1.0, 0.0), 4.0)];
+    /// assert_eq!(Geodesic::new(Point::origin(), empty).farthest_m(points), 5.0);
+    /// ```
     pub fn farthest_m(&self, points: impl IntoIterator<Item = (Point, f64)>) -> f64 {
         let mut points: Vec<(Point, f64)> = points.into_iter().collect();
         points.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -238,7 +251,7 @@ impl Geodesic {
     }
 }
 
-/// Bearing of the common tangent that leaves one disc and comes to another, each on its side.
+/// Bearing of the common tangent from one disc to another, each on its side.
 fn tangent(from: (Point, f64, f64), to: (Point, f64, f64)) -> Option<f64> {
     let way = to.0 - from.0;
     let (far, offset) = (way.norm(), to.2 * to.1 - from.2 * from.1);
@@ -246,7 +259,7 @@ fn tangent(from: (Point, f64, f64), to: (Point, f64, f64)) -> Option<f64> {
         .then(|| way.y.atan2(way.x) - (offset / far).clamp(-1.0, 1.0).asin())
 }
 
-/// Angle by which a way bends round its post until it leaves at a bearing; shortest ways bend less than half a turn.
+/// Angle by which a path bends around its post until it leaves at a bearing; shortest paths bend less than half a turn.
 fn wrap_of(from: &Arrival, bearing_rad: f64) -> Option<f64> {
     let turn = wrap_angle_rad(from.side * (bearing_rad - from.bearing_rad)).rem_euclid(TAU);
     let turn = if TAU - turn < 1e-9 { 0.0 } else { turn };

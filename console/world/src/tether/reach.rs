@@ -1,29 +1,43 @@
-//! What floor a cable of some length leads to.
+//! Which floor a tether of some length reaches.
 
-use super::{geodesic::Geodesic, ground::Ground};
-use crate::{Boundary, geometry::Point, shape::Shape};
+use super::{cable_obstacles::CableObstacles, geodesic::Geodesic};
+use geometry::{Boundary, Point, Shape};
 use std::sync::Arc;
 
-/// The floor to which the shortest way from an anchor is no longer than the cable.
+/// The floor to which the shortest path from the anchor is no longer than the tether.
 #[derive(Debug, Clone)]
 pub struct Reach {
     anchor: Point,
-    ways: Geodesic,
+    paths: Geodesic,
     within_m: f64,
 }
 
 impl Reach {
-    /// The floor within `within_m` of the anchor among obstacles of these outlines.
+    /// The floor within `within_m` of the anchor among obstacles of these outlines, tank frame.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, tether::Reach};
+    /// let reach = Reach::new(Point::origin(), &Boundary::Circle { radius_m: 10.0 }, &[], 5.0);
+    /// assert!(!reach.is_beyond(Point::new(3.0, 4.0)) && reach.is_beyond(Point::new(3.0, 4.1)));
+    /// ```
     pub fn new(anchor: Point, boundary: &Boundary, shapes: &[Shape], within_m: f64) -> Self {
-        let ways = Geodesic::new(anchor, Arc::new(Ground::new(boundary, shapes)));
-        Self { anchor, ways, within_m }
+        let paths = Geodesic::new(anchor, Arc::new(CableObstacles::new(boundary, shapes)));
+        Self { anchor, paths, within_m }
     }
 
-    /// Whether the shortest way to a place is longer than the cable; a place without any way is no matter of the cable.
+    /// Whether the shortest path to a point is longer than the tether. A point to which there is no path is not beyond it:
+    /// it is not the tether that keeps the robot away.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, Shape, tether::Reach};
+    /// let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// let reach = Reach::new(Point::origin(), &Boundary::Circle { radius_m: 10.0 }, &[column], 8.0);
+    /// assert!(reach.is_beyond(Point::new(8.0, 0.0)), "8.06 m around the column");
+    /// ```
     pub fn is_beyond(&self, place: Point) -> bool {
         let straight_m = (place - self.anchor).norm();
-        let way_m = self.ways.distance_m(place);
-        way_m.is_finite() && (straight_m > self.within_m || way_m > self.within_m)
+        let path_m = self.paths.distance_m(place);
+        path_m.is_finite() && (straight_m > self.within_m || path_m > self.within_m)
     }
 }
 
@@ -32,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_way_round_an_obstacle_counts_and_a_place_inside_one_is_no_matter_of_the_cable() {
+    fn the_path_around_an_obstacle_counts_and_a_point_inside_one_is_not_beyond_the_tether() {
         let wall = Boundary::Circle { radius_m: 10.0 };
         let column = Shape::Disc { center: Point::origin(), radius_m: 2.0 };
         let anchor = Point::new(-6.0, 0.0);

@@ -1,37 +1,38 @@
-//! A way that cuts through a solid, bent round it.
+//! Moves that lead through a solid are bent around it.
 //!
 //! A robot cannot drive through a column, but the estimate of its position can, and so can a plan. The rule: a move
-//! through a solid goes round it the shorter way, which for a column is the side on which it passes the centre; a point
-//! inside counts as the nearest point outside. An estimate that strays less than hull plus column from the truth
-//! therefore winds nothing: on the straight line between the two nothing passes a centre, so both ways have the same
-//! side of every column.
+//! through a solid takes the shorter detour, which at a column is on the side on which the move passes the centre; a
+//! point inside counts as the nearest point outside. An estimate that strays from the truth by less than hull and column
+//! radius together therefore winds nothing: no column's centre lies between the two, so both pass every column on the
+//! same side.
 
-use super::solid::Solid;
-use crate::{geometry::Point, obstacles::Boxes};
+use super::rounded_polygon::RoundedPolygon;
+use crate::obstacles::Boxes;
+use geometry::Point;
 
-/// Depth to which touching is not entering, metres.
+/// Depth up to which a touch does not count as entering, metres.
 const TOUCH_M: f64 = 1e-9;
-/// Bends of one move at most; a cluster of overlapping solids can ask for many.
+/// Most bends of one move; a cluster of overlapping solids can need many.
 const MOST_BENDS: usize = 256;
-/// Solids that a bend round a solid may lead into, in turn.
+/// Most solids that the detour around a solid may enter in turn.
 const DEEPEST: usize = 6;
 
-/// The solids that a way must not enter.
+/// The solids that a path must not enter.
 #[derive(Debug, Clone)]
 pub(super) struct Sidestep {
-    solids: Vec<Solid>,
+    solids: Vec<RoundedPolygon>,
     boxes: Boxes,
-    /// Whether the ends of a way round are led out to the outline first.
+    /// Whether the ends of a detour are led out to the outline first.
     leads_out: bool,
 }
 
 impl Sidestep {
-    /// Sidesteps round these solids.
+    /// Sidesteps around these solids.
     ///
-    /// With `leads_out` a move between two places at a solid keeps off it: right where solids are grown, so that robots
-    /// stand in them. Without, such a move is a chord of the solid, as a taut cable drawn with chords is.
-    pub(super) fn new(solids: Vec<Solid>, leads_out: bool) -> Self {
-        let boxes = Boxes::new(solids.iter().map(Solid::bounds));
+    /// With `leads_out` a move between two points at a solid keeps clear of it, as is right for grown solids, within which
+    /// robots stand. Without, such a move is a chord of the solid, like those of a taut cable that is drawn with chords.
+    pub(super) fn new(solids: Vec<RoundedPolygon>, leads_out: bool) -> Self {
+        let boxes = Boxes::new(solids.iter().map(RoundedPolygon::bounds));
         Self { solids, boxes, leads_out }
     }
 
@@ -63,12 +64,12 @@ impl Sidestep {
         self.boxes.near(center, center, radius_m + TOUCH_M).nth(1).is_none()
     }
 
-    /// The parts of a segment that lie in solids or touch them, as shares of its length.
+    /// The parts of a segment that lie in solids or touch them: where each begins and ends, as shares of the segment.
     pub(super) fn inside(&self, from: Point, to: Point) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.solids.iter().filter_map(move |solid| solid.inside(from, to))
     }
 
-    /// Calls `go` with the ends of the straight pieces that lead from one point to another round every solid.
+    /// Calls `go` with the end of each straight move that leads from one point to another around every solid.
     pub(super) fn along(&self, from: Point, to: Point, mut go: impl FnMut(Point)) {
         let to = self.outside(to);
         if self.first_entered(from, to).is_none() {
@@ -85,18 +86,17 @@ impl Sidestep {
             return way.push(to);
         };
         let mut at = from;
-        let round =
-            if self.leads_out { solid.way_round_outside(from, to) } else { solid.way_round(from, to) };
-        for corner in round {
+        let detour = if self.leads_out { solid.detour_outside(from, to) } else { solid.detour(from, to) };
+        for corner in detour {
             let corner = self.outside(corner);
             self.bend(at, corner, depth + 1, way);
             at = corner;
         }
-        // What is left of the move lies outside this solid, or touches it.
+        // The rest of the move lies outside this solid, or touches it.
         if depth + 1 < DEEPEST { self.bend_past(solid, at, to, depth + 1, way) } else { way.push(to) }
     }
 
-    fn bend_past(&self, passed: &Solid, from: Point, to: Point, depth: usize, way: &mut Vec<Point>) {
+    fn bend_past(&self, passed: &RoundedPolygon, from: Point, to: Point, depth: usize, way: &mut Vec<Point>) {
         if passed.is_entered_by(from, to, TOUCH_M) {
             way.push(to);
         } else {
@@ -104,14 +104,14 @@ impl Sidestep {
         }
     }
 
-    fn first_entered(&self, from: Point, to: Point) -> Option<&Solid> {
+    fn first_entered(&self, from: Point, to: Point) -> Option<&RoundedPolygon> {
         let entered = self.near(from, to).filter(|(_, solid)| solid.is_entered_by(from, to, TOUCH_M));
         let met = entered.map(|(k, solid)| (solid.met_at(from, to), k, solid));
         met.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, _, solid)| solid)
     }
 
-    /// Solids that a segment may meet, with their index, in no order.
-    fn near(&self, from: Point, to: Point) -> impl Iterator<Item = (usize, &Solid)> {
+    /// Solids that a segment may meet, each with its index, in no order.
+    fn near(&self, from: Point, to: Point) -> impl Iterator<Item = (usize, &RoundedPolygon)> {
         self.boxes.near(from, to, TOUCH_M).map(|k| (k, &self.solids[k]))
     }
 }

@@ -1,20 +1,21 @@
-//! What happens first to the free piece of a cable while its end moves in a straight line.
+//! What happens first to the free span of a cable while its end moves in a straight line.
 
-use super::{
-    cable::{SLACK_M, tangent_point},
-    ground::{Ground, Post},
-};
-use geometry::{Point, Vector, wrap_angle_rad};
+use super::cable_obstacles::{CableObstacles, Post, tangent_point};
+use geometry::{Point, Vector, unit_vector, wrap_angle_rad};
 
-/// What the free piece leaves from: the anchor, or the last post.
+/// Lateral slack of a contact, metres: it ends once the robot is this far on its free side, and begins half of this
+/// early. So rounding never lets a cable slip through a corner that it has just touched.
+pub(super) const SLACK_M: f64 = 1e-8;
+
+/// What the free span leaves from: the anchor, or the last post.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Base {
     pub center: Point,
     pub radius_m: f64,
-    /// 1: the cable turns counter-clockwise round it; -1: clockwise; 0: the anchor.
+    /// 1: the cable turns counter-clockwise around it; -1: clockwise; 0: the anchor.
     pub side: f64,
     pub out_rad: f64,
-    /// Infinite for the anchor, which never lets go.
+    /// Infinite for the anchor, which never releases the cable.
     pub wrap_rad: f64,
     pub post: Option<usize>,
 }
@@ -22,32 +23,32 @@ pub(super) struct Base {
 /// What comes next in a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Event {
-    /// Nothing: the end gets where it goes.
+    /// Nothing: the end arrives.
     Arrive,
-    /// The last bend is wound off.
-    LetGo,
-    /// The free piece becomes tangent to a post.
+    /// The last bend is unwound.
+    Release,
+    /// The free span becomes tangent to a post.
     Touch { post: usize, side: f64, bearing_rad: f64, at: Point },
 }
 
 impl Base {
-    /// Where the free piece begins when it has some bearing.
+    /// Where the free span begins at some bearing.
     pub(super) fn leaves_at(&self, bearing_rad: f64) -> Point {
         tangent_point(self.center, self.radius_m, self.side, bearing_rad)
     }
 
-    /// Bearing of the free piece to a point; `None` if the point is the base itself.
+    /// Bearing of the free span to a point; `None` if the point is the base itself.
     pub(super) fn bearing_to(&self, point: Point) -> Option<f64> {
         let way = point - self.center;
         let far = way.norm();
         (far > 1e-12).then(|| way.y.atan2(way.x) + (self.side * self.radius_m / far).clamp(-1.0, 1.0).asin())
     }
 
-    /// Angle by which the free piece turns until its end is at `to`, radians, on a move from `from`.
+    /// Angle by which the free span turns until its end is at `to`, radians, on a move from `from`.
     pub(super) fn turn_to(&self, from: Point, to: Point) -> f64 {
         let Some(bearing_rad) = self.bearing_to(to) else { return self.turn_to_end_here() };
         let turn = wrap_angle_rad(bearing_rad - self.out_rad);
-        // Seen from close by, a move can turn it by nearly half a turn; the sense is that of the motion.
+        // A move close to the base can turn it by nearly half a turn; the sense is that of the motion.
         if turn.abs() > 3.0 && turn * self.sense_of(from, to) < 0.0 {
             turn - std::f64::consts::TAU.copysign(turn)
         } else {
@@ -55,60 +56,56 @@ impl Base {
         }
     }
 
-    /// The turn that leaves the cable ending at the base: all that it was bent there is gone.
+    /// The turn after which the cable ends at the base: it unwinds the whole bend there.
     fn turn_to_end_here(&self) -> f64 {
         if self.post.is_some() { -self.side * self.wrap_rad } else { 0.0 }
     }
 
     /// 1 if a move passes the base counter-clockwise, -1 if clockwise.
     ///
-    /// What passes no farther from it than rounding errors came back along the cable, and winds off.
+    /// A move that passes no farther from it than rounding errors came back along the cable, and unwinds it.
     fn sense_of(&self, from: Point, to: Point) -> f64 {
         let along = (to - from).normalize();
-        // Standing on a corner the tip is on no side of it; the cable's bearing still gives one.
+        // A tip that stands on a corner is on no side of it; the cable's bearing still gives one.
         let passed = if self.radius_m > 0.0 {
             (from - self.center).perp(&along)
         } else {
-            direction(self.out_rad).perp(&along)
+            unit_vector(self.out_rad).perp(&along)
         };
         if passed.abs() <= SLACK_M && self.side != 0.0 { -self.side } else { passed }
     }
 }
 
-pub(super) fn direction(bearing_rad: f64) -> Vector {
-    Vector::new(bearing_rad.cos(), bearing_rad.sin())
-}
-
-/// The first event of a move that still has to turn the free piece by `turn_rad`.
+/// The first event of a move that still has to turn the free span by `turn_rad`.
 ///
-/// `let_go` are posts that this very move has wound off: a straight move cannot meet them again.
+/// `released` are posts that this very move has unwound: a straight move cannot meet them again.
 pub(super) fn next_event(
-    ground: &Ground,
+    obstacles: &CableObstacles,
     base: &Base,
     from: Point,
     to: Point,
     turn_rad: f64,
-    let_go: &[usize],
+    released: &[usize],
 ) -> Event {
     let sense = if turn_rad < 0.0 { -1.0 } else { 1.0 };
     let end = base.leaves_at(base.out_rad + turn_rad);
     let left_over_rad = base.wrap_rad - turn_rad.abs();
-    let lets_go = sense * base.side < 0.0 && left_over_rad * (to - end).norm() < -SLACK_M;
+    let releases = sense * base.side < 0.0 && left_over_rad * (to - end).norm() < -SLACK_M;
     let sweep = Sweep::new(base, from, to, turn_rad, sense);
-    let touched = sweep.first_touched(ground, |k| base.post == Some(k) || let_go.contains(&k));
+    let touched = sweep.first_touched(obstacles, |k| base.post == Some(k) || released.contains(&k));
     match touched {
-        Some(touch) if !lets_go || touch.after_rad < base.wrap_rad => Event::Touch {
+        Some(touch) if !releases || touch.after_rad < base.wrap_rad => Event::Touch {
             post: touch.post,
             side: sense,
             bearing_rad: base.out_rad + sense * touch.after_rad,
             at: touch.at,
         },
-        _ if lets_go => Event::LetGo,
+        _ if releases => Event::Release,
         _ => Event::Arrive,
     }
 }
 
-/// The area that the free piece sweeps in one turn about its base.
+/// The area that the free span sweeps in one turn about its base.
 struct Sweep<'a> {
     base: &'a Base,
     sense: f64,
@@ -117,10 +114,10 @@ struct Sweep<'a> {
     to: Point,
     /// Unit vector of the move.
     along: Vector,
-    /// First and last position of the free piece: where it begins, its direction.
+    /// First and last position of the free span: its beginning and its direction.
     start: (Point, Vector),
     end: (Point, Vector),
-    /// Length of the free piece at the start and at the end, metres.
+    /// Length of the free span at the start and at the end, metres.
     start_m: f64,
     end_m: f64,
 }
@@ -135,8 +132,8 @@ struct Touch {
 impl<'a> Sweep<'a> {
     fn new(base: &'a Base, from: Point, to: Point, turn_rad: f64, sense: f64) -> Self {
         let out_rad = base.out_rad + turn_rad;
-        let start = (base.leaves_at(base.out_rad), direction(base.out_rad));
-        let end = (base.leaves_at(out_rad), direction(out_rad));
+        let start = (base.leaves_at(base.out_rad), unit_vector(base.out_rad));
+        let end = (base.leaves_at(out_rad), unit_vector(out_rad));
         Self {
             base,
             sense,
@@ -151,12 +148,16 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    fn first_touched(&self, ground: &Ground, is_out: impl Fn(usize) -> bool) -> Option<Touch> {
-        // Nothing swept is further from the first position of the free piece than its ends move.
+    fn first_touched(
+        &self,
+        obstacles: &CableObstacles,
+        is_excluded: impl Fn(usize) -> bool,
+    ) -> Option<Touch> {
+        // Nothing swept is farther from the first position of the free span than its ends move.
         let room_m = (self.to - self.from).norm() + 2.0 * self.base.radius_m + 2.0 * SLACK_M;
-        let near = ground.near(self.start.0, self.from, room_m);
-        let may_touch = near.filter(|k| self.may_touch(&ground.posts[*k]) && !is_out(*k));
-        let mut touches: Vec<Touch> = may_touch.filter_map(|k| self.touch(k, &ground.posts[k])).collect();
+        let near = obstacles.near(self.start.0, self.from, room_m);
+        let may_touch = near.filter(|k| self.may_touch(&obstacles.posts[*k]) && !is_excluded(*k));
+        let mut touches: Vec<Touch> = may_touch.filter_map(|k| self.touch(k, &obstacles.posts[k])).collect();
         touches.sort_unstable_by_key(|touch| touch.post);
         touches.into_iter().reduce(|best, touch| {
             let same =
@@ -166,7 +167,7 @@ impl<'a> Sweep<'a> {
         })
     }
 
-    /// How far before the start a tangent may lie and still count, radians, for a post so far from the base.
+    /// How far before the start a tangent may lie and still count, radians, for a post at this distance from the base.
     fn early_rad(&self, far_m: f64) -> f64 {
         0.25 * SLACK_M / self.start_m.max(far_m).max(SLACK_M)
     }
@@ -176,13 +177,13 @@ impl<'a> Sweep<'a> {
         0.5 * SLACK_M / self.end_m.max(far_m).max(SLACK_M)
     }
 
-    /// Whether the free piece passes through a round post at the start, with its middle on the side it turns to.
+    /// Whether the free span passes through a round post at the start, with the post's centre on the side it turns to.
     ///
-    /// So it lies after a move along a chord of the post that led past its tangent point, where an arc would have
-    /// turned it back and forth.
+    /// It does after a move along a chord of the post that led past its tangent point, where an arc would have turned it
+    /// back and forth.
     fn starts_through(&self, post: &Post, far_m: f64) -> bool {
         let aside_m = |point: Point| self.sense * self.start.1.perp(&(point - self.start.0));
-        // Later in a move the free piece no longer ends where the move began.
+        // Later in a move the free span no longer ends where the move began.
         let is_first = aside_m(self.from).abs() <= SLACK_M;
         let is_ahead = far_m < self.start_m && self.start.1.dot(&(post.center - self.start.0)) > 0.0;
         let middle_m = aside_m(post.center);
@@ -192,7 +193,7 @@ impl<'a> Sweep<'a> {
     /// Cheap test: the post reaches into the cone of the sweep, on the near side of the move.
     fn may_touch(&self, post: &Post) -> bool {
         let room_m = post.radius_m + SLACK_M;
-        // The free piece leaves from another point of a round base at every bearing.
+        // The free span leaves a round base from another point at every bearing.
         let wide_m = room_m + 2.0 * self.base.radius_m;
         let side_of = |o: Point, d: Vector| self.sense * d.perp(&(post.center - o));
         side_of(self.from, self.along) >= -room_m
@@ -200,7 +201,7 @@ impl<'a> Sweep<'a> {
             && side_of(self.end.0, self.end.1) <= wide_m
     }
 
-    /// The common tangent of base and post, if the free piece passes it on this move.
+    /// The common tangent of base and post, if the free span passes it on this move.
     fn touch(&self, k: usize, post: &Post) -> Option<Touch> {
         let way = post.center - self.base.center;
         let far = way.norm();
@@ -216,14 +217,14 @@ impl<'a> Sweep<'a> {
             return None;
         }
         let at = tangent_point(post.center, post.radius_m, self.sense, bearing_rad);
-        let (leaves, free) = (self.base.leaves_at(bearing_rad), direction(bearing_rad));
+        let (leaves, free) = (self.base.leaves_at(bearing_rad), unit_vector(bearing_rad));
         let across = free.perp(&self.along);
         let reaches = |end: Point| far_m <= (end - leaves).norm() + SLACK_M;
         // Beyond the line of the move the end passes before the post.
         let is_near = if across.abs() > 1e-9 {
             self.sense * self.along.perp(&(at - self.from)) >= 0.0 && (reaches(self.from) || reaches(self.to))
         } else {
-            // The move leads along the free piece itself: away from the base, or towards and past it.
+            // The move leads along the free span itself: away from the base, or towards and past it.
             reaches(if free.dot(&self.along) > 0.0 { self.to } else { self.from })
         };
         (is_near && post.lies_on(self.sense, free)).then_some(Touch { post: k, after_rad, far_m, at })

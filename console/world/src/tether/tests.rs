@@ -1,9 +1,5 @@
 use super::{funnel::Funnel, *};
-use crate::{
-    Boundary,
-    geometry::{Point, Vector},
-    shape::Shape,
-};
+use geometry::{Boundary, Point, Shape, Vector};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -48,8 +44,8 @@ fn ring_of(shape: &Shape, corners: u32) -> Vec<Point> {
 }
 
 fn keeps_away(shapes: &[Shape], a: Point, b: Point, room_m: f64) -> bool {
-    let ground = Ground::grown(&WALL, shapes, room_m);
-    ground.is_open(a, b)
+    let obstacles = CableObstacles::grown(&WALL, shapes, room_m);
+    obstacles.is_open(a, b)
 }
 
 /// A walk from the anchor whose moves all keep some distance from the shapes.
@@ -103,7 +99,7 @@ fn loops_round_a_column_are_counted_in_full() {
         assert!((contacts[0].wrap_rad - wrap).abs() < 1e-9, "{contacts:?}");
         let straight = (16.0_f64 - 0.25).sqrt() + (4.0_f64 - 0.25).sqrt();
         assert!((cable.length_m() - straight - 0.5 * wrap.abs()).abs() < 1e-9);
-        assert_eq!(cable.word().letters().len(), turns.abs() as usize);
+        assert_eq!(cable.signature().crossings().len(), turns.abs() as usize);
     }
 }
 
@@ -251,7 +247,7 @@ proptest! {
             cable.drag_to(point);
             prop_assert!(cable.length_m() < before_m + 1e-6, "{} {before_m}", cable.length_m());
         }
-        prop_assert!(cable.length_m() < 1e-6 && cable.word().letters().is_empty(), "{:?}", cable.contacts());
+        prop_assert!(cable.length_m() < 1e-6 && cable.signature().crossings().is_empty(), "{:?}", cable.contacts());
     }
 
     #[test]
@@ -281,17 +277,17 @@ proptest! {
         prop_assert!(cable.wrap_total_rad() >= cable.wrap_max_rad() - 1e-9);
         way.reverse();
         cable.drag_along(&way);
-        prop_assert!(cable.length_m() < 1e-7 && cable.is_straight() && cable.word().is_empty());
+        prop_assert!(cable.length_m() < 1e-7 && cable.is_straight() && cable.signature().is_empty());
     }
 
     #[test]
-    fn at_the_anchor_the_word_is_empty_exactly_if_the_cable_is_in(at in places(10), goals in places(30), radius in 0.1..0.8_f64) {
+    fn at_the_anchor_the_signature_is_empty_exactly_if_the_cable_is_in(at in places(10), goals in places(30), radius in 0.1..0.8_f64) {
         let anchor = Point::new(0.05, -0.03);
         let shapes = apart(at.iter().map(|(x, y)| disc(*x, *y, radius)).collect(), anchor, 0.05);
         let mut cable = cable(anchor, &shapes);
         cable.drag_along(&walk(anchor, &goals, &shapes, 0.0));
         cable.drag_to(anchor);
-        prop_assert_eq!(cable.word().is_empty(), cable.length_m() < 1e-6);
+        prop_assert_eq!(cable.signature().is_empty(), cable.length_m() < 1e-6);
     }
 
     #[test]
@@ -348,7 +344,7 @@ proptest! {
         truth.drag_to(anchor);
         guess.drag_to(*way.last().unwrap());
         guess.drag_to(anchor);
-        prop_assert_eq!(truth.word(), guess.word());
+        prop_assert_eq!(truth.signature(), guess.signature());
         prop_assert!((truth.length_m() - guess.length_m()).abs() < 1e-6);
     }
 
@@ -357,14 +353,14 @@ proptest! {
         let anchor = Point::new(0.05, -0.03);
         let shapes = apart(at.iter().map(|(x, y)| disc(*x, *y, radius)).collect(), anchor, 0.05);
         let mut cable = cable(anchor, &shapes);
-        let shortest = geodesic::Geodesic::new(anchor, std::sync::Arc::clone(cable.ground()));
+        let shortest = Geodesic::new(anchor, std::sync::Arc::clone(cable.obstacles()));
         for point in walk(anchor, &goals, &shapes, 0.0) {
             cable.drag_to(point);
             let least_m = shortest.distance_m(point);
             prop_assert!(least_m >= (point - anchor).norm() - 1e-9 && least_m <= cable.length_m() + 1e-6,
                 "{least_m} {}", cable.length_m());
             // A shortest way is its own cable: dragged straight there and back it is found again.
-            if cable.word().is_empty() && cable.is_straight() {
+            if cable.signature().is_empty() && cable.is_straight() {
                 prop_assert!((least_m - cable.length_m()).abs() < 1e-6);
             }
         }

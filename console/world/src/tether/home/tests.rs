@@ -1,11 +1,6 @@
 use super::*;
-use crate::{
-    Boundary,
-    geometry::Vector,
-    polyline,
-    shape::Shape,
-    tank::{Obstacle, ObstacleId},
-};
+use crate::tank::{Obstacle, ObstacleId};
+use geometry::{Boundary, Shape, Vector};
 use proptest::prelude::*;
 
 const WALL: Boundary = Boundary::Circle { radius_m: 6.0 };
@@ -14,7 +9,7 @@ const HULL_M: f64 = 0.25;
 /// A floor with columns, a cable on it, and the same floor as a hull meets it.
 struct Floor {
     cable: Cable,
-    roomy: Arc<Ground>,
+    grown: Arc<CableObstacles>,
     map: ObstacleMap,
 }
 
@@ -30,7 +25,7 @@ impl Floor {
         let obstacles: Vec<Obstacle> = shapes.iter().map(obstacle).collect();
         Self {
             cable: Cable::new(anchor, boundary, &shapes).unwrap(),
-            roomy: Arc::new(Ground::grown(boundary, &shapes, room_m)),
+            grown: Arc::new(CableObstacles::grown(boundary, &shapes, room_m)),
             map: ObstacleMap::new(boundary, &obstacles),
         }
     }
@@ -43,7 +38,7 @@ impl Floor {
     }
 
     fn home(&self, room_m: f64) -> Option<Vec<Point>> {
-        self.cable.return_path(&self.roomy, &self.map, room_m)
+        self.cable.return_path(&self.grown, &self.map, room_m)
     }
 }
 
@@ -110,11 +105,11 @@ fn a_cable_that_passes_close_by_a_column_after_another_keeps_its_side_of_both() 
 
 /// The way of a hull among columns, off by some noise: every true position is free for the hull, the reported ones are not.
 fn driven(floor: &Floor, goals: &[(f64, f64)], noise: &[(f64, f64)]) -> Vec<Point> {
-    let mut at = floor.roomy.outside(floor.cable.anchor());
+    let mut at = floor.grown.outside(floor.cable.anchor());
     let mut way = vec![at];
     for (x, y) in goals {
         let mut pieces = vec![at];
-        floor.roomy.go_round(at, Point::new(*x, *y), &mut pieces);
+        floor.grown.go_round(at, Point::new(*x, *y), &mut pieces);
         let is_free = pieces.windows(2).all(|w| floor.map.obstacle_clearance_m(w[0], w[1]) > HULL_M - 1e-6);
         if is_free {
             at = pieces[pieces.len() - 1];
@@ -157,13 +152,13 @@ fn a_cable_that_lies_flat_along_a_box_has_a_way_home() {
         let corners = [(-0.31, -0.075), (0.31, -0.075), (0.31, 0.075), (-0.31, 0.075)];
         let shape = Shape::Polygon { vertices: corners.map(corner).to_vec() };
         let mut cable = Cable::new(Point::new(0.0, -6.9), &boundary, std::slice::from_ref(&shape)).unwrap();
-        let roomy = Arc::new(Ground::grown(&boundary, std::slice::from_ref(&shape), 0.15));
+        let grown = Arc::new(CableObstacles::grown(&boundary, std::slice::from_ref(&shape), 0.15));
         let obstacle = Obstacle { id: ObstacleId(0), name: String::new(), shape, known: true };
         let map = ObstacleMap::new(&boundary, &[obstacle]);
         let way = [(0.0, -6.9), (0.0, -5.5), (0.5, -4.5), (4.0, 3.0), (5.7, -0.3), (5.6, -1.0), (5.0, -2.0)];
         for at in polyline::resampled(&way.map(|(x, y)| Point::new(x, y)), 0.02) {
             cable.drag_to(at);
-            let home = cable.return_path(&roomy, &map, 0.15);
+            let home = cable.return_path(&grown, &map, 0.15);
             assert!(home.is_some(), "{heading_deg} deg at {at}: {:?}", cable.taut_line());
         }
     }

@@ -4,10 +4,10 @@ use super::*;
 use geometry::Vector;
 use std::f64::consts::PI;
 
-/// A second opinion: the reduced word by rays of another bearing, with none of the certificate's code.
-fn letters_left(path: &[Point], columns: &[Obstacle]) -> Vec<(u32, bool)> {
+/// A second opinion: the homotopy signature by rays of another bearing, with none of the certificate's code.
+fn crossings_left(path: &[Point], columns: &[Obstacle]) -> Vec<(u32, bool)> {
     let ray = Vector::new(2.2_f64.cos(), 2.2_f64.sin());
-    let mut word: Vec<(u32, bool)> = Vec::new();
+    let mut signature: Vec<(u32, bool)> = Vec::new();
     for pair in path.windows(2) {
         let mut met: Vec<(f64, u32, bool)> = Vec::new();
         for column in columns {
@@ -21,14 +21,14 @@ fn letters_left(path: &[Point], columns: &[Obstacle]) -> Vec<(u32, bool)> {
         }
         met.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, id, ccw) in met {
-            if word.last() == Some(&(id, !ccw)) {
-                word.pop();
+            if signature.last() == Some(&(id, !ccw)) {
+                signature.pop();
             } else {
-                word.push((id, ccw));
+                signature.push((id, ccw));
             }
         }
     }
-    word
+    signature
 }
 
 fn lenient<'a>(path: &'a [Point], obstacles: &'a [Obstacle]) -> Case<'a> {
@@ -71,13 +71,13 @@ fn columns_at(at: &[(f64, f64)]) -> Vec<Obstacle> {
 /// A walk with room for the hull that ends at the anchor as soon as the way there is free, after enough goals.
 fn closed_walk(goals: &[(f64, f64)], columns: &[Obstacle]) -> Option<Vec<Point>> {
     let shapes: Vec<Shape> = columns.iter().map(|c| c.shape.clone()).collect();
-    let ground = Ground::grown(&WALL, &shapes, 0.3);
+    let grown = CableObstacles::grown(&WALL, &shapes, 0.3);
     let mut path = vec![Point::origin()];
     for (k, (x, y)) in goals.iter().enumerate() {
         let (last, next) = (path[path.len() - 1], Point::new(*x, *y));
-        if next.coords.norm() < 9.6 && ground.is_open(last, next) {
+        if next.coords.norm() < 9.6 && grown.is_open(last, next) {
             path.push(next);
-            if k > goals.len() / 2 && ground.is_open(next, Point::origin()) {
+            if k > goals.len() / 2 && grown.is_open(next, Point::origin()) {
                 path.push(Point::origin());
                 return Some(path);
             }
@@ -209,16 +209,16 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn a_walk_is_certified_exactly_if_its_word_is_empty(
+    fn a_walk_is_certified_exactly_if_its_signature_is_empty(
         at in prop::collection::vec((-8.0..8.0_f64, -8.0..8.0_f64), 1..14),
         goals in prop::collection::vec((-9.0..9.0_f64, -9.0..9.0_f64), 20..90),
     ) {
         let columns = columns_at(&at);
         let Some(path) = closed_walk(&goals, &columns) else { return Ok(()) };
-        let word = letters_left(&path, &columns);
+        let signature = crossings_left(&path, &columns);
         let certificate = certify(&lenient(&path, &columns)).unwrap();
-        prop_assert_eq!(certificate.certified, word.is_empty(), "{:?} {:?}", word, certificate.reasons);
-        prop_assert_eq!(certificate.end_length_m.unwrap() < 1e-6, word.is_empty());
+        prop_assert_eq!(certificate.certified, signature.is_empty(), "{:?} {:?}", signature, certificate.reasons);
+        prop_assert_eq!(certificate.end_length_m.unwrap() < 1e-6, signature.is_empty());
         // With its own way back it is always certified.
         let there_and_back: Vec<Point> = path.iter().chain(path.iter().rev()).copied().collect();
         prop_assert!(certify(&lenient(&there_and_back, &columns)).unwrap().certified);

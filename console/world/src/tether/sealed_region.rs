@@ -1,29 +1,33 @@
-//! Pockets: floor that cuts seal off.
+//! Sealed regions: floor that cuts separate from the rest.
 
-use super::certificate::Case;
-use crate::{Boundary, geometry::Point};
+use super::case::Case;
+use crate::coverage::neighbours;
+use geometry::{Boundary, Point, Vector};
 use std::ops::Range;
 
-/// Smallest edge of a cell, metres, and most cells along one side.
+/// Smallest edge of a cell, metres.
 const CELL_M: f64 = 0.05;
+/// Most cells along one side.
 const MOST_CELLS: f64 = 1000.0;
-/// Pockets smaller than this are slivers of the grid, square metres.
+/// Regions smaller than this are slivers of the grid, square metres.
 const LEAST_M2: f64 = 0.05;
 
-/// The largest sealed pocket and the area of all.
+/// All sealed regions.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Sealed {
+pub(super) struct SealedRegions {
+    /// Their area together, square metres.
     pub area_m2: f64,
+    /// A point in the largest of them.
     pub at: Point,
 }
 
 /// Floor that the hull reaches without the cuts and not with them.
 ///
 /// Flood fill from the anchor and from the path: where a path that crosses no cut has been, nothing is sealed. Cuts are
-/// no cells but block the step between the middles of two neighbours, so they take no floor away.
+/// not cells: they block the step between the centres of two neighbours, so they take no floor away.
 ///
-/// A gate narrower than a cell can look shut: what seems to be sealed is looked at again with finer cells.
-pub(super) fn sealed(case: &Case<'_>) -> Option<Sealed> {
+/// A passage narrower than a cell can look closed: what seems to be sealed is checked again with finer cells.
+pub(super) fn sealed_regions(case: &Case<'_>) -> Option<SealedRegions> {
     let (low, high) = case.boundary.bounds();
     let cell_m = CELL_M.max((high - low).max() / MOST_CELLS);
     let mut sealed = sealed_in(case, &Grid::new(case, cell_m))?;
@@ -33,31 +37,30 @@ pub(super) fn sealed(case: &Case<'_>) -> Option<Sealed> {
     Some(sealed)
 }
 
-fn sealed_in(case: &Case<'_>, grid: &Grid) -> Option<Sealed> {
+fn sealed_in(case: &Case<'_>, grid: &Grid) -> Option<SealedRegions> {
     let walls = grid.walls(case.cuts);
     let seeds = std::iter::once(&case.anchor).chain(case.path).filter_map(|point| grid.cell(*point));
     let mut seen = vec![false; grid.free.len()];
     grid.flood(&mut seen, seeds.collect(), &walls);
-    let is_shut = |cell: usize, seen: &[bool]| grid.free[cell] && !seen[cell];
-    // What is left and lies beside what was reached lies behind a cut, and so does what lies beside that.
-    let rim = |cell: &usize| is_shut(*cell, &seen) && grid.beside(*cell).any(|other| seen[other]);
+    // Cells left over beside reached ones lie behind a cut, and so do those beside them.
+    let rim = |cell: &usize| grid.is_new(&seen, *cell) && grid.neighbours(*cell).any(|other| seen[other]);
     let mut behind: Vec<usize> = (0..seen.len()).filter(rim).collect();
     behind.reverse();
-    let mut all = Sealed { area_m2: 0.0, at: case.anchor };
+    let mut all = SealedRegions { area_m2: 0.0, at: case.anchor };
     let mut largest = 0;
     while let Some(cell) = behind.pop() {
         if seen[cell] {
             continue;
         }
-        let pocket = grid.flood(&mut seen, vec![cell], &walls);
-        let count: usize = pocket.iter().map(Range::len).sum();
+        let region = grid.flood(&mut seen, vec![cell], &walls);
+        let count: usize = region.iter().map(Range::len).sum();
         let area_m2 = count as f64 * grid.cell_m * grid.cell_m;
-        let more = pocket.iter().cloned().flatten().flat_map(|cell| grid.beside(cell));
-        behind.extend(more.filter(|other| is_shut(*other, &seen)));
+        let more = region.iter().cloned().flatten().flat_map(|cell| grid.neighbours(cell));
+        behind.extend(more.filter(|other| grid.is_new(&seen, *other)));
         if area_m2 >= LEAST_M2 {
             all.area_m2 += area_m2;
             if count > largest {
-                (largest, all.at) = (count, grid.middle(cell));
+                (largest, all.at) = (count, grid.center(cell));
             }
         }
     }
@@ -95,22 +98,22 @@ impl Grid {
             let (i, j) = grid.place(from.map(|v| v - case.room_m));
             let (k, l) = grid.place(to.map(|v| v + case.room_m));
             for cell in (j..=l).flat_map(|row| (i..=k).map(move |column| row * width + column)) {
-                grid.free[cell] &= obstacle.shape.distance_m(grid.middle(cell)) >= case.room_m;
+                grid.free[cell] &= obstacle.shape.distance_m(grid.center(cell)) >= case.room_m;
             }
         }
         grid
     }
 
-    /// Marks what the wall leaves free of a row.
+    /// Marks the cells of a row that the wall leaves free.
     fn clear_row(&mut self, row: usize, case: &Case<'_>) {
         let cells = row * self.width..(row + 1) * self.width;
         let Boundary::Circle { radius_m } = case.boundary else {
             for cell in cells {
-                self.free[cell] = case.boundary.wall_distance_m(self.middle(cell)) >= case.room_m;
+                self.free[cell] = case.boundary.wall_distance_m(self.center(cell)) >= case.room_m;
             }
             return;
         };
-        let (reach_m, y) = (radius_m - case.room_m, self.middle(cells.start).y);
+        let (reach_m, y) = (radius_m - case.room_m, self.center(cells.start).y);
         if reach_m > y.abs() {
             let half_m = (reach_m * reach_m - y * y).sqrt();
             let column = |x: f64| ((x - self.low.x) / self.cell_m - 0.5).max(0.0);
@@ -119,21 +122,16 @@ impl Grid {
         }
     }
 
-    /// The four neighbours of a cell, as far as there are such.
-    fn beside(&self, cell: usize) -> impl Iterator<Item = usize> + use<> {
-        let (column, width, end) = (cell % self.width, self.width, self.free.len());
-        let west = (column > 0).then(|| cell - 1);
-        let east = (column + 1 < width).then_some(cell + 1);
-        let (south, north) = (cell.checked_sub(width), Some(cell + width).filter(|cell| *cell < end));
-        [west, east, south, north].into_iter().flatten()
+    fn neighbours(&self, cell: usize) -> impl Iterator<Item = usize> + use<> {
+        neighbours(cell, self.width, self.free.len())
     }
 
-    fn middle(&self, cell: usize) -> Point {
+    fn center(&self, cell: usize) -> Point {
         let (column, row) = ((cell % self.width) as f64, (cell / self.width) as f64);
         Point::new(self.low.x + (column + 0.5) * self.cell_m, self.low.y + (row + 0.5) * self.cell_m)
     }
 
-    /// Column and row of the cell that holds a point, or of the nearest one.
+    /// Column and row of the cell that contains a point, or of the nearest one.
     fn place(&self, point: Point) -> (usize, usize) {
         let at = (point - self.low) / self.cell_m;
         ((at.x.max(0.0) as usize).min(self.width - 1), (at.y.max(0.0) as usize).min(self.height - 1))
@@ -144,13 +142,13 @@ impl Grid {
         Some(row * self.width + column).filter(|cell| self.free[*cell])
     }
 
-    /// Which steps cross a cut.
+    /// The steps between neighbours that cross a cut.
     fn walls(&self, cuts: &[Vec<Point>]) -> Walls {
         let mut east = vec![false; self.free.len()];
         let mut north = east.clone();
         for pair in cuts.iter().flat_map(|cut| cut.windows(2)) {
-            // In units of cells, with the middles of cells at whole numbers.
-            let to_cells = |p: Point| (p - self.low) / self.cell_m - geometry::Vector::new(0.5, 0.5);
+            // In units of cells, with the centres of cells at whole numbers.
+            let to_cells = |p: Point| (p - self.low) / self.cell_m - Vector::new(0.5, 0.5);
             let (a, b) = (to_cells(pair[0]), to_cells(pair[1]));
             for (row, column) in steps_crossed(a.y, b.y, a.x, b.x, self.height) {
                 self.block(&mut east, column, row);
@@ -168,7 +166,7 @@ impl Grid {
         }
     }
 
-    /// Marks what can be reached from some cells without crossing a cut, and gives what is new, in runs of one row.
+    /// Marks what can be reached from some cells without crossing a cut; returns what is new, in runs of one row.
     fn flood(&self, seen: &mut [bool], mut todo: Vec<usize>, walls: &Walls) -> Vec<Range<usize>> {
         let mut runs = Vec::new();
         while let Some(cell) = todo.pop() {
@@ -195,7 +193,7 @@ impl Grid {
         runs
     }
 
-    /// The northern or southern neighbours of a run to go on from: the first of each stretch.
+    /// Adds the northern or southern neighbours of a run from which to continue: the first of each stretch.
     fn step_over(
         &self,
         run: Range<usize>,
@@ -220,8 +218,8 @@ impl Grid {
     }
 }
 
-/// The whole numbers below `count` between `from` and `to`, each with the whole number below the line's other coordinate
-/// there.
+/// The grid lines that a segment crosses: each whole number below `count` between `from` and `to`, with the other
+/// coordinate of the segment there, rounded down.
 fn steps_crossed(
     from: f64,
     to: f64,

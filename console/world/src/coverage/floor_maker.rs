@@ -1,31 +1,57 @@
 //! Which cells are floor, and which of them the tool can reach.
 
-use super::{Cell, Floor, KindRun};
+use super::floor::{Cell, Floor, KindRun, kind_runs};
 use crate::{
-    geometry::{Point, Vector},
     obstacles::ObstacleMap,
-    shape::Shape,
     tank::{World, ZoneKind},
 };
+use geometry::{Point, Shape, Vector};
 use std::collections::VecDeque;
 
-/// Rounding that does not make a cell beside the wall one beside an obstacle, metres.
+/// Difference of distances up to which the wall counts as nearer than an obstacle, metres.
 const ROUNDING_M: f64 = 1e-6;
 
-/// A floor with what it takes to update it when an obstacle is found.
+/// A floor with all that is needed to update it when an obstacle is found.
 pub struct FloorMaker {
     floor: Floor,
-    /// Distance from every cell's centre to anything solid, metres.
+    /// Distance from the centre of every cell to the nearest solid, metres.
     clearance_m: Vec<f32>,
-    /// Whether the robot's centre must not come to a cell because of a zone.
+    /// Whether a zone forbids the robot's centre in a cell.
     forbidden: Vec<bool>,
     room_m: f64,
     swath_m: f64,
     start: Point,
 }
 
+impl Floor {
+    /// The floor of a tank for a robot whose centre keeps `room_m` (hull radius and clearance) from everything solid, with
+    /// a tool of some swath, driving from `start`; all in metres and the tank frame.
+    ///
+    /// Costs one distance query per cell and a flood fill.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// assert_eq!((floor.width, floor.height, floor.origin), (100, 100, Point::new(-5.0, -5.0)));
+    /// ```
+    pub fn new(world: &World, cell_m: f64, room_m: f64, swath_m: f64, start: Point) -> Self {
+        FloorMaker::new(world, cell_m, room_m, swath_m, start).into_floor()
+    }
+}
+
 impl FloorMaker {
     /// The floor of a tank; see [`Floor::new`].
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, FloorMaker, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// let maker = FloorMaker::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// assert_eq!(maker.into_floor().len(), 10_000);
+    /// ```
     pub fn new(world: &World, cell_m: f64, room_m: f64, swath_m: f64, start: Point) -> Self {
         let (low, high) = world.boundary.bounds();
         let count = |span_m: f64| (span_m / cell_m).ceil().max(1.0) as usize;
@@ -34,7 +60,16 @@ impl FloorMaker {
         Self::of(&Floor { origin: low, cell_m, width, height, cells }, world, room_m, swath_m, start)
     }
 
-    /// The maker of a floor with the cells of another one.
+    /// The floor of a tank with its cells at the positions of another floor's.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, FloorMaker, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// let wide = FloorMaker::of(&floor, &tank, 1.0, 0.6, Point::origin()).into_floor();
+    /// assert!(wide.is_aligned_with(&floor) && wide != floor);
+    /// ```
     pub fn of(grid: &Floor, world: &World, room_m: f64, swath_m: f64, start: Point) -> Self {
         let map = ObstacleMap::new(&world.boundary, &world.obstacles);
         let clearance_m = (0..grid.len()).map(|index| map.clearance_m(grid.center(index)) as f32).collect();
@@ -49,17 +84,37 @@ impl FloorMaker {
         maker
     }
 
-    /// The floor.
+    /// The floor as it is now.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, FloorMaker, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// let maker = FloorMaker::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// assert!(maker.into_floor().is_reachable(5050));
+    /// ```
     pub fn into_floor(self) -> Floor {
         self.floor
     }
 
-    /// Updates the floor after obstacles of these outlines appeared or moved a little; returns the cells that changed.
+    /// Updates the floor after obstacles with these outlines appeared or moved slightly; returns the cells that changed.
+    /// `world` and `map` are the tank as it is now.
     ///
     /// Costs a distance query per cell near the outlines and a flood fill.
+    ///
+    /// ```
+    /// use world::{Boundary, FloorMaker, Obstacle, ObstacleId, ObstacleMap, Point, Shape, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let mut tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// let mut maker = FloorMaker::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// let shape = Shape::Disc { center: Point::new(2.0, 0.0), radius_m: 0.3 };
+    /// tank.obstacles.push(Obstacle { id: ObstacleId(1), name: "C1".into(), shape: shape.clone(), known: false });
+    /// let map = ObstacleMap::new(&tank.boundary, &tank.obstacles);
+    /// assert!(!maker.update(&tank, &map, &[shape]).is_empty());
+    /// ```
     pub fn update(&mut self, world: &World, map: &ObstacleMap, changed: &[Shape]) -> Vec<KindRun> {
         let before = self.floor.cells.clone();
-        // Wide enough for the former outline of an obstacle that moved as well: it moved only a little.
+        // Wide enough for the former outline of a moved obstacle too: it moved only slightly.
         let reach_m = self.room_m + self.swath_m;
         for shape in changed {
             for index in around(&self.floor, shape, reach_m) {
@@ -67,7 +122,8 @@ impl FloorMaker {
             }
         }
         self.classify(world);
-        changes(&before, &self.floor.cells)
+        let changed = |(index, cell): &(usize, Cell)| before[*index] != *cell;
+        kind_runs(self.floor.cells.iter().copied().enumerate().filter(changed))
     }
 
     fn classify(&mut self, world: &World) {
@@ -94,14 +150,14 @@ impl FloorMaker {
             return Cell::NoGo;
         }
         let wall_m = world.boundary.wall_distance_m(center);
-        // So far from the shell the tool ends in a tank with nothing in it; the rest is up to what stands there.
+        // Up to this distance from the shell the tool cannot reach in an empty tank; beyond, an obstacle is the cause.
         let margin_m = (self.room_m - self.swath_m / 2.0).max(0.0) + self.floor.cell_m;
         let is_wall_nearest = wall_m <= f64::from(self.clearance_m[index]) + ROUNDING_M;
         if is_wall_nearest && wall_m <= margin_m { Cell::Margin } else { Cell::Beside }
     }
 
-    /// Cells to which the robot's centre can drive from the start: a flood fill over cells with room for it, from the
-    /// one that is nearest to the start. (The start itself may touch the wall, where no cell's centre lies.)
+    /// Cells to which the robot's centre can drive from the start: a flood fill over cells with room for it, from the one
+    /// nearest to the start. (The start itself may touch the wall, where no cell has its centre.)
     fn drivable(&self, free: &[bool]) -> Vec<bool> {
         let distance_m = |index: &usize| (self.floor.center(*index) - self.start).norm();
         let first =
@@ -116,13 +172,13 @@ impl FloorMaker {
         found
     }
 
-    /// Gives a kind to the floor that the tool reaches from some places and that has no kind yet.
+    /// Sets the kind of the floor that the tool reaches from some cells and that has no kind yet.
     fn reach(&mut self, from: &[bool], kind: Cell) {
-        // The place that is nearest to any other cell has a neighbour that is none.
+        // Of these cells the one that is nearest to any other cell has a neighbour that is not one of them.
         let at_edge = |index: &usize| self.floor.neighbours(*index).any(|next| !from[next]);
-        let places: Vec<usize> = (0..from.len()).filter(|index| from[*index]).collect();
-        let edge: Vec<usize> = places.iter().copied().filter(at_edge).collect();
-        for index in places {
+        let cells: Vec<usize> = (0..from.len()).filter(|index| from[*index]).collect();
+        let edge: Vec<usize> = cells.iter().copied().filter(at_edge).collect();
+        for index in cells {
             if self.floor.cells[index] == Cell::Beside {
                 self.floor.cells[index] = kind;
             }
@@ -143,19 +199,6 @@ fn around(floor: &Floor, shape: &Shape, margin_m: f64) -> impl Iterator<Item = u
     let (low, high) = shape.bounds();
     let margin = Vector::new(margin_m, margin_m);
     floor.cells_in(low - margin, high + margin)
-}
-
-fn changes(before: &[Cell], after: &[Cell]) -> Vec<KindRun> {
-    let mut runs: Vec<KindRun> = Vec::new();
-    for (index, (_, kind)) in before.iter().zip(after).enumerate().filter(|(_, (old, new))| old != new) {
-        match runs.last_mut() {
-            Some(KindRun(last, first, count)) if last == kind && (*first + *count) as usize == index => {
-                *count += 1;
-            }
-            _ => runs.push(KindRun(*kind, index as u32, 1)),
-        }
-    }
-    runs
 }
 
 #[cfg(test)]

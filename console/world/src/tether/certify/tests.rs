@@ -1,7 +1,11 @@
 mod hostile;
 
 use super::*;
-use crate::{shape::Shape, tank::ObstacleId};
+use crate::{
+    tank::{Obstacle, ObstacleId},
+    tether::{Cable, Limits},
+};
+use geometry::{Boundary, Point, Shape};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
@@ -99,7 +103,7 @@ fn a_path_that_does_not_come_back_or_is_no_path_is_refused() {
 }
 
 #[test]
-fn cuts_that_close_a_pocket_are_found_unless_the_path_has_been_inside() {
+fn cuts_that_seal_a_region_are_found_unless_the_path_has_been_inside() {
     let ring: Vec<Point> =
         (0..=8).map(|k| TAU * f64::from(k) / 8.0).map(|a| Point::new(5.0 + a.cos(), a.sin())).collect();
     let path = points(&[(0., 0.), (0., 5.), (0., 0.)]);
@@ -129,12 +133,12 @@ proptest! {
             .map(|c| vec![c.shape.center(), Point::from(c.shape.center().coords.normalize() * 10.0)])
             .collect();
         let shapes: Vec<Shape> = columns.iter().map(|c| c.shape.clone()).collect();
-        let ground = Ground::grown(&WALL, &shapes, 0.3);
+        let grown = CableObstacles::grown(&WALL, &shapes, 0.3);
         let mut path = vec![Point::origin()];
         for (x, y) in goals.into_iter().chain([(0.0, 0.0)]) {
             let next = Point::new(x, y);
             let last = path[path.len() - 1];
-            if next.coords.norm() < 9.7 && ground.is_open(last, next) && cuts::crossings(&[last, next], &cuts) == 0 {
+            if next.coords.norm() < 9.7 && grown.is_open(last, next) && cuts::crossings(&[last, next], &cuts) == 0 {
                 path.push(next);
             }
         }

@@ -1,35 +1,35 @@
-//! Chance: one stream of numbers per purpose, all from one seed.
+//! Random numbers: one stream per purpose, all from one seed.
 
 use crate::config::NoiseModel;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal, StudentT};
 use rand_pcg::Pcg64;
 
-/// Shortest range that is ever reported, metres.
+/// Shortest range that is reported, metres.
 const SHORTEST_M: f64 = 1e-6;
-/// Longest range that is ever reported, metres.
+/// Longest range that is reported, metres.
 const LONGEST_M: f64 = 1e9;
-/// Degrees of freedom of the heavy-tailed noise: the fewest whole number with a variance.
+/// Degrees of freedom of the heavy-tailed noise: the smallest integer for which the variance exists.
 const TAIL_FREEDOM: f64 = 3.0;
 
-/// The streams; none of them depends on how much the others were used.
+/// The streams; none depends on how much is drawn from the others.
 #[derive(Debug, Clone)]
-pub(crate) struct Chance {
+pub(crate) struct RandomStreams {
     /// Errors of the ranges.
     pub ranging: Pcg64,
-    /// Which stations are not heard.
+    /// Stations that are not heard.
     pub dropout: Pcg64,
     /// Errors of the odometry.
     pub odometry: Pcg64,
-    /// How much the tracks slip.
+    /// Slip of the tracks.
     pub slip: Pcg64,
-    /// What happens to ranges besides their scatter.
-    pub detour: Pcg64,
-    /// Where the stations really are.
+    /// Disturbances of ranges besides their scatter.
+    pub disturbance: Pcg64,
+    /// Survey errors of the stations.
     pub survey: Pcg64,
 }
 
-impl Chance {
+impl RandomStreams {
     pub(crate) fn new(seed: u64) -> Self {
         let stream = |purpose: u64| Pcg64::seed_from_u64(mixed(seed ^ mixed(purpose)));
         Self {
@@ -37,13 +37,13 @@ impl Chance {
             dropout: stream(2),
             odometry: stream(3),
             slip: stream(4),
-            detour: stream(5),
+            disturbance: stream(5),
             survey: stream(6),
         }
     }
 }
 
-/// Spreads neighbouring numbers over the whole range (the finaliser of splitmix64).
+/// Spreads neighbouring numbers over the whole range (the finaliser of `SplitMix64`).
 fn mixed(number: u64) -> u64 {
     let number = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let number = (number ^ (number >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -77,7 +77,7 @@ impl NoiseModel {
 
 /// A distance with its error, limited to the ranges that can be reported, metres; always positive.
 pub(crate) fn reported_m(range_m: f64) -> f64 {
-    // A distance so far that the error turns it into nothing is still a distance.
+    // Not a number where the error overflows: then the range is as long as can be reported.
     if range_m.is_nan() { LONGEST_M } else { range_m.clamp(SHORTEST_M, LONGEST_M) }
 }
 
@@ -134,12 +134,18 @@ mod tests {
 
     #[test]
     fn streams_and_neighbouring_seeds_differ() {
-        let (mut a, mut b) = (Chance::new(1), Chance::new(2));
-        let mut first: Vec<u64> =
-            [&mut a.ranging, &mut a.dropout, &mut a.odometry, &mut a.slip, &mut a.detour, &mut b.ranging]
-                .into_iter()
-                .map(RngExt::random)
-                .collect();
+        let (mut a, mut b) = (RandomStreams::new(1), RandomStreams::new(2));
+        let mut first: Vec<u64> = [
+            &mut a.ranging,
+            &mut a.dropout,
+            &mut a.odometry,
+            &mut a.slip,
+            &mut a.disturbance,
+            &mut b.ranging,
+        ]
+        .into_iter()
+        .map(RngExt::random)
+        .collect();
         first.sort_unstable();
         first.dedup();
         assert_eq!(first.len(), 6);

@@ -1,72 +1,80 @@
-//! A convex solid with rounded corners: what a cable and a robot cannot enter.
+//! A convex polygon with rounded corners: a part of what a cable and a robot cannot enter.
 
-use crate::{
-    geometry::{Point, Vector},
-    polyline::{edges, nearest_on_segment},
-    shape::ring_area_m2,
+use geometry::{
+    Point, Shape, Vector,
+    polyline::{edges, length_m, nearest_on_segment, segments_cross},
+    shape::{bounds_of, mean_of, ring_area_m2},
+    unit_vector,
 };
 use std::f64::consts::TAU;
 
-/// Directions of the tangents that make the outline of a round solid.
+/// Number of tangents that make the outline of a round core.
 const TANGENTS: u32 = 24;
-/// Distance from an edge below which its direction is rounding, metres.
+/// Distance from an edge below which the direction from it is rounding, metres.
 const ON_EDGE_M: f64 = 1e-9;
 
-/// All points within a radius of a point, a segment or a convex polygon.
+/// All points within a radius of its core: a convex polygon, a segment or a point.
 #[derive(Debug, Clone)]
-pub(super) struct Solid {
-    /// One point, two points, or a convex polygon, counter-clockwise.
+pub(super) struct RoundedPolygon {
+    /// One point, two points, or more, counter-clockwise.
     core: Vec<Point>,
     radius_m: f64,
     middle: Point,
     reach_m: f64,
-    /// A polygon about it that touches it, counter-clockwise.
+    /// A circumscribed polygon, counter-clockwise.
     outline: Vec<Point>,
 }
 
-impl Solid {
-    /// The solid about a core that is not empty.
+impl RoundedPolygon {
+    /// The parts of an obstacle grown by a margin: one, or one for each segment of a polyline.
+    pub(super) fn parts_of(shape: &Shape, margin_m: f64) -> Vec<Self> {
+        match shape {
+            Shape::Disc { center, radius_m } => vec![Self::new(vec![*center], radius_m + margin_m)],
+            Shape::Polygon { vertices } => vec![Self::new(vertices.clone(), margin_m)],
+            Shape::Polyline { points, half_width_m } => {
+                points.windows(2).map(|w| Self::new(w.to_vec(), half_width_m + margin_m)).collect()
+            }
+        }
+    }
+
+    /// All within a radius of a core, which has at least one point.
     pub(super) fn new(mut core: Vec<Point>, radius_m: f64) -> Self {
         if core.len() > 2 && ring_area_m2(&core) < 0.0 {
             core.reverse();
         }
-        let sum: Vector = core.iter().map(|p| p.coords).sum();
-        let middle = Point::from(sum / core.len() as f64);
+        let middle = mean_of(&core);
         let reach_m = core.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max) + radius_m;
         let outline = if radius_m > 0.0 { outline_of(&core, radius_m) } else { core.clone() };
         Self { core, radius_m, middle, reach_m, outline }
     }
 
-    /// Lowest and highest corner of the box around it.
+    /// South-west and north-east corner of the box around it.
     pub(super) fn bounds(&self) -> (Point, Point) {
         let far = Vector::new(self.radius_m, self.radius_m);
-        let first = self.core[0];
-        let low = self.core.iter().fold(first, |low, p| low.inf(p));
-        let high = self.core.iter().fold(first, |high, p| high.sup(p));
+        let (low, high) = bounds_of(&self.core);
         (low - far, high + far)
     }
 
-    /// Whether a segment surely stays further away than `room_m`.
-    pub(super) fn is_far_from(&self, a: Point, b: Point, room_m: f64) -> bool {
+    /// Whether a segment certainly stays clear of it; a cheap test.
+    fn is_far_from(&self, a: Point, b: Point) -> bool {
         let nearest = nearest_on_segment(a, b, self.middle);
-        let far = self.reach_m + room_m;
-        (nearest - self.middle).norm_squared() > far * far
+        (nearest - self.middle).norm_squared() > self.reach_m * self.reach_m
     }
 
-    /// Distance from a segment to the solid, metres; not above zero if it enters.
+    /// Distance from a segment, metres; not above zero if the segment enters.
     pub(super) fn distance_m(&self, a: Point, b: Point) -> f64 {
         if let [only] = self.core[..] {
             return (nearest_on_segment(a, b, only) - only).norm() - self.radius_m;
         }
         let from_edges =
-            self.core_edges().map(|(p, q)| between_segments_m(a, b, p, q)).fold(f64::INFINITY, f64::min);
+            edges(&self.core).map(|(p, q)| between_segments_m(a, b, p, q)).fold(f64::INFINITY, f64::min);
         let inside = self.core.len() > 2 && clip(&self.core, a, b, 0.0).is_some();
         if inside { -from_edges - self.radius_m } else { from_edges - self.radius_m }
     }
 
-    /// Whether a segment goes through the solid, more than touching it.
+    /// Whether a segment enters it by more than a slack.
     pub(super) fn is_entered_by(&self, a: Point, b: Point, slack_m: f64) -> bool {
-        if self.is_far_from(a, b, 0.0) {
+        if self.is_far_from(a, b) {
             return false;
         }
         if self.radius_m > slack_m {
@@ -75,56 +83,56 @@ impl Solid {
         self.core.len() > 2 && clip(&self.core, a, b, slack_m).is_some()
     }
 
-    /// The part of a segment within the outline, as shares of its length.
+    /// The part of a segment within the outline: where it begins and ends, as shares of the segment.
     pub(super) fn inside(&self, a: Point, b: Point) -> Option<(f64, f64)> {
-        if self.is_far_from(a, b, 0.0) { None } else { clip(&self.outline, a, b, 0.0) }
+        if self.is_far_from(a, b) { None } else { clip(&self.outline, a, b, 0.0) }
     }
 
-    /// Share of the segment at which it comes near; for sorting.
+    /// Share of the segment at which it meets the outline; for sorting.
     pub(super) fn met_at(&self, a: Point, b: Point) -> f64 {
         clip(&self.outline, a, b, 0.0).map_or(0.0, |(first, _)| first)
     }
 
-    /// The nearest point outside for a point inside; `None` for a point that is outside already.
+    /// The nearest point outside, for a point inside; `None` for a point outside.
     pub(super) fn pushed_out(&self, point: Point, slack_m: f64) -> Option<Point> {
-        if self.is_far_from(point, point, 0.0) || self.distance_m(point, point) >= -slack_m {
+        if self.is_far_from(point, point) || self.distance_m(point, point) >= -slack_m {
             return None;
         }
         let inside_core = self.core.len() > 2 && clip(&self.core, point, point, 0.0).is_some();
-        let (nearest, normal) = self
-            .core_edges()
+        let (nearest, normal) = edges(&self.core)
             .map(|(p, q)| (nearest_on_segment(p, q, point), Vector::new(q.y - p.y, p.x - q.x)))
             .min_by(|(p, _), (q, _)| (p - point).norm_squared().total_cmp(&(q - point).norm_squared()))?;
-        // On the edge itself the way from it would be nothing but rounding.
+        // On the edge itself the direction from it is nothing but rounding.
         let off = point - nearest;
         let away = if inside_core || off.norm() < ON_EDGE_M { normal } else { off };
         let away = away.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector::x);
         Some(nearest + away * (self.radius_m + 2.0 * slack_m))
     }
 
-    /// Corners of the shorter way round, for a segment that goes through.
-    pub(super) fn way_round(&self, a: Point, b: Point) -> Vec<Point> {
-        self.way_between_feet(a, b).map_or_else(Vec::new, |(_, way, _)| way)
+    /// Corners of the shorter detour, for a segment that enters.
+    pub(super) fn detour(&self, a: Point, b: Point) -> Vec<Point> {
+        self.detour_and_feet(a, b).map_or_else(Vec::new, |(_, way, _)| way)
     }
 
-    /// The shorter way round with both ends led out to the outline first: from there the way beside the solid is clear,
-    /// while the last corner may see an end between solid and outline only through the solid.
-    pub(super) fn way_round_outside(&self, a: Point, b: Point) -> Vec<Point> {
-        let Some((enter, mut way, leave)) = self.way_between_feet(a, b) else { return Vec::new() };
+    /// The shorter detour with both ends led out to the outline first. From there the detour is clear, while an end between
+    /// the rounded polygon and its outline may be visible from the last corner only through the polygon.
+    pub(super) fn detour_outside(&self, a: Point, b: Point) -> Vec<Point> {
+        let Some((enter, mut way, leave)) = self.detour_and_feet(a, b) else { return Vec::new() };
         way.insert(0, enter);
         way.push(leave);
         way
     }
 
-    /// Where a segment comes to the outline and leaves it, and the corners of the shorter way in between.
-    fn way_between_feet(&self, a: Point, b: Point) -> Option<(Point, Vec<Point>, Point)> {
+    /// Where a segment enters the outline, the corners of the shorter detour, and where it leaves.
+    fn detour_and_feet(&self, a: Point, b: Point) -> Option<(Point, Vec<Point>, Point)> {
         let (first, last) = clip(&self.outline, a, b, 0.0)?;
         let (from, enter) = self.on_outline(a + (b - a) * first);
         let (to, leave) = self.on_outline(a + (b - a) * last);
         let left = self.corners(from, to);
         let mut right = self.corners(to, from);
         right.reverse();
-        let is_left = way_m(enter, &left, leave) <= way_m(enter, &right, leave);
+        let detour_m = |corners: &[Point]| length_m(&[&[enter][..], corners, &[leave]].concat());
+        let is_left = detour_m(&left) <= detour_m(&right);
         Some((enter, if is_left { left } else { right }, leave))
     }
 
@@ -141,13 +149,9 @@ impl Solid {
         feet.min_by(|(_, p), (_, q)| (p - point).norm_squared().total_cmp(&(q - point).norm_squared()))
             .unwrap_or((0, point))
     }
-
-    fn core_edges(&self) -> impl Iterator<Item = (Point, Point)> + '_ {
-        edges(&self.core)
-    }
 }
 
-/// A polygon of tangents: those at the edges of the core and some all round.
+/// A polygon of tangents: those along the edges of the core, and some all around.
 fn outline_of(core: &[Point], radius_m: f64) -> Vec<Point> {
     let mut bearings: Vec<f64> = (0..TANGENTS).map(|k| TAU * f64::from(k) / f64::from(TANGENTS)).collect();
     if core.len() > 1 {
@@ -156,7 +160,7 @@ fn outline_of(core: &[Point], radius_m: f64) -> Vec<Point> {
     bearings.sort_by(f64::total_cmp);
     bearings.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
     let tangent = |bearing: f64| {
-        let normal = Vector::new(bearing.cos(), bearing.sin());
+        let normal = unit_vector(bearing);
         let far = core.iter().map(|p| normal.dot(&p.coords)).fold(f64::NEG_INFINITY, f64::max);
         (normal, far + radius_m)
     };
@@ -170,7 +174,7 @@ fn outline_of(core: &[Point], radius_m: f64) -> Vec<Point> {
         .collect()
 }
 
-/// The part of a segment within a convex polygon that is shrunk by a slack, as shares of its length.
+/// The part of a segment within a convex polygon that is shrunk by a slack: where it begins and ends, as shares.
 fn clip(ring: &[Point], a: Point, b: Point, slack_m: f64) -> Option<(f64, f64)> {
     let along = b - a;
     let (mut first, mut last) = (0.0_f64, 1.0_f64);
@@ -200,24 +204,12 @@ fn clip(ring: &[Point], a: Point, b: Point, slack_m: f64) -> Option<(f64, f64)> 
 }
 
 /// Distance between two segments, metres; 0 if they cross.
-pub(super) fn between_segments_m(a: Point, b: Point, p: Point, q: Point) -> f64 {
-    let (u, v) = (b - a, q - p);
-    let sides = |o: Point, d: Vector, s: Point, t: Point| d.perp(&(s - o)) * d.perp(&(t - o)) < 0.0;
-    if sides(a, u, p, q) && sides(p, v, a, b) {
+fn between_segments_m(a: Point, b: Point, p: Point, q: Point) -> f64 {
+    if segments_cross(a, b, p, q) {
         return 0.0;
     }
     let gap = |s: Point, t: Point, x: Point| (nearest_on_segment(s, t, x) - x).norm_squared();
     gap(a, b, p).min(gap(a, b, q)).min(gap(p, q, a)).min(gap(p, q, b)).sqrt()
-}
-
-fn way_m(from: Point, corners: &[Point], to: Point) -> f64 {
-    let mut last = from;
-    let mut sum = 0.0;
-    for corner in corners.iter().chain(std::iter::once(&to)) {
-        sum += (corner - last).norm();
-        last = *corner;
-    }
-    sum
 }
 
 #[cfg(test)]
@@ -225,24 +217,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_way_round_a_disc_takes_the_side_on_which_the_segment_passes_its_centre() {
-        let disc = Solid::new(vec![Point::origin()], 0.5);
+    fn the_detour_around_a_disc_takes_the_side_on_which_the_segment_passes_its_centre() {
+        let disc = RoundedPolygon::new(vec![Point::origin()], 0.5);
         let (a, b) = (Point::new(-2.0, 0.1), Point::new(2.0, 0.1));
         assert!(disc.is_entered_by(a, b, 1e-9));
-        let way = disc.way_round(a, b);
+        let way = disc.detour(a, b);
         assert!(way.len() > 4 && way.iter().all(|p| p.y > 0.0 && p.coords.norm() >= 0.5), "{way:?}");
     }
 
     #[test]
-    fn the_way_to_a_point_just_behind_a_disc_does_not_cut_into_it() {
-        let disc = Solid::new(vec![Point::origin()], 0.4);
+    fn the_detour_to_a_point_just_behind_a_disc_does_not_cut_into_it() {
+        let disc = RoundedPolygon::new(vec![Point::origin()], 0.4);
         let from = Point::new(-5.0, 0.4);
         for step in 1..60 {
             // Points on the disc behind the one where the line of sight touches it.
             let angle = 0.5 * std::f64::consts::PI - 0.02 * f64::from(step);
             let to = Point::new(angle.cos(), angle.sin()) * 0.4;
             let mut way = vec![from];
-            way.extend(disc.way_round_outside(from, to));
+            way.extend(disc.detour_outside(from, to));
             way.push(to);
             assert!(way.windows(2).all(|w| disc.distance_m(w[0], w[1]) > -1e-9), "{angle}: {way:?}");
         }
@@ -251,16 +243,16 @@ mod tests {
     #[test]
     fn a_point_inside_is_pushed_to_the_nearest_edge() {
         let square = vec![Point::new(0., 0.), Point::new(2., 0.), Point::new(2., 2.), Point::new(0., 2.)];
-        let out = Solid::new(square.clone(), 0.0).pushed_out(Point::new(1.0, 0.2), 1e-9).unwrap();
+        let out = RoundedPolygon::new(square.clone(), 0.0).pushed_out(Point::new(1.0, 0.2), 1e-9).unwrap();
         assert!((out - Point::new(1.0, 0.0)).norm() < 1e-6, "{out}");
-        let out = Solid::new(square, 0.3).pushed_out(Point::new(1.0, -0.2), 1e-9).unwrap();
+        let out = RoundedPolygon::new(square, 0.3).pushed_out(Point::new(1.0, -0.2), 1e-9).unwrap();
         assert!((out - Point::new(1.0, -0.3)).norm() < 1e-6, "{out}");
     }
 
     #[test]
     fn a_segment_along_an_edge_does_not_enter() {
         let square = vec![Point::new(0., 0.), Point::new(2., 0.), Point::new(2., 2.), Point::new(0., 2.)];
-        let solid = Solid::new(square, 0.0);
+        let solid = RoundedPolygon::new(square, 0.0);
         assert!(!solid.is_entered_by(Point::new(-1.0, 0.0), Point::new(3.0, 0.0), 1e-9));
         assert!(solid.is_entered_by(Point::new(-1.0, 0.1), Point::new(3.0, 0.1), 1e-9));
     }

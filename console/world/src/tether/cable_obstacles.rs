@@ -1,0 +1,228 @@
+//! What a cable can bear on: every obstacle and every inward corner of the wall, divided into round posts.
+//!
+//! A taut line touches a solid only along its convex hull, and the convex hull of a disc, a polygon or a pipe is that of
+//! a few discs: the disc itself, the corners (discs of radius 0), the ends and bends of the pipe. A line that comes from
+//! a path outside the obstacles never passes between two posts of one solid, so posts alone give the exact taut line.
+//! Obstacles that touch or overlap need no special case: no path leads between them, so the cable bridges the notch
+//! from one to the other, and each contact is named for the obstacle that bears it. A post inside another one can bear
+//! nothing and is dropped.
+
+use super::{homotopy::Rays, rounded_polygon::RoundedPolygon, sidestep::Sidestep};
+use crate::obstacles::Boxes;
+use geometry::{Boundary, Point, Shape, Vector, polyline::edges, shape::reflex_corners};
+use serde::{Deserialize, Serialize};
+
+/// Sine of the angle up to which a line along an edge does not enter the solid.
+const ALONG_EDGE: f64 = 1e-6;
+
+/// What a cable bears on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bearing {
+    /// The obstacle with this index in the list that the [`CableObstacles`] were made of.
+    Obstacle(usize),
+    /// An inward corner of the wall.
+    Wall,
+}
+
+/// A disc that a cable can bear on; radius 0 is a corner.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Post {
+    pub center: Point,
+    pub radius_m: f64,
+    pub of: Bearing,
+    /// Unit vectors along the edges that meet at a corner; zero where there are none.
+    edges: [Vector; 2],
+}
+
+impl Post {
+    /// Whether a line of this direction may bear on the post with the post's solid on its left (`side` 1) or right (-1).
+    ///
+    /// A round post lies on the side from which the line touches it; at a corner only the edges decide.
+    pub(super) fn lies_on(&self, side: f64, line: Vector) -> bool {
+        self.radius_m > 0.0 || self.edges.iter().all(|edge| side * line.perp(edge) >= -ALONG_EDGE)
+    }
+}
+
+/// Where a line of some bearing touches a disc; `side` 1 has the disc on its left, -1 on its right.
+pub(super) fn tangent_point(center: Point, radius_m: f64, side: f64, bearing_rad: f64) -> Point {
+    let left = Vector::new(-bearing_rad.sin(), bearing_rad.cos());
+    center - left * (side * radius_m)
+}
+
+/// Obstacles and wall as a cable meets them; made once, shared by cables.
+#[derive(Debug, Clone)]
+pub struct CableObstacles {
+    pub(super) posts: Vec<Post>,
+    boxes: Boxes,
+    pub(super) sidestep: Sidestep,
+    /// A ray from each obstacle, for the homotopy signature.
+    pub(super) rays: Rays,
+    /// Edges of a wall with inward corners; the edges of a convex wall are never crossed.
+    walls: Vec<(Point, Point)>,
+}
+
+impl CableObstacles {
+    /// Obstacles within a wall, tank frame; contacts name obstacles by their index in `shapes`.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use world::{Boundary, Point, Shape, tether::{Cable, CableObstacles}};
+    /// let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// let obstacles = Arc::new(CableObstacles::new(&Boundary::Circle { radius_m: 10.0 }, &[column]));
+    /// assert!(Cable::on(Point::new(3.6, 0.0), obstacles).is_err());
+    /// ```
+    pub fn new(boundary: &Boundary, shapes: &[Shape]) -> Self {
+        Self::grown(boundary, shapes, 0.0)
+    }
+
+    /// The same with every obstacle and inward corner grown by a margin, metres, as the centre of a hull meets them.
+    ///
+    /// The rest of the wall is not grown: no taut line bears on it.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use world::{Boundary, Point, Shape, tether::{Cable, CableObstacles}};
+    /// let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+    /// let grown = Arc::new(CableObstacles::grown(&Boundary::Circle { radius_m: 10.0 }, &[column], 0.25));
+    /// let mut center = Cable::on(Point::origin(), grown).unwrap();
+    /// center.drag_along(&[Point::new(4.0, 2.0), Point::new(8.0, 0.0)]);
+    /// assert!((center.length_m() - 8.141).abs() < 1e-3);
+    /// ```
+    pub fn grown(boundary: &Boundary, shapes: &[Shape], margin_m: f64) -> Self {
+        let of_obstacles = shapes
+            .iter()
+            .enumerate()
+            .flat_map(|(index, shape)| posts_of(shape, margin_m, Bearing::Obstacle(index)));
+        let of_wall = wall_posts(boundary, margin_m);
+        let mut solids: Vec<RoundedPolygon> =
+            shapes.iter().flat_map(|shape| RoundedPolygon::parts_of(shape, margin_m)).collect();
+        if margin_m > 0.0 {
+            solids.extend(of_wall.iter().map(|post| RoundedPolygon::new(vec![post.center], margin_m)));
+        }
+        let walls = match boundary {
+            Boundary::Polygon { vertices } if !of_wall.is_empty() => edges(vertices).collect(),
+            Boundary::Polygon { .. } | Boundary::Circle { .. } => Vec::new(),
+        };
+        let posts = without_hidden(&of_obstacles.chain(of_wall).collect::<Vec<_>>());
+        let around = |post: &Post| {
+            let far = Vector::new(post.radius_m, post.radius_m);
+            (post.center - far, post.center + far)
+        };
+        Self {
+            boxes: Boxes::new(posts.iter().map(around)),
+            posts,
+            sidestep: Sidestep::new(solids, margin_m > 0.0),
+            rays: Rays::new(&shapes.iter().map(ray_origin).collect::<Vec<_>>()),
+            walls,
+        }
+    }
+
+    /// Posts that come within `room_m` of a segment, perhaps some more, in no order.
+    pub(super) fn near(&self, a: Point, b: Point, room_m: f64) -> impl Iterator<Item = usize> + '_ {
+        self.boxes.near(a, b, room_m)
+    }
+
+    /// The nearest point that lies in no obstacle, as far as a few steps find one.
+    pub(super) fn outside(&self, point: Point) -> Point {
+        self.sidestep.outside(point)
+    }
+
+    /// A straight move, with stops wherever it leads through an obstacle: its end last, its start left out.
+    pub(super) fn with_stops_inside(&self, from: Point, to: Point, apart_m: f64) -> Vec<Point> {
+        let length_m = (to - from).norm();
+        let mut shares: Vec<f64> = vec![1.0];
+        for (first, last) in self.sidestep.inside(from, to) {
+            let steps = ((last - first) * length_m / apart_m).ceil().max(1.0);
+            shares.extend((0..=steps as usize).map(|k| first + (last - first) * k as f64 / steps));
+        }
+        shares.sort_by(f64::total_cmp);
+        shares.dedup();
+        shares.into_iter().map(|share| from + (to - from) * share).collect()
+    }
+
+    /// The bends of a straight move that goes around every obstacle in its way.
+    #[cfg(test)]
+    pub(super) fn go_round(&self, from: Point, to: Point, way: &mut Vec<Point>) {
+        self.sidestep.along(from, to, |next| way.push(next));
+    }
+
+    /// Whether a segment enters no obstacle and does not leave the floor.
+    pub(super) fn is_open(&self, from: Point, to: Point) -> bool {
+        let crosses = |(p, q): &(Point, Point)| {
+            let (u, v) = (to - from, q - p);
+            let apart = |d: Vector, s: f64, t: f64| s * t < 0.0 && s.abs().min(t.abs()) > 1e-9 * d.norm();
+            apart(u, u.perp(&(p - from)), u.perp(&(q - from)))
+                && apart(v, v.perp(&(from - p)), v.perp(&(to - p)))
+        };
+        self.sidestep.is_open(from, to) && !self.walls.iter().any(crosses)
+    }
+}
+
+fn posts_of(shape: &Shape, margin_m: f64, of: Bearing) -> Vec<Post> {
+    let round = |center: &Point, radius_m: f64| Post {
+        center: *center,
+        radius_m: radius_m + margin_m,
+        of,
+        edges: [Vector::zeros(); 2],
+    };
+    match shape {
+        Shape::Disc { center, radius_m } => vec![round(center, *radius_m)],
+        Shape::Polygon { vertices } => {
+            (0..vertices.len()).map(|k| corner_post(vertices, k, margin_m, of)).collect()
+        }
+        Shape::Polyline { points, half_width_m } => points.iter().map(|p| round(p, *half_width_m)).collect(),
+    }
+}
+
+/// The corners at which a wall turns away from the floor.
+fn wall_posts(boundary: &Boundary, margin_m: f64) -> Vec<Post> {
+    let Boundary::Polygon { vertices } = boundary else { return Vec::new() };
+    reflex_corners(vertices).map(|k| corner_post(vertices, k, margin_m, Bearing::Wall)).collect()
+}
+
+fn corner_post(ring: &[Point], k: usize, radius_m: f64, of: Bearing) -> Post {
+    let n = ring.len();
+    let edges = [ring[(k + n - 1) % n], ring[(k + 1) % n]]
+        .map(|beside| (beside - ring[k]).try_normalize(0.0).unwrap_or_else(Vector::zeros));
+    Post { center: ring[k], radius_m, of, edges }
+}
+
+fn ray_origin(shape: &Shape) -> Point {
+    match shape {
+        Shape::Polyline { points, .. } => points[0],
+        Shape::Disc { .. } | Shape::Polygon { .. } => shape.center(),
+    }
+}
+
+fn without_hidden(posts: &[Post]) -> Vec<Post> {
+    let hides = |outer: &Post, inner: &Post, outer_first: bool| {
+        let room_m = outer.radius_m - inner.radius_m - (outer.center - inner.center).norm();
+        room_m > 0.0 || (room_m == 0.0 && (outer_first || outer.radius_m > inner.radius_m))
+    };
+    let is_hidden = |k: usize| (0..posts.len()).any(|j| j != k && hides(&posts[j], &posts[k], j < k));
+    (0..posts.len()).filter(|&k| !is_hidden(k)).map(|k| posts[k]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_post_within_another_is_left_out_once() {
+        let disc = |x: f64, radius_m: f64| Shape::Disc { center: Point::new(x, 0.0), radius_m };
+        let n_posts =
+            |shapes: &[Shape]| CableObstacles::new(&Boundary::Circle { radius_m: 9.0 }, shapes).posts.len();
+        assert_eq!(n_posts(&[disc(0.0, 1.0), disc(0.2, 0.5), disc(3.0, 0.5)]), 2);
+        assert_eq!(n_posts(&[disc(0.0, 1.0), disc(0.0, 1.0)]), 1);
+    }
+
+    #[test]
+    fn only_inward_corners_of_a_wall_bear_a_cable() {
+        let corners = [(0., 0.), (4., 0.), (4., 4.), (2., 2.), (0., 4.)];
+        let vertices = corners.iter().map(|(x, y)| Point::new(*x, *y)).collect();
+        let obstacles = CableObstacles::new(&Boundary::Polygon { vertices }, &[]);
+        assert_eq!(obstacles.posts.len(), 1);
+        assert!((obstacles.posts[0].center - Point::new(2.0, 2.0)).norm() < 1e-12);
+    }
+}

@@ -1,0 +1,40 @@
+//! What a certificate is asked about: a path, where it is driven, and what the tether allows.
+
+use super::cable::Cable;
+use crate::tank::Obstacle;
+use geometry::{Boundary, Point};
+use serde::{Deserialize, Serialize};
+
+/// What the tether allows.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Limits {
+    /// Length of the tether on the reel, metres.
+    pub reel_length_m: f64,
+    /// Largest wrap on one obstacle, radians.
+    pub wrap_max_rad: f64,
+    /// Largest total wrap, radians.
+    pub wrap_total_max_rad: f64,
+}
+
+/// A path to be certified; everything in the tank frame.
+#[derive(Debug, Clone, Copy)]
+pub struct Case<'a> {
+    /// The whole path.
+    pub path: &'a [Point],
+    /// Where the tether enters the tank.
+    pub anchor: Point,
+    /// The cable as it lies at the start of the path; without one it runs straight to the first point.
+    pub cable: Option<&'a Cable>,
+    /// The wall.
+    pub boundary: &'a Boundary,
+    /// Obstacles, known and found.
+    pub obstacles: &'a [Obstacle],
+    /// Distance that the centre of the hull keeps from everything solid, metres: hull radius plus clearance.
+    pub room_m: f64,
+    /// What the tether allows.
+    pub limits: Limits,
+    /// Whether the path has to end at the anchor with the tether reeled in.
+    pub returns: bool,
+    /// Cuts: lines that the path must not cross.
+    pub cuts: &'a [Vec<Point>],
+}

@@ -1,0 +1,121 @@
+//! Why a path is refused, as sentences.
+
+use super::{
+    cable::Cable, cable_obstacles::Bearing, case::Case, certificate::Certificate, clearance::Clearance,
+    replay::Replay, sealed_region::SealedRegions,
+};
+use geometry::Point;
+
+/// Distance from the anchor within which a path has returned, metres.
+const BACK_M: f64 = 0.3;
+
+/// What the reasons are derived from, besides the certificate.
+pub(super) struct Reasons<'a> {
+    pub case: &'a Case<'a>,
+    pub replay: &'a Replay,
+    /// The cable after the return.
+    pub left: &'a Cable,
+    pub clearance: &'a Clearance,
+    pub sealed: Option<SealedRegions>,
+}
+
+impl Reasons<'_> {
+    /// Every reason to refuse the path, as a sentence each.
+    pub(super) fn of(&self, certificate: &Certificate) -> Vec<String> {
+        let limits = &self.case.limits;
+        let mut reasons: Vec<String> = Vec::new();
+        if self.case.path.is_empty() {
+            reasons.push("the plan has no path".into());
+        }
+        if self.case.path.iter().any(|p| !(p.x.is_finite() && p.y.is_finite())) {
+            reasons.push("the path has a coordinate that is not a finite number".into());
+        }
+        if self.case.cuts.iter().flatten().any(|p| !(p.x.is_finite() && p.y.is_finite())) {
+            reasons.push("a cut has a coordinate that is not a finite number".into());
+        }
+        if [self.case.room_m, limits.reel_length_m, limits.wrap_max_rad, limits.wrap_total_max_rad]
+            .iter()
+            .any(|m| m.is_nan())
+        {
+            reasons.push("the room that the hull needs, or a limit of the tether, is not a number".into());
+        }
+        reasons.extend(self.collision(certificate));
+        if certificate.tether_length_max_m > limits.reel_length_m {
+            let (most_m, at) = self.replay.max_cable;
+            let place = place(at);
+            reasons.push(format!(
+                "{most_m:.1} m of cable are out at {place}, the reel holds {:.1} m",
+                limits.reel_length_m
+            ));
+        }
+        if certificate.wrap_max_rad > limits.wrap_max_rad {
+            let (most, allowed) = (self.replay.max_wrap.0.to_degrees(), limits.wrap_max_rad.to_degrees());
+            let on = self.name_of(self.replay.max_wrap.1);
+            reasons.push(format!("the cable wraps {most:.0} deg round {on}, allowed are {allowed:.0} deg"));
+        }
+        if certificate.wrap_total_max_rad > limits.wrap_total_max_rad {
+            let (most, at) = self.replay.max_sum;
+            let (most, allowed) = (most.to_degrees(), limits.wrap_total_max_rad.to_degrees());
+            reasons.push(format!(
+                "all wraps together reach {most:.0} deg at {}, allowed are {allowed:.0} deg",
+                place(at)
+            ));
+        }
+        reasons.extend(self.left_out(certificate));
+        if certificate.cut_crossings > 0 {
+            reasons.push(format!("the path crosses cuts {} times", certificate.cut_crossings));
+        }
+        if let Some(sealed) = self.sealed {
+            reasons.push(format!("cuts seal off {:.2} m2 of floor at {}", sealed.area_m2, place(sealed.at)));
+        }
+        reasons
+    }
+
+    fn collision(&self, certificate: &Certificate) -> Option<String> {
+        let (at, name) = self.clearance.first.as_ref()?;
+        let lack = match certificate.collisions {
+            1 => "1 piece of the path lacks room,".to_owned(),
+            n => format!("{n} pieces of the path lack room, the first"),
+        };
+        Some(format!(
+            "{lack} at {} by {name}: least room {:.3} m, needed {:.3} m",
+            place(*at),
+            certificate.clearance_min_m,
+            self.case.room_m
+        ))
+    }
+
+    fn left_out(&self, certificate: &Certificate) -> Option<String> {
+        let last = self.case.path.last().filter(|_| self.case.returns)?;
+        let away_m = (last - self.case.anchor).norm();
+        if away_m > BACK_M {
+            return Some(format!("the path ends {away_m:.2} m away from the anchor"));
+        }
+        let end_length_m = certificate.end_length_m.unwrap_or(0.0);
+        if self.left.signature().is_empty() && end_length_m <= BACK_M {
+            return None;
+        }
+        let mut round: Vec<String> = self.left.contacts().iter().map(|c| self.name_of(Some(c.on))).collect();
+        round.dedup();
+        let round = if round.len() > 3 {
+            format!("{} obstacles, {} first", round.len(), round[0])
+        } else {
+            round.join(", ")
+        };
+        Some(format!("{end_length_m:.1} m of cable stay out on return, hooked round {round}"))
+    }
+
+    fn name_of(&self, on: Option<Bearing>) -> String {
+        match on {
+            Some(Bearing::Obstacle(k)) => {
+                let obstacle = self.case.obstacles.get(k);
+                obstacle.map_or_else(|| format!("obstacle {k}"), |o| o.name.clone())
+            }
+            Some(Bearing::Wall) | None => "a corner of the wall".into(),
+        }
+    }
+}
+
+fn place(at: Point) -> String {
+    format!("{:.2}, {:.2} m", at.x, at.y)
+}

@@ -1,0 +1,77 @@
+//! The cable along a path, with its worst moments.
+
+use super::{
+    cable::{Cable, TetherError},
+    cable_obstacles::{Bearing, CableObstacles},
+    case::Case,
+    geodesic::Geodesic,
+};
+use geometry::Point;
+use std::sync::Arc;
+
+/// The cable after a path, and where on the path it was worst.
+pub(super) struct Replay {
+    cable: Cable,
+    lengths: Vec<(Point, f64)>,
+    /// Longest cable, metres, and the position of the robot.
+    pub max_cable: (f64, Point),
+    /// Largest wrap, radians, and what it was on.
+    pub max_wrap: (f64, Option<Bearing>),
+    /// Largest total wrap, radians, and the position of the robot.
+    pub max_sum: (f64, Point),
+}
+
+impl Replay {
+    pub(super) fn new(case: &Case<'_>, obstacles: &Arc<CableObstacles>) -> Result<Self, TetherError> {
+        let cable = match case.cable {
+            Some(cable) => cable.clone(),
+            None => Cable::on(case.anchor, Arc::clone(obstacles))?,
+        };
+        let mut replay = Self {
+            cable,
+            lengths: Vec::with_capacity(case.path.len()),
+            max_cable: (0.0, case.anchor),
+            max_wrap: (0.0, None),
+            max_sum: (0.0, case.anchor),
+        };
+        case.path.iter().for_each(|point| replay.drag_to(*point));
+        Ok(replay)
+    }
+
+    fn drag_to(&mut self, point: Point) {
+        self.cable.drag_to(point);
+        let length_m = self.cable.length_m();
+        self.lengths.push((point, length_m));
+        if length_m > self.max_cable.0 {
+            self.max_cable = (length_m, point);
+        }
+        let wrap_rad = self.cable.wrap_max_rad();
+        if wrap_rad > self.max_wrap.0 {
+            let contacts = self.cable.contacts();
+            let largest = contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()));
+            self.max_wrap = (wrap_rad, largest.map(|contact| contact.on));
+        }
+        let sum_rad = self.cable.wrap_total_rad();
+        if sum_rad > self.max_sum.0 {
+            self.max_sum = (sum_rad, point);
+        }
+    }
+
+    /// Largest distance from the anchor to a point of the path, by the shortest path, metres.
+    ///
+    /// It lies between the largest straight distance and the longest cable: a search is needed only if these differ.
+    pub(super) fn eccentricity_m(&self, anchor: Point, obstacles: Arc<CableObstacles>) -> f64 {
+        let straight_m = self.lengths.iter().map(|(point, _)| (point - anchor).norm()).fold(0.0, f64::max);
+        if self.max_cable.0 <= straight_m + 1e-3 {
+            return straight_m;
+        }
+        Geodesic::new(anchor, obstacles).farthest_m(self.lengths.iter().copied())
+    }
+
+    /// The cable after a straight return to the anchor.
+    pub(super) fn cable_on_return(&self, anchor: Point) -> Cable {
+        let mut cable = self.cable.clone();
+        cable.drag_to(anchor);
+        cable
+    }
+}
