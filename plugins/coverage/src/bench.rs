@@ -1,8 +1,7 @@
 //! What the tests of the coverage planners share.
 
-use planner_api::{
-    Plan, PlanRequest, Planner, PoseEstimate, Reason, Result, Task, TetherLimits, testing::Bench,
-};
+use planner_api::testing::Bench;
+use planner_api::{Plan, PlanRequest, Planner, PoseEstimate, Reason, Result, Task, TetherLimits};
 use trials::tanks::Tank;
 
 /// Plans a tank from its anchor.

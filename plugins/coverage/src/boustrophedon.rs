@@ -1,16 +1,18 @@
-//! The traditional way: parallel lanes over the whole floor in order, as if there were no tether.
+//! The traditional planner: parallel lanes over the whole floor in order, as if there were no tether.
 
-use crate::{
-    answer::{self, plan_of},
-    floor::FloorGrid,
-    follow::Follow,
-    ground::Ground,
-    lanes::{Lane, Pattern, Reach, lanes},
-    roam::Roam,
-    scan::{Order, Piece, Scan},
-    slit::Slit,
-    stages::{Part, Stages},
-};
+use crate::floor::ReachableFloor;
+use crate::follow::Follow;
+use crate::lanes::{Lane, lanes, wanted_pieces};
+use crate::pattern::{Pattern, Rows};
+use crate::plane::direction;
+use crate::scan::{Piece, Scan};
+use crate::scope::Scope;
+use crate::slit_domain::SlitDomain;
+use crate::stages::{Stage, Stages};
+use crate::tuning::lanes::LEAST_TO_AND_FRO_IN_SWATH;
+use crate::unreachable;
+use crate::untethered_paths::UntetheredPaths;
+use crate::workspace::Workspace;
 use field::params as p;
 use planner_api::{
     Caps, Code, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result, Sensed,
@@ -24,10 +26,6 @@ const DIRECTION: ParamSpec = float("direction_deg", "Direction of lanes", "deg",
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
     .help("Edge of the cells in which floor is counted, to report what cannot be reached.")
     .group("Plan");
-
-/// What stages take of the time that is left, about: lanes, and the ways between them.
-const LANES: f64 = 0.5;
-const WAYS: f64 = 0.25;
 
 /// Lanes to and fro.
 pub struct Boustrophedon {
@@ -54,43 +52,20 @@ impl Planner for Boustrophedon {
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
-        let task = answer::cover(request, Self::ID)?;
-        let ground = Ground::new(request.site, task.anchor)?;
-        let home = ground.home();
+        let scope = Scope::of(request, Self::ID, self.cell_m)?;
+        let workspace = Workspace::new(request.site, scope.anchor)?;
         let mut stages = Stages::new(ctx);
-        stages.next(LANES, "lanes").begin();
-        let slit = Slit::new(&ground, &[], home).ok_or_else(|| answer::no_room(&ground))?;
-        let grid = FloorGrid::new(&ground, &slit, self.cell_m);
-        let (shift_m, spacing_m) = crate::candidate::even_rows(&ground, self.direction_rad);
-        let pattern = Pattern::Straight { angle_rad: self.direction_rad, shift_m, spacing_m, laps: 0 };
-        let reach = Reach { cut_m: 0.0, lap_share: 0.0, least_m: ground.swath_m / 12.0 };
-        let made = lanes(&ground, &slit, &[], &pattern, &reach);
-        let wanted: Vec<Lane> = if task.regions.is_empty() {
-            made
-        } else {
-            let mut within = grid.clone();
-            within.keep_within(task.regions);
-            made.iter().flat_map(|lane| lane.kept(&|at| within.has_reachable_near(at))).collect()
-        };
-        if wanted.is_empty() {
-            return Err(PlannerError::new(
-                Code::NoPath,
-                format!(
-                    "no lane fits between the walls and obstacles; hull and clearance need {:.2} m",
-                    ground.keep_m
-                ),
-            ));
-        }
-        let start = if slit.contains(request.start.position) { request.start.position } else { home };
-        let roam = Roam::new(&ground, ctx)?;
-        let part = stages.next(WAYS, "ways between lanes");
-        let pieces = in_order(&roam, &wanted, self.direction_rad, start, home, &part)?;
+        stages.next(0.5, "lanes").begin();
+        let domain = SlitDomain::new(&workspace, Vec::new()).ok_or_else(|| workspace.no_room())?;
+        let floor = ReachableFloor::new(&domain, scope.cell_m);
+        let lanes = self.lanes(&domain, &floor, scope.regions)?;
+        let ways = UntetheredPaths::new(&workspace, ctx)?;
+        let ends = (domain.start(scope.start), workspace.home);
+        let pieces = self.in_order(&lanes, &ways, ends, &stages.next(0.25, "ways between lanes"))?;
         stages.next(1.0, "floor out of reach").begin();
-        let mut scan = Scan { pieces, cuts: Vec::new(), slit, grid };
-        scan.grid.sweep(&scan.path());
-        let order = Order { start, regions: task.regions, reel_length_m: f64::INFINITY, cell_m: self.cell_m };
-        answer::report_unreachable(&ground, &scan, &order, ctx);
-        let plan = plan_of(&scan, request.start.position, &[]);
+        let scan = Scan::new(pieces, domain, floor);
+        unreachable::report(&scan, &scope, ctx);
+        let plan = scan.plan(scope.start, &[]);
         self.follow.take(&plan);
         Ok(plan)
     }
@@ -100,41 +75,66 @@ impl Planner for Boustrophedon {
     }
 }
 
-/// The lanes row by row, every other row backward, with the shortest ways between.
-fn in_order(
-    roam: &Roam,
-    lanes: &[Lane],
-    direction_rad: f64,
-    start: Point,
-    home: Point,
-    part: &Part<'_>,
-) -> Result<Vec<Piece>> {
-    let ahead = crate::ground::direction(direction_rad);
-    let row = |lane: &Lane| (ahead.perp(&lane.points[0].coords) * 1e3).round() as i64;
-    let along = |lane: &Lane| lane.points[0].coords.dot(&ahead);
-    let mut sorted: Vec<&Lane> = lanes.iter().collect();
-    sorted.sort_by(|a, b| row(a).cmp(&row(b)).then(along(a).total_cmp(&along(b))));
-    let rows: Vec<&[&Lane]> = sorted.chunk_by(|a, b| (row(a) - row(b)).abs() < 5).collect();
-    let mut pieces = Vec::new();
-    let mut at = start;
-    for (k, row) in rows.iter().enumerate() {
-        part.ctx.check()?;
-        part.reached(k as f64 / rows.len() as f64);
-        let mut row: Vec<Lane> = row.iter().map(|lane| (*lane).clone()).collect();
-        if k % 2 == 1 {
-            row.reverse();
-            for lane in &mut row {
-                lane.points.reverse();
+impl Boustrophedon {
+    /// The lanes over the floor that is asked for.
+    fn lanes(
+        &self,
+        domain: &SlitDomain<'_>,
+        floor: &ReachableFloor,
+        regions: &[&[Point]],
+    ) -> Result<Vec<Lane>> {
+        let workspace = domain.workspace;
+        let pattern = Pattern::Straight { rows: Rows::even(workspace, self.direction_rad), laps: 0 };
+        let mut lanes = lanes(domain, &pattern, workspace.swath_m / LEAST_TO_AND_FRO_IN_SWATH);
+        if !regions.is_empty() {
+            let within = floor.clone().within(regions);
+            lanes = lanes.iter().flat_map(|lane| wanted_pieces(lane, |at| within.is_near(at))).collect();
+        }
+        if lanes.is_empty() {
+            let keep_m = workspace.keep_m;
+            return Err(PlannerError::new(
+                Code::NoPath,
+                format!(
+                    "no lane fits between the walls and obstacles; hull and clearance need {keep_m:.2} m"
+                ),
+            ));
+        }
+        Ok(lanes)
+    }
+
+    /// The lanes row by row, every other row backward, with ways between and home.
+    fn in_order(
+        &self,
+        lanes: &[Lane],
+        ways: &UntetheredPaths,
+        (start, home): (Point, Point),
+        stage: &Stage<'_>,
+    ) -> Result<Vec<Piece>> {
+        let ahead = direction(self.direction_rad);
+        // Lanes within five millimetres of each other across their direction are in one row.
+        let row = |lane: &Lane| (ahead.perp(&lane[0].coords) * 1e3).round() as i64;
+        let along = |lane: &Lane| lane[0].coords.dot(&ahead);
+        let mut sorted: Vec<&Lane> = lanes.iter().collect();
+        sorted.sort_by(|a, b| row(a).cmp(&row(b)).then(along(a).total_cmp(&along(b))));
+        let rows: Vec<&[&Lane]> = sorted.chunk_by(|a, b| (row(a) - row(b)).abs() < 5).collect();
+        let (mut pieces, mut at) = (Vec::new(), start);
+        for (k, row) in rows.iter().enumerate() {
+            stage.ctx.check()?;
+            stage.reached(k as f64 / rows.len() as f64);
+            let row: Vec<Lane> = if k % 2 == 0 {
+                row.iter().map(|lane| (*lane).clone()).collect()
+            } else {
+                row.iter().rev().map(|lane| lane.iter().rev().copied().collect()).collect()
+            };
+            for lane in row {
+                pieces.push(Piece { points: ways.path(at, lane[0]), is_lane: false });
+                at = lane[lane.len() - 1];
+                pieces.push(Piece { points: lane, is_lane: true });
             }
         }
-        for lane in row {
-            pieces.push(Piece { points: roam.way(at, lane.points[0]), is_lane: false });
-            at = lane.points[lane.points.len() - 1];
-            pieces.push(Piece { points: lane.points, is_lane: true });
-        }
+        pieces.push(Piece { points: ways.path(at, home), is_lane: false });
+        Ok(pieces)
     }
-    pieces.push(Piece { points: roam.way(at, home), is_lane: false });
-    Ok(pieces)
 }
 
 #[cfg(test)]

@@ -6,13 +6,10 @@
 
 mod steer;
 
-use field::{
-    Flight, Pilot, params as p,
-    pilot::{Tick, position_sigma_m},
-};
+use field::pilot::{Tick, position_sigma_m};
+use field::{Flight, Pilot, params as p};
 use planner_api::{
-    Command, Config, Ctx, Drive, LegTag, LogLevel, Motion, ParamSpec, Plan, Result, Sensed, Site, Status,
-    float,
+    Command, Config, Ctx, Drive, LegTag, LogLevel, Motion, Plan, Result, Sensed, Site, Status,
 };
 use world::{Boundary, Point, polyline, tether::crossings};
 
@@ -30,16 +27,8 @@ const GUARD_SHARE: f64 = 0.75;
 /// What a pilot adds to the clearance, metres.
 const PILOT_SPARE_M: f64 = 0.02;
 
-/// How near the robot goes when it comes off its path.
-pub const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
-    .help("Hull distance below which no motion toward an obstacle is allowed; never more than three quarters of the mission's clearance.")
-    .group("Flight")
-    .live();
-/// Steering parameters that every coverage planner has.
-pub const PARAMS: [ParamSpec; 5] = [GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
-
 /// Follows the path ahead; stops in front of what was discovered on it, so that the mission replans.
-pub struct Follow {
+pub(crate) struct Follow {
     flight: Flight,
     pilot: Pilot,
     wall: Boundary,
@@ -67,7 +56,7 @@ impl Cut {
 
 impl Follow {
     /// A follower for a site.
-    pub fn new(config: &Config<'_>, site: &Site<'_>) -> Self {
+    pub(crate) fn new(config: &Config<'_>, site: &Site<'_>) -> Self {
         let flight = p::flight(config);
         let guard_m = flight.guard_m.min(GUARD_SHARE * site.clearance_m);
         Self {
@@ -83,7 +72,7 @@ impl Follow {
     }
 
     /// Takes over the cuts of a new plan; they hold from the end of its way home on, if it begins with one.
-    pub fn take(&mut self, plan: &Plan) {
+    pub(crate) fn take(&mut self, plan: &Plan) {
         self.cuts = plan.cuts.iter().map(|line| Cut { line: line.clone(), is_beyond: false }).collect();
         let return_path = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract);
         self.from = plan.path.get(return_path.map_or(0, |leg| leg.last)).copied();
@@ -113,10 +102,7 @@ impl Follow {
     }
 
     /// The velocity until the next tick.
-    ///
-    /// # Errors
-    /// When the console wants it to stop.
-    pub fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
+    pub(crate) fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
         let at = sensed.pose.position;
         self.look(at);
@@ -129,8 +115,9 @@ impl Follow {
                 || bodies.iter().any(|body| body.contacts(*p, 0.0).any(|c| c.distance_m < too_near_m))
         };
         let way: Vec<Point> = std::iter::once(at).chain(sensed.path_ahead.iter().copied()).collect();
-        let near = polyline::resampled(&within(&way, WATCH_M), 0.1);
-        // Where the robot stands it stands, however near.
+        let n_near = polyline::stations_m(&way).partition_point(|station_m| *station_m <= WATCH_M) + 1;
+        let near = polyline::resampled(&way[..n_near.min(way.len())], 0.1);
+        // The place where the robot is does not count, however near it is to something.
         if near.iter().skip(1).filter(|p| (*p - at).norm() > 0.2).any(is_blocked) {
             return Ok(self.stopped(ctx, "an obstacle blocks the path; replanning is required"));
         }
@@ -158,20 +145,6 @@ impl Follow {
         }
         Command::still(Status::Stuck)
     }
-}
-
-/// The first metres of a way.
-fn within(way: &[Point], most_m: f64) -> Vec<Point> {
-    let mut kept = vec![way[0]];
-    let mut length_m = 0.0;
-    for pair in way.windows(2) {
-        length_m += (pair[1] - pair[0]).norm();
-        kept.push(pair[1]);
-        if length_m > most_m {
-            break;
-        }
-    }
-    kept
 }
 
 /// The point of the path that is a little ahead; a corner is driven to before it is turned.

@@ -1,27 +1,38 @@
 //! Planners that scan the whole floor: with regard to the tether, as published, and without.
+//!
+//! How a tether-safe plan comes about: the `workspace` of the site is divided by `cuts` into a `slit_domain` that has no way
+//! round an obstacle; `lanes` are laid into it, put into an order (`tour`) and joined to a path (`draft`), which is shortened
+//! and bent until it sweeps enough of the `floor` (`polish`). [`tether_safe`] does so for several patterns of lanes and
+//! chooses. `tuning` holds the numbers.
 #![forbid(unsafe_code)]
 
 pub mod boustrophedon;
 pub mod hull_partition;
 pub mod tether_safe;
 
-pub mod answer;
-pub mod candidate;
-pub mod cuts;
-pub mod floor;
-pub mod follow;
-pub mod genetic;
-pub mod ground;
-pub mod lanes;
-pub mod partition;
-pub mod polish;
-pub mod roam;
-pub mod scan;
-pub mod side_by_side;
-pub mod slit;
-pub mod stages;
-pub mod touch;
-pub mod tour;
+mod buckets;
+mod cuts;
+mod draft;
+mod floor;
+mod follow;
+mod inflation;
+mod jobs;
+mod lanes;
+mod pattern;
+mod plane;
+mod polish;
+mod scan;
+mod scope;
+mod slit_domain;
+mod stages;
+mod tether;
+mod touch_up;
+mod tour;
+mod triangulation;
+mod tuning;
+mod unreachable;
+mod untethered_paths;
+mod workspace;
 
 #[cfg(test)]
 mod bench;

@@ -2,18 +2,18 @@
 
 use planner_api::Ctx;
 
-/// The stages of a plan. Every stage takes a share of what is left of its stretch, so that the whole never goes back however
-/// many come.
-#[derive(Clone, Copy)]
-pub struct Stages<'a> {
-    ctx: Ctx<'a>,
+/// The stages of a plan. Every stage takes a share of what is left, so that progress never goes back, however many
+/// follow.
+pub(crate) struct Stages<'a> {
+    /// The console.
+    pub ctx: Ctx<'a>,
     done: f64,
-    end: f64,
+    /// Share of the plan to which the stages to come lead.
+    pub end: f64,
 }
 
 /// One stage: where it begins and ends, as shares of the whole plan, and what is being done.
-#[derive(Clone, Copy)]
-pub struct Part<'a> {
+pub(crate) struct Stage<'a> {
     /// The console.
     pub ctx: Ctx<'a>,
     from: f64,
@@ -23,51 +23,36 @@ pub struct Part<'a> {
 
 impl<'a> Stages<'a> {
     /// Nothing is done yet.
-    pub fn new(ctx: &Ctx<'a>) -> Self {
+    pub(crate) fn new(ctx: &Ctx<'a>) -> Self {
         Self { ctx: *ctx, done: 0.0, end: 1.0 }
     }
 
-    /// The console.
-    pub fn ctx(&self) -> Ctx<'a> {
-        self.ctx
-    }
-
-    /// What share of the plan the stages that come lead up to.
-    pub fn end(&self) -> f64 {
-        self.end
-    }
-
-    /// The stages that come lead up to this share of the plan.
-    pub fn until(&mut self, end: f64) {
-        self.end = end;
-    }
-
     /// This far along from what is done to a share of the plan.
-    pub fn toward(&self, end: f64, share: f64) -> f64 {
+    pub(crate) fn toward(&self, end: f64, share: f64) -> f64 {
         self.done + (end - self.done) * share
     }
 
     /// The next stage takes this share of what is left, 0 to 1.
-    pub fn next(&mut self, share_of_rest: f64, what: &'static str) -> Part<'a> {
+    pub(crate) fn next(&mut self, share_of_rest: f64, what: &'static str) -> Stage<'a> {
         let from = self.done;
         self.done = self.toward(self.end, share_of_rest).max(from);
-        Part { ctx: self.ctx, from, to: self.done, what }
+        Stage { ctx: self.ctx, from, to: self.done, what }
     }
 }
 
-impl Part<'_> {
+impl Stage<'_> {
     /// Reports that the stage begins.
-    pub fn begin(&self) {
+    pub(crate) fn begin(&self) {
         self.ctx.progress(self.from, self.what);
     }
 
     /// Reports the progress of the stage, 0 to 1.
-    pub fn reached(&self, share: f64) {
+    pub(crate) fn reached(&self, share: f64) {
         self.ctx.progress(self.at(share), self.what);
     }
 
     /// Reports how many of `n` items are done, and the progress of all of them, 0 to 1.
-    pub fn report(&self, share: f64, n_done: usize, n: usize) {
+    pub(crate) fn report(&self, share: f64, n_done: usize, n: usize) {
         self.ctx.progress(self.at(share), &format!("{}, {n_done} of {n} done", self.what));
     }
 
@@ -85,10 +70,10 @@ mod tests {
     fn stages_share_what_is_left() {
         let bench = Bench::new();
         let mut stages = Stages::new(&bench.ctx());
-        stages.until(0.5);
+        stages.end = 0.5;
         stages.next(0.5, "cuts").begin();
         stages.next(1.0, "lanes").report(0.5, 1, 2);
-        stages.until(1.0);
+        stages.end = 1.0;
         stages.next(0.5, "tour").reached(0.5);
         stages.next(1.0, "the rest").report(9.0, 2, 2);
         let progress = |share, what: &str| (share, what.to_owned());
@@ -106,7 +91,7 @@ mod tests {
         let bench = Bench::new();
         let mut stages = Stages::new(&bench.ctx());
         stages.next(0.8, "first").reached(1.0);
-        stages.until(0.5);
+        stages.end = 0.5;
         stages.next(1.0, "second").reached(1.0);
         assert_eq!(bench.progress(), [(0.8, "first".to_owned()), (0.8, "second".to_owned())]);
     }

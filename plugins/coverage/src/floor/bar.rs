@@ -1,6 +1,7 @@
-//! The cells under the bar: straight ahead, and while it turns in place.
+//! The scanning tool: a flat bar across the heading, as wide as the swath, that also sweeps when the robot turns in place.
 
-use super::FloorGrid;
+use crate::floor::raster::{MOST_CORNERS, Raster};
+use crate::plane::left_of;
 use std::ops::Range;
 use world::{Point, Vector};
 
@@ -8,26 +9,16 @@ use world::{Point, Vector};
 const SMALL_TURN_RAD: f64 = 2e-3;
 /// A turn is drawn in wedges of this angle, radians.
 const WEDGE_RAD: f64 = 0.35;
-/// Corners of the largest fan of wedges: half a turn, and the middle.
-const FAN: usize = 11;
-/// Shorter sides have no heading, metres.
-const LEAST_SIDE_M: f64 = 1e-9;
-/// Rows of a polygon that are worked out together.
-const BAND: usize = 32;
-
-/// The end of a closed range as the start of what lies behind it.
-const NEXT: f64 = 1e-9;
 
 /// Neighbouring cells of one row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Run {
+#[derive(Clone, Copy)]
+pub(crate) struct Run {
     first: u32,
     past: u32,
 }
 
 impl Run {
-    /// Its cells.
-    pub fn cells(self) -> Range<usize> {
+    pub(crate) fn cells(self) -> Range<usize> {
         self.first as usize..self.past as usize
     }
 }
@@ -38,24 +29,22 @@ impl From<Range<usize>> for Run {
     }
 }
 
-/// The first index that is not below a place.
-pub(super) fn index_from(place: f64) -> usize {
-    // Truncation is quicker than rounding up, and negative places become 0.
-    let below = (place as i64).max(0);
-    (below + i64::from(place > below as f64)) as usize
-}
-
-impl FloorGrid {
+impl Raster {
     /// Every cell under the bar on its way along a path, in runs of one row each; a cell may come several times.
-    pub fn along(&self, path: &[Point], visit: impl FnMut(Range<usize>)) {
+    pub(super) fn along(&self, path: &[Point], visit: impl FnMut(Range<usize>)) {
         self.along_some(path, 0..path.len(), visit);
     }
 
     /// The same with no more than some of the sides; turns are those of the whole path.
-    pub fn along_some(&self, path: &[Point], sides: Range<usize>, mut visit: impl FnMut(Range<usize>)) {
+    pub(crate) fn along_some(
+        &self,
+        path: &[Point],
+        sides: Range<usize>,
+        mut visit: impl FnMut(Range<usize>),
+    ) {
         let mut before: Option<Vector> = None;
         for (side, pair) in path.windows(2).enumerate() {
-            let Some(ahead) = (pair[1] - pair[0]).try_normalize(LEAST_SIDE_M) else { continue };
+            let Some(ahead) = heading(pair[0], pair[1]) else { continue };
             if let Some(before) = before {
                 self.turn(pair[0], before, ahead, &mut visit);
             }
@@ -66,9 +55,14 @@ impl FloorGrid {
         }
     }
 
-    /// Cells under the bar from one point to the next, and before them those of the turn into this heading.
-    pub fn turn_and_side(&self, before: Option<Point>, from: Point, to: Point) -> (Vec<Run>, Vec<Run>) {
-        let heading = |a: Point, b: Point| (b - a).try_normalize(LEAST_SIDE_M);
+    /// Cells under the bar while it turns from the way that came from `before` into the way from one point to the next, and
+    /// those along that way.
+    pub(crate) fn turn_and_side(
+        &self,
+        before: Option<Point>,
+        from: Point,
+        to: Point,
+    ) -> (Vec<Run>, Vec<Run>) {
         let (mut turn, mut side) = (Vec::new(), Vec::with_capacity(16));
         if let Some(ahead) = heading(from, to) {
             if let Some(before) = before.and_then(|before| heading(before, from)) {
@@ -80,7 +74,7 @@ impl FloorGrid {
     }
 
     fn side(&self, from: Point, to: Point, ahead: Vector, visit: &mut impl FnMut(Range<usize>)) {
-        let side = Vector::new(-ahead.y, ahead.x) * self.half_m;
+        let side = left_of(ahead) * (self.bar_m / 2.0);
         self.fill(&[from - side, to - side, to + side, from + side], visit);
     }
 
@@ -92,8 +86,9 @@ impl FloorGrid {
         let turn = across.atan2(along);
         let n = (turn.abs() / WEDGE_RAD).ceil();
         let (sin, cos) = (turn / n).sin_cos();
-        let mut rim = Vector::new(-from.y, from.x) * self.half_m;
-        let mut fans = [[at; FAN]; 2];
+        let mut rim = left_of(from) * (self.bar_m / 2.0);
+        // Either half of the bar sweeps a fan.
+        let mut fans = [[at; MOST_CORNERS]; 2];
         for k in 0..=n as usize {
             (fans[0][k + 1], fans[1][k + 1]) = (at + rim, at - rim);
             rim = Vector::new(rim.x * cos - rim.y * sin, rim.x * sin + rim.y * cos);
@@ -102,67 +97,8 @@ impl FloorGrid {
             self.fill(&fan[..n as usize + 2], &mut *visit);
         }
     }
+}
 
-    /// Every cell whose centre lies in a convex polygon of at most `FAN` corners, in either sense, row by row.
-    pub(super) fn fill(&self, polygon: &[Point], mut visit: impl FnMut(Range<usize>)) {
-        let mut turned = [Point::origin(); FAN];
-        for (turned, corner) in turned.iter_mut().zip(polygon) {
-            *turned = self.along_rows(*corner);
-        }
-        let polygon = &turned[..polygon.len()];
-        let low = polygon.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
-        let high = polygon.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
-        let row_of = |y: f64| (y - self.low.y) / self.cell_m - 0.5;
-        let rows = index_from(row_of(low))..index_from(row_of(high) + NEXT).min(self.rows);
-        if rows.is_empty() {
-            return;
-        }
-        let mut corner_rows = [0; FAN];
-        for (row, corner) in corner_rows.iter_mut().zip(polygon) {
-            *row = self.row_from(corner.y, index_from(row_of(corner.y)), &rows);
-        }
-        // Side by side through a band of rows: that takes fewer decisions than row by row through the sides.
-        for start in rows.clone().step_by(BAND) {
-            let band = start..rows.end.min(start + BAND);
-            let mut spans = [(f64::INFINITY, f64::NEG_INFINITY); BAND];
-            let mut k = polygon.len() - 1;
-            for next in 0..polygon.len() {
-                let (a, b) = (polygon[k], polygon[next]);
-                let (from, past) =
-                    (corner_rows[k].min(corner_rows[next]), corner_rows[k].max(corner_rows[next]));
-                for row in from.max(band.start)..past.min(band.end) {
-                    let x = a.x + (b.x - a.x) * ((self.row_y(row) - a.y) / (b.y - a.y));
-                    let (from, to) = &mut spans[row - start];
-                    (*from, *to) = (if x < *from { x } else { *from }, if x > *to { x } else { *to });
-                }
-                k = next;
-            }
-            for (row, (from, to)) in band.zip(spans).filter(|(_, (from, to))| from <= to) {
-                let column_of = |x: f64| (x - self.low.x) / self.cell_m - 0.5;
-                let (left, past) =
-                    (index_from(column_of(from)), index_from(column_of(to) + NEXT).min(self.columns));
-                if left < past {
-                    visit(row * self.columns + left..row * self.columns + past);
-                }
-            }
-        }
-    }
-
-    /// Place of the centres of a row across the rows.
-    fn row_y(&self, row: usize) -> f64 {
-        self.low.y + (f64::from(row as u32) + 0.5) * self.cell_m
-    }
-
-    /// The first of some rows whose centres do not lie below `y`, or the one behind them; rounding may have made the guess
-    /// wrong.
-    fn row_from(&self, y: f64, guess: usize, rows: &Range<usize>) -> usize {
-        let mut row = guess.clamp(rows.start, rows.end);
-        while row > rows.start && self.row_y(row - 1) >= y {
-            row -= 1;
-        }
-        while row < rows.end && self.row_y(row) < y {
-            row += 1;
-        }
-        row
-    }
+fn heading(from: Point, to: Point) -> Option<Vector> {
+    (to - from).try_normalize(1e-9)
 }

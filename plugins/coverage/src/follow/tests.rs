@@ -1,5 +1,7 @@
-use crate::{bench, tether_safe::TetherSafe};
-use planner_api::{Drive, Obstacle, Outline, Planner, PoseEstimate, Sensed, Status, testing::Bench};
+use crate::bench;
+use crate::tether_safe::TetherSafe;
+use planner_api::testing::Bench;
+use planner_api::{Drive, Obstacle, Outline, Planner, PoseEstimate, Sensed, Status};
 use trials::tanks::{HULL_M, Known, Tank};
 use world::{Point, Vector};
 

@@ -1,6 +1,7 @@
 use super::*;
 use crate::bench;
-use planner_api::{Code, testing::Bench};
+use planner_api::TetherLimits;
+use planner_api::testing::Bench;
 use proptest::prelude::*;
 use trials::tanks::{CELL_M, Known, Tank};
 
@@ -167,14 +168,14 @@ fn the_ring_along_the_shell_that_the_tool_does_not_reach_is_margin_and_no_gap() 
 
 #[test]
 fn a_swath_wider_than_the_floor_and_a_reel_too_short_for_a_lane_are_distinguished() {
-    let ground = |swath_m: f64| {
+    let workspace = |swath_m: f64| {
         let tank = Known::E1.tank(4);
         let obstacles = tank.obstacles();
-        Ground::new(&Site { swath_m, ..tank.site(&obstacles) }, tank.anchor).unwrap()
+        Workspace::new(&Site { swath_m, ..tank.site(&obstacles) }, tank.anchor).unwrap()
     };
     let why = |swath_m: f64, reel_length_m: f64| {
-        let ground = ground(swath_m);
-        no_lane(&ground, reel_length_m, ground.home())
+        let workspace = workspace(swath_m);
+        no_lane(&workspace, reel_length_m)
     };
     assert!(why(50.0, 13.0).is_some_and(|why| why.contains("the swath of 50.00 m is wider than the floor")));
     assert!(why(0.6, 0.5).is_some_and(|why| why.contains("need 0.60 m")));

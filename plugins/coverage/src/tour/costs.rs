@@ -1,17 +1,23 @@
-//! What ways between ends of lanes cost, as far as it was worked out.
+//! Costs of connectors, as far as they were computed.
 
-use super::End;
-use std::{
-    collections::HashMap,
-    hash::{BuildHasherDefault, Hasher},
-};
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
+/// Ends of lanes: `2 * lane` is its first point, `2 * lane + 1` its last; behind the last lane come home, where the tour
+/// ends, and the start.
+pub(crate) type End = usize;
+
+/// A tour: the end at which each lane is entered, home first.
+pub(crate) type Tour = Vec<End>;
+
+/// Relative error of a cost in single precision.
+pub(super) const ROUNDING: f64 = 1e-6;
 /// Ends up to which all costs fit into a table.
 const TABLE: usize = 1600;
 
 /// Costs by pairs of ends, the smaller end first; the last two ends are home and start.
-#[derive(Debug, Clone, Default)]
-pub struct Costs {
+#[derive(Default)]
+pub(crate) struct Costs {
     ends: usize,
     /// All pairs, not a number where the cost is not known; empty where there are too many ends.
     table: Vec<f32>,
@@ -21,8 +27,7 @@ pub struct Costs {
 
 impl Costs {
     /// The same costs with so many ends, no fewer than now: new ones come before home and start.
-    #[must_use]
-    pub fn with_ends(self, ends: usize) -> Self {
+    pub(super) fn with_ends(self, ends: usize) -> Self {
         if self.ends == ends {
             return self;
         }
@@ -38,8 +43,7 @@ impl Costs {
         costs
     }
 
-    /// The cost of a way, if it is known.
-    pub fn get(&self, u: End, v: End) -> Option<f32> {
+    pub(super) fn get(&self, u: End, v: End) -> Option<f32> {
         if self.table.is_empty() {
             self.map.get(&pair(u, v)).copied()
         } else {
@@ -47,8 +51,7 @@ impl Costs {
         }
     }
 
-    /// Keeps the cost of a way.
-    pub fn set(&mut self, u: End, v: End, cost: f32) {
+    pub(super) fn set(&mut self, u: End, v: End, cost: f32) {
         if self.table.is_empty() {
             self.map.insert(pair(u, v), cost);
         } else {
@@ -61,8 +64,8 @@ fn pair(u: End, v: End) -> u64 {
     (u as u64) << 32 | v as u64
 }
 
-/// Spreads pairs of ends, which nobody makes up to do harm, over a map: one multiplication in place of a safe hash.
-#[derive(Debug, Clone, Default)]
+/// Hashes pairs of ends, which no adversary chooses, by one multiplication.
+#[derive(Default)]
 struct Mixer(u64);
 
 impl Hasher for Mixer {

@@ -1,52 +1,36 @@
 //! The order of cells: a genetic algorithm as published (Pan 2025), and the exact order beside it for few cells.
 
+use crate::tuning::hull_partition::{
+    ELITE, GENERATIONS, MOST_EXACT, MUTATION, PATIENCE, POPULATION, TOURNAMENT,
+};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-const POPULATION: usize = 120;
-const TOURNAMENT: usize = 3;
-const MUTATION: f64 = 0.2;
-const ELITE: usize = 2;
-const GENERATIONS: usize = 400;
-const PATIENCE: usize = 80;
-/// Orders of more cells are not worked out exactly.
-pub const MOST_EXACT: usize = 13;
+/// Length of an order, and the order.
+type Measured = (f64, Vec<usize>);
 
 /// Length of the closed tour from cell 0.
-pub fn length(order: &[usize], distance: &[Vec<f64>]) -> f64 {
+pub(super) fn length(order: &[usize], distance: &[Vec<f64>]) -> f64 {
     let closed = order.iter().zip(order.iter().cycle().skip(1));
     closed.map(|(a, b)| distance[*a][*b]).sum()
 }
 
 /// An order by selection, order crossover and mutation; cell 0 stays first. Reports its progress, 0 to 1.
-pub fn evolved(distance: &[Vec<f64>], seed: u64, report: &dyn Fn(f64)) -> Vec<usize> {
+pub(super) fn evolved(distance: &[Vec<f64>], seed: u64, report: &dyn Fn(f64)) -> Vec<usize> {
     let n = distance.len();
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     if n < 4 {
         return (0..n).collect();
     }
-    let mut population: Vec<(f64, Vec<usize>)> = (0..POPULATION)
-        .map(|_| {
-            let mut order: Vec<usize> = (0..n).collect();
-            (2..n).rev().for_each(|k| order.swap(k, random.random_range(1..=k)));
-            (length(&order, distance), order)
-        })
-        .collect();
+    let measured = |order: Vec<usize>| (length(&order, distance), order);
+    let mut population: Vec<Measured> = (0..POPULATION).map(|_| measured(shuffled(n, &mut random))).collect();
     let mut since_gain = 0;
     for generation in 0..GENERATIONS {
         report(generation as f64 / GENERATIONS as f64);
         population.sort_by(|a, b| a.0.total_cmp(&b.0));
         let best = population[0].0;
-        let mut next: Vec<(f64, Vec<usize>)> = population[..ELITE].to_vec();
-        while next.len() < POPULATION {
-            let mother = picked(&population, &mut random);
-            let father = picked(&population, &mut random);
-            let mut child = crossed(mother, father, &mut random);
-            if random.random_bool(MUTATION) {
-                mutate(&mut child, &mut random);
-            }
-            next.push((length(&child, distance), child));
-        }
+        let mut next = population[..ELITE].to_vec();
+        next.extend((ELITE..POPULATION).map(|_| measured(child(&population, &mut random))));
         population = next;
         let now = population.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
         since_gain = if now < best - 1e-9 { 0 } else { since_gain + 1 };
@@ -57,7 +41,22 @@ pub fn evolved(distance: &[Vec<f64>], seed: u64, report: &dyn Fn(f64)) -> Vec<us
     population.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|p| p.1).unwrap_or_default()
 }
 
-fn picked<'a>(population: &'a [(f64, Vec<usize>)], random: &mut Pcg64Mcg) -> &'a [usize] {
+fn shuffled(n: usize, random: &mut Pcg64Mcg) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..n).collect();
+    (2..n).rev().for_each(|k| order.swap(k, random.random_range(1..=k)));
+    order
+}
+
+fn child(population: &[Measured], random: &mut Pcg64Mcg) -> Vec<usize> {
+    let (mother, father) = (picked(population, random), picked(population, random));
+    let mut child = crossed(mother, father, random);
+    if random.random_bool(MUTATION) {
+        mutate(&mut child, random);
+    }
+    child
+}
+
+fn picked<'a>(population: &'a [Measured], random: &mut Pcg64Mcg) -> &'a [usize] {
     let best = (0..TOURNAMENT).map(|_| random.random_range(0..population.len()));
     let best = best.min_by(|a, b| population[*a].0.total_cmp(&population[*b].0)).unwrap_or_default();
     &population[best].1
@@ -86,7 +85,7 @@ fn mutate(order: &mut [usize], random: &mut Pcg64Mcg) {
 }
 
 /// The best order, by dynamic programming over sets (Held and Karp 1962); the genetic one for many cells.
-pub fn exact(distance: &[Vec<f64>], seed: u64, report: &dyn Fn(f64)) -> Vec<usize> {
+pub(super) fn exact(distance: &[Vec<f64>], seed: u64, report: &dyn Fn(f64)) -> Vec<usize> {
     let n = distance.len();
     if !(4..=MOST_EXACT).contains(&n) {
         return evolved(distance, seed, report);

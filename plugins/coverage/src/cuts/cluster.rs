@@ -1,0 +1,62 @@
+//! Obstacles that leave the robot no room between them and count as one.
+
+use crate::inflation::SLACK_M;
+use crate::workspace::{Workspace, reach_m};
+use geometry::convex::Part;
+use world::{Boundary, Point, polyline::edges};
+
+/// Parts that leave no room between them.
+pub(super) struct Cluster {
+    /// Indices of the parts.
+    pub parts: Vec<usize>,
+    /// Middle of the part that is furthest from the anchor: there its cut begins.
+    pub foot: Point,
+    /// Distance of the foot from the anchor, metres.
+    pub rho_m: f64,
+    /// Whether there is no room between it and the wall either: it needs no cut.
+    pub is_at_wall: bool,
+    /// How far the part at the foot reaches from it, metres.
+    pub reach_m: f64,
+    /// From the foot to the wall along the cuts, once they are made.
+    pub chain: Vec<Point>,
+}
+
+impl Cluster {
+    /// The clusters of a workspace, in the order of their first parts.
+    pub(super) fn all(workspace: &Workspace) -> Vec<Self> {
+        let parts = &workspace.parts;
+        let near_m = 2.0 * workspace.keep_m + 4.0 * SLACK_M;
+        let mut of: Vec<usize> = (0..parts.len()).collect();
+        for a in 0..parts.len() {
+            for b in 0..a {
+                if of[a] != of[b] && are_near(&parts[a], &parts[b], near_m) {
+                    let (keep, drop) = (of[a].min(of[b]), of[a].max(of[b]));
+                    of.iter_mut().filter(|cluster| **cluster == drop).for_each(|cluster| *cluster = keep);
+                }
+            }
+        }
+        let members = (0..parts.len()).map(|first| (0..parts.len()).filter(|k| of[*k] == first).collect());
+        let clusters = members.filter(|members: &Vec<usize>| !members.is_empty());
+        clusters.map(|members| Self::of(workspace, members, near_m)).collect()
+    }
+
+    fn of(workspace: &Workspace, parts: Vec<usize>, near_m: f64) -> Self {
+        let part = |k: &usize| &workspace.parts[*k];
+        let rho_m = |k: &usize| (part(k).middle() - workspace.anchor).norm();
+        let last = parts.iter().max_by(|a, b| rho_m(a).total_cmp(&rho_m(b))).expect("there is a part");
+        let (foot, rho_m, reach_m) = (part(last).middle(), rho_m(last), reach_m(part(last)));
+        let is_at_wall = parts.iter().any(|k| wall_gap_m(&workspace.wall, part(k)) < near_m);
+        Self { parts, foot, rho_m, is_at_wall, reach_m, chain: vec![foot] }
+    }
+}
+
+fn are_near(a: &Part, b: &Part, near_m: f64) -> bool {
+    (a.middle() - b.middle()).norm() <= reach_m(a) + reach_m(b) + near_m && a.gap(b).width_m < near_m
+}
+
+fn wall_gap_m(wall: &Boundary, part: &Part) -> f64 {
+    let corners = part.corners();
+    let ends = corners.iter().map(|c| wall.wall_distance_m(c.0) - c.1).fold(f64::INFINITY, f64::min);
+    let Boundary::Polygon { vertices } = wall else { return ends };
+    edges(vertices).map(|(a, b)| part.segment_distance_m(a, b)).fold(ends, f64::min)
+}

@@ -1,0 +1,206 @@
+//! Rows of square cells over the floor.
+//!
+//! The rows are turned against the tank's axes. A planner that shortens paths as long as no cell is lost would otherwise
+//! keep off every straight wall by the half cell that no row of centres represents.
+
+use crate::plane::{direction, left_of};
+use std::ops::Range;
+use world::{Boundary, Point, Vector, shape::bounds_of};
+
+/// Direction of the rows, radians from east: along no wall and no lanes that people build or plan.
+const ROWS_RAD: f64 = 0.3;
+/// Corners of the largest polygon that is filled: a fan of wedges over half a turn, and its middle.
+pub(super) const MOST_CORNERS: usize = 11;
+/// Rows of a polygon that are filled together.
+const BAND: usize = 32;
+/// The end of a closed range as the start of what lies behind it.
+const NEXT: f64 = 1e-9;
+
+/// Where the cells of a floor lie, and what sweeps them.
+#[derive(Clone, Copy)]
+pub(crate) struct Raster {
+    /// Unit vector along the rows.
+    ahead: Vector,
+    /// Where the first cell of the first row begins, along and across the rows, metres.
+    low: Point,
+    /// Edge of a cell, metres.
+    pub cell_m: f64,
+    columns: usize,
+    rows: usize,
+    /// Width of the bar that sweeps them, metres.
+    pub bar_m: f64,
+}
+
+impl Raster {
+    /// Cells over everything within a wall.
+    pub(super) fn over(wall: &Boundary, cell_m: f64, bar_m: f64) -> Self {
+        let ahead = direction(ROWS_RAD);
+        let (low, high) = match wall {
+            Boundary::Circle { .. } => wall.bounds(),
+            Boundary::Polygon { vertices } => {
+                let turned = vertices.iter().map(|v| along_and_across(ahead, *v));
+                bounds_of(&turned.collect::<Vec<_>>())
+            }
+        };
+        let count = |span_m: f64| (span_m / cell_m).ceil().max(1.0) as usize;
+        Self { ahead, low, cell_m, columns: count(high.x - low.x), rows: count(high.y - low.y), bar_m }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    pub(crate) fn cell_m2(&self) -> f64 {
+        self.cell_m * self.cell_m
+    }
+
+    pub(crate) fn center(&self, cell: usize) -> Point {
+        let (column, row) = (cell % self.columns, cell / self.columns);
+        let here = self.low + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m;
+        Point::from(self.ahead * here.x + left_of(self.ahead) * here.y)
+    }
+
+    pub(super) fn cell_at(&self, at: Point) -> Option<usize> {
+        let here = (along_and_across(self.ahead, at) - self.low) / self.cell_m;
+        let (x, y) = (here.x, here.y);
+        let is_inside = x >= 0.0 && y >= 0.0 && x < self.columns as f64 && y < self.rows as f64;
+        is_inside.then(|| y as usize * self.columns + x as usize)
+    }
+
+    /// The neighbours of a cell, those across its edges first; `None` beyond the raster.
+    pub(super) fn neighbours(&self, cell: usize) -> impl Iterator<Item = Option<usize>> {
+        const STEPS: [(isize, isize); 8] =
+            [(-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (1, 1), (-1, 1), (1, -1)];
+        let (columns, rows) = (self.columns, self.rows);
+        STEPS.into_iter().map(move |(dx, dy)| {
+            let column = (cell % columns).checked_add_signed(dx).filter(|column| *column < columns)?;
+            let row = (cell / columns).checked_add_signed(dy).filter(|row| *row < rows)?;
+            Some(row * columns + column)
+        })
+    }
+
+    /// Groups of neighbouring cells among those that are meant, largest first.
+    pub(crate) fn groups(&self, is_meant: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
+        let mut open: Vec<bool> = (0..self.len()).map(is_meant).collect();
+        let mut groups = Vec::new();
+        for first in 0..open.len() {
+            if !std::mem::replace(&mut open[first], false) {
+                continue;
+            }
+            let mut group = vec![first];
+            let mut next = 0;
+            while let Some(cell) = group.get(next).copied() {
+                next += 1;
+                let around = self.neighbours(cell).flatten();
+                group.extend(around.filter(|other| std::mem::replace(&mut open[*other], false)));
+            }
+            groups.push(group);
+        }
+        groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
+        groups
+    }
+
+    /// Those of the meant cells whose centres lie within a distance of a place, with their centres.
+    pub(super) fn near(
+        &self,
+        place: Point,
+        reach_m: f64,
+        is_meant: impl Fn(usize) -> bool,
+    ) -> impl Iterator<Item = (usize, Point)> {
+        let reach = Vector::new(reach_m, reach_m);
+        let here = along_and_across(self.ahead, place);
+        let (from, to) = (here - reach - self.low, here + reach - self.low);
+        let index = |m: f64, n: usize| (m / self.cell_m).floor().clamp(0.0, n as f64 - 1.0) as usize;
+        let columns = index(from.x, self.columns)..=index(to.x, self.columns);
+        let rows = index(from.y, self.rows)..=index(to.y, self.rows);
+        let cells = rows.flat_map(move |row| columns.clone().map(move |column| row * self.columns + column));
+        let centers = cells.filter(move |cell| is_meant(*cell)).map(|cell| (cell, self.center(cell)));
+        centers.filter(move |(_, at)| (at - place).norm() <= reach_m)
+    }
+
+    /// Every cell whose centre lies in a convex polygon of at most [`MOST_CORNERS`] corners, in either sense, in runs of one
+    /// row each.
+    pub(super) fn fill(&self, polygon: &[Point], mut visit: impl FnMut(Range<usize>)) {
+        let mut turned = [Point::origin(); MOST_CORNERS];
+        for (turned, corner) in turned.iter_mut().zip(polygon) {
+            *turned = along_and_across(self.ahead, *corner);
+        }
+        let polygon = &turned[..polygon.len()];
+        let low = polygon.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        let high = polygon.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+        let row_of = |y: f64| (y - self.low.y) / self.cell_m - 0.5;
+        let rows = index_from(row_of(low))..index_from(row_of(high) + NEXT).min(self.rows);
+        if rows.is_empty() {
+            return;
+        }
+        let mut corner_rows = [0; MOST_CORNERS];
+        for (row, corner) in corner_rows.iter_mut().zip(polygon) {
+            *row = self.row_from(corner.y, index_from(row_of(corner.y)), &rows);
+        }
+        // Side by side through a band of rows: that takes fewer decisions than row by row through the sides.
+        for start in rows.clone().step_by(BAND) {
+            let band = start..rows.end.min(start + BAND);
+            let spans = self.spans(polygon, &corner_rows, &band);
+            for (row, (from, to)) in band.zip(spans).filter(|(_, (from, to))| from <= to) {
+                let column_of = |x: f64| (x - self.low.x) / self.cell_m - 0.5;
+                let (left, past) =
+                    (index_from(column_of(from)), index_from(column_of(to) + NEXT).min(self.columns));
+                if left < past {
+                    visit(row * self.columns + left..row * self.columns + past);
+                }
+            }
+        }
+    }
+
+    /// Where a convex polygon begins and ends on the rows of a band; `corner_rows` are the first rows not below its corners.
+    fn spans(
+        &self,
+        polygon: &[Point],
+        corner_rows: &[usize; MOST_CORNERS],
+        band: &Range<usize>,
+    ) -> [(f64, f64); BAND] {
+        let mut spans = [(f64::INFINITY, f64::NEG_INFINITY); BAND];
+        let mut k = polygon.len() - 1;
+        for next in 0..polygon.len() {
+            let (a, b) = (polygon[k], polygon[next]);
+            let (from, past) = (corner_rows[k].min(corner_rows[next]), corner_rows[k].max(corner_rows[next]));
+            for row in from.max(band.start)..past.min(band.end) {
+                let x = a.x + (b.x - a.x) * ((self.row_y(row) - a.y) / (b.y - a.y));
+                let (from, to) = &mut spans[row - band.start];
+                (*from, *to) = (if x < *from { x } else { *from }, if x > *to { x } else { *to });
+            }
+            k = next;
+        }
+        spans
+    }
+
+    /// Place of the centres of a row across the rows.
+    fn row_y(&self, row: usize) -> f64 {
+        self.low.y + (f64::from(row as u32) + 0.5) * self.cell_m
+    }
+
+    /// The first of some rows whose centres do not lie below `y`, or the one behind them; rounding may have made the guess
+    /// wrong.
+    fn row_from(&self, y: f64, guess: usize, rows: &Range<usize>) -> usize {
+        let mut row = guess.clamp(rows.start, rows.end);
+        while row > rows.start && self.row_y(row - 1) >= y {
+            row -= 1;
+        }
+        while row < rows.end && self.row_y(row) < y {
+            row += 1;
+        }
+        row
+    }
+}
+
+/// Coordinates of a place along and across a direction.
+fn along_and_across(ahead: Vector, at: Point) -> Point {
+    Point::new(ahead.dot(&at.coords), ahead.perp(&at.coords))
+}
+
+/// The first index that is not below a place.
+fn index_from(place: f64) -> usize {
+    // Truncation is quicker than rounding up, and negative places become 0.
+    let below = (place as i64).max(0);
+    (below + i64::from(place > below as f64)) as usize
+}

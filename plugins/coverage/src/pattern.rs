@@ -1,0 +1,180 @@
+//! Patterns of lanes, before obstacles and cuts break them.
+
+use crate::inflation::SLACK_M;
+use crate::plane::{direction, extent, left_of};
+use crate::tuning::lanes::{INTO_LAP, SPACING};
+use crate::workspace::Workspace;
+use std::f64::consts::{PI, TAU};
+use world::{Boundary, Point, Vector, polyline};
+
+/// Sampling step along rows, metres.
+const STEP_M: f64 = 0.04;
+/// Chord of a lane along a round wall, metres.
+const CHORD_M: f64 = 0.15;
+
+/// How lanes lie on the floor.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Pattern {
+    /// At even distances from the wall.
+    Contours,
+    /// Straight, inside some contours along the wall.
+    Straight {
+        rows: Rows,
+        /// Contours along the wall around them.
+        laps: usize,
+    },
+}
+
+impl Pattern {
+    /// How many lanes a straight cut would break.
+    pub(crate) fn broken_lanes(&self, wall: &Boundary, a: Point, b: Point, swath_m: f64) -> f64 {
+        match self {
+            Self::Contours => {
+                let n = 8;
+                let depth = |k: i32| wall.wall_distance_m(a + (b - a) * (f64::from(k) / f64::from(n)));
+                (0..n).map(|k| (depth(k + 1) - depth(k)).abs()).sum::<f64>() / swath_m
+            }
+            Self::Straight { rows, laps } => {
+                let across = rows.ahead().perp(&(b - a)).abs();
+                let laps = if wall.wall_distance_m(b) < 0.1 { *laps as f64 } else { 0.0 };
+                (across / rows.spacing_m).max(0.0) + laps
+            }
+        }
+    }
+
+    /// Direction of the lanes, if they are straight.
+    pub(crate) fn ahead(&self) -> Option<Vector> {
+        let Self::Straight { rows, .. } = self else { return None };
+        Some(rows.ahead())
+    }
+
+    /// Where a cut that runs with the lanes shall leave its obstacle, so as to lie between two lanes.
+    pub(crate) fn bend(&self, foot: Point, end: Point) -> Option<Point> {
+        let Self::Straight { rows, .. } = self else { return None };
+        let along = (end - foot).try_normalize(1e-9)?;
+        let is_along = along.perp(&rows.ahead()).abs() <= 0.02;
+        is_along.then(|| foot + rows.to_gap(foot) + along * 0.05)
+    }
+
+    /// The unbroken lines of the pattern.
+    pub(crate) fn lines(&self, workspace: &Workspace) -> Vec<Vec<Point>> {
+        let start_m = workspace.keep_m + SLACK_M;
+        match self {
+            Self::Contours => contours(workspace, start_m, usize::MAX),
+            Self::Straight { rows, laps } => {
+                let laps_m = if *laps == 0 { 0.0 } else { (*laps as f64 - INTO_LAP) * workspace.swath_m };
+                let mut lines = contours(workspace, start_m, *laps);
+                lines.extend(rows.lines(&workspace.wall, start_m + laps_m));
+                lines
+            }
+        }
+    }
+}
+
+/// Lines at even distances from the wall, outermost first; in a round tank the last is a small circle about its middle.
+fn contours(workspace: &Workspace, start_m: f64, most: usize) -> Vec<Vec<Point>> {
+    let swath_m = workspace.swath_m;
+    let offsets = (0..most.min(10_000)).map(|k| start_m + k as f64 * swath_m);
+    match &workspace.wall {
+        Boundary::Circle { radius_m } => {
+            let radii = offsets.map(|offset| radius_m - offset).take_while(|r| *r > -0.3 * swath_m);
+            radii.map(|r| circle(r.max(0.08))).collect()
+        }
+        Boundary::Polygon { vertices } => offsets.map_while(|offset| inset(vertices, offset)).collect(),
+    }
+}
+
+fn circle(radius_m: f64) -> Vec<Point> {
+    let n = (TAU * radius_m / CHORD_M).ceil().max(12.0);
+    (0..=n as usize).map(|k| Point::origin() + direction(TAU * k as f64 / n) * radius_m).collect()
+}
+
+/// A polygon with its edges moved inward, closed; `None` once it is used up. Good for convex walls.
+fn inset(vertices: &[Point], offset_m: f64) -> Option<Vec<Point>> {
+    let n = vertices.len();
+    // A place on every edge that was moved, and its direction.
+    let moved = polyline::edges(vertices).map(|(a, b)| {
+        let along = (b - a).normalize();
+        (a + left_of(along) * offset_m, along)
+    });
+    let moved: Vec<(Point, Vector)> = moved.collect();
+    let corner = |k: usize| {
+        let ((a, u), (b, v)) = (moved[(k + n - 1) % n], moved[k]);
+        let turn = u.perp(&v);
+        if turn.abs() < 1e-9 { b } else { a + u * ((b - a).perp(&v) / turn) }
+    };
+    let mut ring: Vec<Point> = (0..n).map(corner).collect();
+    let is_alive = (0..n).all(|k| (ring[(k + 1) % n] - ring[k]).dot(&moved[k].1) > 0.0);
+    ring.push(ring[0]);
+    is_alive.then_some(ring)
+}
+
+/// Straight lanes side by side.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct Rows {
+    /// Direction of the lanes, radians from east.
+    pub angle_rad: f64,
+    /// Place of the first lane across the direction, metres.
+    shift_m: f64,
+    /// Distance between lanes, metres.
+    pub spacing_m: f64,
+}
+
+impl Rows {
+    /// Rows through the middle of a round tank, even ones between straight walls.
+    pub(crate) fn new(workspace: &Workspace, angle_rad: f64) -> Self {
+        match workspace.wall {
+            Boundary::Circle { .. } => {
+                Self { angle_rad, shift_m: 0.0, spacing_m: workspace.swath_m * SPACING }
+            }
+            Boundary::Polygon { .. } => Self::even(workspace, angle_rad),
+        }
+    }
+
+    /// Rows at even distances from wall to wall.
+    pub(crate) fn even(workspace: &Workspace, angle_rad: f64) -> Self {
+        let side = direction(angle_rad + PI / 2.0);
+        let (low, high) = match &workspace.wall {
+            Boundary::Circle { radius_m } => (-radius_m, *radius_m),
+            Boundary::Polygon { vertices } => extent(vertices.iter().map(|v| v.coords.dot(&side))),
+        };
+        let margin_m = workspace.keep_m + SLACK_M;
+        let width_m = (high - low - 2.0 * margin_m).max(workspace.swath_m);
+        // A floor that is slightly wider than a whole number of swaths gets no further lane.
+        let n = (width_m / workspace.swath_m - 0.02).ceil().max(1.0);
+        Self { angle_rad, shift_m: low + margin_m, spacing_m: width_m / n }
+    }
+
+    /// Unit vector along the lanes.
+    pub(crate) fn ahead(&self) -> Vector {
+        direction(self.angle_rad)
+    }
+
+    /// The nearest line between two lanes, as seen from a place: the way to it, metres.
+    pub(crate) fn to_gap(self, from: Point) -> Vector {
+        let side = left_of(self.ahead());
+        let place = (from.coords.dot(&side) - self.shift_m) / self.spacing_m;
+        let gap = (place - 0.5).round() + 0.5;
+        side * ((gap - place) * self.spacing_m)
+    }
+
+    /// The lines of the rows as far as they are no nearer to the wall than `edge_m`.
+    pub(crate) fn lines(&self, wall: &Boundary, edge_m: f64) -> Vec<Vec<Point>> {
+        let (ahead, side) = (self.ahead(), left_of(self.ahead()));
+        let (low, high) = wall.bounds();
+        let (middle, reach_m) = (low + (high - low) / 2.0, (high - low).norm());
+        let first =
+            ((middle.coords.dot(&side) - reach_m / 2.0 - self.shift_m) / self.spacing_m).floor() as i64;
+        let last = ((middle.coords.dot(&side) + reach_m / 2.0 - self.shift_m) / self.spacing_m).ceil() as i64;
+        let mut lines = Vec::new();
+        for k in first..=last {
+            let across = side * (self.shift_m + k as f64 * self.spacing_m);
+            let foot = Point::from(across + ahead * middle.coords.dot(&ahead));
+            let ends = [foot - ahead * reach_m / 2.0, foot + ahead * reach_m / 2.0];
+            let line = polyline::resampled(&ends, STEP_M);
+            let inside = line.split(|p| wall.wall_distance_m(*p) < edge_m - 1e-6);
+            lines.extend(inside.filter(|run| run.len() > 1).map(|run| vec![run[0], run[run.len() - 1]]));
+        }
+        lines
+    }
+}

@@ -1,0 +1,60 @@
+//! Plane geometry that several steps of planning share.
+
+use geometry::convex::crossing;
+use world::{Point, Vector};
+
+/// Unit vector of an angle, radians from east.
+pub(crate) fn direction(angle_rad: f64) -> Vector {
+    Vector::new(angle_rad.cos(), angle_rad.sin())
+}
+
+/// A vector turned left by a right angle.
+pub(crate) fn left_of(ahead: Vector) -> Vector {
+    Vector::new(-ahead.y, ahead.x)
+}
+
+/// Angle between two unit vectors, radians, from 0 to pi.
+pub(crate) fn angle_rad(a: Vector, b: Vector) -> f64 {
+    a.perp(&b).atan2(a.dot(&b)).abs()
+}
+
+/// Least and greatest of some numbers; plus and minus infinity where there are none.
+pub(crate) fn extent(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
+    numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), n| (low.min(n), high.max(n)))
+}
+
+/// Whether the straight way between two places meets a line.
+pub(crate) fn meets(line: &[Point], a: Point, b: Point) -> bool {
+    line.windows(2).any(|side| crossing(a, b, side[0], side[1]).is_some())
+}
+
+/// Length and turning of a way.
+#[derive(Clone, Copy)]
+pub(crate) struct Course {
+    /// Length, metres.
+    pub length_m: f64,
+    /// Sum of the changes of heading, radians.
+    pub turn_rad: f64,
+}
+
+impl Course {
+    /// The course of a way that is entered with one heading and left with another, as far as these are known.
+    pub(crate) fn of(entered: Option<Vector>, way: &[Point], left: Option<Vector>) -> Self {
+        let (mut heading, mut length_m, mut turn_rad) = (entered, 0.0, 0.0);
+        for leg in way.windows(2).map(|w| w[1] - w[0]) {
+            length_m += leg.norm();
+            let Some(ahead) = leg.try_normalize(1e-6) else { continue };
+            turn_rad += heading.map_or(0.0, |heading| angle_rad(heading, ahead));
+            heading = Some(ahead);
+        }
+        if let (Some(heading), Some(left)) = (heading, left) {
+            turn_rad += angle_rad(heading, left);
+        }
+        Self { length_m, turn_rad }
+    }
+
+    /// What it costs more than another, metres, with turns at this price.
+    pub(crate) fn excess_m(self, other: Self, turn_m_per_rad: f64) -> f64 {
+        self.length_m - other.length_m + turn_m_per_rad * (self.turn_rad - other.turn_rad)
+    }
+}

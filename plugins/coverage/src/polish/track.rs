@@ -1,0 +1,255 @@
+//! A path under polish, side by side, with what every side sweeps.
+
+use crate::buckets::Buckets;
+use crate::floor::{ReachableFloor, Run, SweptFloor};
+use crate::jobs::Job;
+use crate::plane::{Course, angle_rad, left_of};
+use crate::scan::Piece;
+use crate::slit_domain::SlitDomain;
+use crate::tuning::shortcuts::SAMPLES;
+use std::ops::Range;
+use world::{Point, Vector};
+
+/// Longest side, metres.
+const SIDE_M: f64 = 0.3;
+
+/// What a path is polished to, at which prices.
+#[derive(Clone, Copy)]
+pub(crate) struct Terms<'a> {
+    /// Metres of path that turning by a radian is worth.
+    pub turn_m_per_rad: f64,
+    /// Metres of path that a square metre of floor is worth.
+    pub floor_m_per_m2: f64,
+    /// Metres of path and turning that a square metre of floor may cost by a bend.
+    pub bend_m_per_m2: f64,
+    pub enough: f64,
+    /// Where the robot may go.
+    pub is_wanted: &'a dyn Fn(Point) -> bool,
+    pub job: &'a Job,
+}
+
+/// A path with what it sweeps.
+#[derive(Clone)]
+pub(crate) struct Track<'a> {
+    pub(super) domain: &'a SlitDomain<'a>,
+    start: Point,
+    pub(super) sides: Vec<Side>,
+    pub(super) swept: SweptFloor,
+}
+
+/// The straight way from a point of a track to the next one. Point `k` of the track is where side `k` begins.
+#[derive(Clone)]
+pub(super) struct Side {
+    to: Point,
+    pub on_lane: bool,
+    pub ahead: Vector,
+    pub length_m: f64,
+    /// Turning where it begins, radians.
+    pub turn_rad: f64,
+    /// Cells that the bar sweeps while it turns into the side, and those along it: needed again and again while the
+    /// path around it changes.
+    turn: Vec<Run>,
+    pub along: Vec<Run>,
+    /// Cells that only this side sweeps, about; no more than it really sweeps alone where it is new.
+    pub alone: u32,
+    samples: Samples,
+    /// Whether it was put in since shortcuts were last looked for.
+    pub is_new: bool,
+    /// Whether shortcuts from where it begins have to be looked for.
+    pub is_open: bool,
+}
+
+/// Which of the samples across a side are swept by nothing else, and after how many exchanges on the floor that was so.
+#[derive(Clone, Copy, Default)]
+struct Samples {
+    alone: [bool; SAMPLES.len()],
+    n_exchanges: Option<u32>,
+}
+
+impl<'a> Track<'a> {
+    /// A track along some pieces, each of them a lane or a way between lanes.
+    pub(crate) fn new(domain: &'a SlitDomain<'a>, pieces: &[Piece], floor: ReachableFloor) -> Self {
+        let start =
+            pieces.iter().flat_map(|piece| &piece.points).next().copied().unwrap_or_else(Point::origin);
+        let mut sides: Vec<Side> = Vec::new();
+        for piece in pieces {
+            let mut at = sides.last().map_or(start, |side| side.to);
+            for point in piece.points.iter().skip(1) {
+                if (point - at).norm() >= 1e-6 {
+                    divide(at, *point, piece.is_lane, &mut sides);
+                    at = *point;
+                }
+            }
+        }
+        let n = sides.len();
+        let mut track = Self { domain, start, sides, swept: SweptFloor::new(floor) };
+        track.swept.sweep(&track.points(0..n));
+        track.update(0..n);
+        for side in &mut track.sides {
+            side.alone = track.swept.count(1, &side.along);
+        }
+        track
+    }
+
+    /// Updates what some sides sweep and turn, and the turn into the side behind them.
+    fn update(&mut self, sides: Range<usize>) {
+        for k in sides.start..(sides.end + 1).min(self.sides.len()) {
+            let before = k.checked_sub(1);
+            if let Some(before) = before {
+                self.sides[k].turn_rad = angle_rad(self.sides[before].ahead, self.sides[k].ahead);
+            }
+            let before = before.map(|before| self.point(before));
+            let (turn, along) = self.swept.raster().turn_and_side(before, self.point(k), self.point(k + 1));
+            self.sides[k].turn = turn;
+            if k < sides.end {
+                self.sides[k].along = along;
+            }
+        }
+    }
+
+    pub(super) fn coverage(&self) -> f64 {
+        self.swept.coverage()
+    }
+
+    /// A point of the path, from 0 to the number of sides.
+    pub(super) fn point(&self, k: usize) -> Point {
+        k.checked_sub(1).map_or(self.start, |side| self.sides[side].to)
+    }
+
+    /// The points at both ends of some sides and between them.
+    pub(super) fn points(&self, sides: Range<usize>) -> Vec<Point> {
+        (sides.start..=sides.end).map(|k| self.point(k)).collect()
+    }
+
+    /// All points by place.
+    pub(super) fn places(&self) -> Buckets {
+        let points: Vec<(Point, Point)> =
+            self.points(0..self.sides.len()).into_iter().map(|p| (p, p)).collect();
+        Buckets::new(1.0, 0.0, &points)
+    }
+
+    /// Where a sample across a side lies.
+    pub(super) fn sample(&self, side: usize, share: f64) -> Point {
+        let Side { ahead, length_m, .. } = self.sides[side];
+        let across = left_of(ahead) * (self.swept.raster().bar_m / 2.0);
+        self.point(side) + ahead * (length_m / 2.0) + across * share
+    }
+
+    /// Which samples across a side nothing else sweeps, kept between exchanges on the floor: many paths are tried
+    /// meanwhile.
+    pub(super) fn samples_alone(&mut self, side: usize) -> [bool; SAMPLES.len()] {
+        let n_exchanges = Some(self.swept.n_exchanges);
+        if self.sides[side].samples.n_exchanges != n_exchanges {
+            let alone = SAMPLES.map(|share| self.swept.is_swept_once(self.sample(side, share)));
+            self.sides[side].samples = Samples { alone, n_exchanges };
+        }
+        self.sides[side].samples.alone
+    }
+
+    /// Sides between two points with one before and one behind, as far as there are such.
+    pub(super) fn around(&self, from: usize, to: usize) -> Range<usize> {
+        from.saturating_sub(1)..(to + 1).min(self.sides.len())
+    }
+
+    /// What the path sweeps on some sides, without the turn into the first one.
+    pub(super) fn swept_by(&self, sides: Range<usize>) -> Vec<Run> {
+        let sides = &self.sides[sides];
+        let mut runs = Vec::with_capacity(sides.iter().map(|side| side.turn.len() + side.along.len()).sum());
+        for (k, side) in sides.iter().enumerate() {
+            if k > 0 {
+                runs.extend(&side.turn);
+            }
+            runs.extend(&side.along);
+        }
+        runs
+    }
+
+    /// What the path would sweep on the same sides with another way from one point to another.
+    pub(super) fn swept_with(&self, from: usize, to: usize, way: &[Point]) -> Vec<Run> {
+        let (sides, mut runs) = (self.around(from, to), Vec::with_capacity(128));
+        let mut path = Vec::with_capacity(way.len() + 2);
+        path.extend((sides.start < from).then(|| self.point(sides.start)));
+        path.extend(way);
+        path.extend((sides.end > to).then(|| self.point(sides.end)));
+        let mut fresh = 0..path.len() - 1;
+        // Sides that stay are known.
+        if sides.start < from && way[0] == self.point(from) {
+            fresh.start += 1;
+            runs.extend(&self.sides[sides.start].along);
+        }
+        if sides.end > to && way[way.len() - 1] == self.point(to) {
+            fresh.end -= 1;
+            runs.extend(&self.sides[to].along);
+        }
+        self.swept.raster().along_some(&path, fresh, |cells| runs.push(cells.into()));
+        runs
+    }
+
+    /// Length and turning of a way from one point of the path to another.
+    pub(super) fn course(&self, from: usize, to: usize, way: &[Point]) -> Course {
+        let entered = from.checked_sub(1).map(|side| self.sides[side].ahead);
+        Course::of(entered, way, self.sides.get(to).map(|side| side.ahead))
+    }
+
+    /// Puts other lines in place of the sides between two points.
+    pub(super) fn splice(&mut self, from: usize, to: usize, lines: &[Piece]) {
+        let mut sides = Vec::new();
+        for Piece { points, is_lane } in lines {
+            for pair in points.windows(2).filter(|pair| (pair[1] - pair[0]).norm() > 1e-9) {
+                divide(pair[0], pair[1], *is_lane, &mut sides);
+            }
+        }
+        let past = from + sides.len();
+        self.sides.splice(from..to, sides);
+        self.update(from..past);
+    }
+
+    /// The path in pieces of one kind, without points on the straight way between others, and the floor that it swept.
+    pub(crate) fn into_pieces(self) -> (Vec<Piece>, SweptFloor) {
+        let mut pieces: Vec<Piece> = Vec::new();
+        for (k, side) in self.sides.iter().enumerate() {
+            match pieces.last_mut() {
+                Some(piece) if piece.is_lane == side.on_lane => piece.points.push(side.to),
+                _ => pieces.push(Piece { points: vec![self.point(k), side.to], is_lane: side.on_lane }),
+            }
+        }
+        for piece in &mut pieces {
+            piece.points = straightened(&piece.points);
+        }
+        (pieces, self.swept)
+    }
+}
+
+/// Adds a straight way in sides that are short enough.
+fn divide(from: Point, to: Point, on_lane: bool, sides: &mut Vec<Side>) {
+    let way = to - from;
+    let length_m = way.norm();
+    let n = (length_m / SIDE_M).ceil().max(1.0);
+    sides.extend((1..=n as usize).map(|k| Side {
+        to: from + way * (k as f64 / n),
+        on_lane,
+        ahead: way / length_m,
+        length_m: length_m / n,
+        turn_rad: 0.0,
+        turn: Vec::new(),
+        along: Vec::new(),
+        alone: 0,
+        samples: Samples::default(),
+        is_new: true,
+        is_open: true,
+    }));
+}
+
+/// The same line without points that lie on the straight way between their neighbours.
+fn straightened(points: &[Point]) -> Vec<Point> {
+    let mut kept = vec![points[0]];
+    for k in 1..points.len() - 1 {
+        let (before, after) = (points[k] - kept[kept.len() - 1], points[k + 1] - points[k]);
+        let is_corner = before.perp(&after).abs() > 1e-9 * (1.0 + before.norm()) || before.dot(&after) < 0.0;
+        if is_corner {
+            kept.push(points[k]);
+        }
+    }
+    kept.push(points[points.len() - 1]);
+    kept
+}

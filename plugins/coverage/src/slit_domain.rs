@@ -1,0 +1,205 @@
+//! The slit domain: the floor for the middle of the hull, less the cuts, in triangles.
+//!
+//! With a cut from every obstacle to the wall the domain is simply connected, so the triangles form a tree, and the
+//! shortest path between two places is a funnel through the one sleeve that joins them: exact, without a search. Any
+//! two paths between the same ends are the same to the tether.
+
+mod funnel;
+
+use crate::buckets::Buckets;
+use crate::plane::meets;
+use crate::triangulation::{NEARLY, NONE, SealedRegion, Triangle, Walk, least_side};
+use crate::workspace::Workspace;
+use funnel::funnel;
+use world::{Point, polyline};
+
+/// Triangles of the floor that can be reached from home without crossing a cut.
+pub(crate) struct SlitDomain<'a> {
+    pub workspace: &'a Workspace,
+    /// Lines that the robot does not cross, each from the middle of an obstacle to the wall or to another obstacle.
+    pub cuts: Vec<Vec<Point>>,
+    points: Vec<Point>,
+    triangles: Vec<Triangle>,
+    buckets: Buckets,
+    /// Whether the domain is simply connected: every way between two places is the same to the tether.
+    pub is_simple: bool,
+    /// Floor that only cuts keep the hull out of.
+    pub sealed: SealedRegion,
+}
+
+/// A place of the domain and the triangle that it lies in.
+#[derive(Clone, Copy)]
+pub(crate) struct Spot {
+    pub at: Point,
+    triangle: usize,
+}
+
+impl<'a> SlitDomain<'a> {
+    /// The domain between some cuts; `None` where there is no room at home.
+    pub(crate) fn new(workspace: &'a Workspace, cuts: Vec<Vec<Point>>) -> Option<Self> {
+        let walk = workspace.triangulation().walk(&cuts, workspace.home)?;
+        let Walk { points, triangles, is_simple, sealed } = walk;
+        let boxes = triangles.iter().map(|Triangle { corners, .. }| {
+            let [a, b, c] = corners.map(|k| points[k as usize]);
+            (a.inf(&b).inf(&c), a.sup(&b).sup(&c))
+        });
+        let buckets = Buckets::new(0.5, 1e-6, &boxes.collect::<Vec<_>>());
+        Some(Self { workspace, cuts, points, triangles, buckets, is_simple, sealed })
+    }
+
+    /// Adds cuts across the last ways round obstacles that are left, each where the ways from home on either side meet. No
+    /// floor is lost by it, and the domain is simply connected then.
+    pub(crate) fn close_up(&mut self) {
+        for own in 0..self.triangles.len() {
+            for side in 0..3 {
+                let other = self.triangles[own].next[side];
+                let is_branch = other == NONE
+                    || self.triangles[own].parent == other
+                    || self.triangles[other as usize].parent == own as u32;
+                if is_branch {
+                    continue;
+                }
+                let (right, left) = (self.corner(own, side), self.corner(own, side + 1));
+                self.cuts.push(vec![right, left]);
+                self.triangles[own].next[side] = NONE;
+                let mut back = self.triangles[other as usize].next.iter_mut();
+                if let Some(next) = back.find(|next| **next == own as u32) {
+                    *next = NONE;
+                }
+            }
+        }
+        self.is_simple = true;
+    }
+
+    fn corner(&self, triangle: usize, k: usize) -> Point {
+        self.points[self.triangles[triangle].corners[k % 3] as usize]
+    }
+
+    fn corners(&self, triangle: usize) -> [Point; 3] {
+        self.triangles[triangle].corners.map(|k| self.points[k as usize])
+    }
+
+    /// The triangles, for filling a raster.
+    pub(crate) fn triangles(&self) -> impl Iterator<Item = [Point; 3]> + '_ {
+        (0..self.triangles.len()).map(|triangle| self.corners(triangle))
+    }
+
+    /// A place with its triangle; `None` outside the domain.
+    pub(crate) fn spot(&self, at: Point) -> Option<Spot> {
+        let mut best = (f64::NEG_INFINITY, usize::MAX);
+        for triangle in self.buckets.at(at) {
+            let side = least_side(self.corners(*triangle as usize), at);
+            if side >= best.0 {
+                best = (side, *triangle as usize);
+            }
+            // Triangles do not overlap: it lies inside no other.
+            if side > NEARLY {
+                break;
+            }
+        }
+        (best.0 >= -NEARLY).then_some(Spot { at, triangle: best.1 })
+    }
+
+    pub(crate) fn contains(&self, at: Point) -> bool {
+        self.spot(at).is_some()
+    }
+
+    /// Where a path from a place begins: there, or at home where it lies outside the domain.
+    pub(crate) fn start(&self, at: Point) -> Point {
+        if self.contains(at) { at } else { self.workspace.home }
+    }
+
+    /// The pieces of a line between the places where it would cross a cut.
+    pub(crate) fn between_cuts(&self, line: &[Point]) -> Vec<Vec<Point>> {
+        let runs = line.chunk_by(|a, b| !self.crosses_cut(*a, *b));
+        runs.filter(|run| run.len() > 1).map(<[Point]>::to_vec).collect()
+    }
+
+    pub(crate) fn crosses_cut(&self, a: Point, b: Point) -> bool {
+        self.cuts.iter().any(|cut| meets(cut, a, b))
+    }
+
+    /// The shortest path between two places, both ends included; `None` where one lies outside the domain.
+    pub(crate) fn path(&self, a: Point, b: Point) -> Option<Vec<Point>> {
+        Some(self.path_between(self.spot(a)?, self.spot(b)?))
+    }
+
+    /// The shortest path between two spots.
+    pub(crate) fn path_between(&self, a: Spot, b: Spot) -> Vec<Point> {
+        let is_alone = a.triangle == b.triangle;
+        if is_alone { vec![a.at, b.at] } else { funnel(a.at, b.at, &self.sleeve(a.triangle, b.triangle)) }
+    }
+
+    /// Length of the shortest path home, metres.
+    pub(crate) fn way_home_m(&self, from: Point) -> Option<f64> {
+        self.path(self.workspace.home, from).map(|path| polyline::length_m(&path))
+    }
+
+    /// Whether no corner of the domain is further from home than this, on the shortest path, metres.
+    ///
+    /// A corner of a cut has a way on either side; the one met first counts. That is a mild measure: of whole paths flown
+    /// along cuts, few ever go to the far side of the last corner, and what they do to the cable is certified anyway.
+    pub(crate) fn is_all_within(&self, most_m: f64) -> bool {
+        let Some(start) = self.spot(self.workspace.home) else { return most_m >= 0.0 };
+        let mut seen = vec![false; self.points.len()];
+        self.triangles.iter().enumerate().all(|(triangle, Triangle { corners, .. })| {
+            corners.iter().all(|corner| {
+                let is_known = std::mem::replace(&mut seen[*corner as usize], true);
+                is_known || {
+                    let way = self.path_between(start, Spot { at: self.points[*corner as usize], triangle });
+                    polyline::length_m(&way) <= most_m
+                }
+            })
+        })
+    }
+
+    /// Whether the straight way between two places stays in the domain.
+    pub(crate) fn sees(&self, a: Point, b: Point) -> bool {
+        matches!((self.spot(a), self.spot(b)), (Some(a), Some(b)) if self.sees_between(a, b))
+    }
+
+    /// The same for two spots.
+    pub(crate) fn sees_between(&self, a: Spot, b: Spot) -> bool {
+        let is_straight = || {
+            let path = self.path_between(a, b);
+            path.len() == 2 || polyline::length_m(&path) <= (b.at - a.at).norm() + 1e-9
+        };
+        a.triangle == b.triangle || is_straight()
+    }
+
+    /// Left and right ends of the sides between two triangles, in order: up the tree from either one to where they meet.
+    fn sleeve(&self, from: usize, to: usize) -> Vec<(Point, Point)> {
+        let above = |triangle: usize| self.triangles[triangle].parent as usize;
+        let depth = |triangle: usize| self.triangles[triangle].depth as usize;
+        let (mut a, mut b) = (from, to);
+        while a != b {
+            if depth(a) >= depth(b) {
+                a = above(a);
+            } else {
+                b = above(b);
+            }
+        }
+        let (up, down) = (depth(from) - depth(a), depth(to) - depth(a));
+        let mut sleeve = Vec::with_capacity(up + down);
+        let mut at = from;
+        for _ in 0..up {
+            sleeve.push(self.side_between(at, above(at)));
+            at = above(at);
+        }
+        at = to;
+        for _ in 0..down {
+            sleeve.push(self.side_between(above(at), at));
+            at = above(at);
+        }
+        sleeve[up..].reverse();
+        sleeve
+    }
+
+    /// Left and right end of the side between a triangle and its neighbour, as seen from the triangle.
+    fn side_between(&self, triangle: usize, neighbour: usize) -> (Point, Point) {
+        let is_side = |k: &usize| self.triangles[triangle].next[*k] == neighbour as u32;
+        let side = (0..3).find(is_side).expect("neighbours share a side");
+        // The corners run counter-clockwise, so a side seen from inside runs from right to left.
+        (self.corner(triangle, side + 1), self.corner(triangle, side))
+    }
+}

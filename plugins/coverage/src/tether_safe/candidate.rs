@@ -1,0 +1,144 @@
+//! Candidates of a tether-safe plan: how lanes and cuts may lie.
+
+use crate::cuts::{CutRule, domain};
+use crate::draft::rotation_turns;
+use crate::pattern::{Pattern, Rows};
+use crate::scan::Scan;
+use crate::slit_domain::SlitDomain;
+use crate::tether::{certificate, least_cable_m};
+use crate::tether_safe::parameters::{Choice, Wishes};
+use crate::tuning::cuts::{AROUND_SHARE, SLACKS_ACROSS, SLACKS_ALONG};
+use crate::workspace::Workspace;
+use planner_api::Site;
+use std::f64::consts::PI;
+use world::tether::{Cable, Certificate};
+use world::{Boundary, polyline};
+
+/// One way to make a plan.
+pub(super) struct Candidate {
+    pub pattern: Pattern,
+    /// Largest angle between cut and ray, radians.
+    alpha_rad: f64,
+}
+
+impl Candidate {
+    /// What is tried, with cuts up to `alpha_rad` off the ray from the anchor.
+    pub(super) fn all(workspace: &Workspace, wishes: &Wishes, alpha_rad: f64) -> Vec<Self> {
+        let straight = |k: usize| {
+            let angle_rad = main_direction_rad(&workspace.wall) + PI * k as f64 / wishes.directions as f64;
+            Pattern::Straight { rows: Rows::new(workspace, angle_rad), laps: 1 }
+        };
+        let contours = wishes.contours.then_some(Pattern::Contours);
+        let patterns = contours.into_iter().chain((0..wishes.directions).map(straight));
+        patterns.map(|pattern| Self { pattern, alpha_rad }).collect()
+    }
+
+    /// What the operator calls it.
+    pub(super) fn name(&self) -> String {
+        let lanes = match self.pattern {
+            Pattern::Contours => "contours".to_owned(),
+            Pattern::Straight { rows, .. } => {
+                format!("straight lanes at {:.0} deg", rows.angle_rad.to_degrees())
+            }
+        };
+        format!("{lanes}, cuts within {:.0} deg", self.alpha_rad.to_degrees())
+    }
+
+    /// The domain between its cuts, unless there is no room. It costs a few domains to find how far cuts may go: as far as
+    /// the cable keeps its limits.
+    pub(super) fn domain<'a>(&self, workspace: &'a Workspace, wishes: &Wishes) -> Option<SlitDomain<'a>> {
+        let (least_m, reel_length_m) = (least_cable_m(workspace), wishes.limits.reel_length_m);
+        let most_m = (least_m * wishes.cable_share).min(reel_length_m);
+        let made = |slack: f64| {
+            let cable_m = (least_m + (least_m * wishes.cable_share - least_m) * slack).min(reel_length_m);
+            domain(workspace, &self.pattern, &CutRule { alpha_rad: self.alpha_rad, cable_m })
+        };
+        let is_short = |domain: &SlitDomain<'_>| domain.is_all_within(most_m + AROUND_SHARE * least_m);
+        let slacks: &[f64] = if self.pattern == Pattern::Contours { &SLACKS_ACROSS } else { &SLACKS_ALONG };
+        let mut domains = slacks.iter().map(|slack| made(*slack));
+        domains.find(|domain| domain.as_ref().is_none_or(is_short)).unwrap_or_else(|| made(0.0))
+    }
+}
+
+/// The direction of the longest wall, radians; east in a round tank.
+fn main_direction_rad(wall: &Boundary) -> f64 {
+    let Boundary::Polygon { vertices } = wall else { return 0.0 };
+    let edges = polyline::edges(vertices).map(|(a, b)| b - a);
+    edges.max_by(|a, b| a.norm().total_cmp(&b.norm())).map_or(0.0, |edge| edge.y.atan2(edge.x).rem_euclid(PI))
+}
+
+/// What a candidate is worth.
+pub(super) struct Worth {
+    /// Length, metres.
+    pub length_m: f64,
+    /// Sum of changes of heading, in whole turns.
+    pub turns: f64,
+    /// Swept share of the floor that the tool can reach.
+    pub coverage: f64,
+    /// What the tether says.
+    pub certificate: Certificate,
+}
+
+impl Worth {
+    /// What a scan is worth to a robot whose cable lies like this.
+    pub(super) fn of(site: &Site<'_>, wishes: &Wishes, scan: &Scan<'_>, cable: Option<&Cable>) -> Self {
+        let path = scan.path();
+        Self {
+            length_m: polyline::length_m(&path),
+            turns: rotation_turns(&path),
+            coverage: scan.swept.coverage(),
+            certificate: certificate(&scan.domain, site, wishes.demanded, &path, cable),
+        }
+    }
+
+    /// Whether another is no worse in anything and better in something.
+    pub(super) fn is_beaten_by(&self, other: &Self) -> bool {
+        let figures = |w: &Self| {
+            [w.length_m, w.turns, w.certificate.tether_length_max_m, w.certificate.wrap_total_max_rad]
+        };
+        let pairs = || figures(self).into_iter().zip(figures(other));
+        pairs().all(|(own, theirs)| theirs <= own) && pairs().any(|(own, theirs)| theirs < own)
+    }
+
+    /// Longest cable as a multiple of the least that can do.
+    pub(super) fn cable_share(&self) -> f64 {
+        self.certificate.tether_length_max_m / self.certificate.eccentricity_m.max(1e-9)
+    }
+
+    /// One line for the operator.
+    pub(super) fn summary(&self, name: &str) -> String {
+        let c = &self.certificate;
+        format!(
+            "{name}: {:.1} m, {:.0} turns, {:.2} % of the floor in reach, cable {:.2} m ({:.3} of the least), wrap \
+             {:.0} / {:.0} deg{}",
+            self.length_m,
+            self.turns,
+            100.0 * self.coverage,
+            c.tether_length_max_m,
+            self.cable_share(),
+            c.wrap_max_rad.to_degrees(),
+            c.wrap_total_max_rad.to_degrees(),
+            if c.certified { String::new() } else { format!("; not certified: {}", c.reasons.join("; ")) },
+        )
+    }
+
+    /// Whether it is certified and keeps what the operator wishes of the cable as well.
+    pub(super) fn keeps(&self, wishes: &Wishes) -> bool {
+        let Certificate { certified, wrap_max_rad, wrap_total_max_rad, .. } = self.certificate;
+        certified
+            && self.cable_share() <= wishes.cable_share + 1e-6
+            && wrap_max_rad <= wishes.limits.wrap_max_rad
+            && wrap_total_max_rad <= wishes.limits.wrap_total_max_rad
+    }
+
+    /// Whether it is to be chosen rather than another: certified, then within the wishes, then by the figure that counts.
+    pub(super) fn is_before(&self, other: &Self, wishes: &Wishes) -> bool {
+        let figure = |worth: &Self| match wishes.choice {
+            Choice::Shortest => worth.length_m + wishes.choice_turn_m * worth.turns,
+            Choice::FewestTurns => worth.turns,
+            Choice::ShortestCable => worth.certificate.tether_length_max_m,
+        };
+        let rank = |worth: &Self| (!worth.certificate.certified, !worth.keeps(wishes));
+        rank(self).cmp(&rank(other)).then(figure(self).total_cmp(&figure(other))).is_lt()
+    }
+}

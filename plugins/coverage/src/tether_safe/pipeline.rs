@@ -1,0 +1,153 @@
+//! The pipeline of a plan: candidates, their first tours, finished candidates, the chosen one.
+
+use crate::draft::Draft;
+use crate::jobs::{Job, run_all};
+use crate::scan::Scan;
+use crate::scope::Scope;
+use crate::stages::{Stage, Stages};
+use crate::tether_safe::candidate::{Candidate, Worth};
+use crate::tether_safe::parameters::{Choice, Wishes};
+use crate::tuning::choice::{ANGLES, HOPELESS};
+use crate::workspace::Workspace;
+use planner_api::{Ctx, LogLevel, Result, Site};
+use world::tether::Cable;
+
+/// What the steps of a plan share.
+#[derive(Clone, Copy)]
+pub(super) struct Pipeline<'a> {
+    pub site: &'a Site<'a>,
+    pub workspace: &'a Workspace,
+    pub wishes: &'a Wishes,
+    pub scope: Scope<'a>,
+    /// The cable as it lies; none at the anchor.
+    pub cable: Option<&'a Cable>,
+}
+
+/// A candidate with its first tour.
+struct Drafted<'a> {
+    name: String,
+    /// Estimated cost of the finished path, metres.
+    estimate_m: f64,
+    draft: Draft<'a>,
+}
+
+/// A finished candidate.
+struct Finished<'a> {
+    name: String,
+    worth: Worth,
+    /// Kept of the best one only: the floor of a large tank takes megabytes.
+    scan: Option<Scan<'a>>,
+}
+
+/// All finished candidates.
+#[derive(Default)]
+pub(super) struct Tried<'a>(Vec<Finished<'a>>);
+
+impl<'a> Pipeline<'a> {
+    /// Finishes the candidates that may win; tries straighter cuts as well if none keeps the wishes.
+    pub(super) fn run(&self, stages: &mut Stages<'_>) -> Result<Tried<'a>> {
+        let end = stages.end;
+        let mut tried = Tried::default();
+        for (k, share) in ANGLES.into_iter().enumerate() {
+            stages.end = stages.toward(end, 0.7);
+            let (touring, finishing) = match k {
+                0 => ("first tours", "candidates"),
+                _ => ("first tours, straighter cuts", "candidates, straighter cuts"),
+            };
+            let drafts = self.drafts(self.wishes.alpha_rad * share, &stages.next(0.25, touring))?;
+            self.finish_promising(drafts, stages, finishing, &mut tried)?;
+            if self.wishes.alpha_rad == 0.0 || tried.is_enough(self.wishes) {
+                break;
+            }
+        }
+        Ok(tried)
+    }
+
+    /// The first tours of all candidates with cuts up to an angle, the cheapest first.
+    fn drafts(&self, alpha_rad: f64, stage: &Stage<'_>) -> Result<Vec<Drafted<'a>>> {
+        let Self { workspace, wishes, scope, .. } = *self;
+        let drafted = |candidate: Candidate, job: &Job| {
+            job.stage(0.25);
+            let Some(domain) = candidate.domain(workspace, wishes) else { return Ok(None) };
+            let draft = Draft::new(&candidate.pattern, domain, scope, wishes.effort, job)?;
+            let estimate_m = draft.estimate_m(wishes.choice_turn_m);
+            Ok(Some(Drafted { name: candidate.name(), estimate_m, draft }))
+        };
+        let drafts = run_all(Candidate::all(workspace, wishes, alpha_rad), stage, drafted)?;
+        let mut drafts: Vec<Drafted<'a>> = drafts.into_iter().flatten().collect();
+        drafts.sort_by(|a, b| a.estimate_m.total_cmp(&b.estimate_m));
+        Ok(drafts)
+    }
+
+    /// Finishes the drafts that may win, and those that look worse if none of the former keeps the wishes.
+    fn finish_promising(
+        &self,
+        mut drafts: Vec<Drafted<'a>>,
+        stages: &mut Stages<'_>,
+        what: &'static str,
+        tried: &mut Tried<'a>,
+    ) -> Result<()> {
+        let least_m = drafts.first().map_or(0.0, |draft| draft.estimate_m);
+        let may_win = |draft: &Drafted<'_>| {
+            self.wishes.choice != Choice::Shortest || draft.estimate_m <= least_m * (1.0 + HOPELESS)
+        };
+        let hopeless = drafts.split_off(drafts.partition_point(may_win));
+        let (ctx, n) = (stages.ctx, drafts.len() as f64);
+        ctx.scalar("candidates worked out", n, "");
+        // It is an even chance that those that look worse are finished as well.
+        let n_expected = n + hopeless.len() as f64 / 2.0;
+        self.finish(drafts, &stages.next(n / n_expected.max(1.0), what), tried)?;
+        if !tried.is_enough(self.wishes) && !hopeless.is_empty() {
+            return self.finish(hopeless, &stages.next(1.0, what), tried);
+        }
+        for Drafted { name, estimate_m, .. } in hopeless {
+            let more_m = estimate_m - least_m;
+            ctx.log(LogLevel::Info, &format!("{name}: left, it would cost about {more_m:.0} m more"));
+        }
+        Ok(())
+    }
+
+    /// Finishes drafts, and keeps the scan of the best candidate so far.
+    fn finish(&self, drafts: Vec<Drafted<'a>>, stage: &Stage<'_>, tried: &mut Tried<'a>) -> Result<()> {
+        let Self { site, wishes, cable, .. } = *self;
+        tried.0.extend(run_all(drafts, stage, |Drafted { name, draft, .. }, job| {
+            let scan = draft.finished(job)?;
+            job.stage(1.0);
+            let worth = Worth::of(site, wishes, &scan, cable);
+            Ok(Finished { name, worth, scan: Some(scan) })
+        })?);
+        tried.keep_best(wishes);
+        Ok(())
+    }
+}
+
+impl<'a> Tried<'a> {
+    /// Whether a candidate keeps the wishes.
+    fn is_enough(&self, wishes: &Wishes) -> bool {
+        self.0.iter().any(|finished| finished.worth.keeps(wishes))
+    }
+
+    /// Whether a candidate is certified.
+    pub(super) fn is_certified(&self) -> bool {
+        self.0.iter().any(|finished| finished.worth.certificate.certified)
+    }
+
+    fn keep_best(&mut self, wishes: &Wishes) {
+        let mut best = 0;
+        for k in 1..self.0.len() {
+            let is_better = self.0[k].worth.is_before(&self.0[best].worth, wishes);
+            let worse = if is_better { std::mem::replace(&mut best, k) } else { k };
+            self.0[worse].scan = None;
+        }
+    }
+
+    /// The best candidate; logs every candidate that no other beats.
+    pub(super) fn chosen(self, ctx: &Ctx<'_>) -> Option<(Worth, Scan<'a>)> {
+        for Finished { name, worth, .. } in &self.0 {
+            if !self.0.iter().any(|other| worth.is_beaten_by(&other.worth)) {
+                ctx.log(LogLevel::Info, &worth.summary(name));
+            }
+        }
+        self.0.into_iter().find_map(|finished| Some((finished.worth, finished.scan?)))
+    }
+}

@@ -1,0 +1,136 @@
+//! The first tour: of neighbours, the few ends that are cheapest to go to, the cheapest pairs are joined first.
+
+use crate::jobs::Job;
+use crate::tour::connectors::Connectors;
+use crate::tour::costs::{End, ROUNDING, Tour};
+use crate::tuning::tour::{LOOKED_AT, NEIGHBOURS};
+use planner_api::Result;
+use std::collections::HashMap;
+use world::Point;
+
+/// How far a tour is when neighbours are listed, as a share of its time, about.
+pub(super) const LISTED: f64 = 0.3;
+
+/// The cheapest ends from every end, cheapest first.
+pub(super) fn neighbours(connectors: &Connectors<'_>, job: &Job) -> Result<Vec<Vec<End>>> {
+    let n = connectors.len();
+    let mut buckets: HashMap<(i64, i64), Vec<End>> = HashMap::new();
+    for u in 0..n {
+        buckets.entry(bucket(connectors.at(u))).or_default().push(u);
+    }
+    let list = |u: End| {
+        if u.is_multiple_of(64) {
+            job.check()?;
+            job.reached(LISTED * u as f64 / n as f64);
+        }
+        Ok(cheapest(connectors, u, nearest(connectors, &buckets, u)))
+    };
+    (0..n).map(list).collect()
+}
+
+/// The square of one metre that a place lies in.
+fn bucket(at: Point) -> (i64, i64) {
+    (at.x.floor() as i64, at.y.floor() as i64)
+}
+
+/// The nearest ends of other lanes, by straight ways.
+fn nearest(connectors: &Connectors<'_>, buckets: &HashMap<(i64, i64), Vec<End>>, u: End) -> Vec<End> {
+    let (x, y) = bucket(connectors.at(u));
+    let mut found: Vec<End> = Vec::new();
+    let mut rings = 1;
+    while found.len() < LOOKED_AT.min(connectors.len() - 2) && rings < 200 {
+        let around = (-rings..=rings).flat_map(|dx| (-rings..=rings).map(move |dy| (x + dx, y + dy)));
+        let ends = around.filter_map(|bucket| buckets.get(&bucket)).flatten();
+        found = ends.copied().filter(|v| v / 2 != u / 2).collect();
+        rings += 1;
+    }
+    found.sort_by(|a, b| connectors.least(u, *a).total_cmp(&connectors.least(u, *b)).then(a.cmp(b)));
+    found.truncate(LOOKED_AT);
+    found
+}
+
+/// The cheapest of some ends, which come nearest first.
+fn cheapest(connectors: &Connectors<'_>, u: End, nearest: Vec<End>) -> Vec<End> {
+    let mut priced: Vec<(f64, End)> = Vec::with_capacity(NEIGHBOURS + 1);
+    for v in nearest {
+        // The rest are further away than the last in the list, and no way is shorter than the straight one.
+        if priced.len() == NEIGHBOURS && priced[NEIGHBOURS - 1].0 < connectors.least(u, v) * (1.0 - ROUNDING)
+        {
+            break;
+        }
+        let cost = connectors.cost(u, v);
+        let is_before = |other: &(f64, End)| other.0.total_cmp(&cost).then(other.1.cmp(&v)).is_lt();
+        priced.insert(priced.partition_point(is_before), (cost, v));
+        priced.truncate(NEIGHBOURS);
+    }
+    priced.into_iter().map(|(_, v)| v).collect()
+}
+
+/// Chains of lanes that grow together.
+struct Chains {
+    /// The end that each end is joined to.
+    joined: Vec<Option<End>>,
+    /// For every lane another one of its chain, or itself: a forest with one root per chain.
+    above: Vec<usize>,
+}
+
+impl Chains {
+    fn root(&mut self, mut lane: usize) -> usize {
+        while self.above[lane] != lane {
+            self.above[lane] = self.above[self.above[lane]];
+            lane = self.above[lane];
+        }
+        lane
+    }
+
+    /// Joins two ends, unless one is taken or both belong to one chain.
+    fn join(&mut self, u: End, v: End) {
+        let (a, b) = (self.root(u / 2), self.root(v / 2));
+        if self.joined[u].is_none() && self.joined[v].is_none() && a != b {
+            self.above[a] = b;
+            (self.joined[u], self.joined[v]) = (Some(v), Some(u));
+        }
+    }
+
+    /// Joins the cheapest pairs first.
+    fn join_all(&mut self, mut pairs: Vec<(f64, End, End)>) {
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        for (_, u, v) in pairs {
+            self.join(u, v);
+        }
+    }
+
+    fn loose(&self) -> Vec<End> {
+        (0..self.joined.len()).filter(|u| self.joined[*u].is_none()).collect()
+    }
+}
+
+/// A tour by the cheapest pairs of neighbours.
+pub(super) fn greedy(connectors: &Connectors<'_>, near: &[Vec<End>]) -> Tour {
+    let n = connectors.len();
+    let mut chains = Chains { joined: vec![None; n], above: (0..n / 2).collect() };
+    let mut pairs: Vec<(f64, End, End)> = Vec::new();
+    for (u, list) in near.iter().enumerate() {
+        let fresh = list.iter().filter(|v| u < **v || !near[**v].contains(&u));
+        pairs.extend(fresh.map(|v| (connectors.cost(u, *v), u, *v)));
+    }
+    chains.join_all(pairs);
+    // What is left are a few chains: join the nearest loose ends.
+    let mut loose = chains.loose();
+    while loose.len() > 2 {
+        let pairs = loose.iter().enumerate().flat_map(|(k, u)| loose[..k].iter().map(move |v| (*u, *v)));
+        chains.join_all(pairs.map(|(u, v)| (connectors.least(u, v), u, v)).collect());
+        loose = chains.loose();
+    }
+    if let [u, v] = loose[..] {
+        (chains.joined[u], chains.joined[v]) = (Some(v), Some(u));
+    }
+    let home = n - 2;
+    let mut entries = vec![home];
+    let mut at = home;
+    while let Some(next) = chains.joined[at ^ 1].filter(|next| next / 2 != home / 2) {
+        entries.push(next);
+        at = next;
+    }
+    entries
+}

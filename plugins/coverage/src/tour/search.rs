@@ -1,0 +1,255 @@
+//! Local search: 2-opt and Or-opt over neighbour lists, then small kicks that are kept when they help.
+
+use crate::jobs::Job;
+use crate::tour::connectors::Connectors;
+use crate::tour::costs::{End, ROUNDING, Tour};
+use crate::tour::greedy::LISTED;
+use crate::tuning::tour::{KICK_REACH, RUN};
+use planner_api::Result;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use std::collections::VecDeque;
+
+/// Less is no gain, metres.
+const LEAST_GAIN_M: f64 = 1e-6;
+
+/// How hard to try, and what turns cost.
+#[derive(Clone, Copy)]
+pub(crate) struct Effort {
+    pub turn_m_per_rad: f64,
+    pub kicks_per_lane: f64,
+    pub seed: u64,
+}
+
+/// A tour under improvement.
+struct Search<'a> {
+    connectors: &'a Connectors<'a>,
+    near: &'a [Vec<End>],
+    entries: Tour,
+    /// Where in the tour each lane is.
+    place: Vec<usize>,
+}
+
+/// A change of the tour.
+struct Change {
+    gain_m: f64,
+    /// The ends that are joined otherwise now.
+    touched: Vec<End>,
+}
+
+/// Improves a tour as far as the effort goes.
+pub(super) fn improved(
+    connectors: &Connectors<'_>,
+    near: &[Vec<End>],
+    entries: Tour,
+    effort: &Effort,
+    job: &Job,
+) -> Result<Tour> {
+    let n = entries.len();
+    let mut search = Search { connectors, near, place: vec![0; n], entries };
+    search.number(0, n);
+    job.reached(LISTED);
+    search.descend((0..connectors.len()).collect(), job)?;
+    job.reached(0.4);
+    if n < 8 {
+        return Ok(search.into_tour());
+    }
+    let mut random = Pcg64Mcg::seed_from_u64(effort.seed);
+    let kicks = (effort.kicks_per_lane * n as f64) as usize;
+    for kick in 0..kicks {
+        if kick % 32 == 0 {
+            job.check()?;
+            job.reached(0.4 + 0.6 * kick as f64 / kicks as f64);
+        }
+        let before = search.entries.clone();
+        let Change { gain_m, touched } = search.kick(&mut random);
+        if gain_m + search.descend(touched.into(), job)? < -1e-9 {
+            search.entries = before;
+            search.number(0, n);
+        }
+    }
+    Ok(search.into_tour())
+}
+
+impl Search<'_> {
+    fn number(&mut self, from: usize, to: usize) {
+        for k in from..to {
+            self.place[self.entries[k] / 2] = k;
+        }
+    }
+
+    fn into_tour(mut self) -> Tour {
+        let home = self.connectors.len() / 2 - 1;
+        self.entries.rotate_left(self.place[home]);
+        if self.entries[0] != 2 * home {
+            // The same ring the other way round: it leaves from the start and ends at home.
+            self.entries.iter_mut().for_each(|e| *e ^= 1);
+            self.entries[1..].reverse();
+        }
+        self.entries
+    }
+
+    fn is_exit(&self, u: End) -> bool {
+        self.entries[self.place[u / 2]] != u
+    }
+
+    /// The end joined to this one.
+    fn partner(&self, u: End) -> End {
+        let (k, n) = (self.place[u / 2], self.entries.len());
+        if self.is_exit(u) { self.entries[(k + 1) % n] } else { self.entries[(k + n - 1) % n] ^ 1 }
+    }
+
+    /// Cost of the connector behind the lane at a place of the tour.
+    fn cost_behind(&self, k: usize) -> f64 {
+        self.connectors.cost(self.entries[k] ^ 1, self.entries[(k + 1) % self.entries.len()])
+    }
+
+    /// Improves until nothing near the given ends gets better; returns what was gained, metres.
+    fn descend(&mut self, mut queue: VecDeque<End>, job: &Job) -> Result<f64> {
+        let mut waiting = vec![false; self.connectors.len()];
+        for u in &queue {
+            waiting[*u] = true;
+        }
+        let mut gained_m = 0.0;
+        let mut rounds = 0_u32;
+        while let Some(u) = queue.pop_front() {
+            waiting[u] = false;
+            rounds += 1;
+            if rounds.is_multiple_of(256) {
+                job.check()?;
+            }
+            if let Some(Change { gain_m, touched }) = self.improve(u) {
+                gained_m += gain_m;
+                for v in touched.into_iter().chain([u]) {
+                    if !std::mem::replace(&mut waiting[v], true) {
+                        queue.push_back(v);
+                    }
+                }
+            }
+        }
+        Ok(gained_m)
+    }
+
+    /// Joins an end to the first of its neighbours that makes the tour better, by either kind of move.
+    fn improve(&mut self, u: End) -> Option<Change> {
+        let near = self.near;
+        let pu = self.partner(u);
+        near[u]
+            .iter()
+            .filter(|v| **v != pu)
+            .find_map(|v| self.reverse_between(u, *v).or_else(|| self.move_run(u, *v)))
+    }
+
+    /// 2-opt: joins `u` to `v`, both exits or both entries, and their partners to each other, if that is a gain.
+    fn reverse_between(&mut self, u: End, v: End) -> Option<Change> {
+        let (pu, pv, ways) = (self.partner(u), self.partner(v), self.connectors);
+        if self.is_exit(u) != self.is_exit(v) {
+            return None;
+        }
+        let most_m = ways.cost(u, pu) + ways.cost(v, pv) - ways.cost(u, v);
+        // A lower bound of a connector's cost is known before the cost is computed.
+        if most_m - ways.least(pu, pv) <= LEAST_GAIN_M {
+            return None;
+        }
+        let gain_m = most_m - ways.cost(pu, pv);
+        if gain_m <= LEAST_GAIN_M {
+            return None;
+        }
+        let (i, j) = (self.place[u / 2].min(self.place[v / 2]), self.place[u / 2].max(self.place[v / 2]));
+        if self.is_exit(u) {
+            self.reverse(i + 1, j);
+        } else {
+            self.reverse(i, j - 1);
+        }
+        Some(Change { gain_m, touched: vec![u, v, pu, pv] })
+    }
+
+    /// Turns the lanes from one place to another the other way round.
+    fn reverse(&mut self, i: usize, j: usize) {
+        let n = self.entries.len();
+        if j + 1 - i > n / 2 + 1 {
+            // The rest of the ring the other way round is the same tour, and shorter to turn.
+            let (from, count) = (j + 1, n - (j + 1 - i));
+            for k in 0..count / 2 {
+                self.entries.swap((from + k) % n, (from + count - 1 - k) % n);
+            }
+            for at in (from..from + count).map(|k| k % n) {
+                self.entries[at] ^= 1;
+                self.number(at, at + 1);
+            }
+            return;
+        }
+        self.entries[i..=j].reverse();
+        self.entries[i..=j].iter_mut().for_each(|e| *e ^= 1);
+        self.number(i, j + 1);
+    }
+
+    /// Or-opt: moves a run of lanes that ends in `u` to between `v` and its partner, if that is a gain.
+    fn move_run(&mut self, u: End, v: End) -> Option<Change> {
+        let (n, start, is_exit) = (self.entries.len(), self.place[u / 2], self.is_exit(u));
+        let (pv, ways) = (self.partner(v), self.connectors);
+        for run in 1..=RUN.min(n.saturating_sub(3)) {
+            // The run reaches from `u` away from its partner.
+            let far = if is_exit { (start + n + 1 - run) % n } else { (start + run - 1) % n };
+            let (first, last) = if is_exit { (far, start) } else { (start, far) };
+            let is_inside = |end: End| (self.place[end / 2] + n - first) % n < run;
+            if is_inside(v) || is_inside(pv) {
+                return None;
+            }
+            let tail = if is_exit { self.entries[far] } else { self.entries[far] ^ 1 };
+            let (before, after) = (self.entries[(first + n - 1) % n] ^ 1, self.entries[(last + 1) % n]);
+            let removed_m = self.cost_behind((first + n - 1) % n) + self.cost_behind(last) + ways.cost(v, pv);
+            let most_m = removed_m - ways.cost(u, v);
+            if most_m - ways.least(tail, pv) - ways.least(before, after) <= LEAST_GAIN_M {
+                continue;
+            }
+            let most_m = most_m - ways.cost(tail, pv);
+            if most_m - ways.least(before, after) * (1.0 - ROUNDING) <= LEAST_GAIN_M {
+                continue;
+            }
+            let gain_m = most_m - ways.cost(before, after);
+            if gain_m > LEAST_GAIN_M {
+                self.relink(first, run, u, v);
+                return Some(Change { gain_m, touched: vec![u, v, pv, tail, before, after] });
+            }
+        }
+        None
+    }
+
+    /// Takes a run out and puts it back so that `u` meets `v`.
+    fn relink(&mut self, first: usize, run: usize, u: End, v: End) {
+        let n = self.entries.len();
+        self.entries.rotate_left(first);
+        let mut taken: Vec<End> = self.entries.drain(..run).collect();
+        let at = self.entries.iter().position(|e| e / 2 == v / 2).expect("the run does not hold it");
+        let v_is_exit = self.entries[at] != v;
+        // Behind an exit the run begins with `u`; before an entry it ends with it.
+        if v_is_exit != (taken[0] == u) {
+            taken.reverse();
+            for entry in &mut taken {
+                *entry ^= 1;
+            }
+        }
+        let cut = if v_is_exit { at + 1 } else { at };
+        self.entries.splice(cut..cut, taken);
+        self.number(0, n);
+    }
+
+    /// Swaps two neighbouring runs somewhere: a double bridge that changes little.
+    fn kick(&mut self, random: &mut Pcg64Mcg) -> Change {
+        let n = self.entries.len();
+        let reach = KICK_REACH.min(n - 3);
+        let a = random.random_range(0..n - reach - 1);
+        let steps = [(); 2].map(|()| 1 + random.random_range(0..reach / 2));
+        let c = a + steps[0] + steps[1];
+        let ends_behind = |k: usize| [self.entries[k] ^ 1, self.entries[(k + 1) % n]];
+        let touched = [a, a + steps[0], c].map(ends_behind).concat();
+        let cost_m = |search: &Self, middle: usize| -> f64 {
+            [a, middle, c].map(|k| search.cost_behind(k)).iter().sum()
+        };
+        let before_m = cost_m(self, a + steps[0]);
+        self.entries[a + 1..=c].rotate_left(steps[0]);
+        self.number(a + 1, c + 1);
+        Change { gain_m: before_m - cost_m(self, a + steps[1]), touched }
+    }
+}

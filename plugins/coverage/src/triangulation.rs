@@ -1,0 +1,199 @@
+//! The floor for the middle of the hull in triangles: a constrained Delaunay triangulation of the grown outlines and of cuts,
+//! and the walk through them from home.
+
+use crate::inflation::{outline, wall_rings};
+use geometry::convex::Part;
+use spade::handles::{FaceHandle, FixedVertexHandle, InnerTag};
+use spade::{CdtEdge, ConstrainedDelaunayTriangulation, Point2 as Vertex, Triangulation as _};
+use std::collections::BTreeMap;
+use world::{Boundary, Point, polyline::edges};
+
+/// Corners are moved to multiples of this, so that those of outlines that touch coincide instead of lying a hair apart,
+/// metres.
+const SNAP_M: f64 = 1.0 / 65536.0;
+/// What was snapped lies at most this far from where it was, and so do the pieces of lines that were split, metres.
+pub(crate) const SNAPPED_M: f64 = 8.0 * SNAP_M;
+
+/// A point this far outside a triangle still counts as inside, square metres of signed area.
+pub(crate) const NEARLY: f64 = 1e-9;
+/// No triangle.
+pub(crate) const NONE: u32 = u32::MAX;
+
+type Cdt = ConstrainedDelaunayTriangulation<Vertex<f64>>;
+type Face<'a> = FaceHandle<'a, InnerTag, Vertex<f64>, (), CdtEdge<()>, ()>;
+
+/// Wall and obstacles in triangles before there are cuts: the same for all the cuts that are tried.
+pub(crate) struct Triangulation {
+    cdt: Cdt,
+    wall: Boundary,
+    keep_m: f64,
+    /// Obstacles with the distance to keep.
+    outlines: Vec<Vec<Point>>,
+}
+
+impl Triangulation {
+    pub(crate) fn new(wall: &Boundary, parts: &[Part], keep_m: f64) -> Self {
+        let mut cdt = Cdt::new();
+        let outlines: Vec<Vec<Point>> = parts.iter().map(|part| outline(part, keep_m)).collect();
+        for ring in wall_rings(wall, keep_m).iter().chain(&outlines) {
+            constrain(&mut cdt, ring, true);
+        }
+        Self { cdt, wall: wall.clone(), keep_m, outlines }
+    }
+
+    /// What can be reached from home without crossing a cut; `None` where there is no room at home.
+    pub(crate) fn walk(&self, cuts: &[Vec<Point>], home: Point) -> Option<Walk> {
+        let mut cdt = self.cdt.clone();
+        for cut in cuts {
+            constrain(&mut cdt, cut, false);
+        }
+        let points: Vec<Point> = cdt.vertices().map(|v| Point::new(v.position().x, v.position().y)).collect();
+        let faces = Faces::new(&cdt, |at| self.is_free(at));
+        let holds_home = |face: &usize| {
+            let corners = faces.corners(*face).map(|k| points[k as usize]);
+            faces.free[*face] && least_side(corners, home) >= -NEARLY
+        };
+        let root = (0..faces.all.len()).find(holds_home)?;
+        Some(faces.walk(root, points))
+    }
+
+    fn is_free(&self, at: Point) -> bool {
+        let is_inside = |ring: &Vec<Point>| edges(ring).all(|(a, b)| (b - a).perp(&(at - a)) > 0.0);
+        self.wall.wall_distance_m(at) >= self.keep_m && !self.outlines.iter().any(is_inside)
+    }
+}
+
+fn constrain(cdt: &mut Cdt, line: &[Point], is_closed: bool) {
+    let snapped = |m: f64| (m / SNAP_M).round() * SNAP_M;
+    let corners: Vec<FixedVertexHandle> =
+        line.iter().filter_map(|p| cdt.insert(Vertex::new(snapped(p.x), snapped(p.y))).ok()).collect();
+    let ends = corners.iter().zip(corners.iter().cycle().skip(1));
+    let n = if is_closed { corners.len() } else { corners.len().saturating_sub(1) };
+    for (a, b) in ends.take(n).filter(|(a, b)| a != b) {
+        cdt.add_constraint_and_split(*a, *b, |vertex| vertex);
+    }
+}
+
+/// Least signed area between a point and the sides of a triangle; not below zero inside.
+pub(crate) fn least_side([a, b, c]: [Point; 3], at: Point) -> f64 {
+    let side = |p: Point, q: Point| (q - p).perp(&(at - p));
+    side(a, b).min(side(b, c)).min(side(c, a))
+}
+
+/// A triangle that can be reached.
+pub(crate) struct Triangle {
+    /// Its vertices, counter-clockwise.
+    pub corners: [u32; 3],
+    /// The triangle across each side, side `k` from corner `k` on, or [`NONE`].
+    pub next: [u32; 3],
+    /// The triangle from which the walk came, or [`NONE`] at home.
+    pub parent: u32,
+    /// Number of triangles between it and home.
+    pub depth: u32,
+}
+
+/// Floor that only cuts keep the middle of the hull out of.
+#[derive(Default)]
+pub(crate) struct SealedRegion {
+    pub area_m2: f64,
+    /// Middles of the sides of triangles at which cuts keep the hull out.
+    pub rim: Vec<Point>,
+}
+
+/// Everything that can be reached without crossing a cut, breadth first.
+pub(crate) struct Walk {
+    /// The vertices of all triangles.
+    pub points: Vec<Point>,
+    /// The triangles in the order in which they were reached.
+    pub triangles: Vec<Triangle>,
+    /// Whether there is just one way to each of them.
+    pub is_simple: bool,
+    pub sealed: SealedRegion,
+}
+
+/// The triangles between cuts by number, and which of them the middle of the hull may use.
+struct Faces<'a> {
+    all: Vec<Face<'a>>,
+    numbers: BTreeMap<usize, usize>,
+    free: Vec<bool>,
+}
+
+/// A free triangle beside another one.
+struct Beside {
+    face: usize,
+    /// The side between them: from this corner of the other triangle to the next one.
+    side: usize,
+    /// Middle of that side.
+    middle: Point,
+    is_cut: bool,
+}
+
+impl<'a> Faces<'a> {
+    fn new(cdt: &'a Cdt, is_free: impl Fn(Point) -> bool) -> Self {
+        let all: Vec<Face<'_>> = cdt.inner_faces().collect();
+        let numbers = all.iter().enumerate().map(|(number, face)| (face.fix().index(), number)).collect();
+        let is_free = |face: &Face<'_>| {
+            let [a, b, c] = face.positions();
+            is_free(Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0))
+        };
+        let free = all.iter().map(is_free).collect();
+        Self { all, numbers, free }
+    }
+
+    /// Vertices of a triangle, counter-clockwise: side `k` runs from corner `k` to the next one.
+    fn corners(&self, face: usize) -> [u32; 3] {
+        self.all[face].adjacent_edges().map(|edge| edge.from().index() as u32)
+    }
+
+    fn beside(&self, face: usize) -> impl Iterator<Item = Beside> + '_ {
+        self.all[face].adjacent_edges().into_iter().enumerate().filter_map(|(side, edge)| {
+            let face = self.numbers[&edge.rev().face().as_inner()?.fix().index()];
+            let [a, b] = edge.positions();
+            let middle = Point::new(f64::midpoint(a.x, b.x), f64::midpoint(a.y, b.y));
+            self.free[face].then_some(Beside { face, side, middle, is_cut: edge.is_constraint_edge() })
+        })
+    }
+
+    fn walk(&self, root: usize, points: Vec<Point>) -> Walk {
+        let triangle = |face: usize, parent: u32, depth: u32| {
+            let corners = self.corners(face);
+            Triangle { corners, next: [NONE; 3], parent, depth }
+        };
+        let mut numbers = vec![NONE; self.all.len()];
+        numbers[root] = 0;
+        let (mut reached, mut triangles) = (vec![root], vec![triangle(root, NONE, 0)]);
+        let (mut own, mut n_links) = (0, 0);
+        while let Some(&face) = reached.get(own) {
+            for other in self.beside(face).filter(|other| !other.is_cut) {
+                n_links += 1;
+                if numbers[other.face] == NONE {
+                    numbers[other.face] = reached.len() as u32;
+                    reached.push(other.face);
+                    triangles.push(triangle(other.face, own as u32, triangles[own].depth + 1));
+                }
+                triangles[own].next[other.side] = numbers[other.face];
+            }
+            own += 1;
+        }
+        // Every link was counted from either end, and a tree has one fewer than triangles.
+        let is_simple = n_links / 2 + 1 == triangles.len();
+        let sealed = self.sealed(|face| numbers[face] != NONE);
+        Walk { points, triangles, is_simple, sealed }
+    }
+
+    fn sealed(&self, is_reached: impl Fn(usize) -> bool) -> SealedRegion {
+        let mut seen: Vec<bool> = (0..self.all.len()).map(&is_reached).collect();
+        let mut todo: Vec<usize> = (0..self.all.len()).filter(|face| seen[*face]).collect();
+        let mut sealed = SealedRegion::default();
+        while let Some(face) = todo.pop() {
+            for other in self.beside(face).filter(|other| !is_reached(other.face)) {
+                sealed.rim.extend(other.is_cut.then_some(other.middle));
+                if !std::mem::replace(&mut seen[other.face], true) {
+                    sealed.area_m2 += self.all[other.face].area();
+                    todo.push(other.face);
+                }
+            }
+        }
+        sealed
+    }
+}

@@ -1,0 +1,61 @@
+//! The report of floor that cannot be scanned, and why.
+
+use crate::plane::direction;
+use crate::scan::Scan;
+use crate::scope::Scope;
+use crate::workspace::Workspace;
+use planner_api::{Ctx, LogLevel};
+use std::f64::consts::TAU;
+use world::Point;
+
+/// Floor out of reach below this is not worth a line, square metres.
+const LEAST_M2: f64 = 0.05;
+/// Places listed one by one.
+const MOST_PLACES: usize = 8;
+
+/// Logs which floor cannot be scanned, and why.
+pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) {
+    let Workspace { swath_m, keep_m, .. } = *scan.domain.workspace;
+    let log = |why: &str, is_meant: &dyn Fn(usize, Point) -> bool| {
+        let raster = scan.swept.raster();
+        let groups = raster.groups(|cell| is_meant(cell, raster.center(cell)));
+        let area_m2 = |group: &Vec<usize>| group.len() as f64 * raster.cell_m2();
+        let worth: Vec<&Vec<usize>> = groups.iter().filter(|group| area_m2(group) > LEAST_M2).collect();
+        for group in worth.iter().take(MOST_PLACES) {
+            let (area_m2, at) = (area_m2(group), raster.center(group[group.len() / 2]));
+            let place = format!("{area_m2:.2} m2 of floor about ({:.1}, {:.1})", at.x, at.y);
+            ctx.log(LogLevel::Warn, &format!("{place} {why} (hull and clearance {keep_m:.2} m)"));
+        }
+        if let Some(rest @ [_, ..]) = worth.get(MOST_PLACES..) {
+            let places =
+                if rest.len() == 1 { "1 more place" } else { &format!("{} more places", rest.len()) };
+            let area_m2 = rest.iter().map(|group| group.len()).sum::<usize>() as f64 * raster.cell_m2();
+            ctx.log(LogLevel::Warn, &format!("{places}, {area_m2:.2} m2 together, {why}"));
+        }
+    };
+    let is_closed = |cell: usize, at: Point| {
+        !scan.swept.floor.cells[cell] && scope.regions.is_empty() && scan.domain.workspace.is_floor(at)
+    };
+    let margin = format!(
+        "along the shell is beyond lanes of {swath_m:.2} m, the swath less the overlap, from where the hull fits"
+    );
+    log(&margin, &|cell, at| is_closed(cell, at) && is_shell_margin(scan, at));
+    let gaps = "cannot be reached: gaps are narrower than hull and clearance need";
+    log(gaps, &|cell, at| is_closed(cell, at) && !is_shell_margin(scan, at));
+    if scope.reel_length_m.is_finite() {
+        let is_far =
+            |at: Point| scan.domain.way_home_m(at).is_none_or(|way_m| way_m > scope.reel_length_m - swath_m);
+        let why = format!("is beyond the reel of {:.1} m", scope.reel_length_m);
+        log(&why, &|cell, at| scan.swept.is_missed(cell) && is_far(at));
+    }
+}
+
+/// Whether floor that is not in reach lies along the wall, beside floor that is, with no gap between wall and obstacle.
+fn is_shell_margin(scan: &Scan<'_>, at: Point) -> bool {
+    let Workspace { wall, parts, keep_m, swath_m, .. } = scan.domain.workspace;
+    let edge_m = wall.wall_distance_m(at);
+    let is_gap = || parts.iter().any(|part| part.distance(at).0 + edge_m < 2.0 * keep_m);
+    let toward = |k: u32| direction(TAU * f64::from(k) / 24.0);
+    let is_beside = || (0..24).any(|k| scan.swept.floor.is_near(at + toward(k) * *keep_m));
+    edge_m < keep_m + swath_m / 2.0 && !is_gap() && is_beside()
+}

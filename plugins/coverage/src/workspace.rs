@@ -1,0 +1,112 @@
+//! The tank as a coverage planner sees it: wall, solid parts, and where the middle of the hull may be.
+
+use crate::inflation::SLACK_M;
+use crate::plane::direction;
+use crate::triangulation::Triangulation;
+use field::{Keep, Room, scene::solids};
+use geometry::convex::{Part, parts_of};
+use planner_api::{Code, PlannerError, Result, Site};
+use std::{f64::consts::TAU, sync::OnceLock};
+use world::{Boundary, Point};
+
+/// Wall and obstacles of a site with the distances to keep.
+pub(crate) struct Workspace {
+    pub wall: Boundary,
+    /// Convex parts of everything solid, no-go zones included.
+    pub parts: Vec<Part>,
+    /// Distance between the middle of the hull and anything solid, metres.
+    pub keep_m: f64,
+    /// Width of the floor scanned in one pass, metres.
+    pub swath_m: f64,
+    pub anchor: Point,
+    /// Where the robot starts and ends: the anchor, or the nearest place with room beside it.
+    pub home: Point,
+    /// Exact distances.
+    pub room: Room,
+    triangulation: OnceLock<Triangulation>,
+}
+
+impl Workspace {
+    /// The workspace of a site for a robot on a tether from `anchor`.
+    ///
+    /// # Errors
+    /// An anchor outside the floor or in an obstacle, and a swath of no width.
+    pub(crate) fn new(site: &Site<'_>, anchor: Point) -> Result<Self> {
+        let (swath_m, keep_m) = (site.swath_m, site.limits.radius_m + site.clearance_m);
+        let wall = site.boundary.to_owned();
+        let parts: Vec<Part> = solids(site).flat_map(|(_, outline)| parts_of(&outline)).collect();
+        let refusal = refused_figures(swath_m, keep_m, anchor);
+        if let Some((code, why)) = refusal.or_else(|| refused_anchor(&wall, &parts, anchor)) {
+            return Err(PlannerError::new(code, why));
+        }
+        let room = Room::new(site, Keep { obstacle_m: keep_m, wall_m: keep_m });
+        let (home, triangulation) = (home(&room, anchor), OnceLock::new());
+        Ok(Self { wall, parts, keep_m, swath_m, anchor, home, room, triangulation })
+    }
+
+    /// The floor for the middle of the hull in triangles; made when it is first asked for.
+    pub(crate) fn triangulation(&self) -> &Triangulation {
+        self.triangulation.get_or_init(|| Triangulation::new(&self.wall, &self.parts, self.keep_m))
+    }
+
+    /// Whether the middle of the hull may be at a place, as far as wall and obstacles go.
+    pub(crate) fn is_free(&self, at: Point) -> bool {
+        self.room.spare_m(at) >= 0.0
+    }
+
+    /// Whether a place is floor: inside the wall and outside everything solid.
+    pub(crate) fn is_floor(&self, at: Point) -> bool {
+        self.wall.wall_distance_m(at) >= 0.0
+            && self.room.parts_near(at).all(|(part, _)| part.distance(at).0 >= 0.0)
+    }
+
+    /// The refusal where the robot has no room.
+    pub(crate) fn no_room(&self) -> PlannerError {
+        let Self { keep_m, anchor, .. } = self;
+        PlannerError::new(
+            Code::StartOccupied,
+            format!(
+                "there is no room for hull and clearance ({keep_m:.2} m) within 2 m of the anchor ({:.2}, {:.2})",
+                anchor.x, anchor.y
+            ),
+        )
+    }
+}
+
+/// How far a part reaches from its middle, metres.
+pub(crate) fn reach_m(part: &Part) -> f64 {
+    let at = part.middle();
+    part.corners().iter().map(|c| (c.0 - at).norm() + c.1).fold(0.0, f64::max)
+}
+
+fn refused_figures(swath_m: f64, keep_m: f64, anchor: Point) -> Option<(Code, String)> {
+    if !(swath_m.is_finite() && swath_m > 0.0) {
+        Some((Code::Config, format!("the swath is {swath_m} m wide; it must be above 0")))
+    } else if !(keep_m.is_finite() && keep_m >= 0.0) {
+        Some((Code::Config, format!("hull and clearance of {keep_m} m make no sense")))
+    } else if !(anchor.x.is_finite() && anchor.y.is_finite()) {
+        Some((Code::Invalid, "the anchor is not a number".to_owned()))
+    } else {
+        None
+    }
+}
+
+fn refused_anchor(wall: &Boundary, parts: &[Part], anchor: Point) -> Option<(Code, String)> {
+    let place = format!("the anchor ({:.2}, {:.2}) lies", anchor.x, anchor.y);
+    if wall.wall_distance_m(anchor) < 0.0 {
+        let message = format!("{place} outside the floor; set it at a hatch or manhole of this tank");
+        return Some((Code::StartOutside, message));
+    }
+    let at = parts.iter().find(|part| part.distance(anchor).0 < 0.0)?.middle();
+    let message = format!("{place} inside the obstacle at ({:.2}, {:.2}); set it on free floor", at.x, at.y);
+    Some((Code::StartOccupied, message))
+}
+
+/// The anchor, or the nearest place with room on circles around it, up to 2 m away.
+fn home(room: &Room, anchor: Point) -> Point {
+    let is_roomy = |at: &Point| room.spare_m(*at) >= SLACK_M;
+    let circles = (1..=80).map(|k| f64::from(k) * 0.025);
+    let bearings = || (0..72).map(|k| direction(TAU * f64::from(k) / 72.0));
+    let around = circles.flat_map(|radius_m| bearings().map(move |toward| anchor + toward * radius_m));
+    std::iter::once(anchor).chain(around).find(is_roomy).unwrap_or(anchor)
+}
