@@ -42,7 +42,7 @@ fn what_a_mission_missed_is_planned_flown_and_reported_together_with_it() {
     let planned = bench.tankops(&[&["plan", "again.toml", "--json"][..], &more].concat());
     let plan = planned.json();
     assert!(
-        plan["certificate"]["max_cable_m"].is_number() && plan["length_m"].as_f64() > Some(50.0),
+        plan["certificate"]["tether_length_max_m"].is_number() && plan["length_m"].as_f64() > Some(50.0),
         "{plan}"
     );
     let flown = bench.fly(Path::new("again.toml"), &more).json();

@@ -94,8 +94,8 @@ impl Flight {
         events.extend(truth.tether.map(|tether| {
             event(EventKind::TetherTruth {
                 length_m: tether.length_m,
-                max_wrap_rad: tether.max_wrap_rad,
-                sum_wrap_rad: tether.sum_wrap_rad,
+                wrap_max_rad: tether.wrap_max_rad,
+                wrap_total_rad: tether.wrap_total_rad,
                 detour_m: tether.detour_m,
             })
         }));

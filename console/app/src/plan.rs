@@ -89,7 +89,7 @@ pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<Exit
 
 /// Whether a mission would refuse the plan for what it does to the tether.
 fn is_refused(scenario: &Scenario, certificate: Option<&Certificate>) -> bool {
-    let must_be_certified = scenario.mission.tether.as_ref().is_some_and(|tether| !tether.fly_uncertified);
+    let must_be_certified = scenario.mission.tether.as_ref().is_some_and(|tether| !tether.allow_uncertified);
     must_be_certified && certificate.is_none_or(|certificate| !certificate.certified)
 }
 
@@ -198,9 +198,9 @@ fn certificate(scenario: &Scenario, plan: &Plan) -> Option<Certificate> {
         obstacles: &drawing.obstacles,
         room_m: scenario.mission.room_m(),
         limits: Limits {
-            reel_m: f64::INFINITY,
-            max_wrap_rad: f64::INFINITY,
-            max_sum_wrap_rad: f64::INFINITY,
+            reel_length_m: f64::INFINITY,
+            wrap_max_rad: f64::INFINITY,
+            wrap_total_max_rad: f64::INFINITY,
         },
         returns: true,
         cuts: &plan.cuts,
@@ -285,13 +285,14 @@ fn floor(floor: &PlannedFloor) -> String {
 
 /// The certificate, for people.
 fn certified(certificate: &Certificate) -> String {
-    let Certificate { max_cable_m, eccentricity_m, max_wrap_rad, max_sum_wrap_rad, .. } = certificate;
+    let Certificate { tether_length_max_m, eccentricity_m, wrap_max_rad, wrap_total_max_rad, .. } =
+        certificate;
     let reasons: Vec<String> = certificate.reasons.iter().map(|why| format!("          {why}\n")).collect();
     format!(
-        "tether    {}, cable {max_cable_m:.2} m at most ({eccentricity_m:.2} m the least possible), wrap {:.0} deg on one obstacle, {:.0} deg in sum\n{}",
+        "tether    {}, cable {tether_length_max_m:.2} m at most ({eccentricity_m:.2} m the least possible), wrap {:.0} deg on one obstacle, {:.0} deg in sum\n{}",
         if certificate.certified { "certified" } else { "NOT certified" },
-        max_wrap_rad.to_degrees(),
-        max_sum_wrap_rad.to_degrees(),
+        wrap_max_rad.to_degrees(),
+        wrap_total_max_rad.to_degrees(),
         reasons.concat(),
     )
 }

@@ -80,11 +80,11 @@ pub struct Locating {
     /// How ranges become a fix.
     pub solver: SolverKind,
     /// Whether the speed of sound is found out under way.
-    pub calibrates_sound: bool,
+    pub calibrate_sound_speed: bool,
     /// Ranges per station and cycle, as far as forecasts of the accuracy go.
     pub repetitions: u32,
     /// Whether a station is of no use where an obstacle hides it.
-    pub needs_sight: bool,
+    pub needs_line_of_sight: bool,
 }
 
 impl Default for Locating {
@@ -93,9 +93,9 @@ impl Default for Locating {
             noise: None,
             aggregation: Aggregation::default(),
             solver: SolverKind::default(),
-            calibrates_sound: false,
+            calibrate_sound_speed: false,
             repetitions: 20,
-            needs_sight: false,
+            needs_line_of_sight: false,
         }
     }
 }
@@ -124,7 +124,7 @@ pub struct MissionConfig {
     /// Half width of the 95 % position error above which the position counts as lost, metres.
     pub position_limit_m: f64,
     /// The robot holds when the position is lost for this long, seconds.
-    pub lost_hold_s: f64,
+    pub position_lost_hold_s: f64,
     /// The mission ends as stuck after this time without progress, seconds.
     pub stuck_s: f64,
     /// Standard deviation of the surveyed heading at the start, radians.
@@ -182,7 +182,7 @@ impl MissionConfig {
     /// Length of the shortest way from the anchor up to which planners lay lanes, and the anchor; `None` without a tether.
     /// Floor further off lies beyond the reel: the outermost lane runs up to a swath before the end of the cable.
     pub fn cable_reach(&self) -> Option<(Point, f64)> {
-        self.tether.as_ref().map(|tether| (tether.anchor, tether.limits.reel_m - self.swath_m))
+        self.tether.as_ref().map(|tether| (tether.anchor, tether.limits.reel_length_m - self.swath_m))
     }
 
     /// What the tether bears, for planners; `None` without one.
@@ -198,7 +198,7 @@ impl MissionConfig {
         Forecast {
             noise: self.locating.noise.unwrap_or(normal),
             repetitions: self.locating.repetitions,
-            needs_sight: self.locating.needs_sight,
+            needs_line_of_sight: self.locating.needs_line_of_sight,
             cell_m,
         }
     }

@@ -62,9 +62,9 @@ pub enum EventKind {
         /// Cable between anchor and robot, metres.
         length_m: f64,
         /// Largest wrap on one obstacle, radians.
-        max_wrap_rad: f64,
+        wrap_max_rad: f64,
         /// Sum of all wraps, radians.
-        sum_wrap_rad: f64,
+        wrap_total_rad: f64,
         /// Cable that is out beyond the straight line from the anchor to the robot, metres.
         detour_m: f64,
     },
@@ -80,25 +80,25 @@ pub enum EventKind {
         /// Where it bears, from the anchor on.
         contacts: Vec<TetherContact>,
         /// Largest wrap on one obstacle, radians.
-        max_wrap_rad: f64,
+        wrap_max_rad: f64,
         /// Sum of all wraps, radians.
-        sum_wrap_rad: f64,
+        wrap_total_rad: f64,
         /// How many times harder the wraps make it to pull (capstan equation).
         pull_factor: f64,
         /// Length of the way back along the cable, metres; absent if the hull does not fit.
-        way_home_m: Option<f64>,
+        return_length_m: Option<f64>,
         /// The cable from the anchor to the robot.
         line: Vec<Point>,
     },
     /// The cable comes near to a limit, or has reached it.
-    TetherAlarmed {
+    TetherAlarmRaised {
         /// Which limit.
         alarm: TetherAlarm,
         /// Whether it has been reached.
         reached: bool,
     },
     /// The cable is well within a limit again.
-    TetherEased {
+    TetherAlarmCleared {
         /// Which limit.
         alarm: TetherAlarm,
     },
@@ -138,14 +138,14 @@ pub enum EventKind {
         repeated: bool,
     },
     /// A station was left out of a fix for the first time since it was used.
-    StationExcluded {
+    StationRejected {
         /// Which station.
         station: StationId,
         /// Why.
         reason: Exclusion,
     },
     /// A station that had been left out is used again.
-    StationRegained {
+    StationRestored {
         /// Which station.
         station: StationId,
     },
@@ -167,14 +167,14 @@ pub enum EventKind {
         error_m: f64,
     },
     /// The ranges contradict each other, and leaving out a station does not resolve it.
-    PositionAlarmed {
+    RangesInconsistent {
         /// Sum of the squared residuals over their variances.
         chi2: f64,
         /// Stations used minus two.
         degrees_of_freedom: u32,
     },
     /// The ranges agree again.
-    PositionTrusted,
+    RangesConsistent,
     /// An obstacle that is not on the drawing was seen for the first time.
     ObstacleFound {
         /// Its outline as estimated, tank frame.
@@ -230,7 +230,7 @@ pub enum EventKind {
         ask: Option<AskId>,
         /// How many points of a way home along the tether the mission put before the planner's path.
         #[serde(default, skip_serializing_if = "is_zero")]
-        way_home: usize,
+        return_path: usize,
         /// By whom.
         planner: String,
         /// Why.
@@ -267,7 +267,7 @@ pub enum EventKind {
         scalars: Vec<(String, f64, String)>,
     },
     /// The planner said something.
-    PlannerSaid {
+    PlannerLogged {
         /// Which planner.
         planner: String,
         /// How loud.

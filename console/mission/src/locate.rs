@@ -29,7 +29,7 @@ impl Locator {
             noise: locating.noise.unwrap_or(normal),
             aggregation: locating.aggregation,
             solver: locating.solver,
-            calibrates_sound: locating.calibrates_sound,
+            calibrate_sound_speed: locating.calibrate_sound_speed,
             boundary: Some(drawing.boundary.clone()),
             odometry: MotionNoise {
                 sigma_per_m: config.odometry_sigma_per_m,
@@ -89,9 +89,9 @@ impl Locator {
         let was_alarmed = std::mem::replace(&mut self.alarmed, contradiction.is_some());
         match contradiction {
             Some((chi2, degrees_of_freedom)) if !was_alarmed => {
-                Some(EventKind::PositionAlarmed { chi2, degrees_of_freedom })
+                Some(EventKind::RangesInconsistent { chi2, degrees_of_freedom })
             }
-            None if was_alarmed => Some(EventKind::PositionTrusted),
+            None if was_alarmed => Some(EventKind::RangesConsistent),
             _ => None,
         }
     }
@@ -105,8 +105,8 @@ impl Locator {
         let newly_out = out.iter().filter(is_news);
         let back = self.left_out.keys().filter(|station| !out.contains_key(station));
         let events = newly_out
-            .map(|(station, reason)| EventKind::StationExcluded { station: *station, reason: *reason })
-            .chain(back.map(|station| EventKind::StationRegained { station: *station }))
+            .map(|(station, reason)| EventKind::StationRejected { station: *station, reason: *reason })
+            .chain(back.map(|station| EventKind::StationRestored { station: *station }))
             .collect();
         self.left_out = out;
         events

@@ -132,8 +132,8 @@ impl FoldedStanding {
             EventKind::Ended { outcome, .. } => self.phase = Phase::Ended(*outcome),
             EventKind::PositionLost { limit_m, .. } => self.lost = Some(*limit_m),
             EventKind::PositionRegained { .. } => self.lost = None,
-            EventKind::PositionAlarmed { .. } => self.is_alarmed = true,
-            EventKind::PositionTrusted => self.is_alarmed = false,
+            EventKind::RangesInconsistent { .. } => self.is_alarmed = true,
+            EventKind::RangesConsistent => self.is_alarmed = false,
             EventKind::PlannerChosen { info, .. } => self.planner = Some(info.clone()),
             _ => {}
         }
@@ -176,7 +176,7 @@ pub enum Refusal {
         limit_m: f64,
     },
     /// The ranges contradict each other.
-    PositionAlarmed,
+    RangesInconsistent,
     /// No plan has been refused because of the tether.
     NoPlanRefused,
 }
@@ -196,7 +196,7 @@ impl fmt::Display for Refusal {
             Self::PositionLost { limit_m } => {
                 write!(f, "the position is lost (95 % error limit {limit_m:.2} m); resuming requires a fix")
             }
-            Self::PositionAlarmed => {
+            Self::RangesInconsistent => {
                 f.write_str("the ranges contradict each other; cannot resume without a consistent fix")
             }
             Self::NoPlanRefused => f.write_str("no plan has been refused because of the tether"),
@@ -244,7 +244,7 @@ impl Standing<'_> {
         match self.position {
             PositionTrust::Good => Ok(()),
             PositionTrust::Lost { limit_m } => Err(Refusal::PositionLost { limit_m }),
-            PositionTrust::Alarmed => Err(Refusal::PositionAlarmed),
+            PositionTrust::Alarmed => Err(Refusal::RangesInconsistent),
         }
     }
 

@@ -54,14 +54,14 @@ pub struct TetherConfig {
     pub friction: f64,
     /// Whether plans fly that cannot be certified.
     #[serde(default)]
-    pub fly_uncertified: bool,
+    pub allow_uncertified: bool,
 }
 
 impl TetherConfig {
     /// The limits as planners read them.
     pub fn as_request(&self) -> TetherLimits {
-        let Limits { reel_m, max_wrap_rad, max_sum_wrap_rad } = self.limits;
-        TetherLimits { reel_m, max_wrap_rad, max_sum_wrap_rad }
+        let Limits { reel_length_m, wrap_max_rad, wrap_total_max_rad } = self.limits;
+        TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad }
     }
 }
 
@@ -111,12 +111,12 @@ impl Tether {
 
     /// Whether plans fly that cannot be certified.
     pub fn flies_uncertified(&self) -> bool {
-        self.config.fly_uncertified
+        self.config.allow_uncertified
     }
 
     /// From now on plans fly that cannot be certified, or do not: the operator says so.
-    pub fn fly_uncertified(&mut self, fly: bool) {
-        self.config.fly_uncertified = fly;
+    pub fn allow_uncertified(&mut self, fly: bool) {
+        self.config.allow_uncertified = fly;
     }
 
     /// Puts the cable among the obstacles known now, as the way driven leads.
@@ -157,12 +157,12 @@ impl Tether {
     pub fn measure(&mut self, paid_out_m: Option<f64>, error_m: Option<f64>, passed_s: f64) {
         let (length_m, points) = (self.cable.length_m(), self.driven.len());
         let explained = error_m.map(|error_m| Explained { length_m, error_m, points });
-        self.payout.take(paid_out_m, explained, self.config.limits.reel_m, passed_s);
+        self.payout.take(paid_out_m, explained, self.config.limits.reel_length_m, passed_s);
     }
 
     /// Whether more cable is out than the map explains: it has caught on something unknown.
-    pub fn is_caught(&self) -> bool {
-        self.payout.is_caught()
+    pub fn is_snagged(&self) -> bool {
+        self.payout.is_snagged()
     }
 
     /// The way that frees a caught cable and reels it in, from the robot to the anchor: back the way driven to where
@@ -179,21 +179,21 @@ impl Tether {
 
     /// How the cable lies after some time, and what is newly wrong or right again.
     pub fn update(&mut self, world: &World, map: &ObstacleMap, passed_s: f64) -> Vec<EventKind> {
-        let way_home = self.cable.way_home(&self.roomy, map, home_room_m(self.hull_m));
-        let way_home_m = way_home.map(|way| world::polyline::length_m(&way));
-        self.without_home_s = if way_home_m.is_some() { 0.0 } else { self.without_home_s + passed_s };
+        let return_path = self.cable.return_path(&self.roomy, map, home_room_m(self.hull_m));
+        let return_length_m = return_path.map(|way| world::polyline::length_m(&way));
+        self.without_home_s = if return_length_m.is_some() { 0.0 } else { self.without_home_s + passed_s };
         let limits = self.config.limits;
         let length_m = self.cable.length_m();
-        let sum_wrap_rad = self.cable.sum_wrap_rad();
+        let wrap_total_rad = self.cable.wrap_total_rad();
         let mut events = vec![EventKind::Tethered {
             length_m,
-            free_m: limits.reel_m - self.payout.at_least_m(length_m),
+            free_m: limits.reel_length_m - self.payout.at_least_m(length_m),
             paid_out_m: self.payout.measured_m(),
             contacts: self.contacts(world),
-            max_wrap_rad: self.cable.max_wrap_rad(),
-            sum_wrap_rad,
-            pull_factor: capstan_factor(self.config.friction, sum_wrap_rad),
-            way_home_m,
+            wrap_max_rad: self.cable.wrap_max_rad(),
+            wrap_total_rad,
+            pull_factor: capstan_factor(self.config.friction, wrap_total_rad),
+            return_length_m,
             line: self.cable.taut_line(),
         }];
         for (alarm, share) in self.alarms(world) {
@@ -213,16 +213,16 @@ impl Tether {
         let most = contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()));
         let on = most.map_or_else(String::new, |contact| name_of(world, contact.on));
         let explained_m = self.cable.length_m();
-        let (out_m, reel_m) = (self.payout.at_least_m(explained_m), limits.reel_m);
-        let (wrap_rad, sum_rad) = (self.cable.max_wrap_rad(), self.cable.sum_wrap_rad());
-        let (wrap_limit_rad, sum_limit_rad) = (limits.max_wrap_rad, limits.max_sum_wrap_rad);
+        let (out_m, reel_length_m) = (self.payout.at_least_m(explained_m), limits.reel_length_m);
+        let (wrap_rad, sum_rad) = (self.cable.wrap_max_rad(), self.cable.wrap_total_rad());
+        let (wrap_limit_rad, sum_limit_rad) = (limits.wrap_max_rad, limits.wrap_total_max_rad);
         [
-            (TetherAlarm::Reel { out_m, reel_m }, out_m / reel_m),
+            (TetherAlarm::Reel { out_m, reel_length_m }, out_m / reel_length_m),
             (TetherAlarm::Wrap { on, wrap_rad, limit_rad: wrap_limit_rad }, wrap_rad / wrap_limit_rad),
-            (TetherAlarm::SumOfWraps { sum_rad, limit_rad: sum_limit_rad }, sum_rad / sum_limit_rad),
-            (TetherAlarm::NoWayHome, self.without_home_s / NO_HOME_S),
+            (TetherAlarm::WrapTotal { sum_rad, limit_rad: sum_limit_rad }, sum_rad / sum_limit_rad),
+            (TetherAlarm::NoReturnPath, self.without_home_s / NO_HOME_S),
             // There is no such thing as nearly caught.
-            (TetherAlarm::Snag { paid_out_m: out_m, explained_m }, if self.is_caught() { 2.0 } else { 0.0 }),
+            (TetherAlarm::Snag { paid_out_m: out_m, explained_m }, if self.is_snagged() { 2.0 } else { 0.0 }),
         ]
     }
 
@@ -235,17 +235,17 @@ impl Tether {
         };
         if now > *level {
             *level = now;
-            return Some(EventKind::TetherAlarmed { alarm, reached: now == Level::Reached });
+            return Some(EventKind::TetherAlarmRaised { alarm, reached: now == Level::Reached });
         }
         if *level == Level::Reached && share <= 1.0 && share > EASED {
             // Raised again if the limit is passed again.
             *level = Level::Near;
-            return Some(EventKind::TetherAlarmed { alarm, reached: false });
+            return Some(EventKind::TetherAlarmRaised { alarm, reached: false });
         }
         let eased = *level > Level::Calm && share <= EASED;
         eased.then(|| {
             *level = Level::Calm;
-            EventKind::TetherEased { alarm }
+            EventKind::TetherAlarmCleared { alarm }
         })
     }
 
@@ -265,7 +265,7 @@ impl Tether {
     }
 
     /// The way back along the cable with some room for the middle of the hull, metres, from the robot to the anchor.
-    pub fn way_home(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
+    pub fn return_path(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
         way_along(&self.cable, world, room_m)
     }
 
@@ -281,7 +281,7 @@ impl Tether {
         let evaluate = |cable, path, cuts: &[Vec<Point>]| {
             certified(&self.config, self.hull_m, cable, path, cuts, world, returns)
         };
-        let home = way_home_ends(plan, self.config.anchor);
+        let home = return_path_ends(plan, self.config.anchor);
         if home == 0 {
             return evaluate(Some(&self.cable), &plan.path, &plan.cuts);
         }
@@ -319,7 +319,7 @@ pub fn certify_from_start(
 
 /// Index of the point of a plan's path at which a way home along the cable ends; 0 without one. A way that ends away
 /// from the anchor is none, whatever the planner calls it.
-pub(crate) fn way_home_ends(plan: &Plan, anchor: Point) -> usize {
+pub(crate) fn return_path_ends(plan: &Plan, anchor: Point) -> usize {
     let is_home = |last: usize| plan.path.get(last).is_some_and(|end| (end - anchor).norm() <= AT_ANCHOR_M);
     let first = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract && leg.first == 0);
     first.map(|leg| leg.last).filter(|last| is_home(*last)).unwrap_or(0)
@@ -359,7 +359,7 @@ fn certified(
 /// The way along a cable to its anchor with some room for the middle of the hull, metres.
 fn way_along(cable: &Cable, world: &World, room_m: f64) -> Option<Vec<Point>> {
     let roomy = Arc::new(Ground::grown(&world.boundary, &shapes(world), room_m));
-    cable.way_home(&roomy, &ObstacleMap::new(&world.boundary, &world.obstacles), room_m)
+    cable.return_path(&roomy, &ObstacleMap::new(&world.boundary, &world.obstacles), room_m)
 }
 
 /// Room for the middle of the hull on a way home, metres.

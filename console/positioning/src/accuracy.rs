@@ -26,7 +26,7 @@ pub struct Forecast {
     /// Ranges per station and cycle.
     pub repetitions: u32,
     /// Whether a station is of no use where an obstacle hides it.
-    pub needs_sight: bool,
+    pub needs_line_of_sight: bool,
     /// Edge of a cell, metres.
     pub cell_m: f64,
 }
@@ -102,7 +102,8 @@ impl AccuracyMap {
 impl Forecast {
     /// The forecast for one place.
     pub fn at(&self, place: Point, stations: &[Station], map: &ObstacleMap) -> Accuracy {
-        let heard = stations.iter().filter(|s| !self.needs_sight || is_in_sight(map, place, s.position));
+        let heard =
+            stations.iter().filter(|s| !self.needs_line_of_sight || is_in_sight(map, place, s.position));
         let mut sum = Seen::default();
         heard.for_each(|station| sum.add(&self.seen(place, station.position)));
         let covariance = sum.covariance();

@@ -93,7 +93,7 @@ pub struct PositionerConfig {
     /// The wall of the tank: a fix clearly behind it is none.
     pub boundary: Option<Boundary>,
     /// Whether the speed of sound is found out under way; needs four stations.
-    pub calibrates_sound: bool,
+    pub calibrate_sound_speed: bool,
 }
 
 impl PositionerConfig {
@@ -109,7 +109,7 @@ impl PositionerConfig {
             aggregation: Aggregation::default(),
             solver: SolverKind::default(),
             boundary: None,
-            calibrates_sound: false,
+            calibrate_sound_speed: false,
         }
     }
 }
@@ -165,7 +165,7 @@ impl Positioner {
             Ok(rangings) => rangings,
             Err(error) => return CycleResult { rangings: Vec::new(), fix: Err(error), accepted: false },
         };
-        if self.config.calibrates_sound {
+        if self.config.calibrate_sound_speed {
             let prior = (self.filter.pose().position, self.filter.position_covariance());
             // A cycle without a position contributes nothing; the fix states why there is none.
             let _ = self.sound.take(&rangings, Some(prior));
@@ -187,7 +187,7 @@ impl Positioner {
 
     /// By how much too long all ranges are, as a share, and its standard deviation; if it is being found out.
     pub fn sound_scale(&self) -> Option<(f64, f64)> {
-        self.config.calibrates_sound.then(|| self.sound.scale())
+        self.config.calibrate_sound_speed.then(|| self.sound.scale())
     }
 
     /// Longer half axis of the 95 % ellipse of the position, metres.

@@ -32,7 +32,7 @@ pub(crate) struct Accuracy {
     errors_m: Vec<f64>,
     in_ellipse: usize,
     lost_since_s: Option<f64>,
-    lost_s: f64,
+    position_lost_s: f64,
 }
 
 impl Accuracy {
@@ -55,7 +55,7 @@ impl Accuracy {
 
     /// The position is good again.
     pub(crate) fn regained(&mut self, t_s: f64) {
-        self.lost_s += self.lost_since_s.take().map_or(0.0, |since_s| t_s - since_s);
+        self.position_lost_s += self.lost_since_s.take().map_or(0.0, |since_s| t_s - since_s);
     }
 
     fn pair(&mut self) {
@@ -87,7 +87,7 @@ impl Accuracy {
             p95_m: rank(0.95)?,
             max_m: *sorted.last()?,
             in_95_ellipse: self.in_ellipse as f64 / n as f64,
-            lost_s: self.lost_s + self.lost_since_s.map_or(0.0, |since_s| now_s - since_s),
+            position_lost_s: self.position_lost_s + self.lost_since_s.map_or(0.0, |since_s| now_s - since_s),
         })
     }
 }

@@ -14,7 +14,7 @@ pub struct Expect {
     /// Most collisions.
     pub collisions_max: Option<u64>,
     /// Least distance from the hull to anything solid, metres.
-    pub min_clearance_min_m: Option<f64>,
+    pub clearance_min_m: Option<f64>,
     /// Longest mission time, seconds.
     pub mission_time_max_s: Option<f64>,
     /// Longest true way, metres.
@@ -42,13 +42,13 @@ pub struct Expect {
     /// Least share of the ticks with the truth in the 95 % ellipse.
     pub in_95_ellipse_min: Option<f64>,
     /// Longest time without a position, seconds.
-    pub lost_max_s: Option<f64>,
+    pub position_lost_max_s: Option<f64>,
     /// Most cable out at any time, metres.
-    pub cable_max_m: Option<f64>,
+    pub tether_length_max_m: Option<f64>,
     /// Largest wrap of the cable on one obstacle, radians.
     pub wrap_max_rad: Option<f64>,
     /// Most cable out at the end, metres.
-    pub left_out_max_m: Option<f64>,
+    pub tether_end_length_max_m: Option<f64>,
 }
 
 /// A bound that a run did not keep.
@@ -84,7 +84,7 @@ impl Expect {
         if run.outcome.is_none() {
             return run;
         }
-        Summary { unmet: Some(self.check(&run).iter().map(ToString::to_string).collect()), ..run }
+        Summary { violations: Some(self.check(&run).iter().map(ToString::to_string).collect()), ..run }
     }
 
     /// The bounds that a run did not keep. A figure that is absent keeps no bound.
@@ -96,7 +96,7 @@ impl Expect {
         let count = |n: Option<u64>| n.map(|n| n as f64);
         let figures = [
             ("collisions_max", AtMost, count(self.collisions_max), count(run.collisions)),
-            ("min_clearance_min_m", AtLeast, self.min_clearance_min_m, run.min_clearance_m),
+            ("clearance_min_m", AtLeast, self.clearance_min_m, run.clearance_min_m),
             ("mission_time_max_s", AtMost, self.mission_time_max_s, run.mission_time_s),
             ("path_length_max_m", AtMost, self.path_length_max_m, run.path_length_m),
             ("coverage_reachable_min", AtLeast, self.coverage_reachable_min, coverage.map(|c| c.reachable)),
@@ -120,15 +120,15 @@ impl Expect {
             ("mean_error_max_m", AtMost, self.mean_error_max_m, positioning.map(|p| p.mean_error_m)),
             ("p95_error_max_m", AtMost, self.p95_error_max_m, positioning.map(|p| p.p95_m)),
             ("in_95_ellipse_min", AtLeast, self.in_95_ellipse_min, positioning.map(|p| p.in_95_ellipse)),
-            ("cable_max_m", AtMost, self.cable_max_m, tether.map(|t| t.max_length_m)),
+            ("tether_length_max_m", AtMost, self.tether_length_max_m, tether.map(|t| t.tether_length_max_m)),
             (
                 "wrap_max_deg",
                 AtMost,
                 self.wrap_max_rad.map(f64::to_degrees),
-                tether.map(|t| t.max_wrap_rad.to_degrees()),
+                tether.map(|t| t.wrap_max_rad.to_degrees()),
             ),
-            ("left_out_max_m", AtMost, self.left_out_max_m, tether.map(|t| t.end_length_m)),
-            ("lost_max_s", AtMost, self.lost_max_s, positioning.map(|p| p.lost_s)),
+            ("tether_end_length_max_m", AtMost, self.tether_end_length_max_m, tether.map(|t| t.end_length_m)),
+            ("position_lost_max_s", AtMost, self.position_lost_max_s, positioning.map(|p| p.position_lost_s)),
         ];
         let misses =
             figures.into_iter().filter_map(|(key, side, bound, found)| miss(key, side, bound?, found));
@@ -171,13 +171,13 @@ mod tests {
         let expect = Expect {
             outcome: Some(Outcome::Complete),
             path_length_max_m: Some(70.0),
-            min_clearance_min_m: Some(0.1),
+            clearance_min_m: Some(0.1),
             ..Expect::default()
         };
         let run = Summary {
             outcome: Some(Outcome::Stuck),
             path_length_m: Some(70.123_45),
-            min_clearance_m: Some(0.1),
+            clearance_min_m: Some(0.1),
             ..Summary::default()
         };
         let misses: Vec<String> = expect.check(&run).iter().map(ToString::to_string).collect();

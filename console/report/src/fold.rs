@@ -45,11 +45,11 @@ impl Fold {
                 self.accuracy.truth(event.tick, pose.position);
                 self.see_truth(*pose, *clearance_m, *collided);
             }
-            EventKind::TetherAlarmed { alarm: TetherAlarm::Snag { .. }, .. } => self.catch(true),
-            EventKind::TetherEased { alarm: TetherAlarm::Snag { .. } } => self.catch(false),
-            EventKind::TetherTruth { length_m, max_wrap_rad, sum_wrap_rad, detour_m } => {
+            EventKind::TetherAlarmRaised { alarm: TetherAlarm::Snag { .. }, .. } => self.snag(true),
+            EventKind::TetherAlarmCleared { alarm: TetherAlarm::Snag { .. } } => self.snag(false),
+            EventKind::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m } => {
                 if let Some(tethered) = &mut self.tethered {
-                    tethered.lie(*length_m, *max_wrap_rad, *sum_wrap_rad, *detour_m);
+                    tethered.lie(*length_m, *wrap_max_rad, *wrap_total_rad, *detour_m);
                 }
             }
             EventKind::Estimated { pose } => {
@@ -110,9 +110,9 @@ impl Fold {
         }
     }
 
-    fn catch(&mut self, caught: bool) {
+    fn snag(&mut self, snagged: bool) {
         if let Some(tethered) = &mut self.tethered {
-            tethered.catch(caught);
+            tethered.snag(snagged);
         }
     }
 
@@ -192,8 +192,8 @@ impl Fold {
         known.path_length_m = Some(known.path_length_m.unwrap_or(0.0) + way_m);
         known.collisions = Some(known.collisions.unwrap_or(0) + u64::from(collided));
         if clearance_m.is_finite() {
-            known.min_clearance_m =
-                Some(known.min_clearance_m.map_or(clearance_m, |least| least.min(clearance_m)));
+            known.clearance_min_m =
+                Some(known.clearance_min_m.map_or(clearance_m, |least| least.min(clearance_m)));
         }
         if let Some(scanned) = &mut self.scanned {
             scanned.pass(before, pose);

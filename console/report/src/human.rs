@@ -96,8 +96,10 @@ fn warnings(run: &Summary) -> Vec<String> {
     if let Some(n @ 1..) = Some(run.planner_faults) {
         found.push(counted(n, "planner fault"));
     }
-    if let Some(lost_s) = run.positioning.map(|p| p.lost_s).filter(|lost_s| *lost_s > 0.0) {
-        found.push(format!("the position was lost for {lost_s:.1} s"));
+    if let Some(position_lost_s) =
+        run.positioning.map(|p| p.position_lost_s).filter(|position_lost_s| *position_lost_s > 0.0)
+    {
+        found.push(format!("the position was lost for {position_lost_s:.1} s"));
     }
     if let Some(p) = run.positioning.filter(|p| p.in_95_ellipse < 0.85) {
         let share = percent(p.in_95_ellipse);
@@ -115,7 +117,7 @@ fn warnings(run: &Summary) -> Vec<String> {
         ));
     }
     found.extend(run.logs.as_ref().and_then(|logs| logs.error.clone()));
-    found.extend(run.unmet.iter().flatten().map(|miss| format!("not as expected: {miss}")));
+    found.extend(run.violations.iter().flatten().map(|miss| format!("not as expected: {miss}")));
     found
 }
 
@@ -144,7 +146,7 @@ fn mission_time(run: &Summary) -> Option<String> {
 
 fn path(run: &Summary) -> Option<String> {
     let mut parts = vec![format!("{:.2} m", run.path_length_m?)];
-    parts.extend(run.min_clearance_m.map(|least_m| format!("smallest clearance {least_m:.3} m")));
+    parts.extend(run.clearance_min_m.map(|least_m| format!("smallest clearance {least_m:.3} m")));
     parts.extend(
         run.turns.zip(run.rotation_turns).map(|(turns, rotation)| {
             format!("{} and {rotation:.1} rotations in all", counted(turns, "turn"))
@@ -184,13 +186,13 @@ fn tracking(tracking: &Tracking) -> Vec<String> {
 }
 
 fn positioning(positioning: &Positioning) -> Vec<String> {
-    let Positioning { mean_error_m, p50_m, p95_m, max_m, in_95_ellipse, lost_s } = positioning;
+    let Positioning { mean_error_m, p50_m, p95_m, max_m, in_95_ellipse, position_lost_s } = positioning;
     vec![
         format!(
             "error {mean_error_m:.3} m mean, {p50_m:.3} m median, {p95_m:.3} m in 95 % of the ticks, {max_m:.3} m at most"
         ),
         format!(
-            "truth in the 95 % ellipse in {} of the ticks, lost for {lost_s:.1} s",
+            "truth in the 95 % ellipse in {} of the ticks, lost for {position_lost_s:.1} s",
             percent(*in_95_ellipse)
         ),
     ]
@@ -199,19 +201,19 @@ fn positioning(positioning: &Positioning) -> Vec<String> {
 fn tether(tether: &Tether) -> String {
     let state = match tether {
         Tether { entangled: true, .. } => "ENTANGLED",
-        Tether { caught: true, .. } => "CAUGHT",
+        Tether { snagged: true, .. } => "SNAGGED",
         _ => "free",
     };
-    let caught = match tether.catches {
+    let snagged = match tether.snags {
         0 => String::new(),
-        1 => ", caught once on something unseen".into(),
-        n => format!(", caught {n} times on something unseen"),
+        1 => ", snagged once on something unseen".into(),
+        n => format!(", snagged {n} times on something unseen"),
     };
     format!(
-        "{state}, {:.1} m out at the end, {:.1} m at most, wrapped {:.0} deg about one obstacle at most, {}{caught}",
+        "{state}, {:.1} m out at the end, {:.1} m at most, wrapped {:.0} deg about one obstacle at most, {}{snagged}",
         tether.end_length_m,
-        tether.max_length_m,
-        tether.max_wrap_rad.to_degrees(),
+        tether.tether_length_max_m,
+        tether.wrap_max_rad.to_degrees(),
         counted(tether.loops, "loop")
     )
 }

@@ -38,7 +38,7 @@ pub struct Summary {
     #[serde(default)]
     pub rotation_turns: Option<f64>,
     /// Smallest true distance from the hull to anything solid, metres; negative after a collision.
-    pub min_clearance_m: Option<f64>,
+    pub clearance_min_m: Option<f64>,
     /// How often the hull began to touch something.
     pub collisions: Option<u64>,
     /// Obstacles found that are not on the drawing.
@@ -49,7 +49,7 @@ pub struct Summary {
     pub planner_faults: u64,
     /// Bounds of the scenario's `[expect]` that the run did not keep, as sentences; absent if nobody compared.
     #[serde(default)]
-    pub unmet: Option<Vec<String>>,
+    pub violations: Option<Vec<String>>,
     /// How much of the floor was scanned.
     pub coverage: Option<Coverage>,
     /// The account of the floor for inspectors; absent for missions that are not there to scan it.
@@ -161,30 +161,30 @@ pub struct Positioning {
     /// Share of the ticks in which the truth lay in the 95 % ellipse, 0 to 1.
     pub in_95_ellipse: f64,
     /// Time for which the position counted as lost, seconds.
-    pub lost_s: f64,
+    pub position_lost_s: f64,
 }
 
 /// How the tether lay.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Tether {
     /// Greatest length out, metres.
-    pub max_length_m: f64,
+    pub tether_length_max_m: f64,
     /// Greatest angle about one obstacle, radians.
-    pub max_wrap_rad: f64,
+    pub wrap_max_rad: f64,
     /// Greatest sum of angles, radians.
-    pub max_total_wrap_rad: f64,
+    pub wrap_total_max_rad: f64,
     /// Loops at the end.
     pub loops: u64,
     /// Length out at the end, metres.
     pub end_length_m: f64,
     /// Whether it could not be pulled in.
     pub entangled: bool,
-    /// How often the mission found that it had caught on something unseen.
+    /// How often the mission found that it had snagged on something unseen.
     #[serde(default)]
-    pub catches: u64,
+    pub snags: u64,
     /// Whether it had when the run ended.
     #[serde(default)]
-    pub caught: bool,
+    pub snagged: bool,
 }
 
 /// How long planners took to answer.

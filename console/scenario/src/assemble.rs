@@ -92,7 +92,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         clearance_m: rest.clearance_m,
         cell_m: rest.cell_m,
         position_limit_m: rest.position_limit_m,
-        lost_hold_s: rest.lost_hold_s,
+        position_lost_hold_s: rest.position_lost_hold_s,
         stuck_s: rest.stuck_s,
         start_heading_sigma_rad: robot.start_heading_sigma_rad,
         odometry_sigma_per_m: robot.odometry_sigma_per_m(),
@@ -106,7 +106,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         attended: false,
     };
     let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);
-    let reel_m = mission.tether.as_ref().map(|tether| tether.limits.reel_m);
+    let reel_length_m = mission.tether.as_ref().map(|tether| tether.limits.reel_length_m);
     let world = World {
         boundary: floor.boundary?,
         obstacles: floor.obstacles,
@@ -120,7 +120,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         tick_s: rest.tick_s,
         movers: floor.movers,
         tether_anchor,
-        reel_m,
+        reel_length_m,
     };
     Some(Scenario {
         name: name?,
@@ -282,7 +282,7 @@ struct Rest {
     clearance_m: f64,
     cell_m: f64,
     position_limit_m: f64,
-    lost_hold_s: f64,
+    position_lost_hold_s: f64,
     stuck_s: f64,
 }
 
@@ -308,7 +308,8 @@ impl Rest {
         {
             check_lanes(mission, boundary, swath_m, scan.overlap_m);
         }
-        let (lost_hold_s, stuck_s) = (mission.number("lost_hold_s"), mission.number("stuck_s"));
+        let (position_lost_hold_s, stuck_s) =
+            (mission.number("position_lost_hold_s"), mission.number("stuck_s"));
         Some(Self {
             tick_s: tick?,
             time_limit_s: limit?,
@@ -317,7 +318,7 @@ impl Rest {
             clearance_m: clearance_m?,
             cell_m: cell_m?,
             position_limit_m: position_limit_m?,
-            lost_hold_s: lost_hold_s?,
+            position_lost_hold_s: position_lost_hold_s?,
             stuck_s: stuck_s?,
         })
     }

@@ -18,7 +18,7 @@ pub(crate) fn expect(root: &Section<'_>) -> Option<Expect> {
     Some(Expect {
         outcome,
         collisions_max: section.whole("collisions_max").map(|n| n as u64),
-        min_clearance_min_m: section.number("min_clearance_min_m"),
+        clearance_min_m: section.number("clearance_min_m"),
         mission_time_max_s: section.number("mission_time_max_s"),
         path_length_max_m: section.number("path_length_max_m"),
         coverage_reachable_min: section.number("coverage_reachable_min"),
@@ -32,9 +32,9 @@ pub(crate) fn expect(root: &Section<'_>) -> Option<Expect> {
         mean_error_max_m: section.number("mean_error_max_m"),
         p95_error_max_m: section.number("p95_error_max_m"),
         in_95_ellipse_min: section.number("in_95_ellipse_min"),
-        lost_max_s: section.number("lost_max_s"),
-        cable_max_m: section.number("cable_max_m"),
+        position_lost_max_s: section.number("position_lost_max_s"),
+        tether_length_max_m: section.number("tether_length_max_m"),
         wrap_max_rad: section.number("wrap_max_deg").map(f64::to_radians),
-        left_out_max_m: section.number("left_out_max_m"),
+        tether_end_length_max_m: section.number("tether_end_length_max_m"),
     })
 }

@@ -27,7 +27,7 @@ pub(crate) fn ae(section: &Section<'_>) -> Option<AeConfig> {
 /// How the estimator is to use the ranges; it knows their scatter, but not their faults.
 pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating> {
     let (solver, aggregation) = (section.word("solver"), section.word("aggregation"));
-    let calibrates_sound = section.flag("calibrates_sound");
+    let calibrate_sound_speed = section.flag("calibrate_sound_speed");
     let noise = match ae.noise {
         NoiseModel::None => None,
         NoiseModel::Uniform { ratio } => Some(RangeNoise::Uniform { ratio }),
@@ -55,27 +55,29 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating>
             "consensus" => SolverKind::Consensus,
             _ => SolverKind::Nls,
         },
-        calibrates_sound: calibrates_sound?,
+        calibrate_sound_speed: calibrate_sound_speed?,
         repetitions: ae.repetitions,
-        needs_sight: !matches!(behind, BehindColumns::Heard | BehindColumns::Creeping),
+        needs_line_of_sight: !matches!(behind, BehindColumns::Heard | BehindColumns::Creeping),
     })
 }
 
 /// What goes wrong with ranges besides their scatter, but for the faults of single stations.
 fn disturbances(section: &Section<'_>) -> Option<Disturbances> {
-    let (ping_dropout, nlos_chance) = (section.number("ping_dropout"), section.number("nlos_chance"));
-    let (outlier_chance, outlier_factor) =
-        (section.number("outlier_chance"), section.number("outlier_factor"));
-    let (late_ping_chance, late_mean_m) = (section.number("late_ping_chance"), section.number("late_mean_m"));
+    let (ping_dropout_probability, nlos_probability) =
+        (section.number("ping_dropout_probability"), section.number("nlos_probability"));
+    let (outlier_probability, outlier_factor) =
+        (section.number("outlier_probability"), section.number("outlier_factor"));
+    let (late_ping_probability, excess_range_mean_m) =
+        (section.number("late_ping_probability"), section.number("excess_range_mean_m"));
     let behind = section.word("behind_columns");
     let (survey, sound) = (section.number("survey_sigma_m"), section.number("sound_speed_error_ratio"));
     Some(Disturbances {
-        ping_dropout: ping_dropout?,
-        outlier_chance: outlier_chance?,
+        ping_dropout_probability: ping_dropout_probability?,
+        outlier_probability: outlier_probability?,
         outlier_factor: outlier_factor?,
-        late_ping_chance: late_ping_chance?,
-        nlos_chance: nlos_chance?,
-        late_mean_m: late_mean_m?,
+        late_ping_probability: late_ping_probability?,
+        nlos_probability: nlos_probability?,
+        excess_range_mean_m: excess_range_mean_m?,
         behind_columns: match behind? {
             "creeping" => BehindColumns::Creeping,
             "late" => BehindColumns::Late,
@@ -97,7 +99,7 @@ pub(crate) fn faults(section: &Section<'_>, stations: &[Station]) -> Vec<Station
 fn fault(entry: &Section<'_>, stations: &[Station]) -> Option<StationFault> {
     let name = entry.text("station");
     let (from_s, to_s) = (entry.number("from_s"), entry.number("to_s"));
-    let late_m = entry.number("late_m");
+    let excess_range_m = entry.number("excess_range_m");
     let name = name?;
     let station = stations.iter().find(|station| station.name == name);
     if station.is_none() {
@@ -108,7 +110,7 @@ fn fault(entry: &Section<'_>, stations: &[Station]) -> Option<StationFault> {
     if from_s? >= to_s? {
         entry.complain("to_s", Complaint::OutOfRange(format!("greater than {} s, the beginning", from_s?)));
     }
-    Some(StationFault { station: station?.id, from_s: from_s?, to_s: to_s?, late_m })
+    Some(StationFault { station: station?.id, from_s: from_s?, to_s: to_s?, excess_range_m })
 }
 
 fn noise(section: &Section<'_>) -> Option<NoiseModel> {

@@ -96,9 +96,9 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
 }
 
 /// The limits that hold everywhere, and those that hold by zone.
-const ONE_PACE: [&str; 2] = ["speed_max_m_per_s", "turn_max_deg_per_s"];
-const ON_LAND: [&str; 2] = ["land_speed_m_per_s", "land_turn_deg_per_s"];
-const UNDERWATER: [&str; 2] = ["underwater_speed_m_per_s", "underwater_turn_deg_per_s"];
+const ONE_PACE: [&str; 2] = ["speed_max_m_per_s", "turn_rate_max_deg_per_s"];
+const ON_LAND: [&str; 2] = ["land_speed_max_m_per_s", "land_turn_rate_max_deg_per_s"];
+const UNDERWATER: [&str; 2] = ["underwater_speed_max_m_per_s", "underwater_turn_rate_max_deg_per_s"];
 
 /// How a robot walks and swims, if its motion is that; keys that do not go with the motion are refused.
 fn amphibious(section: &Section<'_>, motion: &str) -> Option<Amphibious> {

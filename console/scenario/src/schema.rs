@@ -250,11 +250,11 @@ static ROBOT: &[Key] = &[
     word("motion", &["point", "unicycle", "amphibious"]).or_word("unicycle"),
     number("radius_m", "m", at_least(0.0).up_to(50.0)).or(0.25),
     number("speed_max_m_per_s", "m/s", above(0.0).up_to(10.0)).or(0.4),
-    number("turn_max_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(60.0),
-    number("land_speed_m_per_s", "m/s", above(0.0).up_to(10.0)).or(0.13),
-    number("land_turn_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(6.9),
-    number("underwater_speed_m_per_s", "m/s", above(0.0).up_to(10.0)).or(0.23),
-    number("underwater_turn_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(17.8),
+    number("turn_rate_max_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(60.0),
+    number("land_speed_max_m_per_s", "m/s", above(0.0).up_to(10.0)).or(0.13),
+    number("land_turn_rate_max_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(6.9),
+    number("underwater_speed_max_m_per_s", "m/s", above(0.0).up_to(10.0)).or(0.23),
+    number("underwater_turn_rate_max_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(17.8),
     key("transition_ticks", "", Kind::Whole(0, 10_000)).or_whole(20),
     number("acceleration_m_per_s2", "m/s²", above(0.0).up_to(100.0)).or(0.5),
     number("sensing_range_m", "m", above(0.0).up_to(100.0)).or(3.0),
@@ -275,35 +275,35 @@ static AE: &[Key] = &[
     key("noise", "", Kind::Table(NOISE)).or_none("`{ model = \"uniform\", ratio = 0.05 }`"),
     number("dropout", "", SHARE).or(0.0),
     key("outages_s", "s", Kind::Times).or_none("none"),
-    number("ping_dropout", "", SHARE).or(0.0),
-    number("outlier_chance", "", SHARE).or(0.0),
+    number("ping_dropout_probability", "", SHARE).or(0.0),
+    number("outlier_probability", "", SHARE).or(0.0),
     number("outlier_factor", "", at_least(1.0).up_to(100.0)).or(10.0),
-    number("nlos_chance", "", SHARE).or(0.0),
-    number("late_ping_chance", "", SHARE).or(0.0),
-    number("late_mean_m", "m", above(0.0).up_to(1000.0)).or(1.0),
+    number("nlos_probability", "", SHARE).or(0.0),
+    number("late_ping_probability", "", SHARE).or(0.0),
+    number("excess_range_mean_m", "m", above(0.0).up_to(1000.0)).or(1.0),
     word("behind_columns", &["heard", "creeping", "late", "wall-echo", "silent"]).or_word("heard"),
     number("survey_sigma_m", "m", at_least(0.0).up_to(10.0)).or(0.0),
     number("sound_speed_error_ratio", "", at_least(-0.5).up_to(0.5)).or(0.0),
     key("faults", "", Kind::Tables(FAULTS)).or_none("none"),
     word("solver", &["linear", "weighted-linear", "nls", "bounded", "consensus"]).or_word("nls"),
     word("aggregation", &["mean", "midrange", "trimmed-mean", "posterior"]).or_word("mean"),
-    key("calibrates_sound", "", Kind::Flag).or_flag(false),
+    key("calibrate_sound_speed", "", Kind::Flag).or_flag(false),
 ];
 
 static FAULTS: &[Key] = &[
     key("station", "", Kind::Text),
     number("from_s", "s", at_least(0.0)),
     number("to_s", "s", above(0.0)),
-    number("late_m", "m", above(0.0).up_to(1000.0)).or_none("the station is silent"),
+    number("excess_range_m", "m", above(0.0).up_to(1000.0)).or_none("the station is silent"),
 ];
 
 static TETHER: &[Key] = &[
     point("anchor_m").or_none("where the robot starts"),
-    number("reel_m", "m", LENGTH),
-    number("max_wrap_deg", "deg", above(0.0).up_to(3600.0)).or(360.0),
-    number("max_sum_wrap_deg", "deg", above(0.0).up_to(36_000.0)).or(720.0),
+    number("reel_length_m", "m", LENGTH),
+    number("wrap_max_deg", "deg", above(0.0).up_to(3600.0)).or(360.0),
+    number("wrap_total_max_deg", "deg", above(0.0).up_to(36_000.0)).or(720.0),
     number("friction", "", at_least(0.0).up_to(2.0)).or(0.3),
-    key("fly_uncertified", "", Kind::Flag).or_flag(false),
+    key("allow_uncertified", "", Kind::Flag).or_flag(false),
 ];
 
 static STATIONS: &[Key] = &[key("name", "", Kind::Text), point("at_m")];
@@ -332,7 +332,7 @@ static MISSION: &[Key] = &[
     number("cell_m", "m", at_least(0.001).up_to(10.0)).or(0.05),
     number("position_limit_m", "m", above(0.0)).or(0.5),
     number("scan_position_limit_m", "m", above(0.0)).or_none("`position_limit_m`"),
-    number("lost_hold_s", "s", at_least(0.0)).or(2.0),
+    number("position_lost_hold_s", "s", at_least(0.0)).or(2.0),
     number("stuck_s", "s", above(0.0)).or(30.0),
 ];
 
@@ -358,7 +358,7 @@ static EXPECT: &[Key] = &[
     word("outcome", &["complete", "stuck", "collision", "time_limit", "entangled", "aborted"])
         .or_none(NO_BOUND),
     key("collisions_max", "", Kind::Whole(0, i64::MAX)).or_none(NO_BOUND),
-    number("min_clearance_min_m", "m", at_least(-1000.0)).or_none(NO_BOUND),
+    number("clearance_min_m", "m", at_least(-1000.0)).or_none(NO_BOUND),
     number("mission_time_max_s", "s", above(0.0)).or_none(NO_BOUND),
     number("path_length_max_m", "m", above(0.0)).or_none(NO_BOUND),
     number("coverage_reachable_min", "", SHARE).or_none(NO_BOUND),
@@ -372,10 +372,10 @@ static EXPECT: &[Key] = &[
     number("mean_error_max_m", "m", above(0.0)).or_none(NO_BOUND),
     number("p95_error_max_m", "m", above(0.0)).or_none(NO_BOUND),
     number("in_95_ellipse_min", "", SHARE).or_none(NO_BOUND),
-    number("lost_max_s", "s", at_least(0.0)).or_none(NO_BOUND),
-    number("cable_max_m", "m", above(0.0)).or_none(NO_BOUND),
+    number("position_lost_max_s", "s", at_least(0.0)).or_none(NO_BOUND),
+    number("tether_length_max_m", "m", above(0.0)).or_none(NO_BOUND),
     number("wrap_max_deg", "deg", above(0.0)).or_none(NO_BOUND),
-    number("left_out_max_m", "m", at_least(0.0)).or_none(NO_BOUND),
+    number("tether_end_length_max_m", "m", at_least(0.0)).or_none(NO_BOUND),
 ];
 
 /// Every section with its path, the whole file first under the empty path.

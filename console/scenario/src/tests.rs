@@ -111,7 +111,7 @@ fn a_tether_starts_where_the_robot_does_and_preset_points_may_be_written_out() {
     let tether = scenario.mission.tether.expect("it has one");
     assert_eq!(tether.anchor, Point::new(-3.0, 0.0));
     assert_eq!(scenario.sim.tether_anchor, Some(tether.anchor));
-    assert!((tether.limits.max_wrap_rad - std::f64::consts::TAU).abs() < 1e-12 && !tether.fly_uncertified);
+    assert!((tether.limits.wrap_max_rad - std::f64::consts::TAU).abs() < 1e-12 && !tether.allow_uncertified);
     assert!(matches!(&scenario.mission.task, TaskConfig::Follow { path, .. } if path.len() == 2));
 }
 
@@ -208,7 +208,11 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     ("name = \"small\"", "name = \"small\"\nseed = -1", "2:8: seed = -1: must be at least 0"),
     ("name = \"small\"", "name = \"small\"\nseed = 1.5", "2:8: seed = 1.5: must be a whole number"),
     ("[planner]", "[winch]\nlength_m = 30\n[planner]", "11:2: winch: unknown key"),
-    ("[planner]", "[tether]\nreel_m = 0\n[planner]", "12:10: tether.reel_m = 0: must be greater than 0 m"),
+    (
+        "[planner]",
+        "[tether]\nreel_m = 0\n[planner]",
+        "12:10: tether.reel_length_m = 0: must be greater than 0 m",
+    ),
     (
         "[planner]",
         "[tether]\nreel_m = 9\nanchor_m = [0, 7]\n[planner]",
@@ -217,7 +221,7 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     (
         "[planner]",
         "[tether]\nreel_m = 1\nanchor_m = [0, 0]\n[planner]",
-        "12:10: tether.reel_m = 1: must be at least 3.00 m, the way from the anchor to the start",
+        "12:10: tether.reel_length_m = 1: must be at least 3.00 m, the way from the anchor to the start",
     ),
     (
         "kind = \"goto\"",

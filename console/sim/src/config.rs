@@ -43,7 +43,7 @@ pub enum BehindColumns {
     Heard,
     /// The sound that creeps around the column.
     Creeping,
-    /// The direct sound, later by an exponential delay of mean [`Disturbances::late_mean_m`].
+    /// The direct sound, later by an exponential delay of mean [`Disturbances::excess_range_mean_m`].
     Late,
     /// The shortest echo from the wall.
     WallEcho,
@@ -61,24 +61,24 @@ pub struct StationFault {
     /// End in mission time, seconds.
     pub to_s: f64,
     /// Metres that every range is too long by; `None`: the station is silent.
-    pub late_m: Option<f64>,
+    pub excess_range_m: Option<f64>,
 }
 
 /// Everything that goes wrong with ranges besides their scatter. The default is nothing.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Disturbances {
     /// Chance that a single range of a station is missing, 0 to 1.
-    pub ping_dropout: f64,
+    pub ping_dropout_probability: f64,
     /// Chance that a range scatters [`Self::outlier_factor`] times as far, 0 to 1.
-    pub outlier_chance: f64,
+    pub outlier_probability: f64,
     /// How much further outliers scatter.
     pub outlier_factor: f64,
     /// Chance that a single range comes late, 0 to 1.
-    pub late_ping_chance: f64,
+    pub late_ping_probability: f64,
     /// Chance that all ranges of a station come late in a cycle, because something hides it, 0 to 1.
-    pub nlos_chance: f64,
+    pub nlos_probability: f64,
     /// Mean of the exponential delay of what is late, metres.
-    pub late_mean_m: f64,
+    pub excess_range_mean_m: f64,
     /// What is heard of a robot behind a column.
     pub behind_columns: BehindColumns,
     /// Standard deviation of the surveyed station places in x and in y, metres; drawn once for a run.
@@ -180,7 +180,7 @@ pub struct SimConfig {
     pub tether_anchor: Option<Point>,
     /// Cable on the reel, metres; `None` for an endless one. A robot at its end pulls in vain.
     #[serde(default)]
-    pub reel_m: Option<f64>,
+    pub reel_length_m: Option<f64>,
 }
 
 /// The truth of one tick.
@@ -202,9 +202,9 @@ pub struct TetherTruth {
     /// Cable between anchor and robot, metres.
     pub length_m: f64,
     /// Largest wrap on one obstacle, radians.
-    pub max_wrap_rad: f64,
+    pub wrap_max_rad: f64,
     /// Sum of all wraps, radians.
-    pub sum_wrap_rad: f64,
+    pub wrap_total_rad: f64,
     /// Cable beyond the straight line from the anchor to the robot, metres.
     pub detour_m: f64,
 }

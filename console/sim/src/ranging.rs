@@ -72,8 +72,10 @@ impl Sounder {
 }
 
 fn spoil(set: &mut RangeSet, fault: &StationFault) {
-    match fault.late_m {
-        Some(late_m) => set.ranges_m.iter_mut().for_each(|range_m| *range_m = reported_m(*range_m + late_m)),
+    match fault.excess_range_m {
+        Some(excess_range_m) => {
+            set.ranges_m.iter_mut().for_each(|range_m| *range_m = reported_m(*range_m + excess_range_m))
+        }
         None => set.ranges_m.clear(),
     }
 }
@@ -87,20 +89,20 @@ fn measure(
 ) -> RangeSet {
     let what = &config.disturbances;
     let way = around.way(truth, station.position, what.behind_columns);
-    let is_late = chance.detour.random::<f64>() < what.nlos_chance || way.is_some_and(|way| way.is_late);
-    let late_m = if is_late { what.late_mean_m * exponential(chance) } else { 0.0 };
+    let is_late = chance.detour.random::<f64>() < what.nlos_probability || way.is_some_and(|way| way.is_late);
+    let excess_range_m = if is_late { what.excess_range_mean_m * exponential(chance) } else { 0.0 };
     let mut ranges_m = Vec::with_capacity(config.repetitions as usize);
     for _ in 0..config.repetitions {
         let mut error = config.noise.error_ratio(&mut chance.ranging);
-        if chance.detour.random::<f64>() < what.outlier_chance {
+        if chance.detour.random::<f64>() < what.outlier_probability {
             error *= what.outlier_factor;
         }
-        let is_ping_late = chance.detour.random::<f64>() < what.late_ping_chance;
-        let ping_late_m = if is_ping_late { what.late_mean_m * exponential(chance) } else { 0.0 };
-        let is_heard = chance.detour.random::<f64>() >= what.ping_dropout;
+        let is_ping_late = chance.detour.random::<f64>() < what.late_ping_probability;
+        let ping_late_m = if is_ping_late { what.excess_range_mean_m * exponential(chance) } else { 0.0 };
+        let is_heard = chance.detour.random::<f64>() >= what.ping_dropout_probability;
         if let Some(way) = way.filter(|_| is_heard) {
             let scale = 1.0 + what.sound_speed_error_ratio;
-            ranges_m.push(reported_m(way.length_m * (1.0 + error) * scale + late_m + ping_late_m));
+            ranges_m.push(reported_m(way.length_m * (1.0 + error) * scale + excess_range_m + ping_late_m));
         }
     }
     RangeSet { station: station.id, ranges_m }
@@ -214,7 +216,7 @@ mod tests {
         let column = [(0.5, 2.5, 0.2)];
         let with = |behind_columns| {
             let sets = disturbed(
-                Disturbances { behind_columns, late_mean_m: 1.0, ..Disturbances::default() },
+                Disturbances { behind_columns, excess_range_mean_m: 1.0, ..Disturbances::default() },
                 &column,
             );
             assert!(excess(&sets, 3).iter().all(|e| e.abs() < 1e-12), "station 3 is in sight");
@@ -231,16 +233,16 @@ mod tests {
 
     #[test]
     fn pings_get_lost_late_and_wild_as_often_as_said() {
-        let base = Disturbances { late_mean_m: 1.0, outlier_factor: 10.0, ..Disturbances::default() };
-        let lost = disturbed(Disturbances { ping_dropout: 0.3, ..base.clone() }, &[]);
+        let base = Disturbances { excess_range_mean_m: 1.0, outlier_factor: 10.0, ..Disturbances::default() };
+        let lost = disturbed(Disturbances { ping_dropout_probability: 0.3, ..base.clone() }, &[]);
         assert!((250..310).contains(&lost[0].ranges_m.len()), "{}", lost[0].ranges_m.len());
-        let late = excess(&disturbed(Disturbances { late_ping_chance: 0.25, ..base.clone() }, &[]), 1);
+        let late = excess(&disturbed(Disturbances { late_ping_probability: 0.25, ..base.clone() }, &[]), 1);
         let n_late = late.iter().filter(|e| **e > 1e-9).count();
         assert!((70..130).contains(&n_late), "{n_late}");
         assert!((late.iter().sum::<f64>() / n_late as f64 - 1.0).abs() < 0.3);
         let config = AeConfig {
             repetitions: 400,
-            disturbances: Disturbances { outlier_chance: 0.1, ..base },
+            disturbances: Disturbances { outlier_probability: 0.1, ..base },
             ..config()
         };
         let wild = excess(&Sounder::new(config, &tank(&[]), 5).cycle(1.0, Point::origin()), 1);
@@ -250,8 +252,10 @@ mod tests {
 
     #[test]
     fn a_hidden_station_is_late_by_the_same_in_all_its_pings() {
-        let sets =
-            disturbed(Disturbances { nlos_chance: 1.0, late_mean_m: 1.0, ..Disturbances::default() }, &[]);
+        let sets = disturbed(
+            Disturbances { nlos_probability: 1.0, excess_range_mean_m: 1.0, ..Disturbances::default() },
+            &[],
+        );
         let (first, second) = (excess(&sets, 1), excess(&sets, 2));
         assert!(first.iter().all(|e| *e > 0.0 && (e - first[0]).abs() < 1e-12));
         assert!((first[0] - second[0]).abs() > 1e-6, "each station has its own delay");
@@ -268,9 +272,11 @@ mod tests {
 
     #[test]
     fn a_fault_spoils_one_station_for_its_time() {
-        let fault = |late_m| StationFault { station: StationId(2), from_s: 0.5, to_s: 1.0, late_m };
-        let with = |late_m| {
-            let disturbances = Disturbances { faults: vec![fault(late_m)], ..Disturbances::default() };
+        let fault =
+            |excess_range_m| StationFault { station: StationId(2), from_s: 0.5, to_s: 1.0, excess_range_m };
+        let with = |excess_range_m| {
+            let disturbances =
+                Disturbances { faults: vec![fault(excess_range_m)], ..Disturbances::default() };
             cycles(AeConfig { disturbances, ..config() })
         };
         let whole = cycles(config());

@@ -111,8 +111,8 @@ impl Simulator {
             collided: self.collided,
             tether: self.cable.as_ref().map(|cable| TetherTruth {
                 length_m: cable.length_m(),
-                max_wrap_rad: cable.max_wrap_rad(),
-                sum_wrap_rad: cable.sum_wrap_rad(),
+                wrap_max_rad: cable.wrap_max_rad(),
+                wrap_total_rad: cable.wrap_total_rad(),
                 detour_m: cable.length_m() - (cable.tip() - cable.anchor()).norm(),
             }),
         }
@@ -144,10 +144,12 @@ impl Simulator {
 
     /// Whether the reel does not hold the cable that a move asks for. The robot can always come back.
     fn is_at_its_end(&self, moved: Option<&Cable>) -> bool {
-        let (Some(reel_m), Some(before), Some(after)) = (self.config.reel_m, &self.cable, moved) else {
+        let (Some(reel_length_m), Some(before), Some(after)) =
+            (self.config.reel_length_m, &self.cable, moved)
+        else {
             return false;
         };
-        after.length_m() > reel_m && after.length_m() > before.length_m()
+        after.length_m() > reel_length_m && after.length_m() > before.length_m()
     }
 
     fn radius_m(&self) -> f64 {

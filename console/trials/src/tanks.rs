@@ -168,9 +168,9 @@ impl Tank {
         sweep(&mut grid, path);
         let counts = grid.counts();
         let limits = tether::Limits {
-            reel_m: f64::INFINITY,
-            max_wrap_rad: f64::INFINITY,
-            max_sum_wrap_rad: f64::INFINITY,
+            reel_length_m: f64::INFINITY,
+            wrap_max_rad: f64::INFINITY,
+            wrap_total_max_rad: f64::INFINITY,
         };
         let certificate = certify(&Case {
             path,

@@ -33,7 +33,7 @@ fn long_mission() -> Screen {
         .collect();
     let planned = EventKind::Planned {
         ask: None,
-        way_home: 0,
+        return_path: 0,
         planner: "rpf".into(),
         reason: planner_api::Reason::Operator,
         length_m: world::polyline::length_m(&path),

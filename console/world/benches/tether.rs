@@ -49,7 +49,7 @@ fn one_tick(c: &mut Criterion) {
         c.bench_function(&format!("one tick of cable, {count} columns"), |b| {
             b.iter(|| {
                 cable.drag_to(*at.next().expect("a cycle has no end"));
-                black_box((cable.length_m(), cable.sum_wrap_rad()))
+                black_box((cable.length_m(), cable.wrap_total_rad()))
             });
         });
     }
@@ -64,7 +64,7 @@ fn certificate(c: &mut Criterion) {
             .iter()
             .map(|o| vec![o.shape.center(), Point::from(o.shape.center().coords.normalize() * RADIUS_M)])
             .collect();
-        let limits = Limits { reel_m: 60.0, max_wrap_rad: 3.0, max_sum_wrap_rad: 6.0 };
+        let limits = Limits { reel_length_m: 60.0, wrap_max_rad: 3.0, wrap_total_max_rad: 6.0 };
         c.bench_function(&format!("certificate of {} points, {count} columns", path.len()), |b| {
             b.iter_batched(
                 || Case {

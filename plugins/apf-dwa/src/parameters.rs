@@ -37,14 +37,14 @@ const SQUARE: ParamSpec = float("square_m", "Distance of virtual goals", "m", 0.
 const HOLD: ParamSpec = int("hold_steps", "Steps with a virtual goal", "", 1, 100_000, 300)
     .help("A virtual goal is kept for this many steps at most; the paper gives no number.")
     .group(FIELD);
-const LAND_SPEED: ParamSpec = float("land_speed_m_per_s", "Speed on land", "m/s", 0.0, 10.0, 0.13)
+const LAND_SPEED: ParamSpec = float("land_speed_max_m_per_s", "Speed on land", "m/s", 0.0, 10.0, 0.13)
     .help("Largest speed on dry floor; 0 takes the robot's own limit everywhere.")
     .group(ROBOT);
 const LAND_TURN: ParamSpec = float("land_turn_rad_per_s", "Turn rate on land", "rad/s", 0.001, 10.0, 0.12)
     .help("Largest turn rate on dry floor.")
     .group(ROBOT);
 const WATER_SPEED: ParamSpec =
-    float("underwater_speed_m_per_s", "Speed under water", "m/s", 0.001, 10.0, 0.23)
+    float("underwater_speed_max_m_per_s", "Speed under water", "m/s", 0.001, 10.0, 0.23)
         .help("Largest speed in zones that are flooded.")
         .group(ROBOT);
 const WATER_TURN: ParamSpec =
@@ -151,12 +151,12 @@ fn robot(config: &Config<'_>, site: &Site<'_>) -> Amphibious {
         v_max_m_per_s: config.float(speed).min(own.v_max_m_per_s),
         w_max_rad_per_s: config.float(turn).min(own.w_max_rad_per_s),
     };
-    if config.float("land_speed_m_per_s") == 0.0 {
+    if config.float("land_speed_max_m_per_s") == 0.0 {
         return Amphibious { land: own, underwater: own, transition_steps: 0 };
     }
     Amphibious {
-        land: pace("land_speed_m_per_s", "land_turn_rad_per_s"),
-        underwater: pace("underwater_speed_m_per_s", "underwater_turn_rad_per_s"),
+        land: pace("land_speed_max_m_per_s", "land_turn_rad_per_s"),
+        underwater: pace("underwater_speed_max_m_per_s", "underwater_turn_rad_per_s"),
         transition_steps: config.int("transition_steps") as u32,
     }
 }

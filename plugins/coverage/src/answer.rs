@@ -100,12 +100,12 @@ fn add_leg(plan: &mut Plan, tag: LegTag, points: &[Point]) {
 }
 
 /// Back along the cable, if the hull has room there.
-pub fn way_home(ground: &Ground, site: &Site<'_>, cable: &Cable) -> Option<Vec<Point>> {
+pub fn return_path(ground: &Ground, site: &Site<'_>, cable: &Cable) -> Option<Vec<Point>> {
     let obstacles = crate::candidate::solids(site);
     let shapes: Vec<Shape> = obstacles.iter().map(|o| o.shape.clone()).collect();
     let roomy = Arc::new(tether::Ground::grown(&ground.wall, &shapes, ground.keep_m));
     let map = ObstacleMap::new(&ground.wall, &obstacles);
-    cable.way_home(&roomy, &map, ground.keep_m)
+    cable.return_path(&roomy, &map, ground.keep_m)
 }
 
 /// Logs which floor cannot be scanned, and why.
@@ -128,17 +128,23 @@ pub fn report_unreachable(ground: &Ground, scan: &Scan, order: &Order<'_>, ctx: 
         closed.swept.fill(0);
         log_places(&closed, cell_m2, why, ground, ctx);
     }
-    if order.reel_m.is_finite() {
+    if order.reel_length_m.is_finite() {
         let mut far = grid.clone();
         let home = ground.home();
         for cell in 0..far.reachable.len() {
             far.reachable[cell] = grid.reachable[cell] && grid.swept[cell] == 0 && {
                 let way_m = scan.slit.way_m(home, grid.center(cell));
-                way_m.is_none_or(|way_m| way_m > order.reel_m - ground.swath_m)
+                way_m.is_none_or(|way_m| way_m > order.reel_length_m - ground.swath_m)
             };
         }
         far.swept.fill(0);
-        log_places(&far, cell_m2, &format!("is beyond the reel of {:.1} m", order.reel_m), ground, ctx);
+        log_places(
+            &far,
+            cell_m2,
+            &format!("is beyond the reel of {:.1} m", order.reel_length_m),
+            ground,
+            ctx,
+        );
     }
 }
 

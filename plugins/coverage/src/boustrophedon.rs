@@ -88,7 +88,7 @@ impl Planner for Boustrophedon {
         stages.next(1.0, "floor out of reach").begin();
         let mut scan = Scan { pieces, cuts: Vec::new(), slit, grid };
         scan.grid.sweep(&scan.path());
-        let order = Order { start, regions: task.regions, reel_m: f64::INFINITY, cell_m: self.cell_m };
+        let order = Order { start, regions: task.regions, reel_length_m: f64::INFINITY, cell_m: self.cell_m };
         answer::report_unreachable(&ground, &scan, &order, ctx);
         let plan = plan_of(&scan, request.start.position, &[]);
         self.follow.take(&plan);

@@ -79,15 +79,16 @@ pub struct Worth {
 impl Worth {
     /// Whether another is no worse in anything and better in something.
     pub fn is_beaten_by(&self, other: &Self) -> bool {
-        let figures =
-            |w: &Self| [w.length_m, w.turns, w.certificate.max_cable_m, w.certificate.max_sum_wrap_rad];
+        let figures = |w: &Self| {
+            [w.length_m, w.turns, w.certificate.tether_length_max_m, w.certificate.wrap_total_max_rad]
+        };
         let pairs = || figures(self).into_iter().zip(figures(other));
         pairs().all(|(own, theirs)| theirs <= own) && pairs().any(|(own, theirs)| theirs < own)
     }
 
     /// Longest cable as a multiple of the least that can do.
     pub fn cable_share(&self) -> f64 {
-        self.certificate.max_cable_m / self.certificate.eccentricity_m.max(1e-9)
+        self.certificate.tether_length_max_m / self.certificate.eccentricity_m.max(1e-9)
     }
 
     /// One line for the operator.
@@ -99,10 +100,10 @@ impl Worth {
             self.length_m,
             self.turns,
             100.0 * self.coverage,
-            c.max_cable_m,
+            c.tether_length_max_m,
             self.cable_share(),
-            c.max_wrap_rad.to_degrees(),
-            c.max_sum_wrap_rad.to_degrees(),
+            c.wrap_max_rad.to_degrees(),
+            c.wrap_total_max_rad.to_degrees(),
             if c.certified { String::new() } else { format!("; not certified: {}", c.reasons.join("; ")) },
         )
     }
@@ -171,9 +172,10 @@ fn cut_domain(
     alpha_rad: f64,
 ) -> (CutRule, Option<Domain>) {
     let least_m = least_cable_m(ground);
-    let most_m = (least_m * wishes.cable_share).min(wishes.limits.reel_m);
-    let with =
-        |slack: f64| (least_m + (least_m * wishes.cable_share - least_m) * slack).min(wishes.limits.reel_m);
+    let most_m = (least_m * wishes.cable_share).min(wishes.limits.reel_length_m);
+    let with = |slack: f64| {
+        (least_m + (least_m * wishes.cable_share - least_m) * slack).min(wishes.limits.reel_length_m)
+    };
     let home = ground.home();
     let made = |slack: f64| {
         let rule = CutRule { alpha_rad, cable_m: with(slack) };
@@ -254,14 +256,14 @@ pub fn certificate(
     certify(&case).unwrap_or_else(|error| Certificate {
         certified: false,
         reasons: vec![error.to_string()],
-        max_cable_m: f64::INFINITY,
+        tether_length_max_m: f64::INFINITY,
         eccentricity_m: least_cable_m(ground),
-        max_wrap_rad: f64::INFINITY,
-        max_sum_wrap_rad: f64::INFINITY,
-        left_out_m: None,
+        wrap_max_rad: f64::INFINITY,
+        wrap_total_max_rad: f64::INFINITY,
+        end_length_m: None,
         crossings_left: 0,
         collisions: 0,
-        min_clearance_m: 0.0,
+        clearance_min_m: 0.0,
         cut_crossings: 0,
         sealed_m2: 0.0,
     })

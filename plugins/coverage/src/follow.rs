@@ -85,8 +85,8 @@ impl Follow {
     /// Takes over the cuts of a new plan; they hold from the end of its way home on, if it begins with one.
     pub fn take(&mut self, plan: &Plan) {
         self.cuts = plan.cuts.iter().map(|line| Cut { line: line.clone(), is_beyond: false }).collect();
-        let way_home = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract);
-        self.from = plan.path.get(way_home.map_or(0, |leg| leg.last)).copied();
+        let return_path = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract);
+        self.from = plan.path.get(return_path.map_or(0, |leg| leg.last)).copied();
         self.seen_at = None;
         self.has_reported = false;
     }

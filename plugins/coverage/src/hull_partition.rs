@@ -129,7 +129,7 @@ impl Planner for HullPartition {
         let mut scan = Scan { pieces, cuts, slit, grid };
         stages.next(1.0, "floor out of reach").begin();
         scan.grid.sweep(&scan.path());
-        let order = Order { start, regions: task.regions, reel_m: f64::INFINITY, cell_m: self.cell_m };
+        let order = Order { start, regions: task.regions, reel_length_m: f64::INFINITY, cell_m: self.cell_m };
         answer::report_unreachable(&ground, &scan, &order, ctx);
         let mut plan = plan_of(&scan, request.start.position, &[]);
         plan.cuts.iter_mut().for_each(|cut| trim(cut));

@@ -116,7 +116,7 @@ pub struct Order<'a> {
     /// Polygons still to scan; all floor if empty.
     pub regions: &'a [&'a [Point]],
     /// Longest way from home, metres.
-    pub reel_m: f64,
+    pub reel_length_m: f64,
     /// Edge of a cell of the floor, metres.
     pub cell_m: f64,
 }
@@ -195,14 +195,14 @@ impl<'a> Draft<'a> {
     fn is_in_reach(&self, at: Point) -> bool {
         let order = &self.order;
         let way_m = || self.slit.way_m(self.ground.home(), at);
-        order.reel_m.is_infinite() || way_m().is_some_and(|way_m| way_m <= order.reel_m)
+        order.reel_length_m.is_infinite() || way_m().is_some_and(|way_m| way_m <= order.reel_length_m)
     }
 
     fn wanted(&self, grid: &FloorGrid, lanes: Vec<Lane>) -> Vec<Lane> {
         let is_wanted = |at: Point| {
             self.is_in_reach(at) && (self.order.regions.is_empty() || grid.has_reachable_near(at))
         };
-        if self.order.reel_m.is_infinite() && self.order.regions.is_empty() {
+        if self.order.reel_length_m.is_infinite() && self.order.regions.is_empty() {
             return lanes;
         }
         lanes.iter().flat_map(|lane| lane.kept(&is_wanted)).collect()

@@ -22,7 +22,7 @@ use world::{
 /// The choice by length and turns; candidates that look worse are not worked out for it.
 const SHORTEST: &str = "shortest";
 const UNLIMITED: Limits =
-    Limits { reel_m: f64::INFINITY, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY };
+    Limits { reel_length_m: f64::INFINITY, wrap_max_rad: f64::INFINITY, wrap_total_max_rad: f64::INFINITY };
 /// Most cells of the floor: more take memory and time, and the edges where cells matter are a smaller share of a large tank.
 const MOST_CELLS: f64 = 4e6;
 /// Share of the floor by which a plan may miss what is asked for without the reel being to blame.
@@ -58,7 +58,7 @@ const CABLE: ParamSpec = float("cable_share", "Cable over least", "", 1.0, 10.0,
 const WRAP: ParamSpec = float("wrap_deg", "Wrap on one obstacle", "deg", 10.0, 720.0, 75.0)
     .help("Largest angle of the cable about one obstacle, if any candidate keeps it; the mission's limit always holds.")
     .group("Tether");
-const SUM_WRAP: ParamSpec = float("sum_wrap_deg", "Wrap in sum", "deg", 10.0, 3600.0, 80.0)
+const SUM_WRAP: ParamSpec = float("wrap_total_deg", "Wrap in sum", "deg", 10.0, 3600.0, 80.0)
     .help("Largest sum of the angles about all obstacles, if any candidate keeps it; the mission's limit always holds.")
     .group("Tether");
 const TURN: ParamSpec = float("turn_m", "Turn in the search", "m", 0.0, 20.0, 1.0)
@@ -126,9 +126,9 @@ impl Planner for TetherSafe {
             cable_share: config.float("cable_share"),
             demanded: UNLIMITED,
             limits: Limits {
-                reel_m: f64::INFINITY,
-                max_wrap_rad: config.float("wrap_deg").to_radians(),
-                max_sum_wrap_rad: config.float("sum_wrap_deg").to_radians(),
+                reel_length_m: f64::INFINITY,
+                wrap_max_rad: config.float("wrap_deg").to_radians(),
+                wrap_total_max_rad: config.float("wrap_total_deg").to_radians(),
             },
             turn_m: config.float("turn_m"),
             choice_turn_m: config.float("choice_turn_m"),
@@ -160,14 +160,14 @@ impl Planner for TetherSafe {
 /// What the mission demands: nothing of a robot without a tether.
 fn demanded(task: Option<TetherLimits>) -> Limits {
     task.map_or(UNLIMITED, |task| Limits {
-        reel_m: task.reel_m,
-        max_wrap_rad: task.max_wrap_rad,
-        max_sum_wrap_rad: task.max_sum_wrap_rad,
+        reel_length_m: task.reel_length_m,
+        wrap_max_rad: task.wrap_max_rad,
+        wrap_total_max_rad: task.wrap_total_max_rad,
     })
 }
 
 /// Why not even one lane can be planned, if so: the swath is wider than the floor, or the reel does not reach one.
-fn no_lane(ground: &Ground, reel_m: f64, home: Point) -> Option<String> {
+fn no_lane(ground: &Ground, reel_length_m: f64, home: Point) -> Option<String> {
     let (low, high) = ground.wall.bounds();
     let (swath_m, floor_m) = (ground.swath_m, (high.x - low.x).min(high.y - low.y));
     if swath_m > floor_m {
@@ -177,10 +177,10 @@ fn no_lane(ground: &Ground, reel_m: f64, home: Point) -> Option<String> {
     }
     // The nearest lane that is not at the anchor itself lies a swath away; a robot beside the anchor is out already.
     let needed_m = (home - ground.anchor).norm() + swath_m.min(least_cable_m(ground));
-    (reel_m < needed_m).then(|| {
+    (reel_length_m < needed_m).then(|| {
         let farthest_m = least_cable_m(ground);
         format!(
-            "the reel holds {reel_m:.2} m of cable; the nearest lanes need {needed_m:.2} m, the farthest floor is \
+            "the reel holds {reel_length_m:.2} m of cable; the nearest lanes need {needed_m:.2} m, the farthest floor is \
              {farthest_m:.1} m from the anchor"
         )
     })
@@ -194,9 +194,9 @@ fn least_cell_m(ground: &Ground) -> f64 {
 
 fn stricter(a: Limits, b: Limits) -> Limits {
     Limits {
-        reel_m: a.reel_m.min(b.reel_m),
-        max_wrap_rad: a.max_wrap_rad.min(b.max_wrap_rad),
-        max_sum_wrap_rad: a.max_sum_wrap_rad.min(b.max_sum_wrap_rad),
+        reel_length_m: a.reel_length_m.min(b.reel_length_m),
+        wrap_max_rad: a.wrap_max_rad.min(b.wrap_max_rad),
+        wrap_total_max_rad: a.wrap_total_max_rad.min(b.wrap_total_max_rad),
     }
 }
 
@@ -211,9 +211,9 @@ impl TetherSafe {
     ) -> Result<Plan> {
         let mut stages = Stages::new(ctx);
         let least_m = least_cable_m(ground);
-        let reel_m = wishes.limits.reel_m;
+        let reel_length_m = wishes.limits.reel_length_m;
         let home = ground.home();
-        if let Some(why) = no_lane(ground, reel_m, home) {
+        if let Some(why) = no_lane(ground, reel_length_m, home) {
             return Err(PlannerError::new(planner_api::Code::Config, why));
         }
         let start = request.start.position;
@@ -221,7 +221,11 @@ impl TetherSafe {
         let order = Order {
             start,
             regions: task.regions,
-            reel_m: if reel_m > least_m * wishes.cable_share { f64::INFINITY } else { reel_m },
+            reel_length_m: if reel_length_m > least_m * wishes.cable_share {
+                f64::INFINITY
+            } else {
+                reel_length_m
+            },
             cell_m: self.cell_m.max(least_cell_m(ground)),
         };
         let (away_m, is_out) = ((start - home).norm(), laid.is_some());
@@ -231,7 +235,9 @@ impl TetherSafe {
         let mut lead_in: Vec<Point> = Vec::new();
         if away_m > task.tolerance_m && tried.iter().all(|t| !t.worth.certificate.certified) {
             // Under way the cable may lie as no cut of the new map allows: take it in first.
-            if let Some(way) = laid.as_ref().and_then(|cable| answer::way_home(ground, request.site, cable)) {
+            if let Some(way) =
+                laid.as_ref().and_then(|cable| answer::return_path(ground, request.site, cable))
+            {
                 ctx.log(
                     LogLevel::Warn,
                     "the cable lies across a cut of the new plan: back along the cable first",
@@ -247,9 +253,9 @@ impl TetherSafe {
         stages.next(1.0, "floor out of reach").begin();
         answer::report_unreachable(ground, &scan, &order, ctx);
         // A reel near the least that can do may still reach all there is.
-        let least = if order.reel_m.is_finite() { wishes.enough - BY_REEL } else { 0.99 };
+        let least = if order.reel_length_m.is_finite() { wishes.enough - BY_REEL } else { 0.99 };
         let is_whole = worth.coverage >= wishes.enough.min(least);
-        if !is_whole && order.reel_m.is_infinite() {
+        if !is_whole && order.reel_length_m.is_infinite() {
             let share = 100.0 * worth.coverage;
             ctx.log(
                 LogLevel::Warn,
@@ -356,7 +362,7 @@ impl TetherSafe {
     fn keep_best(&self, tried: &mut [Tried], wishes: &Wishes) {
         let figure = |t: &Tried| match self.choose {
             "fewest-turns" => t.worth.turns,
-            "shortest-cable" => t.worth.certificate.max_cable_m,
+            "shortest-cable" => t.worth.certificate.tether_length_max_m,
             _ => t.worth.length_m + wishes.choice_turn_m * t.worth.turns,
         };
         let rank = |t: &Tried| (!t.worth.certificate.certified, !is_within(&t.worth, wishes));
@@ -375,11 +381,11 @@ impl TetherSafe {
 
 /// Whether a candidate is certified and keeps what the operator wants of the cable as well.
 fn is_within(worth: &Worth, wishes: &Wishes) -> bool {
-    let Certificate { certified, max_wrap_rad, max_sum_wrap_rad, .. } = worth.certificate;
+    let Certificate { certified, wrap_max_rad, wrap_total_max_rad, .. } = worth.certificate;
     certified
         && worth.cable_share() <= wishes.cable_share + 1e-6
-        && max_wrap_rad <= wishes.limits.max_wrap_rad
-        && max_sum_wrap_rad <= wishes.limits.max_sum_wrap_rad
+        && wrap_max_rad <= wishes.limits.wrap_max_rad
+        && wrap_total_max_rad <= wishes.limits.wrap_total_max_rad
 }
 
 /// The cable as it lies after the path flown so far; none at the anchor.
@@ -394,8 +400,8 @@ fn laid_cable(ground: &Ground, request: &PlanRequest<'_>) -> Option<Cable> {
 /// Why a plan that scans this share of the floor in reach is not complete; logged last, because it is the reason given.
 fn why_incomplete(coverage: f64, order: &Order<'_>) -> String {
     let scanned = format!("the plan scans {:.1} % of the floor in reach", 100.0 * coverage);
-    if order.reel_m.is_finite() {
-        format!("{scanned} of a reel of {:.1} m, which is too short for all of it", order.reel_m)
+    if order.reel_length_m.is_finite() {
+        format!("{scanned} of a reel of {:.1} m, which is too short for all of it", order.reel_length_m)
     } else {
         format!("{scanned}: the rest is left out")
     }

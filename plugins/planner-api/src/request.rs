@@ -72,11 +72,11 @@ pub enum Task<'a> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TetherLimits {
     /// Length on the reel, metres; infinite without a limit.
-    pub reel_m: f64,
+    pub reel_length_m: f64,
     /// Largest wrap angle on one obstacle, radians; infinite without a limit.
-    pub max_wrap_rad: f64,
+    pub wrap_max_rad: f64,
     /// Largest sum of the wrap angles on all obstacles, radians; infinite without a limit.
-    pub max_sum_wrap_rad: f64,
+    pub wrap_total_max_rad: f64,
 }
 
 /// A request for a plan.

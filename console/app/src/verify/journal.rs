@@ -23,7 +23,7 @@ impl RecordedTick {
                 event.kind,
                 EventKind::Drawn { .. }
                     | EventKind::Scalars { .. }
-                    | EventKind::PlannerSaid { .. }
+                    | EventKind::PlannerLogged { .. }
                     | EventKind::PlannerLate { .. }
             );
             is_said || event.kind.closes().is_some()

@@ -33,7 +33,7 @@ impl RecordedAnswers {
             match event {
                 EventKind::Drawn { drawings } => said.drawings.clone_from(drawings),
                 EventKind::Scalars { scalars } => said.scalars.clone_from(scalars),
-                EventKind::PlannerSaid { level, message, .. } => said.logs.push((*level, message.clone())),
+                EventKind::PlannerLogged { level, message, .. } => said.logs.push((*level, message.clone())),
                 closing => {
                     // What a planner said stands directly before the event that closes its ask.
                     let said = std::mem::take(&mut said);
@@ -96,8 +96,8 @@ impl EventKind {
                 Ok(Given::Opened(info.clone()))
             }
             Self::ParametersChanged { ask: Some(_), .. } => Ok(Given::Reconfigured),
-            Self::Planned { ask: Some(_), way_home, path, complete, legs, cuts, .. } => {
-                without_way_home(*way_home, path, *complete, legs, cuts).map(Given::Plan)
+            Self::Planned { ask: Some(_), return_path, path, complete, legs, cuts, .. } => {
+                without_return_path(*return_path, path, *complete, legs, cuts).map(Given::Plan)
             }
             Self::Commanded { ask: Some(_), command } => Ok(Given::Command(*command)),
             Self::Snapshotted { bytes, .. } => Ok(Given::State { bytes: *bytes }),
@@ -113,22 +113,22 @@ impl EventKind {
 ///
 /// # Errors
 /// No planner can have given it.
-fn without_way_home(
-    way_home: usize,
+fn without_return_path(
+    return_path: usize,
     path: &[world::Point],
     complete: bool,
     legs: &[Leg],
     cuts: &[Vec<world::Point>],
 ) -> Result<Plan, Fault> {
     // The way home has a leg of its own, the first.
-    let own = legs.iter().skip(usize::from(way_home > 0));
+    let own = legs.iter().skip(usize::from(return_path > 0));
     let shifted = |leg: &Leg| {
-        let (first, last) = (leg.first.checked_sub(way_home)?, leg.last.checked_sub(way_home)?);
+        let (first, last) = (leg.first.checked_sub(return_path)?, leg.last.checked_sub(return_path)?);
         Some(Leg { first, last, ..*leg })
     };
     let legs: Option<Vec<Leg>> = own.map(shifted).collect();
     let legs = legs.ok_or_else(|| impossible("gave a leg that begins on the way home"))?;
-    let path = path.iter().skip(way_home).copied().collect();
+    let path = path.iter().skip(return_path).copied().collect();
     let plan = Plan { path, complete, legs, cuts: cuts.to_vec(), ..Plan::default() };
     plan.check().map_err(|what| impossible(&what))?;
     Ok(plan)
@@ -155,9 +155,9 @@ mod tests {
         Leg { tag: LegTag::Travel, first, last }
     }
 
-    fn recorded(way_home: usize, legs: &[Leg]) -> Result<Vec<(usize, usize)>, String> {
+    fn recorded(return_path: usize, legs: &[Leg]) -> Result<Vec<(usize, usize)>, String> {
         let path: Vec<_> = (0..5).map(|x| Point2::new(f64::from(x), 0.0)).collect();
-        let plan = without_way_home(way_home, &path, true, legs, &[]).map_err(|fault| fault.message)?;
+        let plan = without_return_path(return_path, &path, true, legs, &[]).map_err(|fault| fault.message)?;
         Ok(plan.legs.iter().map(|leg| (leg.first, leg.last)).collect())
     }
 

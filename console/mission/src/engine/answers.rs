@@ -141,7 +141,7 @@ impl Mission {
 
     /// Whether a plan that was refused for the tether is asked for once more, from the anchor.
     fn may_try_from_anchor(&self, asked: &AskedPlan) -> bool {
-        asked.way_home.is_empty() && !asked.from_anchor && self.way_to_anchor().is_some()
+        asked.return_path.is_empty() && !asked.from_anchor && self.way_to_anchor().is_some()
     }
 
     /// The active planner has a plan that flies: a hold that it was to end, or that blamed another planner, is over.
@@ -176,7 +176,9 @@ impl Mission {
         }
         if !self.active.has_plan() {
             // The operator agreed to the plan that was refused, not to one of later.
-            self.fly_uncertified(self.config.tether.as_ref().is_some_and(|tether| tether.fly_uncertified));
+            self.allow_uncertified(
+                self.config.tether.as_ref().is_some_and(|tether| tether.allow_uncertified),
+            );
         }
         self.active_is_no_use(HoldReason::PlannerFault { message });
     }

@@ -131,14 +131,14 @@ impl Mission {
     /// A cable that is caught is freed first. A plan that was refused because of the cable out there is asked for once
     /// more from the anchor, after a way back along the cable: no planner has to know how the cable lies.
     fn plan_ask(&self, reason: Reason, from_anchor: bool) -> (PendingKind, What) {
-        let way_home = if from_anchor { self.way_to_anchor() } else { self.way_out() }.unwrap_or_default();
+        let return_path = if from_anchor { self.way_to_anchor() } else { self.way_out() }.unwrap_or_default();
         let here = self.locator.pose_estimate();
-        let start = way_home.last().map_or(here, |home| PoseEstimate { position: *home, ..here });
-        let previous: Vec<Point> = self.trail.iter().chain(&way_home).copied().collect();
+        let start = return_path.last().map_or(here, |home| PoseEstimate { position: *home, ..here });
+        let previous: Vec<Point> = self.trail.iter().chain(&return_path).copied().collect();
         let task = self.task.left(&self.floor.coverage, self.config.lane_m(), self.config.tether_limits());
         let site = Arc::new(self.chart.site());
         let what = What::Plan(Box::new(PlanAsk { reason: reason.clone(), start, task, site, previous }));
-        (PendingKind::Plan(AskedPlan { reason, way_home, from_anchor, here: here.position }), what)
+        (PendingKind::Plan(AskedPlan { reason, return_path, from_anchor, here: here.position }), what)
     }
 
     fn ask_for_step(&mut self) -> Option<Ask> {

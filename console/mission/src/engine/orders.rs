@@ -33,7 +33,7 @@ impl Mission {
             }
             Order::SetParameter { key, value } => self.set_parameter(key, value),
             Order::FlyUncertified => {
-                self.fly_uncertified(true);
+                self.allow_uncertified(true);
                 self.resume(Gait::Steady);
             }
         }
@@ -46,9 +46,9 @@ impl Mission {
         }
     }
 
-    pub(super) fn fly_uncertified(&mut self, fly: bool) {
+    pub(super) fn allow_uncertified(&mut self, fly: bool) {
         if let Some(tether) = &mut self.tether {
-            tether.fly_uncertified(fly);
+            tether.allow_uncertified(fly);
         }
     }
 

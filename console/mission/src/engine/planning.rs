@@ -4,7 +4,7 @@ use super::{Mission, rules::CutsRule, seat::AskedPlan, seat::PlanState};
 use crate::{
     ask::{AskId, Said},
     event::EventKind,
-    tether::{Tether, way_home_ends},
+    tether::{Tether, return_path_ends},
 };
 use geometry::PathFollower;
 use planner_api::{Leg, LegTag, Plan, Reason};
@@ -66,10 +66,10 @@ impl Mission {
 
     /// Judges a plan on the map as it is known now.
     pub(super) fn evaluate(&self, ask: AskId, planner: &str, asked: &AskedPlan, plan: Plan) -> Evaluated {
-        let plan = after(&asked.way_home, plan);
+        let plan = after(&asked.return_path, plan);
         let planned = EventKind::Planned {
             ask: Some(ask),
-            way_home: asked.way_home.len(),
+            return_path: asked.return_path.len(),
             planner: planner.to_owned(),
             reason: asked.reason.clone(),
             length_m: polyline::length_m(&plan.path),
@@ -119,7 +119,7 @@ impl Mission {
         self.rules.stuck.restart();
         let anchor = self.tether.as_ref().map(Tether::anchor);
         let lines = if anchor.is_some() { plan.cuts.as_slice() } else { &[] };
-        let from = anchor.map_or(0, |anchor| way_home_ends(plan, anchor));
+        let from = anchor.map_or(0, |anchor| return_path_ends(plan, anchor));
         let here = self.locator.position();
         let seat = &mut self.active;
         seat.plan = PlanState::Flying { is_whole: plan.complete };
@@ -148,17 +148,17 @@ impl Mission {
             self.happened.push(EventKind::Scalars { scalars });
         }
         for (level, message) in logs {
-            self.happened.push(EventKind::PlannerSaid { planner: planner.to_owned(), level, message });
+            self.happened.push(EventKind::PlannerLogged { planner: planner.to_owned(), level, message });
         }
     }
 }
 
 /// A plan with a way home before it.
-fn after(way_home: &[Point], mut plan: Plan) -> Plan {
-    let Some(last) = way_home.len().checked_sub(1) else { return plan };
+fn after(return_path: &[Point], mut plan: Plan) -> Plan {
+    let Some(last) = return_path.len().checked_sub(1) else { return plan };
     let shifted = |leg: &Leg| Leg { first: leg.first + last + 1, last: leg.last + last + 1, ..*leg };
     let retract = Leg { tag: LegTag::Retract, first: 0, last };
     plan.legs = std::iter::once(retract).chain(plan.legs.iter().map(shifted)).collect();
-    plan.path.splice(0..0, way_home.iter().copied());
+    plan.path.splice(0..0, return_path.iter().copied());
     plan
 }

@@ -140,7 +140,7 @@ impl Rules {
             return None;
         }
         match hold.by {
-            HoldReason::PositionLost | HoldReason::PositionAlarmed => LostPositionRule::update_held(seen),
+            HoldReason::PositionLost | HoldReason::RangesInconsistent => LostPositionRule::update_held(seen),
             HoldReason::Tether { .. } => self.tether.update_held(seen),
             HoldReason::PlannerSilent { .. } => (!seen.planner.owes).then_some(Verdict::Resume),
             _ => None,

@@ -155,10 +155,10 @@ impl Mission {
         let left = self.task.floor_left(&self.floor.coverage);
         let beyond = left.iter().filter(|index| reach.is_beyond(floor.center(**index))).count();
         let beyond_m2 = beyond as f64 * floor.cell_m2();
-        let reel_m = self.config.tether.as_ref()?.limits.reel_m;
+        let reel_length_m = self.config.tether.as_ref()?.limits.reel_length_m;
         (beyond_m2 > WORTH_TELLING_M2).then(|| {
             format!(
-                "NOT all of it: {beyond_m2:.1} m² beyond the reel of {reel_m} m were left out of the plan"
+                "NOT all of it: {beyond_m2:.1} m² beyond the reel of {reel_length_m} m were left out of the plan"
             )
         })
     }

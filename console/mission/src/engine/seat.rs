@@ -126,7 +126,7 @@ pub(super) enum PendingKind {
 pub(super) struct AskedPlan {
     pub reason: Reason,
     /// The way home before the plan; empty for a plan from where the robot stood.
-    pub way_home: Vec<Point>,
+    pub return_path: Vec<Point>,
     /// Whether that way home was the second try.
     pub from_anchor: bool,
     /// Where the robot stood.

@@ -185,7 +185,7 @@ fn config() -> MissionConfig {
         clearance_m: 0.05,
         cell_m: 0.1,
         position_limit_m: 0.3,
-        lost_hold_s: 1.0,
+        position_lost_hold_s: 1.0,
         stuck_s: 10.0,
         odometry_sigma_per_m: 0.05,
         odometry_turn_sigma_per_rad: 0.05,
@@ -211,7 +211,7 @@ struct Flight {
     moved: Odometry,
     silent: bool,
     /// Metres by which the ranges of the first stations are too long.
-    late_m: Vec<f64>,
+    excess_range_m: Vec<f64>,
     /// The true cable, among what stands there unseen; `None` without an encoder.
     reel: Option<Cable>,
     /// Metres that the reel has paid out beyond that.
@@ -239,7 +239,7 @@ impl Flight {
             pose,
             moved: Odometry::default(),
             silent: false,
-            late_m: vec![],
+            excess_range_m: vec![],
             reel: None,
             caught_m: 0.0,
             sightings: vec![],
@@ -258,8 +258,8 @@ impl Flight {
         };
         let mut ranges: Vec<RangeSet> =
             if self.silent { vec![] } else { drawing().stations.iter().map(heard).collect() };
-        for (set, late_m) in ranges.iter_mut().zip(&self.late_m) {
-            set.ranges_m.iter_mut().for_each(|range_m| *range_m += late_m);
+        for (set, excess_range_m) in ranges.iter_mut().zip(&self.excess_range_m) {
+            set.ranges_m.iter_mut().for_each(|range_m| *range_m += excess_range_m);
         }
         let readings = Readings {
             ranges,
@@ -503,18 +503,18 @@ fn count(flight: &Flight, is: impl Fn(&EventKind) -> bool) -> usize {
 
 #[test]
 fn contradicting_ranges_hold_the_robot_in_time_and_it_goes_on_when_they_agree() {
-    let mut flight = Flight::new(MissionConfig { lost_hold_s: 2.0, ..config() });
+    let mut flight = Flight::new(MissionConfig { position_lost_hold_s: 2.0, ..config() });
     flight.tick(&[Order::Start]);
     flight.fly(10);
     // Of four stations nobody can say which one is wrong.
-    flight.late_m = vec![1.5];
+    flight.excess_range_m = vec![1.5];
     flight.fly(20);
-    assert_eq!(flight.held_by(), Some(&HoldReason::PositionAlarmed), "within 2 s");
+    assert_eq!(flight.held_by(), Some(&HoldReason::RangesInconsistent), "within 2 s");
     assert!(refusal(&flight.tick(&[Order::Resume])).is_some_and(|why| why.contains("contradict")));
-    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PositionAlarmed { .. })), 1);
-    flight.late_m.clear();
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::RangesInconsistent { .. })), 1);
+    flight.excess_range_m.clear();
     flight.fly(200);
-    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PositionTrusted)), 1);
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::RangesConsistent)), 1);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
 }
 
@@ -523,9 +523,9 @@ fn a_single_contradicting_cycle_holds_nobody() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
     flight.fly(10);
-    flight.late_m = vec![1.5];
+    flight.excess_range_m = vec![1.5];
     flight.fly(1);
-    flight.late_m.clear();
+    flight.excess_range_m.clear();
     flight.fly(200);
     assert_eq!(count(&flight, |kind| matches!(kind, EventKind::Held { .. })), 0);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
@@ -538,13 +538,13 @@ fn every_exclusion_is_reported_with_its_reason() {
     let mut flight = Flight::new(MissionConfig { locating: consensus, ..config() });
     flight.tick(&[Order::Start]);
     flight.fly(10);
-    flight.late_m = vec![1.5];
+    flight.excess_range_m = vec![1.5];
     flight.fly(5);
-    flight.late_m.clear();
+    flight.excess_range_m.clear();
     flight.fly(5);
-    let late = |kind: &EventKind| matches!(kind, EventKind::StationExcluded { station: StationId(0), reason: positioning::Exclusion::Residual { residual_m, .. } } if *residual_m > 1.0);
+    let late = |kind: &EventKind| matches!(kind, EventKind::StationRejected { station: StationId(0), reason: positioning::Exclusion::Residual { residual_m, .. } } if *residual_m > 1.0);
     assert_eq!(count(&flight, late), 1);
-    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::StationRegained { .. })), 1);
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::StationRestored { .. })), 1);
 }
 
 #[test]

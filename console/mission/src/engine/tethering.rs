@@ -25,7 +25,7 @@ impl Mission {
         tether.measure(paid_out_m, error_m, self.config.tick_s);
         let events = tether.update(world, self.chart.map(), self.config.tick_s);
         let reached = events.iter().find_map(|event| match event {
-            EventKind::TetherAlarmed { alarm, reached: true } => Some(alarm.clone()),
+            EventKind::TetherAlarmRaised { alarm, reached: true } => Some(alarm.clone()),
             _ => None,
         });
         self.happened.extend(events);
@@ -52,7 +52,7 @@ impl Mission {
         }
         let has_strayed = self.active.cuts.update(self.locator.position(), self.config.limits.radius_m);
         if has_strayed && self.active.has_plan() {
-            self.happened.push(EventKind::TetherAlarmed { alarm: TetherAlarm::Strayed, reached: false });
+            self.happened.push(EventKind::TetherAlarmRaised { alarm: TetherAlarm::Strayed, reached: false });
             self.active.want_plan(Reason::MapChanged);
             self.active.cuts.clear();
         }
@@ -62,12 +62,12 @@ impl Mission {
     pub(super) fn way_to_anchor(&self) -> Option<Vec<Point>> {
         let (here, tether) = (self.locator.position(), self.tether.as_ref()?);
         let is_out = self.task_ends_at_anchor() && (here - tether.anchor()).norm() > HOME_M;
-        if is_out { self.widest(|room_m| tether.way_home(self.chart.world(), room_m)) } else { None }
+        if is_out { self.widest(|room_m| tether.return_path(self.chart.world(), room_m)) } else { None }
     }
 
     /// The way that frees a caught cable and reels it in, as wide as possible; `None` unless it is caught.
     pub(super) fn way_out(&self) -> Option<Vec<Point>> {
-        let tether = self.tether.as_ref().filter(|tether| tether.is_caught())?;
+        let tether = self.tether.as_ref().filter(|tether| tether.is_snagged())?;
         if self.plans_ways_home() {
             self.widest(|room_m| tether.way_out(self.chart.world(), room_m))
         } else {

@@ -12,7 +12,7 @@ pub enum HoldReason {
     /// The position is lost.
     PositionLost,
     /// The ranges contradict each other.
-    PositionAlarmed,
+    RangesInconsistent,
     /// The planner failed.
     PlannerFault {
         /// The fault's sentence.
@@ -52,7 +52,7 @@ impl HoldReason {
         let all = vec![
             Self::Operator,
             Self::PositionLost,
-            Self::PositionAlarmed,
+            Self::RangesInconsistent,
             Self::PlannerFault { message: message() },
             Self::PlannerSilent { message: message() },
             Self::Stuck { message: message() },
@@ -66,7 +66,7 @@ impl HoldReason {
             match by {
                 Self::Operator
                 | Self::PositionLost
-                | Self::PositionAlarmed
+                | Self::RangesInconsistent
                 | Self::PlannerFault { .. }
                 | Self::PlannerSilent { .. }
                 | Self::Stuck { .. }
@@ -90,7 +90,7 @@ impl fmt::Display for HoldReason {
         match self {
             Self::Operator => f.write_str("held by the operator"),
             Self::PositionLost => f.write_str("held because the position is lost"),
-            Self::PositionAlarmed => f.write_str("held because the ranges contradict each other"),
+            Self::RangesInconsistent => f.write_str("held because the ranges contradict each other"),
             Self::PlannerFault { message } | Self::PlannerSilent { message } => {
                 write!(f, "held because of the planner: {message}")
             }

@@ -49,12 +49,12 @@ impl Event {
             EventKind::FixFailed { error, repeated: false } => {
                 line(Severity::Watch, "ae", format!("no fix: {error}"))
             }
-            EventKind::StationExcluded { station, reason } => line(
+            EventKind::StationRejected { station, reason } => line(
                 Severity::Watch,
                 "ae",
                 format!("station {} left out: {}", station.0, exclusion_text(reason)),
             ),
-            EventKind::StationRegained { station } => {
+            EventKind::StationRestored { station } => {
                 line(Severity::Info, "ae", format!("station {} used again", station.0))
             }
             EventKind::PositionLost { error_m, limit_m } => line(
@@ -65,14 +65,14 @@ impl Event {
             EventKind::PositionRegained { error_m } => {
                 line(Severity::Info, "ae", format!("position regained: 95 % error {error_m:.2} m"))
             }
-            EventKind::PositionAlarmed { chi2, degrees_of_freedom } => line(
+            EventKind::RangesInconsistent { chi2, degrees_of_freedom } => line(
                 Severity::Crit,
                 "ae",
                 format!(
                     "ranges contradict each other: chi-squared {chi2:.0}, {degrees_of_freedom} degrees of freedom"
                 ),
             ),
-            EventKind::PositionTrusted => line(Severity::Info, "ae", "ranges agree again".into()),
+            EventKind::RangesConsistent => line(Severity::Info, "ae", "ranges agree again".into()),
             EventKind::ObstacleFound { obstacle } => {
                 let at = obstacle.shape.center();
                 line(
@@ -86,7 +86,7 @@ impl Event {
             | EventKind::PlannerRejected { .. }
             | EventKind::ParametersChanged { .. }
             | EventKind::Planned { .. }
-            | EventKind::PlannerSaid { .. }
+            | EventKind::PlannerLogged { .. }
             | EventKind::PlannerLate { .. }
             | EventKind::PlannerFailed { .. } => of_planner(&self.kind)?,
             EventKind::Truth { collided: true, pose, .. } => line(
@@ -100,9 +100,9 @@ impl Event {
                 let severity = if *outcome == Outcome::Complete { Severity::Info } else { Severity::Warn };
                 line(severity, "mission", format!("ended {}: {reason}", outcome.word()))
             }
-            EventKind::TetherAlarmed { .. } | EventKind::TetherEased { .. } | EventKind::Certified { .. } => {
-                of_tether(&self.kind)?
-            }
+            EventKind::TetherAlarmRaised { .. }
+            | EventKind::TetherAlarmCleared { .. }
+            | EventKind::Certified { .. } => of_tether(&self.kind)?,
             EventKind::Truth { .. }
             | EventKind::TetherTruth { .. }
             | EventKind::Tethered { .. }
@@ -145,7 +145,7 @@ fn of_planner(kind: &EventKind) -> Option<LogLine> {
             let part = if *complete { "" } else { ", only part of the way" };
             line(Severity::Info, "plan", format!("{planner} planned {length_m:.1} m{part}"))
         }
-        EventKind::PlannerSaid { planner, level, message } => match level {
+        EventKind::PlannerLogged { planner, level, message } => match level {
             LogLevel::Debug => return None,
             LogLevel::Info => line(Severity::Info, "plan", format!("{planner}: {message}")),
             LogLevel::Warn => line(Severity::Watch, "plan", format!("{planner}: {message}")),
@@ -174,12 +174,12 @@ pub fn late_text(planner: &str, ticks: u64) -> String {
 
 fn of_tether(kind: &EventKind) -> Option<LogLine> {
     Some(match kind {
-        EventKind::TetherAlarmed { alarm, reached } => {
+        EventKind::TetherAlarmRaised { alarm, reached } => {
             let severity = if *reached { Severity::Crit } else { Severity::Warn };
             let near = if *reached || *alarm == TetherAlarm::Strayed { "" } else { "near a limit: " };
             line(severity, "tether", format!("{near}{alarm}"))
         }
-        EventKind::TetherEased { alarm } => {
+        EventKind::TetherAlarmCleared { alarm } => {
             line(Severity::Info, "tether", format!("{} well within its limit again", alarm.word()))
         }
         EventKind::Certified { planner, refused, certificate } => line(
@@ -195,7 +195,7 @@ fn hold_severity(by: &HoldReason) -> Severity {
     match by {
         HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced => Severity::Info,
         HoldReason::PositionLost
-        | HoldReason::PositionAlarmed
+        | HoldReason::RangesInconsistent
         | HoldReason::PlannerFault { .. }
         | HoldReason::PlannerSilent { .. }
         | HoldReason::PlanRefused { .. }
@@ -231,11 +231,12 @@ fn certificate_text(planner: &str, refused: bool, certificate: &Certificate) -> 
         (true, _) => format!("plan of {planner} refused: {reasons}"),
         (false, false) => format!("plan of {planner} flies without a certificate: {reasons}"),
         (false, true) => {
-            let left =
-                certificate.left_out_m.map_or_else(String::new, |m| format!(", {m:.1} m left out on return"));
+            let left = certificate
+                .end_length_m
+                .map_or_else(String::new, |m| format!(", {m:.1} m left out on return"));
             format!(
                 "plan of {planner} certified: at most {:.1} m of cable out{left}",
-                certificate.max_cable_m
+                certificate.tether_length_max_m
             )
         }
     }

@@ -24,7 +24,7 @@ pub enum TetherAlarm {
         /// Cable out, metres.
         out_m: f64,
         /// Cable there is, metres.
-        reel_m: f64,
+        reel_length_m: f64,
     },
     /// The cable wraps one obstacle.
     Wrap {
@@ -36,7 +36,7 @@ pub enum TetherAlarm {
         limit_rad: f64,
     },
     /// All wraps together.
-    SumOfWraps {
+    WrapTotal {
         /// Their sum, radians.
         sum_rad: f64,
         /// Largest sum allowed, radians.
@@ -50,7 +50,7 @@ pub enum TetherAlarm {
         explained_m: f64,
     },
     /// The hull does not fit along the cable.
-    NoWayHome,
+    NoReturnPath,
     /// The robot has left its plan across a line that the plan never crosses: another plan is due.
     Strayed,
 }
@@ -61,9 +61,9 @@ impl TetherAlarm {
         match self {
             Self::Reel { .. } => "reel",
             Self::Wrap { .. } => "wrap",
-            Self::SumOfWraps { .. } => "sum of wraps",
+            Self::WrapTotal { .. } => "sum of wraps",
             Self::Snag { .. } => "snag",
-            Self::NoWayHome => "way home",
+            Self::NoReturnPath => "way home",
             Self::Strayed => "stray",
         }
     }
@@ -72,14 +72,14 @@ impl TetherAlarm {
 impl fmt::Display for TetherAlarm {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Reel { out_m, reel_m } => {
-                write!(f, "{out_m:.1} m of cable out, the reel holds {reel_m:.1} m")
+            Self::Reel { out_m, reel_length_m } => {
+                write!(f, "{out_m:.1} m of cable out, the reel holds {reel_length_m:.1} m")
             }
             Self::Wrap { on, wrap_rad, limit_rad } => {
                 let (wrap, limit) = (wrap_rad.to_degrees(), limit_rad.to_degrees());
                 write!(f, "the cable wraps {wrap:.0} deg round {on}, limit {limit:.0} deg")
             }
-            Self::SumOfWraps { sum_rad, limit_rad } => {
+            Self::WrapTotal { sum_rad, limit_rad } => {
                 let (sum, limit) = (sum_rad.to_degrees(), limit_rad.to_degrees());
                 write!(f, "all wraps together reach {sum:.0} deg, limit {limit:.0} deg")
             }
@@ -89,7 +89,7 @@ impl fmt::Display for TetherAlarm {
                  something that is not on the map"
             ),
             Self::Strayed => f.write_str("the robot strayed across a cut of its plan; planning again"),
-            Self::NoWayHome => f.write_str("the hull does not fit back along the cable: no way home"),
+            Self::NoReturnPath => f.write_str("the hull does not fit back along the cable: no way home"),
         }
     }
 }

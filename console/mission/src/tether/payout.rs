@@ -46,14 +46,14 @@ impl Payout {
         &mut self,
         measured_m: Option<f64>,
         explained: Option<Explained>,
-        reel_m: f64,
+        reel_length_m: f64,
         passed_s: f64,
     ) {
         self.measured_m = measured_m.filter(|out_m| out_m.is_finite());
         let (Some(out_m), Some(explained)) = (self.measured_m, explained) else { return };
         let sag_m = SLACK_SHARE * explained.length_m;
         // A reel at its end can pay out no more: what has not come to light by then never will.
-        let is_at_end = out_m >= reel_m - AT_END_M;
+        let is_at_end = out_m >= reel_length_m - AT_END_M;
         let slack_m = SLACK_M + explained.error_m + if is_at_end { 0.0 } else { sag_m };
         let excess_m = out_m - explained.length_m;
         if excess_m > slack_m {
@@ -74,7 +74,7 @@ impl Payout {
     }
 
     /// Whether the cable counts as caught.
-    pub(super) fn is_caught(&self) -> bool {
+    pub(super) fn is_snagged(&self) -> bool {
         self.beyond_s > SNAG_S
     }
 
@@ -97,17 +97,17 @@ mod tests {
     use super::*;
 
     /// Whether a cable counts as caught after five seconds of which the reel has paid out so much more than explained.
-    fn is_caught(excess_m: f64, reel_m: f64) -> bool {
+    fn is_snagged(excess_m: f64, reel_length_m: f64) -> bool {
         let mut payout = Payout::default();
         let explained = Explained { length_m: 20.0, error_m: 0.1, points: 100 };
-        (0..50).for_each(|_| payout.take(Some(20.0 + excess_m), Some(explained), reel_m, 0.1));
-        payout.is_caught()
+        (0..50).for_each(|_| payout.take(Some(20.0 + excess_m), Some(explained), reel_length_m, 0.1));
+        payout.is_snagged()
     }
 
     #[test]
     fn at_the_end_of_the_reel_a_little_cable_too_much_tells_as_well() {
-        assert!(is_caught(0.8, 30.0) && !is_caught(0.4, 30.0));
-        assert!(is_caught(0.4, 20.41) && !is_caught(0.2, 20.21));
+        assert!(is_snagged(0.8, 30.0) && !is_snagged(0.4, 30.0));
+        assert!(is_snagged(0.4, 20.41) && !is_snagged(0.2, 20.21));
     }
 
     #[test]
@@ -119,10 +119,10 @@ mod tests {
         };
         taken(&mut payout, 20.0, 200);
         taken(&mut payout, 21.0, 240);
-        assert!(payout.is_caught());
+        assert!(payout.is_snagged());
         assert_eq!(payout.points_to_go_back_to(240), 200 - 40 - 10);
         assert_eq!(payout.points_to_go_back_to(100), 100 - 10, "already on the way back, further than that");
         taken(&mut payout, 20.05, 150);
-        assert!(!payout.is_caught());
+        assert!(!payout.is_snagged());
     }
 }

@@ -76,7 +76,7 @@ impl Writer {
     fn tether(&mut self, limits: Option<&TetherLimits>) -> &mut Self {
         self.flag(limits.is_some());
         if let Some(limits) = limits {
-            self.f64(limits.reel_m).f64(limits.max_wrap_rad).f64(limits.max_sum_wrap_rad);
+            self.f64(limits.reel_length_m).f64(limits.wrap_max_rad).f64(limits.wrap_total_max_rad);
         }
         self
     }
@@ -180,8 +180,8 @@ impl Body<'_> {
         if !self.flag()? {
             return Ok(None);
         }
-        let (reel_m, max_wrap_rad, max_sum_wrap_rad) = (self.f64()?, self.f64()?, self.f64()?);
-        Ok(Some(TetherLimits { reel_m, max_wrap_rad, max_sum_wrap_rad }))
+        let (reel_length_m, wrap_max_rad, wrap_total_max_rad) = (self.f64()?, self.f64()?, self.f64()?);
+        Ok(Some(TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad }))
     }
 
     pub(crate) fn request(&mut self) -> Read<PlanAsk> {

@@ -97,7 +97,7 @@ impl Problem {
             .collect();
         let candidates = along_wall(&drawing.boundary);
         let look = |from: &Point, to: &Point| {
-            let is_heard = !forecast.needs_sight || is_in_sight(&map, *from, *to);
+            let is_heard = !forecast.needs_line_of_sight || is_in_sight(&map, *from, *to);
             if is_heard { forecast.seen(*from, *to) } else { Seen::default() }
         };
         let seen = candidates.iter().map(|to| cells.iter().map(|from| look(from, to)).collect()).collect();

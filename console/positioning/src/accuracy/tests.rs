@@ -7,8 +7,12 @@ use crate::{
 };
 use world::{Boundary, Obstacle, ObstacleId, Shape};
 
-const FORECAST: Forecast =
-    Forecast { noise: RangeNoise::Uniform { ratio: 0.05 }, repetitions: 20, needs_sight: true, cell_m: 0.5 };
+const FORECAST: Forecast = Forecast {
+    noise: RangeNoise::Uniform { ratio: 0.05 },
+    repetitions: 20,
+    needs_line_of_sight: true,
+    cell_m: 0.5,
+};
 
 fn tank(stations: Vec<Station>, columns: &[(f64, f64, f64)]) -> World {
     let column = |(id, (x, y, radius_m)): (u32, &(f64, f64, f64))| Obstacle {
@@ -51,7 +55,7 @@ fn a_column_casts_a_shadow_where_two_stations_are_left() {
     assert_eq!(accuracy.at(behind).unwrap(), Accuracy { error_95_m: None, gdop: None, heard: 2 });
     assert_eq!(accuracy.at(beside).unwrap().heard, 3);
     assert_eq!(accuracy.at(Point::new(5.0, 0.0)), None, "a column is no floor");
-    let through = AccuracyMap::new(&world, &Forecast { needs_sight: false, ..FORECAST });
+    let through = AccuracyMap::new(&world, &Forecast { needs_line_of_sight: false, ..FORECAST });
     assert_eq!(through.at(behind).unwrap().heard, 3);
 }
 

@@ -51,7 +51,7 @@ pub(crate) const PLANNER_SCALARS: &str = "scalars/planner";
 
 pub(crate) const TETHER_OUT: &str = "scalars/tether/out";
 pub(crate) const TETHER_OUT_TRUE: &str = "scalars/tether/out_true";
-pub(crate) const TETHER_HOME: &str = "scalars/tether/way_home";
+pub(crate) const TETHER_HOME: &str = "scalars/tether/return_path";
 pub(crate) const TETHER_WRAP: &str = "scalars/tether_wrap/largest";
 pub(crate) const TETHER_SUM: &str = "scalars/tether_wrap/sum";
 

@@ -114,7 +114,7 @@ fn held(by: &HoldReason) -> &'static str {
         HoldReason::Operator | HoldReason::PlannerReplaced => HELD,
         HoldReason::Stepped => STEPPED,
         HoldReason::PositionLost => HELD_LOST,
-        HoldReason::PositionAlarmed => HELD_ALARMED,
+        HoldReason::RangesInconsistent => HELD_ALARMED,
         HoldReason::PlannerFault { .. } | HoldReason::PlannerSilent { .. } => HELD_FAULT,
         HoldReason::Stuck { .. } => HELD_STUCK,
         HoldReason::Tether { .. } => HELD_TETHER,

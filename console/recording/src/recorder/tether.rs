@@ -65,17 +65,23 @@ impl Tether {
         match event {
             EventKind::TetherTruth { length_m, .. } => self.out_true.push(at, Number(*length_m)),
             EventKind::Tethered {
-                length_m, contacts, max_wrap_rad, sum_wrap_rad, way_home_m, line, ..
+                length_m,
+                contacts,
+                wrap_max_rad,
+                wrap_total_rad,
+                return_length_m,
+                line,
+                ..
             } => {
                 self.line.push(at, Strip(line.iter().map(|point| flat(*point)).collect()));
                 self.contacts.push(at, Spots(contacts.iter().map(|contact| flat(contact.at)).collect()));
                 self.out.push(at, Number(*length_m));
                 // A gap in the curve: there is no way home.
-                if let Some(way_m) = way_home_m {
+                if let Some(way_m) = return_length_m {
                     self.home.push(at, Number(*way_m));
                 }
-                self.wrap.push(at, Number(max_wrap_rad.to_degrees()));
-                self.sum.push(at, Number(sum_wrap_rad.to_degrees()));
+                self.wrap.push(at, Number(wrap_max_rad.to_degrees()));
+                self.sum.push(at, Number(wrap_total_rad.to_degrees()));
             }
             _ => {}
         }

@@ -68,9 +68,9 @@ fn every_tick_has_its_row_of_truth_estimate_and_figures() {
 #[test]
 fn a_tethered_run_has_the_cable_and_its_figures_in_every_tick() {
     let mut events = events(20);
-    let limits = world::tether::Limits { reel_m: 30.0, max_wrap_rad: 3.0, max_sum_wrap_rad: 6.0 };
+    let limits = world::tether::Limits { reel_length_m: 30.0, wrap_max_rad: 3.0, wrap_total_max_rad: 6.0 };
     let anchor = world::Point::origin();
-    let tether = mission::TetherConfig { anchor, limits, friction: 0.3, fly_uncertified: false };
+    let tether = mission::TetherConfig { anchor, limits, friction: 0.3, allow_uncertified: false };
     if let EventKind::RunOpened(run) = &mut events[0].kind {
         run.mission.tether = Some(tether);
     }
@@ -90,14 +90,14 @@ fn a_tethered_run_has_the_cable_and_its_figures_in_every_tick() {
                 paid_out_m: None,
                 free_m: 30.0 - length_m,
                 contacts: if bears { vec![contact] } else { vec![] },
-                max_wrap_rad: 1.0,
-                sum_wrap_rad: 1.0,
+                wrap_max_rad: 1.0,
+                wrap_total_rad: 1.0,
                 pull_factor: 1.3,
-                way_home_m: bears.then_some(length_m),
+                return_length_m: bears.then_some(length_m),
                 line: vec![anchor, at],
             };
             let truth =
-                EventKind::TetherTruth { length_m, max_wrap_rad: 1.0, sum_wrap_rad: 1.0, detour_m: 0.0 };
+                EventKind::TetherTruth { length_m, wrap_max_rad: 1.0, wrap_total_rad: 1.0, detour_m: 0.0 };
             [Event { kind: truth, ..event.clone() }, Event { kind, ..event }]
         })
         .collect();
@@ -109,7 +109,7 @@ fn a_tethered_run_has_the_cable_and_its_figures_in_every_tick() {
         ("map/world/tether/contacts", "Points2D:positions", 20),
         ("scalars/tether/out", "Scalars:scalars", 20),
         ("scalars/tether/out_true", "Scalars:scalars", 20),
-        ("scalars/tether/way_home", "Scalars:scalars", 10),
+        ("scalars/tether/return_path", "Scalars:scalars", 10),
         ("scalars/tether_wrap/largest", "Scalars:scalars", 20),
     ] {
         assert_eq!(rows(&content, entity, component).len(), wanted, "{entity}");

@@ -157,10 +157,10 @@ impl Robot {
         }
         if part(6) {
             let reason = Exclusion::Residual { residual_m: 0.61, gate_m: 0.2 };
-            kinds.push(EventKind::StationExcluded { station: StationId(2), reason });
+            kinds.push(EventKind::StationRejected { station: StationId(2), reason });
         }
         if part(7) {
-            kinds.push(EventKind::StationRegained { station: StationId(2) });
+            kinds.push(EventKind::StationRestored { station: StationId(2) });
         }
         if part(8) {
             kinds.push(EventKind::PositionLost { error_m: 0.52, limit_m: 0.4 });
@@ -178,7 +178,7 @@ impl Robot {
         }
         if part(14) {
             let message = "target stands in an obstacle, skipped".into();
-            kinds.push(EventKind::PlannerSaid { planner: "apf".into(), level: LogLevel::Warn, message });
+            kinds.push(EventKind::PlannerLogged { planner: "apf".into(), level: LogLevel::Warn, message });
         }
     }
 
@@ -198,7 +198,7 @@ impl Robot {
             let planner = if driven == tick { "rpf".into() } else { "apf".into() };
             kinds.push(EventKind::Planned {
                 ask: Some(ask(tick)),
-                way_home: 0,
+                return_path: 0,
                 planner,
                 reason: Reason::Start,
                 path,
@@ -352,7 +352,7 @@ fn opened() -> RunOpened {
             clearance_m: 0.1,
             cell_m: 0.1,
             position_limit_m: 0.4,
-            lost_hold_s: 5.0,
+            position_lost_hold_s: 5.0,
             stuck_s: 60.0,
             start_heading_sigma_rad: 0.01,
             odometry_sigma_per_m: 0.02,

@@ -130,9 +130,9 @@ fn floor_that_the_cable_does_not_lead_to_is_reported_as_beyond_the_reel_only_if_
     let mut run = round_tank(0.05);
     run.mission.tether = Some(mission::TetherConfig {
         anchor: Point::new(0.0, -4.5),
-        limits: world::tether::Limits { reel_m: 6.6, max_wrap_rad: 9.0, max_sum_wrap_rad: 9.0 },
+        limits: world::tether::Limits { reel_length_m: 6.6, wrap_max_rad: 9.0, wrap_total_max_rad: 9.0 },
         friction: 0.3,
-        fly_uncertified: false,
+        allow_uncertified: false,
     });
     for (is_whole, north) in [(true, MissReason::NotPlanned), (false, MissReason::BeyondReel)] {
         let mut evidence = Evidence::new(&run);

@@ -52,7 +52,7 @@ fn opened() -> Value {
         "task": { "follow": { "path": [[-1.75, 0.0], [1.75, 0.0]], "tolerance_m": 0.2 } },
         "start": { "position": [-1.75, 0.0], "heading_rad": 0.0 },
         "start_sigma_m": 0.0, "tick_s": 0.5, "time_limit_s": 100.0, "limits": limits, "swath_m": 1.0,
-        "clearance_m": 0.0, "cell_m": 0.5, "position_limit_m": 0.5, "lost_hold_s": 2.0, "stuck_s": 30.0,
+        "clearance_m": 0.0, "cell_m": 0.5, "position_limit_m": 0.5, "position_lost_hold_s": 2.0, "stuck_s": 30.0,
         "start_heading_sigma_rad": 0.02, "odometry_turn_sigma_per_rad": 0.02, "gyro_sigma_rad_per_s": 0.001,
         "odometry_sigma_per_m": 0.02, "range_sigma_ratio": 0.03,
         "planner": { "id": "rpf", "parameters": { "k_rep": 2.0 } }, "fallback": null,
@@ -115,7 +115,7 @@ fn the_path_is_as_long_as_the_true_way() {
     ])
     .summary();
     assert_eq!(run.path_length_m, Some(6.0));
-    assert_eq!((run.min_clearance_m, run.collisions), (Some(0.2), Some(1)));
+    assert_eq!((run.clearance_min_m, run.collisions), (Some(0.2), Some(1)));
     assert_eq!((run.ticks, run.mission_time_s, run.outcome), (Some(2), Some(1.0), None));
 }
 
@@ -149,7 +149,7 @@ fn lost_time_counts_until_regained_or_the_end() {
         (10, lost),
         (14, truth(0.0, 0.0, 1.0, false)),
     ]);
-    assert_eq!(run.summary().positioning.unwrap().lost_s, 2.0 + 2.0);
+    assert_eq!(run.summary().positioning.unwrap().position_lost_s, 2.0 + 2.0);
 }
 
 #[test]

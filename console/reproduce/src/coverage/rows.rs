@@ -45,22 +45,22 @@ const FIGURES: &[Figure] = &[
     figure("length_m", "m", Worst::Omitted, |scan, _| scan.length_m),
     figure("turns", "", Worst::Most, |scan, _| scan.turns as f64),
     figure("rotation_turns", "", Worst::Most, |scan, _| scan.rotation_turns),
-    figure("max_cable_m", "m", Worst::Omitted, |scan, _| scan.certificate.max_cable_m),
+    figure("tether_length_max_m", "m", Worst::Omitted, |scan, _| scan.certificate.tether_length_max_m),
     figure("max_cable_over_eccentricity", "", Worst::Most, |scan, _| {
-        scan.certificate.max_cable_m / scan.certificate.eccentricity_m.max(1e-9)
+        scan.certificate.tether_length_max_m / scan.certificate.eccentricity_m.max(1e-9)
     }),
     figure("max_excess_m", "m", Worst::Most, |_, haul| haul.max_excess_m),
-    figure("max_wrap_deg", "deg", Worst::Most, |scan, _| scan.certificate.max_wrap_rad.to_degrees()),
-    figure("sum_wrap_deg", "deg", Worst::Most, |scan, _| scan.certificate.max_sum_wrap_rad.to_degrees()),
+    figure("wrap_max_deg", "deg", Worst::Most, |scan, _| scan.certificate.wrap_max_rad.to_degrees()),
+    figure("wrap_total_deg", "deg", Worst::Most, |scan, _| scan.certificate.wrap_total_max_rad.to_degrees()),
     figure("capstan_pull", "", Worst::Most, |scan, _| {
-        capstan_factor(FRICTION, scan.certificate.max_sum_wrap_rad)
+        capstan_factor(FRICTION, scan.certificate.wrap_total_max_rad)
     }),
     figure("max_contacts", "", Worst::Most, |_, haul| haul.max_contacts as f64),
     figure("contact_share", "", Worst::Omitted, |_, haul| haul.contact_share),
     figure("detour_share", "", Worst::Most, |_, haul| haul.detour_share),
     figure("hook_share", "", Worst::Most, |_, haul| haul.hook_share),
     figure("own_cable_share", "", Worst::Omitted, |_, haul| haul.own_cable_share),
-    figure("left_out_m", "m", Worst::Most, |scan, _| scan.certificate.left_out_m.unwrap_or(0.0)),
+    figure("end_length_m", "m", Worst::Most, |scan, _| scan.certificate.end_length_m.unwrap_or(0.0)),
     figure("collisions", "", Worst::Most, |scan, _| scan.certificate.collisions as f64),
     figure("cut_crossings", "", Worst::Most, |scan, _| scan.certificate.cut_crossings as f64),
 ];
@@ -88,7 +88,7 @@ const RATES: &[Rate] = &[
 fn is_reeled_in(one: &Measured) -> bool {
     one.flown.as_ref().is_some_and(|(scan, _)| {
         let certificate = &scan.certificate;
-        certificate.crossings_left == 0 && certificate.left_out_m.is_some_and(|left_m| left_m <= IN_M)
+        certificate.crossings_left == 0 && certificate.end_length_m.is_some_and(|left_m| left_m <= IN_M)
     })
 }
 
@@ -144,7 +144,7 @@ fn named_one(metric: &str, seed: u64, one: &Measured) -> String {
     let why = match (metric, scan) {
         ("coverage_goal_rate", Some(scan)) => Some(format!("{:.2} %", 100.0 * scan.coverage_reachable)),
         ("reeled_in_rate", Some(scan)) => {
-            Some(format!("{:.1} m out", scan.certificate.left_out_m.unwrap_or(0.0)))
+            Some(format!("{:.1} m out", scan.certificate.end_length_m.unwrap_or(0.0)))
         }
         ("certified_rate", Some(scan)) => scan.certificate.reasons.first().cloned(),
         _ => one.reason.clone(),
@@ -180,7 +180,7 @@ mod tests {
         );
         assert!(reeled.note.contains("seed 8 (9.0 m out)"), "{}", reeled.note);
         assert!(of("certified_rate").note.contains("stay out on return"), "{}", of("certified_rate").note);
-        assert_eq!((of("left_out_m").n, of("left_out_m_max").note.as_str()), (2, "seed 8"));
+        assert_eq!((of("end_length_m").n, of("left_out_m_max").note.as_str()), (2, "seed 8"));
         assert_eq!((of("plan_time_ms").n, of("max_contacts_max").ours), (2, Some(1.0)));
         assert!(of("capstan_pull").ours.unwrap() > 1.0 && of("own_cable_share").ours.unwrap() > 0.0);
     }

@@ -48,16 +48,16 @@ const TROUBLES: [Trouble; 13] = [
     Trouble {
         id: "outliers-10",
         columns: false,
-        set: |d| (d.outlier_chance, d.outlier_factor) = (0.1, 10.0),
+        set: |d| (d.outlier_probability, d.outlier_factor) = (0.1, 10.0),
     },
-    Trouble { id: "late-pings-25", columns: false, set: |d| d.late_ping_chance = 0.25 },
-    Trouble { id: "nlos-20", columns: false, set: |d| d.nlos_chance = 0.2 },
+    Trouble { id: "late-pings-25", columns: false, set: |d| d.late_ping_probability = 0.25 },
+    Trouble { id: "nlos-20", columns: false, set: |d| d.nlos_probability = 0.2 },
     Trouble { id: "bias-1", columns: false, set: |_| {} },
     Trouble { id: "columns-creeping", columns: true, set: |d| d.behind_columns = BehindColumns::Creeping },
     Trouble { id: "columns-late", columns: true, set: |d| d.behind_columns = BehindColumns::Late },
     Trouble { id: "columns-echo", columns: true, set: |d| d.behind_columns = BehindColumns::WallEcho },
     Trouble { id: "columns-silent", columns: true, set: |d| d.behind_columns = BehindColumns::Silent },
-    Trouble { id: "dropout-30", columns: false, set: |d| d.ping_dropout = 0.3 },
+    Trouble { id: "dropout-30", columns: false, set: |d| d.ping_dropout_probability = 0.3 },
     Trouble { id: "survey-0.05", columns: false, set: |d| d.survey_sigma_m = 0.05 },
     Trouble { id: "sound+1", columns: false, set: |d| d.sound_speed_error_ratio = 0.01 },
     Trouble { id: "sound+2", columns: false, set: |d| d.sound_speed_error_ratio = 0.02 },
@@ -81,7 +81,7 @@ fn cases() -> Vec<Case> {
         .into_iter()
         .flat_map(|layout| TROUBLES.map(|trouble| (layout, trouble)))
         .map(|(layout, trouble)| {
-            let mut disturbances = Disturbances { late_mean_m: 1.0, ..Disturbances::default() };
+            let mut disturbances = Disturbances { excess_range_mean_m: 1.0, ..Disturbances::default() };
             (trouble.set)(&mut disturbances);
             let scene = Scene::new(layout, NoiseModel::Uniform { ratio: 0.05 }, 20).disturbed(disturbances);
             Case {
@@ -131,7 +131,7 @@ fn session(case: &Case, seeds: &[u64], methods: &[Method], calibrates: bool) -> 
             let mut scene = scene.clone();
             if case.biased {
                 let station = StationId((seed % n) as u32 + 1);
-                let fault = StationFault { station, from_s: 0.0, to_s: 1.0, late_m: Some(1.0) };
+                let fault = StationFault { station, from_s: 0.0, to_s: 1.0, excess_range_m: Some(1.0) };
                 scene.ae.disturbances.faults = vec![fault];
             }
             (truth, scene.sounder(*seed).cycle(0.0, truth))

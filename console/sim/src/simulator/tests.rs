@@ -72,7 +72,7 @@ fn config() -> SimConfig {
         tick_s: 0.1,
         movers: vec![],
         tether_anchor: None,
-        reel_m: None,
+        reel_length_m: None,
     }
 }
 
@@ -145,7 +145,7 @@ proptest! {
             period_s: n(10), repetitions: 2, noise: NoiseModel::Gaussian { sigma_ratio: n(11) }, dropout: n(5),
             outages_s: vec![(n(6), n(7))],
             disturbances: Disturbances {
-                outlier_chance: n(8), outlier_factor: n(9), late_mean_m: n(10), nlos_chance: n(11),
+                outlier_probability: n(8), outlier_factor: n(9), excess_range_mean_m: n(10), nlos_probability: n(11),
                 survey_sigma_m: n(3), sound_speed_error_ratio: n(4), ..Disturbances::default()
             },
         });
@@ -342,11 +342,11 @@ fn what_runs_into_a_robot_that_stands_still_is_a_collision() {
 }
 
 /// A robot on a tether from (-6, 0), in a tank without columns.
-fn tethered(reel_m: f64) -> Simulator {
+fn tethered(reel_length_m: f64) -> Simulator {
     let mut config = config();
     config.world.obstacles.clear();
     config.robot.start = Pose::new(-6.0, 0.0, 0.0);
-    (config.tether_anchor, config.reel_m) = (Some(Point::new(-6.0, 0.0)), Some(reel_m));
+    (config.tether_anchor, config.reel_length_m) = (Some(Point::new(-6.0, 0.0)), Some(reel_length_m));
     Simulator::new(config, 1)
 }
 

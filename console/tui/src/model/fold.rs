@@ -37,13 +37,13 @@ impl Model {
             EventKind::Ranged { .. }
             | EventKind::Fixed { .. }
             | EventKind::FixFailed { .. }
-            | EventKind::StationExcluded { .. }
-            | EventKind::StationRegained { .. }
+            | EventKind::StationRejected { .. }
+            | EventKind::StationRestored { .. }
             | EventKind::Estimated { .. }
             | EventKind::PositionLost { .. }
             | EventKind::PositionRegained { .. }
-            | EventKind::PositionAlarmed { .. }
-            | EventKind::PositionTrusted => self.locate(event),
+            | EventKind::RangesInconsistent { .. }
+            | EventKind::RangesConsistent => self.locate(event),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
             EventKind::PlannerPrepared { .. }
@@ -85,8 +85,8 @@ impl Model {
                 });
             }
             EventKind::Tethered { .. }
-            | EventKind::TetherAlarmed { .. }
-            | EventKind::TetherEased { .. }
+            | EventKind::TetherAlarmRaised { .. }
+            | EventKind::TetherAlarmCleared { .. }
             | EventKind::Certified { .. } => self.tethered(event),
             EventKind::Held { by, resumes } => self.hold(event, &Hold { by: by.clone(), resumes: *resumes }),
             EventKind::Resumed => {
@@ -101,7 +101,7 @@ impl Model {
             | EventKind::TetherTruth { .. }
             | EventKind::Snapshotted { .. }
             | EventKind::Discarded { .. }
-            | EventKind::PlannerSaid { .. }
+            | EventKind::PlannerLogged { .. }
             | EventKind::Uncounted { .. } => {}
         }
     }
@@ -162,16 +162,16 @@ impl Model {
     /// Takes in an event of the tether.
     fn tethered(&mut self, event: &Event) {
         match &event.kind {
-            EventKind::TetherAlarmed { alarm, reached } => {
+            EventKind::TetherAlarmRaised { alarm, reached } => {
                 if matches!(alarm, TetherAlarm::Snag { .. }) {
-                    self.tether.get_or_insert_default().is_caught = true;
+                    self.tether.get_or_insert_default().is_snagged = true;
                 }
                 let severity = if *reached { Severity::Crit } else { Severity::Warn };
                 self.raise(event, Cause::Tether(alarm.word().to_owned()), severity, alarm.to_string());
             }
-            EventKind::TetherEased { alarm } => {
+            EventKind::TetherAlarmCleared { alarm } => {
                 if matches!(alarm, TetherAlarm::Snag { .. }) {
-                    self.tether.get_or_insert_default().is_caught = false;
+                    self.tether.get_or_insert_default().is_snagged = false;
                 }
                 self.alarms.clear(&Cause::Tether(alarm.word().to_owned()));
             }
@@ -205,8 +205,8 @@ impl Model {
                 self.position.failure = Some(error.to_string());
                 self.raise(event, Cause::NoFix, Severity::Watch, format!("no fix: {error}"));
             }
-            EventKind::StationExcluded { station, reason } => self.exclude(event, *station, reason),
-            EventKind::StationRegained { station } => self.alarms.clear(&Cause::Station(*station)),
+            EventKind::StationRejected { station, reason } => self.exclude(event, *station, reason),
+            EventKind::StationRestored { station } => self.alarms.clear(&Cause::Station(*station)),
             EventKind::Estimated { pose } => {
                 self.position.estimated(event.t_s, *pose);
                 self.trail.add(pose.position);
@@ -221,7 +221,7 @@ impl Model {
                 self.position.lost = false;
                 self.alarms.clear(&Cause::PositionLost);
             }
-            EventKind::PositionAlarmed { .. } => {
+            EventKind::RangesInconsistent { .. } => {
                 self.raise(
                     event,
                     Cause::Contradiction,
@@ -230,7 +230,7 @@ impl Model {
                 );
                 self.withdraw_question();
             }
-            EventKind::PositionTrusted => self.alarms.clear(&Cause::Contradiction),
+            EventKind::RangesConsistent => self.alarms.clear(&Cause::Contradiction),
             _ => {}
         }
     }

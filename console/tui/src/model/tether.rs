@@ -14,13 +14,13 @@ pub struct Tether {
     /// Where it bears.
     pub contacts: Vec<TetherContact>,
     /// Sum of all wraps, radians.
-    pub sum_wrap_rad: f64,
+    pub wrap_total_rad: f64,
     /// How many times harder the wraps make it to pull.
     pub pull_factor: f64,
     /// Length of the way back along the cable, metres; `None` if there is none.
-    pub way_home_m: Option<f64>,
+    pub return_length_m: Option<f64>,
     /// Whether the reel has paid out more than the map explains: how the cable lies is not known then.
-    pub is_caught: bool,
+    pub is_snagged: bool,
     /// The cable from the anchor to the robot.
     pub line: Vec<Point>,
     /// Whether the last plan was certified; `None` before the first.
@@ -35,16 +35,16 @@ impl Tether {
             paid_out_m,
             free_m,
             contacts,
-            sum_wrap_rad,
+            wrap_total_rad,
             pull_factor,
-            way_home_m,
+            return_length_m,
             line,
             ..
         } = event
         {
             self.length_m = paid_out_m.unwrap_or(*length_m);
-            (self.free_m, self.sum_wrap_rad) = (*free_m, *sum_wrap_rad);
-            (self.pull_factor, self.way_home_m) = (*pull_factor, *way_home_m);
+            (self.free_m, self.wrap_total_rad) = (*free_m, *wrap_total_rad);
+            (self.pull_factor, self.return_length_m) = (*pull_factor, *return_length_m);
             (self.contacts, self.line) = (contacts.clone(), line.clone());
         }
     }

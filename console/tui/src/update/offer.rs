@@ -128,7 +128,7 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         // These say themselves what would be right, as far as there is anything.
         Refusal::NotLive { .. }
         | Refusal::PositionLost { .. }
-        | Refusal::PositionAlarmed
+        | Refusal::RangesInconsistent
         | Refusal::NoPlanRefused => None,
     }
 }

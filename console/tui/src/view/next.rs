@@ -87,7 +87,7 @@ fn idle(model: &Model) -> Clauses {
 
 fn running(model: &Model) -> Clauses {
     if model.position.lost {
-        let hold_s = model.run.as_ref().map_or(0.0, |run| run.mission.lost_hold_s);
+        let hold_s = model.run.as_ref().map_or(0.0, |run| run.mission.position_lost_hold_s);
         let text = format!("POSITION LOST: automatic HOLD after {} s.", text::number(hold_s, 1));
         return (Role::Crit, vec![text]);
     }
@@ -143,7 +143,7 @@ fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
 /// A hold that only an order ends, and none that moves the robot is accepted now.
 fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec<String> {
     let state = match by {
-        HoldReason::PositionLost | HoldReason::PositionAlarmed => format!("HELD, {trouble}."),
+        HoldReason::PositionLost | HoldReason::RangesInconsistent => format!("HELD, {trouble}."),
         by => format!("{}; {trouble}.", state(by)),
     };
     let planner = by.blames_planner().then(|| "P: change planner.".to_owned());
@@ -158,7 +158,7 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
     let (state, remedies): (&str, &[&str]) = match by {
         // Why the robot was held is over.
         HoldReason::PositionLost => ("HELD, position recovered", &[RESUME]),
-        HoldReason::PositionAlarmed => ("HELD, ranges agree again", &[RESUME]),
+        HoldReason::RangesInconsistent => ("HELD, ranges agree again", &[RESUME]),
         HoldReason::Stepped => (state(by), &[RESUME]),
         HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
             (state(by), &[RESUME, PLANNER])
@@ -176,7 +176,7 @@ fn state(by: &HoldReason) -> &'static str {
         HoldReason::Operator => "HELD by operator",
         HoldReason::Stepped => "HELD after a step",
         HoldReason::PlannerReplaced => "HELD, planner replaced",
-        HoldReason::PositionAlarmed => "HELD, ranges contradict each other",
+        HoldReason::RangesInconsistent => "HELD, ranges contradict each other",
         HoldReason::PositionLost => "HELD, position lost",
         HoldReason::Stuck { .. } => "HELD, stuck",
         HoldReason::Tether { .. } => "HELD, tether",
@@ -196,7 +196,7 @@ fn message(by: &HoldReason) -> Option<String> {
         | HoldReason::PlanRefused { message } => Some(message.clone()),
         HoldReason::Operator
         | HoldReason::PositionLost
-        | HoldReason::PositionAlarmed
+        | HoldReason::RangesInconsistent
         | HoldReason::Stepped
         | HoldReason::PlannerReplaced => None,
     }

@@ -38,9 +38,9 @@ fn note(look: &Look) -> &'static str {
 fn wide_lines(look: &Look, tether: &Tether) -> Vec<Parts> {
     let row = |label: &str, value: (Role, String)| vec![(Role::Dim, format!(" {label:<12}")), value];
     let out = format!("{} m   free {} m", text::number(tether.length_m, 1), free(tether));
-    let of =
-        limits(look).map_or_else(String::new, |limits| format!(" of {}", text::number(limits.reel_m, 1)));
-    let sum = format!("{}°", degrees(tether.sum_wrap_rad));
+    let of = limits(look)
+        .map_or_else(String::new, |limits| format!(" of {}", text::number(limits.reel_length_m, 1)));
+    let sum = format!("{}°", degrees(tether.wrap_total_rad));
     vec![
         row("out", (out_role(look, tether), out + &of)),
         row("wraps", (wrap_role(look, tether), worst(look, tether, true))),
@@ -58,7 +58,7 @@ fn narrow_lines(look: &Look, tether: &Tether) -> Vec<Parts> {
         vec![(out_role(look, tether), out)],
         vec![(Role::Text, " wrap ".into()), (wrap_role(look, tether), worst(look, tether, false))],
         vec![
-            (Role::Text, format!(" sum {}°", degrees(tether.sum_wrap_rad))),
+            (Role::Text, format!(" sum {}°", degrees(tether.wrap_total_rad))),
             (Role::Text, format!("  pull ×{}", text::number(tether.pull_factor, 2))),
         ],
         vec![(Role::Text, " way home ".into()), (role, way)],
@@ -79,8 +79,8 @@ fn degrees(rad: f64) -> String {
 
 fn out_role(look: &Look, tether: &Tether) -> Role {
     match limits(look) {
-        Some(limits) if tether.length_m > limits.reel_m => Role::Crit,
-        Some(limits) if tether.length_m > 0.8 * limits.reel_m => Role::Warn,
+        Some(limits) if tether.length_m > limits.reel_length_m => Role::Crit,
+        Some(limits) if tether.length_m > 0.8 * limits.reel_length_m => Role::Warn,
         _ => Role::Text,
     }
 }
@@ -88,22 +88,22 @@ fn out_role(look: &Look, tether: &Tether) -> Role {
 fn wrap_role(look: &Look, tether: &Tether) -> Role {
     let most = tether.contacts.iter().map(|contact| contact.wrap_rad.abs()).fold(0.0, f64::max);
     match limits(look) {
-        Some(limits) if most > limits.max_wrap_rad => Role::Crit,
-        Some(limits) if most > 0.8 * limits.max_wrap_rad => Role::Warn,
+        Some(limits) if most > limits.wrap_max_rad => Role::Crit,
+        Some(limits) if most > 0.8 * limits.wrap_max_rad => Role::Warn,
         _ => Role::Text,
     }
 }
 
 /// The largest wrap and where it is.
 fn worst(look: &Look, tether: &Tether, wide: bool) -> String {
-    if tether.is_caught {
+    if tether.is_snagged {
         return "unknown, tether snagged".into();
     }
     let Some(most) = tether.contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()))
     else {
         return "none, tether straight".into();
     };
-    let limit = limits(look).map_or_else(|| "-".into(), |limits| degrees(limits.max_wrap_rad));
+    let limit = limits(look).map_or_else(|| "-".into(), |limits| degrees(limits.wrap_max_rad));
     let sign = if most.wrap_rad > 0.0 { "+" } else { "" };
     let (angle, of) = (degrees(most.wrap_rad), if wide { "limit" } else { "lim" });
     format!("{sign}{angle}° at {} ({of} {limit}°)", most.on)
@@ -117,9 +117,9 @@ fn contacts(tether: &Tether) -> String {
 }
 
 fn home(tether: &Tether, wide: bool) -> (Role, String) {
-    match tether.way_home_m {
-        _ if tether.is_caught && wide => (Role::Crit, "UNKNOWN: tether snagged".into()),
-        _ if tether.is_caught => (Role::Crit, "UNKNOWN, snagged".into()),
+    match tether.return_length_m {
+        _ if tether.is_snagged && wide => (Role::Crit, "UNKNOWN: tether snagged".into()),
+        _ if tether.is_snagged => (Role::Crit, "UNKNOWN, snagged".into()),
         Some(way_m) if wide => (Role::Good, format!("{} m, along the tether: YES", text::number(way_m, 1))),
         Some(way_m) => (Role::Good, format!("{} m  YES", text::number(way_m, 1))),
         None => (Role::Crit, "NO: the hull does not fit".into()),

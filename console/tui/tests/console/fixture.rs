@@ -86,7 +86,7 @@ pub(crate) fn config() -> MissionConfig {
         clearance_m: 0.1,
         cell_m: 0.1,
         position_limit_m: 0.15,
-        lost_hold_s: 2.0,
+        position_lost_hold_s: 2.0,
         stuck_s: 60.0,
         odometry_sigma_per_m: 0.05,
         odometry_turn_sigma_per_rad: 0.05,
@@ -102,8 +102,8 @@ pub(crate) fn config() -> MissionConfig {
 
 /// A tether from the eastern shell.
 pub(crate) fn tether() -> TetherConfig {
-    let limits = world::tether::Limits { reel_m: 30.0, max_wrap_rad: PI, max_sum_wrap_rad: TAU };
-    TetherConfig { anchor: Point::new(9.4, 0.0), limits, friction: 0.3, fly_uncertified: false }
+    let limits = world::tether::Limits { reel_length_m: 30.0, wrap_max_rad: PI, wrap_total_max_rad: TAU };
+    TetherConfig { anchor: Point::new(9.4, 0.0), limits, friction: 0.3, allow_uncertified: false }
 }
 
 /// A planner with nothing set by hand.
@@ -251,7 +251,7 @@ impl ScriptedMission {
     pub(crate) fn planned(&self, ask: Option<AskId>) -> EventKind {
         EventKind::Planned {
             ask,
-            way_home: 0,
+            return_path: 0,
             planner: "rpf".into(),
             reason: Reason::Start,
             path: self.path.clone(),
@@ -362,7 +362,7 @@ impl ScriptedMission {
     /// Station 4 is left out.
     pub(crate) fn excluded(&self) -> Event {
         let reason = Exclusion::Residual { residual_m: 0.42, gate_m: 0.15 };
-        self.now(EventKind::StationExcluded { station: StationId(4), reason })
+        self.now(EventKind::StationRejected { station: StationId(4), reason })
     }
 
     /// A hold that only an order ends.
@@ -417,12 +417,12 @@ impl ScriptedMission {
         self.now(EventKind::Tethered {
             length_m: cable.length_m(),
             paid_out_m: None,
-            free_m: config.limits.reel_m - cable.length_m(),
+            free_m: config.limits.reel_length_m - cable.length_m(),
             contacts: contacts.iter().map(contact).collect(),
-            max_wrap_rad: cable.max_wrap_rad(),
-            sum_wrap_rad: cable.sum_wrap_rad(),
-            pull_factor: capstan_factor(config.friction, cable.sum_wrap_rad()),
-            way_home_m: Some(cable.length_m() + 0.4),
+            wrap_max_rad: cable.wrap_max_rad(),
+            wrap_total_rad: cable.wrap_total_rad(),
+            pull_factor: capstan_factor(config.friction, cable.wrap_total_rad()),
+            return_length_m: Some(cable.length_m() + 0.4),
             line: cable.taut_line(),
         })
     }
@@ -433,9 +433,9 @@ impl ScriptedMission {
         let message = alarm.to_string();
         let mut cable = self.cable();
         if let EventKind::Tethered { paid_out_m, free_m, .. } = &mut cable.kind {
-            (*paid_out_m, *free_m) = (Some(14.2), tether().limits.reel_m - 14.2);
+            (*paid_out_m, *free_m) = (Some(14.2), tether().limits.reel_length_m - 14.2);
         }
-        let alarmed = self.now(EventKind::TetherAlarmed { alarm, reached: true });
+        let alarmed = self.now(EventKind::TetherAlarmRaised { alarm, reached: true });
         vec![cable, alarmed, self.held(HoldReason::Tether { message })]
     }
 

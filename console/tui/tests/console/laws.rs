@@ -51,8 +51,8 @@ fn event() -> impl Strategy<Value = Event> {
             EventKind::Covered { runs: vec![world::CellRun(u32::MAX, u32::MAX), world::CellRun(0, 900)] },
             EventKind::OrderRefused { order: Order::Resume, why: "no".repeat(200) },
             EventKind::OrderRefused { order: Order::Hold, why: "no".into() },
-            EventKind::PositionAlarmed { chi2: f64::NAN, degrees_of_freedom: 0 },
-            EventKind::PositionTrusted,
+            EventKind::RangesInconsistent { chi2: f64::NAN, degrees_of_freedom: 0 },
+            EventKind::RangesConsistent,
             EventKind::PlannerPrepared {
                 ask,
                 choice: choice("apf"),

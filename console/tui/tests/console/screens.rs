@@ -118,12 +118,12 @@ fn tethered() {
 }
 
 #[test]
-fn no_way_home() {
+fn no_return_path() {
     let mut screen = Screen::tethered();
-    let message = mission::event::TetherAlarm::NoWayHome.to_string();
+    let message = mission::event::TetherAlarm::NoReturnPath.to_string();
     let held = screen.mission.held_until(HoldReason::Tether { message }, Resumes::WhenCleared);
     screen.send(Msg::Events(vec![held]));
-    store("no_way_home", &mut screen);
+    store("no_return_path", &mut screen);
 }
 
 #[test]

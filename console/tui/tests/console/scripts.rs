@@ -221,7 +221,7 @@ fn work_on_a_planner_that_is_only_prepared_offers_what_can_be_done() {
 #[test]
 fn a_hold_by_the_operator_says_what_keeps_the_robot_from_resuming() {
     let lost = EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 };
-    let alarmed = EventKind::PositionAlarmed { chi2: 90.0, degrees_of_freedom: 2 };
+    let alarmed = EventKind::RangesInconsistent { chi2: 90.0, degrees_of_freedom: 2 };
     for (event, why) in [(lost, "position lost"), (alarmed, "ranges contradict each other")] {
         let mut screen = Screen::held();
         send_event(&mut screen, event);
@@ -252,10 +252,10 @@ fn line_of_hold(by: &HoldReason, resumes: Resumes, position: Option<EventKind>, 
 
 #[test]
 fn a_hold_that_ends_by_itself_says_so_on_every_screen() {
-    use HoldReason::{PlanRefused, PlannerFault, PlannerSilent, PositionAlarmed, PositionLost, Tether};
+    use HoldReason::{PlanRefused, PlannerFault, PlannerSilent, PositionLost, RangesInconsistent, Tether};
     for by in HoldReason::every(&"details ".repeat(20)) {
         let resumes = match by {
-            PositionLost | PositionAlarmed | PlannerSilent { .. } | Tether { .. } => Resumes::WhenCleared,
+            PositionLost | RangesInconsistent | PlannerSilent { .. } | Tether { .. } => Resumes::WhenCleared,
             PlannerFault { .. } | PlanRefused { .. } => Resumes::ByFallback,
             // These end by an order only.
             _ => continue,
@@ -270,7 +270,7 @@ fn a_hold_that_ends_by_itself_says_so_on_every_screen() {
 #[test]
 fn a_hold_that_an_order_ends_promises_nothing_and_offers_what_is_accepted() {
     let lost = EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 };
-    let alarmed = EventKind::PositionAlarmed { chi2: 90.0, degrees_of_freedom: 2 };
+    let alarmed = EventKind::RangesInconsistent { chi2: 90.0, degrees_of_freedom: 2 };
     for by in HoldReason::every("details") {
         for position in [None, Some(lost.clone()), Some(alarmed.clone())] {
             let line = line_of_hold(&by, Resumes::Never, position.clone(), (120, 36));
@@ -586,10 +586,10 @@ fn a_critical_alarm_rings_and_waits_for_the_operator() {
 #[test]
 fn an_alarm_whose_cause_is_gone_says_so_until_the_operator_has_seen_it() {
     let mut screen = Screen::running();
-    send_event(&mut screen, EventKind::PositionAlarmed { chi2: 90.0, degrees_of_freedom: 2 });
+    send_event(&mut screen, EventKind::RangesInconsistent { chi2: 90.0, degrees_of_freedom: 2 });
     let open = shown(&screen);
     assert!(open.contains("a: acknowledge: ") && !open.contains("(cleared)"), "{open}");
-    send_event(&mut screen, EventKind::PositionTrusted);
+    send_event(&mut screen, EventKind::RangesConsistent);
     let over = shown(&screen);
     assert!(over.contains("a: acknowledge (cleared): "), "{over}");
 }

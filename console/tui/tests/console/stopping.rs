@@ -30,7 +30,7 @@ fn phases() -> Vec<Phase> {
 
 fn positions(screen: &Screen) -> [Option<Event>; 3] {
     let lost = EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 };
-    let alarmed = EventKind::PositionAlarmed { chi2: 90.0, degrees_of_freedom: 2 };
+    let alarmed = EventKind::RangesInconsistent { chi2: 90.0, degrees_of_freedom: 2 };
     [None, Some(screen.mission.now(lost)), Some(screen.mission.now(alarmed))]
 }
 

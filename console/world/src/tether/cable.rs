@@ -204,7 +204,7 @@ impl Cable {
     }
 
     /// Largest wrap on one obstacle, radians, without sign; loops count in full.
-    pub fn max_wrap_rad(&self) -> f64 {
+    pub fn wrap_max_rad(&self) -> f64 {
         let (mut most, mut current, mut before) = (0.0_f64, 0.0, None);
         for bend in &self.bends {
             let here = (self.ground.posts[bend.post].of, bend.side > 0.0);
@@ -216,7 +216,7 @@ impl Cable {
     }
 
     /// Sum of all wraps, radians, without signs.
-    pub fn sum_wrap_rad(&self) -> f64 {
+    pub fn wrap_total_rad(&self) -> f64 {
         self.bends.iter().map(|bend| bend.wrap_rad().max(0.0)).sum()
     }
 
@@ -348,6 +348,6 @@ pub(super) fn tangent_point(center: Point, radius_m: f64, side: f64, bearing_rad
 }
 
 /// How many times harder a cable must be pulled for all its wraps: e to the (friction times sum of wraps).
-pub fn capstan_factor(friction: f64, sum_wrap_rad: f64) -> f64 {
-    (friction * sum_wrap_rad).exp()
+pub fn capstan_factor(friction: f64, wrap_total_rad: f64) -> f64 {
+    (friction * wrap_total_rad).exp()
 }

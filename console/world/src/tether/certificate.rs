@@ -29,11 +29,11 @@ const NARROW_STEPS: u32 = 200;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
     /// Cable on the reel, metres.
-    pub reel_m: f64,
+    pub reel_length_m: f64,
     /// Largest wrap on one obstacle, radians.
-    pub max_wrap_rad: f64,
+    pub wrap_max_rad: f64,
     /// Largest sum of all wraps, radians.
-    pub max_sum_wrap_rad: f64,
+    pub wrap_total_max_rad: f64,
 }
 
 /// A path to be certified.
@@ -67,21 +67,21 @@ pub struct Certificate {
     /// Why not, in words; empty when certified.
     pub reasons: Vec<String>,
     /// Longest cable on the way, metres.
-    pub max_cable_m: f64,
+    pub tether_length_max_m: f64,
     /// Largest shortest distance from the anchor to a point of the path, metres: the least reel that would do.
     pub eccentricity_m: f64,
     /// Largest wrap on one obstacle at any time, radians.
-    pub max_wrap_rad: f64,
+    pub wrap_max_rad: f64,
     /// Largest sum of wraps at any time, radians.
-    pub max_sum_wrap_rad: f64,
+    pub wrap_total_max_rad: f64,
     /// Cable left out after the return to the anchor, metres; absent for a path that need not return.
-    pub left_out_m: Option<f64>,
+    pub end_length_m: Option<f64>,
     /// Crossings that were not undone on return; 0 means that the cable comes in.
     pub crossings_left: usize,
     /// Pieces of the path that are nearer to something solid than the hull allows.
     pub collisions: usize,
     /// Least distance from the path to anything solid, metres; as far as it is below the room needed.
-    pub min_clearance_m: f64,
+    pub clearance_min_m: f64,
     /// Crossings of cuts.
     pub cut_crossings: usize,
     /// Floor sealed off by cuts, square metres.
@@ -94,14 +94,14 @@ impl Certificate {
         Self {
             certified: false,
             reasons: vec![reason],
-            max_cable_m: 0.0,
+            tether_length_max_m: 0.0,
             eccentricity_m: 0.0,
-            max_wrap_rad: 0.0,
-            max_sum_wrap_rad: 0.0,
-            left_out_m: None,
+            wrap_max_rad: 0.0,
+            wrap_total_max_rad: 0.0,
+            end_length_m: None,
             crossings_left: 0,
             collisions: 0,
-            min_clearance_m: 0.0,
+            clearance_min_m: 0.0,
             cut_crossings: 0,
             sealed_m2: 0.0,
         }
@@ -125,14 +125,14 @@ pub fn certify(case: &Case<'_>) -> Result<Certificate, TetherError> {
     let mut certificate = Certificate {
         certified: false,
         reasons: Vec::new(),
-        max_cable_m: replay.max_cable.0,
+        tether_length_max_m: replay.max_cable.0,
         eccentricity_m: replay.eccentricity_m(case.anchor, ground),
-        max_wrap_rad: replay.max_wrap.0,
-        max_sum_wrap_rad: replay.max_sum.0,
-        left_out_m: case.returns.then(|| left.length_m()),
+        wrap_max_rad: replay.max_wrap.0,
+        wrap_total_max_rad: replay.max_sum.0,
+        end_length_m: case.returns.then(|| left.length_m()),
         crossings_left: if case.returns { left.word().letters().len() } else { 0 },
         collisions: clearance.collisions,
-        min_clearance_m: clearance.least_m,
+        clearance_min_m: clearance.least_m,
         cut_crossings: cuts::crossings(case.path, case.cuts),
         sealed_m2: pocket.map_or(0.0, |p| p.area_m2),
     };
@@ -174,14 +174,14 @@ impl Replay {
         if length_m > self.max_cable.0 {
             self.max_cable = (length_m, point);
         }
-        let wrap_rad = self.cable.max_wrap_rad();
+        let wrap_rad = self.cable.wrap_max_rad();
         if wrap_rad > self.max_wrap.0 {
             let contacts = self.cable.contacts();
             let on =
                 contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs())).map(|c| c.on);
             self.max_wrap = (wrap_rad, on);
         }
-        let sum_rad = self.cable.sum_wrap_rad();
+        let sum_rad = self.cable.wrap_total_rad();
         if sum_rad > self.max_sum.0 {
             self.max_sum = (sum_rad, point);
         }
@@ -278,29 +278,29 @@ impl Reasons<'_> {
         if self.case.cuts.iter().flatten().any(|p| !(p.x.is_finite() && p.y.is_finite())) {
             reasons.push("a cut has a coordinate that is not a finite number".into());
         }
-        if [self.case.room_m, limits.reel_m, limits.max_wrap_rad, limits.max_sum_wrap_rad]
+        if [self.case.room_m, limits.reel_length_m, limits.wrap_max_rad, limits.wrap_total_max_rad]
             .iter()
             .any(|m| m.is_nan())
         {
             reasons.push("the room that the hull needs, or a limit of the tether, is not a number".into());
         }
         reasons.extend(self.collision(certificate));
-        if certificate.max_cable_m > limits.reel_m {
+        if certificate.tether_length_max_m > limits.reel_length_m {
             let (most_m, at) = self.replay.max_cable;
             let place = place(at);
             reasons.push(format!(
                 "{most_m:.1} m of cable are out at {place}, the reel holds {:.1} m",
-                limits.reel_m
+                limits.reel_length_m
             ));
         }
-        if certificate.max_wrap_rad > limits.max_wrap_rad {
-            let (most, allowed) = (self.replay.max_wrap.0.to_degrees(), limits.max_wrap_rad.to_degrees());
+        if certificate.wrap_max_rad > limits.wrap_max_rad {
+            let (most, allowed) = (self.replay.max_wrap.0.to_degrees(), limits.wrap_max_rad.to_degrees());
             let on = self.name_of(self.replay.max_wrap.1);
             reasons.push(format!("the cable wraps {most:.0} deg round {on}, allowed are {allowed:.0} deg"));
         }
-        if certificate.max_sum_wrap_rad > limits.max_sum_wrap_rad {
+        if certificate.wrap_total_max_rad > limits.wrap_total_max_rad {
             let (most, at) = self.replay.max_sum;
-            let (most, allowed) = (most.to_degrees(), limits.max_sum_wrap_rad.to_degrees());
+            let (most, allowed) = (most.to_degrees(), limits.wrap_total_max_rad.to_degrees());
             reasons.push(format!(
                 "all wraps together reach {most:.0} deg at {}, allowed are {allowed:.0} deg",
                 place(at)
@@ -325,7 +325,7 @@ impl Reasons<'_> {
         Some(format!(
             "{lack} at {} by {name}: least room {:.3} m, needed {:.3} m",
             place(*at),
-            certificate.min_clearance_m,
+            certificate.clearance_min_m,
             self.case.room_m
         ))
     }
@@ -336,8 +336,8 @@ impl Reasons<'_> {
         if away_m > BACK_M {
             return Some(format!("the path ends {away_m:.2} m away from the anchor"));
         }
-        let left_out_m = certificate.left_out_m.unwrap_or(0.0);
-        if self.left.word().is_empty() && left_out_m <= BACK_M {
+        let end_length_m = certificate.end_length_m.unwrap_or(0.0);
+        if self.left.word().is_empty() && end_length_m <= BACK_M {
             return None;
         }
         let mut round: Vec<String> = self.left.contacts().iter().map(|c| self.name_of(Some(c.on))).collect();
@@ -347,7 +347,7 @@ impl Reasons<'_> {
         } else {
             round.join(", ")
         };
-        Some(format!("{left_out_m:.1} m of cable stay out on return, hooked round {round}"))
+        Some(format!("{end_length_m:.1} m of cable stay out on return, hooked round {round}"))
     }
 
     fn name_of(&self, on: Option<Bearing>) -> String {

@@ -21,7 +21,7 @@ impl Cable {
     /// `roomy` is the same ground grown by `room_m`, the room that the middle of the hull needs, and `map` the obstacles.
     /// Robot and anchor may stand nearer to something: the way then begins and ends with a step away from it. `None` if
     /// the hull does not fit along the cable: there is no way home that unwinds it.
-    pub fn way_home(&self, roomy: &Arc<Ground>, map: &ObstacleMap, room_m: f64) -> Option<Vec<Point>> {
+    pub fn return_path(&self, roomy: &Arc<Ground>, map: &ObstacleMap, room_m: f64) -> Option<Vec<Point>> {
         let mut hull = Self::on(roomy.outside(self.anchor()), Arc::clone(roomy)).ok()?;
         for pair in self.taut_line().windows(2) {
             // A place inside a grown obstacle counts as one beside it, and a straight line from there to a far one might

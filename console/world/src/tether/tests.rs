@@ -186,7 +186,7 @@ fn a_tip_on_the_last_contact_goes_back_the_way_it_came() {
             let mut cable = cable(anchor, std::slice::from_ref(&shape));
             cable.drag_along(&[out(around_rad, 3.0), out(around_rad - PI / 2.0, 3.0)]);
             let home: Vec<Point> = cable.taut_line().into_iter().rev().collect();
-            assert!(cable.sum_wrap_rad() > 0.1, "{k}: the way must bend");
+            assert!(cable.wrap_total_rad() > 0.1, "{k}: the way must bend");
             cable.drag_along(&home);
             assert!(cable.length_m() < 1e-9, "{k}: {:?}", cable.contacts());
         }
@@ -265,7 +265,7 @@ proptest! {
             funnel.drag_to(point);
         }
         // A polygon of n corners in a circle is short by (pi/n)^2/6 of the arc, and a little at each tangent.
-        let sum: f64 = cable.sum_wrap_rad() + cable.contacts().len() as f64;
+        let sum: f64 = cable.wrap_total_rad() + cable.contacts().len() as f64;
         prop_assert!((cable.length_m() - funnel.length_m()).abs() < 1e-6 + 2e-3 * radius * sum,
             "{} {}", cable.length_m(), funnel.length_m());
     }
@@ -278,7 +278,7 @@ proptest! {
         let mut cable = cable(anchor, &shapes);
         cable.drag_along(&way);
         prop_assert!(cable.length_m() >= (cable.tip() - anchor).norm() - 1e-9);
-        prop_assert!(cable.sum_wrap_rad() >= cable.max_wrap_rad() - 1e-9);
+        prop_assert!(cable.wrap_total_rad() >= cable.wrap_max_rad() - 1e-9);
         way.reverse();
         cable.drag_along(&way);
         prop_assert!(cable.length_m() < 1e-7 && cable.is_straight() && cable.word().is_empty());

@@ -10,7 +10,7 @@ fn the_traditional_way_covers_most_and_leaves_the_cable_entangled() {
     assert!(scan.coverage_reachable > 0.96, "{}", scan.coverage_reachable);
     assert!(scan.length_over_lower_bound < 1.10, "{}", scan.length_over_lower_bound);
     assert_eq!(scan.certificate.collisions, 0, "{:?}", scan.certificate.reasons);
-    assert!(scan.certificate.left_out_m.unwrap() > 10.0, "{:?}", scan.certificate.left_out_m);
+    assert!(scan.certificate.end_length_m.unwrap() > 10.0, "{:?}", scan.certificate.end_length_m);
 }
 
 #[test]

@@ -9,7 +9,12 @@ fn with_backtracking_through_the_tree_the_cable_comes_in() {
         let plan = bench::plan::<HullPartition>(&tank, &[], None).0.unwrap();
         let scan = tank.score(&plan.path, &[], CELL_M).unwrap();
         assert_eq!(scan.certificate.collisions, 0, "{}: {:?}", known.id(), scan.certificate.reasons);
-        assert!(scan.certificate.left_out_m.unwrap() < 0.5, "{}: {:?}", known.id(), scan.certificate.reasons);
+        assert!(
+            scan.certificate.end_length_m.unwrap() < 0.5,
+            "{}: {:?}",
+            known.id(),
+            scan.certificate.reasons
+        );
         assert!(scan.coverage_reachable > 0.88, "{}: {}", known.id(), scan.coverage_reachable);
     }
 }
@@ -57,7 +62,7 @@ fn moved_directly_from_cell_to_cell_the_way_is_shorter_and_the_cable_is_not() {
         tank.score(&plan.path, &[], CELL_M).unwrap()
     });
     assert!(direct.length_m < tree.length_m, "{} {}", direct.length_m, tree.length_m);
-    assert!(direct.certificate.max_cable_m > tree.certificate.max_cable_m);
+    assert!(direct.certificate.tether_length_max_m > tree.certificate.tether_length_max_m);
 }
 
 #[test]

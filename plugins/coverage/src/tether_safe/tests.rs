@@ -62,11 +62,16 @@ fn the_same_question_gets_the_same_answer() {
 #[test]
 fn a_short_reel_gives_a_partial_plan_that_says_what_is_left() {
     let tank = Known::E1.tank(4);
-    let tether = TetherLimits { reel_m: 6.0, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY };
+    let tether =
+        TetherLimits { reel_length_m: 6.0, wrap_max_rad: f64::INFINITY, wrap_total_max_rad: f64::INFINITY };
     let (plan, bench) = plan(&tank, &[], Some(tether));
     let plan = plan.unwrap();
     let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
-    assert!(!plan.complete && scan.certificate.max_cable_m <= 6.0, "{}", scan.certificate.max_cable_m);
+    assert!(
+        !plan.complete && scan.certificate.tether_length_max_m <= 6.0,
+        "{}",
+        scan.certificate.tether_length_max_m
+    );
     assert!(bench.logs().iter().any(|(_, said)| said.contains("beyond the reel")), "{:?}", bench.logs());
     let logs = bench.logs();
     let (_, why) = logs.iter().rfind(|(level, _)| matches!(level, LogLevel::Warn)).unwrap();
@@ -77,11 +82,11 @@ fn a_short_reel_gives_a_partial_plan_that_says_what_is_left() {
 fn a_reel_that_just_does_is_not_called_too_short() {
     let tank = Known::E1.tank(4);
     let free = plan(&tank, &[], None).0.unwrap();
-    let needed_m = tank.score(&free.path, &free.cuts, CELL_M).unwrap().certificate.max_cable_m;
+    let needed_m = tank.score(&free.path, &free.cuts, CELL_M).unwrap().certificate.tether_length_max_m;
     let tether = TetherLimits {
-        reel_m: needed_m + 0.01,
-        max_wrap_rad: f64::INFINITY,
-        max_sum_wrap_rad: f64::INFINITY,
+        reel_length_m: needed_m + 0.01,
+        wrap_max_rad: f64::INFINITY,
+        wrap_total_max_rad: f64::INFINITY,
     };
     let (plan, bench) = plan(&tank, &[], Some(tether));
     assert!(plan.unwrap().complete, "{:?}", bench.logs());
@@ -167,9 +172,9 @@ fn a_swath_wider_than_the_floor_and_a_reel_too_short_for_a_lane_are_distinguishe
         let obstacles = tank.obstacles();
         Ground::new(&Site { swath_m, ..tank.site(&obstacles) }, tank.anchor).unwrap()
     };
-    let why = |swath_m: f64, reel_m: f64| {
+    let why = |swath_m: f64, reel_length_m: f64| {
         let ground = ground(swath_m);
-        no_lane(&ground, reel_m, ground.home())
+        no_lane(&ground, reel_length_m, ground.home())
     };
     assert!(why(50.0, 13.0).is_some_and(|why| why.contains("the swath of 50.00 m is wider than the floor")));
     assert!(why(0.6, 0.5).is_some_and(|why| why.contains("need 0.60 m")));
@@ -207,7 +212,7 @@ fn a_swath_wider_than_the_gaps_still_gives_a_certified_plan() {
 
 #[test]
 fn a_reel_with_next_to_nothing_on_it_is_refused_with_what_is_needed() {
-    let tether = TetherLimits { reel_m: 0.2, max_wrap_rad: 9.0, max_sum_wrap_rad: 9.0 };
+    let tether = TetherLimits { reel_length_m: 0.2, wrap_max_rad: 9.0, wrap_total_max_rad: 9.0 };
     let error = plan(&Known::E1.tank(4), &[], Some(tether)).0.unwrap_err();
     assert_eq!(error.code, Code::Config);
     assert!(error.message.contains("9.7 m from the anchor"), "{error}");
@@ -254,7 +259,7 @@ proptest! {
         let plan = plan(&tank, &[("pattern", 1.0), ("kicks", 0.5)], None).0.unwrap();
         let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
         prop_assert_eq!(scan.certificate.collisions, 0);
-        prop_assert!(scan.certificate.left_out_m.is_some_and(|m| m < 1e-6), "{:?}", scan.certificate.reasons);
+        prop_assert!(scan.certificate.end_length_m.is_some_and(|m| m < 1e-6), "{:?}", scan.certificate.reasons);
         prop_assert_eq!(scan.certificate.cut_crossings, 0);
     }
 }

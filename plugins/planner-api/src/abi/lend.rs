@@ -115,9 +115,12 @@ pub fn plan(from: &crate::PlanRequest<'_>, site: &Site, regions: &[Outline]) -> 
         Task::Cover { tether, .. } => tether,
         Task::Goto { .. } | Task::Follow { .. } => None,
     };
-    let free =
-        TetherLimits { reel_m: f64::INFINITY, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY };
-    let TetherLimits { reel_m, max_wrap_rad, max_sum_wrap_rad } = tether.unwrap_or(free);
+    let free = TetherLimits {
+        reel_length_m: f64::INFINITY,
+        wrap_max_rad: f64::INFINITY,
+        wrap_total_max_rad: f64::INFINITY,
+    };
+    let TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad } = tether.unwrap_or(free);
     let (previous, n_previous) = points(from.previous);
     PlanIn {
         size: size_of::<PlanIn>() as u32,
@@ -136,9 +139,9 @@ pub fn plan(from: &crate::PlanRequest<'_>, site: &Site, regions: &[Outline]) -> 
         regions: regions.as_ptr(),
         n_regions: regions.len() as u32,
         has_tether: u32::from(tether.is_some()),
-        reel: reel_m,
-        max_wrap: max_wrap_rad,
-        max_sum_wrap: max_sum_wrap_rad,
+        reel: reel_length_m,
+        max_wrap: wrap_max_rad,
+        max_sum_wrap: wrap_total_max_rad,
     }
 }
 

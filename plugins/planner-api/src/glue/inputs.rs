@@ -234,9 +234,9 @@ pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn, regions: &'a [&'a [Point2<f6
         input::TASK_COVER => {
             let anchor = *targets.first().ok_or_else(|| invalid("the console sent no anchor"))?;
             let tether = (raw.has_tether != 0).then_some(TetherLimits {
-                reel_m: raw.reel,
-                max_wrap_rad: raw.max_wrap,
-                max_sum_wrap_rad: raw.max_sum_wrap,
+                reel_length_m: raw.reel,
+                wrap_max_rad: raw.max_wrap,
+                wrap_total_max_rad: raw.max_sum_wrap,
             });
             Ok(Task::Cover { anchor, regions, tether, tolerance_m: raw.tolerance })
         }

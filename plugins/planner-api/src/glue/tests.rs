@@ -306,8 +306,10 @@ fn a_request_to_cover_arrives_with_its_regions_and_the_limits_of_the_tether() {
     let planner = instance(&mut sink, 0.0);
     let site = site(&[], &[]);
     let raw = lend::site(&site, &[], &[]);
-    let tethers =
-        [None, Some(TetherLimits { reel_m: 40.0, max_wrap_rad: 1.5, max_sum_wrap_rad: f64::INFINITY })];
+    let tethers = [
+        None,
+        Some(TetherLimits { reel_length_m: 40.0, wrap_max_rad: 1.5, wrap_total_max_rad: f64::INFINITY }),
+    ];
     for (tether, regions) in tethers.into_iter().zip([&[] as &[&[_]], &[&CORNERS, &CORNERS[1..]]]) {
         let task = Task::Cover { anchor: CORNERS[1], regions, tether, tolerance_m: 0.2 };
         let request = PlanRequest { reason: &Reason::Start, start: pose(), task, site: &site, previous: &[] };

@@ -9,19 +9,20 @@ use crate::{
 /// For how long the position could not be relied on, seconds.
 #[derive(Debug, Default)]
 pub(in crate::engine) struct LostPositionRule {
-    lost_s: f64,
+    position_lost_s: f64,
 }
 
 impl LostPositionRule {
     /// One tick of a running robot: holds it when the position has been bad for long enough.
     pub(crate) fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
-        self.lost_s = if seen.is_position_good() { 0.0 } else { self.lost_s + seen.config.tick_s };
+        self.position_lost_s =
+            if seen.is_position_good() { 0.0 } else { self.position_lost_s + seen.config.tick_s };
         let by = match seen.position {
             PositionTrust::Good => return None,
             PositionTrust::Lost { .. } => HoldReason::PositionLost,
-            PositionTrust::Alarmed => HoldReason::PositionAlarmed,
+            PositionTrust::Alarmed => HoldReason::RangesInconsistent,
         };
-        (self.lost_s >= seen.config.lost_hold_s)
+        (self.position_lost_s >= seen.config.position_lost_hold_s)
             .then_some(Verdict::Hold(Hold { by, resumes: Resumes::WhenCleared }))
     }
 

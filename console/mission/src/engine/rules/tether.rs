@@ -39,11 +39,11 @@ impl TetherRule {
         let message = alarm.to_string();
         match alarm {
             TetherAlarm::Reel { .. } => self.stop(seen, message, Outcome::Aborted),
-            TetherAlarm::Wrap { .. } | TetherAlarm::SumOfWraps { .. } | TetherAlarm::Snag { .. } => {
+            TetherAlarm::Wrap { .. } | TetherAlarm::WrapTotal { .. } | TetherAlarm::Snag { .. } => {
                 self.stop(seen, message, Outcome::Entangled)
             }
             // What closed the way may move on.
-            TetherAlarm::NoWayHome | TetherAlarm::Strayed => {
+            TetherAlarm::NoReturnPath | TetherAlarm::Strayed => {
                 Verdict::Hold(held(message, Resumes::WhenCleared))
             }
         }
@@ -77,7 +77,7 @@ impl TetherRule {
             return Some(Verdict::Resume);
         }
         if !seen.config.attended && self.waited_s >= WAIT_FOR_HOME_S {
-            let message = TetherAlarm::NoWayHome.to_string();
+            let message = TetherAlarm::NoReturnPath.to_string();
             return Some(Verdict::End(Outcome::Entangled, format!("nobody attended the hold: {message}")));
         }
         self.waited_s += seen.config.tick_s;

@@ -14,7 +14,7 @@ const UNSEEN: Shape = Shape::Disc { center: Point::new(0.0, 2.05), radius_m: 0.0
 
 fn snags(flight: &Flight) -> Vec<String> {
     let snag = |event: &Event| match &event.kind {
-        EventKind::TetherAlarmed { alarm: alarm @ TetherAlarm::Snag { .. }, reached: true } => {
+        EventKind::TetherAlarmRaised { alarm: alarm @ TetherAlarm::Snag { .. }, reached: true } => {
             Some(alarm.to_string())
         }
         _ => None,
@@ -23,8 +23,9 @@ fn snags(flight: &Flight) -> Vec<String> {
 }
 
 fn eased(flight: &Flight) -> usize {
-    let is_eased =
-        |event: &&Event| matches!(&event.kind, EventKind::TetherEased { alarm: TetherAlarm::Snag { .. } });
+    let is_eased = |event: &&Event| {
+        matches!(&event.kind, EventKind::TetherAlarmCleared { alarm: TetherAlarm::Snag { .. } })
+    };
     flight.events.iter().filter(is_eased).count()
 }
 
@@ -90,8 +91,8 @@ fn the_reel_ends_by_what_it_has_paid_out() {
 /// Scans the floor with a column on it that is seen within some metres once the cable has caught on it.
 fn scan_round_unseen_column(seen_m: f64) -> Flight {
     let anchor = covering().start.position;
-    let limits = tether::Limits { reel_m: 50.0, max_wrap_rad: 50.0, max_sum_wrap_rad: 50.0 };
-    let config = TetherConfig { anchor, limits, friction: 0.3, fly_uncertified: false };
+    let limits = tether::Limits { reel_length_m: 50.0, wrap_max_rad: 50.0, wrap_total_max_rad: 50.0 };
+    let config = TetherConfig { anchor, limits, friction: 0.3, allow_uncertified: false };
     let mut flight = Flight::new(MissionConfig { tether: Some(config), attended: false, ..covering() });
     flight.reel = cable(anchor, &[UNSEEN]);
     flight.tick(&[Order::Start]);
@@ -131,10 +132,10 @@ fn what_the_cable_has_caught_on_is_planned_for_once_it_is_seen() {
 }
 
 /// The reasons for plans after a column is found across the cable, far from the lanes that are left.
-fn plans_for_column_across_cable(max_wrap_rad: f64) -> Vec<Reason> {
+fn plans_for_column_across_cable(wrap_max_rad: f64) -> Vec<Reason> {
     let anchor = covering().start.position;
-    let limits = tether::Limits { reel_m: 50.0, max_wrap_rad, max_sum_wrap_rad: 50.0 };
-    let config = TetherConfig { anchor, limits, friction: 0.3, fly_uncertified: false };
+    let limits = tether::Limits { reel_length_m: 50.0, wrap_max_rad, wrap_total_max_rad: 50.0 };
+    let config = TetherConfig { anchor, limits, friction: 0.3, allow_uncertified: false };
     let mut flight = Flight::new(MissionConfig { tether: Some(config), attended: false, ..covering() });
     flight.tick(&[Order::Start]);
     while flight.pose.position.y < 0.5 {
@@ -155,7 +156,7 @@ fn plans_for_column_across_cable(max_wrap_rad: f64) -> Vec<Reason> {
 
 #[test]
 fn a_column_found_beside_the_lanes_is_planned_for_if_the_cable_will_not_bear_it() {
-    let first = |max_wrap_rad| plans_for_column_across_cable(max_wrap_rad).first().cloned();
+    let first = |wrap_max_rad| plans_for_column_across_cable(wrap_max_rad).first().cloned();
     // The lanes to come wind the cable round it by about 55 degrees.
     assert_eq!((first(0.5), first(1.5)), (Some(Reason::MapChanged), None));
 }

@@ -50,13 +50,13 @@ fn lost() -> Flight {
 
 fn alarmed() -> Flight {
     let mut flight = started(config());
-    flight.late_m = vec![1.5];
+    flight.excess_range_m = vec![1.5];
     flight.fly(20);
     flight
 }
 
 /// Held because the hull does not fit back along the cable; the hold ends when it does.
-fn without_way_home() -> Flight {
+fn without_return_path() -> Flight {
     let mut flight = started(tethered(20.0));
     let hold =
         Hold { by: HoldReason::Tether { message: "no way home".into() }, resumes: Resumes::WhenCleared };
@@ -92,8 +92,8 @@ fn cases() -> Vec<Case> {
         case("covering, plan in the making", waiting_for(is_plan, covering()), at_once),
         case("running, step unanswered", waiting_for(is_step, config()), at_once),
         case("position lost", lost(), |flight| flight.silent = false),
-        case("ranges contradict", alarmed(), |flight| flight.late_m.clear()),
-        case("no way home", without_way_home(), |_| {}),
+        case("ranges contradict", alarmed(), |flight| flight.excess_range_m.clear()),
+        case("no way home", without_return_path(), |_| {}),
         case("fallback opening", fallback_under_way(), at_once),
         case("planner silent", silent_planner(), at_once),
     ]

@@ -3,14 +3,15 @@
 use super::*;
 use crate::{
     event::TetherAlarm,
-    tether::{Tether, TetherConfig, way_home_ends},
+    tether::{Tether, TetherConfig, return_path_ends},
 };
 use planner_api::{Leg, LegTag};
 use world::{Obstacle, ObstacleId, Shape, tether::Limits};
 
-pub(super) fn tethered(reel_m: f64) -> MissionConfig {
-    let limits = Limits { reel_m, max_wrap_rad: 1.0, max_sum_wrap_rad: 2.0 };
-    let tether = TetherConfig { anchor: Point::new(-3.0, 0.0), limits, friction: 0.3, fly_uncertified: true };
+pub(super) fn tethered(reel_length_m: f64) -> MissionConfig {
+    let limits = Limits { reel_length_m, wrap_max_rad: 1.0, wrap_total_max_rad: 2.0 };
+    let tether =
+        TetherConfig { anchor: Point::new(-3.0, 0.0), limits, friction: 0.3, allow_uncertified: true };
     MissionConfig { tether: Some(tether), ..config() }
 }
 
@@ -40,7 +41,7 @@ fn the_end_of_the_reel_warns_then_holds_and_the_operator_may_go_on() {
     flight.fly(200);
     let reel = |reached| {
         flight.events.iter().filter(move |event| {
-            matches!(&event.kind, EventKind::TetherAlarmed { alarm: TetherAlarm::Reel { .. }, reached: r } if *r == reached)
+            matches!(&event.kind, EventKind::TetherAlarmRaised { alarm: TetherAlarm::Reel { .. }, reached: r } if *r == reached)
         })
     };
     assert!(reel(false).count() >= 1 && reel(true).count() == 1);
@@ -61,8 +62,8 @@ fn with_nobody_there_the_end_of_the_reel_ends_the_mission() {
 #[test]
 fn a_plan_that_cannot_be_certified_is_refused_until_the_operator_says_otherwise() {
     let mut config = tethered(20.0);
-    config.tether.as_mut().unwrap().fly_uncertified = false;
-    config.tether.as_mut().unwrap().limits.reel_m = 4.0;
+    config.tether.as_mut().unwrap().allow_uncertified = false;
+    config.tether.as_mut().unwrap().limits.reel_length_m = 4.0;
     // The way to the goal is longer than the reel.
     let refused_flight = |config: &MissionConfig| {
         let mut flight = Flight::new(config.clone());
@@ -120,9 +121,9 @@ fn an_obstacle_found_across_the_cable_is_passed_on_the_side_that_was_driven() {
         tether.lay_anew(&world);
         let map = world::ObstacleMap::new(&world.boundary, &world.obstacles);
         let events = tether.update(&world, &map, 0.1);
-        let EventKind::Tethered { contacts, way_home_m, .. } = &events[0] else { panic!("{events:?}") };
+        let EventKind::Tethered { contacts, return_length_m, .. } = &events[0] else { panic!("{events:?}") };
         assert!(contacts.len() == 1 && contacts[0].wrap_rad * sign > 0.0, "{contacts:?}");
-        assert!(way_home_m.is_some_and(|way_m| way_m > 6.0));
+        assert!(return_length_m.is_some_and(|way_m| way_m > 6.0));
     }
 }
 
@@ -130,7 +131,7 @@ fn an_obstacle_found_across_the_cable_is_passed_on_the_side_that_was_driven() {
 pub(super) fn loosely_tethered() -> MissionConfig {
     let mut config = MissionConfig { attended: false, ..tethered(99.0) };
     let limits = &mut config.tether.as_mut().unwrap().limits;
-    (limits.max_wrap_rad, limits.max_sum_wrap_rad) = (99.0, 99.0);
+    (limits.wrap_max_rad, limits.wrap_total_max_rad) = (99.0, 99.0);
     config
 }
 
@@ -160,7 +161,7 @@ fn a_way_home_that_is_closed_for_a_moment_is_no_alarm() {
     let without_home = flight
         .events
         .iter()
-        .filter(|event| matches!(event.kind, EventKind::Tethered { way_home_m: None, .. }));
+        .filter(|event| matches!(event.kind, EventKind::Tethered { return_length_m: None, .. }));
     assert!(without_home.count() > 10);
     flight.fly(100);
     assert_eq!((holds(&flight), flight.ended()), (0, Some(Outcome::Complete)));
@@ -193,9 +194,9 @@ fn with_nobody_there_a_robot_that_stays_without_a_way_home_is_entangled() {
 #[test]
 fn a_plan_that_is_refused_under_way_is_asked_for_again_after_a_way_home() {
     let config = covering::covering();
-    let limits = Limits { reel_m: 50.0, max_wrap_rad: 50.0, max_sum_wrap_rad: 50.0 };
+    let limits = Limits { reel_length_m: 50.0, wrap_max_rad: 50.0, wrap_total_max_rad: 50.0 };
     let anchor = config.start.position;
-    let tether = TetherConfig { anchor, limits, friction: 0.3, fly_uncertified: false };
+    let tether = TetherConfig { anchor, limits, friction: 0.3, allow_uncertified: false };
     let mut flight = Flight::new(MissionConfig { tether: Some(tether), ..config });
     flight.tick(&[Order::Start]);
     flight.fly(900);
@@ -242,7 +243,7 @@ fn only_a_way_that_ends_at_the_anchor_is_a_way_home() {
     let path = vec![Point::new(1.0, 0.0), Point::new(0.1, 0.0), Point::new(2.0, 0.0)];
     let tagged = |last| {
         let legs = vec![Leg { tag: LegTag::Retract, first: 0, last }];
-        way_home_ends(&Plan { path: path.clone(), legs, ..Plan::default() }, Point::origin())
+        return_path_ends(&Plan { path: path.clone(), legs, ..Plan::default() }, Point::origin())
     };
     assert_eq!([tagged(1), tagged(2), tagged(9)], [1, 0, 0]);
 }

@@ -90,7 +90,11 @@ fn every_request_arrives_as_it_was_sent() {
         Task::Cover {
             anchor: CORNERS[2],
             regions: &[&CORNERS, &CORNERS[..1]],
-            tether: Some(TetherLimits { reel_m: 30.0, max_wrap_rad: 1.0, max_sum_wrap_rad: f64::INFINITY }),
+            tether: Some(TetherLimits {
+                reel_length_m: 30.0,
+                wrap_max_rad: 1.0,
+                wrap_total_max_rad: f64::INFINITY,
+            }),
             tolerance_m: 0.3,
         },
     ];

@@ -24,7 +24,7 @@ fn case<'a>(path: &'a [Point], obstacles: &'a [Obstacle], cuts: &'a [Vec<Point>]
         boundary: &WALL,
         obstacles,
         room_m: 0.3,
-        limits: Limits { reel_m: 12.0, max_wrap_rad: 2.0, max_sum_wrap_rad: 3.0 },
+        limits: Limits { reel_length_m: 12.0, wrap_max_rad: 2.0, wrap_total_max_rad: 3.0 },
         returns: true,
         cuts,
     }
@@ -38,7 +38,7 @@ fn a_path_out_and_back_on_one_side_of_a_column_is_certified() {
     let certificate = certify(&case(&path, &columns, &cuts)).unwrap();
     assert!(certificate.certified, "{:?}", certificate.reasons);
     assert_eq!(
-        (certificate.left_out_m, certificate.cut_crossings, certificate.collisions),
+        (certificate.end_length_m, certificate.cut_crossings, certificate.collisions),
         (Some(0.0), 0, 0)
     );
     assert!((certificate.eccentricity_m - 68.0_f64.sqrt()).abs() < 1e-2, "{}", certificate.eccentricity_m);
@@ -51,7 +51,7 @@ fn a_path_round_a_column_is_refused_with_its_name() {
     let cuts = [points(&[(4.0, 0.0), (10.0, 0.0)])];
     let certificate = certify(&case(&path, &columns, &cuts)).unwrap();
     assert!(!certificate.certified && certificate.cut_crossings == 1 && certificate.crossings_left == 1);
-    assert!(certificate.left_out_m.is_some_and(|left_m| left_m > 7.9));
+    assert!(certificate.end_length_m.is_some_and(|left_m| left_m > 7.9));
     let words = certificate.reasons.join("; ");
     assert!(
         words.contains("stay out on return, hooked round C0") && words.contains("crosses cuts 1"),
@@ -59,14 +59,14 @@ fn a_path_round_a_column_is_refused_with_its_name() {
     );
     // A mission that need not return is not refused for that.
     let certificate = certify(&Case { returns: false, cuts: &[], ..case(&path, &columns, &[]) }).unwrap();
-    assert_eq!((certificate.left_out_m, certificate.cut_crossings), (None, 0));
+    assert_eq!((certificate.end_length_m, certificate.cut_crossings), (None, 0));
 }
 
 #[test]
 fn limits_and_collisions_are_reported_with_place_and_figure() {
     let columns = [column(0, 4.0, 0.0), column(1, -4.0, 0.0)];
     let path = points(&[(0., 0.), (4., 0.5), (9.0, 0.0), (-9.5, 3.0), (-4.0, -0.8), (0.0, 0.0)]);
-    let limits = Limits { reel_m: 9.0, max_wrap_rad: 0.1, max_sum_wrap_rad: 0.2 };
+    let limits = Limits { reel_length_m: 9.0, wrap_max_rad: 0.1, wrap_total_max_rad: 0.2 };
     let certificate = certify(&Case { limits, ..case(&path, &columns, &[]) }).unwrap();
     let words = certificate.reasons.join("; ");
     for part in ["by C0", "the reel holds 9.0 m", "round C", "all wraps together"] {
@@ -147,7 +147,7 @@ proptest! {
         let certificate = certify(&Case { room_m: 0.0, ..case(&path, &columns, &cuts) }).unwrap();
         // A cut may lead by another column too closely for the hull; that is all that can be wrong.
         prop_assert!(certificate.reasons.iter().all(|r| r.contains("seal off")), "{:?}", certificate.reasons);
-        prop_assert_eq!((certificate.left_out_m, certificate.crossings_left), (Some(0.0), 0));
-        prop_assert!(certificate.max_cable_m >= certificate.eccentricity_m - 1e-6);
+        prop_assert_eq!((certificate.end_length_m, certificate.crossings_left), (Some(0.0), 0));
+        prop_assert!(certificate.tether_length_max_m >= certificate.eccentricity_m - 1e-6);
     }
 }

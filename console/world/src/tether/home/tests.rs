@@ -43,7 +43,7 @@ impl Floor {
     }
 
     fn home(&self, room_m: f64) -> Option<Vec<Point>> {
-        self.cable.way_home(&self.roomy, &self.map, room_m)
+        self.cable.return_path(&self.roomy, &self.map, room_m)
     }
 }
 
@@ -163,7 +163,7 @@ fn a_cable_that_lies_flat_along_a_box_has_a_way_home() {
         let way = [(0.0, -6.9), (0.0, -5.5), (0.5, -4.5), (4.0, 3.0), (5.7, -0.3), (5.6, -1.0), (5.0, -2.0)];
         for at in polyline::resampled(&way.map(|(x, y)| Point::new(x, y)), 0.02) {
             cable.drag_to(at);
-            let home = cable.way_home(&roomy, &map, 0.15);
+            let home = cable.return_path(&roomy, &map, 0.15);
             assert!(home.is_some(), "{heading_deg} deg at {at}: {:?}", cable.taut_line());
         }
     }

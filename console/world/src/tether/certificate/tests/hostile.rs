@@ -32,8 +32,11 @@ fn letters_left(path: &[Point], columns: &[Obstacle]) -> Vec<(u32, bool)> {
 }
 
 fn lenient<'a>(path: &'a [Point], obstacles: &'a [Obstacle]) -> Case<'a> {
-    let limits =
-        Limits { reel_m: f64::INFINITY, max_wrap_rad: f64::INFINITY, max_sum_wrap_rad: f64::INFINITY };
+    let limits = Limits {
+        reel_length_m: f64::INFINITY,
+        wrap_max_rad: f64::INFINITY,
+        wrap_total_max_rad: f64::INFINITY,
+    };
     Case { limits, ..case(path, obstacles, &[]) }
 }
 
@@ -93,13 +96,16 @@ fn loops_are_refused_until_every_one_is_undone() {
             !certificate.certified && certificate.crossings_left == turns.abs() as usize,
             "{turns}: {certificate:?}"
         );
-        assert!(certificate.max_wrap_rad > TAU * turns.abs() - PI, "{turns}: {certificate:?}");
+        assert!(certificate.wrap_max_rad > TAU * turns.abs() - PI, "{turns}: {certificate:?}");
         let almost = home_and_out(&[ring(0.0, 5.0, turns), ring(0.0, 5.0, turns.signum() - turns)]);
         let certificate = certify(&lenient(&almost, &columns)).unwrap();
         assert_eq!((certificate.certified, certificate.crossings_left), (false, 1), "{turns}");
         let undone = home_and_out(&[ring(0.0, 5.0, turns), ring(0.0, 5.0, -turns)]);
         let certificate = certify(&lenient(&undone, &columns)).unwrap();
-        assert!(certificate.certified && certificate.left_out_m.unwrap() < 1e-6, "{turns}: {certificate:?}");
+        assert!(
+            certificate.certified && certificate.end_length_m.unwrap() < 1e-6,
+            "{turns}: {certificate:?}"
+        );
     }
 }
 
@@ -111,7 +117,7 @@ fn a_knot_that_winds_round_no_column_in_sum_is_refused() {
     let knot = home_and_out(&rings.map(|(x, y, turns)| ring(x, y, turns)));
     let certificate = certify(&lenient(&knot, &columns)).unwrap();
     assert!(!certificate.certified && certificate.crossings_left == 4, "{certificate:?}");
-    assert!(certificate.left_out_m.unwrap() > 10.0);
+    assert!(certificate.end_length_m.unwrap() > 10.0);
     let nested = [rings[0], rings[1], (5.0, 0.0, -1.0), (0.0, 5.0, -1.0)];
     let undone = home_and_out(&nested.map(|(x, y, turns)| ring(x, y, turns)));
     assert!(certify(&lenient(&undone, &columns)).unwrap().certified);
@@ -168,7 +174,7 @@ fn numbers_that_are_none_certify_nothing() {
         let certificate = certify(&Case { cuts: &cuts, ..lenient(&path, &[]) }).unwrap();
         assert!(bad.is_finite() || !certificate.certified, "{bad} in a cut");
     }
-    let no_limit = Limits { reel_m: f64::NAN, ..lenient(&path, &[]).limits };
+    let no_limit = Limits { reel_length_m: f64::NAN, ..lenient(&path, &[]).limits };
     assert!(!certify(&Case { limits: no_limit, ..lenient(&path, &[]) }).unwrap().certified);
     assert!(!certify(&Case { room_m: f64::NAN, ..lenient(&path, &[]) }).unwrap().certified);
 }
@@ -212,7 +218,7 @@ proptest! {
         let word = letters_left(&path, &columns);
         let certificate = certify(&lenient(&path, &columns)).unwrap();
         prop_assert_eq!(certificate.certified, word.is_empty(), "{:?} {:?}", word, certificate.reasons);
-        prop_assert_eq!(certificate.left_out_m.unwrap() < 1e-6, word.is_empty());
+        prop_assert_eq!(certificate.end_length_m.unwrap() < 1e-6, word.is_empty());
         // With its own way back it is always certified.
         let there_and_back: Vec<Point> = path.iter().chain(path.iter().rev()).copied().collect();
         prop_assert!(certify(&lenient(&there_and_back, &columns)).unwrap().certified);
@@ -234,10 +240,10 @@ proptest! {
         let (whole, parts) =
             (certify(&lenient(&path, &columns)).unwrap(), certify(&lenient(&split, &columns)).unwrap());
         prop_assert_eq!((whole.certified, whole.crossings_left), (parts.certified, parts.crossings_left));
-        prop_assert!((whole.max_cable_m - parts.max_cable_m).abs() < 1e-6, "{} {}", whole.max_cable_m, parts.max_cable_m);
-        prop_assert!((whole.max_wrap_rad - parts.max_wrap_rad).abs() < 1e-6);
-        prop_assert!((whole.max_sum_wrap_rad - parts.max_sum_wrap_rad).abs() < 1e-6);
-        prop_assert!((whole.left_out_m.unwrap() - parts.left_out_m.unwrap()).abs() < 1e-6);
+        prop_assert!((whole.tether_length_max_m - parts.tether_length_max_m).abs() < 1e-6, "{} {}", whole.tether_length_max_m, parts.tether_length_max_m);
+        prop_assert!((whole.wrap_max_rad - parts.wrap_max_rad).abs() < 1e-6);
+        prop_assert!((whole.wrap_total_max_rad - parts.wrap_total_max_rad).abs() < 1e-6);
+        prop_assert!((whole.end_length_m.unwrap() - parts.end_length_m.unwrap()).abs() < 1e-6);
     }
 
     #[test]
