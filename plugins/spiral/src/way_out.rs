@@ -1,9 +1,9 @@
 //! Out of a pocket: the shortest way among all that was sensed so far to the course beyond.
 
 use crate::tangent::{Follower, Track};
-use field::Room;
 use geometry::convex::Part;
 use std::f64::consts::TAU;
+use steering::Room;
 use world::{Point, Shape, Vector, shortest::GrownFloor};
 
 /// A detour up to this long is taken to the next piece of course, metres; before a longer one the pieces further on are
