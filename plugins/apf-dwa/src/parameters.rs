@@ -106,7 +106,7 @@ pub(crate) const PARAMS: &[ParamSpec] = &[
 /// The window keeps this much more than is demanded: arcs are looked at in places, metres.
 const SPARE_M: f64 = 0.02;
 
-/// HybridSettings for a site.
+/// Settings for a site.
 pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> HybridSettings {
     let keep_m = site.limits.radius_m + config.float("guard_m").max(site.clearance_m) + SPARE_M;
     let square = SquareLaw {

@@ -72,7 +72,7 @@ pub(crate) const PARAMS: &[ParamSpec] = &[
 /// No step goes nearer to anything than the clearance that is demanded and this, metres.
 const SPARE_M: f64 = 0.02;
 
-/// MachineSettings for a site and a trip of some length from start to goal, metres.
+/// Settings for a site and a trip of some length from start to goal, metres.
 pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>, trip_m: f64) -> MachineSettings {
     let near = if config.choice("near_law") == "printed" { NearLaw::Printed } else { NearLaw::Corrected };
     let tangent_weight = config.float("tangent_weight");

@@ -2,7 +2,7 @@
 
 use super::*;
 use geometry::Point;
-use planner_api::{Obstacle, Outline, Reason, testing::Bench};
+use planner_api::{Code, Obstacle, Outline, Reason, Task, testing::Bench};
 use proptest::prelude::*;
 use steering::trial::exact_pose;
 use trials::shore::{Group, Shore};

@@ -2,7 +2,8 @@
 
 use super::*;
 use planner_api::{
-    Boundary, Drawing, Limits, Motion, Obstacle, Outline, Reason, StopReason, Vector2, testing::Bench,
+    Boundary, Code, Drawing, Drive, Limits, Motion, Obstacle, Outline, Reason, StopReason, Task, Vector2,
+    testing::Bench,
 };
 use std::f64::consts::PI;
 use steering::trial::exact_pose;
