@@ -10,7 +10,7 @@ use crate::{
 };
 use field::{Sides, oscillation::Oscillation};
 use std::{collections::BTreeSet, f64::consts::PI};
-use steering::{Body, Contact, Forces, KnownMap, Nearby, Side, Solid, Source, guard, wall_contacts};
+use steering::{Body, Contact, Forces, KnownMap, Nearby, Side, Solid, guard, wall_contacts};
 use world::{Point, Vector};
 
 /// The nearest solid on the way to the goal is looked for this far ahead, as a multiple of the law's range.
@@ -146,24 +146,16 @@ impl Machine {
     /// The same machine in thought: it takes coarser steps, remembers no way back and keeps to a side.
     #[must_use]
     pub fn thought(&self, step_m: f64) -> Self {
-        let settings = MachineSettings { step_m, ..self.settings };
-        Self {
-            settings,
-            map: self.map.clone(),
-            forces: Forces::default(),
-            retreats: self.retreats,
-            escapes: self.escapes,
-            news: Vec::new(),
-            phase: self.phase.clone(),
-            clusters: self.clusters.clone(),
-            trail: Vec::new(),
-            began: self.began.clone(),
-            oscillation: Oscillation::new(settings.window_m, step_m),
-            nearby: Nearby::new(settings.law.rho_m + self.map.hull_m),
-            sides: Sides::default(),
-            next_id: self.next_id,
-            in_thought: true,
-        }
+        let mut thought = self.clone();
+        thought.settings.step_m = step_m;
+        thought.oscillation = Oscillation::new(thought.settings.window_m, step_m);
+        thought.forces = Forces::default();
+        thought.news.clear();
+        thought.trail.clear();
+        thought.nearby.forget();
+        thought.sides.forget();
+        thought.in_thought = true;
+        thought
     }
 
     /// What it is doing.
@@ -245,20 +237,12 @@ impl Machine {
     fn step_along(&mut self, at: Point, way: Vector, length_m: f64) -> Next {
         let keep_m = self.settings.keep_m;
         let reach_m = keep_m + 2.0 * length_m;
-        let mut contacts: Vec<Contact> = Vec::new();
-        for &index in self.nearby.update(&self.map, at) {
-            let solid = &self.map.solids[index];
-            if solid.is_beyond(at, self.map.hull_m + reach_m) {
-                continue;
-            }
-            let (outline_m, away) = solid.distance(at);
-            let distance_m = outline_m - self.map.hull_m;
-            if distance_m < reach_m {
-                contacts.push(Contact { source: Source::Obstacle(solid.id), distance_m, away });
-            }
-        }
+        let (map, hull_m) = (&self.map, self.map.hull_m);
+        let near = self.nearby.update(map, at).iter();
+        let mut contacts: Vec<Contact> =
+            near.filter_map(|index| map.solids[*index].contact(at, hull_m, reach_m)).collect();
         if self.nearby.sees_wall() {
-            contacts.extend(wall_contacts(&self.map.wall, at, self.map.hull_m, reach_m));
+            contacts.extend(wall_contacts(&map.wall, at, hull_m, reach_m));
         }
         if contacts.is_empty() {
             return Next::By(way * length_m);

@@ -2,7 +2,7 @@
 
 use crate::{laws, pull::Pull};
 use geometry::{Point, Vector};
-use steering::{Contact, Forces, KnownMap, Nearby, Side, Source, wall_contacts};
+use steering::{Contact, Forces, KnownMap, Nearby, Side, wall_contacts};
 
 /// Repulsion never divides by less than this, metres.
 const CLOSEST_M: f64 = 1e-2;
@@ -79,26 +79,17 @@ impl GoalLaw {
     ) -> Forces {
         let mut forces = Forces { attraction: self.pull.force(at, goal), ..Forces::default() };
         for &index in nearby.update(map, at) {
-            let solid = &map.solids[index];
-            if solid.is_beyond(at, self.rho_m + map.hull_m) {
+            let Some(contact) = map.solids[index].contact(at, map.hull_m, self.rho_m) else {
                 sides.release(index);
                 continue;
-            }
-            let (outline_m, away) = solid.distance(at);
-            let distance_m = outline_m - map.hull_m;
-            if distance_m >= self.rho_m {
-                sides.release(index);
-                continue;
-            }
-            let contact =
-                Contact { source: Source::Obstacle(solid.id), distance_m: distance_m.max(CLOSEST_M), away };
-            forces.repulsion += laws::repulsion(self.k_rep, self.rho_m, &contact);
+            };
+            forces.repulsion += laws::repulsion(self.k_rep, self.rho_m, &not_too_near(contact));
             forces.rotation += self.turn(index, at, goal, map, sides);
         }
         if self.wall_gain > 0.0 && nearby.sees_wall() {
             for contact in wall_contacts(&map.wall, at, map.hull_m, self.rho_m / 2.0) {
-                let contact = Contact { distance_m: contact.distance_m.max(CLOSEST_M), ..contact };
-                forces.repulsion += laws::repulsion(self.k_rep * self.wall_gain, self.rho_m / 2.0, &contact);
+                let gain = self.k_rep * self.wall_gain;
+                forces.repulsion += laws::repulsion(gain, self.rho_m / 2.0, &not_too_near(contact));
             }
         }
         forces
@@ -122,6 +113,10 @@ impl GoalLaw {
         let tangent = solid.tangent(at, map.hull_m, side);
         tangent.direction * tangent_strength(self.tangent_weight, self.k_rep, tangent.length_m)
     }
+}
+
+fn not_too_near(contact: Contact) -> Contact {
+    Contact { distance_m: contact.distance_m.max(CLOSEST_M), ..contact }
 }
 
 /// Strength of the tangent force, `w mu / L` (Xu et al. 2022, eq. 13); `L` below 0.3 m counts as 0.3 m.

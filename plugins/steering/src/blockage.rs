@@ -43,8 +43,8 @@ pub(crate) struct Blockage {
     /// Lines that close the narrow gaps between them.
     pub closed: Vec<(Point, Point)>,
     corners: Vec<(Point, f64)>,
-    left_closed: bool,
-    right_closed: bool,
+    /// The sides on which going round ends at the wall.
+    pub dead_ends: Vec<Side>,
 }
 
 /// A passage too narrow, between two bodies or, without a second one, between a body and the wall.
@@ -84,7 +84,8 @@ impl Blockage {
         for passage in narrow.iter().filter(|n| members.contains(&n.first)) {
             blockage.closed.push(passage.line);
             if passage.second.is_none() {
-                blockage.close_side(view, passage.line.1);
+                let is_left = view.way().perp(&(passage.line.1 - view.at())) > 0.0;
+                blockage.dead_ends.push(if is_left { Side::Left } else { Side::Right });
             }
         }
         for body in members.iter().map(|index| bodies[*index]) {
@@ -92,25 +93,6 @@ impl Blockage {
             blockage.corners.extend(body.parts.iter().flat_map(Part::corners));
         }
         Some(blockage)
-    }
-
-    /// It touches the wall there, so that side leads nowhere.
-    fn close_side(&mut self, view: &View<'_>, wall: Point) {
-        if view.way().perp(&(wall - view.at())) > 0.0 {
-            self.left_closed = true;
-        } else {
-            self.right_closed = true;
-        }
-    }
-
-    /// Whether the wall closes any side.
-    pub(crate) fn touches_wall(&self) -> bool {
-        self.left_closed || self.right_closed
-    }
-
-    /// Whether going round on this side ends at the wall.
-    pub(crate) fn is_closed(&self, side: Side) -> bool {
-        if side == Side::Left { self.left_closed } else { self.right_closed }
     }
 
     /// The side on which less has to be turned away from the target, the present heading weighing a little.
@@ -126,9 +108,9 @@ impl Blockage {
             right_rad = right_rad.max(half_rad - off_rad);
         }
         let heading_rad = wrap_angle_rad(view.tick.pose.heading_rad - bearing_rad).clamp(-1.0, 1.0);
-        let penalty = |closed: bool| if closed { 10.0 } else { 0.0 };
-        let left = left_rad - 0.3 * heading_rad + penalty(self.is_closed(Side::Left));
-        let right = right_rad + 0.3 * heading_rad + penalty(self.is_closed(Side::Right));
+        let penalty = |side: Side| if self.dead_ends.contains(&side) { 10.0 } else { 0.0 };
+        let left = left_rad - 0.3 * heading_rad + penalty(Side::Left);
+        let right = right_rad + 0.3 * heading_rad + penalty(Side::Right);
         if left <= right { Side::Left } else { Side::Right }
     }
 }

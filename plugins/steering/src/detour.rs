@@ -47,7 +47,7 @@ impl Detours {
         let blockage = Blockage::of(view)?;
         let side = self.side(&blockage, view);
         let same = self.kept.as_ref().is_some_and(|kept| kept.knows_wall && kept.concerns(&blockage));
-        let knows_wall = same || blockage.touches_wall();
+        let knows_wall = same || !blockage.dead_ends.is_empty();
         self.kept = Some(Kept { members: blockage.members.clone(), side, seen_s: view.tick.t_s, knows_wall });
         Some(Detour { members: blockage.members, closed: blockage.closed, side })
     }
@@ -62,7 +62,8 @@ impl Detours {
     fn side(&self, blockage: &Blockage, view: &View<'_>) -> Side {
         let kept = self.kept.as_ref().filter(|kept| kept.concerns(blockage));
         let Some(kept) = kept else { return blockage.shorter_side(view) };
-        let leads_nowhere = blockage.is_closed(kept.side) && !blockage.is_closed(kept.side.other());
+        let is_dead_end = |side: Side| blockage.dead_ends.contains(&side);
+        let leads_nowhere = is_dead_end(kept.side) && !is_dead_end(kept.side.other());
         if leads_nowhere && !kept.knows_wall { kept.side.other() } else { kept.side }
     }
 }

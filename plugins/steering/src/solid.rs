@@ -1,6 +1,7 @@
 //! A convex part of an obstacle that is known.
 
 use crate::{
+    contact::{Contact, Source},
     side::Side,
     tangents::{self, Tangent},
 };
@@ -54,6 +55,16 @@ impl Solid {
         }
         let from = at - self.center;
         (from.norm() - self.radius_m, direction_or(from, Vector::x()))
+    }
+
+    /// The contact of a hull that comes this near to it; costs next to nothing where it does not.
+    pub fn contact(&self, at: Point, hull_m: f64, reach_m: f64) -> Option<Contact> {
+        if self.is_beyond(at, reach_m + hull_m) {
+            return None;
+        }
+        let (outline_m, away) = self.distance(at);
+        let contact = Contact { source: Source::Obstacle(self.id), distance_m: outline_m - hull_m, away };
+        (contact.distance_m < reach_m).then_some(contact)
     }
 
     /// Distance from a segment to the outline, metres; not above zero when they touch, and exact only below
