@@ -53,6 +53,11 @@ impl Part {
         Self::Capsule { a: center, b: center, half_width_m: radius_m }
     }
 
+    /// A line without thickness.
+    pub fn segment(a: Point, b: Point) -> Self {
+        Self::Capsule { a, b, half_width_m: 0.0 }
+    }
+
     /// The part as a shape of its own.
     pub fn to_shape(&self) -> Shape {
         match self {
@@ -99,7 +104,7 @@ impl Part {
             return (center - nearest_on_segment(a, b, *center)).norm() - half_width_m;
         }
         let inside = matches!(self, Self::Polygon { vertices } if is_inside(vertices, a));
-        if inside { 0.0 } else { self.gap(&Self::Capsule { a, b, half_width_m: 0.0 }).width_m }
+        if inside { 0.0 } else { self.gap(&Self::segment(a, b)).width_m }
     }
 
     /// The shortest way to another part that it does not contain.

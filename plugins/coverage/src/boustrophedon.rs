@@ -11,11 +11,11 @@ use crate::{
     slit::Slit,
     stages::{Part, Stages},
 };
-use field::params as p;
 use planner_api::{
     Caps, Code, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result, Sensed,
     Site, float,
 };
+use steering::params as p;
 use world::Point;
 
 const DIRECTION: ParamSpec = float("direction_deg", "Direction of lanes", "deg", -180.0, 180.0, 0.0)

@@ -6,14 +6,11 @@
 
 mod steer;
 
-use field::{
-    Flight, Pilot, params as p,
-    pilot::{Tick, position_sigma_m},
-};
 use planner_api::{
     Command, Config, Ctx, Drive, LegTag, LogLevel, Motion, ParamSpec, Plan, Result, Sensed, Site, Status,
     float,
 };
+use steering::{Flight, Pilot, Tick, params as p, pilot::position_sigma_m};
 use world::{Boundary, Point, polyline, tether::crossings};
 
 /// How far ahead on the path the robot aims, metres.

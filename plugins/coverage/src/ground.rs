@@ -1,10 +1,10 @@
 //! The floor as a coverage planner sees it: wall, solid parts, and where the middle of the hull may be.
 
 use crate::slit::Bare;
-use field::{Keep, Room, scene::solids};
 use geometry::convex::{Part, parts_of};
 use planner_api::{Code, PlannerError, Result, Site};
 use std::{f64::consts::TAU, sync::OnceLock};
+use steering::{Keep, Room, solids};
 use world::{Boundary, Point, Vector};
 
 /// Slack between what is planned and what the mission demands, metres.

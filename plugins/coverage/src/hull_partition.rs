@@ -14,11 +14,11 @@ use crate::{
     slit::Slit,
     stages::{Part, Stages},
 };
-use field::params as p;
 use planner_api::{
     Caps, Code, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result,
     Sensed, Site, choice, float,
 };
+use steering::params as p;
 use world::{Boundary, Point, Vector, polyline};
 
 const BACKTRACKING: ParamSpec = choice("backtracking", "Backtracking", &["tree", "direct"], 0)

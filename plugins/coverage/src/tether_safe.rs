@@ -9,11 +9,11 @@ use crate::{
     side_by_side::side_by_side,
     stages::Stages,
 };
-use field::params as p;
 use planner_api::{
     Caps, Command, Config, Ctx, Layer, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result,
     Sensed, Site, TetherLimits, choice, float, int,
 };
+use steering::params as p;
 use world::{
     Point, Shape,
     tether::{Cable, Certificate, Limits},
