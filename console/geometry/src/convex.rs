@@ -70,6 +70,17 @@ impl Part {
         Self::Capsule { a: center, b: center, half_width_m: radius_m }
     }
 
+    /// A line without thickness.
+    ///
+    /// ```
+    /// use geometry::{Point, convex::Part};
+    /// let line = Part::segment(Point::new(0.0, 0.0), Point::new(2.0, 0.0));
+    /// assert_eq!(line.distance(Point::new(1.0, 0.5)).0, 0.5);
+    /// ```
+    pub fn segment(a: Point, b: Point) -> Self {
+        Self::Capsule { a, b, half_width_m: 0.0 }
+    }
+
     /// The part as a shape.
     ///
     /// ```
@@ -140,7 +151,7 @@ impl Part {
             return (center - nearest_on_segment(a, b, *center)).norm() - half_width_m;
         }
         let inside = matches!(self, Self::Polygon { vertices } if is_inside(vertices, a));
-        if inside { 0.0 } else { self.gap(&Self::Capsule { a, b, half_width_m: 0.0 }).width_m }
+        if inside { 0.0 } else { self.gap(&Self::segment(a, b)).width_m }
     }
 
     /// The shortest segment to another part; neither may contain the other.

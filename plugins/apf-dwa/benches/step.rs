@@ -1,18 +1,19 @@
 //! One choice of the dynamic window (147 arcs) with ten discs near, and one step of the whole loop.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use field::{GoalLaw, Ground, Pull, TangentUse, virtual_goals::SquareLaw};
+use field::{GoalLaw, Pull, TangentUse, virtual_goals::SquareLaw};
 use planner_apf_dwa::{
-    Hybrid, Settings, State, Twist, Weights, Window,
+    Hybrid, HybridSettings, State, Twist, Weights, Window,
     guide::{Field, GuideBy},
     near::NearThings,
 };
+use steering::KnownMap;
 use trials::amphibious::{AmphibiousLayout, Group, HULL_M};
 use world::{Amphibious, Pose, Vector};
 
 const KEEP_M: f64 = HULL_M + 0.12;
 
-fn settings() -> Settings {
+fn settings() -> HybridSettings {
     let square = SquareLaw { k_att: 15.0, d_0_m: 3.0, square_m: 4.0, improved: true, hold_steps: 300 };
     let push = GoalLaw {
         pull: Pull::Linear { k: 15.0 },
@@ -23,7 +24,7 @@ fn settings() -> Settings {
         wall_gain: 0.1,
     };
     let weights = Weights { heading: 0.2, distance: 0.1, velocity: 0.1 };
-    Settings {
+    HybridSettings {
         robot: Amphibious::YANG_2021,
         window: Window {
             acceleration_m_per_s2: 0.1,
@@ -42,10 +43,10 @@ fn step(criterion: &mut Criterion) {
     let (corners, obstacles, water) =
         (AmphibiousLayout::corners(), layout.obstacles(), AmphibiousLayout::water());
     let zones = AmphibiousLayout::zones(&water);
-    let ground = Ground::new(&AmphibiousLayout::site(&corners, &obstacles, &zones));
+    let map = KnownMap::new(&AmphibiousLayout::site(&corners, &obstacles, &zones));
     let pose = Pose::new(-1.0, -2.4, 0.8);
     let twist = Twist { v_m_per_s: 0.2, w_rad_per_s: 0.0 };
-    let near = NearThings::of(&ground, pose.position, 20.0, |_| Vector::zeros());
+    let near = NearThings::of(&map, pose.position, 20.0, |_| Vector::zeros());
     let (window, pace) = (settings().window, Amphibious::YANG_2021.underwater);
     criterion.bench_function("dwa_window", |bencher| {
         bencher.iter(|| window.choose(&pose, twist, pace, Vector::new(1.0, 1.0), &near));
@@ -53,7 +54,7 @@ fn step(criterion: &mut Criterion) {
     let mut hybrid = Hybrid::new(settings(), Vec::new(), HULL_M);
     criterion.bench_function("dwa_step", |bencher| {
         let state = State { pose, twist };
-        bencher.iter(|| hybrid.decide(&state, layout.goal, &ground, |_| Vector::zeros()));
+        bencher.iter(|| hybrid.decide(&state, layout.goal, &map, |_| Vector::zeros()));
     });
 }
 

@@ -1,15 +1,19 @@
 //! The planner: offline on the known map, and tick by tick.
 
 use crate::{
-    hybrid::{Hybrid, Settings, State, run},
+    hybrid::{Hybrid, HybridSettings, State, run},
     parameters,
     window::{Twist, Window, arc, moved},
 };
-use field::{Ground, Scene, body::Body, drawing, offline, outcome, scene::no_go, stall::Stall};
-use planner_api::{
-    Caps, Code, Command, Config, Ctx, Drive, Layer, LogLevel, Motion, ParamSpec, Plan, PlanRequest, Planner,
-    PlannerError, Result, Sensed, Site, Status, Task, Vector2, ZoneKind,
+use field::{
+    ends,
+    outcome::{Shortfall, Walk},
 };
+use planner_api::{
+    Caps, Command, Config, Ctx, Drive, Layer, LogLevel, Motion, ParamSpec, Plan, PlanRequest, Planner,
+    Result, Sensed, Site, Status, Vector2, ZoneKind,
+};
+use steering::{Body, KnownMap, stall::Stall};
 use world::{Pose, Zone};
 
 /// Steps allowed for a plan, as a multiple of the straight way at the slower pace, and some more.
@@ -18,9 +22,9 @@ const SPARE_STEPS: usize = 2500;
 
 /// The hybrid of potential field and dynamic window, for land and water.
 pub(crate) struct ApfDwa {
-    settings: Settings,
+    settings: HybridSettings,
     hybrid: Hybrid,
-    ground: Ground,
+    map: KnownMap,
     no_go: Vec<Body>,
     motion: Motion,
     stuck_s: f64,
@@ -41,8 +45,8 @@ impl Planner for ApfDwa {
         Ok(Self {
             settings,
             hybrid: Hybrid::new(settings, zones(site), site.limits.radius_m),
-            ground: Ground::new(site),
-            no_go: no_go(site).filter_map(|(id, outline)| Body::new(id, &outline)).collect(),
+            map: KnownMap::new(site),
+            no_go: Body::no_go(site),
             motion: site.limits.motion,
             stuck_s: config.float("stuck_s"),
             stall: Stall::default(),
@@ -51,34 +55,26 @@ impl Planner for ApfDwa {
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
-        let Task::Goto { goal, tolerance_m } = request.task else {
-            let message = "apf-dwa goes to single goals; for preset paths choose apf or rpf";
-            return Err(PlannerError::new(Code::Unsupported, message));
-        };
-        let site = request.site;
-        let (scene, start) = (Scene::new(site), request.start);
-        offline::check_start(&scene, start.position, site.limits.radius_m)?;
-        offline::check_goal(&scene, goal, tolerance_m)?;
-        self.ground = Ground::new(site);
+        let (goal, tolerance_m) = ends::single_goal(request, Self::ID)?;
+        let (site, start) = (request.site, request.start);
+        self.map = KnownMap::new(site);
         self.hybrid.forget_map();
         let pose = Pose { position: start.position, heading_rad: start.heading_rad };
         let mut hybrid = Hybrid::new(self.settings, zones(site), site.limits.radius_m);
         let steps_max = self.steps_max((goal - start.position).norm());
-        let run = run(&mut hybrid, pose, goal, tolerance_m, steps_max, &self.ground, || ctx.check())?;
+        let run = run(&mut hybrid, pose, goal, tolerance_m, steps_max, &self.map, || ctx.check())?;
         ctx.scalar("virtual_goals", f64::from(hybrid.guide().used()), "");
         ctx.scalar("overspeed", run.overspeed_m_per_s, "m/s");
         let at = run.path[run.path.len() - 1];
         let missing_m = (goal - at).norm();
-        let shortfall = (!run.arrived).then_some(outcome::Shortfall::Short { missing_m, at });
-        let clearance_m = self.ground.path_clearance_m(&run.path, site.clearance_m + 1.0);
-        Ok(offline::plan_of(outcome::Walk { path: run.path, shortfall }, clearance_m, site.clearance_m, ctx))
+        let shortfall = (!run.arrived).then_some(Shortfall::Short { missing_m, at });
+        let clearance_m = self.map.path_clearance_m(&run.path, site.clearance_m + 1.0);
+        Ok(Walk { path: run.path, shortfall }.into_plan(clearance_m, site.clearance_m, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
-        let near = sensed.obstacles.iter().filter_map(|o| Body::new(o.id, &o.outline));
-        let bodies: Vec<Body> = near.chain(self.no_go.iter().cloned()).collect();
-        if self.ground.learn(&bodies) {
+        if self.map.learn(&Body::sensed(sensed, &self.no_go)) {
             self.hybrid.forget_map();
         }
         let pose = Pose { position: sensed.pose.position, heading_rad: sensed.pose.heading_rad };
@@ -88,12 +84,12 @@ impl Planner for ApfDwa {
             sighted.map_or_else(Vector2::zeros, |o| o.velocity_m_per_s)
         };
         let state = State { pose, twist };
-        let decision = self.hybrid.decide(&state, sensed.target, &self.ground, velocity_of);
-        drawing::show(ctx, pose.position, &decision.forces, self.settings.field.square.k_att);
+        let decision = self.hybrid.decide(&state, sensed.target, &self.map, velocity_of);
+        decision.forces.show(ctx, pose.position, self.settings.field.square.k_att);
         for (index, distance_m) in decision.distances_m.iter().enumerate() {
             ctx.scalar(DISTANCES[index], *distance_m, "m");
         }
-        ctx.scalar("safe_distance", self.settings.window.keep_m - self.ground.hull_m, "m");
+        ctx.scalar("safe_distance", self.settings.window.keep_m - self.map.hull_m, "m");
         ctx.scalar("mode", self.hybrid.mode().unwrap_or(0.0), "");
         ctx.scalar("speed_limit", decision.pace.v_max_m_per_s, "m/s");
         self.report(&pose, decision.twist, ctx);

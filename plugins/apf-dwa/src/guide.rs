@@ -1,10 +1,11 @@
 //! Where the field is to pull: the paper's virtual goals, or the next corner of the shortest way.
 
 use field::{
-    Forces, GoalLaw, Ground, Nearby, Sides,
+    GoalLaw, Sides,
     virtual_goals::{SquareLaw, VirtualGoals},
 };
 use std::collections::VecDeque;
+use steering::{Forces, KnownMap, Nearby};
 use world::{Boundary, Point, Shape, Vector, shortest::GrownFloor};
 
 /// Steps over which the robot must have come on (the paper's loop looks at 60).
@@ -91,11 +92,11 @@ impl Guide {
     }
 
     /// The forces at a place.
-    pub fn forces(&mut self, field: &Field, ground: &Ground, at: Point, goal: Point, step_m: f64) -> Forces {
-        let forces = field.push.forces(at, goal, ground, &mut self.nearby, &mut Sides::default());
+    pub fn forces(&mut self, field: &Field, map: &KnownMap, at: Point, goal: Point, step_m: f64) -> Forces {
+        let forces = field.push.forces(at, goal, map, &mut self.nearby, &mut Sides::default());
         let pull = match field.by {
-            GuideBy::Square => self.toward_square(field, ground, at, goal, forces.repulsion, step_m),
-            GuideBy::Corners => self.toward_corner(field, ground, at, goal),
+            GuideBy::Square => self.toward_square(field, map, at, goal, forces.repulsion, step_m),
+            GuideBy::Corners => self.toward_corner(field, map, at, goal),
         };
         Forces { attraction: pull, ..forces }
     }
@@ -103,7 +104,7 @@ impl Guide {
     fn toward_square(
         &mut self,
         field: &Field,
-        ground: &Ground,
+        map: &KnownMap,
         at: Point,
         goal: Point,
         push: Vector,
@@ -114,29 +115,26 @@ impl Guide {
         let stalled = self.stalled(at);
         let force = if stalled { Vector::zeros() } else { without };
         if self.goals.needs_one(law, at, goal, force, step_m) {
-            let is_usable = |corner: Point| ground.clearance_m(corner) > 0.0;
-            if let Some(corner) = law.best_corner(at, goal, push, is_usable) {
-                self.goals.take(corner);
-            }
+            self.goals.take_best(law, at, goal, push, map);
         }
         law.attraction(at, goal, self.goals.current())
     }
 
     /// Toward the first corner of the shortest way that is not passed yet, as strongly as toward a goal.
-    fn toward_corner(&mut self, field: &Field, ground: &Ground, at: Point, goal: Point) -> Vector {
+    fn toward_corner(&mut self, field: &Field, map: &KnownMap, at: Point, goal: Point) -> Vector {
         let leads_elsewhere = self.way.last().is_none_or(|end| (end - goal).norm() > 1e-6);
         if self.age == usize::MAX || leads_elsewhere {
-            self.find_way(field, ground, at, goal);
+            self.find_way(field, map, at, goal);
         }
         self.age += 1;
         if self.age.is_multiple_of(LOOK_STEPS) {
-            let margin_m = field.keep_m - ground.hull_m - SLACK_M;
-            while self.way.len() > 1 && ground.is_free(at, self.way[1], margin_m + SLACK_M + ROOM_M / 2.0) {
+            let margin_m = field.keep_m - map.hull_m - SLACK_M;
+            while self.way.len() > 1 && map.is_free(at, self.way[1], margin_m + SLACK_M + ROOM_M / 2.0) {
                 self.way.remove(0);
             }
             let corner = self.way.first().copied().unwrap_or(goal);
-            if self.age >= FRESH_STEPS || !ground.is_free(at, corner, margin_m) {
-                self.find_way(field, ground, at, goal);
+            if self.age >= FRESH_STEPS || !map.is_free(at, corner, margin_m) {
+                self.find_way(field, map, at, goal);
             }
         }
         while self.way.len() > 1 && (self.way[0] - at).norm() < PASSED_M {
@@ -147,8 +145,8 @@ impl Guide {
         (corner - at).try_normalize(1e-9).unwrap_or_else(Vector::zeros) * pull
     }
 
-    fn find_way(&mut self, field: &Field, ground: &Ground, at: Point, goal: Point) {
-        self.way = shortest_way(ground, at, goal, field.keep_m);
+    fn find_way(&mut self, field: &Field, map: &KnownMap, at: Point, goal: Point) {
+        self.way = shortest_way(map, at, goal, field.keep_m);
         self.age = 0;
     }
 
@@ -163,21 +161,21 @@ impl Guide {
 }
 
 /// The corners of the shortest way from a place, the goal last; only the goal if no way is found.
-pub fn shortest_way(ground: &Ground, at: Point, goal: Point, keep_m: f64) -> Vec<Point> {
-    let shapes: Vec<Shape> = ground.solids.iter().map(|solid| solid.part.to_shape()).collect();
+pub fn shortest_way(map: &KnownMap, at: Point, goal: Point, keep_m: f64) -> Vec<Point> {
+    let shapes: Vec<Shape> = map.solids.iter().map(|solid| solid.part.to_shape()).collect();
     for attempt in 0..ATTEMPTS {
         let room_m = if attempt + 1 == ATTEMPTS { 0.0 } else { ROOM_M / f64::from(1 << attempt) };
         // A robot that stands, or is to stand, nearer than that finds a way with less room.
         let wished_m = keep_m + room_m;
-        if let Some(way) = way_with(ground, &shapes, at, goal, wished_m) {
+        if let Some(way) = way_with(map, &shapes, at, goal, wished_m) {
             return way;
         }
     }
     vec![goal]
 }
 
-fn way_with(ground: &Ground, shapes: &[Shape], at: Point, goal: Point, keep_m: f64) -> Option<Vec<Point>> {
-    let wall: &Boundary = &ground.wall;
+fn way_with(map: &KnownMap, shapes: &[Shape], at: Point, goal: Point, keep_m: f64) -> Option<Vec<Point>> {
+    let wall: &Boundary = &map.wall;
     let floor = GrownFloor::new(wall, keep_m, shapes.iter().map(|shape| (shape, keep_m)));
     let way = floor.shortest(at, goal, &mut || true).ok()?;
     Some(way.points().into_iter().skip(1).collect())
@@ -186,12 +184,12 @@ fn way_with(ground: &Ground, shapes: &[Shape], at: Point, goal: Point, keep_m: f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use field::Solid;
+    use steering::Solid;
 
-    fn ground(discs: &[(f64, f64, f64)]) -> Ground {
+    fn map(discs: &[(f64, f64, f64)]) -> KnownMap {
         let disc =
             |(id, (x, y, r)): (usize, &(f64, f64, f64))| Solid::disc(id as u32, Point::new(*x, *y), *r);
-        Ground {
+        KnownMap {
             solids: discs.iter().enumerate().map(disc).collect(),
             wall: Boundary::Circle { radius_m: 20.0 },
             hull_m: 0.2,
@@ -201,14 +199,14 @@ mod tests {
     #[test]
     fn a_free_way_has_no_corner_and_a_blocked_one_leads_past() {
         let goal = Point::new(6.0, 0.0);
-        assert_eq!(shortest_way(&ground(&[]), Point::origin(), goal, 0.3), [goal]);
-        let way = shortest_way(&ground(&[(3.0, 0.1, 0.5)]), Point::origin(), goal, 0.3);
+        assert_eq!(shortest_way(&map(&[]), Point::origin(), goal, 0.3), [goal]);
+        let way = shortest_way(&map(&[(3.0, 0.1, 0.5)]), Point::origin(), goal, 0.3);
         assert!(way.len() > 1 && way[0].y < -0.2 && way[way.len() - 1] == goal);
     }
 
     #[test]
     fn near_something_the_way_is_found_with_less_room() {
-        let way = shortest_way(&ground(&[(1.0, 0.0, 0.5)]), Point::new(0.18, 0.0), Point::new(6.0, 0.0), 0.3);
+        let way = shortest_way(&map(&[(1.0, 0.0, 0.5)]), Point::new(0.18, 0.0), Point::new(6.0, 0.0), 0.3);
         assert!(way.len() > 1);
     }
 }

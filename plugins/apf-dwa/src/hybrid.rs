@@ -5,7 +5,7 @@ use crate::{
     near::NearThings,
     window::{Twist, Window, moved},
 };
-use field::{Forces, Ground};
+use steering::{Forces, KnownMap};
 use world::{Amphibious, Medium, Mode, Pace, Point, Pose, Vector, Zone};
 
 /// Near the goal, or a place to pass, the robot does not go faster than it can turn there.
@@ -17,7 +17,7 @@ const SLOWEST_M_PER_S: f64 = 0.02;
 
 /// Everything that the loop needs besides the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct HybridSettings {
     /// How it walks and swims.
     pub robot: Amphibious,
     /// The window.
@@ -53,7 +53,7 @@ pub struct Decision {
 /// The loop and what it remembers.
 #[derive(Debug, Clone)]
 pub struct Hybrid {
-    settings: Settings,
+    settings: HybridSettings,
     zones: Vec<Zone>,
     mode: Option<Mode>,
     guide: Guide,
@@ -64,12 +64,12 @@ const N_DISTANCES: usize = 10;
 
 impl Hybrid {
     /// A loop that has not begun.
-    pub fn new(settings: Settings, zones: Vec<Zone>, hull_m: f64) -> Self {
+    pub fn new(settings: HybridSettings, zones: Vec<Zone>, hull_m: f64) -> Self {
         Self { guide: Guide::new(&settings.field, hull_m), settings, zones, mode: None }
     }
 
     /// What it is set to.
-    pub fn settings(&self) -> &Settings {
+    pub fn settings(&self) -> &HybridSettings {
         &self.settings
     }
 
@@ -93,19 +93,19 @@ impl Hybrid {
         &mut self,
         state: &State,
         goal: Point,
-        ground: &Ground,
+        map: &KnownMap,
         velocity_of: impl Fn(u32) -> Vector,
     ) -> Decision {
         let pace = self.adapt(state.pose.position);
         let window = &self.settings.window;
         let (at, step_m) = (state.pose.position, pace.v_max_m_per_s * window.dt_s);
-        let forces = self.guide.forces(&self.settings.field, ground, at, goal, step_m);
+        let forces = self.guide.forces(&self.settings.field, map, at, goal, step_m);
         let reference = forces.resultant().try_normalize(1e-9).unwrap_or(goal - at);
-        let fastest = ground.solids.iter().map(|s| velocity_of(s.id).norm()).fold(0.0, f64::max);
-        let near = NearThings::of(ground, at, window.reach_m(pace, fastest), velocity_of);
+        let fastest = map.solids.iter().map(|s| velocity_of(s.id).norm()).fold(0.0, f64::max);
+        let near = NearThings::of(map, at, window.reach_m(pace, fastest), velocity_of);
         let drivable = Pace { v_max_m_per_s: drivable(state, goal, pace), ..pace };
         let twist = window.choose(&state.pose, state.twist, drivable, reference, &near);
-        Decision { twist, forces, pace, distances_m: distances_m(ground, at) }
+        Decision { twist, forces, pace, distances_m: distances_m(map, at) }
     }
 
     /// The limits by the floor under the robot; one step of the transition each time.
@@ -135,8 +135,8 @@ fn drivable(state: &State, goal: Point, pace: Pace) -> f64 {
     slow.min(pace.v_max_m_per_s)
 }
 
-fn distances_m(ground: &Ground, at: Point) -> Vec<f64> {
-    let mut all: Vec<f64> = ground.solids.iter().map(|s| s.distance(at).0 - ground.hull_m).collect();
+fn distances_m(map: &KnownMap, at: Point) -> Vec<f64> {
+    let mut all: Vec<f64> = map.solids.iter().map(|s| s.distance(at).0 - map.hull_m).collect();
     all.sort_by(f64::total_cmp);
     all.truncate(N_DISTANCES);
     all
@@ -163,7 +163,7 @@ pub fn run<E>(
     goal: Point,
     tolerance_m: f64,
     steps_max: usize,
-    ground: &Ground,
+    map: &KnownMap,
     mut check: impl FnMut() -> Result<(), E>,
 ) -> Result<Run, E> {
     let mut state = State { pose: start, twist: Twist::default() };
@@ -175,7 +175,7 @@ pub fn run<E>(
             break;
         }
         check()?;
-        let decision = hybrid.decide(&state, goal, ground, |_| Vector::zeros());
+        let decision = hybrid.decide(&state, goal, map, |_| Vector::zeros());
         state.twist = decision.twist;
         state.pose = moved(&state.pose, state.twist, dt_s);
         run.path.push(state.pose.position);

@@ -12,7 +12,7 @@ pub mod near;
 mod apf_dwa;
 mod parameters;
 
-pub use hybrid::{Hybrid, Settings, State};
+pub use hybrid::{Hybrid, HybridSettings, State};
 pub use window::{Twist, Weights, Window};
 
 planner_api::export_planners!(apf_dwa::ApfDwa);

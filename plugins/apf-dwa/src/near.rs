@@ -1,7 +1,7 @@
 //! What is near enough to matter within the horizon of a window.
 
-use field::{Ground, Solid};
-use geometry::convex::Part;
+use geometry::{convex::Part, polyline::edges};
+use steering::{KnownMap, Solid};
 use world::{Boundary, Point, Vector};
 
 /// A round thing, perhaps moving.
@@ -67,18 +67,17 @@ pub struct NearThings {
 
 impl NearThings {
     /// What is within reach; `velocity_of` gives the velocity of an obstacle.
-    pub fn of(ground: &Ground, at: Point, reach_m: f64, velocity_of: impl Fn(u32) -> Vector) -> Self {
+    pub fn of(map: &KnownMap, at: Point, reach_m: f64, velocity_of: impl Fn(u32) -> Vector) -> Self {
         let mut near = Self::default();
-        for solid in ground.solids.iter().filter(|s| !s.is_beyond(at, reach_m)) {
+        for solid in map.solids.iter().filter(|s| !s.is_beyond(at, reach_m)) {
             near.add(solid, velocity_of(solid.id));
         }
-        match &ground.wall {
+        match &map.wall {
             Boundary::Circle { radius_m } => {
                 near.round_wall_m = Some(*radius_m).filter(|radius_m| radius_m - at.coords.norm() < reach_m);
             }
             Boundary::Polygon { vertices } => {
-                let edges = vertices.iter().zip(vertices.iter().cycle().skip(1));
-                let bars = edges.map(|(a, b)| Bar::new(*a, *b, 0.0, Vector::zeros()));
+                let bars = edges(vertices).map(|(a, b)| Bar::new(a, b, 0.0, Vector::zeros()));
                 near.bars.extend(bars.filter(|bar| bar.squared(at, Vector::zeros()) < reach_m * reach_m));
             }
         }
@@ -149,9 +148,9 @@ impl NearThings {
 mod tests {
     use super::*;
 
-    fn ground() -> Ground {
+    fn map() -> KnownMap {
         let bar = Part::Capsule { a: Point::new(0.0, 3.0), b: Point::new(2.0, 3.0), half_width_m: 0.1 };
-        Ground {
+        KnownMap {
             solids: vec![Solid::disc(1, Point::new(3.0, 0.0), 0.5), Solid::new(2, bar)],
             wall: Boundary::Circle { radius_m: 10.0 },
             hull_m: 0.2,
@@ -160,7 +159,7 @@ mod tests {
 
     #[test]
     fn distances_are_those_of_the_nearest_thing_on_the_way() {
-        let near = NearThings::of(&ground(), Point::origin(), 20.0, |_| Vector::zeros());
+        let near = NearThings::of(&map(), Point::origin(), 20.0, |_| Vector::zeros());
         let way = [Point::new(0.5, 0.0), Point::new(1.0, 0.0)];
         assert!((near.distance_m(&way, 0.2, 9.0) - 1.5).abs() < 1e-12);
         assert!((near.distance_m(&[Point::new(1.0, 2.5)], 0.2, 9.0) - 0.4).abs() < 1e-12);
@@ -171,7 +170,7 @@ mod tests {
     #[test]
     fn something_that_comes_along_is_met_where_it_will_be() {
         let velocity = |id| if id == 1 { Vector::new(-1.0, 0.0) } else { Vector::zeros() };
-        let near = NearThings::of(&ground(), Point::origin(), 20.0, velocity);
+        let near = NearThings::of(&map(), Point::origin(), 20.0, velocity);
         let standing = [Point::origin(); 10];
         assert!((near.distance_m(&standing, 0.2, 9.0) - 0.5).abs() < 1e-12);
     }

@@ -2,10 +2,10 @@
 
 use crate::{
     guide::{Field, GuideBy},
-    hybrid::Settings,
+    hybrid::HybridSettings,
     window::{Weights, Window},
 };
-use field::{GoalLaw, Pull, TangentUse, params as p, virtual_goals::SquareLaw};
+use field::{params as p, virtual_goals::SquareLaw};
 use planner_api::{Config, ParamSpec, Site, choice, float, int};
 use world::{Amphibious, Pace};
 
@@ -107,7 +107,7 @@ pub(crate) const PARAMS: &[ParamSpec] = &[
 const SPARE_M: f64 = 0.02;
 
 /// Settings for a site.
-pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> Settings {
+pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> HybridSettings {
     let keep_m = site.limits.radius_m + config.float("guard_m").max(site.clearance_m) + SPARE_M;
     let square = SquareLaw {
         k_att: config.float("k_att"),
@@ -116,14 +116,7 @@ pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> Settings {
         improved: true,
         hold_steps: config.int("hold_steps") as usize,
     };
-    let push = GoalLaw {
-        pull: Pull::Capped { k: square.k_att, d_0_m: square.d_0_m },
-        k_rep: config.float("k_rep"),
-        rho_m: config.float("rho_0_m"),
-        tangent: TangentUse::Off,
-        tangent_weight: 0.0,
-        wall_gain: config.float("wall_gain"),
-    };
+    let push = square.push(config.float("k_rep"), config.float("rho_0_m"), config.float("wall_gain"));
     let by = if config.choice("guide") == "square" { GuideBy::Square } else { GuideBy::Corners };
     let window = Window {
         acceleration_m_per_s2: config.float("acceleration_m_per_s2"),
@@ -136,7 +129,7 @@ pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> Settings {
         keep_m,
         dt_s: config.float("step_s"),
     };
-    Settings {
+    HybridSettings {
         robot: robot(config, site),
         window,
         field: Field { square, push, by, keep_m },

@@ -1,10 +1,10 @@
 //! What one plan of the paper's whole spiral costs, on layouts of its first distribution with 39 obstacles.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use field::trial::exact_pose;
 use planner_apf::apf::Apf;
 use planner_api::{Motion, PlanRequest, Planner, Reason, Task, testing::Bench};
 use std::hint::black_box;
+use steering::trial::exact_pose;
 use trials::{Distribution, Layout, Sampling};
 
 /// Layouts that take turns.

@@ -1,14 +1,14 @@
 //! The classical artificial potential field.
 
-use field::{Pilot, Settings, offline, params as p};
+use field::{FieldSettings, ForcePilot, offline, params as p};
 use planner_api::{Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site};
 
 /// Attraction and repulsion of Khatib 1986, toward a goal and along a preset path alike.
 ///
 /// It has no answer to a local minimum: it says so.
 pub struct Apf {
-    settings: Settings,
-    pilot: Pilot,
+    settings: FieldSettings,
+    pilot: ForcePilot,
 }
 
 impl Planner for Apf {
@@ -38,7 +38,7 @@ impl Planner for Apf {
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
         let settings = p::settings(config);
-        Ok(Self { settings, pilot: Pilot::new(&settings, site) })
+        Ok(Self { settings, pilot: ForcePilot::new(&settings, site) })
     }
 
     fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {

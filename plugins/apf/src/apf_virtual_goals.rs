@@ -2,15 +2,14 @@
 
 use crate::goal_flight::GoalFlight;
 use field::{
-    GoalLaw, Ground, Nearby, Pull, Sides, TangentUse, goal_walk,
-    law::Forces,
-    params as p,
+    GoalLaw, Sides, goal_walk, params as p,
     virtual_goals::{SquareLaw, VirtualGoals},
 };
 use planner_api::{
     Caps, Command, Config, Ctx, Layer, LogLevel, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site,
     choice, flag, float, int,
 };
+use steering::{Forces, KnownMap, Nearby};
 use world::{Point, Vector};
 
 /// Attraction, repulsion and, in a minimum, a virtual goal on a square round the goal (Yang et al. 2021).
@@ -101,14 +100,14 @@ impl Planner for ApfVirtualGoals {
             checked.trip.steps_max = law.steps_max;
         }
         let trip = checked.trip;
-        let (ground, mut nearby) = (&self.flight.ground, self.flight.nearby.clone());
+        let (map, mut nearby) = (&self.flight.map, self.flight.nearby.clone());
         let mut goals = VirtualGoals::default();
         let next = |at: Point| {
             let missing_m = (trip.goal - at).norm();
             if missing_m <= law.step_m {
                 return Some(trip.goal - at);
             }
-            let force = law.forces(at, trip.goal, ground, &mut nearby, &mut goals).resultant();
+            let force = law.forces(at, trip.goal, map, &mut nearby, &mut goals).resultant();
             Some(force.try_normalize(1e-12).unwrap_or_else(Vector::zeros) * law.move_m(force))
         };
         let walk = goal_walk::walk(&trip, next, || ctx.check())?;
@@ -116,14 +115,14 @@ impl Planner for ApfVirtualGoals {
             ctx.log(LogLevel::Info, &format!("the way uses {} virtual goals", goals.used));
         }
         ctx.scalar("virtual_goals", f64::from(goals.used), "");
-        Ok(checked.plan_of(walk, ground, ctx))
+        Ok(checked.plan_of(walk, map, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         let (law, goals) = (self.law, &mut self.goals);
         let used = goals.used;
-        let command = self.flight.step(sensed, ctx, law.square.k_att, |at, ground, nearby| {
-            law.forces(at, sensed.target, ground, nearby, goals)
+        let command = self.flight.step(sensed, ctx, law.square.k_att, |at, map, nearby| {
+            law.forces(at, sensed.target, map, nearby, goals)
         })?;
         if self.goals.used > used {
             ctx.log(LogLevel::Info, "in a minimum: goes for a virtual goal");
@@ -142,18 +141,15 @@ impl Law {
         &self,
         at: Point,
         goal: Point,
-        ground: &Ground,
+        map: &KnownMap,
         nearby: &mut Nearby,
         goals: &mut VirtualGoals,
     ) -> Forces {
-        let forces = self.repulsion.forces(at, goal, ground, nearby, &mut Sides::default());
+        let forces = self.repulsion.forces(at, goal, map, nearby, &mut Sides::default());
         let push = forces.repulsion;
         let without = self.square.attraction(at, goal, None) + push;
         if goals.needs_one(&self.square, at, goal, without, self.step_m) {
-            let is_usable = |corner: Point| ground.clearance_m(corner) > 0.0;
-            if let Some(corner) = self.square.best_corner(at, goal, push, is_usable) {
-                goals.take(corner);
-            }
+            goals.take_best(&self.square, at, goal, push, map);
         }
         Forces { attraction: self.square.attraction(at, goal, goals.current()), ..forces }
     }
@@ -172,17 +168,9 @@ fn law(config: &Config<'_>) -> Law {
         improved: config.flag("improved"),
         hold_steps: config.int("hold_steps") as usize,
     };
-    let repulsion = GoalLaw {
-        pull: Pull::Capped { k: square.k_att, d_0_m: square.d_0_m },
-        k_rep: config.float("k_rep"),
-        rho_m: config.float("rho_0_m"),
-        tangent: TangentUse::Off,
-        tangent_weight: 0.0,
-        wall_gain: config.float("wall_gain"),
-    };
     Law {
         square,
-        repulsion,
+        repulsion: square.push(config.float("k_rep"), config.float("rho_0_m"), config.float("wall_gain")),
         step_m: config.float("goto_step_m"),
         proportional: config.choice("step_rule") == "proportional",
         steps_max: config.int("steps_max") as usize,

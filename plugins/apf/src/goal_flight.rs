@@ -1,12 +1,8 @@
 //! What the goal planners of this crate share: checks of a plan, the map as it is known, the flight along a force.
 
-use field::{
-    Flight, Ground, Nearby, Pilot, Scene, drawing, goal_walk::Trip, law::Forces, offline, outcome::Walk,
-    pilot::Tick,
-};
-use planner_api::{
-    Code, Command, Ctx, Drive, Plan, PlanRequest, PlannerError, Result, Sensed, Site, Status, Task,
-};
+use field::{ends, goal_walk::Trip, outcome::Walk};
+use planner_api::{Command, Ctx, Plan, PlanRequest, Result, Sensed, Site, Status};
+use steering::{Flight, Forces, KnownMap, Nearby, Pilot, Tick, drawing};
 use world::{Point, Vector};
 
 /// Steps allowed for a plan, as a multiple of those of the straight way, and some more for short ways.
@@ -16,7 +12,7 @@ const SPARE_STEPS: usize = 2000;
 /// A map and somebody who flies over it.
 pub(crate) struct GoalFlight {
     /// The map as far as it is known.
-    pub ground: Ground,
+    pub map: KnownMap,
     /// What of it is near the robot.
     pub nearby: Nearby,
     flight: Flight,
@@ -33,25 +29,19 @@ pub(crate) struct Checked {
 impl GoalFlight {
     /// A flight over a site, for a law that reaches so far.
     pub(crate) fn new(site: &Site<'_>, flight: Flight, reach_m: f64) -> Self {
-        let ground = Ground::new(site);
-        Self { nearby: Nearby::new(reach_m + ground.hull_m), ground, flight, pilot: Pilot::pursuing(site) }
+        let map = KnownMap::new(site);
+        Self { nearby: Nearby::new(reach_m + map.hull_m), map, flight, pilot: Pilot::pursuing(site) }
     }
 
     /// Takes the map of a request and checks its ends; `id` names the planner.
     ///
     /// # Errors
-    /// [`Code::Unsupported`] for a preset path, and those of [`offline::check_start`] and [`offline::check_goal`].
+    /// Those of [`ends::single_goal`].
     pub(crate) fn check(&mut self, request: &PlanRequest<'_>, id: &str, step_m: f64) -> Result<Checked> {
-        let Task::Goto { goal, tolerance_m } = request.task else {
-            let message = format!("{id} goes to single goals; for preset paths choose apf or rpf");
-            return Err(PlannerError::new(Code::Unsupported, message));
-        };
-        let scene = Scene::new(request.site);
-        let start = request.start.position;
-        offline::check_start(&scene, start, request.site.limits.radius_m)?;
-        offline::check_goal(&scene, goal, tolerance_m)?;
-        self.ground = Ground::new(request.site);
+        let (goal, tolerance_m) = ends::single_goal(request, id)?;
+        self.map = KnownMap::new(request.site);
         self.nearby.forget();
+        let start = request.start.position;
         let steps_max = (DETOUR * (goal - start).norm() / step_m) as usize + SPARE_STEPS;
         let trip = Trip { start, goal, tolerance_m, steps_max };
         Ok(Checked { trip, demanded_m: request.site.clearance_m })
@@ -66,41 +56,29 @@ impl GoalFlight {
         sensed: &Sensed<'_>,
         ctx: &Ctx<'_>,
         k_att: f64,
-        force: impl FnOnce(Point, &Ground, &mut Nearby) -> Forces,
+        force: impl FnOnce(Point, &KnownMap, &mut Nearby) -> Forces,
     ) -> Result<Command> {
         ctx.check()?;
         let bodies = self.pilot.bodies(sensed);
-        if self.ground.learn(&bodies) {
+        if self.map.learn(&bodies) {
             self.nearby.forget();
         }
         let at = sensed.pose.position;
-        let forces = force(at, &self.ground, &mut self.nearby);
-        let tick = Tick {
-            t_s: sensed.t_s,
-            pose: sensed.pose,
-            target: sensed.target,
-            is_last: sensed.targets_ahead.len() <= 1,
-            bodies: &bodies,
-        };
-        drawing::show(ctx, at, &forces, k_att);
-        let near_m = bodies.iter().map(|body| body.hull_distance_m(at, self.ground.hull_m));
-        let near_m = near_m.fold(f64::INFINITY, f64::min);
-        if near_m.is_finite() {
-            ctx.scalar("obstacle_distance", near_m, "m");
-        }
+        let forces = force(at, &self.map, &mut self.nearby);
+        forces.show(ctx, at, k_att);
+        drawing::show_nearest(ctx, at, self.map.hull_m, &bodies);
         let Some(along) = forces.resultant().try_normalize(1e-12) else {
             return Ok(Command::still(Status::Stuck));
         };
         let way: Vector = along * (sensed.target - at).norm().clamp(0.05, 1.0);
-        let decision = self.pilot.pursue(&self.flight, &tick, at + way);
-        Ok(Command { drive: Drive::Velocity(decision.velocity), status: decision.status })
+        Ok(self.pilot.pursue(&self.flight, &Tick::toward_target(sensed, &bodies), at + way).into())
     }
 }
 
 impl Checked {
     /// A walk as a plan; what is wrong with it is logged.
-    pub(crate) fn plan_of(&self, walk: Walk, ground: &Ground, ctx: &Ctx<'_>) -> Plan {
-        let clearance_m = ground.path_clearance_m(&walk.path, self.demanded_m + 1.0);
-        offline::plan_of(walk, clearance_m, self.demanded_m, ctx)
+    pub(crate) fn plan_of(&self, walk: Walk, map: &KnownMap, ctx: &Ctx<'_>) -> Plan {
+        let clearance_m = map.path_clearance_m(&walk.path, self.demanded_m + 1.0);
+        walk.into_plan(clearance_m, self.demanded_m, ctx)
     }
 }

@@ -86,20 +86,19 @@ impl Planner for Tapf {
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
         let checked = self.flight.check(request, Self::ID, self.step_m)?;
         let (law, trip) = (self.law, checked.trip);
-        let (ground, mut nearby) = (&self.flight.ground, self.flight.nearby.clone());
+        let (map, mut nearby) = (&self.flight.map, self.flight.nearby.clone());
         let mut sides = Sides::default();
-        let force = |at| law.forces(at, trip.goal, ground, &mut nearby, &mut sides).resultant();
+        let force = |at| law.forces(at, trip.goal, map, &mut nearby, &mut sides).resultant();
         let next = goal_walk::descent(&trip, self.step_m, self.window_m, force);
         let walk = goal_walk::walk(&trip, next, || ctx.check())?;
-        Ok(checked.plan_of(walk, ground, ctx))
+        Ok(checked.plan_of(walk, map, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         let (law, sides) = (self.law, &mut self.sides);
         let k_att = law.pull.strength(1.0);
-        self.flight.step(sensed, ctx, k_att, |at, ground, nearby| {
-            law.forces(at, sensed.target, ground, nearby, sides)
-        })
+        self.flight
+            .step(sensed, ctx, k_att, |at, map, nearby| law.forces(at, sensed.target, map, nearby, sides))
     }
 }
 

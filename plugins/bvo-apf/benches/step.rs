@@ -1,17 +1,18 @@
 //! One step of the state machine in a random trap, on average over the whole walk.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use field::{GoalLaw, Ground, NearLaw, Pull, TangentUse};
-use planner_bvo_apf::{Machine, Mode, Next, Settings};
+use field::{GoalLaw, NearLaw, Pull, TangentUse};
+use planner_bvo_apf::{Machine, MachineSettings, Mode, Next};
+use steering::KnownMap;
 use trials::traps::{Kind, Trap};
 
 fn step(criterion: &mut Criterion) {
     let trap = Trap::random(Kind::U, 7);
     let (corners, obstacles) = (Trap::corners(), trap.obstacles(false));
-    let ground = Ground::new(&Trap::site(&corners, &obstacles, 6.0));
+    let map = KnownMap::new(&Trap::site(&corners, &obstacles, 6.0));
     let mut group = criterion.benchmark_group("bvo_step");
     for (name, mode) in [("literal", Mode::Literal), ("rollout", Mode::Rollout)] {
-        let settings = Settings {
+        let settings = MachineSettings {
             mode,
             law: GoalLaw {
                 pull: Pull::Logarithm {
@@ -34,7 +35,7 @@ fn step(criterion: &mut Criterion) {
             escapes_max: 12,
         };
         group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
-            let fresh = || (Machine::new(settings, ground.clone()), trap.start);
+            let fresh = || (Machine::new(settings, map.clone()), trap.start);
             let (mut machine, mut at) = fresh();
             bencher.iter(|| {
                 if (trap.goal - at).norm() < 0.1 {

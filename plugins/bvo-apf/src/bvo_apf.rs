@@ -3,17 +3,20 @@
 use crate::{
     machine::{Machine, News, Next, Phase},
     parameters,
-    settings::{Mode, Settings},
+    settings::{MachineSettings, Mode},
     taut,
     thought::{self, Walked},
 };
 use field::{
-    Flight, Ground, Pilot, Scene, Side, drawing, law::Forces, offline, outcome, params as p, pilot::Tick,
+    ends,
+    outcome::{Shortfall, Walk},
+    params as p,
 };
 use planner_api::{
-    Caps, Code, Command, Config, Ctx, Drive, Layer, LogLevel, ParamSpec, Plan, PlanRequest, Planner,
-    PlannerError, Result, Sensed, Site, Status, Task,
+    Caps, Command, Config, Ctx, Layer, LogLevel, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site,
+    Status,
 };
+use steering::{Flight, Forces, KnownMap, Pilot, Side, Tick, drawing};
 use world::Point;
 
 /// On its way back the robot aims this far ahead, metres.
@@ -23,10 +26,10 @@ const FLIGHT_WINDOWS: f64 = 1.5;
 
 /// The potential field of Xu et al. 2022 that builds virtual obstacles.
 pub(crate) struct BvoApf {
-    settings: Settings,
+    settings: MachineSettings,
     flight: Flight,
     pilot: Pilot,
-    ground: Ground,
+    map: KnownMap,
     flying: Option<Flying>,
 }
 
@@ -50,56 +53,40 @@ impl Planner for BvoApf {
             settings: parameters::settings(config, site, 1.0),
             flight: p::flight(config),
             pilot: Pilot::pursuing(site),
-            ground: Ground::new(site),
+            map: KnownMap::new(site),
             flying: None,
         })
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
-        let Task::Goto { goal, tolerance_m } = request.task else {
-            let message = "bvo-apf goes to single goals; for preset paths choose apf or rpf";
-            return Err(PlannerError::new(Code::Unsupported, message));
-        };
-        let scene = Scene::new(request.site);
+        let (goal, tolerance_m) = ends::single_goal(request, Self::ID)?;
         let start = request.start.position;
-        offline::check_start(&scene, start, request.site.limits.radius_m)?;
-        offline::check_goal(&scene, goal, tolerance_m)?;
-        self.ground = Ground::new(request.site);
-        let mut machine = Machine::new(self.settings_for(start, goal), self.ground.clone());
+        self.map = KnownMap::new(request.site);
+        let mut machine = Machine::new(self.settings_for(start, goal), self.map.clone());
         let walked = self.walked(&mut machine, start, goal, tolerance_m, ctx)?;
         report(&machine.news, ctx);
         show_virtual(&machine, ctx);
         ctx.scalar("retreats", f64::from(machine.retreats), "");
         ctx.scalar("virtual_circles", machine.virtual_circles().count() as f64, "");
-        Ok(plan_of(walked, &machine, &self.ground, goal, request.site.clearance_m, ctx))
+        Ok(plan_of(walked, &machine, &self.map, goal, request.site.clearance_m, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
         let bodies = self.pilot.bodies(sensed);
-        let tick = Tick {
-            t_s: sensed.t_s,
-            pose: sensed.pose,
-            target: sensed.target,
-            is_last: sensed.targets_ahead.len() <= 1,
-            bodies: &bodies,
-        };
+        let tick = Tick::toward_target(sensed, &bodies);
         let Some((aim, forces)) = self.aim(sensed, &tick, ctx) else {
             return Ok(Command::still(Status::Stuck));
         };
         let decision = self.pilot.pursue(&self.flight, &tick, aim);
-        drawing::show(ctx, sensed.pose.position, &forces, self.settings.law.k_rep);
-        let near_m = bodies.iter().map(|b| b.hull_distance_m(sensed.pose.position, self.ground.hull_m));
-        let near_m = near_m.fold(f64::INFINITY, f64::min);
-        if near_m.is_finite() {
-            ctx.scalar("obstacle_distance", near_m, "m");
-        }
-        Ok(Command { drive: Drive::Velocity(decision.velocity), status: decision.status })
+        forces.show(ctx, sensed.pose.position, self.settings.law.k_rep);
+        drawing::show_nearest(ctx, sensed.pose.position, self.map.hull_m, &bodies);
+        Ok(decision.into())
     }
 }
 
 impl BvoApf {
-    fn settings_for(&self, start: Point, goal: Point) -> Settings {
+    fn settings_for(&self, start: Point, goal: Point) -> MachineSettings {
         self.settings.for_trip((goal - start).norm())
     }
 
@@ -145,8 +132,9 @@ impl BvoApf {
         if !fits {
             let step_m = (self.pilot.limits().v_max_m_per_s * sensed.dt_s).max(1e-3);
             let settings = self.settings_for(sensed.pose.position, goal);
-            let settings = Settings { step_m, window_m: settings.window_m * FLIGHT_WINDOWS, ..settings };
-            let machine = Machine::new(settings, self.ground.clone());
+            let settings =
+                MachineSettings { step_m, window_m: settings.window_m * FLIGHT_WINDOWS, ..settings };
+            let machine = Machine::new(settings, self.map.clone());
             self.flying = Some(Flying { goal, machine, back: None });
         }
         self.flying.as_mut().expect("it has just been made")
@@ -224,19 +212,18 @@ fn show_virtual(machine: &Machine, ctx: &Ctx<'_>) {
 fn plan_of(
     walked: Walked,
     machine: &Machine,
-    ground: &Ground,
+    map: &KnownMap,
     goal: Point,
     demanded_m: f64,
     ctx: &Ctx<'_>,
 ) -> Plan {
     let end = walked.path[walked.path.len() - 1];
     let shortfall = (!walked.arrived).then(|| match machine.phase() {
-        Phase::Stuck => outcome::Shortfall::Trapped { at: end },
-        _ => outcome::Shortfall::Short { missing_m: (goal - end).norm(), at: end },
+        Phase::Stuck => Shortfall::Trapped { at: end },
+        _ => Shortfall::Short { missing_m: (goal - end).norm(), at: end },
     });
-    let walk = outcome::Walk { path: walked.path, shortfall };
-    let clearance_m = ground.path_clearance_m(&walk.path, demanded_m + 1.0);
-    offline::plan_of(walk, clearance_m, demanded_m, ctx)
+    let clearance_m = map.path_clearance_m(&walked.path, demanded_m + 1.0);
+    Walk { path: walked.path, shortfall }.into_plan(clearance_m, demanded_m, ctx)
 }
 
 #[cfg(test)]

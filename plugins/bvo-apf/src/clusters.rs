@@ -1,7 +1,7 @@
 //! Which solids leave no passage between them: the semi-closed obstacles of Xu et al. 2022.
 
-use field::{Ground, Solid};
 use std::collections::BTreeSet;
+use steering::{KnownMap, Solid};
 
 /// Sets of solids that the robot cannot pass between.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -11,13 +11,13 @@ pub struct Clusters {
 
 impl Clusters {
     /// Joins solids whose gap is narrower than the hull and a margin on both sides; costs `n^2` once per map.
-    pub fn new(ground: &Ground, margin_m: f64) -> Self {
-        let n_solids = ground.solids.len();
-        let passage_m = 2.0 * (ground.hull_m + margin_m);
+    pub fn new(map: &KnownMap, margin_m: f64) -> Self {
+        let n_solids = map.solids.len();
+        let passage_m = 2.0 * (map.hull_m + margin_m);
         let mut of: Vec<usize> = (0..n_solids).collect();
         for i in 0..n_solids {
             for j in i + 1..n_solids {
-                let (a, b) = (&ground.solids[i], &ground.solids[j]);
+                let (a, b) = (&map.solids[i], &map.solids[j]);
                 if a.id == b.id || gap_m(a, b, passage_m) < passage_m {
                     let (from, to) = (root(&of, i).max(root(&of, j)), root(&of, i).min(root(&of, j)));
                     of[from] = to;
@@ -34,8 +34,8 @@ impl Clusters {
     }
 
     /// Every solid in the clusters of the obstacles with these ids.
-    pub fn closure(&self, ground: &Ground, ids: &BTreeSet<u32>) -> Vec<usize> {
-        let named = (0..self.of.len()).filter(|index| ids.contains(&ground.solids[*index].id));
+    pub fn closure(&self, map: &KnownMap, ids: &BTreeSet<u32>) -> Vec<usize> {
+        let named = (0..self.of.len()).filter(|index| ids.contains(&map.solids[*index].id));
         let roots: BTreeSet<usize> = named.map(|index| self.of[index]).collect();
         (0..self.of.len()).filter(|index| roots.contains(&self.of[*index])).collect()
     }
@@ -69,10 +69,10 @@ mod tests {
     fn discs_without_a_passage_between_them_belong_together() {
         let disc = |id: u32, x: f64| Solid::disc(id, Point::new(x, 0.0), 0.5);
         let solids = vec![disc(1, 0.0), disc(2, 5.0), disc(3, 1.5), disc(4, 2.9)];
-        let ground = Ground { solids, wall: Boundary::Circle { radius_m: 20.0 }, hull_m: 0.3 };
-        let clusters = Clusters::new(&ground, 0.2);
+        let map = KnownMap { solids, wall: Boundary::Circle { radius_m: 20.0 }, hull_m: 0.3 };
+        let clusters = Clusters::new(&map, 0.2);
         assert_eq!(clusters.members(3), [0, 2, 3]);
         assert_eq!(clusters.members(1), [1]);
-        assert_eq!(clusters.closure(&ground, &BTreeSet::from([4, 2])), [0, 1, 2, 3]);
+        assert_eq!(clusters.closure(&map, &BTreeSet::from([4, 2])), [0, 1, 2, 3]);
     }
 }

@@ -1,8 +1,8 @@
 //! Going round a trap.
 
 use crate::{clusters::Clusters, settings::Mode, view::View};
-use field::{Ground, Side, ground::disc_around, tangents};
 use std::{collections::BTreeSet, f64::consts::PI};
+use steering::{KnownMap, Side, solid::disc_around, tangents};
 use world::{Point, Vector};
 
 /// The hull of the group is recomputed after this distance, metres.
@@ -21,7 +21,7 @@ pub struct Escape {
     pub ids: BTreeSet<u32>,
     /// On which side it is passed.
     pub side: Side,
-    /// The same as indices of the ground.
+    /// The same as indices of the map.
     members: Vec<usize>,
     circle: (Point, f64),
     hugs: bool,
@@ -41,9 +41,9 @@ enum Look {
 
 impl Escape {
     /// Goes round the clusters of these solids.
-    pub fn new(ground: &Ground, members: Vec<usize>, side: Side) -> Self {
+    pub fn new(map: &KnownMap, members: Vec<usize>, side: Side) -> Self {
         let mut escape = Self {
-            ids: members.iter().map(|index| ground.solids[*index].id).collect(),
+            ids: members.iter().map(|index| map.solids[*index].id).collect(),
             side,
             members,
             circle: (Point::origin(), 0.0),
@@ -53,14 +53,14 @@ impl Escape {
             looked: None,
             checked_m: 0.0,
         };
-        escape.measure(ground);
+        escape.measure(map);
         escape
     }
 
-    /// The ground has changed: finds its members again.
-    pub fn regroup(&mut self, ground: &Ground, clusters: &Clusters) {
-        self.members = clusters.closure(ground, &self.ids);
-        self.measure(ground);
+    /// The map has changed: finds its members again.
+    pub fn regroup(&mut self, map: &KnownMap, clusters: &Clusters) {
+        self.members = clusters.closure(map, &self.ids);
+        self.measure(map);
     }
 
     /// Follows every bay of the outline from now on.
@@ -90,7 +90,7 @@ impl Escape {
     }
 
     /// Whether the straight way to the goal clears the group; looked at every few centimetres.
-    pub fn is_over(&mut self, at: Point, goal: Point, ground: &Ground, margin_m: f64, step_m: f64) -> bool {
+    pub fn is_over(&mut self, at: Point, goal: Point, map: &KnownMap, margin_m: f64, step_m: f64) -> bool {
         self.walked_m += step_m;
         if self.walked_m < self.checked_m {
             return false;
@@ -99,9 +99,9 @@ impl Escape {
         if self.walked_m > ROUNDS * self.round_m() {
             self.hugs = true;
         }
-        let keep_m = ground.hull_m + margin_m;
+        let keep_m = map.hull_m + margin_m;
         (goal - at).norm() < self.until_m
-            && self.members.iter().all(|m| ground.solids[*m].segment_distance_m(at, goal, keep_m) >= keep_m)
+            && self.members.iter().all(|m| map.solids[*m].segment_distance_m(at, goal, keep_m) >= keep_m)
     }
 
     /// Unit vector of the way round.
@@ -109,85 +109,85 @@ impl Escape {
         &mut self,
         at: Point,
         mode: Mode,
-        ground: &Ground,
+        map: &KnownMap,
         clusters: &Clusters,
         margin_m: f64,
     ) -> Vector {
         if mode == Mode::Literal && !self.hugs {
             let (center, radius_m) = self.circle;
-            return tangents::to_disc(at, center, radius_m + ground.hull_m, self.side).direction;
+            return tangents::to_disc(at, center, radius_m + map.hull_m, self.side).direction;
         }
         if self.hugs {
-            return self.along_nearest(at, ground, margin_m);
+            return self.along_nearest(at, map, margin_m);
         }
-        let reach_m = ground.hull_m + margin_m;
-        match self.look(at, ground, clusters, margin_m) {
+        let reach_m = map.hull_m + margin_m;
+        match self.look(at, map, clusters, margin_m) {
             Look::Toward((corner, radius_m)) => {
                 tangents::to_disc(at, corner, radius_m + reach_m, self.side).direction
             }
-            Look::Within => self.along_nearest(at, ground, margin_m),
+            Look::Within => self.along_nearest(at, map, margin_m),
         }
     }
 
-    fn look(&mut self, at: Point, ground: &Ground, clusters: &Clusters, margin_m: f64) -> Look {
+    fn look(&mut self, at: Point, map: &KnownMap, clusters: &Clusters, margin_m: f64) -> Look {
         if let Some((from, look)) = self.looked
             && (from - at).norm_squared() < LOOK_M * LOOK_M
         {
             return look;
         }
-        let mut look = self.look_once(at, ground, margin_m);
+        let mut look = self.look_once(at, map, margin_m);
         for _ in 0..4 {
             let Look::Toward(corner) = look else { break };
-            let Some(blocker) = self.blocker(at, corner, ground, margin_m) else { break };
+            let Some(blocker) = self.blocker(at, corner, map, margin_m) else { break };
             for index in clusters.members(blocker) {
-                self.ids.insert(ground.solids[index].id);
+                self.ids.insert(map.solids[index].id);
                 if !self.members.contains(&index) {
                     self.members.push(index);
                 }
             }
-            self.measure(ground);
-            look = self.look_once(at, ground, margin_m);
+            self.measure(map);
+            look = self.look_once(at, map, margin_m);
         }
         self.looked = Some((at, look));
         look
     }
 
-    fn look_once(&self, at: Point, ground: &Ground, margin_m: f64) -> Look {
-        let reach_m = ground.hull_m + margin_m;
+    fn look_once(&self, at: Point, map: &KnownMap, margin_m: f64) -> Look {
+        let reach_m = map.hull_m + margin_m;
         // A little less than the margin that is kept, so that a robot beside the hull is outside.
-        match View::of(at, ground, &self.members, 0.9 * reach_m) {
+        match View::of(at, map, &self.members, 0.9 * reach_m) {
             Some(view) if view.gap_rad >= PI => Look::Toward(view.edge(self.side).corner),
             _ => Look::Within,
         }
     }
 
     /// Something else in the way to the tangent point.
-    fn blocker(&self, at: Point, corner: (Point, f64), ground: &Ground, margin_m: f64) -> Option<usize> {
-        let reach_m = ground.hull_m + margin_m;
+    fn blocker(&self, at: Point, corner: (Point, f64), map: &KnownMap, margin_m: f64) -> Option<usize> {
+        let reach_m = map.hull_m + margin_m;
         let tangent = tangents::to_disc(at, corner.0, corner.1 + reach_m, self.side);
         let touch = at + tangent.direction * tangent.length_m.min(AHEAD_M);
-        let keep_m = ground.hull_m + 0.5 * margin_m;
-        let others = (0..ground.solids.len()).filter(|index| !self.members.contains(index));
+        let keep_m = map.hull_m + 0.5 * margin_m;
+        let others = (0..map.solids.len()).filter(|index| !self.members.contains(index));
         others
-            .map(|index| (index, ground.solids[index].segment_distance_m(at, touch, keep_m)))
+            .map(|index| (index, map.solids[index].segment_distance_m(at, touch, keep_m)))
             .filter(|(_, distance_m)| *distance_m < keep_m)
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(index, _)| index)
     }
 
     /// Along the outline of the nearest member, at the margin.
-    fn along_nearest(&self, at: Point, ground: &Ground, margin_m: f64) -> Vector {
-        let distances = self.members.iter().map(|index| ground.solids[*index].distance(at));
+    fn along_nearest(&self, at: Point, map: &KnownMap, margin_m: f64) -> Vector {
+        let distances = self.members.iter().map(|index| map.solids[*index].distance(at));
         let nearest = distances.min_by(|a, b| a.0.total_cmp(&b.0));
         let Some((outline_m, away)) = nearest else { return Vector::x() };
-        let off_m = outline_m - ground.hull_m - margin_m;
+        let off_m = outline_m - map.hull_m - margin_m;
         let correction = (-HUG_PER_M * off_m).clamp(-1.0, 1.0);
         (self.side.along(away) + away * correction).normalize()
     }
 
-    fn measure(&mut self, ground: &Ground) {
+    fn measure(&mut self, map: &KnownMap) {
         let corners: Vec<_> =
-            self.members.iter().flat_map(|m| ground.solids[*m].corners().iter().copied()).collect();
+            self.members.iter().flat_map(|m| map.solids[*m].corners().iter().copied()).collect();
         self.circle = if corners.is_empty() { (Point::origin(), 0.0) } else { disc_around(&corners) };
         self.looked = None;
     }

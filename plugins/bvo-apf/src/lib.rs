@@ -19,6 +19,6 @@ mod bvo_apf;
 mod parameters;
 
 pub use machine::{Machine, Next, Phase};
-pub use settings::{Mode, Settings};
+pub use settings::{MachineSettings, Mode};
 
 planner_api::export_planners!(bvo_apf::BvoApf);

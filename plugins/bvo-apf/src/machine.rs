@@ -4,15 +4,13 @@ use crate::{
     clusters::Clusters,
     escape::Escape,
     mouth::{FIRST_VIRTUAL, Mouth, is_virtual},
-    settings::{Mode, Settings},
+    settings::{MachineSettings, Mode},
     thought,
     view::View,
 };
-use field::{
-    Contact, Ground, Nearby, Side, Sides, Source, body::Body, guard, law::Forces, oscillation::Oscillation,
-    scene::wall_contacts,
-};
+use field::{Sides, oscillation::Oscillation};
 use std::{collections::BTreeSet, f64::consts::PI};
+use steering::{Body, Contact, Forces, KnownMap, Nearby, Side, Solid, guard, wall_contacts};
 use world::{Point, Vector};
 
 /// The nearest solid on the way to the goal is looked for this far ahead, as a multiple of the law's range.
@@ -99,9 +97,9 @@ pub enum News {
 #[derive(Debug, Clone)]
 pub struct Machine {
     /// What it is set to.
-    pub settings: Settings,
+    pub settings: MachineSettings,
     /// The map, virtual circles included.
-    pub ground: Ground,
+    pub map: KnownMap,
     /// The forces of the last step.
     pub forces: Forces,
     /// How often it has retreated.
@@ -124,12 +122,12 @@ pub struct Machine {
 
 impl Machine {
     /// A machine that has not moved yet.
-    pub fn new(settings: Settings, ground: Ground) -> Self {
-        let next_id = ground.solids.iter().filter(|s| is_virtual(s)).map(|s| s.id + 1).max();
+    pub fn new(settings: MachineSettings, map: KnownMap) -> Self {
+        let next_id = map.solids.iter().filter(|s| is_virtual(s)).map(|s| s.id + 1).max();
         Self {
-            clusters: Clusters::new(&ground, settings.margin_m),
+            clusters: Clusters::new(&map, settings.margin_m),
             oscillation: Oscillation::new(settings.window_m, settings.step_m),
-            nearby: Nearby::new(settings.law.rho_m + ground.hull_m),
+            nearby: Nearby::new(settings.law.rho_m + map.hull_m),
             sides: Sides::default(),
             forces: Forces::default(),
             phase: Phase::Approach,
@@ -141,31 +139,23 @@ impl Machine {
             next_id: next_id.unwrap_or(FIRST_VIRTUAL),
             in_thought: false,
             settings,
-            ground,
+            map,
         }
     }
 
     /// The same machine in thought: it takes coarser steps, remembers no way back and keeps to a side.
     #[must_use]
     pub fn thought(&self, step_m: f64) -> Self {
-        let settings = Settings { step_m, ..self.settings };
-        Self {
-            settings,
-            ground: self.ground.clone(),
-            forces: Forces::default(),
-            retreats: self.retreats,
-            escapes: self.escapes,
-            news: Vec::new(),
-            phase: self.phase.clone(),
-            clusters: self.clusters.clone(),
-            trail: Vec::new(),
-            began: self.began.clone(),
-            oscillation: Oscillation::new(settings.window_m, step_m),
-            nearby: Nearby::new(settings.law.rho_m + self.ground.hull_m),
-            sides: Sides::default(),
-            next_id: self.next_id,
-            in_thought: true,
-        }
+        let mut thought = self.clone();
+        thought.settings.step_m = step_m;
+        thought.oscillation = Oscillation::new(thought.settings.window_m, step_m);
+        thought.forces = Forces::default();
+        thought.news.clear();
+        thought.trail.clear();
+        thought.nearby.forget();
+        thought.sides.forget();
+        thought.in_thought = true;
+        thought
     }
 
     /// What it is doing.
@@ -184,23 +174,23 @@ impl Machine {
 
     /// The circles that it made up.
     pub fn virtual_circles(&self) -> impl Iterator<Item = (Point, f64)> + '_ {
-        self.ground.solids.iter().filter(|s| is_virtual(s)).map(|s| (s.center, s.radius_m))
+        self.map.solids.iter().filter(|s| is_virtual(s)).map(|s| (s.center, s.radius_m))
     }
 
     /// Takes what is sensed; the group being gone round is recomputed if that changes the map.
     pub fn learn(&mut self, bodies: &[Body]) {
-        if self.ground.learn(bodies) {
+        if self.map.learn(bodies) {
             self.map_changed();
         }
     }
 
     fn map_changed(&mut self) {
-        self.clusters = Clusters::new(&self.ground, self.settings.margin_m);
+        self.clusters = Clusters::new(&self.map, self.settings.margin_m);
         self.nearby.forget();
         self.sides.forget();
         match &mut self.phase {
-            Phase::Retreat(retreat) => retreat.members = self.clusters.closure(&self.ground, &retreat.ids),
-            Phase::Escape(escape) => escape.regroup(&self.ground, &self.clusters),
+            Phase::Retreat(retreat) => retreat.members = self.clusters.closure(&self.map, &retreat.ids),
+            Phase::Escape(escape) => escape.regroup(&self.map, &self.clusters),
             Phase::Approach | Phase::Stuck => {}
         }
     }
@@ -217,14 +207,14 @@ impl Machine {
         self.trail.push(at);
         match &mut self.phase {
             Phase::Escape(escape) => {
-                let (ground, margin_m) = (&self.ground, self.settings.margin_m);
-                if escape.is_over(at, goal, ground, margin_m, self.settings.step_m) {
+                let (map, margin_m) = (&self.map, self.settings.margin_m);
+                if escape.is_over(at, goal, map, margin_m, self.settings.step_m) {
                     self.news.push(News::Resumes { at });
                     self.phase = Phase::Approach;
                     self.oscillation.forget();
                     return self.approach(at, goal);
                 }
-                let way = escape.direction(at, self.settings.mode, ground, &self.clusters, margin_m);
+                let way = escape.direction(at, self.settings.mode, map, &self.clusters, margin_m);
                 self.forces = Forces { rotation: way * self.settings.law.k_rep, ..Forces::default() };
                 self.step_along(at, way, self.settings.step_m)
             }
@@ -234,8 +224,8 @@ impl Machine {
     }
 
     fn approach(&mut self, at: Point, goal: Point) -> Next {
-        let (ground, nearby) = (&self.ground, &mut self.nearby);
-        self.forces = self.settings.law.forces(at, goal, ground, nearby, &mut self.sides);
+        let (map, nearby) = (&self.map, &mut self.nearby);
+        self.forces = self.settings.law.forces(at, goal, map, nearby, &mut self.sides);
         let missing_m = (goal - at).norm();
         let Some(way) = self.forces.resultant().try_normalize(1e-12) else {
             return Next::By(Vector::zeros());
@@ -247,20 +237,12 @@ impl Machine {
     fn step_along(&mut self, at: Point, way: Vector, length_m: f64) -> Next {
         let keep_m = self.settings.keep_m;
         let reach_m = keep_m + 2.0 * length_m;
-        let mut contacts: Vec<Contact> = Vec::new();
-        for &index in self.nearby.update(&self.ground, at) {
-            let solid = &self.ground.solids[index];
-            if solid.is_beyond(at, self.ground.hull_m + reach_m) {
-                continue;
-            }
-            let (outline_m, away) = solid.distance(at);
-            let distance_m = outline_m - self.ground.hull_m;
-            if distance_m < reach_m {
-                contacts.push(Contact { source: Source::Obstacle(solid.id), distance_m, away });
-            }
-        }
+        let (map, hull_m) = (&self.map, self.map.hull_m);
+        let near = self.nearby.update(map, at).iter();
+        let mut contacts: Vec<Contact> =
+            near.filter_map(|index| map.solids[*index].contact(at, hull_m, reach_m)).collect();
         if self.nearby.sees_wall() {
-            contacts.extend(wall_contacts(&self.ground.wall, at, self.ground.hull_m, reach_m));
+            contacts.extend(wall_contacts(&map.wall, at, hull_m, reach_m));
         }
         if contacts.is_empty() {
             return Next::By(way * length_m);
@@ -294,7 +276,7 @@ impl Machine {
         let attempts = self.began.iter().filter(|(place, _)| (place - at).norm() < SAME_PLACE_M).count();
         let members = if attempts == 0 { self.clusters.members(culprit) } else { self.all_near(at, culprit) };
         let gap_rad = |from: Point| {
-            View::of(from, &self.ground, &members, self.ground.hull_m).map_or(2.0 * PI, |view| view.gap_rad)
+            View::of(from, &self.map, &members, self.map.hull_m).map_or(2.0 * PI, |view| view.gap_rad)
         };
         if gap_rad(at) >= PI || gap_rad(goal) < PI {
             // A goal in the same trap is not sealed off: it is found along the outline.
@@ -304,35 +286,35 @@ impl Machine {
         }
         self.news.push(News::Retreats { at });
         self.retreats += 1;
-        let view = View::of(at, &self.ground, &members, self.ground.hull_m);
+        let view = View::of(at, &self.map, &members, self.map.hull_m);
         let mouth = view.and_then(|view| Mouth::seen(at, &view));
-        let ids = members.iter().map(|index| self.ground.solids[*index].id).collect();
+        let ids = members.iter().map(|index| self.map.solids[*index].id).collect();
         self.phase = Phase::Retreat(Retreat { ids, members, mouth, looked: None });
     }
 
     /// Everything that pushes the robot back here, and what belongs to it: between two groups the field may have a
     /// minimum though the robot would fit through.
     fn all_near(&self, at: Point, culprit: usize) -> Vec<usize> {
-        let reach_m = self.settings.law.rho_m + self.ground.hull_m;
-        let near = self.ground.solids.iter().filter(|s| s.distance(at).0 < reach_m);
-        let ids = near.chain([&self.ground.solids[culprit]]).map(|s| s.id).collect();
-        self.clusters.closure(&self.ground, &ids)
+        let reach_m = self.settings.law.rho_m + self.map.hull_m;
+        let near = self.map.solids.iter().filter(|s| s.distance(at).0 < reach_m);
+        let ids = near.chain([&self.map.solids[culprit]]).map(|s| s.id).collect();
+        self.clusters.closure(&self.map, &ids)
     }
 
     /// What holds the robot: the first solid on the way to the goal within twice the range, or else the nearest.
     fn culprit(&self, at: Point, goal: Point) -> Option<usize> {
         let ahead = at + (goal - at).cap_magnitude(AHEAD_RANGES * self.settings.law.rho_m);
-        let hull_m = self.ground.hull_m;
-        let solids = || self.ground.solids.iter().enumerate();
+        let hull_m = self.map.hull_m;
+        let solids = || self.map.solids.iter().enumerate();
         let on_the_way = solids().filter(|(_, s)| s.segment_distance_m(at, ahead, hull_m) < hull_m);
-        let nearest = |(i, s): (usize, &field::Solid)| (i, s.distance(at).0);
+        let nearest = |(i, s): (usize, &Solid)| (i, s.distance(at).0);
         let by_distance = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1);
         let first = on_the_way.map(nearest).min_by(by_distance);
         first.or_else(|| solids().map(nearest).min_by(by_distance)).map(|(index, _)| index)
     }
 
     fn retreat(&mut self, at: Point, goal: Point) -> Next {
-        let hull_m = self.ground.hull_m;
+        let hull_m = self.map.hull_m;
         let Phase::Retreat(retreat) = &mut self.phase else { return Next::Nowhere };
         let is_at_start = self.trail.is_empty();
         if let Some(back) = self.trail.last()
@@ -343,7 +325,7 @@ impl Machine {
             return Next::Back(back);
         }
         retreat.looked = Some(at);
-        let view = View::of(at, &self.ground, &retreat.members, hull_m);
+        let view = View::of(at, &self.map, &retreat.members, hull_m);
         let out = view.and_then(|view| match retreat.mouth {
             Some(mouth) if mouth.is_withdrawn(at, hull_m, view.gap_rad) => Some(mouth),
             _ if is_at_start && view.gap_rad >= PI => Some(Mouth::from_outside(at, &view)),
@@ -353,7 +335,7 @@ impl Machine {
         if let Some(mouth) = out {
             let ids = retreat.ids.clone();
             self.seal(at, goal, &mouth);
-            let members = self.clusters.closure(&self.ground, &ids);
+            let members = self.clusters.closure(&self.map, &ids);
             self.go_round(at, goal, members, false);
             return self.next(at, goal);
         }
@@ -367,15 +349,15 @@ impl Machine {
     }
 
     fn seal(&mut self, at: Point, goal: Point, mouth: &Mouth) {
-        let circles = mouth.circles(&self.ground, at, goal, self.next_id);
+        let circles = mouth.circles(&self.map, at, goal, self.next_id);
         self.news.push(News::Sealed { circles: circles.len() });
         self.next_id += circles.len() as u32;
-        self.ground.solids.extend(circles);
+        self.map.solids.extend(circles);
         self.map_changed();
     }
 
     fn go_round(&mut self, at: Point, goal: Point, members: Vec<usize>, hugs: bool) {
-        let mut escape = Escape::new(&self.ground, members, Side::Left);
+        let mut escape = Escape::new(&self.map, members, Side::Left);
         if hugs {
             escape.hug();
         }

@@ -1,8 +1,8 @@
 //! The mouth of a trap: when the robot has withdrawn from it, and the virtual circles that close it.
 
 use crate::view::{Edge, View};
-use field::{Ground, Solid};
 use std::f64::consts::PI;
+use steering::{KnownMap, Solid};
 use world::{Point, Vector};
 
 /// Gain of the least angle at an edge circle, per metre of its radius (the paper's `N delta`).
@@ -84,13 +84,12 @@ impl Mouth {
     }
 
     /// Virtual circles along the mouth, none of them on the robot or the goal.
-    pub fn circles(&self, ground: &Ground, at: Point, goal: Point, first_id: u32) -> Vec<Solid> {
+    pub fn circles(&self, map: &KnownMap, at: Point, goal: Point, first_id: u32) -> Vec<Solid> {
         let [(from, r_1), (to, r_2)] = self.edges;
         let radius_m = f64::midpoint(r_1, r_2).max(SMALLEST_M);
         let n_gaps = ((to - from).norm() / radius_m).ceil().clamp(1.0, MOST_CIRCLES as f64) as u32;
-        let is_off = |center: &Point| {
-            [at, goal].iter().all(|place| (place - center).norm() > radius_m + ground.hull_m)
-        };
+        let is_off =
+            |center: &Point| [at, goal].iter().all(|place| (place - center).norm() > radius_m + map.hull_m);
         (1..n_gaps)
             .map(|k| from + (to - from) * (f64::from(k) / f64::from(n_gaps)))
             .filter(is_off)
@@ -120,8 +119,8 @@ mod tests {
 
     #[test]
     fn the_seal_leaves_no_hole_but_where_the_goal_is() {
-        let ground = Ground { solids: vec![], wall: Boundary::Circle { radius_m: 9.0 }, hull_m: 0.3 };
-        let seal = |goal: Point| mouth().circles(&ground, Point::new(-4.0, 0.0), goal, FIRST_VIRTUAL);
+        let map = KnownMap { solids: vec![], wall: Boundary::Circle { radius_m: 9.0 }, hull_m: 0.3 };
+        let seal = |goal: Point| mouth().circles(&map, Point::new(-4.0, 0.0), goal, FIRST_VIRTUAL);
         let whole = seal(Point::new(8.0, 0.0));
         assert_eq!(whole.len(), 7);
         assert!(whole.windows(2).all(|w| (w[1].center - w[0].center).norm() <= w[0].radius_m + 1e-9));

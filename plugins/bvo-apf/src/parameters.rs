@@ -1,6 +1,6 @@
 //! The parameters, and how they become settings.
 
-use crate::settings::{Mode, Settings};
+use crate::settings::{MachineSettings, Mode};
 use field::{GoalLaw, NearLaw, Pull, TangentUse, params as p};
 use planner_api::{Config, ParamSpec, Site, choice, float, int};
 
@@ -73,11 +73,11 @@ pub(crate) const PARAMS: &[ParamSpec] = &[
 const SPARE_M: f64 = 0.02;
 
 /// Settings for a site and a trip of some length from start to goal, metres.
-pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>, trip_m: f64) -> Settings {
+pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>, trip_m: f64) -> MachineSettings {
     let near = if config.choice("near_law") == "printed" { NearLaw::Printed } else { NearLaw::Corrected };
     let tangent_weight = config.float("tangent_weight");
     let keep_m = site.clearance_m + SPARE_M;
-    Settings {
+    MachineSettings {
         mode: match config.choice("mode") {
             "literal" => Mode::Literal,
             "hull" => Mode::Hull,

@@ -17,7 +17,7 @@ pub enum Mode {
 
 /// Everything that a machine needs besides the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct MachineSettings {
     /// How a trap is gone round.
     pub mode: Mode,
     /// The field.
@@ -36,7 +36,7 @@ pub struct Settings {
     pub escapes_max: u32,
 }
 
-impl Settings {
+impl MachineSettings {
     /// The same for a trip of some length from start to goal, metres: the base of the logarithm depends on it.
     #[must_use]
     pub fn for_trip(&self, length_m: f64) -> Self {

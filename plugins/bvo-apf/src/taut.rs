@@ -1,6 +1,6 @@
 //! Pulling a way taut: shortcuts first, then corners cut until nothing is gained.
 
-use field::Ground;
+use steering::KnownMap;
 use world::{Point, polyline};
 
 /// Distance between the places from which shortcuts are looked for, metres.
@@ -13,8 +13,8 @@ const HALVINGS: usize = 10;
 /// A shorter way from the first to the last point that keeps a margin between the hull and everything real.
 ///
 /// Pieces of the way that do not keep it themselves are left as they are.
-pub fn pulled(path: &[Point], ground: &Ground, margin_m: f64) -> Vec<Point> {
-    let is_free = |a: Point, b: Point| ground.is_free(a, b, margin_m);
+pub fn pulled(path: &[Point], map: &KnownMap, margin_m: f64) -> Vec<Point> {
+    let is_free = |a: Point, b: Point| map.is_free(a, b, margin_m);
     let spacing_m = polyline::length_m(path) / path.len().max(1) as f64;
     let mut way = shortcut(path, (SPACING_M / spacing_m.max(1e-9)).clamp(1.0, 1e6) as usize, is_free);
     for _ in 0..ROUNDS {
@@ -91,24 +91,24 @@ pub fn paced(way: &[Point], step_m: f64) -> Vec<Point> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use field::Solid;
+    use steering::Solid;
     use world::Boundary;
 
     #[test]
     fn a_way_round_a_disc_becomes_nearly_the_shortest() {
-        let ground = Ground {
+        let map = KnownMap {
             solids: vec![Solid::disc(0, Point::origin(), 1.0)],
             wall: Boundary::Circle { radius_m: 20.0 },
             hull_m: 0.5,
         };
         let wide = [(-5.0, 0.0), (-4.0, 4.0), (0.0, 6.0), (4.0, 4.0), (5.0, 0.0)];
         let wide: Vec<Point> = wide.iter().map(|(x, y)| Point::new(*x, *y)).collect();
-        let taut = pulled(&wide, &ground, 0.1);
+        let taut = pulled(&wide, &map, 0.1);
         let (r, d) = (1.6_f64, 5.0_f64);
         let shortest = 2.0 * (d * d - r * r).sqrt() + r * (std::f64::consts::PI - 2.0 * (r / d).acos());
         let length = polyline::length_m(&taut);
         assert!(length < 1.005 * shortest, "{length} against {shortest}");
-        assert!(taut.windows(2).all(|w| ground.is_free(w[0], w[1], 0.1 - 1e-9)));
+        assert!(taut.windows(2).all(|w| map.is_free(w[0], w[1], 0.1 - 1e-9)));
         assert_eq!((taut[0], taut[taut.len() - 1]), (wide[0], wide[4]));
     }
 
@@ -123,9 +123,9 @@ mod tests {
 
     #[test]
     fn walking_in_and_out_of_a_bay_is_left_out() {
-        let ground = Ground { solids: vec![], wall: Boundary::Circle { radius_m: 20.0 }, hull_m: 0.5 };
+        let map = KnownMap { solids: vec![], wall: Boundary::Circle { radius_m: 20.0 }, hull_m: 0.5 };
         let spur = [(0.0, 0.0), (5.0, 5.0), (5.0, 9.0), (5.0, 5.0), (9.0, 0.0)];
         let spur: Vec<Point> = spur.iter().map(|(x, y)| Point::new(*x, *y)).collect();
-        assert!((polyline::length_m(&pulled(&spur, &ground, 0.1)) - 9.0).abs() < 1e-9);
+        assert!((polyline::length_m(&pulled(&spur, &map, 0.1)) - 9.0).abs() < 1e-9);
     }
 }

@@ -2,10 +2,10 @@
 
 use crate::{
     machine::{Machine, Next, Phase},
-    settings::Settings,
+    settings::MachineSettings,
     taut,
 };
-use field::Side;
+use steering::Side;
 use world::Point;
 
 /// Rollouts take steps of at least this length, metres.
@@ -68,12 +68,12 @@ pub fn ahead_of_traps<E>(
     tolerance_m: f64,
     check: impl FnMut() -> Result<(), E>,
 ) -> Result<Walked, E> {
-    let settings = Settings { step_m: machine.settings.step_m.max(COARSE_M), ..machine.settings };
-    let mut thought = Machine::new(settings, machine.ground.clone());
+    let settings = MachineSettings { step_m: machine.settings.step_m.max(COARSE_M), ..machine.settings };
+    let mut thought = Machine::new(settings, machine.map.clone());
     let mut walked = walk(&mut thought, start, goal, tolerance_m.max(settings.step_m / 2.0), check)?;
     if walked.arrived {
         walked.path.push(goal);
-        walked.path = taut::pulled(&walked.path, &machine.ground, settings.taut_margin_m);
+        walked.path = taut::pulled(&walked.path, &machine.map, settings.taut_margin_m);
     }
     Ok(walked)
 }

@@ -1,7 +1,7 @@
 //! What a group of solids looks like from a place: its widest opening and the edges beside it.
 
-use field::{Ground, Side};
 use std::f64::consts::{FRAC_PI_2, TAU};
+use steering::{KnownMap, Side};
 use world::{Point, geometry::wrap_angle_rad};
 
 /// The widest free angle of a group as seen from a place.
@@ -33,8 +33,8 @@ struct Span {
 
 impl View {
     /// Looks at some solids, grown by a margin; `None` if there are none.
-    pub fn of(at: Point, ground: &Ground, members: &[usize], margin_m: f64) -> Option<Self> {
-        let mut spans: Vec<Span> = members.iter().map(|index| span(at, ground, *index, margin_m)).collect();
+    pub fn of(at: Point, map: &KnownMap, members: &[usize], margin_m: f64) -> Option<Self> {
+        let mut spans: Vec<Span> = members.iter().map(|index| span(at, map, *index, margin_m)).collect();
         spans.sort_by(|a, b| a.from_rad.total_cmp(&b.from_rad));
         let first = spans.first()?;
         // A span may reach past the western direction and over those that come first.
@@ -60,8 +60,8 @@ impl View {
     }
 }
 
-fn span(at: Point, ground: &Ground, index: usize, margin_m: f64) -> Span {
-    let solid = &ground.solids[index];
+fn span(at: Point, map: &KnownMap, index: usize, margin_m: f64) -> Span {
+    let solid = &map.solids[index];
     let middle = solid.center - at;
     let middle_rad = middle.y.atan2(middle.x);
     let edge = |corner| Edge { index, corner };
@@ -93,16 +93,16 @@ fn span(at: Point, ground: &Ground, index: usize, margin_m: f64) -> Span {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use field::Solid;
     use std::f64::consts::PI;
+    use steering::Solid;
     use world::Boundary;
 
     fn look(at: (f64, f64), discs: &[(f64, f64)]) -> View {
         let disc = |(id, (x, y)): (usize, &(f64, f64))| Solid::disc(id as u32, Point::new(*x, *y), 0.5);
         let solids: Vec<Solid> = discs.iter().enumerate().map(disc).collect();
         let members: Vec<usize> = (0..solids.len()).collect();
-        let ground = Ground { solids, wall: Boundary::Circle { radius_m: 90.0 }, hull_m: 0.0 };
-        View::of(Point::new(at.0, at.1), &ground, &members, 0.0).expect("there are discs")
+        let map = KnownMap { solids, wall: Boundary::Circle { radius_m: 90.0 }, hull_m: 0.0 };
+        View::of(Point::new(at.0, at.1), &map, &members, 0.0).expect("there are discs")
     }
 
     #[test]

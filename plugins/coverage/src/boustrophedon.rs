@@ -13,11 +13,12 @@ use crate::tuning::lanes::LEAST_TO_AND_FRO_IN_SWATH;
 use crate::unreachable;
 use crate::untethered_paths::UntetheredPaths;
 use crate::workspace::Workspace;
-use field::params as p;
 use planner_api::{
     Caps, Code, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result, Sensed,
     Site, float,
 };
+use steering::params as p;
+use steering::params as p;
 use world::Point;
 
 const DIRECTION: ParamSpec = float("direction_deg", "Direction of lanes", "deg", -180.0, 180.0, 0.0)

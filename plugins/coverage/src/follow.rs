@@ -6,11 +6,10 @@
 
 mod steer;
 
-use field::pilot::{Tick, position_sigma_m};
-use field::{Flight, Pilot, params as p};
 use planner_api::{
     Command, Config, Ctx, Drive, LegTag, LogLevel, Motion, Plan, Result, Sensed, Site, Status,
 };
+use steering::{Flight, Pilot, Tick, params as p, pilot::position_sigma_m};
 use world::{Boundary, Point, polyline, tether::crossings};
 
 /// How far ahead on the path the robot aims, metres.

@@ -21,11 +21,12 @@ use crate::untethered_paths::UntetheredPaths;
 use crate::workspace::Workspace;
 use cells::{Cell, is_convex};
 use division::{Division, trim};
-use field::params as p;
 use planner_api::{
     Caps, Code, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result,
     Sensed, Site, choice, float,
 };
+use steering::params as p;
+use steering::params as p;
 use world::{Boundary, Point, Vector, polyline};
 
 const BACKTRACKING: ParamSpec = choice("backtracking", "Backtracking", &["tree", "direct"], 0)

@@ -3,10 +3,10 @@
 use crate::inflation::SLACK_M;
 use crate::plane::direction;
 use crate::triangulation::Triangulation;
-use field::{Keep, Room, scene::solids};
 use geometry::convex::{Part, parts_of};
 use planner_api::{Code, PlannerError, Result, Site};
 use std::{f64::consts::TAU, sync::OnceLock};
+use steering::{Keep, Room, solids};
 use world::{Boundary, Point};
 
 /// Wall and obstacles of a site with the distances to keep.

@@ -1,9 +1,10 @@
 //! Cost of one evaluation of the forces against the number of obstacles: only those within reach may cost anything.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use field::{Law, Repulsion, RotationForm, Scene, Sense};
+use field::{Law, Repulsion, RotationForm, Scene};
 use planner_api::{Boundary, Limits, Motion, Obstacle, Outline, Point2, Site};
 use std::hint::black_box;
+use steering::Side;
 
 /// Obstacles per square metre stay the same, so that as many are within reach whatever their number.
 const AREA_PER_OBSTACLE_M2: f64 = 4.0;
@@ -59,7 +60,7 @@ fn forces(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::from_parameter(n_obstacles), |bencher| {
             bencher.iter(|| {
                 let contacts = scene.contacts(black_box(at), &law);
-                law.forces(at, goal, &contacts, |_| Some(Sense::Clockwise)).resultant()
+                law.forces(at, goal, &contacts, |_| Some(Side::Left)).resultant()
             });
         });
     }

@@ -3,12 +3,12 @@
 use crate::{
     outcome::{Shortfall, Walk},
     scene::Scene,
-    settings::Settings,
+    settings::FieldSettings,
     turning::Reading,
     walk::{Move, Walker},
 };
+use geometry::Point;
 use planner_api::{Ctx, Result};
-use world::Point;
 
 /// With a rotating force, moves without coming nearer to the goal before it is given up.
 const PATIENCE_MOVES: usize = 2000;
@@ -32,7 +32,7 @@ pub struct Descent {
 ///
 /// # Errors
 /// When the console wants it to stop.
-pub fn descend(scene: &Scene, settings: &Settings, trip: &Descent, ctx: &Ctx<'_>) -> Result<Walk> {
+pub fn descend(scene: &Scene, settings: &FieldSettings, trip: &Descent, ctx: &Ctx<'_>) -> Result<Walk> {
     let mut walker = Walker::new(scene, settings, trip.start);
     let moves = (DETOUR * (trip.goal - trip.start).norm() / trip.step_m) as usize + PATIENCE_MOVES;
     let mut best_m = f64::INFINITY;

@@ -3,11 +3,9 @@
 //! Wang et al. 2023 compare with both by name only; places, gains and times are reconstructed, so figures of these
 //! planners are no evidence about the originals.
 
-use crate::{
-    contact::{Contact, Source},
-    law::Law,
-};
-use world::{Point, Vector};
+use crate::law::Law;
+use geometry::{Point, Vector};
+use steering::{Contact, Source};
 
 /// A virtual target is given up after this many moves.
 const TARGET_MOVES: usize = 25;
@@ -45,8 +43,6 @@ pub struct Escaping {
 /// The situation at a move.
 #[derive(Debug, Clone, Copy)]
 pub struct Situation<'a> {
-    /// Whether the law is trapped.
-    pub is_trapped: bool,
     /// Where the robot is.
     pub at: Point,
     /// Where it is bound.
@@ -65,20 +61,20 @@ impl Escaping {
         Self { rule, target: None, side: 1.0, left: 0 }
     }
 
-    /// Takes the situation of the next move; returns the force to add.
-    pub fn update(&mut self, now: &Situation<'_>) -> Vector {
+    /// Takes the situation of the next move, and whether it is a trap; returns the force to add.
+    pub fn update(&mut self, now: &Situation<'_>, is_trapped: bool) -> Vector {
         let Some(ahead) = (now.goal - now.at).try_normalize(1e-9) else { return Vector::zeros() };
         match self.rule {
             Escape::None => Vector::zeros(),
-            Escape::VirtualTarget => self.toward_target(now, ahead),
-            Escape::Push => self.push(now, ahead),
+            Escape::VirtualTarget => self.toward_target(now, ahead, is_trapped),
+            Escape::Push => self.push(now, ahead, is_trapped),
         }
     }
 
-    fn toward_target(&mut self, now: &Situation<'_>, ahead: Vector) -> Vector {
+    fn toward_target(&mut self, now: &Situation<'_>, ahead: Vector, is_trapped: bool) -> Vector {
         self.left = self.left.saturating_sub(1);
         self.target = self.target.filter(|target| self.left > 0 && (target - now.at).norm() >= now.step_m);
-        if self.target.is_none() && now.is_trapped {
+        if self.target.is_none() && is_trapped {
             self.target = beside_nearest(now, ahead);
             self.left = TARGET_MOVES;
         }
@@ -86,9 +82,9 @@ impl Escaping {
         toward.map_or_else(Vector::zeros, |toward| toward * (TARGET_PULL * now.law.k_att * now.law.rho_0_m))
     }
 
-    fn push(&mut self, now: &Situation<'_>, ahead: Vector) -> Vector {
+    fn push(&mut self, now: &Situation<'_>, ahead: Vector, is_trapped: bool) -> Vector {
         let left = Vector::new(-ahead.y, ahead.x);
-        if now.is_trapped {
+        if is_trapped {
             let repulsion = now.law.forces(now.at, now.goal, now.contacts, |_| None).repulsion;
             self.side = if repulsion.dot(&left) >= 0.0 { 1.0 } else { -1.0 };
             self.left = PUSH_MOVES;
@@ -128,9 +124,9 @@ mod tests {
     };
 
     /// An obstacle ahead and a little to the left of a robot that is bound east.
-    fn situation(is_trapped: bool, contacts: &[Contact]) -> Situation<'_> {
+    fn situation(contacts: &[Contact]) -> Situation<'_> {
         let (at, goal) = (Point::origin(), Point::new(2.0, 0.0));
-        Situation { is_trapped, at, goal, contacts, law: &LAW, step_m: 0.2 }
+        Situation { at, goal, contacts, law: &LAW, step_m: 0.2 }
     }
 
     fn contact() -> Contact {
@@ -141,19 +137,19 @@ mod tests {
     #[test]
     fn a_virtual_target_lies_on_the_free_side_and_is_given_up() {
         let mut escaping = Escaping::new(Escape::VirtualTarget);
-        assert_eq!(escaping.update(&situation(false, &[contact()])), Vector::zeros());
-        let pull = escaping.update(&situation(true, &[contact()]));
+        assert_eq!(escaping.update(&situation(&[contact()]), false), Vector::zeros());
+        let pull = escaping.update(&situation(&[contact()]), true);
         assert!(pull.y < 0.0 && (pull.norm() - 3.0).abs() < 1e-9);
-        let pulled = (0..40).filter(|_| escaping.update(&situation(false, &[contact()])).norm() > 0.0);
+        let pulled = (0..40).filter(|_| escaping.update(&situation(&[contact()]), false).norm() > 0.0);
         assert_eq!(pulled.count(), TARGET_MOVES - 1);
     }
 
     #[test]
     fn a_push_goes_where_obstacles_push_and_lasts_five_moves() {
         let mut escaping = Escaping::new(Escape::Push);
-        let push = escaping.update(&situation(true, &[contact()]));
+        let push = escaping.update(&situation(&[contact()]), true);
         assert!((push - Vector::new(2.0, -4.0)).norm() < 1e-9);
-        let pushed = (0..9).filter(|_| escaping.update(&situation(false, &[contact()])).norm() > 0.0);
+        let pushed = (0..9).filter(|_| escaping.update(&situation(&[contact()]), false).norm() > 0.0);
         assert_eq!(pushed.count(), PUSH_MOVES - 1);
     }
 }

@@ -1,18 +1,13 @@
 //! The field of the goal planners: a pull, Khatib's push, and a tangent force round what stands in the way.
 
-use crate::{
-    contact::{Contact, Source},
-    ground::{Ground, Nearby},
-    law::Forces,
-    laws,
-    pull::Pull,
-    scene::wall_contacts,
-    tangents::{self, Side},
-};
-use world::{Point, Vector};
+use crate::{laws, pull::Pull};
+use geometry::{Point, Vector};
+use steering::{Contact, Forces, KnownMap, Nearby, Side, wall_contacts};
 
 /// Repulsion never divides by less than this, metres.
 const CLOSEST_M: f64 = 1e-2;
+/// The tangent force never divides by less than this, metres.
+const SHORTEST_M: f64 = 0.3;
 
 /// When the tangent force acts (Xu et al. 2022 do not say).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,61 +73,61 @@ impl GoalLaw {
         &self,
         at: Point,
         goal: Point,
-        ground: &Ground,
+        map: &KnownMap,
         nearby: &mut Nearby,
         sides: &mut Sides,
     ) -> Forces {
         let mut forces = Forces { attraction: self.pull.force(at, goal), ..Forces::default() };
-        for &index in nearby.update(ground, at) {
-            let solid = &ground.solids[index];
-            if solid.is_beyond(at, self.rho_m + ground.hull_m) {
+        for &index in nearby.update(map, at) {
+            let Some(contact) = map.solids[index].contact(at, map.hull_m, self.rho_m) else {
                 sides.release(index);
                 continue;
-            }
-            let (outline_m, away) = solid.distance(at);
-            let distance_m = outline_m - ground.hull_m;
-            if distance_m >= self.rho_m {
-                sides.release(index);
-                continue;
-            }
-            let contact =
-                Contact { source: Source::Obstacle(solid.id), distance_m: distance_m.max(CLOSEST_M), away };
-            forces.repulsion += laws::repulsion(self.k_rep, self.rho_m, &contact);
-            forces.rotation += self.turn(index, at, goal, ground, sides);
+            };
+            forces.repulsion += laws::repulsion(self.k_rep, self.rho_m, &not_too_near(contact));
+            forces.rotation += self.turn(index, at, goal, map, sides);
         }
         if self.wall_gain > 0.0 && nearby.sees_wall() {
-            for contact in wall_contacts(&ground.wall, at, ground.hull_m, self.rho_m / 2.0) {
-                let contact = Contact { distance_m: contact.distance_m.max(CLOSEST_M), ..contact };
-                forces.repulsion += laws::repulsion(self.k_rep * self.wall_gain, self.rho_m / 2.0, &contact);
+            for contact in wall_contacts(&map.wall, at, map.hull_m, self.rho_m / 2.0) {
+                let gain = self.k_rep * self.wall_gain;
+                forces.repulsion += laws::repulsion(gain, self.rho_m / 2.0, &not_too_near(contact));
             }
         }
         forces
     }
 
-    fn turn(&self, index: usize, at: Point, goal: Point, ground: &Ground, sides: &mut Sides) -> Vector {
-        let solid = &ground.solids[index];
+    fn turn(&self, index: usize, at: Point, goal: Point, map: &KnownMap, sides: &mut Sides) -> Vector {
+        let solid = &map.solids[index];
         let side = match self.tangent {
             TangentUse::Off => return Vector::zeros(),
             TangentUse::Always => Side::Left,
             TangentUse::Blocking => {
                 let (way, there) = (goal - at, solid.center - at);
                 let is_ahead = there.dot(&way) > 0.0;
-                if !is_ahead || solid.segment_distance_m(at, goal, ground.hull_m) >= ground.hull_m {
+                if !is_ahead || solid.segment_distance_m(at, goal, map.hull_m) >= map.hull_m {
                     sides.release(index);
                     return Vector::zeros();
                 }
                 sides.of(index, || if way.perp(&there) > 0.0 { Side::Right } else { Side::Left })
             }
         };
-        let tangent = solid.tangent(at, ground.hull_m, side);
-        tangent.direction * tangents::strength(self.tangent_weight, self.k_rep, tangent.length_m)
+        let tangent = solid.tangent(at, map.hull_m, side);
+        tangent.direction * tangent_strength(self.tangent_weight, self.k_rep, tangent.length_m)
     }
+}
+
+fn not_too_near(contact: Contact) -> Contact {
+    Contact { distance_m: contact.distance_m.max(CLOSEST_M), ..contact }
+}
+
+/// Strength of the tangent force, `w mu / L` (Xu et al. 2022, eq. 13); `L` below 0.3 m counts as 0.3 m.
+fn tangent_strength(weight: f64, mu: f64, length_m: f64) -> f64 {
+    weight * mu / length_m.max(SHORTEST_M)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ground::Solid;
+    use steering::Solid;
 
     const LAW: GoalLaw = GoalLaw {
         pull: Pull::Linear { k: 1.0 },
@@ -144,13 +139,13 @@ mod tests {
     };
 
     fn forces(law: &GoalLaw, disc: (f64, f64, f64)) -> Forces {
-        let ground = Ground {
+        let map = KnownMap {
             solids: vec![Solid::disc(0, Point::new(disc.0, disc.1), disc.2)],
-            wall: world::Boundary::Circle { radius_m: 50.0 },
+            wall: geometry::Boundary::Circle { radius_m: 50.0 },
             hull_m: 0.3,
         };
         let goal = Point::new(10.0, 0.0);
-        law.forces(Point::origin(), goal, &ground, &mut Nearby::new(3.0), &mut Sides::default())
+        law.forces(Point::origin(), goal, &map, &mut Nearby::new(3.0), &mut Sides::default())
     }
 
     #[test]

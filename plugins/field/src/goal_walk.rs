@@ -4,7 +4,7 @@ use crate::{
     oscillation::Oscillation,
     outcome::{Shortfall, Walk},
 };
-use world::{Point, Vector};
+use geometry::{Point, Vector};
 
 /// From where to where.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,10 +1,8 @@
 //! A law with its gains, and the forces it gives at a place.
 
-use crate::{
-    contact::{Contact, Source},
-    laws::{self, Sense},
-};
-use world::{Point, Vector};
+use crate::laws;
+use geometry::{Point, Vector};
+use steering::{Contact, Forces, Side, Source};
 
 /// Which repulsion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,39 +44,21 @@ pub struct Law {
     pub rotation: RotationForm,
 }
 
-/// The forces at one place, kept apart so that they can be drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Forces {
-    /// Pull of the target.
-    pub attraction: Vector,
-    /// Push of obstacles and wall.
-    pub repulsion: Vector,
-    /// Rotating force.
-    pub rotation: Vector,
-}
-
-impl Forces {
-    /// Sum of all.
-    pub fn resultant(&self) -> Vector {
-        self.attraction + self.repulsion + self.rotation
-    }
-}
-
 impl Law {
     /// The forces on a robot at `at` that is bound for `goal`.
     ///
-    /// `sense` says for each contact whether and which way round the rotating force acts.
+    /// `side` says for each contact whether the rotating force acts, and on which side it leads past.
     pub fn forces(
         &self,
         at: Point,
         goal: Point,
         contacts: &[Contact],
-        mut sense: impl FnMut(&Contact) -> Option<Sense>,
+        mut side: impl FnMut(&Contact) -> Option<Side>,
     ) -> Forces {
         let mut forces = Forces { attraction: laws::attraction(self.k_att, at, goal), ..Forces::default() };
         for contact in contacts {
             forces.repulsion += self.push(contact, goal - at);
-            forces.rotation += sense(contact).map_or_else(Vector::zeros, |s| self.turn(contact, s));
+            forces.rotation += side(contact).map_or_else(Vector::zeros, |side| self.turn(contact, side));
         }
         forces
     }
@@ -99,10 +79,10 @@ impl Law {
         }
     }
 
-    fn turn(&self, contact: &Contact, sense: Sense) -> Vector {
+    fn turn(&self, contact: &Contact, side: Side) -> Vector {
         match self.rotation {
-            RotationForm::Literal => laws::rotation(self.k_rot, self.rho_0_m, sense, contact),
-            RotationForm::Smooth => laws::smooth_rotation(self.k_rot, self.rho_0_m, sense, contact),
+            RotationForm::Literal => laws::rotation(self.k_rot, self.rho_0_m, side, contact),
+            RotationForm::Smooth => laws::smooth_rotation(self.k_rot, self.rho_0_m, side, contact),
         }
     }
 }

@@ -1,40 +1,11 @@
 //! The force laws as pure functions, each with its source. Forces are newtons in name only: the planners use their
 //! direction, so scaling all gains together changes nothing.
 
-use crate::contact::Contact;
 use geometry::{Point, Vector, direction_or};
+use steering::{Contact, Side};
 
 /// Smallest distance a law divides by, metres: a preset point may lie on an obstacle, and the laws are singular there.
 pub const FLOOR_M: f64 = 1e-6;
-
-/// Which way round an obstacle a rotating force drives the robot, seen from above.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sense {
-    /// The obstacle stays on the left hand; the sense of Wang et al. 2023.
-    CounterClockwise,
-    /// The obstacle stays on the right hand.
-    Clockwise,
-}
-
-impl Sense {
-    /// The other way round.
-    #[must_use]
-    pub fn reversed(self) -> Self {
-        match self {
-            Self::CounterClockwise => Self::Clockwise,
-            Self::Clockwise => Self::CounterClockwise,
-        }
-    }
-
-    /// Unit tangent about something whose outward direction at the robot is `away`.
-    pub fn tangent(self, away: Vector) -> Vector {
-        let counter_clockwise = Vector::new(-away.y, away.x);
-        match self {
-            Self::CounterClockwise => counter_clockwise,
-            Self::Clockwise => -counter_clockwise,
-        }
-    }
-}
 
 /// Pull of a quadratic well, `k_att * rho(q, g)` toward the goal (Khatib 1986; Wang et al. 2023, section 2.1).
 pub fn attraction(k_att: f64, at: Point, goal: Point) -> Vector {
@@ -63,18 +34,19 @@ pub fn improved_repulsion(
     away + direction_or(to_goal, Vector::zeros()) * pull
 }
 
-/// The rotating force of Wang et al. 2023, eq. 3: `k_rot rho_0 / rho` along the tangent.
+/// The rotating force of Wang et al. 2023, eq. 3: `k_rot rho_0 / rho` along the tangent. The paper's sense, counter-clockwise,
+/// passes on the right.
 ///
 /// At `rho_0` it jumps from `k_rot` to zero.
-pub fn rotation(k_rot: f64, rho_0_m: f64, sense: Sense, contact: &Contact) -> Vector {
+pub fn rotation(k_rot: f64, rho_0_m: f64, side: Side, contact: &Contact) -> Vector {
     let within = contact.distance_m < rho_0_m;
     let strength = if within { k_rot * rho_0_m / contact.distance_m.max(FLOOR_M) } else { 0.0 };
-    sense.tangent(contact.away) * strength
+    side.along(contact.away) * strength
 }
 
 /// The rotating force without its jump: `k_rot (rho_0 / rho - 1)` along the tangent, our form.
-pub fn smooth_rotation(k_rot: f64, rho_0_m: f64, sense: Sense, contact: &Contact) -> Vector {
-    sense.tangent(contact.away) * (k_rot * rho_0_m * inverse_gap(rho_0_m, contact.distance_m))
+pub fn smooth_rotation(k_rot: f64, rho_0_m: f64, side: Side, contact: &Contact) -> Vector {
+    side.along(contact.away) * (k_rot * rho_0_m * inverse_gap(rho_0_m, contact.distance_m))
 }
 
 /// `(1/rho - 1/rho_0) / rho^2`, zero from `rho_0` on.
@@ -91,8 +63,8 @@ fn inverse_gap(rho_0_m: f64, distance_m: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::Source;
     use proptest::prelude::*;
+    use steering::Source;
 
     fn east_of_it(distance_m: f64) -> Contact {
         Contact { source: Source::Obstacle(0), distance_m, away: Vector::x() }
@@ -115,21 +87,12 @@ mod tests {
     #[test]
     fn the_printed_rotation_jumps_at_its_range_and_the_smooth_one_does_not() {
         let (inside, outside) = (east_of_it(1.0 - 1e-9), east_of_it(1.0));
-        let turn = |law: fn(f64, f64, Sense, &Contact) -> Vector, contact: &Contact| {
-            law(3.0, 1.0, Sense::CounterClockwise, contact)
+        let turn = |law: fn(f64, f64, Side, &Contact) -> Vector, contact: &Contact| {
+            law(3.0, 1.0, Side::Right, contact)
         };
         assert!((turn(rotation, &inside) - Vector::new(0.0, 3.0)).norm() < 1e-6);
         assert!(turn(smooth_rotation, &inside).norm() < 1e-6);
         assert_eq!((turn(rotation, &outside), turn(smooth_rotation, &outside)), Default::default());
-    }
-
-    #[test]
-    fn both_senses_are_opposite_tangents() {
-        let away = Vector::new(0.6, 0.8);
-        let (left, right) = (Sense::CounterClockwise.tangent(away), Sense::Clockwise.tangent(away));
-        assert!(left.dot(&away).abs() < 1e-12 && (left + right).norm() < 1e-12);
-        // East of an obstacle, counter-clockwise is north.
-        assert!(Sense::CounterClockwise.tangent(Vector::x()).y > 0.0);
     }
 
     proptest! {
@@ -145,8 +108,8 @@ mod tests {
                 attraction(1e3, Point::origin(), Point::from(to_goal)),
                 repulsion(1e3, 0.05, &contact),
                 improved_repulsion(1e3, 0.05, exponent, &contact, to_goal),
-                rotation(1e3, 5.0, Sense::Clockwise, &contact),
-                smooth_rotation(1e3, 5.0, Sense::Clockwise, &contact),
+                rotation(1e3, 5.0, Side::Left, &contact),
+                smooth_rotation(1e3, 5.0, Side::Left, &contact),
             ] {
                 prop_assert!(force.x.is_finite() && force.y.is_finite());
             }

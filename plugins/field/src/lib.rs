@@ -1,5 +1,5 @@
 //! Force laws shared by the potential-field planners, and the two ways to use them: walking a law over the known map
-//! to plan, and steering a robot along it tick by tick.
+//! to plan, and flying a robot along it tick by tick.
 //!
 //! Frame: the tank frame, metres, radians. Distances to obstacles are measured from the robot's hull to the outline;
 //! a point obstacle and a robot of radius zero give the papers' point form.
@@ -10,16 +10,11 @@
 //! Where those leave something open the item says what was chosen.
 #![forbid(unsafe_code)]
 
-pub mod body;
-pub mod contact;
 pub mod descent;
-pub mod drawing;
+pub mod ends;
 pub mod escape;
-pub mod gaps;
 pub mod goal_law;
 pub mod goal_walk;
-pub mod ground;
-pub mod guard;
 pub mod law;
 pub mod laws;
 pub mod lockstep;
@@ -29,29 +24,20 @@ pub mod outcome;
 pub mod params;
 pub mod pilot;
 pub mod pull;
+pub mod response;
 pub mod rollout;
-pub mod room;
 pub mod scene;
 pub mod settings;
-pub mod stall;
-pub mod tangents;
 pub mod trap;
-#[cfg(feature = "trial")]
-pub mod trial;
 pub mod turning;
 pub mod virtual_goals;
 pub mod walk;
 
-pub use contact::{Contact, Source};
 pub use escape::Escape;
 pub use goal_law::{GoalLaw, Sides, TangentUse};
-pub use ground::{Ground, Nearby, Solid};
-pub use law::{Forces, Law, Repulsion, RotationForm};
-pub use laws::Sense;
-pub use pilot::Pilot;
+pub use law::{Law, Repulsion, RotationForm};
+pub use pilot::ForcePilot;
 pub use pull::{NearLaw, Pull};
-pub use room::{Keep, Room};
 pub use scene::Scene;
-pub use settings::{Flight, Planning, Settings, Steering, Walking};
-pub use tangents::{Side, Tangent};
+pub use settings::{FieldSettings, Planning, RotationUse, Walking};
 pub use turning::{Reading, SenseRule};

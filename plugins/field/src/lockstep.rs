@@ -4,11 +4,11 @@ use crate::{
     descent::{self, Descent},
     outcome::{Shortfall, Walk},
     scene::Scene,
-    settings::Settings,
+    settings::FieldSettings,
     walk::{Move, Walker},
 };
+use geometry::Point;
 use planner_api::{Ctx, Result};
-use world::Point;
 
 /// The stop near the last point counts only within this share of the list's end; without it a push through the middle
 /// of a spiral ends the path early, as the paper's runs seem to do.
@@ -21,14 +21,19 @@ const TAIL_SHARE: f64 = 0.02;
 ///
 /// # Errors
 /// When the console wants it to stop.
-pub fn follow(scene: &Scene, settings: &Settings, course: &Course<'_>, ctx: &Ctx<'_>) -> Result<Walk> {
-    let points = course.points;
+pub fn follow(
+    scene: &Scene,
+    settings: &FieldSettings,
+    preset: &PresetPath<'_>,
+    ctx: &Ctx<'_>,
+) -> Result<Walk> {
+    let points = preset.points;
     let step_m = settings.walking.step_m;
     let Some((&first, &last)) = points.first().zip(points.last()) else {
-        return Ok(Walk { path: vec![course.start], shortfall: None });
+        return Ok(Walk { path: vec![preset.start], shortfall: None });
     };
     let mut approach = Vec::new();
-    let mut start = course.start;
+    let mut start = preset.start;
     if (first - start).norm() > step_m {
         let to_first = Descent { start, goal: first, step_m, tolerance_m: step_m };
         let walk = descent::descend(scene, settings, &to_first, ctx)?;
@@ -46,7 +51,7 @@ pub fn follow(scene: &Scene, settings: &Settings, course: &Course<'_>, ctx: &Ctx
     let mut previous = start;
     for (index, &target) in remaining.iter().enumerate() {
         ctx.check()?;
-        if index >= tail_from && (walker.at() - last).norm() < course.tolerance_m {
+        if index >= tail_from && (walker.at() - last).norm() < preset.tolerance_m {
             break;
         }
         let cap_m = if settings.walking.flexible { 2.0 * step_m } else { step_m };
@@ -55,14 +60,14 @@ pub fn follow(scene: &Scene, settings: &Settings, course: &Course<'_>, ctx: &Ctx
         lag.record(walker.at(), target);
         previous = target;
     }
-    let shortfall = shortfall(&walker, &lag, course, last, settings);
+    let shortfall = shortfall(&walker, &lag, preset, last, settings);
     approach.extend(walker.into_path());
     Ok(Walk { path: approach, shortfall })
 }
 
 /// Preset points and where the robot is.
 #[derive(Debug, Clone, Copy)]
-pub struct Course<'a> {
+pub struct PresetPath<'a> {
     /// Where the robot is.
     pub start: Point,
     /// The preset points, no two neighbours further apart than a step.
@@ -89,12 +94,12 @@ impl Lag {
 fn shortfall(
     walker: &Walker<'_>,
     lag: &Lag,
-    course: &Course<'_>,
+    preset: &PresetPath<'_>,
     last: Point,
-    settings: &Settings,
+    settings: &FieldSettings,
 ) -> Option<Shortfall> {
     let missing_m = (walker.at() - last).norm();
-    if missing_m >= course.tolerance_m.max(1e-9) {
+    if missing_m >= preset.tolerance_m.max(1e-9) {
         return Some(Shortfall::Short { missing_m, at: walker.at() });
     }
     if let Some(at) = walker.trap() {
@@ -109,12 +114,13 @@ mod tests {
     use super::*;
     use crate::{
         law::{Law, Repulsion, RotationForm},
-        settings::{Flight, Planning, Steering, Walking},
+        settings::{Planning, RotationUse, Walking},
         turning::{Reading, SenseRule},
     };
     use planner_api::{Boundary, Limits, Motion, Site, testing::Bench};
+    use steering::Flight;
 
-    const SETTINGS: Settings = Settings {
+    const SETTINGS: FieldSettings = FieldSettings {
         law: Law {
             k_att: 1.0,
             k_rep: 0.02,
@@ -135,14 +141,8 @@ mod tests {
             turn_limit_rad: None,
             max_lag_m: 1.0,
         },
-        flight: Flight {
-            steering: Steering::Paper,
-            guard_m: 0.1,
-            guard_sigmas: 1.0,
-            slow_m: 0.5,
-            min_share: 0.3,
-            stuck_s: 30.0,
-        },
+        rotation_use: RotationUse::Paper,
+        flight: Flight { guard_m: 0.1, guard_sigmas: 1.0, slow_m: 0.5, min_share: 0.3, stuck_s: 30.0 },
     };
 
     fn walk(start: Point, points: &[Point], tolerance_m: f64) -> Walk {
@@ -163,8 +163,8 @@ mod tests {
             clearance_m: 0.0,
             seed: 0,
         };
-        let course = Course { start, points, tolerance_m };
-        follow(&Scene::new(&site), &SETTINGS, &course, &Bench::new().ctx()).expect("nobody stops it")
+        let preset = PresetPath { start, points, tolerance_m };
+        follow(&Scene::new(&site), &SETTINGS, &preset, &Bench::new().ctx()).expect("nobody stops it")
     }
 
     fn line(n_points: u32, spacing_m: f64) -> Vec<Point> {

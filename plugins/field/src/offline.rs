@@ -2,19 +2,18 @@
 
 use crate::{
     descent::{self, Descent},
-    lockstep::{self, Course},
-    outcome::{self, Walk},
+    ends::{check_goal, check_start},
+    lockstep::{self, PresetPath},
+    outcome::Walk,
     rollout,
     scene::Scene,
-    settings::{Planning, Settings},
+    settings::{FieldSettings, Planning},
 };
-use planner_api::{Code, Ctx, LogLevel, Plan, PlanRequest, PlannerError, Result, Task};
-use world::{Point, polyline};
+use geometry::{Point, polyline};
+use planner_api::{Code, Ctx, Plan, PlanRequest, PlannerError, Result, Task};
 
 /// More preset points than this after splitting long gaps are refused.
 const MOST_POINTS: usize = 200_000;
-/// Outside the floor by no more than this is rounding, metres.
-const ROUNDING_M: f64 = 1e-6;
 
 /// A path for the task; `complete` states whether it achieves all of it with the clearance demanded, and the log
 /// why not.
@@ -22,7 +21,7 @@ const ROUNDING_M: f64 = 1e-6;
 /// # Errors
 /// [`Code::StartOccupied`], [`Code::StartOutside`], [`Code::GoalOccupied`], [`Code::GoalOutside`],
 /// [`Code::Invalid`] for preset points that coincide or are missing, and whatever ends the call early.
-pub fn plan(settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
+pub fn plan(settings: &FieldSettings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
     let scene = Scene::new(request.site);
     check_start(&scene, request.start.position, request.site.limits.radius_m)?;
     match request.task {
@@ -41,7 +40,7 @@ pub fn plan(settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Re
         walked(&scene, settings, request, ctx)?
     };
     let clearance_m = scene.path_clearance_m(&walk.path);
-    Ok(plan_of(walk, clearance_m, request.site.clearance_m, ctx))
+    Ok(walk.into_plan(clearance_m, request.site.clearance_m, ctx))
 }
 
 fn is_flown(planning: Planning, radius_m: f64) -> bool {
@@ -52,7 +51,7 @@ fn is_flown(planning: Planning, radius_m: f64) -> bool {
     }
 }
 
-fn walked(scene: &Scene, settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Walk> {
+fn walked(scene: &Scene, settings: &FieldSettings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Walk> {
     let start = request.start.position;
     match request.task {
         Task::Goto { goal, tolerance_m } | Task::Cover { anchor: goal, tolerance_m, .. } => {
@@ -61,7 +60,7 @@ fn walked(scene: &Scene, settings: &Settings, request: &PlanRequest<'_>, ctx: &C
         }
         Task::Follow { targets, tolerance_m } => {
             let points = course(scene, settings.walking.step_m, targets)?;
-            lockstep::follow(scene, settings, &Course { start, points: &points, tolerance_m }, ctx)
+            lockstep::follow(scene, settings, &PresetPath { start, points: &points, tolerance_m }, ctx)
         }
     }
 }
@@ -79,24 +78,6 @@ fn course(scene: &Scene, step_m: f64, targets: &[Point]) -> Result<Vec<Point>> {
     Ok(polyline::resampled(&targets[..=last], step_m * (1.0 + 1e-9)))
 }
 
-/// Refuses a start outside the tank or deep in an obstacle.
-///
-/// # Errors
-/// [`Code::StartOutside`], [`Code::StartOccupied`].
-pub fn check_start(scene: &Scene, start: Point, radius_m: f64) -> Result<()> {
-    let place = format!("the start ({:.2}, {:.2})", start.x, start.y);
-    if scene.wall_clearance_m(start) + radius_m < -ROUNDING_M {
-        return Err(PlannerError::new(Code::StartOutside, format!("{place} lies outside the tank")));
-    }
-    // The estimated start may be off a little: only a hull that is half inside is refused.
-    let depth_m = -scene.hull_clearance_m(start);
-    if depth_m > radius_m / 2.0 {
-        let message = format!("at {place} the hull is {depth_m:.2} m inside an obstacle");
-        return Err(PlannerError::new(Code::StartOccupied, message));
-    }
-    Ok(())
-}
-
 fn check_targets(scene: &Scene, targets: &[Point]) -> Result<()> {
     if targets.is_empty() {
         return Err(PlannerError::new(Code::Invalid, "there is no preset point to follow"));
@@ -109,37 +90,4 @@ fn check_targets(scene: &Scene, targets: &[Point]) -> Result<()> {
         return Err(PlannerError::new(Code::NoPath, "every preset point lies in an obstacle"));
     }
     Ok(())
-}
-
-/// Refuses a goal that lies out of reach by more than the tolerance.
-///
-/// # Errors
-/// [`Code::GoalOutside`], [`Code::GoalOccupied`].
-pub fn check_goal(scene: &Scene, goal: Point, tolerance_m: f64) -> Result<()> {
-    let place = format!("the goal ({:.2}, {:.2})", goal.x, goal.y);
-    if scene.wall_clearance_m(goal) + tolerance_m < -ROUNDING_M {
-        return Err(PlannerError::new(
-            Code::GoalOutside,
-            format!("{place} lies outside the tank or in its wall"),
-        ));
-    }
-    if scene.hull_clearance_m(goal) + tolerance_m < 0.0 {
-        return Err(PlannerError::new(Code::GoalOccupied, format!("{place} lies in an obstacle")));
-    }
-    Ok(())
-}
-
-/// A walk as a plan, with its least distance between hull and anything solid and that demanded, metres; what is wrong
-/// with it is logged.
-pub fn plan_of(walk: Walk, clearance_m: f64, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
-    let shortfall = outcome::assess(&walk, clearance_m, demanded_m);
-    if let Some(reason) = shortfall {
-        ctx.log(LogLevel::Warn, &format!("the plan is not complete: {reason}"));
-    }
-    Plan {
-        cost: polyline::length_m(&walk.path),
-        path: walk.path,
-        complete: shortfall.is_none(),
-        ..Plan::default()
-    }
 }

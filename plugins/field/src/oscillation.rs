@@ -1,7 +1,7 @@
 //! When the robot counts as trapped. The paper says "oscillates" and gives no rule; this one is ours.
 
+use geometry::Point;
 use std::collections::VecDeque;
-use world::Point;
 
 /// It is an oscillation when the way covered leads less far than this share of it.
 const SHARE: f64 = 0.15;

@@ -1,7 +1,8 @@
 //! Whether a walk achieves its task, and if not, why.
 
+use geometry::{Point, polyline};
+use planner_api::{Ctx, LogLevel, Plan};
 use std::fmt;
-use world::Point;
 
 /// Slack for rounding in comparisons of lengths, metres.
 const ROUNDING_M: f64 = 1e-6;
@@ -13,6 +14,25 @@ pub struct Walk {
     pub path: Vec<Point>,
     /// Why it does not achieve the task, if so.
     pub shortfall: Option<Shortfall>,
+}
+
+impl Walk {
+    /// The plan, with the least distance between hull and anything solid along it and that demanded, metres; what is
+    /// wrong with it is logged, the first thing if there are several.
+    pub fn into_plan(self, clearance_m: f64, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
+        let is_close = clearance_m < demanded_m - ROUNDING_M;
+        let close = is_close.then_some(Shortfall::Close { clearance_m, demanded_m });
+        let shortfall = self.shortfall.or(close);
+        if let Some(reason) = shortfall {
+            ctx.log(LogLevel::Warn, &format!("the plan is not complete: {reason}"));
+        }
+        Plan {
+            cost: polyline::length_m(&self.path),
+            path: self.path,
+            complete: shortfall.is_none(),
+            ..Plan::default()
+        }
+    }
 }
 
 /// Why a path does not achieve its task.
@@ -72,11 +92,4 @@ impl fmt::Display for Shortfall {
             ),
         }
     }
-}
-
-/// Why a walk with this least clearance does not achieve its task; the first reason if there are several.
-pub fn assess(walk: &Walk, clearance_m: f64, demanded_m: f64) -> Option<Shortfall> {
-    let close =
-        (clearance_m < demanded_m - ROUNDING_M).then_some(Shortfall::Close { clearance_m, demanded_m });
-    walk.shortfall.or(close)
 }

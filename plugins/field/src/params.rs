@@ -1,12 +1,14 @@
-//! The parameters that the potential-field planners share, and how they become settings.
+//! The parameters that the potential-field planners share, those of flight among them, and how they become settings.
 
 use crate::{
     escape::Escape,
     law::{Law, Repulsion, RotationForm},
-    settings::{Flight, Planning, Settings, Steering, Walking},
+    settings::{FieldSettings, Planning, RotationUse, Walking},
     turning::{Reading, SenseRule},
 };
 use planner_api::{Config, ParamSpec, choice, flag, float};
+
+pub use steering::params::{GUARD, GUARD_SIGMAS, MIN_SHARE, SLOW, STUCK, flight};
 
 const FIELD: &str = "Field";
 const PLAN: &str = "Plan";
@@ -111,55 +113,14 @@ pub const STEERING: ParamSpec = choice("steering", "Rotation in flight", &["pape
            closed.")
     .group(FLIGHT)
     .live();
-/// The guard's distance.
-pub const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
-    .help("Hull distance below which no motion toward an obstacle is allowed; always a little more than the mission's clearance.")
-    .group(FLIGHT)
-    .live();
-/// How the guard widens.
-pub const GUARD_SIGMAS: ParamSpec = float("guard_sigmas", "Guard per position error", "", 0.0, 5.0, 1.0)
-    .help("Widens the guard by this many standard deviations of the estimated position, up to 0.15 m.")
-    .group(FLIGHT)
-    .live();
-/// Where the robot slows down.
-pub const SLOW: ParamSpec = float("slow_m", "Slow zone", "m", 0.01, 5.0, 0.5)
-    .help("The robot slows down toward obstacles nearer than this.")
-    .group(FLIGHT)
-    .live();
-/// How far it slows down.
-pub const MIN_SHARE: ParamSpec = float("min_share", "Least speed", "", 0.05, 1.0, 0.3)
-    .help("Share of the largest speed below which the robot does not slow down by itself.")
-    .group(FLIGHT)
-    .live();
-/// When the robot is stuck.
-pub const STUCK: ParamSpec = float("stuck_s", "Stuck after", "s", 1.0, 600.0, 30.0)
-    .help("Time without getting on after which the robot reports that it is stuck.")
-    .group(FLIGHT)
-    .live();
-
-/// Clearance asked of a plan.
-pub const CLEARANCE: ParamSpec = float("clearance_m", "Clearance at least", "m", 0.0, 5.0, 0.0)
-    .help("Distance between hull and obstacles that a plan keeps; never less than the mission's clearance.")
-    .group(PLAN)
-    .live();
-/// Limit of the change of heading along a plan.
-pub const TURN_PER_STEP: ParamSpec = float("turn_deg", "Turn limit per 0.2 m", "deg", 0.0, 180.0, 30.0)
-    .help("Largest change of heading along 0.2 m of path, where the preset path itself turns no faster; 0 is no limit.")
-    .group(PLAN)
-    .live();
-/// How far a plan may leave its preset path.
-pub const MAX_OFFSET: ParamSpec = float("max_offset_m", "Furthest offset", "m", 0.1, 5.0, 1.25)
-    .help("How far beside the preset path a way round is looked for first; twice as far if there is none.")
-    .group(PLAN)
-    .live();
 
 /// Settings of a law without a rotating force.
-pub fn settings(config: &Config<'_>) -> Settings {
+pub fn settings(config: &Config<'_>) -> FieldSettings {
     let repulsion = match config.choice("repulsion") {
         "improved" => Repulsion::Improved { exponent: config.float("exponent") },
         _ => Repulsion::Classic,
     };
-    Settings {
+    FieldSettings {
         law: Law {
             k_att: config.float("k_att"),
             k_rep: config.float("k_rep"),
@@ -174,12 +135,13 @@ pub fn settings(config: &Config<'_>) -> Settings {
         escape: Escape::None,
         planning: Planning::Walked,
         walking: walking(config),
+        rotation_use: RotationUse::Paper,
         flight: flight(config),
     }
 }
 
 /// Settings of a law with the rotating force of Wang et al. 2023.
-pub fn rotating_settings(config: &Config<'_>) -> Settings {
+pub fn rotating_settings(config: &Config<'_>) -> FieldSettings {
     let mut settings = settings(config);
     settings.law.k_rot = config.float("k_rot");
     settings.law.rotation =
@@ -195,8 +157,8 @@ pub fn rotating_settings(config: &Config<'_>) -> Settings {
         "flight" => Planning::Flown,
         _ => Planning::ByHull,
     };
-    settings.flight.steering =
-        if config.choice("steering") == "gaps" { Steering::Gaps } else { Steering::Paper };
+    settings.rotation_use =
+        if config.choice("steering") == "gaps" { RotationUse::Gaps } else { RotationUse::Paper };
     settings
 }
 
@@ -208,17 +170,5 @@ fn walking(config: &Config<'_>) -> Walking {
         flexible: config.flag("flexible_step"),
         turn_limit_rad: (turn_limit_deg > 0.0).then(|| turn_limit_deg.to_radians()),
         max_lag_m: config.float("max_lag_m"),
-    }
-}
-
-/// How a robot is steered along a plan or a law.
-pub fn flight(config: &Config<'_>) -> Flight {
-    Flight {
-        steering: Steering::Paper,
-        guard_m: config.float("guard_m"),
-        guard_sigmas: config.float("guard_sigmas"),
-        slow_m: config.float("slow_m"),
-        min_share: config.float("min_share"),
-        stuck_s: config.float("stuck_s"),
     }
 }

@@ -1,6 +1,6 @@
 //! How a goal pulls: linearly, by a logarithm, or no further than a cap.
 
-use world::{Point, Vector};
+use geometry::{Point, Vector};
 
 /// Distances below this count as this, metres: the laws are singular at the goal.
 const FLOOR_M: f64 = 1e-9;

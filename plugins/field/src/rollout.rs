@@ -2,12 +2,13 @@
 
 use crate::{
     outcome::{Shortfall, Walk},
-    pilot::{Pilot, Tick},
+    pilot::ForcePilot,
     scene::Scene,
-    settings::Settings,
+    settings::FieldSettings,
 };
+use geometry::{Point, polyline};
 use planner_api::{Ctx, Limits, Motion, PlanRequest, PoseEstimate, Result, Site, Status, Task};
-use world::{Point, polyline};
+use steering::Tick;
 
 /// Distance covered in a tick at full speed, metres.
 const MOVE_M: f64 = 0.05;
@@ -23,26 +24,31 @@ const SPARE_TICKS: usize = 4000;
 ///
 /// # Errors
 /// When the console wants it to stop.
-pub fn fly(scene: &Scene, settings: &Settings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Walk> {
+pub fn fly(
+    scene: &Scene,
+    settings: &FieldSettings,
+    request: &PlanRequest<'_>,
+    ctx: &Ctx<'_>,
+) -> Result<Walk> {
     let limits = Limits { motion: Motion::Point, ..request.site.limits };
-    let mut pilot = Pilot::new(settings, &Site { limits, ..*request.site });
-    let mut course = Course::new(scene, request);
+    let mut pilot = ForcePilot::new(settings, &Site { limits, ..*request.site });
+    let mut targets = Targets::new(scene, request);
     let v_max = limits.v_max_m_per_s.max(1e-6);
     let tick_s = MOVE_M / v_max;
     let mut at = request.start.position;
     let mut heading_rad = request.start.heading_rad;
     let mut path = vec![at];
-    for tick in 0..course.most_ticks(at) {
+    for tick in 0..targets.most_ticks(at) {
         ctx.check()?;
-        course.advance(at);
-        if course.is_done(at) {
+        targets.advance(at);
+        if targets.is_done(at) {
             return Ok(Walk { path, shortfall: None });
         }
         let bodies = scene.bodies_within(at, RANGE_M + limits.radius_m);
         let pose = PoseEstimate { position: at, heading_rad, covariance: nalgebra::Matrix3::zeros() };
         let t_s = tick as f64 * tick_s;
-        let tick = Tick { t_s, pose, target: course.target(), is_last: course.is_last(), bodies: &bodies };
-        let decision = pilot.decide(settings, &tick);
+        let tick = Tick { t_s, pose, target: targets.target(), is_last: targets.is_last(), bodies: &bodies };
+        let decision = pilot.decide(settings, &tick).decision;
         if decision.status == Status::Stuck {
             return Ok(Walk { path, shortfall: Some(Shortfall::Trapped { at }) });
         }
@@ -52,22 +58,22 @@ pub fn fly(scene: &Scene, settings: &Settings, request: &PlanRequest<'_>, ctx: &
         at += decision.velocity * tick_s;
         path.push(at);
     }
-    let missing_m = (course.target() - at).norm();
+    let missing_m = (targets.target() - at).norm();
     Ok(Walk { path, shortfall: Some(Shortfall::Short { missing_m, at }) })
 }
 
 /// Targets in order; those that the robot cannot stand on are left out.
-struct Course {
-    targets: Vec<Point>,
+struct Targets {
+    points: Vec<Point>,
     due: usize,
     tolerance_m: f64,
 }
 
-impl Course {
+impl Targets {
     fn new(scene: &Scene, request: &PlanRequest<'_>) -> Self {
         let demanded_m = request.site.clearance_m;
         let is_free = |p: &&Point| scene.hull_clearance_m(**p).min(scene.wall_clearance_m(**p)) >= demanded_m;
-        let (targets, tolerance_m) = match request.task {
+        let (points, tolerance_m) = match request.task {
             // Covering is refused before it comes to this; of it only the way home is left.
             Task::Goto { goal, tolerance_m } | Task::Cover { anchor: goal, tolerance_m, .. } => {
                 (vec![goal], tolerance_m)
@@ -77,15 +83,15 @@ impl Course {
                 (if free.is_empty() { targets.to_vec() } else { free }, tolerance_m)
             }
         };
-        Self { targets, due: 0, tolerance_m }
+        Self { points, due: 0, tolerance_m }
     }
 
     fn target(&self) -> Point {
-        self.targets[self.due]
+        self.points[self.due]
     }
 
     fn is_last(&self) -> bool {
-        self.due + 1 == self.targets.len()
+        self.due + 1 == self.points.len()
     }
 
     fn advance(&mut self, at: Point) {
@@ -99,7 +105,7 @@ impl Course {
     }
 
     fn most_ticks(&self, start: Point) -> usize {
-        let way_m = (self.target() - start).norm() + polyline::length_m(&self.targets);
+        let way_m = (self.target() - start).norm() + polyline::length_m(&self.points);
         (DETOUR * way_m / MOVE_M) as usize + SPARE_TICKS
     }
 }

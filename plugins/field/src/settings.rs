@@ -5,6 +5,7 @@ use crate::{
     law::Law,
     turning::{Reading, SenseRule},
 };
+use steering::Flight;
 
 /// How a plan is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,34 +35,16 @@ pub struct Walking {
 
 /// How the rotating force is used in flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Steering {
+pub enum RotationUse {
     /// As in the plan: by the reading and the sense that are set.
     Paper,
     /// About whatever blocks the way, on the side of the smaller detour, with narrow gaps closed; ours.
     Gaps,
 }
 
-/// How the robot is steered along the law.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Flight {
-    /// How the rotating force is used.
-    pub steering: Steering,
-    /// Distance between hull and anything solid below which no motion toward it is allowed, metres; a little more
-    /// than the clearance that the mission demands, if that is larger.
-    pub guard_m: f64,
-    /// Widens the guard by this many standard deviations of the estimated position.
-    pub guard_sigmas: f64,
-    /// Distance between hull and obstacle below which the robot goes slower, metres.
-    pub slow_m: f64,
-    /// The smallest share of the largest speed it slows down to by itself.
-    pub min_share: f64,
-    /// Time without getting on after which the robot reports that it is stuck, seconds.
-    pub stuck_s: f64,
-}
-
 /// Everything a potential-field planner can be set to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct FieldSettings {
     /// Gains and ranges.
     pub law: Law,
     /// When the rotating force acts.
@@ -74,6 +57,8 @@ pub struct Settings {
     pub planning: Planning,
     /// How the law is walked to plan.
     pub walking: Walking,
-    /// How the robot is steered.
+    /// How the rotating force is used in flight.
+    pub rotation_use: RotationUse,
+    /// How the robot is flown.
     pub flight: Flight,
 }

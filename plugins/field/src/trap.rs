@@ -1,7 +1,7 @@
 //! When a law counts as trapped.
 
+use geometry::Point;
 use std::collections::VecDeque;
-use world::Point;
 
 /// Moves that the detector looks back over.
 const WINDOW: usize = 6;

@@ -1,11 +1,8 @@
 //! When the rotating force acts, and which way round.
 
-use crate::{
-    contact::{Contact, Source},
-    laws::Sense,
-};
+use geometry::Vector;
 use std::collections::BTreeMap;
-use world::Vector;
+use steering::{Contact, Side, Source};
 
 /// Moves for which a gate stays open once the detector has fired.
 const HOLD: usize = 10;
@@ -30,17 +27,17 @@ pub enum SenseRule {
     SideAware,
 }
 
-/// Gate and senses of the rotating force along a walk.
+/// Gate and sides of the rotating force along a walk.
 #[derive(Debug, Clone)]
 pub struct Turning {
     reading: Reading,
     rule: SenseRule,
     open_for: usize,
-    kept: BTreeMap<Source, Sense>,
+    kept: BTreeMap<Source, Side>,
 }
 
 impl Turning {
-    /// Closed, and with no sense chosen.
+    /// Closed, and with no side chosen.
     pub fn new(reading: Reading, rule: SenseRule) -> Self {
         Self { reading, rule, open_for: 0, kept: BTreeMap::new() }
     }
@@ -65,19 +62,18 @@ impl Turning {
         }
     }
 
-    /// Which way round a contact, if the force acts.
-    pub fn sense(&self, contact: &Contact) -> Option<Sense> {
+    /// On which side to pass a contact, if the force acts.
+    pub fn side(&self, contact: &Contact) -> Option<Side> {
         if !self.is_on() || contact.source == Source::Wall {
             return None;
         }
-        Some(self.kept.get(&contact.source).copied().unwrap_or(Sense::CounterClockwise))
+        Some(self.kept.get(&contact.source).copied().unwrap_or(Side::Right))
     }
 }
 
-/// The sense whose tangent points more toward the goal.
-fn toward(to_goal: Vector, away: Vector) -> Sense {
-    let counter_clockwise = Sense::CounterClockwise;
-    if counter_clockwise.tangent(away).dot(&to_goal) >= 0.0 { counter_clockwise } else { Sense::Clockwise }
+/// The side whose tangent points more toward the goal.
+fn toward(to_goal: Vector, away: Vector) -> Side {
+    if Side::Right.along(away).dot(&to_goal) >= 0.0 { Side::Right } else { Side::Left }
 }
 
 #[cfg(test)]
@@ -91,25 +87,25 @@ mod tests {
     fn a_gate_opens_in_a_trap_and_closes_ten_moves_later() {
         let mut turning = Turning::new(Reading::Gated, SenseRule::CounterClockwise);
         turning.update(false, &[EAST_OF_IT], Vector::y());
-        assert_eq!(turning.sense(&EAST_OF_IT), None);
+        assert_eq!(turning.side(&EAST_OF_IT), None);
         turning.update(true, &[EAST_OF_IT], Vector::y());
         for _ in 0..9 {
             turning.update(false, &[EAST_OF_IT], Vector::y());
         }
-        assert_eq!(turning.sense(&EAST_OF_IT), Some(Sense::CounterClockwise));
+        assert_eq!(turning.side(&EAST_OF_IT), Some(Side::Right));
         turning.update(false, &[EAST_OF_IT], Vector::y());
-        assert_eq!(turning.sense(&EAST_OF_IT), None);
+        assert_eq!(turning.side(&EAST_OF_IT), None);
     }
 
     #[test]
     fn a_side_once_chosen_is_kept_while_the_obstacle_is_near() {
         let mut turning = Turning::new(Reading::Literal, SenseRule::SideAware);
         turning.update(false, &[EAST_OF_IT], -Vector::y());
-        assert_eq!(turning.sense(&EAST_OF_IT), Some(Sense::Clockwise));
+        assert_eq!(turning.side(&EAST_OF_IT), Some(Side::Left));
         turning.update(false, &[EAST_OF_IT], Vector::y());
-        assert_eq!(turning.sense(&EAST_OF_IT), Some(Sense::Clockwise));
+        assert_eq!(turning.side(&EAST_OF_IT), Some(Side::Left));
         turning.update(false, &[], Vector::y());
         turning.update(false, &[EAST_OF_IT], Vector::y());
-        assert_eq!(turning.sense(&EAST_OF_IT), Some(Sense::CounterClockwise));
+        assert_eq!(turning.side(&EAST_OF_IT), Some(Side::Right));
     }
 }

@@ -3,8 +3,13 @@
 //! The printed formulas have lost signs and roots. What is built is: attraction toward the goal, repulsion away from
 //! obstacles, at the goal a constant pull `k d_0`, and an evaluation of virtual goals that shuns the blocked direction.
 
+use crate::{
+    goal_law::{GoalLaw, TangentUse},
+    pull::Pull,
+};
+use geometry::{Point, Vector};
 use std::collections::VecDeque;
-use world::{Point, Vector};
+use steering::KnownMap;
 
 /// Below this share of the attraction gain a force counts as zero (eq. 17 says "= 0", which steps never meet).
 const ZERO_SHARE: f64 = 0.5;
@@ -54,6 +59,12 @@ impl SquareLaw {
         }
     }
 
+    /// The push of obstacles and wall that goes with it; gains and range as those of [`GoalLaw`].
+    pub fn push(&self, k_rep: f64, rho_m: f64, wall_gain: f64) -> GoalLaw {
+        let pull = Pull::Capped { k: self.k_att, d_0_m: self.d_0_m };
+        GoalLaw { pull, k_rep, rho_m, tangent: TangentUse::Off, tangent_weight: 0.0, wall_gain }
+    }
+
     /// The corners of the square round the goal, at 45, 135, 225 and 315 degrees.
     pub fn corners(&self, goal: Point) -> [Point; 4] {
         let half_m = self.square_m * std::f64::consts::FRAC_1_SQRT_2;
@@ -80,6 +91,13 @@ impl SquareLaw {
 }
 
 impl VirtualGoals {
+    /// Uses the best corner that is free from now on, if there is one; `push` is the sum of all repulsion.
+    pub fn take_best(&mut self, law: &SquareLaw, at: Point, goal: Point, push: Vector, map: &KnownMap) {
+        if let Some(corner) = law.best_corner(at, goal, push, |corner| map.clearance_m(corner) > 0.0) {
+            self.take(corner);
+        }
+    }
+
     /// The virtual goal in use.
     pub fn current(&self) -> Option<Point> {
         self.current

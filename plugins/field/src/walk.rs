@@ -1,15 +1,9 @@
 //! Walking a law over the known map, move by move.
 
-use crate::{
-    contact::{Contact, Source},
-    escape::{Escaping, Situation},
-    scene::Scene,
-    settings::Settings,
-    trap::TrapDetector,
-    turning::Turning,
-};
+use crate::{escape::Situation, response::TrapResponse, scene::Scene, settings::FieldSettings};
+use geometry::{Point, Vector};
 use std::collections::VecDeque;
-use world::{Point, Vector};
+use steering::Contact;
 
 /// A walk counts as trapped after this many moves that lead nowhere.
 const TRAP_MOVES: usize = 25;
@@ -17,10 +11,8 @@ const TRAP_MOVES: usize = 25;
 /// One walk and its memory.
 pub struct Walker<'a> {
     scene: &'a Scene,
-    settings: &'a Settings,
-    turning: Turning,
-    escaping: Escaping,
-    detector: TrapDetector,
+    settings: &'a FieldSettings,
+    response: TrapResponse,
     lagging: VecDeque<Point>,
     heading: Option<Vector>,
     at: Point,
@@ -43,15 +35,11 @@ pub struct Move {
 
 impl<'a> Walker<'a> {
     /// A walk from here.
-    pub fn new(scene: &'a Scene, settings: &'a Settings, start: Point) -> Self {
-        let mut detector = TrapDetector::default();
-        detector.record(start);
+    pub fn new(scene: &'a Scene, settings: &'a FieldSettings, start: Point) -> Self {
         Self {
             scene,
             settings,
-            turning: Turning::new(settings.reading, settings.rule),
-            escaping: Escaping::new(settings.escape),
-            detector,
+            response: TrapResponse::new(settings),
             lagging: VecDeque::new(),
             heading: None,
             at: start,
@@ -79,30 +67,21 @@ impl<'a> Walker<'a> {
     /// Moves along the resultant, by no more than the distance to the target: a free way ends exactly there.
     pub fn advance(&mut self, next: &Move) {
         let to_target = next.target - self.at;
-        let contacts = self.scene.contacts(self.at, &self.settings.law);
-        let obstacle_acts = contacts.iter().any(|c| c.source != Source::Wall);
-        let trapped = self.detector.is_trapped(next.expected_m, next.step_m, to_target.norm(), obstacle_acts);
-        self.turning.update(trapped, &contacts, to_target);
-        let escape = self.escaping.update(&Situation {
-            is_trapped: trapped,
-            at: self.at,
-            goal: next.target,
-            contacts: &contacts,
-            law: &self.settings.law,
-            step_m: next.step_m,
-        });
-        if let Some(direction) = self.direction(next.target, &contacts, escape) {
+        let (law, step_m) = (&self.settings.law, next.step_m);
+        let contacts = self.scene.contacts(self.at, law);
+        let now = Situation { at: self.at, goal: next.target, contacts: &contacts, law, step_m };
+        self.response.update(&now, next.expected_m);
+        if let Some(direction) = self.direction(next.target, &contacts) {
             self.at += direction * next.cap_m.min(to_target.norm());
             self.heading = Some(direction);
         }
         self.path.push(self.at);
-        self.detector.record(self.at);
-        self.watch_for_trap((next.target - self.at).norm(), next.step_m);
+        self.watch_for_trap((next.target - self.at).norm(), step_m);
     }
 
-    fn direction(&self, target: Point, contacts: &[Contact], escape: Vector) -> Option<Vector> {
-        let forces = self.settings.law.forces(self.at, target, contacts, |c| self.turning.sense(c));
-        let wanted = (forces.resultant() + escape).try_normalize(1e-12)?;
+    fn direction(&self, target: Point, contacts: &[Contact]) -> Option<Vector> {
+        let forces = self.settings.law.forces(self.at, target, contacts, |c| self.response.turning.side(c));
+        let wanted = (forces.resultant() + self.response.escape).try_normalize(1e-12)?;
         match (self.settings.walking.turn_limit_rad, self.heading) {
             (Some(limit_rad), Some(heading)) => Some(turned_at_most(heading, wanted, limit_rad)),
             _ => Some(wanted),

@@ -5,12 +5,12 @@
 //! preferred, for what moves may turn. After the velocity obstacles of Fiorini and Shiller 1998 and the dynamic window of
 //! Fox et al. 1997.
 
-use field::body::Body;
 use geometry::{
     Boundary, Drive, Limits, Point, Vector,
     motion::{TURN_FIRST_RAD, drive_for, heading_error_rad},
 };
 use planner_api::{Obstacle, PoseEstimate};
+use steering::Body;
 
 /// Slower than this an obstacle stands still, metres per second.
 const STILL_M_PER_S: f64 = 0.02;
@@ -136,9 +136,9 @@ fn moved(at: Point, heading_rad: f64, velocity: Vector, limits: &Limits) -> (Poi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use field::trial::exact_pose;
     use geometry::{Motion, wrap_angle_rad};
     use planner_api::Outline;
+    use steering::trial::exact_pose;
 
     const LIMITS: Limits = Limits {
         motion: Motion::Unicycle,

@@ -1,29 +1,20 @@
 //! Flying along a plan.
 
 use crate::evade::{self, Around, Mover};
-use field::{Flight, Pilot, body::Body, drawing, pilot::Tick};
-use planner_api::{Command, Ctx, Drive, Layer, Limits, Result, Sensed, Site, Status};
-use world::Boundary;
+use planner_api::{Command, Ctx, Drive, Layer, Result, Sensed, Site, Status};
+use steering::{Body, Flight, Forces, Pilot, Tick};
 
 /// Follows the plan, half a metre ahead, with the guard's word as the last; what moves is evaded.
 pub(crate) struct Flyer {
     flight: Flight,
     pilot: Pilot,
-    limits: Limits,
-    wall: Boundary,
     clearance_m: f64,
 }
 
 impl Flyer {
     /// A flyer at a site.
     pub(crate) fn new(flight: Flight, site: &Site<'_>) -> Self {
-        Self {
-            flight,
-            pilot: Pilot::pursuing(site),
-            limits: site.limits,
-            wall: site.boundary.to_owned(),
-            clearance_m: site.clearance_m,
-        }
+        Self { flight, pilot: Pilot::pursuing(site), clearance_m: site.clearance_m }
     }
 
     /// Takes over changed settings on the way.
@@ -37,14 +28,15 @@ impl Flyer {
     /// When the console wants it to stop.
     pub(crate) fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
-        let Some(&target) = sensed.path_ahead.first() else { return Ok(Command::still(Status::Waiting)) };
+        if sensed.path_ahead.is_empty() {
+            return Ok(Command::still(Status::Waiting));
+        }
         let (movers, standing) = self.sorted(sensed);
-        let is_last = sensed.targets_ahead.len() <= 1 && sensed.path_ahead.len() <= 1;
-        let tick = Tick { t_s: sensed.t_s, pose: sensed.pose, target, is_last, bodies: &standing };
-        let decision = self.pilot.pursue(&self.flight, &tick, target);
-        drawing::show(ctx, sensed.pose.position, &decision.forces, 1.0);
+        let (tick, at) = (Tick::along_path(sensed, &standing), sensed.pose.position);
+        Forces::toward(at, tick.target).show(ctx, at, 1.0);
+        let decision = self.pilot.pursue(&self.flight, &tick, tick.target);
         if movers.is_empty() {
-            return Ok(Command { drive: Drive::Velocity(decision.velocity), status: decision.status });
+            return Ok(decision.into());
         }
         for mover in &movers {
             ctx.arrow(Layer::Virtual, mover.body.center(), mover.velocity);
@@ -52,8 +44,8 @@ impl Flyer {
         let around = Around {
             movers: &movers,
             standing: &standing,
-            wall: &self.wall,
-            limits: &self.limits,
+            wall: self.pilot.wall(),
+            limits: self.pilot.limits(),
             clearance_m: self.clearance_m,
         };
         let velocity = evade::evade(decision.velocity, &sensed.pose, &around);

@@ -6,9 +6,9 @@ pub mod shortest;
 
 mod evade;
 mod flight;
-mod ground;
 pub mod marching;
 mod navigation;
+mod problem;
 mod raster;
 
 #[cfg(test)]

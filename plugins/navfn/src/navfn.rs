@@ -2,13 +2,13 @@
 
 use crate::{
     flight::Flyer,
-    ground::{Ground, refusal},
     navigation::Navigation,
+    problem::{PlanningProblem, refusal},
 };
-use field::params as p;
 use planner_api::{
     Caps, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site, int,
 };
+use steering::params as p;
 use world::shortest::{GrownFloor, NoWay, Way};
 
 /// A way is pulled taut about what lies within so many cells of it.
@@ -55,10 +55,10 @@ impl Planner for Navfn {
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
-        let ground = Ground::new(request, self.clearance_m)?;
-        let floor = ground.grown();
-        self.way(&ground, &floor, ctx)
-            .map(|way| ground.plan_of(&way, ctx))
+        let problem = PlanningProblem::new(request, self.clearance_m)?;
+        let floor = problem.grown();
+        self.way(&problem, &floor, ctx)
+            .map(|way| problem.plan_of(&way, ctx))
             .map_err(|no_way| refusal(no_way, ctx))
     }
 
@@ -68,24 +68,29 @@ impl Planner for Navfn {
 }
 
 impl Navfn {
-    fn way(&mut self, ground: &Ground, floor: &GrownFloor, ctx: &Ctx<'_>) -> std::result::Result<Way, NoWay> {
+    fn way(
+        &mut self,
+        problem: &PlanningProblem,
+        floor: &GrownFloor,
+        ctx: &Ctx<'_>,
+    ) -> std::result::Result<Way, NoWay> {
         let mut keep_going = || ctx.check().is_ok();
         let navigation = match &mut self.navigation {
             Some(kept) => {
-                kept.update(ground, floor, self.cells);
+                kept.update(problem, floor, self.cells);
                 kept
             }
-            none => none.insert(Navigation::new(ground, floor, self.cells)),
+            none => none.insert(Navigation::new(problem, floor, self.cells)),
         };
         let before = navigation.n_settled();
-        let way = navigation.way(ground.start, floor, &mut keep_going);
+        let way = navigation.way(problem.start, floor, &mut keep_going);
         ctx.scalar("cells_settled", navigation.n_settled().saturating_sub(before) as f64, "");
         let reach_m = REACH_CELLS * navigation.cell_m();
         let taut = way.and_then(|way| floor.pulled_taut(&way, reach_m, &mut keep_going).ok());
         if let Some(way) = taut {
             return Ok(way);
         }
-        let exact = floor.shortest(ground.start, ground.goal, &mut keep_going)?;
+        let exact = floor.shortest(problem.start, problem.goal, &mut keep_going)?;
         let message = format!(
             "the cells of {:.2} m are too coarse for the only way; the exact search found it",
             navigation.cell_m()

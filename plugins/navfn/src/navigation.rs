@@ -1,8 +1,8 @@
 //! The navigation function of a goal, kept between plans and repaired when the map changes.
 
 use crate::{
-    ground::{Ground, Solid},
     marching::Field,
+    problem::{GrownShape, PlanningProblem},
     raster::Raster,
 };
 use world::{Boundary, Point, Vector, shortest::GrownFloor};
@@ -21,25 +21,25 @@ pub(crate) struct Navigation {
     wall_keep_m: f64,
     cells: usize,
     raster: Raster,
-    solids: Vec<Solid>,
+    shapes: Vec<GrownShape>,
     field: Field,
 }
 
 impl Navigation {
-    /// The navigation function of a ground with so many cells along its longer side.
-    pub(crate) fn new(ground: &Ground, floor: &GrownFloor, cells: usize) -> Self {
-        let mut raster = Raster::new(&ground.boundary, ground.wall_keep_m, cells);
-        for solid in &ground.solids {
-            raster.cover(solid, &mut Vec::new());
+    /// The navigation function of a problem with so many cells along its longer side.
+    pub(crate) fn new(problem: &PlanningProblem, floor: &GrownFloor, cells: usize) -> Self {
+        let mut raster = Raster::new(&problem.boundary, problem.wall_keep_m, cells);
+        for grown in &problem.shapes {
+            raster.cover(grown, &mut Vec::new());
         }
         Self {
-            goal: ground.goal,
-            boundary: ground.boundary.clone(),
-            wall_keep_m: ground.wall_keep_m,
+            goal: problem.goal,
+            boundary: problem.boundary.clone(),
+            wall_keep_m: problem.wall_keep_m,
             cells,
-            field: field_of(&raster, ground.goal, floor),
+            field: field_of(&raster, problem.goal, floor),
             raster,
-            solids: ground.solids.clone(),
+            shapes: problem.shapes.clone(),
         }
     }
 
@@ -53,28 +53,28 @@ impl Navigation {
         self.field.n_settled()
     }
 
-    /// Takes over a changed ground; the field is repaired, or recomputed if goal or wall changed.
-    pub(crate) fn update(&mut self, ground: &Ground, floor: &GrownFloor, cells: usize) {
+    /// Takes over a changed problem; the field is repaired, or recomputed if goal or wall changed.
+    pub(crate) fn update(&mut self, problem: &PlanningProblem, floor: &GrownFloor, cells: usize) {
         let same_wall =
-            self.boundary == ground.boundary && (self.wall_keep_m - ground.wall_keep_m).abs() < 1e-12;
-        if self.goal != ground.goal || !same_wall || self.cells != cells {
-            *self = Self::new(ground, floor, cells);
+            self.boundary == problem.boundary && (self.wall_keep_m - problem.wall_keep_m).abs() < 1e-12;
+        if self.goal != problem.goal || !same_wall || self.cells != cells {
+            *self = Self::new(problem, floor, cells);
             return;
         }
         let (mut blocked, mut freed) = (Vec::new(), Vec::new());
-        for index in 0..self.solids.len().max(ground.solids.len()) {
-            let (old, new) = (self.solids.get(index), ground.solids.get(index));
+        for index in 0..self.shapes.len().max(problem.shapes.len()) {
+            let (old, new) = (self.shapes.get(index), problem.shapes.get(index));
             if old != new {
                 // First on, then off: what stays covered does not change.
-                if let Some(solid) = new {
-                    self.raster.cover(solid, &mut blocked);
+                if let Some(grown) = new {
+                    self.raster.cover(grown, &mut blocked);
                 }
-                if let Some(solid) = old {
-                    self.raster.uncover(solid, &mut freed);
+                if let Some(grown) = old {
+                    self.raster.uncover(grown, &mut freed);
                 }
             }
         }
-        self.solids.clone_from(&ground.solids);
+        self.shapes.clone_from(&problem.shapes);
         // A cell may have been both.
         let is_blocked: Vec<bool> = self.raster.blocked().collect();
         blocked.retain(|cell| is_blocked[*cell]);

@@ -1,6 +1,7 @@
 //! The floor in square cells: which of them hold no place for the middle of the robot.
 
-use crate::ground::Solid;
+use crate::problem::GrownShape;
+use geometry::polyline::edges;
 use world::{Boundary, Point, Shape, Vector};
 
 /// Cells of a floor, with a frame of blocked ones around it, and how many things cover the middle of each.
@@ -67,8 +68,8 @@ impl Raster {
     }
 
     /// Puts something solid on the floor; adds the cells that are blocked by it alone.
-    pub(crate) fn cover(&mut self, solid: &Solid, blocked: &mut Vec<usize>) {
-        self.visit(solid, |cell, covers| {
+    pub(crate) fn cover(&mut self, grown: &GrownShape, blocked: &mut Vec<usize>) {
+        self.visit(grown, |cell, covers| {
             *covers += 1;
             if *covers == 1 {
                 blocked.push(cell);
@@ -77,8 +78,8 @@ impl Raster {
     }
 
     /// Takes something solid away again; adds the cells that are free now.
-    pub(crate) fn uncover(&mut self, solid: &Solid, freed: &mut Vec<usize>) {
-        self.visit(solid, |cell, covers| {
+    pub(crate) fn uncover(&mut self, grown: &GrownShape, freed: &mut Vec<usize>) {
+        self.visit(grown, |cell, covers| {
             *covers -= 1;
             if *covers == 0 {
                 freed.push(cell);
@@ -111,9 +112,9 @@ impl Raster {
             }
         }
         if let Boundary::Polygon { vertices } = boundary {
-            for (a, b) in vertices.iter().zip(vertices.iter().cycle().skip(1)) {
-                let shape = Shape::Polyline { points: vec![*a, *b], half_width_m: 0.0 };
-                self.cover(&Solid { shape, keep_m }, &mut Vec::new());
+            for (a, b) in edges(vertices) {
+                let shape = Shape::Polyline { points: vec![a, b], half_width_m: 0.0 };
+                self.cover(&GrownShape { shape, keep_m }, &mut Vec::new());
             }
         }
     }
@@ -128,22 +129,19 @@ impl Raster {
     /// Calls `change` for every cell whose middle something solid covers.
     ///
     /// Walls are taken as at least one cell thick, or a way along the cells could lead across them.
-    fn visit(&mut self, solid: &Solid, mut change: impl FnMut(usize, &mut u16)) {
-        let thick_m = |half_width_m: f64| (half_width_m + solid.keep_m).max(0.5001 * self.cell_m);
-        let parts: Vec<(Point, Point, f64)> = match &solid.shape {
-            Shape::Disc { center, radius_m } => vec![(*center, *center, radius_m + solid.keep_m)],
+    fn visit(&mut self, grown: &GrownShape, mut change: impl FnMut(usize, &mut u16)) {
+        let thick_m = |half_width_m: f64| (half_width_m + grown.keep_m).max(0.5001 * self.cell_m);
+        let parts: Vec<(Point, Point, f64)> = match &grown.shape {
+            Shape::Disc { center, radius_m } => vec![(*center, *center, radius_m + grown.keep_m)],
             Shape::Polyline { points, half_width_m } if points.len() == 1 => {
-                vec![(points[0], points[0], half_width_m + solid.keep_m)]
+                vec![(points[0], points[0], half_width_m + grown.keep_m)]
             }
             Shape::Polyline { points, half_width_m } => {
                 points.windows(2).map(|w| (w[0], w[1], thick_m(*half_width_m))).collect()
             }
-            Shape::Polygon { vertices } => {
-                let ends = vertices.iter().zip(vertices.iter().cycle().skip(1));
-                ends.map(|(a, b)| (*a, *b, thick_m(0.0))).collect()
-            }
+            Shape::Polygon { vertices } => edges(vertices).map(|(a, b)| (a, b, thick_m(0.0))).collect(),
         };
-        let is_filled = matches!(solid.shape, Shape::Polygon { .. });
+        let is_filled = matches!(grown.shape, Shape::Polygon { .. });
         let low_y = parts.iter().map(|(a, b, r)| a.y.min(b.y) - r).fold(f64::INFINITY, f64::min);
         let high_y = parts.iter().map(|(a, b, r)| a.y.max(b.y) + r).fold(f64::NEG_INFINITY, f64::max);
         for row in self.row(low_y)..=self.row(high_y) {
@@ -188,8 +186,7 @@ fn bar_chord(a: Point, b: Point, radius_m: f64, y: f64) -> Option<(f64, f64)> {
 
 /// The pieces of a horizontal line within a simple polygon.
 fn crossings(vertices: &[Point], y: f64) -> Vec<(f64, f64)> {
-    let edges = vertices.iter().zip(vertices.iter().cycle().skip(1));
-    let crossed = edges.filter(|(a, b)| (a.y > y) != (b.y > y));
+    let crossed = edges(vertices).filter(|(a, b)| (a.y > y) != (b.y > y));
     let mut xs: Vec<f64> = crossed.map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y)).collect();
     xs.sort_by(f64::total_cmp);
     xs.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect()
@@ -220,17 +217,17 @@ mod tests {
         #[test]
         fn a_cell_is_blocked_exactly_if_its_middle_is_too_near(shape in shape(), keep_m in 0.1..0.6_f64) {
             let mut raster = Raster::new(&Boundary::Circle { radius_m: 5.0 }, keep_m, 60);
-            let solid = Solid { shape, keep_m };
+            let grown = GrownShape { shape, keep_m };
             let mut changed = Vec::new();
             let before: Vec<bool> = raster.blocked().collect();
-            raster.cover(&solid, &mut changed);
+            raster.cover(&grown, &mut changed);
             for (cell, blocked) in raster.blocked().enumerate() {
                 let at = raster.center(cell);
-                let spare_m = (5.0 - at.coords.norm()).min(solid.shape.distance_m(at)) - keep_m;
+                let spare_m = (5.0 - at.coords.norm()).min(grown.shape.distance_m(at)) - keep_m;
                 prop_assert!(spare_m.abs() < 1e-9 || blocked == (spare_m < 0.0), "{at} {spare_m}");
             }
             let mut freed = Vec::new();
-            raster.uncover(&solid, &mut freed);
+            raster.uncover(&grown, &mut freed);
             prop_assert_eq!(changed, freed);
             prop_assert_eq!(before, raster.blocked().collect::<Vec<_>>());
         }

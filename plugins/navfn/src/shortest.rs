@@ -2,10 +2,10 @@
 
 use crate::{
     flight::Flyer,
-    ground::{Ground, refusal},
+    problem::{PlanningProblem, refusal},
 };
-use field::params as p;
 use planner_api::{Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site};
+use steering::params as p;
 
 /// The shortest path that hull and clearance allow on the map as it is known, by tangents and arcs; replanned
 /// whenever an obstacle is discovered.
@@ -34,9 +34,9 @@ impl Planner for Shortest {
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
-        let ground = Ground::new(request, self.clearance_m)?;
-        let way = ground.grown().shortest(ground.start, ground.goal, &mut || ctx.check().is_ok());
-        way.map(|way| ground.plan_of(&way, ctx)).map_err(|no_way| refusal(no_way, ctx))
+        let problem = PlanningProblem::new(request, self.clearance_m)?;
+        let way = problem.grown().shortest(problem.start, problem.goal, &mut || ctx.check().is_ok());
+        way.map(|way| problem.plan_of(&way, ctx)).map_err(|no_way| refusal(no_way, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

@@ -1,7 +1,7 @@
 //! Questions to the planners on random traps, for tests.
 
-use field::trial::exact_pose;
 use planner_api::{Obstacle, Plan, PlanRequest, Planner, Point2, Reason, Result, Site, Task, testing::Bench};
+use steering::trial::exact_pose;
 use trials::traps::{HULL_M, Trap};
 use world::polyline;
 

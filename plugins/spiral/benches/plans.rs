@@ -3,7 +3,6 @@
 //! The classical field lies in another plugin and has its bench there: two plugins cannot be linked into one program.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use field::trial::exact_pose;
 use planner_api::{Motion, PlanRequest, Planner, Reason, Task, testing::Bench};
 use planner_spiral::{
     escapes::{Iapf, Vt},
@@ -12,6 +11,7 @@ use planner_spiral::{
     spiral_tangent::SpiralTangent,
 };
 use std::hint::black_box;
+use steering::trial::exact_pose;
 use trials::{Distribution, Layout, Sampling};
 
 /// Layouts that take turns.

@@ -9,10 +9,10 @@ mod banded;
 mod rows;
 
 use banded::Banded;
-use field::Room;
 use geometry::convex::Part;
 use rows::{Limit, Row, Solid, solids_of};
 use std::f64::consts::PI;
+use steering::Room;
 use world::{Boundary, Point, Vector, polyline};
 
 /// Length of path over which a change of heading is measured, metres.

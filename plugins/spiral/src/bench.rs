@@ -1,8 +1,8 @@
 //! What the tests of our own planners share: plans of the paper's layouts and their figures over many seeds.
 
-use field::trial::exact_pose;
 use planner_api::{Motion, Plan, PlanRequest, Planner, Reason, Result, Task, testing::Bench};
 use std::time::Duration;
+use steering::trial::exact_pose;
 use trials::{Distribution, Layout, Safety, Sampling, Score, floor_rmse_m, safety, score};
 
 /// Clearance of the paper's layouts in our tests, metres.

@@ -1,9 +1,8 @@
 //! The course to follow: preset points with stations and directions, checked once.
 
-use field::{Keep, Room, scene::solids};
-use geometry::convex::parts_of;
 use planner_api::{Code, Config, Ctx, LogLevel, ParamSpec, PlanRequest, PlannerError, Result, Site, Task};
-use std::f64::consts::TAU;
+use std::{f64::consts::TAU, ops::Range};
+use steering::{Keep, Room, solid_parts};
 use world::{Point, Vector, geometry::wrap_angle_rad, polyline};
 
 /// Neighbouring points are no further apart than this, metres: the paper's step.
@@ -144,8 +143,8 @@ pub(crate) fn check_start(
         return Err(PlannerError::new(Code::StartOutside, format!("{place} lies outside the tank")));
     }
     // The estimated start may be off a little: only a hull that is half inside is refused.
-    let parts = solids(request.site).flat_map(|(_, outline)| parts_of(&outline));
-    let outline_m = parts.map(|part| part.distance(start).0).fold(f64::INFINITY, f64::min);
+    let distances_m = solid_parts(request.site).map(|(_, part)| part.distance(start).0);
+    let outline_m = distances_m.fold(f64::INFINITY, f64::min);
     if outline_m < hull_m / 2.0 || outline_m <= 0.0 {
         let message = format!("at {place} the hull is {:.2} m inside an obstacle", hull_m - outline_m);
         return Err(PlannerError::new(Code::StartOccupied, message));
@@ -208,12 +207,13 @@ pub(crate) fn check_numbers(config: &Config<'_>, specs: &[ParamSpec]) -> Result<
 /// Where a path along a course can begin: its first point, or the nearest free place about it.
 pub(crate) fn nearest_free(course: &Course, room: &Room) -> Point {
     let start = course.points[0];
-    let rings = (0..80).map(|k| f64::from(k) * 0.025);
-    let places = rings.flat_map(|radius_m| {
-        (0..48)
-            .map(move |k| f64::from(k) * TAU / 48.0)
-            .map(move |a| start + Vector::new(a.cos(), a.sin()) * radius_m)
-    });
-    let mut free = places.filter(|place| room.spare_m(*place) >= 0.0);
-    free.next().unwrap_or(start)
+    places_about(start, 0..80).find(|place| room.spare_m(*place) >= 0.0).unwrap_or(start)
+}
+
+/// Places about a point, the nearest first: so many rings of them, 2.5 cm apart.
+pub(crate) fn places_about(center: Point, rings: Range<u32>) -> impl Iterator<Item = Point> {
+    rings.map(|k| f64::from(k) * 0.025).flat_map(move |radius_m| {
+        let bearings = (0..48).map(|k| f64::from(k) * TAU / 48.0);
+        bearings.map(move |a| center + Vector::new(a.cos(), a.sin()) * radius_m)
+    })
 }

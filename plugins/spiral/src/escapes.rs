@@ -1,7 +1,7 @@
 //! The two potential fields that the rotating one is compared with: a virtual target, and a push out of the trap.
 
 use crate::potential::{Kind, Potential};
-use field::{Escape, Settings, params as p};
+use field::{Escape, FieldSettings, params as p};
 use planner_api::{Config, ParamSpec};
 
 const PARAMS: &[ParamSpec] = &[
@@ -42,8 +42,8 @@ impl Kind for VirtualTarget {
                                  description of Yang 2018 in Wang et al. 2023.";
     const PARAMS: &'static [ParamSpec] = PARAMS;
 
-    fn settings(config: &Config<'_>) -> Settings {
-        Settings { escape: Escape::VirtualTarget, ..p::settings(config) }
+    fn settings(config: &Config<'_>) -> FieldSettings {
+        FieldSettings { escape: Escape::VirtualTarget, ..p::settings(config) }
     }
 }
 
@@ -54,8 +54,8 @@ impl Kind for Push {
                                  description of Zhao 2022 in Wang et al. 2023.";
     const PARAMS: &'static [ParamSpec] = PARAMS;
 
-    fn settings(config: &Config<'_>) -> Settings {
-        Settings { escape: Escape::Push, ..p::settings(config) }
+    fn settings(config: &Config<'_>) -> FieldSettings {
+        FieldSettings { escape: Escape::Push, ..p::settings(config) }
     }
 }
 
@@ -63,8 +63,8 @@ impl Kind for Push {
 mod tests {
     use super::*;
     use crate::bench::plan;
-    use field::trial::{Robot, fly};
     use planner_api::{Motion, Planner};
+    use steering::trial::{Robot, fly};
     use trials::{Distribution, Layout, Sampling, score};
 
     /// Wang et al. 2023, first distribution.

@@ -5,9 +5,9 @@ use crate::{
     course::Course,
     strip::{Bar, Station, Strip, Way},
 };
-use field::Room;
 use planner_api::{Ctx, Result};
 use std::{collections::BTreeMap, ops::RangeInclusive};
+use steering::Room;
 use world::{Point, Vector};
 
 /// Stations of the first search are at least so far apart, metres.

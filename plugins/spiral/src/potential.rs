@@ -1,7 +1,7 @@
 //! What all potential fields on a preset path share: they are walked over the known map, and flown tick by tick.
 
 use crate::course;
-use field::{Pilot, Settings, offline};
+use field::{FieldSettings, ForcePilot, offline};
 use planner_api::{
     Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site, Task,
 };
@@ -19,13 +19,13 @@ pub trait Kind: 'static {
     const PARAMS: &'static [ParamSpec];
 
     /// The settings that a configuration stands for.
-    fn settings(config: &Config<'_>) -> Settings;
+    fn settings(config: &Config<'_>) -> FieldSettings;
 }
 
 /// A potential field as a planner.
 pub struct Potential<K> {
-    pub(crate) settings: Settings,
-    pilot: Pilot,
+    pub(crate) settings: FieldSettings,
+    pilot: ForcePilot,
     kind: PhantomData<K>,
 }
 
@@ -39,7 +39,7 @@ impl<K: Kind> Planner for Potential<K> {
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
         course::check_numbers(config, K::PARAMS)?;
         let settings = K::settings(config);
-        Ok(Self { settings, pilot: Pilot::new(&settings, site), kind: PhantomData })
+        Ok(Self { settings, pilot: ForcePilot::new(&settings, site), kind: PhantomData })
     }
 
     fn reconfigure(&mut self, config: &Config<'_>, _: &Ctx<'_>) -> Result<()> {

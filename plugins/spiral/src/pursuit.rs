@@ -1,10 +1,9 @@
 //! Flying along a plan or a preset path: straight to the next point, past what is in the way along its tangent.
 
 use crate::tangent::Around;
-use field::{Flight, Keep, Pilot, drawing, pilot::Tick};
-use geometry::convex::Part;
-use planner_api::{Command, Ctx, Drive, Result, Sensed, Site};
-use world::{Boundary, Point};
+use geometry::{Point, convex::Part};
+use planner_api::{Command, Ctx, Result, Sensed, Site};
+use steering::{Flight, Forces, Keep, Pilot, Tick};
 
 /// The way is looked at this far ahead, metres.
 const REACH_M: f64 = 0.4;
@@ -14,13 +13,12 @@ pub(crate) struct Pursuit {
     flight: Flight,
     clearance_m: f64,
     pilot: Pilot,
-    wall: Boundary,
 }
 
 impl Pursuit {
     /// A pursuit at a site that keeps this clearance, or the mission's if that is larger, metres.
     pub(crate) fn new(flight: Flight, clearance_m: f64, site: &Site<'_>) -> Self {
-        Self { flight, clearance_m, pilot: Pilot::pursuing(site), wall: site.boundary.to_owned() }
+        Self { flight, clearance_m, pilot: Pilot::pursuing(site) }
     }
 
     /// Takes over changed settings on the way; what it remembers stays.
@@ -35,13 +33,11 @@ impl Pursuit {
     pub(crate) fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
         let bodies = self.pilot.bodies(sensed);
-        let target = sensed.path_ahead.first().copied().unwrap_or(sensed.target);
-        let is_last = sensed.targets_ahead.len() <= 1 && sensed.path_ahead.len() <= 1;
-        let tick = Tick { t_s: sensed.t_s, pose: sensed.pose, target, is_last, bodies: &bodies };
-        let aim = self.aim(&tick);
-        let decision = self.pilot.pursue(&self.flight, &tick, aim.unwrap_or(target));
-        drawing::show(ctx, sensed.pose.position, &decision.forces, 1.0);
-        Ok(Command { drive: Drive::Velocity(decision.velocity), status: decision.status })
+        let tick = Tick::along_path(sensed, &bodies);
+        let aim = self.aim(&tick).unwrap_or(tick.target);
+        let at = sensed.pose.position;
+        Forces::toward(at, aim).show(ctx, at, 1.0);
+        Ok(self.pilot.pursue(&self.flight, &tick, aim).into())
     }
 
     /// Where to head now: along the tangent of what blocks the way, if something does.
@@ -49,15 +45,14 @@ impl Pursuit {
         let at = tick.pose.position;
         let keep_m = self.pilot.keep_m(&self.flight, &tick.pose).max(self.clearance_m);
         let detour = self.pilot.way_round(tick, keep_m)?;
-        let closed: Vec<Part> =
-            detour.closed.iter().map(|(a, b)| Part::Capsule { a: *a, b: *b, half_width_m: 0.0 }).collect();
+        let closed: Vec<Part> = detour.closed.iter().map(|(a, b)| Part::segment(*a, *b)).collect();
         let solid = tick.bodies.iter().flat_map(|body| &body.parts);
-        let hull_m = self.pilot.hull_m();
+        let hull_m = self.pilot.limits().radius_m;
         let keep = Keep { obstacle_m: hull_m + keep_m, wall_m: hull_m + keep_m };
         // A robot that already stands in a closed gap must get out of it either way.
         let gaps = closed.iter().filter(|part| part.distance(at).0 >= hull_m);
-        let around = Around { wall: &self.wall, parts: solid.chain(gaps).collect(), keep };
+        let around = Around { wall: self.pilot.wall(), parts: solid.chain(gaps).collect(), keep };
         let wanted = (tick.target - at).try_normalize(1e-9)?;
-        around.tangent(at, wanted, REACH_M, detour.sense).map(|heading| at + heading)
+        around.tangent(at, wanted, REACH_M, detour.side).map(|heading| at + heading)
     }
 }

@@ -4,8 +4,8 @@ use crate::{
     course::Course,
     ring::{self, Ring},
 };
-use field::Room;
 use planner_api::{PlannerError, Site};
+use steering::Room;
 use world::Point;
 
 /// The refusal of a course that is blocked at a point.

@@ -5,10 +5,10 @@
 //! goes round one of them and not round the other, that is, which a straight line between them crosses more often in
 //! one direction than in the other. Counting crossings along a spanning tree finds such a curve without trying all.
 
-use field::{Keep, scene::solids};
-use geometry::convex::{Part, parts_of};
+use geometry::{convex::Part, polyline::edges};
 use planner_api::Site;
 use std::collections::{BTreeSet, VecDeque};
+use steering::{Keep, solid_parts};
 use world::{Boundary, Point, Vector};
 
 /// More solids than this are not looked at.
@@ -65,15 +65,11 @@ pub(crate) fn between(site: &Site<'_>, keep: Keep, a: Point, b: Point) -> Option
 }
 
 fn nodes(site: &Site<'_>) -> Vec<Node> {
-    let obstacle =
-        |(id, outline)| parts_of(&outline).into_iter().map(move |part| Node::Obstacle { id, part });
-    let mut nodes: Vec<Node> = solids(site).flat_map(obstacle).collect();
+    let mut nodes: Vec<Node> = solid_parts(site).map(|(id, part)| Node::Obstacle { id, part }).collect();
     match site.boundary.to_owned() {
         Boundary::Circle { .. } => nodes.push(Node::RoundWall),
         Boundary::Polygon { vertices } => {
-            let edges = vertices.iter().zip(vertices.iter().cycle().skip(1));
-            let piece = |(a, b): (&Point, &Point)| Part::Capsule { a: *a, b: *b, half_width_m: 0.0 };
-            nodes.extend(edges.map(piece).map(|part| Node::Wall { part }));
+            nodes.extend(edges(&vertices).map(|(a, b)| Node::Wall { part: Part::segment(a, b) }));
         }
     }
     nodes

@@ -1,7 +1,7 @@
 //! The rotating potential field.
 
 use crate::potential::{Kind, Potential};
-use field::{Settings, params as p};
+use field::{FieldSettings, params as p};
 use planner_api::{Config, ParamSpec};
 
 /// The rotating potential field of Wang et al. 2023, in both readings.
@@ -44,7 +44,7 @@ impl Kind for Rotating {
         p::STUCK,
     ];
 
-    fn settings(config: &Config<'_>) -> Settings {
+    fn settings(config: &Config<'_>) -> FieldSettings {
         p::rotating_settings(config)
     }
 }

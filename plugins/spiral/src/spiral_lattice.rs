@@ -6,11 +6,20 @@ use crate::{
     pursuit::Pursuit,
     refusal,
 };
-use field::params as p;
 use planner_api::{
-    Caps, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site,
+    Caps, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site, float,
 };
+use steering::{Room, params as p};
 use world::polyline;
+
+const TURN: ParamSpec = float("turn_deg", "Turn limit per 0.2 m", "deg", 0.0, 180.0, 30.0)
+    .help("Largest change of heading along 0.2 m of path, where the preset path itself turns no faster; 0 is no limit.")
+    .group("Plan")
+    .live();
+const MAX_OFFSET: ParamSpec = float("max_offset_m", "Furthest offset", "m", 0.1, 5.0, 1.25)
+    .help("How far beside the preset path a way round is looked for first; twice as far if there is none.")
+    .group("Plan")
+    .live();
 
 /// Plans along a preset path: on it wherever it is free, beside it at the least cost where it is not.
 ///
@@ -34,16 +43,8 @@ impl Planner for SpiralLattice {
     const ABOUT: &'static str = "Global plan along a preset path: least squared offset with hard clearance, wall and \
                                  turn limit, by dynamic programming.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
-    const PARAMS: &'static [ParamSpec] = &[
-        p::CLEARANCE,
-        p::TURN_PER_STEP,
-        p::MAX_OFFSET,
-        p::GUARD,
-        p::GUARD_SIGMAS,
-        p::SLOW,
-        p::MIN_SHARE,
-        p::STUCK,
-    ];
+    const PARAMS: &'static [ParamSpec] =
+        &[p::CLEARANCE, TURN, MAX_OFFSET, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
         let wishes = wishes(config)?;
@@ -82,7 +83,7 @@ fn wishes(config: &Config<'_>) -> Result<Wishes> {
     Ok(Wishes { clearance_m: config.float("clearance_m"), limits })
 }
 
-fn plan_of(path: lattice::Path, course: &Course, room: &field::Room, ctx: &Ctx<'_>) -> Plan {
+fn plan_of(path: lattice::Path, course: &Course, room: &Room, ctx: &Ctx<'_>) -> Plan {
     for window in &path.sharp {
         let (from, to) = (course.points[*window.start()], course.points[*window.end()]);
         ctx.log(

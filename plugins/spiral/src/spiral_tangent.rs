@@ -6,12 +6,12 @@ use crate::{
     refusal,
     walk::Walk,
 };
-use field::{params as p, scene::solids};
-use geometry::convex::{Part, parts_of};
+use geometry::convex::Part;
 use planner_api::{
     Caps, Code, Command, Config, Ctx, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result,
     Sensed, Site, float,
 };
+use steering::{params as p, solid_parts};
 use world::polyline;
 
 /// Beyond clearance the robot has to see at least this far, metres.
@@ -70,7 +70,7 @@ impl Planner for SpiralTangent {
         let course = Course::new(request)?;
         let room = course::room(request.site, self.clearance_m, &course)?;
         course::check_start(request, &course, &room, ctx)?;
-        let parts: Vec<Part> = solids(request.site).flat_map(|(_, outline)| parts_of(&outline)).collect();
+        let parts: Vec<Part> = solid_parts(request.site).map(|(_, part)| part).collect();
         let (path, end) = Walk::new(&course, &room, &parts, (self.range_m, self.step_m)).walked(ctx)?;
         match end {
             Ok(()) => {

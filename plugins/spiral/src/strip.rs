@@ -1,6 +1,6 @@
 //! The cheapest way through a strip of offsets beside a course, by dynamic programming: on which side to pass what.
 
-use field::{Room, room::MOST_SPARE_M};
+use steering::{Room, room::MOST_SPARE_M};
 use world::{Point, Vector};
 
 /// Weight of the squared change of offset beside the squared offset itself.

@@ -1,9 +1,9 @@
 //! Following a course by what is sensed: straight to its next free point, and past what is in the way along the
 //! tangents of the headings that it blocks.
 
-use field::{Keep, Sense};
 use geometry::convex::Part;
 use std::f64::consts::TAU;
+use steering::{Keep, Side, wall_contacts};
 use world::{Boundary, Point, Vector, geometry::wrap_angle_rad};
 
 /// The nearest point of the course is looked for this far ahead, metres.
@@ -53,8 +53,8 @@ pub(crate) struct Follower {
     pub at: Point,
     /// Index of the nearest point of the course; only moves forward.
     pub nearest: usize,
-    /// Which way round it goes, while it does.
-    pub side: Option<Sense>,
+    /// On which side it passes what is in the way, while it does.
+    pub side: Option<Side>,
     best: usize,
     idle: usize,
 }
@@ -97,7 +97,7 @@ impl Around<'_> {
                 blocked.extend(round_wall(radius_m - self.keep.wall_m, at, reach_m));
             }
             Boundary::Polygon { .. } => {
-                let contacts = field::scene::wall_contacts(self.wall, at, self.keep.wall_m, reach_m);
+                let contacts = wall_contacts(self.wall, at, self.keep.wall_m, reach_m);
                 blocked.extend(contacts.iter().filter_map(|c| interval(c.distance_m, c.away, reach_m)));
             }
         }
@@ -105,10 +105,9 @@ impl Around<'_> {
     }
 
     /// The heading nearest to the one wanted, turning only to one side; `None` if all are blocked.
-    pub(crate) fn tangent(&self, at: Point, wanted: Vector, reach_m: f64, side: Sense) -> Option<Vector> {
+    pub(crate) fn tangent(&self, at: Point, wanted: Vector, reach_m: f64, side: Side) -> Option<Vector> {
         let blocked = self.blocked(at, reach_m);
-        // Clockwise about what is in the way keeps it on the right hand: turn left.
-        let sign = if side == Sense::Clockwise { 1.0 } else { -1.0 };
+        let sign = side.sign();
         let wanted_rad = wanted.y.atan2(wanted.x);
         let mut turned_rad = 0.0;
         while let Some(beyond_rad) =
@@ -242,14 +241,14 @@ impl Follower {
 
     /// The side on which less floor is missed, as far as is known: both are gone in thought. `None` if neither leads
     /// back to the course.
-    fn better_side(&self, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> Option<Sense> {
-        let cost = |side: Sense| self.cost_of(side, track, around, step_m).map(|cost| (cost, side));
-        let (left, right) = (cost(Sense::Clockwise), cost(Sense::CounterClockwise));
+    fn better_side(&self, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> Option<Side> {
+        let cost = |side: Side| self.cost_of(side, track, around, step_m).map(|cost| (cost, side));
+        let (left, right) = (cost(Side::Left), cost(Side::Right));
         let both = left.into_iter().chain(right);
         both.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, side)| side)
     }
 
-    fn cost_of(&self, side: Sense, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> Option<f64> {
+    fn cost_of(&self, side: Side, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> Option<f64> {
         let mut thought = Self { side: Some(side), idle: 0, ..*self };
         let mut cost = 0.0;
         for _ in 0..THOUGHT_MOVES {

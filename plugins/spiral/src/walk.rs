@@ -5,9 +5,9 @@ use crate::{
     tangent::{Around, Follower, Track},
     way_out::{self, WayOut},
 };
-use field::Room;
 use geometry::convex::Part;
 use planner_api::{Ctx, Result};
+use steering::Room;
 use world::{Point, polyline};
 
 /// What is sensed is looked up again after this distance, metres.

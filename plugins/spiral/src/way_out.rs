@@ -1,18 +1,16 @@
 //! Out of a pocket: the shortest way among all that was sensed so far to the course beyond.
 
-use crate::tangent::{Follower, Track};
-use field::Room;
+use crate::{
+    course::places_about,
+    tangent::{Follower, Track},
+};
 use geometry::convex::Part;
-use std::f64::consts::TAU;
-use world::{Point, Shape, Vector, shortest::GrownFloor};
+use steering::Room;
+use world::{Point, Shape, shortest::GrownFloor};
 
 /// A detour up to this long is taken to the next piece of course, metres; before a longer one the pieces further on are
 /// asked for.
 const SHORT_M: f64 = 6.0;
-/// Places about a blocked end are this far apart, metres, in so many rings of so many places.
-const RING_M: f64 = 0.025;
-const RINGS: u32 = 80;
-const PLACES: u32 = 48;
 
 /// A way back to the course.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,17 +65,8 @@ fn goals(track: &Track<'_>, follower: &Follower, floor: &GrownFloor) -> Vec<(Poi
         before = is_free.then_some(at);
     }
     if goals.is_empty() {
-        goals.extend(nearest_free(track.points[last], floor).map(|at| (at, last, true)));
+        let free = places_about(track.points[last], 1..81).find(|place| floor.spare_m(*place) >= 0.0);
+        goals.extend(free.map(|at| (at, last, true)));
     }
     goals
-}
-
-/// The free place nearest to one that is blocked.
-fn nearest_free(blocked: Point, floor: &GrownFloor) -> Option<Point> {
-    let rings = (1..=RINGS).map(|k| f64::from(k) * RING_M);
-    let mut places = rings.flat_map(|radius_m| {
-        let bearings = (0..PLACES).map(|k| f64::from(k) * TAU / f64::from(PLACES));
-        bearings.map(move |a| blocked + Vector::new(a.cos(), a.sin()) * radius_m)
-    });
-    places.find(|place| floor.spare_m(*place) >= 0.0)
 }

@@ -1,10 +1,10 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
-use field::trial::exact_pose;
 use geometry::Point;
-use planner_api::{Obstacle, Outline, Reason, testing::Bench};
+use planner_api::{Code, Obstacle, Outline, Reason, Task, testing::Bench};
 use proptest::prelude::*;
+use steering::trial::exact_pose;
 use trials::amphibious::{AmphibiousLayout, Group};
 
 fn with_planner<T>(

@@ -8,7 +8,7 @@ use world::{Shape, ZoneKind, polyline};
 
 const KEEP_M: f64 = HULL_M + 0.12;
 
-fn settings(by: GuideBy, transition_steps: u32) -> Settings {
+fn settings(by: GuideBy, transition_steps: u32) -> HybridSettings {
     let square = SquareLaw { k_att: 15.0, d_0_m: 3.0, square_m: 4.0, improved: true, hold_steps: 300 };
     let push = GoalLaw {
         pull: Pull::Linear { k: 15.0 },
@@ -18,7 +18,7 @@ fn settings(by: GuideBy, transition_steps: u32) -> Settings {
         tangent_weight: 0.0,
         wall_gain: 0.1,
     };
-    Settings {
+    HybridSettings {
         robot: Amphibious { transition_steps, ..Amphibious::YANG_2021 },
         window: Window {
             acceleration_m_per_s2: 0.1,
@@ -32,12 +32,12 @@ fn settings(by: GuideBy, transition_steps: u32) -> Settings {
     }
 }
 
-fn runs(group: Group, seed: u64, settings: Settings) -> (AmphibiousLayout, Run) {
+fn runs(group: Group, seed: u64, settings: HybridSettings) -> (AmphibiousLayout, Run) {
     let layout = AmphibiousLayout::random(group, seed);
     let (corners, obstacles, water) =
         (AmphibiousLayout::corners(), layout.obstacles(), AmphibiousLayout::water());
     let zones = AmphibiousLayout::zones(&water);
-    let ground = Ground::new(&AmphibiousLayout::site(&corners, &obstacles, &zones));
+    let map = KnownMap::new(&AmphibiousLayout::site(&corners, &obstacles, &zones));
     let flooded = Zone {
         name: String::new(),
         kind: ZoneKind::Underwater,
@@ -45,7 +45,7 @@ fn runs(group: Group, seed: u64, settings: Settings) -> (AmphibiousLayout, Run) 
     };
     let mut hybrid = Hybrid::new(settings, vec![flooded], HULL_M);
     let start = Pose { position: layout.start, heading_rad: std::f64::consts::FRAC_PI_4 };
-    let run = run::<()>(&mut hybrid, start, layout.goal, 0.15, 4000, &ground, || Ok(())).unwrap();
+    let run = run::<()>(&mut hybrid, start, layout.goal, 0.15, 4000, &map, || Ok(())).unwrap();
     (layout, run)
 }
 

@@ -1,10 +1,10 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
-use field::trial::{Outcome, Robot, exact_pose, fly, sensed_at_rest};
 use planner_api::testing::Bench;
 use planner_api::{Code, Drive, LogLevel, Motion, Obstacle, Outline, Reason, StopReason, Task};
 use proptest::prelude::*;
+use steering::trial::{Outcome, Robot, exact_pose, fly, sensed_at_rest};
 use trials::Layout;
 use world::{Point, polyline};
 

@@ -1,8 +1,8 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
-use field::trial::{Robot, exact_pose, fly};
 use planner_api::{Code, Motion, Reason, Task, testing::Bench};
+use steering::trial::{Robot, exact_pose, fly};
 use trials::spiral::Layout;
 use world::Point;
 

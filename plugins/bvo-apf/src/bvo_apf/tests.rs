@@ -1,11 +1,12 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
-use field::trial::exact_pose;
 use planner_api::{
-    Boundary, Drawing, Limits, Motion, Obstacle, Outline, Reason, StopReason, Vector2, testing::Bench,
+    Boundary, Code, Drawing, Drive, Limits, Motion, Obstacle, Outline, Reason, StopReason, Task, Vector2,
+    testing::Bench,
 };
 use std::f64::consts::PI;
+use steering::trial::exact_pose;
 use world::{Pose, Vector, geometry::wrap_angle_rad};
 
 const TICK_S: f64 = 0.1;

@@ -2,17 +2,17 @@
 
 use super::*;
 use crate::thought::{Walked, ahead_of_traps, walk};
-use field::{GoalLaw, NearLaw, Pull, Solid, TangentUse};
+use field::{GoalLaw, NearLaw, Pull, TangentUse};
 use proptest::prelude::*;
 use trials::traps::{HULL_M, Kind, Trap};
 use world::{Boundary, polyline};
 
 const MODES: [Mode; 4] = [Mode::Literal, Mode::Hull, Mode::Rollout, Mode::Pre];
 
-fn settings(mode: Mode) -> Settings {
+fn settings(mode: Mode) -> MachineSettings {
     let pull = Pull::Logarithm { m: 10.0, trip_m: 40.0, rho_1_m: 1.0, near: NearLaw::Corrected };
     let (tangent, tangent_weight) = (TangentUse::Blocking, 1.0);
-    Settings {
+    MachineSettings {
         mode,
         law: GoalLaw { pull, k_rep: 10.0, rho_m: 2.0, tangent, tangent_weight, wall_gain: 0.1 },
         step_m: 0.05,
@@ -24,9 +24,9 @@ fn settings(mode: Mode) -> Settings {
     }
 }
 
-fn ground(discs: &[(Point, f64)]) -> Ground {
+fn map(discs: &[(Point, f64)]) -> KnownMap {
     let disc = |(id, (center, radius_m)): (usize, &(Point, f64))| Solid::disc(id as u32, *center, *radius_m);
-    Ground {
+    KnownMap {
         solids: discs.iter().enumerate().map(disc).collect(),
         wall: Boundary::Polygon { vertices: Trap::corners() },
         hull_m: HULL_M,
@@ -53,7 +53,7 @@ fn least_clearance_m(path: &[Point], discs: &[(Point, f64)]) -> f64 {
 
 #[test]
 fn in_a_cup_it_retreats_seals_the_mouth_goes_round_and_arrives() {
-    let mut machine = Machine::new(settings(Mode::Literal), ground(&cup()));
+    let mut machine = Machine::new(settings(Mode::Literal), map(&cup()));
     let walked = walked(&mut machine, Point::new(-15.0, 0.3), Point::new(15.0, 0.0));
     assert!(walked.arrived && least_clearance_m(&walked.path, &cup()) > 0.0);
     let [News::Retreats { at }, News::Sealed { circles }, News::Escapes { side, .. }, News::Resumes { .. }] =
@@ -70,7 +70,7 @@ fn in_a_cup_it_retreats_seals_the_mouth_goes_round_and_arrives() {
 #[test]
 fn begun_inside_a_trap_it_finds_the_way_out_without_shutting_itself_in() {
     for mode in MODES {
-        let mut machine = Machine::new(settings(mode), ground(&cup()));
+        let mut machine = Machine::new(settings(mode), map(&cup()));
         let walked = walked(&mut machine, Point::new(1.0, 0.2), Point::new(15.0, 0.0));
         assert!(walked.arrived, "{mode:?} {:?}", machine.news);
         assert!(least_clearance_m(&walked.path, &cup()) > 0.0);
@@ -80,7 +80,7 @@ fn begun_inside_a_trap_it_finds_the_way_out_without_shutting_itself_in() {
 #[test]
 fn a_goal_within_a_trap_is_not_sealed_off() {
     for mode in MODES {
-        let mut machine = Machine::new(settings(mode), ground(&cup()));
+        let mut machine = Machine::new(settings(mode), map(&cup()));
         let walked = walked(&mut machine, Point::new(15.0, 0.4), Point::new(1.0, 0.0));
         assert!(walked.arrived, "{mode:?} {:?}", machine.news);
         assert!(least_clearance_m(&walked.path, &cup()) > 0.0);
@@ -92,7 +92,7 @@ fn where_there_is_no_way_it_gives_up_instead_of_walking_for_ever() {
     let ring = (0..24).map(|k| f64::from(k) * std::f64::consts::TAU / 24.0);
     let ring: Vec<(Point, f64)> = ring.map(|a| (Point::new(5.0 * a.cos(), 5.0 * a.sin()), 0.7)).collect();
     for mode in MODES {
-        let mut machine = Machine::new(settings(mode), ground(&ring));
+        let mut machine = Machine::new(settings(mode), map(&ring));
         let walked = walked(&mut machine, Point::new(-15.0, 0.4), Point::origin());
         assert!(!walked.arrived && least_clearance_m(&walked.path, &ring) > 0.0);
     }
@@ -103,7 +103,7 @@ fn every_mode_leaves_random_traps_without_a_touch_and_pre_is_nearly_the_shortest
     for mode in MODES {
         let mut ratios = Vec::new();
         for trap in (0..10).flat_map(|seed| Kind::ALL.map(|kind| Trap::random(kind, 4_000 + seed))) {
-            let mut machine = Machine::new(settings(mode), ground(&trap.discs));
+            let mut machine = Machine::new(settings(mode), map(&trap.discs));
             let walked = walked(&mut machine, trap.start, trap.goal);
             assert!(walked.arrived, "{mode:?} {:?}", machine.news);
             assert!(least_clearance_m(&walked.path, &trap.discs) > 0.0);
@@ -124,7 +124,7 @@ proptest! {
     ) {
         let (start, goal) = (Point::new(-20.0, 0.0), Point::new(goal.0, goal.1));
         let discs: Vec<(Point, f64)> = discs.into_iter().map(|(x, y, r)| (Point::new(x, y), r)).collect();
-        let mut machine = Machine::new(settings(MODES[mode]), ground(&discs));
+        let mut machine = Machine::new(settings(MODES[mode]), map(&discs));
         let walked = walked(&mut machine, start, goal);
         prop_assert!(walked.path.iter().all(|p| p.x.is_finite() && p.y.is_finite()));
         prop_assert!(least_clearance_m(&walked.path, &discs) > -1e-9 || MODES[mode] == Mode::Pre && !walked.arrived);

@@ -1,9 +1,9 @@
 //! What the operator sets of a tether-safe plan.
 
 use crate::tour::Effort;
-use field::params as p;
 use planner_api::{Config, ParamSpec, TetherLimits, choice, float, int};
 use std::f64::consts::TAU;
+use steering::params as p;
 use world::tether::Limits;
 
 const UNLIMITED: Limits =

@@ -1,10 +1,10 @@
 use super::*;
 use crate::trial::{clearance_m, plan, plan_trap, planner};
-use field::trial::exact_pose;
 use planner_api::{
     Boundary, Code, Limits, Motion, Obstacle, Outline, Point2, Reason, Task, Vector2, Zone, ZoneKind,
     testing::Bench,
 };
+use steering::trial::exact_pose;
 use trials::traps::{Kind, Trap};
 use world::polyline;
 

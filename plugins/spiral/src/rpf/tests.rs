@@ -1,12 +1,12 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
-use field::trial::{Outcome, Robot, exact_pose, fly, sensed_at_rest};
 use planner_api::testing::Bench;
 use planner_api::{
     Drawing, Drive, Layer, Motion, Obstacle, Outline, Plan, PlanRequest, Planner, Reason, Task,
 };
 use proptest::prelude::*;
+use steering::trial::{Outcome, Robot, exact_pose, fly, sensed_at_rest};
 use trials::{Layout, Score, score};
 use world::{Point, polyline, spiral::Spiral};
 

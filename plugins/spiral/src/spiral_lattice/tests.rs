@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::bench::{CLEARANCE_M, Figures, plan};
-use field::trial::{Robot, exact_pose, fly};
 use planner_api::{Code, Motion, PlannerError, Reason, Task, testing::Bench};
 use proptest::prelude::*;
+use steering::trial::{Robot, exact_pose, fly};
 use trials::{Distribution, Layout, Sampling, score};
 use world::{Point, Vector, spiral::Spiral};
 

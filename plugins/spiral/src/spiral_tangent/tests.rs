@@ -4,10 +4,10 @@ use super::*;
 use crate::bench::{CLEARANCE_M, Figures, plan};
 use crate::spiral_lattice::SpiralLattice;
 use crate::tangent::Around;
-use field::Keep;
-use field::trial::{Outcome, Robot, exact_pose, fly};
 use planner_api::{Drive, Motion, Obstacle, Outline, testing::Bench};
 use proptest::prelude::*;
+use steering::trial::{Outcome, Robot, exact_pose, fly};
+use steering::{Keep, Side};
 use trials::{Distribution, Layout};
 use world::{Boundary, Point, Vector};
 
@@ -140,7 +140,7 @@ fn a_plan_is_followed_round_an_obstacle_that_it_does_not_know() {
             t_s: f64::from(tick) * 0.1,
             pose: exact_pose(at),
             path_ahead: &plan[from..],
-            ..field::trial::sensed_at_rest(at, &plan[from..], &discovered)
+            ..steering::trial::sensed_at_rest(at, &plan[from..], &discovered)
         };
         let command = planner.step(&sensed, &bench.ctx()).unwrap();
         let Drive::Velocity(velocity) = command.drive else { panic!("a velocity") };
@@ -191,16 +191,16 @@ proptest! {
     fn a_tangent_never_leads_nearer_than_allowed(
         columns in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64), 1..5),
         wanted_rad in 0.0..6.3_f64,
-        clockwise in any::<bool>(),
+        passes_left in any::<bool>(),
     ) {
         let keep = Keep { obstacle_m: 0.3, wall_m: 0.0 };
         let parts: Vec<Part> = columns
             .iter()
-            .map(|(x, y)| Part::Capsule { a: Point::new(*x, *y), b: Point::new(*x, *y), half_width_m: 0.0 })
+            .map(|(x, y)| Part::disc(Point::new(*x, *y), 0.0))
             .collect();
         let around = Around { wall: &Boundary::Circle { radius_m: 0.95 }, parts: parts.iter().collect(), keep };
         let at = Point::new(0.0, 0.9);
-        let side = if clockwise { field::Sense::Clockwise } else { field::Sense::CounterClockwise };
+        let side = if passes_left { Side::Left } else { Side::Right };
         let wanted = Vector::new(wanted_rad.cos(), wanted_rad.sin());
         if around.spare_m(at) >= 0.0 && let Some(heading) = around.tangent(at, wanted, 0.1, side) {
             prop_assert!(around.spare_m(at + heading * 0.1) >= -1e-6);

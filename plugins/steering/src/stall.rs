@@ -1,6 +1,6 @@
 //! Whether the robot gets on.
 
-use world::Point;
+use geometry::Point;
 
 /// Leaving a circle of this radius counts as moving, metres.
 const MOVING_M: f64 = 0.5;

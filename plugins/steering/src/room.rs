@@ -1,9 +1,8 @@
 //! Where the middle of the hull may be: hard clearances to everything solid and to the wall.
 
-use crate::scene::solids;
-use geometry::convex::{Part, parts_of};
+use crate::body::solid_parts;
+use geometry::{Boundary, Point, Vector, convex::Part, polyline::edges};
 use planner_api::Site;
-use world::{Boundary, Point};
 
 /// Edge of a bucket, metres.
 const BUCKET_M: f64 = 1.0;
@@ -14,7 +13,7 @@ const ROUNDING_M: f64 = 1e-9;
 
 /// Something solid and the distance that the middle of the hull keeps from it.
 #[derive(Debug, Clone)]
-struct Solid {
+struct KeptPart {
     part: Part,
     keep_m: f64,
 }
@@ -35,7 +34,7 @@ pub struct Keep {
 pub struct Room {
     wall: Boundary,
     keep: Keep,
-    solids: Vec<Solid>,
+    parts: Vec<KeptPart>,
     low: Point,
     columns: usize,
     buckets: Vec<Vec<u32>>,
@@ -44,23 +43,21 @@ pub struct Room {
 impl Room {
     /// The floor of a site, no-go zones left out.
     pub fn new(site: &Site<'_>, keep: Keep) -> Self {
-        let parts = solids(site).flat_map(|(_, outline)| parts_of(&outline));
-        Self::of_parts(site.boundary.to_owned(), parts, keep)
+        Self::of_parts(site.boundary.to_owned(), solid_parts(site).map(|(_, part)| part), keep)
     }
 
     /// The floor between some parts.
     pub fn of_parts(wall: Boundary, parts: impl Iterator<Item = Part>, keep: Keep) -> Self {
-        let mut solids: Vec<Solid> = parts.map(|part| Solid { part, keep_m: keep.obstacle_m }).collect();
+        let mut parts: Vec<KeptPart> = parts.map(|part| KeptPart { part, keep_m: keep.obstacle_m }).collect();
         if let Boundary::Polygon { vertices } = &wall {
-            let edges = vertices.iter().zip(vertices.iter().cycle().skip(1));
-            let edge = |(a, b): (&Point, &Point)| Part::Capsule { a: *a, b: *b, half_width_m: 0.0 };
-            solids.extend(edges.map(edge).map(|part| Solid { part, keep_m: keep.wall_m }));
+            let piece = |(a, b)| KeptPart { part: Part::segment(a, b), keep_m: keep.wall_m };
+            parts.extend(edges(vertices).map(piece));
         }
         let (low, high) = wall.bounds();
         let columns = ((high.x - low.x) / BUCKET_M).ceil().max(1.0) as usize + 1;
         let rows = ((high.y - low.y) / BUCKET_M).ceil().max(1.0) as usize + 1;
-        let mut room = Self { wall, keep, solids, low, columns, buckets: vec![Vec::new(); columns * rows] };
-        for index in 0..room.solids.len() {
+        let mut room = Self { wall, keep, parts, low, columns, buckets: vec![Vec::new(); columns * rows] };
+        for index in 0..room.parts.len() {
             room.enter(index);
         }
         room
@@ -94,9 +91,9 @@ impl Room {
         self.keep
     }
 
-    fn near(&self, at: Point) -> impl Iterator<Item = &Solid> + '_ {
+    fn near(&self, at: Point) -> impl Iterator<Item = &KeptPart> + '_ {
         let bucket = self.bucket(at).map_or(&[][..], |index| &self.buckets[index]);
-        bucket.iter().map(|index| &self.solids[*index as usize])
+        bucket.iter().map(|index| &self.parts[*index as usize])
     }
 
     fn bucket(&self, at: Point) -> Option<usize> {
@@ -105,15 +102,15 @@ impl Room {
         Some((y as usize) * self.columns + x as usize).filter(|index| inside && *index < self.buckets.len())
     }
 
-    /// Lists a solid in every bucket from which it can matter.
+    /// Lists a part in every bucket from which it can matter.
     fn enter(&mut self, index: usize) {
-        let solid = &self.solids[index];
-        let reach_m = solid.keep_m + MOST_SPARE_M + BUCKET_M * std::f64::consts::FRAC_1_SQRT_2;
+        let kept = &self.parts[index];
+        let reach_m = kept.keep_m + MOST_SPARE_M + BUCKET_M * std::f64::consts::FRAC_1_SQRT_2;
         let n_rows = self.buckets.len() / self.columns;
         for row in 0..n_rows {
             for column in 0..self.columns {
-                let corner = nalgebra::Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * BUCKET_M;
-                if solid.part.distance(self.low + corner).0 < reach_m {
+                let corner = Vector::new(column as f64 + 0.5, row as f64 + 0.5) * BUCKET_M;
+                if kept.part.distance(self.low + corner).0 < reach_m {
                     self.buckets[row * self.columns + column].push(index as u32);
                 }
             }
@@ -127,11 +124,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn room(discs: &[(f64, f64, f64)]) -> Room {
-        let part = |&(x, y, r): &(f64, f64, f64)| Part::Capsule {
-            a: Point::new(x, y),
-            b: Point::new(x, y),
-            half_width_m: r,
-        };
+        let part = |&(x, y, r): &(f64, f64, f64)| Part::disc(Point::new(x, y), r);
         let keep = Keep { obstacle_m: 0.3, wall_m: 0.1 };
         Room::of_parts(Boundary::Circle { radius_m: 5.0 }, discs.iter().map(part), keep)
     }

@@ -1,9 +1,31 @@
-//! A sensed obstacle as the pilot sees it.
+//! What must not be touched: the obstacles and no-go zones of a site, and what of them is sensed.
 
 use crate::contact::{Contact, Source};
-use geometry::convex::{Gap, Part, parts_of};
-use planner_api::Outline;
-use world::Point;
+use geometry::{
+    Point, Vector,
+    convex::{Gap, Part, parts_of},
+};
+use planner_api::{Outline, Sensed, Site, ZoneKind};
+
+/// Ids of no-go zones are counted down from here, so that they never meet those of obstacles.
+const LAST_ID: u32 = u32::MAX;
+
+/// Everything of a site that the robot must not touch, no-go zones included, with ids.
+pub fn solids<'a>(site: &Site<'a>) -> impl Iterator<Item = (u32, Outline<'a>)> {
+    let obstacles = site.obstacles.iter().map(|o| (o.id, o.outline));
+    obstacles.chain(no_go_zones(site))
+}
+
+/// The convex parts of everything solid, with the ids of what they are parts of.
+pub fn solid_parts(site: &Site<'_>) -> impl Iterator<Item = (u32, Part)> {
+    solids(site).flat_map(|(id, outline)| parts_of(&outline).into_iter().map(move |part| (id, part)))
+}
+
+/// The no-go zones of a site, with ids of their own.
+fn no_go_zones<'a>(site: &Site<'a>) -> impl Iterator<Item = (u32, Outline<'a>)> {
+    let zones = site.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
+    zones.enumerate().map(|(index, zone)| (LAST_ID - index as u32, zone.outline))
+}
 
 /// An obstacle in parts.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,10 +43,21 @@ impl Body {
         (!parts.is_empty()).then_some(Self { id, parts })
     }
 
+    /// The no-go zones of a site.
+    pub fn no_go(site: &Site<'_>) -> Vec<Self> {
+        no_go_zones(site).filter_map(|(id, outline)| Self::new(id, &outline)).collect()
+    }
+
+    /// What is sensed, and the no-go zones besides.
+    pub fn sensed(sensed: &Sensed<'_>, no_go: &[Self]) -> Vec<Self> {
+        let near = sensed.obstacles.iter().filter_map(|o| Self::new(o.id, &o.outline));
+        near.chain(no_go.iter().cloned()).collect()
+    }
+
     /// A point that stands for the whole: the mean of what its parts are made about.
     pub fn center(&self) -> Point {
         let corners: Vec<Point> = self.parts.iter().flat_map(Part::corners).map(|(at, _)| at).collect();
-        let sum: world::Vector = corners.iter().map(|at| at.coords).sum();
+        let sum: Vector = corners.iter().map(|at| at.coords).sum();
         Point::from(sum / corners.len().max(1) as f64)
     }
 

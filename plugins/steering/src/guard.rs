@@ -1,7 +1,7 @@
 //! The last word before a velocity leaves: nothing moves toward what is already as near as allowed.
 
 use crate::contact::Contact;
-use world::Vector;
+use geometry::Vector;
 
 /// Time over which a distance may be used up, seconds: several ticks, so that the hull comes to rest before it touches.
 const BRAKING_S: f64 = 0.5;

@@ -3,8 +3,8 @@
 
 pub mod flight;
 
+use geometry::Point;
 use planner_api::{Obstacle, PoseEstimate, Sensed};
-use world::Point;
 
 pub use flight::{Outcome, Robot, fly};
 

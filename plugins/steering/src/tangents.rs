@@ -1,36 +1,7 @@
 //! Tangents from a robot to something round or convex.
 
-use world::{Point, Vector};
-
-/// The tangent force never divides by less than this, metres.
-const SHORTEST_M: f64 = 0.3;
-
-/// On which side to pass, as seen when looking at what is passed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// It stays on the right hand.
-    Left,
-    /// It stays on the left hand.
-    Right,
-}
-
-impl Side {
-    /// The other side.
-    #[must_use]
-    pub fn other(self) -> Self {
-        if self == Self::Left { Self::Right } else { Self::Left }
-    }
-
-    /// 1 for left, -1 for right.
-    pub fn sign(self) -> f64 {
-        if self == Self::Left { 1.0 } else { -1.0 }
-    }
-
-    /// Unit vector to this side of something whose outward direction at the robot is `away`: the robot looks at it.
-    pub fn along(self, away: Vector) -> Vector {
-        Vector::new(away.y, -away.x) * self.sign()
-    }
-}
+use crate::side::Side;
+use geometry::{Point, Vector};
 
 /// A tangent: where it points, and how long it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,11 +41,6 @@ pub fn outermost(at: Point, discs: impl Iterator<Item = (Point, f64)>, side: Sid
     })
 }
 
-/// Strength of the tangent force, `w mu / L` (Xu et al. 2022, eq. 13); `L` below 0.3 m counts as 0.3 m.
-pub fn strength(weight: f64, mu: f64, length_m: f64) -> f64 {
-    weight * mu / length_m.max(SHORTEST_M)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -109,10 +75,5 @@ mod tests {
         let left = outermost(Point::origin(), discs.into_iter(), Side::Left).map(|t| t.direction);
         let alone = to_disc(Point::origin(), Point::new(5.0, 3.0), 0.5, Side::Left).direction;
         assert_eq!(left, Some(alone));
-    }
-
-    #[test]
-    fn the_left_of_something_ahead_is_north_when_looking_east() {
-        assert!((Side::Left.along(-Vector::x()) - Vector::y()).norm() < 1e-12);
     }
 }

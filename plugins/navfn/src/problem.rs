@@ -1,4 +1,4 @@
-//! The floor of a request, grown for the robot, and how it refuses.
+//! What a request asks of a point robot: its start and goal among shapes grown by the hull, and how it refuses.
 
 use crate::evade;
 use planner_api::{
@@ -14,9 +14,9 @@ const ROUNDING_M: f64 = 1e-6;
 /// Points of a plan are no further apart than this, so that the mission can locate the robot along it, metres.
 const SPACING_M: f64 = 0.2;
 
-/// Something solid and what the middle of the robot keeps from it.
+/// The shape of something solid and what the middle of the robot keeps from it.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Solid {
+pub(crate) struct GrownShape {
     /// Its outline.
     pub shape: Shape,
     /// The distance kept, metres.
@@ -28,7 +28,7 @@ pub(crate) struct Solid {
 /// Where the robot stands, or its goal lies, nearer to something than the clearance, it keeps as much from it as there
 /// is: it must be able to get away, and in.
 #[derive(Debug, Clone)]
-pub(crate) struct Ground {
+pub(crate) struct PlanningProblem {
     /// From where.
     pub start: Point,
     /// To where.
@@ -38,13 +38,13 @@ pub(crate) struct Ground {
     /// What the middle of the robot keeps from the wall, metres.
     pub wall_keep_m: f64,
     /// Obstacles and no-go zones.
-    pub solids: Vec<Solid>,
+    pub shapes: Vec<GrownShape>,
     /// What was discovered on the goal, with its name; the way leads there all the same.
-    pub on_goal: Vec<(String, Solid)>,
+    pub on_goal: Vec<(String, GrownShape)>,
 }
 
-impl Ground {
-    /// The ground of a request for a robot that keeps this clearance, or the mission's if that is larger, metres.
+impl PlanningProblem {
+    /// The problem of a request for a robot that keeps this clearance, or the mission's if that is larger, metres.
     ///
     /// # Errors
     /// The task is not to reach a goal, or the hull touches something at the start or at the goal.
@@ -80,17 +80,17 @@ impl Ground {
         let (on_goal, others): (Vec<_>, Vec<_>) = shapes(site).partition(is_on_goal);
         let before = |(name, _, shape): (String, bool, Shape)| {
             let keep_m = wanted_m.min(shape.distance_m(start));
-            (name, Solid { shape, keep_m })
+            (name, GrownShape { shape, keep_m })
         };
         let on_goal = on_goal.into_iter().map(before).collect();
-        let solids = others
+        let shapes = others
             .into_iter()
             .map(|(name, _, shape)| {
                 let keep_m = keep_m(&|at| shape.distance_m(at), &name)?;
-                Ok(Solid { shape, keep_m })
+                Ok(GrownShape { shape, keep_m })
             })
-            .collect::<Result<Vec<Solid>>>()?;
-        Ok(Self { start, goal, boundary, wall_keep_m, solids, on_goal })
+            .collect::<Result<Vec<GrownShape>>>()?;
+        Ok(Self { start, goal, boundary, wall_keep_m, shapes, on_goal })
     }
 
     /// A way as a plan; it says so where something was discovered on the goal.
@@ -99,11 +99,11 @@ impl Ground {
     /// the way. Before any other shape the plan ends.
     pub(crate) fn plan_of(&self, way: &Way, ctx: &Ctx<'_>) -> Plan {
         let mut path = polyline::resampled(&way.points(), SPACING_M);
-        for (name, solid) in &self.on_goal {
-            let what = if matches!(solid.shape, Shape::Disc { .. }) {
+        for (name, grown) in &self.on_goal {
+            let what = if matches!(grown.shape, Shape::Disc { .. }) {
                 "the robot goes on in case it moves away"
             } else {
-                let is_free = |at: &&Point| solid.shape.distance_m(**at) >= solid.keep_m - ROUNDING_M;
+                let is_free = |at: &&Point| grown.shape.distance_m(**at) >= grown.keep_m - ROUNDING_M;
                 let clear = path.iter().take_while(is_free).count();
                 path.truncate(clear.max(1));
                 "the plan ends before it"
@@ -117,7 +117,7 @@ impl Ground {
 
     /// The floor on which the robot is a point.
     pub(crate) fn grown(&self) -> GrownFloor {
-        GrownFloor::new(&self.boundary, self.wall_keep_m, self.solids.iter().map(|s| (&s.shape, s.keep_m)))
+        GrownFloor::new(&self.boundary, self.wall_keep_m, self.shapes.iter().map(|s| (&s.shape, s.keep_m)))
     }
 }
 

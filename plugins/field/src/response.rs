@@ -1,0 +1,43 @@
+//! What is done about traps along a walk or a flight: the rotating force, and the escape.
+
+use crate::{
+    escape::{Escaping, Situation},
+    settings::FieldSettings,
+    trap::TrapDetector,
+    turning::Turning,
+};
+use geometry::Vector;
+use steering::Source;
+
+/// Looks out for traps and answers them as the settings say.
+#[derive(Debug, Clone)]
+pub struct TrapResponse {
+    detector: TrapDetector,
+    escaping: Escaping,
+    /// When and which way round the rotating force acts.
+    pub turning: Turning,
+    /// The force of the escape under way; zero without one.
+    pub escape: Vector,
+}
+
+impl TrapResponse {
+    /// Of a robot that has not moved yet.
+    pub fn new(settings: &FieldSettings) -> Self {
+        Self {
+            detector: TrapDetector::default(),
+            escaping: Escaping::new(settings.escape),
+            turning: Turning::new(settings.reading, settings.rule),
+            escape: Vector::zeros(),
+        }
+    }
+
+    /// Takes the situation before a move; `expected_m` is what a free move would cover.
+    pub fn update(&mut self, now: &Situation<'_>, expected_m: f64) {
+        let to_goal = now.goal - now.at;
+        self.detector.record(now.at);
+        let obstacle_acts = now.contacts.iter().any(|c| c.source != Source::Wall);
+        let is_trapped = self.detector.is_trapped(expected_m, now.step_m, to_goal.norm(), obstacle_acts);
+        self.turning.update(is_trapped, now.contacts, to_goal);
+        self.escape = self.escaping.update(now, is_trapped);
+    }
+}
