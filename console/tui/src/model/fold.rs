@@ -5,10 +5,7 @@ mod position;
 mod tether;
 
 use super::{Cause, Model, Overlay, Progress, Raster, Run, ui::Ask};
-use mission::{
-    Event, EventKind, Hold, Order, Outcome, Severity, TaskConfig,
-    event::{HoldReason, RunOpened},
-};
+use mission::{Event, EventKind, Hold, HoldReason, Order, Outcome, Severity, TaskConfig, event::RunOpened};
 use positioning::AccuracyMap;
 use world::{Obstacle, ObstacleId};
 
