@@ -2,15 +2,16 @@
 
 use crate::{
     cli::ReproduceArgs,
-    drawing::planned::{Drawn, svg},
     failure::{COMPLETE, bad_input},
-    output::{say, say_line},
-    plan::legs,
+    output::{say, say_json},
 };
 use ::reproduce::{Gallery, Options, Picture, Runner, gallery, studies, study, table};
-use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_host::PluginDirs;
+use report::{
+    drawing::plan::{Drawn, svg},
+    leg::legs,
+};
 use std::{io::IsTerminal, process::ExitCode};
 
 /// `tankops reproduce`.
@@ -40,7 +41,7 @@ pub(crate) fn reproduce(args: &ReproduceArgs, plugins: &PluginDirs) -> anyhow::R
     let rows = rows.map_err(bad_input)?;
     gallery.map_or(Ok(()), Gallery::finish).map_err(bad_input)?;
     if args.json {
-        say_line(&serde_json::to_string(&rows).context("writing the rows as JSON")?)?;
+        say_json("the rows", &rows)?;
     } else {
         say(&table(&rows))?;
     }
@@ -54,7 +55,7 @@ fn list(json: bool) -> anyhow::Result<()> {
     let all: Vec<serde_json::Value> = studies()
         .map(|s| serde_json::json!({ "name": s.name, "about": s.about, "layouts": s.layouts }))
         .collect();
-    say_line(&serde_json::to_string(&all).context("writing the list as JSON")?)
+    say_json("the list", &all)
 }
 
 fn drawn(picture: &Picture<'_>) -> String {

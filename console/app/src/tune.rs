@@ -3,12 +3,11 @@
 use crate::{
     cli::TuneArgs,
     failure::{COMPLETE, bad_input},
-    output::{say, say_line},
+    output::{say, say_json},
     planners,
     reproduce::shown,
 };
 use ::reproduce::{Runner, tune::Tuning};
-use anyhow::Context;
 use indicatif::ProgressBar;
 use mission::{ParamValue, Parameters};
 use planner_host::{PluginDirs, check_parameters};
@@ -47,7 +46,7 @@ pub(crate) fn tune(args: &TuneArgs, plugins: &PluginDirs) -> anyhow::Result<Exit
             "evaluations": tuned.evaluations,
             "rows": tuned.rows,
         });
-        say_line(&serde_json::to_string(&answer).context("writing the result as JSON")?)?;
+        say_json("the result", &answer)?;
     } else {
         say(&tuned.text(&tuning))?;
     }

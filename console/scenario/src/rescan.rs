@@ -1,6 +1,6 @@
 //! The scenario that scans again what runs have missed.
 
-use crate::with_todays_keys;
+use crate::renamed::with_todays_keys;
 use mission::RunOpened;
 use std::collections::BTreeSet;
 use toml_edit::{Array, DocumentMut, Item, Table, TableLike, TomlError, Value, value};
