@@ -18,7 +18,6 @@ use planner_api::{
     Site, float,
 };
 use steering::params as p;
-use steering::params as p;
 use world::Point;
 
 const DIRECTION: ParamSpec = float("direction_deg", "Direction of lanes", "deg", -180.0, 180.0, 0.0)

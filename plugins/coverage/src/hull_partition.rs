@@ -26,7 +26,6 @@ use planner_api::{
     Sensed, Site, choice, float,
 };
 use steering::params as p;
-use steering::params as p;
 use world::{Boundary, Point, Vector, polyline};
 
 const BACKTRACKING: ParamSpec = choice("backtracking", "Backtracking", &["tree", "direct"], 0)
