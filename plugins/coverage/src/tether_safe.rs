@@ -10,11 +10,11 @@ use crate::follow::Follow;
 use crate::scope::Scope;
 use crate::stages::Stages;
 use crate::tether::{laid_cable, least_cable_m, return_path};
-use crate::tether_safe::candidate::Worth;
 use crate::tuning::choice::{BY_REEL, COMPLETE, FAR, MOST_CELLS};
 use crate::unreachable;
 use crate::workspace::Workspace;
-use parameters::Wishes;
+use candidate::Worth;
+use parameters::Preferences;
 use pipeline::{Pipeline, Tried};
 use planner_api::{
     Caps, Code, Command, Config, Ctx, Layer, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError,
@@ -24,7 +24,7 @@ use world::Point;
 
 /// Plans in the slit domain.
 pub struct TetherSafe {
-    wishes: Wishes,
+    preferences: Preferences,
     follow: Follow,
 }
 
@@ -37,20 +37,20 @@ impl Planner for TetherSafe {
     const PARAMS: &'static [ParamSpec] = parameters::ALL;
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
-        Ok(Self { wishes: Wishes::of(config, site.seed), follow: Follow::new(config, site) })
+        Ok(Self { preferences: Preferences::of(config, site.seed), follow: Follow::new(config, site) })
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
-        let scope = Scope::of(request, Self::ID, self.wishes.cell_m)?;
+        let scope = Scope::of(request, Self::ID, self.preferences.cell_m)?;
         let workspace = Workspace::new(request.site, scope.anchor)?;
-        let wishes = self.wishes.under(scope.tether);
-        if let Some(why) = no_lane(&workspace, wishes.limits.reel_length_m) {
+        let preferences = self.preferences.under(scope.tether);
+        if let Some(why) = no_lane(&workspace, preferences.limits.reel_length_m) {
             return Err(PlannerError::new(Code::Config, why));
         }
-        let scope = limited(scope, &workspace, &wishes);
+        let scope = limited(scope, &workspace, &preferences);
         let cable = laid_cable(&workspace, request);
-        let (site, workspace, wishes, cable) = (request.site, &workspace, &wishes, cable.as_ref());
-        let pipeline = Pipeline { site, workspace, wishes, scope, cable };
+        let (site, workspace, preferences, cable) = (request.site, &workspace, &preferences, cable.as_ref());
+        let pipeline = Pipeline { site, workspace, preferences, scope, cable };
         let mut stages = Stages::new(ctx);
         let (tried, lead_in) = tried_from_here_or_home(&pipeline, &mut stages)?;
         let (worth, scan) = tried.chosen(ctx).ok_or_else(|| workspace.no_room())?;
@@ -64,7 +64,7 @@ impl Planner for TetherSafe {
         // A reel near the least that can do may still reach all there is.
         let least = if scope.reel_length_m.is_finite() { scope.enough - BY_REEL } else { COMPLETE };
         plan.complete = worth.coverage >= scope.enough.min(least);
-        warn(&worth, wishes, &scope, plan.complete, ctx);
+        warn(&worth, preferences, &scope, plan.complete, ctx);
         self.follow.take(&plan);
         Ok(plan)
     }
@@ -74,13 +74,13 @@ impl Planner for TetherSafe {
     }
 }
 
-/// A scope as far as the reel goes and as much as is wished for, in cells that are no smaller than a large tank allows.
-fn limited<'a>(scope: Scope<'a>, workspace: &Workspace, wishes: &Wishes) -> Scope<'a> {
+/// A scope as far as the reel goes with the coverage that is asked for, in cells that are no smaller than a large tank allows.
+fn limited<'a>(scope: Scope<'a>, workspace: &Workspace, preferences: &Preferences) -> Scope<'a> {
     let (low, high) = workspace.wall.bounds();
     let least_cell_m = ((high.x - low.x) * (high.y - low.y) / MOST_CELLS).sqrt();
-    let is_long = wishes.limits.reel_length_m > least_cable_m(workspace) * wishes.cable_share;
-    let reel_length_m = if is_long { f64::INFINITY } else { wishes.limits.reel_length_m };
-    Scope { reel_length_m, enough: wishes.enough, cell_m: scope.cell_m.max(least_cell_m), ..scope }
+    let is_long = preferences.limits.reel_length_m > least_cable_m(workspace) * preferences.cable_share;
+    let reel_length_m = if is_long { f64::INFINITY } else { preferences.limits.reel_length_m };
+    Scope { reel_length_m, enough: preferences.enough, cell_m: scope.cell_m.max(least_cell_m), ..scope }
 }
 
 /// The candidates from where the robot is, or, where the cable as it lies rules all of them out, from home after a way back
@@ -131,7 +131,7 @@ fn no_lane(workspace: &Workspace, reel_length_m: f64) -> Option<String> {
 }
 
 /// Warns of what is wrong with a plan. The last warning is the reason why it is not complete, if it is not.
-fn warn(worth: &Worth, wishes: &Wishes, scope: &Scope<'_>, is_complete: bool, ctx: &Ctx<'_>) {
+fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, is_complete: bool, ctx: &Ctx<'_>) {
     let warn = |message: &str| ctx.log(LogLevel::Warn, message);
     let (share, has_reel) = (100.0 * worth.coverage, scope.reel_length_m.is_finite());
     if !is_complete && !has_reel {
@@ -139,7 +139,7 @@ fn warn(worth: &Worth, wishes: &Wishes, scope: &Scope<'_>, is_complete: bool, ct
     }
     if !worth.certificate.certified {
         warn(&format!("not certified: {}", worth.certificate.reasons.join("; ")));
-    } else if !worth.keeps(wishes) {
+    } else if !worth.meets(preferences) {
         warn("no candidate keeps the cable as short and straight as the parameters ask");
     }
     let scanned = format!("the plan scans {share:.1} % of the floor in reach");

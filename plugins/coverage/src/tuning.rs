@@ -131,7 +131,7 @@ pub(crate) mod touch_ups {
 
 /// The choice among candidates.
 pub(crate) mod choice {
-    /// Shares of the largest cut angle, tried until a candidate meets the wishes for the cable: the first suffices in
+    /// Shares of the largest cut angle, tried until a candidate meets the preferences for the cable: the first suffices in
     /// about half of all tanks (tuning.md).
     pub(crate) const ANGLES: [f64; 3] = [1.0, 0.5, 0.0];
     /// First tours that cost more than the best by this share never win.

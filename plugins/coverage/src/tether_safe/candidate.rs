@@ -6,7 +6,7 @@ use crate::pattern::{Pattern, Rows};
 use crate::scan::Scan;
 use crate::slit_domain::SlitDomain;
 use crate::tether::{certificate, least_cable_m};
-use crate::tether_safe::parameters::{Choice, Wishes};
+use crate::tether_safe::parameters::{Choice, Preferences};
 use crate::tuning::cuts::{AROUND_SHARE, SLACKS_ACROSS, SLACKS_ALONG};
 use crate::workspace::Workspace;
 use planner_api::Site;
@@ -23,13 +23,14 @@ pub(super) struct Candidate {
 
 impl Candidate {
     /// What is tried, with cuts up to `alpha_rad` off the ray from the anchor.
-    pub(super) fn all(workspace: &Workspace, wishes: &Wishes, alpha_rad: f64) -> Vec<Self> {
+    pub(super) fn all(workspace: &Workspace, preferences: &Preferences, alpha_rad: f64) -> Vec<Self> {
         let straight = |k: usize| {
-            let angle_rad = main_direction_rad(&workspace.wall) + PI * k as f64 / wishes.directions as f64;
+            let angle_rad =
+                main_direction_rad(&workspace.wall) + PI * k as f64 / preferences.directions as f64;
             Pattern::Straight { rows: Rows::new(workspace, angle_rad), laps: 1 }
         };
-        let contours = wishes.contours.then_some(Pattern::Contours);
-        let patterns = contours.into_iter().chain((0..wishes.directions).map(straight));
+        let contours = preferences.contours.then_some(Pattern::Contours);
+        let patterns = contours.into_iter().chain((0..preferences.directions).map(straight));
         patterns.map(|pattern| Self { pattern, alpha_rad }).collect()
     }
 
@@ -46,11 +47,16 @@ impl Candidate {
 
     /// The domain between its cuts, unless there is no room. It costs a few domains to find how far cuts may go: as far as
     /// the cable keeps its limits.
-    pub(super) fn domain<'a>(&self, workspace: &'a Workspace, wishes: &Wishes) -> Option<SlitDomain<'a>> {
-        let (least_m, reel_length_m) = (least_cable_m(workspace), wishes.limits.reel_length_m);
-        let most_m = (least_m * wishes.cable_share).min(reel_length_m);
+    pub(super) fn domain<'a>(
+        &self,
+        workspace: &'a Workspace,
+        preferences: &Preferences,
+    ) -> Option<SlitDomain<'a>> {
+        let (least_m, reel_length_m) = (least_cable_m(workspace), preferences.limits.reel_length_m);
+        let most_m = (least_m * preferences.cable_share).min(reel_length_m);
         let made = |slack: f64| {
-            let cable_m = (least_m + (least_m * wishes.cable_share - least_m) * slack).min(reel_length_m);
+            let cable_m =
+                (least_m + (least_m * preferences.cable_share - least_m) * slack).min(reel_length_m);
             domain(workspace, &self.pattern, &CutRule { alpha_rad: self.alpha_rad, cable_m })
         };
         let is_short = |domain: &SlitDomain<'_>| domain.is_all_within(most_m + AROUND_SHARE * least_m);
@@ -81,13 +87,18 @@ pub(super) struct Worth {
 
 impl Worth {
     /// What a scan is worth to a robot whose cable lies like this.
-    pub(super) fn of(site: &Site<'_>, wishes: &Wishes, scan: &Scan<'_>, cable: Option<&Cable>) -> Self {
+    pub(super) fn of(
+        site: &Site<'_>,
+        preferences: &Preferences,
+        scan: &Scan<'_>,
+        cable: Option<&Cable>,
+    ) -> Self {
         let path = scan.path();
         Self {
             length_m: polyline::length_m(&path),
             turns: rotation_turns(&path),
             coverage: scan.swept.coverage(),
-            certificate: certificate(&scan.domain, site, wishes.demanded, &path, cable),
+            certificate: certificate(&scan.domain, site, preferences.demanded, &path, cable),
         }
     }
 
@@ -122,23 +133,23 @@ impl Worth {
         )
     }
 
-    /// Whether it is certified and keeps what the operator wishes of the cable as well.
-    pub(super) fn keeps(&self, wishes: &Wishes) -> bool {
+    /// Whether it is certified and meets the preferences for the cable as well.
+    pub(super) fn meets(&self, preferences: &Preferences) -> bool {
         let Certificate { certified, wrap_max_rad, wrap_total_max_rad, .. } = self.certificate;
         certified
-            && self.cable_share() <= wishes.cable_share + 1e-6
-            && wrap_max_rad <= wishes.limits.wrap_max_rad
-            && wrap_total_max_rad <= wishes.limits.wrap_total_max_rad
+            && self.cable_share() <= preferences.cable_share + 1e-6
+            && wrap_max_rad <= preferences.limits.wrap_max_rad
+            && wrap_total_max_rad <= preferences.limits.wrap_total_max_rad
     }
 
-    /// Whether it is to be chosen rather than another: certified, then within the wishes, then by the figure that counts.
-    pub(super) fn is_before(&self, other: &Self, wishes: &Wishes) -> bool {
-        let figure = |worth: &Self| match wishes.choice {
-            Choice::Shortest => worth.length_m + wishes.choice_turn_m * worth.turns,
+    /// Whether it is to be chosen rather than another: certified, then within the preferences, then by the figure that counts.
+    pub(super) fn is_before(&self, other: &Self, preferences: &Preferences) -> bool {
+        let figure = |worth: &Self| match preferences.choice {
+            Choice::Shortest => worth.length_m + preferences.choice_turn_m * worth.turns,
             Choice::FewestTurns => worth.turns,
             Choice::ShortestCable => worth.certificate.tether_length_max_m,
         };
-        let rank = |worth: &Self| (!worth.certificate.certified, !worth.keeps(wishes));
+        let rank = |worth: &Self| (!worth.certificate.certified, !worth.meets(preferences));
         rank(self).cmp(&rank(other)).then(figure(self).total_cmp(&figure(other))).is_lt()
     }
 }

@@ -82,9 +82,9 @@ pub(super) enum Choice {
     ShortestCable,
 }
 
-/// What the operator wishes, as the parameters explain, and what the mission demands.
+/// What the operator prefers, as the parameters explain, and what the mission demands.
 #[derive(Clone, Copy)]
-pub(super) struct Wishes {
+pub(super) struct Preferences {
     pub alpha_rad: f64,
     pub cable_share: f64,
     /// Reel and wraps that are wanted.
@@ -102,8 +102,8 @@ pub(super) struct Wishes {
     pub effort: Effort,
 }
 
-impl Wishes {
-    /// The wishes that parameters express, for a mission without a tether; `seed` is that of the site.
+impl Preferences {
+    /// The preferences that parameters express, for a mission without a tether; `seed` is that of the site.
     pub(super) fn of(config: &Config<'_>, seed: u64) -> Self {
         let pattern = config.choice("pattern");
         Self {
@@ -133,7 +133,7 @@ impl Wishes {
         }
     }
 
-    /// The same wishes under what the mission demands: nothing of a robot without a tether.
+    /// The same preferences under what the mission demands: nothing of a robot without a tether.
     pub(super) fn under(self, tether: Option<TetherLimits>) -> Self {
         let Some(TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad }) = tether else {
             return self;

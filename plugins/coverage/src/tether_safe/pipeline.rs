@@ -6,7 +6,7 @@ use crate::scan::Scan;
 use crate::scope::Scope;
 use crate::stages::{Stage, Stages};
 use crate::tether_safe::candidate::{Candidate, Worth};
-use crate::tether_safe::parameters::{Choice, Wishes};
+use crate::tether_safe::parameters::{Choice, Preferences};
 use crate::tuning::choice::{ANGLES, HOPELESS};
 use crate::workspace::Workspace;
 use planner_api::{Ctx, LogLevel, Result, Site};
@@ -17,7 +17,7 @@ use world::tether::Cable;
 pub(super) struct Pipeline<'a> {
     pub site: &'a Site<'a>,
     pub workspace: &'a Workspace,
-    pub wishes: &'a Wishes,
+    pub preferences: &'a Preferences,
     pub scope: Scope<'a>,
     /// The cable as it lies; none at the anchor.
     pub cable: Option<&'a Cable>,
@@ -44,7 +44,7 @@ struct Finished<'a> {
 pub(super) struct Tried<'a>(Vec<Finished<'a>>);
 
 impl<'a> Pipeline<'a> {
-    /// Finishes the candidates that may win; tries straighter cuts as well if none keeps the wishes.
+    /// Finishes the candidates that may win; tries straighter cuts as well if none meets the preferences.
     pub(super) fn run(&self, stages: &mut Stages<'_>) -> Result<Tried<'a>> {
         let end = stages.end;
         let mut tried = Tried::default();
@@ -54,9 +54,9 @@ impl<'a> Pipeline<'a> {
                 0 => ("first tours", "candidates"),
                 _ => ("first tours, straighter cuts", "candidates, straighter cuts"),
             };
-            let drafts = self.drafts(self.wishes.alpha_rad * share, &stages.next(0.25, touring))?;
+            let drafts = self.drafts(self.preferences.alpha_rad * share, &stages.next(0.25, touring))?;
             self.finish_promising(drafts, stages, finishing, &mut tried)?;
-            if self.wishes.alpha_rad == 0.0 || tried.is_enough(self.wishes) {
+            if self.preferences.alpha_rad == 0.0 || tried.is_enough(self.preferences) {
                 break;
             }
         }
@@ -65,21 +65,21 @@ impl<'a> Pipeline<'a> {
 
     /// The first tours of all candidates with cuts up to an angle, the cheapest first.
     fn drafts(&self, alpha_rad: f64, stage: &Stage<'_>) -> Result<Vec<Drafted<'a>>> {
-        let Self { workspace, wishes, scope, .. } = *self;
+        let Self { workspace, preferences, scope, .. } = *self;
         let drafted = |candidate: Candidate, job: &Job| {
             job.stage(0.25);
-            let Some(domain) = candidate.domain(workspace, wishes) else { return Ok(None) };
-            let draft = Draft::new(&candidate.pattern, domain, scope, wishes.effort, job)?;
-            let estimate_m = draft.estimate_m(wishes.choice_turn_m);
+            let Some(domain) = candidate.domain(workspace, preferences) else { return Ok(None) };
+            let draft = Draft::new(&candidate.pattern, domain, scope, preferences.effort, job)?;
+            let estimate_m = draft.estimate_m(preferences.choice_turn_m);
             Ok(Some(Drafted { name: candidate.name(), estimate_m, draft }))
         };
-        let drafts = run_all(Candidate::all(workspace, wishes, alpha_rad), stage, drafted)?;
+        let drafts = run_all(Candidate::all(workspace, preferences, alpha_rad), stage, drafted)?;
         let mut drafts: Vec<Drafted<'a>> = drafts.into_iter().flatten().collect();
         drafts.sort_by(|a, b| a.estimate_m.total_cmp(&b.estimate_m));
         Ok(drafts)
     }
 
-    /// Finishes the drafts that may win, and those that look worse if none of the former keeps the wishes.
+    /// Finishes the drafts that may win, and those that look worse if none of the former meets the preferences.
     fn finish_promising(
         &self,
         mut drafts: Vec<Drafted<'a>>,
@@ -89,7 +89,7 @@ impl<'a> Pipeline<'a> {
     ) -> Result<()> {
         let least_m = drafts.first().map_or(0.0, |draft| draft.estimate_m);
         let may_win = |draft: &Drafted<'_>| {
-            self.wishes.choice != Choice::Shortest || draft.estimate_m <= least_m * (1.0 + HOPELESS)
+            self.preferences.choice != Choice::Shortest || draft.estimate_m <= least_m * (1.0 + HOPELESS)
         };
         let hopeless = drafts.split_off(drafts.partition_point(may_win));
         let (ctx, n) = (stages.ctx, drafts.len() as f64);
@@ -97,7 +97,7 @@ impl<'a> Pipeline<'a> {
         // It is an even chance that those that look worse are finished as well.
         let n_expected = n + hopeless.len() as f64 / 2.0;
         self.finish(drafts, &stages.next(n / n_expected.max(1.0), what), tried)?;
-        if !tried.is_enough(self.wishes) && !hopeless.is_empty() {
+        if !tried.is_enough(self.preferences) && !hopeless.is_empty() {
             return self.finish(hopeless, &stages.next(1.0, what), tried);
         }
         for Drafted { name, estimate_m, .. } in hopeless {
@@ -109,22 +109,22 @@ impl<'a> Pipeline<'a> {
 
     /// Finishes drafts, and keeps the scan of the best candidate so far.
     fn finish(&self, drafts: Vec<Drafted<'a>>, stage: &Stage<'_>, tried: &mut Tried<'a>) -> Result<()> {
-        let Self { site, wishes, cable, .. } = *self;
+        let Self { site, preferences, cable, .. } = *self;
         tried.0.extend(run_all(drafts, stage, |Drafted { name, draft, .. }, job| {
             let scan = draft.finished(job)?;
             job.stage(1.0);
-            let worth = Worth::of(site, wishes, &scan, cable);
+            let worth = Worth::of(site, preferences, &scan, cable);
             Ok(Finished { name, worth, scan: Some(scan) })
         })?);
-        tried.keep_best(wishes);
+        tried.keep_best(preferences);
         Ok(())
     }
 }
 
 impl<'a> Tried<'a> {
-    /// Whether a candidate keeps the wishes.
-    fn is_enough(&self, wishes: &Wishes) -> bool {
-        self.0.iter().any(|finished| finished.worth.keeps(wishes))
+    /// Whether a candidate meets the preferences.
+    fn is_enough(&self, preferences: &Preferences) -> bool {
+        self.0.iter().any(|finished| finished.worth.meets(preferences))
     }
 
     /// Whether a candidate is certified.
@@ -132,10 +132,10 @@ impl<'a> Tried<'a> {
         self.0.iter().any(|finished| finished.worth.certificate.certified)
     }
 
-    fn keep_best(&mut self, wishes: &Wishes) {
+    fn keep_best(&mut self, preferences: &Preferences) {
         let mut best = 0;
         for k in 1..self.0.len() {
-            let is_better = self.0[k].worth.is_before(&self.0[best].worth, wishes);
+            let is_better = self.0[k].worth.is_before(&self.0[best].worth, preferences);
             let worse = if is_better { std::mem::replace(&mut best, k) } else { k };
             self.0[worse].scan = None;
         }
