@@ -52,11 +52,11 @@ impl CoverageGrid {
     /// A floor of which nothing has been scanned.
     ///
     /// ```
-    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
     /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
-    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// let grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// assert_eq!(grid.counts().covered, 0);
     /// ```
     pub fn new(floor: Floor) -> Self {
@@ -80,7 +80,7 @@ impl CoverageGrid {
     /// Changes the kind of some cells; scanned cells stay scanned.
     ///
     /// ```
-    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
     /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
@@ -97,11 +97,11 @@ impl CoverageGrid {
     /// The floor itself.
     ///
     /// ```
-    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
     /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
-    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// let grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// assert_eq!(grid.floor().width, 100);
     /// ```
     pub fn floor(&self) -> &Floor {
@@ -111,7 +111,7 @@ impl CoverageGrid {
     /// Marks what a disc with a diameter of `swath_m` scans from `a` to `b`; returns the cells of floor that are new.
     ///
     /// ```
-    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
     /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
@@ -163,7 +163,7 @@ impl CoverageGrid {
     /// Marks cells as scanned; cells beyond the grid are ignored.
     ///
     /// ```
-    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
     /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
@@ -186,7 +186,7 @@ impl CoverageGrid {
     /// Marks everything that has been scanned on an aligned grid.
     ///
     /// ```
-    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
     /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
@@ -204,7 +204,7 @@ impl CoverageGrid {
     /// Whether a cell has been scanned.
     ///
     /// ```
-    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
     /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
@@ -219,11 +219,11 @@ impl CoverageGrid {
     /// Number of cells of each kind.
     ///
     /// ```
-    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
     /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
-    /// let mut grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
+    /// let grid = CoverageGrid::new(Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin()));
     /// assert!(grid.counts().reachable < grid.counts().floor);
     /// ```
     pub fn counts(&self) -> Counts {
@@ -233,7 +233,7 @@ impl CoverageGrid {
     /// Scanned share of the floor that the tool can reach, 0 to 1.
     ///
     /// ```
-    /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
+    /// use world::{Boundary, CoverageGrid, Floor, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
     /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.

@@ -53,7 +53,7 @@ pub struct Near {
 /// Obstacles and wall, ready for queries; all points in the tank frame.
 ///
 /// ```
-/// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, Vector};
+/// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
 /// # let shape = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
 /// # let column = Obstacle { id: ObstacleId(7), name: "C7".into(), shape, known: true };
 /// // A column of radius 0.5 m at (4, 0).
@@ -72,7 +72,7 @@ impl ObstacleMap {
     /// A map of these obstacles within this wall; costs `n log n` once.
     ///
     /// ```
-    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, Vector};
+    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
     /// # let shape = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
     /// # let column = Obstacle { id: ObstacleId(7), name: "C7".into(), shape, known: true };
     /// // A column of radius 0.5 m at (4, 0).
@@ -99,7 +99,7 @@ impl ObstacleMap {
     /// Distance to the nearest obstacle or the wall, metres; negative inside an obstacle or outside the tank.
     ///
     /// ```
-    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, Vector};
+    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
     /// # let shape = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
     /// # let column = Obstacle { id: ObstacleId(7), name: "C7".into(), shape, known: true };
     /// // A column of radius 0.5 m at (4, 0).
@@ -113,7 +113,7 @@ impl ObstacleMap {
     /// Distance to the nearest obstacle, metres; negative inside one, infinite without any.
     ///
     /// ```
-    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, Vector};
+    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
     /// # let shape = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
     /// # let column = Obstacle { id: ObstacleId(7), name: "C7".into(), shape, known: true };
     /// // A column of radius 0.5 m at (4, 0).
@@ -138,7 +138,7 @@ impl ObstacleMap {
     /// The obstacles within a range of a point, metres, each once, in order of their index.
     ///
     /// ```
-    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, Vector};
+    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
     /// # let shape = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
     /// # let column = Obstacle { id: ObstacleId(7), name: "C7".into(), shape, known: true };
     /// // A column of radius 0.5 m at (4, 0).
@@ -183,7 +183,7 @@ impl ObstacleMap {
     /// Smallest distance from any point of a segment to an obstacle or the wall, metres; not above zero if it touches.
     ///
     /// ```
-    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, Vector};
+    /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
     /// # let shape = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
     /// # let column = Obstacle { id: ObstacleId(7), name: "C7".into(), shape, known: true };
     /// // A column of radius 0.5 m at (4, 0).

@@ -46,7 +46,7 @@ impl FloorMaker {
     /// The floor of a tank; see [`Floor::new`].
     ///
     /// ```
-    /// use world::{Boundary, Floor, FloorMaker, Point, World};
+    /// use world::{Boundary, FloorMaker, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
     /// let maker = FloorMaker::new(&tank, 0.1, 0.5, 0.6, Point::origin());
@@ -87,7 +87,7 @@ impl FloorMaker {
     /// The floor as it is now.
     ///
     /// ```
-    /// use world::{Boundary, Floor, FloorMaker, Point, World};
+    /// use world::{Boundary, FloorMaker, Point, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
     /// let maker = FloorMaker::new(&tank, 0.1, 0.5, 0.6, Point::origin());

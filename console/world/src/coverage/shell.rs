@@ -68,8 +68,8 @@ impl ShellZone {
     /// The zone of some width along a wall, metres, of which nothing has been scanned.
     ///
     /// ```
-    /// use world::{Boundary, Pose, ShellZone, Tool};
-    /// let mut zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
+    /// use world::{Boundary, ShellZone};
+    /// let zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
     /// assert!((zone.figures(|_| false).length_m - 31.416).abs() < 1e-3);
     /// ```
     pub fn new(boundary: &Boundary, width_m: f64) -> Self {
@@ -86,8 +86,8 @@ impl ShellZone {
     /// Whether a shape may reach into the zone; a cheap test that may say so of one nearby.
     ///
     /// ```
-    /// use world::{Boundary, Pose, ShellZone, Tool};
-    /// let mut zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
+    /// use world::{Boundary, ShellZone};
+    /// let zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
     /// let column = |x| world::Shape::Disc { center: world::Point::new(x, 0.0), radius_m: 0.5 };
     /// assert!(zone.is_beside(&column(4.5)) && !zone.is_beside(&column(3.0)));
     /// ```
@@ -145,8 +145,8 @@ impl ShellZone {
     /// How much of the zone was scanned, apart from points that `is_solid` excludes.
     ///
     /// ```
-    /// use world::{Boundary, Pose, ShellZone, Tool};
-    /// let mut zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
+    /// use world::{Boundary, ShellZone};
+    /// let zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
     /// let half = zone.figures(|point| point.y < 0.0);
     /// assert!((half.length_m - 15.71).abs() < 0.1 && half.gap_m == 0.075);
     /// ```

@@ -123,7 +123,7 @@ impl Cable {
     /// # Errors
     /// [`TetherError`]: the anchor lies outside the wall or inside an obstacle, or has a coordinate that is not finite.
     pub fn new(anchor: Point, boundary: &Boundary, shapes: &[Shape]) -> Result<Self, TetherError> {
-        if !boundary.contains(anchor) && boundary.wall_distance_m(anchor) < -1e-6 {
+        if boundary.wall_distance_m(anchor) < -1e-6 {
             return Err(TetherError::AnchorOutside { x: anchor.x, y: anchor.y });
         }
         Self::on(anchor, Arc::new(CableObstacles::new(boundary, shapes)))
@@ -143,8 +143,7 @@ impl Cable {
     /// # Errors
     /// [`TetherError`]: the anchor lies inside an obstacle, or has a coordinate that is not finite.
     pub fn on(anchor: Point, obstacles: Arc<CableObstacles>) -> Result<Self, TetherError> {
-        let Point { coords } = anchor;
-        if !(coords.x.is_finite() && coords.y.is_finite()) {
+        if !(anchor.x.is_finite() && anchor.y.is_finite()) {
             return Err(TetherError::AnchorNotFinite);
         }
         if obstacles.sidestep.holds(anchor) {
