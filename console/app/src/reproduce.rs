@@ -5,13 +5,9 @@ use crate::{
     failure::{COMPLETE, bad_input},
     output::{say, say_json},
 };
-use ::reproduce::{Gallery, Options, Picture, Runner, gallery, studies, study, table};
+use ::reproduce::{Gallery, Options, Runner, gallery, studies, study, table};
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_host::PluginDirs;
-use report::{
-    drawing::plan::{Drawn, svg},
-    leg::legs,
-};
 use std::{io::IsTerminal, process::ExitCode};
 
 /// `tankops reproduce`.
@@ -27,8 +23,7 @@ pub(crate) fn reproduce(args: &ReproduceArgs, plugins: &PluginDirs) -> anyhow::R
         cases: args.case.clone(),
         methods: args.method.clone(),
     };
-    let gallery =
-        args.svg.as_ref().map(|folder| gallery(study, folder, drawn)).transpose().map_err(bad_input)?;
+    let gallery = args.svg.as_ref().map(|folder| gallery(study, folder)).transpose().map_err(bad_input)?;
     let template = "{prefix}  {wide_bar} {pos}/{len}  {elapsed} of about {duration}";
     let bar = shown(ProgressBar::new(0), study.name, template);
     let progress = |done: usize, of: usize| {
@@ -56,20 +51,6 @@ fn list(json: bool) -> anyhow::Result<()> {
         .map(|s| serde_json::json!({ "name": s.name, "about": s.about, "layouts": s.layouts }))
         .collect();
     say_json("the list", &all)
-}
-
-fn drawn(picture: &Picture<'_>) -> String {
-    svg(&Drawn {
-        world: picture.world,
-        room_m: picture.room_m,
-        swath_m: picture.swath_m,
-        preset: None,
-        anchor: Some(picture.anchor),
-        path: &picture.plan.path,
-        legs: &legs(picture.plan),
-        cuts: &picture.plan.cuts,
-        cable: picture.cable,
-    })
 }
 
 /// Shows work on stderr, if that is a terminal: rows on stdout, for people or as JSON, do not suffer from it.

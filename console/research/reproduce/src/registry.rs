@@ -2,7 +2,7 @@
 
 use crate::{
     coverage, fields, positioning, spiral,
-    study::{Gallery, Picture, Result, Study, StudyError},
+    study::{Gallery, Result, Study, StudyError},
     traps,
 };
 use std::path::Path;
@@ -39,17 +39,17 @@ pub fn list() -> String {
     format!("{lines}\nIn brackets: layouts or draws of each case unless --layouts says otherwise.\n")
 }
 
-/// A gallery in a folder for the plans of a study; `svg` draws them.
+/// A gallery in a folder for the plans of a study.
 ///
 /// # Errors
 /// The study has no plans to draw, or the folder cannot be created.
-pub fn gallery(study: &Study, folder: &Path, svg: fn(&Picture<'_>) -> String) -> Result<Gallery> {
+pub fn gallery(study: &Study, folder: &Path) -> Result<Gallery> {
     if coverage::STUDIES.iter().all(|drawn| drawn.name != study.name) {
         let drawn: Vec<String> = coverage::STUDIES.iter().map(|drawn| format!("`{}`", drawn.name)).collect();
         let why = format!("--svg draws coverage plans; only {} have them", drawn.join(" and "));
         return Err(StudyError::Refused(format!("{}: {why}", study.name)));
     }
-    Gallery::new(folder, svg)
+    Gallery::new(folder)
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ mod runner;
 mod sample;
 
 pub use error::{Result, StudyError};
-pub use gallery::{Gallery, Picture};
+pub use gallery::Gallery;
 pub(crate) use method::Method;
 pub(crate) use planners::{Planned, Planners};
 pub(crate) use row::Block;

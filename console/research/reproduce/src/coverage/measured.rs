@@ -1,8 +1,9 @@
 //! What one planner makes of one tank.
 
-use crate::study::{Method, Picture, Planned, Planners, Result, Runner, StudyError};
+use crate::study::{Method, Planned, Planners, Result, Runner, StudyError};
 use mission::{Cause, Fault};
 use planner_api::{Code, Task};
+use report::{drawing::plan::Drawn, leg::legs};
 use trials::{
     Entanglement, Scan,
     tanks::{CELL_M, CLEARANCE_M, HULL_M, SWATH_M, Tank},
@@ -51,17 +52,20 @@ pub(super) fn measure(
     match figures(tank, &planned) {
         Err(error) => Ok(Measured { figures: None, reason: Some(error.to_string()), plan_time_ms }),
         Ok((scan, entanglement)) => {
-            runner.draw(&Picture {
-                case,
-                seed,
-                method: &method.id,
-                world: &tank.world(),
-                anchor: tank.anchor,
-                room_m: HULL_M + CLEARANCE_M,
-                swath_m: SWATH_M,
-                plan: &planned.plan,
-                cable: &entanglement.longest,
-            });
+            if let Some(gallery) = runner.gallery() {
+                let drawn = Drawn {
+                    world: &tank.world(),
+                    room_m: HULL_M + CLEARANCE_M,
+                    swath_m: SWATH_M,
+                    preset: None,
+                    anchor: Some(tank.anchor),
+                    path: planned.path(),
+                    legs: &legs(&planned.plan),
+                    cuts: &planned.plan.cuts,
+                    cable: &entanglement.longest,
+                };
+                gallery.add((case, seed, &method.id), &drawn);
+            }
             Ok(Measured { figures: Some((scan, entanglement)), reason: planned.reason, plan_time_ms })
         }
     }

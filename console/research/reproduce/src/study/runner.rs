@@ -2,7 +2,7 @@
 
 use super::{
     error::{Result, StudyError},
-    gallery::{Gallery, Picture},
+    gallery::Gallery,
     planners::Planners,
 };
 use planner_host::PluginDirs;
@@ -48,11 +48,9 @@ impl<'a> Runner<'a> {
         Self { gallery, ..self }
     }
 
-    /// Draws a plan, if plans are to be drawn.
-    pub(crate) fn draw(&self, picture: &Picture<'_>) {
-        if let Some(gallery) = self.gallery {
-            gallery.add(picture);
-        }
+    /// Where plans are to be drawn, if they are.
+    pub(crate) fn gallery(&self) -> Option<&Gallery> {
+        self.gallery
     }
 
     /// Computes every case; the answers keep the order of the cases, whichever thread computed them.
