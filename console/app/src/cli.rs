@@ -109,7 +109,7 @@ pub(crate) struct RescanArgs {
     pub output: PathBuf,
     /// Skip missed areas smaller than this, square metres; areas close together count as one.
     #[arg(long, value_name = "AREA", default_value_t = 0.05)]
-    pub least_m2: f64,
+    pub min_area_m2: f64,
     #[command(flatten)]
     pub logs: LogsArg,
 }

@@ -19,20 +19,20 @@ const MOST_BOXES: usize = 4000;
 
 /// `tankops rescan RUN... -o SCENARIO`.
 pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
-    let (output, least_m2) = (&args.output, args.least_m2);
+    let (output, min_area_m2) = (&args.output, args.min_area_m2);
     if output.exists() {
         return Err(bad_input(format!("{} exists already; choose another name", output.display())));
     }
-    if !(least_m2.is_finite() && least_m2 >= 0.0) {
-        return Err(bad_input(format!("--least-m2 {least_m2}: must be an area of 0 m² or more")));
+    if !(min_area_m2.is_finite() && min_area_m2 >= 0.0) {
+        return Err(bad_input(format!("--min-area-m2 {min_area_m2}: must be an area of 0 m² or more")));
     }
     let past = past_runs::read_all(&args.runs, &args.logs)?;
     past.iter().try_for_each(print_doubt)?;
     let (opened, past): (Vec<_>, Vec<PastRun>) = past.into_iter().map(|past| (past.opened, past.run)).unzip();
-    let again = report::rescan(&past, least_m2, MOST_BOXES).map_err(bad_input)?;
+    let again = report::rescan(&past, min_area_m2, MOST_BOXES).map_err(bad_input)?;
     if again.boxes.is_empty() {
         say(&again.human_out_of_reach())?;
-        return Err(bad_input(format!("{}; --least-m2 sets the limit", again.why_nothing(least_m2))));
+        return Err(bad_input(format!("{}; --min-area-m2 sets the limit", again.why_nothing(min_area_m2))));
     }
     let names: Vec<&str> = past.iter().map(|run| run.name.as_str()).collect();
     let last = opened.last().context("there is no run")?;
@@ -41,7 +41,7 @@ pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<
     let scenario = Scenario::parse(&text, &output.display().to_string());
     let scenario = scenario.map_err(|errors| bad_input(errors.render()))?;
     write_file("the scenario", output, &text)?;
-    say(&format!("{}: {}", output.display(), again.human(least_m2)))?;
+    say(&format!("{}: {}", output.display(), again.human(min_area_m2)))?;
     print_advice(args, &names, &planners_instead(&scenario, plugins))?;
     Ok(ExitCode::from(COMPLETE))
 }

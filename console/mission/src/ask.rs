@@ -125,7 +125,7 @@ pub struct PlanAsk {
     pub task: TaskLeft,
     /// The tank as it is known.
     pub site: Arc<Site>,
-    /// The path flown so far, and a way home before the plan.
+    /// The path flown so far, and a return path before the plan.
     pub previous: Vec<Point>,
 }
 

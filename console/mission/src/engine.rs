@@ -15,7 +15,7 @@ mod orders;
 mod planning;
 mod rules;
 mod scanning;
-mod seat;
+mod slot;
 mod tethering;
 mod workers;
 
@@ -33,7 +33,7 @@ use crate::{
 use floor::ScannedFloor;
 use planner_api::{Drive, Reason};
 use rules::{PlannerSeen, Rules, Seen};
-use seat::Seat;
+use slot::PlannerSlot;
 use workers::Workers;
 use world::{Floor, Point, Readings, World};
 
@@ -73,9 +73,9 @@ pub struct Mission {
     trail: Vec<Point>,
     rules: Rules,
     /// The planner that drives.
-    active: Seat,
+    active: PlannerSlot,
     /// A planner that is being prepared to take over.
-    candidate: Option<Seat>,
+    candidate: Option<PlannerSlot>,
     workers: Workers,
     happened: Happened,
 }
@@ -117,7 +117,7 @@ impl Mission {
             floor: ScannedFloor::new(floor),
             trail: vec![start],
             rules: Rules::new(&config),
-            active: Seat::new(config.planner.clone(), Reason::Start),
+            active: PlannerSlot::new(config.planner.clone(), Reason::Start),
             candidate: None,
             workers: Workers::default(),
             happened: Happened { events: Vec::new(), ending: None, last_drive: Drive::STILL },
@@ -226,7 +226,7 @@ impl Mission {
 
     /// Whether the robot stands because it has no plan, or no planner, yet.
     fn robot_waits(&self) -> bool {
-        self.active.is_being_prepared() || self.candidate.as_ref().is_some_and(|seat| seat.robot_waits)
+        self.active.is_being_prepared() || self.candidate.as_ref().is_some_and(|slot| slot.robot_waits)
     }
 }
 

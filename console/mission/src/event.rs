@@ -230,7 +230,7 @@ pub enum EventKind {
         /// Which ask this answers; absent in journals up to version 2.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         ask: Option<AskId>,
-        /// How many points of a way home along the tether the mission put before the planner's path.
+        /// How many points of a return path along the tether the mission put before the planner's path.
         #[serde(default, skip_serializing_if = "is_zero")]
         return_path: usize,
         /// By whom.

@@ -33,9 +33,9 @@ use world::{
     tether::{Bearing, Cable, CableObstacles, Certificate, TetherError, capstan_factor},
 };
 
-/// Room that a way home may lack beside what is on the chart, metres: found obstacles are placed about this well.
+/// Room that a return path may lack beside what is on the chart, metres: found obstacles are placed about this well.
 const CHART_M: f64 = 0.05;
-/// The hull has to find no way home for this long before that is an alarm, seconds.
+/// The hull has to find no return path for this long before that is an alarm, seconds.
 const NO_HOME_S: f64 = 3.0;
 /// Cable beyond the straight line to the robot that counts as left out at the end, metres.
 const LEFT_M: f64 = 0.3;
@@ -45,9 +45,9 @@ pub struct Tether {
     config: TetherConfig,
     hull_m: f64,
     cable: Cable,
-    /// The ground as the middle of the hull meets it on its way home.
+    /// The ground as the middle of the hull meets it on its return path.
     roomy: Arc<CableObstacles>,
-    /// For how long there has been no way home, seconds.
+    /// For how long there has been no return path, seconds.
     without_home_s: f64,
     payout: Payout,
     driven: Driven,
@@ -205,7 +205,7 @@ impl Tether {
         certified(&self.config, 0.0, Some(&self.cable), rest, &[], world, returns).certified
     }
 
-    /// Judges a plan from where the cable lies now; `returns` says whether it has to end with the cable reeled in.
+    /// Evaluates a plan from where the cable lies now; `returns` says whether it has to end with the cable reeled in.
     ///
     /// The cuts of a plan that first goes home along the cable hold from there on.
     pub fn certify(&self, plan: &Plan, world: &World, returns: bool) -> Certificate {
@@ -242,7 +242,7 @@ fn way_along(cable: &Cable, world: &World, room_m: f64) -> Option<Vec<Point>> {
     cable.return_path(&roomy, &ObstacleMap::new(&world.boundary, &world.obstacles), room_m)
 }
 
-/// Room for the middle of the hull on a way home, metres.
+/// Room for the middle of the hull on a return path, metres.
 fn home_room_m(hull_m: f64) -> f64 {
     (hull_m - CHART_M).max(0.5 * hull_m)
 }

@@ -214,7 +214,7 @@ fn certified(certificate: &Certificate) -> String {
         certificate;
     let reasons: Vec<String> = certificate.reasons.iter().map(|why| format!("          {why}\n")).collect();
     format!(
-        "tether    {}, cable {tether_length_max_m:.2} m at most ({eccentricity_m:.2} m the least possible), wrap {:.0} deg on one obstacle, {:.0} deg in sum\n{}",
+        "tether    {}, {tether_length_max_m:.2} m out at most ({eccentricity_m:.2} m is the minimum), wrap {:.0} deg around one obstacle, {:.0} deg in total\n{}",
         if certificate.certified { "certified" } else { "NOT certified" },
         wrap_max_rad.to_degrees(),
         wrap_total_max_rad.to_degrees(),

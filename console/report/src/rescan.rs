@@ -60,11 +60,11 @@ impl fmt::Display for NoLane {
 /// Finds what is to be scanned again.
 ///
 /// Missed floor to which no lane leads is listed separately. Of the rest, what lies closely together is merged and grown by
-/// what a robot can aim at. What is then smaller than `least_m2` is left. There are no more than `most` boxes; the fewer, the coarser.
+/// what a robot can aim at. What is then smaller than `min_area_m2` is left. There are no more than `most` boxes; the fewer, the coarser.
 ///
 /// # Errors
 /// As [`crate::merged()`].
-pub fn rescan(runs: &[PastRun], least_m2: f64, most: usize) -> Result<Rescan, String> {
+pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan, String> {
     let Joined { run, scanned, evidence } = joined(runs)?;
     let grid = scanned.believed();
     let floor = grid.floor();
@@ -92,7 +92,7 @@ pub fn rescan(runs: &[PastRun], least_m2: f64, most: usize) -> Result<Rescan, St
         let mut area = area_of(floor, None, reason, &cells);
         let plate = floor.cell_at(area.at).and_then(|index| plates.as_ref()?.plate_of(index));
         area.plate = plates.as_ref().zip(plate).map(|(map, plate)| map.plates[plate].name.clone());
-        if area.area_m2 < least_m2 {
+        if area.area_m2 < min_area_m2 {
             left.push(area);
         } else {
             areas.push(area);

@@ -70,7 +70,7 @@ impl Follow {
         }
     }
 
-    /// Takes over the cuts of a new plan; they hold from the end of its way home on, if it begins with one.
+    /// Takes over the cuts of a new plan; they hold from the end of its return path on, if it begins with one.
     pub(crate) fn take(&mut self, plan: &Plan) {
         self.cuts = plan.cuts.iter().map(|line| Cut { line: line.clone(), is_beyond: false }).collect();
         let return_path = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract);

@@ -102,7 +102,9 @@ fn tried_from_here_or_home<'a>(
     let Some(way) = cable.and_then(|cable| return_path(workspace, site, cable)) else {
         return Ok((tried, Vec::new()));
     };
-    stages.ctx.log(LogLevel::Warn, "the cable lies across a cut of the new plan: back along the cable first");
+    stages
+        .ctx
+        .log(LogLevel::Warn, "the tether lies across a cut of the new plan: back along the tether first");
     stages.end = 0.98;
     let from_home = Scope { start: workspace.home, ..scope };
     let tried = Pipeline { scope: from_home, cable: None, ..*pipeline }.run(stages)?;

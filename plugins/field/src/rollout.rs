@@ -74,7 +74,7 @@ impl Targets {
         let demanded_m = request.site.clearance_m;
         let is_free = |p: &&Point| scene.hull_clearance_m(**p).min(scene.wall_clearance_m(**p)) >= demanded_m;
         let (points, tolerance_m) = match request.task {
-            // Covering is refused before it comes to this; of it only the way home is left.
+            // Covering is refused before it comes to this; of it only the return path is left.
             Task::Goto { goal, tolerance_m } | Task::Cover { anchor: goal, tolerance_m, .. } => {
                 (vec![goal], tolerance_m)
             }

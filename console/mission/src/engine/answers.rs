@@ -3,7 +3,7 @@
 use super::{
     Mission,
     planning::{Evaluated, Objection},
-    seat::{AskedPlan, Pending, PendingKind, PlanState, Prepare, Seat},
+    slot::{AskedPlan, Pending, PendingKind, PlanState, PlannerSlot, Prepare},
     workers,
 };
 use crate::{
@@ -26,15 +26,16 @@ struct Failed {
 impl Mission {
     /// Takes the answer to an ask. Answers that nobody waits for any more are ignored.
     pub fn answer(&mut self, answer: Answer) {
-        let is_owed = |seat: &Seat| seat.pending.as_ref().is_some_and(|pending| pending.id == answer.ask);
+        let is_owed =
+            |slot: &PlannerSlot| slot.pending.as_ref().is_some_and(|pending| pending.id == answer.ask);
         if is_owed(&self.active) {
             if let Some(pending) = self.active.pending.take() {
                 self.answer_active(pending, answer);
             }
-        } else if let Some(mut seat) = self.candidate.take() {
-            match seat.pending.take_if(|pending| pending.id == answer.ask) {
-                Some(pending) => self.candidate = self.answer_candidate(seat, pending, answer),
-                None => self.candidate = Some(seat),
+        } else if let Some(mut slot) = self.candidate.take() {
+            match slot.pending.take_if(|pending| pending.id == answer.ask) {
+                Some(pending) => self.candidate = self.answer_candidate(slot, pending, answer),
+                None => self.candidate = Some(slot),
             }
         }
     }
@@ -71,13 +72,13 @@ impl Mission {
     }
 
     /// Refuses a planner that may not or cannot fly this mission, although it could be opened.
-    pub(super) fn checked(&self, seat: &Seat, given: Given) -> Result<Given, Fault> {
-        let id = &seat.choice.id;
+    pub(super) fn checked(&self, slot: &PlannerSlot, given: Given) -> Result<Given, Fault> {
+        let id = &slot.choice.id;
         if let Given::Plan(plan) = &given
             && let Err(what) = self.check_extent(plan)
         {
             let (message, partial) = (format!("planner {id} {what}"), Vec::new());
-            let plugin_sha256 = seat.info.as_ref().map(|info| info.sha256.clone());
+            let plugin_sha256 = slot.info.as_ref().map(|info| info.sha256.clone());
             let (during, cause) = (During::Plan, Cause::BadOutput);
             return Err(Fault { planner: id.clone(), during, cause, message, partial, plugin_sha256 });
         }
@@ -102,12 +103,12 @@ impl Mission {
 
     fn open_succeeded(&mut self, ask: AskId, info: PlannerInfo, said: Said) {
         self.pass_on(said, &self.active.choice.id.clone());
-        let seat = &mut self.active;
-        let (choice, from) = (seat.choice.clone(), seat.known().map(|before| before.id.clone()));
-        seat.info = Some(info.clone());
-        seat.is_ready = true;
-        if seat.prepare == Prepare::Open {
-            seat.prepare = Prepare::No;
+        let slot = &mut self.active;
+        let (choice, from) = (slot.choice.clone(), slot.known().map(|before| before.id.clone()));
+        slot.info = Some(info.clone());
+        slot.is_ready = true;
+        if slot.prepare == Prepare::Open {
+            slot.prepare = Prepare::No;
         }
         self.happened.push(EventKind::PlannerChosen { ask: Some(ask), choice, info: Box::new(info), from });
     }

@@ -3,7 +3,7 @@
 use super::{
     Mission,
     driving::AHEAD_M,
-    seat::{AskedPlan, PendingKind, PlanState, Prepare, Seat},
+    slot::{AskedPlan, PendingKind, PlanState, PlannerSlot, Prepare},
 };
 use crate::{
     ask::{Ask, Awaits, PlanAsk, StepAsk, What},
@@ -35,8 +35,8 @@ impl Mission {
                 }
             },
             Some(_) => Awaits::Candidate,
-            None => match self.candidate.as_ref().filter(|seat| seat.pending.is_some()) {
-                Some(seat) if is_running && seat.robot_waits => Awaits::Work,
+            None => match self.candidate.as_ref().filter(|slot| slot.pending.is_some()) {
+                Some(slot) if is_running && slot.robot_waits => Awaits::Work,
                 Some(_) => Awaits::Candidate,
                 None => Awaits::Nothing,
             },
@@ -45,17 +45,17 @@ impl Mission {
 
     /// Whether a planner is being opened or is making a plan, whether or not the robot stands for it.
     pub fn is_preparing(&self) -> bool {
-        self.active.is_being_prepared() || self.candidate.as_ref().is_some_and(Seat::is_being_prepared)
+        self.active.is_being_prepared() || self.candidate.as_ref().is_some_and(PlannerSlot::is_being_prepared)
     }
 
     fn ask_active(&mut self) -> Option<Ask> {
         let is_running = self.is_running();
-        let seat = &self.active;
-        if seat.pending.is_some() || matches!(self.phase, Phase::Ended(_)) {
+        let slot = &self.active;
+        if slot.pending.is_some() || matches!(self.phase, Phase::Ended(_)) {
             return None;
         }
-        if !seat.is_ready {
-            return (is_running || seat.prepare > Prepare::No).then(|| self.open_active());
+        if !slot.is_ready {
+            return (is_running || slot.prepare > Prepare::No).then(|| self.open_active());
         }
         if let Some(choice) = self.active.reconfigure.take() {
             let parameters = choice.parameters.clone();
@@ -75,7 +75,7 @@ impl Mission {
         if is_running && self.is_snapshot_due() {
             return self.ask_for_snapshot();
         }
-        let robot_waits = self.candidate.as_ref().is_some_and(|seat| seat.robot_waits);
+        let robot_waits = self.candidate.as_ref().is_some_and(|slot| slot.robot_waits);
         let is_step_due = is_running && !robot_waits && self.active.stepped_at != Some(self.tick);
         is_step_due.then(|| self.ask_for_step()).flatten()
     }
@@ -100,33 +100,33 @@ impl Mission {
     fn ask_candidate(&mut self) -> Option<Ask> {
         let is_saving = self.active.snapshot_due
             || matches!(&self.active.pending, Some(pending) if pending.kind == PendingKind::Snapshot);
-        let seat = self.candidate.as_mut().filter(|seat| seat.pending.is_none())?;
-        if !seat.is_ready {
+        let slot = self.candidate.as_mut().filter(|slot| slot.pending.is_none())?;
+        if !slot.is_ready {
             if is_saving {
                 return None;
             }
-            if seat.choice.id == self.active.choice.id {
-                seat.saved = self.active.saved;
+            if slot.choice.id == self.active.choice.id {
+                slot.saved = self.active.saved;
             }
             let (worker, site) = (self.workers.next(), self.chart.site());
-            return Some(seat.open(worker, self.tick, site));
+            return Some(slot.open(worker, self.tick, site));
         }
-        let PlanState::Due { reason, from_anchor } = seat.plan.clone() else { return None };
+        let PlanState::Due { reason, from_anchor } = slot.plan.clone() else { return None };
         let (kind, what) = self.plan_ask(reason, from_anchor);
-        let seat = self.candidate.as_mut()?;
-        seat.found_since.clear();
-        seat.ask(self.tick, kind, what)
+        let slot = self.candidate.as_mut()?;
+        slot.found_since.clear();
+        slot.ask(self.tick, kind, what)
     }
 
     fn is_snapshot_due(&self) -> bool {
-        let seat = &self.active;
-        let snapshots = seat.info.as_ref().is_some_and(|info| info.snapshots);
+        let slot = &self.active;
+        let snapshots = slot.info.as_ref().is_some_and(|info| info.snapshots);
         snapshots
-            && seat.stepped_at != Some(self.tick)
-            && seat.saved_at_s.is_some_and(|saved_at_s| self.now_s() - saved_at_s >= SAVE_EVERY_S)
+            && slot.stepped_at != Some(self.tick)
+            && slot.saved_at_s.is_some_and(|saved_at_s| self.now_s() - saved_at_s >= SAVE_EVERY_S)
     }
 
-    /// The inputs of a plan from the end of a way home, or from where the robot stands.
+    /// The inputs of a plan from the end of a return path, or from where the robot stands.
     ///
     /// A cable that is caught is freed first. A plan that was refused because of the cable out there is asked for once
     /// more from the anchor, after a way back along the cable: no planner has to know how the cable lies.

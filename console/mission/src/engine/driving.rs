@@ -3,7 +3,7 @@
 use super::{
     Mission,
     rules::{LatePlannerRule, Verdict},
-    seat::{Arrived, Pending},
+    slot::{Arrived, Pending},
 };
 use crate::{
     ask::Said,

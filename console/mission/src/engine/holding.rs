@@ -1,6 +1,6 @@
 //! What the verdicts of rules do: the robot is held, moves again, or the mission ends.
 
-use super::{Mission, rules::Verdict, seat::Prepare};
+use super::{Mission, rules::Verdict, slot::Prepare};
 use crate::{
     event::EventKind,
     phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
@@ -28,12 +28,12 @@ impl Mission {
         if *resumes == Resumes::ByFallback {
             let active = self.active.choice.id.clone();
             if let Some(choice) = self.rules.fallback.update(&self.config, &active) {
-                let mut seat = self.active.successor(choice, Reason::Swap { from: active });
-                seat.prepare = Prepare::Plan;
+                let mut slot = self.active.successor(choice, Reason::Swap { from: active });
+                slot.prepare = Prepare::Plan;
                 if let Some(candidate) = self.candidate.take() {
-                    self.reject(candidate, format!("the fallback planner {} takes over", seat.choice.id));
+                    self.reject(candidate, format!("the fallback planner {} takes over", slot.choice.id));
                 }
-                self.replace_active(seat);
+                self.replace_active(slot);
             }
         } else if resumes.is_never() && !self.config.attended && self.active.prepare == Prepare::No {
             let (HoldReason::PlannerFault { message }

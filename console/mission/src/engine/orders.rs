@@ -2,7 +2,7 @@
 
 use super::{
     Mission,
-    seat::{Prepare, Seat},
+    slot::{PlannerSlot, Prepare},
 };
 use crate::{
     event::EventKind,
@@ -63,14 +63,14 @@ impl Mission {
         }
         let waiting = self.phase == Phase::Waiting;
         let reason = if waiting { Reason::Start } else { reason };
-        let mut seat = self.active.successor(choice, reason);
-        seat.prepare = if waiting { Prepare::Open } else { Prepare::Plan };
+        let mut slot = self.active.successor(choice, reason);
+        slot.prepare = if waiting { Prepare::Open } else { Prepare::Plan };
         self.drop_candidate();
         if self.active.is_ready && !waiting && !self.has_active_failed() {
-            self.active.snapshot_due = self.can_hand_over_state(&seat);
-            self.candidate = Some(seat);
+            self.active.snapshot_due = self.can_hand_over_state(&slot);
+            self.candidate = Some(slot);
         } else {
-            self.replace_active(seat);
+            self.replace_active(slot);
         }
     }
 
@@ -81,15 +81,15 @@ impl Mission {
     }
 
     /// Whether a successor can go on from what the active planner knows now.
-    fn can_hand_over_state(&self, seat: &Seat) -> bool {
+    fn can_hand_over_state(&self, slot: &PlannerSlot) -> bool {
         let snapshots = self.active.info.as_ref().is_some_and(|info| info.snapshots);
-        snapshots && self.active.is_ready && seat.choice.id == self.active.choice.id
+        snapshots && self.active.is_ready && slot.choice.id == self.active.choice.id
     }
 
     /// Puts a planner in the place of the active one, whose worker is closed.
-    pub(super) fn replace_active(&mut self, seat: Seat) {
+    pub(super) fn replace_active(&mut self, slot: PlannerSlot) {
         self.close_active();
-        self.active = seat;
+        self.active = slot;
     }
 
     /// Closes the worker of the active planner.
@@ -103,15 +103,15 @@ impl Mission {
 
     /// Closes a planner that was being prepared.
     pub(super) fn drop_candidate(&mut self) {
-        if let Some(mut seat) = self.candidate.take() {
-            self.workers.close(seat.leave_worker());
+        if let Some(mut slot) = self.candidate.take() {
+            self.workers.close(slot.leave_worker());
         }
     }
 
     fn set_parameter(&mut self, key: &str, value: &ParamValue) {
         // A change on top of a change that is under way.
-        let newest = self.candidate.as_ref().filter(|seat| seat.choice.id == self.active.choice.id);
-        let base = newest.map(|seat| &seat.choice).or_else(|| self.active.newest_change());
+        let newest = self.candidate.as_ref().filter(|slot| slot.choice.id == self.active.choice.id);
+        let base = newest.map(|slot| &slot.choice).or_else(|| self.active.newest_change());
         let mut choice = base.unwrap_or(&self.active.choice).clone();
         choice.parameters.insert(key.into(), value.clone());
         // While the mission runs, a planner that is being opened gets the values once it is there, and refuses what it does

@@ -1,6 +1,6 @@
 //! Plans: whether one may be flown, and what flying it changes.
 
-use super::{Mission, rules::CutsRule, seat::AskedPlan, seat::PlanState};
+use super::{Mission, rules::CutsRule, slot::AskedPlan, slot::PlanState};
 use crate::{
     ask::{AskId, Said},
     event::EventKind,
@@ -15,7 +15,7 @@ const NO_WAY_M: f64 = 0.01;
 
 /// A plan as it would be flown, with what there is to say of it.
 pub(super) struct Evaluated {
-    /// The plan, after the way home that the mission put before it.
+    /// The plan, after the return path that the mission put before it.
     pub plan: Plan,
     /// That it was made, and its certificate for the tether.
     pub events: Vec<EventKind>,
@@ -121,11 +121,11 @@ impl Mission {
         let lines = if anchor.is_some() { plan.cuts.as_slice() } else { &[] };
         let from = anchor.map_or(0, |anchor| return_path_ends(plan, anchor));
         let here = self.locator.position();
-        let seat = &mut self.active;
-        seat.plan = PlanState::Flying { is_whole: plan.complete };
-        seat.cuts = CutsRule::new(lines, plan.path.get(from).copied(), here);
-        seat.follower = (!plan.path.is_empty()).then(|| PathFollower::new(plan.path.clone()));
-        seat.outdate_step();
+        let slot = &mut self.active;
+        slot.plan = PlanState::Flying { is_whole: plan.complete };
+        slot.cuts = CutsRule::new(lines, plan.path.get(from).copied(), here);
+        slot.follower = (!plan.path.is_empty()).then(|| PathFollower::new(plan.path.clone()));
+        slot.outdate_step();
         self.doubt_fresh_plan();
     }
 
@@ -153,7 +153,7 @@ impl Mission {
     }
 }
 
-/// A plan with a way home before it.
+/// A plan with a return path before it.
 fn after(return_path: &[Point], mut plan: Plan) -> Plan {
     let Some(last) = return_path.len().checked_sub(1) else { return plan };
     let shifted = |leg: &Leg| Leg { first: leg.first + last + 1, last: leg.last + last + 1, ..*leg };

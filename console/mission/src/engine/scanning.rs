@@ -31,7 +31,7 @@ impl Mission {
         }
         if changes_plans {
             self.active.found_since.extend_from_slice(&shapes);
-            self.candidate.iter_mut().for_each(|seat| seat.found_since.extend_from_slice(&shapes));
+            self.candidate.iter_mut().for_each(|slot| slot.found_since.extend_from_slice(&shapes));
         }
         self.happened.extend(events);
         let changes = self.floor.survey(&self.config, &self.chart, &shapes);

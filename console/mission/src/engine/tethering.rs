@@ -1,4 +1,4 @@
-//! What one tick does to the tether, and the ways home along it.
+//! What one tick does to the tether, and the return paths along it.
 
 use super::{Mission, rules::HOME_M};
 use crate::{
@@ -83,7 +83,7 @@ impl Mission {
         rooms.into_iter().find_map(way)
     }
 
-    /// Whether the mission puts ways home along the cable before plans.
+    /// Whether the mission puts return paths along the cable before plans.
     pub(super) fn plans_ways_home(&self) -> bool {
         matches!(self.task, Task::Cover(_)) && self.task_ends_at_anchor()
     }

@@ -109,7 +109,7 @@ impl EventKind {
     }
 }
 
-/// The plan as the planner gave it, before the mission put a way home of so many points in front.
+/// The plan as the planner gave it, before the mission put a return path of so many points in front.
 ///
 /// # Errors
 /// No planner can have given it.
@@ -120,14 +120,14 @@ fn without_return_path(
     legs: &[Leg],
     cuts: &[Vec<world::Point>],
 ) -> Result<Plan, Fault> {
-    // The way home has a leg of its own, the first.
+    // The return path has a leg of its own, the first.
     let own = legs.iter().skip(usize::from(return_path > 0));
     let shifted = |leg: &Leg| {
         let (first, last) = (leg.first.checked_sub(return_path)?, leg.last.checked_sub(return_path)?);
         Some(Leg { first, last, ..*leg })
     };
     let legs: Option<Vec<Leg>> = own.map(shifted).collect();
-    let legs = legs.ok_or_else(|| impossible("gave a leg that begins on the way home"))?;
+    let legs = legs.ok_or_else(|| impossible("gave a leg that begins on the return path"))?;
     let path = path.iter().skip(return_path).copied().collect();
     let plan = Plan { path, complete, legs, cuts: cuts.to_vec(), ..Plan::default() };
     plan.check().map_err(|what| impossible(&what))?;
@@ -166,7 +166,7 @@ mod tests {
         assert_eq!(recorded(2, &[leg(0, 2), leg(2, 4)]), Ok(vec![(0, 2)]));
         assert_eq!(
             recorded(2, &[leg(0, 2), leg(1, 4)]),
-            Err("the planner of the journal gave a leg that begins on the way home".into())
+            Err("the planner of the journal gave a leg that begins on the return path".into())
         );
         assert!(recorded(0, &[leg(0, 5)]).unwrap_err().ends_with("to 5 of a path of 5 points"));
         assert!(recorded(usize::MAX, &[leg(0, 0), leg(1, 2)]).is_err());

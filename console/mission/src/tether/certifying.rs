@@ -22,7 +22,7 @@ pub fn certify_from_start(
     certified(tether, config.limits.radius_m, None, path, cuts, drawing, returns)
 }
 
-/// Index of the point of a plan's path at which a way home along the cable ends; 0 without one. A way that ends away
+/// Index of the point of a plan's path at which a return path along the cable ends; 0 without one. A way that ends away
 /// from the anchor is none, whatever the planner calls it.
 pub(crate) fn return_path_ends(plan: &Plan, anchor: Point) -> usize {
     let is_home = |last: usize| plan.path.get(last).is_some_and(|end| (end - anchor).norm() <= AT_ANCHOR_M);

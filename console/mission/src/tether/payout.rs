@@ -83,7 +83,7 @@ impl Payout {
     ///
     /// The excess grows with the square of the way since the cable touched: where it is small enough to count as
     /// explained the cable may have been caught for as long again. Beyond that the cable comes off on the side on which it
-    /// belongs, and the way home along it is clear.
+    /// belongs, and the return path along it is clear.
     pub(super) fn points_to_go_back_to(&self, points: usize) -> usize {
         // On the way back there are fewer again.
         let free = self.free_points.min(points);

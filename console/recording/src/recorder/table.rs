@@ -28,12 +28,12 @@ const FIGURES: [Figure; 7] = [
 ];
 
 const TETHER_FIGURES: [Figure; 5] = [
-    (paths::TETHER_OUT, "cable out", style::ESTIMATE, |tick| Some(tick.tether.as_ref()?.length_m)),
-    (paths::TETHER_OUT_TRUE, "cable out, truly", style::TRUE, |tick| tick.true_tether_m),
-    // A gap in the curve: there is no way home.
-    (paths::TETHER_HOME, "way home", style::FIGURE, |tick| tick.tether.as_ref()?.return_length_m),
+    (paths::TETHER_OUT, "tether out", style::ESTIMATE, |tick| Some(tick.tether.as_ref()?.length_m)),
+    (paths::TETHER_OUT_TRUE, "tether out (true)", style::TRUE, |tick| tick.true_tether_m),
+    // A gap in the curve: there is no return path.
+    (paths::TETHER_HOME, "return path", style::FIGURE, |tick| tick.tether.as_ref()?.return_length_m),
     (paths::TETHER_WRAP, "largest wrap", style::WARNING, |tick| Some(tick.tether.as_ref()?.wrap_max_deg)),
-    (paths::TETHER_SUM, "sum of wraps", style::FIGURE, |tick| Some(tick.tether.as_ref()?.wrap_total_deg)),
+    (paths::TETHER_SUM, "total wrap", style::FIGURE, |tick| Some(tick.tether.as_ref()?.wrap_total_deg)),
 ];
 
 /// What moves on the map.

@@ -82,7 +82,7 @@ fn a_tethered_run_has_the_cable_and_its_figures_in_every_tick() {
         })
         .flat_map(|(event, at)| {
             let length_m = (at - anchor).norm();
-            // Every other tick there is no way home and nothing is touched.
+            // Every other tick there is no return path and nothing is touched.
             let bears = event.tick % 2 == 0;
             let contact = mission::event::TetherContact { on: "C1".into(), wrap_rad: 1.0, at };
             let kind = EventKind::Tethered {

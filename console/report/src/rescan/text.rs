@@ -8,8 +8,8 @@ use std::fmt::{Display, Write};
 const MOST_LISTED: usize = 10;
 
 impl Rescan {
-    /// What is scanned again, and what is left, `least_m2` being the smallest area that was wanted.
-    pub fn human(&self, least_m2: f64) -> String {
+    /// What is scanned again, and what is left, `min_area_m2` being the smallest area that was wanted.
+    pub fn human(&self, min_area_m2: f64) -> String {
         let boxes_m2: f64 = self.boxes.iter().map(|[low, high]| (high.x - low.x) * (high.y - low.y)).sum();
         let mut text = format!(
             "{:.2} m² missed in {} to scan again, {boxes_m2:.2} m² with the floor around, in {}\n",
@@ -18,7 +18,7 @@ impl Rescan {
             counted(self.boxes.len(), "box", "boxes"),
         );
         text += &listed("again", &self.areas);
-        text += &listed(&format!("left, smaller than {least_m2} m²"), &self.left);
+        text += &listed(&format!("left, smaller than {min_area_m2} m²"), &self.left);
         text += &listed("left, out of reach", &self.out_of_reach);
         if self.not_asked_m2 > 0.0 {
             // Writing to a String cannot fail.
@@ -33,9 +33,9 @@ impl Rescan {
     }
 
     /// Why nothing is scanned again, as a sentence.
-    pub fn why_nothing(&self, least_m2: f64) -> String {
+    pub fn why_nothing(&self, min_area_m2: f64) -> String {
         format!(
-            "nothing was missed that is worth another scan: {} smaller than {least_m2} m² left, {:.2} m² together, and {} out of reach",
+            "nothing was missed that is worth another scan: {} smaller than {min_area_m2} m² left, {:.2} m² together, and {} out of reach",
             counted(self.left.len(), "place", "places"),
             total_m2(&self.left),
             counted(self.out_of_reach.len(), "place", "places"),

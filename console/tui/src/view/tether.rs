@@ -1,4 +1,4 @@
-//! The tether pane: how much is out, round what, and whether there is a way home.
+//! The tether pane: how much is out, round what, and whether there is a return path.
 
 use super::look::{Look, Parts, fill};
 use super::text;
@@ -45,7 +45,7 @@ fn wide_lines(look: &Look, tether: &Tether) -> Vec<Parts> {
         row("wrap", (wrap_role(look, tether), worst(look, tether))),
         row("total wrap", (Role::Text, total(tether))),
         row("contacts", (Role::Text, contacts(tether))),
-        row("way home", home(tether)),
+        row("return path", home(tether)),
         row("at end", (Role::Text, if look.model.has_ended() { still_out } else { "-".into() })),
     ]
 }
@@ -56,7 +56,7 @@ fn narrow_lines(look: &Look, tether: &Tether) -> Vec<Parts> {
         vec![(out_role(look, tether), out)],
         vec![(Role::Text, " wrap ".into()), (wrap_role(look, tether), worst(look, tether))],
         vec![(Role::Text, format!(" total {}", total(tether)))],
-        vec![(Role::Text, " way home ".into()), home(tether)],
+        vec![(Role::Text, " return path ".into()), home(tether)],
     ]
 }
 

@@ -30,7 +30,7 @@ fn event() -> impl Strategy<Value = Event> {
         for by in [HoldReason::Operator, HoldReason::Stepped, HoldReason::PositionLost] {
             events.push(mission.held(by));
         }
-        let message = || "no way home".to_owned();
+        let message = || "no return path".to_owned();
         events.extend([
             mission.held_until(HoldReason::PositionLost, Resumes::WhenCleared),
             mission.held_until(HoldReason::Tether { message: message() }, Resumes::WhenCleared),
@@ -100,7 +100,7 @@ fn msg() -> impl Strategy<Value = Msg> {
 /// What most changes which orders are accepted.
 fn turn() -> impl Strategy<Value = Msg> {
     let mission = Screen::idle().mission;
-    let tether = || HoldReason::Tether { message: "no way home".into() };
+    let tether = || HoldReason::Tether { message: "no return path".into() };
     let refused = || HoldReason::PlanRefused { message: "not certified".into() };
     let one = |kind| vec![mission.now(kind)];
     let turns = vec![

@@ -315,7 +315,7 @@ fn a_hold_of_the_tick_before_does_not_answer_a_resume() {
 #[test]
 fn a_robot_that_resumes_by_itself_withdraws_the_question() {
     let mut screen = Screen::running();
-    let by = HoldReason::Tether { message: "no way home".into() };
+    let by = HoldReason::Tether { message: "no return path".into() };
     send_event(&mut screen, EventKind::Held { by, resumes: Resumes::WhenCleared });
     screen.press([Key::Char(':')]);
     screen.type_text("resume");

@@ -1,4 +1,4 @@
-//! The way home: back along the cable, with room for the hull.
+//! The return path: back along the cable, with room for the hull.
 //!
 //! The taut cable itself is no path for a hull: it bears on columns. The hull's path is the taut line of the same homotopy
 //! class among obstacles grown by the hull, so it exists wherever the robot has driven. Its signature is checked at the
@@ -13,7 +13,7 @@ use std::sync::Arc;
 const STOP_M: f64 = 0.05;
 /// Length of the path at the robot and at the anchor that may be tight, metres: the robot stands where it stands.
 const ENDS_M: f64 = 0.1;
-/// Room that a way home may lack, metres: its arcs are drawn as chords.
+/// Room that a return path may lack, metres: its arcs are drawn as chords.
 const SPARE_M: f64 = 0.005;
 
 impl Cable {

@@ -44,22 +44,19 @@ impl Reasons<'_> {
             let (most_m, at) = self.replay.max_cable;
             let place = place(at);
             reasons.push(format!(
-                "{most_m:.1} m of cable are out at {place}, the reel holds {:.1} m",
+                "{most_m:.1} m of tether are out at {place}, the reel holds {:.1} m",
                 limits.reel_length_m
             ));
         }
         if certificate.wrap_max_rad > limits.wrap_max_rad {
             let (most, allowed) = (self.replay.max_wrap.0.to_degrees(), limits.wrap_max_rad.to_degrees());
             let on = self.name_of(self.replay.max_wrap.1);
-            reasons.push(format!("the cable wraps {most:.0} deg round {on}, allowed are {allowed:.0} deg"));
+            reasons.push(format!("the tether wraps {most:.0} deg around {on}, limit {allowed:.0} deg"));
         }
         if certificate.wrap_total_max_rad > limits.wrap_total_max_rad {
             let (most, at) = self.replay.max_sum;
             let (most, allowed) = (most.to_degrees(), limits.wrap_total_max_rad.to_degrees());
-            reasons.push(format!(
-                "all wraps together reach {most:.0} deg at {}, allowed are {allowed:.0} deg",
-                place(at)
-            ));
+            reasons.push(format!("total wrap {most:.0} deg at {}, limit {allowed:.0} deg", place(at)));
         }
         reasons.extend(self.left_out(certificate));
         if certificate.cut_crossings > 0 {
@@ -102,7 +99,7 @@ impl Reasons<'_> {
         } else {
             round.join(", ")
         };
-        Some(format!("{end_length_m:.1} m of cable stay out on return, hooked round {round}"))
+        Some(format!("{end_length_m:.1} m of tether stay out on return, hooked around {round}"))
     }
 
     fn name_of(&self, on: Option<Bearing>) -> String {

@@ -132,10 +132,10 @@ pub(super) fn trim(cut: &mut [Point]) {
 
 /// Merges cells that are too small with the neighbour that makes the most convex whole.
 pub(super) fn merged(mut cells: Vec<Cell>, workspace: &Workspace, columns: &[Column]) -> Vec<Cell> {
-    let least_m2 = (SMALL_SWATHS * workspace.swath_m).powi(2);
+    let min_area_m2 = (SMALL_SWATHS * workspace.swath_m).powi(2);
     let mut left_alone: Vec<Point> = Vec::new();
     loop {
-        let is_small = |cell: &Cell| cell.area_m2() < least_m2 && !left_alone.contains(&cell.center());
+        let is_small = |cell: &Cell| cell.area_m2() < min_area_m2 && !left_alone.contains(&cell.center());
         let Some(small) = cells.iter().position(is_small) else { return cells };
         let borders = borders(&cells, workspace, columns);
         let whole =

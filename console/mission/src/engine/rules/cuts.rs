@@ -2,7 +2,7 @@
 
 use world::{Point, polyline, tether::crossings};
 
-/// Distance from the end of a way home within which the plan behind it has begun, metres.
+/// Distance from the end of a return path within which the plan behind it has begun, metres.
 pub(in crate::engine) const HOME_M: f64 = 0.3;
 
 /// The lines that the plan never crosses, and whether the robot has.
@@ -10,7 +10,7 @@ pub(in crate::engine) const HOME_M: f64 = 0.3;
 pub(in crate::engine) struct CutsRule {
     /// Each with whether the robot is beyond it.
     lines: Vec<(Vec<Point>, bool)>,
-    /// Where the plan is bound to them from, after a way home; `None` once the robot has been there.
+    /// Where the plan is bound to them from, after a return path; `None` once the robot has been there.
     from: Option<Point>,
     seen_at: Point,
 }

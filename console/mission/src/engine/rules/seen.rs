@@ -28,7 +28,7 @@ pub(in crate::engine) struct Seen<'a> {
     pub touched: bool,
     /// The limit that the tether has reached in this tick.
     pub reached: Option<&'a TetherAlarm>,
-    /// Whether the mission puts ways home along the tether before plans.
+    /// Whether the mission puts return paths along the tether before plans.
     pub can_replan: bool,
     /// Whether the hull fits back along the tether.
     pub can_go_home: bool,

@@ -11,7 +11,7 @@ use world::Point;
 const MOST_TIMES_CAUGHT: usize = 2;
 /// Share of the reachable floor that is worth another try.
 const WORTH_IT: f64 = 0.01;
-/// A robot without a way home that nobody attends waits this long for one, seconds.
+/// A robot without a return path that nobody attends waits this long for one, seconds.
 const WAIT_FOR_HOME_S: f64 = 30.0;
 
 /// What the cable has done to the robot.
@@ -19,7 +19,7 @@ const WAIT_FOR_HOME_S: f64 = 30.0;
 pub(in crate::engine) struct TetherRule {
     /// Where the cable held the robot last.
     caught: Option<Caught>,
-    /// For how long the robot has been held without a way home, seconds.
+    /// For how long the robot has been held without a return path, seconds.
     waited_s: f64,
 }
 
@@ -70,7 +70,7 @@ impl TetherRule {
         }
     }
 
-    /// One tick of a robot that this rule holds until it has a way home; with nobody there to help the mission ends after
+    /// One tick of a robot that this rule holds until it has a return path; with nobody there to help the mission ends after
     /// a while.
     pub(crate) fn update_held(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
         if seen.can_go_home {

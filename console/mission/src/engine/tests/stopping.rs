@@ -59,7 +59,7 @@ fn alarmed() -> Flight {
 fn without_return_path() -> Flight {
     let mut flight = started(tethered(20.0));
     let hold =
-        Hold { by: HoldReason::Tether { message: "no way home".into() }, resumes: Resumes::WhenCleared };
+        Hold { by: HoldReason::Tether { message: "no return path".into() }, resumes: Resumes::WhenCleared };
     flight.mission.phase = Phase::Held(hold);
     flight
 }
@@ -93,7 +93,7 @@ fn cases() -> Vec<Case> {
         case("running, step unanswered", waiting_for(is_step, config()), at_once),
         case("position lost", lost(), |flight| flight.silent = false),
         case("ranges contradict", alarmed(), |flight| flight.excess_range_m.clear()),
-        case("no way home", without_return_path(), |_| {}),
+        case("no return path", without_return_path(), |_| {}),
         case("fallback opening", fallback_under_way(), at_once),
         case("planner silent", silent_planner(), at_once),
     ]

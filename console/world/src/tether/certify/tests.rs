@@ -58,7 +58,7 @@ fn a_path_round_a_column_is_refused_with_its_name() {
     assert!(certificate.end_length_m.is_some_and(|left_m| left_m > 7.9));
     let words = certificate.reasons.join("; ");
     assert!(
-        words.contains("stay out on return, hooked round C0") && words.contains("crosses cuts 1"),
+        words.contains("stay out on return, hooked around C0") && words.contains("crosses cuts 1"),
         "{words}"
     );
     // A mission that need not return is not refused for that.
@@ -73,7 +73,7 @@ fn limits_and_collisions_are_reported_with_place_and_figure() {
     let limits = Limits { reel_length_m: 9.0, wrap_max_rad: 0.1, wrap_total_max_rad: 0.2 };
     let certificate = certify(&Case { limits, ..case(&path, &columns, &[]) }).unwrap();
     let words = certificate.reasons.join("; ");
-    for part in ["by C0", "the reel holds 9.0 m", "round C", "all wraps together"] {
+    for part in ["by C0", "the reel holds 9.0 m", "round C", "total wrap"] {
         assert!(words.contains(part), "{part}: {words}");
     }
 }

@@ -14,7 +14,7 @@ use world::{Point, Shape};
 ///
 /// The mission has an active one, which drives, and at most one candidate, which is prepared to take over.
 #[derive(Default)]
-pub(super) struct Seat {
+pub(super) struct PlannerSlot {
     pub choice: PlannerChoice,
     /// Who it is, from the first time that it was opened.
     pub info: Option<PlannerInfo>,
@@ -75,7 +75,7 @@ pub(super) enum PlanState {
     Due {
         /// Why.
         reason: Reason,
-        /// Whether it is to begin at the anchor, after a way home: from here it was refused for the tether.
+        /// Whether it is to begin at the anchor, after a return path: from here it was refused for the tether.
         from_anchor: bool,
     },
     /// It is being flown.
@@ -124,9 +124,9 @@ pub(super) enum PendingKind {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct AskedPlan {
     pub reason: Reason,
-    /// The way home before the plan; empty for a plan from where the robot stood.
+    /// The return path before the plan; empty for a plan from where the robot stood.
     pub return_path: Vec<Point>,
-    /// Whether that way home was the second try.
+    /// Whether that return path was the second try.
     pub from_anchor: bool,
     /// Where the robot stood.
     pub here: Point,
@@ -141,7 +141,7 @@ pub(super) struct Arrived {
     pub late_ticks: Option<u64>,
 }
 
-impl Seat {
+impl PlannerSlot {
     /// A planner that has not been opened, and why it will be asked for a plan.
     pub(super) fn new(choice: PlannerChoice, reason: Reason) -> Self {
         Self { choice, plan: PlanState::due(reason), ..Self::default() }
