@@ -42,21 +42,20 @@ impl Reasons<'_> {
         reasons.extend(self.collision(certificate));
         if certificate.tether_length_max_m > limits.reel_length_m {
             let (most_m, at) = self.replay.max_cable;
-            let place = place(at);
-            reasons.push(format!(
-                "{most_m:.1} m of tether are out at {place}, the reel holds {:.1} m",
-                limits.reel_length_m
-            ));
+            let (place, reel_m) = (place(at), limits.reel_length_m);
+            reasons.push(format!("{most_m:.1} m of tether out at {place}, the reel holds {reel_m:.1} m"));
         }
         if certificate.wrap_max_rad > limits.wrap_max_rad {
-            let (most, allowed) = (self.replay.max_wrap.0.to_degrees(), limits.wrap_max_rad.to_degrees());
-            let on = self.name_of(self.replay.max_wrap.1);
-            reasons.push(format!("the tether wraps {most:.0} deg around {on}, limit {allowed:.0} deg"));
+            let (wrap_rad, on) = self.replay.max_wrap;
+            let (wrap, limit, on) =
+                (wrap_rad.to_degrees(), limits.wrap_max_rad.to_degrees(), self.name_of(on));
+            reasons.push(format!("tether wraps {wrap:.0}° around {on}, limit {limit:.0}°"));
         }
         if certificate.wrap_total_max_rad > limits.wrap_total_max_rad {
-            let (most, at) = self.replay.max_sum;
-            let (most, allowed) = (most.to_degrees(), limits.wrap_total_max_rad.to_degrees());
-            reasons.push(format!("total wrap {most:.0} deg at {}, limit {allowed:.0} deg", place(at)));
+            let (total_rad, at) = self.replay.max_sum;
+            let (total, limit, place) =
+                (total_rad.to_degrees(), limits.wrap_total_max_rad.to_degrees(), place(at));
+            reasons.push(format!("total tether wrap {total:.0}° at {place}, limit {limit:.0}°"));
         }
         reasons.extend(self.left_out(certificate));
         if certificate.cut_crossings > 0 {
@@ -71,8 +70,8 @@ impl Reasons<'_> {
     fn collision(&self, certificate: &Certificate) -> Option<String> {
         let (at, name) = self.clearance.first.as_ref()?;
         let lack = match certificate.collisions {
-            1 => "1 piece of the path lacks room,".to_owned(),
-            n => format!("{n} pieces of the path lack room, the first"),
+            1 => "1 segment of the path lacks room,".to_owned(),
+            n => format!("{n} segments of the path lack room, the first"),
         };
         Some(format!(
             "{lack} at {} by {name}: least room {:.3} m, needed {:.3} m",
@@ -99,7 +98,7 @@ impl Reasons<'_> {
         } else {
             round.join(", ")
         };
-        Some(format!("{end_length_m:.1} m of tether stay out on return, hooked around {round}"))
+        Some(format!("{end_length_m:.1} m of tether still out on return, hooked around {round}"))
     }
 
     fn name_of(&self, on: Option<Bearing>) -> String {

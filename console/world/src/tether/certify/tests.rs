@@ -58,7 +58,7 @@ fn a_path_round_a_column_is_refused_with_its_name() {
     assert!(certificate.end_length_m.is_some_and(|left_m| left_m > 7.9));
     let words = certificate.reasons.join("; ");
     assert!(
-        words.contains("stay out on return, hooked around C0") && words.contains("crosses cuts 1"),
+        words.contains("still out on return, hooked around C0") && words.contains("crosses cuts 1"),
         "{words}"
     );
     // A mission that need not return is not refused for that.
@@ -73,7 +73,7 @@ fn limits_and_collisions_are_reported_with_place_and_figure() {
     let limits = Limits { reel_length_m: 9.0, wrap_max_rad: 0.1, wrap_total_max_rad: 0.2 };
     let certificate = certify(&Case { limits, ..case(&path, &columns, &[]) }).unwrap();
     let words = certificate.reasons.join("; ");
-    for part in ["by C0", "the reel holds 9.0 m", "round C", "total wrap"] {
+    for part in ["by C0", "the reel holds 9.0 m", "around C", "total tether wrap"] {
         assert!(words.contains(part), "{part}: {words}");
     }
 }
@@ -86,11 +86,11 @@ fn a_collision_is_reported_at_the_narrowest_place_with_its_obstacle() {
     // Far from where the piece begins.
     let by_the_wall = words(&[(0., 0.), (9.9, 0.), (0., 0.)], &[]);
     assert!(
-        by_the_wall.contains("2 pieces of the path lack room, the first at 9.90, 0.00 m by the wall"),
+        by_the_wall.contains("2 segments of the path lack room, the first at 9.90, 0.00 m by the wall"),
         "{by_the_wall}"
     );
     let past = words(&[(0., 0.), (0., 0.5), (8., 0.5), (9., 2.), (0., 2.), (0., 0.)], &[column(0, 4.0, 0.0)]);
-    assert!(past.contains("1 piece of the path lacks room, at 4.00, 0.50 m by C0"), "{past}");
+    assert!(past.contains("1 segment of the path lacks room, at 4.00, 0.50 m by C0"), "{past}");
 }
 
 #[test]
