@@ -76,7 +76,7 @@ impl Sounder {
 fn apply_fault(set: &mut RangeSet, fault: &StationFault) {
     match fault.excess_range_m {
         Some(excess_range_m) => {
-            set.ranges_m.iter_mut().for_each(|range_m| *range_m = reported_m(*range_m + excess_range_m))
+            set.ranges_m.iter_mut().for_each(|range_m| *range_m = reported_m(*range_m + excess_range_m));
         }
         None => set.ranges_m.clear(),
     }
