@@ -126,6 +126,12 @@ mod tests {
     }
 
     #[test]
+    fn a_renamed_key_gets_its_new_name() {
+        let remedy = remedy("tether", keys("tether"), "reel_m", Some(9.0));
+        assert_eq!(remedy, "the key is now called `reel_length_m`");
+    }
+
+    #[test]
     fn a_missing_unit_is_named() {
         assert_eq!(remedy("ae", keys("ae"), "period", Some(1.0)), "`period_s` is the key, in s");
     }

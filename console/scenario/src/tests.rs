@@ -106,7 +106,7 @@ fn defaults_are_those_of_the_document() {
 fn a_tether_starts_where_the_robot_does_and_preset_points_may_be_written_out() {
     let text = SMALL
         .replace("kind = \"goto\"\ngoal_m = [3, 0]", "kind = \"follow\"\npath_m = [[-3, 0], [3, 0]]")
-        .replace("[planner]", "[tether]\nreel_m = 9\n[planner]");
+        .replace("[planner]", "[tether]\nreel_length_m = 9\n[planner]");
     let scenario = read(&text);
     let tether = scenario.mission.tether.expect("it has one");
     assert_eq!(tether.anchor, Point::new(-3.0, 0.0));
@@ -121,7 +121,7 @@ fn a_robot_that_comes_back_to_the_anchor_has_room_there() {
         let text = SMALL
             .replace("start_m = [-3, 0]", &format!("start_m = {start}"))
             .replace("kind = \"goto\"\ngoal_m = [3, 0]", &format!("kind = \"cover\"\n{mission}"))
-            .replace("[planner]", &format!("[tether]\nreel_m = 20\n{anchor}\n[planner]"));
+            .replace("[planner]", &format!("[tether]\nreel_length_m = 20\n{anchor}\n[planner]"));
         Scenario::parse(&text, "x.toml").map_err(|errors| errors.render())
     };
     let with = |anchor: &str, more: &str| cover("[-3, 0]", &format!("clearance_m = 0.1\n{more}"), anchor);
@@ -136,7 +136,7 @@ fn a_robot_that_comes_back_to_the_anchor_has_room_there() {
     let at_start = cover("[-4.6, 0]", "clearance_m = 0.3", "").expect_err("too near to the wall");
     assert!(at_start.contains("robot.start_m = [-4.6, 0]: must be at least 0.450 m away"), "{at_start}");
     // A mission that ends elsewhere may have its anchor in the shell.
-    let elsewhere = SMALL.replace("[planner]", "[tether]\nreel_m = 20\nanchor_m = [0, -5]\n[planner]");
+    let elsewhere = SMALL.replace("[planner]", "[tether]\nreel_length_m = 20\nanchor_m = [0, -5]\n[planner]");
     assert!(Scenario::parse(&elsewhere, "x.toml").is_ok());
 }
 
@@ -210,18 +210,18 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     ("[planner]", "[winch]\nlength_m = 30\n[planner]", "11:2: winch: unknown key"),
     (
         "[planner]",
-        "[tether]\nreel_m = 0\n[planner]",
-        "12:10: tether.reel_length_m = 0: must be greater than 0 m",
+        "[tether]\nreel_length_m = 0\n[planner]",
+        "12:17: tether.reel_length_m = 0: must be greater than 0 m",
     ),
     (
         "[planner]",
-        "[tether]\nreel_m = 9\nanchor_m = [0, 7]\n[planner]",
+        "[tether]\nreel_length_m = 9\nanchor_m = [0, 7]\n[planner]",
         "13:12: tether.anchor_m = [0, 7]: lies 2.000 m outside the tank",
     ),
     (
         "[planner]",
-        "[tether]\nreel_m = 1\nanchor_m = [0, 0]\n[planner]",
-        "12:10: tether.reel_length_m = 1: must be at least 3.00 m, the way from the anchor to the start",
+        "[tether]\nreel_length_m = 1\nanchor_m = [0, 0]\n[planner]",
+        "12:17: tether.reel_length_m = 1: must be at least 3.00 m, the way from the anchor to the start",
     ),
     (
         "kind = \"goto\"",

@@ -88,7 +88,7 @@ impl fmt::Display for TetherAlarm {
                 "tether snagged on an unmapped object: {paid_out_m:.1} m paid out, {explained_m:.1} m expected"
             ),
             Self::Strayed => f.write_str("robot crossed a cut of its plan; replanning"),
-            Self::NoReturnPath => f.write_str("no return path: hull does not fit along tether"),
+            Self::NoReturnPath => f.write_str("no return path: hull does not fit"),
         }
     }
 }

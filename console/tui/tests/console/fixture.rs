@@ -451,7 +451,7 @@ impl ScriptedMission {
 
     /// A plan cannot be certified and the robot is held.
     pub(crate) fn plan_refused(&self) -> Vec<Event> {
-        let reason = "31.4 m of tether stay out on return, hooked around C3";
+        let reason = "31.4 m of tether still out on return, hooked around C3";
         let message = format!("plan of rpf is not safe for the tether: {reason}");
         vec![self.certified(&[reason]), self.held(HoldReason::PlanRefused { message })]
     }

@@ -184,7 +184,7 @@ mod tests {
             (path.ours.unwrap() - 2.0 / 3.0).abs() < 1e-9 && (reeled.ours.unwrap() - 1.0 / 3.0).abs() < 1e-9
         );
         assert!(reeled.note.contains("seed 8 (9.0 m out)"), "{}", reeled.note);
-        assert!(of("certified_rate").note.contains("stay out on return"), "{}", of("certified_rate").note);
+        assert!(of("certified_rate").note.contains("still out on return"), "{}", of("certified_rate").note);
         assert_eq!((of("end_length_m").n, of("end_length_m_max").note.as_str()), (2, "seed 8"));
         assert_eq!((of("plan_time_ms").n, of("max_contacts_max").ours), (2, Some(1.0)));
         assert!(of("capstan_pull").ours.unwrap() > 1.0 && of("own_cable_share").ours.unwrap() > 0.0);
