@@ -67,7 +67,7 @@ fn one(Past { opened, run, .. }: &Past, json: bool) -> anyhow::Result<String> {
 pub(crate) fn export(run: &Path, rrd: &Path, logs: &LogsArg) -> anyhow::Result<ExitCode> {
     let folder = find(run, &logs.logs)?;
     if rrd.exists() {
-        return Err(bad_input(format!("{} exists already; recordings are never overwritten", rrd.display())));
+        return Err(bad_input(format!("{} already exists; recordings are never overwritten", rrd.display())));
     }
     let path = folder.join(JOURNAL_FILE);
     Ticks::open(&path)?.opened()?;

@@ -124,7 +124,8 @@ fn parameter_listing(info: &ParamInfo) -> String {
         ParamKind::Choice { options, default } => format!("{default} ({})", options.join(", ")),
     };
     let live = if info.live { ", live" } else { "" };
-    format!("      {:<18} {values} {}{live}\n", info.key, info.unit)
+    let unit = if info.unit.is_empty() { String::new() } else { format!(" {}", info.unit) };
+    format!("      {:<18} {values}{unit}{live}\n", info.key)
 }
 
 /// `tankops check`.

@@ -21,7 +21,7 @@ const MOST_BOXES: usize = 4000;
 pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let (output, min_area_m2) = (&args.output, args.min_area_m2);
     if output.exists() {
-        return Err(bad_input(format!("{} exists already; choose another name", output.display())));
+        return Err(bad_input(format!("{} already exists; choose another name", output.display())));
     }
     if !(min_area_m2.is_finite() && min_area_m2 >= 0.0) {
         return Err(bad_input(format!("--min-area-m2 {min_area_m2}: must be an area of 0 m² or more")));
@@ -80,7 +80,7 @@ fn print_advice(args: &RescanArgs, names: &[&str], instead: &[String]) -> anyhow
         ))?;
     }
     say_line(&format!(
-        "fly it with `tankops run --logs {logs} {output}{option}`; then `tankops report --logs {logs} {} RUN` shows all of them \
+        "run it with `tankops run --logs {logs} {output}{option}`; then `tankops report --logs {logs} {} RUN` shows them \
          together",
         names.join(" "),
     ))

@@ -29,7 +29,7 @@ use std::{collections::BTreeMap, path::Path, process::ExitCode};
 /// What was found.
 #[derive(Debug, Default)]
 struct Findings {
-    /// The first line that is not computed again.
+    /// The first line that is not recomputed.
     difference: Option<Difference>,
     /// What speaks against the file as a whole.
     doubt: Option<String>,
@@ -79,9 +79,7 @@ fn print_findings(findings: &Findings, plugins: &PluginDirs) -> anyhow::Result<(
     if let Some(Difference { tick, recorded, computed }) = difference {
         say_line(&format!("different from tick {tick} on\n  recorded: {recorded}\n  computed: {computed}"))?;
     } else if let Some(doubt) = doubt {
-        say_line(&format!(
-            "different: {doubt}; its {events} events up to tick {last_tick} are computed again"
-        ))?;
+        say_line(&format!("different: {doubt}; its {events} events up to tick {last_tick} are recomputed"))?;
     }
     for (planner, count) in planners.iter().flat_map(|asked| &asked.external) {
         say_line(&format!(
@@ -100,7 +98,7 @@ fn print_findings(findings: &Findings, plugins: &PluginDirs) -> anyhow::Result<(
         // A report counts the ticks that passed since the first one, which has the number 0.
         let how = if planners.is_some() { "" } else { " from the recorded answers" };
         say_line(&format!(
-            "equal: {events} events computed again{how}, byte for byte, from tick 0 to tick {last_tick}; {}",
+            "equal: {events} events recomputed{how}, byte for byte, from tick 0 to tick {last_tick}; {}",
             proven(planners.as_ref())
         ))?;
     }

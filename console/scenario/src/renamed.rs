@@ -1,6 +1,6 @@
 //! Keys that had other names in earlier versions.
 
-use toml_edit::{DocumentMut, Item, TableLike};
+use toml_edit::{DocumentMut, Item, Key, TableLike};
 
 /// Section, old name and today's name of each key that was renamed before 0.1.0 was finished.
 const RENAMED: &[(&str, &str, &str)] = &[
@@ -28,6 +28,16 @@ const RENAMED: &[(&str, &str, &str)] = &[
     ("expect", "left_out_max_m", "tether_end_length_max_m"),
 ];
 
+/// The same for parameters of planners, wherever a scenario sets them.
+const PARAMETERS: &[(&str, &str)] = &[
+    ("sum_wrap_deg", "wrap_total_deg"),
+    ("land_speed_m_per_s", "land_speed_max_m_per_s"),
+    ("underwater_speed_m_per_s", "underwater_speed_max_m_per_s"),
+];
+
+/// Where a scenario sets parameters of planners.
+const PARAMETER_SECTIONS: [&str; 2] = ["planner.parameters", "planner.fallback.parameters"];
+
 /// Today's name of a key of a section; `section` is a path as messages show it, such as `ae.faults.2`.
 pub(crate) fn todays_name(section: &str, old: &str) -> Option<&'static str> {
     let section = section.trim_end_matches(|c: char| c == '.' || c.is_ascii_digit());
@@ -37,14 +47,18 @@ pub(crate) fn todays_name(section: &str, old: &str) -> Option<&'static str> {
 /// A scenario's text with today's keys, for the scenarios in old journals; a text that is no TOML stays as it is.
 pub fn with_todays_keys(text: &str) -> String {
     let Ok(mut document) = text.parse::<DocumentMut>() else { return text.to_owned() };
-    for (section, old, new) in RENAMED {
+    let of_planner = |section| PARAMETERS.iter().map(move |(old, new)| (section, *old, *new));
+    let of_planners = PARAMETER_SECTIONS.into_iter().flat_map(of_planner);
+    for (section, old, new) in RENAMED.iter().copied().chain(of_planners) {
         let mut tables: Vec<&mut dyn TableLike> = vec![document.as_table_mut()];
         for part in section.split('.') {
             tables = tables.into_iter().filter_map(|table| table.get_mut(part)).flat_map(tables_of).collect();
         }
         for table in tables {
-            if let Some(item) = table.remove(old) {
-                table.insert(new, item);
+            // The comments before a key are part of it.
+            let key = table.key(old).map(|key| Key::new(new).with_leaf_decor(key.leaf_decor().clone()));
+            if let (Some(key), Some(item)) = (key, table.remove(old)) {
+                table.entry_format(&key).or_insert(item);
             }
         }
     }
@@ -79,9 +93,14 @@ mod tests {
 
     #[test]
     fn old_keys_become_todays_wherever_they_stand() {
-        let old = "[tether]\nreel_m = 3\n[[ae.faults]]\nstation = \"S1\"\nlate_m = 2.0\n";
+        let old = "[tether]\n# the reel\nreel_m = 3\n[[ae.faults]]\nstation = \"S1\"\nlate_m = 2.0\n";
         let new = with_todays_keys(old);
-        assert!(new.contains("reel_length_m = 3") && new.contains("excess_range_m = 2.0"), "{new}");
+        assert!(
+            new.contains("# the reel\nreel_length_m = 3") && new.contains("excess_range_m = 2.0"),
+            "{new}"
+        );
+        let old = "[planner]\nfallback = { parameters = { sum_wrap_deg = 9 } }\n";
+        assert!(with_todays_keys(old).contains("wrap_total_deg = 9"), "{}", with_todays_keys(old));
         assert!(with_todays_keys("ae = { dropout = 0.1 }").contains("dropout_probability = 0.1"));
         assert_eq!(with_todays_keys("not = toml ["), "not = toml [");
     }

@@ -65,6 +65,8 @@ pub fn with_todays_names(value: Value) -> Value {
 fn renamed((key, value): (String, Value)) -> (String, Value) {
     let value = match value {
         Value::String(word) if WORD_KEYS.contains(&key.as_str()) => Value::String(todays(WORDS, word)),
+        // Names of parameters are the planner's.
+        own if key == "parameters" => own,
         other => with_todays_names(other),
     };
     (todays(KEYS, key), value)
@@ -81,8 +83,8 @@ mod tests {
 
     #[test]
     fn keys_and_words_are_renamed_and_texts_are_not() {
-        let old = json!({ "event": "tether_alarmed", "alarm": { "sum_of_wraps": { "sum_rad": 2.0 } }, "text": "planner_said" });
-        let new = json!({ "event": "tether_alarm_raised", "alarm": { "wrap_total": { "sum_rad": 2.0 } }, "text": "planner_said" });
+        let old = json!({ "event": "tether_alarmed", "alarm": { "sum_of_wraps": { "sum_rad": 2.0 } }, "parameters": { "reel_m": 1 }, "text": "planner_said" });
+        let new = json!({ "event": "tether_alarm_raised", "alarm": { "wrap_total": { "sum_rad": 2.0 } }, "parameters": { "reel_m": 1 }, "text": "planner_said" });
         assert_eq!(with_todays_names(old), new);
         assert_eq!(with_todays_names(new.clone()), new);
     }
