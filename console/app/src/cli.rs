@@ -108,7 +108,7 @@ pub(crate) struct RescanArgs {
     #[arg(short = 'o', long, value_name = "SCENARIO")]
     pub output: PathBuf,
     /// Skip missed areas smaller than this, square metres; areas close together count as one.
-    #[arg(long, value_name = "AREA", default_value_t = 0.05)]
+    #[arg(long, value_name = "AREA", default_value_t = crate::rescan::MIN_AREA_M2)]
     pub min_area_m2: f64,
     #[command(flatten)]
     pub logs: LogsArg,
@@ -120,6 +120,12 @@ pub(crate) struct LogsArg {
     /// Folder that holds the runs.
     #[arg(long, value_name = "DIR", default_value = "logs")]
     pub logs: PathBuf,
+}
+
+impl Default for LogsArg {
+    fn default() -> Self {
+        Self { logs: PathBuf::from("logs") }
+    }
 }
 
 /// What may be changed in a scenario from the command line.
@@ -136,7 +142,7 @@ pub(crate) struct Changes {
     pub seed: Option<u64>,
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct ConsoleArgs {
     /// Scenario file; default: the demo.
     pub scenario: Option<PathBuf>,
@@ -144,9 +150,28 @@ pub(crate) struct ConsoleArgs {
     pub changes: Changes,
     #[command(flatten)]
     pub logs: LogsArg,
+    /// Speed of the simulation at first: 0.25 to 64 times real time, or `max`.
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = speed)]
+    pub speed: tui::Speed,
     /// Make a part of the console fail while the robot moves, to see that the run and the terminal survive it.
     #[arg(long, value_name = "PART", hide = true)]
     pub drill: Option<Drill>,
+}
+
+/// Reads a speed.
+///
+/// # Errors
+/// What it may be.
+fn speed(text: &str) -> Result<tui::Speed, String> {
+    match text.trim_start_matches(['x', '×']) {
+        "max" => Ok(tui::Speed::Max),
+        number => match number.parse::<f64>() {
+            Ok(factor) if (tui::Speed::SLOWEST..=tui::Speed::FASTEST).contains(&factor) => {
+                Ok(tui::Speed::Times(factor))
+            }
+            _ => Err(format!("must be {} to {}, or max", tui::Speed::SLOWEST, tui::Speed::FASTEST)),
+        },
+    }
 }
 
 /// A part of the console that fails on purpose.

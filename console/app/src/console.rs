@@ -1,51 +1,69 @@
 //! The console: engine, keys, signals and screen, each in a thread of its own; this one draws.
 
 mod crash;
+mod desk;
 mod engine;
 mod inbox;
+mod jobs;
 mod line;
+mod look;
 mod pace;
 mod screen;
 mod watch;
 
 use crate::{
-    cli::{Drill, LogsArg},
+    cli::{ConsoleArgs, Drill},
     failure::bad_input,
-    planners::{check_choices, surveyed},
+    planners::surveyed,
+    scenarios,
 };
-use engine::Engine;
+use desk::{Desk, DeskHandle, Request, Tools};
 use inbox::{Inbox, Outbox, inbox};
-use line::EngineHandle;
+use line::Current;
 use planner_host::PluginDirs;
 use runs::check_logs;
-use scenario::Scenario;
 use screen::{Left, Screen};
 use std::{
     io::IsTerminal,
     panic::{AssertUnwindSafe, catch_unwind},
     path::Path,
     process::ExitCode,
+    sync::Arc,
 };
-use tui::{Caps, Msg, Refused, terminal};
+use tui::{Caps, Model, Msg, Refused, RunId, Source, terminal};
 
-/// Opens the console on a scenario; returns when the operator leaves.
-pub(crate) fn open(
-    scenario: &Scenario,
-    logs: &LogsArg,
-    plugins: &PluginDirs,
-    drill: Option<Drill>,
-) -> anyhow::Result<ExitCode> {
+/// Opens the console on a scenario, or on the demo; returns when the operator leaves.
+pub(crate) fn open(args: &ConsoleArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     check_terminal()?;
+    let ConsoleArgs { changes, speed, drill, .. } = args;
+    let logs = &args.logs.logs;
+    let (source, scenario) = match &args.scenario {
+        Some(path) => (Source::File(path.display().to_string()), scenarios::read(path, changes)?),
+        None => (Source::Demo, scenarios::demo_with(changes)?),
+    };
     let (found, refused) = surveyed(plugins);
-    check_choices(scenario, &found)?;
-    check_logs(&logs.logs)?;
+    check_logs(logs)?;
     let (outbox, inbox) = inbox();
-    let engine = Engine::start(scenario, &logs.logs, plugins, outbox.clone(), drill)?;
+    let tools = Tools {
+        logs: logs.clone(),
+        plugins: plugins.clone(),
+        planners: Arc::new(found.clone()),
+        outbox: outbox.clone(),
+    };
+    let mut desk = Desk::new(tools, changes.clone(), *speed, *drill);
+    let run = RunId(1);
+    // Before the screen opens, so that its first frame shows the scenario and every key counts.
+    desk.open(run, &scenario)?;
     let refused = refused.into_iter().map(|(plugin, reason)| Refused { plugin, reason }).collect();
     outbox.send(Msg::Planners { found, refused });
-    let left = show(&engine.handle(), &logs.logs, (outbox, inbox), drill);
+    let current = desk.current();
+    let (desk, thread) = desk.start()?;
+    desk.request(Request::Look);
+    let left =
+        show(&Model::opened(run, source, *speed), logs, (outbox, inbox), (current, desk.clone()), *drill);
     // Whatever happened to the screen, the run is closed cleanly.
-    let closed = engine.close(left.as_ref().is_ok_and(|left| left.signal.is_some()));
+    desk.request(Request::Leave { hurry: left.as_ref().is_ok_and(|left| left.signal.is_some()) });
+    let closed = thread.join().map_err(|_| anyhow::anyhow!("the thread that closes the run panicked"))?;
     Ok(left?.report_end(closed?.as_ref()))
 }
 
@@ -62,9 +80,10 @@ fn check_terminal() -> anyhow::Result<()> {
 }
 
 fn show(
-    engine: &EngineHandle,
+    model: &Model,
     logs: &Path,
     (outbox, inbox): (Outbox, Inbox),
+    (current, desk): (Current, DeskHandle),
     drill: Option<Drill>,
 ) -> anyhow::Result<Left> {
     let caps = Caps::from_env(|name| std::env::var(name).ok());
@@ -73,10 +92,10 @@ fn show(
         let panicked = Msg::ThreadPanicked { thread: thread.into(), message: message.into() };
         panic_outbox.send_urgent(panicked);
     });
-    let mut screen = Screen::open(caps, inbox, engine.clone(), drill)?;
-    watch::keys(&outbox, engine.clone())?;
-    watch::signals(&outbox, engine.clone())?;
-    watch::terminal(&outbox, engine.clone())?;
+    let mut screen = Screen::open(caps, model.clone(), inbox, (current.clone(), desk), drill)?;
+    watch::keys(&outbox, current.clone())?;
+    watch::signals(&outbox, current.clone())?;
+    watch::terminal(&outbox, current.clone())?;
     drop(outbox);
     let ran = catch_unwind(AssertUnwindSafe(|| screen.run()));
     ran.unwrap_or_else(|_| Err(crash::report(logs, screen.model())))

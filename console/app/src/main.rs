@@ -22,11 +22,11 @@ mod tune;
 mod verify;
 
 use clap::Parser;
-use cli::{Cli, Command, LogsArg};
+use cli::{Cli, Command, ConsoleArgs, LogsArg};
 use failure::{BAD_INPUT, INTERNAL, bad_input, is_input};
 use output::warn_line;
 use planner_host::PluginDirs;
-use std::{io::IsTerminal, path::PathBuf, process::ExitCode, sync::Arc};
+use std::{io::IsTerminal, process::ExitCode, sync::Arc};
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -64,9 +64,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
     let plugins = PluginDirs::standard(&cli.plugins.plugin_dir);
     match cli.command {
         None => by_default(&plugins),
-        Some(Command::Console(args)) => {
-            console::open(&scenarios::of_console(&args)?, &args.logs, &plugins, args.drill)
-        }
+        Some(Command::Console(args)) => console::open(&args, &plugins),
         Some(Command::Run(args)) => headless::run(&args, &plugins),
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
@@ -89,14 +87,13 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
 
 /// The console on the demo, or, without a terminal, the demo flown headless.
 fn by_default(plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
-    let (scenario, logs) = (scenarios::demo()?, LogsArg { logs: PathBuf::from("logs") });
     if std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
-        return console::open(&scenario, &logs, plugins, None);
+        return console::open(&ConsoleArgs::default(), plugins);
     }
     headless::fly(
-        &scenario,
+        &scenarios::demo()?,
         plugins,
-        &logs,
+        &LogsArg::default(),
         headless::RunOptions { json: false, record: true, live_deadlines: false },
     )
 }

@@ -50,6 +50,11 @@ pub(crate) fn report(
     Ok(ExitCode::from(COMPLETE))
 }
 
+/// The report of the run in a folder, for people.
+pub(crate) fn text_of(folder: &Path) -> anyhow::Result<String> {
+    one(&Past::read(folder)?, false)
+}
+
 /// Past runs that the user named.
 pub(crate) fn read_all(runs: &[PathBuf], logs: &LogsArg) -> anyhow::Result<Vec<Past>> {
     runs.iter().map(|run| Ok(Past::read(&find(run, &logs.logs)?)?)).collect()

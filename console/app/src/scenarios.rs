@@ -1,9 +1,6 @@
 //! The scenario that a command line names.
 
-use crate::{
-    cli::{Changes, ConsoleArgs},
-    failure::bad_input,
-};
+use crate::{cli::Changes, failure::bad_input};
 use scenario::{Scenario, Settings};
 use std::path::Path;
 
@@ -12,16 +9,13 @@ const DEMO: &str = include_str!("../../../scenarios/demo.toml");
 
 /// The demo.
 pub(crate) fn demo() -> anyhow::Result<Scenario> {
-    Scenario::parse(DEMO, "the demo scenario").map_err(|errors| bad_input(errors.render()))
+    demo_with(&Changes::default())
 }
 
-/// The scenario to open the console on.
-pub(crate) fn of_console(args: &ConsoleArgs) -> anyhow::Result<Scenario> {
-    match &args.scenario {
-        Some(path) => read(path, &args.changes),
-        None => Scenario::parse_with(DEMO, "the demo scenario", &settings(&args.changes))
-            .map_err(|errors| bad_input(errors.render())),
-    }
+/// The demo with what the command line changes in it.
+pub(crate) fn demo_with(changes: &Changes) -> anyhow::Result<Scenario> {
+    Scenario::parse_with(DEMO, "the demo scenario", &settings(changes))
+        .map_err(|errors| bad_input(errors.render()))
 }
 
 /// Reads a scenario with what the command line changes in it.

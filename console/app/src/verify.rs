@@ -50,14 +50,30 @@ pub(crate) fn verify(
     plugins: &PluginDirs,
     from_journal: bool,
 ) -> anyhow::Result<ExitCode> {
-    let folder = find(run, &logs.logs)?;
-    let path = folder.join(JOURNAL_FILE);
-    let mut findings = compare(&path, (!from_journal).then_some(plugins))?;
-    let sha256 = sha256(&path).with_context(|| format!("reading {}", path.display()))?;
-    findings.doubt = journal_doubt(&folder, Some(&sha256))
-        .or_else(|| findings.no_end.as_ref().and_then(|_| end_is_missing(&folder)));
-    print_findings(&findings, plugins)?;
+    let findings = findings(&find(run, &logs.logs)?, (!from_journal).then_some(plugins))?;
+    for line in lines(&findings, plugins) {
+        say_line(&line)?;
+    }
     Ok(ExitCode::from(if findings.are_equal() { COMPLETE } else { ENDED_OTHERWISE }))
+}
+
+/// What is found of the run in a folder, in one line.
+///
+/// # Errors
+/// Its journal cannot be read, or the run is different.
+pub(crate) fn verdict(folder: &Path, plugins: &PluginDirs) -> anyhow::Result<String> {
+    let findings = findings(folder, Some(plugins))?;
+    let text = lines(&findings, plugins).join("; ");
+    if findings.are_equal() { Ok(text) } else { anyhow::bail!(text) }
+}
+
+fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
+    let path = folder.join(JOURNAL_FILE);
+    let mut findings = compare(&path, plugins)?;
+    let sha256 = sha256(&path).with_context(|| format!("reading {}", path.display()))?;
+    findings.doubt = journal_doubt(folder, Some(&sha256))
+        .or_else(|| findings.no_end.as_ref().and_then(|_| end_is_missing(folder)));
+    Ok(findings)
 }
 
 impl Findings {
@@ -71,38 +87,38 @@ impl Findings {
     }
 }
 
-fn print_findings(findings: &Findings, plugins: &PluginDirs) -> anyhow::Result<()> {
+/// What was found, in lines for people.
+fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     let Findings { difference, doubt, no_end, planners, events, last_tick, .. } = findings;
+    let mut lines = Vec::new();
     if let Some(why) = no_end {
-        say_line(&format!("note: the journal has no end ({why}); what it holds before is compared"))?;
+        lines.push(format!("note: the journal has no end ({why}); what it holds before is compared"));
     }
     if let Some(Difference { tick, recorded, computed }) = difference {
-        say_line(&format!("different from tick {tick} on\n  recorded: {recorded}\n  computed: {computed}"))?;
+        lines.push(format!("different from tick {tick} on\n  recorded: {recorded}\n  computed: {computed}"));
     } else if let Some(doubt) = doubt {
-        say_line(&format!("different: {doubt}; its {events} events up to tick {last_tick} are recomputed"))?;
+        lines.push(format!("different: {doubt}; its {events} events up to tick {last_tick} are recomputed"));
     }
-    for (planner, count) in planners.iter().flat_map(|asked| &asked.external) {
-        say_line(&format!(
+    lines.extend(planners.iter().flat_map(|asked| &asked.external).map(|(planner, count)| {
+        format!(
             "note: faults of planner {planner} from outside or by the clock, taken from the journal: {count}"
-        ))?;
-    }
+        )
+    }));
     if let Some(why) = findings.other_answer() {
-        say_line(&format!("different: {why}; the mission repeats from the recorded answers"))?;
+        lines.push(format!("different: {why}; the mission repeats from the recorded answers"));
     }
     if difference.is_some() || findings.other_answer().is_some() {
-        for note in planner_changes(&findings.builds, plugins) {
-            say_line(&format!("note: {note}"))?;
-        }
+        lines.extend(planner_changes(&findings.builds, plugins).iter().map(|note| format!("note: {note}")));
     }
     if findings.are_equal() {
         // A report counts the ticks that passed since the first one, which has the number 0.
         let how = if planners.is_some() { "" } else { " from the recorded answers" };
-        say_line(&format!(
+        lines.push(format!(
             "equal: {events} events recomputed{how}, byte for byte, from tick 0 to tick {last_tick}; {}",
             proven(planners.as_ref())
-        ))?;
+        ));
     }
-    Ok(())
+    lines
 }
 
 /// What is proven of the planners of a run that is equal.

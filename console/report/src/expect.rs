@@ -87,6 +87,17 @@ impl Expect {
         Summary { violations: Some(self.check(&run).iter().map(ToString::to_string).collect()), ..run }
     }
 
+    /// How the run is expected to end, in a few words for people; empty if the bounds say nothing of it.
+    pub fn words(&self) -> String {
+        let outcome = self.outcome.map(|outcome| outcome.word().to_owned());
+        let coverage = self
+            .coverage_reachable_min
+            .map(|share| format!("at least {:.1} % of reachable floor", 100.0 * share));
+        let time = self.mission_time_max_s.map(|time_s| format!("within {:.0} min", (time_s / 60.0).ceil()));
+        let collisions = self.collisions_max.filter(|most| *most == 0).map(|_| "no collision".to_owned());
+        [outcome, coverage, time, collisions].into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
+
     /// The bounds that a run did not keep. A figure that is absent keeps no bound.
     pub fn check(&self, run: &Summary) -> Vec<Miss> {
         use Side::{AtLeast, AtMost};

@@ -26,6 +26,11 @@ impl Kept {
         self.problem.clone().or_else(missing)
     }
 
+    /// Name of the folder.
+    pub fn name(&self) -> String {
+        self.folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
     /// The last line about the run.
     pub fn text(&self) -> String {
         let folder = self.folder.display();

@@ -89,7 +89,9 @@ fn is_missing(folder: &Path) -> bool {
     !folder.as_os_str().is_empty() && folder.symlink_metadata().is_err()
 }
 
-fn free_bytes(folder: &Path) -> Option<u64> {
+/// Space left where runs are kept, bytes, or where the folder would be created; `None` if the system does not say.
+pub fn free_bytes(logs: &Path) -> Option<u64> {
+    let folder = logs.ancestors().find(|part| part.is_dir()).unwrap_or(Path::new("."));
     let space = rustix::fs::statvfs(folder).ok()?;
     (space.f_blocks > 0).then(|| space.f_bavail.saturating_mul(space.f_frsize))
 }

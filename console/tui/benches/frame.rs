@@ -16,7 +16,7 @@ use mission::{Event, EventKind};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use std::time::{Duration, Instant};
-use tui::{Msg, update, view};
+use tui::{Msg, RunMsg, view};
 use world::{CellRun, Point};
 
 /// Frames behind the percentiles.
@@ -44,11 +44,11 @@ fn long_mission() -> Screen {
     };
     let covered = EventKind::Covered { runs: vec![CellRun(0, 34_000)] };
     let mut events: Vec<Event> = [planned, covered].map(|kind| screen.mission.now(kind)).into();
-    let pose = screen.model.position.pose.expect("the fixture has driven");
+    let pose = screen.model.live.run.position.pose.expect("the fixture has driven");
     events.extend(path.into_iter().map(|position| {
         screen.mission.now(EventKind::Estimated { pose: planner_api::PoseEstimate { position, ..pose } })
     }));
-    screen.send(Msg::Events(events));
+    screen.hear(RunMsg::Events(events));
     screen
 }
 
@@ -56,7 +56,7 @@ fn frame(criterion: &mut Criterion) {
     for (width, height) in [(80, 24), (120, 36), (200, 60), (300, 100)] {
         let mut screen = long_mission();
         screen.send(Msg::Resize { width, height });
-        let scanned = screen.model.coverage.as_ref().map_or(0, |raster| raster.counts().covered);
+        let scanned = screen.model.live.run.coverage.as_ref().map_or(0, |raster| raster.counts().covered);
         let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a screen in memory");
         let mut draw = || terminal.draw(|frame| view(&screen.model, &RICH, frame)).map(drop).expect("memory");
         let mut times: Vec<Duration> = (0..FRAMES)
@@ -78,7 +78,7 @@ fn fold(criterion: &mut Criterion) {
     criterion.bench_function("update_with_one_tick_of_events", |bencher| {
         bencher.iter(|| {
             let events = screen.mission.drive(1);
-            update(&mut screen.model, Msg::Events(events))
+            screen.hear(RunMsg::Events(events))
         });
     });
 }

@@ -59,18 +59,6 @@ pub enum ActionId {
     Severity,
     /// Filter the events by text.
     Filter,
-    /// Towards newer events.
-    Newer,
-    /// Towards older events.
-    Older,
-    /// A page towards newer events.
-    PageNewer,
-    /// A page towards older events.
-    PageOlder,
-    /// The newest event.
-    Newest,
-    /// The oldest event.
-    Oldest,
     /// Go to the next pane.
     NextPane,
     /// Go to the previous pane.
@@ -79,6 +67,24 @@ pub enum ActionId {
     Commands,
     /// Show keys and commands.
     Help,
+    /// Show what there is to open.
+    GoHome,
+    /// Show the mission before it moves.
+    GoPlan,
+    /// Show the mission under way.
+    GoMission,
+    /// Show what the mission has achieved.
+    GoResult,
+    /// Scan what a run has missed.
+    Rescan,
+    /// Compute a run again and compare it with its journal.
+    Verify,
+    /// Write the report of a run.
+    Report,
+    /// Open the recording of a run in its viewer.
+    View,
+    /// Go back to the screen before; on the first one, leave.
+    Back,
     /// Leave the console.
     Leave,
     /// Agree, or take the selected line.
@@ -89,6 +95,14 @@ pub enum ActionId {
     Up,
     /// Select the line below.
     Down,
+    /// A page up.
+    PageUp,
+    /// A page down.
+    PageDown,
+    /// The first line.
+    First,
+    /// The last line.
+    Last,
     /// Type a value.
     Edit,
 }
@@ -180,47 +194,54 @@ impl Action {
 pub const ACTIONS: &[Action] = &[
     action(ActionId::Hold, "hold", "HOLD now; if held, ask to resume", &[Key::Char(' ')], &[Context::Anywhere]).label("HOLD"),
     action(ActionId::Interrupt, "interrupt", "HOLD now; twice: ask to quit", &[Key::Ctrl('c')], &[Context::Anywhere]),
-    action(ActionId::Start, "start", "Start the mission", &[Key::Char('S')], &[Context::Mission]).label("start").risk(Risk::Moves),
-    action(ActionId::Resume, "resume", "Resume after a hold", &[], &[Context::Mission]).risk(Risk::Moves),
-    action(ActionId::FlyUncertified, "fly-uncertified", "Run a plan refused because of the tether", &[], &[Context::Mission]).risk(Risk::Moves),
+    action(ActionId::Start, "start", "Start the mission", &[Key::Char('S')], &[Context::Plan, Context::Mission]).label("start").risk(Risk::Moves),
+    action(ActionId::Resume, "resume", "Resume after a hold", &[], &[Context::Screen]).risk(Risk::Moves),
+    action(ActionId::FlyUncertified, "fly-uncertified", "Run a plan refused because of the tether", &[], &[Context::Screen]).risk(Risk::Moves),
     action(ActionId::Step, "step", "Move for one tick (while held)", &[Key::Char('.')], &[Context::Mission]).label("step").risk(Risk::Moves),
-    action(ActionId::Slower, "slower", "Slower simulation", &[Key::Char('<')], &[Context::Mission]).label("speed").repeats(),
-    action(ActionId::Faster, "faster", "Faster simulation", &[Key::Char('>')], &[Context::Mission]).label("speed").repeats(),
-    action(ActionId::Abort, "end", "HOLD, then ask to end the mission", &[Key::Char('X')], &[Context::Mission]).label("end").risk(Risk::Destroys),
-    action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[Context::Mission]).label("planner").risk(Risk::Moves),
-    action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[Context::Mission]).label("parameters"),
-    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &[Context::Mission]).label("ack"),
-    action(ActionId::Commands, "commands", "Find a command by name", &[Key::Char(':'), Key::Ctrl('p')], &[Context::Mission]).label("command"),
-    action(ActionId::Help, "help", "Show keys and commands", &[Key::Char('?'), Key::F(1)], &[Context::Mission]).label("keys"),
-    action(ActionId::NextPane, "next-pane", "Go to the next pane", &[Key::Tab], &[Context::Mission]).label("pane").repeats(),
-    action(ActionId::PreviousPane, "previous-pane", "Go to the previous pane", &[Key::BackTab], &[Context::Mission]).repeats(),
-    action(ActionId::Leave, "quit", "Quit; a running mission is held first", &[Key::Char('q')], &[Context::Mission]).label("quit"),
-    action(ActionId::ZoomIn, "zoom-in", "Zoom in", &[Key::Char('z')], &[Context::Mission]).repeats(),
-    action(ActionId::ZoomOut, "zoom-out", "Zoom out", &[Key::Char('Z')], &[Context::Mission]).repeats(),
-    action(ActionId::WholeTank, "whole-tank", "Show the whole tank", &[Key::Char('0')], &[Context::Mission]),
-    action(ActionId::Follow, "follow", "Keep the map centred on the robot", &[Key::Char('f')], &[Context::Mission]),
-    action(ActionId::Layers, "layers", "Show or hide map layers", &[Key::Char('L')], &[Context::Mission]),
+    action(ActionId::Slower, "slower", "Slower simulation", &[Key::Char('<')], &[Context::Screen]).label("speed").repeats(),
+    action(ActionId::Faster, "faster", "Faster simulation", &[Key::Char('>')], &[Context::Screen]).label("speed").repeats(),
+    action(ActionId::Abort, "end", "HOLD, then ask to end the mission", &[Key::Char('X')], &[Context::Screen]).label("end").risk(Risk::Destroys),
+    action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[Context::Plan, Context::Mission]).label("planner").risk(Risk::Moves),
+    action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[Context::Plan, Context::Mission]).label("parameters"),
+    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &[Context::Screen]).label("ack"),
+    action(ActionId::Rescan, "rescan", "Scan what a run has missed", &[Key::Char('r')], &[Context::Home, Context::Result]).label("re-scan"),
+    action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[Context::Home, Context::Result]).label("verify"),
+    action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[Context::Home, Context::Result]).label("report"),
+    action(ActionId::View, "view", "Open the recording of a run in rerun", &[Key::Char('o')], &[Context::Home, Context::Result]).label("rerun"),
+    action(ActionId::Commands, "commands", "Find a command by name", &[Key::Char(':'), Key::Ctrl('p')], &[Context::Screen]).label("command"),
+    action(ActionId::Help, "help", "Show keys and commands", &[Key::Char('?'), Key::F(1)], &[Context::Screen]).label("keys"),
+    action(ActionId::NextPane, "next-pane", "Go to the next pane", &[Key::Tab], &[Context::Screen]).label("pane").repeats(),
+    action(ActionId::PreviousPane, "previous-pane", "Go to the previous pane", &[Key::BackTab], &[Context::Screen]).repeats(),
+    action(ActionId::GoHome, "home", "Screen 1: scenarios and past runs", &[Key::Char('1')], &[Context::Screen]),
+    action(ActionId::GoPlan, "plan", "Screen 2: the plan before it moves", &[Key::Char('2')], &[Context::Screen]),
+    action(ActionId::GoMission, "mission", "Screen 3: the mission", &[Key::Char('3')], &[Context::Screen]),
+    action(ActionId::GoResult, "result", "Screen 7: what was achieved", &[Key::Char('7')], &[Context::Screen]),
+    action(ActionId::Back, "back", "Go back; the mission goes on", &[Key::Char('q')], &[Context::Screen]).label("back"),
+    action(ActionId::Leave, "quit", "Quit; a running mission is held first", &[], &[Context::Screen]),
+    action(ActionId::ZoomIn, "zoom-in", "Zoom in", &[Key::Char('z')], &[Context::Map]).repeats(),
+    action(ActionId::ZoomOut, "zoom-out", "Zoom out", &[Key::Char('Z')], &[Context::Map]).repeats(),
+    action(ActionId::WholeTank, "whole-tank", "Show the whole tank", &[Key::Char('0')], &[Context::Map]),
+    action(ActionId::Follow, "follow", "Keep the map centred on the robot", &[Key::Char('f')], &[Context::Map]),
+    action(ActionId::Layers, "layers", "Show or hide map layers", &[Key::Char('L')], &[Context::Map]),
     action(ActionId::Severity, "severity", "Minimum severity of the events shown", &[Key::Char('m')], &[Context::Mission]),
-    action(ActionId::Filter, "filter", "Filter events by text", &[Key::Char('/')], &[Context::Mission]),
-    action(ActionId::PanLeft, "pan-west", "Pan the map west", &[Key::Left, Key::Char('h')], &[Context::Map]).repeats(),
-    action(ActionId::PanRight, "pan-east", "Pan the map east", &[Key::Right, Key::Char('l')], &[Context::Map]).repeats(),
-    action(ActionId::PanUp, "pan-north", "Pan the map north", &[Key::Up, Key::Char('k')], &[Context::Map]).repeats(),
-    action(ActionId::PanDown, "pan-south", "Pan the map south", &[Key::Down, Key::Char('j')], &[Context::Map]).repeats(),
-    action(ActionId::Newer, "newer", "Scroll to newer events", &[Key::Up, Key::Char('k')], &[Context::Events]).repeats(),
-    action(ActionId::Older, "older", "Scroll to older events", &[Key::Down, Key::Char('j')], &[Context::Events]).repeats(),
-    action(ActionId::PageNewer, "page-newer", "Scroll one page to newer events", &[Key::PageUp, Key::Ctrl('u')], &[Context::Events]).repeats(),
-    action(ActionId::PageOlder, "page-older", "Scroll one page to older events", &[Key::PageDown, Key::Ctrl('d')], &[Context::Events]).repeats(),
-    action(ActionId::Newest, "newest", "Go to the newest event", &[Key::Home, Key::Char('g')], &[Context::Events]),
-    action(ActionId::Oldest, "oldest", "Go to the oldest event", &[Key::End, Key::Char('G')], &[Context::Events]),
+    action(ActionId::Filter, "filter", "Filter the list by text", &[Key::Char('/')], &[Context::Home, Context::Mission]),
+    action(ActionId::PanLeft, "pan-west", "Pan the map west", &[Key::Left, Key::Char('h')], &[Context::Pan]).repeats(),
+    action(ActionId::PanRight, "pan-east", "Pan the map east", &[Key::Right, Key::Char('l')], &[Context::Pan]).repeats(),
+    action(ActionId::PanUp, "pan-north", "Pan the map north", &[Key::Up, Key::Char('k')], &[Context::Pan]).repeats(),
+    action(ActionId::PanDown, "pan-south", "Pan the map south", &[Key::Down, Key::Char('j')], &[Context::Pan]).repeats(),
     action(ActionId::Redraw, "redraw", "Redraw the screen", &[Key::Ctrl('l')], &[Context::Anywhere]),
     action(ActionId::Suspend, "suspend", "HOLD, then suspend to the shell (fg)", &[Key::Ctrl('z')], &[Context::Anywhere]),
     action(ActionId::Edit, "edit", "Edit the value", &[Key::Char('e')], &[Context::Parameters]).label("edit"),
-    action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::List, Context::Text, Context::Confirm, Context::Stepping]).label("yes"),
+    action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::Rows, Context::Text, Context::Confirm, Context::Stepping]).label("yes"),
     action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("step").risk(Risk::Moves),
     action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc], &[Context::Text, Context::Stepping]).label("cancel"),
     action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm]).label("cancel"),
-    action(ActionId::Up, "up", "Select the line above", &[Key::Up, Key::Char('k')], &[Context::List]).repeats(),
-    action(ActionId::Down, "down", "Select the line below", &[Key::Down, Key::Char('j')], &[Context::List]).repeats(),
+    action(ActionId::Up, "up", "Select the line above", &[Key::Up, Key::Char('k')], &[Context::Rows]).repeats(),
+    action(ActionId::Down, "down", "Select the line below", &[Key::Down, Key::Char('j')], &[Context::Rows]).repeats(),
+    action(ActionId::PageUp, "page-up", "Ten lines up", &[Key::PageUp, Key::Ctrl('u')], &[Context::Rows]).repeats(),
+    action(ActionId::PageDown, "page-down", "Ten lines down", &[Key::PageDown, Key::Ctrl('d')], &[Context::Rows]).repeats(),
+    action(ActionId::First, "first", "Go to the first line", &[Key::Home, Key::Char('g')], &[Context::Rows]),
+    action(ActionId::Last, "last", "Go to the last line", &[Key::End, Key::Char('G')], &[Context::Rows]),
     action(ActionId::Up, "up", "Select the line above", &[Key::Up], &[Context::Commands]).repeats(),
     action(ActionId::Down, "down", "Select the line below", &[Key::Down], &[Context::Commands]).repeats(),
 ];
@@ -230,11 +251,15 @@ mod tests {
     use super::*;
 
     /// Every set of contexts that can be active together.
-    const TOGETHER: [&[Context]; 8] = [
-        &[Context::Anywhere, Context::Mission, Context::Map],
-        &[Context::Anywhere, Context::Mission, Context::Events],
-        &[Context::Anywhere, Context::List],
-        &[Context::Anywhere, Context::List, Context::Parameters],
+    const TOGETHER: [&[Context]; 12] = [
+        &[Context::Anywhere, Context::Screen, Context::Home, Context::Rows],
+        &[Context::Anywhere, Context::Screen, Context::Plan, Context::Map, Context::Pan],
+        &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Pan],
+        &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Rows],
+        &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map],
+        &[Context::Anywhere, Context::Screen, Context::Result, Context::Map, Context::Rows],
+        &[Context::Anywhere, Context::List, Context::Rows],
+        &[Context::Anywhere, Context::List, Context::Rows, Context::Parameters],
         &[Context::Anywhere, Context::Text],
         &[Context::Anywhere, Context::Text, Context::Commands],
         &[Context::Anywhere, Context::Confirm],

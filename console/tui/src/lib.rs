@@ -17,7 +17,7 @@ pub mod view;
 
 pub use caps::{Caps, Colours, Glyphs};
 pub use keys::{Key, KeyPress};
-pub use model::{Health, Model, Recording, Refused, Speed, Times};
+pub use model::{Health, Model, Recording, Refused, RunId, RunResult, Source, Speed, Times};
 pub use theme::{Role, Theme};
-pub use update::{Effect, Msg, Signal, update};
+pub use update::{Effect, Job, Msg, RunMsg, Signal, update};
 pub use view::{view, view_with};

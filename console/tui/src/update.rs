@@ -1,18 +1,20 @@
 //! Messages into the model; what has to be done outside comes back as effects.
 
 mod act;
+mod go;
+mod hear;
 mod message;
 mod offer;
 mod overlay;
 mod send;
 
 pub use act::act;
-pub use message::{Effect, Msg, Signal};
+pub use message::{Effect, Job, Msg, RunMsg, Signal};
 pub use offer::offered;
 
 use crate::actions::{ActionId, context::contexts, find};
 use crate::keys::{Key, KeyPress};
-use crate::model::{Busy, Cause, Health, Model, Overlay, Pane, Recording, Refused, ui::Arrangement};
+use crate::model::{Cause, Model, Overlay, Pane, Refused, ui::Arrangement};
 use mission::{PlannerInfo, Severity};
 use send::hold_now;
 
@@ -20,7 +22,7 @@ use send::hold_now;
 ///
 /// Pure: the same model and message give the same model and effects.
 pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
-    let alarms_before = model.alarms.unacknowledged(Severity::Crit);
+    let alarms_before = model.live.run.alarms.unacknowledged(Severity::Crit);
     let mut effects = Vec::new();
     match msg {
         Msg::Key(press) => effects = press_key(model, press),
@@ -32,34 +34,21 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         }
         Msg::Paste(text) => overlay::paste(model, &text),
         Msg::Resize { width, height } => resize(model, width, height),
-        Msg::Events(events) => events.iter().for_each(|event| model.fold(event)),
         Msg::Time(now) => model.console.now = now,
-        Msg::Health(health) => take_health(model, health),
+        Msg::Run(id, msg) => effects = hear::hear(model, id, msg),
+        Msg::Found(found) => model.home.found = Some(*found),
+        Msg::Done(job, result) => effects = go::done(model, &job, result),
         Msg::Planners { found, refused } => take_planners(model, found, refused),
         Msg::Notice { severity, text } => news(model, Cause::Console, severity, text),
-        Msg::OrderFailed { order, why } => {
-            model.answered(&order);
-            news(model, Cause::Console, Severity::Crit, why);
-        }
-        Msg::Busy(work) => {
-            let since_mono_s = model.console.now.mono_s;
-            model.console.busy = work.map(|(work, limit_s)| Busy { work, limit_s, since_mono_s, at: None });
-        }
-        Msg::BusyAt { share, what } => {
-            // Progress that is reported after the work is done is ignored.
-            if let Some(busy) = &mut model.console.busy {
-                busy.at = Some((share, what));
-            }
-        }
     }
-    if model.alarms.unacknowledged(Severity::Crit) > alarms_before {
+    if model.live.run.alarms.unacknowledged(Severity::Crit) > alarms_before {
         effects.push(Effect::Bell);
     }
     effects
 }
 
 fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
-    if press.key == Key::Char(' ') && !model.may_move() && overlay::is_typing(model) {
+    if press.key == Key::Char(' ') && !model.live.may_move() && overlay::is_typing(model) {
         // With nothing to stop, the stop key is a letter like any other.
         overlay::type_key(model, press.key);
         return Vec::new();
@@ -72,7 +61,7 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
     };
     match action.id {
         // A key that is held down stops the robot, too, and does nothing else.
-        ActionId::Hold if press.repeat && model.may_move() && !model.console.hold_asked => hold_now(model),
+        ActionId::Hold if press.repeat && model.live.may_move() && !model.live.hold_asked => hold_now(model),
         _ if press.repeat && !action.repeats => Vec::new(),
         id => act(model, id),
     }
@@ -99,30 +88,19 @@ fn resize(model: &mut Model, width: u16, height: u16) {
     }
 }
 
-fn take_health(model: &mut Model, health: Health) {
-    match &health.recording {
-        Recording::Failed(why) if health.recording != model.console.health.recording => {
-            news(model, Cause::Recording, Severity::Crit, format!("recording failed: {why}"));
-        }
-        Recording::Failed(_) => {}
-        Recording::On | Recording::Off => model.alarms.clear(&Cause::Recording),
-    }
-    model.console.health = health;
-}
-
 fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<Refused>) {
     for plugin in refused.iter().filter(|plugin| !model.console.refused.contains(plugin)) {
         let text = format!("plugin {} refused: {}", plugin.plugin, plugin.reason);
-        model.log.add(model.clock.t_s, Severity::Watch, "plan", text);
+        model.live.run.log.add(model.live.run.clock.t_s, Severity::Watch, "plan", text);
     }
     (model.console.planners, model.console.refused) = (found, refused);
 }
 
 /// Writes news of the console into the log and the line above the keys; what is critical becomes an alarm.
 fn news(model: &mut Model, cause: Cause, severity: Severity, text: String) {
-    model.log.add(model.clock.t_s, severity, "console", text.clone());
+    model.live.run.log.add(model.live.run.clock.t_s, severity, "console", text.clone());
     if severity == Severity::Crit {
-        model.alarms.raise(cause, severity, text.clone(), model.clock.t_s);
+        model.live.run.alarms.raise(cause, severity, text.clone(), model.live.run.clock.t_s);
     }
     model.say(severity, text);
 }

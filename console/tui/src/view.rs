@@ -5,19 +5,23 @@ mod confirm;
 mod coverage;
 mod events;
 mod footer;
+mod home;
 mod lists;
 mod look;
 mod map;
 mod next;
+mod plan;
 mod planner;
 mod position;
+mod result;
 mod strip;
+mod table;
 mod tether;
 mod text;
 mod top;
 
 use crate::caps::{Caps, Glyphs};
-use crate::model::{Model, Pane, ui::Arrangement};
+use crate::model::{Model, Pane, Screen, ui::Arrangement};
 use crate::theme::Theme;
 use look::Look;
 use ratatui::Frame;
@@ -32,16 +36,16 @@ pub fn view(model: &Model, caps: &Caps, frame: &mut Frame) {
 
 /// Draws the model with a theme of the caller's choice.
 pub fn view_with(model: &Model, caps: &Caps, theme: &Theme, frame: &mut Frame) {
-    let look = Look { model, caps: *caps, theme };
+    let look = Look { model, run: &model.live.run, caps: *caps, theme };
     let area = frame.area();
     if area.is_empty() {
         return;
     }
-    match Arrangement::of(area.width, area.height) {
-        Arrangement::Wide => whole(&look, frame, area, &WIDE),
-        Arrangement::Narrow => whole(&look, frame, area, &NARROW),
-        Arrangement::Paged => paged(&look, frame, area),
-        Arrangement::Strip => strip::draw(&look, frame, area),
+    let arrangement = Arrangement::of(area.width, area.height);
+    if arrangement == Arrangement::Strip {
+        strip::draw(&look, frame, area);
+    } else {
+        framed(&look, frame, area, arrangement);
     }
     lists::draw(&look, frame, area);
     if caps.glyphs == Glyphs::Ascii {
@@ -61,15 +65,31 @@ struct Sizes {
 const WIDE: Sizes = Sizes { side: 44, events: 6, panes: [10, 8], wide: true };
 const NARROW: Sizes = Sizes { side: 30, events: 4, panes: [6, 5], wide: false };
 
-fn whole(look: &Look, frame: &mut Frame, area: Rect, sizes: &Sizes) {
-    let [top, middle, events, next, keys] = Layout::vertical([
+/// Draws a screen between the line on top and the two lines at the foot, which every screen has.
+fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+    let [top, body, next, keys] = Layout::vertical([
         Constraint::Length(1),
         Constraint::Fill(1),
-        Constraint::Length(sizes.events),
         Constraint::Length(1),
         Constraint::Length(1),
     ])
     .areas(area);
+    top::draw(look, frame, top);
+    match (look.model.ui.screen, arrangement) {
+        (Screen::Home, _) => home::draw(look, frame, body, arrangement),
+        (Screen::Plan, _) => plan::draw(look, frame, body, arrangement),
+        (Screen::Result, _) => result::draw(look, frame, body, arrangement),
+        (Screen::Mission, Arrangement::Wide) => whole(look, frame, body, &WIDE),
+        (Screen::Mission, Arrangement::Narrow) => whole(look, frame, body, &NARROW),
+        (Screen::Mission, Arrangement::Paged | Arrangement::Strip) => page(look, frame, body),
+    }
+    confirm::draw(look, frame, next);
+    footer::draw(look, frame, keys);
+}
+
+fn whole(look: &Look, frame: &mut Frame, area: Rect, sizes: &Sizes) {
+    let [middle, events] =
+        Layout::vertical([Constraint::Fill(1), Constraint::Length(sizes.events)]).areas(area);
     let [map, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(sizes.side)]).areas(middle);
     let [coverage, position, planner] = Layout::vertical([
         Constraint::Length(sizes.panes[0]),
@@ -77,45 +97,32 @@ fn whole(look: &Look, frame: &mut Frame, area: Rect, sizes: &Sizes) {
         Constraint::Fill(1),
     ])
     .areas(side);
-    top::draw(look, frame, top);
     map::draw(look, frame, map);
     coverage::draw(look, frame, coverage, sizes.wide);
     position::draw(look, frame, position, sizes.wide);
     let planner = above_tether(look, frame, planner, sizes.wide);
     planner::draw(look, frame, planner, sizes.wide);
     events::draw(look, frame, events);
-    confirm::draw(look, frame, next);
-    footer::draw(look, frame, keys);
 }
 
-fn paged(look: &Look, frame: &mut Frame, area: Rect) {
-    let [top, page, next, keys] = Layout::vertical([
-        Constraint::Length(1),
-        Constraint::Fill(1),
-        Constraint::Length(1),
-        Constraint::Length(1),
-    ])
-    .areas(area);
-    top::draw(look, frame, top);
+fn page(look: &Look, frame: &mut Frame, area: Rect) {
     match look.model.ui.pane {
-        Pane::Map => map::draw(look, frame, page),
-        Pane::Coverage => coverage::draw(look, frame, page, true),
-        Pane::Position => position::draw(look, frame, page, true),
+        Pane::Map => map::draw(look, frame, area),
+        Pane::Coverage => coverage::draw(look, frame, area, true),
+        Pane::Position => position::draw(look, frame, area, true),
         Pane::Planner => {
-            let page = above_tether(look, frame, page, true);
-            planner::draw(look, frame, page, true);
+            let area = above_tether(look, frame, area, true);
+            planner::draw(look, frame, area, true);
         }
-        Pane::Events => events::draw(look, frame, page),
+        Pane::Events => events::draw(look, frame, area),
     }
-    confirm::draw(look, frame, next);
-    footer::draw(look, frame, keys);
 }
 
 /// Draws the tether at the foot of an area, if there is one, in as many words as fit; what is left above it.
 ///
 /// Where there is no room for both, the tether takes it: what it shows can end a mission.
 fn above_tether(look: &Look, frame: &mut Frame, area: Rect, wide: bool) -> Rect {
-    if look.model.tether.is_none() {
+    if look.run.tether.is_none() {
         return area;
     }
     // The planner keeps a row of its own.

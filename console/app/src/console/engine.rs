@@ -7,9 +7,9 @@ mod keeping;
 mod waiting;
 
 use super::{
-    inbox::Outbox,
+    inbox::RunOutbox,
     line::{EngineHandle, Request, line},
-    pace::{Reached, START_SPEED, next_due, window},
+    pace::{Reached, next_due, window},
 };
 use crate::{
     answers::{Window, Windowed},
@@ -31,7 +31,7 @@ use std::{
     thread::{self, JoinHandle},
     time::{Duration, Instant},
 };
-use tui::{Msg, Speed};
+use tui::{RunMsg, Speed};
 
 /// Time limit for closing the recording when a signal has asked the process to exit.
 const HURRY: Duration = Duration::from_millis(900);
@@ -48,7 +48,8 @@ impl Engine {
         scenario: &Scenario,
         logs: &Path,
         plugins: &PluginDirs,
-        screen: Outbox,
+        screen: RunOutbox,
+        speed: Speed,
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
         let mut host = host(scenario, plugins);
@@ -60,7 +61,7 @@ impl Engine {
         }));
         let flight = Flight::prepare(scenario, true);
         // Before the thread runs, so that the first frame of the screen shows the scenario and every key counts.
-        screen.send(Msg::Events(vec![flight.opened()]));
+        screen.send(RunMsg::Events(vec![flight.opened()]));
         let now = Instant::now();
         let engine = EngineThread {
             scenario: scenario.clone(),
@@ -72,7 +73,7 @@ impl Engine {
             shown_work: None,
             asked,
             screen,
-            speed: START_SPEED,
+            speed,
             early: Vec::new(),
             stop_asked: None,
             stops_ms: Vec::new(),
@@ -115,7 +116,7 @@ struct EngineThread {
     /// The planners' work that the screen shows.
     shown_work: Option<Work>,
     asked: Receiver<Request>,
-    screen: Outbox,
+    screen: RunOutbox,
     speed: Speed,
     /// What happened before the mission was started; it is written down when it is.
     early: Vec<Event>,
@@ -170,14 +171,14 @@ impl EngineThread {
         if starts && let Err(error) = self.open_log() {
             // Nothing moves without being recorded.
             let why = format!("cannot start: {error:#}");
-            self.screen.send_urgent(Msg::OrderFailed { order: Order::Start, why });
+            self.screen.send_urgent(RunMsg::OrderFailed { order: Order::Start, why });
             orders.retain(|order| *order != Order::Start);
         }
         let events = self.fly_tick(&orders, window(self.flight.tick_length(), self.speed));
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
         assert!(!failing, "drill: the engine fails on purpose");
         self.send_work();
-        self.send(Msg::Events(events));
+        self.send(RunMsg::Events(events));
         self.send_health();
         if matches!(self.flight.phase(), Phase::Ended(_)) {
             self.close_log(CLOSE_TIMEOUT);
@@ -202,13 +203,13 @@ impl EngineThread {
         if work != self.shown_work.as_ref() {
             self.shown_work = work.cloned();
             let shown = work.map(|work| (work.what.clone(), work.limit.map(|limit| limit.as_secs_f64())));
-            self.send(Msg::Busy(shown));
+            self.send(RunMsg::Busy(shown));
         }
         // Of each planner the last word counts, and only that of the work that is shown.
         let shown = self.shown_work.as_ref().map(|work| work.ask);
         let last = self.reported.try_iter().filter(|(ask, _)| Some(*ask) == shown).last();
         if let Some((_, Progress { share, what })) = last {
-            self.send(Msg::BusyAt { share, what });
+            self.send(RunMsg::BusyAt { share, what });
         }
     }
 
@@ -222,7 +223,7 @@ impl EngineThread {
         self.closed
     }
 
-    fn send(&self, message: Msg) {
+    fn send(&self, message: RunMsg) {
         // Once the screen is closed, messages are discarded.
         self.screen.send(message);
     }

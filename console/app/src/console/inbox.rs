@@ -6,7 +6,7 @@ use std::{
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
     time::{Duration, Instant},
 };
-use tui::Msg;
+use tui::{Msg, RunId, RunMsg};
 
 #[derive(Default)]
 struct Shared {
@@ -34,6 +34,30 @@ pub(super) struct Inbox(Arc<Shared>);
 /// The sending end, for any number of threads.
 #[derive(Clone)]
 pub(super) struct Outbox(Arc<Shared>);
+
+/// The sending end of the engine of a run.
+#[derive(Clone)]
+pub(super) struct RunOutbox {
+    pub run: RunId,
+    pub outbox: Outbox,
+}
+
+impl RunOutbox {
+    /// Sends news that come before all others. `false` if the inbox is closed.
+    pub(super) fn send_urgent(&self, msg: RunMsg) -> bool {
+        self.outbox.send_urgent(Msg::Run(self.run, msg))
+    }
+
+    /// Sends any other news. `false` if the inbox is closed.
+    pub(super) fn send(&self, msg: RunMsg) -> bool {
+        self.outbox.send(Msg::Run(self.run, msg))
+    }
+
+    /// Number of waiting messages that are not urgent.
+    pub(super) fn backlog(&self) -> usize {
+        self.outbox.backlog()
+    }
+}
 
 /// A connected pair of ends.
 pub(super) fn inbox() -> (Outbox, Inbox) {
@@ -102,24 +126,26 @@ mod tests {
     use super::*;
     use tui::Signal;
 
+    const EVENTS: Msg = Msg::Run(RunId(1), RunMsg::Events(Vec::new()));
+
     #[test]
     fn a_key_overtakes_all_other_messages_and_senders_never_wait() {
         let (outbox, inbox) = inbox();
         for _ in 0..10_000 {
-            assert!(outbox.send(Msg::Events(Vec::new())));
+            assert!(outbox.send(EVENTS));
         }
         assert!(outbox.send_urgent(Msg::Signal(Signal::Interrupt)));
         assert_eq!(outbox.backlog(), 10_000);
         let next = || inbox.next(Some(Instant::now()));
         assert_eq!(next(), Some(Msg::Signal(Signal::Interrupt)));
-        assert_eq!(next(), Some(Msg::Events(Vec::new())));
+        assert_eq!(next(), Some(EVENTS));
     }
 
     #[test]
     fn a_closed_inbox_takes_no_more_messages() {
         let (outbox, inbox) = inbox();
         drop(inbox);
-        assert!(!outbox.send(Msg::Events(Vec::new())));
+        assert!(!outbox.send(EVENTS));
         assert_eq!(outbox.backlog(), 0);
     }
 }

@@ -4,7 +4,7 @@ use mission::Order;
 use planner_host::Waker;
 use std::{
     sync::{
-        Arc,
+        Arc, Mutex, PoisonError,
         atomic::{AtomicBool, Ordering},
         mpsc::{self, Receiver, Sender},
     },
@@ -73,5 +73,21 @@ impl EngineHandle {
         if is_urgent {
             self.waker.wake();
         }
+    }
+}
+
+/// The engine of the run that is open, if one is, for the threads that may have to stop the robot.
+#[derive(Clone, Default)]
+pub(super) struct Current(Arc<Mutex<Option<EngineHandle>>>);
+
+impl Current {
+    /// Another engine, or none, is the one of the run that is open.
+    pub(super) fn set(&self, engine: Option<EngineHandle>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = engine;
+    }
+
+    /// The engine of the run that is open.
+    pub(super) fn get(&self) -> Option<EngineHandle> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }

@@ -4,8 +4,6 @@ use crate::answers::Window;
 use std::time::{Duration, Instant};
 use tui::Speed;
 
-/// How fast a simulated mission goes at first.
-pub(super) const START_SPEED: Speed = Speed::Times(4.0);
 /// A tick that is later than this is not made up for.
 const MOST_LATE: Duration = Duration::from_millis(50);
 

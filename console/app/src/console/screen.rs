@@ -1,6 +1,10 @@
 //! The drawing thread: messages in, model updated, effects carried out, a frame when something changed.
 
-use super::{inbox::Inbox, line::EngineHandle, pace::START_SPEED};
+use super::{
+    desk::{DeskHandle, Request},
+    inbox::Inbox,
+    line::Current,
+};
 use crate::{
     cli::Drill,
     failure::{COMPLETE, ENDED_OTHERWISE, exit_code},
@@ -13,7 +17,7 @@ use std::{
     process::ExitCode,
     time::{Duration, Instant, SystemTime},
 };
-use tui::{Caps, Effect, Model, Msg, Signal, Times, terminal::TerminalGuard, update};
+use tui::{Caps, Effect, Model, Msg, RunMsg, Signal, Times, terminal::TerminalGuard, update};
 
 /// Messages that are taken in before the next frame, at most.
 const BURST: usize = 256;
@@ -28,7 +32,8 @@ pub(super) struct Screen {
     model: Model,
     caps: Caps,
     inbox: Inbox,
-    engine: EngineHandle,
+    engine: Current,
+    desk: DeskHandle,
     began: Instant,
     drawn: Instant,
     frame_interval: Duration,
@@ -49,13 +54,12 @@ impl Screen {
     /// Takes the terminal over.
     pub(super) fn open(
         caps: Caps,
+        mut model: Model,
         inbox: Inbox,
-        engine: EngineHandle,
+        (engine, desk): (Current, DeskHandle),
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
         let terminal = TerminalGuard::enter().context("taking over the terminal")?;
-        let mut model = Model::default();
-        model.console.speed = START_SPEED;
         let (width, height) = crossterm::terminal::size().unwrap_or((80, 24));
         update(&mut model, Msg::Resize { width, height });
         let now = Instant::now();
@@ -65,6 +69,7 @@ impl Screen {
             caps,
             inbox,
             engine,
+            desk,
             began: now,
             drawn: now,
             // A slow line gets fewer frames.
@@ -108,7 +113,10 @@ impl Screen {
             let Some(msg) = next else { break };
             self.answer_seen |= is_answer(&msg);
             let effects = update(&mut self.model, msg);
-            self.engine.set_may_move(self.model.may_move());
+            let engine = self.engine.get();
+            if let Some(engine) = &engine {
+                engine.set_may_move(self.model.live.may_move());
+            }
             for effect in effects {
                 if let Some(left) = self.carry_out(effect)? {
                     return Ok(Some(left));
@@ -139,8 +147,13 @@ impl Screen {
 
     fn carry_out(&mut self, effect: Effect) -> anyhow::Result<Option<Left>> {
         match effect {
-            Effect::Order(order) => self.engine.order(order),
-            Effect::Speed(speed) => self.engine.speed(speed),
+            Effect::Open { id, source, planner } => self.desk.request(Request::Open { id, source, planner }),
+            Effect::Look => self.desk.request(Request::Look),
+            Effect::Do(job) => self.desk.request(Request::Do(job)),
+            Effect::Order(order) => {
+                self.engine.get().into_iter().for_each(|engine| engine.order(order.clone()))
+            }
+            Effect::Speed(speed) => self.engine.get().into_iter().for_each(|engine| engine.speed(speed)),
             Effect::Redraw => self.terminal.redraw().context("drawing")?,
             Effect::Bell => ring()?,
             Effect::Suspend => self.suspend()?,
@@ -160,7 +173,7 @@ impl Screen {
     }
 
     fn draw(&mut self) -> anyhow::Result<()> {
-        let failing = self.drill == Some(Drill::PanicScreen) && self.model.clock.tick > 5;
+        let failing = self.drill == Some(Drill::PanicScreen) && self.model.live.run.clock.tick > 5;
         assert!(!failing, "drill: the screen fails on purpose");
         let (model, caps) = (&self.model, &self.caps);
         self.terminal.draw(|frame| tui::view(model, caps, frame)).context("drawing")?;
@@ -173,7 +186,9 @@ impl Screen {
 fn is_answer(msg: &Msg) -> bool {
     match msg {
         Msg::Key(_) | Msg::Paste(_) | Msg::Resize { .. } | Msg::Signal(_) => true,
-        Msg::Events(events) => events.iter().any(|event| matches!(event.kind, EventKind::Held { .. })),
+        Msg::Run(_, RunMsg::Events(events)) => {
+            events.iter().any(|event| matches!(event.kind, EventKind::Held { .. }))
+        }
         _ => false,
     }
 }

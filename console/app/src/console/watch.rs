@@ -1,6 +1,9 @@
 //! The threads that only listen: keys, signals, a terminal that is closed.
 
-use super::{inbox::Outbox, line::EngineHandle};
+use super::{
+    inbox::Outbox,
+    line::{Current, EngineHandle},
+};
 use anyhow::Context;
 use crossterm::event::{self, Event};
 use mission::Order;
@@ -16,7 +19,7 @@ use tui::{Key, Msg, Signal, terminal};
 const GRACE: Duration = Duration::from_secs(1);
 
 /// Keys, pastes and sizes. A key that stops the robot does so from here, whatever the screen is doing.
-pub(super) fn keys(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
+pub(super) fn keys(outbox: &Outbox, engine: Current) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     spawn("keys", move || {
         while let Ok(event) = event::read() {
@@ -36,7 +39,7 @@ pub(super) fn keys(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> 
 }
 
 /// Signals; one that ends the process ends it within [`GRACE`], whatever the other threads do.
-pub(super) fn signals(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
+pub(super) fn signals(outbox: &Outbox, engine: Current) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     let mut signals =
         Signals::new([SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT]).context("listening to signals")?;
@@ -65,9 +68,9 @@ pub(super) fn signals(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<(
 ///
 /// The screen gets the message first: how it handles the key must not depend on the hold that follows. It orders a hold
 /// itself as well: this one may overtake an order to move that the screen has not sent yet, that one cannot.
-fn send_and_hold(outbox: &Outbox, engine: &EngineHandle, msg: Msg, stops: bool) -> bool {
+fn send_and_hold(outbox: &Outbox, engine: &Current, msg: Msg, stops: bool) -> bool {
     let is_delivered = outbox.send_urgent(msg);
-    if stops && engine.may_move() {
+    if stops && let Some(engine) = engine.get().filter(EngineHandle::may_move) {
         engine.order(Order::Hold);
     }
     is_delivered
@@ -85,7 +88,7 @@ fn leave_in_any_case(signal: i32) {
 }
 
 /// A terminal that is closed while SIGHUP is ignored, as under nohup, is noticed here.
-pub(super) fn terminal(outbox: &Outbox, engine: EngineHandle) -> anyhow::Result<()> {
+pub(super) fn terminal(outbox: &Outbox, engine: Current) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     spawn("terminal", move || {
         let stdin = std::io::stdin();

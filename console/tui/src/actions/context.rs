@@ -1,19 +1,29 @@
 //! Where keys mean something, and which of these places are active.
 
-use crate::model::{Model, Overlay, Pane};
+use crate::model::{Model, Overlay, Pane, Screen};
 
 /// Where keys mean something.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Context {
     /// On every screen, in every list and line.
     Anywhere,
+    /// On every screen with nothing over it.
+    Screen,
+    /// On the home screen.
+    Home,
+    /// On the plan screen.
+    Plan,
     /// On the mission screen.
     Mission,
-    /// On the mission screen, while the map takes the arrow keys.
+    /// On the result screen.
+    Result,
+    /// On a screen with a map.
     Map,
-    /// On the mission screen, while the events take the arrow keys.
-    Events,
-    /// In a list.
+    /// While the map takes the arrow keys.
+    Pan,
+    /// While a list takes the arrow keys.
+    Rows,
+    /// In a list over the screen.
     List,
     /// In the list of parameters.
     Parameters,
@@ -30,24 +40,33 @@ pub enum Context {
 impl Context {
     /// Whether its actions are commands of their own, and no mere steps within a list or a line.
     pub fn has_commands(self) -> bool {
-        matches!(self, Self::Anywhere | Self::Mission | Self::Map | Self::Events)
+        use Context::{Anywhere, Home, Map, Mission, Pan, Plan, Result, Screen};
+        matches!(self, Anywhere | Screen | Home | Plan | Mission | Result | Map | Pan)
     }
 }
 
 /// The contexts whose keys work now.
 pub fn contexts(model: &Model) -> Vec<Context> {
-    let here: &[Context] = match &model.ui.overlay {
-        Overlay::None => match model.ui.pane {
-            Pane::Map => &[Context::Mission, Context::Map],
-            Pane::Events => &[Context::Mission, Context::Events],
-            _ => &[Context::Mission],
-        },
-        Overlay::Confirm(_) | Overlay::Quit => &[Context::Confirm],
+    let here = match &model.ui.overlay {
+        Overlay::None => return [&[Context::Anywhere, Context::Screen], of_screen(model)].concat(),
+        Overlay::Confirm(_) | Overlay::Quit => [Context::Confirm].as_slice(),
         Overlay::Stepping => &[Context::Stepping],
         Overlay::Commands { .. } => &[Context::Text, Context::Commands],
         Overlay::Parameters { edit: Some(_), .. } | Overlay::Filter => &[Context::Text],
-        Overlay::Parameters { edit: None, .. } => &[Context::List, Context::Parameters],
-        Overlay::Planners { .. } | Overlay::Layers { .. } => &[Context::List],
+        Overlay::Parameters { edit: None, .. } => &[Context::List, Context::Rows, Context::Parameters],
+        Overlay::Planners { .. } | Overlay::Layers { .. } => &[Context::List, Context::Rows],
     };
     [&[Context::Anywhere], here].concat()
+}
+
+/// The contexts of the screen that is shown, with nothing over it.
+pub(super) fn of_screen(model: &Model) -> &'static [Context] {
+    match (model.ui.screen, model.ui.pane) {
+        (Screen::Home, _) => &[Context::Home, Context::Rows],
+        (Screen::Plan, _) => &[Context::Plan, Context::Map, Context::Pan],
+        (Screen::Mission, Pane::Map) => &[Context::Mission, Context::Map, Context::Pan],
+        (Screen::Mission, Pane::Events) => &[Context::Mission, Context::Map, Context::Rows],
+        (Screen::Mission, _) => &[Context::Mission, Context::Map],
+        (Screen::Result, _) => &[Context::Result, Context::Map, Context::Rows],
+    }
 }

@@ -1,9 +1,9 @@
 //! Looking actions up: by key, and by letters of a name.
 
-use super::context::Context;
+use super::context::{Context, of_screen};
 use super::{ACTIONS, Action};
 use crate::keys::Key;
-use crate::model::Pane;
+use crate::model::Model;
 
 /// The action of a key in some contexts.
 pub fn action_for(key: Key, contexts: &[Context]) -> Option<&'static Action> {
@@ -22,16 +22,16 @@ pub fn matching(typed: &str) -> Vec<&'static Action> {
             by_name.or(by_about).map(|far| (far, action))
         })
         .collect();
-    found.sort_by_key(|(far, _)| *far);
+    found.sort_by_key(|(far, action)| (*far, action.name.len()));
     found.into_iter().map(|(_, action)| action).collect()
 }
 
-/// The command list for what was typed; with nothing typed, the keys of a pane that is not in focus come last.
-pub fn listed(typed: &str, pane: Pane) -> Vec<&'static Action> {
+/// The command list for what was typed; with nothing typed, the keys of other screens and panes come last.
+pub fn listed(model: &Model, typed: &str) -> Vec<&'static Action> {
     let mut found = matching(typed);
     if typed.is_empty() {
-        let away = if pane == Pane::Events { Context::Map } else { Context::Events };
-        found.sort_by_key(|action| action.contexts.contains(&away));
+        let here = [&[Context::Anywhere, Context::Screen], of_screen(model)].concat();
+        found.sort_by_key(|action| !action.works_in(&here));
     }
     found
 }

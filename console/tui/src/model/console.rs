@@ -1,6 +1,6 @@
-//! The console itself: time, speed, recording, and what is between the operator and the mission.
+//! The console itself: time, speeds, plugins, and what it tells the operator.
 
-use mission::{Order, PlannerInfo, Severity};
+use mission::{PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
 
 /// The time, by the caller.
@@ -22,19 +22,32 @@ pub enum Speed {
     Max,
 }
 
-/// Slowest and fastest multiple of the clock that the operator can choose.
-const SLOWEST: f64 = 0.25;
-const FASTEST: f64 = 64.0;
-
 impl Speed {
+    /// Least multiple of the clock that the operator can choose.
+    pub const SLOWEST: f64 = 0.25;
+    /// Greatest one.
+    pub const FASTEST: f64 = 64.0;
+
+    /// Whether the mission goes faster than the clock on the wall.
+    pub fn is_fast(self) -> bool {
+        match self {
+            Self::Times(factor) => factor > 1.0,
+            Self::Max => true,
+        }
+    }
+
     /// Twice or half as fast, if there is such a speed.
     pub fn stepped(self, faster: bool) -> Option<Self> {
         match (self, faster) {
-            (Self::Times(factor), true) if factor < FASTEST => Some(Self::Times(2.0 * factor)),
+            (Self::Times(factor), true) if factor < Self::FASTEST => {
+                Some(Self::Times((2.0 * factor).min(Self::FASTEST)))
+            }
             (Self::Times(_), true) => Some(Self::Max),
-            (Self::Times(factor), false) => (factor > SLOWEST).then_some(Self::Times(factor / 2.0)),
+            (Self::Times(factor), false) => {
+                (factor > Self::SLOWEST).then(|| Self::Times((factor / 2.0).max(Self::SLOWEST)))
+            }
             (Self::Max, true) => None,
-            (Self::Max, false) => Some(Self::Times(FASTEST)),
+            (Self::Max, false) => Some(Self::Times(Self::FASTEST)),
         }
     }
 }
@@ -43,28 +56,6 @@ impl Default for Speed {
     fn default() -> Self {
         Self::Times(1.0)
     }
-}
-
-/// Whether the run is being written down.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Recording {
-    /// Nobody asked for it.
-    #[default]
-    Off,
-    /// Everything is being written.
-    On,
-    /// It failed, and why.
-    Failed(String),
-}
-
-/// How the console itself does.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Health {
-    /// Whether the run is being written down.
-    pub recording: Recording,
-    /// The speed that is really reached, as a multiple of the wall clock; `None` when not measured.
-    pub reached_speed: Option<f64>,
 }
 
 /// A plugin that was found and not accepted.
@@ -87,41 +78,17 @@ pub struct Notice {
     pub until_mono_s: f64,
 }
 
-/// A planner's work that takes time; ticks and HOLD continue meanwhile.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Busy {
-    /// What it is, such as `Planning (rpf)`.
-    pub work: String,
-    /// How long it may take, seconds; not known for what is short.
-    pub limit_s: Option<f64>,
-    /// When it began, on the console's own clock, seconds.
-    pub since_mono_s: f64,
-    /// How far it is: the share done, 0 to 1, and what is being done; `None` if it is not reported.
-    #[serde(default)]
-    pub at: Option<(f64, String)>,
-}
-
 /// The console itself.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Console {
     /// The time, by the last message.
     pub now: Times,
-    /// How fast the mission shall go.
-    pub speed: Speed,
-    /// How the console does.
-    pub health: Health,
     /// Planners to choose from.
     pub planners: Vec<PlannerInfo>,
     /// Plugins that cannot be chosen.
     pub refused: Vec<Refused>,
-    /// What a planner is working on.
-    pub busy: Option<Busy>,
     /// What was last said to the operator.
     pub notice: Option<Notice>,
-    /// An order that makes the robot move and was not answered yet.
-    pub asked: Option<Order>,
-    /// Whether HOLD was sent and not answered yet.
-    pub hold_asked: bool,
     /// When Ctrl-C was last pressed, on the console's own clock, seconds.
     pub interrupted_mono_s: Option<f64>,
 }

@@ -1,22 +1,23 @@
-//! Events into the model.
+//! Events into a run.
 
 mod planner;
 mod position;
 mod tether;
 
-use super::{Cause, Model, Overlay, Progress, Raster, Run, ui::Ask};
-use mission::{Event, EventKind, Hold, HoldReason, Order, Outcome, Severity, TaskConfig, event::RunOpened};
+use super::{About, Cause, Change, Progress, Raster, Run, Withdrawn};
+use mission::{Event, EventKind, Hold, HoldReason, Outcome, Severity, TaskConfig, event::RunOpened};
 use positioning::AccuracyMap;
 use world::{Obstacle, ObstacleId};
 
 /// Cells of the accuracy forecast along the longer side of the floor.
 const FORECAST_CELLS: f64 = 100.0;
 
-impl Model {
+impl Run {
     /// Takes in one event. What only the simulator can know is left out.
-    pub(crate) fn fold(&mut self, event: &Event) {
+    pub fn fold(&mut self, event: &Event) -> Change {
+        let mut change = Change::default();
         if matches!(event.kind, EventKind::Truth { .. } | EventKind::TetherTruth { .. }) {
-            return;
+            return change;
         }
         self.update_clock(event);
         if let Some(line) = event.log_line() {
@@ -25,10 +26,10 @@ impl Model {
         self.standing.apply(&event.kind);
         match &event.kind {
             EventKind::RunOpened(run) => self.open(run),
-            EventKind::Ordered { order } => self.answered(order),
+            EventKind::Ordered { order } => change.answered = Some(order.clone()),
             EventKind::OrderRefused { order, why } => {
-                self.answered(order);
-                self.say(Severity::Warn, format!("order refused: {why}"));
+                change.answered = Some(order.clone());
+                change.say(Severity::Warn, format!("order refused: {why}"));
             }
             EventKind::Ranged { .. }
             | EventKind::Fixed { .. }
@@ -39,7 +40,7 @@ impl Model {
             | EventKind::PositionLost { .. }
             | EventKind::PositionRegained { .. }
             | EventKind::RangesInconsistent { .. }
-            | EventKind::RangesConsistent => self.locate(event),
+            | EventKind::RangesConsistent => self.locate(event, &mut change),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
             EventKind::PlannerPrepared { .. }
@@ -51,7 +52,7 @@ impl Model {
             | EventKind::Scalars { .. }
             | EventKind::PlannerFailed { .. }
             | EventKind::PlannerLate { .. }
-            | EventKind::PlannerRejected { .. } => self.planned(event),
+            | EventKind::PlannerRejected { .. } => self.planned(event, &mut change),
             EventKind::Covered { runs } => {
                 if let Some(coverage) = &mut self.coverage {
                     coverage.apply(runs);
@@ -84,15 +85,15 @@ impl Model {
             | EventKind::TetherAlarmRaised { .. }
             | EventKind::TetherAlarmCleared { .. }
             | EventKind::Certified { .. } => self.tethered(event),
-            EventKind::Held { by, resumes } => self.hold(event, &Hold { by: by.clone(), resumes: *resumes }),
+            EventKind::Held { by, resumes } => {
+                self.hold(event, &Hold { by: by.clone(), resumes: *resumes }, &mut change);
+            }
             EventKind::Resumed => {
                 self.alarms.clear(&Cause::Stuck);
                 self.planner_works();
-                if matches!(self.ui.overlay, Overlay::Confirm(Ask::Resume | Ask::FlyUncertified)) {
-                    self.withdraw_question();
-                }
+                change.withdraw(Withdrawn::Resume);
             }
-            EventKind::Ended { outcome, reason } => self.end(event, *outcome, reason),
+            EventKind::Ended { outcome, reason } => self.end(event, *outcome, reason, &mut change),
             EventKind::Truth { .. }
             | EventKind::TetherTruth { .. }
             | EventKind::Snapshotted { .. }
@@ -100,6 +101,7 @@ impl Model {
             | EventKind::PlannerLogged { .. }
             | EventKind::Uncounted { .. } => {}
         }
+        change
     }
 
     fn update_clock(&mut self, event: &Event) {
@@ -108,7 +110,6 @@ impl Model {
             self.clock.moving_s += passed_s;
         }
         (self.clock.tick, self.clock.t_s) = (event.tick, event.t_s);
-        self.clock.heard_mono_s = self.console.now.mono_s;
     }
 
     fn open(&mut self, run: &RunOpened) {
@@ -116,7 +117,7 @@ impl Model {
             TaskConfig::Follow { path, .. } => Some(world::polyline::length_m(path)),
             TaskConfig::Goto { .. } | TaskConfig::Cover { .. } => None,
         };
-        self.run = Some(Run {
+        self.about = Some(About {
             scenario: run.scenario.clone(),
             seed: run.seed,
             world: run.world.as_drawn(),
@@ -128,17 +129,6 @@ impl Model {
         let forecast = run.mission.forecast((high - low).amax() / FORECAST_CELLS);
         self.accuracy = Some(AccuracyMap::new(&run.world.as_drawn(), &forecast));
         self.planning.choice = Some(run.mission.planner.clone());
-    }
-
-    /// Notes that the mission accepted or refused an order. Nothing else ends the wait for it: an event of the tick before
-    /// says nothing about an order that comes after it.
-    pub(crate) fn answered(&mut self, order: &Order) {
-        if self.console.asked.as_ref() == Some(order) {
-            self.console.asked = None;
-        }
-        if *order == Order::Hold {
-            self.console.hold_asked = false;
-        }
     }
 
     fn raise(&mut self, event: &Event, cause: Cause, severity: Severity, text: String) {
@@ -153,47 +143,37 @@ impl Model {
     }
 
     fn found(&mut self, event: &Event, obstacle: &Obstacle) {
-        if let Some(run) = &mut self.run {
-            run.world.obstacles.retain(|other| other.known || other.id != obstacle.id);
-            run.world.obstacles.push(Obstacle { known: false, ..obstacle.clone() });
+        if let Some(about) = &mut self.about {
+            about.world.obstacles.retain(|other| other.known || other.id != obstacle.id);
+            about.world.obstacles.push(Obstacle { known: false, ..obstacle.clone() });
         }
         self.raise_as_logged(event, Cause::Map);
     }
 
     fn moved(&mut self, id: ObstacleId, obstacle: &Obstacle) {
-        let found = self.run.iter_mut().flat_map(|run| &mut run.world.obstacles);
+        let found = self.about.iter_mut().flat_map(|about| &mut about.world.obstacles);
         for other in found.filter(|other| !other.known && other.id == id) {
             other.shape = obstacle.shape.clone();
         }
     }
 
-    fn hold(&mut self, event: &Event, hold: &Hold) {
+    fn hold(&mut self, event: &Event, hold: &Hold, change: &mut Change) {
         if let HoldReason::Stuck { message } = &hold.by {
             self.raise(event, Cause::Stuck, Severity::Warn, format!("stuck: {message}"));
         }
         if !matches!(hold.by, HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced) {
-            self.withdraw_question();
+            change.withdraw(Withdrawn::All);
         }
     }
 
-    fn end(&mut self, event: &Event, outcome: Outcome, reason: &str) {
+    fn end(&mut self, event: &Event, outcome: Outcome, reason: &str, change: &mut Change) {
         reason.clone_into(&mut self.end_reason);
-        self.console.hold_asked = false;
-        self.console.asked = None;
-        self.withdraw_question();
+        change.withdraw(Withdrawn::All);
         let severity = match outcome {
             Outcome::Complete | Outcome::Aborted => return,
             Outcome::Stuck | Outcome::TimeLimit | Outcome::Entangled => Severity::Warn,
             Outcome::Collision => Severity::Crit,
         };
         self.raise(event, Cause::Ended, severity, format!("ended ({}): {reason}", outcome.word()));
-    }
-
-    /// Takes back a question that was asked under circumstances that no longer hold.
-    fn withdraw_question(&mut self) {
-        if matches!(self.ui.overlay, Overlay::Confirm(_) | Overlay::Stepping) {
-            self.ui.overlay = Overlay::None;
-            self.say(Severity::Warn, "question cancelled: conditions have changed");
-        }
     }
 }

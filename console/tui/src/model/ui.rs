@@ -11,6 +11,10 @@ pub struct Ui {
     pub width: u16,
     /// Rows of the terminal.
     pub height: u16,
+    /// The screen that is shown.
+    pub screen: Screen,
+    /// The screens to go back to, the last one first to be taken.
+    pub back: Vec<Screen>,
     /// The pane that takes the arrow keys; on a narrow screen the one that is shown.
     pub pane: Pane,
     /// The part of the tank on the map.
@@ -32,6 +36,8 @@ impl Default for Ui {
         Self {
             width: 80,
             height: 24,
+            screen: Screen::default(),
+            back: Vec::new(),
             pane: Pane::Map,
             map: MapView::default(),
             layers: Layers::default(),
@@ -39,6 +45,45 @@ impl Default for Ui {
             needle: String::new(),
             scroll: 0,
             overlay: Overlay::None,
+        }
+    }
+}
+
+/// A screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Screen {
+    /// What there is to open.
+    #[default]
+    Home,
+    /// A mission before it moves.
+    Plan,
+    /// A mission under way.
+    Mission,
+    /// What a mission has achieved.
+    Result,
+}
+
+impl Screen {
+    /// Every screen, in the order of their keys.
+    pub const ALL: [Self; 4] = [Self::Home, Self::Plan, Self::Mission, Self::Result];
+
+    /// Its name, as the top line shows it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Home => "Home",
+            Self::Plan => "Plan",
+            Self::Mission => "Mission",
+            Self::Result => "Result",
+        }
+    }
+
+    /// The digit that selects it.
+    pub fn digit(self) -> u8 {
+        match self {
+            Self::Home => 1,
+            Self::Plan => 2,
+            Self::Mission => 3,
+            Self::Result => 7,
         }
     }
 }
@@ -247,8 +292,25 @@ impl Ui {
         Arrangement::of(self.width, self.height)
     }
 
+    /// Goes to a screen; `q` leads back to the one before.
+    pub fn go(&mut self, screen: Screen) {
+        if screen == self.screen {
+            return;
+        }
+        self.back.retain(|before| *before != screen);
+        if screen == Screen::Home {
+            self.back.clear();
+        } else {
+            self.back.push(self.screen);
+        }
+        self.screen = screen;
+    }
+
     /// Whether a pane can be seen.
     pub fn shows(&self, pane: Pane) -> bool {
+        if self.screen != Screen::Mission {
+            return pane == Pane::Map && self.has_map();
+        }
         match self.arrangement() {
             Arrangement::Wide | Arrangement::Narrow => true,
             Arrangement::Paged => self.pane == pane,
@@ -256,8 +318,17 @@ impl Ui {
         }
     }
 
+    /// Whether the screen has a map.
+    pub fn has_map(&self) -> bool {
+        let is_map = matches!(self.screen, Screen::Plan | Screen::Mission | Screen::Result);
+        is_map && self.arrangement() != Arrangement::Strip
+    }
+
     /// The panes that the Tab key visits.
     pub fn panes(&self) -> &'static [Pane] {
+        if self.screen != Screen::Mission {
+            return &[];
+        }
         match self.arrangement() {
             Arrangement::Wide | Arrangement::Narrow => &[Pane::Map, Pane::Events],
             Arrangement::Paged => &Pane::ALL,

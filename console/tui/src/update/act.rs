@@ -1,19 +1,21 @@
 //! Actions into changes and effects.
 
+use super::go::{self, back, go};
 use super::message::Effect;
 use super::offer::{offered, refuse};
 use super::overlay::{self, ask, open};
 use super::send::{hold_now, send};
 use crate::actions::ActionId;
+use crate::model::home::HomeList;
 use crate::model::ui::{Ask, MAX_ZOOM, MapView};
-use crate::model::{Model, Overlay, Pane};
+use crate::model::{Model, Overlay, Pane, Screen};
 use mission::{Order, Severity};
 use world::{Point, Vector};
 
 /// Seconds within which a second Ctrl-C asks to leave.
 const INTERRUPT_TWICE_S: f64 = 2.0;
-/// Lines of a page of events.
-const PAGE: usize = 10;
+/// Lines of a page.
+const PAGE: isize = 10;
 
 /// Carries out an action, or shows the operator why it is not available.
 pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
@@ -25,6 +27,12 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Interrupt => interrupt(model),
         ActionId::Redraw => vec![Effect::Redraw],
         ActionId::Suspend => [hold_now(model), vec![Effect::Suspend]].concat(),
+        ActionId::GoHome => go(model, Screen::Home),
+        ActionId::GoPlan => go(model, Screen::Plan),
+        ActionId::GoMission => go(model, Screen::Mission),
+        ActionId::GoResult => go(model, Screen::Result),
+        ActionId::Rescan | ActionId::Verify | ActionId::Report | ActionId::View => go::begin(model, id),
+        ActionId::Back => back(model).unwrap_or_else(|| leave(model)),
         ActionId::Leave => leave(model),
         ActionId::Abort => [hold_now(model), ask(model, Ask::Abort)].concat(),
         ActionId::Start => ask(model, Ask::Start),
@@ -36,6 +44,7 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Acknowledge => acknowledge(model),
         ActionId::Accept => match overlay::chosen(model) {
             Some(id) => act(model, id),
+            None if model.ui.overlay == Overlay::None => go::enter(model),
             None => overlay::accept(model),
         },
         ActionId::Edit => overlay::edit(model),
@@ -53,8 +62,12 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
 fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
     match id {
         ActionId::Cancel => overlay::cancel(model),
-        ActionId::Up => overlay::select(model, -1),
-        ActionId::Down => overlay::select(model, 1),
+        ActionId::Up => select(model, -1),
+        ActionId::Down => select(model, 1),
+        ActionId::PageUp => select(model, -PAGE),
+        ActionId::PageDown => select(model, PAGE),
+        ActionId::First => select(model, isize::MIN),
+        ActionId::Last => select(model, isize::MAX),
         ActionId::NextPane => turn_to(model, 1),
         ActionId::PreviousPane => turn_to(model, -1),
         ActionId::ZoomIn => zoom(model, 1),
@@ -66,12 +79,6 @@ fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::PanUp => pan(model, Vector::new(0.0, 1.0)),
         ActionId::PanDown => pan(model, Vector::new(0.0, -1.0)),
         ActionId::Severity => next_severity(model),
-        ActionId::Newer => scroll(model, -1),
-        ActionId::Older => scroll(model, 1),
-        ActionId::PageNewer => scroll(model, -(PAGE as isize)),
-        ActionId::PageOlder => scroll(model, PAGE as isize),
-        ActionId::Newest => model.ui.scroll = 0,
-        ActionId::Oldest => scroll(model, isize::MAX),
         _ => {}
     }
     Vec::new()
@@ -82,7 +89,7 @@ fn commands(help: bool) -> Overlay {
 }
 
 fn hold(model: &mut Model) -> Vec<Effect> {
-    if model.may_move() {
+    if model.live.may_move() {
         return hold_now(model);
     }
     if model.ui.overlay == Overlay::None {
@@ -110,7 +117,7 @@ fn interrupt(model: &mut Model) -> Vec<Effect> {
 /// Holds, then asks; with nothing under way it leaves at once.
 fn leave(model: &mut Model) -> Vec<Effect> {
     let mut effects = hold_now(model);
-    if model.is_under_way() {
+    if model.live.is_under_way() {
         model.ui.overlay = Overlay::Quit;
     } else {
         effects.push(Effect::Quit { signal: None });
@@ -122,31 +129,38 @@ fn step(model: &mut Model) -> Vec<Effect> {
     if model.ui.overlay != Overlay::Stepping {
         return open(model, Overlay::Stepping);
     }
-    if model.console.asked.is_some() {
+    if model.live.asked.is_some() {
         return Vec::new();
     }
     send(model, Order::Step)
 }
 
 fn change_speed(model: &mut Model, faster: bool) -> Vec<Effect> {
-    let Some(speed) = model.console.speed.stepped(faster) else { return Vec::new() };
-    model.console.speed = speed;
+    let Some(speed) = model.live.speed.stepped(faster) else { return Vec::new() };
+    model.live.speed = speed;
     vec![Effect::Speed(speed)]
 }
 
 fn acknowledge(model: &mut Model) -> Vec<Effect> {
-    if let Some(text) = model.alarms.acknowledge() {
+    if let Some(text) = model.live.run.alarms.acknowledge() {
         model.say(Severity::Info, format!("acknowledged: {text}"));
     }
     Vec::new()
 }
 
 fn driving(model: &Model) -> usize {
-    let id = model.planner_id();
+    let id = model.live.run.planner_id();
     model.console.planners.iter().position(|planner| Some(planner.id.as_str()) == id).unwrap_or(0)
 }
 
 fn turn_to(model: &mut Model, by: isize) {
+    if model.ui.screen == Screen::Home {
+        model.home.list = match model.home.list {
+            HomeList::Scenarios => HomeList::Runs,
+            HomeList::Runs => HomeList::Scenarios,
+        };
+        return;
+    }
     let panes = model.ui.panes();
     let at = panes.iter().position(|pane| *pane == model.ui.pane).unwrap_or(0);
     let next = (at as isize + by).rem_euclid(panes.len().max(1) as isize) as usize;
@@ -163,11 +177,11 @@ fn zoom(model: &mut Model, by: i8) {
 
 /// Moves the map by a quarter of what it shows; the robot need not stay in the middle then.
 fn pan(model: &mut Model, direction: Vector) {
-    let Some(run) = &model.run else { return };
-    let (low, high) = run.world.boundary.bounds();
+    let Some(about) = &model.live.run.about else { return };
+    let (low, high) = about.world.boundary.bounds();
     let (middle, span) = (nalgebra::center(&low, &high), high - low);
     let step_m = span.x.max(span.y) / f64::from(1_u32 << model.ui.map.zoom) / 4.0;
-    let robot = model.position.pose.as_ref().map(|pose| pose.position);
+    let robot = model.live.run.position.pose.as_ref().map(|pose| pose.position);
     let center = model.ui.map_center(middle, robot) + direction * step_m;
     model.ui.map.follow = false;
     model.ui.map.offset = Point::new(center.x.clamp(low.x, high.x), center.y.clamp(low.y, high.y)) - middle;
@@ -183,7 +197,17 @@ fn next_severity(model: &mut Model) {
     };
 }
 
+/// Selects another line of whatever takes the arrow keys, so many further down.
+fn select(model: &mut Model, by: isize) {
+    match (&model.ui.overlay, model.ui.screen) {
+        (Overlay::None, Screen::Home) => model.home.select(by),
+        (Overlay::None, Screen::Mission) => scroll(model, by),
+        (Overlay::None, Screen::Plan | Screen::Result) => {}
+        _ => overlay::select(model, by),
+    }
+}
+
 fn scroll(model: &mut Model, by: isize) {
-    let lines = model.log.shown(model.ui.least, &model.ui.needle).count();
+    let lines = model.live.run.log.shown(model.ui.least, &model.ui.needle).count();
     model.ui.scroll = model.ui.scroll.saturating_add_signed(by).min(lines.saturating_sub(1));
 }

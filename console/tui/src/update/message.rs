@@ -1,8 +1,8 @@
 //! What goes into the model, and what has to be done outside in answer.
 
 use crate::keys::KeyPress;
-use crate::model::{Health, Refused, Speed, Times};
-use mission::{Event, Order, PlannerInfo, Severity};
+use crate::model::{Health, Refused, RunId, RunResult, Source, Speed, Times, home::Found};
+use mission::{Event, Order, PlannerChoice, PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
 
 /// What reaches the model.
@@ -19,12 +19,14 @@ pub enum Msg {
         /// Rows.
         height: u16,
     },
-    /// Events of the mission.
-    Events(Vec<Event>),
     /// The time.
     Time(Times),
-    /// How the console does.
-    Health(Health),
+    /// News of a run; of one that is not open any more it is dropped.
+    Run(RunId, RunMsg),
+    /// What was found on the disk.
+    Found(Box<Found>),
+    /// A job is done, or why it failed, as a sentence.
+    Done(Job, Result<String, String>),
     /// Which planners were found, and which plugins were not accepted.
     Planners {
         /// Planners to choose from.
@@ -39,6 +41,26 @@ pub enum Msg {
         /// What, as a sentence.
         text: String,
     },
+    /// The process was sent a signal.
+    Signal(Signal),
+    /// A thread of the console panicked.
+    ThreadPanicked {
+        /// Its name.
+        thread: String,
+        /// What it said.
+        message: String,
+    },
+}
+
+/// News of a run that is open.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum RunMsg {
+    /// The scenario could not be opened, with file, line and key.
+    OpenFailed(String),
+    /// Events of the mission.
+    Events(Vec<Event>),
+    /// How the engine does.
+    Health(Health),
     /// An order did not reach the mission.
     OrderFailed {
         /// Which.
@@ -56,15 +78,8 @@ pub enum Msg {
         /// What is being done, a few words; may be empty.
         what: String,
     },
-    /// The process was sent a signal.
-    Signal(Signal),
-    /// A thread of the console panicked.
-    ThreadPanicked {
-        /// Its name.
-        thread: String,
-        /// What it said.
-        message: String,
-    },
+    /// The run has ended and its files are closed.
+    Closed(Box<RunResult>),
 }
 
 /// A signal to the process.
@@ -82,9 +97,33 @@ pub enum Signal {
     Continue,
 }
 
+/// Work on past runs that is done beside the screen.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Job {
+    /// Compute a run again and compare it with its journal.
+    Verify(String),
+    /// Write the report of a run beside its journal.
+    Report(String),
+    /// Open the recording of a run in the viewer.
+    View(String),
+}
+
 /// What the caller has to do, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Effect {
+    /// Close the run that is open, if one is, and open a scenario.
+    Open {
+        /// What the new run is called.
+        id: RunId,
+        /// The scenario.
+        source: Source,
+        /// The planner to use instead of the scenario's.
+        planner: Option<PlannerChoice>,
+    },
+    /// Look at scenarios, past runs and the disk again.
+    Look,
+    /// Do something beside the screen.
+    Do(Job),
     /// Give the mission an order.
     Order(Order),
     /// Change the pace of the simulation.

@@ -1,8 +1,9 @@
 //! What can be done now, and why not otherwise. Footer and keys ask the same question.
 
+use super::go::named_run;
 use super::message::Effect;
 use crate::actions::ActionId;
-use crate::model::{Model, Pane, ui::MAX_ZOOM};
+use crate::model::{Model, Pane, Screen, ui::MAX_ZOOM};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 
 /// Whether an action can be done now.
@@ -20,7 +21,7 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::ChoosePlanner => swap(model),
         ActionId::Parameters => parameters(model),
         ActionId::Acknowledge => {
-            let waiting = model.alarms.list().iter().any(|alarm| !alarm.acknowledged);
+            let waiting = model.live.run.alarms.list().iter().any(|alarm| !alarm.acknowledged);
             demand(waiting, "no unacknowledged alarms")
         }
         ActionId::Slower => speed(model, false),
@@ -28,33 +29,43 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::ZoomIn => map(model).and(demand(model.ui.map.zoom < MAX_ZOOM, "already at maximum zoom")),
         ActionId::ZoomOut => map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is already shown")),
         ActionId::WholeTank | ActionId::Layers => map(model),
-        ActionId::Follow => map(model).and(demand(model.position.pose.is_some(), "no position estimate yet")),
+        ActionId::Follow => {
+            map(model).and(demand(model.live.run.position.pose.is_some(), "no position estimate yet"))
+        }
         ActionId::PanLeft | ActionId::PanRight | ActionId::PanUp | ActionId::PanDown => {
             map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is shown; z: zoom in first"))
         }
-        ActionId::Severity
-        | ActionId::Filter
-        | ActionId::Newer
-        | ActionId::Older
-        | ActionId::PageNewer
-        | ActionId::PageOlder
-        | ActionId::Newest
-        | ActionId::Oldest => {
+        ActionId::Severity => {
             demand(model.ui.shows(Pane::Events), "the events are not shown; Tab: next pane (needs 60x16)")
         }
+        ActionId::GoPlan | ActionId::GoMission => {
+            demand(model.live.source.is_some(), "no mission is open; choose one on screen 1 (Home)")
+        }
+        ActionId::GoResult => demand(model.live.result.is_some(), "no run has ended yet"),
+        ActionId::Rescan | ActionId::Verify | ActionId::Report | ActionId::View => {
+            demand(named_run(model).is_some(), "no run is selected")
+        }
         ActionId::NextPane | ActionId::PreviousPane => {
-            demand(!model.ui.panes().is_empty(), "panes require a 60x16 terminal")
+            let turns = model.ui.screen == Screen::Home || !model.ui.panes().is_empty();
+            demand(turns, "there is one pane only")
         }
         ActionId::Interrupt
         | ActionId::Redraw
         | ActionId::Suspend
         | ActionId::Commands
         | ActionId::Help
+        | ActionId::GoHome
+        | ActionId::Back
         | ActionId::Leave
+        | ActionId::Filter
         | ActionId::Accept
         | ActionId::Cancel
         | ActionId::Up
         | ActionId::Down
+        | ActionId::PageUp
+        | ActionId::PageDown
+        | ActionId::First
+        | ActionId::Last
         | ActionId::Edit => Ok(()),
     }
 }
@@ -71,33 +82,36 @@ fn demand(met: bool, otherwise: &str) -> Result<(), String> {
 
 /// Whether the mission would accept an order, by its own table.
 pub(super) fn accepted(model: &Model, order: &Order) -> Result<(), String> {
-    model.standing.standing().allows(order).map_err(|why| match remedy(&why, model.phase()) {
-        Some(remedy) => format!("{why}; {remedy}"),
-        None => why.to_string(),
+    model.live.run.standing.standing().allows(order).map_err(|why| {
+        match remedy(&why, model.live.run.phase()) {
+            Some(remedy) => format!("{why}; {remedy}"),
+            None => why.to_string(),
+        }
     })
 }
 
 fn hold(model: &Model) -> Result<(), String> {
-    if model.console.asked.is_some() { Ok(()) } else { accepted(model, &Order::Hold) }
+    if model.live.asked.is_some() { Ok(()) } else { accepted(model, &Order::Hold) }
 }
 
 fn start(model: &Model) -> Result<(), String> {
-    demand(model.run.is_some(), "no mission loaded yet")?;
+    demand(model.live.failure.is_none(), "the scenario could not be opened")?;
+    demand(model.live.run.about.is_some(), "no mission loaded yet")?;
     accepted(model, &Order::Start)?;
-    demand(model.console.asked.is_none(), "start already requested; space: HOLD")
+    demand(model.live.asked.is_none(), "start already requested; space: HOLD")
 }
 
 /// Ending a mission that was never started would leave a run of nothing.
 fn abort(model: &Model) -> Result<(), String> {
-    let is_waiting = *model.phase() == Phase::Waiting && !model.may_move();
-    demand(!is_waiting, "the mission has not been started; q: quit")?;
+    let is_waiting = *model.live.run.phase() == Phase::Waiting && !model.live.may_move();
+    demand(!is_waiting, "the mission has not been started")?;
     accepted(model, &Order::Abort)
 }
 
 fn swap(model: &Model) -> Result<(), String> {
     let choice = PlannerChoice::default();
     // Orders are obeyed in order: after HOLD was sent the list may open without waiting for the answer.
-    if !model.console.hold_asked {
+    if !model.live.hold_asked {
         accepted(model, &Order::ChoosePlanner(choice))?;
     }
     demand(!model.console.planners.is_empty(), "no planners found yet")
@@ -111,9 +125,9 @@ fn parameters(model: &Model) -> Result<(), String> {
 }
 
 fn speed(model: &Model, faster: bool) -> Result<(), String> {
-    demand(!model.has_ended(), "the mission has ended")?;
+    demand(model.live.run.about.is_some() && !model.live.run.has_ended(), "no mission is open")?;
     let end = if faster { "already at maximum speed" } else { "already at minimum speed" };
-    demand(model.console.speed.stepped(faster).is_some(), end)
+    demand(model.live.speed.stepped(faster).is_some(), end)
 }
 
 fn map(model: &Model) -> Result<(), String> {
@@ -130,7 +144,7 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::AlreadyMoving
         | Refusal::StepNeedsHold
         | Refusal::SwapNeedsHold => Some("space: HOLD"),
-        Refusal::Ended(_) => Some("q: quit"),
+        Refusal::Ended(_) => Some("1: open another one"),
         // These say themselves what would be right, as far as there is anything.
         Refusal::NotLive { .. }
         | Refusal::PositionLost { .. }

@@ -6,7 +6,7 @@ use super::send::send;
 use crate::actions::{ActionId, find};
 use crate::keys::Key;
 use crate::model::ui::{Ask, Edit, MapLayer};
-use crate::model::{Model, Overlay, parameter};
+use crate::model::{Model, Overlay, Screen, parameter};
 use mission::{Order, Parameters, PlannerChoice, Severity};
 
 /// Longest text that can be typed.
@@ -29,7 +29,7 @@ pub(super) fn chosen(model: &mut Model) -> Option<ActionId> {
     match &model.ui.overlay {
         Overlay::Stepping => Some(ActionId::Step),
         Overlay::Commands { filter, selected, .. } => {
-            let action = find::listed(filter, model.ui.pane).get(*selected).copied()?;
+            let action = find::listed(model, filter).get(*selected).copied()?;
             model.ui.overlay = Overlay::None;
             Some(action.id)
         }
@@ -62,7 +62,10 @@ pub(super) fn cancel(model: &mut Model) {
     match &mut model.ui.overlay {
         Overlay::Parameters { edit, .. } if edit.is_some() => *edit = None,
         Overlay::Filter => {
-            model.ui.needle.clear();
+            if let Some(text) = typed(model) {
+                text.clear();
+            }
+            typing_changed(model);
             model.ui.overlay = Overlay::None;
         }
         other => *other = Overlay::None,
@@ -80,20 +83,25 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
         Ask::Swap(_) => ActionId::ChoosePlanner,
     };
     match offered(model, id) {
-        Ok(()) => send(model, ask.order()),
+        Ok(()) => {
+            if *ask == Ask::Start {
+                model.ui.go(Screen::Mission);
+            }
+            send(model, ask.order())
+        }
         Err(why) => refuse(model, why),
     }
 }
 
 fn quit(model: &mut Model) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
-    let end = model.is_under_way().then_some(Effect::Order(Order::Abort));
+    let end = model.live.is_under_way().then_some(Effect::Order(Order::Abort));
     end.into_iter().chain([Effect::Quit { signal: None }]).collect()
 }
 
 fn choose_planner(model: &mut Model, selected: usize) -> Vec<Effect> {
     let Some(planner) = model.console.planners.get(selected) else { return Vec::new() };
-    if let Some(why) = model.cannot_fly(planner) {
+    if let Some(why) = model.live.run.cannot_fly(planner) {
         let why = format!("planner {} {why}", planner.id);
         return refuse(model, why);
     }
@@ -106,7 +114,7 @@ pub(super) fn edit(model: &mut Model) -> Vec<Effect> {
     let Overlay::Parameters { selected, .. } = model.ui.overlay else { return Vec::new() };
     let info = model.planner().and_then(|info| info.parameters.get(selected));
     let Some(info) = info else { return Vec::new() };
-    let value = parameter::value(&model.planning, info);
+    let value = parameter::value(&model.live.run.planning, info);
     let order = Order::SetParameter { key: info.key.clone(), value: value.clone() };
     if let Err(why) = accepted(model, &order) {
         return refuse(model, why);
@@ -141,11 +149,11 @@ fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
 /// Selects another line, so many further down.
 pub(super) fn select(model: &mut Model, by: isize) {
     let lines = match &model.ui.overlay {
-        Overlay::Commands { filter, .. } => find::listed(filter, model.ui.pane).len(),
+        Overlay::Commands { filter, .. } => find::listed(model, filter).len(),
         Overlay::Planners { .. } => model.console.planners.len(),
         Overlay::Parameters { .. } => model.planner().map_or(0, |info| info.parameters.len()),
         Overlay::Layers { .. } => MapLayer::ALL.len(),
-        _ => 0,
+        Overlay::None | Overlay::Confirm(_) | Overlay::Stepping | Overlay::Quit | Overlay::Filter => 0,
     };
     if let Overlay::Commands { selected, .. }
     | Overlay::Planners { selected }
@@ -187,7 +195,9 @@ fn typed(model: &mut Model) -> Option<&mut String> {
     match &mut model.ui.overlay {
         Overlay::Commands { filter, .. } => Some(filter),
         Overlay::Parameters { edit: Some(edit), .. } => Some(&mut edit.text),
-        Overlay::Filter => Some(&mut model.ui.needle),
+        Overlay::Filter => {
+            Some(if model.ui.screen == Screen::Home { &mut model.home.filter } else { &mut model.ui.needle })
+        }
         _ => None,
     }
 }
@@ -196,7 +206,7 @@ fn typing_changed(model: &mut Model) {
     match &mut model.ui.overlay {
         Overlay::Commands { selected, .. } => *selected = 0,
         Overlay::Parameters { edit: Some(edit), .. } => edit.refusal = None,
-        Overlay::Filter => model.ui.scroll = 0,
+        Overlay::Filter => (model.ui.scroll, model.home.scenario, model.home.run) = (0, 0, 0),
         _ => {}
     }
 }

@@ -24,7 +24,7 @@ pub(super) fn clauses(model: &Model) -> Clauses {
 
 /// What is asked and which keys answer come in the first clause: they are never left out.
 fn question(model: &Model) -> Option<Vec<String>> {
-    let moves = || format!("Robot will move (planner {}).", model.planner_id().unwrap_or("unknown"));
+    let moves = || format!("Robot will move (planner {}).", model.live.run.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
         Overlay::Confirm(Ask::Start) => vec!["Start mission? Enter: start, Esc: cancel.".into(), moves()],
         Overlay::Confirm(Ask::Resume) => vec!["Resume? Enter: resume, Esc: stay held.".into(), moves()],
@@ -34,7 +34,7 @@ fn question(model: &Model) -> Option<Vec<String>> {
             "Applies to later plans too, until one fails.".into(),
         ],
         Overlay::Confirm(Ask::Abort) => {
-            let scanned = format!("{} % of reachable floor scanned.", coverage::shares(model).0);
+            let scanned = format!("{} % of reachable floor scanned.", coverage::shares(&model.live.run).0);
             vec!["End mission for good? Enter: end, Esc: cancel.".into(), scanned]
         }
         Overlay::Confirm(Ask::Swap(choice)) => {
@@ -43,7 +43,7 @@ fn question(model: &Model) -> Option<Vec<String>> {
             vec![question, "No motion yet.".into()]
         }
         Overlay::Stepping => {
-            let tick_s = model.run.as_ref().map_or(0.0, |run| run.mission.tick_s);
+            let tick_s = model.live.run.about.as_ref().map_or(0.0, |run| run.mission.tick_s);
             vec![
                 "Single step? Enter or .: step, Esc: stop stepping.".into(),
                 format!("{} s per step.", text::number(tick_s, 2)),
@@ -60,10 +60,10 @@ fn question(model: &Model) -> Option<Vec<String>> {
 }
 
 fn quit(model: &Model) -> Vec<String> {
-    if !model.is_under_way() {
+    if !model.live.is_under_way() {
         return vec!["Quit console? Enter: quit, Esc: stay.".into(), "No mission in progress.".into()];
     }
     let question = "Quit and abort mission? Enter: quit, Esc: stay held.".to_owned();
-    let planning = model.console.busy.as_ref().map(|_| "Planning will be cancelled.".to_owned());
+    let planning = model.live.busy.as_ref().map(|_| "Planning will be cancelled.".to_owned());
     std::iter::once(question).chain(planning).collect()
 }

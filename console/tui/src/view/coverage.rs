@@ -3,7 +3,7 @@
 use super::look::{Look, fill};
 use super::text;
 use crate::model::coverage::{Division, Raster};
-use crate::model::{Model, Pane, Speed};
+use crate::model::{Pane, Run, Speed};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -25,9 +25,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
 }
 
 fn wide_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
-    let model = look.model;
-    let (reachable, whole) = shares(model);
-    let [_, to_do, margin, unreachable] = division(model);
+    let run = look.run;
+    let (reachable, whole) = shares(run);
+    let [_, to_do, margin, unreachable] = division(run);
     let row = |label: &str, value: String| {
         look.line([(Role::Dim, format!(" {label:<LABEL$}")), (Role::Text, value)])
     };
@@ -38,86 +38,86 @@ fn wide_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
     };
     vec![
         row_of_shares("scanned", format!("{reachable} %"), &whole),
-        look.line([(Role::Good, format!(" {}", bar(model, columns.saturating_sub(2))))]),
-        row_of_shares(to_do_label(model), format!("{} %", to_do_reachable(model)), &to_do),
+        look.line([(Role::Good, format!(" {}", bar(run, columns.saturating_sub(2))))]),
+        row_of_shares(to_do_label(run), format!("{} %", to_do_reachable(run)), &to_do),
         row_of_shares("unreachable", String::new(), &unreachable),
         row_of_shares("shell margin", String::new(), &margin),
-        row("rate", rate(model)),
-        row(way_label(model), way(model)),
-        row("time left", left(model, true)),
+        row("rate", rate(run)),
+        row(way_label(run), way(run)),
+        row("time left", left(look, true)),
     ]
 }
 
 fn narrow_lines(look: &Look) -> Vec<Line<'static>> {
-    let model = look.model;
-    let (reachable, whole) = shares(model);
+    let run = look.run;
+    let (reachable, whole) = shares(run);
     let text = |value: String| look.line([(Role::Text, format!(" {value}"))]);
-    let left_or_missed = if model.has_ended() {
-        format!("missed {} % of reachable", to_do_reachable(model))
+    let left_or_missed = if run.has_ended() {
+        format!("missed {} % of reachable", to_do_reachable(run))
     } else {
-        format!("left {}", left(model, false))
+        format!("left {}", left(look, false))
     };
     vec![
         look.line([
-            (Role::Good, format!(" {}", bar(model, BAR))),
+            (Role::Good, format!(" {}", bar(run, BAR))),
             (Role::Text, format!(" {reachable:>5} % reachable")),
         ]),
         text(format!("{:BAR$} {whole:>5} % whole", "")),
-        text(format!("{} {}", way_label(model), way(model))),
+        text(format!("{} {}", way_label(run), way(run))),
         text(left_or_missed),
     ]
 }
 
 /// Scanned shares of the reachable and of the whole floor; dashes before the first step.
-pub(super) fn shares(model: &Model) -> (String, String) {
-    model.progress.as_ref().map_or_else(
+pub(super) fn shares(run: &Run) -> (String, String) {
+    run.progress.as_ref().map_or_else(
         || ("-".into(), "-".into()),
         |progress| (text::percent(progress.covered_reachable), text::percent(progress.covered_whole)),
     )
 }
 
-fn bar(model: &Model, columns: usize) -> String {
-    text::bar(model.progress.as_ref().map_or(0.0, |progress| progress.covered_reachable), columns)
+fn bar(run: &Run, columns: usize) -> String {
+    text::bar(run.progress.as_ref().map_or(0.0, |progress| progress.covered_reachable), columns)
 }
 
 /// How the whole floor divides, in per cent that sum to 100.0: scanned, to do, shell margin, out of reach elsewhere.
-fn division(model: &Model) -> [String; 4] {
-    let Some(raster) = &model.coverage else { return [(); 4].map(|()| "-".into()) };
+fn division(run: &Run) -> [String; 4] {
+    let Some(raster) = &run.coverage else { return [(); 4].map(|()| "-".into()) };
     let Division { scanned, to_do, margin, unreachable } = raster.division();
     percents([scanned, to_do, margin, unreachable]).map(|percent| text::number(percent, 1))
 }
 
 /// What is not scanned is still to do, and missed when the mission has ended.
-fn to_do_label(model: &Model) -> &'static str {
-    if model.has_ended() { "missed" } else { "to do" }
+fn to_do_label(run: &Run) -> &'static str {
+    if run.has_ended() { "missed" } else { "to do" }
 }
 
 /// The same of the reachable floor.
-fn to_do_reachable(model: &Model) -> String {
-    let scanned = model.progress.as_ref().map(|progress| progress.covered_reachable);
+fn to_do_reachable(run: &Run) -> String {
+    let scanned = run.progress.as_ref().map(|progress| progress.covered_reachable);
     scanned.map_or_else(|| "-".into(), |scanned| text::number(percents([scanned, 1.0 - scanned])[1], 1))
 }
 
-fn rate(model: &Model) -> String {
-    let scanned_m2 = model.coverage.as_ref().map_or(0.0, Raster::scanned_m2);
-    let minutes = model.clock.moving_s / 60.0;
+fn rate(run: &Run) -> String {
+    let scanned_m2 = run.coverage.as_ref().map_or(0.0, Raster::scanned_m2);
+    let minutes = run.clock.moving_s / 60.0;
     let rate = if minutes > 0.2 { text::number(scanned_m2 / minutes, 1) } else { "-".into() };
     format!("{rate} m²/min, {} m² scanned", text::number(scanned_m2, 0))
 }
 
-fn way_label(model: &Model) -> &'static str {
-    if model.run.as_ref().is_some_and(|run| run.preset_m.is_some()) { "path" } else { "plan" }
+fn way_label(run: &Run) -> &'static str {
+    if run.about.as_ref().is_some_and(|about| about.preset_m.is_some()) { "path" } else { "plan" }
 }
 
-fn way(model: &Model) -> String {
-    let preset_m = model.run.as_ref().and_then(|run| run.preset_m);
-    match (preset_m, &model.progress) {
+fn way(run: &Run) -> String {
+    let preset_m = run.about.as_ref().and_then(|about| about.preset_m);
+    match (preset_m, &run.progress) {
         (Some(preset_m), Some(progress)) => {
             let along = progress.along_m.map_or_else(|| "-".into(), |along_m| text::number(along_m, 1));
             format!("{along} m of {} m", text::number(preset_m, 1))
         }
         (Some(preset_m), None) => format!("0.0 m of {} m", text::number(preset_m, 1)),
-        (None, _) => model
+        (None, _) => run
             .planning
             .plan
             .as_ref()
@@ -126,11 +126,12 @@ fn way(model: &Model) -> String {
 }
 
 /// Mission time still to go, and when that will be.
-fn left(model: &Model, wide: bool) -> String {
-    let Some(left_s) = model.left_s() else {
-        return if model.has_ended() { "ended".into() } else { "-".into() };
+fn left(look: &Look, wide: bool) -> String {
+    let (model, run) = (look.model, look.run);
+    let Some(left_s) = run.left_s() else {
+        return if run.has_ended() { "ended".into() } else { "-".into() };
     };
-    let factor = match (model.console.speed, model.console.health.reached_speed) {
+    let factor = match (model.live.speed, model.live.health.reached_speed) {
         (_, Some(reached)) if reached > 0.0 => Some(reached),
         (Speed::Times(factor), _) => Some(factor),
         (Speed::Max, _) => None,

@@ -19,7 +19,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let block = look.pane(Pane::Events, &title, note);
     let inner = block.inner(area);
     let lines = look
-        .model
+        .run
         .log
         .shown(ui.least, &ui.needle)
         .skip(ui.scroll)

@@ -6,7 +6,7 @@ use crate::actions::{
     ACTIONS, Action, ActionId,
     context::{Context, contexts},
 };
-use crate::model::{Model, Overlay, ui::Arrangement};
+use crate::model::{Model, Overlay, Screen, ui::Arrangement};
 use crate::theme::Role;
 use crate::update::offered;
 use mission::Phase;
@@ -78,13 +78,18 @@ fn hints(model: &Model) -> Vec<Hint> {
 
 fn shown(action: &Action, contexts: &[Context], model: &Model) -> bool {
     // In a list the space bar only stops, so there it is shown only while something can be stopped.
-    let idle_hold = action.id == ActionId::Hold && !contexts.contains(&Context::Mission) && !model.may_move();
+    let idle_hold =
+        action.id == ActionId::Hold && !contexts.contains(&Context::Screen) && !model.live.may_move();
     action.works_in(contexts) && !idle_hold && !action.label.is_empty() && offered(model, action.id).is_ok()
 }
 
 fn label(action: &Action, model: &Model) -> String {
     let word = match (action.id, &model.ui.overlay) {
-        (ActionId::Hold, _) if matches!(model.phase(), Phase::Held(_)) && !model.may_move() => "resume?",
+        (ActionId::Hold, _) if matches!(model.live.run.phase(), Phase::Held(_)) && !model.live.may_move() => {
+            "resume?"
+        }
+        (ActionId::Accept, Overlay::None) => "open",
+        (ActionId::Back, _) if model.ui.screen == Screen::Home => "quit",
         (ActionId::Accept, Overlay::Commands { .. }) => "run",
         (ActionId::Accept, Overlay::Planners { .. }) => "choose",
         (ActionId::Accept, Overlay::Layers { .. }) => "show/hide",

@@ -1,7 +1,7 @@
 //! What every part of the view needs: the model, and how the terminal shows it.
 
 use crate::caps::{Caps, Colours, Glyphs};
-use crate::model::{Model, Pane};
+use crate::model::{Model, Pane, Run};
 use crate::theme::{Role, Theme};
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -13,6 +13,8 @@ use std::borrow::Cow;
 #[derive(Clone, Copy)]
 pub(super) struct Look<'a> {
     pub model: &'a Model,
+    /// The run that the panes show.
+    pub run: &'a Run,
     pub caps: Caps,
     pub theme: &'a Theme,
 }

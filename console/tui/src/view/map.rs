@@ -29,7 +29,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let floor = Rect { height: inner.height - 1, ..inner };
     let below = Rect { y: inner.bottom() - 1, height: 1, ..inner };
     let readout = readout(look, inner.width);
-    if let Some(window) = window(look.model, floor) {
+    if let Some(window) = window(look, floor) {
         draw_floor(look, frame, floor, window);
         let room = usize::from(below.width).saturating_sub(text::width(&readout.1));
         let scale = Some(scale(window)).filter(|scale| text::width(scale) < room).unwrap_or_default();
@@ -55,13 +55,14 @@ fn keys(width: u16) -> &'static str {
 }
 
 /// What of the floor is seen in an area.
-fn window(model: &Model, area: Rect) -> Option<Window> {
-    let (low, high) = model.run.as_ref()?.world.boundary.bounds();
+fn window(look: &Look, area: Rect) -> Option<Window> {
+    let (model, run) = (look.model, look.run);
+    let (low, high) = run.about.as_ref()?.world.boundary.bounds();
     let (middle, span) = (nalgebra::center(&low, &high), high - low);
     let wide_m = span.x / f64::from(area.width);
     let high_m = span.y / (2.0 * f64::from(area.height));
     let column_m = wide_m.max(high_m) * MARGIN / f64::from(1_u32 << model.ui.map.zoom);
-    let robot = model.position.pose.as_ref().map(|pose| pose.position);
+    let robot = run.position.pose.as_ref().map(|pose| pose.position);
     let center = model.ui.map_center(middle, robot);
     let sound = column_m.is_finite() && column_m > 0.0 && center.x.is_finite() && center.y.is_finite();
     sound.then(|| Window::new(center, column_m, (area.width, area.height)))
@@ -88,12 +89,12 @@ fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
 
 /// The robot's place and the error of it, in words.
 fn readout(look: &Look, width: u16) -> (Role, String) {
-    let position = &look.model.position;
+    let position = &look.run.position;
     let name = if width >= 60 { "robot " } else { "" };
     let Some(pose) = &position.pose else { return (Role::Dim, "robot: no position yet ".into()) };
     let at = text::place(pose.position);
     let error = text::number(position.error_m().unwrap_or(f64::NAN), 2);
-    let stale = if position.is_fix_stale(look.model.clock.t_s) { "◌ " } else { "" };
+    let stale = if position.is_fix_stale(look.run.clock.t_s) { "◌ " } else { "" };
     let role = if position.lost { Role::Crit } else { Role::Text };
     let lost = if position.lost { " LOST" } else { "" };
     (role, format!("{stale}{name}{at} ±{error} m{lost} "))

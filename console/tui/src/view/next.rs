@@ -19,11 +19,11 @@ pub(super) fn clauses(model: &Model) -> Clauses {
         let news = format!("◌ No data from the mission for {} s: values are stale.", silent_s as u64);
         return (Role::Stale, vec![news, "space: HOLD.".into()]);
     }
-    if model.console.hold_asked {
+    if model.live.hold_asked {
         return (Role::Hold, vec!["HOLD requested...".into()]);
     }
-    let work = model.console.busy.as_ref().map(|busy| work(model, busy));
-    match (&model.console.asked, model.phase()) {
+    let work = model.live.busy.as_ref().map(|busy| work(model, busy));
+    match (&model.live.asked, model.live.run.phase()) {
         (Some(Order::Start), _) => (Role::Title, vec!["Starting...".into()]),
         (Some(_), _) => (Role::Title, vec!["Order sent...".into()]),
         (None, Phase::Held(hold)) => {
@@ -45,11 +45,14 @@ pub(super) fn clauses(model: &Model) -> Clauses {
             None => running(model),
         },
         (None, Phase::Ended(Outcome::Complete)) => {
-            (Role::Good, vec![format!("DONE: {}.", model.end_reason), "q: quit.".into()])
+            (Role::Good, vec![format!("DONE: {}.", model.live.run.end_reason), "7: result. 1: home.".into()])
         }
         (None, Phase::Ended(outcome)) => (
             Role::Warn,
-            vec![format!("ENDED ({}): {}.", outcome.word(), model.end_reason), "q: quit.".into()],
+            vec![
+                format!("ENDED ({}): {}.", outcome.word(), model.live.run.end_reason),
+                "7: result. 1: home.".into(),
+            ],
         ),
     }
 }
@@ -83,26 +86,27 @@ pub(super) fn joined(clauses: &[String], columns: usize) -> String {
 }
 
 fn idle(model: &Model) -> Clauses {
-    if model.run.is_none() {
+    if model.live.run.about.is_none() {
         return (Role::Title, vec!["Loading scenario...".into()]);
     }
-    let who = model.planner_id().unwrap_or("unknown");
+    let who = model.live.run.planner_id().unwrap_or("unknown");
     (Role::Title, vec![format!("Press S to start (planner {who}).")])
 }
 
 fn running(model: &Model) -> Clauses {
-    if model.position.lost {
-        let hold_s = model.run.as_ref().map_or(0.0, |run| run.mission.position_lost_hold_s);
+    if model.live.run.position.lost {
+        let hold_s = model.live.run.about.as_ref().map_or(0.0, |run| run.mission.position_lost_hold_s);
         let text = format!("POSITION LOST: automatic HOLD after {} s.", text::number(hold_s, 1));
         return (Role::Crit, vec![text]);
     }
-    let open = model.alarms.worst().filter(|alarm| !alarm.acknowledged && alarm.severity >= Severity::Warn);
+    let open =
+        model.live.run.alarms.worst().filter(|alarm| !alarm.acknowledged && alarm.severity >= Severity::Warn);
     if let Some(alarm) = open {
         let over = if alarm.active { "" } else { " (cleared)" };
         return (events::role(alarm.severity), vec![format!("a: acknowledge{over}: {}", alarm.text)]);
     }
     let calm = "No action required.".to_owned();
-    let Some(progress) = &model.progress else {
+    let Some(progress) = &model.live.run.progress else {
         return (Role::Title, vec!["Waiting for first command.".into(), calm]);
     };
     let (at, done) = (text::place(progress.target), text::percent(progress.done));
@@ -111,7 +115,7 @@ fn running(model: &Model) -> Clauses {
 
 /// Why the robot stands, then what ends the hold.
 fn held(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String> {
-    let position = model.standing.standing().position;
+    let position = model.live.run.standing.standing().position;
     let clauses = match trouble(position) {
         _ if !resumes.is_never() => held_for_now(by, *resumes),
         Some(trouble) => held_without_position(by, trouble),

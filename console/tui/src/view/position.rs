@@ -2,7 +2,7 @@
 
 use super::look::{Look, Parts, fill};
 use super::text;
-use crate::model::{Model, Pane, position::HISTORY_S};
+use crate::model::{Pane, Run, position::HISTORY_S};
 use crate::theme::Role;
 use positioning::{Exclusion, Integrity};
 use ratatui::Frame;
@@ -11,7 +11,7 @@ use ratatui::text::Line;
 use world::{Station, StationId};
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
-    let note = if look.model.position.lost { "LOST" } else { "" };
+    let note = if look.run.position.lost { "LOST" } else { "" };
     let block = look.pane(Pane::Position, "AE position", note);
     let inner = block.inner(area);
     let lines = if wide { wide_lines(look, inner) } else { narrow_lines(look, inner) };
@@ -23,14 +23,14 @@ fn wide_lines(look: &Look, inner: Rect) -> Vec<Line<'static>> {
     let mut lines = vec![
         look.line([
             (Role::Dim, " heard      ".into()),
-            (Role::Text, format!("{}   residual {}", heard(look.model, " of "), residual(look.model))),
+            (Role::Text, format!("{}   residual {}", heard(look.run, " of "), residual(look.run))),
         ]),
-        look.line([(Role::Dim, " error      ".into()), error(look.model, true)]),
+        look.line([(Role::Dim, " error      ".into()), error(look.run, true)]),
         curve(look, columns),
         look.line([
             (Role::Dim, " fix age    ".into()),
-            age(look.model),
-            (Role::Text, format!("   integrity {}", integrity(look.model))),
+            age(look.run),
+            (Role::Text, format!("   integrity {}", integrity(look.run))),
         ]),
     ];
     lines.extend(station_lines(look, columns, usize::from(inner.height).saturating_sub(lines.len())));
@@ -39,48 +39,48 @@ fn wide_lines(look: &Look, inner: Rect) -> Vec<Line<'static>> {
 
 fn narrow_lines(look: &Look, inner: Rect) -> Vec<Line<'static>> {
     let columns = usize::from(inner.width).saturating_sub(1);
-    let first = look.model.position.fix.as_ref().and_then(|fix| fix.excluded.first());
+    let first = look.run.position.fix.as_ref().and_then(|fix| fix.excluded.first());
     let last = match first {
-        Some((id, why)) => (Role::Watch, text::fit(&rejected(look.model, *id, why), columns)),
-        None => (Role::Text, format!("residual {}", residual(look.model))),
+        Some((id, why)) => (Role::Watch, text::fit(&rejected(look.run, *id, why), columns)),
+        None => (Role::Text, format!("residual {}", residual(look.run))),
     };
     vec![
-        look.line([(Role::Text, format!(" {} ", heard(look.model, "/"))), error(look.model, false)]),
+        look.line([(Role::Text, format!(" {} ", heard(look.run, "/"))), error(look.run, false)]),
         look.line([(Role::Text, " ".into()), last]),
-        look.line([(Role::Dim, " fix age ".into()), age(look.model)]),
+        look.line([(Role::Dim, " fix age ".into()), age(look.run)]),
     ]
 }
 
-fn stations(model: &Model) -> &[Station] {
-    model.run.as_ref().map_or(&[], |run| &run.world.stations)
+fn stations(run: &Run) -> &[Station] {
+    run.about.as_ref().map_or(&[], |about| &about.world.stations)
 }
 
 /// Stations heard in the last ranging cycle, of how many.
-fn heard(model: &Model, of: &str) -> String {
-    let heard = model.position.ranged_t_s.map_or_else(|| "-".into(), |_| model.position.heard.to_string());
-    format!("{heard}{of}{}", stations(model).len())
+fn heard(run: &Run, of: &str) -> String {
+    let heard = run.position.ranged_t_s.map_or_else(|| "-".into(), |_| run.position.heard.to_string());
+    format!("{heard}{of}{}", stations(run).len())
 }
 
-fn residual(model: &Model) -> String {
-    let rms = model.position.residual_rms_m();
+fn residual(run: &Run) -> String {
+    let rms = run.position.residual_rms_m();
     rms.map_or_else(|| "- mm".into(), |rms_m| format!("{} mm RMS", text::number(rms_m * 1000.0, 0)))
 }
 
-fn limit_m(model: &Model) -> f64 {
-    model.run.as_ref().map_or(f64::NAN, |run| run.mission.position_limit_m)
+fn limit_m(run: &Run) -> f64 {
+    run.about.as_ref().map_or(f64::NAN, |about| about.mission.position_limit_m)
 }
 
-fn error(model: &Model, wide: bool) -> (Role, String) {
-    let limit_m = limit_m(model);
-    let error_m = model.position.error_m();
+fn error(run: &Run, wide: bool) -> (Role, String) {
+    let limit_m = limit_m(run);
+    let error_m = run.position.error_m();
     let role = match error_m {
-        _ if model.position.lost => Role::Crit,
+        _ if run.position.lost => Role::Crit,
         Some(error_m) if error_m > 0.8 * limit_m => Role::Warn,
         _ => Role::Text,
     };
     let error = error_m.map_or_else(|| "-".into(), |error_m| format!("±{}", text::number(error_m, 2)));
     let limit = text::number(limit_m, 2);
-    let lost = if model.position.lost { " LOST" } else { "" };
+    let lost = if run.position.lost { " LOST" } else { "" };
     if wide {
         (role, format!("{error} m (95 %)  limit {limit} m{lost}"))
     } else {
@@ -89,26 +89,26 @@ fn error(model: &Model, wide: bool) -> (Role, String) {
 }
 
 fn curve(look: &Look, columns: usize) -> Line<'static> {
-    let limit_m = limit_m(look.model);
+    let limit_m = limit_m(look.run);
     let note = format!(" 2 min, 0-{} m", text::number(limit_m, 2));
     let room = columns.saturating_sub(text::width(&note) + 2);
-    let curve = text::sparkline(look.model.position.history_m(), limit_m, room, HISTORY_S);
+    let curve = text::sparkline(look.run.position.history_m(), limit_m, room, HISTORY_S);
     look.line([(Role::Text, " ".into()), (Role::Watch, curve), (Role::Dim, note)])
 }
 
-fn age(model: &Model) -> (Role, String) {
-    let t_s = model.clock.t_s;
-    match model.position.fix_age_s(t_s) {
+fn age(run: &Run) -> (Role, String) {
+    let t_s = run.clock.t_s;
+    match run.position.fix_age_s(t_s) {
         None => (Role::Text, "none yet".into()),
-        Some(age_s) if model.position.is_fix_stale(t_s) => {
+        Some(age_s) if run.position.is_fix_stale(t_s) => {
             (Role::Stale, format!("◌ {} s old", text::number(age_s, 1)))
         }
         Some(age_s) => (Role::Text, format!("{} s", text::number(age_s, 1))),
     }
 }
 
-fn integrity(model: &Model) -> &'static str {
-    match (&model.position.failure, &model.position.fix) {
+fn integrity(run: &Run) -> &'static str {
+    match (&run.position.failure, &run.position.fix) {
         (Some(_), _) => "NO FIX",
         (None, None) => "-",
         (None, Some(fix)) => match fix.integrity {
@@ -123,12 +123,12 @@ fn integrity(model: &Model) -> &'static str {
 /// A few words per station: its residual, or why it was rejected; those rejected come first.
 fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
     let mut words = Parts::new();
-    if let Some(fix) = &look.model.position.fix {
-        words.extend(fix.excluded.iter().map(|(id, why)| (Role::Watch, rejected(look.model, *id, why))));
+    if let Some(fix) = &look.run.position.fix {
+        words.extend(fix.excluded.iter().map(|(id, why)| (Role::Watch, rejected(look.run, *id, why))));
         words.extend(fix.residuals.iter().map(|residual| {
             let residual_mm = text::number(residual.residual_m * 1000.0, 0);
             let sign = if residual.residual_m >= 0.0005 { "+" } else { "" };
-            (Role::Text, format!("{} ok {sign}{residual_mm} mm", look.model.station_name(residual.station)))
+            (Role::Text, format!("{} ok {sign}{residual_mm} mm", look.run.station_name(residual.station)))
         }));
     }
     let mut lines: Vec<Parts> = Vec::new();
@@ -148,8 +148,8 @@ fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>>
 }
 
 /// A station that has no part in the fix, and why.
-fn rejected(model: &Model, id: StationId, why: &Exclusion) -> String {
-    let name = model.station_name(id);
+fn rejected(run: &Run, id: StationId, why: &Exclusion) -> String {
+    let name = run.station_name(id);
     match why {
         Exclusion::Silent => format!("{name} not heard"),
         Exclusion::Residual { residual_m, gate_m } => {

@@ -46,7 +46,7 @@ fn state(look: &Look) -> Line<'static> {
 }
 
 fn alarm(look: &Look, columns: usize) -> Option<Line<'static>> {
-    let alarm = look.model.alarms.worst()?;
+    let alarm = look.run.alarms.worst()?;
     let mut parts = vec![(Role::Text, " ".to_owned())];
     parts.extend(top::alarms(look.model, false));
     let used: usize = parts.iter().map(|(_, text)| text::width(text)).sum();
@@ -56,9 +56,10 @@ fn alarm(look: &Look, columns: usize) -> Option<Line<'static>> {
 
 fn position(look: &Look) -> String {
     let model = look.model;
-    let scanned = coverage::shares(model).0;
-    let error = model.position.error_m().map_or_else(|| "-".into(), |error_m| text::number(error_m, 2));
-    let lost = if model.position.lost { " LOST" } else { "" };
+    let scanned = coverage::shares(&model.live.run).0;
+    let error =
+        model.live.run.position.error_m().map_or_else(|| "-".into(), |error_m| text::number(error_m, 2));
+    let lost = if model.live.run.position.lost { " LOST" } else { "" };
     format!(" {scanned} % of reachable floor, ±{error} m{lost}")
 }
 

@@ -10,7 +10,7 @@ pub(super) const ROWS: (u16, u16) = (8, 6);
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
     let block = look.block(Role::Border, "Tether", note(look));
-    let Some(tether) = &look.model.tether else { return };
+    let Some(tether) = &look.run.tether else { return };
     let lines = if wide { wide_lines(look, tether) } else { narrow_lines(look, tether) };
     let columns = usize::from(block.inner(area).width);
     let lines = lines.into_iter().map(|parts| cut(look, parts, columns)).collect();
@@ -27,7 +27,7 @@ fn cut(look: &Look, parts: Parts, columns: usize) -> Line<'static> {
 }
 
 fn note(look: &Look) -> &'static str {
-    match look.model.tether.as_ref().and_then(|tether| tether.certified) {
+    match look.run.tether.as_ref().and_then(|tether| tether.certified) {
         Some(true) => "plan certified",
         Some(false) => "NOT certified",
         None => "",
@@ -46,7 +46,7 @@ fn wide_lines(look: &Look, tether: &Tether) -> Vec<Parts> {
         row("total wrap", (Role::Text, total(tether))),
         row("contacts", (Role::Text, contacts(tether))),
         row("return path", home(tether)),
-        row("at end", (Role::Text, if look.model.has_ended() { still_out } else { "-".into() })),
+        row("at end", (Role::Text, if look.run.has_ended() { still_out } else { "-".into() })),
     ]
 }
 
@@ -61,7 +61,7 @@ fn narrow_lines(look: &Look, tether: &Tether) -> Vec<Parts> {
 }
 
 fn limits(look: &Look) -> Option<world::tether::Limits> {
-    Some(look.model.run.as_ref()?.mission.tether.as_ref()?.limits)
+    Some(look.run.about.as_ref()?.mission.tether.as_ref()?.limits)
 }
 
 fn metres(length_m: f64) -> String {

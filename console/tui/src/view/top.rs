@@ -10,9 +10,6 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use world::Boundary;
 
-/// The name of the screen, at the right end.
-const SCREEN: &str = "Mission ";
-
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let arrangement = Arrangement::of(frame.area().width, frame.area().height);
     let wide = arrangement == Arrangement::Wide;
@@ -23,7 +20,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let fixed: usize =
         [&state, &time, &alarms].into_iter().flatten().map(|(_, text)| text::width(text)).sum();
     // Names take what the rest leaves; the tank goes first, for the planner can change.
-    let screen = if wide { text::width(SCREEN) + gap.len() } else { 0 };
+    let screen = look.model.ui.screen;
+    let name = format!("{} {} ", screen.digit(), screen.name());
+    let screen = if wide { text::width(&name) + gap.len() } else { 0 };
     let room = usize::from(area.width).saturating_sub(fixed + 1 + 3 * gap.len() + screen);
     let names = names(look.model, wide, gap, room);
     let blank = || vec![(Role::Text, gap.to_owned())];
@@ -31,8 +30,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let used: usize = left.iter().map(|(_, text)| text::width(text)).sum();
     frame.render_widget(look.line(left), area);
     if wide && used + screen <= usize::from(area.width) {
-        let line = Line::from(look.span(Role::Dim, SCREEN)).right_aligned();
-        frame.render_widget(line, right_of(area, text::width(SCREEN) as u16));
+        let width = text::width(&name) as u16;
+        let line = Line::from(look.span(Role::Dim, name)).right_aligned();
+        frame.render_widget(line, right_of(area, width));
     }
 }
 
@@ -43,7 +43,7 @@ fn right_of(area: Rect, width: u16) -> Rect {
 
 /// Who is in charge, and whether the robot moves.
 pub(super) fn state(model: &Model) -> Parts {
-    let (who, role, word) = match model.phase() {
+    let (who, role, word) = match model.live.run.phase() {
         Phase::Waiting => ("OPER", Role::Title, "■ IDLE"),
         Phase::Running(_) => ("AUTO", Role::Run, "▶ RUN"),
         Phase::Held(Hold {
@@ -58,12 +58,12 @@ pub(super) fn state(model: &Model) -> Parts {
 }
 
 fn names(model: &Model, wide: bool, gap: &str, room: usize) -> Parts {
-    let planner = match (wide, model.planner(), model.planner_id()) {
+    let planner = match (wide, model.planner(), model.live.run.planner_id()) {
         (true, Some(info), _) => format!("{} {}", info.id, info.version),
         (_, _, Some(id)) => id.to_owned(),
         _ => String::new(),
     };
-    let tank = model.run.as_ref().map_or_else(
+    let tank = model.live.run.about.as_ref().map_or_else(
         || "no run".into(),
         |run| match (&run.world.boundary, wide) {
             (Boundary::Circle { radius_m }, true) => {
@@ -89,15 +89,15 @@ fn names(model: &Model, wide: bool, gap: &str, room: usize) -> Parts {
 pub(super) fn time(model: &Model) -> Parts {
     let clock = match model.silent_s() {
         Some(silent_s) => {
-            (Role::Stale, format!("◌T+{} {} s old ", text::clock(model.clock.t_s), silent_s as u64))
+            (Role::Stale, format!("◌T+{} {} s old ", text::clock(model.live.run.clock.t_s), silent_s as u64))
         }
-        None => (Role::Text, format!("T+{} ", text::clock(model.clock.t_s))),
+        None => (Role::Text, format!("T+{} ", text::clock(model.live.run.clock.t_s))),
     };
-    vec![clock, (Role::Text, format!("{} ", text::speed(model.console.speed))), recording(model)]
+    vec![clock, (Role::Text, format!("{} ", text::speed(model.live.speed))), recording(model)]
 }
 
 fn recording(model: &Model) -> (Role, String) {
-    match model.console.health.recording {
+    match model.live.health.recording {
         Recording::On => (Role::Good, "REC●".into()),
         Recording::Off => (Role::Dim, "REC-".into()),
         Recording::Failed(_) => (Role::Crit, "REC✗".into()),
@@ -106,7 +106,7 @@ fn recording(model: &Model) -> (Role, String) {
 
 /// How many alarms of each severity there are, and whether some are not acknowledged.
 pub(super) fn alarms(model: &Model, wide: bool) -> Parts {
-    if model.alarms.list().is_empty() {
+    if model.live.run.alarms.list().is_empty() {
         return vec![(Role::Dim, if wide { "ALARM none" } else { "! none" }.into())];
     }
     let counted = [
@@ -116,7 +116,8 @@ pub(super) fn alarms(model: &Model, wide: bool) -> Parts {
     ];
     let mut parts = vec![(Role::Title, if wide { "ALARM".into() } else { "!".into() })];
     for (severity, role, word, letter) in counted {
-        let (count, open) = (model.alarms.count(severity), model.alarms.unacknowledged(severity) > 0);
+        let (count, open) =
+            (model.live.run.alarms.count(severity), model.live.run.alarms.unacknowledged(severity) > 0);
         let role = if count == 0 { Role::Dim } else { role };
         parts.push((Role::Text, " ".into()));
         parts.push((

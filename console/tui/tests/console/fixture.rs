@@ -11,7 +11,10 @@ use planner_api::{Command, Drawing, Layer, Limits, Motion, PoseEstimate, Reason}
 use positioning::{Exclusion, Fix, Integrity, Ranging, Residual};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::OnceLock;
-use tui::{Caps, Colours, Glyphs, Health, Model, Msg, Recording, Refused, Times, update};
+use tui::{
+    Caps, Colours, Glyphs, Health, Model, Msg, Recording, Refused, RunId, RunMsg, Source, Speed, Times,
+    update,
+};
 use world::spiral::Spiral;
 use world::tether::{Bearing, Cable, Certificate, Contact, capstan_factor};
 use world::{
@@ -480,16 +483,18 @@ impl Screen {
     }
 
     fn make_idle() -> Self {
-        let mut screen = Self { model: Model::default(), mission: ScriptedMission::new(), mono_s: 0.0 };
+        let mut model = Model::opened(RunId(1), Source::Demo, Speed::default());
+        model.ui.go(tui::model::Screen::Mission);
+        let mut screen = Self { model, mission: ScriptedMission::new(), mono_s: 0.0 };
         screen.send(Msg::Time(Times { mono_s: 0.0, wall_unix_s: 1_795_264_000.0 }));
-        screen.send(Msg::Health(Health { recording: Recording::On, reached_speed: None }));
+        screen.hear(RunMsg::Health(Health { recording: Recording::On, reached_speed: None }));
         let refused = Refused {
             plugin: "my_plugin.so".into(),
             reason: "built for planner ABI 3, this console speaks 1; rebuild it".into(),
         };
         screen.send(Msg::Planners { found: planners(), refused: vec![refused] });
         let events = screen.mission.opening();
-        screen.send(Msg::Events(events));
+        screen.hear(RunMsg::Events(events));
         screen
     }
 
@@ -508,18 +513,18 @@ impl Screen {
         events.extend(screen.mission.drive(700));
         events.push(screen.mission.excluded());
         events.extend(screen.mission.drive(35));
-        screen.send(Msg::Events(events));
+        screen.hear(RunMsg::Events(events));
         screen
     }
 
     /// The same on a tether.
     pub(crate) fn tethered() -> Self {
         let mut screen = Self::running();
-        if let Some(run) = &mut screen.model.run {
+        if let Some(run) = &mut screen.model.live.run.about {
             run.mission.tether = Some(tether());
         }
         let events = vec![screen.mission.certified(&[]), screen.mission.cable()];
-        screen.send(Msg::Events(events));
+        screen.hear(RunMsg::Events(events));
         screen
     }
 
@@ -527,13 +532,18 @@ impl Screen {
     pub(crate) fn held() -> Self {
         let mut screen = Self::running();
         let events = screen.mission.obeyed(Order::Hold);
-        screen.send(Msg::Events(events));
+        screen.hear(RunMsg::Events(events));
         screen
     }
 
     /// Sends a message to the model.
     pub(crate) fn send(&mut self, msg: Msg) -> Vec<tui::Effect> {
         update(&mut self.model, msg)
+    }
+
+    /// Sends news of the run that is open to the model.
+    pub(crate) fn hear(&mut self, msg: RunMsg) -> Vec<tui::Effect> {
+        self.send(of_run(msg))
     }
 
     /// Presses keys, one after the other.
@@ -551,6 +561,11 @@ impl Screen {
         self.mono_s += seconds;
         self.send(Msg::Time(Times { mono_s: self.mono_s, wall_unix_s: 1_795_264_000.0 + self.mono_s }))
     }
+}
+
+/// News of the run that every fixture has open.
+pub(crate) fn of_run(msg: RunMsg) -> Msg {
+    Msg::Run(RunId(1), msg)
 }
 
 /// A terminal with everything.

@@ -1,11 +1,11 @@
 //! Laws that hold for every screen.
 
-use crate::fixture::{ASCII, PLAIN, RICH, Screen, choice, planner};
+use crate::fixture::{ASCII, PLAIN, RICH, Screen, choice, of_run, planner};
 use crate::screens::{drawn, text};
 use mission::{AskId, Event, EventKind, HoldReason, Order, Outcome, Resumes, Severity, WorkerId};
 use proptest::prelude::*;
 use ratatui::style::Style;
-use tui::{Caps, Effect, Health, Key, KeyPress, Model, Msg, Recording, Signal, Times};
+use tui::{Caps, Effect, Health, Key, KeyPress, Model, Msg, Recording, RunMsg, Signal, Times};
 
 fn key() -> impl Strategy<Value = Key> {
     prop_oneof![
@@ -82,17 +82,17 @@ fn msg() -> impl Strategy<Value = Msg> {
     ]);
     prop_oneof![
         8 => (key(), any::<bool>()).prop_map(|(key, repeat)| Msg::Key(KeyPress { key, repeat })),
-        4 => prop::collection::vec(event(), 0..6).prop_map(Msg::Events),
+        4 => prop::collection::vec(event(), 0..6).prop_map(|events| of_run(RunMsg::Events(events))),
         1 => (0..300_u16, 0..100_u16).prop_map(|(width, height)| Msg::Resize { width, height }),
         1 => any::<f64>().prop_map(|mono_s| Msg::Time(Times { mono_s, wall_unix_s: mono_s })),
         1 => "\\PC{0,90}".prop_map(Msg::Paste),
         1 => (recording, prop::option::of(any::<f64>()))
-            .prop_map(|(recording, reached_speed)| Msg::Health(Health { recording, reached_speed })),
+            .prop_map(|(recording, reached_speed)| of_run(RunMsg::Health(Health { recording, reached_speed }))),
         1 => "\\PC{0,90}".prop_map(|text| Msg::Notice { severity: Severity::Crit, text }),
-        1 => prop::option::of(("[a-z]{0,9}", prop::option::of(0.0..99.0_f64))).prop_map(Msg::Busy),
-        1 => (any::<f64>(), "\\PC{0,90}").prop_map(|(share, what)| Msg::BusyAt { share, what }),
+        1 => prop::option::of(("[a-z]{0,9}", prop::option::of(0.0..99.0_f64))).prop_map(|busy| of_run(RunMsg::Busy(busy))),
+        1 => (any::<f64>(), "\\PC{0,90}").prop_map(|(share, what)| of_run(RunMsg::BusyAt { share, what })),
         1 => prop::sample::select(vec![Order::Start, Order::Hold, Order::Resume])
-            .prop_map(|order| Msg::OrderFailed { order, why: "the engine has ended".into() }),
+            .prop_map(|order| of_run(RunMsg::OrderFailed { order, why: "the engine has ended".into() })),
         1 => signal.prop_map(Msg::Signal),
     ]
 }
@@ -114,7 +114,7 @@ fn turn() -> impl Strategy<Value = Msg> {
         mission.obeyed(Order::Resume),
         vec![mission.ended(Outcome::Complete, "task complete")],
     ];
-    prop::sample::select(turns).prop_map(Msg::Events)
+    prop::sample::select(turns).prop_map(|events| of_run(RunMsg::Events(events)))
 }
 
 /// Messages of an operator who asks for everything and often agrees.
@@ -142,8 +142,8 @@ fn answers_hold(msg: &Msg) -> bool {
         _ => false,
     };
     match msg {
-        Msg::Events(events) => events.iter().any(kind),
-        Msg::OrderFailed { order, .. } => *order == Order::Hold,
+        Msg::Run(_, RunMsg::Events(events)) => events.iter().any(kind),
+        Msg::Run(_, RunMsg::OrderFailed { order, .. }) => *order == Order::Hold,
         _ => false,
     }
 }
@@ -186,7 +186,7 @@ proptest! {
         };
         let mut follows_hold = false;
         for msg in deeds.into_iter().flatten() {
-            let before = screen.model.standing.clone();
+            let before = screen.model.live.run.standing.clone();
             follows_hold &= !answers_hold(&msg);
             for effect in screen.send(msg) {
                 let Effect::Order(order) = effect else { continue };
@@ -238,12 +238,13 @@ fn nothing_but_style_is_lost_without_colour() {
     let mut lost = Screen::running();
     let event = lost.mission.now(EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
     let held = lost.mission.held(HoldReason::PositionLost);
-    lost.send(Msg::Events(vec![event, held]));
+    lost.hear(RunMsg::Events(vec![event, held]));
     let mut failed = Screen::running();
     let events = failed.mission.planner_fails();
-    failed.send(Msg::Events(events));
+    failed.hear(RunMsg::Events(events));
     let mut unrecorded = Screen::running();
-    unrecorded.send(Msg::Health(Health { recording: Recording::Failed("full".into()), reached_speed: None }));
+    unrecorded
+        .hear(RunMsg::Health(Health { recording: Recording::Failed("full".into()), reached_speed: None }));
     let cases: Vec<(&str, Screen, &[&str])> = vec![
         ("idle", Screen::idle(), &["■ IDLE", "REC●", "Press S"]),
         ("running", Screen::running(), &["▶ RUN", "2w", "rejected: 0.42", "found"]),
@@ -276,11 +277,11 @@ fn nothing_but_style_is_lost_without_colour() {
 fn what_is_drawn_does_not_grow_with_the_mission() {
     let mut screen = Screen::running();
     let events = screen.mission.wait(200_000);
-    screen.send(Msg::Events(events));
-    assert!(screen.model.trail.points().len() <= 2048);
-    assert!(screen.model.position.history_m().len() <= 120);
+    screen.hear(RunMsg::Events(events));
+    assert!(screen.model.live.run.trail.points().len() <= 2048);
+    assert!(screen.model.live.run.position.history_m().len() <= 120);
     for i in 0..20_000 {
         screen.send(Msg::Notice { severity: Severity::Info, text: format!("line {i}") });
     }
-    assert!(screen.model.log.len() <= 10_000);
+    assert!(screen.model.live.run.log.len() <= 10_000);
 }

@@ -5,7 +5,7 @@ use mission::{EventKind, HoldReason, Order, Outcome, Resumes};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
-use tui::{Caps, Key, Model, Msg, Recording, Theme, view, view_with};
+use tui::{Caps, Key, Model, Msg, Recording, RunMsg, Theme, view, view_with};
 
 /// The sizes that the console is made for.
 const SIZES: [(u16, u16); 4] = [(120, 36), (80, 24), (60, 16), (44, 10)];
@@ -59,12 +59,12 @@ fn idle() {
 fn planning() {
     let mut screen = Screen::idle();
     let started = screen.mission.now(EventKind::Ordered { order: Order::Start });
-    screen.send(Msg::Events(vec![started]));
-    screen.send(Msg::Busy(Some(("Planning (tether-safe)".into(), Some(60.0)))));
+    screen.hear(RunMsg::Events(vec![started]));
+    screen.hear(RunMsg::Busy(Some(("Planning (tether-safe)".into(), Some(60.0)))));
     screen.pass(7.0);
     let events = screen.mission.wait(14);
-    screen.send(Msg::Events(events));
-    screen.send(Msg::BusyAt { share: 0.42, what: "candidate 2 of 3".into() });
+    screen.hear(RunMsg::Events(events));
+    screen.hear(RunMsg::BusyAt { share: 0.42, what: "candidate 2 of 3".into() });
     store("planning", &mut screen);
 }
 
@@ -106,7 +106,7 @@ fn position_lost() {
     events.push(screen.mission.now(EventKind::PositionLost { error_m: 0.49, limit_m: 0.15 }));
     events.extend(screen.mission.wait(4));
     events.push(screen.mission.held_until(HoldReason::PositionLost, Resumes::WhenCleared));
-    screen.send(Msg::Events(events));
+    screen.hear(RunMsg::Events(events));
     store("lost", &mut screen);
 }
 
@@ -121,7 +121,7 @@ fn no_return_path() {
     let mut screen = Screen::tethered();
     let message = mission::event::TetherAlarm::NoReturnPath.to_string();
     let held = screen.mission.held_until(HoldReason::Tether { message }, Resumes::WhenCleared);
-    screen.send(Msg::Events(vec![held]));
+    screen.hear(RunMsg::Events(vec![held]));
     store("no_return_path", &mut screen);
 }
 
@@ -130,8 +130,8 @@ fn fallback_plans() {
     let mut screen = Screen::running();
     let message = "planner rpf panicked during step".to_owned();
     let held = screen.mission.held_until(HoldReason::PlannerFault { message }, Resumes::ByFallback);
-    screen.send(Msg::Events(vec![held]));
-    screen.send(Msg::Busy(Some(("Planning (apf)".into(), Some(60.0)))));
+    screen.hear(RunMsg::Events(vec![held]));
+    screen.hear(RunMsg::Busy(Some(("Planning (apf)".into(), Some(60.0)))));
     screen.pass(7.0);
     store("fallback", &mut screen);
 }
@@ -140,7 +140,7 @@ fn fallback_plans() {
 fn caught() {
     let mut screen = Screen::tethered();
     let events = screen.mission.caught();
-    screen.send(Msg::Events(events));
+    screen.hear(RunMsg::Events(events));
     store("caught", &mut screen);
 }
 
@@ -148,7 +148,7 @@ fn caught() {
 fn plan_refused() {
     let mut screen = Screen::tethered();
     let events = screen.mission.plan_refused();
-    screen.send(Msg::Events(events));
+    screen.hear(RunMsg::Events(events));
     store("plan_refused", &mut screen);
 }
 
@@ -156,7 +156,7 @@ fn plan_refused() {
 fn planner_fault() {
     let mut screen = Screen::running();
     let events = screen.mission.planner_fails();
-    screen.send(Msg::Events(events));
+    screen.hear(RunMsg::Events(events));
     store("fault", &mut screen);
 }
 
@@ -164,7 +164,7 @@ fn planner_fault() {
 fn ended() {
     let mut screen = Screen::running();
     let events = vec![screen.mission.ended(Outcome::Complete, "task complete")];
-    screen.send(Msg::Events(events));
+    screen.hear(RunMsg::Events(events));
     store("ended", &mut screen);
 }
 
@@ -173,8 +173,8 @@ fn ended_in_a_collision_without_recording() {
     let mut screen = Screen::running();
     let events = vec![screen.mission.ended(Outcome::Collision, "bumper contact")];
     let recording = Recording::Failed("the disk is full".into());
-    screen.send(Msg::Events(events));
-    screen.send(Msg::Health(tui::Health { recording, reached_speed: None }));
+    screen.hear(RunMsg::Events(events));
+    screen.hear(RunMsg::Health(tui::Health { recording, reached_speed: None }));
     screen.pass(20.0);
     store("collision", &mut screen);
 }
@@ -233,7 +233,7 @@ fn swap_question() {
 #[test]
 fn quit_question() {
     let mut screen = Screen::running();
-    screen.type_text("q");
+    screen.press([Key::Ctrl('c'), Key::Ctrl('c')]);
     store("quit", &mut screen);
 }
 

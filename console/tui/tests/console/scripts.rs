@@ -6,8 +6,10 @@ use mission::{
     AskId, EventKind, Gait, HoldReason, Order, Outcome, ParamValue, Phase, Resumes, Severity, WorkerId,
 };
 use tui::actions::ActionId;
-use tui::model::{Overlay, Pane};
-use tui::{Effect, Key, KeyPress, Model, Msg, Recording, Signal, Speed};
+use tui::model::{Overlay, Pane, ScenarioEntry, home::Found};
+use tui::{
+    Effect, Job, Key, KeyPress, Model, Msg, Recording, RunId, RunMsg, RunResult, Signal, Source, Speed,
+};
 
 const SPACE: Key = Key::Char(' ');
 
@@ -25,12 +27,12 @@ fn shown(screen: &Screen) -> String {
 
 fn send_event(screen: &mut Screen, kind: EventKind) -> Vec<Effect> {
     let event = screen.mission.now(kind);
-    screen.send(Msg::Events(vec![event]))
+    screen.hear(RunMsg::Events(vec![event]))
 }
 
 fn obeyed(screen: &mut Screen, order: Order) {
     let events = screen.mission.obeyed(order);
-    screen.send(Msg::Events(events));
+    screen.hear(RunMsg::Events(events));
 }
 
 /// The ask of a planner that is being prepared.
@@ -47,7 +49,7 @@ fn send_certified_plan(screen: &mut Screen, ask: Option<AskId>, reasons: &[&str]
     let planned = screen.mission.planned(ask);
     send_event(screen, planned);
     let certified = screen.mission.certified(reasons);
-    screen.send(Msg::Events(vec![certified]));
+    screen.hear(RunMsg::Events(vec![certified]));
 }
 
 fn held(by: HoldReason) -> EventKind {
@@ -58,12 +60,12 @@ fn held(by: HoldReason) -> EventKind {
 fn the_mission_starts_only_after_the_operator_agreed() {
     let mut screen = Screen::idle();
     assert_eq!(screen.type_text("S"), []);
-    assert_eq!(*screen.model.phase(), Phase::Waiting);
+    assert_eq!(*screen.model.live.run.phase(), Phase::Waiting);
     assert_eq!(screen.press([Key::Enter]), [order(Order::Start)]);
     let events = screen.mission.start();
-    screen.send(Msg::Events(events));
-    assert_eq!(*screen.model.phase(), Phase::Running(Gait::Steady));
-    assert_eq!(screen.model.console.asked, None);
+    screen.hear(RunMsg::Events(events));
+    assert_eq!(*screen.model.live.run.phase(), Phase::Running(Gait::Steady));
+    assert_eq!(screen.model.live.asked, None);
 }
 
 #[test]
@@ -79,7 +81,7 @@ fn a_question_is_dropped_by_esc_and_by_q_and_sends_nothing() {
 fn space_holds_at_once_and_then_asks_to_go_on() {
     let mut screen = Screen::running();
     assert_eq!(screen.press([SPACE]), [order(Order::Hold)]);
-    assert!(screen.model.console.hold_asked);
+    assert!(screen.model.live.hold_asked);
     obeyed(&mut screen, Order::Hold);
     assert_eq!(screen.press([SPACE]), []);
     assert_eq!(screen.press([SPACE]), [], "space never agrees");
@@ -172,11 +174,11 @@ fn another_planner_drives_only_when_held_and_agreed() {
 #[test]
 fn a_planner_that_covers_no_floor_is_marked_and_not_asked_to() {
     let mut screen = Screen::held();
-    let run = screen.model.run.as_mut().unwrap();
+    let run = screen.model.live.run.about.as_mut().unwrap();
     run.mission.task =
         mission::TaskConfig::Cover { anchor: world::Point::origin(), regions: Vec::new(), tolerance_m: 0.2 };
     let planners = screen.model.console.planners.clone();
-    assert_eq!(screen.model.cannot_fly(&planners[0]), Some("does not support coverage missions"));
+    assert_eq!(screen.model.live.run.cannot_fly(&planners[0]), Some("does not support coverage missions"));
     screen.press([Key::Char('P'), Key::Up, Key::Up, Key::Up, Key::Enter]);
     assert_eq!(notice(&screen), format!("planner {} does not support coverage missions", planners[0].id));
     assert!(matches!(screen.model.ui.overlay, Overlay::Planners { .. }), "no question is asked");
@@ -190,30 +192,30 @@ fn planning_is_shown_with_the_time_it_has_taken_while_ticks_go_on() {
     let mut screen = Screen::idle();
     screen.press([Key::Char('S'), Key::Enter]);
     let started = screen.mission.now(EventKind::Ordered { order: Order::Start });
-    screen.send(Msg::Events(vec![started]));
-    screen.send(Msg::Busy(Some(("Planning (rpf)".into(), Some(60.0)))));
+    screen.hear(RunMsg::Events(vec![started]));
+    screen.hear(RunMsg::Busy(Some(("Planning (rpf)".into(), Some(60.0)))));
     assert!(screen.model.wakes_at_mono_s().is_some(), "the seconds keep counting");
     for _ in 0..7 {
         screen.pass(1.0);
         let events = screen.mission.wait(2);
-        screen.send(Msg::Events(events));
+        screen.hear(RunMsg::Events(events));
     }
     assert_eq!(screen.model.silent_s(), None);
     let expect = |screen: &Screen, text: &str| assert!(shown(screen).contains(text), "{}", shown(screen));
     expect(&screen, "Planning (rpf), 7 s (limit 60 s). space: HOLD. X: end mission.");
-    screen.send(Msg::BusyAt { share: 0.419, what: "candidate 2 of 3".into() });
+    screen.hear(RunMsg::BusyAt { share: 0.419, what: "candidate 2 of 3".into() });
     expect(&screen, "Planning (rpf) 41 %, 7 s (limit 60 s). Candidate 2 of 3.");
-    screen.send(Msg::BusyAt { share: 1.0, what: String::new() });
+    screen.hear(RunMsg::BusyAt { share: 1.0, what: String::new() });
     expect(&screen, "Planning (rpf) 99 %, 7 s");
-    screen.send(Msg::Busy(None));
-    screen.send(Msg::BusyAt { share: 0.5, what: "late".into() });
+    screen.hear(RunMsg::Busy(None));
+    screen.hear(RunMsg::BusyAt { share: 0.5, what: "late".into() });
     assert!(!shown(&screen).contains("Planning ("), "late progress starts nothing");
 }
 
 #[test]
 fn work_on_a_planner_that_is_only_prepared_offers_what_can_be_done() {
     let mut screen = Screen::idle();
-    screen.send(Msg::Busy(Some(("Loading planner (rpf)".into(), None))));
+    screen.hear(RunMsg::Busy(Some(("Loading planner (rpf)".into(), None))));
     let line = "Loading planner (rpf). Press S to start (planner rpf).";
     assert!(shown(&screen).contains(line), "{}", shown(&screen));
     assert!(!shown(&screen).contains("space: HOLD"), "there is nothing to hold");
@@ -294,9 +296,9 @@ fn starting_a_mission_that_is_held_is_refused_without_a_key_that_would_resume() 
 fn an_order_that_does_not_reach_the_mission_is_an_alarm_and_can_be_given_again() {
     let mut screen = Screen::idle();
     screen.press([Key::Char('S'), Key::Enter]);
-    let failed = Msg::OrderFailed { order: Order::Start, why: "cannot create the run folder".into() };
-    assert_eq!(screen.send(failed), [Effect::Bell]);
-    assert_eq!((&screen.model.console.asked, screen.model.may_move()), (&None, false));
+    let failed = RunMsg::OrderFailed { order: Order::Start, why: "cannot create the run folder".into() };
+    assert_eq!(screen.hear(failed), [Effect::Bell]);
+    assert_eq!((&screen.model.live.asked, screen.model.live.may_move()), (&None, false));
     assert!(notice(&screen).contains("cannot create the run folder"));
     assert_eq!(screen.press([Key::Char('S'), Key::Enter]), [order(Order::Start)]);
 }
@@ -309,7 +311,7 @@ fn a_hold_of_the_tick_before_does_not_answer_a_resume() {
     assert_eq!(screen.press([SPACE]), [order(Order::Hold)], "the robot will move after that event");
     obeyed(&mut screen, Order::Resume);
     obeyed(&mut screen, Order::Hold);
-    assert_eq!((screen.model.may_move(), screen.model.console.hold_asked), (false, false));
+    assert_eq!((screen.model.live.may_move(), screen.model.live.hold_asked), (false, false));
 }
 
 #[test]
@@ -330,7 +332,7 @@ fn a_robot_that_resumes_by_itself_withdraws_the_question() {
 fn a_planner_that_is_rejected_or_late_is_reported() {
     let (mut screen, ask) = (Screen::held(), preparing());
     prepare(&mut screen, ask);
-    assert_eq!(screen.model.planner_id(), Some("rpf"), "it does not drive yet");
+    assert_eq!(screen.model.live.run.planner_id(), Some("rpf"), "it does not drive yet");
     let why = "no plan within 60 s".to_owned();
     send_event(&mut screen, EventKind::PlannerRejected { planner: "spiral-tangent".into(), why });
     assert!(notice(&screen).contains("spiral-tangent will not take over: no plan within 60 s"));
@@ -344,10 +346,14 @@ fn a_planner_that_is_rejected_or_late_is_reported() {
         assert_eq!(notice(&screen), text);
     }
     let events = screen.mission.planner_fails();
-    screen.send(Msg::Events(events));
+    screen.hear(RunMsg::Events(events));
     send_event(&mut screen, EventKind::PlannerLate { planner: "rpf".into(), ticks: 4 });
     obeyed(&mut screen, Order::Resume);
-    assert_eq!(screen.model.alarms.unacknowledged(Severity::Crit), 1, "the fault waits to be acknowledged");
+    assert_eq!(
+        screen.model.live.run.alarms.unacknowledged(Severity::Crit),
+        1,
+        "the fault waits to be acknowledged"
+    );
 }
 
 #[test]
@@ -357,11 +363,15 @@ fn the_certificate_of_a_planner_that_is_prepared_says_nothing_of_the_plan_that_i
     send_certified_plan(&mut screen, Some(ask), &["cable stays out"]);
     let why = "plan is not safe for the tether".to_owned();
     send_event(&mut screen, EventKind::PlannerRejected { planner: "spiral-tangent".into(), why });
-    assert_eq!(screen.model.tether.as_ref().unwrap().certified, Some(true), "the plan that is flown is");
-    assert_eq!(screen.model.alarms.list(), Screen::tethered().model.alarms.list());
+    assert_eq!(
+        screen.model.live.run.tether.as_ref().unwrap().certified,
+        Some(true),
+        "the plan that is flown is"
+    );
+    assert_eq!(screen.model.live.run.alarms.list(), Screen::tethered().model.live.run.alarms.list());
     send_certified_plan(&mut screen, None, &["cable stays out"]);
-    assert_eq!(screen.model.tether.as_ref().unwrap().certified, Some(false));
-    assert_eq!(screen.model.alarms.unacknowledged(Severity::Crit), 1);
+    assert_eq!(screen.model.live.run.tether.as_ref().unwrap().certified, Some(false));
+    assert_eq!(screen.model.live.run.alarms.unacknowledged(Severity::Crit), 1);
 }
 
 #[test]
@@ -373,7 +383,7 @@ fn the_certificate_of_a_planner_that_takes_over_counts() {
     let from = Some("rpf".to_owned());
     send_event(&mut screen, EventKind::PlannerChosen { ask: None, choice, info, from });
     send_certified_plan(&mut screen, Some(ask), &["cable stays out"]);
-    assert_eq!(screen.model.tether.as_ref().unwrap().certified, Some(false));
+    assert_eq!(screen.model.live.run.tether.as_ref().unwrap().certified, Some(false));
 }
 
 #[test]
@@ -445,6 +455,7 @@ fn ending_holds_first_and_asks() {
 #[test]
 fn leaving_a_running_mission_holds_first_and_ends_it_only_when_agreed() {
     let mut screen = Screen::running();
+    assert_eq!(screen.type_text("1"), [Effect::Look], "home does not hold");
     assert_eq!(screen.type_text("q"), [order(Order::Hold)]);
     obeyed(&mut screen, Order::Hold);
     assert_eq!(screen.press([Key::Esc]), []);
@@ -454,11 +465,92 @@ fn leaving_a_running_mission_holds_first_and_ends_it_only_when_agreed() {
 
 #[test]
 fn leaving_is_not_asked_where_nothing_is_at_stake() {
-    assert_eq!(Screen::idle().type_text("q"), [Effect::Quit { signal: None }]);
+    assert_eq!(Screen::idle().type_text("1q"), [Effect::Look, Effect::Quit { signal: None }]);
     let mut screen = Screen::running();
     let ended = screen.mission.ended(Outcome::Complete, "task complete");
-    screen.send(Msg::Events(vec![ended]));
-    assert_eq!(screen.type_text("q"), [Effect::Quit { signal: None }]);
+    screen.hear(RunMsg::Events(vec![ended]));
+    assert_eq!(screen.type_text("1q"), [Effect::Look, Effect::Quit { signal: None }]);
+}
+
+#[test]
+fn q_leads_back_screen_by_screen_and_the_mission_goes_on() {
+    let mut screen = Screen::running();
+    let screens = |screen: &Screen| (screen.model.ui.screen, screen.model.ui.back.clone());
+    use tui::model::Screen::{Home, Mission, Plan};
+    assert_eq!(screens(&screen), (Mission, vec![Home, Plan]));
+    assert_eq!(screen.type_text("q"), []);
+    assert_eq!(screen.type_text("q"), [Effect::Look]);
+    assert_eq!(screens(&screen), (Home, vec![]));
+    screen.type_text("3");
+    assert_eq!(screens(&screen), (Mission, vec![Home]));
+    assert!(screen.model.live.may_move());
+}
+
+#[test]
+fn another_mission_is_opened_only_when_none_is_in_progress() {
+    let entry = |name: &str, problem: Option<&str>| ScenarioEntry {
+        source: Source::File(format!("{name}.toml")),
+        name: name.into(),
+        about: String::new(),
+        task: "goto".into(),
+        tank: "Ø12 m".into(),
+        planner: "apf".into(),
+        expected: String::new(),
+        problem: problem.map(str::to_owned),
+    };
+    let scenarios = vec![entry("one", None), entry("two", Some("two.toml:3:1: unknown key"))];
+    let found = Msg::Found(Box::new(Found { scenarios, ..Found::default() }));
+    let mut screen = Screen::running();
+    screen.send(found.clone());
+    screen.type_text("1");
+    assert_eq!(screen.press([Key::Enter]), []);
+    assert_eq!(notice(&screen), "a mission is in progress; 3: show it, X: end it");
+    let mut screen = Screen::idle();
+    screen.send(found);
+    screen.type_text("1j");
+    assert_eq!(screen.press([Key::Enter]), []);
+    assert_eq!(notice(&screen), "two.toml:3:1: unknown key");
+    screen.type_text("k");
+    let source = Source::File("one.toml".into());
+    let opens = Effect::Open { id: RunId(2), source, planner: None };
+    assert_eq!(screen.press([Key::Enter]), [opens]);
+    assert_eq!(screen.model.ui.screen, tui::model::Screen::Plan);
+    // What the run before still says is late.
+    let late = screen.mission.drive(3);
+    screen.hear(RunMsg::Events(late));
+    assert_eq!(screen.model.live.run, tui::model::Run::default());
+    screen.type_text("S");
+    assert_eq!(notice(&screen), "no mission loaded yet");
+}
+
+#[test]
+fn a_run_that_ends_shows_its_result_and_what_comes_next() {
+    let mut screen = Screen::running();
+    let ended = screen.mission.ended(Outcome::Complete, "task complete");
+    screen.hear(RunMsg::Events(vec![ended]));
+    let result = RunResult {
+        summary: Box::default(),
+        name: Some("20261122T040049Z-tank-07".into()),
+        kept: "run kept in logs".into(),
+        is_kept: true,
+    };
+    assert_eq!(screen.hear(RunMsg::Closed(Box::new(result))), [Effect::Look]);
+    assert_eq!(screen.model.ui.screen, tui::model::Screen::Result);
+    let run = || "20261122T040049Z-tank-07".to_owned();
+    assert_eq!(screen.type_text("v"), [Effect::Do(Job::Verify(run()))]);
+    let failed = Err("different from tick 3 on".to_owned());
+    screen.send(Msg::Done(Job::Verify(run()), failed));
+    assert_eq!(notice(&screen), "verifying the run failed: different from tick 3 on");
+    let again = Effect::Open { id: RunId(2), source: Source::Rescan(vec![run()]), planner: None };
+    assert_eq!(screen.type_text("r"), [again]);
+}
+
+#[test]
+fn a_hold_slows_the_mission_down_to_real_time() {
+    let mut screen = Screen::running();
+    screen.type_text(">>");
+    assert_eq!(screen.type_text(" "), [order(Order::Hold), Effect::Speed(Speed::Times(1.0))]);
+    assert_eq!(screen.model.live.speed, Speed::Times(1.0));
 }
 
 #[test]
@@ -498,7 +590,7 @@ fn a_question_is_withdrawn_when_things_change() {
     let mut screen = Screen::held();
     screen.press([SPACE]);
     let events = screen.mission.planner_fails();
-    screen.send(Msg::Events(events));
+    screen.hear(RunMsg::Events(events));
     assert_eq!(screen.model.ui.overlay, Overlay::None);
     assert_eq!(screen.press([Key::Enter]), []);
 }
@@ -566,11 +658,20 @@ fn the_truth_is_not_known_to_the_screen() {
     let pose = world::Pose::new(1.0, 1.0, 0.0);
     send_event(&mut screen, EventKind::Truth { pose, clearance_m: -0.1, collided: true });
     assert_eq!(screen.model, before);
-    let names: Vec<&str> =
-        before.run.as_ref().map(|run| run.world.obstacles.iter().map(|o| o.name.as_str()).collect()).unwrap();
+    let names: Vec<&str> = before
+        .live
+        .run
+        .about
+        .as_ref()
+        .map(|run| run.world.obstacles.iter().map(|o| o.name.as_str()).collect())
+        .unwrap();
     assert_eq!(names.last(), Some(&"debris"), "it was found");
     let idle = Screen::idle();
-    assert_eq!(idle.model.run.map(|run| run.world.obstacles.len()), Some(5), "it was not known before");
+    assert_eq!(
+        idle.model.live.run.about.map(|run| run.world.obstacles.len()),
+        Some(5),
+        "it was not known before"
+    );
 }
 
 #[test]
@@ -579,9 +680,9 @@ fn a_critical_alarm_rings_and_waits_for_the_operator() {
     let effects = send_event(&mut screen, EventKind::PositionLost { error_m: 0.5, limit_m: 0.15 });
     assert_eq!(effects, [Effect::Bell]);
     send_event(&mut screen, EventKind::PositionRegained { error_m: 0.1 });
-    assert_eq!(screen.model.alarms.count(Severity::Crit), 1);
+    assert_eq!(screen.model.live.run.alarms.count(Severity::Crit), 1);
     screen.type_text("a");
-    assert_eq!(screen.model.alarms.count(Severity::Crit), 0);
+    assert_eq!(screen.model.live.run.alarms.count(Severity::Crit), 0);
 }
 
 #[test]
@@ -599,24 +700,24 @@ fn an_alarm_whose_cause_is_gone_says_so_until_the_operator_has_seen_it() {
 fn a_stuck_robot_is_held_with_an_alarm_until_it_goes_on_and_the_operator_knows() {
     let mut screen = Screen::running();
     send_event(&mut screen, held(HoldReason::Stuck { message: "no progress".into() }));
-    assert_eq!(screen.model.alarms.unacknowledged(Severity::Warn), 1);
+    assert_eq!(screen.model.live.run.alarms.unacknowledged(Severity::Warn), 1);
     screen.type_text("a");
-    assert_eq!(screen.model.alarms.count(Severity::Warn), 1, "seen, and not over");
+    assert_eq!(screen.model.live.run.alarms.count(Severity::Warn), 1, "seen, and not over");
     assert_eq!(screen.press([SPACE, Key::Enter]), [order(Order::Resume)]);
     obeyed(&mut screen, Order::Resume);
-    assert_eq!(screen.model.alarms.count(Severity::Warn), 0);
+    assert_eq!(screen.model.live.run.alarms.count(Severity::Warn), 0);
 }
 
 #[test]
 fn a_failed_recording_is_an_alarm_until_it_works_again_and_was_seen() {
     let mut screen = Screen::running();
-    let health = |recording| Msg::Health(tui::Health { recording, reached_speed: None });
-    assert_eq!(screen.send(health(Recording::Failed("disk full".into()))), [Effect::Bell]);
-    assert_eq!(screen.send(health(Recording::Failed("disk full".into()))), []);
+    let health = |recording| RunMsg::Health(tui::Health { recording, reached_speed: None });
+    assert_eq!(screen.hear(health(Recording::Failed("disk full".into()))), [Effect::Bell]);
+    assert_eq!(screen.hear(health(Recording::Failed("disk full".into()))), []);
     screen.type_text("a");
-    assert_eq!(screen.model.alarms.count(Severity::Crit), 1, "seen, and not over");
-    screen.send(health(Recording::On));
-    assert_eq!(screen.model.alarms.count(Severity::Crit), 0);
+    assert_eq!(screen.model.live.run.alarms.count(Severity::Crit), 1, "seen, and not over");
+    screen.hear(health(Recording::On));
+    assert_eq!(screen.model.live.run.alarms.count(Severity::Crit), 0);
 }
 
 #[test]
@@ -646,7 +747,7 @@ fn news_go_away_by_themselves_and_stay_in_the_log() {
     assert_eq!(notice(&screen), "the disk is nearly full");
     screen.pass(10.0);
     assert_eq!(notice(&screen), "");
-    assert!(screen.model.log.shown(Severity::Warn, "disk").count() == 1);
+    assert!(screen.model.live.run.log.shown(Severity::Warn, "disk").count() == 1);
 }
 
 #[test]
@@ -665,13 +766,13 @@ fn panes_follow_the_size_of_the_screen() {
 fn the_events_are_scrolled_and_filtered() {
     let mut screen = Screen::running();
     screen.press([Key::Tab, Key::End]);
-    let lines = screen.model.log.shown(Severity::Info, "").count();
+    let lines = screen.model.live.run.log.shown(Severity::Info, "").count();
     assert_eq!(screen.model.ui.scroll, lines - 1);
     screen.press([Key::Home, Key::Char('/')]);
     screen.type_text("STATION");
     screen.press([Key::Enter]);
     assert_eq!(screen.model.ui.needle, "STATION");
-    assert_eq!(screen.model.log.shown(Severity::Info, &screen.model.ui.needle).count(), 1);
+    assert_eq!(screen.model.live.run.log.shown(Severity::Info, &screen.model.ui.needle).count(), 1);
 }
 
 #[test]
@@ -684,7 +785,7 @@ fn a_model_can_be_saved_and_opened_again() {
 
 #[test]
 fn a_key_that_is_no_answer_cancels_the_question_so_that_enter_cannot_agree_to_it() {
-    for question in [" ", ".", "X", "q"] {
+    for question in [" ", ".", "X", "1q"] {
         let mut screen = Screen::held();
         screen.type_text(question);
         assert!(screen.model.ui.overlay != Overlay::None, "{question:?} asks");

@@ -4,7 +4,7 @@ use crate::fixture::{Screen, choice};
 use mission::{Event, EventKind, Gait, Hold, HoldReason, Order, Outcome, ParamValue, Phase, Resumes};
 use tui::model::ui::{Ask, Edit};
 use tui::model::{Overlay, Pane};
-use tui::{Effect, Key, Model, Msg, Signal, update};
+use tui::{Effect, Key, Model, Msg, RunMsg, Signal, update};
 
 const HOLD: Effect = Effect::Order(Order::Hold);
 
@@ -71,8 +71,8 @@ fn overlays() -> Vec<Overlay> {
     all
 }
 
-/// The ways to stop, and whether they stop whatever lies over the screen. `q` and `X` belong to the mission screen: in a
-/// list they close it, in a line of text they are typed.
+/// The ways to stop, and whether they stop whatever lies over the screen. `X` belongs to the screens: in a line of text it is
+/// typed.
 fn ways() -> Vec<(Msg, bool)> {
     let key = |key: Key, everywhere: bool| (Msg::Key(key.into()), everywhere);
     let panicked = Msg::ThreadPanicked { thread: "recorder".into(), message: "out of bounds".into() };
@@ -81,7 +81,6 @@ fn ways() -> Vec<(Msg, bool)> {
         key(Key::Char(' '), true),
         key(Key::Ctrl('c'), true),
         key(Key::Ctrl('z'), true),
-        key(Key::Char('q'), false),
         key(Key::Char('X'), false),
         (panicked, true),
     ]
@@ -104,13 +103,13 @@ fn screen_in(phase: &Phase) -> Screen {
         Phase::Held(hold) => vec![mission.held_until(hold.by.clone(), hold.resumes)],
         Phase::Ended(outcome) => vec![mission.ended(*outcome, "why")],
     };
-    screen.send(Msg::Events(events));
-    assert_eq!(screen.model.phase(), phase);
+    screen.hear(RunMsg::Events(events));
+    assert_eq!(screen.model.live.run.phase(), phase);
     // What is only drawn is of no interest here, and slow to copy.
-    (screen.model.coverage, screen.model.accuracy) = (None, None);
-    (screen.model.trail, screen.model.log) = Default::default();
-    screen.model.planning.plan = None;
-    screen.model.run = None;
+    (screen.model.live.run.coverage, screen.model.live.run.accuracy) = (None, None);
+    (screen.model.live.run.trail, screen.model.live.run.log) = Default::default();
+    screen.model.live.run.planning.plan = None;
+    screen.model.live.run.about = None;
     screen
 }
 
@@ -123,16 +122,16 @@ fn situations() -> Vec<Model> {
         let screen = screen_in(&phase);
         for position in positions(&screen) {
             let mut screen = screen.clone();
-            screen.send(Msg::Events(position.into_iter().collect()));
+            screen.hear(RunMsg::Events(position.into_iter().collect()));
             for (asked, is_busy) in asked.iter().flat_map(|asked| [(asked, false), (asked, true)]) {
                 // No order is on its way to a mission that has ended.
                 if asked.is_some() && matches!(phase, Phase::Ended(_)) {
                     continue;
                 }
                 let mut screen = screen.clone();
-                screen.model.console.asked.clone_from(asked);
+                screen.model.live.asked.clone_from(asked);
                 if is_busy {
-                    screen.send(Msg::Busy(Some(("Planning (tether-safe)".into(), Some(60.0)))));
+                    screen.hear(RunMsg::Busy(Some(("Planning (tether-safe)".into(), Some(60.0)))));
                 }
                 all.push(screen.model);
             }
@@ -143,12 +142,12 @@ fn situations() -> Vec<Model> {
 
 /// Whether the robot moves or may move without a further order, said without the code under test.
 fn is_loose(model: &Model) -> bool {
-    let by_itself = match model.phase() {
+    let by_itself = match model.live.run.phase() {
         Phase::Running(_) => true,
         Phase::Held(hold) => hold.resumes != Resumes::Never,
         Phase::Waiting | Phase::Ended(_) => false,
     };
-    by_itself || model.console.asked.is_some()
+    by_itself || model.live.asked.is_some()
 }
 
 fn is_held_for_good(phase: &Phase) -> bool {
@@ -165,8 +164,8 @@ fn every_way_to_stop_holds_whenever_the_robot_may_move_and_never_makes_it_move()
                 model.ui.overlay = overlay.clone();
                 let effects = update(&mut model, way.clone());
                 let about = || {
-                    let asked = &situation.console.asked;
-                    format!("{way:?} in {:?}, {asked:?} sent, {overlay:?}", situation.phase())
+                    let asked = &situation.live.asked;
+                    format!("{way:?} in {:?}, {asked:?} sent, {overlay:?}", situation.live.run.phase())
                 };
                 assert!(!effects.iter().any(moves), "{} gave {effects:?}", about());
                 if is_loose(&situation) && (everywhere || overlay == Overlay::None) {
@@ -176,7 +175,7 @@ fn every_way_to_stop_holds_whenever_the_robot_may_move_and_never_makes_it_move()
                 let opened = model.ui.overlay == Overlay::Confirm(Ask::Resume) && overlay != model.ui.overlay;
                 if opened {
                     let is_space = way == Msg::Key(Key::Char(' ').into());
-                    let may_ask = is_held_for_good(situation.phase()) && !is_loose(&situation);
+                    let may_ask = is_held_for_good(situation.live.run.phase()) && !is_loose(&situation);
                     assert!(is_space && may_ask, "{} asks to resume", about());
                 }
             }
@@ -221,6 +220,7 @@ fn every_way_to_stop_works_on_every_size_and_in_every_pane() {
 fn leaving_ends_what_was_asked_to_start() {
     let mut screen = Screen::idle();
     screen.press([Key::Char('S'), Key::Enter]);
+    screen.type_text("1");
     assert_eq!(screen.type_text("q"), [HOLD]);
     let leave = [Effect::Order(Order::Abort), Effect::Quit { signal: None }];
     assert_eq!(screen.press([Key::Enter]), leave);

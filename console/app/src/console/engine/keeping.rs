@@ -4,9 +4,9 @@ use super::EngineThread;
 use crate::{console::pace::Reached, hosts};
 use mission::Event;
 use report::Stops;
-use runs::{Kept, RunLog};
+use runs::{Closed, Kept, RunLog};
 use std::time::{Duration, Instant};
-use tui::{Health, Msg, Recording};
+use tui::{Health, Recording, RunMsg, RunResult};
 
 /// How often the recorder's health is sent to the screen.
 const HEALTH_PERIOD: Duration = Duration::from_millis(500);
@@ -47,7 +47,7 @@ impl EngineThread {
         let reached = self.reached.take(now, self.flight.tick_length());
         // While the mission waits, its pace says nothing of how it will go on.
         let reached_speed = (!self.waits()).then_some(reached);
-        self.send(Msg::Health(Health { recording, reached_speed }));
+        self.send(RunMsg::Health(Health { recording, reached_speed }));
     }
 
     /// Closes journal and recording and writes the report.
@@ -56,8 +56,20 @@ impl EngineThread {
         let (calls, stops) = (hosts::calls(&self.host), Stops::of(&self.stops_ms));
         let closed = log.close(within, calls, stops, &self.scenario.expect);
         let problem = closed.kept.as_ref().and_then(Kept::problem);
+        let result = result(&closed);
         self.closed = Some(closed);
         let recording = problem.map_or(Recording::Off, Recording::Failed);
-        self.send(Msg::Health(Health { recording, reached_speed: None }));
+        self.send(RunMsg::Health(Health { recording, reached_speed: None }));
+        self.send(RunMsg::Closed(Box::new(result)));
+    }
+}
+
+/// What the screen shows of a run that is closed.
+fn result(closed: &Closed) -> RunResult {
+    RunResult {
+        summary: Box::new(closed.summary.clone()),
+        name: closed.kept.as_ref().map(Kept::name),
+        kept: closed.kept.as_ref().map_or_else(|| "not recorded".to_owned(), Kept::text),
+        is_kept: closed.kept.as_ref().is_some_and(|kept| kept.problem().is_none()),
     }
 }

@@ -1,6 +1,6 @@
-//! Events of planners into the model.
+//! Events of planners into a run.
 
-use crate::model::{Cause, Model, PlanShown, Trail};
+use crate::model::{Cause, Change, PlanShown, Run, Trail, Withdrawn};
 use mission::{Event, EventKind, PlannerChoice, PlannerInfo, Severity, event::late_text};
 use planner_api::{Command, Drawing};
 
@@ -9,9 +9,9 @@ const MAX_DRAWINGS: usize = 512;
 /// Most figures kept of one tick.
 const MAX_SCALARS: usize = 32;
 
-impl Model {
+impl Run {
     /// Takes in an event of a planner.
-    pub(super) fn planned(&mut self, event: &Event) {
+    pub(super) fn planned(&mut self, event: &Event, change: &mut Change) {
         match &event.kind {
             EventKind::PlannerPrepared { ask, .. } => self.planning.candidate = Some(ask.worker),
             EventKind::PlannerChosen { choice, info, .. } => {
@@ -41,15 +41,15 @@ impl Model {
                     self.planning.fault = Some(fault.clone());
                 }
                 self.raise_as_logged(event, Cause::Planner);
-                self.withdraw_question();
+                change.withdraw(Withdrawn::All);
             }
             // No alarm: the planner works again, and a fault before may not be acknowledged yet.
             EventKind::PlannerLate { planner, ticks } => {
-                self.say(Severity::Watch, late_text(planner, *ticks));
+                change.say(Severity::Watch, late_text(planner, *ticks));
             }
             EventKind::PlannerRejected { planner, why } => {
                 self.planning.candidate = None;
-                self.say(Severity::Warn, format!("planner {planner} will not take over: {why}"));
+                change.say(Severity::Warn, format!("planner {planner} will not take over: {why}"));
             }
             _ => {}
         }

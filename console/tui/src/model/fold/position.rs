@@ -1,13 +1,13 @@
-//! Events of the robot's position into the model.
+//! Events of the robot's position into a run.
 
-use crate::model::{Cause, Model};
+use crate::model::{Cause, Change, Run, Withdrawn};
 use mission::{Event, EventKind, Severity};
 use positioning::Exclusion;
 use world::StationId;
 
-impl Model {
+impl Run {
     /// Takes in an event of the robot's position.
-    pub(super) fn locate(&mut self, event: &Event) {
+    pub(super) fn locate(&mut self, event: &Event, change: &mut Change) {
         match &event.kind {
             EventKind::Ranged { ranges } => self.position.ranged(event.t_s, ranges.len()),
             EventKind::Fixed { fix } => {
@@ -28,7 +28,7 @@ impl Model {
             EventKind::PositionLost { .. } => {
                 self.position.lost = true;
                 self.raise_as_logged(event, Cause::PositionLost);
-                self.withdraw_question();
+                change.withdraw(Withdrawn::All);
             }
             EventKind::PositionRegained { .. } => {
                 self.position.lost = false;
@@ -41,7 +41,7 @@ impl Model {
                     Severity::Crit,
                     "ranges contradict each other".into(),
                 );
-                self.withdraw_question();
+                change.withdraw(Withdrawn::All);
             }
             EventKind::RangesConsistent => self.alarms.clear(&Cause::Contradiction),
             _ => {}
@@ -57,11 +57,5 @@ impl Model {
             }
         };
         self.raise(event, Cause::Station(station), Severity::Watch, format!("{name} rejected: {why}"));
-    }
-
-    /// Name of a station.
-    pub(crate) fn station_name(&self, id: StationId) -> String {
-        let found = self.run.iter().flat_map(|run| &run.world.stations).find(|station| station.id == id);
-        found.map_or_else(|| format!("station {}", id.0), |station| station.name.clone())
     }
 }

@@ -1,9 +1,9 @@
-//! Events of the tether into the model.
+//! Events of the tether into a run.
 
-use crate::model::{Cause, Model};
+use crate::model::{Cause, Run};
 use mission::{Event, EventKind, Severity, event::TetherAlarm};
 
-impl Model {
+impl Run {
     /// Takes in an event of the tether.
     pub(super) fn tethered(&mut self, event: &Event) {
         match &event.kind {

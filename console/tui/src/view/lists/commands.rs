@@ -11,8 +11,8 @@ use crate::view::text;
 const KEYS: usize = 10;
 
 pub(super) fn list(look: &Look, help: bool, filter: &str, selected: usize, columns: u16) -> List {
-    let all = find::listed("", look.model.ui.pane).len();
-    let found = find::listed(filter, look.model.ui.pane);
+    let all = find::listed(look.model, "").len();
+    let found = find::listed(look.model, filter);
     // Name and description where there is room, else the description, else the name.
     let (name, about) = match columns {
         74.. => (16, usize::from(columns) - 2 - 1 - 16 - KEYS - 6),

@@ -2,12 +2,11 @@
 
 use crate::theme::Role;
 use crate::view::look::{Look, Parts as Row};
-use crate::view::text;
+use crate::view::{table, text};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::{Clear, Paragraph};
-use std::ops::Range;
 
 /// A list with something above and below it.
 #[derive(Default)]
@@ -30,37 +29,17 @@ impl List {
         // The selected line is worth more than anything below the list.
         let below =
             self.below.len().min(room.saturating_sub(3).max(self.needed_below)).min(room.saturating_sub(1));
-        let shown = window(self.selected, self.rows.len(), room - below);
+        let shown = table::window(self.selected, self.rows.len(), room - below);
         let mut lines: Vec<Line> = self.above.into_iter().map(|row| look.line(row)).collect();
         for (index, row) in self.rows.into_iter().enumerate() {
             if shown.contains(&index) {
-                lines.push(selectable(look, row, index == self.selected, usize::from(inner.width)));
+                lines.push(table::row(look, row, index == self.selected, usize::from(inner.width)));
             }
         }
         lines.extend(self.below.into_iter().take(below).map(|row| look.line(row)));
         frame.render_widget(Clear, area);
         frame.render_widget(Paragraph::new(lines).block(block), area);
     }
-}
-
-fn selectable(look: &Look, mut row: Row, selected: bool, columns: usize) -> Line<'static> {
-    row.insert(0, (Role::Text, if selected { ">" } else { " " }.into()));
-    if !selected {
-        return look.line(row);
-    }
-    let used: usize = row.iter().map(|(_, text)| text::width(text)).sum();
-    row.push((Role::Text, " ".repeat(columns.saturating_sub(used))));
-    let mut line = look.line(row);
-    for span in &mut line.spans {
-        span.style = span.style.patch(look.theme.style(Role::Selected));
-    }
-    line
-}
-
-/// The part of a list that is shown: the selected line is always in it.
-fn window(selected: usize, len: usize, rows: usize) -> Range<usize> {
-    let first = (selected + 1).saturating_sub(rows).min(len.saturating_sub(rows));
-    first..(first + rows).min(len)
 }
 
 /// A sentence in as many lines as it takes.
@@ -71,21 +50,4 @@ pub(super) fn paragraph(role: Role, sentence: &str, columns: usize) -> impl Iter
 /// A line of less weight.
 pub(super) fn hint(text: &str) -> Row {
     vec![(Role::Dim, text.to_owned())]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_selected_line_is_always_shown() {
-        for len in 0..12 {
-            for rows in 1..8 {
-                for selected in 0..len {
-                    let shown = window(selected, len, rows);
-                    assert!(shown.contains(&selected) && shown.len() == rows.min(len));
-                }
-            }
-        }
-    }
 }

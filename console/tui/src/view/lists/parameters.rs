@@ -18,7 +18,7 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
         _ => (14, 9, 0, 8),
     };
     let rows = planner.parameters.iter().map(|info| {
-        let (now, unset) = (parameter::value(&look.model.planning, info), parameter::default(&info.kind));
+        let (now, unset) = (parameter::value(&look.run.planning, info), parameter::default(&info.kind));
         let changed = if now == unset { " " } else { "*" };
         vec![
             (Role::Text, text::column(&info.key, name)),

@@ -6,13 +6,13 @@ use crate::view::look::{Look, Parts as Row};
 use crate::view::text::{self, wrap};
 
 pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
-    let driving = look.model.planner_id();
+    let driving = look.run.planner_id();
     let rows = look.model.console.planners.iter().map(|planner| {
         let drives = Some(planner.id.as_str()) == driving;
         vec![
             (Role::Title, text::column(&planner.id, 18)),
             (Role::Text, text::column(&planner.version, 8)),
-            match look.model.cannot_fly(planner) {
+            match look.run.cannot_fly(planner) {
                 _ if drives => (Role::Good, "active".into()),
                 Some(why) => (Role::Dim, why.into()),
                 None => (Role::Good, String::new()),

@@ -19,14 +19,14 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let braille = look.caps.glyphs == Glyphs::Braille;
     let swatch = |filled: &'static str| if plain { filled } else { "██" };
     let line = |dots: &'static str, letters: &'static str| if braille { dots } else { letters };
-    let found = look.model.run.iter().flat_map(|run| &run.world.obstacles).any(|obstacle| !obstacle.known);
+    let found = look.run.about.iter().flat_map(|run| &run.world.obstacles).any(|obstacle| !obstacle.known);
     let entries = [
         (layers.shows(MapLayer::Scanned), Role::Scanned, swatch("▒▒"), "scanned"),
         (layers.shows(MapLayer::Scanned), Role::Partly, swatch("░░"), "partial"),
         (layers.shows(MapLayer::Accuracy), Role::Crit, if plain { "%%" } else { "██" }, "poor fix"),
         (layers.shows(MapLayer::Trail), Role::Trail, line("⠤⠤", ".."), "trail"),
         (layers.shows(MapLayer::Plan), Role::Plan, line("⠄⠠", ",,"), "plan"),
-        (look.model.tether.is_some(), Role::Tether, line("⠤⠤", "~~"), "tether"),
+        (look.run.tether.is_some(), Role::Tether, line("⠤⠤", "~~"), "tether"),
         (true, Role::Obstacle, "# ", "obstacle"),
         (found, Role::Found, "? ", "found"),
         (layers.shows(MapLayer::Stations), Role::Station, "S ", "station"),

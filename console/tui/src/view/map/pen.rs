@@ -2,7 +2,7 @@
 
 use super::shapes::{Filled, Shaded, Stroke, Window, ellipse};
 use crate::caps::Glyphs;
-use crate::model::{Model, position, ui::MapLayer};
+use crate::model::{position, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use planner_api::{Drawing, Layer};
@@ -28,10 +28,6 @@ pub(super) struct Pen<'a> {
 }
 
 impl Pen<'_> {
-    fn model(&self) -> &Model {
-        self.look.model
-    }
-
     /// Without braille each kind of line has a character of its own, on a layer of its own.
     fn take_up(&self, ctx: &mut Context<'_>, plain: char) {
         if self.look.caps.glyphs != Glyphs::Braille {
@@ -45,8 +41,8 @@ impl Pen<'_> {
     }
 
     pub(super) fn scanned(&self, ctx: &mut Context<'_>) {
-        let shown = self.model().ui.layers.shows(MapLayer::Scanned);
-        let Some(raster) = self.model().coverage.as_ref().filter(|_| shown) else { return };
+        let shown = self.look.model.ui.layers.shows(MapLayer::Scanned);
+        let Some(raster) = self.look.run.coverage.as_ref().filter(|_| shown) else { return };
         self.shade(ctx, [(Role::Scanned, '▒'), (Role::Partly, '░')], |at, edge_m| {
             match raster.scanned_share(at, edge_m)? {
                 share if share >= WHOLLY_SCANNED => Some(Role::Scanned),
@@ -58,10 +54,10 @@ impl Pen<'_> {
 
     /// Where the stations are forecast to locate badly: beyond the limit, and beyond half of it.
     pub(super) fn forecast(&self, ctx: &mut Context<'_>) {
-        let shown = self.model().ui.layers.shows(MapLayer::Accuracy);
-        let map = self.model().accuracy.as_ref().filter(|_| shown);
-        let (Some(map), Some(run)) = (map, &self.model().run) else { return };
-        let limit_m = run.mission.position_limit_m;
+        let shown = self.look.model.ui.layers.shows(MapLayer::Accuracy);
+        let map = self.look.run.accuracy.as_ref().filter(|_| shown);
+        let (Some(map), Some(about)) = (map, &self.look.run.about) else { return };
+        let limit_m = about.mission.position_limit_m;
         self.shade(ctx, [(Role::Crit, '%'), (Role::Warn, ':')], |at, _| match map.at(at)?.error_95_m {
             Some(error_m) if error_m <= limit_m / 2.0 => None,
             Some(error_m) if error_m <= limit_m => Some(Role::Warn),
@@ -93,26 +89,26 @@ impl Pen<'_> {
     }
 
     pub(super) fn zones(&self, ctx: &mut Context<'_>) {
-        let Some(run) = &self.model().run else { return };
+        let Some(about) = &self.look.run.about else { return };
         self.take_up(ctx, 'x');
-        for zone in run.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo) {
+        for zone in about.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo) {
             let color = self.look.theme.color(Role::NoGo);
             ctx.draw(&Filled { shape: &zone.shape, window: self.window, hatched: true, color });
         }
     }
 
     pub(super) fn paths(&self, ctx: &mut Context<'_>) {
-        let model = self.model();
+        let (run, ui) = (self.look.run, &self.look.model.ui);
         let reach_m = self.reach_m();
-        if let Some(plan) = model.planning.plan.as_ref().filter(|_| model.ui.layers.shows(MapLayer::Plan)) {
+        if let Some(plan) = run.planning.plan.as_ref().filter(|_| ui.layers.shows(MapLayer::Plan)) {
             self.take_up(ctx, ',');
-            let from = model.progress.as_ref().map_or(0, |progress| nearest(&plan.path, progress.target));
+            let from = run.progress.as_ref().map_or(0, |progress| nearest(&plan.path, progress.target));
             let ahead = reach_m.map_or(plan.path.as_slice(), |reach_m| within(&plan.path[from..], reach_m));
             self.stroke(ctx, ahead, Role::Plan, true);
         }
-        if model.ui.layers.shows(MapLayer::Trail) {
+        if ui.layers.shows(MapLayer::Trail) {
             self.take_up(ctx, '.');
-            let newest: Vec<Point> = model.trail.points().iter().rev().copied().collect();
+            let newest: Vec<Point> = run.trail.points().iter().rev().copied().collect();
             let behind = reach_m.map_or(newest.as_slice(), |reach_m| within(&newest, reach_m));
             self.stroke(ctx, behind, Role::Trail, false);
         }
@@ -121,14 +117,14 @@ impl Pen<'_> {
     /// How much of plan and trail is drawn, metres: where neighbouring passes would merge on the map, only what lies
     /// close before and behind the robot. The scanned cells show the rest.
     fn reach_m(&self) -> Option<f64> {
-        let swath_m = self.model().run.as_ref()?.mission.swath_m;
+        let swath_m = self.look.run.about.as_ref()?.mission.swath_m;
         (swath_m < PASS_COLUMNS * self.window.column_m).then_some(REACH_COLUMNS * self.window.column_m)
     }
 
     pub(super) fn drawings(&self, ctx: &mut Context<'_>) {
-        let planning = &self.model().planning;
-        let old = self.model().clock.tick.saturating_sub(planning.drawings_tick) > 10;
-        if old || !self.model().ui.layers.shows(MapLayer::Drawings) {
+        let planning = &self.look.run.planning;
+        let old = self.look.run.clock.tick.saturating_sub(planning.drawings_tick) > 10;
+        if old || !self.look.model.ui.layers.shows(MapLayer::Drawings) {
             return;
         }
         self.take_up(ctx, '\'');
@@ -150,9 +146,9 @@ impl Pen<'_> {
     }
 
     pub(super) fn solid(&self, ctx: &mut Context<'_>) {
-        let Some(run) = &self.model().run else { return };
+        let Some(about) = &self.look.run.about else { return };
         self.take_up(ctx, 'o');
-        let wall = match &run.world.boundary {
+        let wall = match &about.world.boundary {
             Boundary::Circle { radius_m } => {
                 ellipse(Point::origin(), (*radius_m, *radius_m), 0.0, WALL_PIECES)
             }
@@ -160,7 +156,7 @@ impl Pen<'_> {
         };
         self.stroke(ctx, &wall, Role::Wall, false);
         self.take_up(ctx, '#');
-        for obstacle in &run.world.obstacles {
+        for obstacle in &about.world.obstacles {
             let color = self.look.theme.color(if obstacle.known { Role::Obstacle } else { Role::Found });
             ctx.draw(&Filled { shape: &obstacle.shape, window: self.window, hatched: false, color });
         }
@@ -168,7 +164,7 @@ impl Pen<'_> {
 
     /// The taut cable, above all else that does not move.
     pub(super) fn tether(&self, ctx: &mut Context<'_>) {
-        if let Some(tether) = &self.model().tether {
+        if let Some(tether) = &self.look.run.tether {
             self.take_up(ctx, '~');
             self.stroke(ctx, &tether.line, Role::Tether, false);
         }
@@ -176,9 +172,9 @@ impl Pen<'_> {
 
     /// The hull and the 95 % error, where they are large enough to be seen.
     pub(super) fn robot(&self, ctx: &mut Context<'_>) {
-        let Some(pose) = &self.model().position.pose else { return };
+        let Some(pose) = &self.look.run.position.pose else { return };
         self.take_up(ctx, '+');
-        let radius_m = self.model().run.as_ref().map_or(0.0, |run| run.mission.limits.radius_m);
+        let radius_m = self.look.run.about.as_ref().map_or(0.0, |run| run.mission.limits.radius_m);
         if radius_m > self.window.column_m {
             self.stroke(ctx, &ellipse(pose.position, (radius_m, radius_m), 0.0, 48), Role::Robot, false);
         }
@@ -189,26 +185,26 @@ impl Pen<'_> {
     }
 
     pub(super) fn labels(&self, ctx: &mut Context<'_>) {
-        let model = self.model();
+        let (run, ui) = (self.look.run, &self.look.model.ui);
         let mut print = |at: Point, role: Role, text: String| {
             ctx.print(at.x, at.y, Line::styled(text, self.look.theme.style(role)));
         };
-        let Some(run) = &model.run else { return };
-        for obstacle in &run.world.obstacles {
+        let Some(about) = &run.about else { return };
+        for obstacle in &about.world.obstacles {
             let (role, mark) = if obstacle.known { (Role::Obstacle, "#") } else { (Role::Found, "?") };
             print(obstacle.shape.center(), role, mark.into());
         }
-        for station in run.world.stations.iter().filter(|_| model.ui.layers.shows(MapLayer::Stations)) {
-            let named = model.ui.map.zoom > 0 && station.name.len() <= 4;
+        for station in about.world.stations.iter().filter(|_| ui.layers.shows(MapLayer::Stations)) {
+            let named = ui.map.zoom > 0 && station.name.len() <= 4;
             print(station.position, Role::Station, if named { station.name.clone() } else { "S".into() });
         }
-        if let Some(progress) = model.progress.as_ref().filter(|_| !model.has_ended()) {
+        if let Some(progress) = run.progress.as_ref().filter(|_| !run.has_ended()) {
             print(progress.target, Role::Target, "×".into());
         }
-        let start = &run.mission.start;
-        let estimated = model.position.pose.as_ref().map(|pose| (pose.position, pose.heading_rad));
+        let start = &about.mission.start;
+        let estimated = run.position.pose.as_ref().map(|pose| (pose.position, pose.heading_rad));
         let (at, heading_rad) = estimated.unwrap_or((start.position, start.heading_rad));
-        let role = if model.position.lost { Role::Crit } else { Role::Robot };
+        let role = if run.position.lost { Role::Crit } else { Role::Robot };
         print(at, role, arrow(self.look.caps.glyphs, heading_rad).into());
     }
 }

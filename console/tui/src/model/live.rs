@@ -1,0 +1,122 @@
+//! The run that is open, and what is between the operator and its mission.
+
+use super::{Run, Speed};
+use mission::{Order, Phase};
+use report::Summary;
+use serde::{Deserialize, Serialize};
+
+/// Names a run that was opened since the console was started; 0 is none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
+pub struct RunId(pub u32);
+
+/// Where a scenario comes from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Source {
+    /// The demo that is built in, with what the command line changes in it.
+    Demo,
+    /// A file.
+    File(String),
+    /// What past runs missed: names of their folders.
+    Rescan(Vec<String>),
+}
+
+/// Whether the run is being written down.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Recording {
+    /// Nobody asked for it.
+    #[default]
+    Off,
+    /// Everything is being written.
+    On,
+    /// It failed, and why.
+    Failed(String),
+}
+
+/// How the engine of a run does.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Health {
+    /// Whether the run is being written down.
+    pub recording: Recording,
+    /// The speed that is really reached, as a multiple of the wall clock; `None` when not measured.
+    pub reached_speed: Option<f64>,
+}
+
+/// A planner's work that takes time; ticks and HOLD continue meanwhile.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Busy {
+    /// What it is, such as `Planning (rpf)`.
+    pub work: String,
+    /// How long it may take, seconds; not known for what is short.
+    pub limit_s: Option<f64>,
+    /// When it began, on the console's own clock, seconds.
+    pub since_mono_s: f64,
+    /// How far it is: the share done, 0 to 1, and what is being done; `None` if it is not reported.
+    #[serde(default)]
+    pub at: Option<(f64, String)>,
+}
+
+/// What a run that was flown leaves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunResult {
+    /// Its report.
+    pub summary: Box<Summary>,
+    /// Name of its folder; `None` if it was not written down.
+    pub name: Option<String>,
+    /// The line about where it is kept, or why it is not.
+    pub kept: String,
+    /// Whether it is kept.
+    pub is_kept: bool,
+}
+
+/// The run that is open.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Live {
+    /// Which.
+    pub id: RunId,
+    /// Where its scenario comes from; `None` as long as none was opened.
+    pub source: Option<Source>,
+    /// Whether the scenario is being read and its floor being laid out.
+    pub is_opening: bool,
+    /// Why it could not be opened, with file, line and key.
+    pub failure: Option<String>,
+    /// What its events say.
+    pub run: Run,
+    /// How fast the mission shall go.
+    pub speed: Speed,
+    /// How its engine does.
+    pub health: Health,
+    /// What a planner is working on.
+    pub busy: Option<Busy>,
+    /// An order that makes the robot move and was not answered yet.
+    pub asked: Option<Order>,
+    /// Whether HOLD was sent and not answered yet.
+    pub hold_asked: bool,
+    /// When the last events arrived, on the console's own clock, seconds.
+    pub heard_mono_s: f64,
+    /// What the run leaves, when it has ended and its files are closed.
+    pub result: Option<RunResult>,
+}
+
+impl Live {
+    /// Whether the robot moves, or may begin to move without an order, or because of one that was sent and not answered yet.
+    pub fn may_move(&self) -> bool {
+        self.run.phase().may_move() || self.asked.is_some()
+    }
+
+    /// Whether leaving would abort a mission: one that was started and has not ended, or whose start was requested.
+    pub fn is_under_way(&self) -> bool {
+        !self.run.has_ended() && (*self.run.phase() != Phase::Waiting || self.may_move())
+    }
+
+    /// Notes that the mission accepted or refused an order. Nothing else ends the wait for it: an event of the tick before
+    /// says nothing about an order that comes after it.
+    pub(crate) fn answered(&mut self, order: &Order) {
+        if self.asked.as_ref() == Some(order) {
+            self.asked = None;
+        }
+        if *order == Order::Hold {
+            self.hold_asked = false;
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! From screen to screen, and what they open: scenarios, past runs, work beside the screen.
+
+use super::message::{Effect, Job};
+use super::offer::refuse;
+use crate::actions::ActionId;
+use crate::model::home::HomeList;
+use crate::model::{Live, Model, RunId, Screen, Source};
+use mission::{PlannerChoice, Severity};
+
+/// Goes to a screen; home is looked at again each time.
+pub(super) fn go(model: &mut Model, screen: Screen) -> Vec<Effect> {
+    model.ui.go(screen);
+    if screen == Screen::Home { vec![Effect::Look] } else { Vec::new() }
+}
+
+/// Goes back to the screen before, if there is one.
+pub(super) fn back(model: &mut Model) -> Option<Vec<Effect>> {
+    let before = model.ui.back.pop().or((model.ui.screen != Screen::Home).then_some(Screen::Home))?;
+    model.ui.screen = before;
+    Some(if before == Screen::Home { vec![Effect::Look] } else { Vec::new() })
+}
+
+/// Enter on a screen without anything over it.
+pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
+    match model.ui.screen {
+        Screen::Home => open_selected(model),
+        Screen::Plan | Screen::Mission | Screen::Result => Vec::new(),
+    }
+}
+
+fn open_selected(model: &mut Model) -> Vec<Effect> {
+    let home = &model.home;
+    if home.list == HomeList::Runs {
+        return go_to_run(model);
+    }
+    let scenarios = home.scenarios();
+    let Some(entry) = scenarios.get(home.scenario) else {
+        return refuse(model, "no scenario is listed".into());
+    };
+    if let Some(why) = &entry.problem {
+        let why = why.clone();
+        return refuse(model, why);
+    }
+    let source = entry.source.clone();
+    open(model, source, None)
+}
+
+/// The result of the selected run, as far as it is the run that is open.
+fn go_to_run(model: &mut Model) -> Vec<Effect> {
+    let is_open = selected_run(model).is_some() && selected_run(model) == result_name(model);
+    if is_open {
+        go(model, Screen::Result)
+    } else {
+        refuse(model, "w: report of this run, o: open it in rerun".into())
+    }
+}
+
+/// Opens a scenario: its mission is laid out and waits; nothing moves.
+pub(super) fn open(model: &mut Model, source: Source, planner: Option<PlannerChoice>) -> Vec<Effect> {
+    if model.live.is_under_way() {
+        return refuse(model, "a mission is in progress; 3: show it, X: end it".into());
+    }
+    let id = RunId(model.live.id.0 + 1);
+    model.live = Live { id, source: Some(source.clone()), is_opening: true, ..Live::default() };
+    model.ui.map = crate::model::ui::MapView::default();
+    model.ui.go(Screen::Plan);
+    vec![Effect::Open { id, source, planner }]
+}
+
+/// The run that a command is about: on the home screen the selected one, else the one that is open.
+pub(super) fn named_run(model: &Model) -> Option<String> {
+    if model.ui.screen == Screen::Home { selected_run(model) } else { result_name(model) }
+}
+
+fn selected_run(model: &Model) -> Option<String> {
+    model.home.runs().get(model.home.run).map(|run| run.name.clone())
+}
+
+fn result_name(model: &Model) -> Option<String> {
+    model.live.result.as_ref()?.name.clone()
+}
+
+/// Begins work on a past run.
+pub(super) fn begin(model: &mut Model, id: ActionId) -> Vec<Effect> {
+    let Some(run) = named_run(model) else { return refuse(model, "no run is selected".into()) };
+    let (job, news) = match id {
+        ActionId::Rescan => return open(model, Source::Rescan(vec![run]), None),
+        ActionId::Verify => (Job::Verify(run), "verifying"),
+        ActionId::Report => (Job::Report(run), "writing the report of"),
+        _ => (Job::View(run), "opening the recording of"),
+    };
+    let run = job.run().to_owned();
+    model.say(Severity::Info, format!("{news} {run}..."));
+    vec![Effect::Do(job)]
+}
+
+/// Work on a past run is done.
+pub(super) fn done(model: &mut Model, job: &Job, result: Result<String, String>) -> Vec<Effect> {
+    let (severity, text) = match result {
+        Ok(text) => (Severity::Info, text),
+        Err(why) => (Severity::Warn, format!("{} failed: {why}", job.word())),
+    };
+    model.live.run.log.add(model.live.run.clock.t_s, severity, "console", text.clone());
+    model.say(severity, text);
+    vec![Effect::Look]
+}
+
+impl Job {
+    /// Name of the run that it is about.
+    pub fn run(&self) -> &str {
+        match self {
+            Self::Verify(run) | Self::Report(run) | Self::View(run) => run,
+        }
+    }
+
+    fn word(&self) -> &'static str {
+        match self {
+            Self::Verify(_) => "verifying the run",
+            Self::Report(_) => "writing the report",
+            Self::View(_) => "opening the recording",
+        }
+    }
+}

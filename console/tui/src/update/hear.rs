@@ -1,0 +1,91 @@
+//! News of the run that is open.
+
+use super::{Effect, RunMsg, news};
+use crate::model::{
+    Busy, Cause, Change, Health, Model, Overlay, Recording, RunId, RunResult, Screen, Withdrawn, ui::Ask,
+};
+use mission::{Event, EventKind, Severity};
+
+/// Takes in news of a run. News of one that is not open any more is late and dropped.
+pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
+    if id != model.live.id {
+        return Vec::new();
+    }
+    match msg {
+        RunMsg::OpenFailed(why) => {
+            model.live.is_opening = false;
+            model.live.failure = Some(why);
+        }
+        RunMsg::Events(events) => {
+            model.live.heard_mono_s = model.console.now.mono_s;
+            events.iter().for_each(|event| take(model, event));
+        }
+        RunMsg::Health(health) => take_health(model, health),
+        RunMsg::OrderFailed { order, why } => {
+            model.live.answered(&order);
+            news(model, Cause::Console, Severity::Crit, why);
+        }
+        RunMsg::Busy(work) => {
+            let since_mono_s = model.console.now.mono_s;
+            model.live.busy = work.map(|(work, limit_s)| Busy { work, limit_s, since_mono_s, at: None });
+        }
+        RunMsg::BusyAt { share, what } => {
+            // Progress that is reported after the work is done is ignored.
+            if let Some(busy) = &mut model.live.busy {
+                busy.at = Some((share, what));
+            }
+        }
+        RunMsg::Closed(result) => return closed(model, *result),
+    }
+    Vec::new()
+}
+
+fn take(model: &mut Model, event: &Event) {
+    let Change { withdrawn, notice, answered } = model.live.run.fold(event);
+    match &event.kind {
+        EventKind::RunOpened(_) => model.live.is_opening = false,
+        EventKind::Ended { .. } => (model.live.asked, model.live.hold_asked) = (None, false),
+        _ => {}
+    }
+    if let Some(order) = answered {
+        model.live.answered(&order);
+    }
+    if let Some((severity, text)) = notice {
+        model.say(severity, text);
+    }
+    withdraw(model, withdrawn);
+}
+
+/// Takes back a question that was asked under circumstances that no longer hold.
+fn withdraw(model: &mut Model, withdrawn: Withdrawn) {
+    let is_withdrawn = match (withdrawn, &model.ui.overlay) {
+        (Withdrawn::Nothing, _) => false,
+        (_, Overlay::Confirm(Ask::Resume | Ask::FlyUncertified)) => true,
+        (Withdrawn::All, Overlay::Confirm(_) | Overlay::Stepping) => true,
+        _ => false,
+    };
+    if is_withdrawn {
+        model.ui.overlay = Overlay::None;
+        model.say(Severity::Warn, "question cancelled: conditions have changed");
+    }
+}
+
+fn take_health(model: &mut Model, health: Health) {
+    match &health.recording {
+        Recording::Failed(why) if health.recording != model.live.health.recording => {
+            news(model, Cause::Recording, Severity::Crit, format!("recording failed: {why}"));
+        }
+        Recording::Failed(_) => {}
+        Recording::On | Recording::Off => model.live.run.alarms.clear(&Cause::Recording),
+    }
+    model.live.health = health;
+}
+
+/// The run is over: who watched it sees what it has achieved.
+fn closed(model: &mut Model, result: RunResult) -> Vec<Effect> {
+    model.live.result = Some(result);
+    if model.ui.screen == Screen::Mission && model.ui.overlay == Overlay::None {
+        model.ui.go(Screen::Result);
+    }
+    vec![Effect::Look]
+}

@@ -1,0 +1,196 @@
+//! The home screen: what there is to open, what was flown, what is wrong.
+
+use super::look::{Look, Parts, fill};
+use super::{events, table, text};
+use crate::model::home::{Attention, Found, HomeList};
+use crate::model::ui::Arrangement;
+use crate::model::{PastRun, ScenarioEntry};
+use crate::theme::Role;
+use mission::Severity;
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::text::Line;
+
+/// Rows of the attention pane with its frame, at most.
+const ATTENTION: u16 = 10;
+/// Rows about the selected scenario.
+const ABOUT: usize = 3;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+    let Some(found) = &look.model.home.found else {
+        let block = look.block(Role::Border, "Home", "");
+        return fill(
+            frame,
+            area,
+            block,
+            vec![look.line([(Role::Dim, " Looking for scenarios and runs...".into())])],
+        );
+    };
+    if arrangement == Arrangement::Paged {
+        return match look.model.home.list {
+            HomeList::Scenarios => scenarios(look, frame, area),
+            HomeList::Runs => runs(look, frame, area),
+        };
+    }
+    let wide = arrangement == Arrangement::Wide;
+    let rows = attention_rows(found).len() as u16 + 2;
+    let [lists, attention] = Layout::vertical([
+        Constraint::Fill(1),
+        Constraint::Length(rows.min(if wide { ATTENTION } else { 6 })),
+    ])
+    .areas(area);
+    let share = if wide { Constraint::Length(62) } else { Constraint::Percentage(50) };
+    let [left, right] = Layout::horizontal([share, Constraint::Fill(1)]).areas(lists);
+    scenarios(look, frame, left);
+    if wide {
+        let rows = 5;
+        let [past, plugins_area] =
+            Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(right);
+        runs(look, frame, past);
+        plugins(look, frame, plugins_area);
+    } else {
+        runs(look, frame, right);
+    }
+    let block = look.block(Role::Border, &format!("Attention  {}", open_points(found)), &disk(found));
+    let lines = attention_rows(found).into_iter().map(|parts| look.line(parts)).collect();
+    fill(frame, attention, block, lines);
+}
+
+fn border(look: &Look, list: HomeList) -> Role {
+    if look.model.home.list == list { Role::Focus } else { Role::Border }
+}
+
+fn scenarios(look: &Look, frame: &mut Frame, area: Rect) {
+    let home = &look.model.home;
+    let listed = home.scenarios();
+    let note = filter_note(&home.filter);
+    let block = look.block(border(look, HomeList::Scenarios), &format!("Scenarios  {}", listed.len()), &note);
+    let inner = block.inner(area);
+    let (columns, height) = (usize::from(inner.width), usize::from(inner.height));
+    let names = name_columns(&listed, columns);
+    let rows: Vec<Parts> = listed.iter().map(|entry| scenario_row(look, entry, names, columns)).collect();
+    let selected = (home.list == HomeList::Scenarios).then_some(home.scenario);
+    let about = if height > 12 { ABOUT } else { 0 };
+    let mut lines = table::rows(look, rows, selected, (columns, height - about));
+    if lines.is_empty() {
+        lines.push(look.line([(Role::Dim, " No scenarios here; `tankops console FILE` opens one.".into())]));
+    }
+    lines.resize(height - about, Line::default());
+    lines.extend(
+        listed.get(home.scenario).map_or_else(Vec::new, |entry| about_lines(look, entry, columns, about)),
+    );
+    fill(frame, area, block, lines);
+}
+
+fn name_columns(listed: &[&ScenarioEntry], columns: usize) -> usize {
+    let widest = listed.iter().map(|entry| text::width(&entry.name)).max().unwrap_or(0);
+    (widest + 1).min(columns / 2)
+}
+
+fn scenario_row(look: &Look, entry: &ScenarioEntry, names: usize, columns: usize) -> Parts {
+    let name = (Role::Text, text::column(&entry.name, names));
+    let rest = columns.saturating_sub(names + 1);
+    if entry.problem.is_some() {
+        return vec![name, (Role::Warn, text::fit("INVALID", rest))];
+    }
+    let mut parts = vec![name, (Role::Dim, text::column(&entry.task, 7))];
+    if rest >= 34 {
+        parts.push((Role::Dim, text::column(&entry.tank, 9)));
+        parts.push((Role::Dim, text::column(&entry.planner, 12)));
+    }
+    let last = look.model.home.last_end(&entry.name).map_or_else(|| "-".into(), end);
+    let used: usize = parts.iter().map(|(_, text)| text::width(text)).sum();
+    parts.push((Role::Text, text::fit(&last, columns.saturating_sub(used + 1))));
+    parts
+}
+
+/// How a run ended, with what it scanned if that was its task.
+fn end(run: &PastRun) -> String {
+    match run.reachable {
+        Some(share) if run.end == "complete" => format!("{} %", text::percent(share)),
+        _ => run.end.clone(),
+    }
+}
+
+fn about_lines(look: &Look, entry: &ScenarioEntry, columns: usize, rows: usize) -> Vec<Line<'static>> {
+    let words = match (&entry.problem, entry.expected.is_empty()) {
+        (Some(problem), _) => problem.clone(),
+        (None, true) => format!("{}.", entry.about),
+        (None, false) => format!("{}. Expected: {}.", entry.about, entry.expected),
+    };
+    let role = if entry.problem.is_some() { Role::Warn } else { Role::Dim };
+    let wrapped = text::wrap(&words, columns.saturating_sub(2)).into_iter().take(rows);
+    wrapped.map(|line| look.line([(role, format!(" {line}"))])).collect()
+}
+
+fn runs(look: &Look, frame: &mut Frame, area: Rect) {
+    let home = &look.model.home;
+    let listed = home.runs();
+    let logs = home.found.as_ref().map_or("", |found| found.logs.as_str());
+    let block = look.block(border(look, HomeList::Runs), &format!("Past runs  {}", listed.len()), logs);
+    let inner = block.inner(area);
+    let (columns, height) = (usize::from(inner.width), usize::from(inner.height));
+    let rows: Vec<Parts> = listed.iter().map(|run| run_row(run, columns)).collect();
+    let selected = (home.list == HomeList::Runs).then_some(home.run);
+    let mut lines = table::rows(look, rows, selected, (columns, height));
+    if lines.is_empty() {
+        lines.push(look.line([(Role::Dim, " No runs yet.".into())]));
+    }
+    fill(frame, area, block, lines);
+}
+
+fn run_row(run: &PastRun, columns: usize) -> Parts {
+    let wide = columns >= 50;
+    let time = run.mission_time_s.map_or_else(|| "-".into(), text::clock);
+    let reach = run.reachable.map_or_else(String::new, |share| format!("{} %", text::percent(share)));
+    let is_sound = matches!(run.end.as_str(), "complete" | "aborted");
+    let role = if is_sound { Role::Text } else { Role::Warn };
+    let name = if run.scenario.is_empty() { &run.name } else { &run.scenario };
+    let (began, room) =
+        if wide { (12, columns.saturating_sub(12 + 10 + 9 + 8)) } else { (0, columns.saturating_sub(11)) };
+    let mut parts =
+        vec![(Role::Dim, text::column(&run.began, began)), (Role::Text, text::column(name, room))];
+    parts.push((role, text::column(&run.end, 10)));
+    if wide {
+        parts.push((Role::Dim, text::column(&time, 9)));
+        parts.push((Role::Text, format!("{reach:>7}")));
+    }
+    parts
+}
+
+fn plugins(look: &Look, frame: &mut Frame, area: Rect) {
+    let console = &look.model.console;
+    let block = look.block(Role::Border, "Plugins", "");
+    let columns = usize::from(block.inner(area).width);
+    let plugins: std::collections::BTreeSet<&str> =
+        console.planners.iter().map(|info| info.plugin.as_str()).collect();
+    let found = format!(" {} planners in {} plugins", console.planners.len(), plugins.len());
+    let mut lines = vec![look.line([(Role::Text, found)])];
+    lines.extend(console.refused.iter().take(2).map(|refused| {
+        let words = format!(" REFUSED {}: {}", refused.plugin, refused.reason);
+        look.line([(Role::Watch, text::fit(&words, columns))])
+    }));
+    fill(frame, area, block, lines);
+}
+
+fn filter_note(filter: &str) -> String {
+    if filter.is_empty() { "/ filter  Tab list".into() } else { format!("`{}`", text::fit(filter, 20)) }
+}
+
+/// How many points need the operator.
+fn open_points(found: &Found) -> usize {
+    found.attention.iter().filter(|point| point.severity > Severity::Info).count()
+}
+
+fn disk(found: &Found) -> String {
+    found.free_bytes.map_or_else(String::new, |bytes| format!("disk {} GB free", bytes / 1_000_000_000))
+}
+
+fn attention_rows(found: &Found) -> Vec<Parts> {
+    found.attention.iter().map(attention_row).collect()
+}
+
+fn attention_row(point: &Attention) -> Parts {
+    let role = if point.severity == Severity::Info { Role::Good } else { events::role(point.severity) };
+    vec![(role, format!(" {}", text::column(&point.kind, 11))), (Role::Text, point.text.clone())]
+}

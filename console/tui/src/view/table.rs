@@ -1,0 +1,57 @@
+//! Tables of a screen: rows of which one is selected, as many as fit.
+
+use super::look::{Look, Parts};
+use super::text;
+use crate::theme::Role;
+use ratatui::text::Line;
+use std::ops::Range;
+
+/// The part of a list that is shown in some rows: the selected line is always in it.
+pub(super) fn window(selected: usize, len: usize, rows: usize) -> Range<usize> {
+    let first = (selected + 1).saturating_sub(rows).min(len.saturating_sub(rows));
+    first..(first + rows).min(len)
+}
+
+/// A row; the selected one begins with a mark and is reversed to its end.
+pub(super) fn row(look: &Look, mut parts: Parts, selected: bool, columns: usize) -> Line<'static> {
+    parts.insert(0, (Role::Text, if selected { ">" } else { " " }.into()));
+    if !selected {
+        return look.line(parts);
+    }
+    let used: usize = parts.iter().map(|(_, text)| text::width(text)).sum();
+    parts.push((Role::Text, " ".repeat(columns.saturating_sub(used))));
+    let mut line = look.line(parts);
+    for span in &mut line.spans {
+        span.style = span.style.patch(look.theme.style(Role::Selected));
+    }
+    line
+}
+
+/// The rows of a table that fit, the selected one among them; `None`: the table does not take the arrow keys.
+pub(super) fn rows(
+    look: &Look,
+    all: Vec<Parts>,
+    selected: Option<usize>,
+    (columns, height): (usize, usize),
+) -> Vec<Line<'static>> {
+    let shown = window(selected.unwrap_or(0), all.len(), height);
+    let numbered = all.into_iter().enumerate().filter(|(index, _)| shown.contains(index));
+    numbered.map(|(index, parts)| row(look, parts, selected == Some(index), columns)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_selected_line_is_always_shown() {
+        for len in 0..12 {
+            for rows in 1..8 {
+                for selected in 0..len {
+                    let shown = window(selected, len, rows);
+                    assert!(shown.contains(&selected) && shown.len() == rows.min(len));
+                }
+            }
+        }
+    }
+}
