@@ -19,7 +19,7 @@ fn started(fault: &str) -> Session {
 
 /// Leaves a console whose mission is held or under way, and gives what was written down.
 fn leave(mut session: Session) -> (Session, Vec<Value>) {
-    session.press("q");
+    session.press("1q");
     aborted(session)
 }
 
@@ -43,13 +43,13 @@ fn assert_held_first(events: &[Value]) {
 
 #[test]
 fn every_key_that_stops_holds_while_a_plan_is_being_made_and_the_console_leaves_in_good_order() {
-    for key in [" ", "\x03", "q"] {
+    for key in [" ", "\x03", "1q"] {
         println!("key {key:?}");
         let mut session = started("plan_hang");
         session.press(key);
         session.see("‖ HOLD");
-        // `q` has asked already whether to leave.
-        let (_, events) = if key == "q" { aborted(session) } else { leave(session) };
+        // `q` on the first screen has asked already whether to leave.
+        let (_, events) = if key == "1q" { aborted(session) } else { leave(session) };
         assert_held_first(&events);
         assert!(first_of(&events, "planned").is_none());
     }
@@ -129,7 +129,7 @@ fn a_run_that_is_deleted_in_flight_is_reported_at_once_and_at_the_end() {
     session.see("REC●");
     std::fs::remove_dir_all(session.run()).unwrap();
     session.see("REC✗");
-    session.press("q");
+    session.press("1q");
     assert_eq!(session.agree_to_leave(), "code=3");
     assert!(session.text().contains("NOT kept"), "{}", session.text());
 }

@@ -1,5 +1,7 @@
 //! The console: engine, keys, signals and screen, each in a thread of its own; this one draws.
 
+mod checking;
+mod comparing;
 mod crash;
 mod desk;
 mod engine;

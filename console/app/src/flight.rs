@@ -36,6 +36,7 @@ impl Flight {
             mission: config.clone(),
             floor: floor.clone(),
             plates: scenario.plates,
+            checklist: scenario.checklist.clone(),
         };
         Self {
             simulator: Simulator::new(scenario.sim.clone(), scenario.seed),

@@ -7,8 +7,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Order {
+    /// While waiting: make the plan that the mission will begin with, once more if there is one. Nothing moves.
+    Plan,
     /// Begin the mission.
     Start,
+    /// While waiting: note what was checked before the start, by the console and by hand.
+    NoteChecks(Vec<Check>),
     /// Stand still.
     Hold,
     /// Go on.
@@ -28,4 +32,29 @@ pub enum Order {
         /// Its new value.
         value: ParamValue,
     },
+}
+
+/// Something that was checked before the start.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Check {
+    /// What.
+    pub what: String,
+    /// How it came out.
+    pub outcome: CheckOutcome,
+    /// What was found, as a sentence; empty for a tick by hand.
+    pub found: String,
+}
+
+/// How a check came out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CheckOutcome {
+    /// All right.
+    Passed,
+    /// Ticked by hand.
+    Ticked,
+    /// Worth knowing; it does not block the start.
+    Warning,
+    /// It blocks the start.
+    Failed,
 }

@@ -29,6 +29,14 @@ pub enum ActionId {
     Abort,
     /// Let another planner drive.
     ChoosePlanner,
+    /// Check everything that the start depends on.
+    Preflight,
+    /// Have another planner plan, for comparison.
+    Compare,
+    /// Plan once more.
+    PlanAgain,
+    /// Give up what is being planned.
+    CancelPlan,
     /// Look at the planner's parameters and change them.
     Parameters,
     /// Slower.
@@ -203,6 +211,11 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Abort, "end", "HOLD, then ask to end the mission", &[Key::Char('X')], &[Context::Screen]).label("end").risk(Risk::Destroys),
     action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[Context::Plan, Context::Mission]).label("planner").risk(Risk::Moves),
     action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[Context::Plan, Context::Mission]).label("parameters"),
+    action(ActionId::Preflight, "preflight", "Check what the start depends on", &[Key::Char('A')], &[Context::Plan, Context::Mission]).label("pre-flight"),
+    action(ActionId::Compare, "compare", "Plan with another planner, side by side", &[Key::Char('c')], &[Context::Plan]).label("compare"),
+    action(ActionId::Preflight, "check-again", "Check once more", &[Key::Char('r')], &[Context::Preflight]).label("check again"),
+    action(ActionId::PlanAgain, "plan-again", "Make the plan once more", &[], &[Context::Plan]),
+    action(ActionId::CancelPlan, "cancel-plan", "Cancel planning or comparing", &[Key::Esc], &[Context::Plan]).label("cancel"),
     action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &[Context::Screen]).label("ack"),
     action(ActionId::Rescan, "rescan", "Scan what a run has missed", &[Key::Char('r')], &[Context::Home, Context::Result]).label("re-scan"),
     action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[Context::Home, Context::Result]).label("verify"),
@@ -251,7 +264,7 @@ mod tests {
     use super::*;
 
     /// Every set of contexts that can be active together.
-    const TOGETHER: [&[Context]; 12] = [
+    const TOGETHER: [&[Context]; 13] = [
         &[Context::Anywhere, Context::Screen, Context::Home, Context::Rows],
         &[Context::Anywhere, Context::Screen, Context::Plan, Context::Map, Context::Pan],
         &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Pan],
@@ -260,6 +273,7 @@ mod tests {
         &[Context::Anywhere, Context::Screen, Context::Result, Context::Map, Context::Rows],
         &[Context::Anywhere, Context::List, Context::Rows],
         &[Context::Anywhere, Context::List, Context::Rows, Context::Parameters],
+        &[Context::Anywhere, Context::List, Context::Rows, Context::Preflight],
         &[Context::Anywhere, Context::Text],
         &[Context::Anywhere, Context::Text, Context::Commands],
         &[Context::Anywhere, Context::Confirm],

@@ -73,6 +73,8 @@ roles! {
     Trail '-',
     /// Where the plan leads.
     Plan 'p',
+    /// Where another plan leads, for comparison.
+    Ghost 'G',
     /// Where the robot goes next.
     Target 'x',
     /// What the planner drew: pulls.
@@ -166,6 +168,7 @@ fn sixteen(role: Role) -> Option<Color> {
         Role::Tether => Some(Color::White),
         Role::Station | Role::Trail => Some(Color::LightCyan),
         Role::Plan | Role::Target => Some(Color::LightYellow),
+        Role::Ghost => Some(Color::Magenta),
         Role::Pull => Some(Color::LightGreen),
         _ => None,
     }
@@ -178,6 +181,7 @@ fn rich(role: Role) -> Option<(u8, (u8, u8, u8))> {
         Role::Partly => Some((236, (38, 50, 58))),
         Role::Trail => Some((117, (130, 205, 235))),
         Role::Plan => Some((179, (214, 175, 95))),
+        Role::Ghost => Some((177, (199, 155, 255))),
         Role::Obstacle => Some((209, (240, 128, 100))),
         Role::Tether => Some((255, (250, 250, 235))),
         Role::Found => Some((213, (240, 130, 220))),

@@ -6,6 +6,7 @@ mod hear;
 mod message;
 mod offer;
 mod overlay;
+mod preflight;
 mod send;
 
 pub use act::act;
@@ -48,6 +49,12 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
 }
 
 fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
+    if press.key == Key::Char(' ')
+        && !model.live.may_move()
+        && matches!(model.ui.overlay, Overlay::Preflight { .. })
+    {
+        return if press.repeat { Vec::new() } else { preflight::tick(model) };
+    }
     if press.key == Key::Char(' ') && !model.live.may_move() && overlay::is_typing(model) {
         // With nothing to stop, the stop key is a letter like any other.
         overlay::type_key(model, press.key);

@@ -4,6 +4,8 @@
 //! next one begins.
 
 use super::{
+    checking,
+    comparing::Comparing,
     engine::Engine,
     inbox::{Outbox, RunOutbox},
     jobs,
@@ -33,6 +35,12 @@ use tui::{Job, Msg, RunId, RunMsg, Source, Speed};
 pub(super) enum Request {
     /// Close the run that is open and open another one.
     Open { id: RunId, source: Source, planner: Option<PlannerChoice> },
+    /// Look at what the start depends on.
+    Check { needed_bytes: u64 },
+    /// Have another planner plan the mission that is open.
+    Compare(PlannerChoice),
+    /// Give that plan up.
+    StopComparing,
     /// Look at the disk again.
     Look,
     /// Work on a past run.
@@ -60,6 +68,9 @@ pub(super) struct Desk {
     drill: Option<Drill>,
     current: Current,
     engine: Option<Engine>,
+    /// The mission that is open.
+    opened: Option<(RunId, Arc<Scenario>)>,
+    comparing: Option<Comparing>,
     /// The last run that was flown.
     flown: Option<Closed>,
 }
@@ -80,7 +91,18 @@ impl Desk {
     pub(super) fn new(tools: Tools, changes: Changes, speed: Speed, drill: Option<Drill>) -> Self {
         let disk = Arc::new(Disk::new(tools.clone()));
         let current = Current::default();
-        Self { tools, disk, changes, speed, drill, current, engine: None, flown: None }
+        Self {
+            tools,
+            disk,
+            changes,
+            speed,
+            drill,
+            current,
+            engine: None,
+            opened: None,
+            comparing: None,
+            flown: None,
+        }
     }
 
     /// The engine of the run that is open.
@@ -99,6 +121,7 @@ impl Desk {
         let engine = Engine::start(scenario, logs, plugins, screen, self.speed, self.drill)?;
         self.current.set(Some(engine.handle()));
         self.engine = Some(engine);
+        self.opened = Some((id, Arc::new(scenario.clone())));
         Ok(())
     }
 
@@ -113,6 +136,9 @@ impl Desk {
         for request in asked {
             match request {
                 Request::Open { id, source, planner } => self.replace(id, &source, planner)?,
+                Request::Check { needed_bytes } => self.check(needed_bytes),
+                Request::Compare(choice) => self.compare(choice),
+                Request::StopComparing => self.comparing = None,
                 Request::Look => self.look(),
                 Request::Do(job) => jobs::begin(job, &self.tools),
                 Request::Leave { hurry } => {
@@ -146,6 +172,22 @@ impl Desk {
         }
     }
 
+    fn check(&self, needed_bytes: u64) {
+        let Some((run, _)) = &self.opened else { return };
+        let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
+        checking::begin(&self.tools, self.current.get(), screen, needed_bytes);
+    }
+
+    fn compare(&mut self, choice: PlannerChoice) {
+        self.comparing = None;
+        let Some((run, scenario)) = &self.opened else { return };
+        let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
+        match Comparing::begin(Arc::clone(scenario), choice, &self.tools.plugins, screen) {
+            Ok(comparing) => self.comparing = Some(comparing),
+            Err(error) => jobs::report(&self.tools.outbox, &format!("cannot compare: {error}")),
+        }
+    }
+
     /// Scenarios that are many or large take a while to read: the desk is not kept from opening one.
     fn look(&self) {
         let disk = Arc::clone(&self.disk);
@@ -158,6 +200,7 @@ impl Desk {
     /// Closes the run that is open.
     fn close(&mut self, hurry: bool) -> anyhow::Result<()> {
         self.current.set(None);
+        (self.opened, self.comparing) = (None, None);
         let Some(engine) = self.engine.take() else { return Ok(()) };
         if let Some(closed) = engine.close(hurry)? {
             self.flown = Some(closed);

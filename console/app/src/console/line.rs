@@ -18,6 +18,8 @@ pub(super) enum Request {
     Order(Order, Instant),
     /// Change the pace.
     Speed(Speed),
+    /// Answer, so that somebody knows how long an order waits.
+    Answer(Sender<()>),
     /// End the run, close everything, stop.
     Close {
         /// How long that may take.
@@ -60,6 +62,14 @@ impl EngineHandle {
     /// Changes the pace.
     pub(super) fn speed(&self, speed: Speed) {
         self.request(Request::Speed(speed), false);
+    }
+
+    /// How long an order that stops the robot waits until the engine takes it; `None` if that takes too long.
+    pub(super) fn measure(&self, patience: Duration) -> Option<Duration> {
+        let (answer, answered) = mpsc::channel();
+        let asked = Instant::now();
+        self.request(Request::Answer(answer), true);
+        answered.recv_timeout(patience).ok().map(|()| asked.elapsed())
     }
 
     /// Ends the run and closes its files.

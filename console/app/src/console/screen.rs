@@ -148,6 +148,9 @@ impl Screen {
     fn carry_out(&mut self, effect: Effect) -> anyhow::Result<Option<Left>> {
         match effect {
             Effect::Open { id, source, planner } => self.desk.request(Request::Open { id, source, planner }),
+            Effect::Check { needed_bytes } => self.desk.request(Request::Check { needed_bytes }),
+            Effect::Compare(choice) => self.desk.request(Request::Compare(choice)),
+            Effect::StopComparing => self.desk.request(Request::StopComparing),
             Effect::Look => self.desk.request(Request::Look),
             Effect::Do(job) => self.desk.request(Request::Do(job)),
             Effect::Order(order) => {

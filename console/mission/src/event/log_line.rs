@@ -179,7 +179,9 @@ fn of_tether(kind: &EventKind) -> Option<LogLine> {
 
 fn order_text(order: &Order) -> String {
     match order {
+        Order::Plan => "plan".into(),
         Order::Start => "start".into(),
+        Order::NoteChecks(checks) => format!("{} pre-flight checks noted", checks.len()),
         Order::Hold => "hold".into(),
         Order::Resume => "resume".into(),
         Order::Step => "single step".into(),

@@ -21,6 +21,8 @@ fn phases() -> Vec<Phase> {
 fn orders() -> Vec<Order> {
     let choice = PlannerChoice { id: "apf".into(), parameters: Parameters::new() };
     vec![
+        Order::Plan,
+        Order::NoteChecks(Vec::new()),
         Order::Start,
         Order::Hold,
         Order::Resume,

@@ -25,6 +25,8 @@ pub enum Context {
     Rows,
     /// In a list over the screen.
     List,
+    /// In the list of checks before the start.
+    Preflight,
     /// In the list of parameters.
     Parameters,
     /// In a line where text is typed.
@@ -54,6 +56,7 @@ pub fn contexts(model: &Model) -> Vec<Context> {
         Overlay::Commands { .. } => &[Context::Text, Context::Commands],
         Overlay::Parameters { edit: Some(_), .. } | Overlay::Filter => &[Context::Text],
         Overlay::Parameters { edit: None, .. } => &[Context::List, Context::Rows, Context::Parameters],
+        Overlay::Preflight { .. } => &[Context::List, Context::Rows, Context::Preflight],
         Overlay::Planners { .. } | Overlay::Layers { .. } => &[Context::List, Context::Rows],
     };
     [&[Context::Anywhere], here].concat()

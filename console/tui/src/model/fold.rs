@@ -123,6 +123,7 @@ impl Run {
             world: run.world.as_drawn(),
             mission: run.mission.clone(),
             preset_m,
+            checklist: run.checklist.clone(),
         });
         self.coverage = Some(Raster::new(run.floor.clone()));
         let (low, high) = run.world.boundary.bounds();

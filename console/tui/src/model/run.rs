@@ -51,6 +51,9 @@ pub struct About {
     pub mission: MissionConfig,
     /// Length of the preset path, metres; `None` for a mission without one.
     pub preset_m: Option<f64>,
+    /// What the operator ticks by hand before the start.
+    #[serde(default)]
+    pub checklist: Vec<String>,
 }
 
 /// Mission time, by the events.

@@ -205,6 +205,8 @@ pub enum Overlay {
     },
     /// The list of planners.
     Planners {
+        /// What the planner is chosen for.
+        purpose: Purpose,
         /// Which line is selected.
         selected: usize,
     },
@@ -220,8 +222,22 @@ pub enum Overlay {
         /// Which line is selected.
         selected: usize,
     },
+    /// The check before the start.
+    Preflight {
+        /// Which line is selected.
+        selected: usize,
+    },
     /// The text filter of the events pane is being typed.
     Filter,
+}
+
+/// What a planner is chosen for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Purpose {
+    /// To drive.
+    Drive,
+    /// To plan for comparison.
+    Compare,
 }
 
 /// What a confirm line asks for.

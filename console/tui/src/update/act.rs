@@ -4,10 +4,11 @@ use super::go::{self, back, go};
 use super::message::Effect;
 use super::offer::{offered, refuse};
 use super::overlay::{self, ask, open};
+use super::preflight;
 use super::send::{hold_now, send};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
-use crate::model::ui::{Ask, MAX_ZOOM, MapView};
+use crate::model::ui::{Ask, MAX_ZOOM, MapView, Purpose};
 use crate::model::{Model, Overlay, Pane, Screen};
 use mission::{Order, Severity};
 use world::{Point, Vector};
@@ -48,7 +49,15 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
             None => overlay::accept(model),
         },
         ActionId::Edit => overlay::edit(model),
-        ActionId::ChoosePlanner => open(model, Overlay::Planners { selected: driving(model) }),
+        ActionId::ChoosePlanner => {
+            open(model, Overlay::Planners { purpose: Purpose::Drive, selected: driving(model) })
+        }
+        ActionId::Compare => {
+            open(model, Overlay::Planners { purpose: Purpose::Compare, selected: driving(model) })
+        }
+        ActionId::Preflight => preflight::open(model),
+        ActionId::PlanAgain => vec![Effect::Order(Order::Plan)],
+        ActionId::CancelPlan => overlay::cancel_plan(model),
         ActionId::Parameters => open(model, Overlay::Parameters { selected: 0, edit: None }),
         ActionId::Layers => open(model, Overlay::Layers { selected: 0 }),
         ActionId::Filter => open(model, Overlay::Filter),

@@ -1,8 +1,9 @@
 //! What goes into the model, and what has to be done outside in answer.
 
 use crate::keys::KeyPress;
-use crate::model::{Health, Refused, RunId, RunResult, Source, Speed, Times, home::Found};
-use mission::{Event, Order, PlannerChoice, PlannerInfo, Severity};
+use crate::model::{GhostPlan, Health, Refused, RunId, RunResult, Source, Speed, Times, home::Found};
+use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, Severity};
+use report::Estimate;
 use serde::{Deserialize, Serialize};
 
 /// What reaches the model.
@@ -78,6 +79,14 @@ pub enum RunMsg {
         /// What is being done, a few words; may be empty.
         what: String,
     },
+    /// What was found before the start: disk, recorder, engine, clock.
+    Checked(Vec<Check>),
+    /// What a plan promises, and the ask that it answers.
+    Estimated(Option<AskId>, Box<Estimate>),
+    /// How far the plan is that is made for comparison: the share done, and what is being done.
+    CompareAt(f64, String),
+    /// A plan was made for comparison, or why not, as a sentence.
+    Compared(PlannerChoice, Result<Box<GhostPlan>, String>),
     /// The run has ended and its files are closed.
     Closed(Box<RunResult>),
 }
@@ -120,6 +129,15 @@ pub enum Effect {
         /// The planner to use instead of the scenario's.
         planner: Option<PlannerChoice>,
     },
+    /// Look at everything outside the screen that the start depends on.
+    Check {
+        /// Space that the recording of the mission is expected to take, bytes.
+        needed_bytes: u64,
+    },
+    /// Have another planner plan the mission that waits, for comparison; one that is being made is given up.
+    Compare(PlannerChoice),
+    /// Give up the plan that is being made for comparison.
+    StopComparing,
     /// Look at scenarios, past runs and the disk again.
     Look,
     /// Do something beside the screen.

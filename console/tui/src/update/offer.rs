@@ -19,6 +19,16 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Step => accepted(model, &Order::Step),
         ActionId::Abort => abort(model),
         ActionId::ChoosePlanner => swap(model),
+        ActionId::Preflight => demand(model.live.waits(), "checks are made before the start"),
+        ActionId::Compare => compare(model),
+        ActionId::PlanAgain => accepted(model, &Order::Plan),
+        ActionId::CancelPlan => {
+            let is_planning = model.live.waits() && model.live.busy.is_some();
+            demand(
+                is_planning || model.live.plans.ghost.is_some() || model.live.preflight.is_starting,
+                "nothing is being planned",
+            )
+        }
         ActionId::Parameters => parameters(model),
         ActionId::Acknowledge => {
             let waiting = model.live.run.alarms.list().iter().any(|alarm| !alarm.acknowledged);
@@ -91,13 +101,14 @@ pub(super) fn accepted(model: &Model, order: &Order) -> Result<(), String> {
 }
 
 fn hold(model: &Model) -> Result<(), String> {
-    if model.live.asked.is_some() { Ok(()) } else { accepted(model, &Order::Hold) }
+    if model.live.may_move() { Ok(()) } else { accepted(model, &Order::Hold) }
 }
 
 fn start(model: &Model) -> Result<(), String> {
     demand(model.live.failure.is_none(), "the scenario could not be opened")?;
     demand(model.live.run.about.is_some(), "no mission loaded yet")?;
     accepted(model, &Order::Start)?;
+    demand(!model.live.preflight.is_starting, "already checking for the start; Esc: cancel")?;
     demand(model.live.asked.is_none(), "start already requested; space: HOLD")
 }
 
@@ -114,6 +125,11 @@ fn swap(model: &Model) -> Result<(), String> {
     if !model.live.hold_asked {
         accepted(model, &Order::ChoosePlanner(choice))?;
     }
+    demand(!model.console.planners.is_empty(), "no planners found yet")
+}
+
+fn compare(model: &Model) -> Result<(), String> {
+    demand(model.live.waits(), "plans are compared before the start")?;
     demand(!model.console.planners.is_empty(), "no planners found yet")
 }
 

@@ -2,11 +2,12 @@
 
 use super::message::Effect;
 use super::offer::{accepted, offered, refuse};
+use super::preflight;
 use super::send::send;
 use crate::actions::{ActionId, find};
 use crate::keys::Key;
-use crate::model::ui::{Ask, Edit, MapLayer};
-use crate::model::{Model, Overlay, Screen, parameter};
+use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
+use crate::model::{Ghost, Model, Overlay, Screen, parameter};
 use mission::{Order, Parameters, PlannerChoice, Severity};
 
 /// Longest text that can be typed.
@@ -44,7 +45,7 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
         Overlay::Confirm(ask) => agree(model, &ask),
         Overlay::Quit => quit(model),
         Overlay::Commands { filter, .. } => refuse(model, format!("no command matches `{filter}`")),
-        Overlay::Planners { selected } => choose_planner(model, selected),
+        Overlay::Planners { purpose, selected } => choose_planner(model, purpose, selected),
         Overlay::Parameters { selected, edit: Some(edit) } => take_value(model, selected, edit),
         Overlay::Parameters { edit: None, .. } => edit(model),
         Overlay::Layers { selected } => {
@@ -53,6 +54,7 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
             }
             Vec::new()
         }
+        Overlay::Preflight { .. } => preflight::tick(model),
         Overlay::Filter => open(model, Overlay::None),
     }
 }
@@ -85,9 +87,10 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
     match offered(model, id) {
         Ok(()) => {
             if *ask == Ask::Start {
-                model.ui.go(Screen::Mission);
+                preflight::start(model)
+            } else {
+                send(model, ask.order())
             }
-            send(model, ask.order())
         }
         Err(why) => refuse(model, why),
     }
@@ -99,14 +102,39 @@ fn quit(model: &mut Model) -> Vec<Effect> {
     end.into_iter().chain([Effect::Quit { signal: None }]).collect()
 }
 
-fn choose_planner(model: &mut Model, selected: usize) -> Vec<Effect> {
+fn choose_planner(model: &mut Model, purpose: Purpose, selected: usize) -> Vec<Effect> {
     let Some(planner) = model.console.planners.get(selected) else { return Vec::new() };
     if let Some(why) = model.live.run.cannot_fly(planner) {
         let why = format!("planner {} {why}", planner.id);
         return refuse(model, why);
     }
     let choice = PlannerChoice { id: planner.id.clone(), parameters: Parameters::new() };
-    ask(model, Ask::Swap(choice))
+    match purpose {
+        Purpose::Drive => ask(model, Ask::Swap(choice)),
+        Purpose::Compare => compare(model, choice),
+    }
+}
+
+/// Has another planner plan the mission that waits.
+fn compare(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
+    model.ui.overlay = Overlay::None;
+    let since_mono_s = model.console.now.mono_s;
+    model.live.plans.ghost = Some(Ghost { choice: choice.clone(), since_mono_s, at: None, made: None });
+    vec![Effect::Compare(choice)]
+}
+
+/// Gives up the start that was agreed to, or what is being planned, or takes the second plan from the map.
+pub(super) fn cancel_plan(model: &mut Model) -> Vec<Effect> {
+    if model.live.preflight.is_starting {
+        preflight::cancel(model);
+        return Vec::new();
+    }
+    if model.live.plans.ghost.take().is_some() {
+        return vec![Effect::StopComparing];
+    }
+    // The same planner anew is not asked for a plan.
+    let choice = model.live.run.planning.choice.clone();
+    choice.into_iter().map(|choice| Effect::Order(Order::ChoosePlanner(choice))).collect()
 }
 
 /// Opens the line in which a value is typed.
@@ -153,11 +181,13 @@ pub(super) fn select(model: &mut Model, by: isize) {
         Overlay::Planners { .. } => model.console.planners.len(),
         Overlay::Parameters { .. } => model.planner().map_or(0, |info| info.parameters.len()),
         Overlay::Layers { .. } => MapLayer::ALL.len(),
+        Overlay::Preflight { .. } => model.checks().len(),
         Overlay::None | Overlay::Confirm(_) | Overlay::Stepping | Overlay::Quit | Overlay::Filter => 0,
     };
     if let Overlay::Commands { selected, .. }
-    | Overlay::Planners { selected }
+    | Overlay::Planners { selected, .. }
     | Overlay::Parameters { selected, .. }
+    | Overlay::Preflight { selected }
     | Overlay::Layers { selected } = &mut model.ui.overlay
     {
         *selected = selected.saturating_add_signed(by).min(lines.saturating_sub(1));

@@ -92,6 +92,7 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Back, _) if model.ui.screen == Screen::Home => "quit",
         (ActionId::Accept, Overlay::Commands { .. }) => "run",
         (ActionId::Accept, Overlay::Planners { .. }) => "choose",
+        (ActionId::Accept, Overlay::Preflight { .. }) => "tick",
         (ActionId::Accept, Overlay::Layers { .. }) => "show/hide",
         (ActionId::Accept, Overlay::Parameters { edit: None, .. }) => "edit",
         (ActionId::Accept, Overlay::Parameters { edit: Some(_), .. }) => "send",
@@ -103,6 +104,7 @@ fn label(action: &Action, model: &Model) -> String {
             Overlay::Commands { .. }
             | Overlay::Planners { .. }
             | Overlay::Layers { .. }
+            | Overlay::Preflight { .. }
             | Overlay::Parameters { edit: None, .. },
         ) => "close",
         _ => action.label,

@@ -89,8 +89,11 @@ fn idle(model: &Model) -> Clauses {
     if model.live.run.about.is_none() {
         return (Role::Title, vec!["Loading scenario...".into()]);
     }
+    if model.live.preflight.is_starting {
+        return (Role::Title, vec!["Checking before the start...".into()]);
+    }
     let who = model.live.run.planner_id().unwrap_or("unknown");
-    (Role::Title, vec![format!("Press S to start (planner {who}).")])
+    (Role::Title, vec![format!("Press S to start (planner {who})."), "A: pre-flight check.".into()])
 }
 
 fn running(model: &Model) -> Clauses {

@@ -204,6 +204,7 @@ pub(crate) fn opened() -> EventKind {
         mission,
         floor,
         plates: None,
+        checklist: Vec::new(),
     }))
 }
 
@@ -544,6 +545,12 @@ impl Screen {
     /// Sends news of the run that is open to the model.
     pub(crate) fn hear(&mut self, msg: RunMsg) -> Vec<tui::Effect> {
         self.send(of_run(msg))
+    }
+
+    /// Agrees to the start, with everything outside the screen in order.
+    pub(crate) fn start(&mut self) -> Vec<tui::Effect> {
+        self.press([tui::Key::Char('S'), tui::Key::Enter]);
+        self.hear(RunMsg::Checked(Vec::new()))
     }
 
     /// Presses keys, one after the other.

@@ -2,7 +2,7 @@
 
 use crate::fixture::{Screen, choice};
 use mission::{Event, EventKind, Gait, Hold, HoldReason, Order, Outcome, ParamValue, Phase, Resumes};
-use tui::model::ui::{Ask, Edit};
+use tui::model::ui::{Ask, Edit, Purpose};
 use tui::model::{Overlay, Pane};
 use tui::{Effect, Key, Model, Msg, RunMsg, Signal, update};
 
@@ -48,10 +48,11 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Quit,
         commands(false),
         commands(true),
-        Overlay::Planners { selected: 0 },
+        Overlay::Planners { purpose: Purpose::Drive, selected: 0 },
         Overlay::Parameters { selected: 0, edit: None },
         Overlay::Parameters { selected: 0, edit },
         Overlay::Layers { selected: 0 },
+        Overlay::Preflight { selected: 0 },
         Overlay::Filter,
     ];
     // A new overlay does not compile until it is in the list above.
@@ -65,6 +66,7 @@ fn overlays() -> Vec<Overlay> {
             | Overlay::Planners { .. }
             | Overlay::Parameters { .. }
             | Overlay::Layers { .. }
+            | Overlay::Preflight { .. }
             | Overlay::Filter => {}
         }
     }
@@ -219,7 +221,7 @@ fn every_way_to_stop_works_on_every_size_and_in_every_pane() {
 #[test]
 fn leaving_ends_what_was_asked_to_start() {
     let mut screen = Screen::idle();
-    screen.press([Key::Char('S'), Key::Enter]);
+    screen.start();
     screen.type_text("1");
     assert_eq!(screen.type_text("q"), [HOLD]);
     let leave = [Effect::Order(Order::Abort), Effect::Quit { signal: None }];

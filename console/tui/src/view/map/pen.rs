@@ -2,7 +2,7 @@
 
 use super::shapes::{Filled, Shaded, Stroke, Window, ellipse};
 use crate::caps::Glyphs;
-use crate::model::{position, ui::MapLayer};
+use crate::model::{Screen, position, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use planner_api::{Drawing, Layer};
@@ -99,7 +99,8 @@ impl Pen<'_> {
 
     pub(super) fn paths(&self, ctx: &mut Context<'_>) {
         let (run, ui) = (self.look.run, &self.look.model.ui);
-        let reach_m = self.reach_m();
+        let reach_m = self.reach_m().filter(|_| ui.screen != Screen::Plan);
+        self.ghost(ctx);
         if let Some(plan) = run.planning.plan.as_ref().filter(|_| ui.layers.shows(MapLayer::Plan)) {
             self.take_up(ctx, ',');
             let from = run.progress.as_ref().map_or(0, |progress| nearest(&plan.path, progress.target));
@@ -111,6 +112,16 @@ impl Pen<'_> {
             let newest: Vec<Point> = run.trail.points().iter().rev().copied().collect();
             let behind = reach_m.map_or(newest.as_slice(), |reach_m| within(&newest, reach_m));
             self.stroke(ctx, behind, Role::Trail, false);
+        }
+    }
+
+    /// Another planner's plan, on the screen that compares them.
+    fn ghost(&self, ctx: &mut Context<'_>) {
+        let ghost =
+            self.look.model.live.plans.ghost.as_ref().filter(|_| self.look.model.ui.screen == Screen::Plan);
+        if let Some(Ok(plan)) = ghost.and_then(|ghost| ghost.made.as_ref()) {
+            self.take_up(ctx, ';');
+            self.stroke(ctx, &plan.path, Role::Ghost, true);
         }
     }
 
