@@ -83,6 +83,12 @@ pub enum ActionId {
     GoMission,
     /// Show what the mission has achieved.
     GoResult,
+    /// The next missed area.
+    NextMissed,
+    /// The missed area before.
+    PreviousMissed,
+    /// Open the same scenario once more.
+    Again,
     /// Scan what a run has missed.
     Rescan,
     /// Compute a run again and compare it with its journal.
@@ -216,7 +222,10 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Preflight, "check-again", "Check once more", &[Key::Char('r')], &[Context::Preflight]).label("check again"),
     action(ActionId::PlanAgain, "plan-again", "Make the plan once more", &[], &[Context::Plan]),
     action(ActionId::CancelPlan, "cancel-plan", "Cancel planning or comparing", &[Key::Esc], &[Context::Plan]).label("cancel"),
-    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &[Context::Screen]).label("ack"),
+    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &[Context::Home, Context::Plan, Context::Mission]).label("ack"),
+    action(ActionId::NextMissed, "next-missed", "Show the next missed area", &[Key::Char('n')], &[Context::Result]).label("missed").repeats(),
+    action(ActionId::PreviousMissed, "previous-missed", "Show the missed area before", &[Key::Char('N')], &[Context::Result]).label("missed").repeats(),
+    action(ActionId::Again, "again", "Plan the same scenario again", &[Key::Char('a')], &[Context::Result]).label("again"),
     action(ActionId::Rescan, "rescan", "Scan what a run has missed", &[Key::Char('r')], &[Context::Home, Context::Result]).label("re-scan"),
     action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[Context::Home, Context::Result]).label("verify"),
     action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[Context::Home, Context::Result]).label("report"),

@@ -59,6 +59,8 @@ roles! {
     Scanned '%',
     /// Floor of which a part has been scanned.
     Partly ':',
+    /// Floor that was missed.
+    Missed '!',
     /// The tank's wall.
     Wall 'o',
     /// An obstacle of the drawing.
@@ -145,6 +147,7 @@ fn weight(role: Role) -> Modifier {
         | Role::Focus
         | Role::Key
         | Role::Warn
+        | Role::Missed
         | Role::Run
         | Role::Hold
         | Role::Station
@@ -160,7 +163,7 @@ fn sixteen(role: Role) -> Option<Color> {
         Role::Good | Role::Run => Some(Color::Green),
         Role::Watch | Role::Key | Role::Focus => Some(Color::Cyan),
         Role::Warn | Role::Hold | Role::Confirm => Some(Color::Yellow),
-        Role::Crit | Role::Push => Some(Color::Red),
+        Role::Crit | Role::Push | Role::Missed => Some(Color::Red),
         Role::Scanned => Some(Color::Blue),
         Role::Partly => Some(Color::DarkGray),
         Role::Obstacle | Role::NoGo => Some(Color::LightRed),

@@ -5,7 +5,7 @@ mod position;
 mod tether;
 
 use super::{About, Cause, Change, Progress, Raster, Run, Withdrawn};
-use mission::{Event, EventKind, Hold, HoldReason, Outcome, Severity, TaskConfig, event::RunOpened};
+use mission::{Event, EventKind, Hold, HoldReason, Order, Outcome, Severity, TaskConfig, event::RunOpened};
 use positioning::AccuracyMap;
 use world::{Obstacle, ObstacleId};
 
@@ -26,7 +26,12 @@ impl Run {
         self.standing.apply(&event.kind);
         match &event.kind {
             EventKind::RunOpened(run) => self.open(run),
-            EventKind::Ordered { order } => change.answered = Some(order.clone()),
+            EventKind::Ordered { order } => {
+                if *order == Order::Start {
+                    self.clock.started_s = Some(event.t_s);
+                }
+                change.answered = Some(order.clone());
+            }
             EventKind::OrderRefused { order, why } => {
                 change.answered = Some(order.clone());
                 change.say(Severity::Warn, format!("order refused: {why}"));

@@ -2,7 +2,10 @@
 
 use super::{Plans, Preflight, Run, Speed};
 use mission::{Order, Phase};
-use report::{Estimate, Summary};
+use report::{
+    Estimate, Summary,
+    account::{Area, MissReason},
+};
 use serde::{Deserialize, Serialize};
 
 /// Names a run that was opened since the console was started; 0 is none.
@@ -113,6 +116,12 @@ impl Live {
     pub fn estimate(&self) -> Option<&Estimate> {
         let (ask, estimate) = self.plans.estimate.as_ref()?;
         (self.run.planning.plan.as_ref()?.ask == *ask).then_some(estimate)
+    }
+
+    /// Reachable floor that the run missed, the largest area first.
+    pub fn missed(&self) -> &[Area<MissReason>] {
+        let floor = self.result.as_ref().and_then(|result| result.summary.floor.as_ref());
+        floor.map_or(&[], |floor| &floor.missed)
     }
 
     /// Whether the mission waits for its start.

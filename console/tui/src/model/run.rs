@@ -65,6 +65,9 @@ pub struct Clock {
     pub t_s: f64,
     /// Mission time spent under way and not held, seconds.
     pub moving_s: f64,
+    /// Mission time at the start, seconds; `None` before.
+    #[serde(default)]
+    pub started_s: Option<f64>,
 }
 
 /// How far the mission is.

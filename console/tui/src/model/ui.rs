@@ -21,6 +21,8 @@ pub struct Ui {
     pub map: MapView,
     /// What the map shows.
     pub layers: Layers,
+    /// The missed area that is selected on the result screen, among those that are listed.
+    pub missed: usize,
     /// Least severity of the lines in the events pane.
     pub least: Severity,
     /// Text that the lines in the events pane contain.
@@ -41,6 +43,7 @@ impl Default for Ui {
             pane: Pane::Map,
             map: MapView::default(),
             layers: Layers::default(),
+            missed: 0,
             least: Severity::Info,
             needle: String::new(),
             scroll: 0,

@@ -32,6 +32,7 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::GoPlan => go(model, Screen::Plan),
         ActionId::GoMission => go(model, Screen::Mission),
         ActionId::GoResult => go(model, Screen::Result),
+        ActionId::Again => go::again(model),
         ActionId::Rescan | ActionId::Verify | ActionId::Report | ActionId::View => go::begin(model, id),
         ActionId::Back => back(model).unwrap_or_else(|| leave(model)),
         ActionId::Leave => leave(model),
@@ -79,6 +80,8 @@ fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Last => select(model, isize::MAX),
         ActionId::NextPane => turn_to(model, 1),
         ActionId::PreviousPane => turn_to(model, -1),
+        ActionId::NextMissed => select(model, 1),
+        ActionId::PreviousMissed => select(model, -1),
         ActionId::ZoomIn => zoom(model, 1),
         ActionId::ZoomOut => zoom(model, -1),
         ActionId::WholeTank => model.ui.map = MapView::default(),
@@ -211,7 +214,8 @@ fn select(model: &mut Model, by: isize) {
     match (&model.ui.overlay, model.ui.screen) {
         (Overlay::None, Screen::Home) => model.home.select(by),
         (Overlay::None, Screen::Mission) => scroll(model, by),
-        (Overlay::None, Screen::Plan | Screen::Result) => {}
+        (Overlay::None, Screen::Result) => go::select_missed(model, by),
+        (Overlay::None, Screen::Plan) => {}
         _ => overlay::select(model, by),
     }
 }

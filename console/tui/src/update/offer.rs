@@ -52,6 +52,12 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
             demand(model.live.source.is_some(), "no mission is open; choose one on screen 1 (Home)")
         }
         ActionId::GoResult => demand(model.live.result.is_some(), "no run has ended yet"),
+        ActionId::NextMissed | ActionId::PreviousMissed => {
+            demand(!model.live.missed().is_empty(), "no area was missed")
+        }
+        ActionId::Again => {
+            demand(model.live.source.is_some() && !model.live.is_under_way(), "a mission is in progress")
+        }
         ActionId::Rescan | ActionId::Verify | ActionId::Report | ActionId::View => {
             demand(named_run(model).is_some(), "no run is selected")
         }

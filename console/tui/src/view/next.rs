@@ -1,7 +1,7 @@
 //! The line that says what comes next and whether anybody is needed.
 
 use super::{events, text};
-use crate::model::{Busy, Model};
+use crate::model::{Busy, Model, Screen};
 use crate::theme::Role;
 use mission::{Hold, HoldReason, Order, Outcome, Phase, PositionTrust, Resumes, Severity};
 
@@ -33,6 +33,10 @@ pub(super) fn clauses(model: &Model) -> Clauses {
             clauses.splice(at..at, work.into_iter().flatten());
             (Role::Hold, clauses)
         }
+        (None, Phase::Waiting) if model.ui.screen == Screen::Home => (
+            Role::Title,
+            vec!["Enter opens a scenario and makes its plan.".into(), "The robot does not move.".into()],
+        ),
         (None, Phase::Waiting) => {
             let (role, start) = idle(model);
             (role, work.into_iter().flatten().chain(start).collect())
@@ -45,16 +49,22 @@ pub(super) fn clauses(model: &Model) -> Clauses {
             None => running(model),
         },
         (None, Phase::Ended(Outcome::Complete)) => {
-            (Role::Good, vec![format!("DONE: {}.", model.live.run.end_reason), "7: result. 1: home.".into()])
+            (Role::Good, vec![format!("DONE: {}.", model.live.run.end_reason), more(model)])
         }
         (None, Phase::Ended(outcome)) => (
             Role::Warn,
-            vec![
-                format!("ENDED ({}): {}.", outcome.word(), model.live.run.end_reason),
-                "7: result. 1: home.".into(),
-            ],
+            vec![format!("ENDED ({}): {}.", outcome.word(), model.live.run.end_reason), more(model)],
         ),
     }
+}
+
+/// Where the operator goes from a mission that has ended.
+fn more(model: &Model) -> String {
+    match model.ui.screen {
+        Screen::Result => "a: again, r: re-scan, 1: home.",
+        Screen::Home | Screen::Plan | Screen::Mission => "7: result. 1: home.",
+    }
+    .into()
 }
 
 /// What a planner is doing and how far, for how long already and its limit, and what exactly.

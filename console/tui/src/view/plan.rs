@@ -23,8 +23,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     }
     let wide = arrangement == Arrangement::Wide;
     if arrangement == Arrangement::Paged {
-        let [above, below] =
-            Layout::vertical([Constraint::Fill(1), Constraint::Length(estimate::ROWS + 2)]).areas(area);
+        let [above, below] = Layout::vertical([Constraint::Length(5), Constraint::Fill(1)]).areas(area);
         state(look, frame, above);
         return estimate::draw(look, frame, below);
     }

@@ -3,6 +3,7 @@
 
 mod fixture;
 mod laws;
+mod overviews;
 mod screens;
 mod scripts;
 mod stopping;

@@ -11,6 +11,8 @@ use ratatui::text::Line;
 use ratatui::widgets::canvas::Context;
 use world::{Boundary, Point, ZoneKind};
 
+/// Most missed areas that are numbered on the map: of the whole tank, and of a part of it.
+const MISSED: (usize, usize) = (9, 99);
 /// Pieces of a round wall.
 const WALL_PIECES: u32 = 256;
 /// Columns that a pass of the tool must be wide for all passes to be drawn.
@@ -208,6 +210,13 @@ impl Pen<'_> {
         for station in about.world.stations.iter().filter(|_| ui.layers.shows(MapLayer::Stations)) {
             let named = ui.map.zoom > 0 && station.name.len() <= 4;
             print(station.position, Role::Station, if named { station.name.clone() } else { "S".into() });
+        }
+        if ui.screen == Screen::Result {
+            let most = if ui.map.zoom > 0 { MISSED.1 } else { MISSED.0 };
+            for (index, area) in self.look.model.live.missed().iter().enumerate().take(most) {
+                let role = if index == ui.missed { Role::Selected } else { Role::Missed };
+                print(area.at, role, (index + 1).to_string());
+            }
         }
         if let Some(progress) = run.progress.as_ref().filter(|_| !run.has_ended()) {
             print(progress.target, Role::Target, "×".into());
