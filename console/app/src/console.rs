@@ -5,6 +5,7 @@ mod comparing;
 mod crash;
 mod desk;
 mod engine;
+mod forecasting;
 mod inbox;
 mod jobs;
 mod line;

@@ -1,6 +1,9 @@
 //! The operator's orders; they enter at the top of the next tick.
 
-use crate::planner::{ParamValue, PlannerChoice};
+use crate::{
+    phase::Outcome,
+    planner::{ParamValue, PlannerChoice},
+};
 use serde::{Deserialize, Serialize};
 
 /// One order.
@@ -13,6 +16,8 @@ pub enum Order {
     Start,
     /// While waiting: note what was checked before the start, by the console and by hand.
     NoteChecks(Vec<Check>),
+    /// While held: note how the mission would go on with some planners, as it was forecast.
+    NoteOutlooks(Vec<Outlook>),
     /// Stand still.
     Hold,
     /// Go on.
@@ -57,4 +62,27 @@ pub enum CheckOutcome {
     Warning,
     /// It blocks the start.
     Failed,
+}
+
+/// How a mission would go on with a planner from where it is held, as it was forecast from the estimate and the map alone.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Outlook {
+    /// The planner, with its parameters.
+    pub choice: PlannerChoice,
+    /// How it would end; absent if it would be held until an operator helps.
+    pub outcome: Option<Outcome>,
+    /// Why, as a sentence.
+    pub reason: String,
+    /// Mission time until then, seconds.
+    pub after_s: f64,
+    /// Way until then, metres.
+    pub length_m: f64,
+    /// Scanned share of the reachable floor at the end, 0 to 1.
+    pub reachable: f64,
+    /// Least distance from the hull to anything solid, metres.
+    pub clearance_min_m: f64,
+    /// Most cable out, metres; absent without a tether.
+    pub tether_length_max_m: Option<f64>,
+    /// Largest wrap on one obstacle, radians; absent without a tether.
+    pub wrap_max_rad: Option<f64>,
 }

@@ -108,13 +108,17 @@ impl Standing<'_> {
             (Order::Abort, _)
             | (Order::Plan | Order::Start | Order::NoteChecks(_), Phase::Waiting)
             | (Order::Hold, Phase::Running(_) | Phase::Held(_))
+            | (Order::NoteOutlooks(_), Phase::Held(_))
             | (Order::ChoosePlanner(_) | Order::SetParameter { .. }, Phase::Waiting | Phase::Held(_)) => {
                 Ok(())
             }
             (Order::Plan | Order::Start | Order::NoteChecks(_), Phase::Running(_) | Phase::Held(_)) => {
                 Err(Refusal::AlreadyStarted)
             }
-            (Order::Hold | Order::Resume | Order::Step, Phase::Waiting) => Err(Refusal::NotStarted),
+            (Order::NoteOutlooks(_), Phase::Running(_)) => Err(Refusal::AlreadyMoving),
+            (Order::Hold | Order::Resume | Order::Step | Order::NoteOutlooks(_), Phase::Waiting) => {
+                Err(Refusal::NotStarted)
+            }
             (Order::Resume | Order::Step, Phase::Held(_)) => self.can_move(),
             (Order::Resume, Phase::Running(_)) => Err(Refusal::AlreadyMoving),
             (Order::Step, Phase::Running(_)) => Err(Refusal::StepNeedsHold),

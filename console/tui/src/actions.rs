@@ -29,6 +29,14 @@ pub enum ActionId {
     Abort,
     /// Let another planner drive.
     ChoosePlanner,
+    /// Forecast how the mission would go on with one planner or another.
+    WhatIf,
+    /// Forecast another planner too.
+    AddCandidate,
+    /// Look at the next forecast.
+    NextCandidate,
+    /// Look at the forecast before.
+    PreviousCandidate,
     /// Check everything that the start depends on.
     Preflight,
     /// Have another planner plan, for comparison.
@@ -217,6 +225,10 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Abort, "end", "HOLD, then ask to end the mission", &[Key::Char('X')], &[Context::Screen]).label("end").risk(Risk::Destroys),
     action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[Context::Plan, Context::Mission]).label("planner").risk(Risk::Moves),
     action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[Context::Plan, Context::Mission]).label("parameters"),
+    action(ActionId::WhatIf, "what-if", "Forecast with other planners (held)", &[Key::Char('w')], &[Context::Mission]).label("what-if"),
+    action(ActionId::NextCandidate, "next-candidate", "Look at the next forecast", &[Key::Right, Key::Char('l')], &[Context::WhatIf]).label("select").repeats(),
+    action(ActionId::PreviousCandidate, "previous-candidate", "Look at the forecast before", &[Key::Left, Key::Char('h')], &[Context::WhatIf]).label("select").repeats(),
+    action(ActionId::AddCandidate, "add-candidate", "Forecast another planner", &[Key::Char('+')], &[Context::WhatIf]).label("add"),
     action(ActionId::Preflight, "preflight", "Check what the start depends on", &[Key::Char('A')], &[Context::Plan, Context::Mission]).label("pre-flight"),
     action(ActionId::Compare, "compare", "Plan with another planner, side by side", &[Key::Char('c')], &[Context::Plan]).label("compare"),
     action(ActionId::Preflight, "check-again", "Check once more", &[Key::Char('r')], &[Context::Preflight]).label("check again"),
@@ -254,10 +266,10 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Redraw, "redraw", "Redraw the screen", &[Key::Ctrl('l')], &[Context::Anywhere]),
     action(ActionId::Suspend, "suspend", "HOLD, then suspend to the shell (fg)", &[Key::Ctrl('z')], &[Context::Anywhere]),
     action(ActionId::Edit, "edit", "Edit the value", &[Key::Char('e')], &[Context::Parameters]).label("edit"),
-    action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::Rows, Context::Text, Context::Confirm, Context::Stepping]).label("yes"),
+    action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::Rows, Context::Text, Context::Confirm, Context::Stepping, Context::WhatIf]).label("yes"),
     action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("step").risk(Risk::Moves),
     action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc], &[Context::Text, Context::Stepping]).label("cancel"),
-    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm]).label("cancel"),
+    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm, Context::WhatIf]).label("cancel"),
     action(ActionId::Up, "up", "Select the line above", &[Key::Up, Key::Char('k')], &[Context::Rows]).repeats(),
     action(ActionId::Down, "down", "Select the line below", &[Key::Down, Key::Char('j')], &[Context::Rows]).repeats(),
     action(ActionId::PageUp, "page-up", "Ten lines up", &[Key::PageUp, Key::Ctrl('u')], &[Context::Rows]).repeats(),
@@ -273,7 +285,7 @@ mod tests {
     use super::*;
 
     /// Every set of contexts that can be active together.
-    const TOGETHER: [&[Context]; 13] = [
+    const TOGETHER: [&[Context]; 14] = [
         &[Context::Anywhere, Context::Screen, Context::Home, Context::Rows],
         &[Context::Anywhere, Context::Screen, Context::Plan, Context::Map, Context::Pan],
         &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Pan],
@@ -285,6 +297,7 @@ mod tests {
         &[Context::Anywhere, Context::List, Context::Rows, Context::Preflight],
         &[Context::Anywhere, Context::Text],
         &[Context::Anywhere, Context::Text, Context::Commands],
+        &[Context::Anywhere, Context::WhatIf, Context::Map],
         &[Context::Anywhere, Context::Confirm],
         &[Context::Anywhere, Context::Stepping],
     ];

@@ -17,6 +17,7 @@ pub mod run;
 pub mod tether;
 pub mod trail;
 pub mod ui;
+pub mod what_if;
 
 pub use alarms::{Alarm, Alarms, Cause};
 pub use change::{Change, Withdrawn};
@@ -33,6 +34,7 @@ pub use run::{About, Clock, Progress, Run};
 pub use tether::Tether;
 pub use trail::Trail;
 pub use ui::{Overlay, Pane, Screen, Ui};
+pub use what_if::{Candidate, Forecast, WhatIf};
 
 use mission::{PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};

@@ -8,6 +8,7 @@ mod offer;
 mod overlay;
 mod preflight;
 mod send;
+mod what_if;
 
 pub use act::act;
 pub use message::{Effect, Job, Msg, RunMsg, Signal};

@@ -19,9 +19,10 @@ mod table;
 mod tether;
 mod text;
 mod top;
+mod what_if;
 
 use crate::caps::{Caps, Glyphs};
-use crate::model::{Model, Pane, Screen, ui::Arrangement};
+use crate::model::{Model, Overlay, Pane, Screen, ui::Arrangement};
 use crate::theme::Theme;
 use look::Look;
 use ratatui::Frame;
@@ -75,6 +76,11 @@ fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) 
     ])
     .areas(area);
     top::draw(look, frame, top);
+    if look.model.ui.overlay == Overlay::WhatIf {
+        what_if::draw(look, frame, body, arrangement);
+        confirm::draw(look, frame, next);
+        return footer::draw(look, frame, keys);
+    }
     match (look.model.ui.screen, arrangement) {
         (Screen::Home, _) => home::draw(look, frame, body, arrangement),
         (Screen::Plan, _) => plan::draw(look, frame, body, arrangement),

@@ -7,6 +7,7 @@ use super::{
     checking,
     comparing::Comparing,
     engine::Engine,
+    forecasting::Forecasting,
     inbox::{Outbox, RunOutbox},
     jobs,
     line::Current,
@@ -41,6 +42,10 @@ pub(super) enum Request {
     Compare(PlannerChoice),
     /// Give that plan up.
     StopComparing,
+    /// Forecast how the held mission would go on with some planners.
+    Forecast(Vec<PlannerChoice>),
+    /// Give the forecasts up.
+    StopForecasting,
     /// Look at the disk again.
     Look,
     /// Work on a past run.
@@ -71,6 +76,7 @@ pub(super) struct Desk {
     /// The mission that is open.
     opened: Option<(RunId, Arc<Scenario>)>,
     comparing: Option<Comparing>,
+    forecasting: Option<Forecasting>,
     /// The last run that was flown.
     flown: Option<Closed>,
 }
@@ -101,6 +107,7 @@ impl Desk {
             engine: None,
             opened: None,
             comparing: None,
+            forecasting: None,
             flown: None,
         }
     }
@@ -139,6 +146,8 @@ impl Desk {
                 Request::Check { needed_bytes } => self.check(needed_bytes),
                 Request::Compare(choice) => self.compare(choice),
                 Request::StopComparing => self.comparing = None,
+                Request::Forecast(choices) => self.forecast(choices),
+                Request::StopForecasting => self.forecasting = None,
                 Request::Look => self.look(),
                 Request::Do(job) => jobs::begin(job, &self.tools),
                 Request::Leave { hurry } => {
@@ -188,6 +197,17 @@ impl Desk {
         }
     }
 
+    fn forecast(&mut self, choices: Vec<PlannerChoice>) {
+        self.forecasting = None;
+        let (Some((run, scenario)), Some(engine)) = (&self.opened, self.current.get()) else { return };
+        let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
+        let plugins = self.tools.plugins.clone();
+        match Forecasting::begin(Arc::clone(scenario), choices, engine, plugins, screen) {
+            Ok(forecasting) => self.forecasting = Some(forecasting),
+            Err(error) => jobs::report(&self.tools.outbox, &format!("cannot forecast: {error}")),
+        }
+    }
+
     /// Scenarios that are many or large take a while to read: the desk is not kept from opening one.
     fn look(&self) {
         let disk = Arc::clone(&self.disk);
@@ -200,7 +220,7 @@ impl Desk {
     /// Closes the run that is open.
     fn close(&mut self, hurry: bool) -> anyhow::Result<()> {
         self.current.set(None);
-        (self.opened, self.comparing) = (None, None);
+        (self.opened, self.comparing, self.forecasting) = (None, None, None);
         let Some(engine) = self.engine.take() else { return Ok(()) };
         if let Some(closed) = engine.close(hurry)? {
             self.flown = Some(closed);

@@ -150,6 +150,8 @@ impl Screen {
             Effect::Open { id, source, planner } => self.desk.request(Request::Open { id, source, planner }),
             Effect::Check { needed_bytes } => self.desk.request(Request::Check { needed_bytes }),
             Effect::Compare(choice) => self.desk.request(Request::Compare(choice)),
+            Effect::Forecast(choices) => self.desk.request(Request::Forecast(choices)),
+            Effect::StopForecasting => self.desk.request(Request::StopForecasting),
             Effect::StopComparing => self.desk.request(Request::StopComparing),
             Effect::Look => self.desk.request(Request::Look),
             Effect::Do(job) => self.desk.request(Request::Do(job)),

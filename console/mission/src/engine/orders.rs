@@ -23,7 +23,7 @@ impl Mission {
         match order {
             Order::Plan => self.plan_ahead(),
             Order::Start => self.start(),
-            Order::NoteChecks(_) => {}
+            Order::NoteChecks(_) | Order::NoteOutlooks(_) => {}
             Order::Hold => self.hold_by_order(),
             Order::Resume => self.resume(Gait::Steady),
             Order::Step => self.resume(Gait::OneTick),

@@ -22,6 +22,7 @@ fn orders() -> Vec<Order> {
     let choice = PlannerChoice { id: "apf".into(), parameters: Parameters::new() };
     vec![
         Order::Plan,
+        Order::NoteOutlooks(Vec::new()),
         Order::NoteChecks(Vec::new()),
         Order::Start,
         Order::Hold,

@@ -25,6 +25,8 @@ pub enum Context {
     Rows,
     /// In a list over the screen.
     List,
+    /// In the comparison of forecasts.
+    WhatIf,
     /// In the list of checks before the start.
     Preflight,
     /// In the list of parameters.
@@ -56,6 +58,7 @@ pub fn contexts(model: &Model) -> Vec<Context> {
         Overlay::Commands { .. } => &[Context::Text, Context::Commands],
         Overlay::Parameters { edit: Some(_), .. } | Overlay::Filter => &[Context::Text],
         Overlay::Parameters { edit: None, .. } => &[Context::List, Context::Rows, Context::Parameters],
+        Overlay::WhatIf => &[Context::WhatIf, Context::Map],
         Overlay::Preflight { .. } => &[Context::List, Context::Rows, Context::Preflight],
         Overlay::Planners { .. } | Overlay::Layers { .. } => &[Context::List, Context::Rows],
     };

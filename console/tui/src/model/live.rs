@@ -1,6 +1,6 @@
 //! The run that is open, and what is between the operator and its mission.
 
-use super::{Plans, Preflight, Run, Speed};
+use super::{Plans, Preflight, Run, Speed, WhatIf};
 use mission::{Order, Phase};
 use report::{
     Estimate, Summary,
@@ -89,6 +89,8 @@ pub struct Live {
     pub plans: Plans,
     /// What was checked before its start.
     pub preflight: Preflight,
+    /// How it would go on from where it is held; `None` as long as nobody asked.
+    pub what_if: Option<WhatIf>,
     /// How fast the mission shall go.
     pub speed: Speed,
     /// How its engine does.

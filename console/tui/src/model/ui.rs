@@ -225,6 +225,8 @@ pub enum Overlay {
         /// Which line is selected.
         selected: usize,
     },
+    /// How the mission would go on with one planner or another.
+    WhatIf,
     /// The check before the start.
     Preflight {
         /// Which line is selected.
@@ -241,6 +243,8 @@ pub enum Purpose {
     Drive,
     /// To plan for comparison.
     Compare,
+    /// To forecast how the mission would go on.
+    WhatIf,
 }
 
 /// What a confirm line asks for.

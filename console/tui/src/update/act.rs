@@ -4,8 +4,8 @@ use super::go::{self, back, go};
 use super::message::Effect;
 use super::offer::{offered, refuse};
 use super::overlay::{self, ask, open};
-use super::preflight;
 use super::send::{hold_now, send};
+use super::{preflight, what_if};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
 use crate::model::ui::{Ask, MAX_ZOOM, MapView, Purpose};
@@ -56,6 +56,10 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Compare => {
             open(model, Overlay::Planners { purpose: Purpose::Compare, selected: driving(model) })
         }
+        ActionId::WhatIf => what_if::open(model),
+        ActionId::AddCandidate => {
+            open(model, Overlay::Planners { purpose: Purpose::WhatIf, selected: driving(model) })
+        }
         ActionId::Preflight => preflight::open(model),
         ActionId::PlanAgain => vec![Effect::Order(Order::Plan)],
         ActionId::CancelPlan => overlay::cancel_plan(model),
@@ -80,6 +84,8 @@ fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Last => select(model, isize::MAX),
         ActionId::NextPane => turn_to(model, 1),
         ActionId::PreviousPane => turn_to(model, -1),
+        ActionId::NextCandidate => what_if::select(model, 1),
+        ActionId::PreviousCandidate => what_if::select(model, -1),
         ActionId::NextMissed => select(model, 1),
         ActionId::PreviousMissed => select(model, -1),
         ActionId::ZoomIn => zoom(model, 1),

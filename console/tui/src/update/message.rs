@@ -1,7 +1,9 @@
 //! What goes into the model, and what has to be done outside in answer.
 
 use crate::keys::KeyPress;
-use crate::model::{GhostPlan, Health, Refused, RunId, RunResult, Source, Speed, Times, home::Found};
+use crate::model::{
+    Forecast, GhostPlan, Health, Refused, RunId, RunResult, Source, Speed, Times, home::Found,
+};
 use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, Severity};
 use report::Estimate;
 use serde::{Deserialize, Serialize};
@@ -87,6 +89,10 @@ pub enum RunMsg {
     CompareAt(f64, String),
     /// A plan was made for comparison, or why not, as a sentence.
     Compared(PlannerChoice, Result<Box<GhostPlan>, String>),
+    /// How far the forecast of a planner is: the share of the task done.
+    ForecastAt(PlannerChoice, f64),
+    /// How the mission would go on with a planner, or why that is not known, as a sentence.
+    Forecast(PlannerChoice, Result<Box<Forecast>, String>),
     /// The run has ended and its files are closed.
     Closed(Box<RunResult>),
 }
@@ -136,6 +142,10 @@ pub enum Effect {
     },
     /// Have another planner plan the mission that waits, for comparison; one that is being made is given up.
     Compare(PlannerChoice),
+    /// Forecast how the held mission would go on with some planners; forecasts that are being made are given up.
+    Forecast(Vec<PlannerChoice>),
+    /// Give up the forecasts that are being made.
+    StopForecasting,
     /// Give up the plan that is being made for comparison.
     StopComparing,
     /// Look at scenarios, past runs and the disk again.

@@ -19,6 +19,7 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Step => accepted(model, &Order::Step),
         ActionId::Abort => abort(model),
         ActionId::ChoosePlanner => swap(model),
+        ActionId::WhatIf => accepted(model, &Order::NoteOutlooks(Vec::new())),
         ActionId::Preflight => demand(model.live.waits(), "checks are made before the start"),
         ActionId::Compare => compare(model),
         ActionId::PlanAgain => accepted(model, &Order::Plan),
@@ -76,6 +77,9 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::Filter
         | ActionId::Accept
         | ActionId::Cancel
+        | ActionId::AddCandidate
+        | ActionId::NextCandidate
+        | ActionId::PreviousCandidate
         | ActionId::Up
         | ActionId::Down
         | ActionId::PageUp

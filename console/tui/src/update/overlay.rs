@@ -4,6 +4,7 @@ use super::message::Effect;
 use super::offer::{accepted, offered, refuse};
 use super::preflight;
 use super::send::send;
+use super::what_if;
 use crate::actions::{ActionId, find};
 use crate::keys::Key;
 use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
@@ -54,6 +55,7 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
             }
             Vec::new()
         }
+        Overlay::WhatIf => what_if::choose(model),
         Overlay::Preflight { .. } => preflight::tick(model),
         Overlay::Filter => open(model, Overlay::None),
     }
@@ -70,6 +72,8 @@ pub(super) fn cancel(model: &mut Model) {
             typing_changed(model);
             model.ui.overlay = Overlay::None;
         }
+        Overlay::WhatIf => what_if::close(model),
+        Overlay::Planners { purpose: Purpose::WhatIf, .. } => model.ui.overlay = Overlay::WhatIf,
         other => *other = Overlay::None,
     }
 }
@@ -112,6 +116,7 @@ fn choose_planner(model: &mut Model, purpose: Purpose, selected: usize) -> Vec<E
     match purpose {
         Purpose::Drive => ask(model, Ask::Swap(choice)),
         Purpose::Compare => compare(model, choice),
+        Purpose::WhatIf => what_if::add(model, choice),
     }
 }
 
@@ -182,7 +187,12 @@ pub(super) fn select(model: &mut Model, by: isize) {
         Overlay::Parameters { .. } => model.planner().map_or(0, |info| info.parameters.len()),
         Overlay::Layers { .. } => MapLayer::ALL.len(),
         Overlay::Preflight { .. } => model.checks().len(),
-        Overlay::None | Overlay::Confirm(_) | Overlay::Stepping | Overlay::Quit | Overlay::Filter => 0,
+        Overlay::None
+        | Overlay::Confirm(_)
+        | Overlay::Stepping
+        | Overlay::Quit
+        | Overlay::WhatIf
+        | Overlay::Filter => 0,
     };
     if let Overlay::Commands { selected, .. }
     | Overlay::Planners { selected, .. }

@@ -92,6 +92,7 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Back, _) if model.ui.screen == Screen::Home => "quit",
         (ActionId::Accept, Overlay::Commands { .. }) => "run",
         (ActionId::Accept, Overlay::Planners { .. }) => "choose",
+        (ActionId::Accept, Overlay::WhatIf) => "choose",
         (ActionId::Accept, Overlay::Preflight { .. }) => "tick",
         (ActionId::Accept, Overlay::Layers { .. }) => "show/hide",
         (ActionId::Accept, Overlay::Parameters { edit: None, .. }) => "edit",
@@ -105,6 +106,7 @@ fn label(action: &Action, model: &Model) -> String {
             | Overlay::Planners { .. }
             | Overlay::Layers { .. }
             | Overlay::Preflight { .. }
+            | Overlay::WhatIf
             | Overlay::Parameters { edit: None, .. },
         ) => "close",
         _ => action.label,

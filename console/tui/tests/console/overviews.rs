@@ -2,11 +2,11 @@
 
 use crate::fixture::{RICH, Screen, choice};
 use crate::screens::{drawn, text};
-use mission::{AskId, EventKind, Outcome, Severity, WorkerId};
+use mission::{AskId, EventKind, Order, Outcome, Outlook, Severity, WorkerId};
 use report::{Estimate, Fold, Summary, estimate::Worst};
 use tui::model::home::{Attention, Found};
-use tui::model::{GhostPlan, PastRun, ScenarioEntry};
-use tui::{Msg, RunMsg, RunResult, Source};
+use tui::model::{Forecast, GhostPlan, PastRun, ScenarioEntry};
+use tui::{Effect, Msg, RunMsg, RunResult, Source};
 use world::Point;
 
 fn store(name: &str, screen: &mut Screen) {
@@ -147,6 +147,68 @@ fn result() {
     };
     screen.hear(RunMsg::Closed(Box::new(result)));
     store("result", &mut screen);
+}
+
+/// A mission that is held, with the forecast of its own planner.
+fn forecast() -> Screen {
+    let mut screen = Screen::held();
+    let effects = screen.type_text("w");
+    assert_eq!(
+        effects,
+        [Effect::Forecast(vec![choice("rpf")])],
+        "a preset path is flown by the planner that it has"
+    );
+    let outlook = Outlook {
+        choice: choice("rpf"),
+        outcome: Some(Outcome::Complete),
+        reason: "end of the preset path reached".into(),
+        after_s: 1520.0,
+        length_m: 303.9,
+        reachable: 0.971,
+        clearance_min_m: 0.12,
+        tether_length_max_m: None,
+        wrap_max_rad: None,
+    };
+    let path = vec![Point::new(-0.8, 7.4), Point::new(0.0, 0.0)];
+    screen.hear(RunMsg::Forecast(choice("rpf"), Ok(Box::new(Forecast { outlook, path }))));
+    screen
+}
+
+#[test]
+fn what_if() {
+    let mut screen = forecast();
+    screen.type_text("+");
+    screen.press([tui::Key::Up, tui::Key::Enter]);
+    screen.hear(RunMsg::ForecastAt(choice("apf"), 0.42));
+    store("what_if", &mut screen);
+}
+
+#[test]
+fn a_forecast_is_chosen_with_a_question_and_what_was_compared_is_written_down() {
+    let mut screen = forecast();
+    screen.type_text("+");
+    let added = screen.press([tui::Key::Up, tui::Key::Enter]);
+    assert_eq!(added, [Effect::Forecast(vec![choice("apf")])]);
+    assert_eq!(screen.press([tui::Key::Enter]), [], "it is not finished");
+    let Some(Ok(mut made)) = screen.model.live.what_if.as_ref().unwrap().candidates[0].made.clone() else {
+        panic!()
+    };
+    made.outlook.choice = choice("apf");
+    screen.hear(RunMsg::Forecast(choice("apf"), Ok(Box::new(made))));
+    let effects = screen.press([tui::Key::Enter]);
+    assert!(
+        matches!(&effects[..], [Effect::Order(Order::NoteOutlooks(noted))] if noted.len() == 2),
+        "{effects:?}"
+    );
+    assert_eq!(screen.press([tui::Key::Enter]), [Effect::Order(Order::ChoosePlanner(choice("apf")))]);
+}
+
+#[test]
+fn forecasts_are_forgotten_when_the_robot_moves_again() {
+    let mut screen = forecast();
+    let resumed = screen.mission.obeyed(Order::Resume);
+    assert_eq!(screen.hear(RunMsg::Events(resumed)), [Effect::StopForecasting]);
+    assert_eq!((&screen.model.live.what_if, &screen.model.ui.overlay), (&None, &tui::model::Overlay::None));
 }
 
 #[test]

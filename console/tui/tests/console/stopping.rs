@@ -53,6 +53,7 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Parameters { selected: 0, edit },
         Overlay::Layers { selected: 0 },
         Overlay::Preflight { selected: 0 },
+        Overlay::WhatIf,
         Overlay::Filter,
     ];
     // A new overlay does not compile until it is in the list above.
@@ -67,6 +68,7 @@ fn overlays() -> Vec<Overlay> {
             | Overlay::Parameters { .. }
             | Overlay::Layers { .. }
             | Overlay::Preflight { .. }
+            | Overlay::WhatIf
             | Overlay::Filter => {}
         }
     }

@@ -5,7 +5,7 @@ use crate::phase::Outcome;
 
 /// Counts the time that an operator has let the mission wait: before its start, and while somebody looks after a mission that
 /// is held, its time does not run out.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct TimeLimitRule {
     waited_s: f64,
 }

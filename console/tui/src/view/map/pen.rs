@@ -2,7 +2,7 @@
 
 use super::shapes::{Filled, Shaded, Stroke, Window, ellipse};
 use crate::caps::Glyphs;
-use crate::model::{Screen, position, ui::MapLayer};
+use crate::model::{Overlay, Screen, WhatIf, position, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use planner_api::{Drawing, Layer};
@@ -117,13 +117,23 @@ impl Pen<'_> {
         }
     }
 
-    /// Another planner's plan, on the screen that compares them.
+    /// Another planner's plan or forecast, where they are compared.
     fn ghost(&self, ctx: &mut Context<'_>) {
-        let ghost =
-            self.look.model.live.plans.ghost.as_ref().filter(|_| self.look.model.ui.screen == Screen::Plan);
-        if let Some(Ok(plan)) = ghost.and_then(|ghost| ghost.made.as_ref()) {
+        let (live, ui) = (&self.look.model.live, &self.look.model.ui);
+        let made = match (&ui.overlay, ui.screen) {
+            (Overlay::WhatIf, _) => {
+                let candidate = live.what_if.as_ref().and_then(WhatIf::candidate);
+                candidate.and_then(|candidate| Some(&candidate.made.as_ref()?.as_ref().ok()?.path))
+            }
+            (_, Screen::Plan) => {
+                let ghost = live.plans.ghost.as_ref();
+                ghost.and_then(|ghost| Some(&ghost.made.as_ref()?.as_ref().ok()?.path))
+            }
+            _ => None,
+        };
+        if let Some(path) = made {
             self.take_up(ctx, ';');
-            self.stroke(ctx, &plan.path, Role::Ghost, true);
+            self.stroke(ctx, path, Role::Ghost, true);
         }
     }
 
