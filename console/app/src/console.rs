@@ -20,7 +20,7 @@ use crate::{
     planners::surveyed,
     scenarios,
 };
-use desk::{Desk, DeskHandle, Request, Tools};
+use desk::{Desk, DeskHandle, Known, Request, Tools};
 use inbox::{Inbox, Outbox, inbox};
 use line::Current;
 use planner_host::PluginDirs;
@@ -31,9 +31,8 @@ use std::{
     panic::{AssertUnwindSafe, catch_unwind},
     path::Path,
     process::ExitCode,
-    sync::Arc,
 };
-use tui::{Caps, Model, Msg, Refused, RunId, Source, terminal};
+use tui::{Caps, Model, Msg, RunId, Source, terminal};
 
 /// Opens the console on a scenario, or on the demo; returns when the operator leaves.
 pub(crate) fn open(args: &ConsoleArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
@@ -50,14 +49,14 @@ pub(crate) fn open(args: &ConsoleArgs, plugins: &PluginDirs) -> anyhow::Result<E
     let tools = Tools {
         logs: logs.clone(),
         plugins: plugins.clone(),
-        planners: Arc::new(found.clone()),
+        planners: Known::default(),
         outbox: outbox.clone(),
     };
+    tools.planners.set(found.clone());
     let mut desk = Desk::new(tools, changes.clone(), *speed, *drill);
     let run = RunId(1);
     // Before the screen opens, so that its first frame shows the scenario and every key counts.
     desk.open(run, &scenario)?;
-    let refused = refused.into_iter().map(|(plugin, reason)| Refused { plugin, reason }).collect();
     outbox.send(Msg::Planners { found, refused });
     let current = desk.current();
     let (desk, thread) = desk.start()?;

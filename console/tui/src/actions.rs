@@ -91,6 +91,10 @@ pub enum ActionId {
     GoMission,
     /// Show what the mission has achieved.
     GoResult,
+    /// Show the plugins.
+    GoPlugins,
+    /// Look at the plugins again.
+    Reload,
     /// The next missed area.
     NextMissed,
     /// The missed area before.
@@ -250,6 +254,8 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::GoPlan, "plan", "Screen 2: the plan before it moves", &[Key::Char('2')], &[Context::Screen]),
     action(ActionId::GoMission, "mission", "Screen 3: the mission", &[Key::Char('3')], &[Context::Screen]),
     action(ActionId::GoResult, "result", "Screen 7: what was achieved", &[Key::Char('7')], &[Context::Screen]),
+    action(ActionId::GoPlugins, "plugins", "Screen 8: plugins and their planners", &[Key::Char('8')], &[Context::Screen]),
+    action(ActionId::Reload, "reload", "Look at the plugins again", &[Key::Char('r')], &[Context::Plugins]).label("reload"),
     action(ActionId::Back, "back", "Go back; the mission goes on", &[Key::Char('q')], &[Context::Screen]).label("back"),
     action(ActionId::Leave, "quit", "Quit; a running mission is held first", &[], &[Context::Screen]),
     action(ActionId::ZoomIn, "zoom-in", "Zoom in", &[Key::Char('z')], &[Context::Map]).repeats(),
@@ -285,7 +291,7 @@ mod tests {
     use super::*;
 
     /// Every set of contexts that can be active together.
-    const TOGETHER: [&[Context]; 14] = [
+    const TOGETHER: [&[Context]; 15] = [
         &[Context::Anywhere, Context::Screen, Context::Home, Context::Rows],
         &[Context::Anywhere, Context::Screen, Context::Plan, Context::Map, Context::Pan],
         &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Pan],
@@ -297,6 +303,7 @@ mod tests {
         &[Context::Anywhere, Context::List, Context::Rows, Context::Preflight],
         &[Context::Anywhere, Context::Text],
         &[Context::Anywhere, Context::Text, Context::Commands],
+        &[Context::Anywhere, Context::Screen, Context::Plugins, Context::Rows],
         &[Context::Anywhere, Context::WhatIf, Context::Map],
         &[Context::Anywhere, Context::Confirm],
         &[Context::Anywhere, Context::Stepping],

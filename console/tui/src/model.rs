@@ -11,6 +11,7 @@ pub mod log;
 pub mod parameter;
 pub mod planning;
 pub mod plans;
+pub mod plugins;
 pub mod position;
 pub mod preflight;
 pub mod run;

@@ -16,6 +16,7 @@ pub use offer::offered;
 
 use crate::actions::{ActionId, context::contexts, find};
 use crate::keys::{Key, KeyPress};
+use crate::model::plugins::differences;
 use crate::model::{Cause, Model, Overlay, Pane, Refused, ui::Arrangement};
 use mission::{PlannerInfo, Severity};
 use send::hold_now;
@@ -100,6 +101,11 @@ fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<Refuse
     for plugin in refused.iter().filter(|plugin| !model.console.refused.contains(plugin)) {
         let text = format!("plugin {} refused: {}", plugin.plugin, plugin.reason);
         model.live.run.log.add(model.live.run.clock.t_s, Severity::Watch, "plan", text);
+    }
+    if !model.console.planners.is_empty() {
+        let changes = differences(&model.console.planners, &found);
+        model.say(Severity::Info, format!("plugins looked at again: {} changed", changes.len()));
+        model.console.reloaded = Some(changes);
     }
     (model.console.planners, model.console.refused) = (found, refused);
 }

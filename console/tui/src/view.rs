@@ -12,6 +12,7 @@ mod map;
 mod next;
 mod plan;
 mod planner;
+mod plugins;
 mod position;
 mod result;
 mod strip;
@@ -84,6 +85,7 @@ fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) 
     match (look.model.ui.screen, arrangement) {
         (Screen::Home, _) => home::draw(look, frame, body, arrangement),
         (Screen::Plan, _) => plan::draw(look, frame, body, arrangement),
+        (Screen::Plugins, _) => plugins::draw(look, frame, body, arrangement),
         (Screen::Result, _) => result::draw(look, frame, body, arrangement),
         (Screen::Mission, Arrangement::Wide) => whole(look, frame, body, &WIDE),
         (Screen::Mission, Arrangement::Narrow) => whole(look, frame, body, &NARROW),

@@ -42,8 +42,8 @@ fn check(what: &str, outcome: CheckOutcome, found: String) -> Check {
 
 /// Whether the plugins are still the files that were looked at when the console was started.
 fn plugins(tools: &Tools) -> Check {
-    let changed: Vec<&str> = tools
-        .planners
+    let planners = tools.planners.get();
+    let changed: Vec<&str> = planners
         .iter()
         .filter(|info| {
             let file = tools.plugins.0.iter().map(|dir| dir.join(&info.plugin)).find(|file| file.is_file());
@@ -52,7 +52,7 @@ fn plugins(tools: &Tools) -> Check {
         .map(|info| info.id.as_str())
         .collect();
     if changed.is_empty() {
-        check("plugins", CheckOutcome::Passed, format!("{} planners, files unchanged", tools.planners.len()))
+        check("plugins", CheckOutcome::Passed, format!("{} planners, files unchanged", planners.len()))
     } else {
         let found = format!("changed since the console was started: {}", changed.join(", "));
         check("plugins", CheckOutcome::Warning, found)

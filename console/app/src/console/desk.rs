@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     cli::{Changes, Drill},
-    planners::check_choices,
+    planners::{check_choices, surveyed},
     rescan, scenarios,
 };
 use mission::{PlannerChoice, PlannerInfo};
@@ -25,7 +25,7 @@ use scenario::Scenario;
 use std::{
     path::PathBuf,
     sync::{
-        Arc,
+        Arc, Mutex, PoisonError,
         mpsc::{self, Receiver, Sender},
     },
     thread::{self, JoinHandle},
@@ -46,6 +46,8 @@ pub(super) enum Request {
     Forecast(Vec<PlannerChoice>),
     /// Give the forecasts up.
     StopForecasting,
+    /// Look at the plugins again.
+    Survey,
     /// Look at the disk again.
     Look,
     /// Work on a past run.
@@ -54,12 +56,28 @@ pub(super) enum Request {
     Leave { hurry: bool },
 }
 
+/// The planners as they were found last.
+#[derive(Clone, Default)]
+pub(super) struct Known(Arc<Mutex<Arc<Vec<PlannerInfo>>>>);
+
+impl Known {
+    /// Other planners were found.
+    pub(super) fn set(&self, found: Vec<PlannerInfo>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(found);
+    }
+
+    /// The planners.
+    pub(super) fn get(&self) -> Arc<Vec<PlannerInfo>> {
+        Arc::clone(&self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
 /// What everything at the desk needs.
 #[derive(Clone)]
 pub(super) struct Tools {
     pub logs: PathBuf,
     pub plugins: PluginDirs,
-    pub planners: Arc<Vec<PlannerInfo>>,
+    pub planners: Known,
     pub outbox: Outbox,
 }
 
@@ -122,7 +140,7 @@ impl Desk {
     /// # Errors
     /// Its planners are not there or do not take their parameters; the system gives no thread.
     pub(super) fn open(&mut self, id: RunId, scenario: &Scenario) -> anyhow::Result<()> {
-        check_choices(scenario, &self.tools.planners)?;
+        check_choices(scenario, &self.tools.planners.get())?;
         let Tools { logs, plugins, outbox, .. } = &self.tools;
         let screen = RunOutbox { run: id, outbox: outbox.clone() };
         let engine = Engine::start(scenario, logs, plugins, screen, self.speed, self.drill)?;
@@ -148,6 +166,7 @@ impl Desk {
                 Request::StopComparing => self.comparing = None,
                 Request::Forecast(choices) => self.forecast(choices),
                 Request::StopForecasting => self.forecasting = None,
+                Request::Survey => self.survey(),
                 Request::Look => self.look(),
                 Request::Do(job) => jobs::begin(job, &self.tools),
                 Request::Leave { hurry } => {
@@ -205,6 +224,19 @@ impl Desk {
         match Forecasting::begin(Arc::clone(scenario), choices, engine, plugins, screen) {
             Ok(forecasting) => self.forecasting = Some(forecasting),
             Err(error) => jobs::report(&self.tools.outbox, &format!("cannot forecast: {error}")),
+        }
+    }
+
+    /// Every plugin is opened in a worker of its own; the desk does not wait for them.
+    fn survey(&self) {
+        let Tools { plugins, planners, outbox, .. } = self.tools.clone();
+        let began = thread::Builder::new().name("survey".into()).spawn(move || {
+            let (found, refused) = surveyed(&plugins);
+            planners.set(found.clone());
+            outbox.send(Msg::Planners { found, refused });
+        });
+        if let Err(error) = began {
+            jobs::report(&self.tools.outbox, &format!("cannot look at the plugins: {error}"));
         }
     }
 

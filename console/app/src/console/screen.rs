@@ -153,6 +153,7 @@ impl Screen {
             Effect::Forecast(choices) => self.desk.request(Request::Forecast(choices)),
             Effect::StopForecasting => self.desk.request(Request::StopForecasting),
             Effect::StopComparing => self.desk.request(Request::StopComparing),
+            Effect::Survey => self.desk.request(Request::Survey),
             Effect::Look => self.desk.request(Request::Look),
             Effect::Do(job) => self.desk.request(Request::Do(job)),
             Effect::Order(order) => {

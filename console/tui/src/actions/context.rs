@@ -17,6 +17,8 @@ pub enum Context {
     Mission,
     /// On the result screen.
     Result,
+    /// On the plugins screen.
+    Plugins,
     /// On a screen with a map.
     Map,
     /// While the map takes the arrow keys.
@@ -44,8 +46,8 @@ pub enum Context {
 impl Context {
     /// Whether its actions are commands of their own, and no mere steps within a list or a line.
     pub fn has_commands(self) -> bool {
-        use Context::{Anywhere, Home, Map, Mission, Pan, Plan, Result, Screen};
-        matches!(self, Anywhere | Screen | Home | Plan | Mission | Result | Map | Pan)
+        use Context::{Anywhere, Home, Map, Mission, Pan, Plan, Plugins, Result, Screen};
+        matches!(self, Anywhere | Screen | Home | Plan | Mission | Result | Plugins | Map | Pan)
     }
 }
 
@@ -73,6 +75,7 @@ pub(super) fn of_screen(model: &Model) -> &'static [Context] {
         (Screen::Mission, Pane::Map) => &[Context::Mission, Context::Map, Context::Pan],
         (Screen::Mission, Pane::Events) => &[Context::Mission, Context::Map, Context::Rows],
         (Screen::Mission, _) => &[Context::Mission, Context::Map],
+        (Screen::Plugins, _) => &[Context::Plugins, Context::Rows],
         (Screen::Result, _) => &[Context::Result, Context::Map, Context::Rows],
     }
 }

@@ -23,6 +23,8 @@ pub struct Ui {
     pub layers: Layers,
     /// The missed area that is selected on the result screen, among those that are listed.
     pub missed: usize,
+    /// The plugin that is selected on the plugins screen.
+    pub plugin: usize,
     /// Least severity of the lines in the events pane.
     pub least: Severity,
     /// Text that the lines in the events pane contain.
@@ -44,6 +46,7 @@ impl Default for Ui {
             map: MapView::default(),
             layers: Layers::default(),
             missed: 0,
+            plugin: 0,
             least: Severity::Info,
             needle: String::new(),
             scroll: 0,
@@ -64,11 +67,13 @@ pub enum Screen {
     Mission,
     /// What a mission has achieved.
     Result,
+    /// Which plugins there are.
+    Plugins,
 }
 
 impl Screen {
     /// Every screen, in the order of their keys.
-    pub const ALL: [Self; 4] = [Self::Home, Self::Plan, Self::Mission, Self::Result];
+    pub const ALL: [Self; 5] = [Self::Home, Self::Plan, Self::Mission, Self::Result, Self::Plugins];
 
     /// Its name, as the top line shows it.
     pub fn name(self) -> &'static str {
@@ -77,6 +82,7 @@ impl Screen {
             Self::Plan => "Plan",
             Self::Mission => "Mission",
             Self::Result => "Result",
+            Self::Plugins => "Plugins",
         }
     }
 
@@ -87,6 +93,7 @@ impl Screen {
             Self::Plan => 2,
             Self::Mission => 3,
             Self::Result => 7,
+            Self::Plugins => 8,
         }
     }
 }

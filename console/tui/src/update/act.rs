@@ -8,6 +8,7 @@ use super::send::{hold_now, send};
 use super::{preflight, what_if};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
+use crate::model::plugins::plugins;
 use crate::model::ui::{Ask, MAX_ZOOM, MapView, Purpose};
 use crate::model::{Model, Overlay, Pane, Screen};
 use mission::{Order, Severity};
@@ -32,6 +33,8 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::GoPlan => go(model, Screen::Plan),
         ActionId::GoMission => go(model, Screen::Mission),
         ActionId::GoResult => go(model, Screen::Result),
+        ActionId::GoPlugins => go(model, Screen::Plugins),
+        ActionId::Reload => vec![Effect::Survey],
         ActionId::Again => go::again(model),
         ActionId::Rescan | ActionId::Verify | ActionId::Report | ActionId::View => go::begin(model, id),
         ActionId::Back => back(model).unwrap_or_else(|| leave(model)),
@@ -221,6 +224,10 @@ fn select(model: &mut Model, by: isize) {
         (Overlay::None, Screen::Home) => model.home.select(by),
         (Overlay::None, Screen::Mission) => scroll(model, by),
         (Overlay::None, Screen::Result) => go::select_missed(model, by),
+        (Overlay::None, Screen::Plugins) => {
+            let last = plugins(&model.console, &model.live.run).len().saturating_sub(1);
+            model.ui.plugin = model.ui.plugin.saturating_add_signed(by).min(last);
+        }
         (Overlay::None, Screen::Plan) => {}
         _ => overlay::select(model, by),
     }

@@ -25,7 +25,7 @@ pub(super) fn back(model: &mut Model) -> Option<Vec<Effect>> {
 pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
     match model.ui.screen {
         Screen::Home => open_selected(model),
-        Screen::Plan | Screen::Mission | Screen::Result => Vec::new(),
+        Screen::Plan | Screen::Mission | Screen::Result | Screen::Plugins => Vec::new(),
     }
 }
 

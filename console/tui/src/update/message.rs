@@ -148,6 +148,8 @@ pub enum Effect {
     StopForecasting,
     /// Give up the plan that is being made for comparison.
     StopComparing,
+    /// Look at the plugins again.
+    Survey,
     /// Look at scenarios, past runs and the disk again.
     Look,
     /// Do something beside the screen.

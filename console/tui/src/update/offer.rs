@@ -3,7 +3,7 @@
 use super::go::named_run;
 use super::message::Effect;
 use crate::actions::ActionId;
-use crate::model::{Model, Pane, Screen, ui::MAX_ZOOM};
+use crate::model::{Model, Overlay, Pane, Screen, ui::MAX_ZOOM};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 
 /// Whether an action can be done now.
@@ -19,6 +19,10 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Step => accepted(model, &Order::Step),
         ActionId::Abort => abort(model),
         ActionId::ChoosePlanner => swap(model),
+        ActionId::Accept => {
+            let is_taken = model.ui.overlay != Overlay::None || model.ui.screen == Screen::Home;
+            demand(is_taken, "Enter has nothing to open here")
+        }
         ActionId::WhatIf => accepted(model, &Order::NoteOutlooks(Vec::new())),
         ActionId::Preflight => demand(model.live.waits(), "checks are made before the start"),
         ActionId::Compare => compare(model),
@@ -53,6 +57,10 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
             demand(model.live.source.is_some(), "no mission is open; choose one on screen 1 (Home)")
         }
         ActionId::GoResult => demand(model.live.result.is_some(), "no run has ended yet"),
+        ActionId::Reload => demand(
+            !model.live.run.is_running(),
+            "plugins are looked at again while the robot is held; space: HOLD",
+        ),
         ActionId::NextMissed | ActionId::PreviousMissed => {
             demand(!model.live.missed().is_empty(), "no area was missed")
         }
@@ -72,10 +80,10 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::Commands
         | ActionId::Help
         | ActionId::GoHome
+        | ActionId::GoPlugins
         | ActionId::Back
         | ActionId::Leave
         | ActionId::Filter
-        | ActionId::Accept
         | ActionId::Cancel
         | ActionId::AddCandidate
         | ActionId::NextCandidate

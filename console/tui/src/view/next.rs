@@ -62,7 +62,7 @@ pub(super) fn clauses(model: &Model) -> Clauses {
 fn more(model: &Model) -> String {
     match model.ui.screen {
         Screen::Result => "a: again, r: re-scan, 1: home.",
-        Screen::Home | Screen::Plan | Screen::Mission => "7: result. 1: home.",
+        _ => "7: result. 1: home.",
     }
     .into()
 }

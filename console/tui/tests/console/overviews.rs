@@ -212,6 +212,23 @@ fn forecasts_are_forgotten_when_the_robot_moves_again() {
 }
 
 #[test]
+fn plugins() {
+    let mut screen = Screen::running();
+    let mut found = crate::fixture::planners();
+    found[1].sha256 = "77aa".into();
+    found[1].parameters.pop();
+    found.push(crate::fixture::planner("navfn", "0.3", "Gradient of a navigation function"));
+    screen.send(Msg::Planners { found, refused: screen.model.console.refused.clone() });
+    screen.type_text("8");
+    let changes = screen.model.console.reloaded.clone().unwrap();
+    assert_eq!(changes, ["rpf: rebuilt, parameters -improved", "navfn: new, from spiral.so"]);
+    store("plugins", &mut screen);
+    assert_eq!(screen.type_text("r"), [], "not while the robot moves");
+    let mut screen = Screen::held();
+    assert_eq!(screen.type_text("8r"), [Effect::Survey]);
+}
+
+#[test]
 fn a_late_estimate_of_a_plan_that_was_replaced_is_not_shown() {
     let mut screen = Screen::idle();
     let ask = |n| AskId { worker: WorkerId(0), n };
