@@ -1,9 +1,11 @@
 //! What goes into the model, and what has to be done outside in answer.
 
+use crate::actions::ActionId;
 use crate::keys::KeyPress;
 use crate::model::{Health, Refused, RunId, RunResult, Source, Speed, Times, home::Found};
 use mission::{Event, Order, PlannerChoice, PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
+use world::Point;
 
 /// What reaches the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -12,6 +14,8 @@ pub enum Msg {
     Key(KeyPress),
     /// Text was pasted.
     Paste(String),
+    /// The mouse did something.
+    Mouse(Mouse),
     /// The terminal has this size now.
     Resize {
         /// Columns.
@@ -50,6 +54,38 @@ pub enum Msg {
         /// What it said.
         message: String,
     },
+}
+
+/// What the mouse did.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Mouse {
+    /// A button was pressed and came up at the same place.
+    Click(Target),
+    /// It was dragged on the map, from one place in the tank to another.
+    Drag {
+        /// Place where it was, metres.
+        from: Point,
+        /// Place where it is, metres.
+        to: Point,
+    },
+    /// The wheel was turned.
+    Wheel {
+        /// Away from the operator.
+        up: bool,
+        /// What it was on.
+        on: Target,
+    },
+}
+
+/// What the mouse is on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Target {
+    /// A place on the map, metres, tank frame.
+    Map(Point),
+    /// The name of a key.
+    Key(ActionId),
+    /// Something else.
+    Else,
 }
 
 /// News of a run that is open.
@@ -134,6 +170,8 @@ pub enum Effect {
     Suspend,
     /// Ring the terminal's bell.
     Bell,
+    /// Take the mouse from the terminal, or give it back.
+    Mouse(bool),
     /// Close the recording and leave. Orders before it in the list are to be obeyed first.
     Quit {
         /// The signal that asked for it, if one did.

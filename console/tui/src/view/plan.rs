@@ -23,5 +23,5 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     let side = if wide { 44 } else { 30 };
     let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(area);
     map::draw(look, frame, left);
-    planner::draw(look, frame, right, wide);
+    planner::draw(look, frame, right);
 }

@@ -3,6 +3,8 @@
 
 mod fixture;
 mod laws;
+mod mouse;
+mod panes;
 mod screens;
 mod scripts;
 mod stopping;
