@@ -44,22 +44,22 @@ pub fn view(model: &Model, caps: &Caps, frame: &mut Frame) {
 
 /// Draws the model with what is left of the frame before; the cells are the same.
 pub fn view_cached(model: &Model, caps: &Caps, cache: &mut Cache, frame: &mut Frame) {
-    draw(model, caps, &Theme::for_caps(caps), cache, frame);
+    draw(model, *caps, &Theme::for_caps(caps), cache, frame);
 }
 
 /// Draws the model with a theme of the caller's choice.
 pub fn view_with(model: &Model, caps: &Caps, theme: &Theme, frame: &mut Frame) {
-    draw(model, caps, theme, &mut Cache::default(), frame);
+    draw(model, *caps, theme, &mut Cache::default(), frame);
 }
 
-fn draw(model: &Model, caps: &Caps, theme: &Theme, cache: &mut Cache, frame: &mut Frame) {
+fn draw(model: &Model, caps: Caps, theme: &Theme, cache: &mut Cache, frame: &mut Frame) {
     let area = frame.area();
     if area.is_empty() {
         return;
     }
     cache.clear_places();
     let shared = RefCell::new(std::mem::take(cache));
-    let look = Look { model, run: &model.live.run, caps: *caps, theme, cache: &shared };
+    let look = Look { model, run: &model.live.run, caps, theme, cache: &shared };
     let arrangement = Arrangement::of(area.width, area.height);
     if arrangement == Arrangement::Strip {
         strip::draw(&look, frame, area);

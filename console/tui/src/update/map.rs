@@ -56,13 +56,9 @@ pub(super) fn shift(model: &mut Model, way: Vector) {
 
 /// Begins to read the map, at the robot's place if the whole tank is seen, or ends it.
 pub(super) fn inspect(model: &mut Model) {
-    model.ui.cursor = match model.ui.cursor {
-        Some(_) => None,
-        None => {
-            let robot = model.live.run.position.pose.map(|pose| pose.position);
-            robot.filter(|_| model.ui.map.zoom == 0).or_else(|| center(model))
-        }
-    };
+    let robot = model.live.run.position.pose.map(|pose| pose.position);
+    let begin = robot.filter(|_| model.ui.map.zoom == 0).or_else(|| center(model));
+    model.ui.cursor = if model.ui.cursor.is_some() { None } else { begin };
     turn_to_map(model);
 }
 

@@ -71,7 +71,7 @@ impl Look<'_> {
 }
 
 /// The lines of highest rank (the lowest number) that fit into some rows, in their order.
-pub(super) fn ranked<'t>(lines: Vec<(u8, Line<'t>)>, rows: usize) -> Vec<Line<'t>> {
+pub(super) fn ranked(lines: Vec<(u8, Line<'_>)>, rows: usize) -> Vec<Line<'_>> {
     let mut ranks: Vec<u8> = lines.iter().map(|(rank, _)| *rank).collect();
     ranks.sort_unstable();
     let last = ranks.get(rows).map_or(u8::MAX, |rank| rank.saturating_sub(1));
