@@ -153,9 +153,36 @@ pub(crate) struct ConsoleArgs {
     /// Speed of the simulation at first: 0.25 to 64 times real time, or `max`.
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = speed)]
     pub speed: tui::Speed,
+    /// Characters of the map and the charts; default: what the terminal's environment promises.
+    #[arg(long, value_name = "SET")]
+    pub glyphs: Option<GlyphSet>,
     /// Make a part of the console fail while the robot moves, to see that the run and the terminal survive it.
     #[arg(long, value_name = "PART", hide = true)]
     pub drill: Option<Drill>,
+}
+
+/// Characters that the terminal's font has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum GlyphSet {
+    /// Octants of Unicode 16: dots without gaps.
+    Octant,
+    /// Braille dots.
+    Braille,
+    /// Half blocks and letters.
+    Half,
+    /// 7 bit only.
+    Ascii,
+}
+
+impl From<GlyphSet> for tui::Glyphs {
+    fn from(set: GlyphSet) -> Self {
+        match set {
+            GlyphSet::Octant => Self::Octant,
+            GlyphSet::Braille => Self::Braille,
+            GlyphSet::Half => Self::Half,
+            GlyphSet::Ascii => Self::Ascii,
+        }
+    }
 }
 
 /// Reads a speed.

@@ -15,7 +15,7 @@ mod screen;
 mod watch;
 
 use crate::{
-    cli::{ConsoleArgs, Drill},
+    cli::{ConsoleArgs, Drill, GlyphSet},
     failure::bad_input,
     planners::surveyed,
     scenarios,
@@ -37,7 +37,7 @@ use tui::{Caps, Model, Msg, RunId, Source, terminal};
 /// Opens the console on a scenario, or on the demo; returns when the operator leaves.
 pub(crate) fn open(args: &ConsoleArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     check_terminal()?;
-    let ConsoleArgs { changes, speed, drill, .. } = args;
+    let ConsoleArgs { changes, speed, glyphs, drill, .. } = args;
     let logs = &args.logs.logs;
     let (source, scenario) = match &args.scenario {
         Some(path) => (Source::File(path.display().to_string()), scenarios::read(path, changes)?),
@@ -61,8 +61,13 @@ pub(crate) fn open(args: &ConsoleArgs, plugins: &PluginDirs) -> anyhow::Result<E
     let current = desk.current();
     let (desk, thread) = desk.start()?;
     desk.request(Request::Look);
-    let left =
-        show(&Model::opened(run, source, *speed), logs, (outbox, inbox), (current, desk.clone()), *drill);
+    let left = show(
+        &Model::opened(run, source, *speed),
+        logs,
+        (outbox, inbox),
+        (current, desk.clone()),
+        (*glyphs, *drill),
+    );
     // Whatever happened to the screen, the run is closed cleanly.
     desk.request(Request::Leave { hurry: left.as_ref().is_ok_and(|left| left.signal.is_some()) });
     let closed = thread.join().map_err(|_| anyhow::anyhow!("the thread that closes the run panicked"))?;
@@ -86,16 +91,19 @@ fn show(
     logs: &Path,
     (outbox, inbox): (Outbox, Inbox),
     (current, desk): (Current, DeskHandle),
-    drill: Option<Drill>,
+    (glyphs, drill): (Option<GlyphSet>, Option<Drill>),
 ) -> anyhow::Result<Left> {
-    let caps = Caps::from_env(|name| std::env::var(name).ok());
+    let mut caps = Caps::from_env(|name| std::env::var(name).ok());
+    caps.glyphs = glyphs.map_or(caps.glyphs, Into::into);
     let panic_outbox = outbox.clone();
     terminal::install_panic_hook(move |thread, message| {
         let panicked = Msg::ThreadPanicked { thread: thread.into(), message: message.into() };
         panic_outbox.send_urgent(panicked);
     });
-    let mut screen = Screen::open(caps, model.clone(), inbox, (current.clone(), desk), drill)?;
-    watch::keys(&outbox, current.clone())?;
+    let places = watch::SharedPlaces::default();
+    let line = (current.clone(), desk);
+    let mut screen = Screen::open(caps, model.clone(), inbox, line, places.clone(), drill)?;
+    watch::keys(&outbox, current.clone(), places)?;
     watch::signals(&outbox, current.clone())?;
     watch::terminal(&outbox, current.clone())?;
     drop(outbox);

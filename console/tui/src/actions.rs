@@ -5,9 +5,10 @@ pub mod find;
 
 use crate::keys::Key;
 use context::Context;
+use serde::{Deserialize, Serialize};
 
 /// Names an action.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum ActionId {
     /// Stand still now; when held, ask whether to resume.
     Hold,
@@ -63,6 +64,10 @@ pub enum ActionId {
     Follow,
     /// Choose what the map shows.
     Layers,
+    /// Read the map at a cursor.
+    Inspect,
+    /// Take the mouse from the terminal, or give it back.
+    Mouse,
     /// Move the map's window west.
     PanLeft,
     /// Move the map's window east.
@@ -263,6 +268,8 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::WholeTank, "whole-tank", "Show the whole tank", &[Key::Char('0')], &[Context::Map]),
     action(ActionId::Follow, "follow", "Keep the map centred on the robot", &[Key::Char('f')], &[Context::Map]),
     action(ActionId::Layers, "layers", "Show or hide map layers", &[Key::Char('L')], &[Context::Map]),
+    action(ActionId::Inspect, "inspect", "Read the map at a cursor (Esc: end)", &[Key::Char('i')], &[Context::Map]),
+    action(ActionId::Mouse, "mouse", "Use the mouse in the console, or not", &[], &[Context::Screen]),
     action(ActionId::Severity, "severity", "Minimum severity of the events shown", &[Key::Char('m')], &[Context::Mission]),
     action(ActionId::Filter, "filter", "Filter the list by text", &[Key::Char('/')], &[Context::Home, Context::Mission]),
     action(ActionId::PanLeft, "pan-west", "Pan the map west", &[Key::Left, Key::Char('h')], &[Context::Pan]).repeats(),
@@ -274,7 +281,7 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Edit, "edit", "Edit the value", &[Key::Char('e')], &[Context::Parameters]).label("edit"),
     action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::Rows, Context::Text, Context::Confirm, Context::Stepping, Context::WhatIf]).label("yes"),
     action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("step").risk(Risk::Moves),
-    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc], &[Context::Text, Context::Stepping]).label("cancel"),
+    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc], &[Context::Text, Context::Stepping, Context::Cursor]).label("cancel"),
     action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm, Context::WhatIf]).label("cancel"),
     action(ActionId::Up, "up", "Select the line above", &[Key::Up, Key::Char('k')], &[Context::Rows]).repeats(),
     action(ActionId::Down, "down", "Select the line below", &[Key::Down, Key::Char('j')], &[Context::Rows]).repeats(),
@@ -298,6 +305,9 @@ mod tests {
         &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Rows],
         &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map],
         &[Context::Anywhere, Context::Screen, Context::Result, Context::Map, Context::Rows],
+        &[Context::Anywhere, Context::Screen, Context::Map, Context::Pan, Context::Cursor],
+        &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Pan, Context::Cursor],
+        &[Context::Anywhere, Context::Screen, Context::Result, Context::Map, Context::Pan, Context::Cursor],
         &[Context::Anywhere, Context::List, Context::Rows],
         &[Context::Anywhere, Context::List, Context::Rows, Context::Parameters],
         &[Context::Anywhere, Context::List, Context::Rows, Context::Preflight],

@@ -59,8 +59,16 @@ roles! {
     Scanned '%',
     /// Floor of which a part has been scanned.
     Partly ':',
-    /// Floor that was missed.
-    Missed '!',
+    /// Floor that has been scanned again.
+    Overlap '2',
+    /// Floor in reach that was not scanned when the mission ended.
+    Missed 'm',
+    /// Floor out of reach.
+    Unreachable '/',
+    /// Floor out of reach along the shell.
+    Margin 'n',
+    /// Outline and name of a plate.
+    Plate 'P',
     /// The tank's wall.
     Wall 'o',
     /// An obstacle of the drawing.
@@ -165,7 +173,8 @@ fn sixteen(role: Role) -> Option<Color> {
         Role::Warn | Role::Hold | Role::Confirm => Some(Color::Yellow),
         Role::Crit | Role::Push | Role::Missed => Some(Color::Red),
         Role::Scanned => Some(Color::Blue),
-        Role::Partly => Some(Color::DarkGray),
+        Role::Partly | Role::Unreachable | Role::Margin | Role::Plate => Some(Color::DarkGray),
+        Role::Overlap => Some(Color::LightBlue),
         Role::Obstacle | Role::NoGo => Some(Color::LightRed),
         Role::Found | Role::Drawn => Some(Color::LightMagenta),
         Role::Tether => Some(Color::White),
@@ -182,6 +191,10 @@ fn rich(role: Role) -> Option<(u8, (u8, u8, u8))> {
     match role {
         Role::Scanned => Some((24, (26, 74, 104))),
         Role::Partly => Some((236, (38, 50, 58))),
+        Role::Overlap => Some((31, (46, 116, 156))),
+        Role::Missed => Some((203, (255, 107, 96))),
+        Role::Unreachable | Role::Margin => Some((242, (108, 108, 108))),
+        Role::Plate => Some((66, (95, 135, 135))),
         Role::Trail => Some((117, (130, 205, 235))),
         Role::Plan => Some((179, (214, 175, 95))),
         Role::Ghost => Some((177, (199, 155, 255))),

@@ -3,16 +3,20 @@
 mod act;
 mod go;
 mod hear;
+mod map;
 mod message;
+mod mouse;
 mod offer;
 mod overlay;
 mod preflight;
+mod redraw;
 mod send;
 mod what_if;
 
 pub use act::act;
-pub use message::{Effect, Job, Msg, RunMsg, Signal};
+pub use message::{Effect, Job, Mouse, Msg, RunMsg, Signal, Target};
 pub use offer::offered;
+pub use redraw::{Redraw, redraw};
 
 use crate::actions::{ActionId, context::contexts, find};
 use crate::keys::{Key, KeyPress};
@@ -36,6 +40,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
             news(model, Cause::Console, Severity::Crit, text);
         }
         Msg::Paste(text) => overlay::paste(model, &text),
+        Msg::Mouse(mouse) => effects = mouse::take(model, mouse),
         Msg::Resize { width, height } => resize(model, width, height),
         Msg::Time(now) => model.console.now = now,
         Msg::Run(id, msg) => effects = hear::hear(model, id, msg),

@@ -4,6 +4,7 @@ use super::{
     desk::{DeskHandle, Request},
     inbox::Inbox,
     line::Current,
+    watch::SharedPlaces,
 };
 use crate::{
     cli::Drill,
@@ -17,12 +18,16 @@ use std::{
     process::ExitCode,
     time::{Duration, Instant, SystemTime},
 };
-use tui::{Caps, Effect, Model, Msg, RunMsg, Signal, Times, terminal::TerminalGuard, update};
+use tui::{
+    Cache, Caps, Effect, Model, Msg, Redraw, RunMsg, Signal, Times, redraw, terminal::TerminalGuard, update,
+};
 
 /// Messages that are taken in before the next frame, at most.
 const BURST: usize = 256;
 /// Time that is spent on them before the next frame, at most.
 const BURST_TIME: Duration = Duration::from_millis(5);
+/// Shortest time between two frames that only show new values of a robot that stands still.
+const CALM_FRAME: Duration = Duration::from_secs(1);
 /// Shortest time between two frames that answer keys.
 const KEY_FRAME: Duration = Duration::from_millis(8);
 
@@ -37,7 +42,10 @@ pub(super) struct Screen {
     began: Instant,
     drawn: Instant,
     frame_interval: Duration,
-    dirty: bool,
+    /// How soon there is to be a frame.
+    due: Redraw,
+    cache: Cache,
+    places: SharedPlaces,
     /// Whether the operator waits for something that the next frame shows.
     answer_seen: bool,
     drill: Option<Drill>,
@@ -57,9 +65,11 @@ impl Screen {
         mut model: Model,
         inbox: Inbox,
         (engine, desk): (Current, DeskHandle),
+        places: SharedPlaces,
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
-        let terminal = TerminalGuard::enter().context("taking over the terminal")?;
+        let mut terminal = TerminalGuard::enter().context("taking over the terminal")?;
+        terminal.take_mouse(model.ui.mouse).context("taking the mouse")?;
         let (width, height) = crossterm::terminal::size().unwrap_or((80, 24));
         update(&mut model, Msg::Resize { width, height });
         let now = Instant::now();
@@ -74,7 +84,9 @@ impl Screen {
             drawn: now,
             // A slow line gets fewer frames.
             frame_interval: Duration::from_millis(if caps.ssh { 100 } else { 33 }),
-            dirty: true,
+            due: Redraw::Soon,
+            cache: Cache::default(),
+            places,
             answer_seen: true,
             drill,
         })
@@ -91,27 +103,37 @@ impl Screen {
             if let Some(left) = self.take_burst()? {
                 return Ok(left);
             }
-            if self.dirty && self.drawn.elapsed() >= self.pause() {
+            if self.pause().is_some_and(|pause| self.drawn.elapsed() >= pause) {
                 self.draw()?;
             }
         }
     }
 
-    /// Shortest time between the last frame and the next.
-    fn pause(&self) -> Duration {
-        if self.answer_seen { KEY_FRAME } else { self.frame_interval }
+    /// Shortest time between the last frame and the next; `None` if none is due.
+    fn pause(&self) -> Option<Duration> {
+        match self.due {
+            Redraw::No => None,
+            Redraw::Calm => Some(CALM_FRAME),
+            Redraw::Soon if self.answer_seen => Some(KEY_FRAME),
+            Redraw::Soon => Some(self.frame_interval),
+        }
     }
 
     /// Waits for a message, then takes in what else is there.
     fn take_burst(&mut self) -> anyhow::Result<Option<Left>> {
         let first = self.wait();
+        // What the screen waited for may be that it changes by itself.
+        let by_itself = self.model.wakes_at_mono_s();
         self.update_time();
-        self.dirty = true;
+        if by_itself.is_some_and(|at_s| at_s <= self.model.console.now.mono_s) {
+            self.due = Redraw::Soon;
+        }
         let until = Instant::now() + BURST_TIME;
         let mut next = first;
         for _ in 0..BURST {
             let Some(msg) = next else { break };
             self.answer_seen |= is_answer(&msg);
+            self.due = self.due.max(redraw(&self.model, &msg));
             let effects = update(&mut self.model, msg);
             let engine = self.engine.get();
             if let Some(engine) = &engine {
@@ -130,7 +152,7 @@ impl Screen {
 
     /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.
     fn wait(&self) -> Option<Msg> {
-        let frame = self.dirty.then(|| self.drawn + self.pause());
+        let frame = self.pause().map(|pause| self.drawn + pause);
         let by_itself =
             self.model.wakes_at_mono_s().map(|at_s| self.began + Duration::from_secs_f64(at_s.max(0.0)));
         // By itself the screen changes a little after the moment, so that the moment has passed then.
@@ -162,6 +184,7 @@ impl Screen {
             Effect::Speed(speed) => self.engine.get().into_iter().for_each(|engine| engine.speed(speed)),
             Effect::Redraw => self.terminal.redraw().context("drawing")?,
             Effect::Bell => ring()?,
+            Effect::Mouse(taken) => self.terminal.take_mouse(taken).context("taking the mouse")?,
             Effect::Suspend => self.suspend()?,
             Effect::Quit { signal } => return Ok(Some(Left { signal })),
         }
@@ -174,16 +197,19 @@ impl Screen {
         rustix::process::kill_process(rustix::process::getpid(), rustix::process::Signal::STOP)
             .context("stopping the process")?;
         self.terminal.resume().context("taking the terminal over again")?;
-        self.dirty = true;
+        self.due = Redraw::Soon;
         Ok(())
     }
 
     fn draw(&mut self) -> anyhow::Result<()> {
         let failing = self.drill == Some(Drill::PanicScreen) && self.model.live.run.clock.tick > 5;
         assert!(!failing, "drill: the screen fails on purpose");
-        let (model, caps) = (&self.model, &self.caps);
-        self.terminal.draw(|frame| tui::view(model, caps, frame)).context("drawing")?;
-        (self.drawn, self.dirty, self.answer_seen) = (Instant::now(), false, false);
+        let (model, caps, cache) = (&self.model, &self.caps, &mut self.cache);
+        self.terminal.draw(|frame| tui::view_cached(model, caps, cache, frame)).context("drawing")?;
+        if model.ui.mouse {
+            self.places.set(self.cache.places());
+        }
+        (self.drawn, self.due, self.answer_seen) = (Instant::now(), Redraw::No, false);
         Ok(())
     }
 }
@@ -191,7 +217,7 @@ impl Screen {
 /// Whether an operator waits to see this: a key, or that the robot was stopped.
 fn is_answer(msg: &Msg) -> bool {
     match msg {
-        Msg::Key(_) | Msg::Paste(_) | Msg::Resize { .. } | Msg::Signal(_) => true,
+        Msg::Key(_) | Msg::Paste(_) | Msg::Mouse(_) | Msg::Resize { .. } | Msg::Signal(_) => true,
         Msg::Run(_, RunMsg::Events(events)) => {
             events.iter().any(|event| matches!(event.kind, EventKind::Held { .. }))
         }

@@ -23,6 +23,8 @@ pub enum Context {
     Map,
     /// While the map takes the arrow keys.
     Pan,
+    /// While a cursor on the map takes the arrow keys.
+    Cursor,
     /// While a list takes the arrow keys.
     Rows,
     /// In a list over the screen.
@@ -69,6 +71,15 @@ pub fn contexts(model: &Model) -> Vec<Context> {
 
 /// The contexts of the screen that is shown, with nothing over it.
 pub(super) fn of_screen(model: &Model) -> &'static [Context] {
+    if model.ui.cursor.is_some() {
+        match model.ui.screen {
+            Screen::Home | Screen::Plugins => {}
+            // Esc ends the cursor here, and nothing else.
+            Screen::Plan => return &[Context::Map, Context::Pan, Context::Cursor],
+            Screen::Mission => return &[Context::Mission, Context::Map, Context::Pan, Context::Cursor],
+            Screen::Result => return &[Context::Result, Context::Map, Context::Pan, Context::Cursor],
+        }
+    }
     match (model.ui.screen, model.ui.pane) {
         (Screen::Home, _) => &[Context::Home, Context::Rows],
         (Screen::Plan, _) => &[Context::Plan, Context::Map, Context::Pan],

@@ -77,7 +77,9 @@ impl Run {
                 covered_whole,
                 ..
             } => {
+                self.scanned_history.add(event.t_s, 100.0 * covered_reachable);
                 self.progress = Some(Progress {
+                    t_s: event.t_s,
                     done: *done,
                     along_m: *along_m,
                     cross_track_m: *cross_track_m,
@@ -129,6 +131,7 @@ impl Run {
             mission: run.mission.clone(),
             preset_m,
             checklist: run.checklist.clone(),
+            plates: run.plates,
         });
         self.coverage = Some(Raster::new(run.floor.clone()));
         let (low, high) = run.world.boundary.bounds();

@@ -25,6 +25,10 @@ pub struct Ui {
     pub missed: usize,
     /// The plugin that is selected on the plugins screen.
     pub plugin: usize,
+    /// The place on the map that is read, metres, tank frame; `None` without a cursor.
+    pub cursor: Option<Point>,
+    /// Whether the mouse is taken from the terminal.
+    pub mouse: bool,
     /// Least severity of the lines in the events pane.
     pub least: Severity,
     /// Text that the lines in the events pane contain.
@@ -47,6 +51,8 @@ impl Default for Ui {
             layers: Layers::default(),
             missed: 0,
             plugin: 0,
+            cursor: None,
+            mouse: false,
             least: Severity::Info,
             needle: String::new(),
             scroll: 0,
@@ -111,11 +117,32 @@ pub enum Pane {
     Planner,
     /// What happened.
     Events,
+    /// How the tether lies.
+    Tether,
+    /// What is wrong.
+    Alarms,
+    /// What was missed, when the mission has ended.
+    Missed,
+    /// A quantity over the last minutes.
+    Chart(Chart),
 }
 
 impl Pane {
-    /// Every pane, in the order of the Tab key.
-    pub const ALL: [Self; 5] = [Self::Map, Self::Coverage, Self::Position, Self::Planner, Self::Events];
+    /// The panes that are pages of a screen too small for all of them, in the order of the Tab key.
+    pub const PAGES: [Self; 5] = [Self::Map, Self::Coverage, Self::Position, Self::Planner, Self::Events];
+}
+
+/// What a chart shows over time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Chart {
+    /// The 95 % error of the position.
+    Error,
+    /// The length of tether that is out.
+    TetherOut,
+    /// The largest wrap.
+    Wrap,
+    /// The scanned share of the reachable floor.
+    Scanned,
 }
 
 /// The part of the tank on the map.
@@ -361,7 +388,7 @@ impl Ui {
         }
         match self.arrangement() {
             Arrangement::Wide | Arrangement::Narrow => &[Pane::Map, Pane::Events],
-            Arrangement::Paged => &Pane::ALL,
+            Arrangement::Paged => &Pane::PAGES,
             Arrangement::Strip => &[],
         }
     }

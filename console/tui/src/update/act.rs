@@ -1,6 +1,7 @@
 //! Actions into changes and effects.
 
 use super::go::{self, back, go};
+use super::map;
 use super::message::Effect;
 use super::offer::{offered, refuse};
 use super::overlay::{self, ask, open};
@@ -9,10 +10,10 @@ use super::{preflight, what_if};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
 use crate::model::plugins::plugins;
-use crate::model::ui::{Ask, MAX_ZOOM, MapView, Purpose};
+use crate::model::ui::{Ask, MapView, Purpose};
 use crate::model::{Model, Overlay, Pane, Screen};
 use mission::{Order, Severity};
-use world::{Point, Vector};
+use world::Vector;
 
 /// Seconds within which a second Ctrl-C asks to leave.
 const INTERRUPT_TWICE_S: f64 = 2.0;
@@ -47,6 +48,7 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Slower => change_speed(model, false),
         ActionId::Faster => change_speed(model, true),
         ActionId::Acknowledge => acknowledge(model),
+        ActionId::Mouse => toggle_mouse(model),
         ActionId::Accept => match overlay::chosen(model) {
             Some(id) => act(model, id),
             None if model.ui.overlay == Overlay::None => go::enter(model),
@@ -78,6 +80,7 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
 /// Changes what the operator looks at, and nothing else.
 fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
     match id {
+        ActionId::Cancel if model.ui.overlay == Overlay::None => model.ui.cursor = None,
         ActionId::Cancel => overlay::cancel(model),
         ActionId::Up => select(model, -1),
         ActionId::Down => select(model, 1),
@@ -91,14 +94,15 @@ fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::PreviousCandidate => what_if::select(model, -1),
         ActionId::NextMissed => select(model, 1),
         ActionId::PreviousMissed => select(model, -1),
-        ActionId::ZoomIn => zoom(model, 1),
-        ActionId::ZoomOut => zoom(model, -1),
+        ActionId::ZoomIn => map::zoom(model, 1),
+        ActionId::ZoomOut => map::zoom(model, -1),
+        ActionId::Inspect => map::inspect(model),
         ActionId::WholeTank => model.ui.map = MapView::default(),
         ActionId::Follow => model.ui.map.follow = !model.ui.map.follow,
-        ActionId::PanLeft => pan(model, Vector::new(-1.0, 0.0)),
-        ActionId::PanRight => pan(model, Vector::new(1.0, 0.0)),
-        ActionId::PanUp => pan(model, Vector::new(0.0, 1.0)),
-        ActionId::PanDown => pan(model, Vector::new(0.0, -1.0)),
+        ActionId::PanLeft => map::pan(model, Vector::new(-1.0, 0.0)),
+        ActionId::PanRight => map::pan(model, Vector::new(1.0, 0.0)),
+        ActionId::PanUp => map::pan(model, Vector::new(0.0, 1.0)),
+        ActionId::PanDown => map::pan(model, Vector::new(0.0, -1.0)),
         ActionId::Severity => next_severity(model),
         _ => {}
     }
@@ -162,6 +166,17 @@ fn change_speed(model: &mut Model, faster: bool) -> Vec<Effect> {
     vec![Effect::Speed(speed)]
 }
 
+fn toggle_mouse(model: &mut Model) -> Vec<Effect> {
+    model.ui.mouse = !model.ui.mouse;
+    let news = if model.ui.mouse {
+        "mouse on: click, wheel, drag; hold Shift to select text"
+    } else {
+        "mouse off: the terminal has it"
+    };
+    model.say(Severity::Info, news);
+    vec![Effect::Mouse(model.ui.mouse)]
+}
+
 fn acknowledge(model: &mut Model) -> Vec<Effect> {
     if let Some(text) = model.live.run.alarms.acknowledge() {
         model.say(Severity::Info, format!("acknowledged: {text}"));
@@ -188,26 +203,6 @@ fn turn_to(model: &mut Model, by: isize) {
     model.ui.pane = panes.get(next).copied().unwrap_or(Pane::Map);
 }
 
-fn zoom(model: &mut Model, by: i8) {
-    let map = &mut model.ui.map;
-    map.zoom = map.zoom.saturating_add_signed(by).min(MAX_ZOOM);
-    if map.zoom == 0 {
-        *map = MapView { follow: map.follow, ..MapView::default() };
-    }
-}
-
-/// Moves the map by a quarter of what it shows; the robot need not stay in the middle then.
-fn pan(model: &mut Model, direction: Vector) {
-    let Some(about) = &model.live.run.about else { return };
-    let (low, high) = about.world.boundary.bounds();
-    let (middle, span) = (nalgebra::center(&low, &high), high - low);
-    let step_m = span.x.max(span.y) / f64::from(1_u32 << model.ui.map.zoom) / 4.0;
-    let robot = model.live.run.position.pose.as_ref().map(|pose| pose.position);
-    let center = model.ui.map_center(middle, robot) + direction * step_m;
-    model.ui.map.follow = false;
-    model.ui.map.offset = Point::new(center.x.clamp(low.x, high.x), center.y.clamp(low.y, high.y)) - middle;
-}
-
 fn next_severity(model: &mut Model) {
     model.ui.scroll = 0;
     model.ui.least = match model.ui.least {
@@ -219,7 +214,7 @@ fn next_severity(model: &mut Model) {
 }
 
 /// Selects another line of whatever takes the arrow keys, so many further down.
-fn select(model: &mut Model, by: isize) {
+pub(super) fn select(model: &mut Model, by: isize) {
     match (&model.ui.overlay, model.ui.screen) {
         (Overlay::None, Screen::Home) => model.home.select(by),
         (Overlay::None, Screen::Mission) => scroll(model, by),

@@ -63,7 +63,7 @@ pub(super) fn open(model: &mut Model, source: Source, planner: Option<PlannerCho
     }
     let id = RunId(model.live.id.0 + 1);
     model.live = Live { id, source: Some(source.clone()), is_opening: true, ..Live::default() };
-    model.ui.map = crate::model::ui::MapView::default();
+    (model.ui.map, model.ui.cursor) = (crate::model::ui::MapView::default(), None);
     model.ui.go(Screen::Plan);
     vec![Effect::Open { id, source, planner }]
 }

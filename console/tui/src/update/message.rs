@@ -1,5 +1,6 @@
 //! What goes into the model, and what has to be done outside in answer.
 
+use crate::actions::ActionId;
 use crate::keys::KeyPress;
 use crate::model::{
     Forecast, GhostPlan, Health, Refused, RunId, RunResult, Source, Speed, Times, home::Found,
@@ -7,6 +8,7 @@ use crate::model::{
 use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, Severity};
 use report::Estimate;
 use serde::{Deserialize, Serialize};
+use world::Point;
 
 /// What reaches the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -15,6 +17,8 @@ pub enum Msg {
     Key(KeyPress),
     /// Text was pasted.
     Paste(String),
+    /// The mouse did something.
+    Mouse(Mouse),
     /// The terminal has this size now.
     Resize {
         /// Columns.
@@ -53,6 +57,38 @@ pub enum Msg {
         /// What it said.
         message: String,
     },
+}
+
+/// What the mouse did.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Mouse {
+    /// A button was pressed and came up at the same place.
+    Click(Target),
+    /// It was dragged on the map, from one place in the tank to another.
+    Drag {
+        /// Place where it was, metres.
+        from: Point,
+        /// Place where it is, metres.
+        to: Point,
+    },
+    /// The wheel was turned.
+    Wheel {
+        /// Away from the operator.
+        up: bool,
+        /// What it was on.
+        on: Target,
+    },
+}
+
+/// What the mouse is on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Target {
+    /// A place on the map, metres, tank frame.
+    Map(Point),
+    /// The name of a key.
+    Key(ActionId),
+    /// Something else.
+    Else,
 }
 
 /// News of a run that is open.
@@ -164,6 +200,8 @@ pub enum Effect {
     Suspend,
     /// Ring the terminal's bell.
     Bell,
+    /// Take the mouse from the terminal, or give it back.
+    Mouse(bool),
     /// Close the recording and leave. Orders before it in the list are to be obeyed first.
     Quit {
         /// The signal that asked for it, if one did.

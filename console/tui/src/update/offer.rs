@@ -44,11 +44,13 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::ZoomIn => map(model).and(demand(model.ui.map.zoom < MAX_ZOOM, "already at maximum zoom")),
         ActionId::ZoomOut => map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is already shown")),
         ActionId::WholeTank | ActionId::Layers => map(model),
+        ActionId::Inspect => map(model).and(demand(model.live.run.about.is_some(), "no tank loaded yet")),
         ActionId::Follow => {
             map(model).and(demand(model.live.run.position.pose.is_some(), "no position estimate yet"))
         }
         ActionId::PanLeft | ActionId::PanRight | ActionId::PanUp | ActionId::PanDown => {
-            map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is shown; z: zoom in first"))
+            let moves = model.ui.map.zoom > 0 || model.ui.cursor.is_some();
+            map(model).and(demand(moves, "the whole tank is shown; z: zoom in first"))
         }
         ActionId::Severity => {
             demand(model.ui.shows(Pane::Events), "the events are not shown; Tab: next pane (needs 60x16)")
@@ -84,6 +86,7 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::Back
         | ActionId::Leave
         | ActionId::Filter
+        | ActionId::Mouse
         | ActionId::Cancel
         | ActionId::AddCandidate
         | ActionId::NextCandidate

@@ -529,6 +529,16 @@ impl Screen {
         screen
     }
 
+    /// The same with the plates of the floor known.
+    pub(crate) fn plated() -> Self {
+        let mut screen = Self::running();
+        let plates = world::PlateLayout { annular_m: 0.75, n_annular: 12, length_m: 4.0, width_m: 1.6 };
+        if let Some(run) = &mut screen.model.live.run.about {
+            run.plates = Some(plates);
+        }
+        screen
+    }
+
     /// The same, held by the operator.
     pub(crate) fn held() -> Self {
         let mut screen = Self::running();

@@ -3,7 +3,9 @@
 
 mod fixture;
 mod laws;
+mod mouse;
 mod overviews;
+mod panes;
 mod screens;
 mod scripts;
 mod stopping;

@@ -209,7 +209,7 @@ fn a_hold_that_was_sent_can_be_sent_again() {
 #[test]
 fn every_way_to_stop_works_on_every_size_and_in_every_pane() {
     for (width, height) in [(120, 36), (80, 24), (60, 16), (44, 10), (1, 1), (0, 0)] {
-        for pane in Pane::ALL {
+        for pane in Pane::PAGES {
             for (way, _) in ways() {
                 let mut screen = Screen::running();
                 screen.send(Msg::Resize { width, height });
