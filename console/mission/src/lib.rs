@@ -30,6 +30,7 @@ pub use order::{Check, CheckOutcome, Order, Outlook};
 pub use phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes};
 pub use planner::{
     Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
+    todays_parameter,
 };
 pub use preview::preview;
 pub use standing::{FoldedStanding, PositionTrust, Refusal, Standing};

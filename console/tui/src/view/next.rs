@@ -154,7 +154,7 @@ fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
     let when = match (resumes, by) {
         (Resumes::ByFallback, _) => "Resumes with fallback planner.",
         (_, HoldReason::PositionLost) => "Resumes automatically when recovered.",
-        (_, HoldReason::Tether { .. }) => "Resumes automatically once clear.",
+        (_, HoldReason::Tether { .. }) => "Resumes automatically when clear.",
         (_, HoldReason::PlannerSilent { .. }) => "Resumes automatically on answer.",
         _ => "Resumes automatically.",
     };
