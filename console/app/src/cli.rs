@@ -151,27 +151,11 @@ pub(crate) struct ConsoleArgs {
     #[command(flatten)]
     pub logs: LogsArg,
     /// Speed of the simulation at first: 0.25 to 64 times real time, or `max`.
-    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = speed)]
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = tui::Speed::parse)]
     pub speed: tui::Speed,
     /// Make a part of the console fail while the robot moves, to see that the run and the terminal survive it.
     #[arg(long, value_name = "PART", hide = true)]
     pub drill: Option<Drill>,
-}
-
-/// Reads a speed.
-///
-/// # Errors
-/// What it may be.
-fn speed(text: &str) -> Result<tui::Speed, String> {
-    match text.trim_start_matches(['x', '×']) {
-        "max" => Ok(tui::Speed::Max),
-        number => match number.parse::<f64>() {
-            Ok(factor) if (tui::Speed::SLOWEST..=tui::Speed::FASTEST).contains(&factor) => {
-                Ok(tui::Speed::Times(factor))
-            }
-            _ => Err(format!("must be {} to {}, or max", tui::Speed::SLOWEST, tui::Speed::FASTEST)),
-        },
-    }
 }
 
 /// A part of the console that fails on purpose.

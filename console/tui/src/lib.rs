@@ -18,6 +18,6 @@ pub mod view;
 pub use caps::{Caps, Colours, Glyphs};
 pub use keys::{Key, KeyPress};
 pub use model::{Health, Model, Recording, Refused, RunId, RunResult, Source, Speed, Times};
-pub use theme::{Role, Theme};
-pub use update::{Effect, Job, Msg, RunMsg, Signal, update};
+pub use theme::{Role, Theme, ThemeName};
+pub use update::{Effect, Job, Msg, RunMsg, Signal, is_typing, update};
 pub use view::{view, view_with};

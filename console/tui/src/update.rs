@@ -1,19 +1,25 @@
 //! Messages into the model; what has to be done outside comes back as effects.
 
 mod act;
+mod command;
 mod go;
 mod hear;
 mod message;
 mod offer;
 mod overlay;
+mod palette;
 mod send;
+mod typing;
 
 pub use act::act;
 pub use message::{Effect, Job, Msg, RunMsg, Signal};
 pub use offer::offered;
+pub use palette::{Choice, choices};
+pub use typing::is_typing;
 
 use crate::actions::{ActionId, context::contexts, find};
 use crate::keys::{Key, KeyPress};
+use crate::model::console::Bell;
 use crate::model::{Cause, Model, Overlay, Pane, Refused, ui::Arrangement};
 use mission::{PlannerInfo, Severity};
 use send::hold_now;
@@ -22,7 +28,7 @@ use send::hold_now;
 ///
 /// Pure: the same model and message give the same model and effects.
 pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
-    let alarms_before = model.live.run.alarms.unacknowledged(Severity::Crit);
+    let alarms_before = ringing(model);
     let mut effects = Vec::new();
     match msg {
         Msg::Key(press) => effects = press_key(model, press),
@@ -32,7 +38,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
             let text = format!("console thread {thread} failed: {message}");
             news(model, Cause::Console, Severity::Crit, text);
         }
-        Msg::Paste(text) => overlay::paste(model, &text),
+        Msg::Paste(text) => typing::paste(model, &text),
         Msg::Resize { width, height } => resize(model, width, height),
         Msg::Time(now) => model.console.now = now,
         Msg::Run(id, msg) => effects = hear::hear(model, id, msg),
@@ -41,22 +47,26 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Planners { found, refused } => take_planners(model, found, refused),
         Msg::Notice { severity, text } => news(model, Cause::Console, severity, text),
     }
-    if model.live.run.alarms.unacknowledged(Severity::Crit) > alarms_before {
+    if ringing(model) > alarms_before {
         effects.push(Effect::Bell);
     }
     effects
 }
 
+/// How many alarms ring the bell that the operator has not acknowledged.
+fn ringing(model: &Model) -> usize {
+    let Bell(Some(least)) = model.console.bell else { return 0 };
+    let alarms = model.live.run.alarms.list().iter();
+    alarms.filter(|alarm| !alarm.acknowledged && alarm.severity >= least).count()
+}
+
 fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
-    if press.key == Key::Char(' ') && !model.live.may_move() && overlay::is_typing(model) {
-        // With nothing to stop, the stop key is a letter like any other.
-        overlay::type_key(model, press.key);
+    // A letter is typed where text is typed, and so is the space: there Ctrl-C holds.
+    if typing::press(model, press.key) {
         return Vec::new();
     }
-    let Some(action) = find::action_for(press.key, &contexts(model)) else {
-        if !overlay::type_key(model, press.key) {
-            unknown(model, press.key);
-        }
+    let Some(action) = find::action_for(&model.console.keys, press.key, &contexts(model)) else {
+        unknown(model, press.key);
         return Vec::new();
     };
     match action.id {

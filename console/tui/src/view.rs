@@ -4,6 +4,7 @@ mod ascii;
 mod confirm;
 mod coverage;
 mod events;
+mod field;
 mod footer;
 mod home;
 mod lists;
@@ -31,7 +32,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 ///
 /// Pure: the same model, caps and size give the same cells.
 pub fn view(model: &Model, caps: &Caps, frame: &mut Frame) {
-    view_with(model, caps, &Theme::for_caps(caps), frame);
+    view_with(model, caps, &Theme::new(model.ui.theme, caps), frame);
 }
 
 /// Draws the model with a theme of the caller's choice.

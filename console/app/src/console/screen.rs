@@ -17,7 +17,7 @@ use std::{
     process::ExitCode,
     time::{Duration, Instant, SystemTime},
 };
-use tui::{Caps, Effect, Model, Msg, RunMsg, Signal, Times, terminal::TerminalGuard, update};
+use tui::{Caps, Effect, Model, Msg, RunMsg, Signal, Times, is_typing, terminal::TerminalGuard, update};
 
 /// Messages that are taken in before the next frame, at most.
 const BURST: usize = 256;
@@ -115,7 +115,7 @@ impl Screen {
             let effects = update(&mut self.model, msg);
             let engine = self.engine.get();
             if let Some(engine) = &engine {
-                engine.set_may_move(self.model.live.may_move());
+                engine.report(self.model.live.may_move(), is_typing(&self.model));
             }
             for effect in effects {
                 if let Some(left) = self.carry_out(effect)? {

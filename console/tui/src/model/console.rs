@@ -1,5 +1,6 @@
 //! The console itself: time, speeds, plugins, and what it tells the operator.
 
+use crate::actions::keymap::Keymap;
 use mission::{PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
 
@@ -33,6 +34,21 @@ impl Speed {
         match self {
             Self::Times(factor) => factor > 1.0,
             Self::Max => true,
+        }
+    }
+
+    /// Reads a speed, such as `8`, `x0.5` or `max`.
+    ///
+    /// # Errors
+    /// What it may be.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let wrong = || format!("must be {} to {}, or max", Self::SLOWEST, Self::FASTEST);
+        match text.trim_start_matches(['x', '×']) {
+            "max" => Ok(Self::Max),
+            number => match number.parse::<f64>() {
+                Ok(factor) if (Self::SLOWEST..=Self::FASTEST).contains(&factor) => Ok(Self::Times(factor)),
+                _ => Err(wrong()),
+            },
         }
     }
 
@@ -78,6 +94,16 @@ pub struct Notice {
     pub until_mono_s: f64,
 }
 
+/// Which new alarms ring the terminal's bell: from this severity on, or none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Bell(pub Option<Severity>);
+
+impl Default for Bell {
+    fn default() -> Self {
+        Self(Some(Severity::Crit))
+    }
+}
+
 /// The console itself.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Console {
@@ -89,6 +115,12 @@ pub struct Console {
     pub refused: Vec<Refused>,
     /// What was last said to the operator.
     pub notice: Option<Notice>,
+    /// Which keys run which actions.
+    pub keys: Keymap,
+    /// The last command lines, the newest last.
+    pub history: Vec<String>,
+    /// Which new alarms ring the bell.
+    pub bell: Bell,
     /// When Ctrl-C was last pressed, on the console's own clock, seconds.
     pub interrupted_mono_s: Option<f64>,
 }

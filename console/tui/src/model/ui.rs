@@ -1,5 +1,8 @@
 //! What the operator looks at: zoom, filter, selection, and what lies over the screen.
 
+use super::line_edit::LineEdit;
+use super::palette::Palette;
+use crate::theme::ThemeName;
 use mission::{Order, PlannerChoice, Severity};
 use serde::{Deserialize, Serialize};
 use world::Point;
@@ -27,6 +30,8 @@ pub struct Ui {
     pub needle: String,
     /// How many lines the events pane is scrolled back.
     pub scroll: usize,
+    /// The colours.
+    pub theme: ThemeName,
     /// What lies over the screen.
     pub overlay: Overlay,
 }
@@ -44,6 +49,7 @@ impl Default for Ui {
             least: Severity::Info,
             needle: String::new(),
             scroll: 0,
+            theme: ThemeName::default(),
             overlay: Overlay::None,
         }
     }
@@ -195,14 +201,7 @@ pub enum Overlay {
     /// The question before leaving.
     Quit,
     /// The list of commands.
-    Commands {
-        /// Whether it was opened as help, with every key shown.
-        help: bool,
-        /// What was typed.
-        filter: String,
-        /// Which line is selected.
-        selected: usize,
-    },
+    Commands(Palette),
     /// The list of planners.
     Planners {
         /// Which line is selected.
@@ -220,8 +219,8 @@ pub enum Overlay {
         /// Which line is selected.
         selected: usize,
     },
-    /// The text filter of the events pane is being typed.
-    Filter,
+    /// The text filter of a list is being typed.
+    Filter(LineEdit),
 }
 
 /// What a confirm line asks for.
@@ -256,7 +255,7 @@ impl Ask {
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Edit {
     /// What was typed.
-    pub text: String,
+    pub line: LineEdit,
     /// Why it cannot be taken.
     pub refusal: Option<String>,
 }

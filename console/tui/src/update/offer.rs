@@ -2,6 +2,7 @@
 
 use super::go::named_run;
 use super::message::Effect;
+use super::typing;
 use crate::actions::ActionId;
 use crate::model::{Model, Pane, Screen, ui::MAX_ZOOM};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
@@ -19,8 +20,10 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Step => accepted(model, &Order::Step),
         ActionId::Abort => abort(model),
         ActionId::ChoosePlanner => swap(model),
-        ActionId::Parameters => parameters(model),
-        ActionId::Acknowledge => {
+        ActionId::Parameters | ActionId::SetParameter => parameters(model),
+        ActionId::SetSpeed => simulating(model),
+        ActionId::Open => nothing_under_way(model),
+        ActionId::Acknowledge | ActionId::AcknowledgeAll => {
             let waiting = model.live.run.alarms.list().iter().any(|alarm| !alarm.acknowledged);
             demand(waiting, "no unacknowledged alarms")
         }
@@ -28,7 +31,7 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Faster => speed(model, true),
         ActionId::ZoomIn => map(model).and(demand(model.ui.map.zoom < MAX_ZOOM, "already at maximum zoom")),
         ActionId::ZoomOut => map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is already shown")),
-        ActionId::WholeTank | ActionId::Layers => map(model),
+        ActionId::WholeTank | ActionId::Layers | ActionId::Centre => map(model),
         ActionId::Follow => {
             map(model).and(demand(model.live.run.position.pose.is_some(), "no position estimate yet"))
         }
@@ -49,6 +52,7 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
             let turns = model.ui.screen == Screen::Home || !model.ui.panes().is_empty();
             demand(turns, "there is one pane only")
         }
+        ActionId::Complete => demand(typing::completes(model), "nothing to complete here"),
         ActionId::Interrupt
         | ActionId::Redraw
         | ActionId::Suspend
@@ -58,6 +62,8 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::Back
         | ActionId::Leave
         | ActionId::Filter
+        | ActionId::GoTo
+        | ActionId::Theme
         | ActionId::Accept
         | ActionId::Cancel
         | ActionId::Up
@@ -124,8 +130,17 @@ fn parameters(model: &Model) -> Result<(), String> {
     }
 }
 
+fn simulating(model: &Model) -> Result<(), String> {
+    demand(model.live.run.about.is_some() && !model.live.run.has_ended(), "no mission is open")
+}
+
+/// One mission at a time.
+pub(super) fn nothing_under_way(model: &Model) -> Result<(), String> {
+    demand(!model.live.is_under_way(), "a mission is in progress; 3: show it, X: end it")
+}
+
 fn speed(model: &Model, faster: bool) -> Result<(), String> {
-    demand(model.live.run.about.is_some() && !model.live.run.has_ended(), "no mission is open")?;
+    simulating(model)?;
     let end = if faster { "already at maximum speed" } else { "already at minimum speed" };
     demand(model.live.speed.stepped(faster).is_some(), end)
 }

@@ -1,20 +1,36 @@
 //! The line above the keys: a question if one is open, else what comes next.
 
+use super::field::field;
+use super::lists::place_cursor;
 use super::look::Look;
 use super::next::{self, Clauses};
 use super::{coverage, text};
-use crate::model::{Model, Overlay, ui::Ask};
+use crate::model::{LineEdit, Model, Overlay, ui::Ask};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    if let Overlay::Filter(line) = &look.model.ui.overlay {
+        return filter(look, frame, area, line);
+    }
     let (role, clauses) = clauses(look.model);
     let columns = usize::from(area.width).saturating_sub(1);
     let text = next::joined(&clauses, columns.saturating_sub(1));
     let text = if role == Role::Confirm { text::column(&text, columns) } else { text };
     frame.render_widget(Line::from(vec![look.span(Role::Text, " "), look.span(role, text)]), area);
+}
+
+/// The line in which a filter is typed, and which keys end it.
+fn filter(look: &Look, frame: &mut Frame, area: Rect, line: &LineEdit) {
+    const PROMPT: &str = " Filter: ";
+    const KEYS: &str = "  Enter: keep, Esc: clear.";
+    let columns = usize::from(area.width).saturating_sub(1);
+    let shown = field(line, columns.saturating_sub(text::width(PROMPT) + text::width(KEYS)));
+    let typed = text::column(&format!("{PROMPT}{}{KEYS}", shown.text), columns);
+    frame.render_widget(Line::from(vec![look.span(Role::Text, " "), look.span(Role::Confirm, typed)]), area);
+    place_cursor(frame, area, (1 + text::width(PROMPT) + shown.cursor, 0));
 }
 
 /// The question that is open, or what comes next.
@@ -50,10 +66,6 @@ fn question(model: &Model) -> Option<Vec<String>> {
             ]
         }
         Overlay::Quit => quit(model),
-        Overlay::Filter => {
-            let typed = text::fit(&model.ui.needle, 20);
-            vec![format!("Filter events: {typed}_"), " Enter: keep, Esc: clear.".into()]
-        }
         _ => return None,
     };
     Some(clauses)

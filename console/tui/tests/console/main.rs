@@ -1,8 +1,10 @@
 //! The console from outside: scripts of messages, stored screens, and laws that hold for every screen.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod commands;
 mod fixture;
 mod laws;
+mod reference;
 mod screens;
 mod scripts;
 mod stopping;
