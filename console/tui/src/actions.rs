@@ -9,7 +9,7 @@ pub mod keymap;
 mod tests;
 
 pub use action::{Action, Risk};
-pub use argument::{Arg, Kind};
+pub use argument::{Arg, Kind, duration_s};
 
 use crate::keys::Key;
 use action::action;

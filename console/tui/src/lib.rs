@@ -10,6 +10,7 @@ pub mod actions;
 pub mod caps;
 pub mod keys;
 pub mod model;
+pub mod plain;
 pub mod terminal;
 pub mod theme;
 pub mod update;

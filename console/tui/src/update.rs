@@ -39,6 +39,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
             news(model, Cause::Console, Severity::Crit, text);
         }
         Msg::Paste(text) => typing::paste(model, &text),
+        Msg::Line(line) => effects = palette::obey(model, line.trim()),
         Msg::Resize { width, height } => resize(model, width, height),
         Msg::Time(now) => model.console.now = now,
         Msg::Run(id, msg) => effects = hear::hear(model, id, msg),
@@ -55,7 +56,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
 
 /// How many alarms ring the bell that the operator has not acknowledged.
 fn ringing(model: &Model) -> usize {
-    let Bell(Some(least)) = model.console.bell else { return 0 };
+    let Bell(Some(least)) = model.console.preferences.bell else { return 0 };
     let alarms = model.live.run.alarms.list().iter();
     alarms.filter(|alarm| !alarm.acknowledged && alarm.severity >= least).count()
 }

@@ -21,6 +21,10 @@ mod tether;
 mod text;
 mod top;
 
+pub(crate) use confirm::question;
+pub(crate) use events::log_line;
+pub(crate) use next::standing;
+
 use crate::caps::{Caps, Glyphs};
 use crate::model::{Model, Pane, Screen, ui::Arrangement};
 use crate::theme::Theme;

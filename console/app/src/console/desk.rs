@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     cli::{Changes, Drill},
+    config::Config,
     planners::check_choices,
     rescan, scenarios,
 };
@@ -48,6 +49,7 @@ pub(super) struct Tools {
     pub plugins: PluginDirs,
     pub planners: Arc<Vec<PlannerInfo>>,
     pub outbox: Outbox,
+    pub config: Arc<Config>,
 }
 
 /// The desk.

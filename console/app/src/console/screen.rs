@@ -1,10 +1,6 @@
 //! The drawing thread: messages in, model updated, effects carried out, a frame when something changed.
 
-use super::{
-    desk::{DeskHandle, Request},
-    inbox::Inbox,
-    line::Current,
-};
+use super::session::Session;
 use crate::{
     cli::Drill,
     failure::{COMPLETE, ENDED_OTHERWISE, exit_code},
@@ -15,9 +11,9 @@ use runs::Closed;
 use std::{
     io::Write,
     process::ExitCode,
-    time::{Duration, Instant, SystemTime},
+    time::{Duration, Instant},
 };
-use tui::{Caps, Effect, Model, Msg, RunMsg, Signal, Times, is_typing, terminal::TerminalGuard, update};
+use tui::{Caps, Effect, Model, Msg, RunMsg, Signal, terminal::TerminalGuard};
 
 /// Messages that are taken in before the next frame, at most.
 const BURST: usize = 256;
@@ -29,12 +25,8 @@ const KEY_FRAME: Duration = Duration::from_millis(8);
 /// The screen while the console is open.
 pub(super) struct Screen {
     terminal: TerminalGuard,
-    model: Model,
+    session: Session,
     caps: Caps,
-    inbox: Inbox,
-    engine: Current,
-    desk: DeskHandle,
-    began: Instant,
     drawn: Instant,
     frame_interval: Duration,
     dirty: bool,
@@ -52,26 +44,15 @@ pub(super) struct Left {
 
 impl Screen {
     /// Takes the terminal over.
-    pub(super) fn open(
-        caps: Caps,
-        mut model: Model,
-        inbox: Inbox,
-        (engine, desk): (Current, DeskHandle),
-        drill: Option<Drill>,
-    ) -> anyhow::Result<Self> {
+    pub(super) fn open(caps: Caps, mut session: Session, drill: Option<Drill>) -> anyhow::Result<Self> {
         let terminal = TerminalGuard::enter().context("taking over the terminal")?;
         let (width, height) = crossterm::terminal::size().unwrap_or((80, 24));
-        update(&mut model, Msg::Resize { width, height });
-        let now = Instant::now();
+        session.take(Msg::Resize { width, height });
         Ok(Self {
             terminal,
-            model,
+            session,
             caps,
-            inbox,
-            engine,
-            desk,
-            began: now,
-            drawn: now,
+            drawn: Instant::now(),
             // A slow line gets fewer frames.
             frame_interval: Duration::from_millis(if caps.ssh { 100 } else { 33 }),
             dirty: true,
@@ -82,7 +63,7 @@ impl Screen {
 
     /// What the screen knows, for a crash report.
     pub(super) fn model(&self) -> &Model {
-        &self.model
+        &self.session.model
     }
 
     /// Runs until the operator or a signal wants to leave.
@@ -105,25 +86,20 @@ impl Screen {
     /// Waits for a message, then takes in what else is there.
     fn take_burst(&mut self) -> anyhow::Result<Option<Left>> {
         let first = self.wait();
-        self.update_time();
+        self.session.update_time();
         self.dirty = true;
         let until = Instant::now() + BURST_TIME;
         let mut next = first;
         for _ in 0..BURST {
             let Some(msg) = next else { break };
             self.answer_seen |= is_answer(&msg);
-            let effects = update(&mut self.model, msg);
-            let engine = self.engine.get();
-            if let Some(engine) = &engine {
-                engine.report(self.model.live.may_move(), is_typing(&self.model));
-            }
-            for effect in effects {
+            for effect in self.session.take(msg) {
                 if let Some(left) = self.carry_out(effect)? {
                     return Ok(Some(left));
                 }
             }
             let now = Instant::now();
-            next = if now < until { self.inbox.next(Some(now)) } else { None };
+            next = if now < until { self.session.next(Some(now)) } else { None };
         }
         Ok(None)
     }
@@ -131,33 +107,17 @@ impl Screen {
     /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.
     fn wait(&self) -> Option<Msg> {
         let frame = self.dirty.then(|| self.drawn + self.pause());
-        let by_itself =
-            self.model.wakes_at_mono_s().map(|at_s| self.began + Duration::from_secs_f64(at_s.max(0.0)));
-        // By itself the screen changes a little after the moment, so that the moment has passed then.
-        let by_itself = by_itself.map(|at| at + Duration::from_millis(1));
-        self.inbox.next(frame.into_iter().chain(by_itself).min())
-    }
-
-    fn update_time(&mut self) {
-        let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
-        let now =
-            Times { mono_s: self.began.elapsed().as_secs_f64(), wall_unix_s: since_epoch.as_secs_f64() };
-        update(&mut self.model, Msg::Time(now));
+        self.session.next(frame.into_iter().chain(self.session.wakes_at()).min())
     }
 
     fn carry_out(&mut self, effect: Effect) -> anyhow::Result<Option<Left>> {
         match effect {
-            Effect::Open { id, source, planner } => self.desk.request(Request::Open { id, source, planner }),
-            Effect::Look => self.desk.request(Request::Look),
-            Effect::Do(job) => self.desk.request(Request::Do(job)),
-            Effect::Order(order) => {
-                self.engine.get().into_iter().for_each(|engine| engine.order(order.clone()))
-            }
-            Effect::Speed(speed) => self.engine.get().into_iter().for_each(|engine| engine.speed(speed)),
             Effect::Redraw => self.terminal.redraw().context("drawing")?,
             Effect::Bell => ring()?,
             Effect::Suspend => self.suspend()?,
             Effect::Quit { signal } => return Ok(Some(Left { signal })),
+            // The session has carried out the others.
+            _ => {}
         }
         Ok(None)
     }
@@ -173,9 +133,9 @@ impl Screen {
     }
 
     fn draw(&mut self) -> anyhow::Result<()> {
-        let failing = self.drill == Some(Drill::PanicScreen) && self.model.live.run.clock.tick > 5;
+        let failing = self.drill == Some(Drill::PanicScreen) && self.session.model.live.run.clock.tick > 5;
         assert!(!failing, "drill: the screen fails on purpose");
-        let (model, caps) = (&self.model, &self.caps);
+        let (model, caps) = (&self.session.model, &self.caps);
         self.terminal.draw(|frame| tui::view(model, caps, frame)).context("drawing")?;
         (self.drawn, self.dirty, self.answer_seen) = (Instant::now(), false, false);
         Ok(())

@@ -57,3 +57,41 @@ impl Arg {
         if self.is_required { value } else { format!("[{value}]") }
     }
 }
+
+/// Reads a span of time such as `20s`, `15m`, `1h30m`; seconds.
+///
+/// # Errors
+/// How it is written.
+pub fn duration_s(text: &str) -> Result<f64, String> {
+    let wrong = || format!("no duration `{text}`; write 20s, 15m or 1h30m");
+    let mut total_s = 0.0;
+    let mut rest = text;
+    while !rest.is_empty() {
+        let end = rest.find(|letter: char| !letter.is_ascii_digit() && letter != '.').ok_or_else(wrong)?;
+        let number: f64 = rest[..end].parse().map_err(|_| wrong())?;
+        let unit_s = match rest.get(end..=end).unwrap_or_default() {
+            "s" => 1.0,
+            "m" => 60.0,
+            "h" => 3600.0,
+            _ => return Err(wrong()),
+        };
+        total_s += number * unit_s;
+        rest = &rest[end + 1..];
+    }
+    if total_s > 0.0 { Ok(total_s) } else { Err(wrong()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_have_units() {
+        for (text, seconds) in [("20s", 20.0), ("15m", 900.0), ("1h30m", 5400.0), ("0.5s", 0.5)] {
+            assert_eq!(duration_s(text), Ok(seconds), "{text}");
+        }
+        for wrong in ["", "20", "s", "1d", "-5s", "0s", "1.2.3s", "5\u{e9}"] {
+            assert!(duration_s(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -104,6 +104,25 @@ impl Default for Bell {
     }
 }
 
+/// What the operator has set up.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Preferences {
+    /// Who operates.
+    pub operator: Option<String>,
+    /// Whether the mouse is used.
+    pub mouse: bool,
+    /// Which new alarms ring the bell.
+    pub bell: Bell,
+    /// Longest time for which an alarm may be shelved, minutes.
+    pub shelve_max_min: u32,
+}
+
+impl Default for Preferences {
+    fn default() -> Self {
+        Self { operator: None, mouse: false, bell: Bell::default(), shelve_max_min: 60 }
+    }
+}
+
 /// The console itself.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Console {
@@ -119,8 +138,8 @@ pub struct Console {
     pub keys: Keymap,
     /// The last command lines, the newest last.
     pub history: Vec<String>,
-    /// Which new alarms ring the bell.
-    pub bell: Bell,
+    /// What the operator has set up.
+    pub preferences: Preferences,
     /// When Ctrl-C was last pressed, on the console's own clock, seconds.
     pub interrupted_mono_s: Option<f64>,
 }

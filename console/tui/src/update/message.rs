@@ -12,6 +12,8 @@ pub enum Msg {
     Key(KeyPress),
     /// Text was pasted.
     Paste(String),
+    /// A command line that was not typed into the screen: from a script or from stdin.
+    Line(String),
     /// The terminal has this size now.
     Resize {
         /// Columns.

@@ -2,7 +2,7 @@
 
 use super::command::{self, line};
 use super::message::Effect;
-use super::offer::offered;
+use super::offer::{offered, refuse};
 use super::overlay::open;
 use crate::actions::context::{Context, of_screen};
 use crate::actions::find::{self, Match};
@@ -111,6 +111,14 @@ fn chosen(model: &mut Model, action: &'static Action, typed: &str) -> Vec<Effect
         remember(model, if find::named(typed) == Some(action) { typed } else { action.name });
     }
     super::act(model, action.id)
+}
+
+/// Runs a line that was not typed into the screen. It answers no question.
+pub(super) fn obey(model: &mut Model, line: &str) -> Vec<Effect> {
+    if matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping) {
+        return refuse(model, "a question is open; answer it first".into());
+    }
+    run(model, Palette::begun(line), line)
 }
 
 fn run(model: &mut Model, palette: Palette, text: &str) -> Vec<Effect> {

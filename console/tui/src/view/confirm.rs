@@ -35,11 +35,16 @@ fn filter(look: &Look, frame: &mut Frame, area: Rect, line: &LineEdit) {
 
 /// The question that is open, or what comes next.
 pub(super) fn clauses(model: &Model) -> Clauses {
-    question(model).map_or_else(|| next::clauses(model), |clauses| (Role::Confirm, clauses))
+    asked(model).map_or_else(|| next::clauses(model), |clauses| (Role::Confirm, clauses))
+}
+
+/// The question that is open, with the keys that answer it.
+pub(crate) fn question(model: &Model) -> Option<String> {
+    asked(model).map(|clauses| clauses.join(" "))
 }
 
 /// What is asked and which keys answer come in the first clause: they are never left out.
-fn question(model: &Model) -> Option<Vec<String>> {
+fn asked(model: &Model) -> Option<Vec<String>> {
     let moves = || format!("Robot will move (planner {}).", model.live.run.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
         Overlay::Confirm(Ask::Start) => vec!["Start mission? Enter: start, Esc: cancel.".into(), moves()],

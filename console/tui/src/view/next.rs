@@ -15,6 +15,10 @@ pub(super) fn clauses(model: &Model) -> Clauses {
             if notice.severity == Severity::Info { Role::Title } else { events::role(notice.severity) };
         return (role, vec![text::capitalized(&notice.text)]);
     }
+    clauses_without_notice(model)
+}
+
+fn clauses_without_notice(model: &Model) -> Clauses {
     if let Some(silent_s) = model.silent_s() {
         let news = format!("◌ No data from the mission for {} s: values are stale.", silent_s as u64);
         return (Role::Stale, vec![news, "space: HOLD.".into()]);
@@ -55,6 +59,17 @@ pub(super) fn clauses(model: &Model) -> Clauses {
             ],
         ),
     }
+}
+
+/// What comes next, without figures that change all the time.
+pub(crate) fn standing(model: &Model) -> String {
+    if let Some(busy) = &model.live.busy {
+        return format!("{}.", busy.work);
+    }
+    if model.live.run.is_running() {
+        return "Mission running.".into();
+    }
+    clauses_without_notice(model).1.join(" ")
 }
 
 /// What a planner is doing and how far, for how long already and its limit, and what exactly.

@@ -43,7 +43,7 @@ fn line(palette: &Palette, found: usize, room: usize) -> (Vec<Row>, usize) {
         0 => "   no match".to_owned(),
         found => format!("   {found} of {}", find::commands().count()),
     };
-    let is_named = palette.line.text().trim().contains(' ') || palette.fault.is_some();
+    let is_named = palette.line.text().trim_start().contains(' ') || palette.fault.is_some();
     let count = if is_named { String::new() } else { count };
     let shown = field(&palette.line, room.saturating_sub(text::width(PROMPT) + text::width(&count)));
     let cursor = text::width(PROMPT) + shown.cursor;
@@ -95,7 +95,8 @@ fn below(selected: Option<&Choice>, room: usize) -> Vec<Row> {
         Some(Choice::Command(action)) if !action.args.is_empty() => Some(format!("{}.", action.usage())),
         _ => None,
     };
-    let keys = ["Enter: run.", "Esc: close.", "Tab: complete.", "-: not available.", "↑: earlier lines."].map(str::to_owned);
+    let keys = ["Enter: run.", "Esc: close.", "Tab: complete.", "-: not available.", "↑: earlier lines."]
+        .map(str::to_owned);
     let clauses: Vec<String> = usage.into_iter().chain(keys).collect();
     vec![hint(&format!(" {}", joined(&clauses, room)))]
 }
