@@ -96,7 +96,7 @@ fn completions_and_manual_pages_are_printed() {
     let bench = Bench::new();
     for shell in ["bash", "zsh", "fish"] {
         let printed = bench.tankops(&["completions", shell]);
-        assert!(printed.code == Some(0) && printed.out.contains("--script"), "{shell}: {printed:?}");
+        assert!(printed.code == Some(0) && printed.out.contains("script"), "{shell}: {printed:?}");
     }
     let page = bench.tankops(&["man", "console"]);
     assert!(page.code == Some(0) && page.out.contains(".TH tankops-console 1"), "{page:?}");

@@ -82,7 +82,10 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
 /// a later Enter must not agree to it.
 fn unknown(model: &mut Model, key: Key) {
     match model.ui.overlay {
-        Overlay::None => model.say(Severity::Info, format!("key {key} is not assigned (?: show keys)")),
+        Overlay::None => {
+            let help = model.console.keys.spelled("(<help>: show keys)");
+            model.say(Severity::Info, format!("key {key} is not assigned {help}"));
+        }
         Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping => {
             model.ui.overlay = Overlay::None;
             model.say(Severity::Info, format!("cancelled: key {key} is not an answer"));

@@ -1,6 +1,12 @@
 //! The console in sentences: what changes goes to stdout, commands come from stdin.
 
-use super::{inbox::Outbox, line::Current, screen::Left, session::Session, watch};
+use super::{
+    inbox::Outbox,
+    line::Current,
+    screen::Left,
+    session::{Session, is_open},
+    watch,
+};
 use crate::output::say_line;
 use anyhow::Context;
 use std::{
@@ -20,9 +26,14 @@ use tui::{Effect, Key, Model, Msg, Signal, plain::Said};
 pub(super) fn speak(mut session: Session, outbox: &Outbox, engine: &Current) -> anyhow::Result<Left> {
     watch::signals(outbox, engine.clone())?;
     let is_over = Arc::new(AtomicBool::new(false));
-    listen(outbox, Arc::clone(&is_over))?;
+    let mut is_listening = false;
     let mut said = Said::default();
     loop {
+        // A command counts from when the scenario is open, as for an operator who sees the screen.
+        if !is_listening && is_open(&session.model) {
+            listen(outbox, Arc::clone(&is_over))?;
+            is_listening = true;
+        }
         for line in said.next(&session.model) {
             say_line(&line)?;
         }

@@ -12,7 +12,12 @@
 mod condition;
 mod read;
 
-use super::{inbox::Outbox, line::Current, session::Session, watch};
+use super::{
+    inbox::Outbox,
+    line::Current,
+    session::{Session, is_open},
+    watch,
+};
 use crate::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
     output::warn_line,
@@ -107,7 +112,6 @@ struct Runner {
 impl Runner {
     fn carry_out(&mut self, script: &Script) -> Result<(), String> {
         // A command counts from when the scenario is open, as for an operator who sees the screen.
-        let is_open = |model: &Model| !model.live.is_opening && model.home.found.is_some();
         self.hear_until(OPENING, is_open)?;
         for (line, step) in &script.steps {
             let done = self.step(step);

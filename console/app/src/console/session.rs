@@ -65,3 +65,8 @@ impl Session {
         None
     }
 }
+
+/// Whether the scenario and the home screen are open, or the scenario cannot be opened.
+pub(super) fn is_open(model: &Model) -> bool {
+    !model.live.is_opening && model.home.found.is_some()
+}

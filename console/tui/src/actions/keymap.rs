@@ -1,7 +1,12 @@
 //! Which keys run which actions: the table's, a preset's, the operator's.
 
+mod presets;
+
+pub use presets::PRESETS;
+
 use super::{ACTIONS, Action, ActionId, Risk, context::TOGETHER, find};
 use crate::keys::Key;
+use presets::Changes;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -13,43 +18,6 @@ pub struct Keymap {
     /// Command lines by their short names.
     pub aliases: BTreeMap<String, String>,
 }
-
-/// Keys that differ from the table's, by action.
-type Changes = &'static [(&'static str, &'static [Key])];
-
-/// Arrows and named keys only: no letter moves anything.
-const ARROWS: Changes = &[
-    ("pan-west", &[Key::Left]),
-    ("pan-east", &[Key::Right]),
-    ("pan-north", &[Key::Up]),
-    ("pan-south", &[Key::Down]),
-    ("up", &[Key::Up]),
-    ("down", &[Key::Down]),
-    ("page-up", &[Key::PageUp]),
-    ("page-down", &[Key::PageDown]),
-    ("first", &[Key::Home]),
-    ("last", &[Key::End]),
-    ("zoom-in", &[Key::Char('+')]),
-    ("zoom-out", &[Key::Char('-')]),
-];
-
-/// Letters before arrows, and the keys of a pager.
-const VIM: Changes = &[
-    ("pan-west", &[Key::Char('h'), Key::Left]),
-    ("pan-east", &[Key::Char('l'), Key::Right]),
-    ("pan-north", &[Key::Char('k'), Key::Up]),
-    ("pan-south", &[Key::Char('j'), Key::Down]),
-    ("up", &[Key::Char('k'), Key::Up, Key::Ctrl('p')]),
-    ("down", &[Key::Char('j'), Key::Down, Key::Ctrl('n')]),
-    ("page-up", &[Key::Ctrl('u'), Key::PageUp]),
-    ("page-down", &[Key::Ctrl('d'), Key::Ctrl('f'), Key::PageDown]),
-    ("commands", &[Key::Char(':')]),
-    ("zoom-in", &[Key::Char('+'), Key::Char('z')]),
-    ("zoom-out", &[Key::Char('-'), Key::Char('Z')]),
-];
-
-/// The presets by name.
-pub const PRESETS: [(&str, Changes); 3] = [("default", &[]), ("arrows", ARROWS), ("vim", VIM)];
 
 /// An action and the keys that the operator wants for it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -84,6 +52,16 @@ impl Keymap {
     /// The keys of an action as text.
     pub fn text(&self, action: &Action) -> String {
         self.of(action).iter().map(Key::to_string).collect::<Vec<_>>().join(" ")
+    }
+
+    /// A sentence with the key of each action that it names as `<end>`; one without a key is called by its command.
+    pub fn spelled(&self, sentence: &str) -> String {
+        let mut text = sentence.to_owned();
+        for action in ACTIONS.iter().filter(|_| sentence.contains('<')) {
+            let key = self.of(action).first().map_or_else(|| format!(":{}", action.name), Key::to_string);
+            text = text.replace(&format!("<{}>", action.name), &key);
+        }
+        text
     }
 
     /// A preset with the operator's own keys. What cannot be taken is left out, and its action keeps the preset's keys.
@@ -275,6 +253,13 @@ mod tests {
         for (pairs, said) in cases {
             assert_eq!(bound(pairs).1, [said]);
         }
+    }
+
+    #[test]
+    fn sentences_name_the_keys_that_work() {
+        let (map, _) = bound(&[("end", &[Key::F(9)]), ("zoom-in", &[])]);
+        let sentence = "<planner>: change planner, <end>: end mission, <zoom-in>: zoom in, 3 < 4";
+        assert_eq!(map.spelled(sentence), "P: change planner, F9: end mission, :zoom-in: zoom in, 3 < 4");
     }
 
     #[test]

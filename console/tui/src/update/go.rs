@@ -51,7 +51,8 @@ fn go_to_run(model: &mut Model) -> Vec<Effect> {
     if is_open {
         go(model, Screen::Result)
     } else {
-        refuse(model, "w: report of this run, o: open it in rerun".into())
+        let why = model.console.keys.spelled("<report>: report of this run, <view>: open it in rerun");
+        refuse(model, why)
     }
 }
 

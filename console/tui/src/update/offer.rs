@@ -12,6 +12,10 @@ use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 /// # Errors
 /// Why not, and what would be right, as a sentence.
 pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
+    can(model, id).map_err(|why| model.console.keys.spelled(&why))
+}
+
+fn can(model: &Model, id: ActionId) -> Result<(), String> {
     match id {
         ActionId::Hold => hold(model),
         ActionId::Start => start(model),
@@ -36,11 +40,12 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
             map(model).and(demand(model.live.run.position.pose.is_some(), "no position estimate yet"))
         }
         ActionId::PanLeft | ActionId::PanRight | ActionId::PanUp | ActionId::PanDown => {
-            map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is shown; z: zoom in first"))
+            map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is shown; <zoom-in>: zoom in first"))
         }
-        ActionId::Severity => {
-            demand(model.ui.shows(Pane::Events), "the events are not shown; Tab: next pane (needs 60x16)")
-        }
+        ActionId::Severity => demand(
+            model.ui.shows(Pane::Events),
+            "the events are not shown; <next-pane>: next pane (needs 60x16)",
+        ),
         ActionId::GoPlan | ActionId::GoMission => {
             demand(model.live.source.is_some(), "no mission is open; choose one on screen 1 (Home)")
         }
@@ -90,7 +95,7 @@ fn demand(met: bool, otherwise: &str) -> Result<(), String> {
 pub(super) fn accepted(model: &Model, order: &Order) -> Result<(), String> {
     model.live.run.standing.standing().allows(order).map_err(|why| {
         match remedy(&why, model.live.run.phase()) {
-            Some(remedy) => format!("{why}; {remedy}"),
+            Some(remedy) => model.console.keys.spelled(&format!("{why}; {remedy}")),
             None => why.to_string(),
         }
     })
@@ -136,7 +141,8 @@ fn simulating(model: &Model) -> Result<(), String> {
 
 /// One mission at a time.
 pub(super) fn nothing_under_way(model: &Model) -> Result<(), String> {
-    demand(!model.live.is_under_way(), "a mission is in progress; 3: show it, X: end it")
+    let why = model.console.keys.spelled("a mission is in progress; <mission>: show it, <end>: end it");
+    demand(!model.live.is_under_way(), &why)
 }
 
 fn speed(model: &Model, faster: bool) -> Result<(), String> {
@@ -146,20 +152,20 @@ fn speed(model: &Model, faster: bool) -> Result<(), String> {
 }
 
 fn map(model: &Model) -> Result<(), String> {
-    demand(model.ui.shows(Pane::Map), "the map is not shown; Tab: next pane (needs 60x16)")
+    demand(model.ui.shows(Pane::Map), "the map is not shown; <next-pane>: next pane (needs 60x16)")
 }
 
 /// What would be right, in keys.
 fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
     match why {
-        Refusal::NotStarted => Some("S: start"),
+        Refusal::NotStarted => Some("<start>: start"),
         // Space asks to resume then.
         Refusal::AlreadyStarted if matches!(phase, Phase::Held(_)) => None,
         Refusal::AlreadyStarted
         | Refusal::AlreadyMoving
         | Refusal::StepNeedsHold
         | Refusal::SwapNeedsHold => Some("space: HOLD"),
-        Refusal::Ended(_) => Some("1: open another one"),
+        Refusal::Ended(_) => Some("<home>: open another one"),
         // These say themselves what would be right, as far as there is anything.
         Refusal::NotLive { .. }
         | Refusal::PositionLost { .. }

@@ -15,10 +15,16 @@ pub(super) fn clauses(model: &Model) -> Clauses {
             if notice.severity == Severity::Info { Role::Title } else { events::role(notice.severity) };
         return (role, vec![text::capitalized(&notice.text)]);
     }
-    clauses_without_notice(model)
+    without_notice(model)
 }
 
-fn clauses_without_notice(model: &Model) -> Clauses {
+/// What comes next, with the keys that the operator has.
+fn without_notice(model: &Model) -> Clauses {
+    let (role, clauses) = by_phase(model);
+    (role, clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
+}
+
+fn by_phase(model: &Model) -> Clauses {
     if let Some(silent_s) = model.silent_s() {
         let news = format!("◌ No data from the mission for {} s: values are stale.", silent_s as u64);
         return (Role::Stale, vec![news, "space: HOLD.".into()]);
@@ -43,19 +49,20 @@ fn clauses_without_notice(model: &Model) -> Clauses {
         }
         (None, Phase::Running(_)) => match work {
             Some(work) => {
-                let stop = ["space: HOLD.", "X: end mission."].map(str::to_owned);
+                let stop = ["space: HOLD.", "<end>: end mission."].map(str::to_owned);
                 (Role::Watch, work.into_iter().chain(stop).collect())
             }
             None => running(model),
         },
-        (None, Phase::Ended(Outcome::Complete)) => {
-            (Role::Good, vec![format!("DONE: {}.", model.live.run.end_reason), "7: result. 1: home.".into()])
-        }
+        (None, Phase::Ended(Outcome::Complete)) => (
+            Role::Good,
+            vec![format!("DONE: {}.", model.live.run.end_reason), "<result>: result. <home>: home.".into()],
+        ),
         (None, Phase::Ended(outcome)) => (
             Role::Warn,
             vec![
                 format!("ENDED ({}): {}.", outcome.word(), model.live.run.end_reason),
-                "7: result. 1: home.".into(),
+                "<result>: result. <home>: home.".into(),
             ],
         ),
     }
@@ -69,7 +76,7 @@ pub(crate) fn standing(model: &Model) -> String {
     if model.live.run.is_running() {
         return "Mission running.".into();
     }
-    clauses_without_notice(model).1.join(" ")
+    without_notice(model).1.join(" ")
 }
 
 /// What a planner is doing and how far, for how long already and its limit, and what exactly.
@@ -105,7 +112,7 @@ fn idle(model: &Model) -> Clauses {
         return (Role::Title, vec!["Loading scenario...".into()]);
     }
     let who = model.live.run.planner_id().unwrap_or("unknown");
-    (Role::Title, vec![format!("Press S to start (planner {who}).")])
+    (Role::Title, vec![format!("Press <start> to start (planner {who}).")])
 }
 
 fn running(model: &Model) -> Clauses {
@@ -118,7 +125,10 @@ fn running(model: &Model) -> Clauses {
         model.live.run.alarms.worst().filter(|alarm| !alarm.acknowledged && alarm.severity >= Severity::Warn);
     if let Some(alarm) = open {
         let over = if alarm.active { "" } else { " (cleared)" };
-        return (events::role(alarm.severity), vec![format!("a: acknowledge{over}: {}", alarm.text)]);
+        return (
+            events::role(alarm.severity),
+            vec![format!("<acknowledge>: acknowledge{over}: {}", alarm.text)],
+        );
     }
     let calm = "No action required.".to_owned();
     let Some(progress) = &model.live.run.progress else {
@@ -169,7 +179,7 @@ fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec
         HoldReason::PositionLost | HoldReason::RangesInconsistent => format!("HELD: {trouble}."),
         by => format!("{}; {trouble}.", state(by)),
     };
-    let planner = by.blames_planner().then(|| "P: change planner.".to_owned());
+    let planner = by.blames_planner().then(|| "<planner>: change planner.".to_owned());
     [state, needs.into()].into_iter().chain(planner).collect()
 }
 
@@ -177,7 +187,7 @@ fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec
 fn held_for_good(by: &HoldReason) -> Vec<String> {
     const RESUME: &str = "space: resume.";
     const RETRY: &str = "space: retry.";
-    const PLANNER: &str = "P: change planner.";
+    const PLANNER: &str = "<planner>: change planner.";
     let (state, remedies): (&str, &[&str]) = match by {
         // Why the robot was held is over.
         HoldReason::PositionLost => ("HELD: position recovered", &[RESUME]),
@@ -186,7 +196,7 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
         HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
             (state(by), &[RESUME, PLANNER])
         }
-        HoldReason::Tether { .. } => (state(by), &[RESUME, "X: end mission."]),
+        HoldReason::Tether { .. } => (state(by), &[RESUME, "<end>: end mission."]),
         HoldReason::PlanRefused { .. } => (state(by), &[PLANNER, ":fly-uncertified runs it."]),
         HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => (state(by), &[PLANNER, RETRY]),
     };

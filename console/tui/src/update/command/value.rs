@@ -166,7 +166,10 @@ fn runs(model: &Model) -> impl Iterator<Item = &str> {
 
 fn read_run(model: &Model, text: &str) -> Result<String, String> {
     if text == "latest" {
-        return runs(model).next().map(str::to_owned).ok_or_else(|| "there are no runs".into());
+        // The home screen may not have seen the run that has just ended.
+        let ended = model.live.result.as_ref().and_then(|result| result.name.as_deref());
+        let latest = ended.or_else(|| runs(model).next());
+        return latest.map(str::to_owned).ok_or_else(|| "there are no runs".into());
     }
     let fitting: Vec<&str> = runs(model).filter(|name| name.starts_with(text)).collect();
     match fitting.as_slice() {
