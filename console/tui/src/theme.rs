@@ -201,16 +201,18 @@ fn weight(role: Role) -> Modifier {
 
 /// The terminal's own colours; on a light background those that are dark enough.
 fn sixteen(role: Role, name: ThemeName) -> Option<Color> {
-    match (name, sixteen_on_dark(role)?) {
-        (ThemeName::Dark | ThemeName::Contrast, color) => Some(color),
-        (ThemeName::Light, Color::Cyan | Color::LightCyan) => Some(Color::Blue),
-        (ThemeName::Light, Color::Yellow | Color::LightYellow) => Some(Color::Magenta),
-        (ThemeName::Light, Color::Blue) => Some(Color::Cyan),
-        (ThemeName::Light, Color::White | Color::DarkGray) => None,
-        (ThemeName::Light, Color::LightRed) => Some(Color::Red),
-        (ThemeName::Light, Color::LightMagenta) => Some(Color::Magenta),
-        (ThemeName::Light, Color::LightGreen) => Some(Color::Green),
-        (ThemeName::Light, color) => Some(color),
+    let color = sixteen_on_dark(role)?;
+    if name != ThemeName::Light {
+        return Some(color);
+    }
+    match color {
+        Color::Cyan | Color::LightCyan => Some(Color::Blue),
+        Color::Yellow | Color::LightYellow | Color::LightMagenta => Some(Color::Magenta),
+        Color::Blue => Some(Color::Cyan),
+        Color::LightRed => Some(Color::Red),
+        Color::LightGreen => Some(Color::Green),
+        Color::White | Color::DarkGray => None,
+        color => Some(color),
     }
 }
 

@@ -89,11 +89,10 @@ pub(super) fn accept(model: &mut Model, palette: Palette) -> Vec<Effect> {
             return run(model, palette, &text);
         }
         Some(Choice::Alias(_, line)) => return run(model, palette, &line),
-        Some(Choice::Value(_)) => {}
         None if find::named(text.split(' ').next().unwrap_or_default()).is_none() => {
             return fail(model, palette, LineFault { at: 0..text.len(), what: unknown(&text) });
         }
-        None => {}
+        Some(Choice::Value(_)) | None => {}
     }
     run(model, palette, &text)
 }
@@ -155,7 +154,7 @@ pub(super) fn complete(model: &mut Model) {
         }
         Some(Choice::Alias(name, _)) => palette.line = name.as_str().into(),
         Some(Choice::Value(value)) => {
-            palette.line.replace_word(line::word_begin(palette.line.before()), &value)
+            palette.line.replace_word(line::word_begin(palette.line.before()), &value);
         }
         None => return,
     }

@@ -3,7 +3,7 @@
 use crate::keys::Key;
 
 /// Keys that differ from the table's, by action.
-pub type Changes = &'static [(&'static str, &'static [Key])];
+pub(super) type Changes = &'static [(&'static str, &'static [Key])];
 
 /// Arrows and named keys only: no letter moves anything.
 const ARROWS: Changes = &[
