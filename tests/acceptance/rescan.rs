@@ -101,11 +101,14 @@ fn a_journal_that_was_changed_is_reported_wherever_it_is_read() {
     let name = run.to_str().unwrap();
     let journal = run.join("events.jsonl");
     let text = std::fs::read_to_string(&journal).unwrap();
-    assert!(!bench.tankops(&["report", name]).out.contains("not the one that was written"));
+    assert!(!bench.tankops(&["report", name]).out.contains("not the one that the report was made from"));
     std::fs::write(&journal, text.replacen("\"collided\":false", "\"collided\":true", 1)).unwrap();
     for command in [vec!["runs"], vec!["report", name], vec!["export", name, "--rrd", "regenerated.rrd"]] {
         let read = bench.tankops(&command);
-        assert!(read.code == Some(0) && read.out.contains("not the one that was written"), "{read:?}");
+        assert!(
+            read.code == Some(0) && read.out.contains("not the one that the report was made from"),
+            "{read:?}"
+        );
     }
 }
 

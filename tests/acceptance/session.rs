@@ -157,6 +157,10 @@ impl Session {
     pub(crate) fn finish(&mut self) {
         self.press(">>>>>>");
         self.see("DONE");
+        self.see("7 Result");
+        // Back, screen by screen, and out.
+        self.press("1");
+        self.see("1 Home");
         self.press("q");
         assert_eq!(self.back_in_the_shell(), "code=0");
     }

@@ -78,7 +78,7 @@ fn a_small_terminal_keeps_the_controls() {
     session.see("RUN");
     session.press(" ");
     session.see("HOLD");
-    session.press("q");
+    session.press("1q");
     session.see("Enter");
     session.press("\r");
     assert_eq!(session.back_in_the_shell(), "code=1");
@@ -88,7 +88,7 @@ fn a_small_terminal_keeps_the_controls() {
 fn quitting_before_the_start_leaves_no_run() {
     let mut session = Session::open("console", 100, 30);
     session.see("IDLE");
-    session.press("q");
+    session.press("qq");
     assert_eq!(session.back_in_the_shell(), "code=0");
     assert!(session.bench.runs().is_empty());
 }

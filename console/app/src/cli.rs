@@ -15,7 +15,7 @@ pub(crate) struct Cli {
     pub plugins: PluginArgs,
 }
 
-/// Where planners are looked for, besides beside the program and in `$TANKOPS_PLUGIN_PATH`.
+/// Where planners are searched for, in addition to the program's folder and `$TANKOPS_PLUGIN_PATH`.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct PluginArgs {
     /// Additional folder of planner plugins, searched first; repeatable.
@@ -33,7 +33,7 @@ pub(crate) enum Command {
     Plan(PlanArgs),
     /// Forecast the position accuracy that the stations give, and advise where to place them.
     Accuracy(AccuracyArgs),
-    /// List the planners found, and the plugins refused with reasons.
+    /// List available planners, and refused plugins with the reason.
     Planners {
         /// Print JSON.
         #[arg(long)]
@@ -57,12 +57,12 @@ pub(crate) enum Command {
         #[command(flatten)]
         logs: LogsArg,
     },
-    /// Recompute a past run and prove that its journal is identical.
+    /// Recompute a past run and prove that the result matches its journal, byte for byte.
     Verify {
         /// Run folder, or its name in the logs folder.
         run: PathBuf,
-        /// Take the planners' answers from the journal instead of asking the planners again, for a plugin that is not
-        /// available. The output states what this proves and what it does not.
+        /// Take the planners' answers from the journal instead of asking the planners again, for example if a plugin
+        /// is not available. The output states what this proves and what it does not.
         #[arg(long)]
         from_journal: bool,
         #[command(flatten)]
@@ -80,7 +80,7 @@ pub(crate) enum Command {
     },
     /// Show the result of a past run, or of a scan and its re-scans together.
     Report {
-        /// Run folders, or their names in the logs folder; several must be of one floor.
+        /// Run folders, or their names in the logs folder; several runs must be of the same floor.
         #[arg(required = true, value_name = "RUN")]
         runs: Vec<PathBuf>,
         /// Print JSON.
@@ -111,13 +111,13 @@ pub(crate) enum Command {
 
 #[derive(Debug, Args)]
 pub(crate) struct RescanArgs {
-    /// Run folders, or their names in the logs folder: a scan and its re-scans so far.
+    /// Run folders, or their names in the logs folder: a scan and any re-scans of it.
     #[arg(required = true, value_name = "RUN")]
     pub runs: Vec<PathBuf>,
     /// Scenario file to write; must not exist.
     #[arg(short = 'o', long, value_name = "SCENARIO")]
     pub output: PathBuf,
-    /// Skip missed areas smaller than this, square metres; areas close together count as one.
+    /// Ignore missed areas smaller than this, in square metres; areas close together count as one.
     #[arg(long, value_name = "AREA", default_value_t = crate::rescan::MIN_AREA_M2)]
     pub min_area_m2: f64,
     #[command(flatten)]
@@ -172,9 +172,36 @@ pub(crate) struct ConsoleArgs {
     /// Print what changes as sentences, one a line, and read console commands from stdin: for screen readers and logs.
     #[arg(long)]
     pub plain: bool,
+    /// Characters of the map and the charts; default: what the terminal's environment promises.
+    #[arg(long, value_name = "SET")]
+    pub glyphs: Option<GlyphSet>,
     /// Make a part of the console fail while the robot moves, to see that the run and the terminal survive it.
     #[arg(long, value_name = "PART", hide = true)]
     pub drill: Option<Drill>,
+}
+
+/// Characters that the terminal's font has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum GlyphSet {
+    /// Octants of Unicode 16: dots without gaps.
+    Octant,
+    /// Braille dots.
+    Braille,
+    /// Half blocks and letters.
+    Half,
+    /// 7 bit only.
+    Ascii,
+}
+
+impl From<GlyphSet> for tui::Glyphs {
+    fn from(set: GlyphSet) -> Self {
+        match set {
+            GlyphSet::Octant => Self::Octant,
+            GlyphSet::Braille => Self::Braille,
+            GlyphSet::Half => Self::Half,
+            GlyphSet::Ascii => Self::Ascii,
+        }
+    }
 }
 
 /// A part of the console that fails on purpose.
@@ -198,7 +225,7 @@ pub(crate) struct RunArgs {
     #[arg(long)]
     pub no_record: bool,
     /// Hold planners to the console's real-time deadlines (for planner authors): a step that is not answered within 60 %
-    /// of a tick is late. The result then depends on the machine; the journal still verifies.
+    /// of a tick is late. The result then depends on the machine; the journal can still be verified.
     #[arg(long)]
     pub live_deadlines: bool,
     /// Print the report as JSON on stdout, and nothing else.

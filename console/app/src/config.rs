@@ -68,6 +68,7 @@ impl Config {
     pub(crate) fn apply(&self, mut model: Model) -> Model {
         let background = std::env::var("COLORFGBG").ok();
         model.ui.theme = self.theme.unwrap_or_else(|| ThemeName::for_background(background.as_deref()));
+        model.ui.mouse = self.preferences.mouse;
         (model.console.keys, model.console.preferences) = (self.keys.clone(), self.preferences.clone());
         model
     }

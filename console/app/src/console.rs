@@ -1,8 +1,11 @@
 //! The console: engine, keys, signals and screen, each in a thread of its own; this one draws.
 
+mod checking;
+mod comparing;
 mod crash;
 mod desk;
 mod engine;
+mod forecasting;
 mod inbox;
 mod jobs;
 mod line;
@@ -21,7 +24,7 @@ use crate::{
     planners::surveyed,
     scenarios,
 };
-use desk::{Desk, Request, Tools};
+use desk::{Desk, Known, Request, Tools};
 use inbox::{Outbox, inbox};
 use line::Current;
 use planner_host::PluginDirs;
@@ -36,7 +39,7 @@ use std::{
     process::ExitCode,
     sync::Arc,
 };
-use tui::{Caps, Model, Msg, Refused, RunId, Source, terminal};
+use tui::{Caps, Model, Msg, RunId, Source, terminal};
 
 /// How a console was left.
 enum Ended {
@@ -66,15 +69,15 @@ pub(crate) fn open(args: &ConsoleArgs, plugins: &PluginDirs) -> anyhow::Result<E
     let tools = Tools {
         logs: logs.clone(),
         plugins: plugins.clone(),
-        planners: Arc::new(found.clone()),
+        planners: Known::default(),
         outbox: outbox.clone(),
         config: Arc::clone(&config),
     };
+    tools.planners.set(found.clone());
     let mut desk = Desk::new(tools, changes.clone(), speed, *drill);
     let run = RunId(1);
     // Before the screen opens, so that its first frame shows the scenario and every key counts.
     desk.open(run, &scenario)?;
-    let refused = refused.into_iter().map(|(plugin, reason)| Refused { plugin, reason }).collect();
     outbox.send(Msg::Planners { found, refused });
     let current = desk.current();
     let (desk, thread) = desk.start()?;
@@ -100,6 +103,7 @@ pub(crate) fn open(args: &ConsoleArgs, plugins: &PluginDirs) -> anyhow::Result<E
 fn caps(args: &ConsoleArgs, config: &Config) -> Caps {
     let mut caps = Caps::from_env(|name| std::env::var(name).ok());
     caps.colours = args.colour.or(config.colours).unwrap_or(caps.colours);
+    caps.glyphs = args.glyphs.map_or(caps.glyphs, Into::into);
     caps
 }
 
@@ -127,8 +131,9 @@ fn show(
         let panicked = Msg::ThreadPanicked { thread: thread.into(), message: message.into() };
         panic_outbox.send_urgent(panicked);
     });
-    let mut screen = Screen::open(caps, session, drill)?;
-    watch::keys(&outbox, current.clone())?;
+    let places = watch::SharedPlaces::default();
+    let mut screen = Screen::open(caps, session, places.clone(), drill)?;
+    watch::keys(&outbox, current.clone(), places)?;
     watch::signals(&outbox, current.clone())?;
     watch::terminal(&outbox, current.clone())?;
     drop(outbox);

@@ -2,15 +2,16 @@
 
 use crate::answers::Answers;
 use mission::{
-    Event, EventKind, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION,
+    Event, EventKind, Fork, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION,
 };
 
 use scenario::Scenario;
-use sim::Simulator;
+use sim::{AeConfig, Disturbances, SimConfig, Simulator};
 use std::time::Duration;
 use world::Floor;
 
 /// A scenario being flown.
+#[derive(Clone)]
 pub(crate) struct Flight {
     simulator: Simulator,
     mission: Mission,
@@ -36,6 +37,7 @@ impl Flight {
             mission: config.clone(),
             floor: floor.clone(),
             plates: scenario.plates,
+            checklist: scenario.checklist.clone(),
         };
         Self {
             simulator: Simulator::new(scenario.sim.clone(), scenario.seed),
@@ -43,6 +45,24 @@ impl Flight {
             tick_s: config.tick_s,
             mission: Mission::new(config, drawing, floor, scenario.seed),
             opened,
+        }
+    }
+
+    /// How the flight would go on in a tank that holds only what the mission knows, without faults on purpose. Its first order
+    /// has to choose a planner.
+    pub(crate) fn forked(&self, scenario: &Scenario) -> Self {
+        let Fork { mission, world, pose, cable } = self.mission.fork();
+        let ae = scenario.sim.ae.clone().map(|ae| {
+            let disturbances = Disturbances { faults: Vec::new(), ..ae.disturbances };
+            AeConfig { outages_s: Vec::new(), disturbances, ..ae }
+        });
+        let config = SimConfig { world, ae, movers: Vec::new(), ..scenario.sim.clone() };
+        Self {
+            simulator: Simulator::resumed(config, scenario.seed, pose, cable),
+            mission,
+            tick: 0,
+            tick_s: self.tick_s,
+            opened: self.opened.clone(),
         }
     }
 

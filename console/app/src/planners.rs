@@ -13,17 +13,19 @@ use std::{
     path::{Path, PathBuf},
     process::ExitCode,
 };
+use tui::Refused;
 
 /// Planners that can be chosen.
 pub(crate) fn found(plugins: &PluginDirs) -> Vec<PlannerInfo> {
     survey(plugins, &WorkerCommand::default()).planners().cloned().collect()
 }
 
-/// Planners that can be chosen, and plugins that are refused: file name and reason.
-pub(crate) fn surveyed(plugins: &PluginDirs) -> (Vec<PlannerInfo>, Vec<(String, String)>) {
+/// Planners that can be chosen, and plugins that are refused.
+pub(crate) fn surveyed(plugins: &PluginDirs) -> (Vec<PlannerInfo>, Vec<Refused>) {
     let survey = survey(plugins, &WorkerCommand::default());
-    let refused =
-        survey.plugins.iter().filter_map(|plugin| Some((file_name(&plugin.path), plugin.refused.clone()?)));
+    let refused = survey.plugins.iter().filter_map(|plugin| {
+        Some(Refused { plugin: file_name(&plugin.path), reason: plugin.refused.clone()? })
+    });
     (survey.planners().cloned().collect(), refused.collect())
 }
 

@@ -139,8 +139,8 @@ fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings
     let opened = ticks.opened()?.clone();
     if opened.journal_version != JOURNAL_VERSION {
         return Err(bad_input(format!(
-            "the journal has version {}, and this tankops computes version {JOURNAL_VERSION}: a run is computed again by the \
-             version that flew it; report, export and runs read it all the same: {}",
+            "the journal has version {}, and this tankops verifies only version {JOURNAL_VERSION}: verify the run with the \
+             tankops that flew it; report, export, rescan and runs still read it: {}",
             opened.journal_version,
             path.display()
         )));

@@ -18,6 +18,7 @@ const MEMORY: f64 = 50.0;
 const OUT_OF_SIGHT_S: f64 = 2.0;
 
 /// Drawing and found obstacles, with an index for queries.
+#[derive(Clone)]
 pub(crate) struct Chart {
     world: World,
     found: Vec<Found>,
@@ -32,6 +33,7 @@ pub(crate) struct Chart {
     now_s: f64,
 }
 
+#[derive(Clone)]
 struct Found {
     id: ObstacleId,
     /// Index into the world's obstacles.

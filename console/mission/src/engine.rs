@@ -10,6 +10,7 @@ mod asks;
 mod candidate;
 mod driving;
 mod floor;
+mod fork;
 mod holding;
 mod orders;
 mod planning;
@@ -31,6 +32,7 @@ use crate::{
     tether::Tether,
 };
 use floor::ScannedFloor;
+pub use fork::Fork;
 use planner_api::{Drive, Reason};
 use rules::{PlannerSeen, Rules, Seen};
 use slot::PlannerSlot;
@@ -59,6 +61,7 @@ pub struct Step {
 ///
 /// Costs per tick: one position update, and work that grows with the obstacles in sensing range and the cells under the
 /// swath. Memory grows by one point per decimetre flown.
+#[derive(Clone)]
 pub struct Mission {
     config: MissionConfig,
     tick: u64,
@@ -81,6 +84,7 @@ pub struct Mission {
 }
 
 /// What has happened in this tick so far, and the command at the end of the last one.
+#[derive(Clone)]
 struct Happened {
     events: Vec<EventKind>,
     /// The end of the mission, reported after all other events of the tick.

@@ -383,4 +383,7 @@ pub struct RunOpened {
     /// How the plates of the floor lie, if the drawing shows them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plates: Option<world::PlateLayout>,
+    /// What the operator ticks by hand before the start.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub checklist: Vec<String>,
 }

@@ -24,12 +24,13 @@ pub mod tether;
 
 pub use ask::{Answer, Ask, AskId, Awaits, Given, Said, What, WorkerId};
 pub use config::{Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
-pub use engine::{Input, Mission, Step};
+pub use engine::{Fork, Input, Mission, Step};
 pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
-pub use order::Order;
+pub use order::{Check, CheckOutcome, Order, Outlook};
 pub use phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes};
 pub use planner::{
     Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
+    todays_parameter,
 };
 pub use preview::preview;
 pub use standing::{FoldedStanding, PositionTrust, Refusal, Standing};

@@ -9,6 +9,7 @@ use std::{collections::BTreeMap, mem::discriminant};
 use world::{Point, Pose, Readings, StationId, World};
 
 /// The positioner with its memory of which stations were used and whether the position was good.
+#[derive(Clone)]
 pub(crate) struct Locator {
     positioner: Positioner,
     limit_m: f64,

@@ -1,14 +1,23 @@
 //! The operator's orders; they enter at the top of the next tick.
 
-use crate::planner::{ParamValue, PlannerChoice};
+use crate::{
+    phase::Outcome,
+    planner::{ParamValue, PlannerChoice},
+};
 use serde::{Deserialize, Serialize};
 
 /// One order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Order {
+    /// While waiting: make the plan that the mission will begin with, once more if there is one. Nothing moves.
+    Plan,
     /// Begin the mission.
     Start,
+    /// While waiting: note what was checked before the start, by the console and by hand.
+    NoteChecks(Vec<Check>),
+    /// While held: note how the mission would go on with some planners, as it was forecast.
+    NoteOutlooks(Vec<Outlook>),
     /// Stand still.
     Hold,
     /// Go on.
@@ -28,4 +37,52 @@ pub enum Order {
         /// Its new value.
         value: ParamValue,
     },
+}
+
+/// Something that was checked before the start.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Check {
+    /// What.
+    pub what: String,
+    /// How it came out.
+    pub outcome: CheckOutcome,
+    /// What was found, as a sentence; empty for a tick by hand.
+    pub found: String,
+}
+
+/// How a check came out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CheckOutcome {
+    /// All right.
+    Passed,
+    /// Ticked by hand.
+    Ticked,
+    /// Worth knowing; it does not block the start.
+    Warning,
+    /// It blocks the start.
+    Failed,
+}
+
+/// How a mission would go on with a planner from where it is held, as it was forecast from the estimate and the map alone.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Outlook {
+    /// The planner, with its parameters.
+    pub choice: PlannerChoice,
+    /// How it would end; absent if it would be held until an operator helps.
+    pub outcome: Option<Outcome>,
+    /// Why, as a sentence.
+    pub reason: String,
+    /// Mission time until then, seconds.
+    pub after_s: f64,
+    /// Way until then, metres.
+    pub length_m: f64,
+    /// Scanned share of the reachable floor at the end, 0 to 1.
+    pub reachable: f64,
+    /// Least distance from the hull to anything solid, metres.
+    pub clearance_min_m: f64,
+    /// Most cable out, metres; absent without a tether.
+    pub tether_length_max_m: Option<f64>,
+    /// Largest wrap on one obstacle, radians; absent without a tether.
+    pub wrap_max_rad: Option<f64>,
 }

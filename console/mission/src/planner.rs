@@ -1,5 +1,9 @@
 //! Planners as the mission knows them: who they are, what parameters they take, how they fail.
 
+mod renamed;
+
+pub use renamed::todays_parameter;
+
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;

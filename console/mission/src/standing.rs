@@ -106,13 +106,19 @@ impl Standing<'_> {
         match (order, self.phase) {
             (_, Phase::Ended(outcome)) => Err(Refusal::Ended(*outcome)),
             (Order::Abort, _)
-            | (Order::Start, Phase::Waiting)
+            | (Order::Plan | Order::Start | Order::NoteChecks(_), Phase::Waiting)
             | (Order::Hold, Phase::Running(_) | Phase::Held(_))
+            | (Order::NoteOutlooks(_), Phase::Held(_))
             | (Order::ChoosePlanner(_) | Order::SetParameter { .. }, Phase::Waiting | Phase::Held(_)) => {
                 Ok(())
             }
-            (Order::Start, Phase::Running(_) | Phase::Held(_)) => Err(Refusal::AlreadyStarted),
-            (Order::Hold | Order::Resume | Order::Step, Phase::Waiting) => Err(Refusal::NotStarted),
+            (Order::Plan | Order::Start | Order::NoteChecks(_), Phase::Running(_) | Phase::Held(_)) => {
+                Err(Refusal::AlreadyStarted)
+            }
+            (Order::NoteOutlooks(_), Phase::Running(_)) => Err(Refusal::AlreadyMoving),
+            (Order::Hold | Order::Resume | Order::Step | Order::NoteOutlooks(_), Phase::Waiting) => {
+                Err(Refusal::NotStarted)
+            }
             (Order::Resume | Order::Step, Phase::Held(_)) => self.can_move(),
             (Order::Resume, Phase::Running(_)) => Err(Refusal::AlreadyMoving),
             (Order::Step, Phase::Running(_)) => Err(Refusal::StepNeedsHold),

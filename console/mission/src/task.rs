@@ -13,6 +13,7 @@ use world::{CoverageGrid, ObstacleMap, Point, Shape};
 const PROGRESS_M: f64 = 0.1;
 
 /// A task under way.
+#[derive(Clone)]
 pub(crate) enum Task {
     /// Reach a point.
     Goto(Goto),
@@ -28,6 +29,7 @@ pub(crate) enum Task {
 }
 
 /// Progress towards a single goal.
+#[derive(Clone)]
 pub(crate) struct Goto {
     goal: Point,
     tolerance_m: f64,
@@ -205,6 +207,7 @@ impl Goto {
 ///
 /// Twice `patience_s` without coming nearer, or one `patience_s` on the same spot, is stuck: a detour may lead away
 /// from the goal for a while, but it leads somewhere.
+#[derive(Clone)]
 pub(crate) struct StuckWatch {
     patience_s: f64,
     least_left_m: f64,

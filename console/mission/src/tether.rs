@@ -41,6 +41,7 @@ const NO_HOME_S: f64 = 3.0;
 const LEFT_M: f64 = 0.3;
 
 /// The tether under way.
+#[derive(Clone)]
 pub struct Tether {
     config: TetherConfig,
     hull_m: f64,
@@ -83,6 +84,11 @@ impl Tether {
     /// From now on plans fly that cannot be certified, or do not: the operator says so.
     pub fn allow_uncertified(&mut self, fly: bool) {
         self.config.allow_uncertified = fly;
+    }
+
+    /// The cable as it is believed to lie.
+    pub(crate) fn cable(&self) -> &Cable {
+        &self.cable
     }
 
     /// Puts the cable among the obstacles known now, as the way driven leads.

@@ -23,6 +23,9 @@ const THINNEST_M: f64 = 1e-6;
 /// as likely as its neighbour, so the weighted centroid is the exact mean of the posterior. With uniform noise its
 /// error falls with the number of repetitions, not with their root.
 ///
+/// The covariance is that of the same posterior. Its 95 % ellipse holds more than 95 %, because nothing is outside the
+/// set: no point of a convex set is further than `sqrt(8)` standard deviations from the mean, 1.16 of the longer half axis.
+///
 /// To be used only where the bound is known to hold: with any other noise the set is soon empty, which
 /// [`FixError::EmptySet`] reports.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +40,7 @@ impl PositionSolver for Bounded {
         let annuli = anchors.iter().map(|a| self.annulus(a, ranges)).collect::<Option<Vec<_>>>();
         let empty = FixError::EmptySet { ratio: self.reported_ratio() };
         let annuli = annuli.ok_or(empty.clone())?;
-        // The middle of each annulus is the best single range; it gives the place to look at.
+        // The middle of each annulus is the best single range; their fit knows whether there is a mirror.
         let middles: Vec<Anchor> = anchors
             .iter()
             .zip(&annuli)
@@ -47,13 +50,21 @@ impl PositionSolver for Bounded {
                 ..*anchor
             })
             .collect();
-        let near = solve_anchors(&middles, prior)?;
-        let region = Region::around(&annuli, near.position).ok_or(empty)?;
+        let near = match solve_anchors(&middles, prior) {
+            // A fit that does not settle tells of no mirror; the set is there all the same.
+            Err(FixError::NotConverged { .. }) => None,
+            fit => Some(fit?),
+        };
+        let sides = near.as_ref().and_then(|near| Some((near.position, near.mirror?)));
+        let region = Region::of(&annuli, sides).ok_or(empty)?;
         let floor = Matrix2::identity() * THINNEST_M.powi(2);
+        let mirror = sides.map(|(_, mirror)| mirror);
         let mut fix =
-            assess(&middles, region.mean, region.covariance + floor, conditioning(&middles), near.mirror)?;
+            assess(&middles, region.mean, region.covariance + floor, conditioning(&middles), mirror)?;
         // The residuals are within their bounds by construction and cannot raise an alarm.
-        fix.integrity = near.integrity.min_trust(fix.integrity);
+        if let Some(near) = near {
+            fix.integrity = near.integrity.min_trust(fix.integrity);
+        }
         Ok(fix)
     }
 }

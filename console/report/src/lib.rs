@@ -7,6 +7,7 @@
 pub mod account;
 mod accuracy;
 pub mod drawing;
+pub mod estimate;
 pub mod expect;
 pub mod fold;
 pub mod forecast;
@@ -24,6 +25,7 @@ mod tracking;
 mod turning;
 
 pub use account::Account;
+pub use estimate::Estimate;
 pub use expect::{Expect, Miss};
 pub use fold::Fold;
 pub use human::human;

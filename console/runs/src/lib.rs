@@ -21,7 +21,7 @@ pub use folder::{RunFolder, find};
 pub use kept::Kept;
 pub use list::{Listed, list, table};
 pub use log::{CLOSE_TIMEOUT, Closed, RunLog};
-pub use logs::{check_logs, free_bytes};
+pub use logs::{check_logs, check_recorder, free_bytes};
 pub use past::Past;
 pub use report_file::{end_is_missing, journal_doubt};
 pub use standing::{Standing, standing};

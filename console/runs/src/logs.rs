@@ -1,6 +1,7 @@
 //! Whether runs can be kept in the folder for logs, found out before a terminal is taken over or anything moves.
 
-use crate::error::RunError;
+use crate::{error::RunError, log::CLOSE_TIMEOUT};
+use recording::{JOURNAL_FILE, Options, RECORDING_FILE, RunRecorder, sha256};
 use std::{
     fs::{self, File},
     io::{self, Write},
@@ -49,6 +50,38 @@ fn check(logs: &Path) -> Result<(), LogsError> {
         let _ = fs::remove_dir(folder);
     }
     checked
+}
+
+/// Records something in a folder of its own below that for runs, reads it back and leaves nothing behind; gives its length,
+/// bytes.
+///
+/// # Errors
+/// It cannot be written or is not what was written.
+pub fn check_recorder(logs: &Path) -> Result<u64, RunError> {
+    make_logs(logs)?;
+    let folder = logs.join(format!(".recorder-{}", std::process::id()));
+    let written = record_and_read(&folder);
+    let _ = fs::remove_dir_all(&folder);
+    written
+}
+
+fn record_and_read(folder: &Path) -> Result<u64, RunError> {
+    let trying = |what: &str| RunError::during(format!("{what} {}", folder.display()));
+    fs::create_dir_all(folder).map_err(trying("creating"))?;
+    let finished = RunRecorder::start(folder, Options::default())?.finish(CLOSE_TIMEOUT);
+    if let Some(error) = finished.error {
+        return Err(RunError::Logs(error));
+    }
+    let (journal, recording) = (folder.join(JOURNAL_FILE), folder.join(RECORDING_FILE));
+    let hash = sha256(&journal).map_err(trying("reading"))?;
+    if finished.events_sha256.as_ref() != Some(&hash) {
+        return Err(RunError::Logs(format!(
+            "what was read back is not what was written: {}",
+            journal.display()
+        )));
+    }
+    let bytes = |file: &Path| fs::metadata(file).map(|data| data.len()).map_err(trying("reading"));
+    Ok(bytes(&journal)? + bytes(&recording)?)
 }
 
 impl From<LogsError> for RunError {

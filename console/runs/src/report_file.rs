@@ -50,7 +50,7 @@ pub(crate) fn read_report(folder: &Path, text: &str) -> Result<Box<Summary>, Str
 
 /// What is said of a journal that its report was not made from.
 const NOT_THE_ONE: &str =
-    "the journal is not the one that was written: it does not have the SHA-256 of the report";
+    "the journal is not the one that the report was made from: their SHA-256 digests differ";
 
 /// Whether the journal has the length that the report names and was not written after it; then it is not hashed.
 ///

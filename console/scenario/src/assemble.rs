@@ -74,6 +74,8 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let task = task.map(|task| back_to_the_anchor(task, tether.as_ref()));
     let planner = root.table("planner").map(|section| (task::planner(&section), task::fallback(&section)));
     let plates = if root.has("plates") { floor::plates(root, floor.boundary.as_ref()) } else { None };
+    let checklist =
+        if root.has("checklist") { root.table("checklist")?.texts("items") } else { Some(Vec::new()) };
     let expect = expect::expect(root);
     let rest = Rest::read(&sections, &floor);
 
@@ -131,6 +133,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         sim,
         mission,
         plates,
+        checklist: checklist?,
         expect: expect?,
     })
 }

@@ -62,6 +62,8 @@ pub struct Scenario {
     pub mission: MissionConfig,
     /// How the plates of the floor lie, if the drawing specifies it.
     pub plates: Option<PlateLayout>,
+    /// What the operator ticks by hand before the start.
+    pub checklist: Vec<String>,
     /// Bounds that the run is held to.
     pub expect: Expect,
 }

@@ -91,6 +91,8 @@ pub(crate) enum Kind {
     Times,
     /// `[[west, south, east, north], ...]`, at least one.
     Boxes,
+    /// A list of texts, at least one.
+    Texts,
     /// A table with keys of its own.
     Table(&'static [Key]),
     /// Tables with keys of their own.
@@ -188,8 +190,11 @@ pub(crate) static ROOT: &[Key] = &[
     key("tether", "", Kind::Table(TETHER)).or_none("none"),
     key("mission", "", Kind::Table(MISSION)),
     key("planner", "", Kind::Table(PLANNER)),
+    key("checklist", "", Kind::Table(CHECKLIST)).or_none("nothing to tick"),
     key("expect", "", Kind::Table(EXPECT)).or_none("no bounds"),
 ];
+
+static CHECKLIST: &[Key] = &[key("items", "", Kind::Texts)];
 
 static TANK: &[Key] = &[
     number("radius_m", "m", LENGTH).or_none("this, `vertices_m` or `map`"),

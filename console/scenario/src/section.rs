@@ -308,6 +308,25 @@ impl<'a> Section<'a> {
         points.into_iter().collect()
     }
 
+    /// Texts that are not empty.
+    pub(crate) fn texts(&self, name: &str) -> Option<Vec<String>> {
+        let remedy = "write [\"...\", ...]";
+        let list = self.list(name, "a list of texts", remedy)?;
+        if list.is_empty() {
+            self.complain(name, Complaint::TooFew { have: 0, need: 1 });
+            return None;
+        }
+        let text_at = |(i, value): (usize, &Value<'_>)| {
+            let text = value.get_ref().as_str().filter(|text| !text.trim().is_empty());
+            if text.is_none() {
+                let key = format!("{}.{i}", self.path_of(name));
+                self.complain_at(key, &value.span(), wrong_type("a text with at least one letter", remedy));
+            }
+            text.map(str::to_owned)
+        };
+        list.iter().enumerate().map(text_at).collect()
+    }
+
     /// Boxes as their south west and north east corners.
     pub(crate) fn boxes(&self, name: &str) -> Option<Vec<[Point; 2]>> {
         let remedy = "write [[west, south, east, north], ...] in metres";
@@ -490,6 +509,7 @@ fn missing_remedy(section: &str, key: &Key) -> String {
         Kind::Point => format!("add {name} = [x, y]"),
         Kind::Points(_) => format!("add {name} = [[x, y], ...]"),
         Kind::Pair(_) => format!("add {name} = [a, b]"),
+        Kind::Texts => format!("add {name} = [\"...\", ...]"),
         Kind::Boxes => format!("add {name} = [[west, south, east, north], ...]"),
         _ if key.unit.is_empty() => format!("add {name} = ..."),
         _ => format!("add {name} = ..., in {}", key.unit),

@@ -484,6 +484,7 @@ fn document_row(key: &schema::Key) -> String {
         Kind::Points(need) => format!("`[[x, y], ...]`, {need} or more"),
         Kind::Pair(span) => format!("`[a, b]`, each {span}"),
         Kind::Times => "`[[from, to], ...]`".into(),
+        Kind::Texts => "`[\"...\", ...]`".into(),
         Kind::Boxes => "`[[west, south, east, north], ...]`".into(),
         Kind::Table(_) => "table".into(),
         Kind::Tables(_) => "list of tables".into(),

@@ -1,7 +1,7 @@
 //! The simulator: sense and act.
 
 use crate::{
-    config::{SimConfig, TetherTruth, Truth},
+    config::{RobotConfig, SimConfig, TetherTruth, Truth},
     motion::{Arc, Tracks, bounded},
     movers::Movers,
     random::{RandomStreams, normal},
@@ -56,6 +56,14 @@ impl Simulator {
         };
         simulator.in_contact = simulator.clearance_m() < 0.0;
         simulator.collided = simulator.in_contact;
+        simulator
+    }
+
+    /// A robot at rest somewhere, with its cable as it lies: what a forecast starts from.
+    pub fn resumed(config: SimConfig, seed: u64, pose: Pose, cable: Option<Cable>) -> Self {
+        let robot = RobotConfig { start: pose, ..config.robot.clone() };
+        let mut simulator = Self::new(SimConfig { robot, ..config }, seed);
+        simulator.cable = cable;
         simulator
     }
 

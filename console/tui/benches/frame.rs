@@ -16,7 +16,7 @@ use mission::{Event, EventKind};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use std::time::{Duration, Instant};
-use tui::{Msg, RunMsg, view};
+use tui::{Cache, Msg, RunMsg, view_cached};
 use world::{CellRun, Point};
 
 /// Frames behind the percentiles.
@@ -58,7 +58,11 @@ fn frame(criterion: &mut Criterion) {
         screen.send(Msg::Resize { width, height });
         let scanned = screen.model.live.run.coverage.as_ref().map_or(0, |raster| raster.counts().covered);
         let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a screen in memory");
-        let mut draw = || terminal.draw(|frame| view(&screen.model, &RICH, frame)).map(drop).expect("memory");
+        let mut cache = Cache::default();
+        let mut draw = || {
+            let drawn = terminal.draw(|frame| view_cached(&screen.model, &RICH, &mut cache, frame));
+            drawn.map(drop).expect("memory");
+        };
         let mut times: Vec<Duration> = (0..FRAMES)
             .map(|_| {
                 let before = Instant::now();

@@ -15,9 +15,10 @@ use crate::keys::Key;
 use action::action;
 use argument::{may, must};
 use context::Context;
+use serde::{Deserialize, Serialize};
 
 /// Names an action.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum ActionId {
     /// Stand still now; when held, ask whether to resume.
     Hold,
@@ -39,6 +40,22 @@ pub enum ActionId {
     Abort,
     /// Let another planner drive.
     ChoosePlanner,
+    /// Forecast how the mission would go on with one planner or another.
+    WhatIf,
+    /// Forecast another planner too.
+    AddCandidate,
+    /// Look at the next forecast.
+    NextCandidate,
+    /// Look at the forecast before.
+    PreviousCandidate,
+    /// Check everything that the start depends on.
+    Preflight,
+    /// Have another planner plan, for comparison.
+    Compare,
+    /// Plan once more.
+    PlanAgain,
+    /// Give up what is being planned.
+    CancelPlan,
     /// Look at the planner's parameters and change them.
     Parameters,
     /// Change one parameter of the planner.
@@ -65,6 +82,10 @@ pub enum ActionId {
     Layers,
     /// Put a station or an obstacle in the middle of the map.
     Centre,
+    /// Read the map at a cursor.
+    Inspect,
+    /// Take the mouse from the terminal, or give it back.
+    Mouse,
     /// Move the map's window west.
     PanLeft,
     /// Move the map's window east.
@@ -99,6 +120,16 @@ pub enum ActionId {
     GoMission,
     /// Show what the mission has achieved.
     GoResult,
+    /// Show the plugins.
+    GoPlugins,
+    /// Look at the plugins again.
+    Reload,
+    /// The next missed area.
+    NextMissed,
+    /// The missed area before.
+    PreviousMissed,
+    /// Open the same scenario once more.
+    Again,
     /// Scan what a run has missed.
     Rescan,
     /// Compute a run again and compare it with its journal.
@@ -149,9 +180,21 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[Context::Plan, Context::Mission]).label("planner").risk(Risk::Moves).args(&[may("planner", Kind::Planner)]),
     action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[Context::Plan, Context::Mission]).label("parameters"),
     action(ActionId::SetParameter, "set", "Change a planner parameter", &[], &[Context::Screen]).args(&[must("parameter", Kind::Parameter)]),
-    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &[Context::Screen]).label("ack").also(&["silence"]),
+    action(ActionId::WhatIf, "what-if", "Forecast with other planners (held)", &[Key::Char('w')], &[Context::Mission]).label("what-if"),
+    action(ActionId::NextCandidate, "next-candidate", "Look at the next forecast", &[Key::Right, Key::Char('l')], &[Context::WhatIf]).label("select").repeats(),
+    action(ActionId::PreviousCandidate, "previous-candidate", "Look at the forecast before", &[Key::Left, Key::Char('h')], &[Context::WhatIf]).label("select").repeats(),
+    action(ActionId::AddCandidate, "add-candidate", "Forecast another planner", &[Key::Char('+')], &[Context::WhatIf]).label("add"),
+    action(ActionId::Preflight, "preflight", "Check what the start depends on", &[Key::Char('A')], &[Context::Plan, Context::Mission]).label("pre-flight"),
+    action(ActionId::Compare, "compare", "Plan with another planner, side by side", &[Key::Char('c')], &[Context::Plan]).label("compare").args(&[may("planner", Kind::Planner)]),
+    action(ActionId::Preflight, "check-again", "Check once more", &[Key::Char('r')], &[Context::Preflight]).label("check again"),
+    action(ActionId::PlanAgain, "plan-again", "Make the plan once more", &[], &[Context::Plan]),
+    action(ActionId::CancelPlan, "cancel-plan", "Cancel planning or comparing", &[Key::Esc], &[Context::Plan]).label("cancel"),
+    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &[Context::Home, Context::Plan, Context::Mission]).label("ack").also(&["silence"]),
     action(ActionId::AcknowledgeAll, "acknowledge-all", "Acknowledge every alarm", &[], &[Context::Screen]),
     action(ActionId::Open, "open", "Open a scenario", &[], &[Context::Screen]).args(&[must("scenario", Kind::Scenario), may("planner", Kind::Planner)]),
+    action(ActionId::NextMissed, "next-missed", "Show the next missed area", &[Key::Char('n')], &[Context::Result]).label("missed").repeats(),
+    action(ActionId::PreviousMissed, "previous-missed", "Show the missed area before", &[Key::Char('N')], &[Context::Result]).label("missed").repeats(),
+    action(ActionId::Again, "again", "Plan the same scenario again", &[Key::Char('a')], &[Context::Result]).label("again"),
     action(ActionId::Rescan, "rescan", "Scan what a run has missed", &[Key::Char('r')], &[Context::Home, Context::Result]).label("re-scan").args(&[may("run", Kind::Run)]),
     action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[Context::Home, Context::Result]).label("verify").args(&[may("run", Kind::Run)]),
     action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[Context::Home, Context::Result]).label("report").args(&[may("run", Kind::Run)]),
@@ -165,6 +208,8 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::GoPlan, "plan", "Screen 2: the plan before it moves", &[Key::Char('2')], &[Context::Screen]),
     action(ActionId::GoMission, "mission", "Screen 3: the mission", &[Key::Char('3')], &[Context::Screen]),
     action(ActionId::GoResult, "result", "Screen 7: what was achieved", &[Key::Char('7')], &[Context::Screen]),
+    action(ActionId::GoPlugins, "plugins", "Screen 8: plugins and their planners", &[Key::Char('8')], &[Context::Screen]),
+    action(ActionId::Reload, "reload", "Look at the plugins again", &[Key::Char('r')], &[Context::Plugins]).label("reload"),
     action(ActionId::Back, "back", "Go back; the mission goes on", &[Key::Char('q')], &[Context::Screen]).label("back"),
     action(ActionId::Leave, "leave", "Quit; a running mission is held first", &[], &[Context::Screen]).also(&["quit", "exit"]),
     action(ActionId::Theme, "theme", "Choose the colours", &[], &[Context::Screen]).args(&[must("theme", Kind::Theme)]),
@@ -174,6 +219,8 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Follow, "follow", "Keep the map centred on the robot", &[Key::Char('f')], &[Context::Map]),
     action(ActionId::Layers, "layers", "Show or hide map layers", &[Key::Char('L')], &[Context::Map]).args(&[may("layer", Kind::Layer)]),
     action(ActionId::Centre, "centre", "Centre the map on a named object", &[], &[Context::Map]).args(&[must("place", Kind::Place)]),
+    action(ActionId::Inspect, "inspect", "Read the map at a cursor (Esc: end)", &[Key::Char('i')], &[Context::Map]),
+    action(ActionId::Mouse, "mouse", "Use the mouse in the console, or not", &[], &[Context::Screen]),
     action(ActionId::Severity, "severity", "Minimum severity of the events shown", &[Key::Char('m')], &[Context::Mission]).args(&[may("severity", Kind::Severity)]),
     action(ActionId::Filter, "filter", "Filter the list by text", &[Key::Char('/')], &[Context::Home, Context::Mission]).args(&[may("text", Kind::Text)]),
     action(ActionId::PanLeft, "pan-west", "Pan the map west", &[Key::Left, Key::Char('h')], &[Context::Pan]).repeats(),
@@ -184,10 +231,10 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Suspend, "suspend", "HOLD, then suspend to the shell (fg)", &[Key::Ctrl('z')], &[Context::Anywhere]),
     action(ActionId::Edit, "edit", "Edit the value", &[Key::Char('e')], &[Context::Parameters]).label("edit"),
     action(ActionId::Complete, "complete", "Complete the word", &[Key::Tab], &[Context::Text]).label("complete"),
-    action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::Rows, Context::Text, Context::Confirm, Context::Stepping]).label("yes"),
+    action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::Rows, Context::Text, Context::Confirm, Context::Stepping, Context::WhatIf]).label("yes"),
     action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("step").risk(Risk::Moves),
-    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc], &[Context::Text, Context::Stepping]).label("cancel"),
-    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm]).label("cancel"),
+    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc], &[Context::Text, Context::Stepping, Context::Cursor]).label("cancel"),
+    action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm, Context::WhatIf]).label("cancel"),
     action(ActionId::Up, "up", "Select the line above", &[Key::Up, Key::Char('k')], &[Context::Rows]).repeats(),
     action(ActionId::Down, "down", "Select the line below", &[Key::Down, Key::Char('j')], &[Context::Rows]).repeats(),
     action(ActionId::PageUp, "page-up", "Ten lines up", &[Key::PageUp, Key::Ctrl('u')], &[Context::Rows]).repeats(),

@@ -24,6 +24,15 @@ pub enum Glyphs {
     Half,
     /// Braille too.
     Braille,
+    /// The octants of Unicode 16 too: dots without gaps. No environment promises them.
+    Octant,
+}
+
+impl Glyphs {
+    /// Whether a character can show eight dots, so that lines need no letters.
+    pub fn has_dots(self) -> bool {
+        matches!(self, Self::Braille | Self::Octant)
+    }
 }
 
 /// What the terminal can show.

@@ -9,6 +9,7 @@
 pub mod actions;
 pub mod caps;
 pub mod keys;
+mod layout;
 pub mod model;
 pub mod plain;
 pub mod terminal;
@@ -20,5 +21,5 @@ pub use caps::{Caps, Colours, Glyphs};
 pub use keys::{Key, KeyPress};
 pub use model::{Health, Model, Recording, Refused, RunId, RunResult, Source, Speed, Times};
 pub use theme::{Role, Theme, ThemeName};
-pub use update::{Effect, Job, Msg, RunMsg, Signal, is_typing, update};
-pub use view::{view, view_with};
+pub use update::{Effect, Job, Mouse, Msg, Redraw, RunMsg, Signal, Target, is_typing, redraw, update};
+pub use view::{Cache, Places, view, view_cached, view_with};

@@ -2,9 +2,11 @@
 
 mod key;
 mod output;
+mod pointer;
 mod restore;
 
 pub use key::key_from_crossterm;
+pub use pointer::Pointer;
 pub use restore::{RESTORE, install_panic_hook, restore, restore_from_signal};
 
 use crossterm::event::{EnableBracketedPaste, EnableFocusChange};
@@ -13,13 +15,19 @@ use crossterm::{cursor, execute, queue};
 use output::FrameOutput;
 use ratatui::backend::CrosstermBackend;
 use ratatui::{Frame, Terminal};
-use std::io;
+use std::io::{self, Write};
+
+/// Reports of buttons and wheel, of movement with a button down, in a form without bounds.
+const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
+/// No reports of the mouse.
+const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
 
 /// The terminal while the console has it; gives it back when dropped.
 ///
 /// The thread that enters owns the terminal: a panic of another thread leaves it alone.
 pub struct TerminalGuard {
     terminal: Terminal<CrosstermBackend<FrameOutput>>,
+    has_mouse: bool,
 }
 
 impl TerminalGuard {
@@ -34,7 +42,7 @@ impl TerminalGuard {
             Terminal::new(CrosstermBackend::new(FrameOutput::default()))
         };
         match open() {
-            Ok(terminal) => Ok(Self { terminal }),
+            Ok(terminal) => Ok(Self { terminal, has_mouse: false }),
             Err(error) => {
                 restore();
                 Err(error)
@@ -73,7 +81,22 @@ impl TerminalGuard {
     pub fn resume(&mut self) -> io::Result<()> {
         restore::own();
         take_over()?;
+        self.take_mouse(self.has_mouse)?;
         self.redraw()
+    }
+
+    /// Takes the mouse from the terminal, or gives it back: buttons, wheel and dragging, but no bare movement.
+    ///
+    /// # Errors
+    /// If the terminal cannot be written.
+    pub fn take_mouse(&mut self, taken: bool) -> io::Result<()> {
+        if taken != self.has_mouse || taken {
+            let mut output = io::stdout();
+            output.write_all(if taken { MOUSE_ON } else { MOUSE_OFF })?;
+            output.flush()?;
+        }
+        self.has_mouse = taken;
+        Ok(())
     }
 }
 

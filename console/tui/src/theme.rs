@@ -63,6 +63,16 @@ roles! {
     Scanned '%',
     /// Floor of which a part has been scanned.
     Partly ':',
+    /// Floor that has been scanned again.
+    Overlap '2',
+    /// Floor in reach that was not scanned when the mission ended.
+    Missed 'm',
+    /// Floor out of reach.
+    Unreachable '/',
+    /// Floor out of reach along the shell.
+    Margin 'n',
+    /// Outline and name of a plate.
+    Plate 'P',
     /// The tank's wall.
     Wall 'o',
     /// An obstacle of the drawing.
@@ -77,6 +87,8 @@ roles! {
     Trail '-',
     /// Where the plan leads.
     Plan 'p',
+    /// Where another plan leads, for comparison.
+    Ghost 'G',
     /// Where the robot goes next.
     Target 'x',
     /// What the planner drew: pulls.
@@ -189,6 +201,7 @@ fn weight(role: Role) -> Modifier {
         | Role::Focus
         | Role::Key
         | Role::Warn
+        | Role::Missed
         | Role::Run
         | Role::Hold
         | Role::Station
@@ -221,14 +234,16 @@ fn sixteen_on_dark(role: Role) -> Option<Color> {
         Role::Good | Role::Run => Some(Color::Green),
         Role::Watch | Role::Key | Role::Focus => Some(Color::Cyan),
         Role::Warn | Role::Hold | Role::Confirm => Some(Color::Yellow),
-        Role::Crit | Role::Push => Some(Color::Red),
+        Role::Crit | Role::Push | Role::Missed => Some(Color::Red),
         Role::Scanned => Some(Color::Blue),
-        Role::Partly => Some(Color::DarkGray),
+        Role::Partly | Role::Unreachable | Role::Margin | Role::Plate => Some(Color::DarkGray),
+        Role::Overlap => Some(Color::LightBlue),
         Role::Obstacle | Role::NoGo => Some(Color::LightRed),
         Role::Found | Role::Drawn => Some(Color::LightMagenta),
         Role::Tether => Some(Color::White),
         Role::Station | Role::Trail => Some(Color::LightCyan),
         Role::Plan | Role::Target => Some(Color::LightYellow),
+        Role::Ghost => Some(Color::Magenta),
         Role::Pull => Some(Color::LightGreen),
         _ => None,
     }

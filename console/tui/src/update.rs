@@ -4,22 +4,29 @@ mod act;
 mod command;
 mod go;
 mod hear;
+mod map;
 mod message;
+mod mouse;
 mod offer;
 mod overlay;
 mod palette;
+mod preflight;
+mod redraw;
 mod send;
 mod typing;
+mod what_if;
 
 pub use act::act;
-pub use message::{Effect, Job, Msg, RunMsg, Signal};
+pub use message::{Effect, Job, Mouse, Msg, RunMsg, Signal, Target};
 pub use offer::offered;
 pub use palette::{Choice, choices};
+pub use redraw::{Redraw, redraw};
 pub use typing::is_typing;
 
 use crate::actions::{ActionId, context::contexts, find};
 use crate::keys::{Key, KeyPress};
 use crate::model::console::Bell;
+use crate::model::plugins::differences;
 use crate::model::{Cause, Model, Overlay, Pane, Refused, ui::Arrangement};
 use mission::{PlannerInfo, Severity};
 use send::hold_now;
@@ -40,6 +47,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         }
         Msg::Paste(text) => typing::paste(model, &text),
         Msg::Line(line) => effects = palette::obey(model, line.trim()),
+        Msg::Mouse(mouse) => effects = mouse::take(model, mouse),
         Msg::Resize { width, height } => resize(model, width, height),
         Msg::Time(now) => model.console.now = now,
         Msg::Run(id, msg) => effects = hear::hear(model, id, msg),
@@ -62,6 +70,12 @@ fn ringing(model: &Model) -> usize {
 }
 
 fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
+    if press.key == Key::Char(' ')
+        && !model.live.may_move()
+        && matches!(model.ui.overlay, Overlay::Preflight { .. })
+    {
+        return if press.repeat { Vec::new() } else { preflight::tick(model) };
+    }
     // A letter is typed where text is typed, and so is the space: there Ctrl-C holds.
     if typing::press(model, press.key) {
         return Vec::new();
@@ -106,6 +120,11 @@ fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<Refuse
     for plugin in refused.iter().filter(|plugin| !model.console.refused.contains(plugin)) {
         let text = format!("plugin {} refused: {}", plugin.plugin, plugin.reason);
         model.live.run.log.add(model.live.run.clock.t_s, Severity::Watch, "plan", text);
+    }
+    if !model.console.planners.is_empty() {
+        let changes = differences(&model.console.planners, &found);
+        model.say(Severity::Info, format!("plugins looked at again: {} changed", changes.len()));
+        model.console.reloaded = Some(changes);
     }
     (model.console.planners, model.console.refused) = (found, refused);
 }

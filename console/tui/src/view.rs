@@ -1,6 +1,9 @@
 //! The model onto the screen.
 
+mod alarms;
 mod ascii;
+mod cache;
+mod charts;
 mod confirm;
 mod coverage;
 mod events;
@@ -10,9 +13,11 @@ mod home;
 mod lists;
 mod look;
 mod map;
+mod missed;
 mod next;
 mod plan;
 mod planner;
+mod plugins;
 mod position;
 mod result;
 mod strip;
@@ -20,32 +25,48 @@ mod table;
 mod tether;
 mod text;
 mod top;
+mod what_if;
+
+pub use cache::{Cache, Places};
 
 pub(crate) use confirm::question;
 pub(crate) use events::log_line;
 pub(crate) use next::standing;
 
 use crate::caps::{Caps, Glyphs};
-use crate::model::{Model, Pane, Screen, ui::Arrangement};
+use crate::layout::{self, Shown};
+use crate::model::{Model, Overlay, Pane, Screen, ui::Arrangement};
 use crate::theme::Theme;
 use look::Look;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
+use std::cell::RefCell;
 
 /// Draws the model.
 ///
 /// Pure: the same model, caps and size give the same cells.
 pub fn view(model: &Model, caps: &Caps, frame: &mut Frame) {
-    view_with(model, caps, &Theme::new(model.ui.theme, caps), frame);
+    view_cached(model, caps, &mut Cache::default(), frame);
+}
+
+/// Draws the model with what is left of the frame before; the cells are the same.
+pub fn view_cached(model: &Model, caps: &Caps, cache: &mut Cache, frame: &mut Frame) {
+    draw(model, *caps, &Theme::new(model.ui.theme, caps), cache, frame);
 }
 
 /// Draws the model with a theme of the caller's choice.
 pub fn view_with(model: &Model, caps: &Caps, theme: &Theme, frame: &mut Frame) {
-    let look = Look { model, run: &model.live.run, caps: *caps, theme };
+    draw(model, *caps, theme, &mut Cache::default(), frame);
+}
+
+fn draw(model: &Model, caps: Caps, theme: &Theme, cache: &mut Cache, frame: &mut Frame) {
     let area = frame.area();
     if area.is_empty() {
         return;
     }
+    cache.clear_places();
+    let shared = RefCell::new(std::mem::take(cache));
+    let look = Look { model, run: &model.live.run, caps, theme, cache: &shared };
     let arrangement = Arrangement::of(area.width, area.height);
     if arrangement == Arrangement::Strip {
         strip::draw(&look, frame, area);
@@ -56,19 +77,8 @@ pub fn view_with(model: &Model, caps: &Caps, theme: &Theme, frame: &mut Frame) {
     if caps.glyphs == Glyphs::Ascii {
         ascii::reduce(frame.buffer_mut());
     }
+    *cache = shared.into_inner();
 }
-
-/// Sizes of the parts of a whole screen.
-struct Sizes {
-    side: u16,
-    events: u16,
-    /// Heights of the panes at the side; the last one takes the rest.
-    panes: [u16; 2],
-    wide: bool,
-}
-
-const WIDE: Sizes = Sizes { side: 44, events: 6, panes: [10, 8], wide: true };
-const NARROW: Sizes = Sizes { side: 30, events: 4, panes: [6, 5], wide: false };
 
 /// Draws a screen between the line on top and the two lines at the foot, which every screen has.
 fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
@@ -80,61 +90,43 @@ fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) 
     ])
     .areas(area);
     top::draw(look, frame, top);
-    match (look.model.ui.screen, arrangement) {
-        (Screen::Home, _) => home::draw(look, frame, body, arrangement),
-        (Screen::Plan, _) => plan::draw(look, frame, body, arrangement),
-        (Screen::Result, _) => result::draw(look, frame, body, arrangement),
-        (Screen::Mission, Arrangement::Wide) => whole(look, frame, body, &WIDE),
-        (Screen::Mission, Arrangement::Narrow) => whole(look, frame, body, &NARROW),
-        (Screen::Mission, Arrangement::Paged | Arrangement::Strip) => page(look, frame, body),
+    if look.model.ui.overlay == Overlay::WhatIf {
+        what_if::draw(look, frame, body, arrangement);
+        confirm::draw(look, frame, next);
+        return footer::draw(look, frame, keys);
+    }
+    match look.model.ui.screen {
+        Screen::Home => home::draw(look, frame, body, arrangement),
+        Screen::Plan => plan::draw(look, frame, body, arrangement),
+        Screen::Plugins => plugins::draw(look, frame, body, arrangement),
+        Screen::Result => result::draw(look, frame, body, arrangement),
+        Screen::Mission => mission(look, frame, body, (area.width, area.height)),
     }
     confirm::draw(look, frame, next);
     footer::draw(look, frame, keys);
 }
 
-fn whole(look: &Look, frame: &mut Frame, area: Rect, sizes: &Sizes) {
-    let [middle, events] =
-        Layout::vertical([Constraint::Fill(1), Constraint::Length(sizes.events)]).areas(area);
-    let [map, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(sizes.side)]).areas(middle);
-    let [coverage, position, planner] = Layout::vertical([
-        Constraint::Length(sizes.panes[0]),
-        Constraint::Length(sizes.panes[1]),
-        Constraint::Fill(1),
-    ])
-    .areas(side);
-    map::draw(look, frame, map);
-    coverage::draw(look, frame, coverage, sizes.wide);
-    position::draw(look, frame, position, sizes.wide);
-    let planner = above_tether(look, frame, planner, sizes.wide);
-    planner::draw(look, frame, planner, sizes.wide);
-    events::draw(look, frame, events);
+fn mission(look: &Look, frame: &mut Frame, area: Rect, size: (u16, u16)) {
+    let shown = Shown::of(look.run, missed::account(look).is_some());
+    let mut panes = layout::mission(area, size, shown);
+    if panes.is_empty() {
+        panes = layout::page(area, look.model.ui.pane, shown);
+    }
+    for (pane, area) in panes {
+        draw_pane(look, frame, area, pane);
+    }
 }
 
-fn page(look: &Look, frame: &mut Frame, area: Rect) {
-    match look.model.ui.pane {
+fn draw_pane(look: &Look, frame: &mut Frame, area: Rect, pane: Pane) {
+    match pane {
         Pane::Map => map::draw(look, frame, area),
-        Pane::Coverage => coverage::draw(look, frame, area, true),
-        Pane::Position => position::draw(look, frame, area, true),
-        Pane::Planner => {
-            let area = above_tether(look, frame, area, true);
-            planner::draw(look, frame, area, true);
-        }
+        Pane::Coverage => coverage::draw(look, frame, area),
+        Pane::Position => position::draw(look, frame, area),
+        Pane::Tether => tether::draw(look, frame, area),
+        Pane::Planner => planner::draw(look, frame, area),
         Pane::Events => events::draw(look, frame, area),
+        Pane::Alarms => alarms::draw(look, frame, area),
+        Pane::Missed => missed::draw(look, frame, area),
+        Pane::Chart(chart) => charts::draw(look, frame, area, chart),
     }
-}
-
-/// Draws the tether at the foot of an area, if there is one, in as many words as fit; what is left above it.
-///
-/// Where there is no room for both, the tether takes it: what it shows can end a mission.
-fn above_tether(look: &Look, frame: &mut Frame, area: Rect, wide: bool) -> Rect {
-    if look.run.tether.is_none() {
-        return area;
-    }
-    // The planner keeps a row of its own.
-    let wide = wide && area.height >= tether::ROWS.0 + 3;
-    let rows = if wide { tether::ROWS.0 } else { tether::ROWS.1 };
-    let rows = if area.height >= rows + 3 { rows } else { area.height };
-    let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
-    tether::draw(look, frame, below, wide);
-    above
 }

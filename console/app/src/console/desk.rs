@@ -4,7 +4,10 @@
 //! next one begins.
 
 use super::{
+    checking,
+    comparing::Comparing,
     engine::Engine,
+    forecasting::Forecasting,
     inbox::{Outbox, RunOutbox},
     jobs,
     line::Current,
@@ -13,7 +16,7 @@ use super::{
 use crate::{
     cli::{Changes, Drill},
     config::Config,
-    planners::check_choices,
+    planners::{check_choices, surveyed},
     rescan, scenarios,
 };
 use mission::{PlannerChoice, PlannerInfo};
@@ -23,7 +26,7 @@ use scenario::Scenario;
 use std::{
     path::PathBuf,
     sync::{
-        Arc,
+        Arc, Mutex, PoisonError,
         mpsc::{self, Receiver, Sender},
     },
     thread::{self, JoinHandle},
@@ -34,6 +37,18 @@ use tui::{Job, Msg, RunId, RunMsg, Source, Speed};
 pub(super) enum Request {
     /// Close the run that is open and open another one.
     Open { id: RunId, source: Source, planner: Option<PlannerChoice> },
+    /// Look at what the start depends on.
+    Check { needed_bytes: u64 },
+    /// Have another planner plan the mission that is open.
+    Compare(PlannerChoice),
+    /// Give that plan up.
+    StopComparing,
+    /// Forecast how the held mission would go on with some planners.
+    Forecast(Vec<PlannerChoice>),
+    /// Give the forecasts up.
+    StopForecasting,
+    /// Look at the plugins again.
+    Survey,
     /// Look at the disk again.
     Look,
     /// Work on a past run.
@@ -42,12 +57,28 @@ pub(super) enum Request {
     Leave { hurry: bool },
 }
 
+/// The planners as they were found last.
+#[derive(Clone, Default)]
+pub(super) struct Known(Arc<Mutex<Arc<Vec<PlannerInfo>>>>);
+
+impl Known {
+    /// Other planners were found.
+    pub(super) fn set(&self, found: Vec<PlannerInfo>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(found);
+    }
+
+    /// The planners.
+    pub(super) fn get(&self) -> Arc<Vec<PlannerInfo>> {
+        Arc::clone(&self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
 /// What everything at the desk needs.
 #[derive(Clone)]
 pub(super) struct Tools {
     pub logs: PathBuf,
     pub plugins: PluginDirs,
-    pub planners: Arc<Vec<PlannerInfo>>,
+    pub planners: Known,
     pub outbox: Outbox,
     pub config: Arc<Config>,
 }
@@ -62,6 +93,10 @@ pub(super) struct Desk {
     drill: Option<Drill>,
     current: Current,
     engine: Option<Engine>,
+    /// The mission that is open.
+    opened: Option<(RunId, Arc<Scenario>)>,
+    comparing: Option<Comparing>,
+    forecasting: Option<Forecasting>,
     /// The last run that was flown.
     flown: Option<Closed>,
 }
@@ -82,7 +117,19 @@ impl Desk {
     pub(super) fn new(tools: Tools, changes: Changes, speed: Speed, drill: Option<Drill>) -> Self {
         let disk = Arc::new(Disk::new(tools.clone()));
         let current = Current::default();
-        Self { tools, disk, changes, speed, drill, current, engine: None, flown: None }
+        Self {
+            tools,
+            disk,
+            changes,
+            speed,
+            drill,
+            current,
+            engine: None,
+            opened: None,
+            comparing: None,
+            forecasting: None,
+            flown: None,
+        }
     }
 
     /// The engine of the run that is open.
@@ -95,12 +142,13 @@ impl Desk {
     /// # Errors
     /// Its planners are not there or do not take their parameters; the system gives no thread.
     pub(super) fn open(&mut self, id: RunId, scenario: &Scenario) -> anyhow::Result<()> {
-        check_choices(scenario, &self.tools.planners)?;
+        check_choices(scenario, &self.tools.planners.get())?;
         let Tools { logs, plugins, outbox, .. } = &self.tools;
         let screen = RunOutbox { run: id, outbox: outbox.clone() };
         let engine = Engine::start(scenario, logs, plugins, screen, self.speed, self.drill)?;
         self.current.set(Some(engine.handle()));
         self.engine = Some(engine);
+        self.opened = Some((id, Arc::new(scenario.clone())));
         Ok(())
     }
 
@@ -115,6 +163,12 @@ impl Desk {
         for request in asked {
             match request {
                 Request::Open { id, source, planner } => self.replace(id, &source, planner)?,
+                Request::Check { needed_bytes } => self.check(needed_bytes),
+                Request::Compare(choice) => self.compare(choice),
+                Request::StopComparing => self.comparing = None,
+                Request::Forecast(choices) => self.forecast(choices),
+                Request::StopForecasting => self.forecasting = None,
+                Request::Survey => self.survey(),
                 Request::Look => self.look(),
                 Request::Do(job) => jobs::begin(job, &self.tools),
                 Request::Leave { hurry } => {
@@ -148,6 +202,46 @@ impl Desk {
         }
     }
 
+    fn check(&self, needed_bytes: u64) {
+        let Some((run, _)) = &self.opened else { return };
+        let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
+        checking::begin(&self.tools, self.current.get(), screen, needed_bytes);
+    }
+
+    fn compare(&mut self, choice: PlannerChoice) {
+        self.comparing = None;
+        let Some((run, scenario)) = &self.opened else { return };
+        let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
+        match Comparing::begin(Arc::clone(scenario), choice, &self.tools.plugins, screen) {
+            Ok(comparing) => self.comparing = Some(comparing),
+            Err(error) => jobs::report(&self.tools.outbox, &format!("cannot compare: {error}")),
+        }
+    }
+
+    fn forecast(&mut self, choices: Vec<PlannerChoice>) {
+        self.forecasting = None;
+        let (Some((run, scenario)), Some(engine)) = (&self.opened, self.current.get()) else { return };
+        let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
+        let plugins = self.tools.plugins.clone();
+        match Forecasting::begin(Arc::clone(scenario), choices, engine, plugins, screen) {
+            Ok(forecasting) => self.forecasting = Some(forecasting),
+            Err(error) => jobs::report(&self.tools.outbox, &format!("cannot forecast: {error}")),
+        }
+    }
+
+    /// Every plugin is opened in a worker of its own; the desk does not wait for them.
+    fn survey(&self) {
+        let Tools { plugins, planners, outbox, .. } = self.tools.clone();
+        let began = thread::Builder::new().name("survey".into()).spawn(move || {
+            let (found, refused) = surveyed(&plugins);
+            planners.set(found.clone());
+            outbox.send(Msg::Planners { found, refused });
+        });
+        if let Err(error) = began {
+            jobs::report(&self.tools.outbox, &format!("cannot look at the plugins: {error}"));
+        }
+    }
+
     /// Scenarios that are many or large take a while to read: the desk is not kept from opening one.
     fn look(&self) {
         let disk = Arc::clone(&self.disk);
@@ -160,6 +254,7 @@ impl Desk {
     /// Closes the run that is open.
     fn close(&mut self, hurry: bool) -> anyhow::Result<()> {
         self.current.set(None);
+        (self.opened, self.comparing, self.forecasting) = (None, None, None);
         let Some(engine) = self.engine.take() else { return Ok(()) };
         if let Some(closed) = engine.close(hurry)? {
             self.flown = Some(closed);

@@ -3,6 +3,7 @@
 //! It never waits in a planner, for the screen or for the disk. Whatever it waits for (the next tick, an answer, room in the
 //! screen's inbox or in the recorder's queue), an order to hold or to end ends the wait at once.
 
+mod estimating;
 mod keeping;
 mod waiting;
 
@@ -178,6 +179,7 @@ impl EngineThread {
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
         assert!(!failing, "drill: the engine fails on purpose");
         self.send_work();
+        self.estimate(&events);
         self.send(RunMsg::Events(events));
         self.send_health();
         if matches!(self.flight.phase(), Phase::Ended(_)) {

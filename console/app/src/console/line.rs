@@ -1,5 +1,6 @@
 //! The line to the engine's thread: orders and other requests, from every thread that may have to stop the robot.
 
+use crate::flight::Flight;
 use mission::Order;
 use planner_host::Waker;
 use std::{
@@ -18,6 +19,10 @@ pub(super) enum Request {
     Order(Order, Instant),
     /// Change the pace.
     Speed(Speed),
+    /// Answer, so that somebody knows how long an order waits.
+    Answer(Sender<()>),
+    /// Copy the flight as it stands, for forecasts.
+    Fork(Sender<Flight>),
     /// End the run, close everything, stop.
     Close {
         /// How long that may take.
@@ -68,6 +73,21 @@ impl EngineHandle {
     /// Changes the pace.
     pub(super) fn speed(&self, speed: Speed) {
         self.request(Request::Speed(speed), false);
+    }
+
+    /// How long an order that stops the robot waits until the engine takes it; `None` if that takes too long.
+    pub(super) fn measure(&self, patience: Duration) -> Option<Duration> {
+        let (answer, answered) = mpsc::channel();
+        let asked = Instant::now();
+        self.request(Request::Answer(answer), true);
+        answered.recv_timeout(patience).ok().map(|()| asked.elapsed())
+    }
+
+    /// The flight as it stands now, for forecasts; `None` if the engine does not answer in time.
+    pub(super) fn fork(&self, patience: Duration) -> Option<Flight> {
+        let (answer, answered) = mpsc::channel();
+        self.request(Request::Fork(answer), false);
+        answered.recv_timeout(patience).ok()
     }
 
     /// Ends the run and closes its files.

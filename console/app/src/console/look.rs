@@ -111,7 +111,7 @@ impl Disk {
 
 fn entry_of(source: Source, name: &str, scenario: Result<Scenario, String>, disk: &Disk) -> ScenarioEntry {
     let checked = scenario.and_then(|scenario| {
-        let problem = check_choices(&scenario, &disk.tools.planners).err();
+        let problem = check_choices(&scenario, &disk.tools.planners.get()).err();
         problem.map_or(Ok(scenario), |error| Err(error.to_string()))
     });
     match checked {

@@ -1,6 +1,6 @@
 //! The drawing thread: messages in, model updated, effects carried out, a frame when something changed.
 
-use super::session::Session;
+use super::{session::Session, watch::SharedPlaces};
 use crate::{
     cli::Drill,
     failure::{COMPLETE, ENDED_OTHERWISE, exit_code},
@@ -13,12 +13,14 @@ use std::{
     process::ExitCode,
     time::{Duration, Instant},
 };
-use tui::{Caps, Effect, Model, Msg, RunMsg, Signal, terminal::TerminalGuard};
+use tui::{Cache, Caps, Effect, Model, Msg, Redraw, RunMsg, Signal, redraw, terminal::TerminalGuard};
 
 /// Messages that are taken in before the next frame, at most.
 const BURST: usize = 256;
 /// Time that is spent on them before the next frame, at most.
 const BURST_TIME: Duration = Duration::from_millis(5);
+/// Shortest time between two frames that only show new values of a robot that stands still.
+const CALM_FRAME: Duration = Duration::from_secs(1);
 /// Shortest time between two frames that answer keys.
 const KEY_FRAME: Duration = Duration::from_millis(8);
 
@@ -29,7 +31,10 @@ pub(super) struct Screen {
     caps: Caps,
     drawn: Instant,
     frame_interval: Duration,
-    dirty: bool,
+    /// How soon there is to be a frame.
+    due: Redraw,
+    cache: Cache,
+    places: SharedPlaces,
     /// Whether the operator waits for something that the next frame shows.
     answer_seen: bool,
     drill: Option<Drill>,
@@ -44,8 +49,14 @@ pub(super) struct Left {
 
 impl Screen {
     /// Takes the terminal over.
-    pub(super) fn open(caps: Caps, mut session: Session, drill: Option<Drill>) -> anyhow::Result<Self> {
-        let terminal = TerminalGuard::enter().context("taking over the terminal")?;
+    pub(super) fn open(
+        caps: Caps,
+        mut session: Session,
+        places: SharedPlaces,
+        drill: Option<Drill>,
+    ) -> anyhow::Result<Self> {
+        let mut terminal = TerminalGuard::enter().context("taking over the terminal")?;
+        terminal.take_mouse(session.model.ui.mouse).context("taking the mouse")?;
         let (width, height) = crossterm::terminal::size().unwrap_or((80, 24));
         session.take(Msg::Resize { width, height });
         Ok(Self {
@@ -55,7 +66,9 @@ impl Screen {
             drawn: Instant::now(),
             // A slow line gets fewer frames.
             frame_interval: Duration::from_millis(if caps.ssh { 100 } else { 33 }),
-            dirty: true,
+            due: Redraw::Soon,
+            cache: Cache::default(),
+            places,
             answer_seen: true,
             drill,
         })
@@ -72,27 +85,37 @@ impl Screen {
             if let Some(left) = self.take_burst()? {
                 return Ok(left);
             }
-            if self.dirty && self.drawn.elapsed() >= self.pause() {
+            if self.pause().is_some_and(|pause| self.drawn.elapsed() >= pause) {
                 self.draw()?;
             }
         }
     }
 
-    /// Shortest time between the last frame and the next.
-    fn pause(&self) -> Duration {
-        if self.answer_seen { KEY_FRAME } else { self.frame_interval }
+    /// Shortest time between the last frame and the next; `None` if none is due.
+    fn pause(&self) -> Option<Duration> {
+        match self.due {
+            Redraw::No => None,
+            Redraw::Calm => Some(CALM_FRAME),
+            Redraw::Soon if self.answer_seen => Some(KEY_FRAME),
+            Redraw::Soon => Some(self.frame_interval),
+        }
     }
 
     /// Waits for a message, then takes in what else is there.
     fn take_burst(&mut self) -> anyhow::Result<Option<Left>> {
         let first = self.wait();
+        // What the screen waited for may be that it changes by itself.
+        let by_itself = self.session.model.wakes_at_mono_s();
         self.session.update_time();
-        self.dirty = true;
+        if by_itself.is_some_and(|at_s| at_s <= self.session.model.console.now.mono_s) {
+            self.due = Redraw::Soon;
+        }
         let until = Instant::now() + BURST_TIME;
         let mut next = first;
         for _ in 0..BURST {
             let Some(msg) = next else { break };
             self.answer_seen |= is_answer(&msg);
+            self.due = self.due.max(redraw(&self.session.model, &msg));
             for effect in self.session.take(msg) {
                 if let Some(left) = self.carry_out(effect)? {
                     return Ok(Some(left));
@@ -106,7 +129,7 @@ impl Screen {
 
     /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.
     fn wait(&self) -> Option<Msg> {
-        let frame = self.dirty.then(|| self.drawn + self.pause());
+        let frame = self.pause().map(|pause| self.drawn + pause);
         self.session.next(frame.into_iter().chain(self.session.wakes_at()).min())
     }
 
@@ -114,6 +137,7 @@ impl Screen {
         match effect {
             Effect::Redraw => self.terminal.redraw().context("drawing")?,
             Effect::Bell => ring()?,
+            Effect::Mouse(taken) => self.terminal.take_mouse(taken).context("taking the mouse")?,
             Effect::Suspend => self.suspend()?,
             Effect::Quit { signal } => return Ok(Some(Left { signal })),
             // The session has carried out the others.
@@ -128,16 +152,19 @@ impl Screen {
         rustix::process::kill_process(rustix::process::getpid(), rustix::process::Signal::STOP)
             .context("stopping the process")?;
         self.terminal.resume().context("taking the terminal over again")?;
-        self.dirty = true;
+        self.due = Redraw::Soon;
         Ok(())
     }
 
     fn draw(&mut self) -> anyhow::Result<()> {
         let failing = self.drill == Some(Drill::PanicScreen) && self.session.model.live.run.clock.tick > 5;
         assert!(!failing, "drill: the screen fails on purpose");
-        let (model, caps) = (&self.session.model, &self.caps);
-        self.terminal.draw(|frame| tui::view(model, caps, frame)).context("drawing")?;
-        (self.drawn, self.dirty, self.answer_seen) = (Instant::now(), false, false);
+        let (model, caps, cache) = (&self.session.model, &self.caps, &mut self.cache);
+        self.terminal.draw(|frame| tui::view_cached(model, caps, cache, frame)).context("drawing")?;
+        if model.ui.mouse {
+            self.places.set(self.cache.places());
+        }
+        (self.drawn, self.due, self.answer_seen) = (Instant::now(), Redraw::No, false);
         Ok(())
     }
 }
@@ -145,7 +172,7 @@ impl Screen {
 /// Whether an operator waits to see this: a key, or that the robot was stopped.
 fn is_answer(msg: &Msg) -> bool {
     match msg {
-        Msg::Key(_) | Msg::Paste(_) | Msg::Resize { .. } | Msg::Signal(_) => true,
+        Msg::Key(_) | Msg::Paste(_) | Msg::Mouse(_) | Msg::Resize { .. } | Msg::Signal(_) => true,
         Msg::Run(_, RunMsg::Events(events)) => {
             events.iter().any(|event| matches!(event.kind, EventKind::Held { .. }))
         }

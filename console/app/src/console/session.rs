@@ -54,13 +54,21 @@ impl Session {
     fn carry_out(&self, effect: Effect) -> Option<Effect> {
         match effect {
             Effect::Open { id, source, planner } => self.desk.request(Request::Open { id, source, planner }),
+            Effect::Check { needed_bytes } => self.desk.request(Request::Check { needed_bytes }),
+            Effect::Compare(choice) => self.desk.request(Request::Compare(choice)),
+            Effect::Forecast(choices) => self.desk.request(Request::Forecast(choices)),
+            Effect::StopForecasting => self.desk.request(Request::StopForecasting),
+            Effect::StopComparing => self.desk.request(Request::StopComparing),
+            Effect::Survey => self.desk.request(Request::Survey),
             Effect::Look => self.desk.request(Request::Look),
             Effect::Do(job) => self.desk.request(Request::Do(job)),
             Effect::Order(order) => {
                 self.engine.get().into_iter().for_each(|engine| engine.order(order.clone()))
             }
             Effect::Speed(speed) => self.engine.get().into_iter().for_each(|engine| engine.speed(speed)),
-            Effect::Redraw | Effect::Bell | Effect::Suspend | Effect::Quit { .. } => return Some(effect),
+            Effect::Redraw | Effect::Bell | Effect::Mouse(_) | Effect::Suspend | Effect::Quit { .. } => {
+                return Some(effect);
+            }
         }
         None
     }

@@ -12,22 +12,45 @@ use signal_hook::{
     consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP},
     iterator::Signals,
 };
-use std::{thread, time::Duration};
-use tui::{Key, Msg, Signal, terminal};
+use std::{
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    thread,
+    time::Duration,
+};
+use tui::{
+    Key, Msg, Places, Signal,
+    terminal::{self, Pointer},
+};
 
 /// How long the console may take to exit cleanly after a signal; then it exits anyway.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// Keys, pastes and sizes. A key that stops the robot does so from here, whatever the screen is doing.
-pub(super) fn keys(outbox: &Outbox, engine: Current) -> anyhow::Result<()> {
+/// Where the last frame put what a mouse can hit, for the thread that listens to it.
+#[derive(Clone, Default)]
+pub(super) struct SharedPlaces(Arc<Mutex<Places>>);
+
+impl SharedPlaces {
+    pub(super) fn set(&self, places: &Places) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = places.clone();
+    }
+
+    fn get(&self) -> MutexGuard<'_, Places> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Keys, mouse, pastes and sizes. A key that stops the robot does so from here, whatever the screen is doing.
+pub(super) fn keys(outbox: &Outbox, engine: Current, places: SharedPlaces) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     spawn("keys", move || {
+        let mut pointer = Pointer::default();
         while let Ok(event) = event::read() {
             let msg = match event {
                 Event::Key(key) => terminal::key_from_crossterm(&key).map(Msg::Key),
                 Event::Paste(text) => Some(Msg::Paste(text)),
                 Event::Resize(width, height) => Some(Msg::Resize { width, height }),
-                Event::FocusGained | Event::FocusLost | Event::Mouse(_) => None,
+                Event::Mouse(mouse) => pointer.take(&mouse, &places.get()).map(Msg::Mouse),
+                Event::FocusGained | Event::FocusLost => None,
             };
             let Some(msg) = msg else { continue };
             let stops = is_stop_key(&msg, engine.get().is_some_and(|engine| engine.is_typing()));

@@ -4,6 +4,7 @@ use crate::{chart::Chart, config::MissionConfig};
 use world::{CoverageGrid, Floor, FloorMaker, KindRun, Shape};
 
 /// The floor and what of it has been scanned.
+#[derive(Clone)]
 pub(super) struct ScannedFloor {
     pub coverage: CoverageGrid,
     /// Recomputes the floor when an obstacle is found; created for the first one.

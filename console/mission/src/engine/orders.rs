@@ -21,7 +21,9 @@ impl Mission {
         }
         self.happened.push(EventKind::Ordered { order: order.clone() });
         match order {
-            Order::Start => self.phase = Phase::Running(Gait::Steady),
+            Order::Plan => self.plan_ahead(),
+            Order::Start => self.start(),
+            Order::NoteChecks(_) | Order::NoteOutlooks(_) => {}
             Order::Hold => self.hold_by_order(),
             Order::Resume => self.resume(Gait::Steady),
             Order::Step => self.resume(Gait::OneTick),
@@ -36,6 +38,17 @@ impl Mission {
                 self.resume(Gait::Steady);
             }
         }
+    }
+
+    /// The planner makes its plan while the mission waits, so that the operator sees it before anything moves.
+    fn plan_ahead(&mut self) {
+        self.active.want_plan(Reason::Start);
+        self.active.prepare = Prepare::Plan;
+    }
+
+    fn start(&mut self) {
+        self.rules.time_limit.start(self.now_s());
+        self.phase = Phase::Running(Gait::Steady);
     }
 
     /// From now on only an order lets the robot move; a hold of which that is true already keeps its reason.

@@ -29,6 +29,7 @@ use crate::{
 };
 
 /// The rules that do not depend on which planner drives.
+#[derive(Clone)]
 pub(super) struct Rules {
     pub time_limit: TimeLimitRule,
     pub lost_position: LostPositionRule,

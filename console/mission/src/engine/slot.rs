@@ -13,7 +13,7 @@ use world::{Point, Shape};
 /// A planner with its worker, its plan and its open ask.
 ///
 /// The mission has an active one, which drives, and at most one candidate, which is prepared to take over.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct PlannerSlot {
     pub choice: PlannerChoice,
     /// Who it is, from the first time that it was opened.
@@ -133,6 +133,7 @@ pub(super) struct AskedPlan {
 }
 
 /// A command that has arrived.
+#[derive(Clone)]
 pub(super) struct Arrived {
     pub ask: AskId,
     pub command: Command,

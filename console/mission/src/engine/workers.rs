@@ -7,7 +7,7 @@ pub(super) use quarantine::{MOST_FAULTS, Quarantine, WINDOW_S};
 use std::collections::VecDeque;
 
 /// Workers of a mission.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Workers {
     next: u16,
     closing: VecDeque<WorkerId>,

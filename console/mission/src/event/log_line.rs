@@ -179,7 +179,13 @@ fn of_tether(kind: &EventKind) -> Option<LogLine> {
 
 fn order_text(order: &Order) -> String {
     match order {
+        Order::Plan => "plan".into(),
         Order::Start => "start".into(),
+        Order::NoteOutlooks(outlooks) => {
+            let planners: Vec<&str> = outlooks.iter().map(|outlook| outlook.choice.id.as_str()).collect();
+            format!("forecasts compared: {}", planners.join(", "))
+        }
+        Order::NoteChecks(checks) => format!("{} pre-flight checks noted", checks.len()),
         Order::Hold => "hold".into(),
         Order::Resume => "resume".into(),
         Order::Step => "single step".into(),

@@ -21,6 +21,9 @@ fn phases() -> Vec<Phase> {
 fn orders() -> Vec<Order> {
     let choice = PlannerChoice { id: "apf".into(), parameters: Parameters::new() };
     vec![
+        Order::Plan,
+        Order::NoteOutlooks(Vec::new()),
+        Order::NoteChecks(Vec::new()),
         Order::Start,
         Order::Hold,
         Order::Resume,

@@ -16,6 +16,7 @@ const CORNER_PATIENCE_S: f64 = 6.0;
 const NEARER_M: f64 = 0.01;
 
 /// Progress of a coverage mission. What is scanned is kept by the mission's grid, so any planner can go on from here.
+#[derive(Clone)]
 pub(crate) struct Cover {
     anchor: Point,
     /// What is to be scanned at all; empty for everything.
@@ -30,6 +31,7 @@ pub(crate) struct Cover {
 }
 
 /// A plan under way.
+#[derive(Clone)]
 struct Lanes {
     follower: PathFollower,
     /// What the stretches are for, with the stations at which they end, metres.

@@ -18,7 +18,7 @@ enum Level {
 }
 
 /// The level of each alarm, by its kind.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Alarms {
     levels: BTreeMap<&'static str, Level>,
 }

@@ -9,6 +9,7 @@ pub(super) const KEPT_M: f64 = 0.05;
 const UNDONE_M: f64 = 0.08;
 
 /// The way driven, without what was driven there and back.
+#[derive(Clone)]
 pub(super) struct Driven {
     points: Vec<Point>,
 }

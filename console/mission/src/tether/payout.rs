@@ -31,7 +31,7 @@ pub(super) struct Explained {
 }
 
 /// The encoder of the reel, as far as the mission heeds it.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Payout {
     measured_m: Option<f64>,
     /// For how long more has been out than the map explains, seconds.

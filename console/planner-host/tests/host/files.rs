@@ -47,9 +47,9 @@ fn another_abi_is_refused_before_anything_of_it_runs() {
     let source = "#include \"tankops_planner.h\"\nTP_STAMP(9, 0);\n\
                   __attribute__((constructor)) static void boom(void) { *(volatile int *)8 = 1; }\n";
     let (_folder, dirs) = folder_with("newer", source);
-    assert_eq!(refusal(&dirs), "built for planner ABI 9.0, this console speaks 1.2: update the console");
+    assert_eq!(refusal(&dirs), "built for planner ABI 9.0, this console uses 1.2: update the console");
     let (_folder, dirs) = folder_with("older", &source.replace("9, 0", "0, 4"));
-    assert_eq!(refusal(&dirs), "built for planner ABI 0.4, this console speaks 1.2: rebuild the plugin");
+    assert_eq!(refusal(&dirs), "built for planner ABI 0.4, this console uses 1.2: rebuild the plugin");
 }
 
 const HEAD: &str = "#include \"tankops_planner.h\"\nTP_STAMP(TP_ABI_MAJOR, TP_ABI_MINOR);\n";

@@ -336,6 +336,7 @@ fn opened() -> RunOpened {
         tankops_version: "0.1.0".into(),
         scenario: "synthetic".into(),
         plates: None,
+        checklist: Vec::new(),
         scenario_toml: "[tank]\nradius_m = 8.0\n".into(),
         seed: 42,
         floor: Floor::new(&world, 0.1, limits.radius_m, 0.6, start.position),

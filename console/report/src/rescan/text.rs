@@ -12,7 +12,7 @@ impl Rescan {
     pub fn human(&self, min_area_m2: f64) -> String {
         let boxes_m2: f64 = self.boxes.iter().map(|[low, high]| (high.x - low.x) * (high.y - low.y)).sum();
         let mut text = format!(
-            "{:.2} m² missed in {} to scan again, {boxes_m2:.2} m² with the floor around, in {}\n",
+            "{:.2} m² missed in {}, to be scanned again as {} ({boxes_m2:.2} m² with the surrounding floor)\n",
             total_m2(&self.areas),
             counted(self.areas.len(), "area", "areas"),
             counted(self.boxes.len(), "box", "boxes"),

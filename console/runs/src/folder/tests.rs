@@ -103,7 +103,7 @@ fn a_changed_journal_is_noticed_whatever_its_length() {
     for new in ["all scanneD", "everything scanned"] {
         let (folder, ..) = ended(logs.path());
         change(&folder.join(JOURNAL_FILE), "all scanned", new);
-        assert!(doubt(&folder).contains("not the one that was written"), "{}", doubt(&folder));
+        assert!(doubt(&folder).contains("not the one that the report was made from"), "{}", doubt(&folder));
         assert_eq!(
             journal_doubt(&folder, sha256(&folder.join(JOURNAL_FILE)).ok().as_deref()),
             Some(doubt(&folder))

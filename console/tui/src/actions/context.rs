@@ -17,14 +17,22 @@ pub enum Context {
     Mission,
     /// On the result screen.
     Result,
+    /// On the plugins screen.
+    Plugins,
     /// On a screen with a map.
     Map,
     /// While the map takes the arrow keys.
     Pan,
+    /// While a cursor on the map takes the arrow keys.
+    Cursor,
     /// While a list takes the arrow keys.
     Rows,
     /// In a list over the screen.
     List,
+    /// In the comparison of forecasts.
+    WhatIf,
+    /// In the list of checks before the start.
+    Preflight,
     /// In the list of parameters.
     Parameters,
     /// In a line where text is typed.
@@ -45,14 +53,15 @@ impl Context {
             Self::Plan => Some("Plan"),
             Self::Mission => Some("Mission"),
             Self::Result => Some("Result"),
+            Self::Plugins => Some("Plugins"),
             _ => None,
         }
     }
 
     /// Whether its actions are commands of their own, and no mere steps within a list or a line.
     pub fn has_commands(self) -> bool {
-        use Context::{Anywhere, Home, Map, Mission, Pan, Plan, Result, Screen};
-        matches!(self, Anywhere | Screen | Home | Plan | Mission | Result | Map | Pan)
+        use Context::{Anywhere, Home, Map, Mission, Pan, Plan, Plugins, Result, Screen};
+        matches!(self, Anywhere | Screen | Home | Plan | Mission | Result | Plugins | Map | Pan)
     }
 }
 
@@ -64,8 +73,14 @@ pub const TOGETHER: &[&[Context]] = &[
     &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Rows],
     &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map],
     &[Context::Anywhere, Context::Screen, Context::Result, Context::Map, Context::Rows],
+    &[Context::Anywhere, Context::Screen, Context::Map, Context::Pan, Context::Cursor],
+    &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Pan, Context::Cursor],
+    &[Context::Anywhere, Context::Screen, Context::Result, Context::Map, Context::Pan, Context::Cursor],
+    &[Context::Anywhere, Context::Screen, Context::Plugins, Context::Rows],
     &[Context::Anywhere, Context::List, Context::Rows],
     &[Context::Anywhere, Context::List, Context::Rows, Context::Parameters],
+    &[Context::Anywhere, Context::List, Context::Rows, Context::Preflight],
+    &[Context::Anywhere, Context::WhatIf, Context::Map],
     &[Context::Anywhere, Context::Text],
     &[Context::Anywhere, Context::Text, Context::Commands],
     &[Context::Anywhere, Context::Confirm],
@@ -81,6 +96,8 @@ pub fn contexts(model: &Model) -> Vec<Context> {
         Overlay::Commands(_) => &[Context::Text, Context::Commands],
         Overlay::Parameters { edit: Some(_), .. } | Overlay::Filter(_) => &[Context::Text],
         Overlay::Parameters { edit: None, .. } => &[Context::List, Context::Rows, Context::Parameters],
+        Overlay::WhatIf => &[Context::WhatIf, Context::Map],
+        Overlay::Preflight { .. } => &[Context::List, Context::Rows, Context::Preflight],
         Overlay::Planners { .. } | Overlay::Layers { .. } => &[Context::List, Context::Rows],
     };
     [&[Context::Anywhere], here].concat()
@@ -88,12 +105,22 @@ pub fn contexts(model: &Model) -> Vec<Context> {
 
 /// The contexts of the screen that is shown, with nothing over it.
 pub(crate) fn of_screen(model: &Model) -> &'static [Context] {
+    if model.ui.cursor.is_some() {
+        match model.ui.screen {
+            Screen::Home | Screen::Plugins => {}
+            // Esc ends the cursor here, and nothing else.
+            Screen::Plan => return &[Context::Map, Context::Pan, Context::Cursor],
+            Screen::Mission => return &[Context::Mission, Context::Map, Context::Pan, Context::Cursor],
+            Screen::Result => return &[Context::Result, Context::Map, Context::Pan, Context::Cursor],
+        }
+    }
     match (model.ui.screen, model.ui.pane) {
         (Screen::Home, _) => &[Context::Home, Context::Rows],
         (Screen::Plan, _) => &[Context::Plan, Context::Map, Context::Pan],
         (Screen::Mission, Pane::Map) => &[Context::Mission, Context::Map, Context::Pan],
         (Screen::Mission, Pane::Events) => &[Context::Mission, Context::Map, Context::Rows],
         (Screen::Mission, _) => &[Context::Mission, Context::Map],
+        (Screen::Plugins, _) => &[Context::Plugins, Context::Rows],
         (Screen::Result, _) => &[Context::Result, Context::Map, Context::Rows],
     }
 }

@@ -156,7 +156,8 @@ impl Keymap {
 }
 
 fn in_brackets(screens: &[&str]) -> String {
-    if screens.is_empty() { String::new() } else { format!(" ({})", screens.join(", ")) }
+    // On most screens is everywhere.
+    if screens.is_empty() || screens.len() > 4 { String::new() } else { format!(" ({})", screens.join(", ")) }
 }
 
 fn deed(risk: Risk) -> &'static str {
@@ -245,10 +246,7 @@ mod tests {
                 "0: \"space\" is too easy to press for what ends the mission; take a capital letter, F key or \
                  Ctrl; end keeps \"X\"",
             ),
-            (
-                &[("redraw", &[Key::Ctrl('c')])],
-                "0: \"Ctrl-C\" is already interrupt (Home, Plan, Mission, Result); redraw keeps \"Ctrl-L\"",
-            ),
+            (&[("redraw", &[Key::Ctrl('c')])], "0: \"Ctrl-C\" is already interrupt; redraw keeps \"Ctrl-L\""),
         ];
         for (pairs, said) in cases {
             assert_eq!(bound(pairs).1, [said]);

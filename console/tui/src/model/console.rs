@@ -132,6 +132,9 @@ pub struct Console {
     pub planners: Vec<PlannerInfo>,
     /// Plugins that cannot be chosen.
     pub refused: Vec<Refused>,
+    /// What the last look at the plugins changed, as sentences; `None` before the second look.
+    #[serde(default)]
+    pub reloaded: Option<Vec<String>>,
     /// What was last said to the operator.
     pub notice: Option<Notice>,
     /// Which keys run which actions.

@@ -1,14 +1,20 @@
 //! What has been scanned, kept ready for drawing at any zoom.
 
-use serde::{Deserialize, Serialize};
-use world::{Cell, CellRun, CoverageGrid, Floor, KindRun, Point, coverage::Counts};
+mod class;
+mod overlap;
 
-/// Blocks of cells at one zoom: how many of their cells are floor, and how many of these have been scanned.
+pub use class::FloorClass;
+
+use class::Tally;
+use overlap::Overlap;
+use serde::{Deserialize, Serialize};
+use world::{Cell, CellRun, CoverageGrid, Floor, KindRun, Pose, Tool, coverage::Counts};
+
+/// Blocks of cells at one zoom.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Level {
     width: usize,
-    floor: Vec<u32>,
-    scanned: Vec<u32>,
+    tallies: Vec<Tally>,
 }
 
 /// The scanned floor with its own reductions by 2, 4, 8 and so on.
@@ -22,6 +28,9 @@ pub struct Raster {
     levels: Vec<Level>,
     /// Cells along the shell that are out of reach and have not been scanned.
     n_margin: usize,
+    overlap: Overlap,
+    /// Differs after every change, and between floors.
+    stamp: u64,
 }
 
 /// How the whole floor divides. Shares, 0 to 1.
@@ -40,31 +49,47 @@ pub struct Division {
 impl Raster {
     /// A floor of which nothing has been scanned.
     pub fn new(floor: Floor) -> Self {
-        Self::of(CoverageGrid::new(floor))
+        let overlap = Overlap::new(floor.len());
+        Self::of(CoverageGrid::new(floor), overlap)
     }
 
-    fn of(grid: CoverageGrid) -> Self {
+    fn of(grid: CoverageGrid, overlap: Overlap) -> Self {
         let is_margin = |index: &usize| grid.floor().kind(*index) == Cell::Margin && !grid.is_covered(*index);
         let n_margin = (0..grid.floor().len()).filter(is_margin).count();
-        let mut raster = Self { grid, levels: Vec::new(), n_margin };
+        let mut raster = Self { grid, levels: Vec::new(), n_margin, overlap, stamp: 0 };
         raster.levels = (1..).map_while(|shift| raster.level(shift)).collect();
         for index in 0..raster.grid.floor().len() {
-            if raster.grid.floor().is_floor(index) {
-                let scanned = u32::from(raster.grid.is_covered(index));
-                raster.count(index, |level, block| {
-                    level.floor[block] += 1;
-                    level.scanned[block] += scanned;
-                });
+            raster.note(raster.grid.floor().kind(index) as u64);
+            let tally = raster.cell_tally(index);
+            if tally.floor > 0 {
+                raster.count(index, |block| *block += tally);
             }
         }
         raster
+    }
+
+    /// Takes a change into the stamp (FNV-1a).
+    fn note(&mut self, change: u64) {
+        self.stamp = (self.stamp ^ change).wrapping_mul(0x0100_0000_01b3);
+    }
+
+    /// Differs after every change: what was drawn from it can be kept as long as it stays the same.
+    pub fn stamp(&self) -> u64 {
+        self.stamp
+    }
+
+    /// The floor.
+    pub fn floor(&self) -> &Floor {
+        self.grid.floor()
     }
 
     /// Makes some cells another kind of floor; costs one look at every cell, and happens when an obstacle is found.
     pub fn change(&mut self, changes: &[KindRun]) {
         let mut grid = self.grid.clone();
         grid.change(changes);
-        *self = Self::of(grid);
+        let stamp = self.stamp;
+        *self = Self::of(grid, std::mem::take(&mut self.overlap));
+        self.note(stamp);
     }
 
     /// Marks cells as scanned.
@@ -74,28 +99,35 @@ impl Raster {
             for index in (run.0 as usize)..end {
                 if !self.grid.is_covered(index) && self.grid.floor().is_floor(index) {
                     self.n_margin -= usize::from(self.grid.floor().kind(index) == Cell::Margin);
-                    self.count(index, |level, block| level.scanned[block] += 1);
+                    self.count(index, |block| block.scanned += 1);
+                    self.note(index as u64);
                 }
             }
             self.grid.apply(std::slice::from_ref(run));
         }
     }
 
-    /// Scanned share of the floor in a square of some edge about a point; `None` where there is no floor.
-    pub fn scanned_share(&self, center: Point, edge_m: f64) -> Option<f64> {
-        // A square that is hardly larger than a cell takes the cell under its centre.
-        if edge_m < 1.5 * self.grid.floor().cell_m {
-            let (floor, scanned) = self.block_at(center, 0.0);
-            return (floor > 0).then(|| f64::from(scanned));
+    /// The robot believes to have moved from `a` to `b` with its tool on the floor.
+    pub fn pass(&mut self, tool: Tool, a: Pose, b: Pose) {
+        let way_m = (b.position - a.position).norm();
+        if !way_m.is_finite() {
+            return;
         }
-        let quarter_m = edge_m / 4.0;
-        let mut sums = (0, 0);
-        for (right, up) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
-            let at = Point::new(center.x + right * quarter_m, center.y + up * quarter_m);
-            let (floor, scanned) = self.block_at(at, edge_m / 2.0);
-            sums = (sums.0 + floor, sums.1 + scanned);
+        let cells = self.grid.floor().cells_under(tool, a, b);
+        let grid = &self.grid;
+        let is_scanned = |cell| grid.is_covered(cell) && grid.floor().is_floor(cell);
+        for (cell, is_first) in self.overlap.pass(way_m, tool.swath_m(), &cells, is_scanned) {
+            if is_first {
+                self.count(cell, |block| block.again += 1);
+                self.note(cell as u64);
+            }
         }
-        (sums.0 > 0).then(|| f64::from(sums.1) / f64::from(sums.0))
+    }
+
+    /// Floor scanned again as a share of the floor scanned, by the estimated track; `None` before anything is scanned.
+    pub fn overlap(&self) -> Option<f64> {
+        let scanned = self.counts().covered;
+        (scanned > 0).then(|| self.overlap.n_again() as f64 / scanned as f64)
     }
 
     /// How many cells of each kind.
@@ -127,39 +159,23 @@ impl Raster {
         let (width, height) = (half(floor.width), half(floor.height));
         // The level before this one already was a single block.
         let useful = shift < 20 && floor.width.max(floor.height) > 1 << (shift - 1);
-        useful.then(|| Level { width, floor: vec![0; width * height], scanned: vec![0; width * height] })
+        useful.then(|| Level { width, tallies: vec![Tally::default(); width * height] })
     }
 
-    fn count(&mut self, index: usize, mut add: impl FnMut(&mut Level, usize)) {
+    fn count(&mut self, index: usize, mut add: impl FnMut(&mut Tally)) {
         let width = self.grid.floor().width;
         let (column, row) = (index % width, index / width);
         for (shift, level) in (1..).zip(&mut self.levels) {
             let block = (row >> shift) * level.width + (column >> shift);
-            add(level, block);
+            add(&mut level.tallies[block]);
         }
-    }
-
-    /// Floor cells and scanned cells of the block under a point, of the largest blocks no wider than `edge_m`.
-    fn block_at(&self, point: Point, edge_m: f64) -> (u32, u32) {
-        let floor = self.grid.floor();
-        let Some(index) = floor.cell_at(point) else { return (0, 0) };
-        let cells = edge_m / floor.cell_m;
-        let shift =
-            if cells >= 2.0 { (cells as usize).ilog2().min(self.levels.len() as u32) as usize } else { 0 };
-        if shift == 0 {
-            let is_floor = floor.is_floor(index);
-            return (u32::from(is_floor), u32::from(is_floor && self.grid.is_covered(index)));
-        }
-        let level = &self.levels[shift - 1];
-        let block = ((index / floor.width) >> shift) * level.width + ((index % floor.width) >> shift);
-        (level.floor[block], level.scanned[block])
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use world::{Boundary, World};
+    use world::{Boundary, Point, World};
 
     fn raster() -> Raster {
         let vertices =
@@ -173,16 +189,22 @@ mod tests {
         Raster::new(Floor::new(&world, 0.5, 0.2, 0.4, Point::new(4.0, 4.0)))
     }
 
+    /// Scanned share of the floor in a square.
+    fn share(raster: &Raster, center: Point, edge_m: f64) -> Option<f64> {
+        let Tally { floor, scanned, .. } = raster.tally(center, edge_m);
+        (floor > 0).then(|| f64::from(scanned) / f64::from(floor))
+    }
+
     #[test]
     fn a_scanned_half_shows_at_every_zoom() {
         let mut raster = raster();
         raster.apply(&[CellRun(0, 128)]);
         for edge_m in [0.4, 1.0, 2.0, 4.0] {
-            let south = raster.scanned_share(Point::new(4.0, 2.0), edge_m);
-            let north = raster.scanned_share(Point::new(4.0, 6.0), edge_m);
+            let south = share(&raster, Point::new(4.0, 2.0), edge_m);
+            let north = share(&raster, Point::new(4.0, 6.0), edge_m);
             assert_eq!((south, north), (Some(1.0), Some(0.0)), "edge {edge_m} m");
         }
-        assert_eq!(raster.scanned_share(Point::new(4.0, 4.0), 8.0), Some(0.5));
+        assert_eq!(share(&raster, Point::new(4.0, 4.0), 8.0), Some(0.5));
     }
 
     #[test]
@@ -206,10 +228,7 @@ mod tests {
         raster.apply(&[CellRun(0, 3), CellRun(1, 3)]);
         assert_eq!(raster.counts().covered, 4);
         assert!((raster.scanned_m2() - 1.0).abs() < 1e-12);
-        assert_eq!(
-            raster.scanned_share(Point::new(1.0, 0.25), 100.0),
-            raster.scanned_share(Point::new(1.0, 0.25), 1e9)
-        );
+        assert_eq!(share(&raster, Point::new(1.0, 0.25), 100.0), share(&raster, Point::new(1.0, 0.25), 1e9));
     }
 
     #[test]
@@ -217,7 +236,27 @@ mod tests {
         let mut raster = raster();
         raster.apply(&[CellRun(250, 100), CellRun(u32::MAX, u32::MAX)]);
         assert_eq!(raster.counts().covered, 6);
-        assert_eq!(raster.scanned_share(Point::new(-50.0, 4.0), 1.0), None);
-        assert_eq!(raster.scanned_share(Point::new(f64::NAN, 4.0), f64::NAN), None);
+        assert_eq!(share(&raster, Point::new(-50.0, 4.0), 1.0), None);
+        assert_eq!(share(&raster, Point::new(f64::NAN, 4.0), f64::NAN), None);
+    }
+
+    #[test]
+    fn floor_that_the_tool_comes_back_to_is_overlap_and_every_change_gets_another_stamp() {
+        let mut raster = raster();
+        let mut stamps = vec![raster.stamp()];
+        let class = |raster: &Raster| raster.class_at(Point::new(1.25, 4.25), false);
+        assert_eq!(class(&raster), Some((FloorClass::ToDo, 0)));
+        assert_eq!(raster.class_at(Point::new(1.25, 4.25), true), Some((FloorClass::Missed, 0)));
+        raster.apply(&[CellRun(128, 16)]);
+        stamps.push(raster.stamp());
+        let at = |step: i32| Pose::new(0.5 + 0.5 * f64::from(step), 4.25, 0.0);
+        let tool = Tool::Bar { swath_m: 0.6 };
+        (0..11).for_each(|step| raster.pass(tool, at(step), at(step + 1)));
+        assert_eq!((class(&raster), raster.overlap()), (Some((FloorClass::Scanned, 1)), Some(0.0)));
+        (0..11).rev().for_each(|step| raster.pass(tool, at(step + 1), at(step)));
+        stamps.push(raster.stamp());
+        assert_eq!(class(&raster), Some((FloorClass::Overlap, 2)));
+        assert!(raster.overlap() > Some(0.5), "{:?}", raster.overlap());
+        assert!(stamps[0] != stamps[1] && stamps[1] != stamps[2]);
     }
 }

@@ -5,7 +5,7 @@ mod position;
 mod tether;
 
 use super::{About, Cause, Change, Progress, Raster, Run, Withdrawn};
-use mission::{Event, EventKind, Hold, HoldReason, Outcome, Severity, TaskConfig, event::RunOpened};
+use mission::{Event, EventKind, Hold, HoldReason, Order, Outcome, Severity, TaskConfig, event::RunOpened};
 use positioning::AccuracyMap;
 use world::{Obstacle, ObstacleId};
 
@@ -26,7 +26,12 @@ impl Run {
         self.standing.apply(&event.kind);
         match &event.kind {
             EventKind::RunOpened(run) => self.open(run),
-            EventKind::Ordered { order } => change.answered = Some(order.clone()),
+            EventKind::Ordered { order } => {
+                if *order == Order::Start {
+                    self.clock.started_s = Some(event.t_s);
+                }
+                change.answered = Some(order.clone());
+            }
             EventKind::OrderRefused { order, why } => {
                 change.answered = Some(order.clone());
                 change.say(Severity::Warn, format!("order refused: {why}"));
@@ -72,7 +77,9 @@ impl Run {
                 covered_whole,
                 ..
             } => {
+                self.scanned_history.add(event.t_s, 100.0 * covered_reachable);
                 self.progress = Some(Progress {
+                    t_s: event.t_s,
                     done: *done,
                     along_m: *along_m,
                     cross_track_m: *cross_track_m,
@@ -123,6 +130,8 @@ impl Run {
             world: run.world.as_drawn(),
             mission: run.mission.clone(),
             preset_m,
+            checklist: run.checklist.clone(),
+            plates: run.plates,
         });
         self.coverage = Some(Raster::new(run.floor.clone()));
         let (low, high) = run.world.boundary.bounds();

@@ -1,8 +1,11 @@
 //! The run that is open, and what is between the operator and its mission.
 
-use super::{Run, Speed};
+use super::{Plans, Preflight, Run, Speed, WhatIf};
 use mission::{Order, Phase};
-use report::Summary;
+use report::{
+    Estimate, Summary,
+    account::{Area, MissReason},
+};
 use serde::{Deserialize, Serialize};
 
 /// Names a run that was opened since the console was started; 0 is none.
@@ -82,6 +85,12 @@ pub struct Live {
     pub failure: Option<String>,
     /// What its events say.
     pub run: Run,
+    /// What is known of it before it moves.
+    pub plans: Plans,
+    /// What was checked before its start.
+    pub preflight: Preflight,
+    /// How it would go on from where it is held; `None` as long as nobody asked.
+    pub what_if: Option<WhatIf>,
     /// How fast the mission shall go.
     pub speed: Speed,
     /// How its engine does.
@@ -99,9 +108,27 @@ pub struct Live {
 }
 
 impl Live {
-    /// Whether the robot moves, or may begin to move without an order, or because of one that was sent and not answered yet.
+    /// Whether the robot moves, or may begin to move without an order, or because of one that was agreed to
+    /// or sent and not answered yet.
     pub fn may_move(&self) -> bool {
-        self.run.phase().may_move() || self.asked.is_some()
+        self.run.phase().may_move() || self.asked.is_some() || self.preflight.is_starting
+    }
+
+    /// What the plan that would be flown now promises; `None` while that is not known.
+    pub fn estimate(&self) -> Option<&Estimate> {
+        let (ask, estimate) = self.plans.estimate.as_ref()?;
+        (self.run.planning.plan.as_ref()?.ask == *ask).then_some(estimate)
+    }
+
+    /// Reachable floor that the run missed, the largest area first.
+    pub fn missed(&self) -> &[Area<MissReason>] {
+        let floor = self.result.as_ref().and_then(|result| result.summary.floor.as_ref());
+        floor.map_or(&[], |floor| &floor.missed)
+    }
+
+    /// Whether the mission waits for its start.
+    pub fn waits(&self) -> bool {
+        self.run.about.is_some() && *self.run.phase() == Phase::Waiting
     }
 
     /// Whether leaving would abort a mission: one that was started and has not ended, or whose start was requested.

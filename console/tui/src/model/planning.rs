@@ -1,6 +1,6 @@
 //! The planner as the screen knows it.
 
-use mission::{PlannerChoice, PlannerInfo, WorkerId, planner::Fault};
+use mission::{AskId, PlannerChoice, PlannerInfo, WorkerId, planner::Fault};
 use planner_api::{Command, Drawing};
 use serde::{Deserialize, Serialize};
 use world::Point;
@@ -8,6 +8,9 @@ use world::Point;
 /// A plan, thinned out for drawing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanShown {
+    /// The ask that it answers.
+    #[serde(default)]
+    pub ask: Option<AskId>,
     /// Points of the path.
     pub path: Vec<Point>,
     /// Length of the whole path, metres.

@@ -1,5 +1,6 @@
 //! Where the robot believes to be, and how well it knows.
 
+use super::History;
 use nalgebra::Matrix2;
 use planner_api::PoseEstimate;
 use positioning::Fix;
@@ -7,10 +8,10 @@ use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use world::Point;
 
-/// Seconds of mission time that the error history shows.
-pub const HISTORY_S: usize = 120;
 /// Seconds over which the speed is taken.
 const SPEED_SPAN_S: f64 = 2.0;
+/// Time between two ranging cycles as long as only one was heard, seconds.
+const FIRST_PERIOD_S: f64 = 1.0;
 
 /// Where the robot believes to be, and how well it knows.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -33,9 +34,8 @@ pub struct Position {
     pub failure: Option<String>,
     /// Whether the position counts as lost.
     pub lost: bool,
-    /// Largest 95 % error of each second, newest last, metres.
-    history: VecDeque<f64>,
-    history_second: u64,
+    /// The 95 % error, metres.
+    pub history_m: History,
     recent: VecDeque<(f64, Point)>,
 }
 
@@ -47,16 +47,7 @@ impl Position {
         while self.recent.len() > 1 && (self.recent[0].0 < t_s - SPEED_SPAN_S || self.recent.len() > 1000) {
             self.recent.pop_front();
         }
-        let second = t_s.max(0.0) as u64;
-        let error_m = error_95_m(&pose);
-        match self.history.back_mut() {
-            Some(last) if second == self.history_second => *last = last.max(error_m),
-            _ => self.history.push_back(error_m),
-        }
-        self.history_second = second;
-        if self.history.len() > HISTORY_S {
-            self.history.pop_front();
-        }
+        self.history_m.add(t_s, error_95_m(&pose));
     }
 
     /// Takes in that a ranging cycle ended.
@@ -80,11 +71,6 @@ impl Position {
         Some(mean.sqrt())
     }
 
-    /// Largest 95 % error of each of the last seconds, newest last, metres.
-    pub fn history_m(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
-        self.history.iter().copied()
-    }
-
     /// Speed over ground as the estimate has it, metres per second.
     pub fn speed_m_per_s(&self) -> Option<f64> {
         let (from, to) = (self.recent.front()?, self.recent.back()?);
@@ -99,10 +85,16 @@ impl Position {
 
     /// Whether the last fix is older than two ranging periods.
     pub fn is_fix_stale(&self, t_s: f64) -> bool {
-        match (self.fix_age_s(t_s), self.period_s) {
-            (Some(age_s), Some(period_s)) => age_s > 2.0 * period_s,
-            _ => false,
-        }
+        self.fix_age_s(t_s).is_some_and(|age_s| age_s > 2.0 * self.period())
+    }
+
+    /// Whether the last ranging cycle is older than two periods.
+    pub fn is_ranging_stale(&self, t_s: f64) -> bool {
+        self.ranged_t_s.is_some_and(|ranged_t_s| t_s - ranged_t_s > 2.0 * self.period())
+    }
+
+    fn period(&self) -> f64 {
+        self.period_s.unwrap_or(FIRST_PERIOD_S)
     }
 }
 
@@ -135,17 +127,6 @@ mod tests {
             position.estimated(t_s, pose(t_s * 0.2, 0.01));
         }
         assert!((position.speed_m_per_s().unwrap_or_default() - 0.2).abs() < 1e-9);
-    }
-
-    #[test]
-    fn the_history_keeps_the_worst_of_each_second_and_two_minutes_of_them() {
-        let mut position = Position::default();
-        for tick in 0..3000 {
-            let spike = if tick % 10 == 3 { 0.1 } else { 0.01 };
-            position.estimated(f64::from(tick) * 0.1, pose(0.0, spike));
-        }
-        assert_eq!(position.history_m().len(), HISTORY_S);
-        assert!(position.history_m().all(|error_m| error_m > 0.2));
     }
 
     #[test]

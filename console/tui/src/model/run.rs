@@ -1,10 +1,10 @@
 //! A run as its events tell it: the same fold serves a run that is flown now and one that is replayed.
 
-use super::{Alarms, Log, Planning, Position, Raster, Tether, Trail};
+use super::{Alarms, History, Log, Planning, Position, Raster, Tether, Trail};
 use mission::{FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig};
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
-use world::{Point, StationId, World};
+use world::{PlateLayout, Point, StationId, World};
 
 /// A run as its events tell it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -27,6 +27,8 @@ pub struct Run {
     pub accuracy: Option<AccuracyMap>,
     /// How far the mission is; `None` before the first step.
     pub progress: Option<Progress>,
+    /// The scanned share of the reachable floor, per cent.
+    pub scanned_history: History,
     /// The tether; `None` without one.
     #[serde(default)]
     pub tether: Option<Tether>,
@@ -51,6 +53,12 @@ pub struct About {
     pub mission: MissionConfig,
     /// Length of the preset path, metres; `None` for a mission without one.
     pub preset_m: Option<f64>,
+    /// What the operator ticks by hand before the start.
+    #[serde(default)]
+    pub checklist: Vec<String>,
+    /// How the plates of the floor lie, if the drawing shows them.
+    #[serde(default)]
+    pub plates: Option<PlateLayout>,
 }
 
 /// Mission time, by the events.
@@ -62,11 +70,16 @@ pub struct Clock {
     pub t_s: f64,
     /// Mission time spent under way and not held, seconds.
     pub moving_s: f64,
+    /// Mission time at the start, seconds; `None` before.
+    #[serde(default)]
+    pub started_s: Option<f64>,
 }
 
 /// How far the mission is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
+    /// Mission time of it, seconds.
+    pub t_s: f64,
     /// Share of the task done, 0 to 1.
     pub done: f64,
     /// Way along the preset path, metres.
@@ -117,6 +130,13 @@ impl Run {
         let done = self.progress.as_ref()?.done;
         let known = self.clock.moving_s > 10.0 && done > 0.01 && done <= 1.0 && !self.has_ended();
         known.then(|| self.clock.moving_s * (1.0 - done) / done)
+    }
+
+    /// Whether a value of some time that comes with every tick of the mission has not come for two ticks.
+    pub fn is_overdue(&self, t_s: f64) -> bool {
+        let tick_s = self.about.as_ref().map_or(0.1, |about| about.mission.tick_s);
+        // A little more than two: times are sums of ticks.
+        !self.has_ended() && self.clock.t_s - t_s > 2.01 * tick_s
     }
 
     /// Name of a station.

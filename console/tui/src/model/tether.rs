@@ -1,5 +1,6 @@
 //! The tether as the screen knows it.
 
+use super::History;
 use mission::{EventKind, event::TetherContact};
 use serde::{Deserialize, Serialize};
 use world::Point;
@@ -25,11 +26,22 @@ pub struct Tether {
     pub line: Vec<Point>,
     /// Whether the last plan was certified; `None` before the first.
     pub certified: Option<bool>,
+    /// Mission time of what is known of how it lies, seconds; `None` before the first.
+    pub t_s: Option<f64>,
+    /// What was out, metres.
+    pub length_history_m: History,
+    /// The largest wrap, degrees.
+    pub wrap_history_deg: History,
 }
 
 impl Tether {
+    /// The largest wrap, by its size.
+    pub fn largest(&self) -> Option<&TetherContact> {
+        self.contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()))
+    }
+
     /// Takes in how the cable lies now.
-    pub(crate) fn lie(&mut self, event: &EventKind) {
+    pub(crate) fn lie(&mut self, t_s: f64, event: &EventKind) {
         if let EventKind::Tethered {
             length_m,
             paid_out_m,
@@ -46,6 +58,10 @@ impl Tether {
             (self.free_m, self.wrap_total_rad) = (*free_m, *wrap_total_rad);
             (self.pull_factor, self.return_length_m) = (*pull_factor, *return_length_m);
             (self.contacts, self.line) = (contacts.clone(), line.clone());
+            self.t_s = Some(t_s);
+            self.length_history_m.add(t_s, self.length_m);
+            let wrap_rad = self.largest().map_or(0.0, |contact| contact.wrap_rad.abs());
+            self.wrap_history_deg.add(t_s, wrap_rad.to_degrees());
         }
     }
 }

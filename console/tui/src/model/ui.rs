@@ -24,6 +24,14 @@ pub struct Ui {
     pub map: MapView,
     /// What the map shows.
     pub layers: Layers,
+    /// The missed area that is selected on the result screen, among those that are listed.
+    pub missed: usize,
+    /// The plugin that is selected on the plugins screen.
+    pub plugin: usize,
+    /// The place on the map that is read, metres, tank frame; `None` without a cursor.
+    pub cursor: Option<Point>,
+    /// Whether the mouse is taken from the terminal.
+    pub mouse: bool,
     /// Least severity of the lines in the events pane.
     pub least: Severity,
     /// Text that the lines in the events pane contain.
@@ -46,6 +54,10 @@ impl Default for Ui {
             pane: Pane::Map,
             map: MapView::default(),
             layers: Layers::default(),
+            missed: 0,
+            plugin: 0,
+            cursor: None,
+            mouse: false,
             least: Severity::Info,
             needle: String::new(),
             scroll: 0,
@@ -67,11 +79,13 @@ pub enum Screen {
     Mission,
     /// What a mission has achieved.
     Result,
+    /// Which plugins there are.
+    Plugins,
 }
 
 impl Screen {
     /// Every screen, in the order of their keys.
-    pub const ALL: [Self; 4] = [Self::Home, Self::Plan, Self::Mission, Self::Result];
+    pub const ALL: [Self; 5] = [Self::Home, Self::Plan, Self::Mission, Self::Result, Self::Plugins];
 
     /// Its name, as the top line shows it.
     pub fn name(self) -> &'static str {
@@ -80,6 +94,7 @@ impl Screen {
             Self::Plan => "Plan",
             Self::Mission => "Mission",
             Self::Result => "Result",
+            Self::Plugins => "Plugins",
         }
     }
 
@@ -90,6 +105,7 @@ impl Screen {
             Self::Plan => 2,
             Self::Mission => 3,
             Self::Result => 7,
+            Self::Plugins => 8,
         }
     }
 }
@@ -107,11 +123,32 @@ pub enum Pane {
     Planner,
     /// What happened.
     Events,
+    /// How the tether lies.
+    Tether,
+    /// What is wrong.
+    Alarms,
+    /// What was missed, when the mission has ended.
+    Missed,
+    /// A quantity over the last minutes.
+    Chart(Chart),
 }
 
 impl Pane {
-    /// Every pane, in the order of the Tab key.
-    pub const ALL: [Self; 5] = [Self::Map, Self::Coverage, Self::Position, Self::Planner, Self::Events];
+    /// The panes that are pages of a screen too small for all of them, in the order of the Tab key.
+    pub const PAGES: [Self; 5] = [Self::Map, Self::Coverage, Self::Position, Self::Planner, Self::Events];
+}
+
+/// What a chart shows over time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Chart {
+    /// The 95 % error of the position.
+    Error,
+    /// The length of tether that is out.
+    TetherOut,
+    /// The largest wrap.
+    Wrap,
+    /// The scanned share of the reachable floor.
+    Scanned,
 }
 
 /// The part of the tank on the map.
@@ -204,6 +241,8 @@ pub enum Overlay {
     Commands(Palette),
     /// The list of planners.
     Planners {
+        /// What the planner is chosen for.
+        purpose: Purpose,
         /// Which line is selected.
         selected: usize,
     },
@@ -219,8 +258,26 @@ pub enum Overlay {
         /// Which line is selected.
         selected: usize,
     },
+    /// How the mission would go on with one planner or another.
+    WhatIf,
+    /// The check before the start.
+    Preflight {
+        /// Which line is selected.
+        selected: usize,
+    },
     /// The text filter of a list is being typed.
     Filter(LineEdit),
+}
+
+/// What a planner is chosen for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Purpose {
+    /// To drive.
+    Drive,
+    /// To plan for comparison.
+    Compare,
+    /// To forecast how the mission would go on.
+    WhatIf,
 }
 
 /// What a confirm line asks for.
@@ -330,7 +387,7 @@ impl Ui {
         }
         match self.arrangement() {
             Arrangement::Wide | Arrangement::Narrow => &[Pane::Map, Pane::Events],
-            Arrangement::Paged => &Pane::ALL,
+            Arrangement::Paged => &Pane::PAGES,
             Arrangement::Strip => &[],
         }
     }

@@ -7,9 +7,10 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, ThreadId};
 
-/// What undoes everything that taking the terminal over does: end of a synchronized update, focus reports off,
-/// bracketed paste off, plain text, alternate screen left, cursor shown.
-pub const RESTORE: &str = "\x1b[?2026l\x1b[?1004l\x1b[?2004l\x1b[0m\x1b[?1049l\x1b[?25h";
+/// What undoes everything that taking the terminal over does: end of a synchronized update, mouse and focus reports
+/// off, bracketed paste off, plain text, alternate screen left, cursor shown.
+pub const RESTORE: &str =
+    "\x1b[?2026l\x1b[?1006l\x1b[?1002l\x1b[?1000l\x1b[?1004l\x1b[?2004l\x1b[0m\x1b[?1049l\x1b[?25h";
 
 /// Whether the console has the terminal.
 static TAKEN: AtomicBool = AtomicBool::new(false);
@@ -120,7 +121,7 @@ mod tests {
 
     #[test]
     fn every_mode_that_is_set_is_unset() {
-        for mode in ["2026l", "1004l", "2004l", "1049l", "25h"] {
+        for mode in ["2026l", "1006l", "1002l", "1000l", "1004l", "2004l", "1049l", "25h"] {
             assert!(RESTORE.contains(&format!("\x1b[?{mode}")), "{mode}");
         }
     }

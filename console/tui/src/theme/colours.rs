@@ -19,10 +19,13 @@ pub(super) fn rgb(role: Role, name: ThemeName) -> Rgb {
         }
         Role::Dim | Role::Border | Role::Stale => [0x8b_98a5, 0x59_636e, 0xc8_c8c8],
         Role::Good | Role::Run | Role::Pull => [0x6c_c070, 0x1a_7f37, 0x00_ff66],
-        Role::Watch | Role::Key | Role::Focus => [0x5c_c8d8, 0x0b_6e8a, 0x00_e5ff],
+        Role::Watch | Role::Key | Role::Focus | Role::Plate => [0x5c_c8d8, 0x0b_6e8a, 0x00_e5ff],
         Role::Warn | Role::Hold | Role::Confirm => [0xe0_b040, 0x8a_5a00, 0xff_d000],
-        Role::Crit | Role::Push => [0xff_6b60, 0xc0_1c28, 0xff_8a80],
+        Role::Crit | Role::Push | Role::Missed => [0xff_6b60, 0xc0_1c28, 0xff_8a80],
         Role::Scanned => [0x1a_4a68, 0xb6_dcf2, 0x00_3a94],
+        Role::Overlap => [0x2e_749c, 0x7f_bde6, 0x2a_6ad0],
+        Role::Unreachable | Role::Margin => [0x6c_6c6c, 0x9a_9a9a, 0x80_8080],
+        Role::Ghost => [0xc7_9bff, 0x6a_3fb5, 0xd9_b3ff],
         Role::Partly => [0x26_323a, 0xdf_ebf2, 0x00_1d4a],
         Role::Trail | Role::Station => [0x82_cdeb, 0x0a_5a8a, 0x7f_e8ff],
         Role::Plan | Role::Target => [0xd6_af5f, 0x7d_4e00, 0xff_d000],
@@ -103,7 +106,7 @@ mod tests {
     #[test]
     fn lines_can_be_seen_on_scanned_floor() {
         for name in ThemeName::ALL {
-            for role in [Role::Trail, Role::Plan, Role::Tether, Role::Obstacle, Role::Found] {
+            for role in [Role::Trail, Role::Plan, Role::Tether, Role::Obstacle, Role::Found, Role::Ghost] {
                 let contrast = contrast(rgb(role, name), rgb(Role::Scanned, name));
                 assert!(contrast >= 3.4, "{role:?} in {name:?}: {contrast:.2}");
             }
@@ -111,7 +114,10 @@ mod tests {
     }
 
     fn is_fill(role: Role) -> bool {
-        matches!(role, Role::Scanned | Role::Partly)
+        matches!(
+            role,
+            Role::Scanned | Role::Partly | Role::Overlap | Role::Unreachable | Role::Margin | Role::Missed
+        )
     }
 
     #[test]

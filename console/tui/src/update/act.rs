@@ -1,17 +1,19 @@
 //! Actions into changes and effects.
 
 use super::go::{self, back, go};
+use super::map;
 use super::message::Effect;
 use super::offer::{offered, refuse};
 use super::overlay::{self, ask, open};
 use super::send::{hold_now, send};
-use super::{palette, typing};
+use super::{palette, preflight, typing, what_if};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
-use crate::model::ui::{Ask, MAX_ZOOM, MapView};
+use crate::model::plugins::plugins;
+use crate::model::ui::{Ask, MapView, Purpose};
 use crate::model::{Model, Overlay, Palette, Pane, Screen, Speed};
 use mission::{Order, Severity};
-use world::{Point, Vector};
+use world::Vector;
 
 /// Seconds within which a second Ctrl-C asks to leave.
 const INTERRUPT_TWICE_S: f64 = 2.0;
@@ -32,6 +34,9 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::GoPlan => go(model, Screen::Plan),
         ActionId::GoMission => go(model, Screen::Mission),
         ActionId::GoResult => go(model, Screen::Result),
+        ActionId::GoPlugins => go(model, Screen::Plugins),
+        ActionId::Reload => vec![Effect::Survey],
+        ActionId::Again => go::again(model),
         ActionId::Rescan | ActionId::Verify | ActionId::Report | ActionId::View => go::begin(model, id),
         ActionId::Back => back(model).unwrap_or_else(|| leave(model)),
         ActionId::Leave => leave(model),
@@ -43,10 +48,23 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Slower => change_speed(model, false),
         ActionId::Faster => change_speed(model, true),
         ActionId::Acknowledge => acknowledge(model),
+        ActionId::Mouse => toggle_mouse(model),
         ActionId::Accept if model.ui.overlay == Overlay::None => go::enter(model),
         ActionId::Accept => overlay::accept(model),
         ActionId::Edit => overlay::edit(model),
-        ActionId::ChoosePlanner => open(model, Overlay::Planners { selected: driving(model) }),
+        ActionId::ChoosePlanner => {
+            open(model, Overlay::Planners { purpose: Purpose::Drive, selected: driving(model) })
+        }
+        ActionId::Compare => {
+            open(model, Overlay::Planners { purpose: Purpose::Compare, selected: driving(model) })
+        }
+        ActionId::WhatIf => what_if::open(model),
+        ActionId::AddCandidate => {
+            open(model, Overlay::Planners { purpose: Purpose::WhatIf, selected: driving(model) })
+        }
+        ActionId::Preflight => preflight::open(model),
+        ActionId::PlanAgain => vec![Effect::Order(Order::Plan)],
+        ActionId::CancelPlan => overlay::cancel_plan(model),
         ActionId::Parameters => open(model, Overlay::Parameters { selected: 0, edit: None }),
         ActionId::Layers => open(model, Overlay::Layers { selected: 0 }),
         ActionId::Filter => open(model, Overlay::Filter(typing::filtered(model).into())),
@@ -66,6 +84,7 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
 /// Changes what the operator looks at, and nothing else.
 fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
     match id {
+        ActionId::Cancel if model.ui.overlay == Overlay::None => model.ui.cursor = None,
         ActionId::Cancel => overlay::cancel(model),
         ActionId::Complete => typing::complete(model),
         ActionId::Up => select(model, -1),
@@ -76,14 +95,19 @@ fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Last => select(model, isize::MAX),
         ActionId::NextPane => turn_to(model, 1),
         ActionId::PreviousPane => turn_to(model, -1),
-        ActionId::ZoomIn => zoom(model, 1),
-        ActionId::ZoomOut => zoom(model, -1),
+        ActionId::NextCandidate => what_if::select(model, 1),
+        ActionId::PreviousCandidate => what_if::select(model, -1),
+        ActionId::NextMissed => select(model, 1),
+        ActionId::PreviousMissed => select(model, -1),
+        ActionId::ZoomIn => map::zoom(model, 1),
+        ActionId::ZoomOut => map::zoom(model, -1),
+        ActionId::Inspect => map::inspect(model),
         ActionId::WholeTank => model.ui.map = MapView::default(),
         ActionId::Follow => model.ui.map.follow = !model.ui.map.follow,
-        ActionId::PanLeft => pan(model, Vector::new(-1.0, 0.0)),
-        ActionId::PanRight => pan(model, Vector::new(1.0, 0.0)),
-        ActionId::PanUp => pan(model, Vector::new(0.0, 1.0)),
-        ActionId::PanDown => pan(model, Vector::new(0.0, -1.0)),
+        ActionId::PanLeft => map::pan(model, Vector::new(-1.0, 0.0)),
+        ActionId::PanRight => map::pan(model, Vector::new(1.0, 0.0)),
+        ActionId::PanUp => map::pan(model, Vector::new(0.0, 1.0)),
+        ActionId::PanDown => map::pan(model, Vector::new(0.0, -1.0)),
         ActionId::Severity => next_severity(model),
         _ => {}
     }
@@ -148,6 +172,17 @@ pub(super) fn set_speed(model: &mut Model, speed: Speed) -> Vec<Effect> {
     vec![Effect::Speed(speed)]
 }
 
+fn toggle_mouse(model: &mut Model) -> Vec<Effect> {
+    model.ui.mouse = !model.ui.mouse;
+    let news = if model.ui.mouse {
+        "mouse on: click, wheel, drag; hold Shift to select text"
+    } else {
+        "mouse off: the terminal has it"
+    };
+    model.say(Severity::Info, news);
+    vec![Effect::Mouse(model.ui.mouse)]
+}
+
 fn acknowledge(model: &mut Model) -> Vec<Effect> {
     if let Some(text) = model.live.run.alarms.acknowledge() {
         model.say(Severity::Info, format!("acknowledged: {text}"));
@@ -182,26 +217,6 @@ fn turn_to(model: &mut Model, by: isize) {
     model.ui.pane = panes.get(next).copied().unwrap_or(Pane::Map);
 }
 
-fn zoom(model: &mut Model, by: i8) {
-    let map = &mut model.ui.map;
-    map.zoom = map.zoom.saturating_add_signed(by).min(MAX_ZOOM);
-    if map.zoom == 0 {
-        *map = MapView { follow: map.follow, ..MapView::default() };
-    }
-}
-
-/// Moves the map by a quarter of what it shows; the robot need not stay in the middle then.
-fn pan(model: &mut Model, direction: Vector) {
-    let Some(about) = &model.live.run.about else { return };
-    let (low, high) = about.world.boundary.bounds();
-    let (middle, span) = (nalgebra::center(&low, &high), high - low);
-    let step_m = span.x.max(span.y) / f64::from(1_u32 << model.ui.map.zoom) / 4.0;
-    let robot = model.live.run.position.pose.as_ref().map(|pose| pose.position);
-    let center = model.ui.map_center(middle, robot) + direction * step_m;
-    model.ui.map.follow = false;
-    model.ui.map.offset = Point::new(center.x.clamp(low.x, high.x), center.y.clamp(low.y, high.y)) - middle;
-}
-
 fn next_severity(model: &mut Model) {
     model.ui.scroll = 0;
     model.ui.least = match model.ui.least {
@@ -213,14 +228,19 @@ fn next_severity(model: &mut Model) {
 }
 
 /// Selects another line of whatever takes the arrow keys, so many further down.
-fn select(model: &mut Model, by: isize) {
+pub(super) fn select(model: &mut Model, by: isize) {
     if palette::recalls(model, by) {
         return;
     }
     match (&model.ui.overlay, model.ui.screen) {
         (Overlay::None, Screen::Home) => model.home.select(by),
         (Overlay::None, Screen::Mission) => scroll(model, by),
-        (Overlay::None, Screen::Plan | Screen::Result) => {}
+        (Overlay::None, Screen::Result) => go::select_missed(model, by),
+        (Overlay::None, Screen::Plugins) => {
+            let last = plugins(&model.console, &model.live.run).len().saturating_sub(1);
+            model.ui.plugin = model.ui.plugin.saturating_add_signed(by).min(last);
+        }
+        (Overlay::None, Screen::Plan) => {}
         _ => overlay::select(model, by),
     }
 }

@@ -10,8 +10,12 @@ use super::offer::{accepted, offered, refuse};
 use super::overlay;
 use super::send::send;
 use super::typing;
-use crate::actions::{Action, Arg, find};
-use crate::model::{Model, palette::LineFault, ui::MapView};
+use crate::actions::{Action, ActionId, Arg, find};
+use crate::model::{
+    Model,
+    palette::LineFault,
+    ui::{MapView, Purpose},
+};
 use line::Word;
 use mission::{Order, Parameters, PlannerChoice};
 use value::Value;
@@ -106,7 +110,10 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
     }
     match first {
         Value::Speed(speed) => return set_speed(model, speed),
-        Value::Planner(planner) => return overlay::swap_to(model, planner),
+        Value::Planner(planner) => {
+            let purpose = if action.id == ActionId::Compare { Purpose::Compare } else { Purpose::Drive };
+            return overlay::choose(model, purpose, planner);
+        }
         Value::Parameter { key, value } => return set_parameter(model, Order::SetParameter { key, value }),
         Value::Scenario(source) => {
             let planner = values.find_map(|value| match value {

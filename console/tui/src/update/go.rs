@@ -6,6 +6,7 @@ use crate::actions::ActionId;
 use crate::model::home::HomeList;
 use crate::model::{Live, Model, RunId, Screen, Source};
 use mission::{PlannerChoice, Severity};
+use world::Point;
 
 /// Goes to a screen; home is looked at again each time.
 pub(super) fn go(model: &mut Model, screen: Screen) -> Vec<Effect> {
@@ -24,7 +25,7 @@ pub(super) fn back(model: &mut Model) -> Option<Vec<Effect>> {
 pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
     match model.ui.screen {
         Screen::Home => open_selected(model),
-        Screen::Plan | Screen::Mission | Screen::Result => Vec::new(),
+        Screen::Plan | Screen::Mission | Screen::Result | Screen::Plugins => Vec::new(),
     }
 }
 
@@ -63,9 +64,29 @@ pub(super) fn open(model: &mut Model, source: Source, planner: Option<PlannerCho
     }
     let id = RunId(model.live.id.0 + 1);
     model.live = Live { id, source: Some(source.clone()), is_opening: true, ..Live::default() };
-    model.ui.map = crate::model::ui::MapView::default();
+    (model.ui.map, model.ui.cursor) = (crate::model::ui::MapView::default(), None);
     model.ui.go(Screen::Plan);
     vec![Effect::Open { id, source, planner }]
+}
+
+/// Opens the scenario of the run that is open once more, with the planner that it had.
+pub(super) fn again(model: &mut Model) -> Vec<Effect> {
+    let Some(source) = model.live.source.clone() else { return Vec::new() };
+    let planner = model.live.run.planning.choice.clone();
+    open(model, source, planner)
+}
+
+/// Selects another missed area, so many further down, and shows it in the middle of the map.
+pub(super) fn select_missed(model: &mut Model, by: isize) {
+    let places: Vec<Point> = model.live.missed().iter().map(|area| area.at).collect();
+    model.ui.missed = model.ui.missed.saturating_add_signed(by).min(places.len().saturating_sub(1));
+    let Some(bounds) = model.live.run.about.as_ref().map(|about| about.world.boundary.bounds()) else {
+        return;
+    };
+    if let Some(at) = places.get(model.ui.missed).filter(|_| model.ui.map.zoom > 0) {
+        model.ui.map.follow = false;
+        model.ui.map.offset = at - nalgebra::center(&bounds.0, &bounds.1);
+    }
 }
 
 /// The run that a command is about: on the home screen the selected one, else the one that is open.

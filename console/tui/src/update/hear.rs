@@ -1,10 +1,10 @@
 //! News of the run that is open.
 
-use super::{Effect, RunMsg, news};
+use super::{Effect, RunMsg, news, preflight, what_if};
 use crate::model::{
     Busy, Cause, Change, Health, Model, Overlay, Recording, RunId, RunResult, Screen, Withdrawn, ui::Ask,
 };
-use mission::{Event, EventKind, Severity};
+use mission::{Event, EventKind, Order, Severity};
 
 /// Takes in news of a run. News of one that is not open any more is late and dropped.
 pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
@@ -19,6 +19,34 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
         RunMsg::Events(events) => {
             model.live.heard_mono_s = model.console.now.mono_s;
             events.iter().for_each(|event| take(model, event));
+            let goes_on = |event: &Event| {
+                matches!(
+                    event.kind,
+                    EventKind::Resumed | EventKind::ObstacleFound { .. } | EventKind::Ended { .. }
+                )
+            };
+            if events.iter().any(goes_on) {
+                return what_if::forget(model);
+            }
+            let has_opened = events.iter().any(|event| matches!(event.kind, EventKind::RunOpened(_)));
+            // The operator shall see the plan before anything moves.
+            return if has_opened && model.live.waits() {
+                vec![Effect::Order(Order::Plan)]
+            } else {
+                Vec::new()
+            };
+        }
+        RunMsg::Checked(found) => return preflight::checked(model, found),
+        RunMsg::Estimated(ask, estimate) => model.live.plans.estimate = Some((ask, *estimate)),
+        RunMsg::CompareAt(share, what) => {
+            if let Some(ghost) = &mut model.live.plans.ghost {
+                ghost.at = Some((share, what));
+            }
+        }
+        RunMsg::Compared(choice, made) => {
+            if let Some(ghost) = model.live.plans.ghost.as_mut().filter(|ghost| ghost.choice == choice) {
+                ghost.made = Some(made.map(|made| *made));
+            }
         }
         RunMsg::Health(health) => take_health(model, health),
         RunMsg::OrderFailed { order, why } => {
@@ -34,6 +62,10 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
             if let Some(busy) = &mut model.live.busy {
                 busy.at = Some((share, what));
             }
+        }
+        RunMsg::ForecastAt(choice, share) => what_if::at(model, &choice, share),
+        RunMsg::Forecast(choice, forecast) => {
+            what_if::made(model, &choice, forecast.map(|forecast| *forecast));
         }
         RunMsg::Closed(result) => return closed(model, *result),
     }

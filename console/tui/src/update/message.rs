@@ -1,9 +1,14 @@
 //! What goes into the model, and what has to be done outside in answer.
 
+use crate::actions::ActionId;
 use crate::keys::KeyPress;
-use crate::model::{Health, Refused, RunId, RunResult, Source, Speed, Times, home::Found};
-use mission::{Event, Order, PlannerChoice, PlannerInfo, Severity};
+use crate::model::{
+    Forecast, GhostPlan, Health, Refused, RunId, RunResult, Source, Speed, Times, home::Found,
+};
+use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, Severity};
+use report::Estimate;
 use serde::{Deserialize, Serialize};
+use world::Point;
 
 /// What reaches the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -14,6 +19,8 @@ pub enum Msg {
     Paste(String),
     /// A command line that was not typed into the screen: from a script or from stdin.
     Line(String),
+    /// The mouse did something.
+    Mouse(Mouse),
     /// The terminal has this size now.
     Resize {
         /// Columns.
@@ -54,6 +61,38 @@ pub enum Msg {
     },
 }
 
+/// What the mouse did.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Mouse {
+    /// A button was pressed and came up at the same place.
+    Click(Target),
+    /// It was dragged on the map, from one place in the tank to another.
+    Drag {
+        /// Place where it was, metres.
+        from: Point,
+        /// Place where it is, metres.
+        to: Point,
+    },
+    /// The wheel was turned.
+    Wheel {
+        /// Away from the operator.
+        up: bool,
+        /// What it was on.
+        on: Target,
+    },
+}
+
+/// What the mouse is on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Target {
+    /// A place on the map, metres, tank frame.
+    Map(Point),
+    /// The name of a key.
+    Key(ActionId),
+    /// Something else.
+    Else,
+}
+
 /// News of a run that is open.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum RunMsg {
@@ -80,6 +119,18 @@ pub enum RunMsg {
         /// What is being done, a few words; may be empty.
         what: String,
     },
+    /// What was found before the start: disk, recorder, engine, clock.
+    Checked(Vec<Check>),
+    /// What a plan promises, and the ask that it answers.
+    Estimated(Option<AskId>, Box<Estimate>),
+    /// How far the plan is that is made for comparison: the share done, and what is being done.
+    CompareAt(f64, String),
+    /// A plan was made for comparison, or why not, as a sentence.
+    Compared(PlannerChoice, Result<Box<GhostPlan>, String>),
+    /// How far the forecast of a planner is: the share of the task done.
+    ForecastAt(PlannerChoice, f64),
+    /// How the mission would go on with a planner, or why that is not known, as a sentence.
+    Forecast(PlannerChoice, Result<Box<Forecast>, String>),
     /// The run has ended and its files are closed.
     Closed(Box<RunResult>),
 }
@@ -122,6 +173,21 @@ pub enum Effect {
         /// The planner to use instead of the scenario's.
         planner: Option<PlannerChoice>,
     },
+    /// Look at everything outside the screen that the start depends on.
+    Check {
+        /// Space that the recording of the mission is expected to take, bytes.
+        needed_bytes: u64,
+    },
+    /// Have another planner plan the mission that waits, for comparison; one that is being made is given up.
+    Compare(PlannerChoice),
+    /// Forecast how the held mission would go on with some planners; forecasts that are being made are given up.
+    Forecast(Vec<PlannerChoice>),
+    /// Give up the forecasts that are being made.
+    StopForecasting,
+    /// Give up the plan that is being made for comparison.
+    StopComparing,
+    /// Look at the plugins again.
+    Survey,
     /// Look at scenarios, past runs and the disk again.
     Look,
     /// Do something beside the screen.
@@ -136,6 +202,8 @@ pub enum Effect {
     Suspend,
     /// Ring the terminal's bell.
     Bell,
+    /// Take the mouse from the terminal, or give it back.
+    Mouse(bool),
     /// Close the recording and leave. Orders before it in the list are to be obeyed first.
     Quit {
         /// The signal that asked for it, if one did.

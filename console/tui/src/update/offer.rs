@@ -4,7 +4,7 @@ use super::go::named_run;
 use super::message::Effect;
 use super::typing;
 use crate::actions::ActionId;
-use crate::model::{Model, Pane, Screen, ui::MAX_ZOOM};
+use crate::model::{Model, Overlay, Pane, Screen, ui::MAX_ZOOM};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 
 /// Whether an action can be done now.
@@ -24,6 +24,21 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Step => accepted(model, &Order::Step),
         ActionId::Abort => abort(model),
         ActionId::ChoosePlanner => swap(model),
+        ActionId::Accept => {
+            let is_taken = model.ui.overlay != Overlay::None || model.ui.screen == Screen::Home;
+            demand(is_taken, "Enter has nothing to open here")
+        }
+        ActionId::WhatIf => accepted(model, &Order::NoteOutlooks(Vec::new())),
+        ActionId::Preflight => demand(model.live.waits(), "checks are made before the start"),
+        ActionId::Compare => compare(model),
+        ActionId::PlanAgain => accepted(model, &Order::Plan),
+        ActionId::CancelPlan => {
+            let is_planning = model.live.waits() && model.live.busy.is_some();
+            demand(
+                is_planning || model.live.plans.ghost.is_some() || model.live.preflight.is_starting,
+                "nothing is being planned",
+            )
+        }
         ActionId::Parameters | ActionId::SetParameter => parameters(model),
         ActionId::SetSpeed => simulating(model),
         ActionId::Open => nothing_under_way(model),
@@ -36,11 +51,13 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::ZoomIn => map(model).and(demand(model.ui.map.zoom < MAX_ZOOM, "already at maximum zoom")),
         ActionId::ZoomOut => map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is already shown")),
         ActionId::WholeTank | ActionId::Layers | ActionId::Centre => map(model),
+        ActionId::Inspect => map(model).and(demand(model.live.run.about.is_some(), "no tank loaded yet")),
         ActionId::Follow => {
             map(model).and(demand(model.live.run.position.pose.is_some(), "no position estimate yet"))
         }
         ActionId::PanLeft | ActionId::PanRight | ActionId::PanUp | ActionId::PanDown => {
-            map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is shown; <zoom-in>: zoom in first"))
+            let moves = model.ui.map.zoom > 0 || model.ui.cursor.is_some();
+            map(model).and(demand(moves, "the whole tank is shown; <zoom-in>: zoom in first"))
         }
         ActionId::Severity => demand(
             model.ui.shows(Pane::Events),
@@ -50,6 +67,16 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
             demand(model.live.source.is_some(), "no mission is open; choose one on screen 1 (Home)")
         }
         ActionId::GoResult => demand(model.live.result.is_some(), "no run has ended yet"),
+        ActionId::Reload => demand(
+            !model.live.run.is_running(),
+            "plugins are looked at again while the robot is held; space: HOLD",
+        ),
+        ActionId::NextMissed | ActionId::PreviousMissed => {
+            demand(!model.live.missed().is_empty(), "no area was missed")
+        }
+        ActionId::Again => {
+            demand(model.live.source.is_some() && !model.live.is_under_way(), "a mission is in progress")
+        }
         ActionId::Rescan | ActionId::Verify | ActionId::Report | ActionId::View => {
             demand(named_run(model).is_some(), "no run is selected")
         }
@@ -64,13 +91,17 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::Commands
         | ActionId::Help
         | ActionId::GoHome
+        | ActionId::GoPlugins
         | ActionId::Back
         | ActionId::Leave
         | ActionId::Filter
         | ActionId::GoTo
         | ActionId::Theme
-        | ActionId::Accept
+        | ActionId::Mouse
         | ActionId::Cancel
+        | ActionId::AddCandidate
+        | ActionId::NextCandidate
+        | ActionId::PreviousCandidate
         | ActionId::Up
         | ActionId::Down
         | ActionId::PageUp
@@ -102,13 +133,14 @@ pub(super) fn accepted(model: &Model, order: &Order) -> Result<(), String> {
 }
 
 fn hold(model: &Model) -> Result<(), String> {
-    if model.live.asked.is_some() { Ok(()) } else { accepted(model, &Order::Hold) }
+    if model.live.may_move() { Ok(()) } else { accepted(model, &Order::Hold) }
 }
 
 fn start(model: &Model) -> Result<(), String> {
     demand(model.live.failure.is_none(), "the scenario could not be opened")?;
     demand(model.live.run.about.is_some(), "no mission loaded yet")?;
     accepted(model, &Order::Start)?;
+    demand(!model.live.preflight.is_starting, "already checking for the start; Esc: cancel")?;
     demand(model.live.asked.is_none(), "start already requested; space: HOLD")
 }
 
@@ -125,6 +157,11 @@ fn swap(model: &Model) -> Result<(), String> {
     if !model.live.hold_asked {
         accepted(model, &Order::ChoosePlanner(choice))?;
     }
+    demand(!model.console.planners.is_empty(), "no planners found yet")
+}
+
+fn compare(model: &Model) -> Result<(), String> {
+    demand(model.live.waits(), "plans are compared before the start")?;
     demand(!model.console.planners.is_empty(), "no planners found yet")
 }
 

@@ -3,11 +3,12 @@
 use super::act::act;
 use super::message::Effect;
 use super::offer::{accepted, offered, refuse};
+use super::preflight;
 use super::send::send;
-use super::{palette, typing};
+use super::{palette, typing, what_if};
 use crate::actions::ActionId;
-use crate::model::ui::{Ask, Edit, MapLayer};
-use crate::model::{Model, Overlay, Palette, Screen, parameter};
+use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
+use crate::model::{Ghost, Model, Overlay, Palette, parameter};
 use mission::{Order, Parameters, PlannerChoice, PlannerInfo};
 
 /// Puts something over the screen.
@@ -30,7 +31,7 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
         Overlay::Confirm(ask) => agree(model, &ask),
         Overlay::Quit => quit(model),
         Overlay::Commands(palette) => palette::accept(model, palette),
-        Overlay::Planners { selected } => choose_planner(model, selected),
+        Overlay::Planners { purpose, selected } => choose_planner(model, purpose, selected),
         Overlay::Parameters { selected, edit: Some(edit) } => take_value(model, selected, edit),
         Overlay::Parameters { edit: None, .. } => edit(model),
         Overlay::Layers { selected } => {
@@ -39,6 +40,8 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
             }
             Vec::new()
         }
+        Overlay::WhatIf => what_if::choose(model),
+        Overlay::Preflight { .. } => preflight::tick(model),
         Overlay::Filter(_) => open(model, Overlay::None),
     }
 }
@@ -51,6 +54,8 @@ pub(super) fn cancel(model: &mut Model) {
             typing::filter(model, "");
             model.ui.overlay = Overlay::None;
         }
+        Overlay::WhatIf => what_if::close(model),
+        Overlay::Planners { purpose: Purpose::WhatIf, .. } => model.ui.overlay = Overlay::WhatIf,
         other => *other = Overlay::None,
     }
 }
@@ -68,9 +73,10 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
     match offered(model, id) {
         Ok(()) => {
             if *ask == Ask::Start {
-                model.ui.go(Screen::Mission);
+                preflight::start(model)
+            } else {
+                send(model, ask.order())
             }
-            send(model, ask.order())
         }
         Err(why) => refuse(model, why),
     }
@@ -82,19 +88,45 @@ fn quit(model: &mut Model) -> Vec<Effect> {
     end.into_iter().chain([Effect::Quit { signal: None }]).collect()
 }
 
-fn choose_planner(model: &mut Model, selected: usize) -> Vec<Effect> {
+fn choose_planner(model: &mut Model, purpose: Purpose, selected: usize) -> Vec<Effect> {
     let Some(planner) = model.console.planners.get(selected) else { return Vec::new() };
-    swap_to(model, planner.clone())
+    choose(model, purpose, planner.clone())
 }
 
-/// Asks whether another planner shall drive, if it can.
-pub(super) fn swap_to(model: &mut Model, planner: PlannerInfo) -> Vec<Effect> {
+/// Takes a planner for some purpose, if it can fly the mission; whether it shall drive is asked first.
+pub(super) fn choose(model: &mut Model, purpose: Purpose, planner: PlannerInfo) -> Vec<Effect> {
     if let Some(why) = model.live.run.cannot_fly(&planner) {
         let why = format!("planner {} {why}", planner.id);
         return refuse(model, why);
     }
     let choice = PlannerChoice { id: planner.id, parameters: Parameters::new() };
-    ask(model, Ask::Swap(choice))
+    match purpose {
+        Purpose::Drive => ask(model, Ask::Swap(choice)),
+        Purpose::Compare => compare(model, choice),
+        Purpose::WhatIf => what_if::add(model, choice),
+    }
+}
+
+/// Has another planner plan the mission that waits.
+fn compare(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
+    model.ui.overlay = Overlay::None;
+    let since_mono_s = model.console.now.mono_s;
+    model.live.plans.ghost = Some(Ghost { choice: choice.clone(), since_mono_s, at: None, made: None });
+    vec![Effect::Compare(choice)]
+}
+
+/// Gives up the start that was agreed to, or what is being planned, or takes the second plan from the map.
+pub(super) fn cancel_plan(model: &mut Model) -> Vec<Effect> {
+    if model.live.preflight.is_starting {
+        preflight::cancel(model);
+        return Vec::new();
+    }
+    if model.live.plans.ghost.take().is_some() {
+        return vec![Effect::StopComparing];
+    }
+    // The same planner anew is not asked for a plan.
+    let choice = model.live.run.planning.choice.clone();
+    choice.into_iter().map(|choice| Effect::Order(Order::ChoosePlanner(choice))).collect()
 }
 
 /// Opens the line in which a value is typed.
@@ -141,11 +173,18 @@ pub(super) fn select(model: &mut Model, by: isize) {
         Overlay::Planners { .. } => model.console.planners.len(),
         Overlay::Parameters { .. } => model.planner().map_or(0, |info| info.parameters.len()),
         Overlay::Layers { .. } => MapLayer::ALL.len(),
-        Overlay::None | Overlay::Confirm(_) | Overlay::Stepping | Overlay::Quit | Overlay::Filter(_) => 0,
+        Overlay::Preflight { .. } => model.checks().len(),
+        Overlay::None
+        | Overlay::Confirm(_)
+        | Overlay::Stepping
+        | Overlay::Quit
+        | Overlay::WhatIf
+        | Overlay::Filter(_) => 0,
     };
     if let Overlay::Commands(Palette { selected, .. })
-    | Overlay::Planners { selected }
+    | Overlay::Planners { selected, .. }
     | Overlay::Parameters { selected, .. }
+    | Overlay::Preflight { selected }
     | Overlay::Layers { selected } = &mut model.ui.overlay
     {
         *selected = selected.saturating_add_signed(by).min(lines.saturating_sub(1));

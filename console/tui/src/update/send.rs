@@ -1,6 +1,7 @@
 //! Orders to the mission.
 
 use super::message::Effect;
+use super::preflight;
 use crate::model::{Model, Speed};
 use mission::Order;
 
@@ -11,13 +12,17 @@ pub(super) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
         // A HOLD that was sent before it does not stop what comes after it.
         model.live.hold_asked = false;
     }
-    vec![Effect::Order(order)]
+    // Before the start every change is followed by the plan that it leads to.
+    let plans = model.live.waits() && matches!(order, Order::ChoosePlanner(_) | Order::SetParameter { .. });
+    let plan = plans.then_some(Effect::Order(Order::Plan));
+    std::iter::once(Effect::Order(order)).chain(plan).collect()
 }
 
 /// Sends HOLD whenever the mission would accept it, and after an order that makes the robot move.
 ///
 /// Who stops the robot is in no hurry: the mission goes on no faster than the clock until the operator says so again.
 pub(super) fn hold_now(model: &mut Model) -> Vec<Effect> {
+    preflight::cancel(model);
     let is_accepted = model.live.run.standing.standing().allows(&Order::Hold).is_ok();
     if !is_accepted && model.live.asked.is_none() {
         return Vec::new();

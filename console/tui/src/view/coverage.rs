@@ -1,9 +1,9 @@
 //! The coverage pane: how much has been scanned, of which floor, and what is left.
 
-use super::look::{Look, fill};
+use super::look::{Look, fill, ranked};
 use super::text;
 use crate::model::coverage::{Division, Raster};
-use crate::model::{Pane, Run, Speed};
+use crate::model::{Pane, Run};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -17,54 +17,74 @@ const LABEL: usize = 13;
 const WHOLE: usize = 13;
 const BAR: usize = 8;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
+/// Columns from which the pane writes full words.
+const WIDE: usize = 40;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let wide = usize::from(area.width) >= WIDE + 2;
     let block = look.pane(Pane::Coverage, "Coverage", if wide { BASES } else { "" });
-    let columns = usize::from(block.inner(area).width);
+    let inner = block.inner(area);
+    let columns = usize::from(inner.width);
     let lines = if wide { wide_lines(look, columns) } else { narrow_lines(look) };
-    fill(frame, area, block, lines);
+    fill(frame, area, block, ranked(lines, usize::from(inner.height)));
 }
 
-fn wide_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
+/// Whether nothing was heard of the task for two ticks although the robot runs.
+fn is_stale(look: &Look) -> bool {
+    let at_s = look.run.progress.as_ref().filter(|_| look.run.is_running()).map(|progress| progress.t_s);
+    look.is_stale(at_s)
+}
+
+fn wide_lines(look: &Look, columns: usize) -> Vec<(u8, Line<'static>)> {
     let run = look.run;
     let (reachable, whole) = shares(run);
     let [_, to_do, margin, unreachable] = division(run);
-    let row = |label: &str, value: String| {
-        look.line([(Role::Dim, format!(" {label:<LABEL$}")), (Role::Text, value)])
+    let row = |rank: u8, label: &str, value: String| {
+        (rank, look.line([(Role::Dim, format!(" {label:<LABEL$}")), (Role::Text, value)]))
     };
     // Each share ends below the name of its floor.
     let first = columns.saturating_sub(LABEL + WHOLE + 3);
-    let row_of_shares = |label: &str, of_reachable: String, of_whole: &str| {
-        row(label, format!("{of_reachable:>first$}{:>WHOLE$}", format!("{of_whole} %")))
+    let shares = |of_reachable: String, of_whole: &str| {
+        format!("{of_reachable:>first$}{:>WHOLE$}", format!("{of_whole} %"))
     };
+    let mark = if is_stale(look) { "◌" } else { "" };
+    let room = columns.saturating_sub(LABEL + 1);
+    let out_of_reach = ["shell margin", "margin"].map(|name| format!("{unreachable} %, {name} {margin} %"));
+    let out_of_reach = text::wording(out_of_reach, room);
+    let overlap = run.coverage.as_ref().and_then(Raster::overlap).map_or_else(|| "-".into(), text::percent);
     vec![
-        row_of_shares("scanned", format!("{reachable} %"), &whole),
-        look.line([(Role::Good, format!(" {}", bar(run, columns.saturating_sub(2))))]),
-        row_of_shares(to_do_label(run), format!("{} %", to_do_reachable(run)), &to_do),
-        row_of_shares("unreachable", String::new(), &unreachable),
-        row_of_shares("shell margin", String::new(), &margin),
-        row("rate", rate(run)),
-        row(way_label(run), way(run)),
-        row("time left", left(look, true)),
+        row(0, &format!("{mark}scanned"), shares(format!("{reachable} %"), &whole)),
+        (1, look.line([(Role::Good, format!(" {}", bar(run, columns.saturating_sub(2))))])),
+        row(3, to_do_label(run), shares(format!("{} %", to_do_reachable(run)), &to_do)),
+        row(7, "unreachable", out_of_reach),
+        row(5, "rate", rate(run)),
+        row(6, "overlap", format!("{overlap} % of scanned floor")),
+        row(4, way_label(run), way(run)),
+        row(2, "time left", left(run, true)),
     ]
 }
 
-fn narrow_lines(look: &Look) -> Vec<Line<'static>> {
+fn narrow_lines(look: &Look) -> Vec<(u8, Line<'static>)> {
     let run = look.run;
     let (reachable, whole) = shares(run);
     let text = |value: String| look.line([(Role::Text, format!(" {value}"))]);
     let left_or_missed = if run.has_ended() {
         format!("missed {} % of reachable", to_do_reachable(run))
     } else {
-        format!("left {}", left(look, false))
+        format!("left {}", left(run, false))
     };
+    let mark = if is_stale(look) { "◌" } else { " " };
     vec![
-        look.line([
-            (Role::Good, format!(" {}", bar(run, BAR))),
-            (Role::Text, format!(" {reachable:>5} % reachable")),
-        ]),
-        text(format!("{:BAR$} {whole:>5} % whole", "")),
-        text(format!("{} {}", way_label(run), way(run))),
-        text(left_or_missed),
+        (
+            0,
+            look.line([
+                (Role::Good, format!(" {}", bar(run, BAR))),
+                (Role::Text, format!("{mark}{reachable:>5} % reachable")),
+            ]),
+        ),
+        (3, text(format!("{:BAR$} {whole:>5} % whole", ""))),
+        (2, text(format!("{} {}", way_label(run), way(run)))),
+        (1, text(left_or_missed)),
     ]
 }
 
@@ -125,21 +145,15 @@ fn way(run: &Run) -> String {
     }
 }
 
-/// Mission time still to go, and when that will be.
-fn left(look: &Look, wide: bool) -> String {
-    let (model, run) = (look.model, look.run);
+/// Mission time still to go, and the mission time at the end.
+fn left(run: &Run, wide: bool) -> String {
     let Some(left_s) = run.left_s() else {
         return if run.has_ended() { "ended".into() } else { "-".into() };
     };
-    let factor = match (model.live.speed, model.live.health.reached_speed) {
-        (_, Some(reached)) if reached > 0.0 => Some(reached),
-        (Speed::Times(factor), _) => Some(factor),
-        (Speed::Max, _) => None,
-    };
-    let end = factor.map(|factor| text::time_of_day(model.console.now.wall_unix_s + left_s / factor));
-    match (wide, end) {
-        (true, Some(end)) => format!("{}, ends {end} UTC", text::clock(left_s)),
-        (false, Some(end)) => format!("{} ETA {end}Z", text::clock(left_s)),
-        (_, None) => text::clock(left_s),
+    let end = text::clock(run.clock.t_s + left_s);
+    if wide {
+        format!("{}, ends T+{end}", text::clock(left_s))
+    } else {
+        format!("{} to T+{end}", text::clock(left_s))
     }
 }

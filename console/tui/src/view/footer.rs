@@ -29,13 +29,26 @@ const DISPENSABLE: [ActionId; 9] = [
 ];
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    frame.render_widget(line(look, usize::from(area.width)), area);
+    let hints = fitting(look.model, usize::from(area.width));
+    let mut x = area.x;
+    for hint in &hints {
+        let width = hint.width() as u16;
+        let place = Rect { x, width, ..area }.intersection(area);
+        look.cache.borrow_mut().place_key(place, hint.id);
+        x = x.saturating_add(width);
+    }
+    frame.render_widget(written(look, hints), area);
 }
 
 /// As many keys as fit into some columns.
 pub(super) fn line(look: &Look, columns: usize) -> Line<'static> {
-    let mut hints = hints(look.model);
-    let paged = look.model.ui.arrangement() == Arrangement::Paged;
+    written(look, fitting(look.model, columns))
+}
+
+/// The keys of which all fit into some columns.
+fn fitting(model: &Model, columns: usize) -> Vec<Hint> {
+    let mut hints = hints(model);
+    let paged = model.ui.arrangement() == Arrangement::Paged;
     for id in DISPENSABLE {
         // One pane at a time: without the key to the next one the others are lost.
         let kept = paged && id == ActionId::NextPane;
@@ -43,6 +56,10 @@ pub(super) fn line(look: &Look, columns: usize) -> Line<'static> {
             hints.retain(|hint| hint.id != id);
         }
     }
+    hints
+}
+
+fn written(look: &Look, hints: Vec<Hint>) -> Line<'static> {
     let parts = hints
         .into_iter()
         .flat_map(|hint| [(Role::Key, format!(" {}", hint.keys)), (Role::Dim, format!(" {} ", hint.label))]);
@@ -56,8 +73,14 @@ struct Hint {
     label: String,
 }
 
+impl Hint {
+    fn width(&self) -> usize {
+        text::width(&self.keys) + text::width(&self.label) + 3
+    }
+}
+
 fn width(hints: &[Hint]) -> usize {
-    hints.iter().map(|hint| text::width(&hint.keys) + text::width(&hint.label) + 3).sum()
+    hints.iter().map(Hint::width).sum()
 }
 
 /// The keys that do something now; keys with the same label stand together.
@@ -98,10 +121,13 @@ fn label(action: &Action, model: &Model) -> String {
             "resume?"
         }
         (ActionId::Interrupt, _) if is_typing(model) => "HOLD",
+        (ActionId::Cancel, Overlay::None) => "end reading",
         (ActionId::Accept, Overlay::None) => "open",
         (ActionId::Back, _) if model.ui.screen == Screen::Home => "quit",
         (ActionId::Accept, Overlay::Commands(_)) => "run",
         (ActionId::Accept, Overlay::Planners { .. }) => "choose",
+        (ActionId::Accept, Overlay::WhatIf) => "choose",
+        (ActionId::Accept, Overlay::Preflight { .. }) => "tick",
         (ActionId::Accept, Overlay::Layers { .. }) => "show/hide",
         (ActionId::Accept, Overlay::Parameters { edit: None, .. }) => "edit",
         (ActionId::Accept, Overlay::Parameters { edit: Some(_), .. }) => "send",
@@ -113,6 +139,8 @@ fn label(action: &Action, model: &Model) -> String {
             Overlay::Commands(_)
             | Overlay::Planners { .. }
             | Overlay::Layers { .. }
+            | Overlay::Preflight { .. }
+            | Overlay::WhatIf
             | Overlay::Parameters { edit: None, .. },
         ) => "close",
         _ => action.label,

@@ -4,6 +4,7 @@ mod commands;
 mod list;
 mod parameters;
 mod planners;
+mod preflight;
 
 use super::look::Look;
 use crate::model::{Overlay, ui::MapLayer};
@@ -22,8 +23,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = area.width.min(WIDTH);
     let list = match &look.model.ui.overlay {
         Overlay::Commands(palette) => commands::list(look, palette, columns),
-        Overlay::Planners { selected } => planners::list(look, *selected, columns),
+        Overlay::Planners { selected, .. } => planners::list(look, *selected, columns),
         Overlay::Parameters { selected, edit } => parameters::list(look, *selected, edit.as_ref(), columns),
+        Overlay::Preflight { selected } => preflight::list(look, *selected, columns),
         Overlay::Layers { selected } => layers(look, *selected),
         _ => return,
     };

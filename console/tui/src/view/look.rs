@@ -1,5 +1,7 @@
 //! What every part of the view needs: the model, and how the terminal shows it.
 
+use super::cache::Cache;
+use super::text;
 use crate::caps::{Caps, Colours, Glyphs};
 use crate::model::{Model, Pane, Run};
 use crate::theme::{Role, Theme};
@@ -8,6 +10,7 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Paragraph};
 use std::borrow::Cow;
+use std::cell::RefCell;
 
 /// What every part of the view needs.
 #[derive(Clone, Copy)]
@@ -17,6 +20,7 @@ pub(super) struct Look<'a> {
     pub run: &'a Run,
     pub caps: Caps,
     pub theme: &'a Theme,
+    pub cache: &'a RefCell<Cache>,
 }
 
 /// Pieces of a line, each with what it stands for.
@@ -26,6 +30,16 @@ impl Look<'_> {
     /// Whether letters stand for what colours and half characters show elsewhere.
     pub(super) fn is_plain(&self) -> bool {
         self.caps.colours == Colours::None || self.caps.glyphs == Glyphs::Ascii
+    }
+
+    /// Whether a value that comes with every tick has not come for two ticks, or nothing at all is heard of the mission.
+    pub(super) fn is_stale(&self, t_s: Option<f64>) -> bool {
+        t_s.is_some_and(|t_s| self.model.silent_s().is_some() || self.run.is_overdue(t_s))
+    }
+
+    /// Whether the estimated pose is old.
+    pub(super) fn is_pose_stale(&self) -> bool {
+        self.is_stale(self.run.position.pose.map(|_| self.run.position.pose_t_s))
     }
 
     pub(super) fn span<'t>(&self, role: Role, text: impl Into<Cow<'t, str>>) -> Span<'t> {
@@ -56,7 +70,40 @@ impl Look<'_> {
     }
 }
 
-/// Lines in a pane, cut where it ends.
+/// The lines of highest rank (the lowest number) that fit into some rows, in their order.
+pub(super) fn ranked(lines: Vec<(u8, Line<'_>)>, rows: usize) -> Vec<Line<'_>> {
+    let mut ranks: Vec<u8> = lines.iter().map(|(rank, _)| *rank).collect();
+    ranks.sort_unstable();
+    let last = ranks.get(rows).map_or(u8::MAX, |rank| rank.saturating_sub(1));
+    lines.into_iter().filter(|(rank, _)| *rank <= last).map(|(_, line)| line).collect()
+}
+
+/// The mark of a value that is older than it should be.
+pub(super) fn marked(is_stale: bool, (role, value): (Role, String)) -> (Role, String) {
+    match (is_stale, role) {
+        (false, _) => (role, value),
+        // That something is wrong matters more than that it is old.
+        (true, Role::Crit) => (role, format!("◌{value}")),
+        (true, _) => (Role::Stale, format!("◌{value}")),
+    }
+}
+
+/// Lines in a pane; one that is too long ends in an ellipsis.
 pub(super) fn fill(frame: &mut Frame, area: Rect, block: Block<'_>, lines: Vec<Line<'_>>) {
+    let columns = usize::from(block.inner(area).width);
+    let lines: Vec<Line> = lines.into_iter().map(|line| cut(line, columns)).collect();
     frame.render_widget(Paragraph::new(lines).block(block), area);
+}
+
+fn cut(line: Line<'_>, columns: usize) -> Line<'_> {
+    if line.width() <= columns {
+        return line;
+    }
+    let mut room = columns;
+    let spans = line.spans.into_iter().map(|span| {
+        let words = text::fit(&span.content, room);
+        room = room.saturating_sub(text::width(&words));
+        Span::styled(words, span.style)
+    });
+    Line::from(spans.collect::<Vec<_>>())
 }

@@ -2,7 +2,14 @@
 
 mod legend;
 mod pen;
+mod plates;
+mod readout;
+mod shade;
 mod shapes;
+
+pub(super) use plates::{Key as PlateKey, PlateDrawing};
+pub(super) use shade::{Key as ShadeKey, Shades};
+pub(super) use shapes::{Stroke, Window};
 
 use super::look::Look;
 use super::text;
@@ -11,16 +18,21 @@ use crate::theme::Role;
 use pen::Pen;
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::symbols::Marker;
 use ratatui::text::Line;
 use ratatui::widgets::canvas::Canvas;
-use shapes::Window;
 
 /// Room about the tank, as a share of its size.
 const MARGIN: f64 = 1.04;
+/// Columns and rows from which the map has a legend.
+const LEGEND: (u16, u16) = (64, 20);
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    let block = look.pane(Pane::Map, &title(look.model), keys(area.width));
+    let ui = &look.model.ui;
+    let title = title(look.model);
+    let mut block = look.pane(Pane::Map, &title, keys(usize::from(area.width), text::width(&title)));
+    if let Some(at) = ui.cursor {
+        block = block.title_bottom(look.span(Role::Title, format!("─ {} ", readout::floor(look, at))));
+    }
     let inner = block.inner(area);
     frame.render_widget(block, area);
     if inner.width < 4 || inner.height < 3 {
@@ -28,17 +40,27 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     }
     let floor = Rect { height: inner.height - 1, ..inner };
     let below = Rect { y: inner.bottom() - 1, height: 1, ..inner };
-    let readout = readout(look, inner.width);
-    if let Some(window) = window(look, floor) {
+    let robot = readout::robot(look, inner.width);
+    let window = window(look, floor);
+    if let Some(window) = window {
         draw_floor(look, frame, floor, window);
-        let room = usize::from(below.width).saturating_sub(text::width(&readout.1));
-        let scale = Some(scale(window)).filter(|scale| text::width(scale) < room).unwrap_or_default();
-        frame.render_widget(Line::from(look.span(Role::Dim, scale)), below);
+        look.cache.borrow_mut().place_map(floor, window);
     } else {
         frame.render_widget(Line::from(look.span(Role::Dim, " no tank loaded yet")), floor);
     }
-    frame.render_widget(look.line([readout]).right_aligned(), below);
-    if inner.width >= 70 && inner.height >= 20 {
+    let left = readout::cursor(look, ui, inner.width)
+        .or_else(|| window.map(|window| (Role::Dim, scale(window))))
+        .unwrap_or((Role::Dim, String::new()));
+    // The cursor was asked for; the scale is left out where there is no room.
+    let room = usize::from(below.width).saturating_sub(text::width(&robot.1));
+    let fits = text::width(&left.1) < room;
+    if fits || ui.cursor.is_some() {
+        frame.render_widget(look.line([left]), below);
+    }
+    if fits || ui.cursor.is_none() {
+        frame.render_widget(look.line([robot]).right_aligned(), below);
+    }
+    if inner.width >= LEGEND.0 && inner.height >= LEGEND.1 {
         legend::draw(look, frame, floor);
     }
 }
@@ -50,8 +72,10 @@ fn title(model: &Model) -> String {
     format!("Map{zoom}{follow}")
 }
 
-fn keys(width: u16) -> &'static str {
-    if width >= 70 { "f follow  z Z zoom  0 whole tank  L layers" } else { "f z Z 0 L" }
+/// As many keys as fit beside the title.
+fn keys(width: usize, title: usize) -> &'static str {
+    const KEYS: [&str; 3] = ["z Z zoom  f follow  0 whole tank  L layers  i read", "z Z f 0 L i", ""];
+    KEYS.into_iter().find(|keys| text::width(keys) + title + 9 <= width).unwrap_or_default()
 }
 
 /// What of the floor is seen in an area.
@@ -70,34 +94,20 @@ fn window(look: &Look, area: Rect) -> Option<Window> {
 
 fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
     let pen = Pen { look: *look, window };
-    let canvas =
-        Canvas::default().marker(Marker::Braille).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
-            pen.scanned(ctx);
-            pen.forecast(ctx);
-            ctx.marker(Marker::Braille);
-            pen.zones(ctx);
-            pen.paths(ctx);
-            pen.drawings(ctx);
-            pen.solid(ctx);
-            pen.tether(ctx);
-            pen.robot(ctx);
-            ctx.layer();
-            pen.labels(ctx);
-        });
+    let marker = pen.marker();
+    let canvas = Canvas::default().marker(marker).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
+        pen.plates(ctx);
+        pen.zones(ctx);
+        pen.paths(ctx);
+        pen.drawings(ctx);
+        pen.solid(ctx);
+        pen.tether(ctx);
+        pen.robot(ctx);
+        ctx.layer();
+        pen.labels(ctx);
+    });
     frame.render_widget(canvas, area);
-}
-
-/// The robot's place and the error of it, in words.
-fn readout(look: &Look, width: u16) -> (Role, String) {
-    let position = &look.run.position;
-    let name = if width >= 60 { "robot " } else { "" };
-    let Some(pose) = &position.pose else { return (Role::Dim, "robot: no position yet ".into()) };
-    let at = text::place(pose.position);
-    let error = text::number(position.error_m().unwrap_or(f64::NAN), 2);
-    let stale = if position.is_fix_stale(look.run.clock.t_s) { "◌ " } else { "" };
-    let role = if position.lost { Role::Crit } else { Role::Text };
-    let lost = if position.lost { " LOST" } else { "" };
-    (role, format!("{stale}{name}{at} ±{error} m{lost} "))
+    shade::paint(look, window, area, frame.buffer_mut());
 }
 
 /// A bar of a round number of metres.

@@ -1,7 +1,7 @@
 //! The line that says what comes next and whether anybody is needed.
 
 use super::{events, text};
-use crate::model::{Busy, Model};
+use crate::model::{Busy, Model, Screen};
 use crate::theme::Role;
 use mission::{Hold, HoldReason, Order, Outcome, Phase, PositionTrust, Resumes, Severity};
 
@@ -43,6 +43,10 @@ fn by_phase(model: &Model) -> Clauses {
             clauses.splice(at..at, work.into_iter().flatten());
             (Role::Hold, clauses)
         }
+        (None, Phase::Waiting) if model.ui.screen == Screen::Home => (
+            Role::Title,
+            vec!["Enter opens a scenario and makes its plan.".into(), "The robot does not move.".into()],
+        ),
         (None, Phase::Waiting) => {
             let (role, start) = idle(model);
             (role, work.into_iter().flatten().chain(start).collect())
@@ -54,16 +58,12 @@ fn by_phase(model: &Model) -> Clauses {
             }
             None => running(model),
         },
-        (None, Phase::Ended(Outcome::Complete)) => (
-            Role::Good,
-            vec![format!("DONE: {}.", model.live.run.end_reason), "<result>: result. <home>: home.".into()],
-        ),
+        (None, Phase::Ended(Outcome::Complete)) => {
+            (Role::Good, vec![format!("DONE: {}.", model.live.run.end_reason), more(model)])
+        }
         (None, Phase::Ended(outcome)) => (
             Role::Warn,
-            vec![
-                format!("ENDED ({}): {}.", outcome.word(), model.live.run.end_reason),
-                "<result>: result. <home>: home.".into(),
-            ],
+            vec![format!("ENDED ({}): {}.", outcome.word(), model.live.run.end_reason), more(model)],
         ),
     }
 }
@@ -77,6 +77,15 @@ pub(crate) fn standing(model: &Model) -> String {
         return "Mission running.".into();
     }
     without_notice(model).1.join(" ")
+}
+
+/// Where the operator goes from a mission that has ended.
+fn more(model: &Model) -> String {
+    match model.ui.screen {
+        Screen::Result => "<again>: again, <rescan>: re-scan, <home>: home.",
+        _ => "<result>: result. <home>: home.",
+    }
+    .into()
 }
 
 /// What a planner is doing and how far, for how long already and its limit, and what exactly.
@@ -111,8 +120,14 @@ fn idle(model: &Model) -> Clauses {
     if model.live.run.about.is_none() {
         return (Role::Title, vec!["Loading scenario...".into()]);
     }
+    if model.live.preflight.is_starting {
+        return (Role::Title, vec!["Checking before the start...".into()]);
+    }
     let who = model.live.run.planner_id().unwrap_or("unknown");
-    (Role::Title, vec![format!("Press <start> to start (planner {who}).")])
+    (
+        Role::Title,
+        vec![format!("Press <start> to start (planner {who})."), "<preflight>: pre-flight check.".into()],
+    )
 }
 
 fn running(model: &Model) -> Clauses {
@@ -166,7 +181,7 @@ fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
     let when = match (resumes, by) {
         (Resumes::ByFallback, _) => "Resumes with fallback planner.",
         (_, HoldReason::PositionLost) => "Resumes automatically when recovered.",
-        (_, HoldReason::Tether { .. }) => "Resumes automatically once clear.",
+        (_, HoldReason::Tether { .. }) => "Resumes automatically when clear.",
         (_, HoldReason::PlannerSilent { .. }) => "Resumes automatically on answer.",
         _ => "Resumes automatically.",
     };

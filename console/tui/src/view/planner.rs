@@ -1,6 +1,6 @@
 //! The planner pane: the active planner, its target, and the last command.
 
-use super::look::{Look, fill};
+use super::look::{Look, fill, marked, ranked};
 use super::text;
 use crate::model::{Pane, Run};
 use crate::theme::Role;
@@ -9,58 +9,49 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-/// Mission time after which a command counts as old, in ticks.
-const STALE_TICKS: f64 = 3.0;
-
 /// Most rows that a fault takes.
 const FAULT_ROWS: usize = 2;
+/// Columns from which labels are full words.
+const WIDE: usize = 40;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let note = if look.run.planning.fault.is_some() { "FAILED" } else { "" };
     let block = look.pane(Pane::Planner, "Planner and robot", note);
     let inner = block.inner(area);
     let (columns, rows) = (usize::from(inner.width), usize::from(inner.height));
-    let labels = if wide { 12 } else { 8 };
+    let labels = if columns >= WIDE { 12 } else { 8 };
     let room = columns.saturating_sub(labels + 1);
-    let mut lines: Vec<Line> = rows_of(look, wide, room)
+    let lines = rows_of(look, columns >= WIDE, room)
         .into_iter()
-        .map(|(label, (role, value))| {
-            look.line([(Role::Dim, format!(" {label:<labels$}")), (role, text::fit(&value, room))])
+        .map(|(rank, label, (role, value))| {
+            (rank, look.line([(Role::Dim, format!(" {label:<labels$}")), (role, value)]))
         })
         .collect();
+    let mut lines = ranked(lines, rows);
     lines.extend(scalars(look, columns, rows.saturating_sub(lines.len())));
     fill(frame, area, block, lines);
 }
 
 type Value = (Role, String);
 
-fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(&'static str, Value)> {
+fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value)> {
     let run = look.run;
-    let mut rows = vec![("planner", planner(look))];
+    let is_stale = look.is_pose_stale();
+    let pose = |value: String| marked(is_stale, (Role::Text, value));
+    let mut rows = vec![(2, "planner", planner(look))];
     if let Some(fault) = &run.planning.fault {
-        let words = text::wrap(&fault.message, room + 1).into_iter().take(FAULT_ROWS);
+        let words = text::wrap(&fault.message, room + 1).into_iter().take(FAULT_ROWS).zip([2_u8, 7]);
         rows.extend(
-            words.enumerate().map(|(row, words)| (if row == 0 { "fault" } else { "" }, (Role::Crit, words))),
+            words.map(|(words, rank)| (rank, if rank == 2 { "fault" } else { "" }, (Role::Crit, words))),
         );
     }
-    if wide {
-        rows.extend([
-            ("target", (Role::Text, target(run))),
-            ("cross-track", (Role::Text, cross_track(run))),
-            ("speed", (Role::Text, speed(run))),
-            ("heading", (Role::Text, heading(run))),
-            ("command", command(run)),
-            ("plan", (Role::Text, plan(run))),
-        ]);
-    } else {
-        rows.extend([
-            ("target", (Role::Text, target_at(run))),
-            ("away", (Role::Text, format!("{}, off {}", target_in(run), off(run)))),
-            ("speed", (Role::Text, speed(run))),
-            ("heading", (Role::Text, heading(run))),
-            ("plan", (Role::Text, plan(run))),
-        ]);
-    }
+    rows.extend([
+        (0, "speed", pose(motion(run, room))),
+        (1, "command", command(look, room)),
+        (3, "target", (Role::Text, target(run, room))),
+        (4, if wide { "cross-track" } else { "off path" }, (Role::Text, cross_track(run, room))),
+        (5, "plan", (Role::Text, plan(run))),
+    ]);
     rows
 }
 
@@ -72,66 +63,67 @@ fn planner(look: &Look) -> Value {
     }
 }
 
-fn target(run: &Run) -> String {
-    let away = || format!("{}, {} away", target_at(run), target_in(run));
-    run.progress.as_ref().map_or_else(|| "-".into(), |_| away())
+fn target(run: &Run, room: usize) -> String {
+    let Some(progress) = &run.progress else { return "-".into() };
+    let at = text::place(progress.target);
+    let Some(pose) = &run.position.pose else { return at };
+    let away = text::number((progress.target - pose.position).norm(), 2);
+    text::wording([format!("{at}, {away} m away"), at, format!("{away} m away")], room)
 }
 
-fn target_at(run: &Run) -> String {
-    run.progress.as_ref().map_or_else(|| "-".into(), |progress| text::place(progress.target))
-}
-
-fn target_in(run: &Run) -> String {
-    match (&run.progress, &run.position.pose) {
-        (Some(progress), Some(pose)) => {
-            format!("{} m", text::number((progress.target - pose.position).norm(), 2))
-        }
-        _ => "- m".into(),
-    }
-}
-
-fn off(run: &Run) -> String {
-    let off_m = run.progress.as_ref().and_then(|progress| progress.cross_track_m);
-    format!("{} m", off_m.map_or_else(|| "-".into(), |off_m| text::number(off_m, 2)))
-}
-
-fn cross_track(run: &Run) -> String {
+fn cross_track(run: &Run, room: usize) -> String {
     let preset = run.about.as_ref().is_none_or(|about| about.preset_m.is_some());
-    if preset { format!("{} from preset path", off(run)) } else { "- (no preset path)".into() }
+    if !preset {
+        return "- (no preset path)".into();
+    }
+    let off_m = run.progress.as_ref().and_then(|progress| progress.cross_track_m);
+    let off = off_m.map_or_else(|| "-".into(), |off_m| text::number(off_m, 2));
+    text::wording([format!("{off} m from preset path"), format!("{off} m")], room)
 }
 
-fn speed(run: &Run) -> String {
-    let speed = run.position.speed_m_per_s();
-    speed.map_or_else(|| "- m/s".into(), |speed| format!("{} m/s (est.)", text::number(speed, 2)))
+/// Speed and heading as estimated.
+fn motion(run: &Run, room: usize) -> String {
+    let speed = run.position.speed_m_per_s().map_or_else(|| "-".into(), |speed| text::number(speed, 2));
+    let heading = run.position.pose.map_or_else(|| "-".into(), |pose| text::degrees(pose.heading_rad));
+    text::wording(
+        [
+            format!("{speed} m/s, heading {heading}° CCW from E"),
+            format!("{speed} m/s, heading {heading}°"),
+            format!("{speed} m/s, {heading}° CCW"),
+        ],
+        room,
+    )
 }
 
-fn heading(run: &Run) -> String {
-    let pose = run.position.pose.as_ref();
-    pose.map_or_else(|| "-".into(), |pose| format!("{}° CCW from E", text::degrees(pose.heading_rad)))
-}
-
-fn command(run: &Run) -> Value {
+/// The last command; one that is old is marked, for the robot does not follow it for long.
+fn command(look: &Look, room: usize) -> Value {
+    let run = look.run;
     let Some((t_s, command)) = &run.planning.command else { return (Role::Text, "-".into()) };
-    let tick_s = run.about.as_ref().map_or(0.1, |about| about.mission.tick_s);
-    if !run.is_running() || run.clock.t_s - t_s > STALE_TICKS * tick_s {
+    if !run.is_running() {
         return (Role::Text, "standing still".into());
     }
-    let drive = match command.drive {
+    let (full, short) = match command.drive {
         Drive::Twist { v_m_per_s, w_rad_per_s } => {
-            let turn = text::number(w_rad_per_s.to_degrees(), 1);
-            format!("{} m/s, turn {turn} °/s", text::number(v_m_per_s, 2))
+            let (speed, turn) = (text::number(v_m_per_s, 2), text::number(w_rad_per_s.to_degrees(), 1));
+            (format!("{speed} m/s, turn {turn} °/s"), format!("{speed} m/s {turn} °/s"))
         }
         Drive::Velocity(velocity) => {
+            let speed = text::number(velocity.norm(), 2);
             let course = text::degrees(velocity.y.atan2(velocity.x));
-            format!("{} m/s to {course}° CCW from E", text::number(velocity.norm(), 2))
+            (format!("{speed} m/s to {course}° CCW from E"), format!("{speed} m/s {course}°"))
         }
     };
-    match command.status {
-        Status::Moving => (Role::Text, drive),
-        Status::Arrived => (Role::Good, format!("arrived, {drive}")),
-        Status::Stuck => (Role::Warn, format!("STUCK, {drive}")),
-        Status::Waiting => (Role::Watch, format!("waiting, {drive}")),
-    }
+    let (role, status) = match command.status {
+        Status::Moving => (Role::Text, ""),
+        Status::Arrived => (Role::Good, "arrived"),
+        Status::Stuck => (Role::Warn, "STUCK"),
+        Status::Waiting => (Role::Watch, "waiting"),
+    };
+    let comma = if status.is_empty() { "" } else { ", " };
+    let wordings = [format!("{status}{comma}{full}"), format!("{status}{comma}{short}"), status.to_owned()];
+    // The mark takes a column.
+    let words = text::wording(wordings, room.saturating_sub(1));
+    marked(look.is_stale(Some(*t_s)), (role, words))
 }
 
 fn plan(run: &Run) -> String {

@@ -1,8 +1,8 @@
 //! The position pane: the AE stations' measurements, and how far to trust them.
 
-use super::look::{Look, Parts, fill};
+use super::look::{Look, Parts, fill, marked, ranked};
 use super::text;
-use crate::model::{Pane, Run, position::HISTORY_S};
+use crate::model::{Pane, Run};
 use crate::theme::Role;
 use positioning::{Exclusion, Integrity};
 use ratatui::Frame;
@@ -10,45 +10,65 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use world::{Station, StationId};
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
+/// Seconds of mission time that the curve shows.
+const CURVE_S: usize = 120;
+/// Columns from which the pane writes full words.
+const WIDE: usize = 40;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let note = if look.run.position.lost { "LOST" } else { "" };
     let block = look.pane(Pane::Position, "AE position", note);
     let inner = block.inner(area);
+    let wide = usize::from(inner.width) >= WIDE;
     let lines = if wide { wide_lines(look, inner) } else { narrow_lines(look, inner) };
-    fill(frame, area, block, lines);
+    fill(frame, area, block, ranked(lines, usize::from(inner.height)));
 }
 
-fn wide_lines(look: &Look, inner: Rect) -> Vec<Line<'static>> {
+/// Where status words stand, they come first: what is cut or left out comes later.
+fn wide_lines(look: &Look, inner: Rect) -> Vec<(u8, Line<'static>)> {
     let columns = usize::from(inner.width);
+    let run = look.run;
+    let row = |label: &str, value: (Role, String)| look.line([(Role::Dim, format!(" {label:<11}")), value]);
+    let heard = marked(is_ranging_stale(look), (Role::Text, format!("{} stations", heard(run, " of "))));
+    let rms = marked(is_fix_stale(look), (Role::Text, residual(run)));
     let mut lines = vec![
-        look.line([
-            (Role::Dim, " heard      ".into()),
-            (Role::Text, format!("{}   residual {}", heard(look.run, " of "), residual(look.run))),
-        ]),
-        look.line([(Role::Dim, " error      ".into()), error(look.run, true)]),
-        curve(look, columns),
-        look.line([
-            (Role::Dim, " fix age    ".into()),
-            age(look.run),
-            (Role::Text, format!("   integrity {}", integrity(look.run))),
-        ]),
+        (0, row("95 % error", error(look))),
+        (1, row("fix", fix(look))),
+        (2, row("heard", heard)),
+        (3, row("residual", rms)),
+        (4, curve(look, columns)),
     ];
-    lines.extend(station_lines(look, columns, usize::from(inner.height).saturating_sub(lines.len())));
+    let rows = usize::from(inner.height).saturating_sub(lines.len());
+    lines.extend(station_lines(look, columns, rows).into_iter().map(|line| (5, line)));
     lines
 }
 
-fn narrow_lines(look: &Look, inner: Rect) -> Vec<Line<'static>> {
+fn narrow_lines(look: &Look, inner: Rect) -> Vec<(u8, Line<'static>)> {
     let columns = usize::from(inner.width).saturating_sub(1);
     let first = look.run.position.fix.as_ref().and_then(|fix| fix.excluded.first());
     let last = match first {
         Some((id, why)) => (Role::Watch, text::fit(&rejected(look.run, *id, why), columns)),
         None => (Role::Text, format!("residual {}", residual(look.run))),
     };
+    let blank = || (Role::Text, " ".to_owned());
+    let heard = (Role::Text, format!(", {}", heard(look.run, "/")));
     vec![
-        look.line([(Role::Text, format!(" {} ", heard(look.run, "/"))), error(look.run, false)]),
-        look.line([(Role::Text, " ".into()), last]),
-        look.line([(Role::Dim, " fix age ".into()), age(look.run)]),
+        (0, look.line([blank(), error(look)])),
+        (1, look.line([blank(), fix(look), heard])),
+        (2, look.line([blank(), marked(is_fix_stale(look), last)])),
     ]
+}
+
+fn is_fix_stale(look: &Look) -> bool {
+    let position = &look.run.position;
+    let expects = !look.run.has_ended() && position.fix.is_some();
+    expects && (look.model.silent_s().is_some() || position.is_fix_stale(look.run.clock.t_s))
+}
+
+fn is_ranging_stale(look: &Look) -> bool {
+    let position = &look.run.position;
+    let expects = !look.run.has_ended() && position.ranged_t_s.is_some();
+    expects && (look.model.silent_s().is_some() || position.is_ranging_stale(look.run.clock.t_s))
 }
 
 fn stations(run: &Run) -> &[Station] {
@@ -70,7 +90,8 @@ fn limit_m(run: &Run) -> f64 {
     run.about.as_ref().map_or(f64::NAN, |about| about.mission.position_limit_m)
 }
 
-fn error(run: &Run, wide: bool) -> (Role, String) {
+fn error(look: &Look) -> (Role, String) {
+    let run = look.run;
     let limit_m = limit_m(run);
     let error_m = run.position.error_m();
     let role = match error_m {
@@ -79,44 +100,39 @@ fn error(run: &Run, wide: bool) -> (Role, String) {
         _ => Role::Text,
     };
     let error = error_m.map_or_else(|| "-".into(), |error_m| format!("±{}", text::number(error_m, 2)));
-    let limit = text::number(limit_m, 2);
-    let lost = if run.position.lost { " LOST" } else { "" };
-    if wide {
-        (role, format!("{error} m (95 %)  limit {limit} m{lost}"))
-    } else {
-        (role, format!("{error} m (max {limit}){lost}"))
-    }
+    let lost = if run.position.lost { "LOST " } else { "" };
+    let words = format!("{lost}{error} m (limit {})", text::number(limit_m, 2));
+    marked(look.is_pose_stale(), (role, words))
 }
 
 fn curve(look: &Look, columns: usize) -> Line<'static> {
     let limit_m = limit_m(look.run);
     let note = format!(" 2 min, 0-{} m", text::number(limit_m, 2));
     let room = columns.saturating_sub(text::width(&note) + 2);
-    let curve = text::sparkline(look.run.position.history_m(), limit_m, room, HISTORY_S);
+    let curve = text::sparkline(look.run.position.history_m.last(CURVE_S), limit_m, room, CURVE_S);
     look.line([(Role::Text, " ".into()), (Role::Watch, curve), (Role::Dim, note)])
 }
 
-fn age(run: &Run) -> (Role, String) {
-    let t_s = run.clock.t_s;
-    match run.position.fix_age_s(t_s) {
-        None => (Role::Text, "none yet".into()),
-        Some(age_s) if run.position.is_fix_stale(t_s) => {
-            (Role::Stale, format!("◌ {} s old", text::number(age_s, 1)))
-        }
-        Some(age_s) => (Role::Text, format!("{} s", text::number(age_s, 1))),
-    }
+/// How far to trust the last fix, and how old it is.
+fn fix(look: &Look) -> (Role, String) {
+    let run = look.run;
+    let Some(age_s) = run.position.fix_age_s(run.clock.t_s) else {
+        let failed = run.position.failure.is_some();
+        return if failed { (Role::Warn, "NO FIX yet".into()) } else { (Role::Text, "none yet".into()) };
+    };
+    let age = text::number(age_s, usize::from(age_s < 100.0));
+    let (role, state) = state(run);
+    marked(is_fix_stale(look), (role, format!("{state}, {age} s old")))
 }
 
-fn integrity(run: &Run) -> &'static str {
-    match (&run.position.failure, &run.position.fix) {
-        (Some(_), _) => "NO FIX",
-        (None, None) => "-",
-        (None, Some(fix)) => match fix.integrity {
-            Integrity::Ok => "ok",
-            Integrity::Suspect => "SUSPECT",
-            Integrity::Untestable => "UNTESTED",
-            Integrity::Alarm => "ALARM",
-        },
+fn state(run: &Run) -> (Role, &'static str) {
+    let integrity = run.position.fix.as_ref().map(|fix| fix.integrity);
+    match integrity {
+        _ if run.position.failure.is_some() => (Role::Warn, "NO FIX"),
+        Some(Integrity::Suspect) => (Role::Warn, "SUSPECT"),
+        Some(Integrity::Untestable) => (Role::Watch, "UNTESTED"),
+        Some(Integrity::Alarm) => (Role::Crit, "ALARM"),
+        Some(Integrity::Ok) | None => (Role::Text, "ok"),
     }
 }
 

@@ -1,29 +1,23 @@
 //! The tether pane: how much is out, round what, and whether there is a return path.
 
-use super::look::{Look, Parts, fill};
+use super::look::{Look, Parts, fill, marked, ranked};
 use super::text;
-use crate::{model::Tether, theme::Role};
-use ratatui::{Frame, layout::Rect, text::Line};
+use crate::model::{Pane, Tether};
+use crate::theme::Role;
+use ratatui::{Frame, layout::Rect};
 
-/// Rows with the frame, on a wide and on a narrow screen.
-pub(super) const ROWS: (u16, u16) = (8, 6);
+/// Columns from which the pane writes full words.
+const WIDE: usize = 38;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
-    let block = look.block(Role::Border, "Tether", note(look));
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let block = look.pane(Pane::Tether, "Tether", note(look));
     let Some(tether) = &look.run.tether else { return };
-    let lines = if wide { wide_lines(look, tether) } else { narrow_lines(look, tether) };
-    let columns = usize::from(block.inner(area).width);
-    let lines = lines.into_iter().map(|parts| cut(look, parts, columns)).collect();
-    fill(frame, area, block, lines);
-}
-
-fn cut(look: &Look, parts: Parts, columns: usize) -> Line<'static> {
-    let mut room = columns;
-    look.line(parts.into_iter().map(|(role, words)| {
-        let words = text::fit(&words, room);
-        room = room.saturating_sub(text::width(&words));
-        (role, words)
-    }))
+    let inner = block.inner(area);
+    let wide = usize::from(inner.width) >= WIDE;
+    let lines =
+        if wide { wide_lines(look, tether, usize::from(inner.width)) } else { narrow_lines(look, tether) };
+    let lines = lines.into_iter().map(|(rank, parts)| (rank, look.line(parts))).collect();
+    fill(frame, area, block, ranked(lines, usize::from(inner.height)));
 }
 
 fn note(look: &Look) -> &'static str {
@@ -34,29 +28,44 @@ fn note(look: &Look) -> &'static str {
     }
 }
 
-fn wide_lines(look: &Look, tether: &Tether) -> Vec<Parts> {
-    let row = |label: &str, value: (Role, String)| vec![(Role::Dim, format!(" {label:<12}")), value];
-    let of =
-        limits(look).map_or_else(String::new, |limits| format!(" of {} m", metres(limits.reel_length_m)));
-    let out = format!("{} m{of}, {} m left", metres(tether.length_m), metres(tether.free_m));
+fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> {
+    let is_stale = look.is_stale(tether.t_s);
+    // The label takes 13 columns, the mark of what is old one.
+    let room = columns.saturating_sub(14);
+    let row = |rank: u8, label: &str, value: (Role, String)| {
+        (rank, vec![(Role::Dim, format!(" {label:<12}")), marked(is_stale, value)])
+    };
+    let (out, left) = (metres(tether.length_m), metres(tether.free_m));
+    let reel = limits(look).map_or_else(|| "-".into(), |limits| metres(limits.reel_length_m));
+    let out = text::wording(
+        [format!("{out} m of {reel} m, {left} m left"), format!("{out} m, {left} m left")],
+        room,
+    );
     let still_out = format!("{} m still out", metres(tether.length_m));
-    vec![
-        row("paid out", (out_role(look, tether), out)),
-        row("wrap", (wrap_role(look, tether), worst(look, tether))),
-        row("total wrap", (Role::Text, total(tether))),
-        row("contacts", (Role::Text, contacts(tether))),
-        row("return path", home(tether)),
-        row("at end", (Role::Text, if look.run.has_ended() { still_out } else { "-".into() })),
-    ]
+    let mut lines = vec![
+        row(1, "paid out", (out_role(look, tether), out)),
+        row(2, "wrap", (wrap_role(look, tether), worst(look, tether))),
+        row(3, "total wrap", (Role::Text, total(tether))),
+        row(4, "contacts", (Role::Text, contacts(tether))),
+        row(0, "return path", home(tether)),
+    ];
+    if look.run.has_ended() {
+        lines.push(row(5, "at end", (Role::Text, still_out)));
+    }
+    lines
 }
 
-fn narrow_lines(look: &Look, tether: &Tether) -> Vec<Parts> {
-    let out = format!(" {} m out, {} m left", metres(tether.length_m), metres(tether.free_m));
+fn narrow_lines(look: &Look, tether: &Tether) -> Vec<(u8, Parts)> {
+    let is_stale = look.is_stale(tether.t_s);
+    let row = |rank: u8, label: &str, value: (Role, String)| {
+        (rank, vec![(Role::Text, format!(" {label}")), marked(is_stale, value)])
+    };
+    let out = format!("{} m out, {} m left", metres(tether.length_m), metres(tether.free_m));
     vec![
-        vec![(out_role(look, tether), out)],
-        vec![(Role::Text, " wrap ".into()), (wrap_role(look, tether), worst(look, tether))],
-        vec![(Role::Text, format!(" total {}", total(tether)))],
-        vec![(Role::Text, " return path ".into()), home(tether)],
+        row(1, "", (out_role(look, tether), out)),
+        row(2, "wrap ", (wrap_role(look, tether), worst(look, tether))),
+        row(3, "total ", (Role::Text, total(tether))),
+        row(0, "return path ", home(tether)),
     ]
 }
 
@@ -77,7 +86,7 @@ fn out_role(look: &Look, tether: &Tether) -> Role {
 }
 
 fn wrap_role(look: &Look, tether: &Tether) -> Role {
-    let most_rad = tether.contacts.iter().map(|contact| contact.wrap_rad.abs()).fold(0.0, f64::max);
+    let most_rad = tether.largest().map_or(0.0, |contact| contact.wrap_rad.abs());
     beside_limit(most_rad, limits(look).map(|limits| limits.wrap_max_rad))
 }
 
@@ -92,12 +101,9 @@ fn beside_limit(value: f64, limit: Option<f64>) -> Role {
 /// The largest wrap and where it is.
 fn worst(look: &Look, tether: &Tether) -> String {
     if tether.is_snagged {
-        return "unknown, tether snagged".into();
+        return "UNKNOWN (snagged)".into();
     }
-    let Some(most) = tether.contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()))
-    else {
-        return "none, tether straight".into();
-    };
+    let Some(most) = tether.largest() else { return "none, tether straight".into() };
     let limit = limits(look).map_or_else(|| "-".into(), |limits| degrees(limits.wrap_max_rad));
     let sign = if most.wrap_rad > 0.0 { "+" } else { "" };
     format!("{sign}{}° on {}, max {limit}°", degrees(most.wrap_rad), most.on)

@@ -34,12 +34,6 @@ pub(super) fn clock(seconds: f64) -> String {
     format!("{:02}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
 }
 
-/// Time of day in UTC, hours and minutes, of seconds since 1970.
-pub(super) fn time_of_day(unix_s: f64) -> String {
-    let minutes = if unix_s.is_finite() { unix_s.max(0.0) as u64 / 60 } else { 0 };
-    format!("{:02}:{:02}", minutes / 60 % 24, minutes % 60)
-}
-
 /// The pace of the simulation.
 pub(super) fn speed(speed: Speed) -> String {
     match speed {
@@ -70,6 +64,12 @@ pub(super) fn fit(text: &str, columns: usize) -> String {
         cut.push('…');
     }
     cut
+}
+
+/// The first of some wordings, the fullest first, that fits into some columns; the last one if none does.
+pub(super) fn wording<const N: usize>(wordings: [String; N], columns: usize) -> String {
+    let fits = wordings.iter().position(|words| width(words) <= columns).unwrap_or(N - 1);
+    wordings.into_iter().nth(fits).unwrap_or_default()
 }
 
 /// A sentence without its full stop, with a capital letter.
@@ -150,9 +150,14 @@ mod tests {
     }
 
     #[test]
+    fn the_fullest_wording_that_fits_is_taken() {
+        let at = |columns| wording(["standing still".to_owned(), "still".to_owned()], columns);
+        assert_eq!([at(14), at(13), at(2)], ["standing still", "still", "still"]);
+    }
+
+    #[test]
     fn times_are_written_as_clocks() {
         assert_eq!(clock(2480.9), "00:41:20");
-        assert_eq!(time_of_day(86_400.0 * 3.0 + 12.0 * 3600.0 + 51.0 * 60.0), "12:51");
         assert_eq!(degrees(-std::f64::consts::FRAC_PI_2), "270");
         assert_eq!(degrees(-1e-9), "0");
     }

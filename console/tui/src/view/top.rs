@@ -29,6 +29,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let left = [vec![(Role::Text, " ".into())], state, blank(), names, time, blank(), alarms].concat();
     let used: usize = left.iter().map(|(_, text)| text::width(text)).sum();
     frame.render_widget(look.line(left), area);
+    // The names are cut for it before it is left out.
     if wide && used + screen <= usize::from(area.width) {
         let width = text::width(&name) as u16;
         let line = Line::from(look.span(Role::Dim, name)).right_aligned();
@@ -98,6 +99,9 @@ pub(super) fn time(model: &Model) -> Parts {
 
 fn recording(model: &Model) -> (Role, String) {
     match model.live.health.recording {
+        _ if model.live.result.as_ref().is_some_and(|result| result.is_kept) => {
+            (Role::Good, "REC saved".into())
+        }
         Recording::On => (Role::Good, "REC●".into()),
         Recording::Off => (Role::Dim, "REC-".into()),
         Recording::Failed(_) => (Role::Crit, "REC✗".into()),

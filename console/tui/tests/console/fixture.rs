@@ -204,6 +204,7 @@ pub(crate) fn opened() -> EventKind {
         mission,
         floor,
         plates: None,
+        checklist: Vec::new(),
     }))
 }
 
@@ -528,6 +529,16 @@ impl Screen {
         screen
     }
 
+    /// The same with the plates of the floor known.
+    pub(crate) fn plated() -> Self {
+        let mut screen = Self::running();
+        let plates = world::PlateLayout { annular_m: 0.75, n_annular: 12, length_m: 4.0, width_m: 1.6 };
+        if let Some(run) = &mut screen.model.live.run.about {
+            run.plates = Some(plates);
+        }
+        screen
+    }
+
     /// The same, held by the operator.
     pub(crate) fn held() -> Self {
         let mut screen = Self::running();
@@ -544,6 +555,12 @@ impl Screen {
     /// Sends news of the run that is open to the model.
     pub(crate) fn hear(&mut self, msg: RunMsg) -> Vec<tui::Effect> {
         self.send(of_run(msg))
+    }
+
+    /// Agrees to the start, with everything outside the screen in order.
+    pub(crate) fn start(&mut self) -> Vec<tui::Effect> {
+        self.press([tui::Key::Char('S'), tui::Key::Enter]);
+        self.hear(RunMsg::Checked(Vec::new()))
     }
 
     /// Presses keys, one after the other.

@@ -4,12 +4,19 @@ use crate::fixture::{ASCII, PLAIN, RICH, Screen, choice, of_run, planner};
 use crate::screens::{drawn, text};
 use mission::{AskId, Event, EventKind, HoldReason, Order, Outcome, Resumes, Severity, WorkerId};
 use proptest::prelude::*;
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
 use ratatui::style::Style;
-use tui::{Caps, Effect, Health, Key, KeyPress, Model, Msg, Recording, RunMsg, Signal, Times};
+use tui::actions::ACTIONS;
+use tui::{
+    Cache, Caps, Effect, Health, Key, KeyPress, Model, Mouse, Msg, Recording, RunMsg, Signal, Target, Times,
+    view_cached,
+};
+use world::Point;
 
 fn key() -> impl Strategy<Value = Key> {
     prop_oneof![
-        6 => prop::sample::select(" SX.P<>pa:?qzZ0fLm/hjklgGeq19xyz\u{7}é漢".chars().collect::<Vec<_>>()).prop_map(Key::Char),
+        6 => prop::sample::select(" SX.P<>pa:?qzZ0ifLm/hjklgGeq19xyz\u{7}é漢".chars().collect::<Vec<_>>()).prop_map(Key::Char),
         2 => prop::sample::select(vec![Key::Enter, Key::Esc, Key::Tab, Key::BackTab, Key::Backspace, Key::Delete]),
         2 => prop::sample::select(vec![Key::Up, Key::Down, Key::Left, Key::Right, Key::CtrlLeft, Key::CtrlRight, Key::PageUp, Key::PageDown, Key::Home, Key::End]),
         1 => prop::sample::select("cpzudlw".chars().collect::<Vec<_>>()).prop_map(Key::Ctrl),
@@ -94,6 +101,21 @@ fn msg() -> impl Strategy<Value = Msg> {
         1 => prop::sample::select(vec![Order::Start, Order::Hold, Order::Resume])
             .prop_map(|order| of_run(RunMsg::OrderFailed { order, why: "the engine has ended".into() })),
         1 => signal.prop_map(Msg::Signal),
+        2 => mouse().prop_map(Msg::Mouse),
+    ]
+}
+
+fn mouse() -> impl Strategy<Value = Mouse> {
+    let place = || {
+        (-20.0..20.0_f64, prop_oneof![4 => -20.0..20.0_f64, 1 => Just(f64::NAN)])
+            .prop_map(|(x, y)| Point::new(x, y))
+    };
+    let key = prop::sample::select(ACTIONS).prop_map(|action| Target::Key(action.id));
+    let target = || prop_oneof![place().prop_map(Target::Map), Just(Target::Else)];
+    prop_oneof![
+        2 => prop_oneof![target(), key].prop_map(Mouse::Click),
+        1 => (place(), place()).prop_map(|(from, to)| Mouse::Drag { from, to }),
+        1 => (any::<bool>(), target()).prop_map(|(up, on)| Mouse::Wheel { up, on }),
     ]
 }
 
@@ -203,9 +225,11 @@ proptest! {
         };
         let mut follows_hold = false;
         for msg in deeds.into_iter().flatten() {
-            let before = screen.model.live.run.standing.clone();
             follows_hold &= !answers_hold(&msg);
-            for effect in screen.send(msg) {
+            let effects = screen.send(msg);
+            // No key changes it, and what events lead to follows from what they changed.
+            let standing = screen.model.live.run.standing.clone();
+            for effect in effects {
                 let Effect::Order(order) = effect else { continue };
                 match order {
                     Order::Hold => follows_hold = true,
@@ -213,11 +237,51 @@ proptest! {
                     // Nothing that moves the robot is sent on the strength of a HOLD that was not answered.
                     Order::ChoosePlanner(_) if follows_hold => {}
                     order => {
-                        prop_assert_eq!(before.standing().allows(&order), Ok(()), "{:?} in {:?}", order, before.phase);
+                        prop_assert_eq!(standing.standing().allows(&order), Ok(()), "{:?} in {:?}", order, standing.phase);
                         follows_hold = false;
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn no_click_makes_a_robot_move_or_ends_its_mission(
+        did in prop::collection::vec((mouse(), prop::option::of(turn())), 0..60),
+        start in 0..3_u8,
+    ) {
+        let mut screen = match start {
+            0 => Screen::idle(),
+            1 => Screen::held(),
+            _ => Screen::running(),
+        };
+        screen.model.ui.mouse = true;
+        for (mouse, turn) in did {
+            turn.into_iter().for_each(|turn| drop(screen.send(turn)));
+            for effect in screen.send(Msg::Mouse(mouse)) {
+                let Effect::Order(order) = &effect else { continue };
+                // A planner that is opened or that plans before the start moves nothing.
+                let waits = screen.model.live.waits() && matches!(order, Order::Plan | Order::ChoosePlanner(_));
+                let moves = !waits && !matches!(order, Order::Hold | Order::SetParameter { .. });
+                prop_assert!(!moves, "{mouse:?}: {effect:?}");
+            }
+            screen.model.ui.mouse = true;
+        }
+    }
+
+    #[test]
+    fn a_warm_cache_draws_the_same_cells_as_a_cold_one(
+        msgs in prop::collection::vec(msg(), 0..24),
+        size in (60..220_u16, 16..70_u16),
+    ) {
+        let mut screen = Screen::plated();
+        screen.type_text("zz");
+        let mut cache = Cache::default();
+        for msg in msgs {
+            screen.send(msg);
+            let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).unwrap();
+            terminal.draw(|frame| view_cached(&screen.model, &RICH, &mut cache, frame)).unwrap();
+            prop_assert_eq!(terminal.backend().buffer(), &drawn(&screen.model, RICH, size));
         }
     }
 
@@ -296,7 +360,8 @@ fn what_is_drawn_does_not_grow_with_the_mission() {
     let events = screen.mission.wait(200_000);
     screen.hear(RunMsg::Events(events));
     assert!(screen.model.live.run.trail.points().len() <= 2048);
-    assert!(screen.model.live.run.position.history_m().len() <= 120);
+    let seconds = tui::model::history::HISTORY_S;
+    assert!(screen.model.live.run.position.history_m.last(usize::MAX).len() <= seconds);
     for i in 0..20_000 {
         screen.send(Msg::Notice { severity: Severity::Info, text: format!("line {i}") });
     }

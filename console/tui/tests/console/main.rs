@@ -4,6 +4,9 @@
 mod commands;
 mod fixture;
 mod laws;
+mod mouse;
+mod overviews;
+mod panes;
 mod reference;
 mod screens;
 mod scripts;

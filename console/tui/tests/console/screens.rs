@@ -117,6 +117,29 @@ fn tethered() {
 }
 
 #[test]
+fn large_screens() {
+    let mut screen = Screen::tethered();
+    for size in [(160, 45), (200, 60)] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        let name = format!("large_{}x{}", size.0, size.1);
+        insta::assert_snapshot!(name, text(&drawn(&screen.model, RICH, size)));
+    }
+}
+
+#[test]
+fn reading_the_map() {
+    let mut screen = Screen::plated();
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    screen.type_text("izz");
+    screen.press([Key::Left, Key::Left, Key::Down]);
+    for size in [(120, 36), (80, 24)] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        let name = format!("reading_{}x{}", size.0, size.1);
+        insta::assert_snapshot!(name, text(&drawn(&screen.model, RICH, size)));
+    }
+}
+
+#[test]
 fn no_return_path() {
     let mut screen = Screen::tethered();
     let message = mission::event::TetherAlarm::NoReturnPath.to_string();

@@ -3,9 +3,11 @@
 use crate::fixture::{RICH, Screen, choice};
 use crate::screens::{drawn, text};
 use mission::{
-    AskId, EventKind, Gait, HoldReason, Order, Outcome, ParamValue, Phase, Resumes, Severity, WorkerId,
+    AskId, Check, CheckOutcome, EventKind, Gait, HoldReason, Order, Outcome, ParamValue, Phase, Resumes,
+    Severity, WorkerId,
 };
 use tui::actions::ActionId;
+use tui::model::ui::Purpose;
 use tui::model::{Overlay, Pane, ScenarioEntry, home::Found};
 use tui::{
     Effect, Job, Key, KeyPress, Model, Msg, Recording, RunId, RunMsg, RunResult, Signal, Source, Speed,
@@ -61,11 +63,57 @@ fn the_mission_starts_only_after_the_operator_agreed() {
     let mut screen = Screen::idle();
     assert_eq!(screen.type_text("S"), []);
     assert_eq!(*screen.model.live.run.phase(), Phase::Waiting);
-    assert_eq!(screen.press([Key::Enter]), [order(Order::Start)]);
+    assert!(matches!(screen.press([Key::Enter])[..], [Effect::Check { .. }]));
+    assert!(screen.model.live.may_move(), "it may be started by what is found");
+    let effects = screen.hear(RunMsg::Checked(Vec::new()));
+    let [Effect::Order(Order::NoteChecks(checks)), Effect::Order(Order::Start)] = &effects[..] else {
+        panic!("{effects:?}")
+    };
+    assert!(checks.iter().all(|check| check.outcome < CheckOutcome::Failed), "{checks:?}");
     let events = screen.mission.start();
     screen.hear(RunMsg::Events(events));
     assert_eq!(*screen.model.live.run.phase(), Phase::Running(Gait::Steady));
     assert_eq!(screen.model.live.asked, None);
+}
+
+#[test]
+fn what_fails_before_the_start_blocks_it_and_is_checked_again_at_the_moment_of_start() {
+    let full = Check { what: "disk".into(), outcome: CheckOutcome::Failed, found: "1 MB free".into() };
+    let mut screen = Screen::idle();
+    screen.press([Key::Char('S'), Key::Enter]);
+    assert_eq!(screen.hear(RunMsg::Checked(vec![full])), []);
+    assert_eq!(notice(&screen), "start blocked: disk: 1 MB free");
+    assert!(matches!(screen.model.ui.overlay, Overlay::Preflight { .. }), "what failed is shown");
+    screen.press([Key::Esc]);
+    assert!(matches!(screen.start()[..], [_, Effect::Order(Order::Start)]));
+}
+
+#[test]
+fn the_start_waits_for_every_tick_by_hand_and_the_ticks_are_written_down() {
+    let mut screen = Screen::idle();
+    screen.model.live.run.about.as_mut().unwrap().checklist = vec!["manway clear".into(), "permit".into()];
+    assert_eq!(screen.start(), []);
+    assert_eq!(notice(&screen), "start blocked: manway clear: not ticked");
+    screen.press([Key::End, SPACE, Key::Up, SPACE, SPACE, SPACE, Key::Esc]);
+    let effects = screen.start();
+    let Some(Effect::Order(Order::NoteChecks(checks))) = effects.first() else { panic!("{effects:?}") };
+    let ticked: Vec<&str> = checks
+        .iter()
+        .filter(|check| check.outcome == CheckOutcome::Ticked)
+        .map(|check| check.what.as_str())
+        .collect();
+    assert_eq!(ticked, ["manway clear", "permit"]);
+}
+
+#[test]
+fn a_start_that_is_being_checked_is_cancelled_by_whatever_stops() {
+    for stop in [SPACE, Key::Ctrl('c'), Key::Esc] {
+        let mut screen = Screen::idle();
+        screen.model.ui.screen = tui::model::Screen::Plan;
+        screen.press([Key::Char('S'), Key::Enter, stop]);
+        assert_eq!(screen.hear(RunMsg::Checked(Vec::new())), [], "{stop}");
+        assert!(!screen.model.live.may_move());
+    }
 }
 
 #[test]
@@ -103,7 +151,7 @@ fn space_holds_in_every_list_and_question() {
 #[test]
 fn a_start_that_was_not_answered_yet_can_be_held() {
     let mut screen = Screen::idle();
-    screen.press([Key::Char('S'), Key::Enter]);
+    screen.start();
     assert_eq!(screen.press([SPACE]), [order(Order::Hold)]);
 }
 
@@ -157,7 +205,11 @@ fn another_planner_drives_only_when_held_and_agreed() {
     assert!(matches!(screen.model.ui.overlay, Overlay::Planners { .. }), "HOLD was sent, the list may open");
     let mut screen = Screen::held();
     screen.type_text("P");
-    assert_eq!(screen.model.ui.overlay, Overlay::Planners { selected: 1 }, "the active one is selected");
+    assert_eq!(
+        screen.model.ui.overlay,
+        Overlay::Planners { purpose: Purpose::Drive, selected: 1 },
+        "the active one is selected"
+    );
     assert_eq!(screen.press([Key::Down, Key::Enter]), []);
     assert_eq!(screen.press([Key::Enter]), [order(Order::ChoosePlanner(choice("spiral-tangent")))]);
 }
@@ -181,7 +233,7 @@ fn a_planner_that_covers_no_floor_is_marked_and_not_asked_to() {
 #[test]
 fn planning_is_shown_with_the_time_it_has_taken_while_ticks_go_on() {
     let mut screen = Screen::idle();
-    screen.press([Key::Char('S'), Key::Enter]);
+    screen.start();
     let started = screen.mission.now(EventKind::Ordered { order: Order::Start });
     screen.hear(RunMsg::Events(vec![started]));
     screen.hear(RunMsg::Busy(Some(("Planning (rpf)".into(), Some(60.0)))));
@@ -286,12 +338,12 @@ fn starting_a_mission_that_is_held_is_refused_without_a_key_that_would_resume() 
 #[test]
 fn an_order_that_does_not_reach_the_mission_is_an_alarm_and_can_be_given_again() {
     let mut screen = Screen::idle();
-    screen.press([Key::Char('S'), Key::Enter]);
+    screen.start();
     let failed = RunMsg::OrderFailed { order: Order::Start, why: "cannot create the run folder".into() };
     assert_eq!(screen.hear(failed), [Effect::Bell]);
     assert_eq!((&screen.model.live.asked, screen.model.live.may_move()), (&None, false));
     assert!(notice(&screen).contains("cannot create the run folder"));
-    assert_eq!(screen.press([Key::Char('S'), Key::Enter]), [order(Order::Start)]);
+    assert!(matches!(screen.start()[..], [_, Effect::Order(Order::Start)]));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::fixture::{RICH, Screen, choice};
 use crate::screens::{drawn, text};
 use mission::{Event, EventKind, Gait, Hold, HoldReason, Order, Outcome, ParamValue, Phase, Resumes};
 use tui::actions::keymap::{Binding, Keymap};
-use tui::model::ui::{Ask, Edit};
+use tui::model::ui::{Ask, Edit, Purpose};
 use tui::model::{Overlay, Palette, Pane};
 use tui::{Effect, Key, Model, Msg, RunMsg, Signal, update};
 
@@ -50,10 +50,12 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Quit,
         commands(false),
         commands(true),
-        Overlay::Planners { selected: 0 },
+        Overlay::Planners { purpose: Purpose::Drive, selected: 0 },
         Overlay::Parameters { selected: 0, edit: None },
         Overlay::Parameters { selected: 0, edit },
         Overlay::Layers { selected: 0 },
+        Overlay::Preflight { selected: 0 },
+        Overlay::WhatIf,
         Overlay::Filter("a".into()),
     ];
     // A new overlay does not compile until it is in the list above.
@@ -67,6 +69,8 @@ fn overlays() -> Vec<Overlay> {
             | Overlay::Planners { .. }
             | Overlay::Parameters { .. }
             | Overlay::Layers { .. }
+            | Overlay::Preflight { .. }
+            | Overlay::WhatIf
             | Overlay::Filter(_) => {}
         }
     }
@@ -257,7 +261,7 @@ fn a_hold_that_was_sent_can_be_sent_again() {
 #[test]
 fn every_way_to_stop_works_on_every_size_and_in_every_pane() {
     for (width, height) in [(120, 36), (80, 24), (60, 16), (44, 10), (1, 1), (0, 0)] {
-        for pane in Pane::ALL {
+        for pane in Pane::PAGES {
             for (way, _) in ways() {
                 let mut screen = Screen::running();
                 screen.send(Msg::Resize { width, height });
@@ -271,7 +275,7 @@ fn every_way_to_stop_works_on_every_size_and_in_every_pane() {
 #[test]
 fn leaving_ends_what_was_asked_to_start() {
     let mut screen = Screen::idle();
-    screen.press([Key::Char('S'), Key::Enter]);
+    screen.start();
     screen.type_text("1");
     assert_eq!(screen.type_text("q"), [HOLD]);
     let leave = [Effect::Order(Order::Abort), Effect::Quit { signal: None }];

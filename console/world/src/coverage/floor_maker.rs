@@ -12,6 +12,7 @@ use std::collections::VecDeque;
 const ROUNDING_M: f64 = 1e-6;
 
 /// A floor with all that is needed to update it when an obstacle is found.
+#[derive(Clone)]
 pub struct FloorMaker {
     floor: Floor,
     /// Distance from the centre of every cell to the nearest solid, metres.

@@ -47,6 +47,13 @@ impl EngineThread {
                 }
                 Ok(Request::Order(order, _)) => orders.push(order),
                 Ok(Request::Speed(speed)) => self.speed = speed,
+                Ok(Request::Fork(answer)) => {
+                    let _ = answer.send(self.flight.forked(&self.scenario));
+                }
+                Ok(Request::Answer(answer)) => {
+                    // Whoever asked may have given up.
+                    let _ = answer.send(());
+                }
                 Ok(Request::Close { within }) => return (orders, Some(within)),
                 Err(RecvTimeoutError::Timeout) if is_ahead => {}
                 Err(RecvTimeoutError::Timeout) => return (orders, None),

@@ -13,7 +13,7 @@ const MOST_PLANS: usize = 4;
 const MOVED_ON_M: f64 = 0.3;
 
 /// For how long a planner has said that it cannot go on, and where.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct BlockedRule {
     blocked_s: f64,
     /// Where it said so last, and how often there.

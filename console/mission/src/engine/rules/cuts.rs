@@ -6,7 +6,7 @@ use world::{Point, polyline, tether::crossings};
 pub(in crate::engine) const HOME_M: f64 = 0.3;
 
 /// The lines that the plan never crosses, and whether the robot has.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct CutsRule {
     /// Each with whether the robot is beyond it.
     lines: Vec<(Vec<Point>, bool)>,

@@ -3,7 +3,7 @@
 use crate::{config::MissionConfig, phase::Resumes, planner::PlannerChoice};
 
 /// Whether the automatic replacement after a fault has been used.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct FallbackRule {
     used: bool,
 }

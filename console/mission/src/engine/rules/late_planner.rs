@@ -9,7 +9,7 @@ const STALE_S: f64 = 0.2;
 const SILENT_S: f64 = 2.0;
 
 /// Whether the planner's last command came late.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct LatePlannerRule {
     was_late: bool,
 }

@@ -7,7 +7,7 @@ use crate::{
 };
 
 /// For how long the position could not be relied on, seconds.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct LostPositionRule {
     position_lost_s: f64,
 }

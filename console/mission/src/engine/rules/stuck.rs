@@ -9,6 +9,7 @@ use planner_api::Reason;
 use world::Point;
 
 /// Watches the progress of the task.
+#[derive(Clone)]
 pub(in crate::engine) struct StuckRule {
     watch: StuckWatch,
     /// Where the robot was stuck last and got another plan.

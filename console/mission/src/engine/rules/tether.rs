@@ -15,7 +15,7 @@ const WORTH_IT: f64 = 0.01;
 const WAIT_FOR_HOME_S: f64 = 30.0;
 
 /// What the cable has done to the robot.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct TetherRule {
     /// Where the cable held the robot last.
     caught: Option<Caught>,

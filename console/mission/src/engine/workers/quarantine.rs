@@ -8,7 +8,7 @@ pub(in crate::engine) const MOST_FAULTS: usize = 3;
 pub(in crate::engine) const WINDOW_S: f64 = 60.0;
 
 /// Counts faults by the hash of the plugin's file, over mission time.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct Quarantine {
     faults_s: BTreeMap<String, Vec<f64>>,
     closed: BTreeSet<String>,

@@ -17,7 +17,7 @@ const ARROWS: Changes = &[
     ("page-down", &[Key::PageDown]),
     ("first", &[Key::Home]),
     ("last", &[Key::End]),
-    ("zoom-in", &[Key::Char('+')]),
+    ("zoom-in", &[Key::Char('=')]),
     ("zoom-out", &[Key::Char('-')]),
 ];
 
@@ -32,7 +32,7 @@ const VIM: Changes = &[
     ("page-up", &[Key::Ctrl('u'), Key::PageUp]),
     ("page-down", &[Key::Ctrl('d'), Key::Ctrl('f'), Key::PageDown]),
     ("commands", &[Key::Char(':')]),
-    ("zoom-in", &[Key::Char('+'), Key::Char('z')]),
+    ("zoom-in", &[Key::Char('='), Key::Char('z')]),
     ("zoom-out", &[Key::Char('-'), Key::Char('Z')]),
 ];
 

@@ -1,7 +1,7 @@
 //! Events of planners into a run.
 
 use crate::model::{Cause, Change, PlanShown, Run, Trail, Withdrawn};
-use mission::{Event, EventKind, PlannerChoice, PlannerInfo, Severity, event::late_text};
+use mission::{Event, EventKind, Phase, PlannerChoice, PlannerInfo, Severity, event::late_text};
 use planner_api::{Command, Drawing};
 
 /// Most drawings kept of one tick.
@@ -26,7 +26,8 @@ impl Run {
                     return;
                 }
                 let path = Trail::thinned(path);
-                let plan = PlanShown { path, length_m: *length_m, complete: *complete, t_s: event.t_s };
+                let plan =
+                    PlanShown { ask: *ask, path, length_m: *length_m, complete: *complete, t_s: event.t_s };
                 self.planning.plan = Some(plan);
                 self.planner_works();
             }
@@ -57,6 +58,10 @@ impl Run {
 
     /// Another planner becomes active.
     fn seat(&mut self, choice: &PlannerChoice, info: &PlannerInfo) {
+        if *self.phase() == Phase::Waiting {
+            // Nothing was flown yet: a plan of the planner before is of no interest any more.
+            self.planning.plan = None;
+        }
         (self.planning.choice, self.planning.info) = (Some(choice.clone()), Some(info.clone()));
         self.planning.scalars.clear();
         self.planning.drawings.clear();

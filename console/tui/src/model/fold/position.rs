@@ -1,9 +1,10 @@
 //! Events of the robot's position into a run.
 
-use crate::model::{Cause, Change, Run, Withdrawn};
+use crate::model::{Cause, Change, Run, Withdrawn, position};
 use mission::{Event, EventKind, Severity};
+use planner_api::PoseEstimate;
 use positioning::Exclusion;
-use world::StationId;
+use world::{Pose, StationId};
 
 impl Run {
     /// Takes in an event of the robot's position.
@@ -22,6 +23,7 @@ impl Run {
             EventKind::StationRejected { station, reason } => self.exclude(event, *station, reason),
             EventKind::StationRestored { station } => self.alarms.clear(&Cause::Station(*station)),
             EventKind::Estimated { pose } => {
+                self.scan(pose);
                 self.position.estimated(event.t_s, *pose);
                 self.trail.add(pose.position);
             }
@@ -45,6 +47,17 @@ impl Run {
             }
             EventKind::RangesConsistent => self.alarms.clear(&Cause::Contradiction),
             _ => {}
+        }
+    }
+
+    /// Passes the tool over the floor between the last estimate and this one, as the mission does.
+    fn scan(&mut self, here: &PoseEstimate) {
+        let Some((about, before)) = self.about.as_ref().zip(self.position.pose) else { return };
+        let error_m = position::ellipse_95(here).0;
+        let counts = self.is_running() && error_m <= about.mission.scan_limit_m();
+        if let Some(coverage) = self.coverage.as_mut().filter(|_| counts) {
+            let at = |pose: &PoseEstimate| Pose { position: pose.position, heading_rad: pose.heading_rad };
+            coverage.pass(about.mission.tool(), at(&before), at(here));
         }
     }
 

@@ -32,7 +32,7 @@ impl Run {
                     self.raise(event, Cause::Certificate, severity, text);
                 }
             }
-            other => self.tether.get_or_insert_default().lie(other),
+            other => self.tether.get_or_insert_default().lie(event.t_s, other),
         }
     }
 }

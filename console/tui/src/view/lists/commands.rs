@@ -111,7 +111,7 @@ fn rules(keys: &Keymap, columns: usize) -> Vec<Row> {
     let lists = format!("{up} {down}: select, {accept}: run, Esc: close, -: not available.");
     [
         lists.as_str(),
-        "Stopping never asks first; what MOVES the robot or ENDS the mission does.",
+        "HOLD never asks first; commands marked MOVES or ENDS do.",
         "In a text field space types and Ctrl-C holds.",
         "Alarms: C crit, W warn, w watch, * not acknowledged.",
     ]

@@ -1,29 +1,68 @@
-//! What the marks on the map stand for.
+//! What the marks on the map stand for: the floor on the left, lines and marks on the right.
 
-use crate::caps::Glyphs;
-use crate::model::ui::MapLayer;
+use super::shade::Shade;
+use crate::model::{Raster, coverage::Division, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::text::Line;
+use ratatui::style::Style;
+use ratatui::text::{Line, Span};
 use ratatui::widgets::Clear;
 
-/// Columns and rows of the legend.
-const SIZE: (u16, u16) = (12, 9);
+/// Columns of the right side, and most rows.
+const SIZE: (u16, u16) = (12, 8);
 
-/// Draws it in the corner of an area.
+/// A mark and its word.
+type Entry = (Role, String, &'static str);
+
+/// Draws it in the upper corners of an area.
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let right = Rect { x: area.right().saturating_sub(SIZE.0), ..area };
+    draw_side(look, frame, area, &floor(look));
+    draw_side(look, frame, right, &marks(look));
+}
+
+fn draw_side(look: &Look, frame: &mut Frame, area: Rect, entries: &[Entry]) {
+    for ((role, mark, word), row) in entries.iter().take(usize::from(SIZE.1)).zip(area.rows()) {
+        let color = Style::new().fg(look.theme.color(*role));
+        let line =
+            Line::from(vec![Span::styled(mark.as_str(), color), look.span(Role::Dim, format!(" {word} "))]);
+        let row = Rect { width: (line.width() as u16).min(row.width), ..row };
+        frame.render_widget(Clear, row);
+        frame.render_widget(line, row);
+    }
+}
+
+/// The classes of floor that there are.
+fn floor(look: &Look) -> Vec<Entry> {
+    let (run, layers) = (look.run, look.model.ui.layers);
+    let scanned = layers.shows(MapLayer::Scanned);
+    let division = run.coverage.as_ref().map(Raster::division);
+    let some = |share: fn(&Division) -> f64| {
+        scanned && division.as_ref().is_some_and(|division| share(division) > 0.0)
+    };
+    let again = run.coverage.as_ref().and_then(Raster::overlap).is_some_and(|share| share > 0.0);
+    let entries = [
+        (scanned, Shade::Scanned, "scanned"),
+        (scanned && again, Shade::Overlap, "overlap"),
+        (scanned, Shade::Partial, "partial"),
+        (run.has_ended() && some(|division| division.to_do), Shade::Missed, "missed"),
+        (some(|division| division.unreachable), Shade::Unreachable, "unreachable"),
+        (some(|division| division.margin), Shade::Margin, "margin"),
+        (layers.shows(MapLayer::Accuracy), Shade::PoorFix, "poor fix"),
+        (layers.shows(MapLayer::Accuracy), Shade::WeakFix, "weak fix"),
+    ];
+    let shown = entries.into_iter().filter(|(shown, ..)| *shown);
+    shown.map(|(_, shade, word)| (shade.role(), shade.glyph().to_string().repeat(2), word)).collect()
+}
+
+fn marks(look: &Look) -> Vec<Entry> {
     let layers = look.model.ui.layers;
-    let plain = look.is_plain();
-    let braille = look.caps.glyphs == Glyphs::Braille;
-    let swatch = |filled: &'static str| if plain { filled } else { "██" };
-    let line = |dots: &'static str, letters: &'static str| if braille { dots } else { letters };
+    let has_dots = look.caps.glyphs.has_dots();
+    let line = |dots: &'static str, letters: &'static str| if has_dots { dots } else { letters };
     let found = look.run.about.iter().flat_map(|run| &run.world.obstacles).any(|obstacle| !obstacle.known);
     let entries = [
-        (layers.shows(MapLayer::Scanned), Role::Scanned, swatch("▒▒"), "scanned"),
-        (layers.shows(MapLayer::Scanned), Role::Partly, swatch("░░"), "partial"),
-        (layers.shows(MapLayer::Accuracy), Role::Crit, if plain { "%%" } else { "██" }, "poor fix"),
         (layers.shows(MapLayer::Trail), Role::Trail, line("⠤⠤", ".."), "trail"),
         (layers.shows(MapLayer::Plan), Role::Plan, line("⠄⠠", ",,"), "plan"),
         (look.run.tether.is_some(), Role::Tether, line("⠤⠤", "~~"), "tether"),
@@ -32,17 +71,6 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         (layers.shows(MapLayer::Stations), Role::Station, "S ", "station"),
         (true, Role::Target, "× ", "target"),
     ];
-    let lines: Vec<Line> = entries
-        .into_iter()
-        .filter(|(shown, ..)| *shown)
-        .map(|(_, role, mark, word)| {
-            Line::from(vec![look.span(role, mark), look.span(Role::Dim, format!(" {word}"))])
-        })
-        .collect();
-    let area = Rect { x: area.x, width: SIZE.0 + 1, height: SIZE.1.min(lines.len() as u16), ..area };
-    frame.render_widget(Clear, area);
-    let area = Rect { x: area.x + 1, width: SIZE.0, ..area };
-    for (line, row) in lines.into_iter().zip(area.rows()) {
-        frame.render_widget(line, row);
-    }
+    let shown = entries.into_iter().filter(|(shown, ..)| *shown);
+    shown.map(|(_, role, mark, word)| (role, mark.to_owned(), word)).collect()
 }

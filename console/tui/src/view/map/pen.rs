@@ -1,8 +1,9 @@
 //! What the model has, drawn on the canvas of the map.
 
-use super::shapes::{Filled, Shaded, Stroke, Window, ellipse};
+use super::plates::{self, Outlines};
+use super::shapes::{Filled, Stroke, Window, ellipse};
 use crate::caps::Glyphs;
-use crate::model::{position, ui::MapLayer};
+use crate::model::{Overlay, Screen, WhatIf, position, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use planner_api::{Drawing, Layer};
@@ -11,15 +12,16 @@ use ratatui::text::Line;
 use ratatui::widgets::canvas::Context;
 use world::{Boundary, Point, ZoneKind};
 
+/// Most missed areas that are numbered on the map: of the whole tank, and of a part of it.
+const MISSED: (usize, usize) = (9, 99);
 /// Pieces of a round wall.
 const WALL_PIECES: u32 = 256;
 /// Columns that a pass of the tool must be wide for all passes to be drawn.
 const PASS_COLUMNS: f64 = 2.0;
 /// Length of trail and plan where not all of it is drawn, in columns.
 const REACH_COLUMNS: f64 = 40.0;
-/// From this share on a dot of floor counts as scanned, and from the other as scanned in part.
-const WHOLLY_SCANNED: f64 = 0.95;
-const PARTLY_SCANNED: f64 = 0.05;
+/// Dots of a character.
+pub(super) const DOTS: (u16, u16) = (2, 4);
 
 /// Draws on the canvas what the model has.
 pub(super) struct Pen<'a> {
@@ -30,7 +32,7 @@ pub(super) struct Pen<'a> {
 impl Pen<'_> {
     /// Without braille each kind of line has a character of its own, on a layer of its own.
     fn take_up(&self, ctx: &mut Context<'_>, plain: char) {
-        if self.look.caps.glyphs != Glyphs::Braille {
+        if !self.look.caps.glyphs.has_dots() {
             ctx.marker(Marker::Custom(plain));
         }
     }
@@ -40,52 +42,18 @@ impl Pen<'_> {
         ctx.draw(&Stroke { points, window: self.window, dotted, color });
     }
 
-    pub(super) fn scanned(&self, ctx: &mut Context<'_>) {
-        let shown = self.look.model.ui.layers.shows(MapLayer::Scanned);
-        let Some(raster) = self.look.run.coverage.as_ref().filter(|_| shown) else { return };
-        self.shade(ctx, [(Role::Scanned, '▒'), (Role::Partly, '░')], |at, edge_m| {
-            match raster.scanned_share(at, edge_m)? {
-                share if share >= WHOLLY_SCANNED => Some(Role::Scanned),
-                share if share >= PARTLY_SCANNED => Some(Role::Partly),
-                _ => None,
-            }
-        });
+    /// The characters of the map: dots where the terminal has them.
+    pub(super) fn marker(&self) -> Marker {
+        if self.look.caps.glyphs == Glyphs::Octant { Marker::Octant } else { Marker::Braille }
     }
 
-    /// Where the stations are forecast to locate badly: beyond the limit, and beyond half of it.
-    pub(super) fn forecast(&self, ctx: &mut Context<'_>) {
-        let shown = self.look.model.ui.layers.shows(MapLayer::Accuracy);
-        let map = self.look.run.accuracy.as_ref().filter(|_| shown);
-        let (Some(map), Some(about)) = (map, &self.look.run.about) else { return };
-        let limit_m = about.mission.position_limit_m;
-        self.shade(ctx, [(Role::Crit, '%'), (Role::Warn, ':')], |at, _| match map.at(at)?.error_95_m {
-            Some(error_m) if error_m <= limit_m / 2.0 => None,
-            Some(error_m) if error_m <= limit_m => Some(Role::Warn),
-            _ => Some(Role::Crit),
-        });
-    }
-
-    /// Shades the floor: in half characters, and with a letter for each shade where there are no colours or glyphs for that.
-    fn shade(
-        &self,
-        ctx: &mut Context<'_>,
-        shades: [(Role, char); 2],
-        role_at: impl Fn(Point, f64) -> Option<Role>,
-    ) {
-        let (window, theme) = (self.window, self.look.theme);
-        if self.look.is_plain() {
-            for (shade, letter) in shades {
-                ctx.marker(Marker::Custom(letter));
-                let is_shade = |at, edge_m| role_at(at, edge_m).filter(|role| *role == shade);
-                let color_at = |at, edge_m| is_shade(at, edge_m).map(|role| theme.color(role));
-                ctx.draw(&Shaded { window, rows_per_row: 1, color_at });
-            }
-        } else {
-            ctx.marker(Marker::HalfBlock);
-            let color_at = |at, edge_m| role_at(at, edge_m).map(|role| theme.color(role));
-            ctx.draw(&Shaded { window, rows_per_row: 2, color_at });
+    pub(super) fn plates(&self, ctx: &mut Context<'_>) {
+        let Some(drawing) = plates::plates(&self.look, self.window) else { return };
+        self.take_up(ctx, '`');
+        ctx.draw(&Outlines(&drawing, self.look.theme.color(Role::Plate)));
+        for (at, name) in &drawing.names {
+            ctx.print(at.x, at.y, Line::styled(name.clone(), self.look.theme.style(Role::Plate)));
         }
-        ctx.layer();
     }
 
     pub(super) fn zones(&self, ctx: &mut Context<'_>) {
@@ -99,7 +67,8 @@ impl Pen<'_> {
 
     pub(super) fn paths(&self, ctx: &mut Context<'_>) {
         let (run, ui) = (self.look.run, &self.look.model.ui);
-        let reach_m = self.reach_m();
+        let reach_m = self.reach_m().filter(|_| ui.screen != Screen::Plan);
+        self.ghost(ctx);
         if let Some(plan) = run.planning.plan.as_ref().filter(|_| ui.layers.shows(MapLayer::Plan)) {
             self.take_up(ctx, ',');
             let from = run.progress.as_ref().map_or(0, |progress| nearest(&plan.path, progress.target));
@@ -111,6 +80,26 @@ impl Pen<'_> {
             let newest: Vec<Point> = run.trail.points().iter().rev().copied().collect();
             let behind = reach_m.map_or(newest.as_slice(), |reach_m| within(&newest, reach_m));
             self.stroke(ctx, behind, Role::Trail, false);
+        }
+    }
+
+    /// Another planner's plan or forecast, where they are compared.
+    fn ghost(&self, ctx: &mut Context<'_>) {
+        let (live, ui) = (&self.look.model.live, &self.look.model.ui);
+        let made = match (&ui.overlay, ui.screen) {
+            (Overlay::WhatIf, _) => {
+                let candidate = live.what_if.as_ref().and_then(WhatIf::candidate);
+                candidate.and_then(|candidate| Some(&candidate.made.as_ref()?.as_ref().ok()?.path))
+            }
+            (_, Screen::Plan) => {
+                let ghost = live.plans.ghost.as_ref();
+                ghost.and_then(|ghost| Some(&ghost.made.as_ref()?.as_ref().ok()?.path))
+            }
+            _ => None,
+        };
+        if let Some(path) = made {
+            self.take_up(ctx, ';');
+            self.stroke(ctx, path, Role::Ghost, true);
         }
     }
 
@@ -198,6 +187,13 @@ impl Pen<'_> {
             let named = ui.map.zoom > 0 && station.name.len() <= 4;
             print(station.position, Role::Station, if named { station.name.clone() } else { "S".into() });
         }
+        if ui.screen == Screen::Result {
+            let most = if ui.map.zoom > 0 { MISSED.1 } else { MISSED.0 };
+            for (index, area) in self.look.model.live.missed().iter().enumerate().take(most) {
+                let role = if index == ui.missed { Role::Selected } else { Role::Missed };
+                print(area.at, role, (index + 1).to_string());
+            }
+        }
         if let Some(progress) = run.progress.as_ref().filter(|_| !run.has_ended()) {
             print(progress.target, Role::Target, "×".into());
         }
@@ -206,6 +202,9 @@ impl Pen<'_> {
         let (at, heading_rad) = estimated.unwrap_or((start.position, start.heading_rad));
         let role = if run.position.lost { Role::Crit } else { Role::Robot };
         print(at, role, arrow(self.look.caps.glyphs, heading_rad).into());
+        if let Some(cursor) = ui.cursor {
+            print(cursor, Role::Selected, "┼".into());
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use world::{Point, Vector};
 
 /// The part of the floor that is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Window {
+pub(crate) struct Window {
     /// West and east edge, metres.
     pub x: [f64; 2],
     /// South and north edge, metres.
@@ -28,6 +28,25 @@ impl Window {
             column_m,
             size,
         }
+    }
+
+    /// The middle of a character, counted from the north west.
+    pub(crate) fn middle_of(&self, column: u16, row: u16) -> Point {
+        let x = self.x[0] + (f64::from(column) + 0.5) * self.column_m;
+        Point::new(x, self.y[1] - (2.0 * f64::from(row) + 1.0) * self.column_m)
+    }
+
+    /// Middles of the dots of one or half a character, row by row from the north west, and their edge, metres.
+    pub(super) fn dots(self, rows_per_row: u16) -> impl Iterator<Item = (Point, f64)> {
+        let (columns, rows) = (self.size.0, self.size.1 * rows_per_row);
+        let row_m = 2.0 * self.column_m / f64::from(rows_per_row);
+        (0..rows).flat_map(move |row| {
+            let y = self.y[1] - (f64::from(row) + 0.5) * row_m;
+            (0..columns).map(move |column| {
+                let x = self.x[0] + (f64::from(column) + 0.5) * self.column_m;
+                (Point::new(x, y), f64::midpoint(self.column_m, row_m))
+            })
+        })
     }
 
     /// The part of a segment inside the window.
@@ -54,34 +73,8 @@ impl Window {
     }
 }
 
-/// Shaded floor, in dots of one or half a character.
-pub(super) struct Shaded<F> {
-    pub window: Window,
-    /// Dots per row of characters: 1 or 2.
-    pub rows_per_row: u16,
-    /// The colour of the dot about a point, of some edge in metres; `None` leaves it out.
-    pub color_at: F,
-}
-
-impl<F: Fn(Point, f64) -> Option<Color>> Shape for Shaded<F> {
-    fn draw(&self, painter: &mut Painter) {
-        let (columns, rows) = (self.window.size.0, self.window.size.1 * self.rows_per_row);
-        let step =
-            |span: [f64; 2], count: u16| (span[1] - span[0]) / f64::from(count.saturating_sub(1).max(1));
-        let (step_x, step_y) = (step(self.window.x, columns), step(self.window.y, rows));
-        let edge_m = f64::midpoint(step_x, step_y);
-        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
-            let x = self.window.x[0] + f64::from(column) * step_x;
-            let y = self.window.y[1] - f64::from(row) * step_y;
-            if let Some(color) = (self.color_at)(Point::new(x, y), edge_m) {
-                painter.paint(usize::from(column), usize::from(row), color);
-            }
-        }
-    }
-}
-
 /// A line through points, solid or dotted.
-pub(super) struct Stroke<'a> {
+pub(in crate::view) struct Stroke<'a> {
     pub points: &'a [Point],
     pub window: Window,
     pub dotted: bool,

@@ -1,0 +1,132 @@
+//! What the start depends on outside the screen: the plugin's file, the disk, the recorder, the engine, the clock.
+
+use super::{desk::Tools, inbox::RunOutbox, line::EngineHandle};
+use mission::{Check, CheckOutcome};
+use recording::sha256;
+use runs::{check_recorder, free_bytes};
+use std::{
+    path::Path,
+    thread,
+    time::{Duration, Instant, SystemTime},
+};
+use tui::RunMsg;
+
+/// An engine that takes longer than this to answer would be late to stop the robot.
+const STOP_LIMIT: Duration = Duration::from_millis(50);
+/// How long an answer of the engine is waited for.
+const STOP_PATIENCE: Duration = Duration::from_secs(2);
+/// How long the two clocks are compared, and by how much they may differ.
+const CLOCK_SPAN: Duration = Duration::from_millis(100);
+const CLOCK_LIMIT: Duration = Duration::from_millis(20);
+/// Space that is wanted besides what the mission is expected to take, bytes.
+const RESERVE_BYTES: u64 = 50_000_000;
+
+/// Checks everything in a thread of its own, and tells the screen.
+pub(super) fn begin(tools: &Tools, engine: Option<EngineHandle>, screen: RunOutbox, needed_bytes: u64) {
+    let (tools, fallback) = (tools.clone(), screen.clone());
+    let began = thread::Builder::new().name("check".into()).spawn(move || {
+        let logs = &tools.logs;
+        let checks =
+            vec![plugins(&tools), disk(logs, needed_bytes), recorder(logs), stop(engine.as_ref()), clock()];
+        screen.send(RunMsg::Checked(checks));
+    });
+    if let Err(error) = began {
+        let found = format!("cannot check: {error}");
+        fallback.send(RunMsg::Checked(vec![check("system", CheckOutcome::Failed, found)]));
+    }
+}
+
+fn check(what: &str, outcome: CheckOutcome, found: String) -> Check {
+    Check { what: what.to_owned(), outcome, found }
+}
+
+/// Whether the plugins are still the files that were looked at when the console was started.
+fn plugins(tools: &Tools) -> Check {
+    let planners = tools.planners.get();
+    let changed: Vec<&str> = planners
+        .iter()
+        .filter(|info| {
+            let file = tools.plugins.0.iter().map(|dir| dir.join(&info.plugin)).find(|file| file.is_file());
+            file.and_then(|file| sha256(&file).ok()).as_deref() != Some(&info.sha256)
+        })
+        .map(|info| info.id.as_str())
+        .collect();
+    if changed.is_empty() {
+        check("plugins", CheckOutcome::Passed, format!("{} planners, files unchanged", planners.len()))
+    } else {
+        let found = format!("changed since the console was started: {}", changed.join(", "));
+        check("plugins", CheckOutcome::Warning, found)
+    }
+}
+
+fn disk(logs: &Path, needed_bytes: u64) -> Check {
+    let needed_bytes = needed_bytes + RESERVE_BYTES;
+    let megabytes = |bytes: u64| format!("{} MB", bytes / 1_000_000);
+    match free_bytes(logs) {
+        None => check("disk", CheckOutcome::Warning, "the system does not say how much is free".into()),
+        Some(free) if free < needed_bytes => check(
+            "disk",
+            CheckOutcome::Failed,
+            format!(
+                "{} free, {} needed; delete runs or choose another --logs",
+                megabytes(free),
+                megabytes(needed_bytes)
+            ),
+        ),
+        Some(free) => check(
+            "disk",
+            CheckOutcome::Passed,
+            format!("{} free, {} needed", megabytes(free), megabytes(needed_bytes)),
+        ),
+    }
+}
+
+fn recorder(logs: &Path) -> Check {
+    let began = Instant::now();
+    match check_recorder(logs) {
+        Ok(bytes) => {
+            let took_ms = began.elapsed().as_millis();
+            check(
+                "recorder",
+                CheckOutcome::Passed,
+                format!("wrote {bytes} bytes and read them back in {took_ms} ms"),
+            )
+        }
+        Err(error) => check("recorder", CheckOutcome::Failed, error.to_string()),
+    }
+}
+
+/// How long a stop would wait for the engine.
+fn stop(engine: Option<&EngineHandle>) -> Check {
+    let Some(took) = engine.and_then(|engine| engine.measure(STOP_PATIENCE)) else {
+        let found = format!("the engine did not answer within {} s", STOP_PATIENCE.as_secs());
+        return check("stop", CheckOutcome::Failed, found);
+    };
+    let outcome = if took <= STOP_LIMIT { CheckOutcome::Passed } else { CheckOutcome::Warning };
+    let found =
+        format!("engine answers in {:.1} ms, limit {} ms", took.as_secs_f64() * 1e3, STOP_LIMIT.as_millis());
+    check("stop", outcome, found)
+}
+
+/// Whether the clock on the wall runs as fast as the one that never jumps.
+fn clock() -> Check {
+    let (steady, wall) = (Instant::now(), SystemTime::now());
+    thread::sleep(CLOCK_SPAN);
+    let steady = steady.elapsed();
+    let difference = wall.elapsed().map(|wall| if wall > steady { wall - steady } else { steady - wall });
+    match difference {
+        Ok(difference) if difference <= CLOCK_LIMIT => check(
+            "clock",
+            CheckOutcome::Passed,
+            format!("steady within {:.1} ms", difference.as_secs_f64() * 1e3),
+        ),
+        Ok(difference) => check(
+            "clock",
+            CheckOutcome::Warning,
+            format!("jumped by {:.0} ms: times of files may be wrong", difference.as_secs_f64() * 1e3),
+        ),
+        Err(_) => {
+            check("clock", CheckOutcome::Warning, "jumped backwards: times of files may be wrong".into())
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! A mission as it stands now, for a forecast of how it would go on.
+
+use super::Mission;
+use world::{Pose, World, tether::Cable};
+
+/// A mission as it stands now, and everything that a simulation of how it goes on has to start from.
+#[derive(Clone)]
+pub struct Fork {
+    /// The mission. No planner is open: the first order has to choose one.
+    pub mission: Mission,
+    /// The tank as the mission knows it: the drawing, and what was found. What nobody has seen yet is not in it.
+    pub world: World,
+    /// Where the robot believes to be.
+    pub pose: Pose,
+    /// The cable as it is believed to lie; `None` without a tether.
+    pub cable: Option<Cable>,
+}
+
+impl Mission {
+    /// The mission as it stands now, by the estimate and the map alone.
+    ///
+    /// Costs a copy of the coverage grid and of the map.
+    pub fn fork(&self) -> Fork {
+        let mut mission = self.clone();
+        if let Some(mut candidate) = mission.candidate.take() {
+            candidate.leave_worker();
+        }
+        mission.active.leave_worker();
+        mission.active.saved = None;
+        let estimate = mission.locator.pose();
+        Fork {
+            world: mission.chart.world().clone(),
+            pose: Pose { position: estimate.position, heading_rad: estimate.heading_rad },
+            cable: mission.tether.as_ref().map(|tether| tether.cable().clone()),
+            mission,
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! Which panes the mission screen has at some size, and where they lie.
+//!
+//! Every pane has a rank, a least and a preferred number of rows. Where there is too little room the panes of the highest
+//! rank get their least rows; what is left goes row by row, in order of rank, to those that would like more.
+
+use crate::model::{
+    Pane, Run,
+    ui::{Arrangement, Chart},
+};
+use ratatui::layout::{Constraint, Layout, Rect};
+
+/// Columns of a stack of panes, at least and at most.
+const STACK: (u16, u16) = (30, 50);
+/// Columns of the map for some rows of floor: what a round tank takes, its legend and the frame.
+const MAP: (u16, u16) = (2, 22);
+/// Rows of the map that are not floor: frame and readout.
+const MAP_FRAME: u16 = 3;
+
+/// What a pane asks of the room, rows with its frame. The first ones of a list rank highest.
+struct Wish {
+    pane: Pane,
+    least: u16,
+    rows: u16,
+}
+
+const fn wish(pane: Pane, least: u16, rows: u16) -> Wish {
+    Wish { pane, least, rows }
+}
+
+/// What there is to show beyond the panes that every mission has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Shown {
+    /// Whether there is a tether.
+    pub tether: bool,
+    /// Whether it is known what was missed.
+    pub missed: bool,
+}
+
+impl Shown {
+    /// What there is to show of a run.
+    pub(crate) fn of(run: &Run, missed: bool) -> Self {
+        Self { tether: run.tether.is_some(), missed }
+    }
+}
+
+/// The panes of the mission screen and their places in some area, for a terminal of `size`; none for a screen that shows one
+/// page at a time.
+pub(crate) fn mission(area: Rect, (width, height): (u16, u16), shown: Shown) -> Vec<(Pane, Rect)> {
+    let arrangement = Arrangement::of(width, height);
+    if !matches!(arrangement, Arrangement::Wide | Arrangement::Narrow) {
+        return Vec::new();
+    }
+    let n_stacks = if width >= 160 && height >= 45 { 2 } else { 1 };
+    let events = match (arrangement, height) {
+        (Arrangement::Narrow, _) => 4,
+        (_, 45..) => 12,
+        _ => 6,
+    };
+    let [middle, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(events)]).areas(area);
+    let floor_rows = middle.height.saturating_sub(MAP_FRAME);
+    let side = width.saturating_sub(MAP.0 * floor_rows + MAP.1).clamp(n_stacks * STACK.0, n_stacks * STACK.1);
+    let [map, side] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(middle);
+    let has_alarms_below = n_stacks == 2 && width >= 200 && height >= 60;
+    let mut placed = vec![(Pane::Map, map)];
+    if n_stacks == 1 {
+        placed.extend(stack(side, &first(shown, arrangement == Arrangement::Wide)));
+    } else {
+        let [one, two] = Layout::horizontal([Constraint::Fill(1); 2]).areas(side);
+        placed.extend(stack(one, &first(shown, true)));
+        placed.extend(stack(two, &second(shown, !has_alarms_below)));
+    }
+    if has_alarms_below {
+        let [events, alarms] =
+            Layout::horizontal([Constraint::Length(map.width), Constraint::Fill(1)]).areas(below);
+        placed.extend([(Pane::Events, events), (Pane::Alarms, alarms)]);
+    } else {
+        placed.push((Pane::Events, below));
+    }
+    placed
+}
+
+/// The panes that a page of a small screen is made of.
+pub(crate) fn page(area: Rect, pane: Pane, shown: Shown) -> Vec<(Pane, Rect)> {
+    match pane {
+        Pane::Planner if shown.tether => stack(area, &[wish(Pane::Tether, 5, 6), wish(Pane::Planner, 4, 20)]),
+        pane => vec![(pane, area)],
+    }
+}
+
+/// The panes beside the map. What can end a mission goes first.
+fn first(shown: Shown, wide: bool) -> Vec<Wish> {
+    let rows = |full: u16, short: u16| if wide { full } else { short };
+    let tether = shown.tether.then_some(wish(Pane::Tether, 5, rows(8, 6)));
+    [wish(Pane::Position, 4, rows(8, 5))]
+        .into_iter()
+        .chain(tether)
+        .chain([wish(Pane::Planner, 4, rows(9, 6)), wish(Pane::Coverage, 4, rows(10, 6))])
+        .collect()
+}
+
+/// The panes of the second stack.
+fn second(shown: Shown, alarms: bool) -> Vec<Wish> {
+    let chart = |chart| wish(Pane::Chart(chart), 6, 11);
+    let tether = [chart(Chart::TetherOut), chart(Chart::Wrap)];
+    let alarms = alarms.then_some(wish(Pane::Alarms, 5, 8));
+    let missed = shown.missed.then_some(wish(Pane::Missed, 5, 10));
+    let tether = tether.into_iter().filter(|_| shown.tether);
+    alarms
+        .into_iter()
+        .chain(missed)
+        .chain([chart(Chart::Error)])
+        .chain(tether)
+        .chain([chart(Chart::Scanned)])
+        .collect()
+}
+
+/// Places panes above each other, those of the highest rank in any case, in the order in which the operator reads them.
+fn stack(area: Rect, wishes: &[Wish]) -> Vec<(Pane, Rect)> {
+    let mut taken: Vec<(&Wish, u16)> = Vec::new();
+    let mut left = area.height;
+    for wish in wishes {
+        if wish.least <= left || taken.is_empty() {
+            let rows = wish.least.min(left);
+            taken.push((wish, rows));
+            left -= rows;
+        }
+    }
+    while left > 0 && taken.iter().any(|(wish, rows)| *rows < wish.rows) {
+        for (wish, rows) in &mut taken {
+            if left > 0 && *rows < wish.rows {
+                *rows += 1;
+                left -= 1;
+            }
+        }
+    }
+    taken.sort_by_key(|(wish, _)| order(wish.pane));
+    // What nobody asked for goes to the last one.
+    if let Some((_, rows)) = taken.last_mut() {
+        *rows += left;
+    }
+    let mut y = area.y;
+    let place = |(wish, height): (&Wish, u16)| {
+        let place = Rect { y, height, ..area };
+        y += height;
+        (wish.pane, place)
+    };
+    taken.into_iter().map(place).collect()
+}
+
+/// From top to bottom.
+fn order(pane: Pane) -> usize {
+    const ORDER: [Pane; 11] = [
+        Pane::Map,
+        Pane::Coverage,
+        Pane::Position,
+        Pane::Tether,
+        Pane::Planner,
+        Pane::Alarms,
+        Pane::Missed,
+        Pane::Chart(Chart::Error),
+        Pane::Chart(Chart::TetherOut),
+        Pane::Chart(Chart::Wrap),
+        Pane::Chart(Chart::Scanned),
+    ];
+    ORDER.iter().position(|other| *other == pane).unwrap_or(ORDER.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn placed(width: u16, height: u16, shown: Shown) -> Vec<(Pane, Rect)> {
+        mission(Rect::new(0, 1, width, height.saturating_sub(3)), (width, height), shown)
+    }
+
+    fn every_shown() -> impl Iterator<Item = Shown> {
+        [(false, false), (true, false), (false, true), (true, true)]
+            .into_iter()
+            .map(|(tether, missed)| Shown { tether, missed })
+    }
+
+    #[test]
+    fn panes_fill_the_screen_without_overlap_and_those_beside_the_map_never_vanish() {
+        for (width, height) in (80..=300).step_by(5).flat_map(|w| (24..=100).map(move |h| (w, h))) {
+            for shown in every_shown() {
+                let placed = placed(width, height, shown);
+                let area: u32 = placed.iter().map(|(_, place)| place.area()).sum();
+                assert_eq!(area, u32::from(width) * u32::from(height - 3), "{width}x{height} {placed:?}");
+                let apart = |one: &Rect, other: &Rect| !one.intersects(*other);
+                for (index, (_, one)) in placed.iter().enumerate() {
+                    assert!(placed[index + 1..].iter().all(|(_, other)| apart(one, other)), "{placed:?}");
+                }
+                let needed = [Pane::Map, Pane::Coverage, Pane::Position, Pane::Planner, Pane::Events];
+                for pane in needed.into_iter().chain(shown.tether.then_some(Pane::Tether)) {
+                    assert!(placed.iter().any(|(other, _)| *other == pane), "{pane:?} at {width}x{height}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn large_screens_have_two_stacks_ten_events_and_charts() {
+        let shown = Shown { tether: true, missed: false };
+        let place = |size: (u16, u16), pane| {
+            placed(size.0, size.1, shown)
+                .into_iter()
+                .find(|(other, _)| *other == pane)
+                .map(|(_, place)| place)
+        };
+        assert_eq!(place((80, 24), Pane::Map).map(|map| map.width), Some(50));
+        assert_eq!(place((120, 36), Pane::Map).map(|map| map.width), Some(70));
+        assert_eq!(place((120, 36), Pane::Alarms), None);
+        let [events, alarms] = [Pane::Events, Pane::Alarms].map(|pane| place((160, 45), pane));
+        assert_eq!(events.map(|events| events.height), Some(12));
+        assert!(alarms.is_some_and(|alarms| alarms.x > 80 && alarms.y < 10));
+        assert!(place((160, 45), Pane::Chart(Chart::Error)).is_some());
+        let alarms = place((200, 60), Pane::Alarms);
+        assert!(alarms.is_some_and(|alarms| alarms.height == 12 && alarms.bottom() == 58));
+        assert!(place((200, 60), Pane::Chart(Chart::Scanned)).is_some());
+    }
+}

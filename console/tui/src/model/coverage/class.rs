@@ -1,0 +1,127 @@
+//! What some floor counts as, when looked at from any height.
+
+use super::Raster;
+use serde::{Deserialize, Serialize};
+use std::ops::AddAssign;
+use world::{Cell, Point};
+
+/// From this share on floor counts as scanned, and from the other as scanned in part.
+const WHOLLY_SCANNED: f64 = 0.95;
+const PARTLY_SCANNED: f64 = 0.05;
+/// From this share of the scanned floor on it counts as scanned again.
+const MOSTLY_AGAIN: f64 = 0.5;
+
+/// What some floor counts as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FloorClass {
+    /// In reach and not scanned, while the mission lasts.
+    ToDo,
+    /// In reach and not scanned when the mission has ended.
+    Missed,
+    /// Scanned.
+    Scanned,
+    /// Scanned more than once.
+    Overlap,
+    /// Scanned in part.
+    Partial,
+    /// Out of reach along the shell.
+    Margin,
+    /// Out of reach elsewhere.
+    Unreachable,
+}
+
+/// Cells of a block: floor, those of it that have been scanned, and those that have been scanned again.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(super) struct Tally {
+    pub floor: u32,
+    pub scanned: u32,
+    pub again: u32,
+}
+
+impl AddAssign for Tally {
+    fn add_assign(&mut self, other: Self) {
+        self.floor += other.floor;
+        self.scanned += other.scanned;
+        self.again += other.again;
+    }
+}
+
+impl Tally {
+    /// What the scanned part says; `None` if next to nothing is scanned.
+    fn class(self) -> Option<FloorClass> {
+        let share = f64::from(self.scanned) / f64::from(self.floor.max(1));
+        match share {
+            share if share < PARTLY_SCANNED => None,
+            share if share < WHOLLY_SCANNED => Some(FloorClass::Partial),
+            _ if f64::from(self.again) >= MOSTLY_AGAIN * f64::from(self.scanned) => Some(FloorClass::Overlap),
+            _ => Some(FloorClass::Scanned),
+        }
+    }
+}
+
+impl Raster {
+    /// What the floor in a square of some edge about a point counts as, in a mission that has ended or not; `None` where
+    /// there is no floor.
+    pub fn class_in(&self, center: Point, edge_m: f64, has_ended: bool) -> Option<FloorClass> {
+        let tally = self.tally(center, edge_m);
+        if tally.floor == 0 {
+            return None;
+        }
+        let middle =
+            || self.floor().cell_at(center).map_or(Cell::Reachable, |index| self.floor().kind(index));
+        tally.class().or_else(|| Some(unscanned(middle(), has_ended)))
+    }
+
+    /// What the cell under a point counts as, and how often it was scanned; `None` where there is no floor.
+    pub fn class_at(&self, point: Point, has_ended: bool) -> Option<(FloorClass, u32)> {
+        let index = self.floor().cell_at(point).filter(|index| self.floor().is_floor(*index))?;
+        let tally = self.cell_tally(index);
+        let class = tally.class().unwrap_or_else(|| unscanned(self.floor().kind(index), has_ended));
+        Some((class, tally.scanned * (1 + u32::from(self.overlap.again(index)))))
+    }
+
+    /// A single cell.
+    pub(super) fn cell_tally(&self, index: usize) -> Tally {
+        let floor = u32::from(self.floor().is_floor(index));
+        let scanned = floor * u32::from(self.grid.is_covered(index));
+        Tally { floor, scanned, again: scanned * u32::from(self.overlap.again(index) > 0) }
+    }
+
+    /// The cells in a square of some edge about a point.
+    pub(super) fn tally(&self, center: Point, edge_m: f64) -> Tally {
+        // A square that is hardly larger than a cell takes the cell under its centre.
+        if edge_m < 1.5 * self.floor().cell_m {
+            return self.block_at(center, 0.0);
+        }
+        let quarter_m = edge_m / 4.0;
+        let mut sum = Tally::default();
+        for (right, up) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
+            let at = Point::new(center.x + right * quarter_m, center.y + up * quarter_m);
+            sum += self.block_at(at, edge_m / 2.0);
+        }
+        sum
+    }
+
+    /// The block under a point, of the largest blocks no wider than `edge_m`.
+    fn block_at(&self, point: Point, edge_m: f64) -> Tally {
+        let floor = self.floor();
+        let Some(index) = floor.cell_at(point) else { return Tally::default() };
+        let cells = edge_m / floor.cell_m;
+        let shift =
+            if cells >= 2.0 { (cells as usize).ilog2().min(self.levels.len() as u32) as usize } else { 0 };
+        if shift == 0 {
+            return self.cell_tally(index);
+        }
+        let level = &self.levels[shift - 1];
+        level.tallies[((index / floor.width) >> shift) * level.width + ((index % floor.width) >> shift)]
+    }
+}
+
+fn unscanned(kind: Cell, has_ended: bool) -> FloorClass {
+    match kind {
+        Cell::Margin => FloorClass::Margin,
+        Cell::Unreachable | Cell::Beside | Cell::NoGo => FloorClass::Unreachable,
+        Cell::Reachable | Cell::Outside if has_ended => FloorClass::Missed,
+        Cell::Reachable | Cell::Outside => FloorClass::ToDo,
+    }
+}

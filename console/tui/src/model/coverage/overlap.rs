@@ -1,0 +1,80 @@
+//! Floor that the tool came back to, worked out from the estimated track: the events name a cell only the first time.
+
+use serde::{Deserialize, Serialize};
+
+/// Coming back to a cell counts as scanning it again after this many swaths of way, as in the report.
+const AGAIN_SWATHS: f64 = 2.0;
+/// The way is kept in steps of half a swath: 65 535 of them are 19 km for a swath of 0.6 m.
+const STEPS_PER_SWATH: f64 = 2.0;
+
+/// How often each cell was scanned again.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(super) struct Overlap {
+    /// Way gone so far, metres.
+    way_m: f64,
+    /// Way gone when each cell was last under the tool, in steps, from 1; 0 before the first time.
+    last: Vec<u16>,
+    again: Vec<u8>,
+    /// Sum of `again` without its bound.
+    n_again: u64,
+}
+
+impl Overlap {
+    /// Nothing was scanned yet.
+    pub(super) fn new(cells: usize) -> Self {
+        Self { last: vec![0; cells], again: vec![0; cells], ..Self::default() }
+    }
+
+    /// How often a cell was scanned again.
+    pub(super) fn again(&self, index: usize) -> u8 {
+        self.again[index]
+    }
+
+    /// How often cells were scanned again, all together.
+    pub(super) fn n_again(&self) -> u64 {
+        self.n_again
+    }
+
+    /// The tool has moved on by some way over some cells; which of them it came back to, with whether for the first time.
+    pub(super) fn pass(
+        &mut self,
+        way_m: f64,
+        swath_m: f64,
+        cells: &[usize],
+        is_scanned: impl Fn(usize) -> bool,
+    ) -> Vec<(usize, bool)> {
+        let step = |way_m: f64| (way_m * STEPS_PER_SWATH / swath_m) as u16;
+        let before = step(self.way_m).saturating_add(1);
+        self.way_m += way_m;
+        let now = step(self.way_m).saturating_add(1);
+        let mut returned = Vec::new();
+        for cell in cells {
+            let last = std::mem::replace(&mut self.last[*cell], now);
+            let since = f64::from(before.saturating_sub(last)) / STEPS_PER_SWATH;
+            if last > 0 && since > AGAIN_SWATHS && is_scanned(*cell) {
+                returned.push((*cell, self.again[*cell] == 0));
+                self.again[*cell] = self.again[*cell].saturating_add(1);
+                self.n_again += 1;
+            }
+        }
+        returned
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_coming_back_after_two_swaths_counts() {
+        let mut overlap = Overlap::new(3);
+        let mut pass = |way_m, cells: &[usize]| overlap.pass(way_m, 0.6, cells, |cell| cell != 2);
+        assert_eq!(pass(0.0, &[0, 1, 2]), []);
+        assert_eq!(pass(0.3, &[0]), [], "still under the tool");
+        assert_eq!(pass(3.0, &[]), []);
+        assert_eq!(pass(0.1, &[0, 1, 2]), [(0, true), (1, true)], "cell 2 never counted as scanned");
+        assert_eq!(pass(3.0, &[]), []);
+        assert_eq!(pass(0.1, &[1]), [(1, false)]);
+        assert_eq!((overlap.again(0), overlap.again(1), overlap.n_again()), (1, 2, 3));
+    }
+}

@@ -1,0 +1,166 @@
+//! The check before the start: what the console finds by itself, and what the operator ticks by hand.
+
+use super::{Model, ui::Arrangement};
+use mission::{Check, CheckOutcome};
+use serde::{Deserialize, Serialize};
+
+/// Fewer stations than this cannot find a position.
+const LEAST_STATIONS: usize = 2;
+
+/// The check before the start.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Preflight {
+    /// What was found outside the screen: disk, recorder, engine, clock; `None` before it was looked at.
+    pub found: Option<Vec<Check>>,
+    /// Whether it is being looked at now.
+    pub is_checking: bool,
+    /// Whether the mission is to be started as soon as everything has passed.
+    pub is_starting: bool,
+    /// Which points of the scenario's checklist are ticked.
+    pub ticked: Vec<bool>,
+}
+
+impl Model {
+    /// Everything that is checked before the start: what blocks it first, then what was found, then what is ticked by hand.
+    pub fn checks(&self) -> Vec<Check> {
+        let preflight = &self.live.preflight;
+        let found = preflight.found.iter().flatten().cloned();
+        let mut checks: Vec<Check> = self.own_checks().into_iter().chain(found).collect();
+        checks.sort_by_key(|check| std::cmp::Reverse(check.outcome));
+        checks.extend(self.hand_checks());
+        checks
+    }
+
+    /// The points of the scenario's checklist.
+    fn hand_checks(&self) -> Vec<Check> {
+        let items = self.live.run.about.iter().flat_map(|about| &about.checklist).enumerate();
+        items
+            .map(|(index, item)| {
+                let is_ticked = self.live.preflight.ticked.get(index).copied().unwrap_or(false);
+                let outcome = if is_ticked { CheckOutcome::Ticked } else { CheckOutcome::Failed };
+                let found = if is_ticked { String::new() } else { "not ticked".to_owned() };
+                Check { what: item.clone(), outcome, found }
+            })
+            .collect()
+    }
+
+    /// How many points are ticked by hand.
+    pub fn n_by_hand(&self) -> usize {
+        self.live.run.about.as_ref().map_or(0, |about| about.checklist.len())
+    }
+
+    /// What blocks the start, as a sentence; `None` if nothing does.
+    pub fn start_is_blocked(&self) -> Option<String> {
+        let failed = self.checks().into_iter().find(|check| check.outcome == CheckOutcome::Failed)?;
+        Some(format!("start blocked: {}: {}", failed.what, failed.found))
+    }
+
+    /// What the screen knows by itself.
+    fn own_checks(&self) -> Vec<Check> {
+        let mut checks = vec![self.planner_check(), self.plan_check()];
+        checks.extend(self.tether_check());
+        checks.extend([self.station_check(), self.terminal_check()]);
+        checks
+    }
+
+    fn planner_check(&self) -> Check {
+        let planning = &self.live.run.planning;
+        match (&planning.fault, self.planner()) {
+            (Some(fault), _) => check("planner", CheckOutcome::Failed, fault.message.clone()),
+            (None, Some(info)) => {
+                let hash = info.sha256.get(..8).unwrap_or(&info.sha256);
+                check(
+                    "planner",
+                    CheckOutcome::Passed,
+                    format!("{} {}, ABI {}, sha256 {hash}", info.id, info.version, info.abi),
+                )
+            }
+            (None, None) => check("planner", CheckOutcome::Failed, "no planner was found".into()),
+        }
+    }
+
+    fn plan_check(&self) -> Check {
+        let planning = &self.live.run.planning;
+        match (&planning.plan, &self.live.busy) {
+            (_, Some(busy)) => {
+                check("plan", CheckOutcome::Warning, format!("{}: the robot will wait for it", busy.work))
+            }
+            (Some(plan), None) if plan.complete => {
+                check("plan", CheckOutcome::Passed, format!("{:.1} m, the whole task", plan.length_m))
+            }
+            (Some(plan), None) => {
+                check("plan", CheckOutcome::Warning, format!("{:.1} m, only part of the task", plan.length_m))
+            }
+            (None, None) => {
+                check("plan", CheckOutcome::Warning, "none yet: it will be made at the start".into())
+            }
+        }
+    }
+
+    fn tether_check(&self) -> Option<Check> {
+        let run = &self.live.run;
+        let tether = run.about.as_ref()?.mission.tether.as_ref()?;
+        Some(match run.tether.as_ref().and_then(|tether| tether.certified) {
+            Some(true) => check(
+                "tether",
+                CheckOutcome::Passed,
+                "plan certified: the cable can always be reeled in".into(),
+            ),
+            Some(false) if tether.allow_uncertified => {
+                check("tether", CheckOutcome::Warning, "plan NOT certified, allowed by the scenario".into())
+            }
+            Some(false) => check(
+                "tether",
+                CheckOutcome::Failed,
+                "plan NOT certified; change planner or parameters".into(),
+            ),
+            None => check("tether", CheckOutcome::Warning, "no certified plan yet".into()),
+        })
+    }
+
+    fn station_check(&self) -> Check {
+        let stations = self.live.run.about.as_ref().map_or(0, |about| about.world.stations.len());
+        let limit_m = self.live.run.about.as_ref().map_or(f64::NAN, |about| about.mission.position_limit_m);
+        let (outcome, found) = match self.live.estimate() {
+            _ if stations < LEAST_STATIONS => {
+                (CheckOutcome::Warning, format!("{stations}: the position rests on odometry alone"))
+            }
+            None => (CheckOutcome::Warning, format!("{stations}; accuracy on the path is not known yet")),
+            Some(estimate) if estimate.without_fix_m > 0.0 => (
+                CheckOutcome::Warning,
+                format!("{stations}; no fix on {:.1} m of the path", estimate.without_fix_m),
+            ),
+            Some(estimate) => match estimate.accuracy_worst {
+                Some(worst) if worst.value > limit_m => (
+                    CheckOutcome::Warning,
+                    format!(
+                        "{stations}; ±{:.2} m at {:.1}, {:.1} m, limit {limit_m:.2} m",
+                        worst.value, worst.at.x, worst.at.y
+                    ),
+                ),
+                Some(worst) => (
+                    CheckOutcome::Passed,
+                    format!("{stations}; at worst ±{:.2} m, limit {limit_m:.2} m", worst.value),
+                ),
+                None => (CheckOutcome::Passed, format!("{stations}")),
+            },
+        };
+        check("AE stations", outcome, found)
+    }
+
+    fn terminal_check(&self) -> Check {
+        let size = format!("{}x{}", self.ui.width, self.ui.height);
+        match self.ui.arrangement() {
+            Arrangement::Wide | Arrangement::Narrow => check("terminal", CheckOutcome::Passed, size),
+            Arrangement::Paged | Arrangement::Strip => check(
+                "terminal",
+                CheckOutcome::Warning,
+                format!("{size}: not all panes fit, 80x24 is needed"),
+            ),
+        }
+    }
+}
+
+fn check(what: &str, outcome: CheckOutcome, found: String) -> Check {
+    Check { what: what.to_owned(), outcome, found }
+}

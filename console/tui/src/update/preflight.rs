@@ -1,0 +1,70 @@
+//! The check before the start.
+
+use super::message::Effect;
+use super::offer::refuse;
+use super::send::send;
+use crate::model::{Model, Overlay, Screen};
+use mission::{Check, Order, Severity};
+
+/// What a recording takes of a mission's time, bytes a second: 90 to 110 MB an hour were measured.
+const BYTES_PER_S: f64 = 30_000.0;
+/// A mission takes longer than its plan says.
+const MARGIN: f64 = 2.0;
+
+/// Opens the list of checks, and looks again.
+pub(super) fn open(model: &mut Model) -> Vec<Effect> {
+    model.ui.overlay = Overlay::Preflight { selected: 0 };
+    look(model)
+}
+
+/// The operator agreed to the start: everything is checked once more, now.
+pub(super) fn start(model: &mut Model) -> Vec<Effect> {
+    model.live.preflight.is_starting = true;
+    look(model)
+}
+
+fn look(model: &mut Model) -> Vec<Effect> {
+    model.live.preflight.is_checking = true;
+    let time_s = model.live.estimate().map_or(0.0, |estimate| estimate.time_s);
+    vec![Effect::Check { needed_bytes: (time_s * MARGIN * BYTES_PER_S) as u64 }]
+}
+
+/// What was found; starts the mission if that was agreed to and nothing blocks it.
+pub(super) fn checked(model: &mut Model, found: Vec<Check>) -> Vec<Effect> {
+    let preflight = &mut model.live.preflight;
+    (preflight.found, preflight.is_checking) = (Some(found), false);
+    if !std::mem::take(&mut preflight.is_starting) {
+        return Vec::new();
+    }
+    if let Some(why) = model.start_is_blocked() {
+        model.ui.overlay = Overlay::Preflight { selected: 0 };
+        return refuse(model, why);
+    }
+    model.ui.go(Screen::Mission);
+    let noted = Effect::Order(Order::NoteChecks(model.checks()));
+    std::iter::once(noted).chain(send(model, Order::Start)).collect()
+}
+
+/// Gives the start up that was agreed to.
+pub(super) fn cancel(model: &mut Model) {
+    if std::mem::take(&mut model.live.preflight.is_starting) {
+        model.say(Severity::Info, "start cancelled");
+    }
+}
+
+/// Ticks the selected point by hand, or takes the tick away; nothing moves.
+pub(super) fn tick(model: &mut Model) -> Vec<Effect> {
+    let Overlay::Preflight { selected } = model.ui.overlay else { return Vec::new() };
+    let n_by_hand = model.n_by_hand();
+    let first = model.checks().len() - n_by_hand;
+    let Some(point) = selected.checked_sub(first) else {
+        let why = model.console.keys.spelled("checked automatically; <check-again>: check again");
+        return refuse(model, why);
+    };
+    let ticked = &mut model.live.preflight.ticked;
+    ticked.resize(n_by_hand, false);
+    if let Some(tick) = ticked.get_mut(point) {
+        *tick = !*tick;
+    }
+    Vec::new()
+}

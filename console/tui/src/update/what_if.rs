@@ -1,0 +1,109 @@
+//! How a held mission would go on with one planner or another.
+
+use super::message::Effect;
+use super::offer::refuse;
+use super::overlay::ask;
+use crate::model::ui::Ask;
+use crate::model::what_if::MOST;
+use crate::model::{Candidate, Forecast, Model, Overlay, WhatIf};
+use mission::{Order, Parameters, PlannerChoice, Severity};
+
+/// Opens the comparison: the planner as it is, and the others that can fly this mission.
+pub(super) fn open(model: &mut Model) -> Vec<Effect> {
+    model.ui.overlay = Overlay::WhatIf;
+    if model.live.what_if.is_some() {
+        return Vec::new();
+    }
+    let run = &model.live.run;
+    let current = run.planning.choice.clone();
+    let others = model.console.planners.iter().filter(|info| run.covers() && run.cannot_fly(info).is_none());
+    let others = others
+        .filter(|info| Some(info.id.as_str()) != run.planner_id())
+        .map(|info| PlannerChoice { id: info.id.clone(), parameters: Parameters::new() });
+    let choices: Vec<PlannerChoice> = current.into_iter().chain(others).take(MOST).collect();
+    let candidates = choices.iter().map(|choice| candidate(choice.clone())).collect();
+    model.live.what_if = Some(WhatIf { t_s: run.clock.t_s, candidates, selected: 0 });
+    vec![Effect::Forecast(choices)]
+}
+
+fn candidate(choice: PlannerChoice) -> Candidate {
+    Candidate { choice, at: None, made: None }
+}
+
+/// Adds a planner; the forecasts that are there stay.
+pub(super) fn add(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
+    model.ui.overlay = Overlay::WhatIf;
+    let Some(what_if) = &mut model.live.what_if else { return Vec::new() };
+    if what_if.candidates.iter().any(|candidate| candidate.choice == choice) {
+        return refuse(model, format!("planner {} is compared already", choice.id));
+    }
+    what_if.candidates.truncate(MOST - 1);
+    what_if.candidates.push(candidate(choice));
+    what_if.selected = what_if.candidates.len() - 1;
+    let open = what_if.candidates.iter().filter(|candidate| candidate.made.is_none());
+    vec![Effect::Forecast(open.map(|candidate| candidate.choice.clone()).collect())]
+}
+
+/// Looks at another candidate, so many further on.
+pub(super) fn select(model: &mut Model, by: isize) {
+    if let Some(what_if) = &mut model.live.what_if {
+        let last = what_if.candidates.len().saturating_sub(1);
+        what_if.selected = what_if.selected.saturating_add_signed(by).min(last);
+    }
+}
+
+/// Takes the selected candidate: asks, unless it goes on as it is. What was compared is written down.
+pub(super) fn choose(model: &mut Model) -> Vec<Effect> {
+    let Some(what_if) = &model.live.what_if else { return Vec::new() };
+    let Some(candidate) = what_if.candidate() else { return Vec::new() };
+    let choice = candidate.choice.clone();
+    match &candidate.made {
+        None => return refuse(model, format!("the forecast of {} is not finished", choice.id)),
+        Some(Err(why)) => {
+            let why = format!("{} cannot be selected: {why}", choice.id);
+            return refuse(model, why);
+        }
+        Some(Ok(_)) => {}
+    }
+    let noted = Effect::Order(Order::NoteOutlooks(what_if.outlooks()));
+    if what_if.selected == 0 {
+        model.ui.overlay = Overlay::None;
+        model.say(Severity::Info, format!("planner {} stays; space: resume", choice.id));
+        return vec![noted];
+    }
+    std::iter::once(noted).chain(ask(model, Ask::Swap(choice))).collect()
+}
+
+/// Closes the comparison; forecasts that are there stay as long as the mission is held here.
+pub(super) fn close(model: &mut Model) {
+    model.ui.overlay = Overlay::None;
+}
+
+/// Forgets forecasts that no longer hold.
+pub(super) fn forget(model: &mut Model) -> Vec<Effect> {
+    if model.live.what_if.take().is_none() {
+        return Vec::new();
+    }
+    if model.ui.overlay == Overlay::WhatIf {
+        model.ui.overlay = Overlay::None;
+    }
+    vec![Effect::StopForecasting]
+}
+
+/// Takes how far a forecast is.
+pub(super) fn at(model: &mut Model, choice: &PlannerChoice, share: f64) {
+    if let Some(candidate) = find(model, choice) {
+        candidate.at = Some(share);
+    }
+}
+
+/// Takes a forecast.
+pub(super) fn made(model: &mut Model, choice: &PlannerChoice, forecast: Result<Forecast, String>) {
+    if let Some(candidate) = find(model, choice) {
+        candidate.made = Some(forecast);
+    }
+}
+
+fn find<'a>(model: &'a mut Model, choice: &PlannerChoice) -> Option<&'a mut Candidate> {
+    model.live.what_if.as_mut()?.candidates.iter_mut().find(|candidate| candidate.choice == *choice)
+}

@@ -1,0 +1,46 @@
+//! The alarms pane of a large screen: every alarm in a line, the most severe first.
+
+use super::look::{Look, Parts, fill};
+use super::{events, text};
+use crate::model::{Alarm, Pane};
+use crate::theme::Role;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+
+/// Columns from which an alarm takes one line.
+const BESIDE: usize = 64;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let mut alarms: Vec<&Alarm> = look.run.alarms.list().iter().collect();
+    alarms.sort_by_key(|alarm| (alarm.acknowledged, std::cmp::Reverse(alarm.severity)));
+    let block = look.pane(Pane::Alarms, &format!("Alarms  {}", alarms.len()), "a acknowledge");
+    let inner = block.inner(area);
+    let mut lines: Vec<_> = alarms
+        .iter()
+        .flat_map(|alarm| rows(alarm, usize::from(inner.width)))
+        .take(usize::from(inner.height))
+        .map(|row| look.line(row))
+        .collect();
+    if lines.is_empty() {
+        lines.push(look.line([(Role::Dim, " No alarms.".into())]));
+    }
+    fill(frame, area, block, lines);
+}
+
+/// State first; the words beside it, or below it where the pane is narrow.
+fn rows(alarm: &Alarm, columns: usize) -> Vec<Parts> {
+    let state = match (alarm.active, alarm.acknowledged) {
+        (true, true) => "ack",
+        (true, false) => "UNACK",
+        (false, _) => "cleared",
+    };
+    let severity = (events::role(alarm.severity), format!(" {:<5}", events::word(alarm.severity)));
+    let front = (Role::Dim, format!(" {state:<7} T+{} ", text::clock(alarm.since_s)));
+    let words = |room: usize| (Role::Text, text::fit(&alarm.text, room));
+    let used = text::width(&severity.1) + text::width(&front.1);
+    if columns >= BESIDE {
+        vec![vec![severity, front, words(columns - used)]]
+    } else {
+        vec![vec![severity, front], vec![(Role::Text, "   ".into()), words(columns.saturating_sub(3))]]
+    }
+}

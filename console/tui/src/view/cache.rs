@@ -1,0 +1,103 @@
+//! What is kept from frame to frame because it costs time and rarely changes, and where the last frame put what a mouse can
+//! hit. A cold cache gives the same cells as a warm one.
+
+use super::map::{PlateDrawing, PlateKey, ShadeKey, Shades, Window};
+use crate::actions::ActionId;
+use crate::update::Target;
+use ratatui::layout::{Position, Rect};
+use std::rc::Rc;
+use world::{Floor, PlateMap};
+
+/// What is kept from frame to frame.
+#[derive(Debug, Default)]
+pub struct Cache {
+    shades: Option<(ShadeKey, Shades)>,
+    plate_map: Option<(PlateMapKey, Rc<PlateMap>)>,
+    plates: Option<(PlateKey, Rc<PlateDrawing>)>,
+    places: Places,
+}
+
+/// Where the last frame put what a mouse can hit.
+#[derive(Debug, Clone, Default)]
+pub struct Places {
+    map: Option<(Rect, Window)>,
+    keys: Vec<(Rect, ActionId)>,
+}
+
+/// What the plates of cells depend on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct PlateMapKey {
+    layout: world::PlateLayout,
+    cells: usize,
+    origin: world::Point,
+}
+
+impl Cache {
+    /// Where the last frame put what a mouse can hit.
+    pub fn places(&self) -> &Places {
+        &self.places
+    }
+
+    /// Forgets where things were: another frame begins.
+    pub(super) fn clear_places(&mut self) {
+        self.places = Places::default();
+    }
+
+    /// Notes where the map is.
+    pub(super) fn place_map(&mut self, area: Rect, window: Window) {
+        self.places.map = Some((area, window));
+    }
+
+    /// Notes where a key is named.
+    pub(super) fn place_key(&mut self, area: Rect, id: ActionId) {
+        self.places.keys.push((area, id));
+    }
+
+    pub(super) fn shades(&mut self, key: ShadeKey, make: impl FnOnce() -> Shades) -> Shades {
+        kept(&mut self.shades, key, make)
+    }
+
+    pub(super) fn plates(
+        &mut self,
+        key: PlateKey,
+        make: impl FnOnce() -> Rc<PlateDrawing>,
+    ) -> Rc<PlateDrawing> {
+        kept(&mut self.plates, key, make)
+    }
+
+    /// The plate of every cell of a floor.
+    pub(super) fn plate_map(
+        &mut self,
+        layout: world::PlateLayout,
+        boundary: &world::Boundary,
+        floor: &Floor,
+    ) -> Rc<PlateMap> {
+        let key = PlateMapKey { layout, cells: floor.len(), origin: floor.origin };
+        kept(&mut self.plate_map, key, || Rc::new(layout.map(boundary, floor)))
+    }
+}
+
+impl Places {
+    /// What the last frame showed at a place.
+    pub fn target(&self, column: u16, row: u16) -> Target {
+        let at = Position { x: column, y: row };
+        if let Some((_, id)) = self.keys.iter().find(|(area, _)| area.contains(at)) {
+            return Target::Key(*id);
+        }
+        match self.map.filter(|(area, _)| area.contains(at)) {
+            Some((area, window)) => Target::Map(window.middle_of(column - area.x, row - area.y)),
+            None => Target::Else,
+        }
+    }
+}
+
+fn kept<K: PartialEq, V: Clone>(slot: &mut Option<(K, V)>, key: K, make: impl FnOnce() -> V) -> V {
+    match slot {
+        Some((before, value)) if *before == key => value.clone(),
+        _ => {
+            let value = make();
+            *slot = Some((key, value.clone()));
+            value
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Charts of the last minutes, with the limit as a line.
+
+use super::look::Look;
+use super::map::{Stroke, Window};
+use super::text;
+use crate::model::history::HISTORY_S;
+use crate::model::{History, Pane, ui::Chart};
+use crate::theme::Role;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::symbols::Marker;
+use ratatui::text::Line;
+use ratatui::widgets::canvas::Canvas;
+use world::Point;
+
+/// Columns of the labels beside a curve.
+const LABELS: u16 = 6;
+/// Room above the limit or the largest value.
+const HEADROOM: f64 = 1.15;
+
+/// What a chart shows.
+struct Series<'a> {
+    title: &'static str,
+    values: &'a History,
+    limit: Option<f64>,
+    decimals: usize,
+}
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, chart: Chart) {
+    let Some(series) = series(look, chart) else { return };
+    let limit = series.limit.map(|limit| format!(", limit {}", text::number(limit, series.decimals)));
+    let note = format!("{} min{}", HISTORY_S / 60, limit.unwrap_or_default());
+    let block = look.pane(Pane::Chart(chart), series.title, &note);
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
+    if inner.width > LABELS && inner.height >= 2 {
+        plot(look, frame, inner, &series);
+    }
+}
+
+fn series<'a>(look: &Look<'a>, chart: Chart) -> Option<Series<'a>> {
+    let (run, about) = (look.run, look.run.about.as_ref()?);
+    let limits = about.mission.tether.as_ref().map(|tether| tether.limits);
+    Some(match chart {
+        Chart::Error => Series {
+            title: "95 % error, m",
+            values: &run.position.history_m,
+            limit: Some(about.mission.position_limit_m),
+            decimals: 2,
+        },
+        Chart::TetherOut => Series {
+            title: "Tether out, m",
+            values: &run.tether.as_ref()?.length_history_m,
+            limit: limits.map(|limits| limits.reel_length_m),
+            decimals: 1,
+        },
+        Chart::Wrap => Series {
+            title: "Largest wrap, °",
+            values: &run.tether.as_ref()?.wrap_history_deg,
+            limit: limits.map(|limits| limits.wrap_max_rad.to_degrees()),
+            decimals: 0,
+        },
+        Chart::Scanned => Series {
+            title: "Scanned, % of reachable floor",
+            values: &run.scanned_history,
+            limit: None,
+            decimals: 1,
+        },
+    })
+}
+
+fn plot(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>) {
+    let values: Vec<f64> = series.values.last(HISTORY_S).collect();
+    let largest = values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max);
+    let limit = series.limit.filter(|limit| limit.is_finite() && *limit > 0.0);
+    let top = HEADROOM * largest.max(limit.unwrap_or(0.0));
+    let top = if top > 0.0 && top.is_finite() { top } else { 1.0 };
+    let plot = Rect { x: area.x + LABELS, width: area.width - LABELS, ..area };
+    let window = Window {
+        x: [-(HISTORY_S as f64), 0.0],
+        y: [0.0, top],
+        column_m: 1.0,
+        size: (plot.width, plot.height),
+    };
+    let begin = -(values.len() as f64);
+    let points: Vec<Point> =
+        values.iter().zip(0..).map(|(value, second)| Point::new(begin + f64::from(second), *value)).collect();
+    let marker = if look.caps.glyphs.has_dots() { Marker::Braille } else { Marker::Custom('*') };
+    let canvas = Canvas::default().marker(marker).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
+        let mut stroke = |points: &[Point], role, dotted| {
+            ctx.draw(&Stroke { points, window, dotted, color: look.theme.color(role) });
+        };
+        if let Some(limit) = limit {
+            stroke(&[Point::new(window.x[0], limit), Point::new(0.0, limit)], Role::Warn, true);
+        }
+        stroke(&points, Role::Watch, false);
+    });
+    frame.render_widget(canvas, plot);
+    label(look, frame, area, series, top, limit.unwrap_or(largest));
+    label(look, frame, area, series, top, 0.0);
+}
+
+/// Writes a value at its height beside the curve.
+fn label(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>, top: f64, value: f64) {
+    let share = (value / top).clamp(0.0, 1.0);
+    let up = (share * f64::from(area.height - 1)).round() as u16;
+    let place = Rect { y: area.bottom() - 1 - up, height: 1, width: LABELS - 1, ..area };
+    let value = text::number(value, series.decimals);
+    frame.render_widget(Line::from(look.span(Role::Dim, value)).right_aligned(), place);
+}

@@ -1,0 +1,68 @@
+//! The list of checks before the start.
+
+use super::list::{List, hint, paragraph};
+use crate::theme::Role;
+use crate::view::look::{Look, Parts as Row};
+use crate::view::text;
+use mission::{Check, CheckOutcome};
+
+/// Columns of what is checked by itself.
+const WHAT: usize = 12;
+
+pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
+    let model = look.model;
+    let checks = model.checks();
+    let first_by_hand = checks.len() - model.n_by_hand();
+    let room = usize::from(columns).saturating_sub(4);
+    let count = |outcome| checks.iter().filter(|check| check.outcome == outcome).count();
+    let (failed, warned) = (count(CheckOutcome::Failed), count(CheckOutcome::Warning));
+    let rows =
+        checks.iter().enumerate().map(|(index, check)| row(check, index >= first_by_hand, room)).collect();
+    let mut below: Vec<Row> = checks
+        .get(selected)
+        .into_iter()
+        .flat_map(|check| paragraph(Role::Dim, &format!("{}: {}", check.what, check.found), room))
+        .collect();
+    let verdict = match (model.live.preflight.is_checking, failed) {
+        (true, _) => (Role::Watch, " Checking...".to_owned()),
+        (false, 0) => {
+            (Role::Good, " Nothing blocks the start. Checked again at the moment of start.".to_owned())
+        }
+        (false, n) => (Role::Crit, format!(" Start is blocked: {n} FAIL.")),
+    };
+    below.push(vec![verdict]);
+    below.push(hint(" space: tick  r: check again  Esc: close"));
+    List {
+        title: format!("Pre-flight  {} checks, {} by hand", first_by_hand, model.n_by_hand()),
+        note: note(failed, warned),
+        rows,
+        selected,
+        needed_below: 2,
+        below,
+        ..List::default()
+    }
+}
+
+fn note(failed: usize, warned: usize) -> &'static str {
+    match (failed, warned) {
+        (0, 0) => "all passed",
+        (0, _) => "WARNINGS",
+        _ => "FAIL",
+    }
+}
+
+fn row(check: &Check, by_hand: bool, room: usize) -> Row {
+    let (role, mark) = match (check.outcome, by_hand) {
+        (CheckOutcome::Passed, _) => (Role::Good, "[ ok ]"),
+        (CheckOutcome::Ticked, _) => (Role::Good, "[  x ]"),
+        (CheckOutcome::Warning, _) => (Role::Warn, "[WARN]"),
+        (CheckOutcome::Failed, true) => (Role::Crit, "[    ]"),
+        (CheckOutcome::Failed, false) => (Role::Crit, "[FAIL]"),
+    };
+    let words = if by_hand {
+        format!(" by hand: {}", check.what)
+    } else {
+        format!(" {} {}", text::column(&check.what, WHAT), check.found)
+    };
+    vec![(role, mark.to_owned()), (Role::Text, text::fit(&words, room.saturating_sub(7)))]
+}

@@ -1,0 +1,93 @@
+//! The plates of the floor on the map: their outlines, and their names where there is room.
+
+use super::pen::DOTS;
+use super::shapes::Window;
+use crate::view::look::Look;
+use ratatui::style::Color;
+use ratatui::widgets::canvas::{Painter, Shape};
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use world::{Floor, PlateMap, Point, Vector};
+
+/// Zoom from which plates are drawn: four times the whole tank.
+const FROM_ZOOM: u8 = 2;
+
+/// What the drawing depends on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Key(world::PlateLayout, usize, Window, bool);
+
+/// The plates in a window.
+#[derive(Debug, PartialEq, Default)]
+pub(crate) struct PlateDrawing {
+    /// Dots of outlines, from the north west.
+    dots: Vec<(u16, u16)>,
+    /// Names, each with the middle of what is seen of its plate.
+    pub names: Vec<(Point, String)>,
+}
+
+/// The plates in a window, if they are known and the map is enlarged enough.
+pub(super) fn plates(look: &Look, window: Window) -> Option<Rc<PlateDrawing>> {
+    if look.model.ui.map.zoom < FROM_ZOOM {
+        return None;
+    }
+    let map = map(look)?;
+    let (about, floor) = (look.run.about.as_ref()?, look.run.coverage.as_ref()?.floor());
+    let has_dots = look.caps.glyphs.has_dots();
+    let key = Key(about.plates?, floor.len(), window, has_dots);
+    Some(look.cache.borrow_mut().plates(key, || Rc::new(drawing(&map, floor, window, has_dots))))
+}
+
+/// The plate of every cell.
+fn map(look: &Look) -> Option<Rc<PlateMap>> {
+    let (about, raster) = (look.run.about.as_ref()?, look.run.coverage.as_ref()?);
+    let mut cache = look.cache.borrow_mut();
+    Some(cache.plate_map(about.plates?, &about.world.boundary, raster.floor()))
+}
+
+/// Name of the plate under a point.
+pub(super) fn name_at(look: &Look, at: Point) -> Option<String> {
+    let cell = look.run.coverage.as_ref()?.floor().cell_at(at)?;
+    let map = map(look)?;
+    map.plate_of(cell).map(|plate| map.plates[plate].name.clone())
+}
+
+fn drawing(map: &PlateMap, floor: &Floor, window: Window, has_dots: bool) -> PlateDrawing {
+    let per = if has_dots { DOTS } else { (1, 1) };
+    let (columns, rows) = (window.size.0 * per.0, window.size.1 * per.1);
+    let step = Vector::new(window.column_m / f64::from(per.0), -2.0 * window.column_m / f64::from(per.1));
+    let corner = Point::new(window.x[0], window.y[1]);
+    let center =
+        |x: u16, y: u16| corner + step.component_mul(&Vector::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
+    let plate = |x: u16, y: u16| map.plate_of(floor.cell_at(center(x, y))?);
+    let mut dots = Vec::new();
+    let mut seen: BTreeMap<usize, (u32, Vector)> = BTreeMap::new();
+    for (x, y) in (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))) {
+        let Some(here) = plate(x, y) else { continue };
+        let (count, sum) = seen.entry(here).or_default();
+        (*count, *sum) = (*count + 1, *sum + center(x, y).coords);
+        if [plate(x + 1, y), plate(x, y + 1)].into_iter().flatten().any(|other| other != here) {
+            dots.push((x, y));
+        }
+    }
+    let least = u32::from(per.0 * per.1) * LEAST_CHARACTERS;
+    let names = seen.into_iter().filter(|(_, (count, _))| *count >= least).map(|(plate, (count, sum))| {
+        let name = map.plates[plate].name.clone();
+        let half_m = name.len() as f64 / 2.0 * window.column_m;
+        (Point::from(sum / f64::from(count)) - Vector::new(half_m, 0.0), name)
+    });
+    PlateDrawing { dots, names: names.collect() }
+}
+
+/// Characters that must be seen of a plate for its name to be written.
+const LEAST_CHARACTERS: u32 = 24;
+
+/// The outlines as a shape of the canvas.
+pub(super) struct Outlines<'a>(pub &'a PlateDrawing, pub Color);
+
+impl Shape for Outlines<'_> {
+    fn draw(&self, painter: &mut Painter) {
+        for (x, y) in &self.0.dots {
+            painter.paint(usize::from(*x), usize::from(*y), self.1);
+        }
+    }
+}

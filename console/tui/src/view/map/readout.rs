@@ -1,0 +1,59 @@
+//! The lines at the foot of the map: where the robot is, and what is known of the place under the cursor.
+
+use super::plates;
+use crate::model::{FloorClass, ui::Ui};
+use crate::theme::Role;
+use crate::view::look::Look;
+use crate::view::text;
+use world::Point;
+
+/// The robot's place and the error of it, in words.
+pub(super) fn robot(look: &Look, width: u16) -> (Role, String) {
+    let position = &look.run.position;
+    let name = if width >= 60 { "robot " } else { "" };
+    let Some(pose) = &position.pose else { return (Role::Dim, "robot: no position yet ".into()) };
+    let at = text::place(pose.position);
+    let error = text::number(position.error_m().unwrap_or(f64::NAN), 2);
+    let is_stale = look.is_pose_stale() || position.is_fix_stale(look.run.clock.t_s);
+    let stale = if is_stale { "◌ " } else { "" };
+    let role = if position.lost { Role::Crit } else { Role::Text };
+    let lost = if position.lost { "LOST " } else { "" };
+    (role, format!("{lost}{stale}{name}{at} ±{error} m "))
+}
+
+/// The place under the cursor: coordinates, radius and bearing from the middle of the tank.
+pub(super) fn cursor(look: &Look, ui: &Ui, width: u16) -> Option<(Role, String)> {
+    let at = ui.cursor?;
+    let (low, high) = look.run.about.as_ref()?.world.boundary.bounds();
+    let way = at - nalgebra::center(&low, &high);
+    let name = if width >= 60 { "cursor " } else { "" };
+    let (radius, bearing) = (text::number(way.norm(), 2), text::degrees(way.y.atan2(way.x)));
+    Some((Role::Title, format!(" {name}{}  r {radius} m, {bearing}°", text::place(at))))
+}
+
+/// What is known of the floor there: plate, class, expected error of a fix.
+pub(super) fn floor(look: &Look, at: Point) -> String {
+    let raster = look.run.coverage.as_ref();
+    let class = raster.and_then(|raster| raster.class_at(at, look.run.has_ended()));
+    let Some((class, times)) = class else { return "no floor".into() };
+    let plate = plates::name_at(look, at).map_or_else(String::new, |name| format!("{name}  "));
+    let forecast = look.run.accuracy.as_ref().and_then(|map| map.at(at));
+    let error = match forecast.map(|forecast| forecast.error_95_m) {
+        Some(Some(error_m)) => format!("AE ±{} m", text::number(error_m, 2)),
+        Some(None) => "AE no fix".into(),
+        None => "AE -".into(),
+    };
+    format!("{plate}{}  {error}", word(class, times))
+}
+
+fn word(class: FloorClass, times: u32) -> String {
+    match class {
+        FloorClass::ToDo => "to do".into(),
+        FloorClass::Missed => "missed".into(),
+        FloorClass::Scanned => "scanned".into(),
+        FloorClass::Overlap => format!("scanned ×{times}"),
+        FloorClass::Partial => "partially scanned".into(),
+        FloorClass::Margin => "shell margin".into(),
+        FloorClass::Unreachable => "unreachable".into(),
+    }
+}

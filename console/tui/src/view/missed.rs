@@ -1,0 +1,31 @@
+//! The missed areas, when the mission has ended: what and where, the largest first.
+
+use super::look::{Look, fill};
+use super::text;
+use crate::model::Pane;
+use crate::theme::Role;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use report::account::Account;
+
+/// The account of the floor of a run that is over.
+pub(super) fn account<'a>(look: &Look<'a>) -> Option<&'a Account> {
+    look.model.live.result.as_ref()?.summary.floor.as_ref()
+}
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let Some(account) = account(look) else { return };
+    let block = look.pane(Pane::Missed, &format!("Missed areas  {}", account.missed.len()), "7 result");
+    let inner = block.inner(area);
+    let columns = usize::from(inner.width).saturating_sub(2);
+    let mut lines: Vec<_> = account
+        .missed
+        .iter()
+        .map(|area| look.line([(Role::Text, format!(" {}", text::fit(&area.to_string(), columns)))]))
+        .take(usize::from(inner.height))
+        .collect();
+    if lines.is_empty() {
+        lines.push(look.line([(Role::Good, " None.".into())]));
+    }
+    fill(frame, area, block, lines);
+}

@@ -1,0 +1,127 @@
+//! The plugins screen: which files were found, how each stands, what its planners are, and why others were refused.
+
+use super::look::{Look, Parts, fill};
+use super::{table, text};
+use crate::model::plugins::{Plugin, PluginState, plugins};
+use crate::model::ui::Arrangement;
+use crate::theme::Role;
+use mission::{ParamInfo, PlannerInfo};
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+
+/// Digits of a hash that are shown.
+const HASH: usize = 12;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+    let found = plugins(&look.model.console, look.run);
+    let selected = look.model.ui.plugin.min(found.len().saturating_sub(1));
+    let rows = (found.len() as u16 + 3).min(area.height / 2).max(5);
+    let [above, below] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(area);
+    files(look, frame, above, (&found, selected));
+    let Some(plugin) = found.get(selected) else { return };
+    if arrangement == Arrangement::Wide {
+        let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(50)]).areas(below);
+        detail(look, frame, left, plugin);
+        changes(look, frame, right);
+    } else {
+        detail(look, frame, below, plugin);
+    }
+}
+
+fn files(look: &Look, frame: &mut Frame, area: Rect, (found, selected): (&[Plugin<'_>], usize)) {
+    let planners = look.model.console.planners.len();
+    let title = format!("Plugins  {planners} planners in {} files", found.len());
+    let block = look.block(Role::Focus, &title, "r reload");
+    let inner = block.inner(area);
+    let columns = usize::from(inner.width);
+    let name = 30.min(columns / 3);
+    let rows = found.iter().map(|plugin| row(plugin, name, columns)).collect();
+    let mut lines = table::rows(look, rows, Some(selected), (columns, usize::from(inner.height)));
+    if lines.is_empty() {
+        lines.push(look.line([(
+            Role::Warn,
+            " No plugins found; `tankops planners` shows where they are searched for.".into(),
+        )]));
+    }
+    fill(frame, area, block, lines);
+}
+
+fn role(state: PluginState) -> Role {
+    match state {
+        PluginState::Ready => Role::Text,
+        PluginState::Active => Role::Good,
+        PluginState::Changed => Role::Watch,
+        PluginState::Refused => Role::Warn,
+    }
+}
+
+fn row(plugin: &Plugin<'_>, name: usize, columns: usize) -> Parts {
+    let mut parts = vec![
+        (Role::Text, text::column(plugin.file, name)),
+        (role(plugin.state), text::column(plugin.state.word(), 9)),
+    ];
+    let rest = columns.saturating_sub(name + 9 + 1);
+    let words = match plugin.planners.first() {
+        None => plugin.reason.to_owned(),
+        Some(first) => {
+            let ids: Vec<&str> = plugin.planners.iter().map(|info| info.id.as_str()).collect();
+            let hash = first.sha256.get(..HASH).unwrap_or(&first.sha256);
+            format!("{:<5}{hash:<13} {}", first.abi, ids.join(" "))
+        }
+    };
+    parts.push((Role::Text, text::fit(&words, rest)));
+    parts
+}
+
+fn detail(look: &Look, frame: &mut Frame, area: Rect, plugin: &Plugin<'_>) {
+    let block = look.block(Role::Border, plugin.file, "");
+    let columns = usize::from(block.inner(area).width).saturating_sub(1);
+    let mut rows: Vec<Parts> =
+        vec![vec![(Role::Dim, " State  ".into()), (role(plugin.state), state_words(plugin.state))]];
+    let wrapped = |role: Role, words: &str| -> Vec<Parts> {
+        text::wrap(words, columns).into_iter().map(|line| vec![(role, format!(" {line}"))]).collect()
+    };
+    if !plugin.reason.is_empty() {
+        rows.extend(wrapped(Role::Warn, plugin.reason));
+    }
+    for info in &plugin.planners {
+        rows.push(vec![
+            (Role::Title, format!(" {} {}", info.id, info.version)),
+            (Role::Dim, format!("  {}", abilities(info))),
+        ]);
+        rows.extend(wrapped(Role::Text, &info.about));
+        rows.extend(wrapped(Role::Dim, &parameters(&info.parameters)));
+    }
+    fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
+}
+
+fn state_words(state: PluginState) -> String {
+    match state {
+        PluginState::Ready => "ready".into(),
+        PluginState::Active => "active: one of its planners drives".into(),
+        PluginState::Changed => "CHANGED on disk; P: choose the planner again to use the new build".into(),
+        PluginState::Refused => "REFUSED".into(),
+    }
+}
+
+fn abilities(info: &PlannerInfo) -> String {
+    let abilities = [(info.covers, "coverage"), (info.snapshots, "keeps its state")];
+    abilities.iter().filter(|(has, _)| *has).map(|(_, word)| *word).collect::<Vec<_>>().join(", ")
+}
+
+fn parameters(infos: &[ParamInfo]) -> String {
+    let keys: Vec<&str> = infos.iter().map(|info| info.key.as_str()).collect();
+    if keys.is_empty() { "no parameters".into() } else { format!("parameters: {}", keys.join(", ")) }
+}
+
+fn changes(look: &Look, frame: &mut Frame, area: Rect) {
+    let block = look.block(Role::Border, "Last reload", "");
+    let columns = usize::from(block.inner(area).width).saturating_sub(1);
+    let words = match &look.model.console.reloaded {
+        None => vec!["Not reloaded since the console was started.".to_owned()],
+        Some(changes) if changes.is_empty() => vec!["Nothing has changed.".to_owned()],
+        Some(changes) => changes.clone(),
+    };
+    let lines = words.iter().flat_map(|words| text::wrap(words, columns));
+    fill(frame, area, block, lines.map(|line| look.line([(Role::Text, format!(" {line}"))])).collect());
+}

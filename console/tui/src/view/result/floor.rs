@@ -1,0 +1,81 @@
+//! How the floor divides, on every base, and the zone along the shell.
+
+use crate::model::RunResult;
+use crate::theme::Role;
+use crate::view::look::{Look, Parts, fill};
+use crate::view::text;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+use report::account::Shares;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
+    let block = look.block(Role::Border, "Coverage", "% by the estimated position");
+    let columns = usize::from(block.inner(area).width).saturating_sub(1);
+    let mut rows: Vec<Parts> = Vec::new();
+    match &result.summary.floor {
+        None => rows.push(vec![(Role::Dim, " This mission was not to scan the floor.".into())]),
+        Some(account) => {
+            rows.push(vec![(Role::Dim, head(columns))]);
+            rows.push(vec![(Role::Text, shares("whole floor", &account.whole, columns))]);
+            rows.push(vec![(Role::Text, shares("reachable floor", &account.reachable, columns))]);
+        }
+    }
+    rows.extend(notes(result, columns).into_iter().map(|line| vec![(Role::Text, format!(" {line}"))]));
+    let lines: Vec<Line> = rows.into_iter().map(|parts| look.line(parts)).collect();
+    fill(frame, area, block, lines);
+}
+
+/// Whether there is room for the area and for what cannot be reached.
+fn is_wide(columns: usize) -> bool {
+    columns >= 56
+}
+
+fn head(columns: usize) -> String {
+    if is_wide(columns) {
+        format!(" {:<17}{:>10}{:>8}{:>8}{:>8}{:>8}", "% of", "area", "scanned", "missed", "unrch.", "margin")
+    } else {
+        format!(" {:<17}{:>10}{:>8}", "% of", "scanned", "missed")
+    }
+}
+
+fn shares(label: &str, shares: &Shares, columns: usize) -> String {
+    let percent = |value: f64| text::number(value, 1);
+    let Shares { area_m2, percent: p, .. } = shares;
+    if is_wide(columns) {
+        format!(
+            " {label:<17}{:>10}{:>8}{:>8}{:>8}{:>8}",
+            format!("{} m²", text::number(*area_m2, 1)),
+            percent(p.scanned),
+            percent(p.missed),
+            percent(p.unreachable),
+            percent(p.margin)
+        )
+    } else {
+        format!(" {label:<17}{:>10}{:>8}", percent(p.scanned), percent(p.missed))
+    }
+}
+
+/// What the table does not say.
+fn notes(result: &RunResult, columns: usize) -> Vec<String> {
+    let summary = &result.summary;
+    let overlap = summary.coverage.as_ref().and_then(|coverage| coverage.overlap);
+    let again =
+        overlap.map(|share| format!("Scanned again: {} % of the scanned floor.", text::percent(share)));
+    let truth = summary.coverage.as_ref().and_then(|coverage| coverage.by_truth).map(|truth| {
+        format!("By the true position: {} % of reachable floor.", text::percent(truth.reachable))
+    });
+    let zone = summary.floor.as_ref().map(|floor| {
+        let zone = &floor.critical_zone;
+        let width_mm = text::number(1000.0 * zone.width_m, 0);
+        if zone.done {
+            format!("Critical zone, {width_mm} mm along the shell: done.")
+        } else {
+            let (done_m, length_m) = (text::number(zone.done_m, 1), text::number(zone.length_m, 1));
+            format!("Critical zone, {width_mm} mm along the shell: NOT done, full width on {done_m} of {length_m} m.")
+        }
+    });
+    let broken = summary.violations.iter().flatten().map(|violation| format!("Not met: {violation}."));
+    let notes = zone.into_iter().chain(again).chain(truth).chain(broken);
+    notes.flat_map(|note| text::wrap(&note, columns)).collect()
+}

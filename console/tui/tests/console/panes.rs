@@ -1,0 +1,195 @@
+//! What the panes of the mission screen owe the operator at every size: whole texts, and marks on what is old.
+
+use crate::fixture::{PLAIN, RICH, Screen, TICK_S, of_run};
+use crate::screens::{drawn, text};
+use mission::{Event, EventKind, HoldReason, Order, Outcome, Severity};
+use positioning::{FixError, Integrity};
+use ratatui::style::Style;
+use tui::{Msg, Redraw, RunMsg, redraw};
+
+const SIZES: [(u16, u16); 5] = [(80, 24), (100, 30), (120, 36), (160, 45), (200, 60)];
+
+/// Screens with every state whose words may be long.
+fn states() -> Vec<(&'static str, Screen)> {
+    let of = |mut screen: Screen, make: fn(&mut Screen) -> Vec<Event>| {
+        let events = make(&mut screen);
+        screen.hear(RunMsg::Events(events));
+        screen
+    };
+    let integrity = |integrity: Integrity| {
+        let mut screen = Screen::tethered();
+        if let Some(fix) = &mut screen.model.live.run.position.fix {
+            fix.integrity = integrity;
+        }
+        screen
+    };
+    vec![
+        ("idle", Screen::idle()),
+        ("running", Screen::running()),
+        ("held", Screen::held()),
+        ("tethered", Screen::tethered()),
+        ("snagged", of(Screen::tethered(), |screen| screen.mission.caught())),
+        ("refused", of(Screen::tethered(), |screen| screen.mission.plan_refused())),
+        ("failed", of(Screen::tethered(), |screen| screen.mission.planner_fails())),
+        (
+            "ended",
+            of(Screen::tethered(), |screen| vec![screen.mission.ended(Outcome::Complete, "task complete")]),
+        ),
+        ("lost", of(Screen::tethered(), lose)),
+        ("no fix", of(Screen::tethered(), lose_fix)),
+        ("suspect", integrity(Integrity::Suspect)),
+        ("untested", integrity(Integrity::Untestable)),
+        ("alarm", integrity(Integrity::Alarm)),
+    ]
+}
+
+fn lose(screen: &mut Screen) -> Vec<Event> {
+    screen.mission.sigma_m = 5.0;
+    let mut events = screen.mission.wait(4);
+    events.push(screen.mission.now(EventKind::PositionLost { error_m: 12.49, limit_m: 0.15 }));
+    events.extend(screen.mission.wait(400));
+    events.push(screen.mission.held(HoldReason::PositionLost));
+    events
+}
+
+fn lose_fix(screen: &mut Screen) -> Vec<Event> {
+    let mut events = screen.mission.wait(40);
+    events.push(
+        screen.mission.now(EventKind::FixFailed {
+            error: FixError::TooFewStations { have: 0, need: 3 },
+            repeated: false,
+        }),
+    );
+    events
+}
+
+/// Whether a line holds words that others chose: of the log, of an alarm (the only lines so far indented), of a fault.
+fn is_free(line: &str) -> bool {
+    line.starts_with("   ") || ["T+00:", "fault", "rejected: "].iter().any(|word| line.contains(word))
+}
+
+#[test]
+fn no_text_of_a_pane_is_cut() {
+    for (name, mut screen) in states() {
+        for (width, height) in SIZES {
+            screen.send(Msg::Resize { width, height });
+            let text = text(&drawn(&screen.model, RICH, (width, height)));
+            // The line on top, the next step and the keys have rules of their own.
+            let body: Vec<&str> = text.lines().skip(1).take(usize::from(height) - 3).collect();
+            let cut = body
+                .iter()
+                .flat_map(|line| line.split('│'))
+                .find(|part| part.contains('…') && !is_free(part));
+            assert_eq!(cut, None, "{name} at {width}x{height}\n{text}");
+        }
+    }
+}
+
+#[test]
+fn status_words_come_first_in_their_line() {
+    let words = [("lost", "LOST ±"), ("no fix", "NO FIX"), ("suspect", "SUSPECT"), ("snagged", "UNKNOWN")];
+    for (name, mut screen) in states() {
+        for (width, height) in SIZES {
+            screen.send(Msg::Resize { width, height });
+            let mut buffer = drawn(&screen.model, PLAIN, (width, height));
+            let area = buffer.area;
+            buffer.set_style(area, Style::reset());
+            let text = text(&buffer);
+            let missing = words.iter().find(|(state, word)| *state == name && !text.contains(word));
+            assert_eq!(missing, None, "{name} at {width}x{height}\n{text}");
+        }
+    }
+}
+
+#[test]
+fn with_a_tether_speed_heading_and_command_stay_on_the_screen() {
+    let mut screen = Screen::tethered();
+    for (width, height) in SIZES {
+        screen.send(Msg::Resize { width, height });
+        let text = text(&drawn(&screen.model, RICH, (width, height)));
+        for word in ["0.19 m/s", "187°", "0.20 m/s", "return path"] {
+            assert!(text.contains(word), "{word} at {width}x{height}\n{text}");
+        }
+    }
+}
+
+/// The lines of the screen on which each kind of value stands, without the frame.
+fn values(screen: &Screen, size: (u16, u16)) -> Vec<(&'static str, String)> {
+    let text = text(&drawn(&screen.model, RICH, size));
+    let labels = [
+        ("position", "(limit 0.15)"),
+        ("fix", " s old"),
+        ("heard", "4 of 4"),
+        ("residual", "mm RMS"),
+        ("paid out", "m left"),
+        ("return path", "CLEAR"),
+        ("speed", "m/s, "),
+        ("command", "°/s"),
+        ("coverage", "scanned  "),
+        ("map", "robot "),
+    ];
+    let line = |label: &str| {
+        let body = text.lines().skip(1).flat_map(|line| line.split('│'));
+        body.filter(|part| part.contains(label)).last().unwrap_or_default().to_owned()
+    };
+    labels.into_iter().map(|(name, label)| (name, line(label))).collect()
+}
+
+#[test]
+fn values_without_a_fresh_sample_are_marked_within_two_periods() {
+    let size = (120, 36);
+    let mut screen = Screen::tethered();
+    screen.send(Msg::Resize { width: size.0, height: size.1 });
+    for (name, line) in values(&screen, size) {
+        assert!(!line.is_empty(), "{name} is missing\n{}", text(&drawn(&screen.model, RICH, size)));
+        assert!(!line.contains('◌'), "{name} is fresh: {line}");
+    }
+    // The clock goes on, ticks come, and nothing of what the panes show is in them.
+    let (tick, t_s) = (screen.model.live.run.clock.tick, screen.model.live.run.clock.t_s);
+    let log = |passed: u64| Event {
+        tick: tick + passed,
+        t_s: t_s + passed as f64 * TICK_S,
+        kind: EventKind::Uncounted { runs: vec![] },
+    };
+    // Ranging has a period of two ticks, all else of one.
+    screen.hear(RunMsg::Events((1..=5).map(log).collect()));
+    for (name, line) in values(&screen, size) {
+        assert!(line.contains('◌'), "{name} is old: {line}\n{}", text(&drawn(&screen.model, RICH, size)));
+    }
+}
+
+#[test]
+fn a_mission_of_which_nothing_is_heard_has_every_value_marked() {
+    let size = (120, 36);
+    let mut screen = Screen::tethered();
+    screen.send(Msg::Resize { width: size.0, height: size.1 });
+    screen.pass(2.5);
+    for (name, line) in values(&screen, size) {
+        assert!(line.contains('◌'), "{name} is old: {line}\n{}", text(&drawn(&screen.model, RICH, size)));
+    }
+}
+
+#[test]
+fn the_end_is_given_in_mission_time() {
+    let mut screen = Screen::running();
+    for (width, height) in SIZES {
+        screen.send(Msg::Resize { width, height });
+        let text = text(&drawn(&screen.model, RICH, (width, height)));
+        assert!(text.contains("T+00:46:57") && !text.contains("UTC"), "{text}");
+    }
+}
+
+#[test]
+fn a_robot_that_stands_still_is_drawn_once_a_second_and_news_at_once() {
+    let mut screen = Screen::held();
+    let telemetry = of_run(RunMsg::Events(screen.mission.wait(3)));
+    assert_eq!(redraw(&screen.model, &telemetry), Redraw::Calm);
+    let resumed = of_run(RunMsg::Events(screen.mission.obeyed(Order::Resume)));
+    assert_eq!(redraw(&screen.model, &resumed), Redraw::Soon);
+    let notice = Msg::Notice { severity: Severity::Info, text: "news".into() };
+    assert_eq!(redraw(&screen.model, &notice), Redraw::Soon);
+    let health =
+        of_run(RunMsg::Health(tui::Health { recording: tui::Recording::On, reached_speed: Some(0.9) }));
+    assert_eq!(redraw(&screen.model, &health), Redraw::No);
+    assert_eq!(redraw(&Screen::running().model, &telemetry), Redraw::Soon);
+}
