@@ -27,6 +27,8 @@ mod reproduce;
 mod rescan;
 #[path = "acceptance/scenarios.rs"]
 mod scenarios;
+#[path = "acceptance/script.rs"]
+mod script;
 #[cfg(unix)]
 #[path = "acceptance/session.rs"]
 mod session;

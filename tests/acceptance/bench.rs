@@ -43,6 +43,8 @@ impl Bench {
         let program = Path::new(env!("CARGO_BIN_EXE_tankops"));
         let mut command = Command::new(program);
         command.current_dir(self.path()).env_remove("TANKOPS_PLUGIN_PATH");
+        // What the developer has set up is none of the tests' business.
+        command.env("XDG_CONFIG_HOME", self.path());
         command.arg("--plugin-dir").arg(program.parent().unwrap().join("deps"));
         command
     }

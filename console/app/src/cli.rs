@@ -39,9 +39,9 @@ pub(crate) enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Validate scenario files and plugins.
+    /// Validate scenario files, plugins and configuration files.
     Check {
-        /// Scenario files (.toml) and plugins (.so, .dylib, .dll).
+        /// Scenario files (.toml), plugins (.so, .dylib, .dll), and files named config.toml or keys.toml.
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },
@@ -94,6 +94,16 @@ pub(crate) enum Command {
     },
     /// Create a scenario that scans what one or more past runs missed.
     Rescan(RescanArgs),
+    /// Print the completions of this command line for a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page of tankops or of one of its commands, as roff.
+    Man {
+        /// A command of tankops.
+        command: Option<String>,
+    },
     /// A planner's own process; started by the console.
     #[command(hide = true)]
     Worker,
@@ -150,9 +160,18 @@ pub(crate) struct ConsoleArgs {
     pub changes: Changes,
     #[command(flatten)]
     pub logs: LogsArg,
-    /// Speed of the simulation at first: 0.25 to 64 times real time, or `max`.
-    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = speed)]
-    pub speed: tui::Speed,
+    /// Speed of the simulation at first: 0.25 to 64 times real time, or `max`; default: that of config.toml, or 1.
+    #[arg(long, value_name = "FACTOR", value_parser = tui::Speed::parse)]
+    pub speed: Option<tui::Speed>,
+    /// Number of colours: none, 16, 256 or true (24 bit); default: that of config.toml, or what the terminal has.
+    #[arg(long, value_name = "NUMBER", visible_alias = "color", value_parser = crate::config::colours)]
+    pub colour: Option<tui::Colours>,
+    /// Run console commands from a file instead of the keyboard, without a terminal; exit code 1 if a line fails.
+    #[arg(long, value_name = "FILE", conflicts_with = "plain")]
+    pub script: Option<PathBuf>,
+    /// Print what changes as sentences, one a line, and read console commands from stdin: for screen readers and logs.
+    #[arg(long)]
+    pub plain: bool,
     /// Characters of the map and the charts; default: what the terminal's environment promises.
     #[arg(long, value_name = "SET")]
     pub glyphs: Option<GlyphSet>,
@@ -182,22 +201,6 @@ impl From<GlyphSet> for tui::Glyphs {
             GlyphSet::Half => Self::Half,
             GlyphSet::Ascii => Self::Ascii,
         }
-    }
-}
-
-/// Reads a speed.
-///
-/// # Errors
-/// What it may be.
-fn speed(text: &str) -> Result<tui::Speed, String> {
-    match text.trim_start_matches(['x', '×']) {
-        "max" => Ok(tui::Speed::Max),
-        number => match number.parse::<f64>() {
-            Ok(factor) if (tui::Speed::SLOWEST..=tui::Speed::FASTEST).contains(&factor) => {
-                Ok(tui::Speed::Times(factor))
-            }
-            _ => Err(format!("must be {} to {}, or max", tui::Speed::SLOWEST, tui::Speed::FASTEST)),
-        },
     }
 }
 

@@ -11,33 +11,53 @@ mod jobs;
 mod line;
 mod look;
 mod pace;
+mod plain;
 mod screen;
+mod script;
+mod session;
 mod watch;
 
 use crate::{
-    cli::{ConsoleArgs, Drill, GlyphSet},
+    cli::{ConsoleArgs, Drill},
+    config::Config,
     failure::bad_input,
     planners::surveyed,
     scenarios,
 };
-use desk::{Desk, DeskHandle, Known, Request, Tools};
-use inbox::{Inbox, Outbox, inbox};
+use desk::{Desk, Known, Request, Tools};
+use inbox::{Outbox, inbox};
 use line::Current;
 use planner_host::PluginDirs;
 use runs::check_logs;
 use screen::{Left, Screen};
+use script::Script;
+use session::Session;
 use std::{
     io::IsTerminal,
     panic::{AssertUnwindSafe, catch_unwind},
     path::Path,
     process::ExitCode,
+    sync::Arc,
 };
 use tui::{Caps, Model, Msg, RunId, Source, terminal};
 
-/// Opens the console on a scenario, or on the demo; returns when the operator leaves.
+/// How a console was left.
+enum Ended {
+    /// By the operator or a signal.
+    Left(Left),
+    /// By the end of its script, or the line that failed.
+    Script(Result<(), String>),
+}
+
+/// Opens the console on a scenario, or on the demo; returns when the operator leaves or the script ends.
 pub(crate) fn open(args: &ConsoleArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
-    check_terminal()?;
-    let ConsoleArgs { changes, speed, glyphs, drill, .. } = args;
+    let script = args.script.as_deref().map(Script::read).transpose()?;
+    if script.is_none() && !args.plain {
+        check_terminal()?;
+    }
+    let config = Arc::new(Config::load());
+    let ConsoleArgs { changes, drill, .. } = args;
+    let speed = args.speed.unwrap_or(config.speed);
     let logs = &args.logs.logs;
     let (source, scenario) = match &args.scenario {
         Some(path) => (Source::File(path.display().to_string()), scenarios::read(path, changes)?),
@@ -51,9 +71,10 @@ pub(crate) fn open(args: &ConsoleArgs, plugins: &PluginDirs) -> anyhow::Result<E
         plugins: plugins.clone(),
         planners: Known::default(),
         outbox: outbox.clone(),
+        config: Arc::clone(&config),
     };
     tools.planners.set(found.clone());
-    let mut desk = Desk::new(tools, changes.clone(), *speed, *drill);
+    let mut desk = Desk::new(tools, changes.clone(), speed, *drill);
     let run = RunId(1);
     // Before the screen opens, so that its first frame shows the scenario and every key counts.
     desk.open(run, &scenario)?;
@@ -61,23 +82,35 @@ pub(crate) fn open(args: &ConsoleArgs, plugins: &PluginDirs) -> anyhow::Result<E
     let current = desk.current();
     let (desk, thread) = desk.start()?;
     desk.request(Request::Look);
-    let left = show(
-        &Model::opened(run, source, *speed),
-        logs,
-        (outbox, inbox),
-        (current, desk.clone()),
-        (*glyphs, *drill),
-    );
+    let model = config.apply(Model::opened(run, source, speed));
+    let session = Session::new(model, inbox, (current.clone(), desk.clone()));
+    let ended = match script {
+        Some(script) => script.run(session, &outbox, &current).map(Ended::Script),
+        None if args.plain => plain::speak(session, &outbox, &current).map(Ended::Left),
+        None => show(session, caps(args, &config), logs, (outbox, current), *drill).map(Ended::Left),
+    };
     // Whatever happened to the screen, the run is closed cleanly.
-    desk.request(Request::Leave { hurry: left.as_ref().is_ok_and(|left| left.signal.is_some()) });
+    let hurry = matches!(&ended, Ok(Ended::Left(left)) if left.signal.is_some());
+    desk.request(Request::Leave { hurry });
     let closed = thread.join().map_err(|_| anyhow::anyhow!("the thread that closes the run panicked"))?;
-    Ok(left?.report_end(closed?.as_ref()))
+    let closed = closed?;
+    match ended? {
+        Ended::Left(left) => Ok(left.report_end(closed.as_ref())),
+        Ended::Script(done) => Ok(script::report(done)),
+    }
+}
+
+fn caps(args: &ConsoleArgs, config: &Config) -> Caps {
+    let mut caps = Caps::from_env(|name| std::env::var(name).ok());
+    caps.colours = args.colour.or(config.colours).unwrap_or(caps.colours);
+    caps.glyphs = args.glyphs.map_or(caps.glyphs, Into::into);
+    caps
 }
 
 fn check_terminal() -> anyhow::Result<()> {
     if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
         return Err(bad_input(
-            "the console needs a terminal on stdin and stdout; without one use `tankops run SCENARIO`",
+            "the console needs a terminal on stdin and stdout; without one use `tankops run SCENARIO`, --script or --plain",
         ));
     }
     if std::env::var("TERM").is_ok_and(|term| term == "dumb") {
@@ -87,22 +120,19 @@ fn check_terminal() -> anyhow::Result<()> {
 }
 
 fn show(
-    model: &Model,
+    session: Session,
+    caps: Caps,
     logs: &Path,
-    (outbox, inbox): (Outbox, Inbox),
-    (current, desk): (Current, DeskHandle),
-    (glyphs, drill): (Option<GlyphSet>, Option<Drill>),
+    (outbox, current): (Outbox, Current),
+    drill: Option<Drill>,
 ) -> anyhow::Result<Left> {
-    let mut caps = Caps::from_env(|name| std::env::var(name).ok());
-    caps.glyphs = glyphs.map_or(caps.glyphs, Into::into);
     let panic_outbox = outbox.clone();
     terminal::install_panic_hook(move |thread, message| {
         let panicked = Msg::ThreadPanicked { thread: thread.into(), message: message.into() };
         panic_outbox.send_urgent(panicked);
     });
     let places = watch::SharedPlaces::default();
-    let line = (current.clone(), desk);
-    let mut screen = Screen::open(caps, model.clone(), inbox, line, places.clone(), drill)?;
+    let mut screen = Screen::open(caps, session, places.clone(), drill)?;
     watch::keys(&outbox, current.clone(), places)?;
     watch::signals(&outbox, current.clone())?;
     watch::terminal(&outbox, current.clone())?;

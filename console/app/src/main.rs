@@ -3,11 +3,13 @@
 mod accuracy;
 mod answers;
 mod cli;
+mod config;
 mod console;
 mod failure;
 mod flight;
 mod headless;
 mod hosts;
+mod manual;
 mod output;
 mod past_runs;
 mod plan;
@@ -81,6 +83,8 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
             past_runs::report(&runs, &logs, json, output.as_deref())
         }
         Some(Command::Rescan(args)) => rescan::rescan(&args, &plugins),
+        Some(Command::Completions { shell }) => manual::completions(shell),
+        Some(Command::Man { command }) => manual::man(command.as_deref()),
         Some(Command::Worker) => Ok(planner_host::worker_main()),
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::{
     accuracy::warn_of_clearance,
+    config,
     failure::{BAD_INPUT, COMPLETE, bad_input},
     output::{pretty_json, say, say_line, warn_line},
 };
@@ -146,6 +147,9 @@ pub(crate) fn check(files: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<E
 }
 
 fn check_file(file: &Path, plugins: &PluginDirs) -> Result<String, String> {
+    if let Some(checked) = config::check(file) {
+        return checked;
+    }
     let is_plugin =
         file.extension().is_some_and(|end| ["so", "dylib", "dll"].iter().any(|known| end == *known));
     if is_plugin {

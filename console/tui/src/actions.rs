@@ -1,9 +1,19 @@
-//! Everything the operator can do, in one table: keys, footer, help, command list and tests come from it.
+//! Everything the operator can do, in one table: keys, footer, help, commands, their reference and `keys.toml` come from it.
 
+mod action;
+mod argument;
 pub mod context;
 pub mod find;
+pub mod keymap;
+#[cfg(test)]
+mod tests;
+
+pub use action::{Action, Risk};
+pub use argument::{Arg, Kind, duration_s};
 
 use crate::keys::Key;
+use action::action;
+use argument::{may, must};
 use context::Context;
 use serde::{Deserialize, Serialize};
 
@@ -52,12 +62,18 @@ pub enum ActionId {
     CancelPlan,
     /// Look at the planner's parameters and change them.
     Parameters,
+    /// Change one parameter of the planner.
+    SetParameter,
     /// Slower.
     Slower,
     /// Faster.
     Faster,
+    /// Set the speed.
+    SetSpeed,
     /// Acknowledge the worst alarm.
     Acknowledge,
+    /// Acknowledge every alarm.
+    AcknowledgeAll,
     /// Enlarge the map.
     ZoomIn,
     /// Reduce the map.
@@ -68,6 +84,8 @@ pub enum ActionId {
     Follow,
     /// Choose what the map shows.
     Layers,
+    /// Put a station or an obstacle in the middle of the map.
+    Centre,
     /// Read the map at a cursor.
     Inspect,
     /// Take the mouse from the terminal, or give it back.
@@ -92,6 +110,12 @@ pub enum ActionId {
     Commands,
     /// Show keys and commands.
     Help,
+    /// Open a scenario.
+    Open,
+    /// Show a screen.
+    GoTo,
+    /// Choose the colours.
+    Theme,
     /// Show what there is to open.
     GoHome,
     /// Show the mission before it moves.
@@ -122,6 +146,8 @@ pub enum ActionId {
     Back,
     /// Leave the console.
     Leave,
+    /// Complete the word that is being typed.
+    Complete,
     /// Agree, or take the selected line.
     Accept,
     /// Back without doing anything.
@@ -142,123 +168,46 @@ pub enum ActionId {
     Edit,
 }
 
-/// What an action can do to the robot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Risk {
-    /// It cannot make the robot move and loses nothing.
-    Safe,
-    /// It can make the robot move: it asks first.
-    Moves,
-    /// It ends the mission: it asks first.
-    Destroys,
-}
-
-impl Risk {
-    /// How lists show it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Safe => "safe",
-            Self::Moves => "MOVES",
-            Self::Destroys => "ENDS",
-        }
-    }
-}
-
-/// One thing the operator can do.
-#[derive(Debug, Clone, Copy)]
-pub struct Action {
-    /// Its id.
-    pub id: ActionId,
-    /// Its name in the command list, lower case, words joined by hyphens.
-    pub name: &'static str,
-    /// What it does.
-    pub about: &'static str,
-    /// The word beside its key in the footer; empty for what the footer leaves out.
-    pub label: &'static str,
-    /// Its keys, the one to show first.
-    pub keys: &'static [Key],
-    /// What it can do to the robot.
-    pub risk: Risk,
-    /// Where its keys work.
-    pub contexts: &'static [Context],
-    /// Whether it follows a key that repeats.
-    pub repeats: bool,
-}
-
-const fn action(
-    id: ActionId,
-    name: &'static str,
-    about: &'static str,
-    keys: &'static [Key],
-    contexts: &'static [Context],
-) -> Action {
-    Action { id, name, about, label: "", keys, risk: Risk::Safe, contexts, repeats: false }
-}
-
-impl Action {
-    const fn label(self, label: &'static str) -> Self {
-        Self { label, ..self }
-    }
-
-    const fn risk(self, risk: Risk) -> Self {
-        Self { risk, ..self }
-    }
-
-    const fn repeats(self) -> Self {
-        Self { repeats: true, ..self }
-    }
-
-    /// Whether its keys work in one of some contexts.
-    pub fn works_in(&self, contexts: &[Context]) -> bool {
-        self.contexts.iter().any(|context| contexts.contains(context))
-    }
-
-    /// Whether it can be run by its name.
-    pub fn is_command(&self) -> bool {
-        self.contexts.iter().any(|context| context.has_commands())
-    }
-
-    /// Its keys as text.
-    pub fn keys_text(&self) -> String {
-        self.keys.iter().map(Key::to_string).collect::<Vec<_>>().join(" ")
-    }
-}
-
 /// Every action, in the order of the footer and of help.
 #[rustfmt::skip]
 pub const ACTIONS: &[Action] = &[
-    action(ActionId::Hold, "hold", "HOLD now; if held, ask to resume", &[Key::Char(' ')], &[Context::Anywhere]).label("HOLD"),
+    action(ActionId::Hold, "hold", "HOLD now; if held, ask to resume", &[Key::Char(' ')], &[Context::Anywhere]).label("HOLD").also(&["stop", "pause", "halt"]),
     action(ActionId::Interrupt, "interrupt", "HOLD now; twice: ask to quit", &[Key::Ctrl('c')], &[Context::Anywhere]),
     action(ActionId::Start, "start", "Start the mission", &[Key::Char('S')], &[Context::Plan, Context::Mission]).label("start").risk(Risk::Moves),
-    action(ActionId::Resume, "resume", "Resume after a hold", &[], &[Context::Screen]).risk(Risk::Moves),
+    action(ActionId::Resume, "resume", "Resume after a hold", &[], &[Context::Screen]).risk(Risk::Moves).also(&["continue"]),
     action(ActionId::FlyUncertified, "fly-uncertified", "Run a plan refused because of the tether", &[], &[Context::Screen]).risk(Risk::Moves),
     action(ActionId::Step, "step", "Move for one tick (while held)", &[Key::Char('.')], &[Context::Mission]).label("step").risk(Risk::Moves),
     action(ActionId::Slower, "slower", "Slower simulation", &[Key::Char('<')], &[Context::Screen]).label("speed").repeats(),
     action(ActionId::Faster, "faster", "Faster simulation", &[Key::Char('>')], &[Context::Screen]).label("speed").repeats(),
-    action(ActionId::Abort, "end", "HOLD, then ask to end the mission", &[Key::Char('X')], &[Context::Screen]).label("end").risk(Risk::Destroys),
-    action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[Context::Plan, Context::Mission]).label("planner").risk(Risk::Moves),
+    action(ActionId::SetSpeed, "speed", "Set the speed of the simulation", &[], &[Context::Screen]).args(&[must("factor", Kind::Speed)]).also(&["rate", "pace"]),
+    action(ActionId::Abort, "end", "HOLD, then ask to end the mission", &[Key::Char('X')], &[Context::Screen]).label("end").risk(Risk::Destroys).also(&["abort", "finish"]),
+    action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[Context::Plan, Context::Mission]).label("planner").risk(Risk::Moves).args(&[may("planner", Kind::Planner)]),
     action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[Context::Plan, Context::Mission]).label("parameters"),
+    action(ActionId::SetParameter, "set", "Change a planner parameter", &[], &[Context::Screen]).args(&[must("parameter", Kind::Parameter)]),
     action(ActionId::WhatIf, "what-if", "Forecast with other planners (held)", &[Key::Char('w')], &[Context::Mission]).label("what-if"),
     action(ActionId::NextCandidate, "next-candidate", "Look at the next forecast", &[Key::Right, Key::Char('l')], &[Context::WhatIf]).label("select").repeats(),
     action(ActionId::PreviousCandidate, "previous-candidate", "Look at the forecast before", &[Key::Left, Key::Char('h')], &[Context::WhatIf]).label("select").repeats(),
     action(ActionId::AddCandidate, "add-candidate", "Forecast another planner", &[Key::Char('+')], &[Context::WhatIf]).label("add"),
     action(ActionId::Preflight, "preflight", "Check what the start depends on", &[Key::Char('A')], &[Context::Plan, Context::Mission]).label("pre-flight"),
-    action(ActionId::Compare, "compare", "Plan with another planner, side by side", &[Key::Char('c')], &[Context::Plan]).label("compare"),
+    action(ActionId::Compare, "compare", "Plan with another planner, side by side", &[Key::Char('c')], &[Context::Plan]).label("compare").args(&[may("planner", Kind::Planner)]),
     action(ActionId::Preflight, "check-again", "Check once more", &[Key::Char('r')], &[Context::Preflight]).label("check again"),
     action(ActionId::PlanAgain, "plan-again", "Make the plan once more", &[], &[Context::Plan]),
     action(ActionId::CancelPlan, "cancel-plan", "Cancel planning or comparing", &[Key::Esc], &[Context::Plan]).label("cancel"),
-    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &[Context::Home, Context::Plan, Context::Mission]).label("ack"),
+    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &[Context::Home, Context::Plan, Context::Mission]).label("ack").also(&["silence"]),
+    action(ActionId::AcknowledgeAll, "acknowledge-all", "Acknowledge every alarm", &[], &[Context::Screen]),
+    action(ActionId::Open, "open", "Open a scenario", &[], &[Context::Screen]).args(&[must("scenario", Kind::Scenario), may("planner", Kind::Planner)]),
     action(ActionId::NextMissed, "next-missed", "Show the next missed area", &[Key::Char('n')], &[Context::Result]).label("missed").repeats(),
     action(ActionId::PreviousMissed, "previous-missed", "Show the missed area before", &[Key::Char('N')], &[Context::Result]).label("missed").repeats(),
     action(ActionId::Again, "again", "Plan the same scenario again", &[Key::Char('a')], &[Context::Result]).label("again"),
-    action(ActionId::Rescan, "rescan", "Scan what a run has missed", &[Key::Char('r')], &[Context::Home, Context::Result]).label("re-scan"),
-    action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[Context::Home, Context::Result]).label("verify"),
-    action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[Context::Home, Context::Result]).label("report"),
-    action(ActionId::View, "view", "Open the recording of a run in rerun", &[Key::Char('o')], &[Context::Home, Context::Result]).label("rerun"),
+    action(ActionId::Rescan, "rescan", "Scan what a run has missed", &[Key::Char('r')], &[Context::Home, Context::Result]).label("re-scan").args(&[may("run", Kind::Run)]),
+    action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[Context::Home, Context::Result]).label("verify").args(&[may("run", Kind::Run)]),
+    action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[Context::Home, Context::Result]).label("report").args(&[may("run", Kind::Run)]),
+    action(ActionId::View, "view", "Open the recording of a run in rerun", &[Key::Char('o')], &[Context::Home, Context::Result]).label("rerun").args(&[may("run", Kind::Run)]),
     action(ActionId::Commands, "commands", "Find a command by name", &[Key::Char(':'), Key::Ctrl('p')], &[Context::Screen]).label("command"),
     action(ActionId::Help, "help", "Show keys and commands", &[Key::Char('?'), Key::F(1)], &[Context::Screen]).label("keys"),
     action(ActionId::NextPane, "next-pane", "Go to the next pane", &[Key::Tab], &[Context::Screen]).label("pane").repeats(),
     action(ActionId::PreviousPane, "previous-pane", "Go to the previous pane", &[Key::BackTab], &[Context::Screen]).repeats(),
+    action(ActionId::GoTo, "goto", "Show a screen", &[], &[Context::Screen]).args(&[must("screen", Kind::Screen)]),
     action(ActionId::GoHome, "home", "Screen 1: scenarios and past runs", &[Key::Char('1')], &[Context::Screen]),
     action(ActionId::GoPlan, "plan", "Screen 2: the plan before it moves", &[Key::Char('2')], &[Context::Screen]),
     action(ActionId::GoMission, "mission", "Screen 3: the mission", &[Key::Char('3')], &[Context::Screen]),
@@ -266,16 +215,18 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::GoPlugins, "plugins", "Screen 8: plugins and their planners", &[Key::Char('8')], &[Context::Screen]),
     action(ActionId::Reload, "reload", "Look at the plugins again", &[Key::Char('r')], &[Context::Plugins]).label("reload"),
     action(ActionId::Back, "back", "Go back; the mission goes on", &[Key::Char('q')], &[Context::Screen]).label("back"),
-    action(ActionId::Leave, "quit", "Quit; a running mission is held first", &[], &[Context::Screen]),
+    action(ActionId::Leave, "leave", "Quit; a running mission is held first", &[], &[Context::Screen]).also(&["quit", "exit"]),
+    action(ActionId::Theme, "theme", "Choose the colours", &[], &[Context::Screen]).args(&[must("theme", Kind::Theme)]),
     action(ActionId::ZoomIn, "zoom-in", "Zoom in", &[Key::Char('z')], &[Context::Map]).repeats(),
     action(ActionId::ZoomOut, "zoom-out", "Zoom out", &[Key::Char('Z')], &[Context::Map]).repeats(),
     action(ActionId::WholeTank, "whole-tank", "Show the whole tank", &[Key::Char('0')], &[Context::Map]),
     action(ActionId::Follow, "follow", "Keep the map centred on the robot", &[Key::Char('f')], &[Context::Map]),
-    action(ActionId::Layers, "layers", "Show or hide map layers", &[Key::Char('L')], &[Context::Map]),
+    action(ActionId::Layers, "layers", "Show or hide map layers", &[Key::Char('L')], &[Context::Map]).args(&[may("layer", Kind::Layer)]),
+    action(ActionId::Centre, "centre", "Centre the map on a named object", &[], &[Context::Map]).args(&[must("place", Kind::Place)]),
     action(ActionId::Inspect, "inspect", "Read the map at a cursor (Esc: end)", &[Key::Char('i')], &[Context::Map]),
     action(ActionId::Mouse, "mouse", "Use the mouse in the console, or not", &[], &[Context::Screen]),
-    action(ActionId::Severity, "severity", "Minimum severity of the events shown", &[Key::Char('m')], &[Context::Mission]),
-    action(ActionId::Filter, "filter", "Filter the list by text", &[Key::Char('/')], &[Context::Home, Context::Mission]),
+    action(ActionId::Severity, "severity", "Minimum severity of the events shown", &[Key::Char('m')], &[Context::Mission]).args(&[may("severity", Kind::Severity)]),
+    action(ActionId::Filter, "filter", "Filter the list by text", &[Key::Char('/')], &[Context::Home, Context::Mission]).args(&[may("text", Kind::Text)]),
     action(ActionId::PanLeft, "pan-west", "Pan the map west", &[Key::Left, Key::Char('h')], &[Context::Pan]).repeats(),
     action(ActionId::PanRight, "pan-east", "Pan the map east", &[Key::Right, Key::Char('l')], &[Context::Pan]).repeats(),
     action(ActionId::PanUp, "pan-north", "Pan the map north", &[Key::Up, Key::Char('k')], &[Context::Pan]).repeats(),
@@ -283,6 +234,7 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Redraw, "redraw", "Redraw the screen", &[Key::Ctrl('l')], &[Context::Anywhere]),
     action(ActionId::Suspend, "suspend", "HOLD, then suspend to the shell (fg)", &[Key::Ctrl('z')], &[Context::Anywhere]),
     action(ActionId::Edit, "edit", "Edit the value", &[Key::Char('e')], &[Context::Parameters]).label("edit"),
+    action(ActionId::Complete, "complete", "Complete the word", &[Key::Tab], &[Context::Text]).label("complete"),
     action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::Rows, Context::Text, Context::Confirm, Context::Stepping, Context::WhatIf]).label("yes"),
     action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("step").risk(Risk::Moves),
     action(ActionId::StepLane, "step-lane", "Move to the end of the lane", &[Key::Char('}')], &[Context::Stepping]).label("lane").risk(Risk::Moves),
@@ -298,62 +250,3 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Up, "up", "Select the line above", &[Key::Up], &[Context::Commands]).repeats(),
     action(ActionId::Down, "down", "Select the line below", &[Key::Down], &[Context::Commands]).repeats(),
 ];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Every set of contexts that can be active together.
-    const TOGETHER: [&[Context]; 15] = [
-        &[Context::Anywhere, Context::Screen, Context::Home, Context::Rows],
-        &[Context::Anywhere, Context::Screen, Context::Plan, Context::Map, Context::Pan],
-        &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Pan],
-        &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Rows],
-        &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map],
-        &[Context::Anywhere, Context::Screen, Context::Result, Context::Map, Context::Rows],
-        &[Context::Anywhere, Context::Screen, Context::Map, Context::Pan, Context::Cursor],
-        &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Pan, Context::Cursor],
-        &[Context::Anywhere, Context::Screen, Context::Result, Context::Map, Context::Pan, Context::Cursor],
-        &[Context::Anywhere, Context::List, Context::Rows],
-        &[Context::Anywhere, Context::List, Context::Rows, Context::Parameters],
-        &[Context::Anywhere, Context::List, Context::Rows, Context::Preflight],
-        &[Context::Anywhere, Context::Text],
-        &[Context::Anywhere, Context::Text, Context::Commands],
-        &[Context::Anywhere, Context::Screen, Context::Plugins, Context::Rows],
-        &[Context::Anywhere, Context::WhatIf, Context::Map],
-        &[Context::Anywhere, Context::Confirm],
-        &[Context::Anywhere, Context::Stepping],
-    ];
-
-    #[test]
-    fn no_two_actions_share_a_key_where_both_work() {
-        for contexts in TOGETHER {
-            let here: Vec<&Action> = ACTIONS.iter().filter(|action| action.works_in(contexts)).collect();
-            for (index, one) in here.iter().enumerate() {
-                for other in &here[index + 1..] {
-                    let shared = one.keys.iter().find(|key| other.keys.contains(key));
-                    assert_eq!(shared, None, "{} and {} in {contexts:?}", one.name, other.name);
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn nothing_that_moves_the_robot_lies_on_a_small_letter_or_on_space() {
-        for action in ACTIONS.iter().filter(|action| action.risk != Risk::Safe) {
-            for key in action.keys {
-                let small = matches!(key, Key::Char(c) if c.is_lowercase() || *c == ' ');
-                assert!(!small, "{} on {key}", action.name);
-            }
-            assert!(!action.repeats, "{} follows a repeating key", action.name);
-        }
-    }
-
-    #[test]
-    fn names_are_plain_and_every_action_says_what_it_does() {
-        for action in ACTIONS {
-            assert!(action.name.chars().all(|c| c.is_ascii_lowercase() || c == '-'), "{}", action.name);
-            assert!(!action.about.is_empty() && action.about.len() <= 40, "{}", action.name);
-        }
-    }
-}

@@ -22,6 +22,8 @@ pub enum Key {
     BackTab,
     /// Backspace.
     Backspace,
+    /// Delete.
+    Delete,
     /// Arrow up.
     Up,
     /// Arrow down.
@@ -30,6 +32,10 @@ pub enum Key {
     Left,
     /// Arrow right.
     Right,
+    /// Arrow left with Ctrl.
+    CtrlLeft,
+    /// Arrow right with Ctrl.
+    CtrlRight,
     /// Page up.
     PageUp,
     /// Page down.
@@ -49,6 +55,54 @@ pub struct KeyPress {
     pub repeat: bool,
 }
 
+/// Keys with a name of their own, as `keys.toml` writes them.
+const NAMED: [(&str, Key); 17] = [
+    ("space", Key::Char(' ')),
+    ("enter", Key::Enter),
+    ("esc", Key::Esc),
+    ("tab", Key::Tab),
+    ("shift-tab", Key::BackTab),
+    ("backspace", Key::Backspace),
+    ("delete", Key::Delete),
+    ("up", Key::Up),
+    ("down", Key::Down),
+    ("left", Key::Left),
+    ("right", Key::Right),
+    ("ctrl-left", Key::CtrlLeft),
+    ("ctrl-right", Key::CtrlRight),
+    ("pgup", Key::PageUp),
+    ("pgdn", Key::PageDown),
+    ("home", Key::Home),
+    ("end", Key::End),
+];
+
+impl Key {
+    /// The key of a name: a character, `space`, `enter`, `up`, `F5`, `Ctrl-L`.
+    pub fn named(name: &str) -> Option<Self> {
+        let mut letters = name.chars();
+        if let (Some(letter), None) = (letters.next(), letters.next()) {
+            return (!letter.is_control() && letter != ' ').then_some(Self::Char(letter));
+        }
+        let small = name.to_ascii_lowercase();
+        let control = || match small.strip_prefix("ctrl-")?.as_bytes() {
+            [letter @ b'a'..=b'z'] => Some(Self::Ctrl(char::from(*letter))),
+            _ => None,
+        };
+        let function = || {
+            let number = small.strip_prefix('f')?.parse().ok().filter(|number| (1..=12).contains(number))?;
+            Some(Self::F(number))
+        };
+        let named = NAMED.iter().find(|(known, _)| *known == small).map(|(_, key)| *key);
+        named.or_else(control).or_else(function)
+    }
+
+    /// Its name, as `keys.toml` writes it.
+    pub fn name(self) -> String {
+        let named = NAMED.iter().find(|(_, key)| *key == self);
+        named.map_or_else(|| self.to_string(), |(name, _)| (*name).to_owned())
+    }
+}
+
 impl From<Key> for KeyPress {
     fn from(key: Key) -> Self {
         Self { key, repeat: false }
@@ -66,6 +120,8 @@ impl fmt::Display for Key {
             Self::Down => f.write_str("↓"),
             Self::Left => f.write_str("←"),
             Self::Right => f.write_str("→"),
+            Self::CtrlLeft => f.write_str("Ctrl-←"),
+            Self::CtrlRight => f.write_str("Ctrl-→"),
             Self::PageUp => f.write_str("PgUp"),
             Self::PageDown => f.write_str("PgDn"),
             Self::BackTab => f.write_str("Shift-Tab"),
@@ -77,6 +133,23 @@ impl fmt::Display for Key {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_key_is_found_by_its_name() {
+        let keys = NAMED.map(|(_, key)| key).into_iter().chain([
+            Key::Char('S'),
+            Key::Char('é'),
+            Key::Ctrl('l'),
+            Key::F(1),
+            Key::F(12),
+        ]);
+        for key in keys {
+            assert_eq!(Key::named(&key.name()), Some(key), "{key}");
+        }
+        for wrong in ["", " ", "F13", "F0", "Ctrl-", "Ctrl-é", "hyper", "ss"] {
+            assert_eq!(Key::named(wrong), None, "{wrong}");
+        }
+    }
 
     #[test]
     fn keys_are_written_as_the_keyboard_has_them() {

@@ -1,7 +1,11 @@
 //! What a mark on the screen stands for, and how each terminal shows it.
 
+mod colours;
+
 use crate::caps::{Caps, Colours};
+use colours::{Rgb, nearest_indexed};
 use ratatui::style::{Color, Modifier, Style};
+use serde::{Deserialize, Serialize};
 
 /// Makes the roles, each with the letter for it in the stored screens of the tests.
 macro_rules! roles {
@@ -99,6 +103,47 @@ roles! {
     Tether 't',
 }
 
+/// A choice of colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ThemeName {
+    /// For a dark background.
+    #[default]
+    Dark,
+    /// For a light background.
+    Light,
+    /// For a black background and poor light or sight.
+    Contrast,
+}
+
+impl ThemeName {
+    /// Every theme.
+    pub const ALL: [Self; 3] = [Self::Dark, Self::Light, Self::Contrast];
+
+    /// How configuration and commands call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Dark => "dark",
+            Self::Light => "light",
+            Self::Contrast => "contrast",
+        }
+    }
+
+    /// The theme of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|theme| theme.name() == name)
+    }
+
+    /// The theme for a background as the terminal's `COLORFGBG` says it, such as `0;15`; dark if it says nothing.
+    pub fn for_background(colorfgbg: Option<&str>) -> Self {
+        let background = colorfgbg.and_then(|colours| colours.rsplit(';').next());
+        match background.and_then(|number| number.parse().ok()) {
+            Some(7 | 9..=15) => Self::Light,
+            Some(0..=255_u8) | None => Self::Dark,
+        }
+    }
+}
+
 /// The style of every role.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Theme {
@@ -107,8 +152,8 @@ pub struct Theme {
 
 impl Theme {
     /// The styles for a terminal: its own colours where it has few, never one it does not have.
-    pub fn for_caps(caps: &Caps) -> Self {
-        Self { styles: Role::ALL.map(|role| style(role, caps.colours)) }
+    pub fn new(name: ThemeName, caps: &Caps) -> Self {
+        Self { styles: Role::ALL.map(|role| style(role, name, caps.colours)) }
     }
 
     /// Gives each role a colour that no other has, so that [`Theme::role_of`] can distinguish them.
@@ -132,17 +177,18 @@ impl Theme {
     }
 }
 
-fn style(role: Role, colours: Colours) -> Style {
+fn style(role: Role, name: ThemeName, colours: Colours) -> Style {
     let plain = Style::new().add_modifier(weight(role));
+    // Colours make less weight by themselves; a terminal that dims them would make them too weak.
+    let coloured = Style::new().add_modifier(weight(role) - Modifier::DIM);
     match colours {
         Colours::None => plain,
-        Colours::Sixteen => sixteen(role).map_or(plain, |color| plain.fg(color)),
-        Colours::Indexed => rich(role)
-            .map_or_else(|| style(role, Colours::Sixteen), |(index, _)| plain.fg(Color::Indexed(index))),
-        Colours::True => rich(role).map_or_else(
-            || style(role, Colours::Sixteen),
-            |(_, (red, green, blue))| plain.fg(Color::Rgb(red, green, blue)),
-        ),
+        Colours::Sixteen => sixteen(role, name).map_or(plain, |color| plain.fg(color)),
+        Colours::Indexed => coloured.fg(Color::Indexed(nearest_indexed(colours::rgb(role, name)))),
+        Colours::True => {
+            let Rgb(red, green, blue) = colours::rgb(role, name);
+            coloured.fg(Color::Rgb(red, green, blue))
+        }
     }
 }
 
@@ -166,7 +212,24 @@ fn weight(role: Role) -> Modifier {
     }
 }
 
-fn sixteen(role: Role) -> Option<Color> {
+/// The terminal's own colours; on a light background those that are dark enough.
+fn sixteen(role: Role, name: ThemeName) -> Option<Color> {
+    let color = sixteen_on_dark(role)?;
+    if name != ThemeName::Light {
+        return Some(color);
+    }
+    match color {
+        Color::Cyan | Color::LightCyan => Some(Color::Blue),
+        Color::Yellow | Color::LightYellow | Color::LightMagenta => Some(Color::Magenta),
+        Color::Blue => Some(Color::Cyan),
+        Color::LightRed => Some(Color::Red),
+        Color::LightGreen => Some(Color::Green),
+        Color::White | Color::DarkGray => None,
+        color => Some(color),
+    }
+}
+
+fn sixteen_on_dark(role: Role) -> Option<Color> {
     match role {
         Role::Good | Role::Run => Some(Color::Green),
         Role::Watch | Role::Key | Role::Focus => Some(Color::Cyan),
@@ -186,32 +249,13 @@ fn sixteen(role: Role) -> Option<Color> {
     }
 }
 
-/// Colours of the map where there are enough of them: of the palette of 256, and as red, green, blue.
-fn rich(role: Role) -> Option<(u8, (u8, u8, u8))> {
-    match role {
-        Role::Scanned => Some((24, (26, 74, 104))),
-        Role::Partly => Some((236, (38, 50, 58))),
-        Role::Overlap => Some((31, (46, 116, 156))),
-        Role::Missed => Some((203, (255, 107, 96))),
-        Role::Unreachable | Role::Margin => Some((242, (108, 108, 108))),
-        Role::Plate => Some((66, (95, 135, 135))),
-        Role::Trail => Some((117, (130, 205, 235))),
-        Role::Plan => Some((179, (214, 175, 95))),
-        Role::Ghost => Some((177, (199, 155, 255))),
-        Role::Obstacle => Some((209, (240, 128, 100))),
-        Role::Tether => Some((255, (250, 250, 235))),
-        Role::Found => Some((213, (240, 130, 220))),
-        _ => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::caps::Glyphs;
 
     fn theme(colours: Colours) -> Theme {
-        Theme::for_caps(&Caps { colours, glyphs: Glyphs::Braille, ssh: false })
+        Theme::new(ThemeName::Dark, &Caps { colours, glyphs: Glyphs::Braille, ssh: false })
     }
 
     #[test]
@@ -238,5 +282,20 @@ mod tests {
         let none = theme(Colours::None);
         assert!(none.style(Role::Selected).add_modifier.contains(Modifier::REVERSED));
         assert!(none.style(Role::Crit).add_modifier.contains(Modifier::BOLD));
+    }
+
+    #[test]
+    fn the_background_is_told_by_colorfgbg() {
+        for (told, theme) in [
+            (None, ThemeName::Dark),
+            (Some(""), ThemeName::Dark),
+            (Some("15;0"), ThemeName::Dark),
+            (Some("0;15"), ThemeName::Light),
+            (Some("0;default;7"), ThemeName::Light),
+            (Some("12;8"), ThemeName::Dark),
+            (Some("none"), ThemeName::Dark),
+        ] {
+            assert_eq!(ThemeName::for_background(told), theme, "{told:?}");
+        }
     }
 }

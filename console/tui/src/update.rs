@@ -1,6 +1,7 @@
 //! Messages into the model; what has to be done outside comes back as effects.
 
 mod act;
+mod command;
 mod go;
 mod hear;
 mod map;
@@ -8,18 +9,23 @@ mod message;
 mod mouse;
 mod offer;
 mod overlay;
+mod palette;
 mod preflight;
 mod redraw;
 mod send;
+mod typing;
 mod what_if;
 
 pub use act::act;
 pub use message::{Effect, Job, Mouse, Msg, RunMsg, Signal, Target};
 pub use offer::offered;
+pub use palette::{Choice, choices};
 pub use redraw::{Redraw, redraw};
+pub use typing::is_typing;
 
 use crate::actions::{ActionId, context::contexts, find};
 use crate::keys::{Key, KeyPress};
+use crate::model::console::Bell;
 use crate::model::plugins::differences;
 use crate::model::{Cause, Model, Overlay, Pane, Refused, ui::Arrangement};
 use mission::{PlannerInfo, Severity};
@@ -29,7 +35,7 @@ use send::hold_now;
 ///
 /// Pure: the same model and message give the same model and effects.
 pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
-    let alarms_before = model.live.run.alarms.unacknowledged(Severity::Crit);
+    let alarms_before = ringing(model);
     let mut effects = Vec::new();
     match msg {
         Msg::Key(press) => effects = press_key(model, press),
@@ -39,7 +45,8 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
             let text = format!("console thread {thread} failed: {message}");
             news(model, Cause::Console, Severity::Crit, text);
         }
-        Msg::Paste(text) => overlay::paste(model, &text),
+        Msg::Paste(text) => typing::paste(model, &text),
+        Msg::Line(line) => effects = palette::obey(model, line.trim()),
         Msg::Mouse(mouse) => effects = mouse::take(model, mouse),
         Msg::Resize { width, height } => resize(model, width, height),
         Msg::Time(now) => model.console.now = now,
@@ -49,10 +56,17 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Planners { found, refused } => take_planners(model, found, refused),
         Msg::Notice { severity, text } => news(model, Cause::Console, severity, text),
     }
-    if model.live.run.alarms.unacknowledged(Severity::Crit) > alarms_before {
+    if ringing(model) > alarms_before {
         effects.push(Effect::Bell);
     }
     effects
+}
+
+/// How many alarms ring the bell that the operator has not acknowledged.
+fn ringing(model: &Model) -> usize {
+    let Bell(Some(least)) = model.console.preferences.bell else { return 0 };
+    let alarms = model.live.run.alarms.list().iter();
+    alarms.filter(|alarm| !alarm.acknowledged && alarm.severity >= least).count()
 }
 
 fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
@@ -62,15 +76,12 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
     {
         return if press.repeat { Vec::new() } else { preflight::tick(model) };
     }
-    if press.key == Key::Char(' ') && !model.live.may_move() && overlay::is_typing(model) {
-        // With nothing to stop, the stop key is a letter like any other.
-        overlay::type_key(model, press.key);
+    // A letter is typed where text is typed, and so is the space: there Ctrl-C holds.
+    if typing::press(model, press.key) {
         return Vec::new();
     }
-    let Some(action) = find::action_for(press.key, &contexts(model)) else {
-        if !overlay::type_key(model, press.key) {
-            unknown(model, press.key);
-        }
+    let Some(action) = find::action_for(&model.console.keys, press.key, &contexts(model)) else {
+        unknown(model, press.key);
         return Vec::new();
     };
     match action.id {
@@ -85,7 +96,10 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
 /// a later Enter must not agree to it.
 fn unknown(model: &mut Model, key: Key) {
     match model.ui.overlay {
-        Overlay::None => model.say(Severity::Info, format!("key {key} is not assigned (?: show keys)")),
+        Overlay::None => {
+            let help = model.console.keys.spelled("(<help>: show keys)");
+            model.say(Severity::Info, format!("key {key} is not assigned {help}"));
+        }
         Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping => {
             model.ui.overlay = Overlay::None;
             model.say(Severity::Info, format!("cancelled: key {key} is not an answer"));

@@ -7,6 +7,7 @@ mod charts;
 mod confirm;
 mod coverage;
 mod events;
+mod field;
 mod footer;
 mod home;
 mod lists;
@@ -28,6 +29,10 @@ mod what_if;
 
 pub use cache::{Cache, Places};
 
+pub(crate) use confirm::question;
+pub(crate) use events::log_line;
+pub(crate) use next::standing;
+
 use crate::caps::{Caps, Glyphs};
 use crate::layout::{self, Shown};
 use crate::model::{Model, Overlay, Pane, Screen, ui::Arrangement};
@@ -46,7 +51,7 @@ pub fn view(model: &Model, caps: &Caps, frame: &mut Frame) {
 
 /// Draws the model with what is left of the frame before; the cells are the same.
 pub fn view_cached(model: &Model, caps: &Caps, cache: &mut Cache, frame: &mut Frame) {
-    draw(model, *caps, &Theme::for_caps(caps), cache, frame);
+    draw(model, *caps, &Theme::new(model.ui.theme, caps), cache, frame);
 }
 
 /// Draws the model with a theme of the caller's choice.

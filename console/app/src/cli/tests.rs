@@ -24,6 +24,8 @@ fn the_help_of_every_command_is_as_reviewed() {
         "export",
         "report",
         "rescan",
+        "completions",
+        "man",
     ] {
         let sub = command.find_subcommand_mut(name).expect("a command of ours");
         help.push(format!("===== {name}\n{}", sub.render_long_help()));

@@ -15,6 +15,7 @@ use super::{
 };
 use crate::{
     cli::{Changes, Drill},
+    config::Config,
     planners::{check_choices, surveyed},
     rescan, scenarios,
 };
@@ -79,6 +80,7 @@ pub(super) struct Tools {
     pub plugins: PluginDirs,
     pub planners: Known,
     pub outbox: Outbox,
+    pub config: Arc<Config>,
 }
 
 /// The desk.

@@ -37,12 +37,14 @@ pub(super) struct EngineHandle {
     waker: Waker,
     /// Whether the robot moves or may begin to, as the screen knows it.
     may_move: Arc<AtomicBool>,
+    /// Whether the operator types text, as the screen knows it.
+    is_typing: Arc<AtomicBool>,
 }
 
 /// A line to an engine whose planners this waker interrupts.
 pub(super) fn line(waker: Waker) -> (EngineHandle, Receiver<Request>) {
     let (requests, asked) = mpsc::channel();
-    (EngineHandle { requests, waker, may_move: Arc::default() }, asked)
+    (EngineHandle { requests, waker, may_move: Arc::default(), is_typing: Arc::default() }, asked)
 }
 
 impl EngineHandle {
@@ -57,9 +59,15 @@ impl EngineHandle {
         self.may_move.load(Ordering::Relaxed)
     }
 
-    /// The screen reports whether the robot may move.
-    pub(super) fn set_may_move(&self, may_move: bool) {
+    /// Whether the operator types text, as the screen knows it.
+    pub(super) fn is_typing(&self) -> bool {
+        self.is_typing.load(Ordering::Relaxed)
+    }
+
+    /// The screen reports whether the robot may move, and whether the operator types text.
+    pub(super) fn report(&self, may_move: bool, is_typing: bool) {
         self.may_move.store(may_move, Ordering::Relaxed);
+        self.is_typing.store(is_typing, Ordering::Relaxed);
     }
 
     /// Changes the pace.

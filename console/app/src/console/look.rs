@@ -20,8 +20,6 @@ use tui::{
 };
 use world::Boundary;
 
-/// The folder of scenarios, below the working folder.
-const SCENARIOS: &str = "scenarios";
 /// Past runs that are shown, the newest ones.
 const MOST_RUNS: usize = 1000;
 /// Past runs about which the operator is warned, the newest ones.
@@ -53,6 +51,7 @@ impl Disk {
             Err(error) => (Vec::new(), Some(error.to_string())),
         };
         let mut attention = attention(&runs, &scenarios);
+        attention.extend(self.tools.config.attention.clone());
         attention.extend(unreadable.map(|why| point(Severity::Crit, "LOGS", why)));
         attention.push(match runs::check_logs(logs) {
             Ok(()) => point(Severity::Info, "ok", format!("runs can be kept in {}", logs.display())),
@@ -68,10 +67,12 @@ impl Disk {
         }
     }
 
-    /// The scenarios in the folder, by name; the demo too, wherever the console was started.
+    /// The scenarios in the folders, by name; the demo too, wherever the console was started.
     fn scenarios(&self) -> Vec<ScenarioEntry> {
-        let mut files: Vec<PathBuf> = std::fs::read_dir(SCENARIOS)
-            .into_iter()
+        let folders = &self.tools.config.scenarios;
+        let mut files: Vec<PathBuf> = folders
+            .iter()
+            .filter_map(|folder| std::fs::read_dir(folder).ok())
             .flatten()
             .filter_map(|entry| Some(entry.ok()?.path()))
             .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))

@@ -1,11 +1,6 @@
 //! The drawing thread: messages in, model updated, effects carried out, a frame when something changed.
 
-use super::{
-    desk::{DeskHandle, Request},
-    inbox::Inbox,
-    line::Current,
-    watch::SharedPlaces,
-};
+use super::{session::Session, watch::SharedPlaces};
 use crate::{
     cli::Drill,
     failure::{COMPLETE, ENDED_OTHERWISE, exit_code},
@@ -16,11 +11,9 @@ use runs::Closed;
 use std::{
     io::Write,
     process::ExitCode,
-    time::{Duration, Instant, SystemTime},
+    time::{Duration, Instant},
 };
-use tui::{
-    Cache, Caps, Effect, Model, Msg, Redraw, RunMsg, Signal, Times, redraw, terminal::TerminalGuard, update,
-};
+use tui::{Cache, Caps, Effect, Model, Msg, Redraw, RunMsg, Signal, redraw, terminal::TerminalGuard};
 
 /// Messages that are taken in before the next frame, at most.
 const BURST: usize = 256;
@@ -34,12 +27,8 @@ const KEY_FRAME: Duration = Duration::from_millis(8);
 /// The screen while the console is open.
 pub(super) struct Screen {
     terminal: TerminalGuard,
-    model: Model,
+    session: Session,
     caps: Caps,
-    inbox: Inbox,
-    engine: Current,
-    desk: DeskHandle,
-    began: Instant,
     drawn: Instant,
     frame_interval: Duration,
     /// How soon there is to be a frame.
@@ -62,26 +51,19 @@ impl Screen {
     /// Takes the terminal over.
     pub(super) fn open(
         caps: Caps,
-        mut model: Model,
-        inbox: Inbox,
-        (engine, desk): (Current, DeskHandle),
+        mut session: Session,
         places: SharedPlaces,
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
         let mut terminal = TerminalGuard::enter().context("taking over the terminal")?;
-        terminal.take_mouse(model.ui.mouse).context("taking the mouse")?;
+        terminal.take_mouse(session.model.ui.mouse).context("taking the mouse")?;
         let (width, height) = crossterm::terminal::size().unwrap_or((80, 24));
-        update(&mut model, Msg::Resize { width, height });
-        let now = Instant::now();
+        session.take(Msg::Resize { width, height });
         Ok(Self {
             terminal,
-            model,
+            session,
             caps,
-            inbox,
-            engine,
-            desk,
-            began: now,
-            drawn: now,
+            drawn: Instant::now(),
             // A slow line gets fewer frames.
             frame_interval: Duration::from_millis(if caps.ssh { 100 } else { 33 }),
             due: Redraw::Soon,
@@ -94,7 +76,7 @@ impl Screen {
 
     /// What the screen knows, for a crash report.
     pub(super) fn model(&self) -> &Model {
-        &self.model
+        &self.session.model
     }
 
     /// Runs until the operator or a signal wants to leave.
@@ -123,9 +105,9 @@ impl Screen {
     fn take_burst(&mut self) -> anyhow::Result<Option<Left>> {
         let first = self.wait();
         // What the screen waited for may be that it changes by itself.
-        let by_itself = self.model.wakes_at_mono_s();
-        self.update_time();
-        if by_itself.is_some_and(|at_s| at_s <= self.model.console.now.mono_s) {
+        let by_itself = self.session.model.wakes_at_mono_s();
+        self.session.update_time();
+        if by_itself.is_some_and(|at_s| at_s <= self.session.model.console.now.mono_s) {
             self.due = Redraw::Soon;
         }
         let until = Instant::now() + BURST_TIME;
@@ -133,19 +115,14 @@ impl Screen {
         for _ in 0..BURST {
             let Some(msg) = next else { break };
             self.answer_seen |= is_answer(&msg);
-            self.due = self.due.max(redraw(&self.model, &msg));
-            let effects = update(&mut self.model, msg);
-            let engine = self.engine.get();
-            if let Some(engine) = &engine {
-                engine.set_may_move(self.model.live.may_move());
-            }
-            for effect in effects {
+            self.due = self.due.max(redraw(&self.session.model, &msg));
+            for effect in self.session.take(msg) {
                 if let Some(left) = self.carry_out(effect)? {
                     return Ok(Some(left));
                 }
             }
             let now = Instant::now();
-            next = if now < until { self.inbox.next(Some(now)) } else { None };
+            next = if now < until { self.session.next(Some(now)) } else { None };
         }
         Ok(None)
     }
@@ -153,40 +130,18 @@ impl Screen {
     /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.
     fn wait(&self) -> Option<Msg> {
         let frame = self.pause().map(|pause| self.drawn + pause);
-        let by_itself =
-            self.model.wakes_at_mono_s().map(|at_s| self.began + Duration::from_secs_f64(at_s.max(0.0)));
-        // By itself the screen changes a little after the moment, so that the moment has passed then.
-        let by_itself = by_itself.map(|at| at + Duration::from_millis(1));
-        self.inbox.next(frame.into_iter().chain(by_itself).min())
-    }
-
-    fn update_time(&mut self) {
-        let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
-        let now =
-            Times { mono_s: self.began.elapsed().as_secs_f64(), wall_unix_s: since_epoch.as_secs_f64() };
-        update(&mut self.model, Msg::Time(now));
+        self.session.next(frame.into_iter().chain(self.session.wakes_at()).min())
     }
 
     fn carry_out(&mut self, effect: Effect) -> anyhow::Result<Option<Left>> {
         match effect {
-            Effect::Open { id, source, planner } => self.desk.request(Request::Open { id, source, planner }),
-            Effect::Check { needed_bytes } => self.desk.request(Request::Check { needed_bytes }),
-            Effect::Compare(choice) => self.desk.request(Request::Compare(choice)),
-            Effect::Forecast(choices) => self.desk.request(Request::Forecast(choices)),
-            Effect::StopForecasting => self.desk.request(Request::StopForecasting),
-            Effect::StopComparing => self.desk.request(Request::StopComparing),
-            Effect::Survey => self.desk.request(Request::Survey),
-            Effect::Look => self.desk.request(Request::Look),
-            Effect::Do(job) => self.desk.request(Request::Do(job)),
-            Effect::Order(order) => {
-                self.engine.get().into_iter().for_each(|engine| engine.order(order.clone()))
-            }
-            Effect::Speed(speed) => self.engine.get().into_iter().for_each(|engine| engine.speed(speed)),
             Effect::Redraw => self.terminal.redraw().context("drawing")?,
             Effect::Bell => ring()?,
             Effect::Mouse(taken) => self.terminal.take_mouse(taken).context("taking the mouse")?,
             Effect::Suspend => self.suspend()?,
             Effect::Quit { signal } => return Ok(Some(Left { signal })),
+            // The session has carried out the others.
+            _ => {}
         }
         Ok(None)
     }
@@ -202,9 +157,9 @@ impl Screen {
     }
 
     fn draw(&mut self) -> anyhow::Result<()> {
-        let failing = self.drill == Some(Drill::PanicScreen) && self.model.live.run.clock.tick > 5;
+        let failing = self.drill == Some(Drill::PanicScreen) && self.session.model.live.run.clock.tick > 5;
         assert!(!failing, "drill: the screen fails on purpose");
-        let (model, caps, cache) = (&self.model, &self.caps, &mut self.cache);
+        let (model, caps, cache) = (&self.session.model, &self.caps, &mut self.cache);
         self.terminal.draw(|frame| tui::view_cached(model, caps, cache, frame)).context("drawing")?;
         if model.ui.mouse {
             self.places.set(self.cache.places());

@@ -53,7 +53,7 @@ pub(super) fn keys(outbox: &Outbox, engine: Current, places: SharedPlaces) -> an
                 Event::FocusGained | Event::FocusLost => None,
             };
             let Some(msg) = msg else { continue };
-            let stops = is_stop_key(&msg);
+            let stops = is_stop_key(&msg, engine.get().is_some_and(|engine| engine.is_typing()));
             if !send_and_hold(&outbox, &engine, msg, stops) {
                 return;
             }
@@ -99,9 +99,17 @@ fn send_and_hold(outbox: &Outbox, engine: &Current, msg: Msg, stops: bool) -> bo
     is_delivered
 }
 
-/// Whether a key stops a robot that moves, whatever is open on the screen.
-fn is_stop_key(msg: &Msg) -> bool {
-    matches!(msg, Msg::Key(press) if !press.repeat && matches!(press.key, Key::Char(' ') | Key::Ctrl('c')))
+/// Whether a key stops a robot that moves. Where text is typed the space is a letter.
+///
+/// What the screen reports may be a key behind: a space that follows the key that opens a text line may hold, and one that
+/// follows the key that closes it is left to the screen.
+fn is_stop_key(msg: &Msg, is_typing: bool) -> bool {
+    match msg {
+        Msg::Key(press) if !press.repeat => {
+            press.key == Key::Ctrl('c') || press.key == Key::Char(' ') && !is_typing
+        }
+        _ => false,
+    }
 }
 
 fn leave_in_any_case(signal: i32) {

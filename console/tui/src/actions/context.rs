@@ -46,6 +46,18 @@ pub enum Context {
 }
 
 impl Context {
+    /// What people call it, as far as it is a screen.
+    pub fn screen(self) -> Option<&'static str> {
+        match self {
+            Self::Home => Some("Home"),
+            Self::Plan => Some("Plan"),
+            Self::Mission => Some("Mission"),
+            Self::Result => Some("Result"),
+            Self::Plugins => Some("Plugins"),
+            _ => None,
+        }
+    }
+
     /// Whether its actions are commands of their own, and no mere steps within a list or a line.
     pub fn has_commands(self) -> bool {
         use Context::{Anywhere, Home, Map, Mission, Pan, Plan, Plugins, Result, Screen};
@@ -53,14 +65,36 @@ impl Context {
     }
 }
 
+/// Every set of contexts that can be active together.
+pub const TOGETHER: &[&[Context]] = &[
+    &[Context::Anywhere, Context::Screen, Context::Home, Context::Rows],
+    &[Context::Anywhere, Context::Screen, Context::Plan, Context::Map, Context::Pan],
+    &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Pan],
+    &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Rows],
+    &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map],
+    &[Context::Anywhere, Context::Screen, Context::Result, Context::Map, Context::Rows],
+    &[Context::Anywhere, Context::Screen, Context::Map, Context::Pan, Context::Cursor],
+    &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Pan, Context::Cursor],
+    &[Context::Anywhere, Context::Screen, Context::Result, Context::Map, Context::Pan, Context::Cursor],
+    &[Context::Anywhere, Context::Screen, Context::Plugins, Context::Rows],
+    &[Context::Anywhere, Context::List, Context::Rows],
+    &[Context::Anywhere, Context::List, Context::Rows, Context::Parameters],
+    &[Context::Anywhere, Context::List, Context::Rows, Context::Preflight],
+    &[Context::Anywhere, Context::WhatIf, Context::Map],
+    &[Context::Anywhere, Context::Text],
+    &[Context::Anywhere, Context::Text, Context::Commands],
+    &[Context::Anywhere, Context::Confirm],
+    &[Context::Anywhere, Context::Stepping],
+];
+
 /// The contexts whose keys work now.
 pub fn contexts(model: &Model) -> Vec<Context> {
     let here = match &model.ui.overlay {
         Overlay::None => return [&[Context::Anywhere, Context::Screen], of_screen(model)].concat(),
         Overlay::Confirm(_) | Overlay::Quit => [Context::Confirm].as_slice(),
         Overlay::Stepping => &[Context::Stepping],
-        Overlay::Commands { .. } => &[Context::Text, Context::Commands],
-        Overlay::Parameters { edit: Some(_), .. } | Overlay::Filter => &[Context::Text],
+        Overlay::Commands(_) => &[Context::Text, Context::Commands],
+        Overlay::Parameters { edit: Some(_), .. } | Overlay::Filter(_) => &[Context::Text],
         Overlay::Parameters { edit: None, .. } => &[Context::List, Context::Rows, Context::Parameters],
         Overlay::WhatIf => &[Context::WhatIf, Context::Map],
         Overlay::Preflight { .. } => &[Context::List, Context::Rows, Context::Preflight],
@@ -70,7 +104,7 @@ pub fn contexts(model: &Model) -> Vec<Context> {
 }
 
 /// The contexts of the screen that is shown, with nothing over it.
-pub(super) fn of_screen(model: &Model) -> &'static [Context] {
+pub(crate) fn of_screen(model: &Model) -> &'static [Context] {
     if model.ui.cursor.is_some() {
         match model.ui.screen {
             Screen::Home | Screen::Plugins => {}

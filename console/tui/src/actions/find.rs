@@ -1,74 +1,162 @@
-//! Looking actions up: by key, and by letters of a name.
+//! Looking actions up: by key, by name, and by what people type for them.
 
-use super::context::{Context, of_screen};
-use super::{ACTIONS, Action};
+use super::context::Context;
+use super::keymap::Keymap;
+use super::{ACTIONS, Action, Risk};
 use crate::keys::Key;
-use crate::model::Model;
 
 /// The action of a key in some contexts.
-pub fn action_for(key: Key, contexts: &[Context]) -> Option<&'static Action> {
-    ACTIONS.iter().find(|action| action.keys.contains(&key) && action.works_in(contexts))
+pub fn action_for(keys: &Keymap, key: Key, contexts: &[Context]) -> Option<&'static Action> {
+    ACTIONS.iter().find(|action| action.works_in(contexts) && keys.of(action).contains(&key))
 }
 
-/// The commands whose name or description contains the letters of `typed` in that order, best first.
-pub fn matching(typed: &str) -> Vec<&'static Action> {
-    let mut found: Vec<(usize, &Action)> = ACTIONS
-        .iter()
-        .filter(|action| action.is_command())
-        .filter_map(|action| {
-            let by_name = distance(typed, action.name);
-            // A hit in the name beats any hit in the description.
-            let by_about = distance(typed, action.about).map(|far| far + 1000);
-            by_name.or(by_about).map(|far| (far, action))
-        })
-        .collect();
-    found.sort_by_key(|(far, action)| (*far, action.name.len()));
-    found.into_iter().map(|(_, action)| action).collect()
+/// Every command.
+pub fn commands() -> impl Iterator<Item = &'static Action> {
+    ACTIONS.iter().filter(|action| action.is_command())
 }
 
-/// The command list for what was typed; with nothing typed, the keys of other screens and panes come last.
-pub fn listed(model: &Model, typed: &str) -> Vec<&'static Action> {
-    let mut found = matching(typed);
-    if typed.is_empty() {
-        let here = [&[Context::Anywhere, Context::Screen], of_screen(model)].concat();
-        found.sort_by_key(|action| !action.works_in(&here));
+/// The command of exactly this name or synonym.
+pub fn named(word: &str) -> Option<&'static Action> {
+    let word = squashed(word);
+    let by = |names: fn(&Action) -> Vec<&str>| {
+        commands().find(|action| names(action).iter().any(|name| squashed(name) == word))
+    };
+    by(|action| vec![action.name]).or_else(|| by(|action| action.synonyms.to_vec()))
+}
+
+/// How well a command answers what was typed, the best way first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Match {
+    /// It is its name or a synonym.
+    Exact,
+    /// Its name begins so.
+    Name,
+    /// A synonym begins so.
+    Synonym,
+    /// The words of its name begin with these letters.
+    Initials,
+    /// Its name contains it.
+    Within,
+    /// Each word begins a word of its description.
+    Description,
+}
+
+impl Match {
+    /// How a command answers what was typed. One that moves the robot or ends the mission answers to the beginning of its
+    /// names only: nobody shall find it by chance.
+    pub fn of(action: &Action, typed: &str) -> Option<Self> {
+        let found = Self::of_words(action, typed)?;
+        (action.risk == Risk::Safe || found <= Self::Synonym).then_some(found)
     }
-    found
+
+    fn of_words(action: &Action, typed: &str) -> Option<Self> {
+        let word = squashed(typed);
+        let name = squashed(action.name);
+        let synonyms = || action.synonyms.iter().map(|synonym| squashed(synonym));
+        if name == word || synonyms().any(|synonym| synonym == word) {
+            Some(Self::Exact)
+        } else if name.starts_with(&word) {
+            Some(Self::Name)
+        } else if synonyms().any(|synonym| synonym.starts_with(&word)) {
+            Some(Self::Synonym)
+        } else if initials(action.name).starts_with(&word) {
+            Some(Self::Initials)
+        } else if name.contains(&word) {
+            Some(Self::Within)
+        } else {
+            is_described(action, typed).then_some(Self::Description)
+        }
+    }
 }
 
-/// How far the letters of `typed` are spread over `text`, and how far in they begin; `None` if they are not there.
-fn distance(typed: &str, text: &str) -> Option<usize> {
-    let text: Vec<char> = text.to_lowercase().chars().collect();
-    let mut at = 0;
-    let mut first = None;
-    for letter in typed.to_lowercase().chars().filter(|c| !c.is_whitespace()) {
-        at += text[at..].iter().position(|c| *c == letter)? + 1;
-        first.get_or_insert(at);
-    }
-    let first = first.unwrap_or(0);
-    Some(2 * (at - first) + first)
+fn is_described(action: &Action, typed: &str) -> bool {
+    let about = action.about.to_lowercase();
+    let words: Vec<&str> = about.split(|letter: char| !letter.is_alphanumeric()).collect();
+    let typed = typed.to_lowercase();
+    typed.split_whitespace().all(|part| words.iter().any(|word| word.starts_with(part)))
+}
+
+/// Small letters without the hyphens and spaces between words: `zoom in` is `zoom-in`.
+fn squashed(words: &str) -> String {
+    words.to_lowercase().chars().filter(|letter| *letter != '-' && !letter.is_whitespace()).collect()
+}
+
+fn initials(name: &str) -> String {
+    name.split('-').filter_map(|word| word.chars().next()).collect()
+}
+
+/// The known word nearest to `word`, if any is near.
+pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let reach = (word.chars().count() / 3).clamp(1, 4);
+    known
+        .into_iter()
+        .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
+        .filter(|(distance, _)| *distance <= reach)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn found(name: &str, typed: &str) -> Option<Match> {
+        Match::of(named(name).expect("a command"), typed)
+    }
+
     #[test]
-    fn every_command_is_found_first_by_its_name() {
-        for action in ACTIONS.iter().filter(|action| action.is_command()) {
-            assert_eq!(
-                matching(action.name).first().map(|found| found.id),
-                Some(action.id),
-                "{}",
-                action.name
-            );
+    fn each_way_to_match_in_its_order() {
+        let cases = [
+            ("zoom-in", "zoom in", Some(Match::Exact)),
+            ("hold", "pause", Some(Match::Exact)),
+            ("zoom-in", "zoo", Some(Match::Name)),
+            ("hold", "pau", Some(Match::Synonym)),
+            ("zoom-in", "zi", Some(Match::Initials)),
+            ("whole-tank", "tank", Some(Match::Within)),
+            ("whole-tank", "show tank", Some(Match::Description)),
+            ("zoom-in", "zn", None),
+            ("zoom-in", "xyzzy", None),
+            // What moves the robot or ends the mission is not found by its description or by a part of its name.
+            ("start", "mission", None),
+            ("fly-uncertified", "fu", None),
+            ("fly-uncertified", "certified", None),
+            ("end", "mission", None),
+            ("end", "abo", Some(Match::Synonym)),
+        ];
+        for (name, typed, expected) in cases {
+            assert_eq!(found(name, typed), expected, "{name} for {typed}");
         }
     }
 
     #[test]
-    fn a_command_is_found_by_letters_in_order() {
-        assert_eq!(matching("zin").first().map(|a| a.name), Some("zoom-in"));
-        assert!(matching("xyzzy").is_empty());
-        assert_eq!(matching("").len(), ACTIONS.iter().filter(|a| a.is_command()).count());
+    fn synonyms_name_one_command_each() {
+        let table = [
+            ("hold", ["stop", "pause", "halt"].as_slice()),
+            ("resume", &["continue"]),
+            ("leave", &["quit", "exit"]),
+            ("end", &["abort", "finish"]),
+            ("speed", &["rate", "pace"]),
+            ("acknowledge", &["silence"]),
+        ];
+        for (name, synonyms) in table {
+            for synonym in synonyms {
+                assert_eq!(named(synonym).map(|action| action.name), Some(name), "{synonym}");
+            }
+        }
+        let mut all: Vec<&str> = commands().flat_map(|action| action.synonyms).copied().collect();
+        let listed: usize = table.iter().map(|(_, synonyms)| synonyms.len()).sum();
+        assert_eq!(all.len(), listed, "every synonym is in this table");
+        all.extend(commands().map(|action| action.name));
+        let count = all.len();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), count, "no word names two commands");
+    }
+
+    #[test]
+    fn a_slip_is_near_and_another_word_is_not() {
+        let known = ["zoom-in", "follow"];
+        assert_eq!(nearest("folow", known), Some("follow"));
+        assert_eq!(nearest("theme", known), None);
     }
 }

@@ -1,5 +1,6 @@
 //! The console itself: time, speeds, plugins, and what it tells the operator.
 
+use crate::actions::keymap::Keymap;
 use mission::{PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
 
@@ -33,6 +34,21 @@ impl Speed {
         match self {
             Self::Times(factor) => factor > 1.0,
             Self::Max => true,
+        }
+    }
+
+    /// Reads a speed, such as `8`, `x0.5` or `max`.
+    ///
+    /// # Errors
+    /// What it may be.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let wrong = || format!("must be {} to {}, or max", Self::SLOWEST, Self::FASTEST);
+        match text.trim_start_matches(['x', '×']) {
+            "max" => Ok(Self::Max),
+            number => match number.parse::<f64>() {
+                Ok(factor) if (Self::SLOWEST..=Self::FASTEST).contains(&factor) => Ok(Self::Times(factor)),
+                _ => Err(wrong()),
+            },
         }
     }
 
@@ -78,6 +94,35 @@ pub struct Notice {
     pub until_mono_s: f64,
 }
 
+/// Which new alarms ring the terminal's bell: from this severity on, or none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Bell(pub Option<Severity>);
+
+impl Default for Bell {
+    fn default() -> Self {
+        Self(Some(Severity::Crit))
+    }
+}
+
+/// What the operator has set up.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Preferences {
+    /// Who operates.
+    pub operator: Option<String>,
+    /// Whether the mouse is used.
+    pub mouse: bool,
+    /// Which new alarms ring the bell.
+    pub bell: Bell,
+    /// Longest time for which an alarm may be shelved, minutes.
+    pub shelve_max_min: u32,
+}
+
+impl Default for Preferences {
+    fn default() -> Self {
+        Self { operator: None, mouse: false, bell: Bell::default(), shelve_max_min: 60 }
+    }
+}
+
 /// The console itself.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Console {
@@ -92,6 +137,12 @@ pub struct Console {
     pub reloaded: Option<Vec<String>>,
     /// What was last said to the operator.
     pub notice: Option<Notice>,
+    /// Which keys run which actions.
+    pub keys: Keymap,
+    /// The last command lines, the newest last.
+    pub history: Vec<String>,
+    /// What the operator has set up.
+    pub preferences: Preferences,
     /// When Ctrl-C was last pressed, on the console's own clock, seconds.
     pub interrupted_mono_s: Option<f64>,
 }

@@ -1,5 +1,8 @@
 //! What the operator looks at: zoom, filter, selection, and what lies over the screen.
 
+use super::line_edit::LineEdit;
+use super::palette::Palette;
+use crate::theme::ThemeName;
 use mission::{Order, PlannerChoice, Severity};
 use serde::{Deserialize, Serialize};
 use world::Point;
@@ -35,6 +38,8 @@ pub struct Ui {
     pub needle: String,
     /// How many lines the events pane is scrolled back.
     pub scroll: usize,
+    /// The colours.
+    pub theme: ThemeName,
     /// What lies over the screen.
     pub overlay: Overlay,
 }
@@ -56,6 +61,7 @@ impl Default for Ui {
             least: Severity::Info,
             needle: String::new(),
             scroll: 0,
+            theme: ThemeName::default(),
             overlay: Overlay::None,
         }
     }
@@ -232,14 +238,7 @@ pub enum Overlay {
     /// The question before leaving.
     Quit,
     /// The list of commands.
-    Commands {
-        /// Whether it was opened as help, with every key shown.
-        help: bool,
-        /// What was typed.
-        filter: String,
-        /// Which line is selected.
-        selected: usize,
-    },
+    Commands(Palette),
     /// The list of planners.
     Planners {
         /// What the planner is chosen for.
@@ -266,8 +265,8 @@ pub enum Overlay {
         /// Which line is selected.
         selected: usize,
     },
-    /// The text filter of the events pane is being typed.
-    Filter,
+    /// The text filter of a list is being typed.
+    Filter(LineEdit),
 }
 
 /// What a planner is chosen for.
@@ -313,7 +312,7 @@ impl Ask {
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Edit {
     /// What was typed.
-    pub text: String,
+    pub line: LineEdit,
     /// Why it cannot be taken.
     pub refusal: Option<String>,
 }

@@ -6,12 +6,12 @@ use super::message::Effect;
 use super::offer::{offered, refuse};
 use super::overlay::{self, ask, open};
 use super::send::{hold_now, send};
-use super::{preflight, what_if};
+use super::{palette, preflight, typing, what_if};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
 use crate::model::plugins::plugins;
 use crate::model::ui::{Ask, MapView, Purpose};
-use crate::model::{Model, Overlay, Pane, Screen};
+use crate::model::{Model, Overlay, Palette, Pane, Screen, Speed};
 use mission::{Order, Severity, StepTo};
 use world::Vector;
 
@@ -51,11 +51,8 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Faster => change_speed(model, true),
         ActionId::Acknowledge => acknowledge(model),
         ActionId::Mouse => toggle_mouse(model),
-        ActionId::Accept => match overlay::chosen(model) {
-            Some(id) => act(model, id),
-            None if model.ui.overlay == Overlay::None => go::enter(model),
-            None => overlay::accept(model),
-        },
+        ActionId::Accept if model.ui.overlay == Overlay::None => go::enter(model),
+        ActionId::Accept => overlay::accept(model),
         ActionId::Edit => overlay::edit(model),
         ActionId::ChoosePlanner => {
             open(model, Overlay::Planners { purpose: Purpose::Drive, selected: driving(model) })
@@ -72,9 +69,16 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::CancelPlan => overlay::cancel_plan(model),
         ActionId::Parameters => open(model, Overlay::Parameters { selected: 0, edit: None }),
         ActionId::Layers => open(model, Overlay::Layers { selected: 0 }),
-        ActionId::Filter => open(model, Overlay::Filter),
-        ActionId::Commands => open(model, commands(false)),
-        ActionId::Help => open(model, commands(true)),
+        ActionId::Filter => open(model, Overlay::Filter(typing::filtered(model).into())),
+        ActionId::Commands => open(model, Overlay::Commands(Palette::default())),
+        ActionId::Help => open(model, Overlay::Commands(Palette { help: true, ..Palette::default() })),
+        ActionId::SetSpeed
+        | ActionId::SetParameter
+        | ActionId::Open
+        | ActionId::GoTo
+        | ActionId::Theme
+        | ActionId::Centre => palette::begin(model, id),
+        ActionId::AcknowledgeAll => acknowledge_all(model),
         other => look(model, other),
     }
 }
@@ -84,6 +88,7 @@ fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
     match id {
         ActionId::Cancel if model.ui.overlay == Overlay::None => model.ui.cursor = None,
         ActionId::Cancel => overlay::cancel(model),
+        ActionId::Complete => typing::complete(model),
         ActionId::Up => select(model, -1),
         ActionId::Down => select(model, 1),
         ActionId::PageUp => select(model, -PAGE),
@@ -109,10 +114,6 @@ fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
         _ => {}
     }
     Vec::new()
-}
-
-fn commands(help: bool) -> Overlay {
-    Overlay::Commands { help, filter: String::new(), selected: 0 }
 }
 
 fn hold(model: &mut Model) -> Vec<Effect> {
@@ -165,6 +166,11 @@ fn step(model: &mut Model, order: Order) -> Vec<Effect> {
 
 fn change_speed(model: &mut Model, faster: bool) -> Vec<Effect> {
     let Some(speed) = model.live.speed.stepped(faster) else { return Vec::new() };
+    set_speed(model, speed)
+}
+
+/// Sets the pace of the simulation.
+pub(super) fn set_speed(model: &mut Model, speed: Speed) -> Vec<Effect> {
     model.live.speed = speed;
     vec![Effect::Speed(speed)]
 }
@@ -184,6 +190,14 @@ fn acknowledge(model: &mut Model) -> Vec<Effect> {
     if let Some(text) = model.live.run.alarms.acknowledge() {
         model.say(Severity::Info, format!("acknowledged: {text}"));
     }
+    Vec::new()
+}
+
+fn acknowledge_all(model: &mut Model) -> Vec<Effect> {
+    let before = model.live.run.alarms.list().iter().filter(|alarm| !alarm.acknowledged).count();
+    // An alarm that has fallen to a lower severity is acknowledged twice.
+    while model.live.run.alarms.acknowledge().is_some() {}
+    model.say(Severity::Info, format!("{before} alarms acknowledged"));
     Vec::new()
 }
 
@@ -218,6 +232,9 @@ fn next_severity(model: &mut Model) {
 
 /// Selects another line of whatever takes the arrow keys, so many further down.
 pub(super) fn select(model: &mut Model, by: isize) {
+    if palette::recalls(model, by) {
+        return;
+    }
     match (&model.ui.overlay, model.ui.screen) {
         (Overlay::None, Screen::Home) => model.home.select(by),
         (Overlay::None, Screen::Mission) => scroll(model, by),

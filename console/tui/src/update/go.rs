@@ -1,7 +1,7 @@
 //! From screen to screen, and what they open: scenarios, past runs, work beside the screen.
 
 use super::message::{Effect, Job};
-use super::offer::refuse;
+use super::offer::{nothing_under_way, refuse};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
 use crate::model::{Live, Model, RunId, Screen, Source};
@@ -52,14 +52,15 @@ fn go_to_run(model: &mut Model) -> Vec<Effect> {
     if is_open {
         go(model, Screen::Result)
     } else {
-        refuse(model, "w: report of this run, o: open it in rerun".into())
+        let why = model.console.keys.spelled("<report>: report of this run, <view>: open it in rerun");
+        refuse(model, why)
     }
 }
 
 /// Opens a scenario: its mission is laid out and waits; nothing moves.
 pub(super) fn open(model: &mut Model, source: Source, planner: Option<PlannerChoice>) -> Vec<Effect> {
-    if model.live.is_under_way() {
-        return refuse(model, "a mission is in progress; 3: show it, X: end it".into());
+    if let Err(why) = nothing_under_way(model) {
+        return refuse(model, why);
     }
     let id = RunId(model.live.id.0 + 1);
     model.live = Live { id, source: Some(source.clone()), is_opening: true, ..Live::default() };
@@ -101,9 +102,16 @@ fn result_name(model: &Model) -> Option<String> {
     model.live.result.as_ref()?.name.clone()
 }
 
-/// Begins work on a past run.
+/// Begins work on the past run that the screen is about.
 pub(super) fn begin(model: &mut Model, id: ActionId) -> Vec<Effect> {
-    let Some(run) = named_run(model) else { return refuse(model, "no run is selected".into()) };
+    match named_run(model) {
+        Some(run) => begin_on(model, id, run),
+        None => refuse(model, "no run is selected".into()),
+    }
+}
+
+/// Begins work on a past run.
+pub(super) fn begin_on(model: &mut Model, id: ActionId, run: String) -> Vec<Effect> {
     let (job, news) = match id {
         ActionId::Rescan => return open(model, Source::Rescan(vec![run]), None),
         ActionId::Verify => (Job::Verify(run), "verifying"),

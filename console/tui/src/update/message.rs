@@ -17,6 +17,8 @@ pub enum Msg {
     Key(KeyPress),
     /// Text was pasted.
     Paste(String),
+    /// A command line that was not typed into the screen: from a script or from stdin.
+    Line(String),
     /// The mouse did something.
     Mouse(Mouse),
     /// The terminal has this size now.

@@ -2,6 +2,7 @@
 
 use super::go::named_run;
 use super::message::Effect;
+use super::typing;
 use crate::actions::ActionId;
 use crate::model::{Model, Overlay, Pane, Screen, ui::MAX_ZOOM};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
@@ -11,6 +12,10 @@ use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 /// # Errors
 /// Why not, and what would be right, as a sentence.
 pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
+    can(model, id).map_err(|why| model.console.keys.spelled(&why))
+}
+
+fn can(model: &Model, id: ActionId) -> Result<(), String> {
     match id {
         ActionId::Hold => hold(model),
         ActionId::Start => start(model),
@@ -34,8 +39,10 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
                 "nothing is being planned",
             )
         }
-        ActionId::Parameters => parameters(model),
-        ActionId::Acknowledge => {
+        ActionId::Parameters | ActionId::SetParameter => parameters(model),
+        ActionId::SetSpeed => simulating(model),
+        ActionId::Open => nothing_under_way(model),
+        ActionId::Acknowledge | ActionId::AcknowledgeAll => {
             let waiting = model.live.run.alarms.list().iter().any(|alarm| !alarm.acknowledged);
             demand(waiting, "no unacknowledged alarms")
         }
@@ -43,18 +50,19 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Faster => speed(model, true),
         ActionId::ZoomIn => map(model).and(demand(model.ui.map.zoom < MAX_ZOOM, "already at maximum zoom")),
         ActionId::ZoomOut => map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is already shown")),
-        ActionId::WholeTank | ActionId::Layers => map(model),
+        ActionId::WholeTank | ActionId::Layers | ActionId::Centre => map(model),
         ActionId::Inspect => map(model).and(demand(model.live.run.about.is_some(), "no tank loaded yet")),
         ActionId::Follow => {
             map(model).and(demand(model.live.run.position.pose.is_some(), "no position estimate yet"))
         }
         ActionId::PanLeft | ActionId::PanRight | ActionId::PanUp | ActionId::PanDown => {
             let moves = model.ui.map.zoom > 0 || model.ui.cursor.is_some();
-            map(model).and(demand(moves, "the whole tank is shown; z: zoom in first"))
+            map(model).and(demand(moves, "the whole tank is shown; <zoom-in>: zoom in first"))
         }
-        ActionId::Severity => {
-            demand(model.ui.shows(Pane::Events), "the events are not shown; Tab: next pane (needs 60x16)")
-        }
+        ActionId::Severity => demand(
+            model.ui.shows(Pane::Events),
+            "the events are not shown; <next-pane>: next pane (needs 60x16)",
+        ),
         ActionId::GoPlan | ActionId::GoMission => {
             demand(model.live.source.is_some(), "no mission is open; choose one on screen 1 (Home)")
         }
@@ -76,6 +84,7 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
             let turns = model.ui.screen == Screen::Home || !model.ui.panes().is_empty();
             demand(turns, "there is one pane only")
         }
+        ActionId::Complete => demand(typing::completes(model), "nothing to complete here"),
         ActionId::Interrupt
         | ActionId::Redraw
         | ActionId::Suspend
@@ -86,6 +95,8 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::Back
         | ActionId::Leave
         | ActionId::Filter
+        | ActionId::GoTo
+        | ActionId::Theme
         | ActionId::Mouse
         | ActionId::Cancel
         | ActionId::AddCandidate
@@ -115,7 +126,7 @@ fn demand(met: bool, otherwise: &str) -> Result<(), String> {
 pub(super) fn accepted(model: &Model, order: &Order) -> Result<(), String> {
     model.live.run.standing.standing().allows(order).map_err(|why| {
         match remedy(&why, model.live.run.phase()) {
-            Some(remedy) => format!("{why}; {remedy}"),
+            Some(remedy) => model.console.keys.spelled(&format!("{why}; {remedy}")),
             None => why.to_string(),
         }
     })
@@ -161,27 +172,37 @@ fn parameters(model: &Model) -> Result<(), String> {
     }
 }
 
+fn simulating(model: &Model) -> Result<(), String> {
+    demand(model.live.run.about.is_some() && !model.live.run.has_ended(), "no mission is open")
+}
+
+/// One mission at a time.
+pub(super) fn nothing_under_way(model: &Model) -> Result<(), String> {
+    let why = model.console.keys.spelled("a mission is in progress; <mission>: show it, <end>: end it");
+    demand(!model.live.is_under_way(), &why)
+}
+
 fn speed(model: &Model, faster: bool) -> Result<(), String> {
-    demand(model.live.run.about.is_some() && !model.live.run.has_ended(), "no mission is open")?;
+    simulating(model)?;
     let end = if faster { "already at maximum speed" } else { "already at minimum speed" };
     demand(model.live.speed.stepped(faster).is_some(), end)
 }
 
 fn map(model: &Model) -> Result<(), String> {
-    demand(model.ui.shows(Pane::Map), "the map is not shown; Tab: next pane (needs 60x16)")
+    demand(model.ui.shows(Pane::Map), "the map is not shown; <next-pane>: next pane (needs 60x16)")
 }
 
 /// What would be right, in keys.
 fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
     match why {
-        Refusal::NotStarted => Some("S: start"),
+        Refusal::NotStarted => Some("<start>: start"),
         // Space asks to resume then.
         Refusal::AlreadyStarted if matches!(phase, Phase::Held(_)) => None,
         Refusal::AlreadyStarted
         | Refusal::AlreadyMoving
         | Refusal::StepNeedsHold
         | Refusal::SwapNeedsHold => Some("space: HOLD"),
-        Refusal::Ended(_) => Some("1: open another one"),
+        Refusal::Ended(_) => Some("<home>: open another one"),
         // These say themselves what would be right, as far as there is anything.
         Refusal::NotLive { .. }
         | Refusal::PositionLost { .. }

@@ -1,18 +1,15 @@
 //! Keys within lists, lines and questions.
 
+use super::act::act;
 use super::message::Effect;
 use super::offer::{accepted, offered, refuse};
 use super::preflight;
 use super::send::send;
-use super::what_if;
-use crate::actions::{ActionId, find};
-use crate::keys::Key;
+use super::{palette, typing, what_if};
+use crate::actions::ActionId;
 use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
-use crate::model::{Ghost, Model, Overlay, Screen, parameter};
-use mission::{Order, Parameters, PlannerChoice, Severity};
-
-/// Longest text that can be typed.
-const MAX_TYPED: usize = 64;
+use crate::model::{Ghost, Model, Overlay, Palette, parameter};
+use mission::{Order, Parameters, PlannerChoice, PlannerInfo};
 
 /// Puts something over the screen.
 pub(super) fn open(model: &mut Model, overlay: Overlay) -> Vec<Effect> {
@@ -26,26 +23,14 @@ pub(super) fn ask(model: &mut Model, ask: Ask) -> Vec<Effect> {
     open(model, Overlay::Confirm(ask))
 }
 
-/// The action that Enter runs in the line or list that is open; the list of commands closes for it.
-pub(super) fn chosen(model: &mut Model) -> Option<ActionId> {
-    match &model.ui.overlay {
-        Overlay::Stepping => Some(ActionId::Step),
-        Overlay::Commands { filter, selected, .. } => {
-            let action = find::listed(model, filter).get(*selected).copied()?;
-            model.ui.overlay = Overlay::None;
-            Some(action.id)
-        }
-        _ => None,
-    }
-}
-
 /// Agrees, or takes the selected line.
 pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
     match model.ui.overlay.clone() {
-        Overlay::None | Overlay::Stepping => Vec::new(),
+        Overlay::None => Vec::new(),
+        Overlay::Stepping => act(model, ActionId::Step),
         Overlay::Confirm(ask) => agree(model, &ask),
         Overlay::Quit => quit(model),
-        Overlay::Commands { filter, .. } => refuse(model, format!("no command matches `{filter}`")),
+        Overlay::Commands(palette) => palette::accept(model, palette),
         Overlay::Planners { purpose, selected } => choose_planner(model, purpose, selected),
         Overlay::Parameters { selected, edit: Some(edit) } => take_value(model, selected, edit),
         Overlay::Parameters { edit: None, .. } => edit(model),
@@ -57,7 +42,7 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
         }
         Overlay::WhatIf => what_if::choose(model),
         Overlay::Preflight { .. } => preflight::tick(model),
-        Overlay::Filter => open(model, Overlay::None),
+        Overlay::Filter(_) => open(model, Overlay::None),
     }
 }
 
@@ -65,11 +50,8 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
 pub(super) fn cancel(model: &mut Model) {
     match &mut model.ui.overlay {
         Overlay::Parameters { edit, .. } if edit.is_some() => *edit = None,
-        Overlay::Filter => {
-            if let Some(text) = typed(model) {
-                text.clear();
-            }
-            typing_changed(model);
+        Overlay::Filter(_) => {
+            typing::filter(model, "");
             model.ui.overlay = Overlay::None;
         }
         Overlay::WhatIf => what_if::close(model),
@@ -108,11 +90,16 @@ fn quit(model: &mut Model) -> Vec<Effect> {
 
 fn choose_planner(model: &mut Model, purpose: Purpose, selected: usize) -> Vec<Effect> {
     let Some(planner) = model.console.planners.get(selected) else { return Vec::new() };
-    if let Some(why) = model.live.run.cannot_fly(planner) {
+    choose(model, purpose, planner.clone())
+}
+
+/// Takes a planner for some purpose, if it can fly the mission; whether it shall drive is asked first.
+pub(super) fn choose(model: &mut Model, purpose: Purpose, planner: PlannerInfo) -> Vec<Effect> {
+    if let Some(why) = model.live.run.cannot_fly(&planner) {
         let why = format!("planner {} {why}", planner.id);
         return refuse(model, why);
     }
-    let choice = PlannerChoice { id: planner.id.clone(), parameters: Parameters::new() };
+    let choice = PlannerChoice { id: planner.id, parameters: Parameters::new() };
     match purpose {
         Purpose::Drive => ask(model, Ask::Swap(choice)),
         Purpose::Compare => compare(model, choice),
@@ -152,8 +139,8 @@ pub(super) fn edit(model: &mut Model) -> Vec<Effect> {
     if let Err(why) = accepted(model, &order) {
         return refuse(model, why);
     }
-    let text = value.to_string();
-    model.ui.overlay = Overlay::Parameters { selected, edit: Some(Edit { text, refusal: None }) };
+    let line = value.to_string().as_str().into();
+    model.ui.overlay = Overlay::Parameters { selected, edit: Some(Edit { line, refusal: None }) };
     Vec::new()
 }
 
@@ -162,7 +149,7 @@ fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
     let Some(info) = info else { return open(model, Overlay::None) };
     let order = |value| Order::SetParameter { key: info.key.clone(), value };
     // Checked again: the mission may have changed while the value was typed.
-    let checked = parameter::parse(info, &edit.text).map(order).and_then(|order| {
+    let checked = parameter::parse(info, edit.line.text()).map(order).and_then(|order| {
         accepted(model, &order)?;
         Ok(order)
     });
@@ -182,7 +169,7 @@ fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
 /// Selects another line, so many further down.
 pub(super) fn select(model: &mut Model, by: isize) {
     let lines = match &model.ui.overlay {
-        Overlay::Commands { filter, .. } => find::listed(model, filter).len(),
+        Overlay::Commands(palette) => palette::choices(model, palette).len(),
         Overlay::Planners { .. } => model.console.planners.len(),
         Overlay::Parameters { .. } => model.planner().map_or(0, |info| info.parameters.len()),
         Overlay::Layers { .. } => MapLayer::ALL.len(),
@@ -192,61 +179,14 @@ pub(super) fn select(model: &mut Model, by: isize) {
         | Overlay::Stepping
         | Overlay::Quit
         | Overlay::WhatIf
-        | Overlay::Filter => 0,
+        | Overlay::Filter(_) => 0,
     };
-    if let Overlay::Commands { selected, .. }
+    if let Overlay::Commands(Palette { selected, .. })
     | Overlay::Planners { selected, .. }
     | Overlay::Parameters { selected, .. }
     | Overlay::Preflight { selected }
     | Overlay::Layers { selected } = &mut model.ui.overlay
     {
         *selected = selected.saturating_add_signed(by).min(lines.saturating_sub(1));
-    }
-}
-
-/// Types a key into the line that is open; whether there is such a line and the key can be typed.
-pub(super) fn type_key(model: &mut Model, key: Key) -> bool {
-    let Some(text) = typed(model) else { return false };
-    match key {
-        Key::Char(letter) if text.chars().count() < MAX_TYPED => text.push(letter),
-        Key::Backspace => {
-            text.pop();
-        }
-        _ => return false,
-    }
-    typing_changed(model);
-    true
-}
-
-/// Puts pasted text into the line that is open; without one it goes nowhere, so that no paste is ever a command.
-pub(super) fn paste(model: &mut Model, pasted: &str) {
-    let Some(text) = typed(model) else { return model.say(Severity::Info, "nowhere to paste") };
-    let room = MAX_TYPED.saturating_sub(text.chars().count());
-    text.extend(pasted.chars().filter(|letter| !letter.is_control()).take(room));
-    typing_changed(model);
-}
-
-/// Whether a line is open in which text is typed.
-pub(super) fn is_typing(model: &mut Model) -> bool {
-    typed(model).is_some()
-}
-
-fn typed(model: &mut Model) -> Option<&mut String> {
-    match &mut model.ui.overlay {
-        Overlay::Commands { filter, .. } => Some(filter),
-        Overlay::Parameters { edit: Some(edit), .. } => Some(&mut edit.text),
-        Overlay::Filter => {
-            Some(if model.ui.screen == Screen::Home { &mut model.home.filter } else { &mut model.ui.needle })
-        }
-        _ => None,
-    }
-}
-
-fn typing_changed(model: &mut Model) {
-    match &mut model.ui.overlay {
-        Overlay::Commands { selected, .. } => *selected = 0,
-        Overlay::Parameters { edit: Some(edit), .. } => edit.refusal = None,
-        Overlay::Filter => (model.ui.scroll, model.home.scenario, model.home.run) = (0, 0, 0),
-        _ => {}
     }
 }

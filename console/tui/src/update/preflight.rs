@@ -58,7 +58,8 @@ pub(super) fn tick(model: &mut Model) -> Vec<Effect> {
     let n_by_hand = model.n_by_hand();
     let first = model.checks().len() - n_by_hand;
     let Some(point) = selected.checked_sub(first) else {
-        return refuse(model, "checked automatically; r: check again".into());
+        let why = model.console.keys.spelled("checked automatically; <check-again>: check again");
+        return refuse(model, why);
     };
     let ticked = &mut model.live.preflight.ticked;
     ticked.resize(n_by_hand, false);

@@ -1,15 +1,20 @@
 //! The line above the keys: a question if one is open, else what comes next.
 
+use super::field::field;
+use super::lists::place_cursor;
 use super::look::Look;
 use super::next::{self, Clauses};
 use super::{coverage, text};
-use crate::model::{Model, Overlay, ui::Ask};
+use crate::model::{LineEdit, Model, Overlay, ui::Ask};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    if let Overlay::Filter(line) = &look.model.ui.overlay {
+        return filter(look, frame, area, line);
+    }
     let (role, clauses) = clauses(look.model);
     let columns = usize::from(area.width).saturating_sub(1);
     let text = next::joined(&clauses, columns.saturating_sub(1));
@@ -17,13 +22,29 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     frame.render_widget(Line::from(vec![look.span(Role::Text, " "), look.span(role, text)]), area);
 }
 
+/// The line in which a filter is typed, and which keys end it.
+fn filter(look: &Look, frame: &mut Frame, area: Rect, line: &LineEdit) {
+    const PROMPT: &str = " Filter: ";
+    const KEYS: &str = "  Enter: keep, Esc: clear.";
+    let columns = usize::from(area.width).saturating_sub(1);
+    let shown = field(line, columns.saturating_sub(text::width(PROMPT) + text::width(KEYS)));
+    let typed = text::column(&format!("{PROMPT}{}{KEYS}", shown.text), columns);
+    frame.render_widget(Line::from(vec![look.span(Role::Text, " "), look.span(Role::Confirm, typed)]), area);
+    place_cursor(frame, area, (1 + text::width(PROMPT) + shown.cursor, 0));
+}
+
 /// The question that is open, or what comes next.
 pub(super) fn clauses(model: &Model) -> Clauses {
-    question(model).map_or_else(|| next::clauses(model), |clauses| (Role::Confirm, clauses))
+    asked(model).map_or_else(|| next::clauses(model), |clauses| (Role::Confirm, clauses))
+}
+
+/// The question that is open, with the keys that answer it.
+pub(crate) fn question(model: &Model) -> Option<String> {
+    asked(model).map(|clauses| clauses.join(" "))
 }
 
 /// What is asked and which keys answer come in the first clause: they are never left out.
-fn question(model: &Model) -> Option<Vec<String>> {
+fn asked(model: &Model) -> Option<Vec<String>> {
     let moves = || format!("Robot will move (planner {}).", model.live.run.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
         Overlay::Confirm(Ask::Start) => vec!["Start mission? Enter: start, Esc: cancel.".into(), moves()],
@@ -50,10 +71,6 @@ fn question(model: &Model) -> Option<Vec<String>> {
             ]
         }
         Overlay::Quit => quit(model),
-        Overlay::Filter => {
-            let typed = text::fit(&model.ui.needle, 20);
-            vec![format!("Filter events: {typed}_"), " Enter: keep, Esc: clear.".into()]
-        }
         _ => return None,
     };
     Some(clauses)

@@ -49,6 +49,12 @@ pub(super) fn role(severity: Severity) -> Role {
     }
 }
 
+/// A line of the log as text.
+pub(crate) fn log_line(entry: &Entry) -> String {
+    let Entry { t_s, severity, source, text, .. } = entry;
+    format!("T+{} {} {source}: {text}", text::clock(*t_s), word(*severity))
+}
+
 fn row(look: &Look, entry: &Entry, columns: usize) -> Line<'static> {
     let again = if entry.count > 1 { format!(" (×{})", entry.count) } else { String::new() };
     let front = format!(" T+{} ", text::clock(entry.t_s));

@@ -6,16 +6,18 @@ use crate::actions::{
     ACTIONS, Action, ActionId,
     context::{Context, contexts},
 };
+use crate::keys::Key;
 use crate::model::{Model, Overlay, Screen, ui::Arrangement};
 use crate::theme::Role;
-use crate::update::offered;
+use crate::update::{is_typing, offered};
 use mission::Phase;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 /// What goes first when there is too little room.
-const DISPENSABLE: [ActionId; 8] = [
+const DISPENSABLE: [ActionId; 9] = [
+    ActionId::Complete,
     ActionId::NextPane,
     ActionId::Parameters,
     ActionId::Faster,
@@ -86,24 +88,31 @@ fn hints(model: &Model) -> Vec<Hint> {
     let contexts = contexts(model);
     let mut hints: Vec<Hint> = Vec::new();
     for action in ACTIONS.iter().filter(|action| shown(action, &contexts, model)) {
-        let key = action.keys.first().map(ToString::to_string).unwrap_or_default();
+        let is_text = contexts.contains(&Context::Text);
+        let mut keys = model.console.keys.of(action).iter();
+        // In a text field a character is no key.
+        let Some(key) = keys.find(|key| !(is_text && matches!(key, Key::Char(_)))) else { continue };
         let label = label(action, model);
         match hints.last_mut().filter(|last| last.label == label) {
             Some(last) => {
                 last.keys = format!("{} {key}", last.keys);
                 last.id = action.id;
             }
-            None => hints.push(Hint { id: action.id, keys: key, label }),
+            None => hints.push(Hint { id: action.id, keys: key.to_string(), label }),
         }
     }
     hints
 }
 
 fn shown(action: &Action, contexts: &[Context], model: &Model) -> bool {
-    // In a list the space bar only stops, so there it is shown only while something can be stopped.
-    let idle_hold =
-        action.id == ActionId::Hold && !contexts.contains(&Context::Screen) && !model.live.may_move();
-    action.works_in(contexts) && !idle_hold && !action.label.is_empty() && offered(model, action.id).is_ok()
+    let in_screen = contexts.contains(&Context::Screen);
+    // In a list or line the stop keys only stop, so there they are shown only while something can be stopped.
+    let idle =
+        matches!(action.id, ActionId::Hold | ActionId::Interrupt) && !in_screen && !model.live.may_move();
+    action.works_in(contexts)
+        && !idle
+        && !label(action, model).is_empty()
+        && offered(model, action.id).is_ok()
 }
 
 fn label(action: &Action, model: &Model) -> String {
@@ -111,22 +120,23 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Hold, _) if matches!(model.live.run.phase(), Phase::Held(_)) && !model.live.may_move() => {
             "resume?"
         }
+        (ActionId::Interrupt, _) if is_typing(model) => "HOLD",
         (ActionId::Cancel, Overlay::None) => "end reading",
         (ActionId::Accept, Overlay::None) => "open",
         (ActionId::Back, _) if model.ui.screen == Screen::Home => "quit",
-        (ActionId::Accept, Overlay::Commands { .. }) => "run",
+        (ActionId::Accept, Overlay::Commands(_)) => "run",
         (ActionId::Accept, Overlay::Planners { .. }) => "choose",
         (ActionId::Accept, Overlay::WhatIf) => "choose",
         (ActionId::Accept, Overlay::Preflight { .. }) => "tick",
         (ActionId::Accept, Overlay::Layers { .. }) => "show/hide",
         (ActionId::Accept, Overlay::Parameters { edit: None, .. }) => "edit",
         (ActionId::Accept, Overlay::Parameters { edit: Some(_), .. }) => "send",
-        (ActionId::Accept, Overlay::Filter) => "keep",
+        (ActionId::Accept, Overlay::Filter(_)) => "keep",
         (ActionId::Accept, Overlay::Stepping) => "step",
-        (ActionId::Cancel, Overlay::Filter) => "clear",
+        (ActionId::Cancel, Overlay::Filter(_)) => "clear",
         (
             ActionId::Cancel,
-            Overlay::Commands { .. }
+            Overlay::Commands(_)
             | Overlay::Planners { .. }
             | Overlay::Layers { .. }
             | Overlay::Preflight { .. }

@@ -10,6 +10,7 @@ use super::look::Look;
 use crate::model::{Overlay, ui::MapLayer};
 use crate::theme::Role;
 use list::List;
+pub(super) use list::place_cursor;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
@@ -21,9 +22,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let rows = area.height.saturating_sub(if area.height >= 10 { 3 } else { 0 });
     let columns = area.width.min(WIDTH);
     let list = match &look.model.ui.overlay {
-        Overlay::Commands { help, filter, selected } => {
-            commands::list(look, *help, filter, *selected, columns)
-        }
+        Overlay::Commands(palette) => commands::list(look, palette, columns),
         Overlay::Planners { selected, .. } => planners::list(look, *selected, columns),
         Overlay::Parameters { selected, edit } => parameters::list(look, *selected, edit.as_ref(), columns),
         Overlay::Preflight { selected } => preflight::list(look, *selected, columns),

@@ -15,6 +15,16 @@ pub(super) fn clauses(model: &Model) -> Clauses {
             if notice.severity == Severity::Info { Role::Title } else { events::role(notice.severity) };
         return (role, vec![text::capitalized(&notice.text)]);
     }
+    without_notice(model)
+}
+
+/// What comes next, with the keys that the operator has.
+fn without_notice(model: &Model) -> Clauses {
+    let (role, clauses) = by_phase(model);
+    (role, clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
+}
+
+fn by_phase(model: &Model) -> Clauses {
     if let Some(silent_s) = model.silent_s() {
         let news = format!("◌ No data from the mission for {} s: values are stale.", silent_s as u64);
         return (Role::Stale, vec![news, "space: HOLD.".into()]);
@@ -43,7 +53,7 @@ pub(super) fn clauses(model: &Model) -> Clauses {
         }
         (None, Phase::Running(_)) => match work {
             Some(work) => {
-                let stop = ["space: HOLD.", "X: end mission."].map(str::to_owned);
+                let stop = ["space: HOLD.", "<end>: end mission."].map(str::to_owned);
                 (Role::Watch, work.into_iter().chain(stop).collect())
             }
             None => running(model),
@@ -58,11 +68,22 @@ pub(super) fn clauses(model: &Model) -> Clauses {
     }
 }
 
+/// What comes next, without figures that change all the time.
+pub(crate) fn standing(model: &Model) -> String {
+    if let Some(busy) = &model.live.busy {
+        return format!("{}.", busy.work);
+    }
+    if model.live.run.is_running() {
+        return "Mission running.".into();
+    }
+    without_notice(model).1.join(" ")
+}
+
 /// Where the operator goes from a mission that has ended.
 fn more(model: &Model) -> String {
     match model.ui.screen {
-        Screen::Result => "a: again, r: re-scan, 1: home.",
-        _ => "7: result. 1: home.",
+        Screen::Result => "<again>: again, <rescan>: re-scan, <home>: home.",
+        _ => "<result>: result. <home>: home.",
     }
     .into()
 }
@@ -103,7 +124,10 @@ fn idle(model: &Model) -> Clauses {
         return (Role::Title, vec!["Checking before the start...".into()]);
     }
     let who = model.live.run.planner_id().unwrap_or("unknown");
-    (Role::Title, vec![format!("Press S to start (planner {who})."), "A: pre-flight check.".into()])
+    (
+        Role::Title,
+        vec![format!("Press <start> to start (planner {who})."), "<preflight>: pre-flight check.".into()],
+    )
 }
 
 fn running(model: &Model) -> Clauses {
@@ -116,7 +140,10 @@ fn running(model: &Model) -> Clauses {
         model.live.run.alarms.worst().filter(|alarm| !alarm.acknowledged && alarm.severity >= Severity::Warn);
     if let Some(alarm) = open {
         let over = if alarm.active { "" } else { " (cleared)" };
-        return (events::role(alarm.severity), vec![format!("a: acknowledge{over}: {}", alarm.text)]);
+        return (
+            events::role(alarm.severity),
+            vec![format!("<acknowledge>: acknowledge{over}: {}", alarm.text)],
+        );
     }
     let calm = "No action required.".to_owned();
     let Some(progress) = &model.live.run.progress else {
@@ -167,7 +194,7 @@ fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec
         HoldReason::PositionLost | HoldReason::RangesInconsistent => format!("HELD: {trouble}."),
         by => format!("{}; {trouble}.", state(by)),
     };
-    let planner = by.blames_planner().then(|| "P: change planner.".to_owned());
+    let planner = by.blames_planner().then(|| "<planner>: change planner.".to_owned());
     [state, needs.into()].into_iter().chain(planner).collect()
 }
 
@@ -175,7 +202,7 @@ fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec
 fn held_for_good(by: &HoldReason) -> Vec<String> {
     const RESUME: &str = "space: resume.";
     const RETRY: &str = "space: retry.";
-    const PLANNER: &str = "P: change planner.";
+    const PLANNER: &str = "<planner>: change planner.";
     let (state, remedies): (&str, &[&str]) = match by {
         // Why the robot was held is over.
         HoldReason::PositionLost => ("HELD: position recovered", &[RESUME]),
@@ -184,7 +211,7 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
         HoldReason::Operator | HoldReason::PlannerReplaced | HoldReason::PlannerSilent { .. } => {
             (state(by), &[RESUME, PLANNER])
         }
-        HoldReason::Tether { .. } => (state(by), &[RESUME, "X: end mission."]),
+        HoldReason::Tether { .. } => (state(by), &[RESUME, "<end>: end mission."]),
         HoldReason::PlanRefused { .. } => (state(by), &[PLANNER, ":fly-uncertified runs it."]),
         HoldReason::PlannerFault { .. } | HoldReason::Stuck { .. } => (state(by), &[PLANNER, RETRY]),
     };

@@ -17,9 +17,9 @@ use world::Point;
 fn key() -> impl Strategy<Value = Key> {
     prop_oneof![
         6 => prop::sample::select(" SX.P<>pa:?qzZ0ifLm/hjklgGeq19xyz\u{7}é漢".chars().collect::<Vec<_>>()).prop_map(Key::Char),
-        2 => prop::sample::select(vec![Key::Enter, Key::Esc, Key::Tab, Key::BackTab, Key::Backspace]),
-        2 => prop::sample::select(vec![Key::Up, Key::Down, Key::Left, Key::Right, Key::PageUp, Key::PageDown, Key::Home, Key::End]),
-        1 => prop::sample::select("cpzudl".chars().collect::<Vec<_>>()).prop_map(Key::Ctrl),
+        2 => prop::sample::select(vec![Key::Enter, Key::Esc, Key::Tab, Key::BackTab, Key::Backspace, Key::Delete]),
+        2 => prop::sample::select(vec![Key::Up, Key::Down, Key::Left, Key::Right, Key::CtrlLeft, Key::CtrlRight, Key::PageUp, Key::PageDown, Key::Home, Key::End]),
+        1 => prop::sample::select("cpzudlw".chars().collect::<Vec<_>>()).prop_map(Key::Ctrl),
         1 => (1..13_u8).prop_map(Key::F),
     ]
 }
@@ -143,7 +143,24 @@ fn turn() -> impl Strategy<Value = Msg> {
 fn deed() -> impl Strategy<Value = Vec<Msg>> {
     let press = |key: Key| Msg::Key(key.into());
     let keys = prop::sample::select(vec![
-        "S", " ", ".", "P", "p", "X", "q", ":resume", ":fly-unc", ":step", ":start", "e", "1",
+        "S",
+        " ",
+        ".",
+        "P",
+        "p",
+        "X",
+        "q",
+        ":resume",
+        ":fly-unc",
+        ":step",
+        ":start",
+        "e",
+        "1",
+        ":planner apf",
+        ":set rpf_gain=1",
+        ":speed 4",
+        ":goto plan",
+        ":open demo",
     ]);
     prop_oneof![
         4 => keys.prop_map(move |keys| keys.chars().map(Key::Char).map(press).collect()),

@@ -1,11 +1,13 @@
 //! The console from outside: scripts of messages, stored screens, and laws that hold for every screen.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod commands;
 mod fixture;
 mod laws;
 mod mouse;
 mod overviews;
 mod panes;
+mod reference;
 mod screens;
 mod scripts;
 mod stopping;

@@ -1,9 +1,11 @@
 //! Every way to stop the robot, in every situation.
 
-use crate::fixture::{Screen, choice};
+use crate::fixture::{RICH, Screen, choice};
+use crate::screens::{drawn, text};
 use mission::{Event, EventKind, Gait, Hold, HoldReason, Order, Outcome, ParamValue, Phase, Resumes};
+use tui::actions::keymap::{Binding, Keymap};
 use tui::model::ui::{Ask, Edit, Purpose};
-use tui::model::{Overlay, Pane};
+use tui::model::{Overlay, Palette, Pane};
 use tui::{Effect, Key, Model, Msg, RunMsg, Signal, update};
 
 const HOLD: Effect = Effect::Order(Order::Hold);
@@ -21,7 +23,7 @@ fn phases() -> Vec<Phase> {
         Outcome::Entangled,
         Outcome::Aborted,
     ];
-    [Phase::Waiting, Phase::Running(Gait::Steady), Phase::Running(Gait::OneTick)]
+    [Phase::Waiting, Phase::Running(Gait::Steady), Phase::Running(Gait::OneTick), Phase::Running(Gait::To(mission::StepTo::LaneEnd))]
         .into_iter()
         .chain(held)
         .chain(outcomes.map(Phase::Ended))
@@ -35,8 +37,8 @@ fn positions(screen: &Screen) -> [Option<Event>; 3] {
 }
 
 fn overlays() -> Vec<Overlay> {
-    let commands = |help| Overlay::Commands { help, filter: "resume".into(), selected: 0 };
-    let edit = Some(Edit { text: "1".into(), refusal: None });
+    let commands = |help| Overlay::Commands(Palette { help, ..Palette::begun("resume") });
+    let edit = Some(Edit { line: "1".into(), refusal: None });
     let all = vec![
         Overlay::None,
         Overlay::Confirm(Ask::Start),
@@ -54,7 +56,7 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Layers { selected: 0 },
         Overlay::Preflight { selected: 0 },
         Overlay::WhatIf,
-        Overlay::Filter,
+        Overlay::Filter("a".into()),
     ];
     // A new overlay does not compile until it is in the list above.
     for overlay in &all {
@@ -63,33 +65,59 @@ fn overlays() -> Vec<Overlay> {
             | Overlay::Confirm(Ask::Start | Ask::Resume | Ask::FlyUncertified | Ask::Abort | Ask::Swap(_))
             | Overlay::Stepping
             | Overlay::Quit
-            | Overlay::Commands { .. }
+            | Overlay::Commands(_)
             | Overlay::Planners { .. }
             | Overlay::Parameters { .. }
             | Overlay::Layers { .. }
             | Overlay::Preflight { .. }
             | Overlay::WhatIf
-            | Overlay::Filter => {}
+            | Overlay::Filter(_) => {}
         }
     }
     all
 }
 
-/// The ways to stop, and whether they stop whatever lies over the screen. `X` belongs to the screens: in a line of text it is
-/// typed.
-fn ways() -> Vec<(Msg, bool)> {
-    let key = |key: Key, everywhere: bool| (Msg::Key(key.into()), everywhere);
+/// Where a way to stop stops.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Where {
+    /// On the screens with nothing over them.
+    Screens,
+    /// Everywhere but in a line of text, where the key is typed.
+    NotInText,
+    /// Everywhere.
+    Everywhere,
+}
+
+impl Where {
+    /// Said without the code under test.
+    fn includes(self, overlay: &Overlay) -> bool {
+        let is_text = matches!(
+            overlay,
+            Overlay::Commands(_) | Overlay::Filter(_) | Overlay::Parameters { edit: Some(_), .. }
+        );
+        match self {
+            Self::Screens => *overlay == Overlay::None,
+            Self::NotInText => !is_text,
+            Self::Everywhere => true,
+        }
+    }
+}
+
+/// The ways to stop, and where they do. `X` belongs to the screens. In a line of text it is typed, and so is the space:
+/// there Ctrl-C stops, and the line above the keys says so.
+fn ways() -> Vec<(Msg, Where)> {
+    let key = |key: Key, place: Where| (Msg::Key(key.into()), place);
     let panicked = Msg::ThreadPanicked { thread: "recorder".into(), message: "out of bounds".into() };
     let signals = [Signal::Interrupt, Signal::Terminate, Signal::Hangup, Signal::Stop];
     [
-        key(Key::Char(' '), true),
-        key(Key::Ctrl('c'), true),
-        key(Key::Ctrl('z'), true),
-        key(Key::Char('X'), false),
-        (panicked, true),
+        key(Key::Char(' '), Where::NotInText),
+        key(Key::Ctrl('c'), Where::Everywhere),
+        key(Key::Ctrl('z'), Where::Everywhere),
+        key(Key::Char('X'), Where::Screens),
+        (panicked, Where::Everywhere),
     ]
     .into_iter()
-    .chain(signals.map(|signal| (Msg::Signal(signal), true)))
+    .chain(signals.map(|signal| (Msg::Signal(signal), Where::Everywhere)))
     .collect()
 }
 
@@ -104,6 +132,9 @@ fn screen_in(phase: &Phase) -> Screen {
     let events = match phase {
         Phase::Waiting | Phase::Running(Gait::Steady) => Vec::new(),
         Phase::Running(Gait::OneTick) => [mission.obeyed(Order::Hold), mission.obeyed(Order::Step)].concat(),
+        Phase::Running(Gait::To(to)) => {
+            [mission.obeyed(Order::Hold), mission.obeyed(Order::StepTo(*to))].concat()
+        }
         Phase::Held(hold) => vec![mission.held_until(hold.by.clone(), hold.resumes)],
         Phase::Ended(outcome) => vec![mission.ended(*outcome, "why")],
     };
@@ -163,7 +194,7 @@ fn every_way_to_stop_holds_whenever_the_robot_may_move_and_never_makes_it_move()
     let mut held = 0;
     for situation in situations() {
         for overlay in overlays() {
-            for (way, everywhere) in ways() {
+            for (way, place) in ways() {
                 let mut model = situation.clone();
                 model.ui.overlay = overlay.clone();
                 let effects = update(&mut model, way.clone());
@@ -172,7 +203,7 @@ fn every_way_to_stop_holds_whenever_the_robot_may_move_and_never_makes_it_move()
                     format!("{way:?} in {:?}, {asked:?} sent, {overlay:?}", situation.live.run.phase())
                 };
                 assert!(!effects.iter().any(moves), "{} gave {effects:?}", about());
-                if is_loose(&situation) && (everywhere || overlay == Overlay::None) {
+                if is_loose(&situation) && place.includes(&overlay) {
                     assert_eq!(effects.first(), Some(&HOLD), "{}", about());
                     held += 1;
                 }
@@ -189,16 +220,40 @@ fn every_way_to_stop_holds_whenever_the_robot_may_move_and_never_makes_it_move()
 }
 
 #[test]
+fn a_space_in_a_line_of_text_is_typed_and_the_footer_names_the_key_that_holds() {
+    let mut screen = Screen::running();
+    screen.send(Msg::Resize { width: 80, height: 24 });
+    screen.type_text("/position lost");
+    assert_eq!(screen.model.ui.overlay, Overlay::Filter("position lost".into()));
+    for size in [(80, 24), (120, 36)] {
+        let shown = text(&drawn(&screen.model, RICH, size));
+        assert!(shown.lines().last().is_some_and(|footer| footer.contains("Ctrl-C HOLD")), "{shown}");
+    }
+    assert_eq!(screen.press([Key::Ctrl('c')]), [HOLD]);
+}
+
+#[test]
+fn a_key_of_the_operator_that_holds_does_so_in_a_line_of_text_too() {
+    let own = Binding { action: "hold".into(), keys: vec![Key::F(12)] };
+    let mut screen = Screen::running();
+    screen.model.console.keys = Keymap::new(&[], &[own]).0;
+    screen.type_text("/a");
+    assert_eq!(screen.press([Key::F(12)]), [HOLD]);
+    let shown = text(&drawn(&screen.model, RICH, (80, 24)));
+    assert!(shown.contains("F12 Ctrl-C HOLD"), "{shown}");
+}
+
+#[test]
 fn a_hold_that_was_sent_can_be_sent_again() {
     for situation in situations().into_iter().filter(is_loose) {
         for (first, _) in ways() {
-            for (second, everywhere) in ways() {
+            for (second, place) in ways() {
                 let mut model = situation.clone();
                 assert_eq!(update(&mut model, first.clone()).first(), Some(&HOLD));
                 let overlay = model.ui.overlay.clone();
                 let effects = update(&mut model, second.clone());
                 assert!(!effects.iter().any(moves), "{second:?} after {first:?}");
-                if everywhere || overlay == Overlay::None {
+                if place.includes(&overlay) {
                     assert_eq!(effects.first(), Some(&HOLD), "{second:?} after {first:?}");
                 }
             }

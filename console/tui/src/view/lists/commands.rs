@@ -1,68 +1,118 @@
-//! The list of commands; as help it shows every key.
+//! The command line and its list; as help it shows every key.
 
 use super::list::{List, hint, paragraph};
-use crate::actions::{self, ActionId, find};
+use crate::actions::{Action, ActionId, find, keymap::Keymap};
+use crate::model::Palette;
 use crate::theme::Role;
-use crate::update::offered;
+use crate::update::{Choice, choices, offered};
+use crate::view::field::field;
 use crate::view::look::{Look, Parts as Row};
+use crate::view::next::joined;
 use crate::view::text;
 
 /// Columns of the keys of a command.
 const KEYS: usize = 10;
+/// What is before the line.
+const PROMPT: &str = " > ";
 
-pub(super) fn list(look: &Look, help: bool, filter: &str, selected: usize, columns: u16) -> List {
-    let all = find::listed(look.model, "").len();
-    let found = find::listed(look.model, filter);
-    // Name and description where there is room, else the description, else the name.
+pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
+    let found = choices(look.model, palette);
+    let room = usize::from(columns).saturating_sub(3);
+    let rows = found.iter().map(|choice| row(look, choice, columns)).collect();
+    let below = if palette.help {
+        rules(&look.model.console.keys, room)
+    } else {
+        below(found.get(palette.selected), room)
+    };
+    let (above, cursor) = line(palette, found.len(), room);
+    List {
+        title: if palette.help { "Keys and commands" } else { "Commands" }.into(),
+        note: "type to filter",
+        above,
+        rows,
+        selected: palette.selected,
+        below,
+        cursor: Some((0, cursor)),
+        ..List::default()
+    }
+}
+
+/// The line with what is wrong below it, and the column of the cursor.
+fn line(palette: &Palette, found: usize, room: usize) -> (Vec<Row>, usize) {
+    let count = match found {
+        0 => "   no match".to_owned(),
+        found => format!("   {found} of {}", find::commands().count()),
+    };
+    let is_named = palette.line.text().trim_start().contains(' ') || palette.fault.is_some();
+    let count = if is_named { String::new() } else { count };
+    let shown = field(&palette.line, room.saturating_sub(text::width(PROMPT) + text::width(&count)));
+    let cursor = text::width(PROMPT) + shown.cursor;
+    let mut rows = vec![vec![(Role::Title, format!("{PROMPT}{}", shown.text)), (Role::Dim, count)]];
+    if let Some(fault) = &palette.fault {
+        let whole = palette.line.text();
+        let columns = |from: usize, to: usize| text::width(whole.get(from..to).unwrap_or_default());
+        let (begin, end) = (fault.at.start.max(shown.skipped), fault.at.end.max(shown.skipped));
+        let indent = text::width(PROMPT) + columns(shown.skipped, begin);
+        let mark =
+            "^".repeat(columns(begin, end.min(whole.len())).clamp(1, room.saturating_sub(indent).max(1)));
+        rows.push(vec![(Role::Warn, text::fit(&format!("{}{mark}", " ".repeat(indent)), room))]);
+        rows.extend(paragraph(Role::Warn, &text::capitalized(&fault.what), room));
+    }
+    (rows, cursor)
+}
+
+fn row(look: &Look, choice: &Choice, columns: u16) -> Row {
+    match choice {
+        Choice::Command(action) => command_row(look, action, columns),
+        Choice::Alias(name, line) => {
+            vec![(Role::Key, text::column(name, 16)), (Role::Text, format!("short for {line}"))]
+        }
+        Choice::Value(value) => vec![(Role::Key, value.clone())],
+    }
+}
+
+/// Name and description where there is room, else the description, else the name.
+fn command_row(look: &Look, action: &Action, columns: u16) -> Row {
     let (name, about) = match columns {
         74.. => (16, usize::from(columns) - 2 - 1 - 16 - KEYS - 6),
         58.. => (0, usize::from(columns) - 2 - 1 - KEYS - 6),
         _ => (16, 0),
     };
-    let rows = found.iter().map(|action| {
-        let now = offered(look.model, action.id).is_ok();
-        let role = if now { Role::Text } else { Role::Dim };
-        let risk = if now { action.risk.word() } else { "-" };
-        vec![
-            (Role::Key, text::column(action.name, name)),
-            (role, text::column(action.about, about)),
-            (Role::Key, text::column(&action.keys_text(), KEYS)),
-            (role, risk.into()),
-        ]
-    });
-    let below = if help {
-        rules(usize::from(columns).saturating_sub(3))
-    } else {
-        vec![hint(" Enter: run  Esc: close  -: not available")]
+    let now = offered(look.model, action.id).is_ok();
+    let role = if now { Role::Text } else { Role::Dim };
+    let risk = if now { action.risk.word() } else { "-" };
+    vec![
+        (Role::Key, text::column(action.name, name)),
+        (role, text::column(action.about, about)),
+        (Role::Key, text::column(&look.model.console.keys.text(action), KEYS)),
+        (role, risk.into()),
+    ]
+}
+
+/// How the selected command is written, and what keys do, as far as there is room.
+fn below(selected: Option<&Choice>, room: usize) -> Vec<Row> {
+    let usage = match selected {
+        Some(Choice::Command(action)) if !action.args.is_empty() => Some(format!("{}.", action.usage())),
+        _ => None,
     };
-    List {
-        title: if help { "Keys and commands" } else { "Commands" }.into(),
-        note: "type to filter",
-        above: vec![vec![
-            (Role::Title, format!(" > {filter}_")),
-            (Role::Dim, format!("   {} of {all}", found.len())),
-        ]],
-        rows: rows.collect(),
-        selected,
-        below,
-        ..List::default()
-    }
+    let keys = ["Enter: run.", "Esc: close.", "Tab: complete.", "-: not available.", "↑: earlier lines."]
+        .map(str::to_owned);
+    let clauses: Vec<String> = usage.into_iter().chain(keys).collect();
+    vec![hint(&format!(" {}", joined(&clauses, room)))]
 }
 
 /// What holds everywhere; the keys in it come from the table.
-fn rules(columns: usize) -> Vec<Row> {
-    let keys = |id: ActionId| {
-        actions::ACTIONS
-            .iter()
-            .rfind(|action| action.id == id)
-            .map(actions::Action::keys_text)
-            .unwrap_or_default()
+fn rules(keys: &Keymap, columns: usize) -> Vec<Row> {
+    let of = |id: ActionId| {
+        let action = crate::actions::ACTIONS.iter().rfind(|action| action.id == id);
+        action.map(|action| keys.text(action)).unwrap_or_default()
     };
-    let (up, down, accept) = (keys(ActionId::Up), keys(ActionId::Down), keys(ActionId::Accept));
+    let (up, down, accept) = (of(ActionId::Up), of(ActionId::Down), of(ActionId::Accept));
     let lists = format!("{up} {down}: select, {accept}: run, Esc: close, -: not available.");
     [
         lists.as_str(),
         "HOLD never asks first; commands marked MOVES or ENDS do.",
+        "In a text field space types and Ctrl-C holds.",
         "Alarms: C crit, W warn, w watch, * not acknowledged.",
     ]
     .into_iter()

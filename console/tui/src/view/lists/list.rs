@@ -19,6 +19,8 @@ pub(super) struct List {
     pub below: Vec<Row>,
     /// How many of the lines below are worth more than the list's last lines.
     pub needed_below: usize,
+    /// Where the cursor is: which of the lines above and below the list, counted from the first one above, and which column.
+    pub cursor: Option<(usize, usize)>,
 }
 
 impl List {
@@ -30,15 +32,27 @@ impl List {
         let below =
             self.below.len().min(room.saturating_sub(3).max(self.needed_below)).min(room.saturating_sub(1));
         let shown = table::window(self.selected, self.rows.len(), room - below);
+        let above = self.above.len();
         let mut lines: Vec<Line> = self.above.into_iter().map(|row| look.line(row)).collect();
         for (index, row) in self.rows.into_iter().enumerate() {
             if shown.contains(&index) {
                 lines.push(table::row(look, row, index == self.selected, usize::from(inner.width)));
             }
         }
+        if let Some((line, column)) = self.cursor {
+            let row = if line < above { line } else { line - above + lines.len() };
+            place_cursor(frame, inner, (column, row));
+        }
         lines.extend(self.below.into_iter().take(below).map(|row| look.line(row)));
         frame.render_widget(Clear, area);
         frame.render_widget(Paragraph::new(lines).block(block), area);
+    }
+}
+
+/// Shows the terminal's cursor in a column and row of an area, if that is within it.
+pub(in crate::view) fn place_cursor(frame: &mut Frame, area: Rect, (column, row): (usize, usize)) {
+    if column < usize::from(area.width) && row < usize::from(area.height) {
+        frame.set_cursor_position((area.x + column as u16, area.y + row as u16));
     }
 }
 

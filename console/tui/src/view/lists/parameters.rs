@@ -3,6 +3,7 @@
 use super::list::{List, hint, paragraph};
 use crate::model::{parameter, ui::Edit};
 use crate::theme::Role;
+use crate::view::field::field;
 use crate::view::look::{Look, Parts as Row};
 use crate::view::text;
 
@@ -37,8 +38,14 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
     ];
     let mut below = Vec::new();
     let mut needed_below = 0;
+    let mut cursor = None;
     if let Some(info) = planner.parameters.get(selected) {
-        below.extend(edit_rows(info, edit, room));
+        if let Some(edit) = edit {
+            let (rows, column) = edit_rows(info, edit, room);
+            below.extend(rows);
+            // The first line below the head of the table.
+            cursor = Some((1, column));
+        }
         needed_below = below.len();
         // A refusal names the range already.
         if edit.is_none_or(|edit| edit.refusal.is_none()) {
@@ -56,13 +63,15 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
         selected,
         below,
         needed_below,
+        cursor,
     }
 }
 
-/// The value being typed, and why it was refused.
-fn edit_rows(info: &mission::ParamInfo, edit: Option<&Edit>, room: usize) -> Vec<Row> {
-    let Some(edit) = edit else { return Vec::new() };
-    let typed = vec![(Role::Confirm, text::fit(&format!(" {} = {}_ ", info.key, edit.text), room))];
+/// The value being typed, why it was refused, and the column of the cursor.
+fn edit_rows(info: &mission::ParamInfo, edit: &Edit, room: usize) -> (Vec<Row>, usize) {
+    let name = format!(" {} = ", info.key);
+    let shown = field(&edit.line, room.saturating_sub(text::width(&name) + 1));
+    let typed = vec![(Role::Confirm, text::fit(&format!("{name}{} ", shown.text), room))];
     let why = edit.refusal.iter().flat_map(|why| paragraph(Role::Warn, &format!("REFUSED: {why}"), room));
-    [typed].into_iter().chain(why).collect()
+    ([typed].into_iter().chain(why).collect(), text::width(&name) + shown.cursor)
 }

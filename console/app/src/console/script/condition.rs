@@ -1,0 +1,146 @@
+//! What a script can wait for and demand.
+
+use mission::Phase;
+use std::fmt;
+use tui::Model;
+
+/// What can be waited for and demanded.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Condition {
+    is_negated: bool,
+    what: What,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum What {
+    /// `waiting`, `running`, `held`, `ended`, or how it ended.
+    Phase(String),
+    /// The screen of this name is shown.
+    Screen(String),
+    /// At least so many percent of the reachable floor are scanned.
+    Coverage(f64),
+    /// An alarm contains this text; any alarm if it is empty.
+    Alarm(String),
+    /// The screen contains this text.
+    Text(String),
+}
+
+const PHASES: [&str; 10] = [
+    "waiting",
+    "running",
+    "held",
+    "ended",
+    "complete",
+    "stuck",
+    "collision",
+    "time_limit",
+    "entangled",
+    "aborted",
+];
+
+impl Condition {
+    /// Reads a condition.
+    ///
+    /// # Errors
+    /// What is wrong and what would be right.
+    pub(super) fn read(text: &str) -> Result<Self, String> {
+        let (is_negated, text) = match text.strip_prefix("not ") {
+            Some(rest) => (true, rest.trim()),
+            None => (false, text),
+        };
+        let (word, value) = text.split_once(' ').unwrap_or((text, ""));
+        let value = value.trim();
+        let bare = value.trim_matches('"').to_owned();
+        let what = match word {
+            "phase" if PHASES.contains(&value) => What::Phase(bare),
+            "phase" => return Err(format!("no phase `{value}`; there are: {}", PHASES.join(", "))),
+            "screen" => screen(value)?,
+            "coverage" => coverage(value)?,
+            "alarm" => What::Alarm(bare),
+            "text" if !bare.is_empty() => What::Text(bare),
+            _ => {
+                return Err(format!(
+                    "no condition `{text}`; write phase WORD, screen NAME, coverage >= PERCENT, alarm [TEXT] or \
+                     text TEXT, with or without not before it"
+                ));
+            }
+        };
+        Ok(Self { is_negated, what })
+    }
+
+    /// Whether it holds; `screen` draws the screen as text.
+    pub(super) fn holds(&self, model: &Model, screen: impl Fn(&Model) -> anyhow::Result<String>) -> bool {
+        self.is_negated != self.what.holds(model, screen)
+    }
+
+    /// What is so instead, as a clause.
+    pub(super) fn instead(&self, model: &Model) -> String {
+        match &self.what {
+            What::Phase(_) => format!("the phase is {}", phase(model.live.run.phase())),
+            What::Screen(_) => format!("the screen is {}", model.ui.screen.name().to_lowercase()),
+            What::Coverage(_) => format!("coverage is {:.1} %", coverage_percent(model)),
+            What::Alarm(_) => match model.live.run.alarms.worst() {
+                Some(alarm) => format!("the most severe alarm is: {}", alarm.text),
+                None => "there are no alarms".into(),
+            },
+            What::Text(_) => "the screen has other text".into(),
+        }
+    }
+}
+
+impl What {
+    fn holds(&self, model: &Model, screen: impl Fn(&Model) -> anyhow::Result<String>) -> bool {
+        match self {
+            Self::Phase(word) => match model.live.run.phase() {
+                Phase::Ended(outcome) => word == "ended" || word == outcome.word(),
+                other => word == phase(other),
+            },
+            Self::Screen(name) => *name == model.ui.screen.name().to_lowercase(),
+            Self::Coverage(percent) => coverage_percent(model) >= *percent,
+            Self::Alarm(text) => model.live.run.alarms.list().iter().any(|alarm| alarm.text.contains(text)),
+            Self::Text(text) => screen(model).is_ok_and(|shown| shown.contains(text)),
+        }
+    }
+}
+
+fn screen(name: &str) -> Result<What, String> {
+    let names = tui::model::Screen::ALL.map(|screen| screen.name().to_lowercase());
+    if names.iter().any(|known| known == name) {
+        return Ok(What::Screen(name.to_owned()));
+    }
+    Err(format!("no screen `{name}`; there are: {}", names.join(", ")))
+}
+
+fn coverage(text: &str) -> Result<What, String> {
+    let percent = text.strip_prefix(">=").and_then(|number| number.trim().parse().ok());
+    let percent = percent.filter(|percent| (0.0..=100.0).contains(percent));
+    percent.map(What::Coverage).ok_or_else(|| "write coverage >= PERCENT, such as coverage >= 95".into())
+}
+
+/// Scanned share of the reachable floor, percent.
+fn coverage_percent(model: &Model) -> f64 {
+    model.live.run.progress.as_ref().map_or(0.0, |progress| 100.0 * progress.covered_reachable)
+}
+
+fn phase(phase: &Phase) -> &'static str {
+    match phase {
+        Phase::Waiting => "waiting",
+        Phase::Running(_) => "running",
+        Phase::Held(_) => "held",
+        Phase::Ended(outcome) => outcome.word(),
+    }
+}
+
+impl fmt::Display for Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.is_negated { "not " } else { "" })?;
+        match &self.what {
+            What::Phase(word) => write!(f, "phase {word}"),
+            What::Screen(name) => write!(f, "screen {name}"),
+            What::Coverage(percent) => write!(f, "coverage >= {percent}"),
+            What::Alarm(text) if text.is_empty() => f.write_str("alarm"),
+            What::Alarm(text) => write!(f, "alarm {text:?}"),
+            What::Text(text) => write!(f, "text {text:?}"),
+        }
+    }
+}

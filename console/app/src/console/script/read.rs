@@ -1,0 +1,72 @@
+//! The lines of a script.
+
+use super::{Condition, Step};
+use tui::{Key, actions::duration_s};
+
+/// Time that a wait takes at most if the script does not say, seconds.
+const WITHIN_S: f64 = 60.0;
+
+/// Reads a script: its steps by the number of their line.
+///
+/// # Errors
+/// Each line that is none, by its number, and what is wrong with it.
+pub(super) fn steps(text: &str) -> Result<Vec<(usize, Step)>, Vec<(usize, String)>> {
+    let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
+    let lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    let (mut steps, mut wrong) = (Vec::new(), Vec::new());
+    for (number, line) in lines {
+        match step(line) {
+            Ok(step) => steps.push((number, step)),
+            Err(what) => wrong.push((number, what)),
+        }
+    }
+    if wrong.is_empty() { Ok(steps) } else { Err(wrong) }
+}
+
+fn step(line: &str) -> Result<Step, String> {
+    let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
+    let rest = rest.trim();
+    match word {
+        "wait" => wait(rest.strip_prefix("until ").ok_or("write wait until CONDITION [within DURATION]")?),
+        "assert" => Condition::read(rest).map(Step::Assert),
+        "key" => Key::named(rest).map(Step::Key).ok_or_else(|| format!("no key `{rest}`")),
+        _ => Ok(Step::Command(line.to_owned())),
+    }
+}
+
+fn wait(text: &str) -> Result<Step, String> {
+    let (condition, within_s) = match text.rsplit_once(" within ") {
+        Some((condition, duration)) => (condition, duration_s(duration.trim())?),
+        None => (text, WITHIN_S),
+    };
+    Ok(Step::Wait(Condition::read(condition.trim())?, within_s))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_line_is_read() {
+        let text = "# a comment\n\nspeed max\n  key enter\nwait until not phase running within 2m\n\
+                    wait until text \"position lost\"\nassert coverage >= 95.5\nassert alarm\nassert screen result\n";
+        let condition = |text| Condition::read(text).expect("a condition");
+        let expected = vec![
+            (3, Step::Command("speed max".into())),
+            (4, Step::Key(Key::Enter)),
+            (5, Step::Wait(condition("not phase running"), 120.0)),
+            (6, Step::Wait(condition("text \"position lost\""), WITHIN_S)),
+            (7, Step::Assert(condition("coverage >= 95.5"))),
+            (8, Step::Assert(condition("alarm"))),
+            (9, Step::Assert(condition("screen result"))),
+        ];
+        assert_eq!(steps(text), Ok(expected));
+    }
+
+    #[test]
+    fn every_wrong_line_is_named() {
+        let text = "wait for it\nassert phase walking\nkey hyper\nwait until alarm within soon\nassert coverage 95\n";
+        let lines: Vec<usize> = steps(text).expect_err("faults").into_iter().map(|(line, _)| line).collect();
+        assert_eq!(lines, [1, 2, 3, 4, 5]);
+    }
+}

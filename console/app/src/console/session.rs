@@ -1,0 +1,80 @@
+//! The model and what it is connected to; the same for the screen, for a script and for plain sentences.
+
+use super::{
+    desk::{DeskHandle, Request},
+    inbox::Inbox,
+    line::Current,
+};
+use std::time::{Duration, Instant, SystemTime};
+use tui::{Effect, Model, Msg, Times, is_typing, update};
+
+/// The model and what it is connected to.
+pub(super) struct Session {
+    pub model: Model,
+    inbox: Inbox,
+    engine: Current,
+    desk: DeskHandle,
+    began: Instant,
+}
+
+impl Session {
+    /// A session that begins now.
+    pub(super) fn new(model: Model, inbox: Inbox, (engine, desk): (Current, DeskHandle)) -> Self {
+        Self { model, inbox, engine, desk, began: Instant::now() }
+    }
+
+    /// The next message; waits until the given time, or without one for as long as it takes.
+    pub(super) fn next(&self, until: Option<Instant>) -> Option<Msg> {
+        self.inbox.next(until)
+    }
+
+    /// When the model next changes by itself, a little after the moment, so that the moment has passed then.
+    pub(super) fn wakes_at(&self) -> Option<Instant> {
+        let at_s = self.model.wakes_at_mono_s()?;
+        Some(self.began + Duration::from_secs_f64(at_s.max(0.0)) + Duration::from_millis(1))
+    }
+
+    /// Tells the model the time.
+    pub(super) fn update_time(&mut self) {
+        let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+        let now =
+            Times { mono_s: self.began.elapsed().as_secs_f64(), wall_unix_s: since_epoch.as_secs_f64() };
+        update(&mut self.model, Msg::Time(now));
+    }
+
+    /// Takes in a message and carries out what follows, but for what concerns the terminal: that is the answer.
+    pub(super) fn take(&mut self, msg: Msg) -> Vec<Effect> {
+        let effects = update(&mut self.model, msg);
+        if let Some(engine) = self.engine.get() {
+            engine.report(self.model.live.may_move(), is_typing(&self.model));
+        }
+        effects.into_iter().filter_map(|effect| self.carry_out(effect)).collect()
+    }
+
+    fn carry_out(&self, effect: Effect) -> Option<Effect> {
+        match effect {
+            Effect::Open { id, source, planner } => self.desk.request(Request::Open { id, source, planner }),
+            Effect::Check { needed_bytes } => self.desk.request(Request::Check { needed_bytes }),
+            Effect::Compare(choice) => self.desk.request(Request::Compare(choice)),
+            Effect::Forecast(choices) => self.desk.request(Request::Forecast(choices)),
+            Effect::StopForecasting => self.desk.request(Request::StopForecasting),
+            Effect::StopComparing => self.desk.request(Request::StopComparing),
+            Effect::Survey => self.desk.request(Request::Survey),
+            Effect::Look => self.desk.request(Request::Look),
+            Effect::Do(job) => self.desk.request(Request::Do(job)),
+            Effect::Order(order) => {
+                self.engine.get().into_iter().for_each(|engine| engine.order(order.clone()))
+            }
+            Effect::Speed(speed) => self.engine.get().into_iter().for_each(|engine| engine.speed(speed)),
+            Effect::Redraw | Effect::Bell | Effect::Mouse(_) | Effect::Suspend | Effect::Quit { .. } => {
+                return Some(effect);
+            }
+        }
+        None
+    }
+}
+
+/// Whether the scenario and the home screen are open, or the scenario cannot be opened.
+pub(super) fn is_open(model: &Model) -> bool {
+    !model.live.is_opening && model.home.found.is_some()
+}

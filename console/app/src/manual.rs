@@ -1,0 +1,41 @@
+//! The command line as shells complete it and as `man` shows it.
+
+use crate::{
+    cli::Cli,
+    failure::{COMPLETE, bad_input},
+    output::say,
+};
+use anyhow::Context;
+use clap::CommandFactory;
+use clap_complete::Shell;
+use std::process::ExitCode;
+
+/// `tankops completions`.
+pub(crate) fn completions(shell: Shell) -> anyhow::Result<ExitCode> {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "tankops", &mut text);
+    print(text)
+}
+
+/// `tankops man`.
+pub(crate) fn man(command: Option<&str>) -> anyhow::Result<ExitCode> {
+    let mut whole = Cli::command();
+    // Gives each command the options that all have.
+    whole.build();
+    let page = match command {
+        None => whole,
+        Some(name) => {
+            let found = whole.find_subcommand(name).filter(|command| !command.is_hide_set());
+            let found = found.ok_or_else(|| bad_input(format!("tankops has no command `{name}`")))?;
+            found.clone().display_name(format!("tankops-{name}"))
+        }
+    };
+    let mut text = Vec::new();
+    clap_mangen::Man::new(page).render(&mut text).context("writing the manual page")?;
+    print(text)
+}
+
+fn print(text: Vec<u8>) -> anyhow::Result<ExitCode> {
+    say(&String::from_utf8(text).context("reading what was generated")?)?;
+    Ok(ExitCode::from(COMPLETE))
+}

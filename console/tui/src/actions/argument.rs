@@ -1,0 +1,97 @@
+//! What commands take.
+
+/// What a value of a command is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A speed of the simulation.
+    Speed,
+    /// Id of a planner.
+    Planner,
+    /// A parameter of the planner and its value.
+    Parameter,
+    /// Name of a scenario.
+    Scenario,
+    /// Name of a past run, the unique beginning of one, or `latest`.
+    Run,
+    /// A layer of the map.
+    Layer,
+    /// Name of a station or an obstacle.
+    Place,
+    /// A severity of events.
+    Severity,
+    /// A theme.
+    Theme,
+    /// A screen.
+    Screen,
+    /// Any text.
+    Text,
+}
+
+/// What a command takes; the first one goes without its name, the others need it: `planner=navfn`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Arg {
+    /// Its name.
+    pub name: &'static str,
+    /// What its value is.
+    pub kind: Kind,
+    /// Whether the command does not run without it.
+    pub is_required: bool,
+}
+
+pub(super) const fn must(name: &'static str, kind: Kind) -> Arg {
+    Arg { name, kind, is_required: true }
+}
+
+pub(super) const fn may(name: &'static str, kind: Kind) -> Arg {
+    Arg { name, kind, is_required: false }
+}
+
+impl Arg {
+    /// How it is written.
+    pub(super) fn usage(&self, is_named: bool) -> String {
+        let value = match self.kind {
+            Kind::Parameter => "KEY=VALUE".to_owned(),
+            _ => self.name.to_uppercase(),
+        };
+        let value = if is_named { format!("{}={value}", self.name) } else { value };
+        if self.is_required { value } else { format!("[{value}]") }
+    }
+}
+
+/// Reads a span of time such as `20s`, `15m`, `1h30m`; seconds.
+///
+/// # Errors
+/// How it is written.
+pub fn duration_s(text: &str) -> Result<f64, String> {
+    let wrong = || format!("no duration `{text}`; write 20s, 15m or 1h30m");
+    let mut total_s = 0.0;
+    let mut rest = text;
+    while !rest.is_empty() {
+        let end = rest.find(|letter: char| !letter.is_ascii_digit() && letter != '.').ok_or_else(wrong)?;
+        let number: f64 = rest[..end].parse().map_err(|_| wrong())?;
+        let unit_s = match rest.get(end..=end).unwrap_or_default() {
+            "s" => 1.0,
+            "m" => 60.0,
+            "h" => 3600.0,
+            _ => return Err(wrong()),
+        };
+        total_s += number * unit_s;
+        rest = &rest[end + 1..];
+    }
+    if total_s > 0.0 { Ok(total_s) } else { Err(wrong()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_have_units() {
+        for (text, seconds) in [("20s", 20.0), ("15m", 900.0), ("1h30m", 5400.0), ("0.5s", 0.5)] {
+            assert_eq!(duration_s(text), Ok(seconds), "{text}");
+        }
+        for wrong in ["", "20", "s", "1d", "-5s", "0s", "1.2.3s", "5\u{e9}"] {
+            assert!(duration_s(wrong).is_err(), "{wrong}");
+        }
+    }
+}

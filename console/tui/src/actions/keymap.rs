@@ -1,0 +1,289 @@
+//! Which keys run which actions: the table's, a preset's, the operator's.
+
+mod presets;
+
+pub use presets::PRESETS;
+
+use super::{ACTIONS, Action, ActionId, Risk, context::TOGETHER, find};
+use crate::keys::Key;
+use presets::Changes;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Which keys run which actions, and short names for command lines.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Keymap {
+    /// Keys by action, where they are not the table's.
+    changed: BTreeMap<String, Vec<Key>>,
+    /// Command lines by their short names.
+    pub aliases: BTreeMap<String, String>,
+}
+
+/// An action and the keys that the operator wants for it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Binding {
+    /// Name of the action.
+    pub action: String,
+    /// Its keys; none at all unbinds it.
+    pub keys: Vec<Key>,
+}
+
+/// Why a binding is not taken, or what to know about it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Objection {
+    /// Which binding, by its place in the list.
+    pub binding: usize,
+    /// Which of its keys, by its place in the binding; `None` for the binding as a whole.
+    pub key: Option<usize>,
+    /// What is wrong, as a clause.
+    pub what: String,
+    /// The binding that took the key before, by its place in the list.
+    pub other: Option<usize>,
+    /// What happens instead, as a clause.
+    pub instead: String,
+}
+
+impl Keymap {
+    /// The keys of an action.
+    pub fn of<'a>(&'a self, action: &'a Action) -> &'a [Key] {
+        self.changed.get(action.name).map_or(action.keys, Vec::as_slice)
+    }
+
+    /// The keys of an action as text.
+    pub fn text(&self, action: &Action) -> String {
+        self.of(action).iter().map(Key::to_string).collect::<Vec<_>>().join(" ")
+    }
+
+    /// A sentence with the key of each action that it names as `<end>`; one without a key is called by its command.
+    pub fn spelled(&self, sentence: &str) -> String {
+        let mut text = sentence.to_owned();
+        for action in ACTIONS.iter().filter(|_| sentence.contains('<')) {
+            let key = self.of(action).first().map_or_else(|| format!(":{}", action.name), Key::to_string);
+            text = text.replace(&format!("<{}>", action.name), &key);
+        }
+        text
+    }
+
+    /// A preset with the operator's own keys. What cannot be taken is left out, and its action keeps the preset's keys.
+    pub fn new(preset: Changes, bindings: &[Binding]) -> (Self, Vec<Objection>) {
+        let base = Self::of_bindings(preset, &[]);
+        let mut objections: Vec<Objection> = Vec::new();
+        loop {
+            let is_out = |index| objections.iter().any(|objection: &Objection| objection.binding == index);
+            let taken: Vec<(usize, &Binding)> =
+                bindings.iter().enumerate().filter(|(index, _)| !is_out(*index)).collect();
+            let map = Self::of_bindings(preset, &taken);
+            // One at a time: an action that keeps its keys may be in the way of another binding.
+            match taken.iter().find_map(|(index, binding)| map.objection(&base, *index, binding, &taken)) {
+                Some(objection) => objections.push(objection),
+                None => return (map, objections),
+            }
+        }
+    }
+
+    fn of_bindings(preset: Changes, taken: &[(usize, &Binding)]) -> Self {
+        let preset = preset.iter().map(|(name, keys)| ((*name).to_owned(), keys.to_vec()));
+        let own = taken.iter().map(|(_, binding)| (binding.action.clone(), with_fixed(binding)));
+        Self { changed: preset.chain(own).collect(), aliases: BTreeMap::new() }
+    }
+
+    fn objection(
+        &self,
+        base: &Self,
+        index: usize,
+        binding: &Binding,
+        taken: &[(usize, &Binding)],
+    ) -> Option<Objection> {
+        let objection = |key, what, other| Objection {
+            binding: index,
+            key,
+            what,
+            other,
+            instead: format!("{} keeps {}", binding.action, base.kept(&binding.action)),
+        };
+        let Some(action) = ACTIONS.iter().find(|action| action.name == binding.action) else {
+            let known = ACTIONS.iter().map(|action| action.name);
+            let remedy = find::nearest(&binding.action, known).map(|name| format!("did you mean {name}?"));
+            let instead = remedy.unwrap_or_else(|| "see keys.md".into());
+            return Some(Objection {
+                instead,
+                ..objection(None, format!("no action {:?}", binding.action), None)
+            });
+        };
+        binding.keys.iter().enumerate().find_map(|(at, key)| {
+            if action.risk != Risk::Safe && !is_deliberate(*key) {
+                let what = format!("{:?} is too easy to press for what {}", key.name(), deed(action.risk));
+                return Some(objection(Some(at), what, None));
+            }
+            let (other, screens) = self.holder(action, *key)?;
+            let by = taken.iter().find(|(_, other_binding)| other_binding.action == other.name);
+            let by = by.map(|(place, _)| *place);
+            // Of two bindings the later one gives way.
+            if by.is_some_and(|by| by > index) {
+                return None;
+            }
+            let what = format!("{:?} is already {}{}", key.name(), other.name, in_brackets(&screens));
+            Some(objection(Some(at), what, by))
+        })
+    }
+
+    /// The keys of an action, in quotes.
+    fn kept(&self, name: &str) -> String {
+        let action = ACTIONS.iter().find(|action| action.name == name);
+        let keys = action.map(|action| self.of(action)).unwrap_or_default();
+        let names: Vec<String> = keys.iter().map(|key| format!("{:?}", key.name())).collect();
+        if names.is_empty() { "no key".into() } else { names.join(", ") }
+    }
+
+    /// Another action that a key runs where this one works too, and the screens on which both do.
+    fn holder(&self, action: &Action, key: Key) -> Option<(&'static Action, Vec<&'static str>)> {
+        let rows = || ACTIONS.iter().filter(|row| row.id == action.id);
+        let mut found: Option<(&Action, Vec<&str>)> = None;
+        for contexts in TOGETHER.iter().filter(|contexts| rows().any(|row| row.works_in(contexts))) {
+            let other = ACTIONS.iter().find(|other| {
+                other.id != action.id && other.works_in(contexts) && self.of(other).contains(&key)
+            });
+            let Some(other) = other else { continue };
+            let (_, screens) = found.get_or_insert((other, Vec::new()));
+            for screen in contexts.iter().filter_map(|context| context.screen()) {
+                if !screens.contains(&screen) {
+                    screens.push(screen);
+                }
+            }
+        }
+        found
+    }
+}
+
+fn in_brackets(screens: &[&str]) -> String {
+    // On most screens is everywhere.
+    if screens.is_empty() || screens.len() > 4 { String::new() } else { format!(" ({})", screens.join(", ")) }
+}
+
+fn deed(risk: Risk) -> &'static str {
+    match risk {
+        Risk::Safe => "does no harm",
+        Risk::Moves => "moves the robot; take a capital letter, F key or Ctrl",
+        Risk::Destroys => "ends the mission; take a capital letter, F key or Ctrl",
+    }
+}
+
+/// Whether a key is hardly pressed by mistake.
+fn is_deliberate(key: Key) -> bool {
+    match key {
+        Key::Char(letter) => !letter.is_lowercase() && letter != ' ',
+        Key::Ctrl(_) | Key::F(_) => true,
+        _ => false,
+    }
+}
+
+/// The keys of a binding, after those that nobody can take from its action.
+fn with_fixed(binding: &Binding) -> Vec<Key> {
+    let is_fixed = |action: &&Action| {
+        use ActionId::{Accept, Cancel, Commands, Hold, Interrupt};
+        matches!(action.id, Accept | Cancel | Commands | Hold | Interrupt) && action.name == binding.action
+    };
+    let fixed = ACTIONS.iter().find(is_fixed).and_then(|action| action.keys.first());
+    let own = binding.keys.iter().filter(|key| Some(*key) != fixed);
+    fixed.into_iter().chain(own).copied().collect()
+}
+
+/// What terminal multiplexers take for themselves: a key that may never arrive.
+pub fn taken_by(key: Key) -> Option<&'static str> {
+    match key {
+        Key::Ctrl('a') => Some("screen"),
+        Key::Ctrl('b') => Some("tmux"),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bound(pairs: &[(&str, &[Key])]) -> (Keymap, Vec<String>) {
+        let bindings: Vec<Binding> = pairs
+            .iter()
+            .map(|(action, keys)| Binding { action: (*action).to_owned(), keys: keys.to_vec() })
+            .collect();
+        let (map, objections) = Keymap::new(&[], &bindings);
+        let said = objections.iter().map(|o| format!("{}: {}; {}", o.binding, o.what, o.instead));
+        (map, said.collect())
+    }
+
+    fn keys(map: &Keymap, name: &str) -> Vec<Key> {
+        map.of(ACTIONS.iter().find(|action| action.name == name).expect("an action")).to_vec()
+    }
+
+    #[test]
+    fn no_preset_gives_a_key_to_two_actions() {
+        for (name, changes) in PRESETS {
+            let as_bindings: Vec<Binding> = changes
+                .iter()
+                .map(|(action, keys)| Binding { action: (*action).to_owned(), keys: keys.to_vec() })
+                .collect();
+            assert_eq!(Keymap::new(&[], &as_bindings).1, [], "{name}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_bound_says_why_and_changes_nothing() {
+        let f = Key::Char('f');
+        let cases: [(&[(&str, &[Key])], &str); 6] = [
+            (&[("zoom-in", &[f])], "0: \"f\" is already follow (Plan, Mission, Result); zoom-in keeps \"z\""),
+            (
+                &[("zoom-in", &[Key::F(5)]), ("zoom-out", &[Key::F(5)])],
+                "1: \"F5\" is already zoom-in (Plan, Mission, Result); zoom-out keeps \"Z\"",
+            ),
+            (&[("zoomin", &[f])], "0: no action \"zoomin\"; did you mean zoom-in?"),
+            (
+                &[("start", &[Key::Char('y')])],
+                "0: \"y\" is too easy to press for what moves the robot; take a capital letter, F key or Ctrl; \
+                 start keeps \"S\"",
+            ),
+            (
+                &[("end", &[Key::Char(' ')])],
+                "0: \"space\" is too easy to press for what ends the mission; take a capital letter, F key or \
+                 Ctrl; end keeps \"X\"",
+            ),
+            (&[("redraw", &[Key::Ctrl('c')])], "0: \"Ctrl-C\" is already interrupt; redraw keeps \"Ctrl-L\""),
+        ];
+        for (pairs, said) in cases {
+            assert_eq!(bound(pairs).1, [said]);
+        }
+    }
+
+    #[test]
+    fn sentences_name_the_keys_that_work() {
+        let (map, _) = bound(&[("end", &[Key::F(9)]), ("zoom-in", &[])]);
+        let sentence = "<planner>: change planner, <end>: end mission, <zoom-in>: zoom in, 3 < 4";
+        assert_eq!(map.spelled(sentence), "P: change planner, F9: end mission, :zoom-in: zoom in, 3 < 4");
+    }
+
+    #[test]
+    fn keys_may_be_exchanged() {
+        let (map, said) = bound(&[("zoom-in", &[Key::Char('f')]), ("follow", &[Key::Char('z')])]);
+        assert_eq!(said, [""; 0]);
+        assert_eq!(
+            (keys(&map, "zoom-in"), keys(&map, "follow")),
+            (vec![Key::Char('f')], vec![Key::Char('z')])
+        );
+    }
+
+    #[test]
+    fn an_action_that_keeps_its_key_keeps_it_from_others() {
+        let (map, said) = bound(&[("zoom-in", &[Key::Char('f')]), ("follow", &[Key::Char('a')])]);
+        assert_eq!(said.len(), 2, "{said:?}");
+        assert_eq!(map, bound(&[]).0);
+    }
+
+    #[test]
+    fn the_keys_to_stop_to_agree_and_to_cancel_stay() {
+        let (map, said) =
+            bound(&[("hold", &[Key::F(12)]), ("interrupt", &[]), ("accept", &[]), ("cancel", &[])]);
+        assert_eq!(said, [""; 0]);
+        assert_eq!(keys(&map, "hold"), [Key::Char(' '), Key::F(12)]);
+        assert_eq!(keys(&map, "interrupt"), [Key::Ctrl('c')]);
+        assert_eq!((keys(&map, "accept"), keys(&map, "cancel")), (vec![Key::Enter], vec![Key::Esc]));
+    }
+}

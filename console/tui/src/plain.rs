@@ -1,0 +1,70 @@
+//! The same console in sentences, one a line: for screen readers and logs.
+
+use crate::model::{Entry, Model, Screen};
+use crate::view::{log_line, question, standing};
+
+/// What was said last.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Said {
+    screen: Option<Screen>,
+    entry: Option<Entry>,
+    notice: Option<String>,
+    question: Option<String>,
+    standing: String,
+    tenths: u8,
+}
+
+impl Said {
+    /// What has changed since, a sentence each.
+    pub fn next(&mut self, model: &Model) -> Vec<String> {
+        let screen = model.ui.screen;
+        let mut lines = Vec::new();
+        if self.screen.replace(screen) != Some(screen) {
+            lines.push(format!("Screen {}: {}.", screen.digit(), screen.name()));
+        }
+        let entries = self.entries(model);
+        lines.extend(entries.iter().map(log_line));
+        let notice = model.notice().map(|notice| notice.text.clone());
+        let is_said = |text: &String| entries.iter().any(|entry| entry.text == *text);
+        lines.extend(newly(&mut self.notice, notice).filter(|text| !is_said(text)));
+        lines.extend(newly(&mut self.question, question(model)));
+        let standing = standing(model);
+        if standing != self.standing {
+            lines.push(standing.clone());
+            self.standing = standing;
+        }
+        lines.extend(self.coverage(model));
+        lines
+    }
+
+    /// What was logged since, the oldest first.
+    fn entries(&mut self, model: &Model) -> Vec<Entry> {
+        let is_same = |entry: &Entry, last: &Entry| {
+            (entry.severity, &entry.source, &entry.text) == (last.severity, &last.source, &last.text)
+        };
+        let all = model.live.run.log.shown(mission::Severity::Info, "");
+        let new = all.take_while(|entry| !self.entry.as_ref().is_some_and(|last| is_same(entry, last)));
+        let mut new: Vec<Entry> = new.cloned().collect();
+        new.reverse();
+        if let Some(last) = new.last() {
+            self.entry = Some(last.clone());
+        }
+        new
+    }
+
+    /// Every tenth of the floor is worth a sentence.
+    fn coverage(&mut self, model: &Model) -> Option<String> {
+        let scanned = model.live.run.progress.as_ref()?.covered_reachable;
+        let tenths = (10.0 * scanned).floor().clamp(0.0, 10.0) as u8;
+        let is_more = tenths > self.tenths;
+        self.tenths = tenths;
+        is_more.then(|| format!("{} % of reachable floor scanned.", 10 * u32::from(tenths)))
+    }
+}
+
+/// Takes in what is to be said; what is new.
+fn newly(last: &mut Option<String>, now: Option<String>) -> impl Iterator<Item = String> + use<> {
+    let is_new = *last != now;
+    last.clone_from(&now);
+    now.filter(|_| is_new).into_iter()
+}

@@ -1,0 +1,129 @@
+//! The colours of the themes.
+
+use super::{Role, ThemeName};
+
+/// Red, green and blue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Rgb(pub u8, pub u8, pub u8);
+
+const fn rgb_of(hex: u32) -> Rgb {
+    Rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
+}
+
+/// The colour of a role.
+pub(super) fn rgb(role: Role, name: ThemeName) -> Rgb {
+    // Of the dark, the light and the high-contrast theme.
+    let [dark, light, contrast] = match role {
+        Role::Text | Role::Title | Role::Selected | Role::Wall | Role::Robot => {
+            [0xd8_dee4, 0x1f_2328, 0xff_ffff]
+        }
+        Role::Dim | Role::Border | Role::Stale => [0x8b_98a5, 0x59_636e, 0xc8_c8c8],
+        Role::Good | Role::Run | Role::Pull => [0x6c_c070, 0x1a_7f37, 0x00_ff66],
+        Role::Watch | Role::Key | Role::Focus | Role::Plate => [0x5c_c8d8, 0x0b_6e8a, 0x00_e5ff],
+        Role::Warn | Role::Hold | Role::Confirm => [0xe0_b040, 0x8a_5a00, 0xff_d000],
+        Role::Crit | Role::Push | Role::Missed => [0xff_6b60, 0xc0_1c28, 0xff_8a80],
+        Role::Scanned => [0x1a_4a68, 0xb6_dcf2, 0x00_3a94],
+        Role::Overlap => [0x2e_749c, 0x7f_bde6, 0x2a_6ad0],
+        Role::Unreachable | Role::Margin => [0x6c_6c6c, 0x9a_9a9a, 0x80_8080],
+        Role::Ghost => [0xc7_9bff, 0x6a_3fb5, 0xd9_b3ff],
+        Role::Partly => [0x26_323a, 0xdf_ebf2, 0x00_1d4a],
+        Role::Trail | Role::Station => [0x82_cdeb, 0x0a_5a8a, 0x7f_e8ff],
+        Role::Plan | Role::Target => [0xd6_af5f, 0x7d_4e00, 0xff_d000],
+        Role::Tether => [0xfa_faeb, 0x00_0000, 0xff_ffff],
+        Role::Obstacle | Role::NoGo => [0xf0_8064, 0xa3_3a1c, 0xff_9a7a],
+        Role::Found | Role::Drawn => [0xf0_82dc, 0x9c_1f8a, 0xff_7af0],
+    };
+    rgb_of(match name {
+        ThemeName::Dark => dark,
+        ThemeName::Light => light,
+        ThemeName::Contrast => contrast,
+    })
+}
+
+/// Levels of the cube of 6 by 6 by 6 colours in the palette of 256.
+const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
+
+/// The nearest colour of the palette of 256, of its cube and its greys.
+pub(super) fn nearest_indexed(colour: Rgb) -> u8 {
+    let cube = (0..216_u8).map(|at| {
+        let level = |digit: u8| LEVELS[usize::from(digit % 6)];
+        (16 + at, Rgb(level(at / 36), level(at / 6), level(at)))
+    });
+    let greys = (0..24_u8).map(|at| (232 + at, Rgb(8 + 10 * at, 8 + 10 * at, 8 + 10 * at)));
+    let all = cube.chain(greys);
+    all.min_by_key(|(_, known)| distance(*known, colour)).map_or(15, |(index, _)| index)
+}
+
+fn distance(one: Rgb, other: Rgb) -> u32 {
+    let square = |one: u8, other: u8| u32::from(one.abs_diff(other)).pow(2);
+    square(one.0, other.0) + square(one.1, other.1) + square(one.2, other.2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The contrast of two colours, 1 to 21 (WCAG 2.2, relative luminance).
+    fn contrast(one: Rgb, other: Rgb) -> f64 {
+        let (one, other) = (luminance(one), luminance(other));
+        (one.max(other) + 0.05) / (one.min(other) + 0.05)
+    }
+
+    fn luminance(Rgb(red, green, blue): Rgb) -> f64 {
+        let linear = |part: u8| {
+            let part = f64::from(part) / 255.0;
+            if part <= 0.040_45 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * linear(red) + 0.7152 * linear(green) + 0.0722 * linear(blue)
+    }
+
+    /// The lightest and the darkest background for which a theme is made.
+    fn backgrounds(name: ThemeName) -> [Rgb; 2] {
+        match name {
+            ThemeName::Dark => [rgb_of(0), rgb_of(0x28_2c34)],
+            ThemeName::Light => [rgb_of(0xff_ffff), rgb_of(0xfd_f6e3)],
+            ThemeName::Contrast => [rgb_of(0), rgb_of(0)],
+        }
+    }
+
+    #[test]
+    fn the_contrast_of_black_and_white_is_21() {
+        assert!((contrast(rgb_of(0), rgb_of(0xff_ffff)) - 21.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn text_can_be_read_on_every_background_of_its_theme() {
+        for name in ThemeName::ALL {
+            for role in Role::ALL.into_iter().filter(|role| !is_fill(*role)) {
+                for background in backgrounds(name) {
+                    let contrast = contrast(rgb(role, name), background);
+                    assert!(contrast >= 4.5, "{role:?} in {name:?}: {contrast:.2} on {background:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn lines_can_be_seen_on_scanned_floor() {
+        for name in ThemeName::ALL {
+            for role in [Role::Trail, Role::Plan, Role::Tether, Role::Obstacle, Role::Found, Role::Ghost] {
+                let contrast = contrast(rgb(role, name), rgb(Role::Scanned, name));
+                assert!(contrast >= 3.4, "{role:?} in {name:?}: {contrast:.2}");
+            }
+        }
+    }
+
+    fn is_fill(role: Role) -> bool {
+        matches!(
+            role,
+            Role::Scanned | Role::Partly | Role::Overlap | Role::Unreachable | Role::Margin | Role::Missed
+        )
+    }
+
+    #[test]
+    fn the_palette_of_256_has_something_near() {
+        for (hex, index) in [(0x00_0000, 16), (0xff_ffff, 231), (0x8b_98a5, 246), (0x1a_4a68, 23)] {
+            assert_eq!(nearest_indexed(rgb_of(hex)), index, "{hex:06x}");
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Command lines: a command and its values, read and run.
+
+pub(super) mod line;
+mod value;
+
+use super::act::{act, set_speed};
+use super::go;
+use super::message::Effect;
+use super::offer::{accepted, offered, refuse};
+use super::overlay;
+use super::send::send;
+use super::typing;
+use crate::actions::{Action, ActionId, Arg, find};
+use crate::model::{
+    Model,
+    palette::LineFault,
+    ui::{MapView, Purpose},
+};
+use line::Word;
+use mission::{Order, Parameters, PlannerChoice};
+use value::Value;
+
+/// A command with its values, checked.
+pub(super) struct Command {
+    action: &'static Action,
+    values: Vec<Value>,
+}
+
+/// Reads a command line; a short name of the operator's stands for its line.
+///
+/// # Errors
+/// Which part of the line is wrong, and what would be right.
+pub(super) fn read(model: &Model, text: &str) -> Result<Command, LineFault> {
+    let first = text.split(' ').next().unwrap_or_default();
+    if let Some(line) = model.console.keys.aliases.get(first) {
+        // Aliases stand for commands, not for aliases; what follows one belongs to its command.
+        let line = format!("{line}{}", &text[first.len()..]);
+        return read_line(model, &line).map_err(|fault| LineFault { at: 0..text.len(), ..fault });
+    }
+    read_line(model, text)
+}
+
+fn read_line(model: &Model, text: &str) -> Result<Command, LineFault> {
+    let words = line::words(text)?;
+    let (name, rest) = words.split_first().ok_or(LineFault { at: 0..0, what: "no command".into() })?;
+    let unknown = || LineFault { at: name.at.clone(), what: format!("no command `{}`", name.text) };
+    let action = find::named(&name.text).ok_or_else(unknown)?;
+    let mut values = Vec::new();
+    for (index, word) in rest.iter().enumerate() {
+        let (arg, text) = arg_of(action, index, word)?;
+        let value = value::read(model, arg.kind, text);
+        values.push(value.map_err(|what| LineFault { at: word.at.clone(), what })?);
+    }
+    if values.is_empty() && !action.runs_alone() {
+        return Err(LineFault { at: text.len()..text.len() + 1, what: format!("usage: {}", action.usage()) });
+    }
+    Ok(Command { action, values })
+}
+
+/// Which argument a word is, and its value: the first one goes without a name.
+fn arg_of<'a>(
+    action: &'static Action,
+    index: usize,
+    word: &'a Word,
+) -> Result<(&'static Arg, &'a str), LineFault> {
+    let fault = |what| Err(LineFault { at: word.at.clone(), what });
+    if index == 0
+        && let Some(arg) = action.args.first()
+    {
+        return Ok((arg, &word.text));
+    }
+    let named = word.text.split_once('=');
+    match named.and_then(|(name, text)| Some((action.args.iter().find(|arg| arg.name == name)?, text))) {
+        Some(found) => Ok(found),
+        None if action.args.is_empty() => fault(format!("{} takes no value", action.name)),
+        None => fault(format!("usage: {}", action.usage())),
+    }
+}
+
+/// The values that complete the word at the end of a line; `None` as long as the command itself is being typed.
+pub(super) fn candidates(model: &Model, before: &str) -> Option<Vec<String>> {
+    let begin = line::word_begin(before);
+    let mut words = before[..begin].split_whitespace();
+    let action = find::named(words.next()?).filter(|action| !action.args.is_empty())?;
+    let typed = before[begin..].trim_start_matches('"');
+    let index = words.count();
+    let all = match (index, action.args) {
+        (0, [arg, ..]) => value::candidates(model, arg.kind, typed),
+        (_, [_, others @ ..]) => others
+            .iter()
+            .flat_map(|arg| {
+                let values = value::candidates(model, arg.kind, typed);
+                values.into_iter().map(move |value| format!("{}={value}", arg.name))
+            })
+            .collect(),
+        _ => Vec::new(),
+    };
+    let small = typed.to_lowercase();
+    let fits = |value: &String| value.trim_start_matches('"').to_lowercase().starts_with(&small);
+    Some(all.into_iter().filter(fits).collect())
+}
+
+/// Runs a command.
+pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec<Effect> {
+    let mut values = values.into_iter();
+    let Some(first) = values.next() else { return act(model, action.id) };
+    let is_about_a_named_run = matches!(first, Value::Run(_));
+    if !is_about_a_named_run && let Err(why) = offered(model, action.id) {
+        return refuse(model, why);
+    }
+    match first {
+        Value::Speed(speed) => return set_speed(model, speed),
+        Value::Planner(planner) => {
+            let purpose = if action.id == ActionId::Compare { Purpose::Compare } else { Purpose::Drive };
+            return overlay::choose(model, purpose, planner);
+        }
+        Value::Parameter { key, value } => return set_parameter(model, Order::SetParameter { key, value }),
+        Value::Scenario(source) => {
+            let planner = values.find_map(|value| match value {
+                Value::Planner(info) => Some(PlannerChoice { id: info.id, parameters: Parameters::new() }),
+                _ => None,
+            });
+            return go::open(model, source, planner);
+        }
+        Value::Run(run) => return go::begin_on(model, action.id, run),
+        Value::Screen(id) => return act(model, id),
+        Value::Layer(layer) => model.ui.layers.toggle(layer),
+        Value::Place(offset) => model.ui.map = MapView { follow: false, offset, ..model.ui.map },
+        Value::Severity(least) => (model.ui.least, model.ui.scroll) = (least, 0),
+        Value::Theme(theme) => model.ui.theme = theme,
+        Value::Text(text) => typing::filter(model, &text),
+    }
+    Vec::new()
+}
+
+fn set_parameter(model: &mut Model, order: Order) -> Vec<Effect> {
+    match accepted(model, &order) {
+        Ok(()) => send(model, order),
+        Err(why) => refuse(model, why),
+    }
+}

@@ -1,0 +1,195 @@
+//! The values of commands: what there is to choose from, and what a typed word means.
+
+use crate::actions::{ActionId, Kind, find};
+use crate::model::ui::MapLayer;
+use crate::model::{Model, Screen, Source, Speed, parameter};
+use crate::theme::ThemeName;
+use mission::{ParamKind, ParamValue, PlannerInfo, Severity};
+use world::{Point, Vector};
+
+/// A value, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::update) enum Value {
+    /// A speed of the simulation.
+    Speed(Speed),
+    /// A planner that was found.
+    Planner(PlannerInfo),
+    /// A parameter of the planner and its value.
+    Parameter { key: String, value: ParamValue },
+    /// A scenario.
+    Scenario(Source),
+    /// Name of a past run.
+    Run(String),
+    /// A layer of the map.
+    Layer(MapLayer),
+    /// From the middle of the tank to a place, metres.
+    Place(Vector),
+    /// A severity of events.
+    Severity(Severity),
+    /// A theme.
+    Theme(ThemeName),
+    /// What shows a screen.
+    Screen(ActionId),
+    /// Any text.
+    Text(String),
+}
+
+/// What there is to choose from; `typed` is the beginning of the word.
+pub(super) fn candidates(model: &Model, kind: Kind, typed: &str) -> Vec<String> {
+    let all: Vec<String> = match kind {
+        Kind::Speed => speeds(),
+        Kind::Planner => model.console.planners.iter().map(|planner| planner.id.clone()).collect(),
+        Kind::Parameter => parameters(model, typed),
+        Kind::Scenario => scenarios(model).map(|(name, _)| name.to_owned()).collect(),
+        Kind::Run => std::iter::once("latest").chain(runs(model)).map(str::to_owned).collect(),
+        Kind::Layer => MapLayer::ALL.into_iter().map(word_of).collect(),
+        Kind::Place => places(model).into_iter().map(|(name, _)| name).collect(),
+        Kind::Severity => SEVERITIES.map(|(name, _)| name.to_owned()).into(),
+        Kind::Theme => ThemeName::ALL.map(|theme| theme.name().to_owned()).into(),
+        Kind::Screen => Screen::ALL.map(|screen| screen.name().to_lowercase()).into(),
+        Kind::Text => Vec::new(),
+    };
+    all.into_iter().map(|value| if value.contains(' ') { format!("\"{value}\"") } else { value }).collect()
+}
+
+/// Reads a typed word.
+///
+/// # Errors
+/// What is wrong with it and what would be right, as a clause.
+pub(super) fn read(model: &Model, kind: Kind, text: &str) -> Result<Value, String> {
+    match kind {
+        Kind::Speed => Speed::parse(text).map(Value::Speed),
+        Kind::Parameter => read_parameter(model, text),
+        Kind::Run => read_run(model, text).map(Value::Run),
+        Kind::Text => Ok(Value::Text(text.to_owned())),
+        _ => {
+            named(model, kind, text).ok_or_else(|| wrong(&text_of(kind), text, &candidates(model, kind, "")))
+        }
+    }
+}
+
+/// A value that has a name.
+fn named(model: &Model, kind: Kind, text: &str) -> Option<Value> {
+    match kind {
+        Kind::Planner => {
+            let planner = model.console.planners.iter().find(|planner| planner.id == text)?;
+            Some(Value::Planner(planner.clone()))
+        }
+        Kind::Scenario => scenarios(model)
+            .find(|(name, _)| *name == text)
+            .map(|(_, source)| Value::Scenario(source.clone())),
+        Kind::Layer => MapLayer::ALL.into_iter().find(|layer| word_of(*layer) == text).map(Value::Layer),
+        Kind::Place => {
+            places(model).into_iter().find(|(name, _)| name == text).map(|(_, at)| Value::Place(at))
+        }
+        Kind::Severity => {
+            SEVERITIES.iter().find(|(name, _)| *name == text).map(|(_, severity)| Value::Severity(*severity))
+        }
+        Kind::Theme => ThemeName::named(text).map(Value::Theme),
+        Kind::Screen => {
+            let screen = Screen::ALL.into_iter().find(|screen| screen.name().to_lowercase() == text)?;
+            find::named(&screen.name().to_lowercase()).map(|action| Value::Screen(action.id))
+        }
+        Kind::Speed | Kind::Parameter | Kind::Run | Kind::Text => None,
+    }
+}
+
+/// Severities by name.
+const SEVERITIES: [(&str, Severity); 4] = [
+    ("info", Severity::Info),
+    ("watch", Severity::Watch),
+    ("warn", Severity::Warn),
+    ("crit", Severity::Crit),
+];
+
+fn text_of(kind: Kind) -> String {
+    format!("{kind:?}").to_lowercase()
+}
+
+/// That there is no such thing, and the nearest or all there are.
+fn wrong(what: &str, text: &str, known: &[String]) -> String {
+    let none = format!("no {what} `{text}`");
+    match find::nearest(text, known.iter().map(String::as_str)) {
+        Some(near) => format!("{none}; did you mean {near}?"),
+        None if known.is_empty() => format!("{none}; there is none"),
+        None => format!("{none}; there are: {}", known.join(", ")),
+    }
+}
+
+fn speeds() -> Vec<String> {
+    let mut all = vec![Speed::Times(Speed::SLOWEST)];
+    while let Some(next) = all.last().and_then(|speed| speed.stepped(true)) {
+        all.push(next);
+    }
+    let text = |speed: &Speed| match speed {
+        Speed::Times(factor) => factor.to_string(),
+        Speed::Max => "max".into(),
+    };
+    all.iter().map(text).collect()
+}
+
+/// Names of parameters, or, behind the name and `=`, its values as far as they are words.
+fn parameters(model: &Model, typed: &str) -> Vec<String> {
+    let all = model.planner().map(|info| info.parameters.as_slice()).unwrap_or_default();
+    let Some((key, _)) = typed.split_once('=') else {
+        return all.iter().map(|info| format!("{}=", info.key)).collect();
+    };
+    let words = match all.iter().find(|info| info.key == key).map(|info| &info.kind) {
+        Some(ParamKind::Choice { options, .. }) => options.clone(),
+        Some(ParamKind::Flag { .. }) => vec!["true".into(), "false".into()],
+        _ => Vec::new(),
+    };
+    words.into_iter().map(|word| format!("{key}={word}")).collect()
+}
+
+fn read_parameter(model: &Model, text: &str) -> Result<Value, String> {
+    let all = model.planner().map(|info| info.parameters.as_slice()).unwrap_or_default();
+    let (key, value) = text.split_once('=').ok_or("write KEY=VALUE, such as k_rep=2")?;
+    let unknown = || {
+        let keys: Vec<String> = all.iter().map(|info| info.key.clone()).collect();
+        wrong("parameter", key, &keys)
+    };
+    let info = all.iter().find(|info| info.key == key).ok_or_else(unknown)?;
+    Ok(Value::Parameter { key: key.to_owned(), value: parameter::parse(info, value)? })
+}
+
+/// The scenarios that can be opened.
+fn scenarios(model: &Model) -> impl Iterator<Item = (&str, &Source)> {
+    let all = model.home.found.iter().flat_map(|found| &found.scenarios);
+    all.filter(|entry| entry.problem.is_none()).map(|entry| (entry.name.as_str(), &entry.source))
+}
+
+/// Past runs, the newest first.
+fn runs(model: &Model) -> impl Iterator<Item = &str> {
+    model.home.found.iter().flat_map(|found| &found.runs).map(|run| run.name.as_str())
+}
+
+fn read_run(model: &Model, text: &str) -> Result<String, String> {
+    if text == "latest" {
+        // The home screen may not have seen the run that has just ended.
+        let ended = model.live.result.as_ref().and_then(|result| result.name.as_deref());
+        let latest = ended.or_else(|| runs(model).next());
+        return latest.map(str::to_owned).ok_or_else(|| "there are no runs".into());
+    }
+    let fitting: Vec<&str> = runs(model).filter(|name| name.starts_with(text)).collect();
+    match fitting.as_slice() {
+        [one] => Ok((*one).to_owned()),
+        [] => Err(format!("no run begins with `{text}`")),
+        many if many.contains(&text) => Ok(text.to_owned()),
+        [first, second, ..] => Err(format!("{} runs begin so: {first}, {second}...", fitting.len())),
+    }
+}
+
+fn word_of(layer: MapLayer) -> String {
+    layer.name().to_lowercase().replace(' ', "-")
+}
+
+/// Stations and obstacles by name, from the middle of the tank, metres.
+fn places(model: &Model) -> Vec<(String, Vector)> {
+    let Some(about) = &model.live.run.about else { return Vec::new() };
+    let (low, high) = about.world.boundary.bounds();
+    let middle: Point = nalgebra::center(&low, &high);
+    let stations = about.world.stations.iter().map(|station| (station.name.clone(), station.position));
+    let obstacles = about.world.obstacles.iter().map(|found| (found.name.clone(), found.shape.center()));
+    stations.chain(obstacles).map(|(name, at)| (name, at - middle)).collect()
+}

@@ -1,0 +1,99 @@
+//! Lines in which text is typed.
+
+use super::palette;
+use crate::keys::Key;
+use crate::model::{LineEdit, Model, Overlay, Screen};
+use mission::{ParamKind, Severity};
+
+/// Whether a line is open in which text is typed: letters and the space do nothing else then.
+pub fn is_typing(model: &Model) -> bool {
+    use Overlay::{Commands, Filter, Parameters};
+    matches!(model.ui.overlay, Commands(_) | Parameters { edit: Some(_), .. } | Filter(_))
+}
+
+/// Gives a key to the line that is open; whether there is such a line and the key does something in it.
+pub(super) fn press(model: &mut Model, key: Key) -> bool {
+    edit(model, |line| line.press(key)).unwrap_or(false)
+}
+
+/// Puts pasted text into the line that is open; without one it goes nowhere, so that no paste is ever a command.
+pub(super) fn paste(model: &mut Model, pasted: &str) {
+    if edit(model, |line| line.insert(pasted)).is_none() {
+        model.say(Severity::Info, "nowhere to paste");
+    }
+}
+
+/// Whether the line that is open can be completed.
+pub(super) fn completes(model: &Model) -> bool {
+    matches!(model.ui.overlay, Overlay::Commands(_)) || !options(model).is_empty()
+}
+
+/// The words that the parameter takes whose value is being typed.
+fn options(model: &Model) -> &[String] {
+    let Overlay::Parameters { selected, edit: Some(_) } = &model.ui.overlay else { return &[] };
+    match model.planner().and_then(|info| info.parameters.get(*selected)).map(|info| &info.kind) {
+        Some(ParamKind::Choice { options, .. }) => options,
+        _ => &[],
+    }
+}
+
+/// Completes the word at the cursor.
+pub(super) fn complete(model: &mut Model) {
+    match &model.ui.overlay {
+        Overlay::Commands(_) => palette::complete(model),
+        Overlay::Parameters { edit: Some(typed), .. } => {
+            let options = options(model);
+            let Some(word) = options.iter().find(|word| word.starts_with(typed.line.before())) else {
+                return;
+            };
+            let word = word.clone();
+            edit(model, |line| line.replace_word(0, &word));
+        }
+        _ => {}
+    }
+}
+
+/// Edits the line that is open, if one is; what was answered about the old text no longer counts.
+fn edit<T>(model: &mut Model, how: impl FnOnce(&mut LineEdit) -> T) -> Option<T> {
+    let line = line(&mut model.ui.overlay)?;
+    let before = line.text().to_owned();
+    let done = how(line);
+    if line.text() != before {
+        changed(model);
+    }
+    Some(done)
+}
+
+fn line(overlay: &mut Overlay) -> Option<&mut LineEdit> {
+    match overlay {
+        Overlay::Commands(palette) => Some(&mut palette.line),
+        Overlay::Parameters { edit: Some(edit), .. } => Some(&mut edit.line),
+        Overlay::Filter(line) => Some(line),
+        _ => None,
+    }
+}
+
+fn changed(model: &mut Model) {
+    match &mut model.ui.overlay {
+        Overlay::Commands(palette) => (palette.selected, palette.recalled, palette.fault) = (0, 0, None),
+        Overlay::Parameters { edit: Some(edit), .. } => edit.refusal = None,
+        Overlay::Filter(line) => {
+            let text = line.text().to_owned();
+            filter(model, &text);
+        }
+        _ => {}
+    }
+}
+
+/// The text by which the list of the screen is filtered.
+pub(super) fn filtered(model: &Model) -> &str {
+    if model.ui.screen == Screen::Home { &model.home.filter } else { &model.ui.needle }
+}
+
+/// Filters the list of the screen by a text.
+pub(super) fn filter(model: &mut Model, text: &str) {
+    let home = model.ui.screen == Screen::Home;
+    let filter = if home { &mut model.home.filter } else { &mut model.ui.needle };
+    text.clone_into(filter);
+    (model.ui.scroll, model.home.scenario, model.home.run) = (0, 0, 0);
+}

@@ -1,0 +1,287 @@
+//! The command line: what it finds, completes, refuses and runs.
+
+use crate::fixture::{RICH, Screen, choice};
+use crate::screens::{drawn, text};
+use mission::{Order, ParamValue, Severity};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use tui::model::ui::{Ask, MapLayer};
+use tui::model::{Overlay, Palette, PastRun, ScenarioEntry, Screen as Name, home::Found};
+use tui::update::{Choice, choices};
+use tui::{Effect, Job, Key, Msg, RunId, Source, Speed, ThemeName};
+
+/// A screen with scenarios and runs.
+fn with_home(mut screen: Screen) -> Screen {
+    let entry = |name: &str, problem: Option<&str>| ScenarioEntry {
+        source: Source::File(format!("{name}.toml")),
+        name: name.into(),
+        about: String::new(),
+        task: "goto".into(),
+        tank: "Ø12 m".into(),
+        planner: "apf".into(),
+        expected: String::new(),
+        problem: problem.map(str::to_owned),
+    };
+    let run = |name: &str| PastRun {
+        name: name.into(),
+        began: String::new(),
+        scenario: "demo".into(),
+        end: "complete".into(),
+        mission_time_s: None,
+        reachable: None,
+        note: None,
+    };
+    let found = Found {
+        scenarios: vec![
+            entry("cover-circle", None),
+            entry("demo", None),
+            entry("two words", None),
+            entry("bad", Some("no")),
+        ],
+        runs: vec![run("20261122T1-demo"), run("20261121T2-demo"), run("20261121T1-demo")],
+        ..Found::default()
+    };
+    screen.send(Msg::Found(Box::new(found)));
+    screen
+}
+
+fn offers(screen: &mut Screen, typed: &str) -> Vec<String> {
+    screen.press([Key::Esc, Key::Char(':')]);
+    screen.type_text(typed);
+    let Overlay::Commands(palette) = &screen.model.ui.overlay else { panic!("the line is open") };
+    let name = |choice| match choice {
+        Choice::Command(action) => action.name.to_owned(),
+        Choice::Alias(name, _) | Choice::Value(name) => name,
+    };
+    choices(&screen.model, palette).into_iter().map(name).collect()
+}
+
+/// What a command line brings; it must be taken.
+fn run(screen: &mut Screen, line: &str) -> Vec<Effect> {
+    screen.press([Key::Esc, Key::Char(':')]);
+    screen.type_text(line);
+    let effects = screen.press([Key::Enter]);
+    assert_eq!(fault(screen), None, "{line}");
+    effects
+}
+
+fn fault(screen: &Screen) -> Option<(String, String)> {
+    let Overlay::Commands(palette) = &screen.model.ui.overlay else { return None };
+    let fault = palette.fault.as_ref()?;
+    Some((palette.line.text().get(fault.at.clone()).unwrap_or_default().to_owned(), fault.what.clone()))
+}
+
+#[test]
+fn what_is_typed_finds_what_is_meant_first() {
+    let running = [
+        ("stop", "hold"),
+        ("pause", "hold"),
+        ("halt", "hold"),
+        ("quit", "leave"),
+        ("exit", "leave"),
+        ("abort", "end"),
+        ("finish", "end"),
+        ("rate", "speed"),
+        ("pace", "speed"),
+        ("silence", "acknowledge"),
+        ("h", "hold"),
+        ("z", "zoom-in"),
+        ("zo", "zoom-in"),
+        ("zoom out", "zoom-out"),
+        ("pan e", "pan-east"),
+        ("events", "severity"),
+        ("sp", "speed"),
+    ];
+    for (typed, first) in running {
+        assert_eq!(offers(&mut Screen::running(), typed).first().map(String::as_str), Some(first), "{typed}");
+    }
+    assert_eq!(offers(&mut Screen::held(), "continue").first().map(String::as_str), Some("resume"));
+}
+
+#[test]
+fn what_moves_the_robot_is_found_by_its_names_only_and_after_what_is_safe() {
+    for typed in ["mission", "robot", "certified", "tether", "uncert"] {
+        for name in offers(&mut Screen::held(), typed) {
+            let action = tui::actions::find::named(&name).expect("a command");
+            assert_eq!(action.risk, tui::actions::Risk::Safe, "{name} for {typed}");
+        }
+    }
+    let found = offers(&mut Screen::held(), "re");
+    let place = |name: &str| found.iter().position(|other| other == name).unwrap_or_else(|| panic!("{name}"));
+    assert!(place("redraw") < place("resume"), "{found:?}");
+}
+
+#[test]
+fn a_command_that_was_used_comes_before_its_like() {
+    let mut screen = Screen::running();
+    assert_eq!(offers(&mut screen, "pan")[0], "pan-west");
+    screen.type_text("z");
+    screen.press([Key::Esc, Key::Char('z')]);
+    run(&mut screen, "pan-south");
+    assert_eq!(offers(&mut screen, "pan")[0], "pan-south");
+}
+
+#[test]
+fn commands_take_values() {
+    let speed = |factor| vec![Effect::Speed(Speed::Times(factor))];
+    assert_eq!(run(&mut Screen::running(), "speed 8"), speed(8.0));
+    assert_eq!(run(&mut Screen::running(), "pace x0.5"), speed(0.5));
+    assert_eq!(run(&mut Screen::running(), "speed max"), [Effect::Speed(Speed::Max)]);
+    let key = "rpf_gain".to_owned();
+    let set = Effect::Order(Order::SetParameter { key, value: ParamValue::Float(1.5) });
+    assert_eq!(run(&mut Screen::running(), "set rpf_gain=1.5"), [set]);
+    let open = |planner| {
+        vec![Effect::Open { id: RunId(2), source: Source::File("cover-circle.toml".into()), planner }]
+    };
+    assert_eq!(run(&mut with_home(Screen::idle()), "open cover-circle"), open(None));
+    assert_eq!(
+        run(&mut with_home(Screen::idle()), "open cover-circle planner=apf"),
+        open(Some(choice("apf")))
+    );
+    let verify = |name: &str| vec![Effect::Do(Job::Verify(name.into()))];
+    assert_eq!(run(&mut with_home(Screen::running()), "verify latest"), verify("20261122T1-demo"));
+    assert_eq!(run(&mut with_home(Screen::running()), "verify 20261121T2"), verify("20261121T2-demo"));
+    let mut screen = Screen::held();
+    assert_eq!(run(&mut screen, "planner apf"), []);
+    assert_eq!(screen.model.ui.overlay, Overlay::Confirm(Ask::Swap(choice("apf"))), "it asks first");
+    let mut screen = Screen::held();
+    run(&mut screen, "theme light");
+    assert_eq!(screen.model.ui.theme, ThemeName::Light);
+    run(&mut screen, "layers robot-trail");
+    assert!(!screen.model.ui.layers.shows(MapLayer::Trail));
+    run(&mut screen, "centre C2");
+    assert_eq!(screen.model.ui.map.offset, world::Vector::new(-4.0, 3.0));
+    run(&mut screen, "severity warn");
+    assert_eq!(screen.model.ui.least, Severity::Warn);
+    run(&mut screen, "filter \"position lost\"");
+    assert_eq!(screen.model.ui.needle, "position lost");
+    run(&mut screen, "goto plan");
+    assert_eq!(screen.model.ui.screen, Name::Plan);
+}
+
+#[test]
+fn a_wrong_value_is_underlined_with_what_would_be_right() {
+    let cases = [
+        ("speed 900", "900", "must be 0.25 to 64, or max"),
+        ("speed", " ", "usage: speed FACTOR"),
+        ("set rpf_gain=9", "rpf_gain=9", "9 is out of range; allowed: 0.2 to 4 m3/s"),
+        ("set rpf_gian=1", "rpf_gian=1", "no parameter `rpf_gian`; did you mean rpf_gain?"),
+        ("set 3", "3", "write KEY=VALUE, such as k_rep=2"),
+        ("planner rfp", "rfp", "no planner `rfp`; did you mean rpf?"),
+        ("theme pink", "pink", "no theme `pink`; there are: dark, light, contrast"),
+        ("goto misson", "misson", "no screen `misson`; did you mean mission?"),
+        ("open demmo", "demmo", "no scenario `demmo`; did you mean demo?"),
+        ("open demo seed=3", "seed=3", "usage: open SCENARIO [planner=PLANNER]"),
+        ("open demo planner=x", "planner=x", "no planner `x`; there are: apf, rpf, spiral-tangent"),
+        ("verify 20261121", "20261121", "2 runs begin so: 20261121T2-demo, 20261121T1-demo..."),
+        ("verify 1999", "1999", "no run begins with `1999`"),
+        ("filter \"lost", "\"lost", "the quote is not closed"),
+        ("hodl", "hodl", "no such command; did you mean hold?"),
+    ];
+    for (line, at, what) in cases {
+        let mut screen = with_home(Screen::held());
+        screen.press([Key::Char(':')]);
+        screen.type_text(line);
+        let effects = screen.press([Key::Enter]);
+        if line == "speed" {
+            // A command that needs a value waits for it first.
+            assert_eq!(fault(&screen), None);
+            screen.press([Key::Enter]);
+        }
+        assert_eq!((effects, fault(&screen)), (vec![], Some((at.into(), what.into()))), "{line}");
+        screen.press([Key::Backspace]);
+        assert_eq!(fault(&screen), None, "it is typed on");
+    }
+    let mut screen = Screen::held();
+    screen.type_text(":speed 900");
+    screen.press([Key::Enter]);
+    let shown = text(&drawn(&screen.model, RICH, (80, 24)));
+    let lines: Vec<&str> = shown.lines().collect();
+    let at = lines.iter().position(|line| line.contains("> speed 900")).expect("the line");
+    assert_eq!(lines[at].find("900"), lines[at + 1].find("^^^"), "{shown}");
+    assert!(lines[at + 2].contains("Must be 0.25 to 64, or max"), "{shown}");
+}
+
+#[test]
+fn tab_completes_names_and_values() {
+    let cases = [
+        ("spe", "speed "),
+        ("thm", "thm"),
+        ("theme l", "theme light"),
+        ("planner sp", "planner spiral-tangent"),
+        ("set rpf_g", "set rpf_gain="),
+        ("set mode=l", "set mode=literal"),
+        ("open c", "open cover-circle"),
+        ("open two", "open \"two words\""),
+        ("open demo planner=a", "open demo planner=apf"),
+        ("verify l", "verify latest"),
+        ("goto p", "goto plan"),
+    ];
+    for (typed, completed) in cases {
+        let mut screen = with_home(Screen::held());
+        screen.press([Key::Char(':')]);
+        screen.type_text(typed);
+        screen.press([Key::Tab]);
+        let Overlay::Commands(palette) = &screen.model.ui.overlay else { panic!("the line is open") };
+        assert_eq!(palette.line.text(), completed, "{typed}");
+    }
+}
+
+#[test]
+fn a_value_is_taken_from_the_list() {
+    let mut screen = Screen::held();
+    screen.type_text(":theme ");
+    screen.press([Key::Down, Key::Enter]);
+    assert_eq!((screen.model.ui.theme, &screen.model.ui.overlay), (ThemeName::Light, &Overlay::None));
+}
+
+#[test]
+fn up_and_down_recall_what_was_run() {
+    let mut screen = Screen::running();
+    run(&mut screen, "speed 2");
+    run(&mut screen, "speed 4");
+    run(&mut screen, "speed 2");
+    screen.press([Key::Char(':')]);
+    let recalled = |screen: &mut Screen, key| {
+        screen.press([key]);
+        let Overlay::Commands(Palette { line, .. }) = &screen.model.ui.overlay else { panic!("open") };
+        line.text().to_owned()
+    };
+    assert_eq!(recalled(&mut screen, Key::Up), "speed 2");
+    assert_eq!(recalled(&mut screen, Key::Up), "speed 4", "each line once");
+    assert_eq!(recalled(&mut screen, Key::Up), "speed 4", "there is nothing before");
+    assert_eq!(recalled(&mut screen, Key::Down), "speed 2");
+    assert_eq!(recalled(&mut screen, Key::Down), "");
+    assert_eq!(recalled(&mut screen, Key::Down), "", "now it selects in the list");
+}
+
+#[test]
+fn a_short_name_stands_for_its_line() {
+    let mut screen = Screen::held();
+    screen.model.console.keys.aliases.insert("night".into(), "theme dark".into());
+    screen.model.ui.theme = ThemeName::Light;
+    assert_eq!(offers(&mut screen, "nig"), ["night"]);
+    run(&mut screen, "night");
+    assert_eq!(screen.model.ui.theme, ThemeName::Dark);
+}
+
+#[test]
+fn the_terminal_s_cursor_is_where_text_is_typed() {
+    let cursor = |screen: &Screen| {
+        let mut terminal = Terminal::new(TestBackend::new(80, 24)).expect("memory");
+        terminal.draw(|frame| tui::view(&screen.model, &RICH, frame)).expect("memory");
+        let at = terminal.get_cursor_position().expect("memory");
+        let buffer = terminal.backend().buffer();
+        let before: String = (0..at.x).map(|x| buffer[(x, at.y)].symbol()).collect();
+        (terminal.backend().cursor_position() == at, before)
+    };
+    let mut screen = Screen::held();
+    screen.type_text(":speed 8");
+    assert!(cursor(&screen).1.ends_with("> speed 8"));
+    screen.press([Key::Left]);
+    assert!(cursor(&screen).1.ends_with("> speed "));
+    screen.press([Key::Esc, Key::Char('/'), Key::Char('x')]);
+    assert!(cursor(&screen).1.ends_with("Filter: x"));
+    screen.press([Key::Enter, Key::Char('p'), Key::Enter, Key::End]);
+    assert!(cursor(&screen).1.ends_with("rpf_gain = 1.2"), "{}", cursor(&screen).1);
+}

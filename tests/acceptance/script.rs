@@ -1,0 +1,104 @@
+//! The console without a terminal: scripts, plain sentences, configuration files, completions and manual pages.
+
+use crate::bench::{Bench, Ended};
+use std::{
+    io::Write,
+    process::{Command, Stdio},
+};
+
+fn scripted(bench: &Bench, script: &str) -> Ended {
+    let file = bench.file("mission.txt", script);
+    bench.tankops(&["console", "--script", file.to_str().unwrap()])
+}
+
+#[test]
+fn a_script_flies_a_mission_and_demands_its_result() {
+    let bench = Bench::new();
+    let ended = scripted(
+        &bench,
+        "# the demo, held once\nspeed max\nstart\nkey enter\nwait until phase running within 1m\nhold\n\
+         wait until phase held\nassert text \"HELD by operator\"\nassert not coverage >= 90\nresume\nkey enter\nspeed max\n\
+         wait until screen result within 2m\nassert phase complete\nassert coverage >= 80\nverify latest\n\
+         wait until text \"Equal: \" within 2m\n",
+    );
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    bench.prove(&bench.runs()[0]);
+}
+
+#[test]
+fn the_first_line_that_fails_is_named() {
+    let cases = [
+        (
+            "theme dark\nassert phase running\n",
+            1,
+            "mission.txt:2: not so: phase running; the phase is waiting",
+        ),
+        ("speed 900\n", 1, "mission.txt:1: must be 0.25 to 64, or max"),
+        ("resume\n", 1, "mission.txt:1: "),
+        ("start\nresume\n", 1, "mission.txt:2: a question is open; answer it first"),
+        ("wait until text nonsense within 0.1s\n", 1, "mission.txt:1: not within 0.1 s: text \"nonsense\""),
+        ("leave\ntheme dark\n", 1, "mission.txt:2: the console was left before"),
+        ("theme dark\nwait a bit\n", 2, "mission.txt:2: write wait until CONDITION"),
+    ];
+    for (script, code, line) in cases {
+        let ended = scripted(&Bench::new(), script);
+        assert!(ended.code == Some(code) && ended.err.contains(line), "{script}: {ended:?}");
+    }
+}
+
+#[test]
+fn plain_sentences_tell_the_mission_and_commands_come_from_stdin() {
+    let bench = Bench::new();
+    let mut command: Command = bench.command();
+    command.args(["console", "--plain", "--speed", "max"]);
+    let mut child =
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut orders = child.stdin.take().unwrap();
+    // The end of stdin leaves; the commands before it are carried out.
+    orders.write_all(b"speeed 2\ngoto home\ngoto plan\nstart\nno\n").unwrap();
+    drop(orders);
+    let ended = Ended::from(child.wait_with_output().unwrap());
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    for line in [
+        "Screen 2: Plan.",
+        "Refused: no command `speeed`.",
+        "Screen 1: Home.",
+        "Start mission? Enter: start, Esc: cancel.",
+    ] {
+        assert!(ended.out.contains(line), "{line}: {ended:?}");
+    }
+    assert_eq!(bench.runs().len(), 0, "nothing was started");
+}
+
+#[test]
+fn a_configuration_file_is_checked() {
+    let bench = Bench::new();
+    let keys = bench.file("keys.toml", "[keys]\nzoom-in = [\"f\"]\nredraw = [\"Ctrl-A\"]\n");
+    let checked = bench.tankops(&["check", keys.to_str().unwrap()]);
+    assert_eq!(checked.code, Some(2), "{checked:?}");
+    assert!(checked.err.contains("keys.toml:2:12: \"f\" is already follow"), "{checked:?}");
+    let sound = bench.file("config.toml", "[screen]\ntheme = \"light\"\n");
+    assert_eq!(bench.tankops(&["check", sound.to_str().unwrap()]).code, Some(0));
+}
+
+#[test]
+fn what_is_wrong_with_the_configuration_is_on_the_home_screen() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path().join("tankops")).unwrap();
+    bench.file("tankops/config.toml", "[screen]\nthem = \"light\"\n");
+    bench.file("tankops/keys.toml", "[alias]\nnight = \"theme contrast\"\n");
+    let ended = scripted(&bench, "goto home\nassert text \"config.toml:2:1: unknown key\"\nnight\n");
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+}
+
+#[test]
+fn completions_and_manual_pages_are_printed() {
+    let bench = Bench::new();
+    for shell in ["bash", "zsh", "fish"] {
+        let printed = bench.tankops(&["completions", shell]);
+        assert!(printed.code == Some(0) && printed.out.contains("script"), "{shell}: {printed:?}");
+    }
+    let page = bench.tankops(&["man", "console"]);
+    assert!(page.code == Some(0) && page.out.contains(".TH tankops-console 1"), "{page:?}");
+    assert_eq!(bench.tankops(&["man", "worker"]).code, Some(2));
+}
