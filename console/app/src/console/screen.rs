@@ -4,6 +4,7 @@ use super::{
     desk::{DeskHandle, Request},
     inbox::Inbox,
     line::Current,
+    measure::Measure,
     watch::SharedPlaces,
 };
 use crate::{
@@ -48,6 +49,7 @@ pub(super) struct Screen {
     places: SharedPlaces,
     /// Whether the operator waits for something that the next frame shows.
     answer_seen: bool,
+    measure: Measure,
     drill: Option<Drill>,
 }
 
@@ -88,6 +90,7 @@ impl Screen {
             cache: Cache::default(),
             places,
             answer_seen: true,
+            measure: Measure::since(now),
             drill,
         })
     }
@@ -128,12 +131,20 @@ impl Screen {
         if by_itself.is_some_and(|at_s| at_s <= self.model.console.now.mono_s) {
             self.due = Redraw::Soon;
         }
+        let began = Instant::now();
+        if let Some(measured) = self.measure.report(began) {
+            update(&mut self.model, Msg::Measured(measured));
+        }
         let until = Instant::now() + BURST_TIME;
         let mut next = first;
         for _ in 0..BURST {
             let Some(msg) = next else { break };
             self.answer_seen |= is_answer(&msg);
-            self.due = self.due.max(redraw(&self.model, &msg));
+            let due = redraw(&self.model, &msg);
+            self.due = self.due.max(due);
+            if due == Redraw::Soon {
+                self.measure.arrived(&msg, began);
+            }
             let effects = update(&mut self.model, msg);
             let engine = self.engine.get();
             if let Some(engine) = &engine {
@@ -185,6 +196,7 @@ impl Screen {
             Effect::Redraw => self.terminal.redraw().context("drawing")?,
             Effect::Bell => ring()?,
             Effect::Mouse(taken) => self.terminal.take_mouse(taken).context("taking the mouse")?,
+            Effect::Copy(line) => self.terminal.copy(&line).context("copying")?,
             Effect::Suspend => self.suspend()?,
             Effect::Quit { signal } => return Ok(Some(Left { signal })),
         }
@@ -209,7 +221,9 @@ impl Screen {
         if model.ui.mouse {
             self.places.set(self.cache.places());
         }
-        (self.drawn, self.due, self.answer_seen) = (Instant::now(), Redraw::No, false);
+        let now = Instant::now();
+        self.measure.drew(now, now - self.drawn, self.frame_interval);
+        (self.drawn, self.due, self.answer_seen) = (now, Redraw::No, false);
         Ok(())
     }
 }

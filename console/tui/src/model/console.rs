@@ -1,5 +1,6 @@
 //! The console itself: time, speeds, plugins, and what it tells the operator.
 
+use super::Watches;
 use mission::{PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
 
@@ -92,6 +93,9 @@ pub struct Console {
     pub reloaded: Option<Vec<String>>,
     /// What was last said to the operator.
     pub notice: Option<Notice>,
+    /// Figures of the console and their limits.
+    #[serde(default)]
+    pub watches: Watches,
     /// When Ctrl-C was last pressed, on the console's own clock, seconds.
     pub interrupted_mono_s: Option<f64>,
 }

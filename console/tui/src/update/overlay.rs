@@ -1,11 +1,13 @@
 //! Keys within lists, lines and questions.
 
+use super::alarms;
 use super::message::Effect;
 use super::offer::{accepted, offered, refuse};
 use super::preflight;
 use super::send::send;
 use super::what_if;
 use crate::actions::{ActionId, find};
+use crate::guide::guide;
 use crate::keys::Key;
 use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
 use crate::model::{Ghost, Model, Overlay, Screen, parameter};
@@ -35,6 +37,7 @@ pub(super) fn chosen(model: &mut Model) -> Option<ActionId> {
             model.ui.overlay = Overlay::None;
             Some(action.id)
         }
+        Overlay::Remedies { selected, .. } => u8::try_from(*selected + 1).ok().map(ActionId::Remedy),
         _ => None,
     }
 }
@@ -42,7 +45,7 @@ pub(super) fn chosen(model: &mut Model) -> Option<ActionId> {
 /// Agrees, or takes the selected line.
 pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
     match model.ui.overlay.clone() {
-        Overlay::None | Overlay::Stepping => Vec::new(),
+        Overlay::None | Overlay::Stepping | Overlay::Remedies { .. } => Vec::new(),
         Overlay::Confirm(ask) => agree(model, &ask),
         Overlay::Quit => quit(model),
         Overlay::Commands { filter, .. } => refuse(model, format!("no command matches `{filter}`")),
@@ -57,7 +60,11 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
         }
         Overlay::WhatIf => what_if::choose(model),
         Overlay::Preflight { .. } => preflight::tick(model),
-        Overlay::Filter => open(model, Overlay::None),
+        Overlay::Filter => {
+            model.ui.needle.truncate(model.ui.needle.trim_end().len());
+            open(model, Overlay::None)
+        }
+        Overlay::Shelve(shelving) => alarms::take_shelving(model, shelving),
     }
 }
 
@@ -187,17 +194,20 @@ pub(super) fn select(model: &mut Model, by: isize) {
         Overlay::Parameters { .. } => model.planner().map_or(0, |info| info.parameters.len()),
         Overlay::Layers { .. } => MapLayer::ALL.len(),
         Overlay::Preflight { .. } => model.checks().len(),
+        Overlay::Remedies { cause, .. } => guide(cause).remedies.len(),
         Overlay::None
         | Overlay::Confirm(_)
         | Overlay::Stepping
         | Overlay::Quit
         | Overlay::WhatIf
-        | Overlay::Filter => 0,
+        | Overlay::Filter
+        | Overlay::Shelve(_) => 0,
     };
     if let Overlay::Commands { selected, .. }
     | Overlay::Planners { selected, .. }
     | Overlay::Parameters { selected, .. }
     | Overlay::Preflight { selected }
+    | Overlay::Remedies { selected, .. }
     | Overlay::Layers { selected } = &mut model.ui.overlay
     {
         *selected = selected.saturating_add_signed(by).min(lines.saturating_sub(1));
@@ -235,6 +245,7 @@ fn typed(model: &mut Model) -> Option<&mut String> {
     match &mut model.ui.overlay {
         Overlay::Commands { filter, .. } => Some(filter),
         Overlay::Parameters { edit: Some(edit), .. } => Some(&mut edit.text),
+        Overlay::Shelve(shelving) => Some(&mut shelving.text),
         Overlay::Filter => {
             Some(if model.ui.screen == Screen::Home { &mut model.home.filter } else { &mut model.ui.needle })
         }
@@ -246,7 +257,11 @@ fn typing_changed(model: &mut Model) {
     match &mut model.ui.overlay {
         Overlay::Commands { selected, .. } => *selected = 0,
         Overlay::Parameters { edit: Some(edit), .. } => edit.refusal = None,
-        Overlay::Filter => (model.ui.scroll, model.home.scenario, model.home.run) = (0, 0, 0),
+        Overlay::Shelve(shelving) => shelving.refusal = None,
+        Overlay::Filter => {
+            (model.home.scenario, model.home.run) = (0, 0);
+            model.ui.events.at = None;
+        }
         _ => {}
     }
 }

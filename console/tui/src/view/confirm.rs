@@ -3,7 +3,9 @@
 use super::look::Look;
 use super::next::{self, Clauses};
 use super::{coverage, text};
-use crate::model::{Model, Overlay, ui::Ask};
+use crate::guide;
+use crate::model::ui::{Ask, Shelving};
+use crate::model::{Model, Overlay, Screen};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -50,6 +52,8 @@ fn question(model: &Model) -> Option<Vec<String>> {
             ]
         }
         Overlay::Quit => quit(model),
+        Overlay::Filter if model.ui.screen == Screen::Events => filtering(model),
+        Overlay::Shelve(shelving) => shelve(model, shelving),
         Overlay::Filter => {
             let typed = text::fit(&model.ui.needle, 20);
             vec![format!("Filter events: {typed}_"), " Enter: keep, Esc: clear.".into()]
@@ -57,6 +61,29 @@ fn question(model: &Model) -> Option<Vec<String>> {
         _ => return None,
     };
     Some(clauses)
+}
+
+/// What is wrong with the filter that is being typed, or what can be typed; the text itself is in the pane.
+fn filtering(model: &Model) -> Vec<String> {
+    let keys = "Enter: keep, Esc: clear.".to_owned();
+    let separates = if model.live.may_move() { "; separates terms (space: HOLD)." } else { "" };
+    match model.ui.events.matches.filter().problems.first() {
+        Some(problem) => vec![format!("Filter: {}.", problem.why), keys],
+        None => vec![
+            keys,
+            separates.into(),
+            "Terms: sev>=watch source=ae station=C t>00:05 \"text\" -text".into(),
+        ],
+    }
+}
+
+fn shelve(model: &Model, shelving: &Shelving) -> Vec<String> {
+    let name = guide::name(&shelving.cause, &model.live.run);
+    let typed = format!("Shelve for minutes, reason: {}_", shelving.text);
+    match &shelving.refusal {
+        Some(why) => vec![format!("{typed} REFUSED: {why}"), "Esc: cancel.".into()],
+        None => vec![typed, "Enter: shelve, Esc: cancel.".into(), format!("({name})")],
+    }
 }
 
 fn quit(model: &Model) -> Vec<String> {

@@ -15,7 +15,8 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 /// What goes first when there is too little room.
-const DISPENSABLE: [ActionId; 8] = [
+const DISPENSABLE: [ActionId; 9] = [
+    ActionId::AcknowledgeAll,
     ActionId::NextPane,
     ActionId::Parameters,
     ActionId::Faster,
@@ -112,9 +113,14 @@ fn label(action: &Action, model: &Model) -> String {
             "resume?"
         }
         (ActionId::Cancel, Overlay::None) => "end reading",
-        (ActionId::Accept, Overlay::None) => "open",
+        (ActionId::Accept, Overlay::None) => match model.ui.screen {
+            Screen::Alarms => "actions",
+            Screen::Events if model.ui.events.is_open => "close detail",
+            Screen::Events => "detail",
+            _ => "open",
+        },
         (ActionId::Back, _) if model.ui.screen == Screen::Home => "quit",
-        (ActionId::Accept, Overlay::Commands { .. }) => "run",
+        (ActionId::Accept, Overlay::Commands { .. } | Overlay::Remedies { .. }) => "run",
         (ActionId::Accept, Overlay::Planners { .. }) => "choose",
         (ActionId::Accept, Overlay::WhatIf) => "choose",
         (ActionId::Accept, Overlay::Preflight { .. }) => "tick",
@@ -122,6 +128,7 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Accept, Overlay::Parameters { edit: None, .. }) => "edit",
         (ActionId::Accept, Overlay::Parameters { edit: Some(_), .. }) => "send",
         (ActionId::Accept, Overlay::Filter) => "keep",
+        (ActionId::Accept, Overlay::Shelve(_)) => "shelve",
         (ActionId::Accept, Overlay::Stepping) => "step",
         (ActionId::Cancel, Overlay::Filter) => "clear",
         (
@@ -131,6 +138,7 @@ fn label(action: &Action, model: &Model) -> String {
             | Overlay::Layers { .. }
             | Overlay::Preflight { .. }
             | Overlay::WhatIf
+            | Overlay::Remedies { .. }
             | Overlay::Parameters { edit: None, .. },
         ) => "close",
         _ => action.label,

@@ -488,7 +488,11 @@ impl Screen {
         model.ui.go(tui::model::Screen::Mission);
         let mut screen = Self { model, mission: ScriptedMission::new(), mono_s: 0.0 };
         screen.send(Msg::Time(Times { mono_s: 0.0, wall_unix_s: 1_795_264_000.0 }));
-        screen.hear(RunMsg::Health(Health { recording: Recording::On, reached_speed: None }));
+        screen.hear(RunMsg::Health(Health {
+            recording: Recording::On,
+            reached_speed: None,
+            ..Health::default()
+        }));
         let refused = Refused {
             plugin: "my_plugin.so".into(),
             reason: "built for planner ABI 3, this console speaks 1; rebuild it".into(),

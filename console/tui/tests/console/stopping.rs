@@ -2,8 +2,8 @@
 
 use crate::fixture::{Screen, choice};
 use mission::{Event, EventKind, Gait, Hold, HoldReason, Order, Outcome, ParamValue, Phase, Resumes};
-use tui::model::ui::{Ask, Edit, Purpose};
-use tui::model::{Overlay, Pane};
+use tui::model::ui::{Ask, Edit, Purpose, Shelving};
+use tui::model::{Cause, Overlay, Pane};
 use tui::{Effect, Key, Model, Msg, RunMsg, Signal, update};
 
 const HOLD: Effect = Effect::Order(Order::Hold);
@@ -55,6 +55,8 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Preflight { selected: 0 },
         Overlay::WhatIf,
         Overlay::Filter,
+        Overlay::Remedies { cause: Cause::PositionLost, selected: 0 },
+        Overlay::Shelve(Shelving { cause: Cause::Stuck, text: "15".into(), refusal: None }),
     ];
     // A new overlay does not compile until it is in the list above.
     for overlay in &all {
@@ -69,6 +71,8 @@ fn overlays() -> Vec<Overlay> {
             | Overlay::Layers { .. }
             | Overlay::Preflight { .. }
             | Overlay::WhatIf
+            | Overlay::Remedies { .. }
+            | Overlay::Shelve(_)
             | Overlay::Filter => {}
         }
     }
