@@ -10,6 +10,7 @@ mod inbox;
 mod jobs;
 mod line;
 mod look;
+mod measure;
 mod pace;
 mod plain;
 mod screen;
@@ -136,6 +137,7 @@ fn show(
     watch::keys(&outbox, current.clone(), places)?;
     watch::signals(&outbox, current.clone())?;
     watch::terminal(&outbox, current.clone())?;
+    watch::disk(&outbox, logs)?;
     drop(outbox);
     let ran = catch_unwind(AssertUnwindSafe(|| screen.run()));
     ran.unwrap_or_else(|_| Err(crash::report(logs, screen.model())))

@@ -18,6 +18,7 @@ use planner_host::{Host, PluginDirs};
 use runs::{CLOSE_TIMEOUT, Closed, RunLog};
 use scenario::Scenario;
 use std::{io::IsTerminal, process::ExitCode};
+use world::Station;
 
 /// Options of a headless run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,7 +58,7 @@ pub(crate) fn fly(
     let mut trouble = None;
     let mut take = |events: Vec<Event>| {
         log.keep(&events);
-        show_progress(&bar, &events);
+        show_progress(&bar, &events, &scenario.sim.world.stations);
         report_trouble(&mut trouble, log.health().error);
     };
     take(vec![flight.opened()]);
@@ -123,7 +124,7 @@ fn progress_bar(scenario: &Scenario, options: RunOptions) -> ProgressBar {
     bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-fn show_progress(bar: &ProgressBar, events: &[Event]) {
+fn show_progress(bar: &ProgressBar, events: &[Event], stations: &[Station]) {
     if bar.is_hidden() {
         return;
     }
@@ -136,7 +137,7 @@ fn show_progress(bar: &ProgressBar, events: &[Event]) {
                 covered_reachable * 100.0
             ));
         }
-        if let Some(line) = event.log_line().filter(|line| line.severity >= mission::Severity::Warn) {
+        if let Some(line) = event.log_line(stations).filter(|line| line.severity >= mission::Severity::Warn) {
             bar.println(format!("T+{:.1} s  {}  {}", event.t_s, line.source, line.text));
         }
     }

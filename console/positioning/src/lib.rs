@@ -44,5 +44,6 @@ pub use noise::RangeNoise;
 pub use nonlinear::Nls;
 pub use particle::{Particles, ParticlesConfig};
 pub use positioner::{CycleResult, Estimate, Positioner, PositionerConfig, SolverKind};
+pub use quality::alarm_limit;
 pub use screened::Screened;
 pub use weighted::WeightedLinear;

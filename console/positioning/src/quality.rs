@@ -101,13 +101,18 @@ fn largest_sigma_m(covariance: &Matrix2<f64>) -> f64 {
 pub(crate) fn integrity_of(chi2: f64, degrees_of_freedom: u32) -> Integrity {
     if degrees_of_freedom == 0 {
         Integrity::Untestable
-    } else if chi2 > chi_squared_quantile(ALARM_Z, degrees_of_freedom) {
+    } else if chi2 > alarm_limit(degrees_of_freedom) {
         Integrity::Alarm
     } else if chi2 > chi_squared_quantile(SUSPECT_Z, degrees_of_freedom) {
         Integrity::Suspect
     } else {
         Integrity::Ok
     }
+}
+
+/// Sum of squared normalised residuals beyond which ranges contradict each other.
+pub fn alarm_limit(degrees_of_freedom: u32) -> f64 {
+    chi_squared_quantile(ALARM_Z, degrees_of_freedom)
 }
 
 /// Residual beyond which one station of a fix is called wrong, metres.

@@ -70,10 +70,22 @@ pub enum ActionId {
     Faster,
     /// Set the speed.
     SetSpeed,
-    /// Acknowledge the worst alarm.
+    /// Acknowledge the selected alarm, or the worst one.
     Acknowledge,
     /// Acknowledge every alarm.
     AcknowledgeAll,
+    /// Put an alarm aside for a while, or take it back.
+    Shelve,
+    /// Run an action of an alarm, by its number.
+    Remedy(u8),
+    /// Show the place of an alarm or an event on the map.
+    ShowPlace,
+    /// The next event of the same kind.
+    NextLike,
+    /// The previous event of the same kind.
+    PreviousLike,
+    /// Copy the line of an event.
+    Copy,
     /// Enlarge the map.
     ZoomIn,
     /// Reduce the map.
@@ -122,6 +134,10 @@ pub enum ActionId {
     GoPlan,
     /// Show the mission under way.
     GoMission,
+    /// Show what is wrong.
+    GoAlarms,
+    /// Show what happened.
+    GoEvents,
     /// Show what the mission has achieved.
     GoResult,
     /// Show the plugins.
@@ -193,12 +209,17 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Preflight, "check-again", "Check once more", &[Key::Char('r')], &[Context::Preflight]).label("check again"),
     action(ActionId::PlanAgain, "plan-again", "Make the plan once more", &[], &[Context::Plan]),
     action(ActionId::CancelPlan, "cancel-plan", "Cancel planning or comparing", &[Key::Esc], &[Context::Plan]).label("cancel"),
-    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &[Context::Home, Context::Plan, Context::Mission]).label("ack").also(&["silence"]),
-    action(ActionId::AcknowledgeAll, "acknowledge-all", "Acknowledge every alarm", &[], &[Context::Screen]),
+    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &[Context::Home, Context::Plan, Context::Mission, Context::Alarms, Context::Events]).label("ack").also(&["silence"]),
+    action(ActionId::AcknowledgeAll, "acknowledge-all", "Acknowledge every alarm", &[Key::Char('*')], &[Context::Alarms]).label("ack all"),
     action(ActionId::Open, "open", "Open a scenario", &[], &[Context::Screen]).args(&[must("scenario", Kind::Scenario), may("planner", Kind::Planner)]),
     action(ActionId::NextMissed, "next-missed", "Show the next missed area", &[Key::Char('n')], &[Context::Result]).label("missed").repeats(),
     action(ActionId::PreviousMissed, "previous-missed", "Show the missed area before", &[Key::Char('N')], &[Context::Result]).label("missed").repeats(),
     action(ActionId::Again, "again", "Plan the same scenario again", &[Key::Char('a')], &[Context::Result]).label("again"),
+    action(ActionId::Shelve, "shelve", "Shelve the alarm, or take it back", &[Key::Char('d')], &[Context::Alarms]).label("shelve"),
+    action(ActionId::ShowPlace, "show-place", "Show the place on the map", &[Key::Char('m')], &[Context::Alarms, Context::Events]).label("map"),
+    action(ActionId::NextLike, "next-like", "Next event of the same kind", &[Key::Char('n')], &[Context::Events]).label("same kind"),
+    action(ActionId::PreviousLike, "previous-like", "Previous event of the same kind", &[Key::Char('N')], &[Context::Events]).label("same kind"),
+    action(ActionId::Copy, "copy", "Copy the line of the event", &[Key::Char('y')], &[Context::Events]).label("copy"),
     action(ActionId::Rescan, "rescan", "Scan what a run has missed", &[Key::Char('r')], &[Context::Home, Context::Result]).label("re-scan").args(&[may("run", Kind::Run)]),
     action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[Context::Home, Context::Result]).label("verify").args(&[may("run", Kind::Run)]),
     action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[Context::Home, Context::Result]).label("report").args(&[may("run", Kind::Run)]),
@@ -211,6 +232,8 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::GoHome, "home", "Screen 1: scenarios and past runs", &[Key::Char('1')], &[Context::Screen]),
     action(ActionId::GoPlan, "plan", "Screen 2: the plan before it moves", &[Key::Char('2')], &[Context::Screen]),
     action(ActionId::GoMission, "mission", "Screen 3: the mission", &[Key::Char('3')], &[Context::Screen]),
+    action(ActionId::GoAlarms, "alarms", "Screen 4: what is wrong, what to do", &[Key::Char('4')], &[Context::Screen]),
+    action(ActionId::GoEvents, "events", "Screen 5: what happened", &[Key::Char('5')], &[Context::Screen]),
     action(ActionId::GoResult, "result", "Screen 7: what was achieved", &[Key::Char('7')], &[Context::Screen]),
     action(ActionId::GoPlugins, "plugins", "Screen 8: plugins and their planners", &[Key::Char('8')], &[Context::Screen]),
     action(ActionId::Reload, "reload", "Look at the plugins again", &[Key::Char('r')], &[Context::Plugins]).label("reload"),
@@ -226,7 +249,7 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Inspect, "inspect", "Read the map at a cursor (Esc: end)", &[Key::Char('i')], &[Context::Map]),
     action(ActionId::Mouse, "mouse", "Use the mouse in the console, or not", &[], &[Context::Screen]),
     action(ActionId::Severity, "severity", "Minimum severity of the events shown", &[Key::Char('m')], &[Context::Mission]).args(&[may("severity", Kind::Severity)]),
-    action(ActionId::Filter, "filter", "Filter the list by text", &[Key::Char('/')], &[Context::Home, Context::Mission]).args(&[may("text", Kind::Text)]),
+    action(ActionId::Filter, "filter", "Filter the list", &[Key::Char('/')], &[Context::Home, Context::Mission, Context::Events]).args(&[may("text", Kind::Text)]),
     action(ActionId::PanLeft, "pan-west", "Pan the map west", &[Key::Left, Key::Char('h')], &[Context::Pan]).repeats(),
     action(ActionId::PanRight, "pan-east", "Pan the map east", &[Key::Right, Key::Char('l')], &[Context::Pan]).repeats(),
     action(ActionId::PanUp, "pan-north", "Pan the map north", &[Key::Up, Key::Char('k')], &[Context::Pan]).repeats(),
@@ -235,6 +258,10 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Suspend, "suspend", "HOLD, then suspend to the shell (fg)", &[Key::Ctrl('z')], &[Context::Anywhere]),
     action(ActionId::Edit, "edit", "Edit the value", &[Key::Char('e')], &[Context::Parameters]).label("edit"),
     action(ActionId::Complete, "complete", "Complete the word", &[Key::Tab], &[Context::Text]).label("complete"),
+    action(ActionId::Remedy(1), "first-action", "Run action 1 of the alarm", &[Key::Char('1')], &[Context::Remedies]),
+    action(ActionId::Remedy(2), "second-action", "Run action 2 of the alarm", &[Key::Char('2')], &[Context::Remedies]),
+    action(ActionId::Remedy(3), "third-action", "Run action 3 of the alarm", &[Key::Char('3')], &[Context::Remedies]),
+    action(ActionId::Remedy(4), "fourth-action", "Run action 4 of the alarm", &[Key::Char('4')], &[Context::Remedies]),
     action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::Rows, Context::Text, Context::Confirm, Context::Stepping, Context::WhatIf]).label("yes"),
     action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("step").risk(Risk::Moves),
     action(ActionId::StepLane, "step-lane", "Move to the end of the lane", &[Key::Char('}')], &[Context::Stepping]).label("lane").risk(Risk::Moves),

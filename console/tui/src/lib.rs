@@ -8,6 +8,7 @@
 
 pub mod actions;
 pub mod caps;
+pub mod guide;
 pub mod keys;
 mod layout;
 pub mod model;
@@ -19,7 +20,7 @@ pub mod view;
 
 pub use caps::{Caps, Colours, Glyphs};
 pub use keys::{Key, KeyPress};
-pub use model::{Health, Model, Recording, Refused, RunId, RunResult, Source, Speed, Times};
+pub use model::{Health, Measured, Model, Recording, Refused, RunId, RunResult, Source, Speed, Times};
 pub use theme::{Role, Theme, ThemeName};
 pub use update::{Effect, Job, Mouse, Msg, Redraw, RunMsg, Signal, Target, is_typing, redraw, update};
 pub use view::{Cache, Places, view, view_cached, view_with};

@@ -4,7 +4,9 @@ pub mod alarms;
 pub mod change;
 pub mod console;
 pub mod coverage;
+pub mod event_list;
 pub mod fold;
+pub mod health;
 pub mod history;
 pub mod home;
 pub mod line_edit;
@@ -27,10 +29,12 @@ pub use alarms::{Alarm, Alarms, Cause};
 pub use change::{Change, Withdrawn};
 pub use console::{Console, Notice, Refused, Speed, Times};
 pub use coverage::{FloorClass, Raster};
+pub use event_list::EventList;
+pub use health::{Health, Measured, Recording, Watches};
 pub use history::History;
 pub use home::{Home, PastRun, ScenarioEntry};
 pub use line_edit::LineEdit;
-pub use live::{Busy, Health, Live, Recording, RunId, RunResult, Source};
+pub use live::{Busy, Live, RunId, RunResult, Source};
 pub use log::{Entry, Log};
 pub use palette::Palette;
 pub use planning::{PlanShown, Planning};
@@ -81,6 +85,13 @@ impl Model {
         run.planning.info.as_ref().or_else(listed)
     }
 
+    /// The selected alarm; without a selection the first one of the table.
+    pub fn selected_alarm(&self) -> Option<&Alarm> {
+        let alarms = &self.live.run.alarms;
+        let chosen = self.ui.alarm.as_ref().and_then(|cause| alarms.get(cause));
+        chosen.or_else(|| alarms.table().first().copied())
+    }
+
     /// Whether the mission runs and yet nothing was heard of it, and for how long, seconds.
     pub fn silent_s(&self) -> Option<f64> {
         let silence_s = self.console.now.mono_s - self.live.heard_mono_s;
@@ -101,7 +112,9 @@ impl Model {
         });
         // What takes long shows how long it has taken, second by second.
         let busy = self.live.busy.as_ref().map(|_| self.console.now.mono_s + 1.0);
-        notice.into_iter().chain(silence).chain(busy).reduce(f64::min)
+        // A figure beyond its limit, or back within it, is looked at again.
+        let health = self.console.watches.is_pending().then_some(self.console.now.mono_s + 1.0);
+        [notice, silence, busy, health].into_iter().flatten().reduce(f64::min)
     }
 
     /// Shows the operator a message in the line above the keys.

@@ -1,13 +1,14 @@
 //! The same console in sentences, one a line: for screen readers and logs.
 
 use crate::model::{Entry, Model, Screen};
-use crate::view::{log_line, question, standing};
+use crate::view::{question, standing};
 
 /// What was said last.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Said {
     screen: Option<Screen>,
-    entry: Option<Entry>,
+    /// Number of the line of the log that is said next.
+    next_line: u64,
     notice: Option<String>,
     question: Option<String>,
     standing: String,
@@ -23,7 +24,7 @@ impl Said {
             lines.push(format!("Screen {}: {}.", screen.digit(), screen.name()));
         }
         let entries = self.entries(model);
-        lines.extend(entries.iter().map(log_line));
+        lines.extend(entries.iter().map(Entry::line));
         let notice = model.notice().map(|notice| notice.text.clone());
         let is_said = |text: &String| entries.iter().any(|entry| entry.text == *text);
         lines.extend(newly(&mut self.notice, notice).filter(|text| !is_said(text)));
@@ -39,17 +40,11 @@ impl Said {
 
     /// What was logged since, the oldest first.
     fn entries(&mut self, model: &Model) -> Vec<Entry> {
-        let is_same = |entry: &Entry, last: &Entry| {
-            (entry.severity, &entry.source, &entry.text) == (last.severity, &last.source, &last.text)
-        };
-        let all = model.live.run.log.shown(mission::Severity::Info, "");
-        let new = all.take_while(|entry| !self.entry.as_ref().is_some_and(|last| is_same(entry, last)));
-        let mut new: Vec<Entry> = new.cloned().collect();
-        new.reverse();
-        if let Some(last) = new.last() {
-            self.entry = Some(last.clone());
-        }
-        new
+        let log = &model.live.run.log;
+        // Another run begins with a log of its own.
+        let from = if log.end() < self.next_line { 0 } else { self.next_line };
+        self.next_line = log.end();
+        (from.max(log.oldest())..log.end()).filter_map(|number| log.get(number)).cloned().collect()
     }
 
     /// Every tenth of the floor is worth a sentence.

@@ -1,5 +1,6 @@
 //! The shell around the pure part: takes the terminal over and always gives it back.
 
+mod clipboard;
 mod key;
 mod output;
 mod pointer;
@@ -67,6 +68,16 @@ impl TerminalGuard {
         // Both buffers are blank after this, so every cell counts as changed.
         self.terminal.swap_buffers();
         Ok(())
+    }
+
+    /// Puts a text into the clipboard of the terminal, if the terminal allows it; it gives no answer.
+    ///
+    /// # Errors
+    /// If the terminal cannot be written.
+    pub fn copy(&mut self, text: &str) -> io::Result<()> {
+        let out = self.terminal.backend_mut();
+        out.write_all(clipboard::sequence(text).as_bytes())?;
+        out.flush()
     }
 
     /// Gives the terminal back for a while, as before stopping the process.

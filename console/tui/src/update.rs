@@ -1,8 +1,11 @@
 //! Messages into the model; what has to be done outside comes back as effects.
 
 mod act;
+mod alarms;
 mod command;
+mod events;
 mod go;
+mod health;
 mod hear;
 mod map;
 mod message;
@@ -10,6 +13,7 @@ mod mouse;
 mod offer;
 mod overlay;
 mod palette;
+mod place;
 mod preflight;
 mod redraw;
 mod send;
@@ -43,19 +47,21 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::ThreadPanicked { thread, message } => {
             effects = hold_now(model);
             let text = format!("console thread {thread} failed: {message}");
-            news(model, Cause::Console, Severity::Crit, text);
+            news(model, &Cause::Console, Severity::Crit, text);
         }
         Msg::Paste(text) => typing::paste(model, &text),
         Msg::Line(line) => effects = palette::obey(model, line.trim()),
         Msg::Mouse(mouse) => effects = mouse::take(model, mouse),
         Msg::Resize { width, height } => resize(model, width, height),
         Msg::Time(now) => model.console.now = now,
+        Msg::Measured(measured) => health::take(model, measured),
         Msg::Run(id, msg) => effects = hear::hear(model, id, msg),
         Msg::Found(found) => model.home.found = Some(*found),
         Msg::Done(job, result) => effects = go::done(model, &job, result),
         Msg::Planners { found, refused } => take_planners(model, found, refused),
-        Msg::Notice { severity, text } => news(model, Cause::Console, severity, text),
+        Msg::Notice { severity, text } => news(model, &Cause::Console, severity, text),
     }
+    events::refresh(model);
     if ringing(model) > alarms_before {
         effects.push(Effect::Bell);
     }
@@ -66,7 +72,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
 fn ringing(model: &Model) -> usize {
     let Bell(Some(least)) = model.console.preferences.bell else { return 0 };
     let alarms = model.live.run.alarms.list().iter();
-    alarms.filter(|alarm| !alarm.acknowledged && alarm.severity >= least).count()
+    alarms.filter(|alarm| alarm.is_unacknowledged() && alarm.severity >= least).count()
 }
 
 fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
@@ -130,10 +136,12 @@ fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<Refuse
 }
 
 /// Writes news of the console into the log and the line above the keys; what is critical becomes an alarm.
-fn news(model: &mut Model, cause: Cause, severity: Severity, text: String) {
+fn news(model: &mut Model, cause: &Cause, severity: Severity, text: String) {
     model.live.run.log.add(model.live.run.clock.t_s, severity, "console", text.clone());
     if severity == Severity::Crit {
-        model.live.run.alarms.raise(cause, severity, text.clone(), model.live.run.clock.t_s);
+        let run = &mut model.live.run;
+        run.alarms.raise(cause.clone(), severity, text.clone(), run.clock.t_s);
+        run.alarms.note(cause, run.log.newest().unwrap_or_default(), None);
     }
     model.say(severity, text);
 }

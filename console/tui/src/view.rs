@@ -1,13 +1,16 @@
 //! The model onto the screen.
 
+mod alarm_screen;
 mod alarms;
 mod ascii;
 mod cache;
 mod charts;
 mod confirm;
 mod coverage;
+mod event_detail;
 mod events;
 mod field;
+mod fields;
 mod footer;
 mod home;
 mod lists;
@@ -30,7 +33,6 @@ mod what_if;
 pub use cache::{Cache, Places};
 
 pub(crate) use confirm::question;
-pub(crate) use events::log_line;
 pub(crate) use next::standing;
 
 use crate::caps::{Caps, Glyphs};
@@ -99,6 +101,8 @@ fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) 
         Screen::Home => home::draw(look, frame, body, arrangement),
         Screen::Plan => plan::draw(look, frame, body, arrangement),
         Screen::Plugins => plugins::draw(look, frame, body, arrangement),
+        Screen::Alarms => alarm_screen::draw(look, frame, body, arrangement),
+        Screen::Events => events::screen(look, frame, body, arrangement),
         Screen::Result => result::draw(look, frame, body, arrangement),
         Screen::Mission => mission(look, frame, body, (area.width, area.height)),
     }

@@ -1,6 +1,6 @@
 //! The drawing thread: messages in, model updated, effects carried out, a frame when something changed.
 
-use super::{session::Session, watch::SharedPlaces};
+use super::{measure::Measure, session::Session, watch::SharedPlaces};
 use crate::{
     cli::Drill,
     failure::{COMPLETE, ENDED_OTHERWISE, exit_code},
@@ -37,6 +37,7 @@ pub(super) struct Screen {
     places: SharedPlaces,
     /// Whether the operator waits for something that the next frame shows.
     answer_seen: bool,
+    measure: Measure,
     drill: Option<Drill>,
 }
 
@@ -70,6 +71,7 @@ impl Screen {
             cache: Cache::default(),
             places,
             answer_seen: true,
+            measure: Measure::since(Instant::now()),
             drill,
         })
     }
@@ -110,12 +112,20 @@ impl Screen {
         if by_itself.is_some_and(|at_s| at_s <= self.session.model.console.now.mono_s) {
             self.due = Redraw::Soon;
         }
+        let began = Instant::now();
+        if let Some(measured) = self.measure.report(began) {
+            self.session.take(Msg::Measured(measured));
+        }
         let until = Instant::now() + BURST_TIME;
         let mut next = first;
         for _ in 0..BURST {
             let Some(msg) = next else { break };
             self.answer_seen |= is_answer(&msg);
-            self.due = self.due.max(redraw(&self.session.model, &msg));
+            let due = redraw(&self.session.model, &msg);
+            self.due = self.due.max(due);
+            if due == Redraw::Soon {
+                self.measure.arrived(&msg, began);
+            }
             for effect in self.session.take(msg) {
                 if let Some(left) = self.carry_out(effect)? {
                     return Ok(Some(left));
@@ -138,6 +148,7 @@ impl Screen {
             Effect::Redraw => self.terminal.redraw().context("drawing")?,
             Effect::Bell => ring()?,
             Effect::Mouse(taken) => self.terminal.take_mouse(taken).context("taking the mouse")?,
+            Effect::Copy(line) => self.terminal.copy(&line).context("copying")?,
             Effect::Suspend => self.suspend()?,
             Effect::Quit { signal } => return Ok(Some(Left { signal })),
             // The session has carried out the others.
@@ -164,7 +175,9 @@ impl Screen {
         if model.ui.mouse {
             self.places.set(self.cache.places());
         }
-        (self.drawn, self.due, self.answer_seen) = (Instant::now(), Redraw::No, false);
+        let now = Instant::now();
+        self.measure.drew(now, now - self.drawn, self.frame_interval);
+        (self.drawn, self.due, self.answer_seen) = (now, Redraw::No, false);
         Ok(())
     }
 }

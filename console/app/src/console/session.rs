@@ -66,7 +66,12 @@ impl Session {
                 self.engine.get().into_iter().for_each(|engine| engine.order(order.clone()))
             }
             Effect::Speed(speed) => self.engine.get().into_iter().for_each(|engine| engine.speed(speed)),
-            Effect::Redraw | Effect::Bell | Effect::Mouse(_) | Effect::Suspend | Effect::Quit { .. } => {
+            Effect::Redraw
+            | Effect::Bell
+            | Effect::Mouse(_)
+            | Effect::Copy(_)
+            | Effect::Suspend
+            | Effect::Quit { .. } => {
                 return Some(effect);
             }
         }

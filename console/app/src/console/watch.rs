@@ -13,17 +13,41 @@ use signal_hook::{
     iterator::Signals,
 };
 use std::{
+    path::Path,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
     thread,
     time::Duration,
 };
 use tui::{
-    Key, Msg, Places, Signal,
+    Key, Measured, Msg, Places, Signal,
     terminal::{self, Pointer},
 };
 
 /// How long the console may take to exit cleanly after a signal; then it exits anyway.
 const GRACE: Duration = Duration::from_secs(1);
+
+/// How often the disk is asked how much space is left: at 100 MB an hour that is less than a megabyte.
+const DISK_PERIOD: Duration = Duration::from_secs(10);
+
+/// Space left where runs are kept, whenever it has changed by a megabyte. A disk may answer late: only this thread waits.
+pub(super) fn disk(outbox: &Outbox, logs: &Path) -> anyhow::Result<()> {
+    let (outbox, logs) = (outbox.clone(), logs.to_owned());
+    let megabytes = |bytes: Option<u64>| bytes.map(|bytes| bytes >> 20);
+    spawn("disk", move || {
+        let mut before = None;
+        loop {
+            let free = runs::free_bytes(&logs);
+            let is_news = megabytes(free) != megabytes(before);
+            if let Some(bytes) = free.filter(|_| is_news)
+                && !outbox.send(Msg::Measured(Measured::Disk(bytes)))
+            {
+                return;
+            }
+            before = free;
+            thread::sleep(DISK_PERIOD);
+        }
+    })
+}
 
 /// Where the last frame put what a mouse can hit, for the thread that listens to it.
 #[derive(Clone, Default)]

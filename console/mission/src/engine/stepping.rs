@@ -23,7 +23,7 @@ pub(super) struct PlaceOnPlan {
 /// Whether an event is logged as WATCH or above.
 fn asks_attention(kind: &EventKind) -> bool {
     let event = Event { tick: 0, t_s: 0.0, kind: kind.clone() };
-    event.log_line().is_some_and(|line| line.severity >= Severity::Watch)
+    event.log_line(&[]).is_some_and(|line| line.severity >= Severity::Watch)
 }
 
 impl Mission {

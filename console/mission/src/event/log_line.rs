@@ -10,7 +10,7 @@ use crate::{
 };
 use planner_api::LogLevel;
 use positioning::Exclusion;
-use world::tether::Certificate;
+use world::{Station, StationId, tether::Certificate};
 
 /// A line of the event log: how much it matters, who speaks, what.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -25,8 +25,8 @@ pub struct LogLine {
 
 impl Event {
     /// The event as a line for people, in the screen's log, the recording and on the command line alike; `None` for
-    /// what happens every tick.
-    pub fn log_line(&self) -> Option<LogLine> {
+    /// what happens every tick. Stations have the names that the opened run gives them.
+    pub fn log_line(&self, stations: &[Station]) -> Option<LogLine> {
         Some(match &self.kind {
             EventKind::RunOpened(run) => line(
                 Severity::Info,
@@ -43,10 +43,10 @@ impl Event {
             EventKind::StationRejected { station, reason } => line(
                 Severity::Watch,
                 "ae",
-                format!("station {} rejected: {}", station.0, exclusion_text(reason)),
+                format!("{} rejected: {}", station_text(*station, stations), exclusion_text(reason)),
             ),
             EventKind::StationRestored { station } => {
-                line(Severity::Info, "ae", format!("station {} back in use", station.0))
+                line(Severity::Info, "ae", format!("{} back in use", station_text(*station, stations)))
             }
             EventKind::PositionLost { error_m, limit_m } => line(
                 Severity::Crit,
@@ -217,6 +217,12 @@ fn certificate_text(planner: &str, refused: bool, certificate: &Certificate) -> 
     }
 }
 
+/// A station by its name, or by its number where the tank has none of it.
+fn station_text(id: StationId, stations: &[Station]) -> String {
+    let found = stations.iter().find(|station| station.id == id);
+    found.map_or_else(|| format!("station {}", id.0), |station| format!("station {}", station.name))
+}
+
 fn exclusion_text(reason: &Exclusion) -> String {
     match reason {
         Exclusion::Silent => "not heard".into(),
@@ -237,8 +243,18 @@ mod tests {
             t_s: 0.7,
             kind: EventKind::PlannerLate { planner: "rpf".into(), ticks },
         };
-        let text = |ticks| late(ticks).log_line().map(|line| line.text).unwrap_or_default();
+        let text = |ticks| late(ticks).log_line(&[]).map(|line| line.text).unwrap_or_default();
         assert_eq!(text(1), "planner rpf answered 1 tick late; the robot stood still");
         assert_eq!(text(2), "planner rpf answered 2 ticks late; the robot stood still");
+    }
+    #[test]
+    fn a_station_is_called_by_its_name() {
+        let stations = [Station { id: StationId(3), name: "C".into(), position: world::Point::origin() }];
+        let restored =
+            Event { tick: 7, t_s: 0.7, kind: EventKind::StationRestored { station: StationId(3) } };
+        let text =
+            |stations: &[Station]| restored.log_line(stations).map(|line| line.text).unwrap_or_default();
+        assert_eq!(text(&stations), "station C back in use");
+        assert_eq!(text(&[]), "station 3 back in use");
     }
 }

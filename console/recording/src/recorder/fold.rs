@@ -45,7 +45,7 @@ impl Fold {
         match (&mut self.opened, &event.kind) {
             (None, EventKind::RunOpened(run)) => {
                 self.opened = Some(Box::new(Opened::new(run, at, stream)?));
-                log(stream, event, at)?;
+                log(stream, event, &[], at)?;
                 Ok(0)
             }
             (None, _) => Err(RecordingError::NotOpened { got: name_of(event) }),
@@ -54,7 +54,7 @@ impl Fold {
                 if closes {
                     opened.close_tick(stream, at)?;
                 }
-                log(stream, event, at)?;
+                log(stream, event, &opened.stations, at)?;
                 opened.apply(event, at, stream)?;
                 Ok(u32::from(closes))
             }
@@ -175,8 +175,8 @@ fn draw_found(stream: &Stream, at: At, obstacle: &Obstacle) -> Done {
     stream.once(&format!("{}/{}", paths::OBSTACLES_FOUND, obstacle.id.0), at, &drawn)
 }
 
-fn log(stream: &Stream, event: &Event, at: At) -> Done {
-    let Some(line) = event.log_line() else { return Ok(()) };
+fn log(stream: &Stream, event: &Event, stations: &[Station], at: At) -> Done {
+    let Some(line) = event.log_line(stations) else { return Ok(()) };
     let level = match line.severity {
         Severity::Info => rr::TextLogLevel::INFO,
         Severity::Watch => rr::TextLogLevel::WARN,

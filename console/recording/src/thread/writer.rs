@@ -20,9 +20,9 @@ use std::{
 
 /// How long the thread sleeps at most, so that what waits to be written is written when nothing happens.
 const IDLE: Duration = Duration::from_millis(100);
-/// How often the files on disk are compared with those that are being written; with [`IDLE`] and the half second
+/// How often the files on disk are compared with those that are being written; with [`IDLE`] and the 400 ms
 /// after which a screen asks, an operator knows within a second.
-const WATCH_PERIOD: Duration = Duration::from_millis(400);
+const WATCH_PERIOD: Duration = Duration::from_millis(300);
 
 /// What the thread owns.
 pub(super) struct Writer {

@@ -152,7 +152,7 @@ fn the_log_has_a_line_for_every_event_that_people_read() {
         .filter(|((_, component), _)| component == "TextLog:text")
         .map(|(_, rows)| rows.len())
         .sum();
-    assert_eq!(lines, events.iter().filter(|event| event.log_line().is_some()).count());
+    assert_eq!(lines, events.iter().filter(|event| event.log_line(&[]).is_some()).count());
 }
 
 #[test]

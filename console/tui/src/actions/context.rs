@@ -15,6 +15,10 @@ pub enum Context {
     Plan,
     /// On the mission screen.
     Mission,
+    /// On the alarms screen.
+    Alarms,
+    /// On the events screen.
+    Events,
     /// On the result screen.
     Result,
     /// On the plugins screen.
@@ -35,6 +39,8 @@ pub enum Context {
     Preflight,
     /// In the list of parameters.
     Parameters,
+    /// In the actions of an alarm.
+    Remedies,
     /// In a line where text is typed.
     Text,
     /// In a list that is filtered by typing.
@@ -60,8 +66,9 @@ impl Context {
 
     /// Whether its actions are commands of their own, and no mere steps within a list or a line.
     pub fn has_commands(self) -> bool {
-        use Context::{Anywhere, Home, Map, Mission, Pan, Plan, Plugins, Result, Screen};
-        matches!(self, Anywhere | Screen | Home | Plan | Mission | Result | Plugins | Map | Pan)
+        use Context::{Alarms, Anywhere, Events, Home, Map, Mission, Pan, Plan, Plugins, Result, Screen};
+        let of_screen = matches!(self, Home | Plan | Mission | Alarms | Events | Result | Plugins);
+        of_screen || matches!(self, Anywhere | Screen | Map | Pan)
     }
 }
 
@@ -94,10 +101,13 @@ pub fn contexts(model: &Model) -> Vec<Context> {
         Overlay::Confirm(_) | Overlay::Quit => [Context::Confirm].as_slice(),
         Overlay::Stepping => &[Context::Stepping],
         Overlay::Commands(_) => &[Context::Text, Context::Commands],
-        Overlay::Parameters { edit: Some(_), .. } | Overlay::Filter(_) => &[Context::Text],
+        Overlay::Parameters { edit: Some(_), .. } | Overlay::Filter(_) | Overlay::Shelve(_) => {
+            &[Context::Text]
+        }
         Overlay::Parameters { edit: None, .. } => &[Context::List, Context::Rows, Context::Parameters],
         Overlay::WhatIf => &[Context::WhatIf, Context::Map],
         Overlay::Preflight { .. } => &[Context::List, Context::Rows, Context::Preflight],
+        Overlay::Remedies { .. } => &[Context::List, Context::Rows, Context::Remedies],
         Overlay::Planners { .. } | Overlay::Layers { .. } => &[Context::List, Context::Rows],
     };
     [&[Context::Anywhere], here].concat()
@@ -107,7 +117,7 @@ pub fn contexts(model: &Model) -> Vec<Context> {
 pub(crate) fn of_screen(model: &Model) -> &'static [Context] {
     if model.ui.cursor.is_some() {
         match model.ui.screen {
-            Screen::Home | Screen::Plugins => {}
+            Screen::Home | Screen::Alarms | Screen::Events | Screen::Plugins => {}
             // Esc ends the cursor here, and nothing else.
             Screen::Plan => return &[Context::Map, Context::Pan, Context::Cursor],
             Screen::Mission => return &[Context::Mission, Context::Map, Context::Pan, Context::Cursor],
@@ -121,6 +131,8 @@ pub(crate) fn of_screen(model: &Model) -> &'static [Context] {
         (Screen::Mission, Pane::Events) => &[Context::Mission, Context::Map, Context::Rows],
         (Screen::Mission, _) => &[Context::Mission, Context::Map],
         (Screen::Plugins, _) => &[Context::Plugins, Context::Rows],
+        (Screen::Alarms, _) => &[Context::Alarms, Context::Rows],
+        (Screen::Events, _) => &[Context::Events, Context::Rows],
         (Screen::Result, _) => &[Context::Result, Context::Map, Context::Rows],
     }
 }

@@ -1,5 +1,6 @@
 //! The console itself: time, speeds, plugins, and what it tells the operator.
 
+use super::Watches;
 use crate::actions::keymap::Keymap;
 use mission::{PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
@@ -143,6 +144,9 @@ pub struct Console {
     pub history: Vec<String>,
     /// What the operator has set up.
     pub preferences: Preferences,
+    /// Figures of the console and their limits.
+    #[serde(default)]
+    pub watches: Watches,
     /// When Ctrl-C was last pressed, on the console's own clock, seconds.
     pub interrupted_mono_s: Option<f64>,
 }

@@ -1,5 +1,7 @@
 //! Events into a run.
 
+mod figures;
+mod line;
 mod planner;
 mod position;
 mod tether;
@@ -20,9 +22,7 @@ impl Run {
             return change;
         }
         self.update_clock(event);
-        if let Some(line) = event.log_line() {
-            self.log.add(event.t_s, line.severity, line.source, line.text);
-        }
+        let line = self.write_line(event);
         self.standing.apply(&event.kind);
         match &event.kind {
             EventKind::RunOpened(run) => self.open(run),
@@ -96,7 +96,7 @@ impl Run {
                 self.hold(event, &Hold { by: by.clone(), resumes: *resumes }, &mut change);
             }
             EventKind::Resumed => {
-                self.alarms.clear(&Cause::Stuck);
+                self.clear(&Cause::Stuck);
                 self.planner_works();
                 change.withdraw(Withdrawn::Resume);
             }
@@ -108,6 +108,11 @@ impl Run {
             | EventKind::PlannerLogged { .. }
             | EventKind::Uncounted { .. } => {}
         }
+        self.read_figures(&event.kind);
+        if let (Some(number), Some(cause)) = (line, Cause::of(&event.kind)) {
+            let place = self.log.get(number).and_then(|entry| self.place_of(&entry.what));
+            self.alarms.note(&cause, number, place);
+        }
         change
     }
 
@@ -117,6 +122,7 @@ impl Run {
             self.clock.moving_s += passed_s;
         }
         (self.clock.tick, self.clock.t_s) = (event.tick, event.t_s);
+        self.alarms.expire(event.t_s);
     }
 
     fn open(&mut self, run: &RunOpened) {
@@ -144,9 +150,13 @@ impl Run {
         self.alarms.raise(cause, severity, text, event.t_s);
     }
 
+    fn clear(&mut self, cause: &Cause) {
+        self.alarms.clear(cause, self.clock.t_s);
+    }
+
     /// Raises an alarm in the words of the log.
     fn raise_as_logged(&mut self, event: &Event, cause: Cause) {
-        if let Some(line) = event.log_line() {
+        if let Some(line) = event.log_line(self.stations()) {
             self.raise(event, cause, line.severity, line.text);
         }
     }

@@ -1,6 +1,6 @@
 //! The run that is open, and what is between the operator and its mission.
 
-use super::{Plans, Preflight, Run, Speed, WhatIf};
+use super::{Health, Plans, Preflight, Run, Speed, WhatIf};
 use mission::{Order, Phase};
 use report::{
     Estimate, Summary,
@@ -21,28 +21,6 @@ pub enum Source {
     File(String),
     /// What past runs missed: names of their folders.
     Rescan(Vec<String>),
-}
-
-/// Whether the run is being written down.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Recording {
-    /// Nobody asked for it.
-    #[default]
-    Off,
-    /// Everything is being written.
-    On,
-    /// It failed, and why.
-    Failed(String),
-}
-
-/// How the engine of a run does.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Health {
-    /// Whether the run is being written down.
-    pub recording: Recording,
-    /// The speed that is really reached, as a multiple of the wall clock; `None` when not measured.
-    pub reached_speed: Option<f64>,
 }
 
 /// A planner's work that takes time; ticks and HOLD continue meanwhile.

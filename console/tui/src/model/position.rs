@@ -3,7 +3,7 @@
 use super::History;
 use nalgebra::Matrix2;
 use planner_api::PoseEstimate;
-use positioning::Fix;
+use positioning::{Fix, Ranging};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use world::Point;
@@ -26,6 +26,9 @@ pub struct Position {
     pub fix_t_s: f64,
     /// Stations heard in the last ranging cycle.
     pub heard: usize,
+    /// The ranges of that cycle.
+    #[serde(default)]
+    pub ranges: Vec<Ranging>,
     /// Mission time of the last ranging cycle, seconds.
     pub ranged_t_s: Option<f64>,
     /// Time between the last two ranging cycles, seconds.
@@ -51,11 +54,12 @@ impl Position {
     }
 
     /// Takes in that a ranging cycle ended.
-    pub fn ranged(&mut self, t_s: f64, heard: usize) {
+    pub fn ranged(&mut self, t_s: f64, ranges: &[Ranging]) {
         if let Some(before) = self.ranged_t_s.filter(|before| *before < t_s) {
             self.period_s = Some(t_s - before);
         }
-        (self.heard, self.ranged_t_s) = (heard, Some(t_s));
+        (self.heard, self.ranged_t_s) = (ranges.len(), Some(t_s));
+        ranges.clone_into(&mut self.ranges);
     }
 
     /// Half width of the 95 % error of the pose, metres.
@@ -132,8 +136,8 @@ mod tests {
     #[test]
     fn a_fix_is_stale_after_two_periods() {
         let mut position = Position { fix_t_s: 10.0, ..Position::default() };
-        position.ranged(9.0, 4);
-        position.ranged(10.0, 4);
+        position.ranged(9.0, &[]);
+        position.ranged(10.0, &[]);
         assert_eq!(position.period_s, Some(1.0));
         assert!(!position.is_fix_stale(20.0), "no fix at all is not a stale one");
         position.fix = Some(fix());

@@ -1,10 +1,10 @@
 //! A run as its events tell it: the same fold serves a run that is flown now and one that is replayed.
 
-use super::{Alarms, History, Log, Planning, Position, Raster, Tether, Trail};
+use super::{Alarms, History, Log, Planning, Position, Raster, Tether, Trail, log::What};
 use mission::{FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig};
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
-use world::{PlateLayout, Point, StationId, World};
+use world::{PlateLayout, Point, Station, StationId, World};
 
 /// A run as its events tell it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -139,10 +139,20 @@ impl Run {
         !self.has_ended() && self.clock.t_s - t_s > 2.01 * tick_s
     }
 
+    /// The stations of the tank.
+    pub fn stations(&self) -> &[Station] {
+        self.about.as_ref().map_or(&[], |about| &about.world.stations)
+    }
+
+    /// The place that a line of the log is about, metres, tank frame.
+    pub fn place_of(&self, what: &What) -> Option<Point> {
+        let station = |id| self.stations().iter().find(|station| station.id == id);
+        what.place(|id| station(id).map(|station| station.position))
+    }
+
     /// Name of a station.
     pub fn station_name(&self, id: StationId) -> String {
-        let found =
-            self.about.iter().flat_map(|about| &about.world.stations).find(|station| station.id == id);
+        let found = self.stations().iter().find(|station| station.id == id);
         found.map_or_else(|| format!("station {}", id.0), |station| station.name.clone())
     }
 }

@@ -2,8 +2,9 @@
 
 use super::line_edit::LineEdit;
 use super::palette::Palette;
+use super::{Cause, EventList};
 use crate::theme::ThemeName;
-use mission::{Order, PlannerChoice, Severity};
+use mission::{Order, PlannerChoice};
 use serde::{Deserialize, Serialize};
 use world::Point;
 
@@ -32,12 +33,14 @@ pub struct Ui {
     pub cursor: Option<Point>,
     /// Whether the mouse is taken from the terminal.
     pub mouse: bool,
-    /// Least severity of the lines in the events pane.
-    pub least: Severity,
-    /// Text that the lines in the events pane contain.
+    /// The filter of the events.
     pub needle: String,
-    /// How many lines the events pane is scrolled back.
-    pub scroll: usize,
+    /// The events that pass it.
+    #[serde(default)]
+    pub events: EventList,
+    /// The selected alarm; `None`: the first one of the table.
+    #[serde(default)]
+    pub alarm: Option<Cause>,
     /// The colours.
     pub theme: ThemeName,
     /// What lies over the screen.
@@ -58,9 +61,9 @@ impl Default for Ui {
             plugin: 0,
             cursor: None,
             mouse: false,
-            least: Severity::Info,
             needle: String::new(),
-            scroll: 0,
+            events: EventList::default(),
+            alarm: None,
             theme: ThemeName::default(),
             overlay: Overlay::None,
         }
@@ -77,6 +80,10 @@ pub enum Screen {
     Plan,
     /// A mission under way.
     Mission,
+    /// What is wrong.
+    Alarms,
+    /// What happened.
+    Events,
     /// What a mission has achieved.
     Result,
     /// Which plugins there are.
@@ -85,7 +92,8 @@ pub enum Screen {
 
 impl Screen {
     /// Every screen, in the order of their keys.
-    pub const ALL: [Self; 5] = [Self::Home, Self::Plan, Self::Mission, Self::Result, Self::Plugins];
+    pub const ALL: [Self; 7] =
+        [Self::Home, Self::Plan, Self::Mission, Self::Alarms, Self::Events, Self::Result, Self::Plugins];
 
     /// Its name, as the top line shows it.
     pub fn name(self) -> &'static str {
@@ -93,6 +101,8 @@ impl Screen {
             Self::Home => "Home",
             Self::Plan => "Plan",
             Self::Mission => "Mission",
+            Self::Alarms => "Alarms",
+            Self::Events => "Events",
             Self::Result => "Result",
             Self::Plugins => "Plugins",
         }
@@ -104,6 +114,8 @@ impl Screen {
             Self::Home => 1,
             Self::Plan => 2,
             Self::Mission => 3,
+            Self::Alarms => 4,
+            Self::Events => 5,
             Self::Result => 7,
             Self::Plugins => 8,
         }
@@ -265,8 +277,28 @@ pub enum Overlay {
         /// Which line is selected.
         selected: usize,
     },
-    /// The text filter of a list is being typed.
+    /// The filter of a list is being typed.
     Filter(LineEdit),
+    /// The actions of an alarm.
+    Remedies {
+        /// Which alarm.
+        cause: Cause,
+        /// Which line is selected.
+        selected: usize,
+    },
+    /// The line in which is typed for how long and why an alarm is put aside.
+    Shelve(Shelving),
+}
+
+/// For how long and why an alarm is put aside, being typed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Shelving {
+    /// Which alarm.
+    pub cause: Cause,
+    /// What was typed: minutes, then a reason.
+    pub line: LineEdit,
+    /// Why it cannot be taken.
+    pub refusal: Option<String>,
 }
 
 /// What a planner is chosen for.

@@ -6,7 +6,7 @@ use super::message::Effect;
 use super::offer::{offered, refuse};
 use super::overlay::{self, ask, open};
 use super::send::{hold_now, send};
-use super::{palette, preflight, typing, what_if};
+use super::{alarms, events, palette, preflight, typing, what_if};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
 use crate::model::plugins::plugins;
@@ -33,6 +33,8 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::GoHome => go(model, Screen::Home),
         ActionId::GoPlan => go(model, Screen::Plan),
         ActionId::GoMission => go(model, Screen::Mission),
+        ActionId::GoAlarms => go(model, Screen::Alarms),
+        ActionId::GoEvents => go(model, Screen::Events),
         ActionId::GoResult => go(model, Screen::Result),
         ActionId::GoPlugins => go(model, Screen::Plugins),
         ActionId::Reload => vec![Effect::Survey],
@@ -49,8 +51,16 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::StepEvent => step(model, Order::StepTo(StepTo::Event)),
         ActionId::Slower => change_speed(model, false),
         ActionId::Faster => change_speed(model, true),
-        ActionId::Acknowledge => acknowledge(model),
         ActionId::Mouse => toggle_mouse(model),
+        ActionId::Acknowledge => alarms::acknowledge(model),
+        ActionId::AcknowledgeAll => alarms::acknowledge_all(model),
+        ActionId::Shelve => alarms::shelve(model),
+        ActionId::Remedy(number) => run_remedy(model, number),
+        ActionId::ShowPlace if model.ui.screen == Screen::Events => events::show_place(model),
+        ActionId::ShowPlace => alarms::show_place(model),
+        ActionId::NextLike => events::next_like(model, false),
+        ActionId::PreviousLike => events::next_like(model, true),
+        ActionId::Copy => events::copy(model),
         ActionId::Accept if model.ui.overlay == Overlay::None => go::enter(model),
         ActionId::Accept => overlay::accept(model),
         ActionId::Edit => overlay::edit(model),
@@ -69,7 +79,7 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::CancelPlan => overlay::cancel_plan(model),
         ActionId::Parameters => open(model, Overlay::Parameters { selected: 0, edit: None }),
         ActionId::Layers => open(model, Overlay::Layers { selected: 0 }),
-        ActionId::Filter => open(model, Overlay::Filter(typing::filtered(model).into())),
+        ActionId::Filter => events::open_filter(model),
         ActionId::Commands => open(model, Overlay::Commands(Palette::default())),
         ActionId::Help => open(model, Overlay::Commands(Palette { help: true, ..Palette::default() })),
         ActionId::SetSpeed
@@ -78,7 +88,6 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         | ActionId::GoTo
         | ActionId::Theme
         | ActionId::Centre => palette::begin(model, id),
-        ActionId::AcknowledgeAll => acknowledge_all(model),
         other => look(model, other),
     }
 }
@@ -110,7 +119,7 @@ fn look(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::PanRight => map::pan(model, Vector::new(1.0, 0.0)),
         ActionId::PanUp => map::pan(model, Vector::new(0.0, 1.0)),
         ActionId::PanDown => map::pan(model, Vector::new(0.0, -1.0)),
-        ActionId::Severity => next_severity(model),
+        ActionId::Severity => events::next_severity(model),
         _ => {}
     }
     Vec::new()
@@ -186,19 +195,14 @@ fn toggle_mouse(model: &mut Model) -> Vec<Effect> {
     vec![Effect::Mouse(model.ui.mouse)]
 }
 
-fn acknowledge(model: &mut Model) -> Vec<Effect> {
-    if let Some(text) = model.live.run.alarms.acknowledge() {
-        model.say(Severity::Info, format!("acknowledged: {text}"));
+/// Runs an action of the alarm whose actions are open.
+fn run_remedy(model: &mut Model, number: u8) -> Vec<Effect> {
+    match alarms::chosen_remedy(model, number.into()) {
+        // A robot that is held stays so: the action never asks to resume.
+        Ok(ActionId::Hold) if !model.live.may_move() => refuse(model, "already held".into()),
+        Ok(action) => act(model, action),
+        Err(why) => refuse(model, why),
     }
-    Vec::new()
-}
-
-fn acknowledge_all(model: &mut Model) -> Vec<Effect> {
-    let before = model.live.run.alarms.list().iter().filter(|alarm| !alarm.acknowledged).count();
-    // An alarm that has fallen to a lower severity is acknowledged twice.
-    while model.live.run.alarms.acknowledge().is_some() {}
-    model.say(Severity::Info, format!("{before} alarms acknowledged"));
-    Vec::new()
 }
 
 fn driving(model: &Model) -> usize {
@@ -220,16 +224,6 @@ fn turn_to(model: &mut Model, by: isize) {
     model.ui.pane = panes.get(next).copied().unwrap_or(Pane::Map);
 }
 
-fn next_severity(model: &mut Model) {
-    model.ui.scroll = 0;
-    model.ui.least = match model.ui.least {
-        Severity::Info => Severity::Watch,
-        Severity::Watch => Severity::Warn,
-        Severity::Warn => Severity::Crit,
-        Severity::Crit => Severity::Info,
-    };
-}
-
 /// Selects another line of whatever takes the arrow keys, so many further down.
 pub(super) fn select(model: &mut Model, by: isize) {
     if palette::recalls(model, by) {
@@ -237,7 +231,8 @@ pub(super) fn select(model: &mut Model, by: isize) {
     }
     match (&model.ui.overlay, model.ui.screen) {
         (Overlay::None, Screen::Home) => model.home.select(by),
-        (Overlay::None, Screen::Mission) => scroll(model, by),
+        (Overlay::None, Screen::Mission | Screen::Events) => model.ui.events.select(by),
+        (Overlay::None, Screen::Alarms) => alarms::select(model, by),
         (Overlay::None, Screen::Result) => go::select_missed(model, by),
         (Overlay::None, Screen::Plugins) => {
             let last = plugins(&model.console, &model.live.run).len().saturating_sub(1);
@@ -246,9 +241,4 @@ pub(super) fn select(model: &mut Model, by: isize) {
         (Overlay::None, Screen::Plan) => {}
         _ => overlay::select(model, by),
     }
-}
-
-fn scroll(model: &mut Model, by: isize) {
-    let lines = model.live.run.log.shown(model.ui.least, &model.ui.needle).count();
-    model.ui.scroll = model.ui.scroll.saturating_add_signed(by).min(lines.saturating_sub(1));
 }

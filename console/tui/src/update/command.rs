@@ -4,6 +4,7 @@ pub(super) mod line;
 mod value;
 
 use super::act::{act, set_speed};
+use super::events;
 use super::go;
 use super::message::Effect;
 use super::offer::{accepted, offered, refuse};
@@ -126,7 +127,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
         Value::Screen(id) => return act(model, id),
         Value::Layer(layer) => model.ui.layers.toggle(layer),
         Value::Place(offset) => model.ui.map = MapView { follow: false, offset, ..model.ui.map },
-        Value::Severity(least) => (model.ui.least, model.ui.scroll) = (least, 0),
+        Value::Severity(least) => events::set_least(model, least),
         Value::Theme(theme) => model.ui.theme = theme,
         Value::Text(text) => typing::filter(model, &text),
     }

@@ -2,9 +2,10 @@
 
 use super::message::{Effect, Job};
 use super::offer::{nothing_under_way, refuse};
+use super::{alarms, events};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
-use crate::model::{Live, Model, RunId, Screen, Source};
+use crate::model::{Live, Model, Pane, RunId, Screen, Source};
 use mission::{PlannerChoice, Severity};
 use world::Point;
 
@@ -25,6 +26,9 @@ pub(super) fn back(model: &mut Model) -> Option<Vec<Effect>> {
 pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
     match model.ui.screen {
         Screen::Home => open_selected(model),
+        Screen::Alarms => alarms::open_actions(model),
+        Screen::Events => events::enter(model),
+        Screen::Mission if model.ui.pane == Pane::Events => events::enter(model),
         Screen::Plan | Screen::Mission | Screen::Result | Screen::Plugins => Vec::new(),
     }
 }

@@ -1,6 +1,6 @@
 //! News of the run that is open.
 
-use super::{Effect, RunMsg, news, preflight, what_if};
+use super::{Effect, RunMsg, health, news, preflight, what_if};
 use crate::model::{
     Busy, Cause, Change, Health, Model, Overlay, Recording, RunId, RunResult, Screen, Withdrawn, ui::Ask,
 };
@@ -51,7 +51,7 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
         RunMsg::Health(health) => take_health(model, health),
         RunMsg::OrderFailed { order, why } => {
             model.live.answered(&order);
-            news(model, Cause::Console, Severity::Crit, why);
+            news(model, &Cause::Console, Severity::Crit, why);
         }
         RunMsg::Busy(work) => {
             let since_mono_s = model.console.now.mono_s;
@@ -105,11 +105,15 @@ fn withdraw(model: &mut Model, withdrawn: Withdrawn) {
 fn take_health(model: &mut Model, health: Health) {
     match &health.recording {
         Recording::Failed(why) if health.recording != model.live.health.recording => {
-            news(model, Cause::Recording, Severity::Crit, format!("recording failed: {why}"));
+            news(model, &Cause::Recording, Severity::Crit, format!("recording failed: {why}"));
         }
         Recording::Failed(_) => {}
-        Recording::On | Recording::Off => model.live.run.alarms.clear(&Cause::Recording),
+        Recording::On | Recording::Off => {
+            let t_s = model.live.run.clock.t_s;
+            model.live.run.alarms.clear(&Cause::Recording, t_s);
+        }
     }
+    health::take_lag(model, health.recorder_lag);
     model.live.health = health;
 }
 

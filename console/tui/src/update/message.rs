@@ -3,7 +3,7 @@
 use crate::actions::ActionId;
 use crate::keys::KeyPress;
 use crate::model::{
-    Forecast, GhostPlan, Health, Refused, RunId, RunResult, Source, Speed, Times, home::Found,
+    Forecast, GhostPlan, Health, Measured, Refused, RunId, RunResult, Source, Speed, Times, home::Found,
 };
 use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, Severity};
 use report::Estimate;
@@ -30,6 +30,8 @@ pub enum Msg {
     },
     /// The time.
     Time(Times),
+    /// What the console measured of itself.
+    Measured(Measured),
     /// News of a run; of one that is not open any more it is dropped.
     Run(RunId, RunMsg),
     /// What was found on the disk.
@@ -204,6 +206,8 @@ pub enum Effect {
     Bell,
     /// Take the mouse from the terminal, or give it back.
     Mouse(bool),
+    /// Put a line into the clipboard of the terminal.
+    Copy(String),
     /// Close the recording and leave. Orders before it in the list are to be obeyed first.
     Quit {
         /// The signal that asked for it, if one did.

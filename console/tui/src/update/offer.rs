@@ -4,7 +4,7 @@ use super::go::named_run;
 use super::message::Effect;
 use super::typing;
 use crate::actions::ActionId;
-use crate::model::{Model, Overlay, Pane, Screen, ui::MAX_ZOOM};
+use crate::model::{Alarm, Model, Overlay, Pane, Screen, ui::MAX_ZOOM};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 
 /// Whether an action can be done now.
@@ -25,8 +25,12 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Abort => abort(model),
         ActionId::ChoosePlanner => swap(model),
         ActionId::Accept => {
-            let is_taken = model.ui.overlay != Overlay::None || model.ui.screen == Screen::Home;
-            demand(is_taken, "Enter has nothing to open here")
+            let opens = match model.ui.screen {
+                Screen::Home | Screen::Alarms | Screen::Events => true,
+                Screen::Mission => model.ui.pane == Pane::Events,
+                Screen::Plan | Screen::Result | Screen::Plugins => false,
+            };
+            demand(model.ui.overlay != Overlay::None || opens, "Enter has nothing to open here")
         }
         ActionId::WhatIf => accepted(model, &Order::NoteOutlooks(Vec::new())),
         ActionId::Preflight => demand(model.live.waits(), "checks are made before the start"),
@@ -42,10 +46,13 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Parameters | ActionId::SetParameter => parameters(model),
         ActionId::SetSpeed => simulating(model),
         ActionId::Open => nothing_under_way(model),
-        ActionId::Acknowledge | ActionId::AcknowledgeAll => {
-            let waiting = model.live.run.alarms.list().iter().any(|alarm| !alarm.acknowledged);
-            demand(waiting, "no unacknowledged alarms")
-        }
+        ActionId::Acknowledge
+        | ActionId::AcknowledgeAll
+        | ActionId::Shelve
+        | ActionId::ShowPlace
+        | ActionId::NextLike
+        | ActionId::PreviousLike
+        | ActionId::Copy => of_line(model, id),
         ActionId::Slower => speed(model, false),
         ActionId::Faster => speed(model, true),
         ActionId::ZoomIn => map(model).and(demand(model.ui.map.zoom < MAX_ZOOM, "already at maximum zoom")),
@@ -92,6 +99,9 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::Help
         | ActionId::GoHome
         | ActionId::GoPlugins
+        | ActionId::GoAlarms
+        | ActionId::GoEvents
+        | ActionId::Remedy(_)
         | ActionId::Back
         | ActionId::Leave
         | ActionId::Filter
@@ -120,6 +130,38 @@ pub(super) fn refuse(model: &mut Model, why: String) -> Vec<Effect> {
 
 fn demand(met: bool, otherwise: &str) -> Result<(), String> {
     if met { Ok(()) } else { Err(otherwise.to_owned()) }
+}
+
+/// Whether something can be done with an alarm or an event.
+fn of_line(model: &Model, id: ActionId) -> Result<(), String> {
+    match id {
+        ActionId::Acknowledge | ActionId::AcknowledgeAll => {
+            let waiting = model.live.run.alarms.open().any(Alarm::is_unacknowledged);
+            demand(waiting, "no unacknowledged alarms")
+        }
+        ActionId::Shelve => on_screen(model, Screen::Alarms).and(match cannot_be_shelved(model) {
+            Some(why) => Err(why),
+            None => Ok(()),
+        }),
+        ActionId::ShowPlace => {
+            let is_here = matches!(model.ui.screen, Screen::Alarms | Screen::Events);
+            demand(is_here, "select an alarm (4) or an event (5) first")
+        }
+        _ => on_screen(model, Screen::Events)
+            .and(demand(!model.ui.events.matches.is_empty(), "no event is selected")),
+    }
+}
+
+/// Why the selected alarm can neither be put aside nor taken back, if it cannot.
+fn cannot_be_shelved(model: &Model) -> Option<String> {
+    match model.selected_alarm() {
+        None => Some("no alarm is selected".into()),
+        Some(alarm) => alarm.cannot_be_shelved().map(str::to_owned),
+    }
+}
+
+fn on_screen(model: &Model, screen: Screen) -> Result<(), String> {
+    demand(model.ui.screen == screen, &format!("only on screen {} ({})", screen.digit(), screen.name()))
 }
 
 /// Whether the mission would accept an order, by its own table.

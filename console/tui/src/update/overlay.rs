@@ -1,12 +1,14 @@
 //! Keys within lists, lines and questions.
 
 use super::act::act;
+use super::alarms;
 use super::message::Effect;
 use super::offer::{accepted, offered, refuse};
 use super::preflight;
 use super::send::send;
 use super::{palette, typing, what_if};
 use crate::actions::ActionId;
+use crate::guide::guide;
 use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
 use crate::model::{Ghost, Model, Overlay, Palette, parameter};
 use mission::{Order, Parameters, PlannerChoice, PlannerInfo};
@@ -28,6 +30,8 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
     match model.ui.overlay.clone() {
         Overlay::None => Vec::new(),
         Overlay::Stepping => act(model, ActionId::Step),
+        Overlay::Remedies { selected, .. } => u8::try_from(selected + 1)
+            .map_or_else(|_| Vec::new(), |number| act(model, ActionId::Remedy(number))),
         Overlay::Confirm(ask) => agree(model, &ask),
         Overlay::Quit => quit(model),
         Overlay::Commands(palette) => palette::accept(model, palette),
@@ -43,6 +47,7 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
         Overlay::WhatIf => what_if::choose(model),
         Overlay::Preflight { .. } => preflight::tick(model),
         Overlay::Filter(_) => open(model, Overlay::None),
+        Overlay::Shelve(shelving) => alarms::take_shelving(model, shelving),
     }
 }
 
@@ -174,17 +179,20 @@ pub(super) fn select(model: &mut Model, by: isize) {
         Overlay::Parameters { .. } => model.planner().map_or(0, |info| info.parameters.len()),
         Overlay::Layers { .. } => MapLayer::ALL.len(),
         Overlay::Preflight { .. } => model.checks().len(),
+        Overlay::Remedies { cause, .. } => guide(cause).remedies.len(),
         Overlay::None
         | Overlay::Confirm(_)
         | Overlay::Stepping
         | Overlay::Quit
         | Overlay::WhatIf
-        | Overlay::Filter(_) => 0,
+        | Overlay::Filter(_)
+        | Overlay::Shelve(_) => 0,
     };
     if let Overlay::Commands(Palette { selected, .. })
     | Overlay::Planners { selected, .. }
     | Overlay::Parameters { selected, .. }
     | Overlay::Preflight { selected }
+    | Overlay::Remedies { selected, .. }
     | Overlay::Layers { selected } = &mut model.ui.overlay
     {
         *selected = selected.saturating_add_signed(by).min(lines.saturating_sub(1));

@@ -7,8 +7,8 @@ use mission::{ParamKind, Severity};
 
 /// Whether a line is open in which text is typed: letters and the space do nothing else then.
 pub fn is_typing(model: &Model) -> bool {
-    use Overlay::{Commands, Filter, Parameters};
-    matches!(model.ui.overlay, Commands(_) | Parameters { edit: Some(_), .. } | Filter(_))
+    use Overlay::{Commands, Filter, Parameters, Shelve};
+    matches!(model.ui.overlay, Commands(_) | Parameters { edit: Some(_), .. } | Filter(_) | Shelve(_))
 }
 
 /// Gives a key to the line that is open; whether there is such a line and the key does something in it.
@@ -69,6 +69,7 @@ fn line(overlay: &mut Overlay) -> Option<&mut LineEdit> {
         Overlay::Commands(palette) => Some(&mut palette.line),
         Overlay::Parameters { edit: Some(edit), .. } => Some(&mut edit.line),
         Overlay::Filter(line) => Some(line),
+        Overlay::Shelve(shelving) => Some(&mut shelving.line),
         _ => None,
     }
 }
@@ -77,6 +78,7 @@ fn changed(model: &mut Model) {
     match &mut model.ui.overlay {
         Overlay::Commands(palette) => (palette.selected, palette.recalled, palette.fault) = (0, 0, None),
         Overlay::Parameters { edit: Some(edit), .. } => edit.refusal = None,
+        Overlay::Shelve(shelving) => shelving.refusal = None,
         Overlay::Filter(line) => {
             let text = line.text().to_owned();
             filter(model, &text);
@@ -95,5 +97,6 @@ pub(super) fn filter(model: &mut Model, text: &str) {
     let home = model.ui.screen == Screen::Home;
     let filter = if home { &mut model.home.filter } else { &mut model.ui.needle };
     text.clone_into(filter);
-    (model.ui.scroll, model.home.scenario, model.home.run) = (0, 0, 0);
+    (model.home.scenario, model.home.run) = (0, 0);
+    model.ui.events.at = None;
 }

@@ -2,6 +2,8 @@
 
 use super::look::{Look, Parts, fill};
 use super::{events, text};
+use crate::guide;
+use crate::model::log::severity_word;
 use crate::model::{Alarm, Pane};
 use crate::theme::Role;
 use ratatui::Frame;
@@ -11,13 +13,13 @@ use ratatui::layout::Rect;
 const BESIDE: usize = 64;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    let mut alarms: Vec<&Alarm> = look.run.alarms.list().iter().collect();
-    alarms.sort_by_key(|alarm| (alarm.acknowledged, std::cmp::Reverse(alarm.severity)));
-    let block = look.pane(Pane::Alarms, &format!("Alarms  {}", alarms.len()), "a acknowledge");
+    let mut alarms = look.run.alarms.table();
+    alarms.retain(|alarm| alarm.is_open());
+    let block = look.pane(Pane::Alarms, &format!("Alarms  {}", alarms.len()), "a acknowledge  4 all");
     let inner = block.inner(area);
     let mut lines: Vec<_> = alarms
         .iter()
-        .flat_map(|alarm| rows(alarm, usize::from(inner.width)))
+        .flat_map(|alarm| rows(look, alarm, usize::from(inner.width)))
         .take(usize::from(inner.height))
         .map(|row| look.line(row))
         .collect();
@@ -28,15 +30,18 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 }
 
 /// State first; the words beside it, or below it where the pane is narrow.
-fn rows(alarm: &Alarm, columns: usize) -> Vec<Parts> {
-    let state = match (alarm.active, alarm.acknowledged) {
-        (true, true) => "ack",
-        (true, false) => "UNACK",
+fn rows(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Parts> {
+    let state = match (alarm.is_active(), alarm.is_unacknowledged()) {
+        (true, false) => "ack",
+        (true, true) => "UNACK",
         (false, _) => "cleared",
     };
-    let severity = (events::role(alarm.severity), format!(" {:<5}", events::word(alarm.severity)));
+    let severity = (events::role(alarm.severity), format!(" {:<5}", severity_word(alarm.severity)));
     let front = (Role::Dim, format!(" {state:<7} T+{} ", text::clock(alarm.since_s)));
-    let words = |room: usize| (Role::Text, text::fit(&alarm.text, room));
+    let name = guide::name(&alarm.cause, look.run);
+    let words =
+        alarm.reading.as_ref().map_or_else(|| name.clone(), |reading| format!("{name}: {}", reading.now));
+    let words = |room: usize| (Role::Text, text::fit(&words, room));
     let used = text::width(&severity.1) + text::width(&front.1);
     if columns >= BESIDE {
         vec![vec![severity, front, words(columns - used)]]

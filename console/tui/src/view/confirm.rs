@@ -5,7 +5,9 @@ use super::lists::place_cursor;
 use super::look::Look;
 use super::next::{self, Clauses};
 use super::{coverage, text};
-use crate::model::{LineEdit, Model, Overlay, ui::Ask};
+use crate::guide;
+use crate::model::ui::{Ask, Shelving};
+use crate::model::{LineEdit, Model, Overlay, Screen};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -15,6 +17,15 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     if let Overlay::Filter(line) = &look.model.ui.overlay {
         return filter(look, frame, area, line);
     }
+    if let Overlay::Shelve(shelving) = &look.model.ui.overlay {
+        return typed(
+            look,
+            frame,
+            area,
+            (" Shelve for minutes, reason: ", &shelving.line),
+            &shelve(look.model, shelving),
+        );
+    }
     let (role, clauses) = clauses(look.model);
     let columns = usize::from(area.width).saturating_sub(1);
     let text = next::joined(&clauses, columns.saturating_sub(1));
@@ -22,15 +33,28 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     frame.render_widget(Line::from(vec![look.span(Role::Text, " "), look.span(role, text)]), area);
 }
 
-/// The line in which a filter is typed, and which keys end it.
+/// The line in which a filter is typed, what is wrong with it, and which keys end it.
 fn filter(look: &Look, frame: &mut Frame, area: Rect, line: &LineEdit) {
-    const PROMPT: &str = " Filter: ";
-    const KEYS: &str = "  Enter: keep, Esc: clear.";
+    let problem = look.model.ui.events.matches.filter().problems.first();
+    let problem =
+        problem.filter(|_| look.model.ui.screen != Screen::Home).map(|problem| format!("  {}.", problem.why));
+    typed(
+        look,
+        frame,
+        area,
+        (" Filter: ", line),
+        &(problem.unwrap_or_default() + "  Enter: keep, Esc: clear."),
+    );
+}
+
+/// A line of text with its cursor between what it is for and what it does.
+fn typed(look: &Look, frame: &mut Frame, area: Rect, (prompt, line): (&str, &LineEdit), after: &str) {
     let columns = usize::from(area.width).saturating_sub(1);
-    let shown = field(line, columns.saturating_sub(text::width(PROMPT) + text::width(KEYS)));
-    let typed = text::column(&format!("{PROMPT}{}{KEYS}", shown.text), columns);
+    let room = columns.saturating_sub(text::width(prompt) + text::width(after)).max(columns / 3);
+    let shown = field(line, room);
+    let typed = text::column(&format!("{prompt}{}{after}", shown.text), columns);
     frame.render_widget(Line::from(vec![look.span(Role::Text, " "), look.span(Role::Confirm, typed)]), area);
-    place_cursor(frame, area, (1 + text::width(PROMPT) + shown.cursor, 0));
+    place_cursor(frame, area, (1 + text::width(prompt) + shown.cursor, 0));
 }
 
 /// The question that is open, or what comes next.
@@ -74,6 +98,14 @@ fn asked(model: &Model) -> Option<Vec<String>> {
         _ => return None,
     };
     Some(clauses)
+}
+
+/// What the line does in which is typed for how long an alarm is put aside.
+fn shelve(model: &Model, shelving: &Shelving) -> String {
+    match &shelving.refusal {
+        Some(why) => format!("  REFUSED: {why}"),
+        None => format!("  ({}) Enter: shelve, Esc: cancel.", guide::name(&shelving.cause, &model.live.run)),
+    }
 }
 
 fn quit(model: &Model) -> Vec<String> {

@@ -1,42 +1,112 @@
-//! The events pane, newest line first.
+//! Events, newest first: the pane of the mission screen, and the screen of their own.
 
-use super::look::{Look, fill};
-use super::text;
-use crate::model::{Entry, Pane};
+use super::look::{Look, Parts, fill};
+use super::{event_detail, table, text};
+use crate::model::log::filter::{Filter, without_least};
+use crate::model::log::severity_word;
+use crate::model::ui::Arrangement;
+use crate::model::{Entry, Overlay, Pane};
 use crate::theme::Role;
 use mission::Severity;
 use ratatui::Frame;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::Modifier;
 use ratatui::text::Line;
 
+/// Rows that the list keeps beside the whole event, with its frame.
+const LIST: u16 = 7;
+
+/// The pane of the mission screen.
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let ui = &look.model.ui;
-    let filter =
-        if ui.needle.is_empty() { String::new() } else { format!(", `{}`", text::fit(&ui.needle, 16)) };
-    let back = if ui.scroll > 0 { format!(", {} newer", ui.scroll) } else { String::new() };
-    let title = format!("Events, {} and above{filter}{back}", word(ui.least));
+    let needle = without_least(&ui.needle);
+    let filter = if needle.is_empty() { String::new() } else { format!(", `{}`", text::fit(&needle, 16)) };
+    let newer = ui.events.newer();
+    let back = if newer > 0 { format!(", {newer} newer") } else { String::new() };
+    let least = severity_word(ui.events.matches.filter().least());
+    let title = format!("Events, {least} and above{filter}{back}");
     let note = if area.width >= 60 { "m severity  / filter" } else { "" };
     let block = look.pane(Pane::Events, &title, note);
     let inner = block.inner(area);
-    let lines = look
-        .run
-        .log
-        .shown(ui.least, &ui.needle)
-        .skip(ui.scroll)
-        .take(usize::from(inner.height))
-        .map(|entry| row(look, entry, usize::from(inner.width)))
-        .collect();
+    let entries = ui.events.matches.newest(&look.run.log, newer).take(usize::from(inner.height));
+    let lines = entries.map(|(_, entry)| look.line(row(entry, usize::from(inner.width)))).collect();
     fill(frame, area, block, lines);
 }
 
-/// How a severity is written.
-pub(super) fn word(severity: Severity) -> &'static str {
-    match severity {
-        Severity::Info => "INFO",
-        Severity::Watch => "WATCH",
-        Severity::Warn => "WARN",
-        Severity::Crit => "CRIT",
+/// The screen of their own.
+pub(super) fn screen(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+    let events = &look.model.ui.events;
+    let selected = events.selected().filter(|_| events.is_open);
+    let open = selected.and_then(|number| Some((number, look.run.log.get(number)?)));
+    let Some((number, entry)) = open else { return list(look, frame, area) };
+    if arrangement == Arrangement::Paged {
+        return event_detail::draw(look, frame, area, (number, entry));
     }
+    let rows = event_detail::rows(look, (number, entry), area.width).min(area.height.saturating_sub(LIST));
+    let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
+    list(look, frame, above);
+    event_detail::draw(look, frame, below, (number, entry));
+}
+
+fn list(look: &Look, frame: &mut Frame, area: Rect) {
+    let events = &look.model.ui.events;
+    let title = format!("Events  {} of {}, newest first", events.matches.len(), look.run.log.len());
+    let block = look.block(Role::Focus, &title, "CRIT always listed");
+    let inner = block.inner(area);
+    let columns = usize::from(inner.width);
+    let mut lines = filter_lines(look, columns);
+    if events.matches.is_empty() {
+        let hint = if look.model.ui.needle.is_empty() {
+            "No events."
+        } else {
+            "No event matches. / then Esc: clear."
+        };
+        lines.push(look.line([(Role::Dim, format!(" {hint}"))]));
+    }
+    let height = usize::from(inner.height).saturating_sub(lines.len());
+    let newer = events.newer();
+    let shown = table::window(newer, events.matches.len(), height);
+    let entries = events.matches.newest(&look.run.log, shown.start).take(shown.len());
+    lines.extend(entries.enumerate().map(|(index, (_, entry))| {
+        let parts = row(entry, columns.saturating_sub(1));
+        table::row(look, parts, shown.start + index == newer, columns)
+    }));
+    fill(frame, area, block, lines);
+}
+
+/// The filter, what of it was not understood underlined, and why not.
+fn filter_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
+    let ui = &look.model.ui;
+    let is_typed = matches!(ui.overlay, Overlay::Filter(_));
+    if ui.needle.is_empty() && !is_typed {
+        return Vec::new();
+    }
+    let filter = ui.events.matches.filter();
+    let mut line = look.line([(Role::Key, " / ".into())]);
+    line.spans.extend(pieces(&ui.needle, filter).into_iter().map(|(is_bad, piece)| {
+        let span = look.span(if is_bad { Role::Warn } else { Role::Title }, piece);
+        if is_bad { span.patch_style(Modifier::UNDERLINED) } else { span }
+    }));
+    if is_typed {
+        line.push_span(look.span(Role::Confirm, "_"));
+    }
+    let why = filter.problems.iter().map(|problem| format!("   ^ {}", problem.why));
+    let why = why.map(|why| look.line([(Role::Warn, text::fit(&why, columns))]));
+    std::iter::once(line).chain(why.take(2)).collect()
+}
+
+/// A filter in pieces that were understood and pieces that were not.
+fn pieces(text: &str, filter: &Filter) -> Vec<(bool, String)> {
+    let mut pieces = Vec::new();
+    let mut at = 0;
+    for problem in &filter.problems {
+        let (before, bad) = (text.get(at..problem.at.start), text.get(problem.at.clone()));
+        pieces.push((false, before.unwrap_or_default().to_owned()));
+        pieces.push((true, bad.unwrap_or_default().to_owned()));
+        at = problem.at.end;
+    }
+    pieces.push((false, text.get(at..).unwrap_or_default().to_owned()));
+    pieces
 }
 
 /// How a severity looks.
@@ -49,23 +119,18 @@ pub(super) fn role(severity: Severity) -> Role {
     }
 }
 
-/// A line of the log as text.
-pub(crate) fn log_line(entry: &Entry) -> String {
-    let Entry { t_s, severity, source, text, .. } = entry;
-    format!("T+{} {} {source}: {text}", text::clock(*t_s), word(*severity))
-}
-
-fn row(look: &Look, entry: &Entry, columns: usize) -> Line<'static> {
+/// A line of the log in some columns.
+pub(super) fn row(entry: &Entry, columns: usize) -> Parts {
     let again = if entry.count > 1 { format!(" (×{})", entry.count) } else { String::new() };
     let front = format!(" T+{} ", text::clock(entry.t_s));
     let source = text::column(&entry.source, 8);
-    let severity = format!("{:<5}", word(entry.severity));
+    let severity = format!("{:<5}", severity_word(entry.severity));
     let room = columns.saturating_sub(text::width(&front) + 1 + 8 + severity.len() + text::width(&again) + 1);
-    look.line([
+    vec![
         (Role::Dim, front),
         (role(entry.severity), severity),
         (Role::Dim, format!(" {source}")),
         (Role::Text, text::fit(&entry.text, room)),
         (Role::Dim, again),
-    ])
+    ]
 }

@@ -16,8 +16,9 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 /// What goes first when there is too little room.
-const DISPENSABLE: [ActionId; 9] = [
+const DISPENSABLE: [ActionId; 10] = [
     ActionId::Complete,
+    ActionId::AcknowledgeAll,
     ActionId::NextPane,
     ActionId::Parameters,
     ActionId::Faster,
@@ -122,9 +123,14 @@ fn label(action: &Action, model: &Model) -> String {
         }
         (ActionId::Interrupt, _) if is_typing(model) => "HOLD",
         (ActionId::Cancel, Overlay::None) => "end reading",
-        (ActionId::Accept, Overlay::None) => "open",
+        (ActionId::Accept, Overlay::None) => match model.ui.screen {
+            Screen::Alarms => "actions",
+            Screen::Events if model.ui.events.is_open => "close detail",
+            Screen::Events => "detail",
+            _ => "open",
+        },
         (ActionId::Back, _) if model.ui.screen == Screen::Home => "quit",
-        (ActionId::Accept, Overlay::Commands(_)) => "run",
+        (ActionId::Accept, Overlay::Commands(_) | Overlay::Remedies { .. }) => "run",
         (ActionId::Accept, Overlay::Planners { .. }) => "choose",
         (ActionId::Accept, Overlay::WhatIf) => "choose",
         (ActionId::Accept, Overlay::Preflight { .. }) => "tick",
@@ -132,6 +138,7 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Accept, Overlay::Parameters { edit: None, .. }) => "edit",
         (ActionId::Accept, Overlay::Parameters { edit: Some(_), .. }) => "send",
         (ActionId::Accept, Overlay::Filter(_)) => "keep",
+        (ActionId::Accept, Overlay::Shelve(_)) => "shelve",
         (ActionId::Accept, Overlay::Stepping) => "step",
         (ActionId::Cancel, Overlay::Filter(_)) => "clear",
         (
@@ -141,6 +148,7 @@ fn label(action: &Action, model: &Model) -> String {
             | Overlay::Layers { .. }
             | Overlay::Preflight { .. }
             | Overlay::WhatIf
+            | Overlay::Remedies { .. }
             | Overlay::Parameters { edit: None, .. },
         ) => "close",
         _ => action.label,

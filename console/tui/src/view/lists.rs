@@ -1,11 +1,12 @@
 //! Lists over the screen: commands, planners, parameters, layers.
 
 mod commands;
-mod list;
+pub(super) mod list;
 mod parameters;
 mod planners;
 mod preflight;
 
+use super::alarm_screen;
 use super::look::Look;
 use crate::model::{Overlay, ui::MapLayer};
 use crate::theme::Role;
@@ -27,6 +28,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         Overlay::Parameters { selected, edit } => parameters::list(look, *selected, edit.as_ref(), columns),
         Overlay::Preflight { selected } => preflight::list(look, *selected, columns),
         Overlay::Layers { selected } => layers(look, *selected),
+        Overlay::Remedies { cause, selected } if !alarm_screen::shows_actions(look.model) => {
+            alarm_screen::action_list(look, cause, *selected, columns)
+        }
         _ => return,
     };
     let wanted = list.above.len() + list.rows.len() + list.below.len() + 2;

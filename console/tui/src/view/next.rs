@@ -136,10 +136,14 @@ fn running(model: &Model) -> Clauses {
         let text = format!("POSITION LOST: automatic HOLD after {} s.", text::number(hold_s, 1));
         return (Role::Crit, vec![text]);
     }
-    let open =
-        model.live.run.alarms.worst().filter(|alarm| !alarm.acknowledged && alarm.severity >= Severity::Warn);
+    let open = model
+        .live
+        .run
+        .alarms
+        .worst()
+        .filter(|alarm| alarm.is_unacknowledged() && alarm.severity >= Severity::Warn);
     if let Some(alarm) = open {
-        let over = if alarm.active { "" } else { " (cleared)" };
+        let over = if alarm.is_active() { "" } else { " (cleared)" };
         return (
             events::role(alarm.severity),
             vec![format!("<acknowledge>: acknowledge{over}: {}", alarm.text)],

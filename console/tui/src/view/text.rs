@@ -1,5 +1,7 @@
 //! Numbers and words as the screen writes them.
 
+pub(super) use crate::model::log::clock;
+
 use crate::model::Speed;
 use ratatui::text::Span;
 use world::Point;
@@ -26,12 +28,6 @@ pub(super) fn number(value: f64, decimals: usize) -> String {
 /// A place on the floor.
 pub(super) fn place(point: Point) -> String {
     format!("{}, {} m", number(point.x, 2), number(point.y, 2))
-}
-
-/// A span of time as hours, minutes and seconds.
-pub(super) fn clock(seconds: f64) -> String {
-    let whole = if seconds.is_finite() { seconds.max(0.0) as u64 } else { 0 };
-    format!("{:02}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
 }
 
 /// The pace of the simulation.

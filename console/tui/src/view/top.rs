@@ -110,7 +110,7 @@ fn recording(model: &Model) -> (Role, String) {
 
 /// How many alarms of each severity there are, and whether some are not acknowledged.
 pub(super) fn alarms(model: &Model, wide: bool) -> Parts {
-    if model.live.run.alarms.list().is_empty() {
+    if model.live.run.alarms.open().next().is_none() {
         return vec![(Role::Dim, if wide { "ALARM none" } else { "! none" }.into())];
     }
     let counted = [

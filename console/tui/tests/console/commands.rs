@@ -89,7 +89,7 @@ fn what_is_typed_finds_what_is_meant_first() {
         ("zo", "zoom-in"),
         ("zoom out", "zoom-out"),
         ("pan e", "pan-east"),
-        ("events", "severity"),
+        ("events", "events"),
         ("sp", "speed"),
     ];
     for (typed, first) in running {
@@ -152,7 +152,7 @@ fn commands_take_values() {
     run(&mut screen, "centre C2");
     assert_eq!(screen.model.ui.map.offset, world::Vector::new(-4.0, 3.0));
     run(&mut screen, "severity warn");
-    assert_eq!(screen.model.ui.least, Severity::Warn);
+    assert_eq!(screen.model.ui.events.matches.filter().least(), Severity::Warn);
     run(&mut screen, "filter \"position lost\"");
     assert_eq!(screen.model.ui.needle, "position lost");
     run(&mut screen, "goto plan");

@@ -383,7 +383,9 @@ impl ScriptedMission {
     pub(crate) fn obeyed(&self, order: Order) -> Vec<Event> {
         let after = match order {
             Order::Hold => Some(EventKind::Held { by: HoldReason::Operator, resumes: Resumes::Never }),
-            Order::Resume | Order::Step | Order::StepTo(_) | Order::FlyUncertified => Some(EventKind::Resumed),
+            Order::Resume | Order::Step | Order::StepTo(_) | Order::FlyUncertified => {
+                Some(EventKind::Resumed)
+            }
             _ => None,
         };
         std::iter::once(EventKind::Ordered { order }).chain(after).map(|kind| self.now(kind)).collect()
@@ -488,7 +490,11 @@ impl Screen {
         model.ui.go(tui::model::Screen::Mission);
         let mut screen = Self { model, mission: ScriptedMission::new(), mono_s: 0.0 };
         screen.send(Msg::Time(Times { mono_s: 0.0, wall_unix_s: 1_795_264_000.0 }));
-        screen.hear(RunMsg::Health(Health { recording: Recording::On, reached_speed: None }));
+        screen.hear(RunMsg::Health(Health {
+            recording: Recording::On,
+            reached_speed: None,
+            ..Health::default()
+        }));
         let refused = Refused {
             plugin: "my_plugin.so".into(),
             reason: "built for planner ABI 3, this console speaks 1; rebuild it".into(),

@@ -9,8 +9,8 @@ use ratatui::backend::TestBackend;
 use ratatui::style::Style;
 use tui::actions::ACTIONS;
 use tui::{
-    Cache, Caps, Effect, Health, Key, KeyPress, Model, Mouse, Msg, Recording, RunMsg, Signal, Target, Times,
-    view_cached,
+    Cache, Caps, Effect, Health, Key, KeyPress, Measured, Model, Mouse, Msg, Recording, RunMsg, Signal,
+    Target, Times, view_cached,
 };
 use world::Point;
 
@@ -93,8 +93,11 @@ fn msg() -> impl Strategy<Value = Msg> {
         1 => (0..300_u16, 0..100_u16).prop_map(|(width, height)| Msg::Resize { width, height }),
         1 => any::<f64>().prop_map(|mono_s| Msg::Time(Times { mono_s, wall_unix_s: mono_s })),
         1 => "\\PC{0,90}".prop_map(Msg::Paste),
-        1 => (recording, prop::option::of(any::<f64>()))
-            .prop_map(|(recording, reached_speed)| of_run(RunMsg::Health(Health { recording, reached_speed }))),
+        1 => (recording, prop::option::of(any::<f64>()), any::<u64>())
+            .prop_map(|(recording, reached_speed, recorder_lag)| of_run(RunMsg::Health(Health { recording, reached_speed, recorder_lag }))),
+        1 => (prop::option::of(any::<f64>()), any::<u32>())
+            .prop_map(|(response_ms, skipped)| Msg::Measured(Measured::Screen { response_ms, skipped })),
+        1 => any::<u64>().prop_map(|bytes| Msg::Measured(Measured::Disk(bytes))),
         1 => "\\PC{0,90}".prop_map(|text| Msg::Notice { severity: Severity::Crit, text }),
         1 => prop::option::of(("[a-z]{0,9}", prop::option::of(0.0..99.0_f64))).prop_map(|busy| of_run(RunMsg::Busy(busy))),
         1 => (any::<f64>(), "\\PC{0,90}").prop_map(|(share, what)| of_run(RunMsg::BusyAt { share, what })),
@@ -156,6 +159,9 @@ fn deed() -> impl Strategy<Value = Vec<Msg>> {
         ":start",
         "e",
         "1",
+        "2",
+        "3",
+        "4",
         ":planner apf",
         ":set rpf_gain=1",
         ":speed 4",
@@ -305,7 +311,7 @@ fn the_smallest_and_largest_screens_are_drawn() {
         [(0, 0), (1, 1), (0, 9), (9, 0), (3, 2), (24, 7), (59, 16), (60, 15), (80, 24), (300, 100)]
     {
         for mut screen in [Screen::idle(), Screen::running()] {
-            for keys in ["", "?", ":z", "P", "p", "L", "/x", "q", "S", "X"] {
+            for keys in ["", "?", ":z", "P", "p", "L", "/x", "q", "S", "X", "4", "4d15;x", "5", "5/sevv>=x"] {
                 screen.type_text(keys);
                 drawn(&screen.model, RICH, (width, height));
                 screen.press([Key::Esc]);
@@ -325,7 +331,7 @@ fn nothing_but_style_is_lost_without_colour() {
     failed.hear(RunMsg::Events(events));
     let mut unrecorded = Screen::running();
     unrecorded
-        .hear(RunMsg::Health(Health { recording: Recording::Failed("full".into()), reached_speed: None }));
+        .hear(RunMsg::Health(Health { recording: Recording::Failed("full".into()), ..Health::default() }));
     let cases: Vec<(&str, Screen, &[&str])> = vec![
         ("idle", Screen::idle(), &["■ IDLE", "REC●", "Press S"]),
         ("running", Screen::running(), &["▶ RUN", "2w", "rejected: 0.42", "found"]),
@@ -362,8 +368,8 @@ fn what_is_drawn_does_not_grow_with_the_mission() {
     assert!(screen.model.live.run.trail.points().len() <= 2048);
     let seconds = tui::model::history::HISTORY_S;
     assert!(screen.model.live.run.position.history_m.last(usize::MAX).len() <= seconds);
-    for i in 0..20_000 {
+    for i in 0..120_000 {
         screen.send(Msg::Notice { severity: Severity::Info, text: format!("line {i}") });
     }
-    assert!(screen.model.live.run.log.len() <= 10_000);
+    assert!(screen.model.live.run.log.len() < tui::model::log::MAX_LINES + 1024);
 }

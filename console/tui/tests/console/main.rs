@@ -1,7 +1,9 @@
 //! The console from outside: scripts of messages, stored screens, and laws that hold for every screen.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod alarms;
 mod commands;
+mod events;
 mod fixture;
 mod laws;
 mod mouse;

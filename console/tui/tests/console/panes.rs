@@ -188,8 +188,11 @@ fn a_robot_that_stands_still_is_drawn_once_a_second_and_news_at_once() {
     assert_eq!(redraw(&screen.model, &resumed), Redraw::Soon);
     let notice = Msg::Notice { severity: Severity::Info, text: "news".into() };
     assert_eq!(redraw(&screen.model, &notice), Redraw::Soon);
-    let health =
-        of_run(RunMsg::Health(tui::Health { recording: tui::Recording::On, reached_speed: Some(0.9) }));
+    let health = of_run(RunMsg::Health(tui::Health {
+        recording: tui::Recording::On,
+        reached_speed: Some(0.9),
+        ..tui::Health::default()
+    }));
     assert_eq!(redraw(&screen.model, &health), Redraw::No);
     assert_eq!(redraw(&Screen::running().model, &telemetry), Redraw::Soon);
 }

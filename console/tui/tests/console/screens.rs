@@ -197,7 +197,7 @@ fn ended_in_a_collision_without_recording() {
     let events = vec![screen.mission.ended(Outcome::Collision, "bumper contact")];
     let recording = Recording::Failed("the disk is full".into());
     screen.hear(RunMsg::Events(events));
-    screen.hear(RunMsg::Health(tui::Health { recording, reached_speed: None }));
+    screen.hear(RunMsg::Health(tui::Health { recording, ..tui::Health::default() }));
     screen.pass(20.0);
     store("collision", &mut screen);
 }

@@ -755,7 +755,7 @@ fn a_stuck_robot_is_held_with_an_alarm_until_it_goes_on_and_the_operator_knows()
 #[test]
 fn a_failed_recording_is_an_alarm_until_it_works_again_and_was_seen() {
     let mut screen = Screen::running();
-    let health = |recording| RunMsg::Health(tui::Health { recording, reached_speed: None });
+    let health = |recording| RunMsg::Health(tui::Health { recording, ..tui::Health::default() });
     assert_eq!(screen.hear(health(Recording::Failed("disk full".into()))), [Effect::Bell]);
     assert_eq!(screen.hear(health(Recording::Failed("disk full".into()))), []);
     screen.type_text("a");
@@ -791,7 +791,8 @@ fn news_go_away_by_themselves_and_stay_in_the_log() {
     assert_eq!(notice(&screen), "the disk is nearly full");
     screen.pass(10.0);
     assert_eq!(notice(&screen), "");
-    assert!(screen.model.live.run.log.shown(Severity::Warn, "disk").count() == 1);
+    screen.type_text("/disk");
+    assert_eq!(screen.model.ui.events.matches.len(), 1);
 }
 
 #[test]
@@ -810,13 +811,18 @@ fn panes_follow_the_size_of_the_screen() {
 fn the_events_are_scrolled_and_filtered() {
     let mut screen = Screen::running();
     screen.press([Key::Tab, Key::End]);
-    let lines = screen.model.live.run.log.shown(Severity::Info, "").count();
-    assert_eq!(screen.model.ui.scroll, lines - 1);
+    let lines = screen.model.live.run.log.len();
+    assert_eq!(screen.model.ui.events.newer(), lines - 1);
     screen.press([Key::Home, Key::Char('/')]);
     screen.type_text("STATION");
     screen.press([Key::Enter]);
     assert_eq!(screen.model.ui.needle, "STATION");
-    assert_eq!(screen.model.live.run.log.shown(Severity::Info, &screen.model.ui.needle).count(), 1);
+    assert_eq!(screen.model.ui.events.matches.len(), 1);
+    screen.type_text("m");
+    assert_eq!(
+        (screen.model.ui.needle.as_str(), screen.model.ui.events.matches.len()),
+        ("sev>=watch STATION", 1)
+    );
 }
 
 #[test]

@@ -4,8 +4,8 @@ use crate::fixture::{RICH, Screen, choice};
 use crate::screens::{drawn, text};
 use mission::{Event, EventKind, Gait, Hold, HoldReason, Order, Outcome, ParamValue, Phase, Resumes};
 use tui::actions::keymap::{Binding, Keymap};
-use tui::model::ui::{Ask, Edit, Purpose};
-use tui::model::{Overlay, Palette, Pane};
+use tui::model::ui::{Ask, Edit, Purpose, Shelving};
+use tui::model::{Cause, Overlay, Palette, Pane};
 use tui::{Effect, Key, Model, Msg, RunMsg, Signal, update};
 
 const HOLD: Effect = Effect::Order(Order::Hold);
@@ -23,11 +23,16 @@ fn phases() -> Vec<Phase> {
         Outcome::Entangled,
         Outcome::Aborted,
     ];
-    [Phase::Waiting, Phase::Running(Gait::Steady), Phase::Running(Gait::OneTick), Phase::Running(Gait::To(mission::StepTo::LaneEnd))]
-        .into_iter()
-        .chain(held)
-        .chain(outcomes.map(Phase::Ended))
-        .collect()
+    [
+        Phase::Waiting,
+        Phase::Running(Gait::Steady),
+        Phase::Running(Gait::OneTick),
+        Phase::Running(Gait::To(mission::StepTo::LaneEnd)),
+    ]
+    .into_iter()
+    .chain(held)
+    .chain(outcomes.map(Phase::Ended))
+    .collect()
 }
 
 fn positions(screen: &Screen) -> [Option<Event>; 3] {
@@ -57,6 +62,8 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Preflight { selected: 0 },
         Overlay::WhatIf,
         Overlay::Filter("a".into()),
+        Overlay::Remedies { cause: Cause::PositionLost, selected: 0 },
+        Overlay::Shelve(Shelving { cause: Cause::Stuck, line: "15".into(), refusal: None }),
     ];
     // A new overlay does not compile until it is in the list above.
     for overlay in &all {
@@ -71,6 +78,8 @@ fn overlays() -> Vec<Overlay> {
             | Overlay::Layers { .. }
             | Overlay::Preflight { .. }
             | Overlay::WhatIf
+            | Overlay::Remedies { .. }
+            | Overlay::Shelve(_)
             | Overlay::Filter(_) => {}
         }
     }
@@ -93,7 +102,10 @@ impl Where {
     fn includes(self, overlay: &Overlay) -> bool {
         let is_text = matches!(
             overlay,
-            Overlay::Commands(_) | Overlay::Filter(_) | Overlay::Parameters { edit: Some(_), .. }
+            Overlay::Commands(_)
+                | Overlay::Filter(_)
+                | Overlay::Shelve(_)
+                | Overlay::Parameters { edit: Some(_), .. }
         );
         match self {
             Self::Screens => *overlay == Overlay::None,

@@ -8,8 +8,9 @@ use runs::{Closed, Kept, RunLog};
 use std::time::{Duration, Instant};
 use tui::{Health, Recording, RunMsg, RunResult};
 
-/// How often the recorder's health is sent to the screen.
-const HEALTH_PERIOD: Duration = Duration::from_millis(500);
+/// How often the recorder's health is sent to the screen: with the recorder's own look at its files, an operator knows within
+/// a second that the run is not recorded.
+pub(super) const HEALTH_PERIOD: Duration = Duration::from_millis(400);
 
 impl EngineThread {
     pub(super) fn open_log(&mut self) -> anyhow::Result<()> {
@@ -43,11 +44,12 @@ impl EngineThread {
             return;
         }
         self.health_sent_at = now;
-        let recording = log.health().error.map_or(Recording::On, Recording::Failed);
+        let health = log.health();
+        let recording = health.error.map_or(Recording::On, Recording::Failed);
         let reached = self.reached.take(now, self.flight.tick_length());
         // While the mission waits, its pace says nothing of how it will go on.
         let reached_speed = (!self.waits()).then_some(reached);
-        self.send(RunMsg::Health(Health { recording, reached_speed }));
+        self.send(RunMsg::Health(Health { recording, reached_speed, recorder_lag: health.lag }));
     }
 
     /// Closes journal and recording and writes the report.
@@ -59,7 +61,7 @@ impl EngineThread {
         let result = result(&closed);
         self.closed = Some(closed);
         let recording = problem.map_or(Recording::Off, Recording::Failed);
-        self.send(RunMsg::Health(Health { recording, reached_speed: None }));
+        self.send(RunMsg::Health(Health { recording, ..Health::default() }));
         self.send(RunMsg::Closed(Box::new(result)));
     }
 }

@@ -1,6 +1,6 @@
 //! What the engine's thread waits for between two ticks.
 
-use super::EngineThread;
+use super::{EngineThread, keeping::HEALTH_PERIOD};
 use crate::console::line::Request;
 use mission::Order;
 use runs::{CLOSE_TIMEOUT, RunLog};
@@ -26,7 +26,7 @@ impl EngineThread {
         loop {
             let is_ahead = self.is_ahead();
             let due = if is_ahead { due.max(Instant::now() + LOOK_AGAIN) } else { due };
-            let wait = due.saturating_duration_since(Instant::now());
+            let wait = due.saturating_duration_since(Instant::now()).min(HEALTH_PERIOD);
             let request = if self.is_under_way() {
                 self.asked.recv_timeout(wait)
             } else if orders.is_empty() {
@@ -55,7 +55,8 @@ impl EngineThread {
                     let _ = answer.send(());
                 }
                 Ok(Request::Close { within }) => return (orders, Some(within)),
-                Err(RecvTimeoutError::Timeout) if is_ahead => {}
+                // A slow mission has ticks further apart than the screen hears of its recording.
+                Err(RecvTimeoutError::Timeout) if is_ahead || Instant::now() < due => self.send_health(),
                 Err(RecvTimeoutError::Timeout) => return (orders, None),
                 Err(RecvTimeoutError::Disconnected) => return (orders, Some(CLOSE_TIMEOUT)),
             }

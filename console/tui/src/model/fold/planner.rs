@@ -84,6 +84,6 @@ impl Run {
 
     pub(super) fn planner_works(&mut self) {
         self.planning.fault = None;
-        self.alarms.clear(&Cause::Planner);
+        self.clear(&Cause::Planner);
     }
 }

@@ -3,25 +3,26 @@
 use crate::model::{Cause, Change, Run, Withdrawn, position};
 use mission::{Event, EventKind, Severity};
 use planner_api::PoseEstimate;
-use positioning::Exclusion;
-use world::{Pose, StationId};
+use world::Pose;
 
 impl Run {
     /// Takes in an event of the robot's position.
     pub(super) fn locate(&mut self, event: &Event, change: &mut Change) {
         match &event.kind {
-            EventKind::Ranged { ranges } => self.position.ranged(event.t_s, ranges.len()),
+            EventKind::Ranged { ranges } => self.position.ranged(event.t_s, ranges),
             EventKind::Fixed { fix } => {
                 (self.position.fix, self.position.fix_t_s) = (Some(fix.clone()), event.t_s);
                 self.position.failure = None;
-                self.alarms.clear(&Cause::NoFix);
+                self.clear(&Cause::NoFix);
             }
             EventKind::FixFailed { error, .. } => {
                 self.position.failure = Some(error.to_string());
                 self.raise(event, Cause::NoFix, Severity::Watch, format!("no fix: {error}"));
             }
-            EventKind::StationRejected { station, reason } => self.exclude(event, *station, reason),
-            EventKind::StationRestored { station } => self.alarms.clear(&Cause::Station(*station)),
+            EventKind::StationRejected { station, .. } => {
+                self.raise_as_logged(event, Cause::Station(*station));
+            }
+            EventKind::StationRestored { station } => self.clear(&Cause::Station(*station)),
             EventKind::Estimated { pose } => {
                 self.scan(pose);
                 self.position.estimated(event.t_s, *pose);
@@ -34,7 +35,7 @@ impl Run {
             }
             EventKind::PositionRegained { .. } => {
                 self.position.lost = false;
-                self.alarms.clear(&Cause::PositionLost);
+                self.clear(&Cause::PositionLost);
             }
             EventKind::RangesInconsistent { .. } => {
                 self.raise(
@@ -45,7 +46,7 @@ impl Run {
                 );
                 change.withdraw(Withdrawn::All);
             }
-            EventKind::RangesConsistent => self.alarms.clear(&Cause::Contradiction),
+            EventKind::RangesConsistent => self.clear(&Cause::Contradiction),
             _ => {}
         }
     }
@@ -59,16 +60,5 @@ impl Run {
             let at = |pose: &PoseEstimate| Pose { position: pose.position, heading_rad: pose.heading_rad };
             coverage.pass(about.mission.tool(), at(&before), at(here));
         }
-    }
-
-    fn exclude(&mut self, event: &Event, station: StationId, reason: &Exclusion) {
-        let name = self.station_name(station);
-        let why = match reason {
-            Exclusion::Silent => "not heard".to_owned(),
-            Exclusion::Residual { residual_m, gate_m } => {
-                format!("residual {residual_m:.2} m, gate {gate_m:.2} m")
-            }
-        };
-        self.raise(event, Cause::Station(station), Severity::Watch, format!("{name} rejected: {why}"));
     }
 }

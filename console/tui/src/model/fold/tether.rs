@@ -17,14 +17,14 @@ impl Run {
                 if matches!(alarm, TetherAlarm::Snag { .. }) {
                     self.tether.get_or_insert_default().is_snagged = false;
                 }
-                self.alarms.clear(&Cause::Tether(alarm.word().to_owned()));
+                self.clear(&Cause::Tether(alarm.word().to_owned()));
             }
             // A planner that is being prepared; why it does not take over is reported when it is rejected.
             EventKind::Certified { .. } if self.planning.proposed => {}
             EventKind::Certified { planner, refused, certificate } => {
                 self.tether.get_or_insert_default().certified = Some(certificate.certified);
                 if certificate.certified {
-                    self.alarms.clear(&Cause::Certificate);
+                    self.clear(&Cause::Certificate);
                 } else {
                     let severity = if *refused { Severity::Crit } else { Severity::Warn };
                     let reasons = certificate.reasons.join("; ");

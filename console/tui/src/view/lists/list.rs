@@ -10,7 +10,7 @@ use ratatui::widgets::{Clear, Paragraph};
 
 /// A list with something above and below it.
 #[derive(Default)]
-pub(super) struct List {
+pub(in crate::view) struct List {
     pub title: String,
     pub note: &'static str,
     pub above: Vec<Row>,
@@ -57,7 +57,11 @@ pub(in crate::view) fn place_cursor(frame: &mut Frame, area: Rect, (column, row)
 }
 
 /// A sentence in as many lines as it takes.
-pub(super) fn paragraph(role: Role, sentence: &str, columns: usize) -> impl Iterator<Item = Row> + use<> {
+pub(in crate::view) fn paragraph(
+    role: Role,
+    sentence: &str,
+    columns: usize,
+) -> impl Iterator<Item = Row> + use<> {
     text::wrap(sentence, columns).into_iter().map(move |line| vec![(role, format!(" {line}"))])
 }
 

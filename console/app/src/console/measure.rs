@@ -1,0 +1,122 @@
+//! How the screen does: time from keys to their frames, frames skipped.
+
+use std::{
+    collections::VecDeque,
+    time::{Duration, Instant},
+};
+use tui::{Measured, Msg};
+
+/// How often it is reported.
+const PERIOD: Duration = Duration::from_secs(1);
+/// How long a key counts. Fewer than a hundred make the slowest of them the figure.
+const KEYS: Duration = Duration::from_secs(30);
+/// How long a skipped frame counts.
+const SKIPPED: Duration = Duration::from_secs(10);
+
+/// How the screen does.
+pub(super) struct Measure {
+    reported: Instant,
+    /// When the key came that the next frame answers.
+    key: Option<Instant>,
+    /// When each key was answered, and how long that took.
+    answered: VecDeque<(Instant, Duration)>,
+    /// When frames were skipped, and how many.
+    skipped: VecDeque<(Instant, u32)>,
+    /// When the first message came that the next frame shows.
+    changed: Option<Instant>,
+}
+
+impl Measure {
+    /// Measures from now on.
+    pub(super) fn since(now: Instant) -> Self {
+        let (answered, skipped) = (VecDeque::new(), VecDeque::new());
+        Self { reported: now, key: None, answered, skipped, changed: None }
+    }
+
+    /// A message was taken.
+    pub(super) fn arrived(&mut self, msg: &Msg, now: Instant) {
+        self.changed.get_or_insert(now);
+        if matches!(msg, Msg::Key(_)) {
+            self.key.get_or_insert(now);
+        }
+    }
+
+    /// A frame was drawn, so long after the one before, where one is due every `interval` while things change.
+    pub(super) fn drew(&mut self, now: Instant, after: Duration, interval: Duration) {
+        if let Some(key) = self.key.take() {
+            self.answered.push_back((now, now - key));
+        }
+        // Time in which nothing changed needed no frames.
+        let waited = self.changed.take().map_or(Duration::ZERO, |changed| after.min(now - changed));
+        let due = waited.div_duration_f64(interval) as u32;
+        if due > 1 {
+            self.skipped.push_back((now, due - 1));
+        }
+    }
+
+    /// What there is to report, once a period.
+    pub(super) fn report(&mut self, now: Instant) -> Option<Measured> {
+        if now.saturating_duration_since(self.reported) < PERIOD {
+            return None;
+        }
+        self.reported = now;
+        self.answered.retain(|(at, _)| now.saturating_duration_since(*at) < KEYS);
+        self.skipped.retain(|(at, _)| now.saturating_duration_since(*at) < SKIPPED);
+        let mut times: Vec<Duration> = self.answered.iter().map(|(_, took)| *took).collect();
+        times.sort_unstable();
+        let response = times.get((times.len() * 99).div_ceil(100).saturating_sub(1));
+        Some(Measured::Screen {
+            response_ms: response.map(|took| took.as_secs_f64() * 1e3),
+            skipped: self.skipped.iter().map(|(_, count)| count).sum(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tui::{Key, RunId, RunMsg};
+
+    const FRAME: Duration = Duration::from_millis(33);
+
+    fn ms(ms: u64) -> Duration {
+        Duration::from_millis(ms)
+    }
+
+    #[test]
+    fn the_slowest_of_a_hundred_keys_is_reported_for_half_a_minute() {
+        let began = Instant::now();
+        let mut measure = Measure::since(began);
+        for number in 0..100 {
+            let at = began + ms(10 * number);
+            measure.arrived(&Msg::Key(Key::Up.into()), at);
+            measure.drew(at + if number == 7 { ms(80) } else { ms(5) + ms(number % 2) }, ms(8), FRAME);
+        }
+        assert_eq!(measure.report(began + ms(999)), None);
+        let taken = |measure: &mut Measure, after| match measure.report(began + after) {
+            Some(Measured::Screen { response_ms, skipped }) => (response_ms, skipped),
+            _ => panic!("a report is due"),
+        };
+        assert_eq!(taken(&mut measure, ms(1000)), (Some(6.0), 0));
+        assert_eq!(taken(&mut measure, ms(32_000)), (None, 0));
+    }
+
+    #[test]
+    fn only_frames_that_something_waited_for_are_skipped() {
+        let began = Instant::now();
+        let mut measure = Measure::since(began);
+        let events = Msg::Run(RunId(1), RunMsg::Events(Vec::new()));
+        measure.arrived(&events, began + ms(5000));
+        measure.drew(began + ms(5033), ms(5033), FRAME);
+        assert_eq!(
+            measure.report(began + ms(5100)),
+            Some(Measured::Screen { response_ms: None, skipped: 0 })
+        );
+        measure.arrived(&events, began + ms(5100));
+        measure.drew(began + ms(5200), ms(166), FRAME);
+        assert_eq!(
+            measure.report(began + ms(6200)),
+            Some(Measured::Screen { response_ms: None, skipped: 2 })
+        );
+    }
+}

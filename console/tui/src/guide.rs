@@ -1,0 +1,120 @@
+//! What each alarm means and what the operator can do about it.
+
+mod console;
+mod position;
+mod remedy;
+mod tether;
+
+pub use remedy::{Guide, Remedy};
+
+use crate::actions::ActionId;
+use crate::model::{Cause, Run};
+use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, RESUME, SHOW, run, wait};
+
+/// What an alarm is called in a table, short enough for one.
+pub fn name(cause: &Cause, of: &Run) -> String {
+    match cause {
+        Cause::PositionLost => "position lost".into(),
+        Cause::Contradiction => "AE ranges contradict each other".into(),
+        Cause::NoFix => "no position fix".into(),
+        Cause::Station(id) => {
+            format!("station {} rejected", of.station_name(*id).trim_start_matches("station "))
+        }
+        Cause::Map => "new obstacle, not on drawing".into(),
+        Cause::Tether(word) => tether::name(word),
+        Cause::Certificate => "plan not certified for tether".into(),
+        Cause::Planner => "planner failed".into(),
+        Cause::Stuck => "robot stuck".into(),
+        Cause::Ended => "mission ended early".into(),
+        Cause::Recording => "recording FAILED".into(),
+        Cause::Console => "part of the console failed".into(),
+        Cause::Response => "console answers slowly".into(),
+        Cause::Frames => "screen skips frames".into(),
+        Cause::RecorderLag => "recorder is behind".into(),
+        Cause::Disk => "little disk space left".into(),
+    }
+}
+
+/// What an alarm means, and what can be done about it.
+pub fn guide(cause: &Cause) -> Guide {
+    match cause {
+        Cause::PositionLost => position::POSITION_LOST,
+        Cause::Contradiction => position::CONTRADICTION,
+        Cause::NoFix => position::NO_FIX,
+        Cause::Station(_) => position::STATION,
+        Cause::Recording => console::RECORDING,
+        Cause::Console => console::CONSOLE,
+        Cause::Response => console::RESPONSE,
+        Cause::Frames => console::FRAMES,
+        Cause::RecorderLag => console::RECORDER_LAG,
+        Cause::Disk => console::DISK,
+        Cause::Map => Guide {
+            cause: "The robot sees something that is not on the drawing.",
+            effect: "Planners avoid it. The floor under it does not count; what it blocks becomes unreachable.",
+            remedies: const { &[SHOW, wait("Check that it is what it seems: nozzle, sump, debris."), HOLD] },
+        },
+        Cause::Tether(word) => tether::guide(word),
+        Cause::Certificate => Guide {
+            cause: "Run to its end, the plan would exceed a limit of the tether, touch something, or leave tether out \
+                    at the anchor.",
+            effect: "A refused plan is not run: the robot is held. An uncertified one is run on the operator's order.",
+            remedies: const {
+                &[
+                    OTHER_PLANNER,
+                    PARAMETERS,
+                    run("Run the plan anyway: asks first.", ActionId::FlyUncertified),
+                    END,
+                ]
+            },
+        },
+        Cause::Planner => Guide {
+            cause: "The planner panicked, crashed, hung, or sent an invalid answer; its process has ended.",
+            effect: "Robot is held. A fallback planner of the scenario takes over automatically.",
+            remedies: const { &[RESUME, OTHER_PLANNER, PARAMETERS, END] },
+        },
+        Cause::Stuck => Guide {
+            cause: "The robot made no progress for longer than the mission allows (scenario: stuck_s).",
+            effect: "Robot is held until the operator decides.",
+            remedies: const { &[RESUME, OTHER_PLANNER, PARAMETERS, END] },
+        },
+        Cause::Ended => Guide {
+            cause: "The mission ended before its task was complete.",
+            effect: "Nothing moves. What was scanned and recorded is kept.",
+            remedies: const {
+                &[
+                    run("Show the result (7).", ActionId::GoResult),
+                    run("Scan what was missed: opens a new mission.", ActionId::Rescan),
+                    run("Write the report.", ActionId::Report),
+                ]
+            },
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actions::ACTIONS;
+
+    #[test]
+    fn every_alarm_has_cause_effect_and_one_to_four_remedies() {
+        for cause in Cause::every() {
+            let guide = guide(&cause);
+            let texts = guide.remedies.iter().map(|remedy| remedy.text);
+            for text in [guide.cause, guide.effect].into_iter().chain(texts) {
+                assert!(text.ends_with('.') && text.starts_with(char::is_uppercase), "{cause:?}: {text}");
+            }
+            assert!((1..=4).contains(&guide.remedies.len()), "{cause:?}");
+            let name = name(&cause, &Run::default());
+            assert!(!name.is_empty() && name.len() <= 31, "{name} fits into a table of 80 columns");
+        }
+    }
+
+    #[test]
+    fn every_remedy_that_is_run_is_an_action() {
+        for remedy in Cause::every().iter().flat_map(|cause| guide(cause).remedies) {
+            let known = |id| ACTIONS.iter().any(|action| action.id == id);
+            assert!(remedy.action.is_none_or(known), "{}", remedy.text);
+        }
+    }
+}

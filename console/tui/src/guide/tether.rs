@@ -1,0 +1,81 @@
+//! What the alarms of the tether mean.
+
+use super::remedy::{END, Guide, OTHER_PLANNER, RESUME, SHOW, STAY, run, wait};
+use crate::actions::ActionId;
+
+/// What an alarm of the tether is called; `word` is that of its event.
+pub(super) fn name(word: &str) -> String {
+    match word {
+        "reel" => "tether: reel nearly out".into(),
+        "wrap" => "tether wraps an obstacle".into(),
+        "total wrap" => "tether: total wrap".into(),
+        "snag" => "tether SNAGGED".into(),
+        "return path" => "no return path along tether".into(),
+        "stray" => "robot crossed a cut of its plan".into(),
+        other => format!("tether: {other}"),
+    }
+}
+
+/// What an alarm of the tether means, and what can be done about it.
+pub(super) fn guide(word: &str) -> Guide {
+    match word {
+        "reel" => Guide {
+            cause: "More than 80 % of the tether is out.",
+            effect: "At the end of the reel the robot is held.",
+            remedies: const {
+                &[
+                    run(
+                        "Resume: the scan is replanned from here, tether relieved first; asks.",
+                        ActionId::Resume,
+                    ),
+                    OTHER_PLANNER,
+                    END,
+                ]
+            },
+        },
+        "wrap" | "total wrap" => Guide {
+            cause: "The tether bends round obstacles by more than 80 % of what is allowed.",
+            effect: "Each wrap multiplies the pull. At the limit the robot is held.",
+            remedies: const {
+                &[
+                    SHOW,
+                    run("Resume: a manoeuvre relieves the tether first; asks.", ActionId::Resume),
+                    OTHER_PLANNER,
+                    END,
+                ]
+            },
+        },
+        "snag" => Guide {
+            cause: "The reel has paid out more than the map explains: an unmapped object holds the tether.",
+            effect: "Robot is held. How the tether lies is not known; the return path is UNKNOWN.",
+            remedies: const {
+                &[
+                    run(
+                        "Resume: the robot frees the tether by driving back the way it snagged; asks.",
+                        ActionId::Resume,
+                    ),
+                    SHOW,
+                    run("Keep held (HOLD), and free the tether by hand.", ActionId::Hold),
+                    END,
+                ]
+            },
+        },
+        "return path" => Guide {
+            cause: "The hull does not fit back along the tether.",
+            effect: "Robot is held.",
+            remedies: const {
+                &[
+                    wait("Wait: the mission resumes automatically as soon as the hull fits again."),
+                    STAY,
+                    OTHER_PLANNER,
+                    END,
+                ]
+            },
+        },
+        _ => Guide {
+            cause: "The robot left its plan across a line that keeps the tether free.",
+            effect: "The mission is replanned automatically.",
+            remedies: const { &[wait("Wait for the new plan."), STAY, RESUME, END] },
+        },
+    }
+}

@@ -1,0 +1,126 @@
+//! What an alarm is about.
+
+use mission::{EventKind, HoldReason};
+use serde::{Deserialize, Serialize};
+
+/// What an alarm is about; each cause has one alarm at most.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Cause {
+    /// The position error is beyond the limit.
+    PositionLost,
+    /// The ranges contradict each other.
+    Contradiction,
+    /// The ranges give no position.
+    NoFix,
+    /// A station is left out.
+    Station(world::StationId),
+    /// An obstacle was found that is not on the drawing.
+    Map,
+    /// The cable comes near a limit or has reached it: which one.
+    Tether(String),
+    /// The last plan could not be certified for the tether.
+    Certificate,
+    /// The planner failed.
+    Planner,
+    /// The robot gets nowhere.
+    Stuck,
+    /// The run ended otherwise than complete.
+    Ended,
+    /// The run is not being written down.
+    Recording,
+    /// A part of the console failed.
+    Console,
+    /// The console answers keys slowly.
+    Response,
+    /// The console cannot draw as often as things change.
+    Frames,
+    /// The recorder is behind the mission.
+    RecorderLag,
+    /// Little space is left for runs.
+    Disk,
+}
+
+impl Cause {
+    /// The alarm that an event belongs to, whether it raises it, clears it or follows from it.
+    pub fn of(kind: &EventKind) -> Option<Self> {
+        Some(match kind {
+            EventKind::StationRejected { station, .. } | EventKind::StationRestored { station } => {
+                Self::Station(*station)
+            }
+            EventKind::PositionLost { .. } | EventKind::PositionRegained { .. } => Self::PositionLost,
+            EventKind::RangesInconsistent { .. } | EventKind::RangesConsistent => Self::Contradiction,
+            EventKind::FixFailed { .. } => Self::NoFix,
+            EventKind::ObstacleFound { .. } => Self::Map,
+            EventKind::TetherAlarmRaised { alarm, .. } | EventKind::TetherAlarmCleared { alarm } => {
+                Self::Tether(alarm.word().to_owned())
+            }
+            EventKind::Certified { .. } => Self::Certificate,
+            EventKind::PlannerFailed { .. } | EventKind::PlannerChosen { .. } => Self::Planner,
+            EventKind::Ended { .. } => Self::Ended,
+            EventKind::Held { by, .. } => Self::of_hold(by)?,
+            _ => return None,
+        })
+    }
+
+    fn of_hold(by: &HoldReason) -> Option<Self> {
+        match by {
+            HoldReason::PositionLost => Some(Self::PositionLost),
+            HoldReason::RangesInconsistent => Some(Self::Contradiction),
+            HoldReason::PlannerFault { .. } | HoldReason::PlannerSilent { .. } => Some(Self::Planner),
+            HoldReason::Stuck { .. } => Some(Self::Stuck),
+            HoldReason::PlanRefused { .. } => Some(Self::Certificate),
+            HoldReason::Tether { .. }
+            | HoldReason::Operator
+            | HoldReason::Stepped
+            | HoldReason::PlannerReplaced => None,
+        }
+    }
+
+    /// Every cause once; for tests that go through all of them.
+    #[doc(hidden)]
+    pub fn every() -> Vec<Self> {
+        let tether = ["reel", "wrap", "total wrap", "snag", "return path", "stray"];
+        let all: Vec<Self> = [
+            Self::PositionLost,
+            Self::Contradiction,
+            Self::NoFix,
+            Self::Station(world::StationId(1)),
+            Self::Map,
+            Self::Certificate,
+            Self::Planner,
+            Self::Stuck,
+            Self::Ended,
+            Self::Recording,
+            Self::Console,
+            Self::Response,
+            Self::Frames,
+            Self::RecorderLag,
+            Self::Disk,
+        ]
+        .into_iter()
+        .chain(tether.map(|word| Self::Tether(word.into())))
+        .collect();
+        // A new cause does not compile until it is in the list above.
+        for cause in &all {
+            match cause {
+                Self::PositionLost
+                | Self::Contradiction
+                | Self::NoFix
+                | Self::Station(_)
+                | Self::Map
+                | Self::Tether(_)
+                | Self::Certificate
+                | Self::Planner
+                | Self::Stuck
+                | Self::Ended
+                | Self::Recording
+                | Self::Console
+                | Self::Response
+                | Self::Frames
+                | Self::RecorderLag
+                | Self::Disk => {}
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,171 @@
+//! Every alarm of a run.
+
+use super::alarm::{Alarm, Reading, State};
+use super::cause::Cause;
+use mission::Severity;
+use serde::{Deserialize, Serialize};
+use std::cmp::Reverse;
+use world::Point;
+
+/// Most alarms kept; there are fewer causes than that.
+const MAX_ALARMS: usize = 64;
+/// An alarm that comes up later than this after the one before it begins a new burst, seconds of mission time: what a failure
+/// brings with it follows within a few ranging cycles and hold times.
+const BURST_S: f64 = 10.0;
+
+/// Every alarm of a run, in the order in which they first came up.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Alarms {
+    list: Vec<Alarm>,
+    bursts: u32,
+    last_s: Option<f64>,
+}
+
+impl Alarms {
+    /// Raises an alarm. One that is active already takes the new words; it needs another acknowledgement only if it became
+    /// more severe.
+    pub fn raise(&mut self, cause: Cause, severity: Severity, text: String, t_s: f64) {
+        let Some(index) = self.place_of(cause) else { return };
+        if !self.list[index].is_active() {
+            self.join_burst(index, t_s);
+        }
+        self.list[index].take(severity, text, t_s);
+    }
+
+    /// Where the alarm of a cause is; a new one takes the place of one that cleared long ago if there are too many.
+    fn place_of(&mut self, cause: Cause) -> Option<usize> {
+        if let Some(index) = self.list.iter().position(|alarm| alarm.cause == cause) {
+            return Some(index);
+        }
+        if self.list.len() >= MAX_ALARMS {
+            let oldest = self.list.iter().position(|alarm| alarm.state == State::Cleared)?;
+            self.list.remove(oldest);
+        }
+        self.list.push(Alarm::new(cause));
+        Some(self.list.len() - 1)
+    }
+
+    fn join_burst(&mut self, index: usize, t_s: f64) {
+        let is_new = self.last_s.is_none_or(|last_s| t_s - last_s > BURST_S);
+        self.last_s = Some(t_s);
+        self.bursts += u32::from(is_new);
+        let alarm = &mut self.list[index];
+        if alarm.burst != self.bursts {
+            (alarm.burst, alarm.is_first) = (self.bursts, is_new);
+        }
+    }
+
+    /// Notes that a cause is gone.
+    pub fn clear(&mut self, cause: &Cause, t_s: f64) {
+        if let Some(alarm) = self.get_mut(cause) {
+            alarm.clear(t_s);
+        }
+    }
+
+    /// Acknowledges the worst alarm that the operator has not acknowledged, the oldest of them; returns its words.
+    pub fn acknowledge(&mut self) -> Option<String> {
+        let worst = self.worst().filter(|alarm| alarm.is_unacknowledged())?.cause.clone();
+        self.acknowledge_one(&worst)
+    }
+
+    /// Acknowledges one alarm, if it waits for that; returns its words.
+    pub fn acknowledge_one(&mut self, cause: &Cause) -> Option<String> {
+        let alarm = self.get_mut(cause).filter(|alarm| alarm.is_unacknowledged())?;
+        Some(alarm.acknowledge())
+    }
+
+    /// Acknowledges every alarm that waits for it; returns how many there were.
+    pub fn acknowledge_all(&mut self) -> usize {
+        let waiting = self.list.iter_mut().filter(|alarm| alarm.is_unacknowledged());
+        waiting.map(Alarm::acknowledge).count()
+    }
+
+    /// Puts an alarm aside until some mission time, seconds, if it can be.
+    pub fn shelve(&mut self, cause: &Cause, until_s: f64, reason: &str) {
+        if let Some(alarm) = self.get_mut(cause) {
+            alarm.shelve(until_s, reason);
+        }
+    }
+
+    /// Takes an alarm back from the shelf.
+    pub fn unshelve(&mut self, cause: &Cause) {
+        if let Some(alarm) = self.get_mut(cause) {
+            alarm.unshelve();
+        }
+    }
+
+    /// Takes back what was shelved until now.
+    pub fn expire(&mut self, t_s: f64) {
+        self.list.iter_mut().for_each(|alarm| alarm.expire(t_s));
+    }
+
+    /// Takes the figure of an alarm whose cause persists.
+    pub fn read(&mut self, cause: &Cause, reading: impl FnOnce() -> Reading) {
+        if let Some(alarm) = self.get_mut(cause).filter(|alarm| alarm.is_active()) {
+            alarm.reading = Some(reading());
+        }
+    }
+
+    /// Keeps the number of a line of the log that is about an alarm, and where that is.
+    pub fn note(&mut self, cause: &Cause, number: u64, place: Option<Point>) {
+        if let Some(alarm) = self.get_mut(cause) {
+            alarm.note(number);
+            if alarm.is_active() {
+                alarm.place = place.or(alarm.place);
+            }
+        }
+    }
+
+    /// The alarm of a cause.
+    pub fn get(&self, cause: &Cause) -> Option<&Alarm> {
+        self.list.iter().find(|alarm| alarm.cause == *cause)
+    }
+
+    fn get_mut(&mut self, cause: &Cause) -> Option<&mut Alarm> {
+        self.list.iter_mut().find(|alarm| alarm.cause == *cause)
+    }
+
+    /// Every alarm of the run, also those that have cleared, in the order in which they first came up.
+    pub fn list(&self) -> &[Alarm] {
+        &self.list
+    }
+
+    /// The alarms that are neither cleared nor shelved.
+    pub fn open(&self) -> impl DoubleEndedIterator<Item = &Alarm> {
+        self.list.iter().filter(|alarm| alarm.is_open())
+    }
+
+    /// Every alarm as the table shows them: the open ones, unacknowledged and worst first, then the shelved ones, then the
+    /// cleared ones, newest first.
+    pub fn table(&self) -> Vec<&Alarm> {
+        let mut open: Vec<&Alarm> = self.open().collect();
+        open.sort_by_key(|alarm| Reverse(alarm.rank()));
+        let shelved = self.list.iter().filter(|alarm| matches!(alarm.state, State::Shelved(_)));
+        let mut cleared: Vec<&Alarm> =
+            self.list.iter().filter(|alarm| alarm.state == State::Cleared).collect();
+        let cleared_s = |alarm: &Alarm| alarm.cleared_s.unwrap_or_default();
+        cleared.sort_by(|one, other| cleared_s(other).total_cmp(&cleared_s(one)));
+        open.into_iter().chain(shelved).chain(cleared).collect()
+    }
+
+    /// The alarm to show where there is room for one: unacknowledged before acknowledged, then the worst, then what persists.
+    pub fn worst(&self) -> Option<&Alarm> {
+        self.open().rev().max_by_key(|alarm| alarm.rank())
+    }
+
+    /// How many open ones there are of a severity.
+    pub fn count(&self, severity: Severity) -> usize {
+        self.open().filter(|alarm| alarm.severity == severity).count()
+    }
+
+    /// How many of a severity the operator has not acknowledged.
+    pub fn unacknowledged(&self, severity: Severity) -> usize {
+        self.open().filter(|alarm| alarm.severity == severity && alarm.is_unacknowledged()).count()
+    }
+
+    /// Whether an alarm was the first of a burst of several.
+    pub fn is_first_out(&self, alarm: &Alarm) -> bool {
+        let others = |other: &&Alarm| other.burst == alarm.burst && other.cause != alarm.cause;
+        alarm.is_first && self.list.iter().any(|other| others(&other))
+    }
+}

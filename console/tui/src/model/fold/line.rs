@@ -1,0 +1,46 @@
+//! Events into lines of the log.
+
+use crate::model::Run;
+use crate::model::log::{Entry, Occurrence, Robot, What, slim};
+use mission::{Event, EventKind};
+use positioning::Ranging;
+
+impl Run {
+    /// Writes an event into the log, if it has a line; returns the number of that line.
+    pub(super) fn write_line(&mut self, event: &Event) -> Option<u64> {
+        let line = event.log_line(self.stations())?;
+        self.log.push(Entry {
+            tick: event.tick,
+            t_s: event.t_s,
+            severity: line.severity,
+            source: line.source.into(),
+            text: line.text,
+            count: 1,
+            what: self.what(&event.kind),
+        });
+        self.log.newest()
+    }
+
+    fn what(&self, kind: &EventKind) -> What {
+        if matches!(kind, EventKind::RunOpened(_)) {
+            return What::Opened;
+        }
+        let position = &self.position;
+        let robot = position.pose.as_ref().map(|pose| Robot {
+            at: pose.position,
+            heading_rad: pose.heading_rad,
+            error_m: position.error_m().unwrap_or(f64::NAN),
+            speed_m_per_s: position.speed_m_per_s(),
+        });
+        let range = self.range_of(kind);
+        What::Event(Box::new(Occurrence { kind: slim(kind), robot, range }))
+    }
+
+    fn range_of(&self, kind: &EventKind) -> Option<Ranging> {
+        let (EventKind::StationRejected { station, .. } | EventKind::StationRestored { station }) = kind
+        else {
+            return None;
+        };
+        self.position.ranges.iter().find(|range| range.station == *station).copied()
+    }
+}

@@ -1,0 +1,42 @@
+//! Filters as words.
+
+use std::ops::Range;
+
+/// A word of a filter: what stands between separators, or in quotes.
+pub(super) struct Word {
+    /// Where it stands in the text, bytes.
+    pub at: Range<usize>,
+    /// Without quotes.
+    pub text: String,
+    /// Where in `text` the first quote opened, bytes.
+    pub quoted_from: Option<usize>,
+}
+
+/// The words of a filter.
+pub(super) fn words(text: &str) -> impl Iterator<Item = Word> {
+    let mut letters = text.char_indices().peekable();
+    std::iter::from_fn(move || {
+        while letters.next_if(|(_, letter)| is_separator(*letter)).is_some() {}
+        let (start, _) = letters.peek().copied()?;
+        let mut word = Word { at: start..text.len(), text: String::new(), quoted_from: None };
+        let mut is_quoted = false;
+        for (at, letter) in letters.by_ref() {
+            match letter {
+                '"' => {
+                    is_quoted = !is_quoted;
+                    word.quoted_from.get_or_insert(word.text.len());
+                }
+                letter if is_separator(letter) && !is_quoted => {
+                    word.at.end = at;
+                    break;
+                }
+                letter => word.text.push(letter),
+            }
+        }
+        Some(word)
+    })
+}
+
+fn is_separator(letter: char) -> bool {
+    letter.is_whitespace() || letter == ';'
+}

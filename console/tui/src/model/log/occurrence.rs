@@ -1,0 +1,111 @@
+//! What a line of the log keeps of its event.
+
+use mission::EventKind;
+use positioning::Ranging;
+use serde::{Deserialize, Serialize};
+use std::mem::{discriminant, size_of};
+use world::Point;
+
+/// What a line of the log is about.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum What {
+    /// News of the console itself.
+    Console,
+    /// The run was opened: what it is about is known to the run.
+    Opened,
+    /// An event of the mission.
+    Event(Box<Occurrence>),
+}
+
+/// An event of the mission, without its paths and lists, and what was known when it happened.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Occurrence {
+    /// The event.
+    pub kind: EventKind,
+    /// Where the robot was.
+    pub robot: Option<Robot>,
+    /// For an event of a station: its last range.
+    pub range: Option<Ranging>,
+}
+
+/// Where the robot believed to be.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Robot {
+    /// Position, metres, tank frame.
+    pub at: Point,
+    /// Heading, radians.
+    pub heading_rad: f64,
+    /// Half width of the 95 % error, metres.
+    pub error_m: f64,
+    /// Speed over ground, metres per second.
+    pub speed_m_per_s: Option<f64>,
+}
+
+impl What {
+    /// The event, if it is one of the mission.
+    pub fn event(&self) -> Option<&Occurrence> {
+        match self {
+            Self::Event(occurrence) => Some(occurrence),
+            Self::Console | Self::Opened => None,
+        }
+    }
+
+    /// Whether two lines are about the same kind of event.
+    pub fn is_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Event(one), Self::Event(other)) => discriminant(&one.kind) == discriminant(&other.kind),
+            _ => discriminant(self) == discriminant(other),
+        }
+    }
+
+    /// The place that it is about: of the station, the obstacle, or where the robot was.
+    pub fn place(&self, station: impl Fn(world::StationId) -> Option<Point>) -> Option<Point> {
+        let event = self.event()?;
+        match &event.kind {
+            EventKind::StationRejected { station: id, .. } | EventKind::StationRestored { station: id } => {
+                station(*id)
+            }
+            EventKind::ObstacleFound { obstacle } => Some(obstacle.shape.center()),
+            _ => event.robot.map(|robot| robot.at),
+        }
+    }
+
+    /// Memory that it takes beyond itself, bytes; near enough.
+    pub(super) fn bytes(&self) -> usize {
+        match self {
+            Self::Console | Self::Opened => 0,
+            Self::Event(_) => size_of::<Occurrence>() + 64,
+        }
+    }
+}
+
+/// An event without what would make a long log large: of a path the ends are left, of a planner its name.
+pub(in crate::model) fn slim(kind: &EventKind) -> EventKind {
+    match kind {
+        EventKind::Planned { ask, return_path, planner, reason, path, length_m, complete, .. } => {
+            let ends = path.first().into_iter().chain(path.last()).copied().collect();
+            EventKind::Planned {
+                ask: *ask,
+                return_path: *return_path,
+                planner: planner.clone(),
+                reason: reason.clone(),
+                path: ends,
+                length_m: *length_m,
+                complete: *complete,
+                legs: Vec::new(),
+                cuts: Vec::new(),
+            }
+        }
+        other => {
+            let mut kind = other.clone();
+            match &mut kind {
+                EventKind::PlannerChosen { info, .. } | EventKind::PlannerPrepared { info, .. } => {
+                    info.parameters.clear();
+                }
+                EventKind::PlannerFailed { fault, .. } => fault.partial.clear(),
+                _ => {}
+            }
+            kind
+        }
+    }
+}

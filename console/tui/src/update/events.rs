@@ -1,0 +1,90 @@
+//! What the operator does with events.
+
+use super::message::Effect;
+use super::offer::refuse;
+use super::{place, typing};
+use crate::model::log::filter::with_least;
+use crate::model::{Model, Overlay, Screen};
+use mission::Severity;
+
+/// Brings the lists of events up to date with log and filter.
+pub(super) fn refresh(model: &mut Model) {
+    model.ui.events.matches.refresh(&model.ui.needle, &model.live.run.log);
+}
+
+/// Opens the whole event, or closes it; from another screen it opens it.
+pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
+    let Some(selected) = model.ui.events.selected() else {
+        return refuse(model, "no event is selected".into());
+    };
+    let is_shown = model.ui.screen == Screen::Events && model.ui.events.is_open;
+    // What is read stays selected while others come.
+    (model.ui.events.at, model.ui.events.is_open) = (Some(selected), !is_shown);
+    model.ui.go(Screen::Events);
+    Vec::new()
+}
+
+/// Selects the next event of the same kind, or the one before.
+pub(super) fn next_like(model: &mut Model, back: bool) -> Vec<Effect> {
+    let events = &mut model.ui.events;
+    let next = events
+        .selected()
+        .and_then(|number| events.matches.next_like(&model.live.run.log, number, back, usize::MAX));
+    match next {
+        Some(next) => {
+            events.at = Some(next);
+            Vec::new()
+        }
+        None if back => refuse(model, "no earlier event of this kind".into()),
+        None => refuse(model, "no later event of this kind".into()),
+    }
+}
+
+/// Shows the place of the selected event on the map.
+pub(super) fn show_place(model: &mut Model) -> Vec<Effect> {
+    let run = &model.live.run;
+    let entry = model.ui.events.selected().and_then(|number| run.log.get(number));
+    let shown = entry.and_then(|entry| Some((run.place_of(&entry.what)?, entry.text.clone())));
+    match shown {
+        Some((at, what)) => place::show(model, at, &what),
+        None => refuse(model, "this event has no place on the map".into()),
+    }
+}
+
+/// Copies the line of the selected event.
+pub(super) fn copy(model: &mut Model) -> Vec<Effect> {
+    let entry = model.ui.events.selected().and_then(|number| model.live.run.log.get(number));
+    let Some(line) = entry.map(crate::model::Entry::line) else {
+        return refuse(model, "no event is selected".into());
+    };
+    model.say(Severity::Info, "line sent to the clipboard of the terminal");
+    vec![Effect::Copy(line)]
+}
+
+/// Another least severity, as a term of the filter.
+pub(super) fn next_severity(model: &mut Model) {
+    let next = match model.ui.events.matches.filter().least() {
+        Severity::Info => Severity::Watch,
+        Severity::Watch => Severity::Warn,
+        Severity::Warn => Severity::Crit,
+        Severity::Crit => Severity::Info,
+    };
+    set_least(model, next);
+}
+
+/// Lists the events of a severity and above.
+pub(super) fn set_least(model: &mut Model, least: Severity) {
+    model.ui.needle = with_least(&model.ui.needle, least);
+    model.ui.events.at = None;
+    refresh(model);
+}
+
+/// Opens the line in which the filter is typed; what is typed next is a term of its own.
+pub(super) fn open_filter(model: &mut Model) -> Vec<Effect> {
+    let mut text = typing::filtered(model).to_owned();
+    if !text.is_empty() && model.ui.screen != Screen::Home && !text.ends_with(' ') {
+        text.push(' ');
+    }
+    model.ui.overlay = Overlay::Filter(text.as_str().into());
+    Vec::new()
+}

@@ -1,0 +1,116 @@
+//! The alarms screen: what is wrong, why, and what can be done.
+
+mod actions;
+mod detail;
+mod rows;
+
+pub(super) use actions::list as action_list;
+
+use super::look::{Look, fill};
+use super::{events, table};
+use crate::model::alarms::State;
+use crate::model::ui::Arrangement;
+use crate::model::{Alarm, Model, Overlay, Screen};
+use crate::theme::Role;
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::text::Line;
+
+/// Columns of the detail pane where actions stand beside it.
+const DETAIL: u16 = 72;
+/// Rows of the events of an alarm, with their frame.
+const EVENTS: u16 = 5;
+/// Rows that the table keeps, with its frame.
+const TABLE: u16 = 7;
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+    match (look.model.selected_alarm(), arrangement) {
+        (Some(alarm), Arrangement::Wide) => wide(look, frame, area, alarm),
+        (Some(alarm), Arrangement::Narrow) => narrow(look, frame, area, alarm),
+        _ => draw_table(look, frame, area, false),
+    }
+}
+
+/// Whether the screen shows the actions itself, so that no list has to be put over it.
+pub(super) fn shows_actions(model: &Model) -> bool {
+    let whole = matches!(model.ui.arrangement(), Arrangement::Wide | Arrangement::Narrow);
+    whole && model.ui.screen == Screen::Alarms
+}
+
+fn wide(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
+    let columns = usize::from(DETAIL) - 2;
+    let detail = detail::lines(look, alarm, columns);
+    let actions = actions::lines(look, alarm, usize::from(area.width.saturating_sub(DETAIL)) - 2);
+    let rows = detail.len().max(actions.len()) as u16 + 2;
+    let rows = rows.min(area.height.saturating_sub(EVENTS + TABLE));
+    let [list, middle, below] =
+        Layout::vertical([Constraint::Fill(1), Constraint::Length(rows), Constraint::Length(EVENTS)])
+            .areas(area);
+    let [left, right] = Layout::horizontal([Constraint::Length(DETAIL), Constraint::Fill(1)]).areas(middle);
+    draw_table(look, frame, list, true);
+    let note = if alarm.place.is_some() { "m map" } else { "" };
+    fill(frame, left, look.block(Role::Border, &detail::title(look, alarm), note), detail);
+    fill(frame, right, actions_block(look, "Actions"), actions);
+    let block = look.block(Role::Border, "Events of this alarm", "5 all events");
+    fill(frame, below, block, of_alarm(look, alarm, usize::from(below.width) - 2));
+}
+
+fn narrow(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
+    let columns = usize::from(area.width) - 2;
+    let actions = actions::lines(look, alarm, columns);
+    let rows = usize::from(area.height.saturating_sub(TABLE + 2)).saturating_sub(actions.len());
+    let mut lines = detail::lines(look, alarm, columns);
+    lines.truncate(rows);
+    lines.extend(actions);
+    let rows = lines.len() as u16 + 2;
+    let [list, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
+    draw_table(look, frame, list, false);
+    fill(frame, below, actions_block(look, &detail::title(look, alarm)), lines);
+}
+
+fn actions_block<'t>(look: &Look, title: &str) -> ratatui::widgets::Block<'t> {
+    let is_open = matches!(look.model.ui.overlay, Overlay::Remedies { .. });
+    let (border, note) = if is_open { (Role::Focus, "1-4 run") } else { (Role::Border, "Enter, then 1-4") };
+    look.block(border, title, note)
+}
+
+/// The last lines of the log about an alarm, newest first.
+fn of_alarm(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
+    let entries = alarm.events.iter().rev().filter_map(|number| look.run.log.get(*number));
+    entries.take(usize::from(EVENTS) - 2).map(|entry| look.line(events::row(entry, columns))).collect()
+}
+
+fn draw_table(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
+    let alarms = look.run.alarms.table();
+    let count = |is: fn(&State) -> bool| alarms.iter().filter(|alarm| is(&alarm.state)).count();
+    let shelved = count(|state| matches!(state, State::Shelved(_)));
+    let cleared = count(|state| *state == State::Cleared);
+    let open = alarms.len() - shelved - cleared;
+    let title = format!("Alarms  {open} open, {shelved} shelved, {cleared} cleared");
+    let block = look.block(Role::Focus, &title, if wide { "* acknowledge all  d shelve" } else { "" });
+    let inner = block.inner(area);
+    let (columns, height) = (usize::from(inner.width), usize::from(inner.height));
+    let mut lines = vec![look.line([(Role::Dim, rows::heads(columns, wide))])];
+    if open == 0 {
+        lines.push(look.line([(Role::Good, " No open alarms.".into())]));
+    }
+    let mut selected = 0;
+    let chosen = look.model.selected_alarm().map(|alarm| &alarm.cause);
+    let mut group = None;
+    for alarm in alarms {
+        let heading = rows::heading(&alarm.state);
+        if heading != group {
+            group = heading;
+            let number = if alarm.state == State::Cleared { cleared } else { shelved };
+            lines.push(look.line([(Role::Dim, format!("   {} {number}", heading.unwrap_or_default()))]));
+        }
+        let is_selected = chosen == Some(&alarm.cause);
+        if is_selected {
+            selected = lines.len();
+        }
+        lines.push(table::row(look, rows::row(look, alarm, columns, wide), is_selected, columns));
+    }
+    let shown = table::window(selected, lines.len(), height);
+    let lines = lines.into_iter().enumerate().filter(|(index, _)| shown.contains(index));
+    fill(frame, area, block, lines.map(|(_, line)| line).collect());
+}

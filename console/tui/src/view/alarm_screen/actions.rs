@@ -1,0 +1,72 @@
+//! What can be done about an alarm.
+
+use crate::guide::{Remedy, guide, name};
+use crate::model::{Alarm, Cause, Overlay};
+use crate::theme::Role;
+use crate::update::offered;
+use crate::view::lists::list::{List, paragraph};
+use crate::view::look::{Look, Parts};
+use crate::view::{table, text};
+use ratatui::text::Line;
+
+/// Rows around a list: its frame, and the three lines that stay visible.
+const FRAME: usize = 5;
+
+/// The numbered actions in some columns; while they are open the selected one is marked.
+pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
+    let selected = match &look.model.ui.overlay {
+        Overlay::Remedies { cause, selected } if *cause == alarm.cause => Some(*selected),
+        _ => None,
+    };
+    let remedies = guide(&alarm.cause).remedies.iter().enumerate();
+    remedies
+        .flat_map(|(index, remedy)| {
+            let is_selected = selected == Some(index);
+            let rows = rows(look, index, remedy, columns.saturating_sub(1));
+            let numbered = rows.into_iter().enumerate();
+            numbered.map(move |(line, row)| table::row(look, row, is_selected && line == 0, columns))
+        })
+        .collect()
+}
+
+/// The same as a list over the screen, with cause and effect.
+pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns: u16) -> List {
+    let room = usize::from(columns).saturating_sub(3);
+    let guide = guide(cause);
+    let about = format!("{} {}", guide.cause, guide.effect);
+    let remedies = guide.remedies.iter().enumerate();
+    let chosen = guide.remedies.get(selected).map_or("", |remedy| remedy.text);
+    let text = |(index, remedy): (usize, &Remedy)| {
+        vec![(role(look, remedy), text::fit(&format!("{} {}", index + 1, remedy.text), room))]
+    };
+    let mut below: Vec<Parts> = paragraph(Role::Text, chosen, room).collect();
+    below.extend(paragraph(Role::Dim, &about, room));
+    // Every action is worth more than the last words about the alarm.
+    let free = usize::from(look.model.ui.height).saturating_sub(FRAME + guide.remedies.len());
+    below.truncate(free);
+    List {
+        title: name(cause, look.run),
+        note: "1-4 run",
+        above: Vec::new(),
+        rows: remedies.map(text).collect(),
+        selected,
+        below,
+        ..List::default()
+    }
+}
+
+fn rows(look: &Look, index: usize, remedy: &Remedy, columns: usize) -> Vec<Parts> {
+    let role = role(look, remedy);
+    let wrapped = text::wrap(remedy.text, columns.saturating_sub(3));
+    let number = |line: usize| if line == 0 { format!("{} ", index + 1) } else { "  ".into() };
+    let row = |(line, words)| vec![(Role::Key, number(line)), (role, words)];
+    wrapped.into_iter().enumerate().map(row).collect()
+}
+
+/// What cannot be run now is of less weight.
+fn role(look: &Look, remedy: &Remedy) -> Role {
+    match remedy.action {
+        Some(action) if offered(look.model, action).is_err() => Role::Dim,
+        _ => Role::Text,
+    }
+}

@@ -1,0 +1,279 @@
+//! What an event says, field by field.
+
+use crate::model::Run;
+use crate::model::log::{Entry, Occurrence, Robot, What};
+use crate::view::fields::Field;
+use crate::view::text;
+use mission::{EventKind, PlannerChoice, PlannerInfo, Resumes, event::TetherAlarm};
+use planner_api::Reason;
+use positioning::{Exclusion, FixError, Ranging};
+use world::{Obstacle, Shape, StationId, tether::Certificate};
+
+/// What kind of event it is.
+pub(super) fn title(what: &What) -> &'static str {
+    let What::Event(event) = what else {
+        return if matches!(what, What::Opened) { "run opened" } else { "news of the console" };
+    };
+    match &event.kind {
+        EventKind::Ordered { .. } => "order",
+        EventKind::OrderRefused { .. } => "order refused",
+        EventKind::FixFailed { .. } => "no position fix",
+        EventKind::StationRejected { .. } => "station rejected",
+        EventKind::StationRestored { .. } => "station back in use",
+        EventKind::PositionLost { .. } => "position lost",
+        EventKind::PositionRegained { .. } => "position recovered",
+        EventKind::RangesInconsistent { .. } => "ranges contradict each other",
+        EventKind::RangesConsistent => "ranges agree again",
+        EventKind::ObstacleFound { .. } => "new obstacle",
+        EventKind::PlannerChosen { .. } => "planner active",
+        EventKind::PlannerPrepared { .. } => "planner prepared",
+        EventKind::PlannerRejected { .. } => "planner rejected",
+        EventKind::ParametersChanged { .. } => "parameters changed",
+        EventKind::Planned { .. } => "plan",
+        EventKind::PlannerLogged { .. } => "message of the planner",
+        EventKind::PlannerLate { .. } => "planner late",
+        EventKind::PlannerFailed { .. } => "planner failed",
+        EventKind::Held { .. } => "mission held",
+        EventKind::Resumed => "mission resumed",
+        EventKind::Ended { .. } => "mission ended",
+        EventKind::TetherAlarmRaised { .. } => "tether alarm",
+        EventKind::TetherAlarmCleared { .. } => "tether back within limit",
+        EventKind::Certified { .. } => "certificate",
+        _ => "event",
+    }
+}
+
+/// What an event says beyond its line, and where the robot was.
+pub(super) fn facts(run: &Run, entry: &Entry) -> Vec<Field> {
+    match &entry.what {
+        What::Console => vec![("source", "console: no event of the mission".into())],
+        What::Opened => opened(run),
+        What::Event(event) => {
+            let mut facts = of_event(run, event);
+            facts.extend(event.robot.map(robot));
+            facts
+        }
+    }
+}
+
+fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
+    match &event.kind {
+        EventKind::StationRejected { station, reason } => {
+            rejected(run, *station, reason, event.range.as_ref())
+        }
+        EventKind::StationRestored { station } => {
+            let range = event.range.iter().map(|range| ("range", measured(range)));
+            vec![("station", station_text(run, *station))].into_iter().chain(range).collect()
+        }
+        EventKind::FixFailed { error, .. } => fix_failed(run, error),
+        EventKind::PositionLost { error_m, limit_m } => {
+            vec![("error", metres(*error_m) + " (95 %)"), ("limit", metres(*limit_m))]
+        }
+        EventKind::PositionRegained { error_m } => vec![("error", metres(*error_m) + " (95 %)")],
+        EventKind::RangesInconsistent { chi2, degrees_of_freedom } => {
+            let limit = positioning::alarm_limit((*degrees_of_freedom).max(1));
+            let text =
+                format!("{chi2:.1}, limit {limit:.1} (99.9 %), {degrees_of_freedom} degrees of freedom");
+            vec![("chi-squared", text)]
+        }
+        EventKind::ObstacleFound { obstacle } => obstacle_facts(obstacle),
+        EventKind::Ordered { .. } | EventKind::RangesConsistent | EventKind::Resumed => Vec::new(),
+        EventKind::OrderRefused { why, .. } => vec![("reason", why.clone())],
+        EventKind::Held { by, resumes } => vec![("reason", by.to_string()), ("resumes", resumed(*resumes))],
+        EventKind::Ended { outcome, reason } => {
+            vec![("outcome", outcome.word().into()), ("reason", reason.clone())]
+        }
+        EventKind::TetherAlarmRaised { alarm, reached } => tether(alarm, Some(*reached)),
+        EventKind::TetherAlarmCleared { alarm } => tether(alarm, None),
+        EventKind::Certified { planner, refused, certificate } => certified(planner, *refused, certificate),
+        other => of_planner(other),
+    }
+}
+
+fn of_planner(kind: &EventKind) -> Vec<Field> {
+    match kind {
+        EventKind::PlannerChosen { choice, info, from, .. } => {
+            let from = from.iter().map(|from| ("before", from.clone()));
+            planner(choice, info).into_iter().chain(from).collect()
+        }
+        EventKind::PlannerPrepared { choice, info, .. } => planner(choice, info),
+        EventKind::ParametersChanged { choice, .. } => {
+            vec![("planner", choice.id.clone()), ("parameters", parameters(choice))]
+        }
+        EventKind::PlannerRejected { planner, why } => {
+            vec![("planner", planner.clone()), ("reason", why.clone())]
+        }
+        EventKind::Planned { planner, reason, path, length_m, complete, return_path, .. } => {
+            let ends: Vec<String> = path.iter().map(|point| text::place(*point)).collect();
+            let part = if *complete { "the whole task" } else { "a part of the task" };
+            let mut facts = vec![
+                ("planner", planner.clone()),
+                ("reason", planned_for(reason)),
+                ("length", format!("{} m, {part}", text::number(*length_m, 1))),
+                ("from, to", ends.join(" to ")),
+            ];
+            if *return_path > 0 {
+                facts.push(("return path", format!("{return_path} points along the tether go before it")));
+            }
+            facts
+        }
+        EventKind::PlannerLogged { planner, level, message } => vec![
+            ("planner", planner.clone()),
+            ("level", format!("{level:?}").to_lowercase()),
+            ("message", message.clone()),
+        ],
+        EventKind::PlannerLate { planner, ticks } => {
+            vec![("planner", planner.clone()), ("late by", format!("{ticks} ticks; the robot stood still"))]
+        }
+        EventKind::PlannerFailed { fault, .. } => vec![
+            ("planner", fault.planner.clone()),
+            ("during", format!("{:?}", fault.during).to_lowercase()),
+            ("fault", format!("{:?}", fault.cause).to_lowercase()),
+            ("plugin", fault.plugin_sha256.clone().unwrap_or_else(|| "hash not known".into())),
+        ],
+        _ => Vec::new(),
+    }
+}
+
+fn opened(run: &Run) -> Vec<Field> {
+    let Some(about) = &run.about else { return Vec::new() };
+    let stations: Vec<&str> = about.world.stations.iter().map(|station| station.name.as_str()).collect();
+    vec![
+        ("scenario", format!("{}, seed {}", about.scenario, about.seed)),
+        ("planner", about.mission.planner.id.clone()),
+        ("stations", stations.join(", ")),
+        ("obstacles", format!("{} on the map now", about.world.obstacles.len())),
+    ]
+}
+
+fn metres(m: f64) -> String {
+    format!("{} m", text::number(m, 2))
+}
+
+fn robot(robot: Robot) -> Field {
+    let speed = robot
+        .speed_m_per_s
+        .map_or_else(String::new, |speed| format!(", speed {} m/s", text::number(speed, 2)));
+    let heading = text::degrees(robot.heading_rad);
+    let (at, error) = (text::place(robot.at), text::number(robot.error_m, 2));
+    ("robot", format!("{at} ±{error} m, heading {heading}°{speed}"))
+}
+
+fn station_text(run: &Run, id: StationId) -> String {
+    let name = run.station_name(id);
+    let found = run.stations().iter().find(|station| station.id == id);
+    let at = found.map_or_else(String::new, |station| format!(" at {}", text::place(station.position)));
+    format!("{}{at}", name.trim_start_matches("station "))
+}
+
+fn measured(range: &Ranging) -> String {
+    let Ranging { range_m, sigma_m, repetitions, .. } = range;
+    format!("{range_m:.2} m measured, σ {sigma_m:.3} m, {repetitions} repetitions")
+}
+
+fn rejected(run: &Run, id: StationId, reason: &Exclusion, range: Option<&Ranging>) -> Vec<Field> {
+    let mut facts = vec![("station", station_text(run, id))];
+    match (reason, range) {
+        (Exclusion::Silent, _) => facts.push(("reason", "not heard in this cycle".into())),
+        (Exclusion::Residual { residual_m, .. }, Some(range)) => {
+            let expected_m = range.range_m - residual_m;
+            facts.push(("range", format!("{}; {expected_m:.2} m expected", measured(range))));
+        }
+        (Exclusion::Residual { .. }, None) => {}
+    }
+    if let Exclusion::Residual { residual_m, gate_m } = reason {
+        let over = (residual_m / gate_m).abs();
+        facts
+            .push(("residual", format!("{residual_m:+.3} m, gate {gate_m:.3} m ({over:.1} times the gate)")));
+    }
+    facts
+}
+
+fn fix_failed(run: &Run, error: &FixError) -> Vec<Field> {
+    let mut facts = vec![("reason", error.to_string())];
+    let heard: Vec<String> = run
+        .position
+        .ranges
+        .iter()
+        .map(|range| run.station_name(range.station).trim_start_matches("station ").to_owned())
+        .collect();
+    facts.push(("last heard", if heard.is_empty() { "no station".into() } else { heard.join(", ") }));
+    facts
+}
+
+fn obstacle_facts(obstacle: &Obstacle) -> Vec<Field> {
+    let form = match &obstacle.shape {
+        Shape::Disc { radius_m, .. } => format!("disc, radius {}", metres(*radius_m)),
+        _ => "outline as seen so far".into(),
+    };
+    vec![
+        ("obstacle", obstacle.name.clone()),
+        ("place", text::place(obstacle.shape.center())),
+        ("form", form),
+        ("drawing", "not on it".into()),
+    ]
+}
+
+fn resumed(resumes: Resumes) -> String {
+    match resumes {
+        Resumes::Never => "by an order of the operator only",
+        Resumes::WhenCleared => "automatically when the cause is gone",
+        Resumes::ByFallback => "automatically with the fallback planner",
+    }
+    .into()
+}
+
+fn planned_for(reason: &Reason) -> String {
+    match reason {
+        Reason::Start => "the mission begins".into(),
+        Reason::Blocked => "the robot could not go on along the plan".into(),
+        Reason::MapChanged => "the map has changed".into(),
+        Reason::Operator => "the operator asked for it".into(),
+        Reason::Swap { from } => format!("it takes over from {from}"),
+        Reason::Recover => "the planner starts again after a fault".into(),
+    }
+}
+
+fn planner(choice: &PlannerChoice, info: &PlannerInfo) -> Vec<Field> {
+    vec![
+        ("planner", format!("{} {}: {}", choice.id, info.version, info.about)),
+        ("plugin", format!("{}, ABI {}, SHA-256 {}", info.plugin, info.abi, text::fit(&info.sha256, 17))),
+        ("parameters", parameters(choice)),
+    ]
+}
+
+fn parameters(choice: &PlannerChoice) -> String {
+    if choice.parameters.is_empty() {
+        return "all at their defaults".into();
+    }
+    let set = choice.parameters.iter().map(|(key, value)| format!("{key} = {value}"));
+    set.collect::<Vec<_>>().join(", ")
+}
+
+fn tether(alarm: &TetherAlarm, reached: Option<bool>) -> Vec<Field> {
+    let what = ("limit", alarm.word().to_owned());
+    let figures = ("figures", alarm.to_string());
+    match reached {
+        Some(true) => vec![what, ("state", "reached".into()), figures],
+        Some(false) => vec![what, ("state", "at 80 % or more".into()), figures],
+        None => vec![what, ("state", "back within limit".into())],
+    }
+}
+
+fn certified(planner: &str, refused: bool, certificate: &Certificate) -> Vec<Field> {
+    let judgement = match (refused, certificate.certified) {
+        (true, _) => "refused: the plan is not run",
+        (false, false) => "not certified, run on the operator's order",
+        (false, true) => "certified",
+    };
+    let wraps = (certificate.wrap_max_rad.to_degrees(), certificate.wrap_total_max_rad.to_degrees());
+    let end = certificate.end_length_m.map_or_else(String::new, |m| format!(", {m:.1} m out after return"));
+    let mut facts = vec![("planner", planner.to_owned()), ("judgement", judgement.into())];
+    facts.extend(certificate.reasons.iter().map(|reason| ("reason", reason.clone())));
+    facts.push(("tether", format!("at most {:.1} m out{end}", certificate.tether_length_max_m)));
+    facts.push(("wrap", format!("at most {:.0}° on one obstacle, {:.0}° in total", wraps.0, wraps.1)));
+    let (collisions, cuts) = (certificate.collisions, certificate.cut_crossings);
+    let clearance = metres(certificate.clearance_min_m);
+    facts.push(("path", format!("clearance {clearance}, {collisions} collisions, {cuts} cuts crossed")));
+    facts
+}

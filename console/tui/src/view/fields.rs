@@ -1,0 +1,22 @@
+//! Named figures, one below the other.
+
+use super::look::{Look, Parts};
+use super::text;
+use crate::theme::Role;
+use ratatui::text::Line;
+
+/// A name and what it stands before, in as many lines as it takes.
+pub(super) type Field = (&'static str, String);
+
+/// Fields in some columns, the names in the first ones.
+pub(super) fn lines(look: &Look, fields: &[Field], names: usize, columns: usize) -> Vec<Line<'static>> {
+    let room = columns.saturating_sub(names + 2).max(8);
+    let rows = fields.iter().flat_map(|(name, words)| {
+        let wrapped = text::wrap(words, room);
+        wrapped.into_iter().enumerate().map(move |(index, line)| -> Parts {
+            let name = if index == 0 { name } else { "" };
+            vec![(Role::Dim, format!(" {}", text::column(name, names))), (Role::Text, line)]
+        })
+    });
+    rows.map(|parts| look.line(parts)).collect()
+}

@@ -1,0 +1,265 @@
+//! The alarms screen: what the operator does about alarms.
+
+use crate::fixture::{RICH, Screen};
+use crate::screens::{drawn, text};
+use mission::event::TetherAlarm;
+use mission::{EventKind, HoldReason, Order, Resumes, Severity};
+use tui::model::alarms::State;
+use tui::model::ui::Ask;
+use tui::model::{Cause, Overlay};
+use tui::{Effect, Health, Key, Measured, Msg, Recording, RunMsg};
+
+const SHOWN: tui::model::Screen = tui::model::Screen::Alarms;
+const ENTER: [Key; 1] = [Key::Enter];
+
+fn notice(screen: &Screen) -> &str {
+    screen.model.notice().map_or("", |notice| notice.text.as_str())
+}
+
+fn hear(screen: &mut Screen, kind: EventKind) {
+    let event = screen.mission.now(kind);
+    screen.hear(RunMsg::Events(vec![event]));
+}
+
+/// A position that was lost while a station was rejected, an alarm on the shelf, and some that have cleared.
+fn troubled() -> Screen {
+    let mut screen = Screen::tethered();
+    let near = TetherAlarm::Reel { out_m: 24.6, reel_length_m: 30.0 };
+    hear(&mut screen, EventKind::TetherAlarmRaised { alarm: near, reached: false });
+    let wait = screen.mission.wait(40);
+    screen.hear(RunMsg::Events(wait));
+    screen.mission.sigma_m = 0.2;
+    hear(&mut screen, EventKind::PositionLost { error_m: 0.49, limit_m: 0.15 });
+    hear(&mut screen, EventKind::RangesInconsistent { chi2: 250.0, degrees_of_freedom: 1 });
+    let wait = screen.mission.wait(4);
+    screen.hear(RunMsg::Events(wait));
+    hear(&mut screen, EventKind::Held { by: HoldReason::PositionLost, resumes: Resumes::WhenCleared });
+    hear(&mut screen, EventKind::RangesConsistent);
+    screen.model.live.run.alarms.shelve(&Cause::Station(world::StationId(4)), 1500.0, "pump noise");
+    let events = screen.mission.planner_fails();
+    screen.hear(RunMsg::Events(events[..1].to_vec()));
+    screen.model.live.run.alarms.acknowledge_one(&Cause::Planner);
+    screen.type_text("4");
+    screen
+}
+
+#[test]
+fn alarms() {
+    let mut screen = troubled();
+    for size in [(120, 36), (80, 24), (60, 16)] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        if size.0 == 60 {
+            screen.press(ENTER);
+        }
+        let text = text(&drawn(&screen.model, RICH, size));
+        insta::assert_snapshot!(format!("alarms_{}x{}", size.0, size.1), text);
+    }
+}
+
+#[test]
+fn no_text_of_an_alarm_is_cut_where_there_is_room_for_its_panes() {
+    for cause in Cause::every() {
+        for (width, height) in [(120, 36), (80, 24)] {
+            let mut screen = Screen::running();
+            screen.send(Msg::Resize { width, height });
+            let alarms = &mut screen.model.live.run.alarms;
+            alarms.raise(cause.clone(), Severity::Crit, "what is wrong, in about as many words".into(), 1.0);
+            screen.type_text("4");
+            screen.model.ui.alarm = Some(cause.clone());
+            let text = text(&drawn(&screen.model, RICH, (width, height)));
+            assert!(!text.contains('…'), "{cause:?}\n{text}");
+            let guide = tui::guide::guide(&cause);
+            let words: Vec<&str> =
+                text.split_whitespace().filter(|word| *word != "││" && *word != "│").collect();
+            for sentence in guide.remedies.iter().map(|remedy| remedy.text) {
+                let last = sentence.split_whitespace().last().unwrap();
+                assert!(words.contains(&last), "{cause:?}: {sentence}\n{text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_selected_alarm_is_acknowledged_then_the_worst_then_all_of_them() {
+    let mut screen = troubled();
+    let unacknowledged = |screen: &Screen| {
+        let open = screen.model.live.run.alarms.open().filter(|alarm| alarm.is_unacknowledged());
+        open.map(|alarm| alarm.cause.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(unacknowledged(&screen).len(), 4);
+    screen.press([Key::Down]);
+    assert_eq!(screen.model.ui.alarm, Some(Cause::Contradiction));
+    screen.type_text("a");
+    assert_eq!(notice(&screen), "acknowledged: ranges contradict each other");
+    assert!(!unacknowledged(&screen).contains(&Cause::Contradiction));
+    screen.type_text("a");
+    assert_eq!(unacknowledged(&screen), [Cause::Map, Cause::Tether("reel".into())]);
+    screen.type_text("*");
+    assert_eq!(unacknowledged(&screen), []);
+    screen.type_text("*");
+    assert_eq!(notice(&screen), "no unacknowledged alarms");
+}
+
+#[test]
+fn an_alarm_is_shelved_with_minutes_and_a_reason_and_comes_back() {
+    let mut screen = Screen::held();
+    let station = Cause::Station(world::StationId(4));
+    screen.type_text("4");
+    screen.model.ui.alarm = Some(station.clone());
+    let count = screen.model.live.run.alarms.count(Severity::Watch);
+    screen.type_text("d61 pump");
+    screen.press(ENTER);
+    assert!(matches!(&screen.model.ui.overlay, Overlay::Shelve(shelving) if shelving.refusal.is_some()));
+    screen.press([Key::Backspace; 7]);
+    screen.type_text("15 pump noise");
+    screen.press(ENTER);
+    assert_eq!(screen.model.ui.overlay, Overlay::None);
+    assert_eq!(screen.model.live.run.alarms.count(Severity::Watch), count - 1);
+    let t_s = screen.model.live.run.clock.t_s;
+    let state = |screen: &Screen| screen.model.live.run.alarms.get(&station).unwrap().state.clone();
+    assert!(
+        matches!(state(&screen), State::Shelved(shelf) if (shelf.until_s - t_s - 900.0).abs() < 1e-9 && shelf.active)
+    );
+    let wait = screen.mission.wait(1801);
+    screen.hear(RunMsg::Events(wait));
+    assert_eq!(state(&screen), State::Unacknowledged, "its time is over");
+    screen.type_text("d15 noise");
+    screen.press(ENTER);
+    screen.type_text("d");
+    assert_eq!(state(&screen), State::Unacknowledged, "it was taken back");
+}
+
+#[test]
+fn what_is_critical_or_over_cannot_be_shelved() {
+    let mut screen = troubled();
+    screen.type_text("d");
+    assert_eq!(notice(&screen), "a CRIT alarm cannot be shelved");
+    screen.press([Key::Down]);
+    screen.type_text("d");
+    assert_eq!(notice(&screen), "it has cleared; a: acknowledge");
+    assert_eq!(screen.model.ui.overlay, Overlay::None);
+}
+
+#[test]
+fn a_reason_has_spaces_and_ctrl_c_holds_while_it_is_typed() {
+    let mut screen = Screen::running();
+    assert_eq!(screen.type_text("4d15 echo of the wall"), []);
+    assert_eq!(screen.press([Key::Ctrl('c')]), [Effect::Order(Order::Hold)]);
+    screen.press(ENTER);
+    let shelved = |alarm: &&tui::model::Alarm| matches!(alarm.state, State::Shelved(_));
+    assert_eq!(screen.model.live.run.alarms.list().iter().filter(shelved).count(), 1);
+}
+
+#[test]
+fn the_actions_of_an_alarm_are_run_by_their_digits_and_what_moves_asks() {
+    let mut screen = Screen::running();
+    let events = screen.mission.planner_fails();
+    screen.hear(RunMsg::Events(events));
+    screen.type_text("4");
+    screen.press(ENTER);
+    assert!(matches!(screen.model.ui.overlay, Overlay::Remedies { .. }));
+    assert_eq!(screen.model.ui.screen, SHOWN);
+    assert_eq!(screen.type_text("1"), [], "it asks first");
+    assert_eq!(screen.model.ui.overlay, Overlay::Confirm(Ask::Resume));
+    screen.press([Key::Esc, Key::Enter, Key::Down, Key::Enter]);
+    assert!(matches!(screen.model.ui.overlay, Overlay::Planners { .. }), "the second one, by Enter");
+    screen.press([Key::Esc, Key::Enter]);
+    screen.type_text("9");
+    assert_eq!(screen.model.ui.screen, SHOWN, "a digit that is no action does nothing");
+    assert!(matches!(screen.model.ui.overlay, Overlay::Remedies { .. }));
+}
+
+#[test]
+fn keeping_the_robot_held_holds_and_never_asks_to_resume() {
+    let mut screen = troubled();
+    screen.press(ENTER);
+    assert_eq!(screen.type_text("2"), [Effect::Order(Order::Hold)]);
+    let events = screen.mission.obeyed(Order::Hold);
+    screen.hear(RunMsg::Events(events));
+    screen.press(ENTER);
+    assert_eq!(screen.type_text("2"), []);
+    assert_eq!((notice(&screen), &screen.model.ui.overlay), ("already held", &Overlay::None));
+    screen.press(ENTER);
+    screen.type_text("1");
+    assert!(notice(&screen).starts_with("nothing to run: Wait"));
+}
+
+#[test]
+fn the_place_of_an_alarm_is_shown_in_the_middle_of_the_map() {
+    let mut screen = Screen::running();
+    screen.type_text("4");
+    screen.model.ui.alarm = Some(Cause::Station(world::StationId(4)));
+    screen.type_text("m");
+    let station = crate::fixture::world().stations[3].position;
+    assert_eq!(screen.model.ui.screen, tui::model::Screen::Mission);
+    assert!((screen.model.ui.map_center(world::Point::origin(), None) - station).norm() < 1e-9);
+    assert!(notice(&screen).contains("station S4 rejected"));
+    screen.type_text("q");
+    assert_eq!(screen.model.ui.screen, SHOWN);
+}
+
+#[test]
+fn figures_follow_their_alarm_while_its_cause_persists() {
+    let mut screen = troubled();
+    let now = |screen: &Screen, cause: &Cause| {
+        screen
+            .model
+            .live
+            .run
+            .alarms
+            .get(cause)
+            .and_then(|alarm| alarm.reading.clone())
+            .unwrap_or_default()
+            .now
+    };
+    let before = now(&screen, &Cause::PositionLost);
+    let wait = screen.mission.wait(6);
+    screen.hear(RunMsg::Events(wait));
+    assert_ne!(now(&screen, &Cause::PositionLost), before);
+    assert_eq!(now(&screen, &Cause::Contradiction), "χ² 250");
+    hear(&mut screen, EventKind::PositionRegained { error_m: 0.1 });
+    let after = now(&screen, &Cause::PositionLost);
+    let wait = screen.mission.wait(6);
+    screen.hear(RunMsg::Events(wait));
+    assert_eq!(now(&screen, &Cause::PositionLost), after, "it is over");
+}
+
+#[test]
+fn what_the_console_measures_of_itself_becomes_an_alarm_after_its_delay() {
+    let mut screen = Screen::idle();
+    let active = |screen: &Screen, cause: Cause| {
+        screen.model.live.run.alarms.get(&cause).is_some_and(tui::model::Alarm::is_active)
+    };
+    let slow = |response_ms| Msg::Measured(Measured::Screen { response_ms, skipped: 0 });
+    screen.send(slow(Some(40.0)));
+    assert!(!active(&screen, Cause::Response));
+    assert!(screen.model.wakes_at_mono_s().is_some(), "it is looked at again");
+    screen.pass(2.5);
+    screen.send(slow(Some(40.0)));
+    assert!(active(&screen, Cause::Response));
+    for _ in 0..2 {
+        screen.pass(6.0);
+        screen.send(slow(None));
+    }
+    assert!(!active(&screen, Cause::Response));
+    assert_eq!(screen.model.wakes_at_mono_s(), None);
+    screen.send(Msg::Measured(Measured::Disk(100 << 20)));
+    assert!(active(&screen, Cause::Disk));
+    screen.send(Msg::Measured(Measured::Screen { response_ms: None, skipped: 99 }));
+    assert!(active(&screen, Cause::Frames));
+    let lag =
+        |recorder_lag| RunMsg::Health(Health { recording: Recording::On, recorder_lag, ..Health::default() });
+    screen.hear(lag(5000));
+    screen.pass(1.5);
+    screen.hear(lag(5000));
+    assert!(active(&screen, Cause::RecorderLag));
+}
+
+#[test]
+fn an_alarm_of_the_console_stays_when_another_run_is_opened() {
+    let mut screen = Screen::idle();
+    screen.send(Msg::Measured(Measured::Disk(100 << 20)));
+    screen.model.live.run = tui::model::Run::default();
+    screen.send(Msg::Measured(Measured::Disk(99 << 20)));
+    assert_eq!(screen.model.live.run.alarms.count(Severity::Warn), 1);
+}

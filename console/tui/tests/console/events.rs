@@ -1,0 +1,170 @@
+//! The events screen: finding and reading events.
+
+use crate::fixture::{RICH, Screen};
+use crate::screens::{drawn, text};
+use mission::{EventKind, HoldReason, Order, Severity};
+use positioning::Exclusion;
+use tui::model::Overlay;
+use tui::{Effect, Key, Msg, RunMsg};
+use world::StationId;
+
+fn notice(screen: &Screen) -> &str {
+    screen.model.notice().map_or("", |notice| notice.text.as_str())
+}
+
+fn shown(screen: &Screen, size: (u16, u16)) -> String {
+    text(&drawn(&screen.model, RICH, size))
+}
+
+fn station(screen: &mut Screen, id: u32, is_back: bool) {
+    let station = StationId(id);
+    let ranged = screen.mission.drive(2);
+    screen.hear(RunMsg::Events(ranged));
+    let reason = Exclusion::Residual { residual_m: -0.22, gate_m: 0.18 };
+    let kind = if is_back {
+        EventKind::StationRestored { station }
+    } else {
+        EventKind::StationRejected { station, reason }
+    };
+    let event = screen.mission.now(kind);
+    screen.hear(RunMsg::Events(vec![event]));
+}
+
+/// A held mission with a few events of stations, on the events screen.
+fn with_events() -> Screen {
+    let mut screen = Screen::running();
+    for (id, is_back) in [(4, true), (2, false), (2, true), (3, false)] {
+        station(&mut screen, id, is_back);
+    }
+    let held = screen.mission.obeyed(Order::Hold);
+    screen.hear(RunMsg::Events(held));
+    screen.type_text("5");
+    screen
+}
+
+#[test]
+fn events() {
+    let mut screen = with_events();
+    screen.type_text("/source=ae \"station\"");
+    screen.press([Key::Enter, Key::Down, Key::Down, Key::Enter]);
+    for size in [(120, 36), (80, 24), (60, 16)] {
+        screen.send(Msg::Resize { width: size.0, height: size.1 });
+        insta::assert_snapshot!(format!("events_{}x{}", size.0, size.1), shown(&screen, size));
+    }
+}
+
+#[test]
+fn a_field_that_is_not_understood_is_marked_and_explained_while_it_is_typed() {
+    let mut screen = with_events();
+    screen.send(Msg::Resize { width: 80, height: 24 });
+    screen.type_text("/station sevv>=warn");
+    let text = shown(&screen, (80, 24));
+    assert!(text.contains("/ station sevv>=warn_") && text.contains("^ no field `sevv`"), "{text}");
+    assert!(text.contains("5 of "), "the rest filters\n{text}");
+    let underlined =
+        |cell: &&ratatui::buffer::Cell| cell.modifier.contains(ratatui::style::Modifier::UNDERLINED);
+    let cells = drawn(&screen.model, RICH, (80, 24));
+    assert_eq!(cells.content.iter().filter(underlined).count(), "sevv>=warn".len());
+    screen.press([Key::Esc]);
+    assert_eq!((screen.model.ui.needle.as_str(), &screen.model.ui.overlay), ("", &Overlay::None));
+}
+
+#[test]
+fn what_is_typed_next_is_a_term_of_its_own() {
+    let mut screen = with_events();
+    screen.type_text("/sev>=watch");
+    screen.press([Key::Enter]);
+    screen.type_text("/S3");
+    screen.press([Key::Enter]);
+    assert_eq!(screen.model.ui.needle, "sev>=watch S3");
+    assert_eq!(screen.model.ui.events.matches.len(), 1);
+}
+
+#[test]
+fn an_event_that_is_read_stays_selected_while_others_come() {
+    let mut screen = with_events();
+    screen.press([Key::Enter]);
+    let selected = screen.model.ui.events.selected();
+    station(&mut screen, 2, false);
+    assert_eq!((screen.model.ui.events.selected(), screen.model.ui.events.newer()), (selected, 1));
+    screen.press([Key::Enter, Key::Up]);
+    station(&mut screen, 2, true);
+    assert_eq!(screen.model.ui.events.newer(), 0, "the newest one is followed");
+}
+
+#[test]
+fn the_next_and_previous_event_of_the_same_kind_are_found() {
+    let mut screen = with_events();
+    screen.type_text("/S2 rejected");
+    screen.press([Key::Enter, Key::Enter]);
+    let text = |screen: &Screen| {
+        let number = screen.model.ui.events.selected().unwrap();
+        screen.model.live.run.log.get(number).unwrap().text.clone()
+    };
+    screen.type_text("/");
+    screen.press([Key::Esc, Key::Down, Key::Down]);
+    let first = text(&screen);
+    assert!(first.starts_with("station S3 rejected"), "{first}");
+    screen.type_text("n");
+    assert_eq!(notice(&screen), "no later event of this kind");
+    screen.type_text("N");
+    assert!(text(&screen).starts_with("station S2 rejected"), "{}", text(&screen));
+    screen.type_text("n");
+    assert_eq!(text(&screen), first);
+}
+
+#[test]
+fn a_line_is_copied_and_its_place_shown() {
+    let mut screen = with_events();
+    screen.press([Key::Down, Key::Down]);
+    let [Effect::Copy(line)] = &screen.type_text("y")[..] else { panic!("a line is copied") };
+    assert!(line.starts_with("T+00:") && line.contains(" WATCH ae station S3 rejected"), "{line}");
+    screen.type_text("m");
+    assert_eq!(screen.model.ui.screen, tui::model::Screen::Mission);
+    let place = crate::fixture::world().stations[2].position;
+    assert!((screen.model.ui.map_center(world::Point::origin(), None) - place).norm() < 1e-9);
+}
+
+#[test]
+fn the_events_pane_of_the_mission_opens_the_whole_event() {
+    let mut screen = Screen::running();
+    screen.press([Key::Tab, Key::Down, Key::Enter]);
+    assert_eq!(screen.model.ui.screen, tui::model::Screen::Events);
+    assert!(screen.model.ui.events.is_open && screen.model.ui.events.newer() == 1);
+}
+
+#[test]
+fn every_event_with_a_line_is_told_field_by_field() {
+    let mut screen = Screen::tethered();
+    let mission = &mut screen.mission;
+    let mut events = mission.caught();
+    events.extend(mission.plan_refused());
+    events.extend(mission.planner_fails());
+    let kinds = [
+        EventKind::PositionLost { error_m: 0.49, limit_m: 0.15 },
+        EventKind::PositionRegained { error_m: 0.1 },
+        EventKind::RangesInconsistent { chi2: 250.0, degrees_of_freedom: 3 },
+        EventKind::PlannerRejected { planner: "apf".into(), why: "no plan within 60 s".into() },
+        EventKind::PlannerLate { planner: "rpf".into(), ticks: 3 },
+        EventKind::OrderRefused { order: Order::Resume, why: "the position is lost".into() },
+        EventKind::FixFailed {
+            error: positioning::FixError::TooFewStations { have: 1, need: 2 },
+            repeated: false,
+        },
+    ];
+    events.extend(kinds.map(|kind| mission.now(kind)));
+    events.push(mission.held(HoldReason::Stuck { message: "no progress".into() }));
+    screen.hear(RunMsg::Events(events));
+    screen.type_text("5");
+    screen.press([Key::End, Key::Enter]);
+    let total = screen.model.live.run.log.len();
+    assert!(total > 14);
+    for _ in 0..total {
+        let text = shown(&screen, (120, 36));
+        let number = screen.model.ui.events.selected().unwrap();
+        let entry = screen.model.live.run.log.get(number).unwrap();
+        assert!(!text.contains("─  event ") && text.contains("journal"), "{}\n{text}", entry.text);
+        assert!(entry.severity < Severity::Warn || text.contains("robot "), "{}\n{text}", entry.text);
+        screen.press([Key::Up]);
+    }
+}
