@@ -17,6 +17,7 @@ mod planning;
 mod rules;
 mod scanning;
 mod slot;
+mod stepping;
 mod tethering;
 mod workers;
 
@@ -36,6 +37,7 @@ pub use fork::Fork;
 use planner_api::{Drive, Reason};
 use rules::{PlannerSeen, Rules, Seen};
 use slot::PlannerSlot;
+use stepping::PlaceOnPlan;
 use workers::Workers;
 use world::{Floor, Point, Readings, World};
 
@@ -80,6 +82,8 @@ pub struct Mission {
     /// A planner that is being prepared to take over.
     candidate: Option<PlannerSlot>,
     workers: Workers,
+    /// Where the robot was let go that moves until something happens.
+    stepped_from: Option<PlaceOnPlan>,
     happened: Happened,
 }
 
@@ -124,6 +128,7 @@ impl Mission {
             active: PlannerSlot::new(config.planner.clone(), Reason::Start),
             candidate: None,
             workers: Workers::default(),
+            stepped_from: None,
             happened: Happened { events: Vec::new(), ending: None, last_drive: Drive::STILL },
             config,
         }
@@ -175,6 +180,7 @@ impl Mission {
     /// Ends a tick: what the robot does until the next one, and everything that happened. To be called once, last.
     pub fn act(&mut self) -> Step {
         let drive = self.drive();
+        self.end_step();
         let (tick, t_s) = (self.tick, self.now_s());
         let mut happened = std::mem::take(&mut self.happened.events);
         happened.extend(self.happened.ending.take());

@@ -24,6 +24,8 @@ pub enum Order {
     Resume,
     /// While held: move for one tick.
     Step,
+    /// While held: move until something happens, then stand still again.
+    StepTo(StepTo),
     /// While held for a plan that was refused because of the tether: fly it, and later plans until one fails.
     FlyUncertified,
     /// End the mission here.
@@ -37,6 +39,16 @@ pub enum Order {
         /// Its new value.
         value: ParamValue,
     },
+}
+
+/// What a robot moves to that is held and is let go for a while.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StepTo {
+    /// The end of the lane or connector under the robot; without lanes, a metre further.
+    LaneEnd,
+    /// The next event of WATCH or above.
+    Event,
 }
 
 /// Something that was checked before the start.

@@ -4,6 +4,7 @@ mod hold_reason;
 
 pub use hold_reason::HoldReason;
 
+use crate::order::StepTo;
 use serde::{Deserialize, Serialize};
 
 /// What the mission is doing.
@@ -38,6 +39,8 @@ pub enum Gait {
     Steady,
     /// Until one command was sent.
     OneTick,
+    /// Until something happens.
+    To(StepTo),
 }
 
 /// Why the robot stands still, and whether that may end without an order.

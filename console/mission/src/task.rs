@@ -124,6 +124,14 @@ impl Task {
         }
     }
 
+    /// Number of the stretch of the plan under the robot, if the planner says what its stretches are for.
+    pub(crate) fn leg_index(&self) -> Option<usize> {
+        match self {
+            Self::Cover(cover) => cover.leg_index(),
+            Self::Goto(_) | Self::Follow { .. } => None,
+        }
+    }
+
     /// Whether what is left of the task leads the robot's centre nearer than `room_m` to an outline. Planners that go
     /// round obstacles by themselves always want to know of a new one.
     pub(crate) fn is_in_the_way(&self, shape: &Shape, room_m: f64) -> bool {

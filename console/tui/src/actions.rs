@@ -36,6 +36,10 @@ pub enum ActionId {
     FlyUncertified,
     /// Move for one tick.
     Step,
+    /// Move to the end of the lane.
+    StepLane,
+    /// Move to the next event.
+    StepEvent,
     /// End the mission.
     Abort,
     /// Let another planner drive.
@@ -233,6 +237,8 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Complete, "complete", "Complete the word", &[Key::Tab], &[Context::Text]).label("complete"),
     action(ActionId::Accept, "accept", "Confirm, or select the line", &[Key::Enter], &[Context::Rows, Context::Text, Context::Confirm, Context::Stepping, Context::WhatIf]).label("yes"),
     action(ActionId::Step, "step", "Move for one more tick", &[Key::Char('.')], &[Context::Stepping]).label("step").risk(Risk::Moves),
+    action(ActionId::StepLane, "step-lane", "Move to the end of the lane", &[Key::Char('}')], &[Context::Stepping]).label("lane").risk(Risk::Moves),
+    action(ActionId::StepEvent, "step-event", "Move to the next event", &[Key::Char(']')], &[Context::Stepping]).label("event").risk(Risk::Moves),
     action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc], &[Context::Text, Context::Stepping, Context::Cursor]).label("cancel"),
     action(ActionId::Cancel, "cancel", "Cancel", &[Key::Esc, Key::Char('q')], &[Context::List, Context::Confirm, Context::WhatIf]).label("cancel"),
     action(ActionId::Up, "up", "Select the line above", &[Key::Up, Key::Char('k')], &[Context::Rows]).repeats(),

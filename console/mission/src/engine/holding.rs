@@ -47,12 +47,12 @@ impl Mission {
         }
     }
 
-    /// Holds the robot. If only an order could let it move anyway, or for more than one command, only an order ends this
+    /// Holds the robot. If only an order could let it move anyway, or for longer than a step, only an order ends this
     /// hold: the operator's HOLD outlives whatever happens to planners meanwhile.
     pub(super) fn hold(&mut self, Hold { by, resumes }: Hold) {
         let only_by_order = match &self.phase {
             Phase::Held(before) => before.resumes.is_never(),
-            Phase::Running(gait) => *gait == Gait::OneTick,
+            Phase::Running(gait) => *gait != Gait::Steady,
             Phase::Waiting | Phase::Ended(_) => false,
         };
         let resumes = if only_by_order { Resumes::Never } else { resumes };

@@ -27,6 +27,10 @@ impl Mission {
             Order::Hold => self.hold_by_order(),
             Order::Resume => self.resume(Gait::Steady),
             Order::Step => self.resume(Gait::OneTick),
+            Order::StepTo(to) => {
+                self.stepped_from = Some(self.place_on_plan());
+                self.resume(Gait::To(*to));
+            }
             Order::Abort => self.end(Outcome::Aborted, "ended by operator".into()),
             Order::ChoosePlanner(choice) => {
                 let from = self.active.choice.id.clone();

@@ -4,7 +4,10 @@ use super::{
     Event, EventKind, TetherAlarm,
     severity::{self, Severity},
 };
-use crate::{order::Order, phase::Outcome};
+use crate::{
+    order::{Order, StepTo},
+    phase::Outcome,
+};
 use planner_api::LogLevel;
 use positioning::Exclusion;
 use world::tether::Certificate;
@@ -180,6 +183,8 @@ fn of_tether(kind: &EventKind) -> Option<LogLine> {
 fn order_text(order: &Order) -> String {
     match order {
         Order::Plan => "plan".into(),
+        Order::StepTo(StepTo::LaneEnd) => "step to the end of the lane".into(),
+        Order::StepTo(StepTo::Event) => "step to the next event".into(),
         Order::Start => "start".into(),
         Order::NoteOutlooks(outlooks) => {
             let planners: Vec<&str> = outlooks.iter().map(|outlook| outlook.choice.id.as_str()).collect();

@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 pub struct FoldedStanding {
     /// What the mission is doing.
     pub phase: Phase,
-    /// Whether the last order was for a single step.
-    is_stepping: bool,
+    /// How the robot was let go by the last order.
+    gait: Option<Gait>,
     /// The limit of the position error, metres, while the position counts as lost.
     lost: Option<f64>,
     /// Whether the ranges contradict each other.
@@ -30,10 +30,15 @@ impl FoldedStanding {
         match event {
             EventKind::RunOpened(_) => *self = Self::default(),
             EventKind::Ordered { order: Order::Start } => self.phase = Phase::Running(Gait::Steady),
-            EventKind::Ordered { order } => self.is_stepping = *order == Order::Step,
+            EventKind::Ordered { order } => {
+                self.gait = match order {
+                    Order::Step => Some(Gait::OneTick),
+                    Order::StepTo(to) => Some(Gait::To(*to)),
+                    _ => None,
+                };
+            }
             EventKind::Resumed => {
-                let gait = if std::mem::take(&mut self.is_stepping) { Gait::OneTick } else { Gait::Steady };
-                self.phase = Phase::Running(gait);
+                self.phase = Phase::Running(self.gait.take().unwrap_or(Gait::Steady));
             }
             EventKind::Held { by, resumes } => {
                 self.phase = Phase::Held(Hold { by: by.clone(), resumes: *resumes });

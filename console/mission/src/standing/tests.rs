@@ -1,5 +1,6 @@
 use super::*;
 use crate::{
+    order::StepTo,
     phase::{Gait, Outcome, Resumes},
     planner::{ParamValue, Parameters, PlannerChoice},
 };
@@ -28,6 +29,7 @@ fn orders() -> Vec<Order> {
         Order::Hold,
         Order::Resume,
         Order::Step,
+        Order::StepTo(StepTo::LaneEnd),
         Order::FlyUncertified,
         Order::Abort,
         Order::ChoosePlanner(choice),
@@ -58,7 +60,7 @@ fn nothing_that_moves_the_robot_is_accepted_without_a_position() {
     let lost = PositionTrust::Lost { limit_m: 0.3 };
     for position in [lost, PositionTrust::Alarmed] {
         for phase in phases() {
-            for order in [Order::Resume, Order::Step, Order::FlyUncertified] {
+            for order in [Order::Resume, Order::Step, Order::StepTo(StepTo::Event), Order::FlyUncertified] {
                 assert!(standing(&phase, position).allows(&order).is_err(), "{phase:?} {order:?}");
             }
         }

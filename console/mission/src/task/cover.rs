@@ -110,8 +110,15 @@ impl Cover {
     /// What the stretch under the robot is for.
     pub(crate) fn leg(&self) -> Option<LegTag> {
         let lanes = self.lanes.as_ref()?;
+        lanes.legs.get(self.leg_index()?).map(|(tag, _)| *tag)
+    }
+
+    /// Number of the stretch under the robot; the last one at the end.
+    pub(crate) fn leg_index(&self) -> Option<usize> {
+        let lanes = self.lanes.as_ref()?;
         let along_m = lanes.follower.along_m();
-        lanes.legs.iter().find(|(_, end_m)| along_m < *end_m).or(lanes.legs.last()).map(|(tag, _)| *tag)
+        let here = lanes.legs.iter().position(|(_, end_m)| along_m < *end_m);
+        here.or(lanes.legs.len().checked_sub(1))
     }
 
     /// Whether the rest of the plan comes nearer than `room_m` to an outline.

@@ -12,7 +12,7 @@ use crate::model::home::HomeList;
 use crate::model::plugins::plugins;
 use crate::model::ui::{Ask, MapView, Purpose};
 use crate::model::{Model, Overlay, Palette, Pane, Screen, Speed};
-use mission::{Order, Severity};
+use mission::{Order, Severity, StepTo};
 use world::Vector;
 
 /// Seconds within which a second Ctrl-C asks to leave.
@@ -44,7 +44,9 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Start => ask(model, Ask::Start),
         ActionId::Resume => ask(model, Ask::Resume),
         ActionId::FlyUncertified => ask(model, Ask::FlyUncertified),
-        ActionId::Step => step(model),
+        ActionId::Step => step(model, Order::Step),
+        ActionId::StepLane => step(model, Order::StepTo(StepTo::LaneEnd)),
+        ActionId::StepEvent => step(model, Order::StepTo(StepTo::Event)),
         ActionId::Slower => change_speed(model, false),
         ActionId::Faster => change_speed(model, true),
         ActionId::Acknowledge => acknowledge(model),
@@ -151,14 +153,15 @@ fn leave(model: &mut Model) -> Vec<Effect> {
     effects
 }
 
-fn step(model: &mut Model) -> Vec<Effect> {
+/// The first step opens the line for steps; in it each key is a step.
+fn step(model: &mut Model, order: Order) -> Vec<Effect> {
     if model.ui.overlay != Overlay::Stepping {
         return open(model, Overlay::Stepping);
     }
     if model.live.asked.is_some() {
         return Vec::new();
     }
-    send(model, Order::Step)
+    send(model, order)
 }
 
 fn change_speed(model: &mut Model, faster: bool) -> Vec<Effect> {

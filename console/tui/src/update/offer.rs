@@ -21,7 +21,7 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Start => start(model),
         ActionId::Resume => accepted(model, &Order::Resume),
         ActionId::FlyUncertified => accepted(model, &Order::FlyUncertified),
-        ActionId::Step => accepted(model, &Order::Step),
+        ActionId::Step | ActionId::StepLane | ActionId::StepEvent => accepted(model, &Order::Step),
         ActionId::Abort => abort(model),
         ActionId::ChoosePlanner => swap(model),
         ActionId::Accept => {

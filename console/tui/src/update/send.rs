@@ -7,7 +7,11 @@ use mission::Order;
 
 /// Sends an order and remembers that an answer is due if it makes the robot move.
 pub(super) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
-    if matches!(order, Order::Start | Order::Resume | Order::FlyUncertified | Order::Step) {
+    let moves = matches!(
+        order,
+        Order::Start | Order::Resume | Order::FlyUncertified | Order::Step | Order::StepTo(_)
+    );
+    if moves {
         model.live.asked = Some(order.clone());
         // A HOLD that was sent before it does not stop what comes after it.
         model.live.hold_asked = false;

@@ -66,7 +66,7 @@ fn asked(model: &Model) -> Option<Vec<String>> {
         Overlay::Stepping => {
             let tick_s = model.live.run.about.as_ref().map_or(0.0, |run| run.mission.tick_s);
             vec![
-                "Single step? Enter or .: step, Esc: stop stepping.".into(),
+                "Step? Enter or .: one tick, }: lane, ]: event, Esc: end.".into(),
                 format!("{} s per step.", text::number(tick_s, 2)),
             ]
         }

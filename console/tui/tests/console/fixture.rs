@@ -383,7 +383,7 @@ impl ScriptedMission {
     pub(crate) fn obeyed(&self, order: Order) -> Vec<Event> {
         let after = match order {
             Order::Hold => Some(EventKind::Held { by: HoldReason::Operator, resumes: Resumes::Never }),
-            Order::Resume | Order::Step | Order::FlyUncertified => Some(EventKind::Resumed),
+            Order::Resume | Order::Step | Order::StepTo(_) | Order::FlyUncertified => Some(EventKind::Resumed),
             _ => None,
         };
         std::iter::once(EventKind::Ordered { order }).chain(after).map(|kind| self.now(kind)).collect()

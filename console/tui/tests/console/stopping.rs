@@ -23,7 +23,7 @@ fn phases() -> Vec<Phase> {
         Outcome::Entangled,
         Outcome::Aborted,
     ];
-    [Phase::Waiting, Phase::Running(Gait::Steady), Phase::Running(Gait::OneTick)]
+    [Phase::Waiting, Phase::Running(Gait::Steady), Phase::Running(Gait::OneTick), Phase::Running(Gait::To(mission::StepTo::LaneEnd))]
         .into_iter()
         .chain(held)
         .chain(outcomes.map(Phase::Ended))
@@ -132,6 +132,9 @@ fn screen_in(phase: &Phase) -> Screen {
     let events = match phase {
         Phase::Waiting | Phase::Running(Gait::Steady) => Vec::new(),
         Phase::Running(Gait::OneTick) => [mission.obeyed(Order::Hold), mission.obeyed(Order::Step)].concat(),
+        Phase::Running(Gait::To(to)) => {
+            [mission.obeyed(Order::Hold), mission.obeyed(Order::StepTo(*to))].concat()
+        }
         Phase::Held(hold) => vec![mission.held_until(hold.by.clone(), hold.resumes)],
         Phase::Ended(outcome) => vec![mission.ended(*outcome, "why")],
     };

@@ -2,7 +2,7 @@
 //! arrives, and nothing but an order lets it move again.
 
 use super::{covering::covering, tethered::tethered, *};
-use crate::phase::Resumes;
+use crate::{order::StepTo, phase::Resumes};
 
 /// A flight in some state, with whatever would let the robot move again if nobody held it.
 struct Case {
@@ -260,4 +260,25 @@ fn a_planner_that_is_well_stays_when_the_chosen_one_cannot_be_opened() {
     flight.tick(&[Order::Resume]);
     flight.fly(5);
     assert!(flight.pose != before, "{:?}", flight.mission.phase());
+}
+
+#[test]
+fn a_step_ends_after_a_metre_without_lanes_and_goes_on_until_something_happens() {
+    let mut flight = started(config());
+    flight.tick(&[Order::Hold]);
+    let from = flight.mission.locator.position();
+    flight.tick(&[Order::StepTo(StepTo::LaneEnd)]);
+    flight.fly(200);
+    assert!(matches!(flight.mission.phase(), Phase::Held(hold) if hold.by == HoldReason::Stepped));
+    let way_m = (flight.mission.locator.position() - from).norm();
+    assert!((0.9..1.6).contains(&way_m), "{way_m} m");
+    flight.tick(&[Order::StepTo(StepTo::Event)]);
+    flight.fly(3);
+    assert!(
+        matches!(flight.mission.phase(), Phase::Running(Gait::To(StepTo::Event))),
+        "nothing has happened"
+    );
+    flight.silent = true;
+    flight.fly(60);
+    assert!(matches!(flight.mission.phase(), Phase::Held(hold) if hold.resumes.is_never()));
 }

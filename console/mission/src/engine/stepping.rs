@@ -1,0 +1,47 @@
+//! A robot that is let go until something happens: the end of a lane, or an event.
+
+use super::Mission;
+use crate::{
+    event::{Event, EventKind, Severity},
+    order::StepTo,
+    phase::{Gait, Hold, HoldReason, Phase, Resumes},
+};
+use world::Point;
+
+/// Without lanes a step is this long, metres.
+const STEP_M: f64 = 1.0;
+
+/// Where on its plan a robot was let go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PlaceOnPlan {
+    /// The stretch of the plan under the robot; `None` without lanes.
+    leg: Option<usize>,
+    /// Where it was.
+    at: Point,
+}
+
+/// Whether an event is logged as WATCH or above.
+fn asks_attention(kind: &EventKind) -> bool {
+    let event = Event { tick: 0, t_s: 0.0, kind: kind.clone() };
+    event.log_line().is_some_and(|line| line.severity >= Severity::Watch)
+}
+
+impl Mission {
+    pub(super) fn place_on_plan(&self) -> PlaceOnPlan {
+        PlaceOnPlan { leg: self.task.leg_index(), at: self.locator.position() }
+    }
+
+    /// Holds a robot that was let go until what has now happened.
+    pub(super) fn end_step(&mut self) {
+        let (Phase::Running(Gait::To(to)), Some(from)) = (&self.phase, self.stepped_from) else { return };
+        let is_there = match to {
+            StepTo::LaneEnd if from.leg.is_some() => self.task.leg_index() != from.leg,
+            StepTo::LaneEnd => (self.locator.position() - from.at).norm() >= STEP_M,
+            StepTo::Event => self.happened.events.iter().any(asks_attention),
+        };
+        if is_there {
+            self.stepped_from = None;
+            self.hold(Hold { by: HoldReason::Stepped, resumes: Resumes::Never });
+        }
+    }
+}
