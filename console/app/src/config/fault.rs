@@ -29,7 +29,7 @@ impl Place<'_> {
     /// Name, line and column of a byte.
     fn of(self, at: usize) -> String {
         let before = &self.text.as_bytes()[..at.min(self.text.len())];
-        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
+        let line = before.split(|byte| *byte == b'\n').count();
         let begin = before.iter().rposition(|byte| *byte == b'\n').map_or(0, |newline| newline + 1);
         let column = 1 + String::from_utf8_lossy(&before[begin..]).chars().count();
         format!("{}:{line}:{column}", self.name)
@@ -77,7 +77,7 @@ pub(super) fn each(
             }
             continue;
         }
-        let at = table.key(key).and_then(|key| key.span()).map_or(0, |span| span.start);
+        let at = table.key(key).and_then(toml_edit::Key::span).map_or(0, |span| span.start);
         let remedy = nearest(key, known.iter().copied()).map(|name| format!("; did you mean {name}?"));
         faults.push(Fault::new(at, format!("unknown key {key:?}{}", remedy.unwrap_or_default())));
     }

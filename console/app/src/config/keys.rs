@@ -51,7 +51,7 @@ pub(super) fn read(config: &mut Config, text: &str) -> Vec<Fault> {
 fn bindings(table: &dyn TableLike, faults: &mut Vec<Fault>) -> Vec<Written> {
     let mut all = Vec::new();
     for (action, item) in table.iter() {
-        let name_at = table.key(action).and_then(|key| key.span()).map_or(0, |span| span.start);
+        let name_at = table.key(action).and_then(toml_edit::Key::span).map_or(0, |span| span.start);
         match keys_of(item) {
             Ok((keys, keys_at)) => {
                 let binding = Binding { action: action.to_owned(), keys };

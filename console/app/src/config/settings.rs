@@ -26,10 +26,12 @@ pub(super) fn read(config: &mut Config, text: &str) -> Vec<Fault> {
                     screen(config, key, item)
                 })?,
                 "start" => {
-                    section(item, &["scenarios", "speed"], faults, |key, item| begin(config, key, item))?
+                    section(item, &["scenarios", "speed"], faults, |key, item| begin(config, key, item))?;
                 }
                 _ => {
-                    section(item, &["bell", "shelve_max_min"], faults, |key, item| alarms(config, key, item))?
+                    section(item, &["bell", "shelve_max_min"], faults, |key, item| {
+                        alarms(config, key, item)
+                    })?;
                 }
             }
             Ok(())

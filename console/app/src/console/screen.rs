@@ -127,7 +127,7 @@ impl Screen {
                 self.measure.arrived(&msg, began);
             }
             for effect in self.session.take(msg) {
-                if let Some(left) = self.carry_out(effect)? {
+                if let Some(left) = self.carry_out(&effect)? {
                     return Ok(Some(left));
                 }
             }
@@ -143,14 +143,14 @@ impl Screen {
         self.session.next(frame.into_iter().chain(self.session.wakes_at()).min())
     }
 
-    fn carry_out(&mut self, effect: Effect) -> anyhow::Result<Option<Left>> {
+    fn carry_out(&mut self, effect: &Effect) -> anyhow::Result<Option<Left>> {
         match effect {
             Effect::Redraw => self.terminal.redraw().context("drawing")?,
             Effect::Bell => ring()?,
-            Effect::Mouse(taken) => self.terminal.take_mouse(taken).context("taking the mouse")?,
-            Effect::Copy(line) => self.terminal.copy(&line).context("copying")?,
+            Effect::Mouse(taken) => self.terminal.take_mouse(*taken).context("taking the mouse")?,
+            Effect::Copy(line) => self.terminal.copy(line).context("copying")?,
             Effect::Suspend => self.suspend()?,
-            Effect::Quit { signal } => return Ok(Some(Left { signal })),
+            Effect::Quit { signal } => return Ok(Some(Left { signal: *signal })),
             // The session has carried out the others.
             _ => {}
         }

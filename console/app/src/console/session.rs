@@ -63,9 +63,15 @@ impl Session {
             Effect::Look => self.desk.request(Request::Look),
             Effect::Do(job) => self.desk.request(Request::Do(job)),
             Effect::Order(order) => {
-                self.engine.get().into_iter().for_each(|engine| engine.order(order.clone()))
+                if let Some(engine) = self.engine.get() {
+                    engine.order(order);
+                }
             }
-            Effect::Speed(speed) => self.engine.get().into_iter().for_each(|engine| engine.speed(speed)),
+            Effect::Speed(speed) => {
+                if let Some(engine) = self.engine.get() {
+                    engine.speed(speed);
+                }
+            }
             Effect::Redraw
             | Effect::Bell
             | Effect::Mouse(_)

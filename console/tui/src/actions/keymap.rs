@@ -201,7 +201,9 @@ pub fn taken_by(key: Key) -> Option<&'static str> {
 mod tests {
     use super::*;
 
-    fn bound(pairs: &[(&str, &[Key])]) -> (Keymap, Vec<String>) {
+    type Pairs<'a> = &'a [(&'a str, &'a [Key])];
+
+    fn bound(pairs: Pairs) -> (Keymap, Vec<String>) {
         let bindings: Vec<Binding> = pairs
             .iter()
             .map(|(action, keys)| Binding { action: (*action).to_owned(), keys: keys.to_vec() })
@@ -229,7 +231,7 @@ mod tests {
     #[test]
     fn what_cannot_be_bound_says_why_and_changes_nothing() {
         let f = Key::Char('f');
-        let cases: [(&[(&str, &[Key])], &str); 6] = [
+        let cases: [(Pairs, &str); 6] = [
             (&[("zoom-in", &[f])], "0: \"f\" is already follow (Plan, Mission, Result); zoom-in keeps \"z\""),
             (
                 &[("zoom-in", &[Key::F(5)]), ("zoom-out", &[Key::F(5)])],

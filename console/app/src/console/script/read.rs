@@ -6,11 +6,14 @@ use tui::{Key, actions::duration_s};
 /// Time that a wait takes at most if the script does not say, seconds.
 const WITHIN_S: f64 = 60.0;
 
+/// Something and the number of its line.
+type Numbered<T> = (usize, T);
+
 /// Reads a script: its steps by the number of their line.
 ///
 /// # Errors
 /// Each line that is none, by its number, and what is wrong with it.
-pub(super) fn steps(text: &str) -> Result<Vec<(usize, Step)>, Vec<(usize, String)>> {
+pub(super) fn steps(text: &str) -> Result<Vec<Numbered<Step>>, Vec<Numbered<String>>> {
     let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
     let lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     let (mut steps, mut wrong) = (Vec::new(), Vec::new());

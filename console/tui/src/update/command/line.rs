@@ -61,7 +61,8 @@ mod tests {
 
     #[test]
     fn words_are_separated_by_spaces_outside_quotes() {
-        let cases: [(&str, &[(&str, Range<usize>)]); 6] = [
+        type Expected<'a> = &'a [(&'a str, Range<usize>)];
+        let cases: [(&str, Expected); 6] = [
             ("", &[]),
             ("speed 8", &[("speed", 0..5), ("8", 6..7)]),
             ("  set  k=2 ", &[("set", 2..5), ("k=2", 7..10)]),
