@@ -115,13 +115,12 @@ impl Standing<'_> {
             (Order::Plan | Order::Start | Order::NoteChecks(_), Phase::Running(_) | Phase::Held(_)) => {
                 Err(Refusal::AlreadyStarted)
             }
-            (Order::NoteOutlooks(_), Phase::Running(_)) => Err(Refusal::AlreadyMoving),
             (
                 Order::Hold | Order::Resume | Order::Step | Order::StepTo(_) | Order::NoteOutlooks(_),
                 Phase::Waiting,
             ) => Err(Refusal::NotStarted),
             (Order::Resume | Order::Step | Order::StepTo(_), Phase::Held(_)) => self.can_move(),
-            (Order::Resume, Phase::Running(_)) => Err(Refusal::AlreadyMoving),
+            (Order::Resume | Order::NoteOutlooks(_), Phase::Running(_)) => Err(Refusal::AlreadyMoving),
             (Order::Step | Order::StepTo(_), Phase::Running(_)) => Err(Refusal::StepNeedsHold),
             (Order::FlyUncertified, Phase::Held(Hold { by: HoldReason::PlanRefused { .. }, .. })) => {
                 self.can_move()

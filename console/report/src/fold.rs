@@ -10,7 +10,8 @@ use crate::{
     turning::Turning,
 };
 use mission::{
-    Cause, Event, EventKind, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, TaskConfig,
+    Cause, Event, EventKind, Order, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
+    TaskConfig,
     event::{RunOpened, TetherAlarm},
 };
 use world::{Obstacle, Pose};
@@ -61,6 +62,7 @@ impl Fold {
                 }
                 self.accuracy.estimate(event.tick, estimate);
             }
+            EventKind::Ordered { order: Order::NoteChecks(checks) } => self.known.checks.clone_from(checks),
             EventKind::PositionLost { .. } => self.accuracy.lost(event.t_s),
             EventKind::PositionRegained { .. } => self.accuracy.regained(event.t_s),
             EventKind::Covered { runs } => {

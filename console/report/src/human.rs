@@ -7,7 +7,7 @@ use crate::{
     account::{Account, MissReason},
     summary::{Coverage, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking},
 };
-use mission::Outcome;
+use mission::{Check, CheckOutcome, Outcome};
 use text::{Text, counted, percent};
 
 /// The summary as text: warnings first, then one labelled line for each figure, with units; every percentage names
@@ -22,6 +22,7 @@ pub fn human(run: &Summary) -> String {
         text.0.push('\n');
     }
     text.line("outcome", outcome(run));
+    text.some("pre-flight", pre_flight(&run.checks));
     text.some("mission time", mission_time(run));
     text.some("path", path(run));
     text.lines(run.coverage.iter().flat_map(coverage).map(|line| ("coverage", line)));
@@ -36,6 +37,17 @@ pub fn human(run: &Summary) -> String {
     text.some("journal", run.logs.as_ref().and_then(|logs| logs.journal.as_ref()));
     text.some("recording", run.logs.as_ref().and_then(|logs| logs.recording.as_ref()));
     text.0
+}
+
+/// What was checked before the start: how much passed, every warning, and every point that was ticked by hand.
+fn pre_flight(checks: &[Check]) -> Option<String> {
+    let of = |outcome| checks.iter().filter(move |check| check.outcome == outcome);
+    let passed = of(CheckOutcome::Passed).count();
+    let warnings =
+        of(CheckOutcome::Warning).map(|check| format!("; WARNING {}: {}", check.what, check.found));
+    let ticked = of(CheckOutcome::Ticked).map(|check| format!("; by hand: {}", check.what));
+    let rest: String = warnings.chain(ticked).collect();
+    (!checks.is_empty()).then(|| format!("{passed} of {} checks passed{rest}", checks.len()))
 }
 
 fn title(run: &Summary) -> String {

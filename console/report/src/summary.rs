@@ -1,7 +1,7 @@
 //! The figures of one run, as `run --json` prints them.
 
 use crate::account::Account;
-use mission::{Outcome, Parameters};
+use mission::{Check, Outcome, Parameters};
 use serde::{Deserialize, Serialize};
 
 /// Everything that is reported about a run when it is over. What is not known is `None`, in JSON `null`, never zero.
@@ -43,6 +43,9 @@ pub struct Summary {
     pub collisions: Option<u64>,
     /// Obstacles found that are not on the drawing.
     pub obstacles_found: u64,
+    /// What was checked before the start, by the console and by hand; empty for a run without an operator.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub checks: Vec<Check>,
     /// How often the robot was held.
     pub holds: u64,
     /// How often a planner failed; one that the console refused has not.

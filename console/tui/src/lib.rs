@@ -12,6 +12,7 @@ pub mod guide;
 pub mod keys;
 mod layout;
 pub mod model;
+pub mod picture;
 pub mod plain;
 pub mod terminal;
 pub mod theme;

@@ -7,6 +7,7 @@
 //! key enter
 //! wait until phase ended within 2m
 //! assert coverage >= 95
+//! picture result.svg
 //! ```
 
 mod condition;
@@ -33,7 +34,7 @@ use std::{
 };
 use tui::{Caps, Colours, Effect, Glyphs, Key, Model, Msg, Signal};
 
-/// Columns and rows of the screen whose text is looked at.
+/// Columns and rows of the screen at first; `size` changes them.
 const SIZE: (u16, u16) = (120, 36);
 /// Time within which a condition is looked at again although nothing was heard.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
@@ -51,6 +52,10 @@ enum Step {
     Wait(Condition, f64),
     /// Demands a condition.
     Assert(Condition),
+    /// Makes the screen so many columns and rows large.
+    Size((u16, u16)),
+    /// Writes the screen to a file as a picture.
+    Picture(PathBuf),
 }
 
 /// A script.
@@ -125,6 +130,13 @@ impl Runner {
             return Err("the console was left before".into());
         }
         match step {
+            Step::Size((width, height)) => self.take(Msg::Resize { width: *width, height: *height }),
+            Step::Picture(file) => {
+                let screen =
+                    drawn(&self.session.model, Colours::True).map_err(|error| format!("{error:#}"))?;
+                let picture = tui::picture::svg(screen.backend().buffer());
+                std::fs::write(file, picture).map_err(|error| format!("{}: {error}", file.display()))
+            }
             Step::Command(line) => self.order(Msg::Line(line.clone())),
             Step::Key(key) => self.order(Msg::Key((*key).into())),
             Step::Wait(condition, within_s) => {
@@ -199,8 +211,13 @@ impl Runner {
 
 /// The text of the screen.
 fn screen(model: &Model) -> anyhow::Result<String> {
-    let caps = Caps { colours: Colours::None, glyphs: Glyphs::Braille, ssh: false };
-    let mut terminal = Terminal::new(TestBackend::new(SIZE.0, SIZE.1)).context("drawing")?;
+    Ok(drawn(model, Colours::None)?.backend().to_string())
+}
+
+/// The screen, in memory.
+fn drawn(model: &Model, colours: Colours) -> anyhow::Result<Terminal<TestBackend>> {
+    let caps = Caps { colours, glyphs: Glyphs::Braille, ssh: false };
+    let mut terminal = Terminal::new(TestBackend::new(model.ui.width, model.ui.height)).context("drawing")?;
     terminal.draw(|frame| tui::view(model, &caps, frame)).context("drawing")?;
-    Ok(terminal.backend().to_string())
+    Ok(terminal)
 }

@@ -35,7 +35,7 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::WhatIf => accepted(model, &Order::NoteOutlooks(Vec::new())),
         ActionId::Preflight => demand(model.live.waits(), "checks are made before the start"),
         ActionId::Compare => compare(model),
-        ActionId::PlanAgain => accepted(model, &Order::Plan),
+        ActionId::PlanAgain => demand(model.live.waits(), "no mission waits for its start"),
         ActionId::CancelPlan => {
             let is_planning = model.live.waits() && model.live.busy.is_some();
             demand(

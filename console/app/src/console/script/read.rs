@@ -33,8 +33,19 @@ fn step(line: &str) -> Result<Step, String> {
         "wait" => wait(rest.strip_prefix("until ").ok_or("write wait until CONDITION [within DURATION]")?),
         "assert" => Condition::read(rest).map(Step::Assert),
         "key" => Key::named(rest).map(Step::Key).ok_or_else(|| format!("no key `{rest}`")),
+        "size" => size(rest).map(Step::Size),
+        "picture" if rest.is_empty() => Err("write picture FILE.svg".into()),
+        "picture" => Ok(Step::Picture(rest.into())),
         _ => Ok(Step::Command(line.to_owned())),
     }
+}
+
+/// Columns and rows, such as `120x36`.
+fn size(text: &str) -> Result<(u16, u16), String> {
+    let size =
+        text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+    let is_screen = |(width, height): &(u16, u16)| (20..=300).contains(width) && (5..=100).contains(height);
+    size.filter(is_screen).ok_or_else(|| format!("no size `{text}`; write 20x5 to 300x100"))
 }
 
 fn wait(text: &str) -> Result<Step, String> {
@@ -52,7 +63,7 @@ mod tests {
     #[test]
     fn every_kind_of_line_is_read() {
         let text = "# a comment\n\nspeed max\n  key enter\nwait until not phase running within 2m\n\
-                    wait until text \"position lost\"\nassert coverage >= 95.5\nassert alarm\nassert screen result\n";
+                    wait until text \"position lost\"\nassert coverage >= 95.5\nassert alarm\nassert screen result\nsize 80x24\npicture a b.svg\n";
         let condition = |text| Condition::read(text).expect("a condition");
         let expected = vec![
             (3, Step::Command("speed max".into())),
@@ -62,14 +73,16 @@ mod tests {
             (7, Step::Assert(condition("coverage >= 95.5"))),
             (8, Step::Assert(condition("alarm"))),
             (9, Step::Assert(condition("screen result"))),
+            (10, Step::Size((80, 24))),
+            (11, Step::Picture("a b.svg".into())),
         ];
         assert_eq!(steps(text), Ok(expected));
     }
 
     #[test]
     fn every_wrong_line_is_named() {
-        let text = "wait for it\nassert phase walking\nkey hyper\nwait until alarm within soon\nassert coverage 95\n";
+        let text = "wait for it\nassert phase walking\nkey hyper\nwait until alarm within soon\nassert coverage 95\nsize 9x9\npicture\n";
         let lines: Vec<usize> = steps(text).expect_err("faults").into_iter().map(|(line, _)| line).collect();
-        assert_eq!(lines, [1, 2, 3, 4, 5]);
+        assert_eq!(lines, [1, 2, 3, 4, 5, 6, 7]);
     }
 }
