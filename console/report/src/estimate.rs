@@ -158,7 +158,7 @@ fn accuracy(mission: &MissionConfig, drawing: &World, path: &[Point]) -> (Option
     for at in path {
         match map.at(*at).and_then(|accuracy| accuracy.error_95_m) {
             Some(value) if worst.is_none_or(|worst| value > worst.value) => {
-                worst = Some(Worst { value, at: *at })
+                worst = Some(Worst { value, at: *at });
             }
             Some(_) => {}
             None => without_fix_m += SAMPLE_M,
