@@ -18,7 +18,9 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
         }
         RunMsg::Events(events) => {
             model.live.heard_mono_s = model.console.now.mono_s;
-            events.iter().for_each(|event| take(model, event));
+            for event in &events {
+                take(model, event);
+            }
             let goes_on = |event: &Event| {
                 matches!(
                     event.kind,
@@ -92,8 +94,8 @@ fn take(model: &mut Model, event: &Event) {
 fn withdraw(model: &mut Model, withdrawn: Withdrawn) {
     let is_withdrawn = match (withdrawn, &model.ui.overlay) {
         (Withdrawn::Nothing, _) => false,
-        (_, Overlay::Confirm(Ask::Resume | Ask::FlyUncertified)) => true,
-        (Withdrawn::All, Overlay::Confirm(_) | Overlay::Stepping) => true,
+        (_, Overlay::Confirm(Ask::Resume | Ask::FlyUncertified))
+        | (Withdrawn::All, Overlay::Confirm(_) | Overlay::Stepping) => true,
         _ => false,
     };
     if is_withdrawn {

@@ -55,38 +55,32 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::Copy => of_line(model, id),
         ActionId::Slower => speed(model, false),
         ActionId::Faster => speed(model, true),
-        ActionId::ZoomIn => map(model).and(demand(model.ui.map.zoom < MAX_ZOOM, "already at maximum zoom")),
-        ActionId::ZoomOut => map(model).and(demand(model.ui.map.zoom > 0, "the whole tank is already shown")),
-        ActionId::WholeTank | ActionId::Layers | ActionId::Centre => map(model),
-        ActionId::Inspect => map(model).and(demand(model.live.run.about.is_some(), "no tank loaded yet")),
-        ActionId::Follow => {
-            map(model).and(demand(model.live.run.position.pose.is_some(), "no position estimate yet"))
-        }
-        ActionId::PanLeft | ActionId::PanRight | ActionId::PanUp | ActionId::PanDown => {
-            let moves = model.ui.map.zoom > 0 || model.ui.cursor.is_some();
-            map(model).and(demand(moves, "the whole tank is shown; <zoom-in>: zoom in first"))
-        }
+        ActionId::ZoomIn
+        | ActionId::ZoomOut
+        | ActionId::WholeTank
+        | ActionId::Layers
+        | ActionId::Centre
+        | ActionId::Inspect
+        | ActionId::Follow
+        | ActionId::PanLeft
+        | ActionId::PanRight
+        | ActionId::PanUp
+        | ActionId::PanDown => map(model).and_then(|()| on_map(model, id)),
         ActionId::Severity => demand(
             model.ui.shows(Pane::Events),
             "the events are not shown; <next-pane>: next pane (needs 60x16)",
         ),
-        ActionId::GoPlan | ActionId::GoMission => {
-            demand(model.live.source.is_some(), "no mission is open; choose one on screen 1 (Home)")
-        }
-        ActionId::GoResult => demand(model.live.result.is_some(), "no run has ended yet"),
-        ActionId::Reload => demand(
-            !model.live.run.is_running(),
-            "plugins are looked at again while the robot is held; space: HOLD",
-        ),
-        ActionId::NextMissed | ActionId::PreviousMissed => {
-            demand(!model.live.missed().is_empty(), "no area was missed")
-        }
-        ActionId::Again => {
-            demand(model.live.source.is_some() && !model.live.is_under_way(), "a mission is in progress")
-        }
-        ActionId::Rescan | ActionId::Verify | ActionId::Report | ActionId::View => {
-            demand(named_run(model).is_some(), "no run is selected")
-        }
+        ActionId::GoPlan
+        | ActionId::GoMission
+        | ActionId::GoResult
+        | ActionId::Reload
+        | ActionId::NextMissed
+        | ActionId::PreviousMissed
+        | ActionId::Again
+        | ActionId::Rescan
+        | ActionId::Verify
+        | ActionId::Report
+        | ActionId::View => around(model, id),
         ActionId::NextPane | ActionId::PreviousPane => {
             let turns = model.ui.screen == Screen::Home || !model.ui.panes().is_empty();
             demand(turns, "there is one pane only")
@@ -119,6 +113,42 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::First
         | ActionId::Last
         | ActionId::Edit => Ok(()),
+    }
+}
+
+/// Whether the map that is shown can be looked at in another way.
+fn on_map(model: &Model, id: ActionId) -> Result<(), String> {
+    let zoom = model.ui.map.zoom;
+    match id {
+        ActionId::ZoomIn => demand(zoom < MAX_ZOOM, "already at maximum zoom"),
+        ActionId::ZoomOut => demand(zoom > 0, "the whole tank is already shown"),
+        ActionId::Inspect => demand(model.live.run.about.is_some(), "no tank loaded yet"),
+        ActionId::Follow => demand(model.live.run.position.pose.is_some(), "no position estimate yet"),
+        ActionId::PanLeft | ActionId::PanRight | ActionId::PanUp | ActionId::PanDown => {
+            let moves = zoom > 0 || model.ui.cursor.is_some();
+            demand(moves, "the whole tank is shown; <zoom-in>: zoom in first")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether there is something to go to, or to begin, around a mission.
+fn around(model: &Model, id: ActionId) -> Result<(), String> {
+    let live = &model.live;
+    match id {
+        ActionId::GoPlan | ActionId::GoMission => {
+            demand(live.source.is_some(), "no mission is open; choose one on screen 1 (Home)")
+        }
+        ActionId::GoResult => demand(live.result.is_some(), "no run has ended yet"),
+        ActionId::Reload => {
+            let why = "plugins are looked at again while the robot is held; space: HOLD";
+            demand(!live.run.is_running(), why)
+        }
+        ActionId::NextMissed | ActionId::PreviousMissed => {
+            demand(!live.missed().is_empty(), "no area was missed")
+        }
+        ActionId::Again => demand(live.source.is_some() && !live.is_under_way(), "a mission is in progress"),
+        _ => demand(named_run(model).is_some(), "no run is selected"),
     }
 }
 
