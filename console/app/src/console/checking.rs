@@ -113,7 +113,7 @@ fn clock() -> Check {
     let (steady, wall) = (Instant::now(), SystemTime::now());
     thread::sleep(CLOCK_SPAN);
     let steady = steady.elapsed();
-    let difference = wall.elapsed().map(|wall| if wall > steady { wall - steady } else { steady - wall });
+    let difference = wall.elapsed().map(|wall| wall.abs_diff(steady));
     match difference {
         Ok(difference) if difference <= CLOCK_LIMIT => check(
             "clock",

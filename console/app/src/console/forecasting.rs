@@ -137,7 +137,9 @@ fn fly(
             return Err("given up".to_owned());
         }
         let events = flight.tick(&orders, &mut answers);
-        events.iter().for_each(|event| ahead.take(event));
+        for event in &events {
+            ahead.take(event);
+        }
         if let Some(why) = events.iter().find_map(refusal) {
             return Err(why);
         }

@@ -263,7 +263,9 @@ proptest! {
         };
         screen.model.ui.mouse = true;
         for (mouse, turn) in did {
-            turn.into_iter().for_each(|turn| drop(screen.send(turn)));
+            if let Some(turn) = turn {
+                screen.send(turn);
+            }
             for effect in screen.send(Msg::Mouse(mouse)) {
                 let Effect::Order(order) = &effect else { continue };
                 // A planner that is opened or that plans before the start moves nothing.

@@ -517,9 +517,9 @@ fn leaving_is_not_asked_where_nothing_is_at_stake() {
 
 #[test]
 fn q_leads_back_screen_by_screen_and_the_mission_goes_on() {
+    use tui::model::Screen::{Home, Mission, Plan};
     let mut screen = Screen::running();
     let screens = |screen: &Screen| (screen.model.ui.screen, screen.model.ui.back.clone());
-    use tui::model::Screen::{Home, Mission, Plan};
     assert_eq!(screens(&screen), (Mission, vec![Home, Plan]));
     assert_eq!(screen.type_text("q"), []);
     assert_eq!(screen.type_text("q"), [Effect::Look]);
