@@ -82,7 +82,7 @@ pub fn guide(cause: &Cause) -> Guide {
             effect: "Nothing moves. What was scanned and recorded is kept.",
             remedies: const {
                 &[
-                    run("Show the result (7).", ActionId::GoResult),
+                    run("Show the result (<result>).", ActionId::GoResult),
                     run("Scan what was missed: opens a new mission.", ActionId::Rescan),
                     run("Write the report.", ActionId::Report),
                 ]

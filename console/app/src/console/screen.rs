@@ -114,7 +114,9 @@ impl Screen {
         }
         let began = Instant::now();
         if let Some(measured) = self.measure.report(began) {
-            self.session.take(Msg::Measured(measured));
+            for effect in self.session.take(Msg::Measured(measured)) {
+                self.carry_out(&effect)?;
+            }
         }
         let until = Instant::now() + BURST_TIME;
         let mut next = first;

@@ -32,9 +32,11 @@ pub(super) const fn run(text: &'static str, action: ActionId) -> Remedy {
 
 pub(super) const STAY: Remedy = run("Keep held (HOLD): then only the operator resumes.", ActionId::Hold);
 pub(super) const HOLD: Remedy = run("HOLD the robot until this is clear.", ActionId::Hold);
-pub(super) const END: Remedy = run("End the mission (X): holds, then asks.", ActionId::Abort);
+pub(super) const END: Remedy = run("End the mission (<end>): holds, then asks.", ActionId::Abort);
 pub(super) const SHOW: Remedy = run("Show it on the map.", ActionId::ShowPlace);
-pub(super) const SLOWER: Remedy = run("Slow the simulation down (<).", ActionId::Slower);
-pub(super) const OTHER_PLANNER: Remedy = run("Change the planner (P): asks first.", ActionId::ChoosePlanner);
-pub(super) const PARAMETERS: Remedy = run("Change parameters of the planner (p).", ActionId::Parameters);
+pub(super) const SLOWER: Remedy = run("Slow the simulation down (<slower>).", ActionId::Slower);
+pub(super) const OTHER_PLANNER: Remedy =
+    run("Change the planner (<planner>): asks first.", ActionId::ChoosePlanner);
+pub(super) const PARAMETERS: Remedy =
+    run("Change parameters of the planner (<parameters>).", ActionId::Parameters);
 pub(super) const RESUME: Remedy = run("Resume: the planner tries again; asks first.", ActionId::Resume);

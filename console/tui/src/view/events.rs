@@ -13,6 +13,8 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::Modifier;
 use ratatui::text::Line;
 
+/// What can be typed into the filter.
+const TERMS: &str = "   sev>=watch source=ae,tether station=C t>00:05 \"two words\" -text";
 /// Rows that the list keeps beside the whole event, with its frame.
 const LIST: u16 = 7;
 
@@ -59,9 +61,9 @@ fn list(look: &Look, frame: &mut Frame, area: Rect) {
         let hint = if look.model.ui.needle.is_empty() {
             "No events."
         } else {
-            "No event matches. / then Esc: clear."
+            "No event matches. <filter>, then Esc: clear."
         };
-        lines.push(look.line([(Role::Dim, format!(" {hint}"))]));
+        lines.push(look.line([(Role::Dim, format!(" {}", look.model.console.keys.spelled(hint)))]));
     }
     let height = usize::from(inner.height).saturating_sub(lines.len());
     let newer = events.newer();
@@ -74,7 +76,7 @@ fn list(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, lines);
 }
 
-/// The filter, what of it was not understood underlined, and why not.
+/// The filter, what of it was not understood underlined, and why not; while it is typed, what can be.
 fn filter_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
     let ui = &look.model.ui;
     let is_typed = matches!(ui.overlay, Overlay::Filter(_));
@@ -87,12 +89,10 @@ fn filter_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
         let span = look.span(if is_bad { Role::Warn } else { Role::Title }, piece);
         if is_bad { span.patch_style(Modifier::UNDERLINED) } else { span }
     }));
-    if is_typed {
-        line.push_span(look.span(Role::Confirm, "_"));
-    }
-    let why = filter.problems.iter().map(|problem| format!("   ^ {}", problem.why));
-    let why = why.map(|why| look.line([(Role::Warn, text::fit(&why, columns))]));
-    std::iter::once(line).chain(why.take(2)).collect()
+    let why = filter.problems.first().map(|problem| (Role::Warn, format!("   ^ {}", problem.why)));
+    let hint = why.or_else(|| is_typed.then(|| (Role::Dim, TERMS.to_owned())));
+    let hint = hint.map(|(role, text)| look.line([(role, text::fit(&text, columns))]));
+    std::iter::once(line).chain(hint).collect()
 }
 
 /// A filter in pieces that were understood and pieces that were not.

@@ -71,7 +71,8 @@ fn no_text_of_an_alarm_is_cut_where_there_is_room_for_its_panes() {
             let guide = tui::guide::guide(&cause);
             let words: Vec<&str> =
                 text.split_whitespace().filter(|word| *word != "││" && *word != "│").collect();
-            for sentence in guide.remedies.iter().map(|remedy| remedy.text) {
+            for sentence in guide.remedies.iter().map(|remedy| screen.model.console.keys.spelled(remedy.text))
+            {
                 let last = sentence.split_whitespace().last().unwrap();
                 assert!(words.contains(&last), "{cause:?}: {sentence}\n{text}");
             }

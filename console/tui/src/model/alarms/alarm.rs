@@ -173,7 +173,7 @@ impl Alarm {
     /// Why it cannot be put aside, if it cannot.
     pub fn cannot_be_shelved(&self) -> Option<&'static str> {
         match self.state {
-            State::Returned => Some("it has cleared; a: acknowledge"),
+            State::Returned => Some("it has cleared; <acknowledge>: acknowledge"),
             State::Cleared => Some("it has cleared"),
             _ if self.severity == Severity::Crit => Some("a CRIT alarm cannot be shelved"),
             _ => None,

@@ -33,8 +33,7 @@ pub struct Problem {
 }
 
 impl Filter {
-    /// Understands as much of a text as it can. Terms are separated by spaces, or by semicolons where the space bar holds
-    /// the robot.
+    /// Understands as much of a text as it can. Terms are separated by spaces.
     pub fn parse(text: &str) -> Self {
         let mut filter = Self::default();
         for word in words(text) {

@@ -35,11 +35,12 @@ pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns
     let guide = guide(cause);
     let about = format!("{} {}", guide.cause, guide.effect);
     let remedies = guide.remedies.iter().enumerate();
-    let chosen = guide.remedies.get(selected).map_or("", |remedy| remedy.text);
+    let spelled = |remedy: &Remedy| look.model.console.keys.spelled(remedy.text);
+    let chosen = guide.remedies.get(selected).map_or_else(String::new, spelled);
     let text = |(index, remedy): (usize, &Remedy)| {
-        vec![(role(look, remedy), text::fit(&format!("{} {}", index + 1, remedy.text), room))]
+        vec![(role(look, remedy), text::fit(&format!("{} {}", index + 1, spelled(remedy)), room))]
     };
-    let mut below: Vec<Parts> = paragraph(Role::Text, chosen, room).collect();
+    let mut below: Vec<Parts> = paragraph(Role::Text, &chosen, room).collect();
     below.extend(paragraph(Role::Dim, &about, room));
     // Every action is worth more than the last words about the alarm.
     let free = usize::from(look.model.ui.height).saturating_sub(FRAME + guide.remedies.len());
@@ -47,7 +48,6 @@ pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns
     List {
         title: name(cause, look.run),
         note: "1-4 run",
-        above: Vec::new(),
         rows: remedies.map(text).collect(),
         selected,
         below,
@@ -57,7 +57,8 @@ pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns
 
 fn rows(look: &Look, index: usize, remedy: &Remedy, columns: usize) -> Vec<Parts> {
     let role = role(look, remedy);
-    let wrapped = text::wrap(remedy.text, columns.saturating_sub(3));
+    let sentence = look.model.console.keys.spelled(remedy.text);
+    let wrapped = text::wrap(&sentence, columns.saturating_sub(3));
     let number = |line: usize| if line == 0 { format!("{} ", index + 1) } else { "  ".into() };
     let row = |(line, words)| vec![(Role::Key, number(line)), (role, words)];
     wrapped.into_iter().enumerate().map(row).collect()

@@ -53,7 +53,7 @@ fn every_kind_of_term_selects_what_it_says_and_what_is_critical_always_passes() 
         ("t>00:05", &[2, 3, 4]),
         ("t>=00:05:38 t<400", &[2, 4]),
         ("t<=56s", &[0, 1, 4]),
-        ("sev>=watch;source=ae;\"residual +\"", &[1, 4]),
+        ("sev>=watch source=ae \"residual +\"", &[1, 4]),
         ("sev>=c", &[4]),
         ("0.25", &[1, 4]),
         ("\"near limit:\" \"unclosed", &[4]),

@@ -16,7 +16,7 @@ pub(super) struct Word {
 pub(super) fn words(text: &str) -> impl Iterator<Item = Word> {
     let mut letters = text.char_indices().peekable();
     std::iter::from_fn(move || {
-        while letters.next_if(|(_, letter)| is_separator(*letter)).is_some() {}
+        while letters.next_if(|(_, letter)| letter.is_whitespace()).is_some() {}
         let (start, _) = letters.peek().copied()?;
         let mut word = Word { at: start..text.len(), text: String::new(), quoted_from: None };
         let mut is_quoted = false;
@@ -26,7 +26,7 @@ pub(super) fn words(text: &str) -> impl Iterator<Item = Word> {
                     is_quoted = !is_quoted;
                     word.quoted_from.get_or_insert(word.text.len());
                 }
-                letter if is_separator(letter) && !is_quoted => {
+                letter if letter.is_whitespace() && !is_quoted => {
                     word.at.end = at;
                     break;
                 }
@@ -35,8 +35,4 @@ pub(super) fn words(text: &str) -> impl Iterator<Item = Word> {
         }
         Some(word)
     })
-}
-
-fn is_separator(letter: char) -> bool {
-    letter.is_whitespace() || letter == ';'
 }
