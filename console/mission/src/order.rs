@@ -58,7 +58,7 @@ pub struct Check {
     pub what: String,
     /// How it came out.
     pub outcome: CheckOutcome,
-    /// What was found, as a sentence; empty for a tick by hand.
+    /// What was found, as a sentence; for a tick by hand by whom, or nothing.
     pub found: String,
 }
 

@@ -45,7 +45,10 @@ fn pre_flight(checks: &[Check]) -> Option<String> {
     let passed = of(CheckOutcome::Passed).count();
     let warnings =
         of(CheckOutcome::Warning).map(|check| format!("; WARNING {}: {}", check.what, check.found));
-    let ticked = of(CheckOutcome::Ticked).map(|check| format!("; by hand: {}", check.what));
+    let ticked = of(CheckOutcome::Ticked).map(|check| {
+        let who = if check.found.is_empty() { String::new() } else { format!(" ({})", check.found) };
+        format!("; by hand: {}{who}", check.what)
+    });
     let rest: String = warnings.chain(ticked).collect();
     (!checks.is_empty()).then(|| format!("{passed} of {} checks passed{rest}", checks.len()))
 }

@@ -34,11 +34,13 @@ impl Model {
     /// The points of the scenario's checklist.
     fn hand_checks(&self) -> Vec<Check> {
         let items = self.live.run.about.iter().flat_map(|about| &about.checklist).enumerate();
+        let by =
+            self.console.preferences.operator.as_ref().map_or_else(String::new, |name| format!("by {name}"));
         items
             .map(|(index, item)| {
                 let is_ticked = self.live.preflight.ticked.get(index).copied().unwrap_or(false);
                 let outcome = if is_ticked { CheckOutcome::Ticked } else { CheckOutcome::Failed };
-                let found = if is_ticked { String::new() } else { "not ticked".to_owned() };
+                let found = if is_ticked { by.clone() } else { "not ticked".to_owned() };
                 Check { what: item.clone(), outcome, found }
             })
             .collect()

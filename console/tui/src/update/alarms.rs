@@ -10,9 +10,6 @@ use crate::model::ui::Shelving;
 use crate::model::{Alarm, Cause, LineEdit, Model, Overlay, Screen};
 use mission::Severity;
 
-/// Longest time for which an alarm can be put aside, minutes of mission time.
-const MAX_SHELVED_MIN: f64 = 60.0;
-
 fn selected_cause(model: &Model) -> Option<Cause> {
     model.selected_alarm().map(|alarm| alarm.cause.clone())
 }
@@ -60,7 +57,9 @@ pub(super) fn shelve(model: &mut Model) -> Vec<Effect> {
 pub(super) fn take_shelving(model: &mut Model, shelving: Shelving) -> Vec<Effect> {
     let cause = shelving.cause.clone();
     let blocked = model.live.run.alarms.get(&cause).and_then(Alarm::cannot_be_shelved);
-    let parsed = blocked.map_or_else(|| parse_shelving(shelving.line.text()), |why| Err(why.to_owned()));
+    let longest = model.console.preferences.shelve_max_min;
+    let parsed =
+        blocked.map_or_else(|| parse_shelving(shelving.line.text(), longest), |why| Err(why.to_owned()));
     match parsed {
         Ok((minutes, reason)) => {
             let until_s = model.live.run.clock.t_s + 60.0 * minutes;
@@ -74,13 +73,13 @@ pub(super) fn take_shelving(model: &mut Model, shelving: Shelving) -> Vec<Effect
     Vec::new()
 }
 
-/// Minutes and a reason: `15 pump noise`.
-fn parse_shelving(text: &str) -> Result<(f64, String), String> {
+/// Minutes of mission time and a reason: `15 pump noise`.
+fn parse_shelving(text: &str, longest_min: u32) -> Result<(f64, String), String> {
     let text = text.trim();
     let end = text.find(|letter: char| !letter.is_ascii_digit() && letter != '.').unwrap_or(text.len());
     let minutes: f64 = text[..end].parse().map_err(|_| "minutes first, such as: 15 pump noise".to_owned())?;
-    if !(minutes > 0.0 && minutes <= MAX_SHELVED_MIN) {
-        return Err(format!("1 to {MAX_SHELVED_MIN} minutes"));
+    if !(minutes > 0.0 && minutes <= f64::from(longest_min)) {
+        return Err(format!("1 to {longest_min} minutes"));
     }
     let reason = text[end..].trim_start_matches(|letter: char| !letter.is_alphanumeric()).trim();
     let unit = ["min ", "m "].iter().find_map(|unit| reason.strip_prefix(unit));
@@ -131,15 +130,15 @@ mod tests {
     #[test]
     fn minutes_and_a_reason_are_taken_however_they_are_separated() {
         for text in ["15 pump noise", " 15m pump noise", "15 min pump noise ", "15,pump noise"] {
-            assert_eq!(parse_shelving(text), Ok((15.0, "pump noise".to_owned())), "{text}");
+            assert_eq!(parse_shelving(text, 60), Ok((15.0, "pump noise".to_owned())), "{text}");
         }
         for (text, why) in
             [("", "minutes first"), ("pump", "minutes first"), ("61 x", "1 to 60"), ("0 x", "1 to 60")]
         {
-            assert!(parse_shelving(text).is_err_and(|error| error.contains(why)), "{text}");
+            assert!(parse_shelving(text, 60).is_err_and(|error| error.contains(why)), "{text}");
         }
         for text in ["15", "15 ", "15 ;"] {
-            assert!(parse_shelving(text).is_err_and(|error| error.contains("a reason")), "{text}");
+            assert!(parse_shelving(text, 60).is_err_and(|error| error.contains("a reason")), "{text}");
         }
     }
 }

@@ -497,7 +497,7 @@ impl Screen {
         }));
         let refused = Refused {
             plugin: "my_plugin.so".into(),
-            reason: "built for planner ABI 3, this console speaks 1; rebuild it".into(),
+            reason: "built for planner ABI 3, this console uses 1: rebuild it".into(),
         };
         screen.send(Msg::Planners { found: planners(), refused: vec![refused] });
         let events = screen.mission.opening();

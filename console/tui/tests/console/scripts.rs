@@ -92,17 +92,18 @@ fn what_fails_before_the_start_blocks_it_and_is_checked_again_at_the_moment_of_s
 fn the_start_waits_for_every_tick_by_hand_and_the_ticks_are_written_down() {
     let mut screen = Screen::idle();
     screen.model.live.run.about.as_mut().unwrap().checklist = vec!["manway clear".into(), "permit".into()];
+    screen.model.console.preferences.operator = Some("lk".into());
     assert_eq!(screen.start(), []);
     assert_eq!(notice(&screen), "start blocked: manway clear: not ticked");
     screen.press([Key::End, SPACE, Key::Up, SPACE, SPACE, SPACE, Key::Esc]);
     let effects = screen.start();
     let Some(Effect::Order(Order::NoteChecks(checks))) = effects.first() else { panic!("{effects:?}") };
-    let ticked: Vec<&str> = checks
+    let ticked: Vec<(&str, &str)> = checks
         .iter()
         .filter(|check| check.outcome == CheckOutcome::Ticked)
-        .map(|check| check.what.as_str())
+        .map(|check| (check.what.as_str(), check.found.as_str()))
         .collect();
-    assert_eq!(ticked, ["manway clear", "permit"]);
+    assert_eq!(ticked, [("manway clear", "by lk"), ("permit", "by lk")]);
 }
 
 #[test]
