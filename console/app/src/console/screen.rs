@@ -21,6 +21,14 @@ const BURST: usize = 256;
 const BURST_TIME: Duration = Duration::from_millis(5);
 /// Shortest time between two frames that only show new values of a robot that stands still.
 const CALM_FRAME: Duration = Duration::from_secs(1);
+/// Bytes a second that new values take at most, however fast the mission goes, and while the robot stands still; answers to
+/// keys are not held back.
+const LINE_RATE: f64 = 15_000.0;
+const CALM_RATE: f64 = 250.0;
+/// Longest time between two frames of a robot that stands still.
+const LONGEST_CALM: Duration = Duration::from_secs(4);
+/// New values wait for the line no longer than this, even after every cell was redrawn.
+const LONGEST_DEBT: Duration = Duration::from_millis(250);
 /// Shortest time between two frames that answer keys.
 const KEY_FRAME: Duration = Duration::from_millis(8);
 
@@ -31,6 +39,10 @@ pub(super) struct Screen {
     caps: Caps,
     drawn: Instant,
     frame_interval: Duration,
+    /// Shortest time between the last frame and one that only shows new values of a robot that stands still.
+    calm_pause: Duration,
+    /// For how long after the last frame a line of [`LINE_RATE`] is busy with it and those before it.
+    line_busy: Duration,
     /// How soon there is to be a frame.
     due: Redraw,
     cache: Cache,
@@ -67,6 +79,8 @@ impl Screen {
             drawn: Instant::now(),
             // A slow line gets fewer frames.
             frame_interval: Duration::from_millis(if caps.ssh { 100 } else { 33 }),
+            calm_pause: CALM_FRAME,
+            line_busy: Duration::ZERO,
             due: Redraw::Soon,
             cache: Cache::default(),
             places,
@@ -97,9 +111,9 @@ impl Screen {
     fn pause(&self) -> Option<Duration> {
         match self.due {
             Redraw::No => None,
-            Redraw::Calm => Some(CALM_FRAME),
+            Redraw::Calm => Some(self.calm_pause),
             Redraw::Soon if self.answer_seen => Some(KEY_FRAME),
-            Redraw::Soon => Some(self.frame_interval),
+            Redraw::Soon => Some(self.frame_interval.max(self.line_busy)),
         }
     }
 
@@ -173,15 +187,26 @@ impl Screen {
         let failing = self.drill == Some(Drill::PanicScreen) && self.session.model.live.run.clock.tick > 5;
         assert!(!failing, "drill: the screen fails on purpose");
         let (model, caps, cache) = (&self.session.model, &self.caps, &mut self.cache);
-        self.terminal.draw(|frame| tui::view_cached(model, caps, cache, frame)).context("drawing")?;
+        let bytes =
+            self.terminal.draw(|frame| tui::view_cached(model, caps, cache, frame)).context("drawing")?;
+        // A frame that the line had no room for was not skipped.
+        let interval = self.frame_interval.max(self.line_busy);
+        self.calm_pause = taken(bytes, CALM_RATE).clamp(CALM_FRAME, LONGEST_CALM);
+        let left = self.line_busy.saturating_sub(self.drawn.elapsed());
+        self.line_busy = (left + taken(bytes, LINE_RATE)).min(LONGEST_DEBT);
         if model.ui.mouse {
             self.places.set(self.cache.places());
         }
         let now = Instant::now();
-        self.measure.drew(now, now - self.drawn, self.frame_interval);
+        self.measure.drew(now, now - self.drawn, interval);
         (self.drawn, self.due, self.answer_seen) = (now, Redraw::No, false);
         Ok(())
     }
+}
+
+/// How long some bytes take on a line of a rate in bytes a second.
+fn taken(bytes: usize, rate: f64) -> Duration {
+    Duration::from_secs_f64(bytes as f64 / rate)
 }
 
 /// Whether an operator waits to see this: a key, or that the robot was stopped.

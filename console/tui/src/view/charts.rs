@@ -3,7 +3,7 @@
 use super::look::Look;
 use super::map::{Stroke, Window};
 use super::text;
-use crate::model::history::HISTORY_S;
+use crate::model::history::{HISTORY_S, SLOT_S};
 use crate::model::{History, Pane, ui::Chart};
 use crate::theme::Role;
 use ratatui::Frame;
@@ -82,9 +82,10 @@ fn plot(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>) {
         column_m: 1.0,
         size: (plot.width, plot.height),
     };
-    let begin = -(values.len() as f64);
+    // Times before now, from slot to slot.
+    let ago_s = |index: usize| (index as f64 + 1.0 - values.len() as f64) * SLOT_S as f64;
     let points: Vec<Point> =
-        values.iter().zip(0..).map(|(value, second)| Point::new(begin + f64::from(second), *value)).collect();
+        values.iter().enumerate().map(|(index, value)| Point::new(ago_s(index), *value)).collect();
     let marker = if look.caps.glyphs.has_dots() { Marker::Braille } else { Marker::Custom('*') };
     let canvas = Canvas::default().marker(marker).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
         let mut stroke = |points: &[Point], role, dotted| {
