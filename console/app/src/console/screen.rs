@@ -24,7 +24,7 @@ const CALM_FRAME: Duration = Duration::from_secs(1);
 /// Bytes a second that new values take at most, however fast the mission goes, and while the robot stands still; answers to
 /// keys are not held back.
 const LINE_RATE: f64 = 15_000.0;
-const CALM_RATE: f64 = 250.0;
+const CALM_RATE: f64 = 200.0;
 /// Longest time between two frames of a robot that stands still.
 const LONGEST_CALM: Duration = Duration::from_secs(4);
 /// New values wait for the line no longer than this, even after every cell was redrawn.
@@ -128,7 +128,7 @@ impl Screen {
         }
         let began = Instant::now();
         if let Some(measured) = self.measure.report(began) {
-            for effect in self.session.take(Msg::Measured(measured)) {
+            for effect in self.take(Msg::Measured(measured)) {
                 self.carry_out(&effect)?;
             }
         }
@@ -142,7 +142,7 @@ impl Screen {
             if due == Redraw::Soon {
                 self.measure.arrived(&msg, began);
             }
-            for effect in self.session.take(msg) {
+            for effect in self.take(msg) {
                 if let Some(left) = self.carry_out(&effect)? {
                     return Ok(Some(left));
                 }
@@ -151,6 +151,17 @@ impl Screen {
             next = if now < until { self.session.next(Some(now)) } else { None };
         }
         Ok(None)
+    }
+
+    /// Takes in a message. What was measured of the console is seen only if it raises or clears an alarm.
+    fn take(&mut self, msg: Msg) -> Vec<Effect> {
+        let alarms = |screen: &Self| screen.session.model.live.run.alarms.clone();
+        let before = matches!(msg, Msg::Measured(_)).then(|| alarms(self));
+        let effects = self.session.take(msg);
+        if before.is_some_and(|before| before != alarms(self)) {
+            self.due = Redraw::Soon;
+        }
+        effects
     }
 
     /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.

@@ -30,6 +30,11 @@ impl History {
         }
     }
 
+    /// Mission time at which the newest slot begins, seconds.
+    pub fn newest_s(&self) -> f64 {
+        self.slot as f64 * SLOT_S as f64
+    }
+
     /// The values of the last seconds, newest last.
     pub fn last(&self, seconds: usize) -> impl ExactSizeIterator<Item = f64> + '_ {
         let skipped = self.values.len().saturating_sub(seconds / SLOT_S);
