@@ -183,7 +183,7 @@ pub(crate) struct ConsoleArgs {
 /// Characters that the terminal's font has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum GlyphSet {
-    /// Octants of Unicode 16: dots without gaps.
+    /// Octants of Unicode 16, dots without gaps: terminal and font must have them
     Octant,
     /// Braille dots.
     Braille,

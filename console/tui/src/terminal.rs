@@ -17,6 +17,8 @@ use output::FrameOutput;
 use ratatui::backend::CrosstermBackend;
 use ratatui::{Frame, Terminal};
 use std::io::{self, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Reports of buttons and wheel, of movement with a button down, in a form without bounds.
 const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
@@ -29,6 +31,7 @@ const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
 pub struct TerminalGuard {
     terminal: Terminal<CrosstermBackend<FrameOutput>>,
     has_mouse: bool,
+    sent: Arc<AtomicUsize>,
 }
 
 impl TerminalGuard {
@@ -38,12 +41,13 @@ impl TerminalGuard {
     /// If there is no terminal or it cannot be written to; the terminal is restored before the error is returned.
     pub fn enter() -> io::Result<Self> {
         restore::own();
+        let sent = Arc::default();
         let open = || {
             take_over()?;
-            Terminal::new(CrosstermBackend::new(FrameOutput::default()))
+            Terminal::new(CrosstermBackend::new(FrameOutput::counted(Arc::clone(&sent))))
         };
         match open() {
-            Ok(terminal) => Ok(Self { terminal, has_mouse: false }),
+            Ok(terminal) => Ok(Self { terminal, has_mouse: false, sent }),
             Err(error) => {
                 restore();
                 Err(error)
@@ -51,12 +55,13 @@ impl TerminalGuard {
         }
     }
 
-    /// Draws a frame: what changed since the last one leaves in one write, as one synchronized update.
+    /// Draws a frame: what changed since the last one leaves in one write, as one synchronized update. Gives its bytes.
     ///
     /// # Errors
     /// If the terminal cannot be written.
-    pub fn draw(&mut self, view: impl FnOnce(&mut Frame)) -> io::Result<()> {
-        self.terminal.draw(view).map(drop)
+    pub fn draw(&mut self, view: impl FnOnce(&mut Frame)) -> io::Result<usize> {
+        self.terminal.draw(view)?;
+        Ok(self.sent.swap(0, Ordering::Relaxed))
     }
 
     /// Makes the next frame draw every cell. The terminal is not asked anything.

@@ -21,6 +21,14 @@ const BURST: usize = 256;
 const BURST_TIME: Duration = Duration::from_millis(5);
 /// Shortest time between two frames that only show new values of a robot that stands still.
 const CALM_FRAME: Duration = Duration::from_secs(1);
+/// Bytes a second that new values take at most, however fast the mission goes, and while the robot stands still; answers to
+/// keys are not held back.
+const LINE_RATE: f64 = 15_000.0;
+const CALM_RATE: f64 = 200.0;
+/// Longest time between two frames of a robot that stands still.
+const LONGEST_CALM: Duration = Duration::from_secs(4);
+/// New values wait for the line no longer than this, even after every cell was redrawn.
+const LONGEST_DEBT: Duration = Duration::from_millis(250);
 /// Shortest time between two frames that answer keys.
 const KEY_FRAME: Duration = Duration::from_millis(8);
 
@@ -31,6 +39,10 @@ pub(super) struct Screen {
     caps: Caps,
     drawn: Instant,
     frame_interval: Duration,
+    /// Shortest time between the last frame and one that only shows new values of a robot that stands still.
+    calm_pause: Duration,
+    /// For how long after the last frame a line of [`LINE_RATE`] is busy with it and those before it.
+    line_busy: Duration,
     /// How soon there is to be a frame.
     due: Redraw,
     cache: Cache,
@@ -67,6 +79,8 @@ impl Screen {
             drawn: Instant::now(),
             // A slow line gets fewer frames.
             frame_interval: Duration::from_millis(if caps.ssh { 100 } else { 33 }),
+            calm_pause: CALM_FRAME,
+            line_busy: Duration::ZERO,
             due: Redraw::Soon,
             cache: Cache::default(),
             places,
@@ -97,9 +111,9 @@ impl Screen {
     fn pause(&self) -> Option<Duration> {
         match self.due {
             Redraw::No => None,
-            Redraw::Calm => Some(CALM_FRAME),
+            Redraw::Calm => Some(self.calm_pause),
             Redraw::Soon if self.answer_seen => Some(KEY_FRAME),
-            Redraw::Soon => Some(self.frame_interval),
+            Redraw::Soon => Some(self.frame_interval.max(self.line_busy)),
         }
     }
 
@@ -114,7 +128,7 @@ impl Screen {
         }
         let began = Instant::now();
         if let Some(measured) = self.measure.report(began) {
-            for effect in self.session.take(Msg::Measured(measured)) {
+            for effect in self.take(Msg::Measured(measured)) {
                 self.carry_out(&effect)?;
             }
         }
@@ -128,7 +142,7 @@ impl Screen {
             if due == Redraw::Soon {
                 self.measure.arrived(&msg, began);
             }
-            for effect in self.session.take(msg) {
+            for effect in self.take(msg) {
                 if let Some(left) = self.carry_out(&effect)? {
                     return Ok(Some(left));
                 }
@@ -137,6 +151,17 @@ impl Screen {
             next = if now < until { self.session.next(Some(now)) } else { None };
         }
         Ok(None)
+    }
+
+    /// Takes in a message. What was measured of the console is seen only if it raises or clears an alarm.
+    fn take(&mut self, msg: Msg) -> Vec<Effect> {
+        let alarms = |screen: &Self| screen.session.model.live.run.alarms.clone();
+        let before = matches!(msg, Msg::Measured(_)).then(|| alarms(self));
+        let effects = self.session.take(msg);
+        if before.is_some_and(|before| before != alarms(self)) {
+            self.due = Redraw::Soon;
+        }
+        effects
     }
 
     /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.
@@ -173,15 +198,26 @@ impl Screen {
         let failing = self.drill == Some(Drill::PanicScreen) && self.session.model.live.run.clock.tick > 5;
         assert!(!failing, "drill: the screen fails on purpose");
         let (model, caps, cache) = (&self.session.model, &self.caps, &mut self.cache);
-        self.terminal.draw(|frame| tui::view_cached(model, caps, cache, frame)).context("drawing")?;
+        let bytes =
+            self.terminal.draw(|frame| tui::view_cached(model, caps, cache, frame)).context("drawing")?;
+        // A frame that the line had no room for was not skipped.
+        let interval = self.frame_interval.max(self.line_busy);
+        self.calm_pause = taken(bytes, CALM_RATE).clamp(CALM_FRAME, LONGEST_CALM);
+        let left = self.line_busy.saturating_sub(self.drawn.elapsed());
+        self.line_busy = (left + taken(bytes, LINE_RATE)).min(LONGEST_DEBT);
         if model.ui.mouse {
             self.places.set(self.cache.places());
         }
         let now = Instant::now();
-        self.measure.drew(now, now - self.drawn, self.frame_interval);
+        self.measure.drew(now, now - self.drawn, interval);
         (self.drawn, self.due, self.answer_seen) = (now, Redraw::No, false);
         Ok(())
     }
+}
+
+/// How long some bytes take on a line of a rate in bytes a second.
+fn taken(bytes: usize, rate: f64) -> Duration {
+    Duration::from_secs_f64(bytes as f64 / rate)
 }
 
 /// Whether an operator waits to see this: a key, or that the robot was stopped.

@@ -5,32 +5,40 @@ use std::collections::VecDeque;
 
 /// Seconds of mission time that a history covers.
 pub const HISTORY_S: usize = 480;
+/// Seconds of mission time of which the largest value is kept: a curve moves no more often.
+pub const SLOT_S: usize = 4;
 
-/// The largest value of each second of mission time, newest last, of the last [`HISTORY_S`] seconds.
+/// The largest value of every [`SLOT_S`] seconds of mission time, newest last, of the last [`HISTORY_S`] seconds.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct History {
     values: VecDeque<f32>,
-    second: u64,
+    slot: u64,
 }
 
 impl History {
     /// Takes in a value.
     pub fn add(&mut self, t_s: f64, value: f64) {
-        let second = t_s.max(0.0) as u64;
+        let slot = t_s.max(0.0) as u64 / SLOT_S as u64;
         let value = value as f32;
         match self.values.back_mut() {
-            Some(last) if second == self.second => *last = last.max(value),
+            Some(last) if slot == self.slot => *last = last.max(value),
             _ => self.values.push_back(value),
         }
-        self.second = second;
-        if self.values.len() > HISTORY_S {
+        self.slot = slot;
+        if self.values.len() > HISTORY_S / SLOT_S {
             self.values.pop_front();
         }
     }
 
+    /// Mission time at which the newest slot begins, seconds.
+    pub fn newest_s(&self) -> f64 {
+        self.slot as f64 * SLOT_S as f64
+    }
+
     /// The values of the last seconds, newest last.
     pub fn last(&self, seconds: usize) -> impl ExactSizeIterator<Item = f64> + '_ {
-        self.values.iter().skip(self.values.len().saturating_sub(seconds)).map(|value| f64::from(*value))
+        let skipped = self.values.len().saturating_sub(seconds / SLOT_S);
+        self.values.iter().skip(skipped).map(|value| f64::from(*value))
     }
 }
 
@@ -39,12 +47,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_worst_of_each_second_is_kept_for_eight_minutes() {
+    fn the_worst_of_each_slot_is_kept_for_eight_minutes() {
         let mut history = History::default();
         for tick in 0..10_000 {
             history.add(f64::from(tick) * 0.1, if tick % 10 == 3 { 1.0 } else { 0.1 });
         }
-        assert_eq!((history.last(HISTORY_S).len(), history.last(120).len()), (HISTORY_S, 120));
+        assert_eq!((history.last(HISTORY_S).len(), history.last(120).len()), (120, 30));
         assert!(history.last(HISTORY_S).all(|value| value > 0.9));
     }
 }

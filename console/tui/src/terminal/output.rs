@@ -2,6 +2,8 @@
 
 use super::restore::is_taken;
 use std::io::{self, Stdout, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Begins a synchronized update: the terminal shows nothing until the frame is complete.
 const BEGIN: &[u8] = b"\x1b[?2026h";
@@ -16,11 +18,14 @@ pub(super) struct FrameOutput<W: Write = Stdout> {
     bytes: Vec<u8>,
     to: W,
     is_ours: fn() -> bool,
+    /// Bytes sent so far, until somebody takes the count.
+    sent: Arc<AtomicUsize>,
 }
 
-impl Default for FrameOutput {
-    fn default() -> Self {
-        Self { bytes: BEGIN.to_vec(), to: io::stdout(), is_ours: is_taken }
+impl FrameOutput {
+    /// Counts what is sent.
+    pub(super) fn counted(sent: Arc<AtomicUsize>) -> Self {
+        Self { bytes: BEGIN.to_vec(), to: io::stdout(), is_ours: is_taken, sent }
     }
 }
 
@@ -37,6 +42,7 @@ impl<W: Write> Write for FrameOutput<W> {
         }
         if self.bytes.len() > BEGIN.len() {
             self.bytes.extend_from_slice(END);
+            self.sent.fetch_add(self.bytes.len(), Ordering::Relaxed);
             let sent = self.to.write_all(&self.bytes);
             self.bytes.truncate(BEGIN.len());
             sent?;
@@ -50,7 +56,7 @@ mod tests {
     use super::*;
 
     fn output() -> FrameOutput<Vec<u8>> {
-        FrameOutput { bytes: BEGIN.to_vec(), to: Vec::new(), is_ours: || true }
+        FrameOutput { bytes: BEGIN.to_vec(), to: Vec::new(), is_ours: || true, sent: Arc::default() }
     }
 
     #[test]
@@ -60,6 +66,7 @@ mod tests {
         assert!(output.to.is_empty());
         output.flush().expect("memory");
         assert_eq!(output.to, [BEGIN, b"half a frame", END].concat());
+        assert_eq!(output.sent.load(Ordering::Relaxed), output.to.len());
     }
 
     #[test]

@@ -18,7 +18,8 @@ pub enum Redraw {
 /// How soon a message is worth a frame, before it is taken in.
 pub fn redraw(model: &Model, msg: &Msg) -> Redraw {
     match msg {
-        Msg::Time(_) => Redraw::No,
+        // What is measured of the console shows only in its alarms.
+        Msg::Time(_) | Msg::Measured(_) => Redraw::No,
         Msg::Found(found) if model.home.found.as_ref() == Some(found) => Redraw::No,
         Msg::Run(id, _) if *id != model.live.id => Redraw::No,
         Msg::Run(_, RunMsg::Health(health)) if is_same(&model.live.health, health) => Redraw::No,

@@ -3,7 +3,7 @@
 use super::look::Look;
 use super::map::{Stroke, Window};
 use super::text;
-use crate::model::history::HISTORY_S;
+use crate::model::history::{HISTORY_S, SLOT_S};
 use crate::model::{History, Pane, ui::Chart};
 use crate::theme::Role;
 use ratatui::Frame;
@@ -15,6 +15,8 @@ use world::Point;
 
 /// Columns of the labels beside a curve.
 const LABELS: u16 = 6;
+/// Seconds of mission time after which a curve moves to the left.
+const PAGE_S: f64 = 60.0;
 /// Room above the limit or the largest value.
 const HEADROOM: f64 = 1.15;
 
@@ -76,22 +78,21 @@ fn plot(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>) {
     let top = HEADROOM * largest.max(limit.unwrap_or(0.0));
     let top = if top > 0.0 && top.is_finite() { top } else { 1.0 };
     let plot = Rect { x: area.x + LABELS, width: area.width - LABELS, ..area };
-    let window = Window {
-        x: [-(HISTORY_S as f64), 0.0],
-        y: [0.0, top],
-        column_m: 1.0,
-        size: (plot.width, plot.height),
-    };
-    let begin = -(values.len() as f64);
+    // The curve grows to the right, and moves to the left once a minute: a frame costs little in between.
+    let newest_s = series.values.newest_s();
+    let end_s = ((newest_s / PAGE_S).floor() + 1.0) * PAGE_S;
+    let x = [end_s - HISTORY_S as f64, end_s];
+    let window = Window { x, y: [0.0, top], column_m: 1.0, size: (plot.width, plot.height) };
+    let at_s = |index: usize| newest_s - ((values.len() - 1 - index) * SLOT_S) as f64;
     let points: Vec<Point> =
-        values.iter().zip(0..).map(|(value, second)| Point::new(begin + f64::from(second), *value)).collect();
+        values.iter().enumerate().map(|(index, value)| Point::new(at_s(index), *value)).collect();
     let marker = if look.caps.glyphs.has_dots() { Marker::Braille } else { Marker::Custom('*') };
     let canvas = Canvas::default().marker(marker).x_bounds(window.x).y_bounds(window.y).paint(|ctx| {
         let mut stroke = |points: &[Point], role, dotted| {
             ctx.draw(&Stroke { points, window, dotted, color: look.theme.color(role) });
         };
         if let Some(limit) = limit {
-            stroke(&[Point::new(window.x[0], limit), Point::new(0.0, limit)], Role::Warn, true);
+            stroke(&[Point::new(window.x[0], limit), Point::new(window.x[1], limit)], Role::Warn, true);
         }
         stroke(&points, Role::Watch, false);
     });

@@ -2,7 +2,7 @@
 
 use super::look::{Look, Parts, fill, marked, ranked};
 use super::text;
-use crate::model::{Pane, Run};
+use crate::model::{Pane, Run, history::SLOT_S};
 use crate::theme::Role;
 use positioning::{Exclusion, Integrity};
 use ratatui::Frame;
@@ -109,7 +109,8 @@ fn curve(look: &Look, columns: usize) -> Line<'static> {
     let limit_m = limit_m(look.run);
     let note = format!(" 2 min, 0-{} m", text::number(limit_m, 2));
     let room = columns.saturating_sub(text::width(&note) + 2);
-    let curve = text::sparkline(look.run.position.history_m.last(CURVE_S), limit_m, room, CURVE_S);
+    let (history_m, slots) = (&look.run.position.history_m, CURVE_S / SLOT_S);
+    let curve = text::sparkline(history_m.last(CURVE_S), limit_m, room.min(slots), slots);
     look.line([(Role::Text, " ".into()), (Role::Watch, curve), (Role::Dim, note)])
 }
 

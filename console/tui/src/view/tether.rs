@@ -13,9 +13,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let block = look.pane(Pane::Tether, "Tether", note(look));
     let Some(tether) = &look.run.tether else { return };
     let inner = block.inner(area);
-    let wide = usize::from(inner.width) >= WIDE;
-    let lines =
-        if wide { wide_lines(look, tether, usize::from(inner.width)) } else { narrow_lines(look, tether) };
+    let columns = usize::from(inner.width);
+    let write = if columns >= WIDE { wide_lines } else { narrow_lines };
+    let lines = write(look, tether, columns);
     let lines = lines.into_iter().map(|(rank, parts)| (rank, look.line(parts))).collect();
     fill(frame, area, block, ranked(lines, usize::from(inner.height)));
 }
@@ -44,7 +44,7 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
     let still_out = format!("{} m still out", metres(tether.length_m));
     let mut lines = vec![
         row(1, "paid out", (out_role(look, tether), out)),
-        row(2, "wrap", (wrap_role(look, tether), worst(look, tether))),
+        row(2, "wrap", (wrap_role(look, tether), worst(look, tether, room))),
         row(3, "total wrap", (Role::Text, total(tether))),
         row(4, "contacts", (Role::Text, contacts(tether))),
         row(0, "return path", home(tether)),
@@ -55,7 +55,7 @@ fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> 
     lines
 }
 
-fn narrow_lines(look: &Look, tether: &Tether) -> Vec<(u8, Parts)> {
+fn narrow_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> {
     let is_stale = look.is_stale(tether.t_s);
     let row = |rank: u8, label: &str, value: (Role, String)| {
         (rank, vec![(Role::Text, format!(" {label}")), marked(is_stale, value)])
@@ -63,7 +63,7 @@ fn narrow_lines(look: &Look, tether: &Tether) -> Vec<(u8, Parts)> {
     let out = format!("{} m out, {} m left", metres(tether.length_m), metres(tether.free_m));
     vec![
         row(1, "", (out_role(look, tether), out)),
-        row(2, "wrap ", (wrap_role(look, tether), worst(look, tether))),
+        row(2, "wrap ", (wrap_role(look, tether), worst(look, tether, columns.saturating_sub(7)))),
         row(3, "total ", (Role::Text, total(tether))),
         row(0, "return path ", home(tether)),
     ]
@@ -99,14 +99,15 @@ fn beside_limit(value: f64, limit: Option<f64>) -> Role {
 }
 
 /// The largest wrap and where it is.
-fn worst(look: &Look, tether: &Tether) -> String {
+fn worst(look: &Look, tether: &Tether, room: usize) -> String {
     if tether.is_snagged {
         return "UNKNOWN (snagged)".into();
     }
     let Some(most) = tether.largest() else { return "none, tether straight".into() };
     let limit = limits(look).map_or_else(|| "-".into(), |limits| degrees(limits.wrap_max_rad));
     let sign = if most.wrap_rad > 0.0 { "+" } else { "" };
-    format!("{sign}{}° on {}, max {limit}°", degrees(most.wrap_rad), most.on)
+    let wrap = format!("{sign}{}° on {}", degrees(most.wrap_rad), most.on);
+    text::wording([format!("{wrap}, max {limit}°"), wrap], room)
 }
 
 fn total(tether: &Tether) -> String {

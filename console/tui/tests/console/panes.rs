@@ -170,6 +170,32 @@ fn a_mission_of_which_nothing_is_heard_has_every_value_marked() {
 }
 
 #[test]
+fn missed_areas_are_listed_on_a_large_screen_when_the_run_is_closed() {
+    let mut screen = Screen::running();
+    let area = serde_json::json!({
+        "at": [1.0, 2.0], "low": [0.5, 1.5], "high": [1.5, 2.5], "area_m2": 0.75, "plate": "R-03-05", "reason": "not_reached"
+    });
+    let shares = serde_json::json!({ "area_m2": 1.0, "scanned": 1.0, "missed": 0.0, "unreachable": 0.0, "margin": 0.0 });
+    let slivers = serde_json::json!({ "count": 0, "area_m2": 0.0 });
+    let floor = serde_json::json!({
+        "cell_m": 0.1, "swath_m": 0.6, "position_limit_m": 0.15, "whole": shares, "reachable": shares,
+        "critical_zone": { "width_m": 0.075, "scanned": null, "done": true, "why": null },
+        "plates": [], "missed": [area], "slivers": slivers, "unreachable": [],
+    });
+    let summary =
+        report::Summary { floor: Some(serde_json::from_value(floor).unwrap()), ..Default::default() };
+    let ended = screen.mission.ended(Outcome::Complete, "task complete");
+    screen.hear(RunMsg::Events(vec![ended]));
+    let result =
+        tui::RunResult { summary: Box::new(summary), name: None, kept: String::new(), is_kept: false };
+    screen.hear(RunMsg::Closed(Box::new(result)));
+    screen.type_text("3");
+    screen.send(Msg::Resize { width: 200, height: 60 });
+    let text = text(&drawn(&screen.model, RICH, (200, 60)));
+    assert!(text.contains("Missed areas  1") && text.contains("0.75 m² at 1.0, 2.0 m"), "{text}");
+}
+
+#[test]
 fn the_end_is_given_in_mission_time() {
     let mut screen = Screen::running();
     for (width, height) in SIZES {
