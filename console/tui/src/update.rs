@@ -45,6 +45,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Key(press) => effects = press_key(model, press),
         Msg::Signal(signal) => effects = obey_signal(model, signal),
         Msg::ThreadPanicked { thread, message } => {
+            overlay::withdraw_motion(model);
             effects = hold_now(model);
             let text = format!("console thread {thread} failed: {message}");
             news(model, &Cause::Console, Severity::Crit, text);
@@ -87,8 +88,7 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
         return Vec::new();
     }
     let Some(action) = find::action_for(&model.console.keys, press.key, &contexts(model)) else {
-        unknown(model, press.key);
-        return Vec::new();
+        return unknown(model, press.key);
     };
     match action.id {
         // A key that is held down stops the robot, too, and does nothing else.
@@ -100,18 +100,23 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
 
 /// Reports a key that has no action here. It cancels a question: who types something else than an answer has not read it, and
 /// a later Enter must not agree to it.
-fn unknown(model: &mut Model, key: Key) {
+fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
     match model.ui.overlay {
         Overlay::None => {
             let help = model.console.keys.spelled("(<help>: show keys)");
             model.say(Severity::Info, format!("key {key} is not assigned {help}"));
         }
         Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping => {
+            let was_stepping = model.ui.overlay == Overlay::Stepping;
             model.ui.overlay = Overlay::None;
             model.say(Severity::Info, format!("cancelled: key {key} is not an answer"));
+            if was_stepping {
+                return act::end_steps(model);
+            }
         }
         _ => {}
     }
+    Vec::new()
 }
 
 fn resize(model: &mut Model, width: u16, height: u16) {

@@ -102,7 +102,12 @@ impl Disk {
         }
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
         let source = Source::File(file.display().to_string());
-        let scenario = scenarios::read(file, &Changes::default()).map_err(|error| error.to_string());
+        // A pipe would be waited for without end.
+        let scenario = if file.is_file() {
+            scenarios::read(file, &Changes::default()).map_err(|error| error.to_string())
+        } else {
+            Err(format!("{}: not a file", file.display()))
+        };
         let entry = entry_of(source, &name, scenario, self);
         read.insert(file.to_owned(), (changed, entry.clone()));
         entry

@@ -115,6 +115,13 @@ impl Run {
         self.about.as_ref().is_some_and(|about| matches!(about.mission.task, TaskConfig::Cover { .. }))
     }
 
+    /// Whether floor that is not scanned is floor that was missed.
+    pub fn has_missed(&self) -> bool {
+        let scans =
+            self.about.as_ref().is_some_and(|about| !matches!(about.mission.task, TaskConfig::Goto { .. }));
+        scans && self.has_ended()
+    }
+
     /// Why a planner cannot fly this mission, if it cannot.
     pub fn cannot_fly(&self, planner: &PlannerInfo) -> Option<&'static str> {
         if self.covers() { planner.why_no_coverage() } else { None }

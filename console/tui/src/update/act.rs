@@ -22,11 +22,17 @@ const PAGE: isize = 10;
 
 /// Carries out an action, or shows the operator why it is not available.
 pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
+    // Who stops the robot has not agreed to move it: a later Enter must not do so.
+    let stops = matches!(id, ActionId::Hold | ActionId::Interrupt | ActionId::Suspend);
+    if stops && overlay::withdraw_motion(model) && id == ActionId::Hold && !model.live.may_move() {
+        return Vec::new();
+    }
     if let Err(why) = offered(model, id) {
         return refuse(model, why);
     }
     match id {
         ActionId::Hold => hold(model),
+        ActionId::Cancel if model.ui.overlay == Overlay::Stepping => end_steps(model),
         ActionId::Interrupt => interrupt(model),
         ActionId::Redraw => vec![Effect::Redraw],
         ActionId::Suspend => [hold_now(model), vec![Effect::Suspend]].concat(),
@@ -160,6 +166,23 @@ fn leave(model: &mut Model) -> Vec<Effect> {
     effects
 }
 
+/// HOLD for who cannot see whether the robot moves: it never asks to resume.
+pub(super) fn hold_only(model: &mut Model) -> Vec<Effect> {
+    let withdrawn = overlay::withdraw_motion(model);
+    match offered(model, ActionId::Hold) {
+        _ if model.live.may_move() => hold_now(model),
+        _ if withdrawn => Vec::new(),
+        Ok(()) => refuse(model, "already held".into()),
+        Err(why) => refuse(model, why),
+    }
+}
+
+/// Closes the line for steps; a step that is under way ends.
+pub(super) fn end_steps(model: &mut Model) -> Vec<Effect> {
+    model.ui.overlay = Overlay::None;
+    if model.live.may_move() { hold_now(model) } else { Vec::new() }
+}
+
 /// The first step opens the line for steps; in it each key is a step.
 fn step(model: &mut Model, order: Order) -> Vec<Effect> {
     if model.ui.overlay != Overlay::Stepping {
@@ -196,8 +219,7 @@ fn toggle_mouse(model: &mut Model) -> Vec<Effect> {
 /// Runs an action of the alarm whose actions are open.
 fn run_remedy(model: &mut Model, number: u8) -> Vec<Effect> {
     match alarms::chosen_remedy(model, number.into()) {
-        // A robot that is held stays so: the action never asks to resume.
-        Ok(ActionId::Hold) if !model.live.may_move() => refuse(model, "already held".into()),
+        Ok(ActionId::Hold) => hold_only(model),
         Ok(action) => act(model, action),
         Err(why) => refuse(model, why),
     }

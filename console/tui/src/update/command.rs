@@ -3,7 +3,7 @@
 pub(super) mod line;
 mod value;
 
-use super::act::{act, set_speed};
+use super::act::{act, hold_only, set_speed};
 use super::events;
 use super::go;
 use super::message::Effect;
@@ -25,6 +25,16 @@ use value::Value;
 pub(super) struct Command {
     action: &'static Action,
     values: Vec<Value>,
+}
+
+impl Command {
+    /// Whether it stops the robot: that is done whatever is open.
+    pub(super) fn stops(&self) -> bool {
+        matches!(
+            self.action.id,
+            ActionId::Hold | ActionId::Interrupt | ActionId::Suspend | ActionId::Abort | ActionId::Leave
+        )
+    }
 }
 
 /// Reads a command line; a short name of the operator's stands for its line.
@@ -104,7 +114,9 @@ pub(super) fn candidates(model: &Model, before: &str) -> Option<Vec<String>> {
 /// Runs a command.
 pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec<Effect> {
     let mut values = values.into_iter();
-    let Some(first) = values.next() else { return act(model, action.id) };
+    let Some(first) = values.next() else {
+        return if action.id == ActionId::Hold { hold_only(model) } else { act(model, action.id) };
+    };
     let is_about_a_named_run = matches!(first, Value::Run(_));
     if !is_about_a_named_run && let Err(why) = offered(model, action.id) {
         return refuse(model, why);

@@ -56,7 +56,8 @@ fn go_to_run(model: &mut Model) -> Vec<Effect> {
     if is_open {
         go(model, Screen::Result)
     } else {
-        let why = model.console.keys.spelled("<report>: report of this run, <view>: open it in rerun");
+        let why =
+            model.console.keys.spelled("this run is not open; <report>: report, <view>: open it in rerun");
         refuse(model, why)
     }
 }

@@ -148,7 +148,19 @@ fn around(model: &Model, id: ActionId) -> Result<(), String> {
             demand(!live.missed().is_empty(), "no area was missed")
         }
         ActionId::Again => demand(live.source.is_some() && !live.is_under_way(), "a mission is in progress"),
+        ActionId::Rescan if model.ui.screen == Screen::Result => rescan(model),
         _ => demand(named_run(model).is_some(), "no run is selected"),
+    }
+}
+
+/// What was missed is scanned by the planner of the run.
+fn rescan(model: &Model) -> Result<(), String> {
+    match model.planner().and_then(|planner| Some((planner, planner.why_no_coverage()?))) {
+        Some((planner, why)) => {
+            let other = "`tankops rescan RUN` writes a scenario for another planner";
+            Err(format!("planner {} {why}; {other}", planner.id))
+        }
+        None => demand(named_run(model).is_some(), "no run is selected"),
     }
 }
 

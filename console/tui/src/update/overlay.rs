@@ -11,7 +11,7 @@ use crate::actions::ActionId;
 use crate::guide::guide;
 use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
 use crate::model::{Ghost, Model, Overlay, Palette, parameter};
-use mission::{Order, Parameters, PlannerChoice, PlannerInfo};
+use mission::{Order, Parameters, PlannerChoice, PlannerInfo, Severity};
 
 /// Puts something over the screen.
 pub(super) fn open(model: &mut Model, overlay: Overlay) -> Vec<Effect> {
@@ -23,6 +23,19 @@ pub(super) fn open(model: &mut Model, overlay: Overlay) -> Vec<Effect> {
 pub(super) fn ask(model: &mut Model, ask: Ask) -> Vec<Effect> {
     model.console.notice = None;
     open(model, Overlay::Confirm(ask))
+}
+
+/// Takes back a question to which Enter would make the robot move; whether one was open.
+pub(super) fn withdraw_motion(model: &mut Model) -> bool {
+    let moves = matches!(
+        model.ui.overlay,
+        Overlay::Stepping | Overlay::Confirm(Ask::Start | Ask::Resume | Ask::FlyUncertified)
+    );
+    if moves {
+        model.ui.overlay = Overlay::None;
+        model.say(Severity::Info, "cancelled by HOLD");
+    }
+    moves
 }
 
 /// Agrees, or takes the selected line.

@@ -112,9 +112,10 @@ fn chosen(model: &mut Model, action: &'static Action, typed: &str) -> Vec<Effect
     super::act(model, action.id)
 }
 
-/// Runs a line that was not typed into the screen. It answers no question.
+/// Runs a line that was not typed into the screen. It answers no question; what stops the robot needs no answer before it.
 pub(super) fn obey(model: &mut Model, line: &str) -> Vec<Effect> {
-    if matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping) {
+    let stops = command::read(model, line).is_ok_and(|command| command.stops());
+    if !stops && matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping) {
         return refuse(model, "a question is open; answer it first".into());
     }
     run(model, Palette::begun(line), line)
@@ -122,6 +123,14 @@ pub(super) fn obey(model: &mut Model, line: &str) -> Vec<Effect> {
 
 fn run(model: &mut Model, palette: Palette, text: &str) -> Vec<Effect> {
     match command::read(model, text) {
+        Ok(command) if command.stops() => {
+            remember(model, text);
+            let effects = command::run(model, command);
+            if matches!(model.ui.overlay, Overlay::Commands(_)) {
+                model.ui.overlay = Overlay::None;
+            }
+            effects
+        }
         Ok(command) => {
             model.ui.overlay = Overlay::None;
             remember(model, text);

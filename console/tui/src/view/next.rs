@@ -29,7 +29,7 @@ fn by_phase(model: &Model) -> Clauses {
         let news = format!("◌ No data from the mission for {} s: values are stale.", silent_s as u64);
         return (Role::Stale, vec![news, "space: HOLD.".into()]);
     }
-    if model.live.hold_asked {
+    if model.live.hold_asked && model.live.may_move() {
         return (Role::Hold, vec!["HOLD requested...".into()]);
     }
     let work = model.live.busy.as_ref().map(|busy| work(model, busy));
@@ -117,6 +117,9 @@ pub(super) fn joined(clauses: &[String], columns: usize) -> String {
 }
 
 fn idle(model: &Model) -> Clauses {
+    if model.live.failure.is_some() {
+        return (Role::Warn, vec!["The scenario cannot be opened.".into(), "<home>: choose another.".into()]);
+    }
     if model.live.run.about.is_none() {
         return (Role::Title, vec!["Loading scenario...".into()]);
     }

@@ -4,26 +4,31 @@ use super::look::{Look, Parts};
 use super::text;
 use crate::model::{Model, Recording, ui::Arrangement};
 use crate::theme::Role;
-use mission::{Hold, HoldReason, Outcome, Phase, Severity};
+use mission::{Gait, Hold, HoldReason, Outcome, Phase, Severity};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use world::Boundary;
 
+/// Columns of the names of tank and planner for which the words about alarms become letters.
+const LEAST_NAMES: usize = 24;
+
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let arrangement = Arrangement::of(frame.area().width, frame.area().height);
     let wide = arrangement == Arrangement::Wide;
     let gap = if wide { "   " } else { " " };
-    let alarms = alarms(look.model, wide);
     let state = state(look.model);
     let time = time(look.model);
-    let fixed: usize =
-        [&state, &time, &alarms].into_iter().flatten().map(|(_, text)| text::width(text)).sum();
     // Names take what the rest leaves; the tank goes first, for the planner can change.
     let screen = look.model.ui.screen;
     let name = format!("{} {} ", screen.digit(), screen.name());
     let screen = if wide { text::width(&name) + gap.len() } else { 0 };
-    let room = usize::from(area.width).saturating_sub(fixed + 1 + 3 * gap.len() + screen);
+    let sum = |parts: &Parts| parts.iter().map(|(_, text)| text::width(text)).sum::<usize>();
+    let beside = 1 + 4 * gap.len() + sum(&state) + sum(&time) + screen;
+    let room = |alarms: &Parts| usize::from(area.width).saturating_sub(beside + sum(alarms));
+    let words = alarms(look.model, wide);
+    let alarms = if room(&words) < LEAST_NAMES { alarms(look.model, false) } else { words };
+    let room = room(&alarms);
     let names = names(look.model, wide, gap, room);
     let blank = || vec![(Role::Text, gap.to_owned())];
     let left = [vec![(Role::Text, " ".into())], state, blank(), names, time, blank(), alarms].concat();
@@ -46,7 +51,8 @@ fn right_of(area: Rect, width: u16) -> Rect {
 pub(super) fn state(model: &Model) -> Parts {
     let (who, role, word) = match model.live.run.phase() {
         Phase::Waiting => ("OPER", Role::Title, "■ IDLE"),
-        Phase::Running(_) => ("AUTO", Role::Run, "▶ RUN"),
+        Phase::Running(Gait::Steady) => ("AUTO", Role::Run, "▶ RUN"),
+        Phase::Running(Gait::OneTick | Gait::To(_)) => ("OPER", Role::Run, "▶ STEP"),
         Phase::Held(Hold {
             by: HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced,
             ..

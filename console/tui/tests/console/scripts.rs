@@ -133,8 +133,8 @@ fn space_holds_at_once_and_then_asks_to_go_on() {
     assert!(screen.model.live.hold_asked);
     obeyed(&mut screen, Order::Hold);
     assert_eq!(screen.press([SPACE]), []);
-    assert_eq!(screen.press([SPACE]), [], "space never agrees");
-    assert_eq!(screen.press([Key::Enter]), [order(Order::Resume)]);
+    assert_eq!(screen.press([SPACE, Key::Enter]), [], "space never agrees: it takes the question back");
+    assert_eq!(screen.press([SPACE, Key::Enter]), [order(Order::Resume)]);
 }
 
 #[test]
@@ -585,6 +585,9 @@ fn a_run_that_ends_shows_its_result_and_what_comes_next() {
     let failed = Err("different from tick 3 on".to_owned());
     screen.send(Msg::Done(Job::Verify(run()), failed));
     assert_eq!(notice(&screen), "verifying the run failed: different from tick 3 on");
+    assert_eq!(screen.type_text("r"), []);
+    assert!(notice(&screen).starts_with("planner rpf does not support coverage missions"));
+    screen.model.live.run.planning.info.iter_mut().for_each(|planner| planner.covers = true);
     let again = Effect::Open { id: RunId(2), source: Source::Rescan(vec![run()]), planner: None };
     assert_eq!(screen.type_text("r"), [again]);
 }

@@ -126,6 +126,8 @@ fn ways() -> Vec<(Msg, Where)> {
         key(Key::Ctrl('c'), Where::Everywhere),
         key(Key::Ctrl('z'), Where::Everywhere),
         key(Key::Char('X'), Where::Screens),
+        (Msg::Line("hold".into()), Where::Everywhere),
+        (Msg::Line("end".into()), Where::Everywhere),
         (panicked, Where::Everywhere),
     ]
     .into_iter()
@@ -197,6 +199,16 @@ fn is_loose(model: &Model) -> bool {
     by_itself || model.live.asked.is_some()
 }
 
+/// Whether the console is on its way out: it reads no keys any more.
+fn is_farewell(way: &Msg) -> bool {
+    matches!(way, Msg::Signal(Signal::Terminate | Signal::Hangup))
+}
+
+/// Whether Enter would make the robot move.
+fn asks_to_move(overlay: &Overlay) -> bool {
+    matches!(overlay, Overlay::Stepping | Overlay::Confirm(Ask::Start | Ask::Resume | Ask::FlyUncertified))
+}
+
 fn is_held_for_good(phase: &Phase) -> bool {
     matches!(phase, Phase::Held(hold) if hold.resumes == Resumes::Never)
 }
@@ -224,11 +236,28 @@ fn every_way_to_stop_holds_whenever_the_robot_may_move_and_never_makes_it_move()
                     let is_space = way == Msg::Key(Key::Char(' ').into());
                     let may_ask = is_held_for_good(situation.live.run.phase()) && !is_loose(&situation);
                     assert!(is_space && may_ask, "{} asks to resume", about());
+                } else if asks_to_move(&overlay) && !is_farewell(&way) {
+                    let effects = update(&mut model, Msg::Key(Key::Enter.into()));
+                    assert!(!effects.iter().any(moves), "Enter after {} gave {effects:?}", about());
                 }
             }
         }
     }
     assert!(held > 10_000, "only {held} cases");
+}
+
+#[test]
+fn the_line_for_steps_is_left_with_a_robot_that_stands_still() {
+    for mut model in situations() {
+        model.ui.overlay = Overlay::Stepping;
+        for key in [Key::Esc, Key::Char('x'), Key::F(5)] {
+            let mut model = model.clone();
+            let effects = update(&mut model, Msg::Key(key.into()));
+            assert_eq!(model.ui.overlay, Overlay::None);
+            let expected = if is_loose(&model) { &[HOLD][..] } else { &[] };
+            assert_eq!(effects, expected, "{key} in {:?}", model.live.run.phase());
+        }
+    }
 }
 
 #[test]

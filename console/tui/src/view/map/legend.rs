@@ -47,7 +47,7 @@ fn floor(look: &Look) -> Vec<Entry> {
         (scanned, Shade::Scanned, "scanned"),
         (scanned && again, Shade::Overlap, "overlap"),
         (scanned, Shade::Partial, "partial"),
-        (run.has_ended() && some(|division| division.to_do), Shade::Missed, "missed"),
+        (run.has_missed() && some(|division| division.to_do), Shade::Missed, "missed"),
         (some(|division| division.unreachable), Shade::Unreachable, "unreachable"),
         (some(|division| division.margin), Shade::Margin, "margin"),
         (layers.shows(MapLayer::Accuracy), Shade::PoorFix, "poor fix"),

@@ -129,18 +129,18 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     if layers.shows(MapLayer::Accuracy) {
         return window
             .dots(rows_per_row)
-            .map(|(at, edge_m)| forecast(look, at).or_else(|| floor(raster?, at, edge_m, run.has_ended())))
+            .map(|(at, edge_m)| forecast(look, at).or_else(|| floor(raster?, at, edge_m, run.has_missed())))
             .collect();
     }
     let Some(raster) = raster else { return Rc::new([]) };
-    let key = Key(raster.stamp(), window, rows_per_row, run.has_ended());
+    let key = Key(raster.stamp(), window, rows_per_row, run.has_missed());
     look.cache.borrow_mut().shades(key, || {
-        window.dots(rows_per_row).map(|(at, edge_m)| floor(raster, at, edge_m, run.has_ended())).collect()
+        window.dots(rows_per_row).map(|(at, edge_m)| floor(raster, at, edge_m, run.has_missed())).collect()
     })
 }
 
-fn floor(raster: &Raster, at: Point, edge_m: f64, has_ended: bool) -> Option<Shade> {
-    raster.class_in(at, edge_m, has_ended).and_then(Shade::of)
+fn floor(raster: &Raster, at: Point, edge_m: f64, has_missed: bool) -> Option<Shade> {
+    raster.class_in(at, edge_m, has_missed).and_then(Shade::of)
 }
 
 /// Where the stations are forecast to locate badly: beyond the limit, and beyond half of it.
