@@ -24,7 +24,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = area.width.min(WIDTH);
     let list = match &look.model.ui.overlay {
         Overlay::Commands(palette) => commands::list(look, palette, columns),
-        Overlay::Planners { selected, .. } => planners::list(look, *selected, columns),
+        Overlay::Planners { purpose, selected } => planners::list(look, *purpose, *selected, columns),
         Overlay::Parameters { selected, edit } => parameters::list(look, *selected, edit.as_ref(), columns),
         Overlay::Preflight { selected } => preflight::list(look, *selected, columns),
         Overlay::Layers { selected } => layers(look, *selected),

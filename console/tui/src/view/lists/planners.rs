@@ -1,11 +1,17 @@
 //! The list of planners, and of the plugins that were refused.
 
 use super::list::{List, hint, paragraph};
+use crate::model::ui::Purpose;
 use crate::theme::Role;
 use crate::view::look::{Look, Parts as Row};
 use crate::view::text::{self, wrap};
 
-pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
+pub(super) fn list(look: &Look, purpose: Purpose, selected: usize, columns: u16) -> List {
+    let (title, enter) = match purpose {
+        Purpose::Drive => ("Planners", " Enter: change planner (asks first); coverage is kept."),
+        Purpose::Compare => ("Compare with", " Enter: have it plan beside the active planner."),
+        Purpose::WhatIf => ("Forecast with", " Enter: add it to the forecasts."),
+    };
     let driving = look.run.planner_id();
     let rows = look.model.console.planners.iter().map(|planner| {
         let drives = Some(planner.id.as_str()) == driving;
@@ -29,15 +35,10 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
         [name].into_iter().chain(why.into_iter().map(|line| vec![(Role::Text, format!("   {line}"))]))
     });
     List {
-        title: "Planners".into(),
+        title: title.into(),
         rows: rows.collect(),
         selected,
-        below: [Row::new()]
-            .into_iter()
-            .chain(about)
-            .chain(refused)
-            .chain([hint(" Enter: change planner (asks first); coverage is kept.")])
-            .collect(),
+        below: [Row::new()].into_iter().chain(about).chain(refused).chain([hint(enter)]).collect(),
         ..List::default()
     }
 }

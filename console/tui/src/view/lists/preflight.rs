@@ -15,7 +15,9 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     let first_by_hand = checks.len() - model.n_by_hand();
     let room = usize::from(columns).saturating_sub(4);
     let count = |outcome| checks.iter().filter(|check| check.outcome == outcome).count();
-    let (failed, warned) = (count(CheckOutcome::Failed), count(CheckOutcome::Warning));
+    let (blocking, warned) = (count(CheckOutcome::Failed), count(CheckOutcome::Warning));
+    let failed = checks[..first_by_hand].iter().filter(|check| check.outcome == CheckOutcome::Failed).count();
+    let blocks = Blocks { failed, not_ticked: blocking - failed };
     let rows =
         checks.iter().enumerate().map(|(index, check)| row(check, index >= first_by_hand, room)).collect();
     let mut below: Vec<Row> = checks
@@ -23,18 +25,19 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
         .into_iter()
         .flat_map(|check| paragraph(Role::Dim, &format!("{}: {}", check.what, check.found), room))
         .collect();
-    let verdict = match (model.live.preflight.is_checking, failed) {
+    let verdict = match (model.live.preflight.is_checking, blocks.sentence()) {
         (true, _) => (Role::Watch, " Checking...".to_owned()),
-        (false, 0) => {
+        (false, None) => {
             (Role::Good, " Nothing blocks the start. Checked again at the moment of start.".to_owned())
         }
-        (false, n) => (Role::Crit, format!(" Start is blocked: {n} FAIL.")),
+        (false, Some(why)) => (Role::Crit, format!(" Start is blocked: {why}.")),
     };
     below.push(vec![verdict]);
-    below.push(hint(" space: tick  r: check again  Esc: close"));
+    let tick = if model.n_by_hand() > 0 { " space: tick " } else { "" };
+    below.push(hint(&format!("{tick} r: check again  Esc: close")));
     List {
         title: format!("Pre-flight  {} checks, {} by hand", first_by_hand, model.n_by_hand()),
-        note: note(failed, warned),
+        note: note(&blocks, warned),
         rows,
         selected,
         needed_below: 2,
@@ -43,11 +46,27 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     }
 }
 
-fn note(failed: usize, warned: usize) -> &'static str {
-    match (failed, warned) {
-        (0, 0) => "all passed",
-        (0, _) => "WARNINGS",
-        _ => "FAIL",
+/// What blocks the start: checks that failed, and points that nobody has ticked.
+struct Blocks {
+    failed: usize,
+    not_ticked: usize,
+}
+
+impl Blocks {
+    fn sentence(&self) -> Option<String> {
+        let failed = (self.failed > 0).then(|| format!("{} FAIL", self.failed));
+        let not_ticked = (self.not_ticked > 0).then(|| format!("{} not ticked", self.not_ticked));
+        let parts: Vec<String> = failed.into_iter().chain(not_ticked).collect();
+        (!parts.is_empty()).then(|| parts.join(", "))
+    }
+}
+
+fn note(blocks: &Blocks, warned: usize) -> &'static str {
+    match (blocks, warned) {
+        (Blocks { failed: 1.., .. }, _) => "FAIL",
+        (Blocks { not_ticked: 1.., .. }, _) => "NOT TICKED",
+        (_, 0) => "all passed",
+        _ => "WARNINGS",
     }
 }
 
