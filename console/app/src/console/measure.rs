@@ -35,6 +35,8 @@ impl Measure {
 
     /// A message was taken.
     pub(super) fn arrived(&mut self, msg: &Msg, now: Instant) {
+        // A burst may have begun before the process was stopped and continued.
+        let now = now.max(self.reported);
         self.changed.get_or_insert(now);
         if matches!(msg, Msg::Key(_)) {
             self.key.get_or_insert(now);
@@ -99,6 +101,17 @@ mod tests {
         };
         assert_eq!(taken(&mut measure, ms(1000)), (Some(6.0), 0));
         assert_eq!(taken(&mut measure, ms(32_000)), (None, 0));
+    }
+
+    #[test]
+    fn a_key_that_came_before_the_measurement_began_counts_from_then_on() {
+        let stopped = Instant::now();
+        let continued = stopped + ms(20_000);
+        let mut measure = Measure::since(continued);
+        measure.arrived(&Msg::Key(Key::Up.into()), stopped);
+        measure.drew(continued + ms(5), ms(20_005), FRAME);
+        let expected = Measured::Screen { response_ms: Some(5.0), skipped: 0 };
+        assert_eq!(measure.report(continued + ms(1000)), Some(expected));
     }
 
     #[test]

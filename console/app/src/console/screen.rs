@@ -137,6 +137,9 @@ impl Screen {
         for _ in 0..BURST {
             let Some(msg) = next else { break };
             self.answer_seen |= is_answer(&msg);
+            if matches!(msg, Msg::Signal(Signal::Continue)) {
+                self.measure = Measure::since(Instant::now());
+            }
             let due = redraw(&self.session.model, &msg);
             self.due = self.due.max(due);
             if due == Redraw::Soon {
@@ -190,6 +193,8 @@ impl Screen {
         rustix::process::kill_process(rustix::process::getpid(), rustix::process::Signal::STOP)
             .context("stopping the process")?;
         self.terminal.resume().context("taking the terminal over again")?;
+        // Nobody waited for a frame while the process was stopped.
+        self.measure = Measure::since(Instant::now());
         self.due = Redraw::Soon;
         Ok(())
     }
