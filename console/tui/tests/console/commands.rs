@@ -1,27 +1,17 @@
 //! The command line: what it finds, completes, refuses and runs.
 
-use crate::fixture::{RICH, Screen, choice};
+use crate::fixture::{RICH, Screen, choice, listed};
 use crate::screens::{drawn, text};
 use mission::{Order, ParamValue, Severity};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tui::model::ui::{Ask, MapLayer};
-use tui::model::{Overlay, Palette, PastRun, ScenarioEntry, Screen as Name, home::Found};
+use tui::model::{Overlay, Palette, PastRun, Screen as Name, home::Found};
 use tui::update::{Choice, choices};
 use tui::{Effect, Job, Key, Msg, RunId, Source, Speed, ThemeName};
 
 /// A screen with scenarios and runs.
 fn with_home(mut screen: Screen) -> Screen {
-    let entry = |name: &str, problem: Option<&str>| ScenarioEntry {
-        source: Source::File(format!("{name}.toml")),
-        name: name.into(),
-        about: String::new(),
-        task: "goto".into(),
-        tank: "Ø12 m".into(),
-        planner: "apf".into(),
-        expected: String::new(),
-        problem: problem.map(str::to_owned),
-    };
     let run = |name: &str| PastRun {
         name: name.into(),
         began: String::new(),
@@ -33,10 +23,10 @@ fn with_home(mut screen: Screen) -> Screen {
     };
     let found = Found {
         scenarios: vec![
-            entry("cover-circle", None),
-            entry("demo", None),
-            entry("two words", None),
-            entry("bad", Some("no")),
+            listed("cover-circle", None),
+            listed("demo", None),
+            listed("two words", None),
+            listed("bad", Some("no")),
         ],
         runs: vec![run("20261122T1-demo"), run("20261121T2-demo"), run("20261121T1-demo")],
         ..Found::default()

@@ -597,3 +597,17 @@ pub(crate) const RICH: Caps = Caps { colours: Colours::True, glyphs: Glyphs::Bra
 pub(crate) const PLAIN: Caps = Caps { colours: Colours::None, glyphs: Glyphs::Braille, ssh: false };
 /// A terminal with letters only.
 pub(crate) const ASCII: Caps = Caps { colours: Colours::None, glyphs: Glyphs::Ascii, ssh: false };
+
+/// A scenario of the home screen.
+pub(crate) fn listed(name: &str, problem: Option<&str>) -> tui::model::ScenarioEntry {
+    tui::model::ScenarioEntry {
+        source: Source::File(format!("{name}.toml")),
+        name: name.into(),
+        about: String::new(),
+        task: "goto".into(),
+        tank: "Ø12 m".into(),
+        planner: "apf".into(),
+        expected: String::new(),
+        problem: problem.map(str::to_owned),
+    }
+}

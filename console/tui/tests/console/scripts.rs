@@ -1,6 +1,6 @@
 //! Whole missions as scripts of messages: what the operator does, and what follows.
 
-use crate::fixture::{RICH, Screen, choice};
+use crate::fixture::{RICH, Screen, choice, listed};
 use crate::screens::{drawn, text};
 use mission::{
     AskId, Check, CheckOutcome, EventKind, Gait, HoldReason, Order, Outcome, ParamValue, Phase, Resumes,
@@ -8,7 +8,7 @@ use mission::{
 };
 use tui::actions::ActionId;
 use tui::model::ui::Purpose;
-use tui::model::{Overlay, Pane, ScenarioEntry, home::Found};
+use tui::model::{Overlay, Pane, home::Found};
 use tui::{
     Effect, Job, Key, KeyPress, Model, Msg, Recording, RunId, RunMsg, RunResult, Signal, Source, Speed,
 };
@@ -532,17 +532,7 @@ fn q_leads_back_screen_by_screen_and_the_mission_goes_on() {
 
 #[test]
 fn another_mission_is_opened_only_when_none_is_in_progress() {
-    let entry = |name: &str, problem: Option<&str>| ScenarioEntry {
-        source: Source::File(format!("{name}.toml")),
-        name: name.into(),
-        about: String::new(),
-        task: "goto".into(),
-        tank: "Ø12 m".into(),
-        planner: "apf".into(),
-        expected: String::new(),
-        problem: problem.map(str::to_owned),
-    };
-    let scenarios = vec![entry("one", None), entry("two", Some("two.toml:3:1: unknown key"))];
+    let scenarios = vec![listed("one", None), listed("two", Some("two.toml:3:1: unknown key"))];
     let found = Msg::Found(Box::new(Found { scenarios, ..Found::default() }));
     let mut screen = Screen::running();
     screen.send(found.clone());
