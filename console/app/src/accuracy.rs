@@ -2,18 +2,23 @@
 
 use crate::{
     cli::AccuracyArgs,
+    output::{say_json, write_file},
+};
+use flight::{
     failure::{COMPLETE, bad_input},
-    output::{say, say_json, warn_line, write_file},
     scenarios,
 };
 use positioning::{AccuracyMap, advise};
-use report::forecast::{ForecastReport, clearance_warning, forecast};
+use report::{
+    forecast::{ForecastReport, clearance_warning, forecast},
+    print::{say, warn_line},
+};
 use scenario::Scenario;
 use std::process::ExitCode;
 
 /// `tankops accuracy`.
 pub(crate) fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
-    let scenario = scenarios::read(&args.scenario, &args.changes)?;
+    let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
     let forecast = forecast(mission, &drawing);
     let map = AccuracyMap::new(&drawing, &forecast);

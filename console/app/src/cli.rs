@@ -1,6 +1,8 @@
 //! The command line.
 
 use clap::{Args, Parser, Subcommand};
+use interactive::{By, Drill, Options};
+use scenario::Settings;
 use std::path::PathBuf;
 
 /// Console for robots that inspect the floors of oil storage tanks.
@@ -118,7 +120,7 @@ pub(crate) struct RescanArgs {
     #[arg(short = 'o', long, value_name = "SCENARIO")]
     pub output: PathBuf,
     /// Ignore missed areas smaller than this, in square metres; areas close together count as one.
-    #[arg(long, value_name = "AREA", default_value_t = crate::rescan::MIN_AREA_M2)]
+    #[arg(long, value_name = "AREA", default_value_t = review::MIN_AREA_M2)]
     pub min_area_m2: f64,
     #[command(flatten)]
     pub logs: LogsArg,
@@ -164,7 +166,7 @@ pub(crate) struct ConsoleArgs {
     #[arg(long, value_name = "FACTOR", value_parser = tui::Speed::parse)]
     pub speed: Option<tui::Speed>,
     /// Number of colours: none, 16, 256 or true (24 bit); default: that of config.toml, or what the terminal has.
-    #[arg(long, value_name = "NUMBER", visible_alias = "color", value_parser = crate::config::colours)]
+    #[arg(long, value_name = "NUMBER", visible_alias = "color", value_parser = interactive::config::colours)]
     pub colour: Option<tui::Colours>,
     /// Run console commands from a file instead of the keyboard, without a terminal; exit code 1 if a line fails.
     #[arg(long, value_name = "FILE", conflicts_with = "plain")]
@@ -177,7 +179,7 @@ pub(crate) struct ConsoleArgs {
     pub glyphs: Option<GlyphSet>,
     /// Make a part of the console fail while the robot moves, to see that the run and the terminal survive it.
     #[arg(long, value_name = "PART", hide = true)]
-    pub drill: Option<Drill>,
+    pub drill: Option<DrillArg>,
 }
 
 /// Characters that the terminal's font has.
@@ -204,13 +206,49 @@ impl From<GlyphSet> for tui::Glyphs {
     }
 }
 
+impl From<&Changes> for Settings {
+    fn from(changes: &Changes) -> Self {
+        let Changes { planner, set, seed } = changes.clone();
+        Self { set, planner, seed }
+    }
+}
+
+impl From<ConsoleArgs> for Options {
+    fn from(args: ConsoleArgs) -> Self {
+        let by = match args.script {
+            Some(file) => By::Script(file),
+            None if args.plain => By::Lines,
+            None => By::Keys,
+        };
+        Self {
+            scenario: args.scenario,
+            settings: (&args.changes).into(),
+            logs: args.logs.logs,
+            speed: args.speed,
+            colours: args.colour,
+            glyphs: args.glyphs.map(Into::into),
+            by,
+            drill: args.drill.map(Into::into),
+        }
+    }
+}
+
 /// A part of the console that fails on purpose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Drill {
+pub(crate) enum DrillArg {
     /// The thread that draws panics.
     PanicScreen,
     /// The thread that flies panics.
     PanicEngine,
+}
+
+impl From<DrillArg> for Drill {
+    fn from(arg: DrillArg) -> Self {
+        match arg {
+            DrillArg::PanicScreen => Self::PanicScreen,
+            DrillArg::PanicEngine => Self::PanicEngine,
+        }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -2,19 +2,23 @@
 
 use crate::{
     accuracy::warn_of_clearance,
-    answers::{InOrder, Window, Windowed},
     cli::{LogsArg, RunArgs},
-    failure::{COMPLETE, ENDED_OTHERWISE, exit_code},
-    flight::Flight,
-    hosts::{self, host},
-    output::{pretty_json, say, say_line, warn_line},
-    plan_watch::{PlanWatch, Watched},
-    planners, progress, scenarios,
+    output::pretty_json,
+    progress,
     stop_signal::{self, StopSignal},
+};
+use flight::{
+    Flight,
+    answers::{InOrder, Window, Windowed},
+    failure::{COMPLETE, ENDED_OTHERWISE, exit_code},
+    hosts::{self, host},
+    plan_watch::{PlanWatch, Watched},
+    planners, scenarios,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use mission::{Event, EventKind, Order, Outcome, Phase};
 use planner_host::{Host, PluginDirs};
+use report::print::{say, say_line, warn_line};
 use runs::{CLOSE_TIMEOUT, Closed, RunLog};
 use scenario::Scenario;
 use std::{io::IsTerminal, process::ExitCode};
@@ -33,7 +37,7 @@ pub(crate) struct RunOptions {
 
 /// `tankops run`.
 pub(crate) fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
-    let scenario = scenarios::read(&args.scenario, &args.changes)?;
+    let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     let (json, record, live_deadlines) = (args.json, !args.no_record, args.live_deadlines);
     fly(&scenario, plugins, &args.logs, RunOptions { json, record, live_deadlines })
 }

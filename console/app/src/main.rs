@@ -1,33 +1,28 @@
 //! tankops: console for robots that inspect the floors of oil storage tanks.
 
 mod accuracy;
-mod answers;
 mod cli;
-mod config;
-mod console;
-mod failure;
-mod flight;
 mod headless;
-mod hosts;
 mod manual;
 mod output;
 mod past_runs;
 mod plan;
-mod plan_watch;
 mod planners;
 mod progress;
 mod reproduce;
 mod rescan;
-mod scenarios;
 mod stop_signal;
 mod tune;
-mod verify;
 
 use clap::Parser;
 use cli::{Cli, Command, ConsoleArgs, LogsArg};
-use failure::{BAD_INPUT, INTERNAL, bad_input, is_input};
-use output::warn_line;
+use flight::{
+    failure::{BAD_INPUT, INTERNAL, bad_input, is_input},
+    scenarios,
+};
 use planner_host::PluginDirs;
+use report::print::warn_line;
+use scenario::Settings;
 use std::{io::IsTerminal, process::ExitCode, sync::Arc};
 
 fn main() -> ExitCode {
@@ -66,7 +61,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
     let plugins = PluginDirs::standard(&cli.plugins.plugin_dir);
     match cli.command {
         None => by_default(&plugins),
-        Some(Command::Console(args)) => console::open(&args, &plugins),
+        Some(Command::Console(args)) => interactive::open(&args.into(), &plugins),
         Some(Command::Run(args)) => headless::run(&args, &plugins),
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
@@ -76,7 +71,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Tune(args)) => tune::tune(&args, &plugins),
         Some(Command::Runs { json, logs }) => past_runs::list(&logs, json),
         Some(Command::Verify { run, from_journal, logs }) => {
-            verify::verify(&run, &logs, &plugins, from_journal)
+            past_runs::verify(&run, &logs, &plugins, from_journal)
         }
         Some(Command::Export { run, rrd, logs }) => past_runs::export(&run, &rrd, &logs),
         Some(Command::Report { runs, json, output, logs }) => {
@@ -92,10 +87,10 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
 /// The console on the demo, or, without a terminal, the demo flown headless.
 fn by_default(plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     if std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
-        return console::open(&ConsoleArgs::default(), plugins);
+        return interactive::open(&ConsoleArgs::default().into(), plugins);
     }
     headless::fly(
-        &scenarios::demo()?,
+        &scenarios::demo(&Settings::default())?,
         plugins,
         &LogsArg::default(),
         headless::RunOptions { json: false, record: true, live_deadlines: false },

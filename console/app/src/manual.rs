@@ -1,13 +1,11 @@
 //! The command line as shells complete it and as `man` shows it.
 
-use crate::{
-    cli::Cli,
-    failure::{COMPLETE, bad_input},
-    output::say,
-};
+use crate::cli::Cli;
 use anyhow::Context;
 use clap::CommandFactory;
 use clap_complete::Shell;
+use flight::failure::{COMPLETE, bad_input};
+use report::print::say;
 use std::process::ExitCode;
 
 /// `tankops completions`.

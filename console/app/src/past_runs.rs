@@ -1,15 +1,18 @@
-//! `tankops runs`, `tankops report` and `tankops export`: what past runs hold.
+//! `tankops runs`, `report`, `verify` and `export`: what past runs hold.
 
 use crate::{
     cli::LogsArg,
-    failure::{COMPLETE, bad_input},
-    output::{pretty_json, say, say_line, write_file},
+    output::{pretty_json, write_file},
 };
 use anyhow::Context;
+use flight::failure::{COMPLETE, ENDED_OTHERWISE, bad_input};
+use planner_host::PluginDirs;
 use recording::{JOURNAL_FILE, RecordingError, Ticks, sha256};
-use report::{PastRun, Summary, human, merged};
+use report::{
+    PastRun, human, merged,
+    print::{say, say_line},
+};
 use runs::{Past, find, journal_doubt};
-use scenario::{Scenario, with_todays_keys};
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,
@@ -35,7 +38,7 @@ pub(crate) fn report(
     json: bool,
     output: Option<&Path>,
 ) -> anyhow::Result<ExitCode> {
-    let past = read_all(runs, logs)?;
+    let past = review::read_all(runs, &logs.logs)?;
     let text = if let [only] = &past[..] {
         one(only, json)?
     } else {
@@ -50,22 +53,23 @@ pub(crate) fn report(
     Ok(ExitCode::from(COMPLETE))
 }
 
-/// The report of the run in a folder, for people.
-pub(crate) fn text_of(folder: &Path) -> anyhow::Result<String> {
-    one(&Past::read(folder)?, false)
-}
-
-/// Past runs that the user named.
-pub(crate) fn read_all(runs: &[PathBuf], logs: &LogsArg) -> anyhow::Result<Vec<Past>> {
-    runs.iter().map(|run| Ok(Past::read(&find(run, &logs.logs)?)?)).collect()
-}
-
-fn one(Past { opened, run, .. }: &Past, json: bool) -> anyhow::Result<String> {
-    let scenario = Scenario::parse(&with_todays_keys(&opened.scenario_toml), "the scenario in the journal");
-    let expect = scenario.map_err(|errors| bad_input(errors.render()))?.expect;
-    let (logs, events_sha256) = (Some(run.logs.clone()), run.journal_sha256.clone());
-    let summary = expect.evaluated(Summary { logs, events_sha256, ..run.fold.summary() });
+fn one(past: &Past, json: bool) -> anyhow::Result<String> {
+    let summary = review::summary(past)?;
     if json { pretty_json("the report", &summary) } else { Ok(human(&summary)) }
+}
+
+/// `tankops verify`.
+pub(crate) fn verify(
+    run: &Path,
+    logs: &LogsArg,
+    plugins: &PluginDirs,
+    from_journal: bool,
+) -> anyhow::Result<ExitCode> {
+    let verified = review::verify(&find(run, &logs.logs)?, plugins, from_journal)?;
+    for line in &verified.lines {
+        say_line(line)?;
+    }
+    Ok(ExitCode::from(if verified.is_equal { COMPLETE } else { ENDED_OTHERWISE }))
 }
 
 /// `tankops export`.

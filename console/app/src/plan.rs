@@ -2,21 +2,26 @@
 
 use crate::{
     cli::PlanArgs,
+    output::{say_json, write_file},
+    progress,
+};
+use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
-    hosts,
-    output::{say, say_json, write_file},
-    progress, scenarios,
+    hosts, scenarios,
 };
 use mission::{Cause, Fault, preview};
 use planner_api::{Code, LogLevel, Plan};
 use planner_host::{BlockingHost, PluginDirs, Reply};
-use report::plan::{Made, Planned};
+use report::{
+    plan::{Made, Planned},
+    print::say,
+};
 use scenario::Scenario;
 use std::{process::ExitCode, sync::Arc, time::Instant};
 
 /// `tankops plan`.
 pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
-    let scenario = scenarios::read(&args.scenario, &args.changes)?;
+    let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
     let planned = Planned::new(mission, &drawing, make_plan(&scenario, plugins)?);
     if args.json {

@@ -1,90 +1,19 @@
 //! `tankops planners` and `tankops check`: what was found, and what is wrong with it.
 
-use crate::{
-    accuracy::warn_of_clearance,
-    config,
-    failure::{BAD_INPUT, COMPLETE, bad_input},
-    output::{pretty_json, say, say_line, warn_line},
+use crate::{accuracy::warn_of_clearance, output::pretty_json};
+use flight::{
+    failure::{BAD_INPUT, COMPLETE},
+    planners::{check_choices, found},
 };
-use mission::{ParamInfo, ParamKind, PlannerChoice, PlannerInfo, TaskConfig};
-use planner_host::{PluginDirs, Survey, SurveyedPlugin, WorkerCommand, parameter_problems, survey};
+use interactive::config;
+use mission::{ParamInfo, ParamKind, PlannerInfo};
+use planner_host::{PluginDirs, Survey, SurveyedPlugin, WorkerCommand, survey};
+use report::print::{say, say_line, warn_line};
 use scenario::{Scenario, Settings};
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,
 };
-use tui::Refused;
-
-/// Planners that can be chosen.
-pub(crate) fn found(plugins: &PluginDirs) -> Vec<PlannerInfo> {
-    survey(plugins, &WorkerCommand::default()).planners().cloned().collect()
-}
-
-/// Planners that can be chosen, and plugins that are refused.
-pub(crate) fn surveyed(plugins: &PluginDirs) -> (Vec<PlannerInfo>, Vec<Refused>) {
-    let survey = survey(plugins, &WorkerCommand::default());
-    let refused = survey.plugins.iter().filter_map(|plugin| {
-        Some(Refused { plugin: file_name(&plugin.path), reason: plugin.refused.clone()? })
-    });
-    (survey.planners().cloned().collect(), refused.collect())
-}
-
-/// Makes sure, before anything is flown, that the planners of a scenario are among the known ones and take their
-/// parameters.
-///
-/// # Errors
-/// Every objection, with its place in the scenario.
-pub(crate) fn check_choices(scenario: &Scenario, known: &[PlannerInfo]) -> anyhow::Result<()> {
-    let mission = &scenario.mission;
-    let fallback = mission.fallback.iter().map(|choice| ("planner.fallback", choice));
-    let choices = std::iter::once(("planner", &mission.planner)).chain(fallback);
-    let must_cover = matches!(mission.task, TaskConfig::Cover { .. });
-    let objections: Vec<_> =
-        choices.flat_map(|(section, choice)| objections(section, choice, known, must_cover)).collect();
-    if objections.is_empty() { Ok(()) } else { Err(bad_input(scenario.refused(objections).render())) }
-}
-
-fn objections(
-    section: &str,
-    choice: &PlannerChoice,
-    known: &[PlannerInfo],
-    must_cover: bool,
-) -> Vec<(String, String)> {
-    let at = |key: String| format!("{section}.parameters.{key}");
-    match choice_of(&choice.id, known) {
-        Err(message) => vec![(format!("{section}.id"), message)],
-        Ok(info) if let Some(why) = info.why_no_coverage().filter(|_| must_cover) => {
-            let ids: Vec<&str> =
-                known.iter().filter(|info| info.covers).map(|info| info.id.as_str()).collect();
-            let who = if ids.is_empty() {
-                "none that was found does".into()
-            } else {
-                format!("these do: {}", ids.join(", "))
-            };
-            vec![(format!("{section}.id"), format!("planner `{}` {why}; {who}", info.id))]
-        }
-        Ok(info) => {
-            let problems = parameter_problems(info, &choice.parameters);
-            problems.into_iter().map(|(key, message)| (at(key), message)).collect()
-        }
-    }
-}
-
-/// The planner of this id.
-///
-/// # Errors
-/// One sentence with what there is.
-pub(crate) fn choice_of<'a>(id: &str, known: &'a [PlannerInfo]) -> Result<&'a PlannerInfo, String> {
-    known.iter().find(|info| info.id == id).ok_or_else(|| {
-        let ids: Vec<&str> = known.iter().map(|info| info.id.as_str()).collect();
-        let has = if ids.is_empty() {
-            "no planner was found at all".into()
-        } else {
-            format!("found: {}", ids.join(", "))
-        };
-        format!("there is no planner `{id}`; {has}; `tankops planners` shows where they are searched for")
-    })
-}
 
 /// `tankops planners`.
 pub(crate) fn list(plugins: &PluginDirs, json: bool) -> anyhow::Result<ExitCode> {
@@ -169,8 +98,4 @@ fn check_plugin(file: &Path) -> Result<String, String> {
     }
     let ids: Vec<&str> = checked.planners.iter().map(|info| info.id.as_str()).collect();
     Ok(format!("plugin with {}", ids.join(", ")))
-}
-
-fn file_name(path: &Path) -> String {
-    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }

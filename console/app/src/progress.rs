@@ -1,6 +1,6 @@
 //! What a terminal on stderr shows while something takes its time.
 
-use crate::plan_watch::{OnWork, Work};
+use flight::plan_watch::{OnWork, Work};
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_host::{OnProgress, Progress};
 use std::{

@@ -1,13 +1,11 @@
 //! `tankops reproduce`: the papers' tables, ours beside the printed values.
 
-use crate::{
-    cli::ReproduceArgs,
-    failure::{COMPLETE, bad_input},
-    output::{say, say_json},
-};
+use crate::{cli::ReproduceArgs, output::say_json};
 use ::reproduce::{Gallery, Options, Runner, gallery, studies, study, table};
+use flight::failure::{COMPLETE, bad_input};
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_host::PluginDirs;
+use report::print::say;
 use std::{io::IsTerminal, process::ExitCode};
 
 /// `tankops reproduce`.
@@ -45,7 +43,7 @@ pub(crate) fn reproduce(args: &ReproduceArgs, plugins: &PluginDirs) -> anyhow::R
 
 fn list(json: bool) -> anyhow::Result<()> {
     if !json {
-        return say(&::reproduce::list());
+        return Ok(say(&::reproduce::list())?);
     }
     let all: Vec<serde_json::Value> = studies()
         .map(|s| serde_json::json!({ "name": s.name, "about": s.about, "layouts": s.layouts }))

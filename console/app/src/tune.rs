@@ -1,16 +1,15 @@
 //! `tankops tune`: better parameters, evaluated on layouts that they were not tuned on.
 
-use crate::{
-    cli::TuneArgs,
-    failure::{COMPLETE, bad_input},
-    output::{say, say_json},
-    planners,
-    reproduce::shown,
-};
+use crate::{cli::TuneArgs, output::say_json, reproduce::shown};
 use ::reproduce::{Runner, tune::Tuning};
+use flight::{
+    failure::{COMPLETE, bad_input},
+    planners,
+};
 use indicatif::ProgressBar;
 use mission::{ParamValue, Parameters};
 use planner_host::{PluginDirs, check_parameters};
+use report::print::say;
 use std::process::ExitCode;
 use toml_edit::Value;
 

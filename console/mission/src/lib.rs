@@ -18,6 +18,7 @@ pub mod order;
 pub mod phase;
 pub mod planner;
 mod preview;
+pub mod spelling;
 pub mod standing;
 mod task;
 pub mod tether;

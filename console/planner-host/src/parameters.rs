@@ -1,6 +1,8 @@
 //! Parameter values against their declarations: unknown keys, wrong types, ranges.
 
-use mission::{ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo, todays_parameter};
+use mission::{
+    ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo, spelling::nearest, todays_parameter,
+};
 
 /// Checks values set by hand against a planner's parameters.
 ///
@@ -49,15 +51,6 @@ pub(crate) fn find<'a>(planner: &'a PlannerInfo, key: &str) -> Result<&'a ParamI
         };
         format!("planner {} has no parameter `{key}`{}", planner.id, hint.unwrap_or_else(all))
     })
-}
-
-/// The word that is most like a misspelt one, if any is like it.
-pub(crate) fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    known
-        .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
-        .filter(|(distance, candidate)| *distance <= candidate.len().max(word.len()).div_ceil(3))
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
 }
 
 fn default_number(kind: &ParamKind) -> f64 {

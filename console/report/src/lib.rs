@@ -16,6 +16,7 @@ mod joined;
 pub mod leg;
 pub mod merged;
 pub mod plan;
+pub mod print;
 pub mod rescan;
 mod sampled;
 mod scanned;

@@ -1,7 +1,7 @@
 //! Acoustic-emission ranging: `[ae]`.
 
-use super::{floor::Names, problem::Complaint, section::Section, suggest};
-use mission::Locating;
+use super::{floor::Names, problem::Complaint, section::Section};
+use mission::{Locating, spelling::nearest};
 use positioning::{Aggregation, RangeNoise, SolverKind};
 use sim::{AeConfig, BehindColumns, Disturbances, NoiseModel, StationFault};
 use world::{Boundary, Station, StationId};
@@ -103,7 +103,7 @@ fn fault(entry: &Section<'_>, stations: &[Station]) -> Option<StationFault> {
     let name = name?;
     let station = stations.iter().find(|station| station.name == name);
     if station.is_none() {
-        let nearest = suggest::nearest(&name, stations.iter().map(|station| station.name.as_str()));
+        let nearest = nearest(&name, stations.iter().map(|station| station.name.as_str()));
         let hint = nearest.map(|name| format!("; did you mean \"{name}\"?")).unwrap_or_default();
         entry.complain("station", Complaint::OutOfRange(format!("the name of a station{hint}")));
     }

@@ -6,7 +6,7 @@ use super::{
     source::Source,
     suggest,
 };
-use mission::{ParamValue, Parameters};
+use mission::{ParamValue, Parameters, spelling::nearest};
 use std::ops::Range;
 use toml::{
     Spanned,
@@ -230,7 +230,7 @@ impl<'a> Section<'a> {
         let written = value.get_ref().as_str();
         let known = words.iter().copied().find(|word| Some(*word) == written);
         if known.is_none() {
-            let nearest = written.and_then(|text| suggest::nearest(&shortened(text), words.iter().copied()));
+            let nearest = written.and_then(|text| nearest(&shortened(text), words.iter().copied()));
             self.complain(name, Complaint::UnknownWord { words, nearest });
         }
         known

@@ -4,6 +4,7 @@ use super::{
     renamed::{renamed_keys, todays_name},
     schema::{Key, sections},
 };
+use mission::spelling::nearest;
 
 /// Units people write, as the end of a key, with the unit they measure in and how many of that they are.
 const UNITS: &[(&str, &str, f64)] = &[
@@ -42,17 +43,6 @@ const UNITS: &[(&str, &str, f64)] = &[
     ("_h", "s", 3600.0),
     ("_s", "s", 1.0),
 ];
-
-/// The known word nearest to `word`, if any is near.
-pub(crate) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let reach = (word.chars().count() / 3).clamp(1, 4);
-    known
-        .into_iter()
-        .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
-        .filter(|(distance, _)| *distance <= reach)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
-}
 
 /// What to write instead of an unknown key: the right unit, the nearest name, the right section, or all names.
 pub(crate) fn remedy(section: &str, keys: &'static [Key], unknown: &str, value: Option<f64>) -> String {

@@ -1,7 +1,7 @@
 //! From a planner's id to the plugin files that may have it.
 
 use crate::discovery::{PluginDirs, PluginFile};
-use crate::parameters::nearest;
+use mission::spelling::nearest;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::PathBuf;
 

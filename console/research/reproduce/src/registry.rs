@@ -5,6 +5,7 @@ use crate::{
     study::{Gallery, Result, Study, StudyError},
     traps,
 };
+use mission::spelling::nearest;
 use std::path::Path;
 
 /// Every study, by what it is about.
@@ -25,9 +26,8 @@ pub fn study(name: &str) -> Result<&'static Study> {
 }
 
 fn unknown(name: &str) -> String {
-    let near = studies().map(|study| (strsim::jaro_winkler(name, study.name), study.name));
-    let nearest = near.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(likeness, _)| *likeness > 0.8);
-    let hint = nearest.map(|(_, known)| format!("; did you mean `{known}`?")).unwrap_or_default();
+    let nearest = nearest(name, studies().map(|study| study.name));
+    let hint = nearest.map(|known| format!("; did you mean `{known}`?")).unwrap_or_default();
     format!("there is no study `{name}`{hint}; `tankops reproduce --list` lists them all")
 }
 

@@ -85,17 +85,6 @@ fn initials(name: &str) -> String {
     name.split('-').filter_map(|word| word.chars().next()).collect()
 }
 
-/// The known word nearest to `word`, if any is near.
-pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let reach = (word.chars().count() / 3).clamp(1, 4);
-    known
-        .into_iter()
-        .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
-        .filter(|(distance, _)| *distance <= reach)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -151,12 +140,5 @@ mod tests {
         all.sort_unstable();
         all.dedup();
         assert_eq!(all.len(), count, "no word names two commands");
-    }
-
-    #[test]
-    fn a_slip_is_near_and_another_word_is_not() {
-        let known = ["zoom-in", "follow"];
-        assert_eq!(nearest("folow", known), Some("follow"));
-        assert_eq!(nearest("theme", known), None);
     }
 }

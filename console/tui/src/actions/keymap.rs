@@ -4,8 +4,9 @@ mod presets;
 
 pub use presets::PRESETS;
 
-use super::{ACTIONS, Action, ActionId, Risk, context::TOGETHER, find};
+use super::{ACTIONS, Action, ActionId, Risk, context::TOGETHER};
 use crate::keys::Key;
+use mission::spelling::nearest;
 use presets::Changes;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -103,7 +104,7 @@ impl Keymap {
         };
         let Some(action) = ACTIONS.iter().find(|action| action.name == binding.action) else {
             let known = ACTIONS.iter().map(|action| action.name);
-            let remedy = find::nearest(&binding.action, known).map(|name| format!("did you mean {name}?"));
+            let remedy = nearest(&binding.action, known).map(|name| format!("did you mean {name}?"));
             let instead = remedy.unwrap_or_else(|| "see keys.md".into());
             return Some(Objection {
                 instead,

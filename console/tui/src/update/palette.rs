@@ -8,6 +8,7 @@ use crate::actions::context::{Context, of_screen};
 use crate::actions::find::{self, Match};
 use crate::actions::{Action, ActionId, Risk};
 use crate::model::{Model, Overlay, Palette, palette::LineFault};
+use mission::spelling::nearest;
 use std::cmp::Reverse;
 
 /// Most command lines that are remembered.
@@ -99,7 +100,7 @@ pub(super) fn accept(model: &mut Model, palette: Palette) -> Vec<Effect> {
 
 fn unknown(text: &str) -> String {
     let known = find::commands().flat_map(|action| action.synonyms.iter().copied().chain([action.name]));
-    let near = find::nearest(text, known).map(|name| format!("; did you mean {name}?"));
+    let near = nearest(text, known).map(|name| format!("; did you mean {name}?"));
     format!("no such command{}", near.unwrap_or_default())
 }
 

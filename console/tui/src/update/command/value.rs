@@ -4,7 +4,7 @@ use crate::actions::{ActionId, Kind, find};
 use crate::model::ui::MapLayer;
 use crate::model::{Model, Screen, Source, Speed, parameter};
 use crate::theme::ThemeName;
-use mission::{ParamKind, ParamValue, PlannerInfo, Severity};
+use mission::{ParamKind, ParamValue, PlannerInfo, Severity, spelling::nearest};
 use world::{Point, Vector};
 
 /// A value, checked.
@@ -109,7 +109,7 @@ fn text_of(kind: Kind) -> String {
 /// That there is no such thing, and the nearest or all there are.
 fn wrong(what: &str, text: &str, known: &[String]) -> String {
     let none = format!("no {what} `{text}`");
-    match find::nearest(text, known.iter().map(String::as_str)) {
+    match nearest(text, known.iter().map(String::as_str)) {
         Some(near) => format!("{none}; did you mean {near}?"),
         None if known.is_empty() => format!("{none}; there is none"),
         None => format!("{none}; there are: {}", known.join(", ")),

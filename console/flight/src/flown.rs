@@ -1,0 +1,124 @@
+//! One flight: simulator and mission, tick by tick.
+
+use crate::answers::Answers;
+use mission::{
+    Event, EventKind, Fork, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION,
+};
+
+use scenario::Scenario;
+use sim::{AeConfig, Disturbances, SimConfig, Simulator};
+use std::time::Duration;
+use world::Floor;
+
+/// A scenario being flown.
+#[derive(Clone)]
+pub struct Flight {
+    simulator: Simulator,
+    mission: Mission,
+    tick: u64,
+    tick_s: f64,
+    opened: RunOpened,
+}
+
+impl Flight {
+    /// A flight that waits for its start; `attended` says whether an operator is there.
+    pub fn prepare(scenario: &Scenario, attended: bool) -> Self {
+        let config = MissionConfig { attended, ..scenario.mission.clone() };
+        let drawing = scenario.sim.world.as_drawn();
+        let floor =
+            Floor::new(&drawing, config.cell_m, config.room_m(), config.swath_m, config.start.position);
+        let opened = RunOpened {
+            journal_version: JOURNAL_VERSION,
+            tankops_version: env!("CARGO_PKG_VERSION").into(),
+            scenario: scenario.name.clone(),
+            scenario_toml: scenario.text.clone(),
+            seed: scenario.seed,
+            world: scenario.sim.world.clone(),
+            mission: config.clone(),
+            floor: floor.clone(),
+            plates: scenario.plates,
+            checklist: scenario.checklist.clone(),
+        };
+        Self {
+            simulator: Simulator::new(scenario.sim.clone(), scenario.seed),
+            tick: 0,
+            tick_s: config.tick_s,
+            mission: Mission::new(config, drawing, floor, scenario.seed),
+            opened,
+        }
+    }
+
+    /// How the flight would go on in a tank that holds only what the mission knows, without faults on purpose. Its first order
+    /// has to choose a planner.
+    pub fn forked(&self, scenario: &Scenario) -> Self {
+        let Fork { mission, world, pose, cable } = self.mission.fork();
+        let ae = scenario.sim.ae.clone().map(|ae| {
+            let disturbances = Disturbances { faults: Vec::new(), ..ae.disturbances };
+            AeConfig { outages_s: Vec::new(), disturbances, ..ae }
+        });
+        let config = SimConfig { world, ae, movers: Vec::new(), ..scenario.sim.clone() };
+        Self {
+            simulator: Simulator::resumed(config, scenario.seed, pose, cable),
+            mission,
+            tick: 0,
+            tick_s: self.tick_s,
+            opened: self.opened.clone(),
+        }
+    }
+
+    /// The first event of the run.
+    pub fn opened(&self) -> Event {
+        Event { tick: 0, t_s: 0.0, kind: EventKind::RunOpened(Box::new(self.opened.clone())) }
+    }
+
+    /// The mission that is flown.
+    pub fn mission(&self) -> &Mission {
+        &self.mission
+    }
+
+    /// What the mission is doing.
+    pub fn phase(&self) -> &Phase {
+        self.mission.phase()
+    }
+
+    /// Length of a tick, mission time.
+    pub fn tick_length(&self) -> Duration {
+        Duration::from_secs_f64(self.tick_s)
+    }
+
+    /// Flies one tick: sense, ask and be answered, act. The truth goes into the events first, and nowhere else.
+    pub fn tick(&mut self, orders: &[Order], answers: &mut impl Answers) -> Vec<Event> {
+        let readings = self.simulator.sense();
+        let mut events = self.truth();
+        self.mission.sense(&Input { readings: &readings, orders });
+        loop {
+            while let Some(ask) = self.mission.poll_ask() {
+                answers.submit(ask);
+            }
+            let Some(answer) = answers.next(&self.mission) else { break };
+            self.mission.answer(answer);
+        }
+        let step = self.mission.act();
+        self.simulator.act(step.drive);
+        events.extend(step.events);
+        self.tick += 1;
+        events
+    }
+
+    /// What only the simulator knows of this tick.
+    fn truth(&self) -> Vec<Event> {
+        let truth = self.simulator.truth();
+        let event = |kind| Event { tick: self.tick, t_s: self.tick as f64 * self.tick_s, kind };
+        let (pose, clearance_m, collided) = (truth.pose, truth.clearance_m, truth.collided);
+        let mut events = vec![event(EventKind::Truth { pose, clearance_m, collided })];
+        events.extend(truth.tether.map(|tether| {
+            event(EventKind::TetherTruth {
+                length_m: tether.length_m,
+                wrap_max_rad: tether.wrap_max_rad,
+                wrap_total_rad: tether.wrap_total_rad,
+                detour_m: tether.detour_m,
+            })
+        }));
+        events
+    }
+}

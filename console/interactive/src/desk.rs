@@ -1,0 +1,261 @@
+//! The thread that opens runs one after the other, and has work done beside the screen.
+//!
+//! The engine of a run that is open is closed before the next one is opened: the journal of a run is whole before the
+//! next one begins.
+
+use super::{
+    checking,
+    comparing::Comparing,
+    engine::Engine,
+    forecasting::Forecasting,
+    inbox::{Outbox, RunOutbox},
+    jobs,
+    line::Current,
+    look::Disk,
+};
+use crate::{Drill, config::Config, survey::surveyed};
+use flight::{planners::check_choices, scenarios};
+use mission::{PlannerChoice, PlannerInfo};
+use planner_host::PluginDirs;
+use review::rescan_of;
+use runs::Closed;
+use scenario::{Scenario, Settings};
+use std::{
+    path::PathBuf,
+    sync::{
+        Arc, Mutex, PoisonError,
+        mpsc::{self, Receiver, Sender},
+    },
+    thread::{self, JoinHandle},
+};
+use tui::{Job, Msg, RunId, RunMsg, Source, Speed};
+
+/// What the desk is asked for.
+pub(super) enum Request {
+    /// Close the run that is open and open another one.
+    Open { id: RunId, source: Source, planner: Option<PlannerChoice> },
+    /// Look at what the start depends on.
+    Check { needed_bytes: u64 },
+    /// Have another planner plan the mission that is open.
+    Compare(PlannerChoice),
+    /// Give that plan up.
+    StopComparing,
+    /// Forecast how the held mission would go on with some planners.
+    Forecast(Vec<PlannerChoice>),
+    /// Give the forecasts up.
+    StopForecasting,
+    /// Look at the plugins again.
+    Survey,
+    /// Look at the disk again.
+    Look,
+    /// Work on a past run.
+    Do(Job),
+    /// Close the run that is open, quickly after a signal, and stop.
+    Leave { hurry: bool },
+}
+
+/// The planners as they were found last.
+#[derive(Clone, Default)]
+pub(super) struct Known(Arc<Mutex<Arc<Vec<PlannerInfo>>>>);
+
+impl Known {
+    /// Other planners were found.
+    pub(super) fn set(&self, found: Vec<PlannerInfo>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(found);
+    }
+
+    /// The planners.
+    pub(super) fn get(&self) -> Arc<Vec<PlannerInfo>> {
+        Arc::clone(&self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+/// What everything at the desk needs.
+#[derive(Clone)]
+pub(super) struct Tools {
+    pub logs: PathBuf,
+    pub plugins: PluginDirs,
+    pub planners: Known,
+    pub outbox: Outbox,
+    pub config: Arc<Config>,
+}
+
+/// The desk.
+pub(super) struct Desk {
+    tools: Tools,
+    disk: Arc<Disk>,
+    /// What the command line changes in the scenario that it names.
+    settings: Settings,
+    speed: Speed,
+    drill: Option<Drill>,
+    current: Current,
+    engine: Option<Engine>,
+    /// The mission that is open.
+    opened: Option<(RunId, Arc<Scenario>)>,
+    comparing: Option<Comparing>,
+    forecasting: Option<Forecasting>,
+    /// The last run that was flown.
+    flown: Option<Closed>,
+}
+
+/// The desk, seen from outside.
+#[derive(Clone)]
+pub(super) struct DeskHandle(Sender<Request>);
+
+impl DeskHandle {
+    /// Hands in a request; a desk that has stopped takes none.
+    pub(super) fn request(&self, request: Request) {
+        let _ = self.0.send(request);
+    }
+}
+
+impl Desk {
+    /// A desk without a run.
+    pub(super) fn new(tools: Tools, settings: Settings, speed: Speed, drill: Option<Drill>) -> Self {
+        let disk = Arc::new(Disk::new(tools.clone()));
+        let current = Current::default();
+        Self {
+            tools,
+            disk,
+            settings,
+            speed,
+            drill,
+            current,
+            engine: None,
+            opened: None,
+            comparing: None,
+            forecasting: None,
+            flown: None,
+        }
+    }
+
+    /// The engine of the run that is open.
+    pub(super) fn current(&self) -> Current {
+        self.current.clone()
+    }
+
+    /// Opens a scenario that has been read.
+    ///
+    /// # Errors
+    /// Its planners are not there or do not take their parameters; the system gives no thread.
+    pub(super) fn open(&mut self, id: RunId, scenario: &Scenario) -> anyhow::Result<()> {
+        check_choices(scenario, &self.tools.planners.get())?;
+        let Tools { logs, plugins, outbox, .. } = &self.tools;
+        let screen = RunOutbox { run: id, outbox: outbox.clone() };
+        let engine = Engine::start(scenario, logs, plugins, screen, self.speed, self.drill)?;
+        self.current.set(Some(engine.handle()));
+        self.engine = Some(engine);
+        self.opened = Some((id, Arc::new(scenario.clone())));
+        Ok(())
+    }
+
+    /// Works in a thread of its own from now on.
+    pub(super) fn start(self) -> anyhow::Result<(DeskHandle, JoinHandle<anyhow::Result<Option<Closed>>>)> {
+        let (requests, asked) = mpsc::channel();
+        let thread = thread::Builder::new().name("desk".into()).spawn(move || self.work(&asked))?;
+        Ok((DeskHandle(requests), thread))
+    }
+
+    fn work(mut self, asked: &Receiver<Request>) -> anyhow::Result<Option<Closed>> {
+        for request in asked {
+            match request {
+                Request::Open { id, source, planner } => self.replace(id, &source, planner)?,
+                Request::Check { needed_bytes } => self.check(needed_bytes),
+                Request::Compare(choice) => self.compare(choice),
+                Request::StopComparing => self.comparing = None,
+                Request::Forecast(choices) => self.forecast(choices),
+                Request::StopForecasting => self.forecasting = None,
+                Request::Survey => self.survey(),
+                Request::Look => self.look(),
+                Request::Do(job) => jobs::begin(job, &self.tools),
+                Request::Leave { hurry } => {
+                    self.close(hurry)?;
+                    break;
+                }
+            }
+        }
+        Ok(self.flown)
+    }
+
+    fn replace(&mut self, id: RunId, source: &Source, planner: Option<PlannerChoice>) -> anyhow::Result<()> {
+        self.close(false)?;
+        let opened = self.read(source).and_then(|mut scenario| {
+            if let Some(planner) = planner {
+                scenario.mission.planner = planner;
+            }
+            self.open(id, &scenario)
+        });
+        if let Err(error) = opened {
+            self.tools.outbox.send(Msg::Run(id, RunMsg::OpenFailed(format!("{error:#}"))));
+        }
+        Ok(())
+    }
+
+    fn read(&self, source: &Source) -> anyhow::Result<Scenario> {
+        match source {
+            Source::Demo => scenarios::demo(&self.settings),
+            Source::File(path) => scenarios::read(path.as_ref(), &Settings::default()),
+            Source::Rescan(runs) => rescan_of(runs, &self.tools.logs),
+        }
+    }
+
+    fn check(&self, needed_bytes: u64) {
+        let Some((run, _)) = &self.opened else { return };
+        let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
+        checking::begin(&self.tools, self.current.get(), screen, needed_bytes);
+    }
+
+    fn compare(&mut self, choice: PlannerChoice) {
+        self.comparing = None;
+        let Some((run, scenario)) = &self.opened else { return };
+        let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
+        match Comparing::begin(Arc::clone(scenario), choice, &self.tools.plugins, screen) {
+            Ok(comparing) => self.comparing = Some(comparing),
+            Err(error) => jobs::report(&self.tools.outbox, &format!("cannot compare: {error}")),
+        }
+    }
+
+    fn forecast(&mut self, choices: Vec<PlannerChoice>) {
+        self.forecasting = None;
+        let (Some((run, scenario)), Some(engine)) = (&self.opened, self.current.get()) else { return };
+        let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
+        let plugins = self.tools.plugins.clone();
+        match Forecasting::begin(Arc::clone(scenario), choices, engine, plugins, screen) {
+            Ok(forecasting) => self.forecasting = Some(forecasting),
+            Err(error) => jobs::report(&self.tools.outbox, &format!("cannot forecast: {error}")),
+        }
+    }
+
+    /// Every plugin is opened in a worker of its own; the desk does not wait for them.
+    fn survey(&self) {
+        let Tools { plugins, planners, outbox, .. } = self.tools.clone();
+        let began = thread::Builder::new().name("survey".into()).spawn(move || {
+            let (found, refused) = surveyed(&plugins);
+            planners.set(found.clone());
+            outbox.send(Msg::Planners { found, refused });
+        });
+        if let Err(error) = began {
+            jobs::report(&self.tools.outbox, &format!("cannot look at the plugins: {error}"));
+        }
+    }
+
+    /// Scenarios that are many or large take a while to read: the desk is not kept from opening one.
+    fn look(&self) {
+        let disk = Arc::clone(&self.disk);
+        let began = thread::Builder::new().name("look".into()).spawn(move || disk.look());
+        if let Err(error) = began {
+            jobs::report(&self.tools.outbox, &format!("cannot look at the disk: {error}"));
+        }
+    }
+
+    /// Closes the run that is open.
+    fn close(&mut self, hurry: bool) -> anyhow::Result<()> {
+        self.current.set(None);
+        (self.opened, self.comparing, self.forecasting) = (None, None, None);
+        let Some(engine) = self.engine.take() else { return Ok(()) };
+        if let Some(closed) = engine.close(hurry)? {
+            self.flown = Some(closed);
+        }
+        Ok(())
+    }
+}

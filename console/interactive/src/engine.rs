@@ -1,0 +1,232 @@
+//! The thread that flies: takes orders, keeps the pace, hands every event to recorder, report and screen.
+//!
+//! It never waits in a planner, for the screen or for the disk. Whatever it waits for (the next tick, an answer, room in the
+//! screen's inbox or in the recorder's queue), an order to hold or to end ends the wait at once.
+
+mod estimating;
+mod keeping;
+mod waiting;
+
+use super::{
+    inbox::RunOutbox,
+    line::{EngineHandle, Request, line},
+    pace::{Reached, next_due, window},
+};
+use crate::Drill;
+use flight::{
+    Flight,
+    answers::{Window, Windowed},
+    hosts::host,
+    plan_watch::{PlanWatch, Watched, Work},
+};
+use mission::{AskId, Awaits, Event, Hold, HoldReason, Order, Phase};
+use planner_host::{Host, PluginDirs, Progress};
+use runs::{CLOSE_TIMEOUT, Closed, RunLog};
+use scenario::Scenario;
+use std::{
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        mpsc::{self, Receiver},
+    },
+    thread::{self, JoinHandle},
+    time::{Duration, Instant},
+};
+use tui::{RunMsg, Speed};
+
+/// Time limit for closing the recording when a signal has asked the process to exit.
+const HURRY: Duration = Duration::from_millis(900);
+
+/// The flying thread, seen from outside.
+pub(super) struct Engine {
+    handle: EngineHandle,
+    thread: JoinHandle<Option<Closed>>,
+}
+
+impl Engine {
+    /// Starts the thread; nothing moves and nothing is written before the operator starts the mission.
+    pub(super) fn start(
+        scenario: &Scenario,
+        logs: &Path,
+        plugins: &PluginDirs,
+        screen: RunOutbox,
+        speed: Speed,
+        drill: Option<Drill>,
+    ) -> anyhow::Result<Self> {
+        let mut host = host(scenario, plugins);
+        let (handle, asked) = line(host.waker());
+        let (progress, reported) = mpsc::channel();
+        host.set_on_progress(Arc::new(move |ask, at| {
+            // The receiver lives as long as the host.
+            let _ = progress.send((ask, at.clone()));
+        }));
+        let flight = Flight::prepare(scenario, true);
+        // Before the thread runs, so that the first frame of the screen shows the scenario and every key counts.
+        screen.send(RunMsg::Events(vec![flight.opened()]));
+        let now = Instant::now();
+        let engine = EngineThread {
+            scenario: scenario.clone(),
+            logs: logs.to_path_buf(),
+            flight,
+            watch: PlanWatch::new(host.plan_budget(), None),
+            host,
+            reported,
+            shown_work: None,
+            asked,
+            screen,
+            speed,
+            early: Vec::new(),
+            stop_asked: None,
+            stops_ms: Vec::new(),
+            log: None,
+            closed: None,
+            health_sent_at: now,
+            reached: Reached::since(now),
+            drill,
+        };
+        let thread = thread::Builder::new().name("engine".into()).spawn(move || engine.fly())?;
+        Ok(Self { handle, thread })
+    }
+
+    /// A handle to the engine.
+    pub(super) fn handle(&self) -> EngineHandle {
+        self.handle.clone()
+    }
+
+    /// Ends the run, closes its files and waits for that; less time is allowed after a signal (`hurry`).
+    pub(super) fn close(self, hurry: bool) -> anyhow::Result<Option<Closed>> {
+        self.handle.close(if hurry { HURRY } else { CLOSE_TIMEOUT });
+        self.thread.join().map_err(|panic| anyhow::anyhow!("the engine panicked: {}", words(&*panic)))
+    }
+}
+
+fn words(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(ToString::to_string);
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without a message".into())
+}
+
+/// Everything the thread owns.
+struct EngineThread {
+    scenario: Scenario,
+    logs: PathBuf,
+    flight: Flight,
+    host: Host,
+    watch: PlanWatch,
+    /// How far planners say they are.
+    reported: Receiver<(AskId, Progress)>,
+    /// The planners' work that the screen shows.
+    shown_work: Option<Work>,
+    asked: Receiver<Request>,
+    screen: RunOutbox,
+    speed: Speed,
+    /// What happened before the mission was started; it is written down when it is.
+    early: Vec<Event>,
+    /// When the stop was asked for that the next tick brings.
+    stop_asked: Option<Instant>,
+    /// How long each stop took, milliseconds.
+    stops_ms: Vec<f64>,
+    log: Option<RunLog>,
+    closed: Option<Closed>,
+    health_sent_at: Instant,
+    reached: Reached,
+    drill: Option<Drill>,
+}
+
+impl EngineThread {
+    fn fly(mut self) -> Option<Closed> {
+        let mut due = Instant::now();
+        loop {
+            let (orders, close) = self.wait_until(due);
+            if let Some(within) = close {
+                return self.close(orders, within);
+            }
+            if !orders.is_empty() || self.is_under_way() {
+                due = next_due(due, Instant::now(), self.flight.tick_length(), self.speed, self.waits());
+                self.tick(orders);
+            }
+        }
+    }
+
+    /// Whether ticks pass by themselves: the mission is under way, or a planner is being prepared for it.
+    fn is_under_way(&self) -> bool {
+        match self.flight.phase() {
+            Phase::Waiting => self.flight.mission().awaits() != Awaits::Nothing,
+            Phase::Running(_) | Phase::Held(_) => true,
+            Phase::Ended(_) => false,
+        }
+    }
+
+    /// Whether a planner is at work or owes an answer, or only an order can let the robot move.
+    fn waits(&self) -> bool {
+        let is_silent =
+            matches!(self.flight.phase(), Phase::Held(Hold { by: HoldReason::PlannerSilent { .. }, .. }));
+        is_silent || self.is_held_for_good() || self.flight.mission().is_preparing()
+    }
+
+    fn is_held_for_good(&self) -> bool {
+        matches!(self.flight.phase(), Phase::Held(hold) if hold.resumes.is_never())
+    }
+
+    fn tick(&mut self, mut orders: Vec<Order>) {
+        let starts = self.log.is_none() && self.closed.is_none() && orders.contains(&Order::Start);
+        if starts && let Err(error) = self.open_log() {
+            // Nothing moves without being recorded.
+            let why = format!("cannot start: {error:#}");
+            self.screen.send_urgent(RunMsg::OrderFailed { order: Order::Start, why });
+            orders.retain(|order| *order != Order::Start);
+        }
+        let events = self.fly_tick(&orders, window(self.flight.tick_length(), self.speed));
+        let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
+        assert!(!failing, "drill: the engine fails on purpose");
+        self.send_work();
+        self.estimate(&events);
+        self.send(RunMsg::Events(events));
+        self.send_health();
+        if matches!(self.flight.phase(), Phase::Ended(_)) {
+            self.close_log(CLOSE_TIMEOUT);
+        }
+    }
+
+    /// Flies a tick and keeps what happened.
+    fn fly_tick(&mut self, orders: &[Order], window: Window) -> Vec<Event> {
+        let mut answers = Windowed::new(&mut self.host, window);
+        let events = self.flight.tick(orders, &mut Watched::new(&mut answers, &mut self.watch));
+        if let Some(asked) = self.stop_asked.take() {
+            self.stops_ms.push(asked.elapsed().as_secs_f64() * 1e3);
+        }
+        self.reached.count();
+        self.keep(&events);
+        events
+    }
+
+    /// Sends to the screen what planners are doing beyond this tick, and how far they are.
+    fn send_work(&mut self) {
+        let work = self.watch.current();
+        if work != self.shown_work.as_ref() {
+            self.shown_work = work.cloned();
+            let shown = work.map(|work| (work.what.clone(), work.limit.map(|limit| limit.as_secs_f64())));
+            self.send(RunMsg::Busy(shown));
+        }
+        // Of each planner the last word counts, and only that of the work that is shown.
+        let shown = self.shown_work.as_ref().map(|work| work.ask);
+        let last = self.reported.try_iter().filter(|(ask, _)| Some(*ask) == shown).last();
+        if let Some((_, Progress { share, what })) = last {
+            self.send(RunMsg::BusyAt { share, what });
+        }
+    }
+
+    /// Ends the mission in a tick that waits for nobody, and closes its files.
+    fn close(mut self, mut orders: Vec<Order>, within: Duration) -> Option<Closed> {
+        if matches!(self.flight.phase(), Phase::Running(_) | Phase::Held(_)) {
+            orders.push(Order::Abort);
+            self.fly_tick(&orders, Window::real_time(Duration::ZERO));
+        }
+        self.close_log(within);
+        self.closed
+    }
+
+    fn send(&self, message: RunMsg) {
+        // Once the screen is closed, messages are discarded.
+        self.screen.send(message);
+    }
+}

@@ -1,0 +1,78 @@
+//! What the engine's thread keeps of the run on disk, and what the screen hears of it.
+
+use super::EngineThread;
+use crate::pace::Reached;
+use flight::hosts;
+use mission::Event;
+use report::Stops;
+use runs::{Closed, Kept, RunLog};
+use std::time::{Duration, Instant};
+use tui::{Health, Recording, RunMsg, RunResult};
+
+/// How often the recorder's health is sent to the screen: with the recorder's own look at its files, an operator knows within
+/// a second that the run is not recorded.
+pub(super) const HEALTH_PERIOD: Duration = Duration::from_millis(400);
+
+impl EngineThread {
+    pub(super) fn open_log(&mut self) -> anyhow::Result<()> {
+        let log = RunLog::create(
+            &self.logs,
+            &self.scenario.name,
+            self.flight.mission().planner_id(),
+            self.scenario.seed,
+        )?;
+        self.log = Some(log);
+        self.health_sent_at = Instant::now();
+        self.reached = Reached::since(self.health_sent_at);
+        self.keep(&[self.flight.opened()]);
+        let early = std::mem::take(&mut self.early);
+        self.keep(&early);
+        Ok(())
+    }
+
+    pub(super) fn keep(&mut self, events: &[Event]) {
+        match &mut self.log {
+            Some(log) => log.keep(events),
+            None if self.closed.is_none() => self.early.extend_from_slice(events),
+            None => {}
+        }
+    }
+
+    pub(super) fn send_health(&mut self) {
+        let Some(log) = &self.log else { return };
+        let now = Instant::now();
+        if now.saturating_duration_since(self.health_sent_at) < HEALTH_PERIOD {
+            return;
+        }
+        self.health_sent_at = now;
+        let health = log.health();
+        let recording = health.error.map_or(Recording::On, Recording::Failed);
+        let reached = self.reached.take(now, self.flight.tick_length());
+        // While the mission waits, its pace says nothing of how it will go on.
+        let reached_speed = (!self.waits()).then_some(reached);
+        self.send(RunMsg::Health(Health { recording, reached_speed, recorder_lag: health.lag }));
+    }
+
+    /// Closes journal and recording and writes the report.
+    pub(super) fn close_log(&mut self, within: Duration) {
+        let Some(log) = self.log.take() else { return };
+        let (calls, stops) = (hosts::calls(&self.host), Stops::of(&self.stops_ms));
+        let closed = log.close(within, calls, stops, &self.scenario.expect);
+        let problem = closed.kept.as_ref().and_then(Kept::problem);
+        let result = result(&closed);
+        self.closed = Some(closed);
+        let recording = problem.map_or(Recording::Off, Recording::Failed);
+        self.send(RunMsg::Health(Health { recording, ..Health::default() }));
+        self.send(RunMsg::Closed(Box::new(result)));
+    }
+}
+
+/// What the screen shows of a run that is closed.
+fn result(closed: &Closed) -> RunResult {
+    RunResult {
+        summary: Box::new(closed.summary.clone()),
+        name: closed.kept.as_ref().map(Kept::name),
+        kept: closed.kept.as_ref().map_or_else(|| "not recorded".to_owned(), Kept::text),
+        is_kept: closed.kept.as_ref().is_some_and(|kept| kept.problem().is_none()),
+    }
+}

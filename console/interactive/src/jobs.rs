@@ -1,0 +1,68 @@
+//! Work on past runs beside the screen, each in a thread of its own.
+
+use super::{desk::Tools, inbox::Outbox};
+use anyhow::{Context, bail};
+use mission::Severity;
+use recording::RECORDING_FILE;
+use review::{report_text, verdict};
+use std::{
+    path::Path,
+    process::{Command, Stdio},
+    thread,
+};
+use tui::{Job, Msg};
+
+/// Name of a report in the folder of its run.
+const REPORT: &str = "report.txt";
+
+/// Begins a job; its end is reported to the screen.
+pub(super) fn begin(job: Job, tools: &Tools) {
+    let (tools, outbox) = (tools.clone(), tools.outbox.clone());
+    let began = thread::Builder::new().name("job".into()).spawn(move || {
+        let done = carry_out(&job, &tools).map_err(|error| format!("{error:#}"));
+        tools.outbox.send(Msg::Done(job, done));
+    });
+    if let Err(error) = began {
+        report(&outbox, &format!("cannot begin: {error}"));
+    }
+}
+
+/// Tells the operator that something beside the screen failed.
+pub(super) fn report(outbox: &Outbox, text: &str) {
+    outbox.send(Msg::Notice { severity: Severity::Warn, text: text.to_owned() });
+}
+
+fn carry_out(job: &Job, Tools { logs, plugins, .. }: &Tools) -> anyhow::Result<String> {
+    let folder = runs::find(job.run().as_ref(), logs)?;
+    match job {
+        Job::Verify(_) => verdict(&folder, plugins),
+        Job::Report(_) => {
+            let file = folder.join(REPORT);
+            std::fs::write(&file, report_text(&folder)?).context("writing the report")?;
+            Ok(format!("report written: {}", file.display()))
+        }
+        Job::View(_) => view(&folder.join(RECORDING_FILE)),
+    }
+}
+
+/// Opens a recording in the viewer, which goes on when the console is left.
+fn view(recording: &Path) -> anyhow::Result<String> {
+    if !recording.is_file() {
+        bail!("there is no recording: {}", recording.display());
+    }
+    let viewer = Command::new("rerun")
+        .arg(recording)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn();
+    match viewer {
+        Ok(mut viewer) => {
+            thread::spawn(move || viewer.wait());
+            Ok(format!("opened in rerun: {}", recording.display()))
+        }
+        Err(error) => {
+            bail!("rerun cannot be started ({error}); open it by hand: rerun {}", recording.display())
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! The console: engine, keys, signals and screen, each in a thread of its own; this one draws.
+
+pub mod config;
+
+mod checking;
+mod comparing;
+mod crash;
+mod desk;
+mod engine;
+mod forecasting;
+mod inbox;
+mod jobs;
+mod line;
+mod look;
+mod measure;
+mod pace;
+mod plain;
+mod screen;
+mod script;
+mod session;
+mod survey;
+mod watch;
+
+use config::Config;
+use desk::{Desk, Known, Request, Tools};
+use flight::{failure::bad_input, scenarios};
+use inbox::{Outbox, inbox};
+use line::Current;
+use planner_host::PluginDirs;
+use runs::check_logs;
+use scenario::Settings;
+use screen::{Left, Screen};
+use script::Script;
+use session::Session;
+use std::{
+    io::IsTerminal,
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::{Path, PathBuf},
+    process::ExitCode,
+    sync::Arc,
+};
+use survey::surveyed;
+use tui::{Caps, Colours, Glyphs, Model, Msg, RunId, Source, Speed, terminal};
+
+/// What a console is opened with; `None` leaves a choice to `config.toml` and then to the terminal.
+#[derive(Debug)]
+pub struct Options {
+    /// Scenario file; `None`: the demo.
+    pub scenario: Option<PathBuf>,
+    /// What the command line changes about it.
+    pub settings: Settings,
+    /// Folder that holds the runs.
+    pub logs: PathBuf,
+    /// Speed of the simulation at first.
+    pub speed: Option<Speed>,
+    /// Number of colours.
+    pub colours: Option<Colours>,
+    /// Characters of map and charts.
+    pub glyphs: Option<Glyphs>,
+    /// Who operates it.
+    pub by: By,
+    /// A part that fails on purpose.
+    pub drill: Option<Drill>,
+}
+
+/// Who operates a console.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum By {
+    /// Somebody at the terminal, with keys.
+    Keys,
+    /// The commands in a file, without a terminal.
+    Script(PathBuf),
+    /// Commands on stdin, answered in sentences on stdout.
+    Lines,
+}
+
+/// A part of the console that fails on purpose, to see that the run and the terminal survive it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Drill {
+    /// The thread that draws panics.
+    PanicScreen,
+    /// The thread that flies panics.
+    PanicEngine,
+}
+
+/// How a console was left.
+enum Ended {
+    /// By the operator or a signal.
+    Left(Left),
+    /// By the end of its script, or the line that failed.
+    Script(Result<(), String>),
+}
+
+/// Opens the console on a scenario, or on the demo; returns when the operator leaves or the script ends.
+///
+/// # Errors
+/// There is no terminal; the scenario, its planners, the script or the folder of the runs are refused; the system gives no
+/// thread; the run could not be closed.
+pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
+    let script = match &options.by {
+        By::Script(file) => Some(Script::read(file)?),
+        By::Keys | By::Lines => None,
+    };
+    if options.by == By::Keys {
+        check_terminal()?;
+    }
+    let config = Arc::new(Config::load());
+    let Options { settings, logs, drill, .. } = options;
+    let speed = options.speed.unwrap_or(config.speed);
+    let (source, scenario) = match &options.scenario {
+        Some(path) => (Source::File(path.display().to_string()), scenarios::read(path, settings)?),
+        None => (Source::Demo, scenarios::demo(settings)?),
+    };
+    let (found, refused) = surveyed(plugins);
+    check_logs(logs)?;
+    let (outbox, inbox) = inbox();
+    let tools = Tools {
+        logs: logs.clone(),
+        plugins: plugins.clone(),
+        planners: Known::default(),
+        outbox: outbox.clone(),
+        config: Arc::clone(&config),
+    };
+    tools.planners.set(found.clone());
+    let mut desk = Desk::new(tools, settings.clone(), speed, *drill);
+    let run = RunId(1);
+    // Before the screen opens, so that its first frame shows the scenario and every key counts.
+    desk.open(run, &scenario)?;
+    outbox.send(Msg::Planners { found, refused });
+    let current = desk.current();
+    let (desk, thread) = desk.start()?;
+    desk.request(Request::Look);
+    let model = config.apply(Model::opened(run, source, speed));
+    let session = Session::new(model, inbox, (current.clone(), desk.clone()));
+    let ended = match script {
+        Some(script) => script.run(session, &outbox, &current).map(Ended::Script),
+        None if options.by == By::Lines => plain::speak(session, &outbox, &current).map(Ended::Left),
+        None => show(session, caps(options, &config), logs, (outbox, current), *drill).map(Ended::Left),
+    };
+    // Whatever happened to the screen, the run is closed cleanly.
+    let hurry = matches!(&ended, Ok(Ended::Left(left)) if left.signal.is_some());
+    desk.request(Request::Leave { hurry });
+    let closed = thread.join().map_err(|_| anyhow::anyhow!("the thread that closes the run panicked"))?;
+    let closed = closed?;
+    match ended? {
+        Ended::Left(left) => Ok(left.report_end(closed.as_ref())),
+        Ended::Script(done) => Ok(script::report(done)),
+    }
+}
+
+fn caps(options: &Options, config: &Config) -> Caps {
+    let mut caps = Caps::from_env(|name| std::env::var(name).ok());
+    caps.colours = options.colours.or(config.colours).unwrap_or(caps.colours);
+    caps.glyphs = options.glyphs.unwrap_or(caps.glyphs);
+    caps
+}
+
+fn check_terminal() -> anyhow::Result<()> {
+    if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
+        return Err(bad_input(
+            "the console needs a terminal on stdin and stdout; without one use `tankops run SCENARIO`, --script or --plain",
+        ));
+    }
+    if std::env::var("TERM").is_ok_and(|term| term == "dumb") {
+        return Err(bad_input("the console cannot draw on TERM=dumb; use `tankops run SCENARIO`"));
+    }
+    Ok(())
+}
+
+fn show(
+    session: Session,
+    caps: Caps,
+    logs: &Path,
+    (outbox, current): (Outbox, Current),
+    drill: Option<Drill>,
+) -> anyhow::Result<Left> {
+    let panic_outbox = outbox.clone();
+    terminal::install_panic_hook(move |thread, message| {
+        let panicked = Msg::ThreadPanicked { thread: thread.into(), message: message.into() };
+        panic_outbox.send_urgent(panicked);
+    });
+    let places = watch::SharedPlaces::default();
+    let mut screen = Screen::open(caps, session, places.clone(), drill)?;
+    watch::keys(&outbox, current.clone(), places)?;
+    watch::signals(&outbox, current.clone())?;
+    watch::terminal(&outbox, current.clone())?;
+    watch::disk(&outbox, logs)?;
+    drop(outbox);
+    let ran = catch_unwind(AssertUnwindSafe(|| screen.run()));
+    ran.unwrap_or_else(|_| Err(crash::report(logs, screen.model())))
+}

@@ -1,0 +1,201 @@
+//! What the home screen shows: scenarios, past runs, and what is wrong on the disk.
+
+use super::{desk::Tools, inbox::Outbox};
+use flight::{planners::check_choices, scenarios};
+use mission::{Severity, TaskConfig};
+use runs::Listed;
+use scenario::{Scenario, Settings};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
+    time::SystemTime,
+};
+use tui::{
+    Msg, Source,
+    model::{
+        PastRun, ScenarioEntry,
+        home::{Attention, Found},
+    },
+};
+use world::Boundary;
+
+/// Past runs that are shown, the newest ones.
+const MOST_RUNS: usize = 1000;
+/// Past runs about which the operator is warned, the newest ones.
+const RECENT: usize = 20;
+
+/// The disk as it was seen last: a file that has not changed is not read again.
+pub(super) struct Disk {
+    tools: Tools,
+    read: Mutex<BTreeMap<PathBuf, (Option<SystemTime>, ScenarioEntry)>>,
+}
+
+impl Disk {
+    /// A disk that was not looked at yet.
+    pub(super) fn new(tools: Tools) -> Self {
+        Self { tools, read: Mutex::default() }
+    }
+
+    /// Looks at it, and tells the screen.
+    pub(super) fn look(&self) {
+        let outbox: &Outbox = &self.tools.outbox;
+        outbox.send(Msg::Found(Box::new(self.found())));
+    }
+
+    fn found(&self) -> Found {
+        let Tools { logs, .. } = &self.tools;
+        let scenarios = self.scenarios();
+        let (runs, unreadable) = match runs::list(logs) {
+            Ok(listed) => (listed.iter().rev().take(MOST_RUNS).map(past_run).collect(), None),
+            Err(error) => (Vec::new(), Some(error.to_string())),
+        };
+        let mut attention = attention(&runs, &scenarios);
+        attention.extend(self.tools.config.attention.clone());
+        attention.extend(unreadable.map(|why| point(Severity::Crit, "LOGS", why)));
+        attention.push(match runs::check_logs(logs) {
+            Ok(()) => point(Severity::Info, "ok", format!("runs can be kept in {}", logs.display())),
+            Err(error) => point(Severity::Crit, "LOGS", error.to_string()),
+        });
+        attention.sort_by_key(|point| std::cmp::Reverse(point.severity));
+        Found {
+            scenarios,
+            runs,
+            logs: logs.display().to_string(),
+            free_bytes: runs::free_bytes(logs),
+            attention,
+        }
+    }
+
+    /// The scenarios in the folders, by name; the demo too, wherever the console was started.
+    fn scenarios(&self) -> Vec<ScenarioEntry> {
+        let folders = &self.tools.config.scenarios;
+        let mut files: Vec<PathBuf> = folders
+            .iter()
+            .filter_map(|folder| std::fs::read_dir(folder).ok())
+            .flatten()
+            .filter_map(|entry| Some(entry.ok()?.path()))
+            .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+            .collect();
+        files.sort();
+        let mut entries: Vec<ScenarioEntry> = files.iter().map(|file| self.entry(file)).collect();
+        if !entries.iter().any(|entry| entry.name == "demo") {
+            entries.push(entry_of(
+                Source::Demo,
+                "demo",
+                scenarios::demo(&Settings::default()).map_err(|error| error.to_string()),
+                self,
+            ));
+        }
+        entries.sort_by(|one, other| one.name.cmp(&other.name));
+        entries
+    }
+
+    fn entry(&self, file: &Path) -> ScenarioEntry {
+        let changed = std::fs::metadata(file).and_then(|data| data.modified()).ok();
+        let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((before, entry)) =
+            read.get(file).filter(|(before, _)| before.is_some() && *before == changed)
+        {
+            debug_assert_eq!(*before, changed);
+            return entry.clone();
+        }
+        let name = file.file_stem().unwrap_or_default().to_string_lossy();
+        let source = Source::File(file.display().to_string());
+        // A pipe would be waited for without end.
+        let scenario = if file.is_file() {
+            scenarios::read(file, &Settings::default()).map_err(|error| error.to_string())
+        } else {
+            Err(format!("{}: not a file", file.display()))
+        };
+        let entry = entry_of(source, &name, scenario, self);
+        read.insert(file.to_owned(), (changed, entry.clone()));
+        entry
+    }
+}
+
+fn entry_of(source: Source, name: &str, scenario: Result<Scenario, String>, disk: &Disk) -> ScenarioEntry {
+    let checked = scenario.and_then(|scenario| {
+        let problem = check_choices(&scenario, &disk.tools.planners.get()).err();
+        problem.map_or(Ok(scenario), |error| Err(error.to_string()))
+    });
+    match checked {
+        Ok(scenario) => ScenarioEntry {
+            source,
+            name: scenario.name.clone(),
+            about: scenario.about.clone(),
+            task: task(&scenario.mission.task).to_owned(),
+            tank: tank(&scenario.sim.world.boundary),
+            planner: scenario.mission.planner.id.clone(),
+            expected: scenario.expect.words(),
+            problem: None,
+        },
+        Err(problem) => ScenarioEntry {
+            source,
+            name: name.to_owned(),
+            about: String::new(),
+            task: String::new(),
+            tank: String::new(),
+            planner: String::new(),
+            expected: String::new(),
+            problem: Some(problem),
+        },
+    }
+}
+
+fn task(task: &TaskConfig) -> &'static str {
+    match task {
+        TaskConfig::Goto { .. } => "goto",
+        TaskConfig::Follow { .. } => "follow",
+        TaskConfig::Cover { .. } => "cover",
+    }
+}
+
+fn tank(boundary: &Boundary) -> String {
+    match boundary {
+        Boundary::Circle { radius_m } => format!("Ø{:.0} m", 2.0 * radius_m),
+        Boundary::Polygon { .. } => {
+            let (low, high) = boundary.bounds();
+            format!("{:.0}×{:.0} m", high.x - low.x, high.y - low.y)
+        }
+    }
+}
+
+fn past_run(listed: &Listed) -> PastRun {
+    PastRun {
+        name: listed.name.clone(),
+        began: began(&listed.name),
+        scenario: listed.scenario.clone().unwrap_or_default(),
+        end: listed.end.clone(),
+        mission_time_s: listed.mission_time_s,
+        reachable: listed.coverage_reachable,
+        note: listed.note.clone(),
+    }
+}
+
+/// Month, day and time of a folder's name, `20261122T040049Z-...`.
+fn began(name: &str) -> String {
+    let digits = |range| name.get(range).filter(|part: &&str| part.bytes().all(|byte| byte.is_ascii_digit()));
+    match (digits(4..6), digits(6..8), digits(9..11), digits(11..13)) {
+        (Some(month), Some(day), Some(hour), Some(minute)) => format!("{month}-{day} {hour}:{minute}"),
+        _ => String::new(),
+    }
+}
+
+fn attention(runs: &[PastRun], scenarios: &[ScenarioEntry]) -> Vec<Attention> {
+    let bad_ends = ["CRASHED", "RECORDING FAILED", "UNREADABLE"];
+    let bad_runs = runs.iter().take(RECENT).filter(|run| bad_ends.contains(&run.end.as_str())).map(|run| {
+        let note = run.note.clone().unwrap_or_default();
+        point(Severity::Warn, &run.end, format!("run {}: {note}", run.name))
+    });
+    let invalid = scenarios.iter().filter_map(|entry| {
+        let problem = entry.problem.as_ref()?;
+        let line = problem.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
+        Some(point(Severity::Watch, "INVALID", format!("{}: {line}", entry.name)))
+    });
+    bad_runs.chain(invalid).collect()
+}
+
+fn point(severity: Severity, kind: &str, text: String) -> Attention {
+    Attention { severity, kind: kind.to_owned(), text }
+}

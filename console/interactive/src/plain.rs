@@ -1,0 +1,86 @@
+//! The console in sentences: what changes goes to stdout, commands come from stdin.
+
+use super::{
+    inbox::Outbox,
+    line::Current,
+    screen::Left,
+    session::{Session, is_open},
+    watch,
+};
+use anyhow::Context;
+use report::print::say_line;
+use std::{
+    io::BufRead,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+};
+use tui::{Effect, Key, Model, Msg, Signal, plain::Said};
+
+/// Speaks until the operator leaves. The end of stdin holds the robot, ends the mission and leaves.
+///
+/// # Errors
+/// The system gives no thread; stdout cannot be written to.
+pub(super) fn speak(mut session: Session, outbox: &Outbox, engine: &Current) -> anyhow::Result<Left> {
+    watch::signals(outbox, engine.clone())?;
+    let is_over = Arc::new(AtomicBool::new(false));
+    let mut is_listening = false;
+    let mut said = Said::default();
+    loop {
+        // A command counts from when the scenario is open, as for an operator who sees the screen.
+        if !is_listening && is_open(&session.model) {
+            listen(outbox, Arc::clone(&is_over))?;
+            is_listening = true;
+        }
+        for line in said.next(&session.model) {
+            say_line(&line)?;
+        }
+        let msg = session.next(session.wakes_at());
+        session.update_time();
+        let Some(msg) = msg else { continue };
+        let effects = session.take(msg);
+        if let Some(fault) = fault(&session.model) {
+            say_line(&fault)?;
+            session.take(Msg::Key(Key::Esc.into()));
+        }
+        for effect in effects {
+            if let Effect::Quit { signal } = effect {
+                return Ok(Left { signal: signal.filter(|_| !is_over.load(Ordering::Relaxed)) });
+            }
+        }
+    }
+}
+
+/// What is wrong with the command that was given.
+fn fault(model: &Model) -> Option<String> {
+    let tui::model::Overlay::Commands(palette) = &model.ui.overlay else { return None };
+    palette.fault.as_ref().map(|fault| format!("Refused: {}.", fault.what))
+}
+
+/// Commands from stdin: `yes` and `no` answer a question, `key NAME` presses a key, everything else is a command line.
+/// `is_over` becomes true at their end.
+fn listen(outbox: &Outbox, is_over: Arc<AtomicBool>) -> anyhow::Result<()> {
+    let outbox = outbox.clone();
+    let began = thread::Builder::new().name("stdin".into()).spawn(move || {
+        for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
+            // What is no text is refused as a command that there is not; the lines after it count.
+            let msg = match String::from_utf8_lossy(&line).trim() {
+                "" => continue,
+                "yes" => Msg::Key(Key::Enter.into()),
+                "no" => Msg::Key(Key::Esc.into()),
+                line => match line.strip_prefix("key ").and_then(|name| Key::named(name.trim())) {
+                    Some(key) => Msg::Key(key.into()),
+                    None => Msg::Line(line.to_owned()),
+                },
+            };
+            if !outbox.send_urgent(msg) {
+                return;
+            }
+        }
+        is_over.store(true, Ordering::Relaxed);
+        outbox.send_urgent(Msg::Signal(Signal::Hangup));
+    });
+    began.map(drop).context("starting the thread for stdin")
+}

@@ -1,0 +1,272 @@
+//! The drawing thread: messages in, model updated, effects carried out, a frame when something changed.
+
+use super::{measure::Measure, session::Session, watch::SharedPlaces};
+use crate::Drill;
+use anyhow::Context;
+use flight::failure::{COMPLETE, ENDED_OTHERWISE, exit_code};
+use mission::{EventKind, Outcome};
+use runs::Closed;
+use std::{
+    io::Write,
+    process::ExitCode,
+    time::{Duration, Instant},
+};
+use tui::{Cache, Caps, Effect, Model, Msg, Redraw, RunMsg, Signal, redraw, terminal::TerminalGuard};
+
+/// Messages that are taken in before the next frame, at most.
+const BURST: usize = 256;
+/// Time that is spent on them before the next frame, at most.
+const BURST_TIME: Duration = Duration::from_millis(5);
+/// Shortest time between two frames that only show new values of a robot that stands still.
+const CALM_FRAME: Duration = Duration::from_secs(1);
+/// Bytes a second that new values take at most, however fast the mission goes, and while the robot stands still; answers to
+/// keys are not held back.
+const LINE_RATE: f64 = 15_000.0;
+const CALM_RATE: f64 = 200.0;
+/// Longest time between two frames of a robot that stands still.
+const LONGEST_CALM: Duration = Duration::from_secs(4);
+/// New values wait for the line no longer than this, even after every cell was redrawn.
+const LONGEST_DEBT: Duration = Duration::from_millis(250);
+/// Shortest time between two frames that answer keys.
+const KEY_FRAME: Duration = Duration::from_millis(8);
+
+/// The screen while the console is open.
+pub(super) struct Screen {
+    terminal: TerminalGuard,
+    session: Session,
+    caps: Caps,
+    drawn: Instant,
+    frame_interval: Duration,
+    /// Shortest time between the last frame and one that only shows new values of a robot that stands still.
+    calm_pause: Duration,
+    /// For how long after the last frame a line of [`LINE_RATE`] is busy with it and those before it.
+    line_busy: Duration,
+    /// How soon there is to be a frame.
+    due: Redraw,
+    cache: Cache,
+    places: SharedPlaces,
+    /// Whether the operator waits for something that the next frame shows.
+    answer_seen: bool,
+    measure: Measure,
+    drill: Option<Drill>,
+}
+
+/// Why the screen was left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Left {
+    /// The signal that asked for it, if one did.
+    pub signal: Option<Signal>,
+}
+
+impl Screen {
+    /// Takes the terminal over.
+    pub(super) fn open(
+        caps: Caps,
+        mut session: Session,
+        places: SharedPlaces,
+        drill: Option<Drill>,
+    ) -> anyhow::Result<Self> {
+        let mut terminal = TerminalGuard::enter().context("taking over the terminal")?;
+        terminal.take_mouse(session.model.ui.mouse).context("taking the mouse")?;
+        let (width, height) = crossterm::terminal::size().unwrap_or((80, 24));
+        session.take(Msg::Resize { width, height });
+        Ok(Self {
+            terminal,
+            session,
+            caps,
+            drawn: Instant::now(),
+            // A slow line gets fewer frames.
+            frame_interval: Duration::from_millis(if caps.ssh { 100 } else { 33 }),
+            calm_pause: CALM_FRAME,
+            line_busy: Duration::ZERO,
+            due: Redraw::Soon,
+            cache: Cache::default(),
+            places,
+            answer_seen: true,
+            measure: Measure::since(Instant::now()),
+            drill,
+        })
+    }
+
+    /// What the screen knows, for a crash report.
+    pub(super) fn model(&self) -> &Model {
+        &self.session.model
+    }
+
+    /// Runs until the operator or a signal wants to leave.
+    pub(super) fn run(&mut self) -> anyhow::Result<Left> {
+        loop {
+            if let Some(left) = self.take_burst()? {
+                return Ok(left);
+            }
+            if self.pause().is_some_and(|pause| self.drawn.elapsed() >= pause) {
+                self.draw()?;
+            }
+        }
+    }
+
+    /// Shortest time between the last frame and the next; `None` if none is due.
+    fn pause(&self) -> Option<Duration> {
+        match self.due {
+            Redraw::No => None,
+            Redraw::Calm => Some(self.calm_pause),
+            Redraw::Soon if self.answer_seen => Some(KEY_FRAME),
+            Redraw::Soon => Some(self.frame_interval.max(self.line_busy)),
+        }
+    }
+
+    /// Waits for a message, then takes in what else is there.
+    fn take_burst(&mut self) -> anyhow::Result<Option<Left>> {
+        let first = self.wait();
+        // What the screen waited for may be that it changes by itself.
+        let by_itself = self.session.model.wakes_at_mono_s();
+        self.session.update_time();
+        if by_itself.is_some_and(|at_s| at_s <= self.session.model.console.now.mono_s) {
+            self.due = Redraw::Soon;
+        }
+        let began = Instant::now();
+        if let Some(measured) = self.measure.report(began) {
+            for effect in self.take(Msg::Measured(measured)) {
+                self.carry_out(&effect)?;
+            }
+        }
+        let until = Instant::now() + BURST_TIME;
+        let mut next = first;
+        for _ in 0..BURST {
+            let Some(msg) = next else { break };
+            self.answer_seen |= is_answer(&msg);
+            if matches!(msg, Msg::Signal(Signal::Continue)) {
+                self.measure = Measure::since(Instant::now());
+            }
+            let due = redraw(&self.session.model, &msg);
+            self.due = self.due.max(due);
+            if due == Redraw::Soon {
+                self.measure.arrived(&msg, began);
+            }
+            for effect in self.take(msg) {
+                if let Some(left) = self.carry_out(&effect)? {
+                    return Ok(Some(left));
+                }
+            }
+            let now = Instant::now();
+            next = if now < until { self.session.next(Some(now)) } else { None };
+        }
+        Ok(None)
+    }
+
+    /// Takes in a message. What was measured of the console is seen only if it raises or clears an alarm.
+    fn take(&mut self, msg: Msg) -> Vec<Effect> {
+        let alarms = |screen: &Self| screen.session.model.live.run.alarms.clone();
+        let before = matches!(msg, Msg::Measured(_)).then(|| alarms(self));
+        let effects = self.session.take(msg);
+        if before.is_some_and(|before| before != alarms(self)) {
+            self.due = Redraw::Soon;
+        }
+        effects
+    }
+
+    /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.
+    fn wait(&self) -> Option<Msg> {
+        let frame = self.pause().map(|pause| self.drawn + pause);
+        self.session.next(frame.into_iter().chain(self.session.wakes_at()).min())
+    }
+
+    fn carry_out(&mut self, effect: &Effect) -> anyhow::Result<Option<Left>> {
+        match effect {
+            Effect::Redraw => self.terminal.redraw().context("drawing")?,
+            Effect::Bell => ring()?,
+            Effect::Mouse(taken) => self.terminal.take_mouse(*taken).context("taking the mouse")?,
+            Effect::Copy(line) => self.terminal.copy(line).context("copying")?,
+            Effect::Suspend => self.suspend()?,
+            Effect::Quit { signal } => return Ok(Some(Left { signal: *signal })),
+            // The session has carried out the others.
+            _ => {}
+        }
+        Ok(None)
+    }
+
+    /// Gives the terminal back and stops the process until the shell continues it.
+    fn suspend(&mut self) -> anyhow::Result<()> {
+        self.terminal.suspend();
+        rustix::process::kill_process(rustix::process::getpid(), rustix::process::Signal::STOP)
+            .context("stopping the process")?;
+        self.terminal.resume().context("taking the terminal over again")?;
+        // Nobody waited for a frame while the process was stopped.
+        self.measure = Measure::since(Instant::now());
+        self.due = Redraw::Soon;
+        Ok(())
+    }
+
+    fn draw(&mut self) -> anyhow::Result<()> {
+        let failing = self.drill == Some(Drill::PanicScreen) && self.session.model.live.run.clock.tick > 5;
+        assert!(!failing, "drill: the screen fails on purpose");
+        let (model, caps, cache) = (&self.session.model, &self.caps, &mut self.cache);
+        let bytes =
+            self.terminal.draw(|frame| tui::view_cached(model, caps, cache, frame)).context("drawing")?;
+        // A frame that the line had no room for was not skipped.
+        let interval = self.frame_interval.max(self.line_busy);
+        self.calm_pause = taken(bytes, CALM_RATE).clamp(CALM_FRAME, LONGEST_CALM);
+        let left = self.line_busy.saturating_sub(self.drawn.elapsed());
+        self.line_busy = (left + taken(bytes, LINE_RATE)).min(LONGEST_DEBT);
+        if model.ui.mouse {
+            self.places.set(self.cache.places());
+        }
+        let now = Instant::now();
+        self.measure.drew(now, now - self.drawn, interval);
+        (self.drawn, self.due, self.answer_seen) = (now, Redraw::No, false);
+        Ok(())
+    }
+}
+
+/// How long some bytes take on a line of a rate in bytes a second.
+fn taken(bytes: usize, rate: f64) -> Duration {
+    Duration::from_secs_f64(bytes as f64 / rate)
+}
+
+/// Whether an operator waits to see this: a key, or that the robot was stopped.
+fn is_answer(msg: &Msg) -> bool {
+    match msg {
+        Msg::Key(_) | Msg::Paste(_) | Msg::Mouse(_) | Msg::Resize { .. } | Msg::Signal(_) => true,
+        Msg::Run(_, RunMsg::Events(events)) => {
+            events.iter().any(|event| matches!(event.kind, EventKind::Held { .. }))
+        }
+        _ => false,
+    }
+}
+
+fn ring() -> anyhow::Result<()> {
+    let mut out = std::io::stdout();
+    out.write_all(b"\x07").and_then(|()| out.flush()).context("ringing the bell")
+}
+
+impl Left {
+    /// Reports on the normal screen how the run ended; the exit code reports it to scripts.
+    pub(super) fn report_end(self, closed: Option<&Closed>) -> ExitCode {
+        let kept = closed.and_then(|closed| closed.kept.as_ref());
+        // A terminal that was closed shows nothing.
+        if let Some(closed) = closed.filter(|_| self.signal != Some(Signal::Hangup)) {
+            let line = kept.map(|kept| kept.text() + "\n").unwrap_or_default();
+            let text = report::human(&closed.summary) + &line;
+            let _ = std::io::stdout().write_all(text.as_bytes());
+        }
+        if let Some(signal) = self.signal {
+            return ExitCode::from(128 + number(signal));
+        }
+        let code = match closed.and_then(|closed| closed.summary.outcome) {
+            None | Some(Outcome::Complete) => COMPLETE,
+            Some(_) => ENDED_OTHERWISE,
+        };
+        ExitCode::from(exit_code(code, kept))
+    }
+}
+
+fn number(signal: Signal) -> u8 {
+    let number = match signal {
+        Signal::Interrupt => signal_hook::consts::SIGINT,
+        Signal::Terminate => signal_hook::consts::SIGTERM,
+        Signal::Hangup => signal_hook::consts::SIGHUP,
+        Signal::Stop => signal_hook::consts::SIGTSTP,
+        Signal::Continue => signal_hook::consts::SIGCONT,
+    };
+    number.unsigned_abs() as u8
+}

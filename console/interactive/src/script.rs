@@ -1,0 +1,221 @@
+//! Console commands from a file: the same model, rules and engine, without a terminal.
+//!
+//! ```text
+//! # one a line
+//! speed max
+//! start
+//! key enter
+//! wait until phase ended within 2m
+//! assert coverage >= 95
+//! picture result.svg
+//! ```
+
+mod condition;
+mod read;
+
+use super::{
+    inbox::Outbox,
+    line::Current,
+    session::{Session, is_open},
+    watch,
+};
+use anyhow::Context;
+use condition::Condition;
+use flight::failure::{COMPLETE, ENDED_OTHERWISE, bad_input};
+use mission::Severity;
+use ratatui::{Terminal, backend::TestBackend};
+use report::print::warn_line;
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+    time::{Duration, Instant},
+};
+use tui::{Caps, Colours, Effect, Glyphs, Key, Model, Msg, Signal};
+
+/// Columns and rows of the screen at first; `size` changes them.
+const SIZE: (u16, u16) = (120, 36);
+/// Time within which a condition is looked at again although nothing was heard.
+const LOOK_AGAIN: Duration = Duration::from_millis(50);
+/// Time for which a command waits for what it needs to be opened.
+const OPENING: Duration = Duration::from_secs(30);
+
+/// What a line of a script does.
+#[derive(Debug, Clone, PartialEq)]
+enum Step {
+    /// Runs a console command.
+    Command(String),
+    /// Presses a key.
+    Key(Key),
+    /// Waits for a condition, for so many seconds by the wall clock.
+    Wait(Condition, f64),
+    /// Demands a condition.
+    Assert(Condition),
+    /// Makes the screen so many columns and rows large.
+    Size((u16, u16)),
+    /// Writes the screen to a file as a picture.
+    Picture(PathBuf),
+}
+
+/// A script.
+#[derive(Debug)]
+pub(super) struct Script {
+    file: PathBuf,
+    /// The lines that do something, by their number.
+    steps: Vec<(usize, Step)>,
+}
+
+impl Script {
+    /// Reads a script.
+    ///
+    /// # Errors
+    /// The file cannot be read; a line is none: every such line with its number.
+    pub(super) fn read(file: &Path) -> anyhow::Result<Self> {
+        let shown = file.display();
+        let text = std::fs::read_to_string(file).map_err(|error| bad_input(format!("{shown}: {error}")))?;
+        let steps = read::steps(&text).map_err(|wrong| {
+            let lines = wrong.iter().map(|(line, what)| format!("{shown}:{line}: {what}"));
+            bad_input(lines.collect::<Vec<_>>().join("\n"))
+        })?;
+        Ok(Self { file: file.to_owned(), steps })
+    }
+
+    /// Runs the script; the line that failed, and why.
+    ///
+    /// # Errors
+    /// The system gives no thread for signals.
+    pub(super) fn run(
+        self,
+        session: Session,
+        outbox: &Outbox,
+        engine: &Current,
+    ) -> anyhow::Result<Result<(), String>> {
+        watch::signals(outbox, engine.clone())?;
+        let mut runner = Runner { session, is_left: false };
+        runner.session.take(Msg::Resize { width: SIZE.0, height: SIZE.1 });
+        Ok(runner.carry_out(&self))
+    }
+}
+
+/// Reports how a script went; the exit code.
+pub(super) fn report(done: Result<(), String>) -> ExitCode {
+    match done {
+        Ok(()) => ExitCode::from(COMPLETE),
+        Err(why) => {
+            warn_line(&why);
+            ExitCode::from(ENDED_OTHERWISE)
+        }
+    }
+}
+
+struct Runner {
+    session: Session,
+    is_left: bool,
+}
+
+impl Runner {
+    fn carry_out(&mut self, script: &Script) -> Result<(), String> {
+        // A command counts from when the scenario is open, as for an operator who sees the screen.
+        self.hear_until(OPENING, is_open)?;
+        for (line, step) in &script.steps {
+            let done = self.step(step);
+            done.map_err(|why| format!("{}:{line}: {why}", script.file.display()))?;
+        }
+        Ok(())
+    }
+
+    fn step(&mut self, step: &Step) -> Result<(), String> {
+        if self.is_left {
+            return Err("the console was left before".into());
+        }
+        match step {
+            Step::Size((width, height)) => self.take(Msg::Resize { width: *width, height: *height }),
+            Step::Picture(file) => {
+                let screen =
+                    drawn(&self.session.model, Colours::True).map_err(|error| format!("{error:#}"))?;
+                let picture = tui::picture::svg(screen.backend().buffer());
+                std::fs::write(file, picture).map_err(|error| format!("{}: {error}", file.display()))
+            }
+            Step::Command(line) => self.order(Msg::Line(line.clone())),
+            Step::Key(key) => self.order(Msg::Key((*key).into())),
+            Step::Wait(condition, within_s) => {
+                let within = Duration::from_secs_f64(*within_s);
+                if self.hear_until(within, |model| condition.holds(model, screen))? {
+                    return Ok(());
+                }
+                Err(format!(
+                    "not within {within_s} s: {condition}; {}",
+                    condition.instead(&self.session.model)
+                ))
+            }
+            Step::Assert(condition) if condition.holds(&self.session.model, screen) => Ok(()),
+            Step::Assert(condition) => {
+                Err(format!("not so: {condition}; {}", condition.instead(&self.session.model)))
+            }
+        }
+    }
+
+    /// Gives a command or a key to the console; what it refuses is a failure.
+    fn order(&mut self, msg: Msg) -> Result<(), String> {
+        self.hear_until(Duration::ZERO, |_| false)?;
+        self.session.model.console.notice = None;
+        self.take(msg)?;
+        let model = &self.session.model;
+        if let tui::model::Overlay::Commands(palette) = &model.ui.overlay
+            && let Some(fault) = &palette.fault
+        {
+            return Err(fault.what.clone());
+        }
+        match model.notice() {
+            Some(notice) if notice.severity >= Severity::Watch => Err(notice.text.clone()),
+            _ => Ok(()),
+        }
+    }
+
+    /// Takes in messages until a condition holds, at most for some time; whether it does.
+    fn hear_until(&mut self, within: Duration, holds: impl Fn(&Model) -> bool) -> Result<bool, String> {
+        let end = Instant::now() + within;
+        loop {
+            self.session.update_time();
+            let look_again = Instant::now() + LOOK_AGAIN;
+            let mut next = self.session.next(Some(Instant::now()));
+            while let Some(msg) = next {
+                self.take(msg)?;
+                next = self.session.next(Some(Instant::now()));
+                if Instant::now() >= look_again {
+                    break;
+                }
+            }
+            if holds(&self.session.model) {
+                return Ok(true);
+            }
+            if Instant::now() >= end || self.is_left {
+                return Ok(false);
+            }
+            if let Some(msg) = self.session.next(Some(end.min(look_again))) {
+                self.take(msg)?;
+            }
+        }
+    }
+
+    fn take(&mut self, msg: Msg) -> Result<(), String> {
+        if let Msg::Signal(signal @ (Signal::Interrupt | Signal::Terminate | Signal::Hangup)) = msg {
+            return Err(format!("interrupted ({signal:?})"));
+        }
+        let effects = self.session.take(msg);
+        self.is_left |= effects.iter().any(|effect| matches!(effect, Effect::Quit { .. }));
+        Ok(())
+    }
+}
+
+/// The text of the screen.
+fn screen(model: &Model) -> anyhow::Result<String> {
+    Ok(drawn(model, Colours::None)?.backend().to_string())
+}
+
+/// The screen, in memory.
+fn drawn(model: &Model, colours: Colours) -> anyhow::Result<Terminal<TestBackend>> {
+    let caps = Caps { colours, glyphs: Glyphs::Braille, ssh: false };
+    let mut terminal = Terminal::new(TestBackend::new(model.ui.width, model.ui.height)).context("drawing")?;
+    terminal.draw(|frame| tui::view(model, &caps, frame)).context("drawing")?;
+    Ok(terminal)
+}

@@ -1,0 +1,27 @@
+//! The name that was probably meant: for the hint in a message about an unknown one.
+
+/// The known name nearest to a misspelt one, if any is near: up to a third of its letters may be wrong, four at most.
+///
+/// Costs the product of the lengths for each known name.
+pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let reach = (word.chars().count() / 3).clamp(1, 4);
+    known
+        .into_iter()
+        .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
+        .filter(|(distance, _)| *distance <= reach)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_of_a_few_letters_is_understood_and_another_word_is_not() {
+        let known = ["follow", "zoom-in", "zoom-out"];
+        assert_eq!(nearest("folow", known), Some("follow"));
+        assert_eq!(nearest("zoom-uot", known), Some("zoom-out"));
+        assert_eq!(nearest("theme", known), None);
+    }
+}

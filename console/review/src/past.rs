@@ -1,0 +1,34 @@
+//! Past runs as their journals tell them.
+
+use flight::failure::bad_input;
+use report::{Summary, human};
+use runs::{Past, find};
+use scenario::{Scenario, with_todays_keys};
+use std::path::{Path, PathBuf};
+
+/// Past runs that the user named: folders, or names in the folder of the runs.
+///
+/// # Errors
+/// One is not there, or its journal cannot be read.
+pub fn read_all(runs: &[PathBuf], logs: &Path) -> anyhow::Result<Vec<Past>> {
+    runs.iter().map(|run| Ok(Past::read(&find(run, logs)?)?)).collect()
+}
+
+/// The report of the run in a folder, for people.
+///
+/// # Errors
+/// Its journal cannot be read.
+pub fn report_text(folder: &Path) -> anyhow::Result<String> {
+    Ok(human(&summary(&Past::read(folder)?)?))
+}
+
+/// The summary of a run that has been read, held to the bounds of its scenario.
+///
+/// # Errors
+/// The scenario in its journal is refused.
+pub fn summary(Past { opened, run, .. }: &Past) -> anyhow::Result<Summary> {
+    let scenario = Scenario::parse(&with_todays_keys(&opened.scenario_toml), "the scenario in the journal");
+    let expect = scenario.map_err(|errors| bad_input(errors.render()))?.expect;
+    let (logs, events_sha256) = (Some(run.logs.clone()), run.journal_sha256.clone());
+    Ok(expect.evaluated(Summary { logs, events_sha256, ..run.fold.summary() }))
+}

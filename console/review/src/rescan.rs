@@ -1,0 +1,71 @@
+//! A mission for what past runs have missed.
+
+use crate::past::read_all;
+use anyhow::Context;
+use flight::failure::bad_input;
+use report::{PastRun, Rescan};
+use runs::Past;
+use scenario::Scenario;
+use std::path::{Path, PathBuf};
+
+/// Boxes in a scenario for a re-scan; more are joined into coarser ones.
+const MOST_BOXES: usize = 4000;
+/// Smaller missed areas are not worth a mission, square metres.
+pub const MIN_AREA_M2: f64 = 0.05;
+
+/// What past runs missed, and the scenario that scans it.
+#[derive(Debug)]
+pub struct MissedScan {
+    /// What was missed.
+    pub missed: Rescan,
+    /// The scenario as a file.
+    pub text: String,
+    /// The scenario, read from that text.
+    pub scenario: Scenario,
+}
+
+/// The scenario that scans what past runs missed.
+///
+/// # Errors
+/// The runs do not go together, or nothing that can be reached was missed.
+pub fn missed_scan(past: Vec<Past>, min_area_m2: f64, shown_name: &str) -> anyhow::Result<MissedScan> {
+    let (opened, past): (Vec<_>, Vec<PastRun>) = past.into_iter().map(|past| (past.opened, past.run)).unzip();
+    let missed = report::rescan(&past, min_area_m2, MOST_BOXES).map_err(bad_input)?;
+    if missed.boxes.is_empty() {
+        let why = missed.why_nothing(min_area_m2);
+        return Err(bad_input(format!("{}{why}; --min-area-m2 sets the limit", missed.human_out_of_reach())));
+    }
+    let names: Vec<&str> = past.iter().map(|run| run.name.as_str()).collect();
+    let last = opened.last().context("there is no run")?;
+    let text = scenario::rescan(last, &names, &missed.boxes, &missed.found);
+    let text = text.context("reading the scenario again")?;
+    let scenario = Scenario::parse(&text, shown_name).map_err(|errors| bad_input(errors.render()))?;
+    Ok(MissedScan { missed, text, scenario })
+}
+
+/// The scenario that scans what past runs missed, for the console.
+///
+/// # Errors
+/// See [`missed_scan`]; also a journal that was changed.
+pub fn rescan_of(runs: &[String], logs: &Path) -> anyhow::Result<Scenario> {
+    let runs: Vec<PathBuf> = runs.iter().map(PathBuf::from).collect();
+    let past = read_all(&runs, logs)?;
+    past.iter().map(doubt).collect::<anyhow::Result<Vec<_>>>()?;
+    let shown_name = format!("the re-scan of {}", past.last().map_or("", |past| past.run.name.as_str()));
+    Ok(missed_scan(past, MIN_AREA_M2, &shown_name)?.scenario)
+}
+
+/// What speaks against a journal, as a note.
+///
+/// # Errors
+/// It scanned outside the floor's cells.
+pub fn doubt(Past { opened, run, beyond_floor }: &Past) -> anyhow::Result<Option<String>> {
+    if let Some(tick) = beyond_floor {
+        let cells = opened.floor.len();
+        return Err(bad_input(format!(
+            "run {}: its journal was changed: an event of tick {tick} names cells beyond the {cells} of the floor",
+            run.name
+        )));
+    }
+    Ok(run.logs.error.as_ref().map(|doubt| format!("note: run {}: {doubt}", run.name)))
+}

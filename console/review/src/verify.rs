@@ -1,0 +1,182 @@
+//! Compute a past run again and prove that its journal is equal.
+//!
+//! Two proofs are made in one pass. *Mission*: simulator and mission are given the recorded orders and the recorded answers
+//! of the planners in the ticks in which they arrived, and every line must come out again, byte for byte. This is always
+//! possible, whatever the machine did to the planners while the run was flown. *Planners*: each ask also goes to a planner,
+//! and its answer must be the recorded one. A planner that was killed, stopped or too late then is not asked to be so again:
+//! such faults are counted.
+//!
+//! The journal is read tick by tick; memory does not grow with it.
+
+mod planners;
+
+use anyhow::Context;
+use flight::{Flight, failure::bad_input, hosts::host, planners::found};
+use mission::{PlannerInfo, event::JOURNAL_VERSION};
+use planner_host::PluginDirs;
+use planners::{Asked, Replayed};
+use recording::{Difference, JOURNAL_FILE, Ticks, sha256};
+use runs::{end_is_missing, journal_doubt};
+use scenario::Scenario;
+use std::{collections::BTreeMap, path::Path};
+
+/// What was found.
+#[derive(Debug, Default)]
+struct Findings {
+    /// The first line that is not recomputed.
+    difference: Option<Difference>,
+    /// What speaks against the file as a whole.
+    doubt: Option<String>,
+    /// Why the journal has no end; what it holds up to there is compared.
+    no_end: Option<String>,
+    /// What the planners did when they were asked again; `None` if they were not.
+    planners: Option<Asked>,
+    /// The planners of the run, by id.
+    builds: BTreeMap<String, PlannerInfo>,
+    events: usize,
+    last_tick: u64,
+}
+
+/// What a verification says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Verified {
+    /// Whether everything was recomputed as it is recorded.
+    pub is_equal: bool,
+    /// What was found, in lines for people.
+    pub lines: Vec<String>,
+}
+
+/// Verifies the run in a folder; with plugins, the planners are asked, too.
+///
+/// Costs about as much as flying the mission did, without waiting for the clock.
+///
+/// # Errors
+/// Its journal cannot be read, or is of another version.
+pub fn verify(folder: &Path, plugins: &PluginDirs, from_journal: bool) -> anyhow::Result<Verified> {
+    let findings = findings(folder, (!from_journal).then_some(plugins))?;
+    Ok(Verified { is_equal: findings.are_equal(), lines: lines(&findings, plugins) })
+}
+
+/// What is found of the run in a folder, in one line.
+///
+/// # Errors
+/// Its journal cannot be read, or the run is different.
+pub fn verdict(folder: &Path, plugins: &PluginDirs) -> anyhow::Result<String> {
+    let Verified { is_equal, lines } = verify(folder, plugins, false)?;
+    let text = lines.join("; ");
+    if is_equal { Ok(text) } else { anyhow::bail!(text) }
+}
+
+fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
+    let path = folder.join(JOURNAL_FILE);
+    let mut findings = compare(&path, plugins)?;
+    let sha256 = sha256(&path).with_context(|| format!("reading {}", path.display()))?;
+    findings.doubt = journal_doubt(folder, Some(&sha256))
+        .or_else(|| findings.no_end.as_ref().and_then(|_| end_is_missing(folder)));
+    Ok(findings)
+}
+
+impl Findings {
+    /// How the first planner that answers otherwise does.
+    fn other_answer(&self) -> Option<&String> {
+        self.planners.as_ref().and_then(|asked| asked.difference.as_ref())
+    }
+
+    fn are_equal(&self) -> bool {
+        self.difference.is_none() && self.doubt.is_none() && self.other_answer().is_none()
+    }
+}
+
+/// What was found, in lines for people.
+fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
+    let Findings { difference, doubt, no_end, planners, events, last_tick, .. } = findings;
+    let mut lines = Vec::new();
+    if let Some(why) = no_end {
+        lines.push(format!("note: the journal has no end ({why}); what it holds before is compared"));
+    }
+    if let Some(Difference { tick, recorded, computed }) = difference {
+        lines.push(format!("different from tick {tick} on\n  recorded: {recorded}\n  computed: {computed}"));
+    } else if let Some(doubt) = doubt {
+        lines.push(format!("different: {doubt}; its {events} events up to tick {last_tick} are recomputed"));
+    }
+    lines.extend(planners.iter().flat_map(|asked| &asked.external).map(|(planner, count)| {
+        format!(
+            "note: faults of planner {planner} from outside or by the clock, taken from the journal: {count}"
+        )
+    }));
+    if let Some(why) = findings.other_answer() {
+        lines.push(format!("different: {why}; the mission repeats from the recorded answers"));
+    }
+    if difference.is_some() || findings.other_answer().is_some() {
+        lines.extend(planner_changes(&findings.builds, plugins).iter().map(|note| format!("note: {note}")));
+    }
+    if findings.are_equal() {
+        // A report counts the ticks that passed since the first one, which has the number 0.
+        let how = if planners.is_some() { "" } else { " from the recorded answers" };
+        lines.push(format!(
+            "equal: {events} events recomputed{how}, byte for byte, from tick 0 to tick {last_tick}; {}",
+            proven(planners.as_ref())
+        ));
+    }
+    lines
+}
+
+/// What is proven of the planners of a run that is equal.
+fn proven(planners: Option<&Asked>) -> String {
+    let Some(Asked { same, not_comparable, .. }) = planners else {
+        return "the planners were not asked (--from-journal): what they answered, drew and logged is not proven"
+            .into();
+    };
+    let rest = match not_comparable {
+        0 => String::new(),
+        n => format!(", {n} that the mission refused or did not use cannot be compared"),
+    };
+    format!("{same} answers of planners are the same again{rest}")
+}
+
+fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
+    let mut ticks = Ticks::open(path)?;
+    let opened = ticks.opened()?.clone();
+    if opened.journal_version != JOURNAL_VERSION {
+        return Err(bad_input(format!(
+            "the journal has version {}, and this tankops verifies only version {JOURNAL_VERSION}: verify the run with the \
+             tankops that flew it; report, export, rescan and runs still read it: {}",
+            opened.journal_version,
+            path.display()
+        )));
+    }
+    let scenario = Scenario::parse(&opened.scenario_toml, "the scenario in the journal")
+        .map_err(|errors| bad_input(errors.render()))?;
+    let mut flight = Flight::prepare(&scenario, opened.mission.attended);
+    let mut replayed = Replayed::new(plugins.map(|plugins| host(&scenario, plugins)));
+    let mut findings = Findings::default();
+    let mut head = vec![flight.opened()];
+    while findings.difference.is_none()
+        && let Some(recorded) = ticks.next_tick()?
+    {
+        replayed.begin_tick(&recorded);
+        findings.builds.extend(recorded.opened_planners().map(|info| (info.id.clone(), info.clone())));
+        let mut computed = std::mem::take(&mut head);
+        computed.extend(flight.tick(&recorded.orders(), &mut replayed));
+        findings.difference = recorded.difference(&computed).context("writing an event as JSON")?;
+        findings.events += recorded.n_compared();
+        findings.last_tick = recorded.tick;
+    }
+    findings.no_end = ticks.no_end();
+    findings.planners = replayed.into_asked();
+    Ok(findings)
+}
+
+/// Planners of the run whose plugin is another file now.
+fn planner_changes(builds: &BTreeMap<String, PlannerInfo>, plugins: &PluginDirs) -> Vec<String> {
+    let now = found(plugins);
+    let changed = |(id, then): (&String, &PlannerInfo)| match now.iter().find(|info| info.id == *id) {
+        None => Some(format!("planner {id} of the run is not installed; --from-journal does without it")),
+        Some(info) if info.sha256 != then.sha256 => Some(format!(
+            "planner {id} is another build than in the run ({} then); --from-journal does without it",
+            then.version
+        )),
+        Some(_) => None,
+    };
+    builds.iter().filter_map(changed).collect()
+}
