@@ -72,6 +72,7 @@ impl Engine {
             host,
             reported,
             shown_work: None,
+            has_estimated: false,
             asked,
             screen,
             speed,
@@ -116,6 +117,8 @@ struct EngineThread {
     reported: Receiver<(AskId, Progress)>,
     /// The planners' work that the screen shows.
     shown_work: Option<Work>,
+    /// Whether the screen was told what a plan promises.
+    has_estimated: bool,
     asked: Receiver<Request>,
     screen: RunOutbox,
     speed: Speed,

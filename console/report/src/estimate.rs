@@ -12,6 +12,9 @@ use world::{
 const SAMPLE_M: f64 = 0.1;
 /// The robot stops to turn by more than this at a corner, radians; by less it turns on the way.
 const CORNER_RAD: f64 = 0.5;
+/// Slowing down before a corner and getting under way again, seconds: measured with the coverage planners' follower
+/// (99 corners of cover-square).
+const CORNER_S: f64 = 0.9;
 
 /// A figure and where on the path it is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -85,7 +88,7 @@ fn time_s(mission: &MissionConfig, path: &[Point]) -> f64 {
     for way in ways {
         let turn_rad = before.map_or(0.0, |before| before.angle(&way));
         let (drive_s, turn_s) = (way.norm() / limits.v_max_m_per_s, turn_rad / limits.w_max_rad_per_s);
-        time_s += if turn_rad > CORNER_RAD { drive_s + turn_s } else { drive_s.max(turn_s) };
+        time_s += if turn_rad > CORNER_RAD { drive_s + turn_s + CORNER_S } else { drive_s.max(turn_s) };
         before = Some(way);
     }
     time_s

@@ -26,7 +26,7 @@ struct Look {
     dim: bool,
 }
 
-/// The screen as an SVG document, about 100 bytes for each run of cells that look alike.
+/// The screen as an SVG document, about 100 bytes for each run of cells that look alike, and for each word.
 pub fn svg(screen: &Buffer) -> String {
     let (width, height) = (f64::from(screen.area.width) * CELL.0, f64::from(screen.area.height) * CELL.1);
     let mut svg = format!(
@@ -47,7 +47,6 @@ pub fn svg(screen: &Buffer) -> String {
 fn draw(svg: &mut String, run: &[Cell], (column, row): (usize, usize)) {
     let look = look(&run[0]);
     let (x, y, width) = (column as f64 * CELL.0, row as f64 * CELL.1, run.len() as f64 * CELL.0);
-    let text: String = run.iter().map(Cell::symbol).collect();
     // Writing to a String cannot fail.
     if look.ground != GROUND {
         let Look { ground, .. } = &look;
@@ -57,19 +56,30 @@ fn draw(svg: &mut String, run: &[Cell], (column, row): (usize, usize)) {
             CELL.1
         );
     }
-    if text.trim().is_empty() {
-        return;
-    }
     let weight = if look.bold { " font-weight=\"bold\"" } else { "" };
     let opacity = if look.dim { " opacity=\"0.65\"" } else { "" };
-    let _ = writeln!(
-        svg,
-        "<text x=\"{x:.1}\" y=\"{:.1}\" textLength=\"{width:.1}\" lengthAdjust=\"spacingAndGlyphs\" xml:space=\"preserve\" \
-         fill=\"{}\"{weight}{opacity}>{}</text>",
-        y + CELL.1 - FOOT,
-        look.text,
-        escaped(&text)
-    );
+    let y = y + CELL.1 - FOOT;
+    let mut column = column;
+    // Word by word: a viewer that stretches a text to its length stretches its spaces otherwise than its letters.
+    for word in run.chunk_by(|one, other| is_blank(one) == is_blank(other)) {
+        let (x, width) = (column as f64 * CELL.0, word.len() as f64 * CELL.0);
+        column += word.len();
+        if is_blank(&word[0]) {
+            continue;
+        }
+        let text: String = word.iter().map(Cell::symbol).collect();
+        let _ = writeln!(
+            svg,
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" textLength=\"{width:.1}\" lengthAdjust=\"spacingAndGlyphs\" \
+             fill=\"{}\"{weight}{opacity}>{}</text>",
+            look.text,
+            escaped(&text)
+        );
+    }
+}
+
+fn is_blank(cell: &Cell) -> bool {
+    cell.symbol().trim().is_empty()
 }
 
 fn look(cell: &Cell) -> Look {
@@ -132,14 +142,14 @@ mod tests {
     use ratatui::{layout::Rect, style::Style};
 
     #[test]
-    fn cells_that_look_alike_are_one_piece_of_text_and_what_is_markup_is_escaped() {
+    fn each_word_is_a_piece_of_text_at_its_place_and_what_is_markup_is_escaped() {
         let mut screen = Buffer::empty(Rect::new(0, 0, 8, 2));
         screen.set_string(0, 0, "a < b", Style::new());
         screen.set_string(0, 1, "CRIT", Style::new().fg(Color::Red).add_modifier(Modifier::REVERSED));
         let svg = svg(&screen);
-        assert!(svg.contains(">a &lt; b   </text>"), "{svg}");
+        assert!(svg.contains("<text x=\"16.8\"") && svg.contains(">&lt;</text>"), "{svg}");
         assert!(svg.contains("fill=\"#e06c6c\"/>") && svg.contains(">CRIT</text>"), "{svg}");
-        assert_eq!(svg.matches("<text").count(), 2);
+        assert_eq!(svg.matches("<text").count(), 4);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What the plan that is shown before the start promises; computed beside the engine, which waits for nothing.
+//! What the plan that is flown first promises; computed beside the engine, which waits for nothing.
 
 use super::EngineThread;
 use mission::{Event, EventKind, Phase};
@@ -7,13 +7,14 @@ use std::thread;
 use tui::RunMsg;
 
 impl EngineThread {
-    /// Estimates the plans that were made in a tick before the start.
-    pub(super) fn estimate(&self, events: &[Event]) {
-        if *self.flight.phase() != Phase::Waiting {
+    /// Estimates the plans that were made in a tick before the start, or the first one if none was made by then.
+    pub(super) fn estimate(&mut self, events: &[Event]) {
+        if *self.flight.phase() != Phase::Waiting && self.has_estimated {
             return;
         }
         for event in events {
             let EventKind::Planned { ask, path, complete, .. } = &event.kind else { continue };
+            self.has_estimated = true;
             let (ask, path, complete) = (*ask, path.clone(), *complete);
             let (mission, drawing) = (self.scenario.mission.clone(), self.scenario.sim.world.as_drawn());
             let screen = self.screen.clone();

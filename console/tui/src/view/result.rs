@@ -37,9 +37,11 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     if left.width > 0 {
         map::draw(look, frame, left);
     }
-    let [achieved, floor] =
-        Layout::vertical([Constraint::Length(figures::rows(look, result) + 2), Constraint::Fill(1)])
-            .areas(right);
+    let [achieved, floor] = Layout::vertical([
+        Constraint::Length(figures::rows(look, result, right.width.saturating_sub(2)) + 2),
+        Constraint::Fill(1),
+    ])
+    .areas(right);
     let title = format!("Result  {}", ending(result));
     figures::draw(look, frame, achieved, &title, result);
     floor::draw(look, frame, floor, result);

@@ -5,6 +5,7 @@ use crate::screens::{drawn, text};
 use mission::{Event, EventKind, HoldReason, Order, Outcome, Severity};
 use positioning::{FixError, Integrity};
 use ratatui::style::Style;
+use report::Summary;
 use tui::{Msg, Redraw, RunMsg, redraw};
 
 const SIZES: [(u16, u16); 5] = [(80, 24), (100, 30), (120, 36), (160, 45), (200, 60)];
@@ -40,7 +41,48 @@ fn states() -> Vec<(&'static str, Screen)> {
         ("suspect", integrity(Integrity::Suspect)),
         ("untested", integrity(Integrity::Untestable)),
         ("alarm", integrity(Integrity::Alarm)),
+        ("result", result()),
     ]
+}
+
+/// The result of a scan on a tether, with an area that was missed.
+fn result() -> Screen {
+    let reason = "back at the anchor, 99.7 % of the 1011.8 m² of reachable floor scanned";
+    let tether = serde_json::json!({
+        "tether_length_max_m": 11.2, "wrap_max_rad": 0.94, "wrap_total_max_rad": 1.2, "loops": 0, "end_length_m": 0.4,
+        "entangled": false
+    });
+    let summary = Summary {
+        reason: Some(reason.into()),
+        outcome: Some(Outcome::Complete),
+        tether: Some(serde_json::from_value(tether).unwrap()),
+        ..missed_summary()
+    };
+    let mut screen = Screen::tethered();
+    let ended = screen.mission.ended(Outcome::Complete, reason);
+    screen.hear(RunMsg::Events(vec![ended]));
+    let kept = "run kept in logs/20261122T040049Z-tank-07-rpf-42".into();
+    let result = tui::RunResult { summary: Box::new(summary), name: None, kept, is_kept: true };
+    screen.hear(RunMsg::Closed(Box::new(result)));
+    screen.type_text("7");
+    screen
+}
+
+/// The summary of a run that missed an area.
+fn missed_summary() -> Summary {
+    let area = serde_json::json!({
+        "at": [1.0, 2.0], "low": [0.5, 1.5], "high": [1.5, 2.5], "area_m2": 0.75, "plate": "R-03-05", "reason": "not_reached"
+    });
+    let shares = serde_json::json!({
+        "area_m2": 1011.8, "scanned": 1.0, "missed": 0.0, "unreachable": 0.0, "margin": 0.0
+    });
+    let slivers = serde_json::json!({ "count": 0, "area_m2": 0.0 });
+    let floor = serde_json::json!({
+        "cell_m": 0.1, "swath_m": 0.6, "position_limit_m": 0.15, "whole": shares, "reachable": shares,
+        "critical_zone": { "width_m": 0.075, "scanned": null, "done": true, "why": null },
+        "plates": [], "missed": [area], "slivers": slivers, "unreachable": [],
+    });
+    Summary { floor: Some(serde_json::from_value(floor).unwrap()), ..Summary::default() }
 }
 
 fn lose(screen: &mut Screen) -> Vec<Event> {
@@ -172,22 +214,10 @@ fn a_mission_of_which_nothing_is_heard_has_every_value_marked() {
 #[test]
 fn missed_areas_are_listed_on_a_large_screen_when_the_run_is_closed() {
     let mut screen = Screen::running();
-    let area = serde_json::json!({
-        "at": [1.0, 2.0], "low": [0.5, 1.5], "high": [1.5, 2.5], "area_m2": 0.75, "plate": "R-03-05", "reason": "not_reached"
-    });
-    let shares = serde_json::json!({ "area_m2": 1.0, "scanned": 1.0, "missed": 0.0, "unreachable": 0.0, "margin": 0.0 });
-    let slivers = serde_json::json!({ "count": 0, "area_m2": 0.0 });
-    let floor = serde_json::json!({
-        "cell_m": 0.1, "swath_m": 0.6, "position_limit_m": 0.15, "whole": shares, "reachable": shares,
-        "critical_zone": { "width_m": 0.075, "scanned": null, "done": true, "why": null },
-        "plates": [], "missed": [area], "slivers": slivers, "unreachable": [],
-    });
-    let summary =
-        report::Summary { floor: Some(serde_json::from_value(floor).unwrap()), ..Default::default() };
     let ended = screen.mission.ended(Outcome::Complete, "task complete");
     screen.hear(RunMsg::Events(vec![ended]));
-    let result =
-        tui::RunResult { summary: Box::new(summary), name: None, kept: String::new(), is_kept: false };
+    let summary = Box::new(missed_summary());
+    let result = tui::RunResult { summary, name: None, kept: String::new(), is_kept: false };
     screen.hear(RunMsg::Closed(Box::new(result)));
     screen.type_text("3");
     screen.send(Msg::Resize { width: 200, height: 60 });

@@ -15,6 +15,9 @@ const TURN_GAIN_PER_S: f64 = 2.5;
 const LEAST_REACH_M: f64 = 0.15;
 /// Share of the turn rate that an arc may take; the rest is for corrections.
 const TURN_SHARE: f64 = 0.9;
+/// A robot that something slows down turns as fast as if it drove at this speed, metres per second: heading for a column,
+/// it is slow until it has turned away, and on the arc alone it would turn as slowly as it creeps.
+const TURNING_M_PER_S: f64 = 0.15;
 /// Turn of a path that makes a corner, radians.
 const CORNER_RAD: f64 = 0.5;
 /// Nearer than this the robot is at a corner, metres.
@@ -38,7 +41,7 @@ pub(super) fn twist(wanted: Vector, heading_rad: f64, reach_m: f64, limits: &Lim
     let curvature = 2.0 * off_rad.sin() / reach_m.max(LEAST_REACH_M);
     let fastest = TURN_SHARE * limits.w_max_rad_per_s / curvature.abs().max(1e-9);
     let v_m_per_s = speed.min(fastest);
-    Drive::Twist { v_m_per_s, w_rad_per_s: v_m_per_s * curvature }
+    Drive::Twist { v_m_per_s, w_rad_per_s: v_m_per_s.max(TURNING_M_PER_S.min(fastest)) * curvature }
 }
 
 /// The speed at which a corner ahead can still be turned at, metres per second; infinite without one in sight.
@@ -99,9 +102,20 @@ mod tests {
         assert!(corner_speed(at, &bend).is_infinite());
     }
 
+    #[test]
+    fn a_robot_that_is_slowed_down_turns_no_slower_for_it() {
+        let turn_of =
+            |speed: f64| match twist(Vector::new(0.3_f64.cos(), 0.3_f64.sin()) * speed, 0.0, 0.3, &LIMITS) {
+                Drive::Twist { w_rad_per_s, .. } => w_rad_per_s,
+                Drive::Velocity(_) => panic!("tracks take twists"),
+            };
+        assert!(turn_of(0.006) > 0.25, "{}", turn_of(0.006));
+        assert!(turn_of(0.4) > turn_of(0.006));
+    }
+
     proptest! {
         #[test]
-        fn the_arc_meets_the_aim(reach in 0.2..1.0_f64, off in -0.45..0.45_f64, heading in -PI..PI, speed in 0.05..0.4_f64) {
+        fn the_arc_meets_the_aim(reach in 0.2..1.0_f64, off in -0.45..0.45_f64, heading in -PI..PI, speed in TURNING_M_PER_S..0.4_f64) {
             let direction = Vector::new((heading + off).cos(), (heading + off).sin());
             let Drive::Twist { v_m_per_s, w_rad_per_s } = twist(direction * speed, heading, reach, &LIMITS) else {
                 panic!("tracks take twists")

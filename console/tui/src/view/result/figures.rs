@@ -7,13 +7,20 @@ use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
 use ratatui::Frame;
 use ratatui::layout::Rect;
+use ratatui::text::Line;
 
 /// A figure: what it is, as the plan promised it, as it came, and the limit.
 type Figure = [String; 4];
 
-/// Rows of the table.
-pub(super) fn rows(look: &Look, result: &RunResult) -> u16 {
-    3 + figures(look, result).len() as u16
+/// Rows of the table, in some columns.
+pub(super) fn rows(look: &Look, result: &RunResult, columns: u16) -> u16 {
+    2 + (reason(result, columns.into()).len() + figures(look, result).len()) as u16
+}
+
+/// Why the mission ended, in lines.
+fn reason(result: &RunResult, columns: usize) -> Vec<String> {
+    let reason = result.summary.reason.as_deref().unwrap_or("cut off");
+    text::wrap(&text::capitalized(reason), columns.saturating_sub(1))
 }
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, title: &str, result: &RunResult) {
@@ -21,9 +28,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, title: &str, resu
     let columns = usize::from(block.inner(area).width);
     let label = 11.min(columns / 3);
     let width = columns.saturating_sub(label + 2) / 3;
-    let reason = result.summary.reason.clone().unwrap_or_else(|| "cut off".into());
-    let mut lines =
-        vec![look.line([(role(result), text::fit(&format!(" {}", text::capitalized(&reason)), columns))])];
+    let why = reason(result, columns).into_iter();
+    let mut lines: Vec<Line> = why.map(|line| look.line([(role(result), format!(" {line}"))])).collect();
     let head = ["", "predicted", "actual", "limit"].map(str::to_owned);
     let table = std::iter::once((Role::Dim, head))
         .chain(figures(look, result).into_iter().map(|row| (Role::Text, row)));
@@ -84,7 +90,7 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
             ],
         ));
         figures.push(row(
-            "largest wrap",
+            "wrap",
             [
                 degrees(estimate.map(|t| t.wrap_max.value)),
                 degrees(Some(tether.wrap_max_rad)),
@@ -114,7 +120,7 @@ fn dash() -> String {
 /// Holds, collisions, faults and alarms.
 fn trouble(look: &Look, result: &RunResult) -> Parts {
     let summary = &result.summary;
-    let alarms = look.run.alarms.list().len();
+    let alarms = look.run.alarms.open().count();
     let words = format!(
         " Holds {}, collisions {}, planner faults {}, alarms open {alarms}.",
         summary.holds,

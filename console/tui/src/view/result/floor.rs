@@ -28,12 +28,12 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
 
 /// Whether there is room for the area and for what cannot be reached.
 fn is_wide(columns: usize) -> bool {
-    columns >= 56
+    columns >= 59
 }
 
 fn head(columns: usize) -> String {
     if is_wide(columns) {
-        format!(" {:<17}{:>10}{:>8}{:>8}{:>8}{:>8}", "% of", "area", "scanned", "missed", "unrch.", "margin")
+        format!(" {:<16}{:>10}{:>8}{:>8}{:>8}{:>8}", "% of", "area", "scanned", "missed", "unrch.", "margin")
     } else {
         format!(" {:<17}{:>10}{:>8}", "% of", "scanned", "missed")
     }
@@ -44,7 +44,7 @@ fn shares(label: &str, shares: &Shares, columns: usize) -> String {
     let Shares { area_m2, percent: p, .. } = shares;
     if is_wide(columns) {
         format!(
-            " {label:<17}{:>10}{:>8}{:>8}{:>8}{:>8}",
+            " {label:<16}{:>10}{:>8}{:>8}{:>8}{:>8}",
             format!("{} m²", text::number(*area_m2, 1)),
             percent(p.scanned),
             percent(p.missed),
