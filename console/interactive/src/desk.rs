@@ -14,7 +14,7 @@ use super::{
     look::Disk,
 };
 use crate::{Drill, config::Config, survey::surveyed};
-use flight::{planners::check_choices, scenarios};
+use flight::{Flight, planners::check_choices, scenarios};
 use mission::{PlannerChoice, PlannerInfo};
 use planner_host::PluginDirs;
 use review::rescan_of;
@@ -134,15 +134,15 @@ impl Desk {
         self.current.clone()
     }
 
-    /// Opens a scenario that has been read.
+    /// Opens a scenario that has been read, with the flight that was prepared of it.
     ///
     /// # Errors
     /// Its planners are not there or do not take their parameters; the system gives no thread.
-    pub(super) fn open(&mut self, id: RunId, scenario: &Scenario) -> anyhow::Result<()> {
+    pub(super) fn open(&mut self, id: RunId, scenario: &Scenario, flight: Flight) -> anyhow::Result<()> {
         check_choices(scenario, &self.tools.planners.get())?;
         let Tools { logs, plugins, outbox, .. } = &self.tools;
         let screen = RunOutbox { run: id, outbox: outbox.clone() };
-        let engine = Engine::start(scenario, logs, plugins, screen, self.speed, self.drill)?;
+        let engine = Engine::start((scenario, flight), (logs, plugins), screen, self.speed, self.drill)?;
         self.current.set(Some(engine.handle()));
         self.engine = Some(engine);
         self.opened = Some((id, Arc::new(scenario.clone())));
@@ -183,7 +183,7 @@ impl Desk {
             if let Some(planner) = planner {
                 scenario.mission.planner = planner;
             }
-            self.open(id, &scenario)
+            self.open(id, &scenario, Flight::prepare(&scenario, true))
         });
         if let Err(error) = opened {
             self.tools.outbox.send(Msg::Run(id, RunMsg::OpenFailed(format!("{error:#}"))));

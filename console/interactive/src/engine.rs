@@ -46,9 +46,8 @@ pub(super) struct Engine {
 impl Engine {
     /// Starts the thread; nothing moves and nothing is written before the operator starts the mission.
     pub(super) fn start(
-        scenario: &Scenario,
-        logs: &Path,
-        plugins: &PluginDirs,
+        (scenario, flight): (&Scenario, Flight),
+        (logs, plugins): (&Path, &PluginDirs),
         screen: RunOutbox,
         speed: Speed,
         drill: Option<Drill>,
@@ -60,7 +59,6 @@ impl Engine {
             // The receiver lives as long as the host.
             let _ = progress.send((ask, at.clone()));
         }));
-        let flight = Flight::prepare(scenario, true);
         // Before the thread runs, so that the first frame of the screen shows the scenario and every key counts.
         screen.send(RunMsg::Events(vec![flight.opened()]));
         let now = Instant::now();

@@ -23,7 +23,7 @@ mod watch;
 
 use config::Config;
 use desk::{Desk, Known, Request, Tools};
-use flight::{failure::bad_input, scenarios};
+use flight::{Flight, failure::bad_input, scenarios};
 use inbox::{Outbox, inbox};
 use line::Current;
 use planner_host::PluginDirs;
@@ -38,6 +38,7 @@ use std::{
     path::{Path, PathBuf},
     process::ExitCode,
     sync::Arc,
+    thread,
 };
 use survey::surveyed;
 use tui::{Caps, Colours, Glyphs, Model, Msg, RunId, Source, Speed, terminal};
@@ -107,12 +108,16 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     let config = Arc::new(Config::load());
     let Options { settings, logs, drill, .. } = options;
     let speed = options.speed.unwrap_or(config.speed);
+    // The plugins are looked at while the scenario is read and its floor laid out.
+    let dirs = plugins.clone();
+    let survey = thread::Builder::new().name("survey".into()).spawn(move || surveyed(&dirs))?;
     let (source, scenario) = match &options.scenario {
         Some(path) => (Source::File(path.display().to_string()), scenarios::read(path, settings)?),
         None => (Source::Demo, scenarios::demo(settings)?),
     };
-    let (found, refused) = surveyed(plugins);
     check_logs(logs)?;
+    let flight = Flight::prepare(&scenario, true);
+    let (found, refused) = survey.join().map_err(|_| anyhow::anyhow!("looking at the plugins panicked"))?;
     let (outbox, inbox) = inbox();
     let tools = Tools {
         logs: logs.clone(),
@@ -125,7 +130,7 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     let mut desk = Desk::new(tools, settings.clone(), speed, *drill);
     let run = RunId(1);
     // Before the screen opens, so that its first frame shows the scenario and every key counts.
-    desk.open(run, &scenario)?;
+    desk.open(run, &scenario, flight)?;
     outbox.send(Msg::Planners { found, refused });
     let current = desk.current();
     let (desk, thread) = desk.start()?;
