@@ -34,12 +34,15 @@ pub(crate) struct Shown {
     pub tether: bool,
     /// Whether it is known what was missed.
     pub missed: bool,
+    /// How many AE stations there are.
+    pub stations: u16,
 }
 
 impl Shown {
     /// What there is to show of a run.
     pub(crate) fn of(run: &Run, missed: bool) -> Self {
-        Self { tether: run.tether.is_some(), missed }
+        let stations = run.about.as_ref().map_or(0, |about| about.world.stations.len() as u16);
+        Self { tether: run.tether.is_some(), missed, stations }
     }
 }
 
@@ -103,12 +106,15 @@ fn second(shown: Shown, alarms: bool) -> Vec<Wish> {
     let chart = |chart| wish(Pane::Chart(chart), 6, 11);
     let tether = [chart(Chart::TetherOut), chart(Chart::Wrap)];
     let alarms = alarms.then_some(wish(Pane::Alarms, 5, 8));
+    let stations =
+        (shown.stations > 0).then(|| wish(Pane::Stations, (shown.stations + 3).min(9), shown.stations + 4));
     let missed = shown.missed.then_some(wish(Pane::Missed, 5, 10));
     let tether = tether.into_iter().filter(|_| shown.tether);
     alarms
         .into_iter()
         .chain(missed)
         .chain([chart(Chart::Error)])
+        .chain(stations)
         .chain(tether)
         .chain([chart(Chart::Scanned)])
         .collect()
@@ -149,7 +155,7 @@ fn stack(area: Rect, wishes: &[Wish]) -> Vec<(Pane, Rect)> {
 
 /// From top to bottom.
 fn order(pane: Pane) -> usize {
-    const ORDER: [Pane; 11] = [
+    const ORDER: [Pane; 12] = [
         Pane::Map,
         Pane::Coverage,
         Pane::Position,
@@ -157,6 +163,7 @@ fn order(pane: Pane) -> usize {
         Pane::Planner,
         Pane::Alarms,
         Pane::Missed,
+        Pane::Stations,
         Pane::Chart(Chart::Error),
         Pane::Chart(Chart::TetherOut),
         Pane::Chart(Chart::Wrap),
@@ -176,7 +183,7 @@ mod tests {
     fn every_shown() -> impl Iterator<Item = Shown> {
         [(false, false), (true, false), (false, true), (true, true)]
             .into_iter()
-            .map(|(tether, missed)| Shown { tether, missed })
+            .map(|(tether, missed)| Shown { tether, missed, stations: 6 })
     }
 
     #[test]
@@ -200,7 +207,7 @@ mod tests {
 
     #[test]
     fn large_screens_have_two_stacks_ten_events_and_charts() {
-        let shown = Shown { tether: true, missed: false };
+        let shown = Shown { tether: true, missed: false, stations: 6 };
         let place = |size: (u16, u16), pane| {
             placed(size.0, size.1, shown)
                 .into_iter()

@@ -23,6 +23,7 @@ mod planner;
 mod plugins;
 mod position;
 mod result;
+mod stations;
 mod strip;
 mod table;
 mod tether;
@@ -130,6 +131,7 @@ fn draw_pane(look: &Look, frame: &mut Frame, area: Rect, pane: Pane) {
         Pane::Planner => planner::draw(look, frame, area),
         Pane::Events => events::draw(look, frame, area),
         Pane::Alarms => alarms::draw(look, frame, area),
+        Pane::Stations => stations::draw(look, frame, area),
         Pane::Missed => missed::draw(look, frame, area),
         Pane::Chart(chart) => charts::draw(look, frame, area, chart),
     }

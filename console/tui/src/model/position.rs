@@ -5,8 +5,8 @@ use nalgebra::Matrix2;
 use planner_api::PoseEstimate;
 use positioning::{Fix, Ranging};
 use serde::{Deserialize, Serialize};
-use std::collections::VecDeque;
-use world::Point;
+use std::collections::{BTreeMap, VecDeque};
+use world::{Point, StationId};
 
 /// Seconds over which the speed is taken.
 const SPEED_SPAN_S: f64 = 2.0;
@@ -35,6 +35,9 @@ pub struct Position {
     pub period_s: Option<f64>,
     /// Why the last ranging cycle gave no fix; `None` if it gave one.
     pub failure: Option<String>,
+    /// How often each station was rejected.
+    #[serde(default)]
+    pub rejections: BTreeMap<StationId, u32>,
     /// Whether the position counts as lost.
     pub lost: bool,
     /// The 95 % error, metres.

@@ -139,6 +139,8 @@ pub enum Pane {
     Tether,
     /// What is wrong.
     Alarms,
+    /// What each AE station measured.
+    Stations,
     /// What was missed, when the mission has ended.
     Missed,
     /// A quantity over the last minutes.

@@ -59,7 +59,7 @@ fn narrow_lines(look: &Look, inner: Rect) -> Vec<(u8, Line<'static>)> {
     ]
 }
 
-fn is_fix_stale(look: &Look) -> bool {
+pub(super) fn is_fix_stale(look: &Look) -> bool {
     let position = &look.run.position;
     let expects = !look.run.has_ended() && position.fix.is_some();
     expects && (look.model.silent_s().is_some() || position.is_fix_stale(look.run.clock.t_s))

@@ -20,6 +20,7 @@ impl Run {
                 self.raise(event, Cause::NoFix, Severity::Watch, format!("no fix: {error}"));
             }
             EventKind::StationRejected { station, .. } => {
+                *self.position.rejections.entry(*station).or_default() += 1;
                 self.raise_as_logged(event, Cause::Station(*station));
             }
             EventKind::StationRestored { station } => self.clear(&Cause::Station(*station)),

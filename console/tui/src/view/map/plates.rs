@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use world::{Floor, PlateMap, Point, Vector};
 
-/// Zoom from which plates are drawn: four times the whole tank.
-const FROM_ZOOM: u8 = 2;
+/// Zoom from which plates are drawn: twice the whole tank.
+const FROM_ZOOM: u8 = 1;
 
 /// What the drawing depends on.
 #[derive(Debug, Clone, Copy, PartialEq)]

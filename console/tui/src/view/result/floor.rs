@@ -9,6 +9,9 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use report::account::Shares;
 
+/// Missed share of a plate, per cent, up to which it counts as scanned but for slivers.
+const MISSED_PERCENT: f64 = 1.0;
+
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
     let block = look.block(Role::Border, "Coverage", "% by the estimated position");
     let columns = usize::from(block.inner(area).width).saturating_sub(1);
@@ -76,6 +79,10 @@ fn notes(result: &RunResult, columns: usize) -> Vec<String> {
         }
     });
     let broken = summary.violations.iter().flatten().map(|violation| format!("Not met: {violation}."));
-    let notes = zone.into_iter().chain(again).chain(truth).chain(broken);
+    let plates = summary.floor.as_ref().filter(|floor| !floor.plates.is_empty()).map(|floor| {
+        let all = floor.plates.iter().filter(|plate| plate.shares.percent.missed <= MISSED_PERCENT).count();
+        format!("Plates: {all} of {} with at most {MISSED_PERCENT} % missed.", floor.plates.len())
+    });
+    let notes = zone.into_iter().chain(plates).chain(again).chain(truth).chain(broken);
     notes.flat_map(|note| text::wrap(&note, columns)).collect()
 }

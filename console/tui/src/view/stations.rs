@@ -1,0 +1,83 @@
+//! The stations pane of a large screen: what each AE station measured, and whether it was used.
+
+use super::look::{Look, Parts, fill, marked};
+use super::{position, text};
+use crate::model::Pane;
+use crate::theme::Role;
+use positioning::Exclusion;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use world::{Station, StationId};
+
+/// Columns of the table: heading, width, and rank; where there is too little room those of the highest number are left out.
+const TABLE: [(&str, usize, u8); 6] = [
+    ("station", 7, 0),
+    ("range", 8, 2),
+    ("residual", 8, 0),
+    ("limit", 7, 3),
+    ("state", 8, 0),
+    ("rejected", 8, 1),
+];
+
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let block = look.pane(Pane::Stations, "Stations", "in the last fix");
+    let columns = usize::from(block.inner(area).width);
+    let stations = look.run.about.as_ref().map_or(&[][..], |about| &about.world.stations);
+    let head = vec![(Role::Dim, format!(" {}", laid_out(TABLE.map(|(head, ..)| head.to_owned()), columns)))];
+    let rows = stations.iter().map(|station| row(look, station, columns));
+    fill(frame, area, block, std::iter::once(head).chain(rows).map(|parts| look.line(parts)).collect());
+}
+
+fn row(look: &Look, station: &Station, columns: usize) -> Parts {
+    let position = &look.run.position;
+    let ranged = position.ranges.iter().find(|ranging| ranging.station == station.id);
+    let range =
+        ranged.map_or_else(|| "-".into(), |ranging| format!("{} m", text::number(ranging.range_m, 2)));
+    let (role, residual_m, limit_m, state) = state(look, station.id);
+    let millimetres = |value: Option<f64>| {
+        value.map_or_else(|| "-".into(), |m| format!("{} mm", text::number(1000.0 * m, 0)))
+    };
+    let rejected = position.rejections.get(&station.id).copied().unwrap_or(0);
+    let cells = [
+        station.name.clone(),
+        range,
+        millimetres(residual_m),
+        millimetres(limit_m),
+        state.to_owned(),
+        rejected.to_string(),
+    ];
+    let (role, words) = marked(position::is_fix_stale(look), (role, laid_out(cells, columns)));
+    vec![(role, if words.starts_with('◌') { words } else { format!(" {words}") })]
+}
+
+/// The cells of a row that have room in some columns; words stand left, figures right.
+fn laid_out(cells: [String; 6], columns: usize) -> String {
+    let width = |most: u8| -> usize {
+        TABLE.iter().filter(|(.., rank)| *rank <= most).map(|(_, width, _)| width + 1).sum()
+    };
+    let most = (0..=3).rev().find(|most| width(*most) <= columns).unwrap_or(0);
+    let shown = TABLE.iter().zip(cells).filter(|((.., rank), _)| *rank <= most);
+    let cells: Vec<String> = shown
+        .map(|((head, width, _), cell)| match *head {
+            "station" | "state" => text::column(&cell, *width),
+            _ => format!("{cell:>width$}"),
+        })
+        .collect();
+    cells.join(" ")
+}
+
+/// What the last fix made of a station: its residual and the largest one accepted, metres, and a word.
+fn state(look: &Look, station: StationId) -> (Role, Option<f64>, Option<f64>, &'static str) {
+    let Some(fix) = &look.run.position.fix else { return (Role::Text, None, None, "-") };
+    let left_out = fix.excluded.iter().find(|(excluded, _)| *excluded == station);
+    match left_out {
+        Some((_, Exclusion::Silent)) => (Role::Watch, None, None, "SILENT"),
+        Some((_, Exclusion::Residual { residual_m, gate_m })) => {
+            (Role::Watch, Some(*residual_m), Some(*gate_m), "REJECTED")
+        }
+        None => match fix.residuals.iter().find(|residual| residual.station == station) {
+            Some(residual) => (Role::Text, Some(residual.residual_m), None, "used"),
+            None => (Role::Dim, None, None, "-"),
+        },
+    }
+}
