@@ -19,16 +19,17 @@ mod screen;
 mod script;
 mod session;
 mod survey;
+mod viewing;
 mod watch;
 
 use config::Config;
 use desk::{Desk, Known, Request, Tools};
 use flight::{failure::bad_input, scenarios};
-use inbox::{Outbox, inbox};
+use inbox::{Outbox, RunOutbox, inbox};
 use line::Current;
 use planner_host::PluginDirs;
 use runs::check_logs;
-use scenario::Settings;
+use scenario::{Scenario, Settings};
 use screen::{Left, Screen};
 use script::Script;
 use session::Session;
@@ -59,6 +60,8 @@ pub struct Options {
     pub glyphs: Option<Glyphs>,
     /// Who operates it.
     pub by: By,
+    /// A run to look on at, instead of opening a scenario: its folder, or its name in `logs`.
+    pub view: Option<PathBuf>,
     /// A part that fails on purpose.
     pub drill: Option<Drill>,
 }
@@ -107,12 +110,11 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     let config = Arc::new(Config::load());
     let Options { settings, logs, drill, .. } = options;
     let speed = options.speed.unwrap_or(config.speed);
-    let (source, scenario) = match &options.scenario {
-        Some(path) => (Source::File(path.display().to_string()), scenarios::read(path, settings)?),
-        None => (Source::Demo, scenarios::demo(settings)?),
-    };
+    let opening = Opening::of(options)?;
     let (found, refused) = surveyed(plugins);
-    check_logs(logs)?;
+    if matches!(opening, Opening::Mission(..)) {
+        check_logs(logs)?;
+    }
     let (outbox, inbox) = inbox();
     let tools = Tools {
         logs: logs.clone(),
@@ -125,13 +127,21 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     let mut desk = Desk::new(tools, settings.clone(), speed, *drill);
     let run = RunId(1);
     // Before the screen opens, so that its first frame shows the scenario and every key counts.
-    desk.open(run, &scenario)?;
+    let model = match opening {
+        Opening::Mission(source, scenario) => {
+            desk.open(run, &scenario)?;
+            Model::opened(run, source, speed)
+        }
+        Opening::View(folder) => {
+            viewing::begin(&folder, RunOutbox { run, outbox: outbox.clone() })?;
+            Model::looking_on(run, folder.display().to_string())
+        }
+    };
     outbox.send(Msg::Planners { found, refused });
     let current = desk.current();
     let (desk, thread) = desk.start()?;
     desk.request(Request::Look);
-    let model = config.apply(Model::opened(run, source, speed));
-    let session = Session::new(model, inbox, (current.clone(), desk.clone()));
+    let session = Session::new(config.apply(model), inbox, (current.clone(), desk.clone()));
     let ended = match script {
         Some(script) => script.run(session, &outbox, &current).map(Ended::Script),
         None if options.by == By::Lines => plain::speak(session, &outbox, &current).map(Ended::Left),
@@ -145,6 +155,27 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     match ended? {
         Ended::Left(left) => Ok(left.report_end(closed.as_ref())),
         Ended::Script(done) => Ok(script::report(done)),
+    }
+}
+
+/// What a console opens on.
+enum Opening {
+    /// A mission of its own.
+    Mission(Source, Box<Scenario>),
+    /// A run to look on at, in this folder.
+    View(PathBuf),
+}
+
+impl Opening {
+    fn of(Options { scenario, settings, logs, view, .. }: &Options) -> anyhow::Result<Self> {
+        if let Some(run) = view {
+            return Ok(Self::View(runs::find(run, logs)?));
+        }
+        let (source, scenario) = match scenario {
+            Some(path) => (Source::File(path.display().to_string()), scenarios::read(path, settings)?),
+            None => (Source::Demo, scenarios::demo(settings)?),
+        };
+        Ok(Self::Mission(source, Box::new(scenario)))
     }
 }
 
