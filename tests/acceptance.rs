@@ -14,6 +14,8 @@ mod faults;
 #[cfg(unix)]
 #[path = "acceptance/killed.rs"]
 mod killed;
+#[path = "acceptance/looking_on.rs"]
+mod looking_on;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/planning.rs"]
 mod planning;

@@ -177,6 +177,10 @@ pub(crate) struct ConsoleArgs {
     /// Characters of the map and the charts; default: what the terminal's environment promises.
     #[arg(long, value_name = "SET")]
     pub glyphs: Option<GlyphSet>,
+    /// Look on at a run that another console has open, or at a past one: its folder, or its name in the logs folder. No order
+    /// can be given.
+    #[arg(long, value_name = "RUN", conflicts_with_all = ["scenario", "Changes", "speed", "script", "drill"])]
+    pub view: Option<PathBuf>,
     /// Make a part of the console fail while the robot moves, to see that the run and the terminal survive it.
     #[arg(long, value_name = "PART", hide = true)]
     pub drill: Option<DrillArg>,
@@ -228,6 +232,7 @@ impl From<ConsoleArgs> for Options {
             colours: args.colour,
             glyphs: args.glyphs.map(Into::into),
             by,
+            view: args.view,
             drill: args.drill.map(Into::into),
         }
     }

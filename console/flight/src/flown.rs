@@ -2,7 +2,8 @@
 
 use crate::answers::Answers;
 use mission::{
-    Event, EventKind, Fork, Input, Mission, MissionConfig, Order, Phase, RunOpened, event::JOURNAL_VERSION,
+    Event, EventKind, Fork, Injection, Input, Mission, MissionConfig, Order, Phase, RangeFault, RunOpened,
+    event::JOURNAL_VERSION,
 };
 
 use scenario::Scenario;
@@ -50,6 +51,7 @@ impl Flight {
 
     /// How the flight would go on in a tank that holds only what the mission knows, without faults on purpose. Its first order
     /// has to choose a planner.
+    #[must_use]
     pub fn forked(&self, scenario: &Scenario) -> Self {
         let Fork { mission, world, pose, cable } = self.mission.fork();
         let ae = scenario.sim.ae.clone().map(|ae| {
@@ -100,9 +102,25 @@ impl Flight {
         }
         let step = self.mission.act();
         self.simulator.act(step.drive);
+        self.inject_faults(&step.events);
         events.extend(step.events);
         self.tick += 1;
         events
+    }
+
+    /// Faults of stations that the mission accepted begin with the next tick.
+    fn inject_faults(&mut self, events: &[Event]) {
+        for event in events {
+            if let EventKind::Ordered { order: Order::Inject(Injection { station, fault, for_s, .. }) } =
+                &event.kind
+            {
+                let excess_range_m = match fault {
+                    RangeFault::Dead => None,
+                    RangeFault::Offset(metres) => Some(*metres),
+                };
+                self.simulator.inject(*station, *for_s, excess_range_m);
+            }
+        }
     }
 
     /// What only the simulator knows of this tick.

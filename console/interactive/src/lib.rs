@@ -19,16 +19,17 @@ mod screen;
 mod script;
 mod session;
 mod survey;
+mod viewing;
 mod watch;
 
 use config::Config;
 use desk::{Desk, Known, Request, Tools};
 use flight::{Flight, failure::bad_input, scenarios};
-use inbox::{Outbox, inbox};
+use inbox::{Outbox, RunOutbox, inbox};
 use line::Current;
 use planner_host::PluginDirs;
 use runs::check_logs;
-use scenario::Settings;
+use scenario::{Scenario, Settings};
 use screen::{Left, Screen};
 use script::Script;
 use session::Session;
@@ -60,6 +61,8 @@ pub struct Options {
     pub glyphs: Option<Glyphs>,
     /// Who operates it.
     pub by: By,
+    /// A run to look on at, instead of opening a scenario: its folder, or its name in `logs`.
+    pub view: Option<PathBuf>,
     /// A part that fails on purpose.
     pub drill: Option<Drill>,
 }
@@ -111,12 +114,7 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     // The plugins are looked at while the scenario is read and its floor laid out.
     let dirs = plugins.clone();
     let survey = thread::Builder::new().name("survey".into()).spawn(move || surveyed(&dirs))?;
-    let (source, scenario) = match &options.scenario {
-        Some(path) => (Source::File(path.display().to_string()), scenarios::read(path, settings)?),
-        None => (Source::Demo, scenarios::demo(settings)?),
-    };
-    check_logs(logs)?;
-    let flight = Flight::prepare(&scenario, true);
+    let opening = Opening::of(options)?;
     let (found, refused) = survey.join().map_err(|_| anyhow::anyhow!("looking at the plugins panicked"))?;
     let (outbox, inbox) = inbox();
     let tools = Tools {
@@ -130,13 +128,22 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     let mut desk = Desk::new(tools, settings.clone(), speed, *drill);
     let run = RunId(1);
     // Before the screen opens, so that its first frame shows the scenario and every key counts.
-    desk.open(run, &scenario, flight)?;
+    let model = match opening {
+        Opening::Mission(source, mission) => {
+            let (scenario, flight) = *mission;
+            desk.open(run, &scenario, flight)?;
+            Model::opened(run, source, speed)
+        }
+        Opening::View(folder) => {
+            viewing::begin(&folder, RunOutbox { run, outbox: outbox.clone() })?;
+            Model::looking_on(run, folder.display().to_string())
+        }
+    };
     outbox.send(Msg::Planners { found, refused });
     let current = desk.current();
     let (desk, thread) = desk.start()?;
     desk.request(Request::Look);
-    let model = config.apply(Model::opened(run, source, speed));
-    let session = Session::new(model, inbox, (current.clone(), desk.clone()));
+    let session = Session::new(config.apply(model), inbox, (current.clone(), desk.clone()));
     let ended = match script {
         Some(script) => script.run(session, &outbox, &current).map(Ended::Script),
         None if options.by == By::Lines => plain::speak(session, &outbox, &current).map(Ended::Left),
@@ -150,6 +157,29 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     match ended? {
         Ended::Left(left) => Ok(left.report_end(closed.as_ref())),
         Ended::Script(done) => Ok(script::report(done)),
+    }
+}
+
+/// What a console opens on.
+enum Opening {
+    /// A mission of its own, with the flight that was prepared.
+    Mission(Source, Box<(Scenario, Flight)>),
+    /// A run to look on at, in this folder.
+    View(PathBuf),
+}
+
+impl Opening {
+    fn of(Options { scenario, settings, logs, view, .. }: &Options) -> anyhow::Result<Self> {
+        if let Some(run) = view {
+            return Ok(Self::View(runs::find(run, logs)?));
+        }
+        let (source, scenario) = match scenario {
+            Some(path) => (Source::File(path.display().to_string()), scenarios::read(path, settings)?),
+            None => (Source::Demo, scenarios::demo(settings)?),
+        };
+        check_logs(logs)?;
+        let flight = Flight::prepare(&scenario, true);
+        Ok(Self::Mission(source, Box::new((scenario, flight))))
     }
 }
 

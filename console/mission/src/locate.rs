@@ -5,7 +5,10 @@ use planner_api::PoseEstimate;
 use positioning::{
     Exclusion, Fix, FixError, Integrity, MotionNoise, Positioner, PositionerConfig, RangeNoise,
 };
-use std::{collections::BTreeMap, mem::discriminant};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    mem::discriminant,
+};
 use world::{Point, Pose, Readings, StationId, World};
 
 /// The positioner with its memory of which stations were used and whether the position was good.
@@ -13,6 +16,8 @@ use world::{Point, Pose, Readings, StationId, World};
 pub(crate) struct Locator {
     positioner: Positioner,
     limit_m: f64,
+    /// Stations that the operator excluded.
+    unused: BTreeSet<StationId>,
     left_out: BTreeMap<StationId, Exclusion>,
     last_cycle_failed: bool,
     lost: bool,
@@ -44,10 +49,20 @@ impl Locator {
         Self {
             positioner,
             limit_m: config.position_limit_m,
+            unused: BTreeSet::new(),
             left_out: BTreeMap::new(),
             last_cycle_failed: false,
             lost: false,
             alarmed: false,
+        }
+    }
+
+    /// Whether the ranges of a station are used from now on.
+    pub(crate) fn use_station(&mut self, station: StationId, used: bool) {
+        if used {
+            self.unused.remove(&station);
+        } else {
+            self.unused.insert(station);
         }
     }
 
@@ -61,7 +76,12 @@ impl Locator {
     }
 
     fn cycle(&mut self, readings: &Readings) -> Vec<EventKind> {
-        let result = self.positioner.cycle(&readings.ranges);
+        let heard = readings.ranges.iter().filter(|set| !self.unused.contains(&set.station));
+        let mut result = self.positioner.cycle(&heard.cloned().collect::<Vec<_>>());
+        if let Ok(fix) = &mut result.fix {
+            let by_order = fix.excluded.iter_mut().filter(|(station, _)| self.unused.contains(station));
+            by_order.for_each(|(_, reason)| *reason = Exclusion::ByOrder);
+        }
         let mut events = vec![EventKind::Ranged { ranges: result.rangings }];
         events.extend(self.heed(&result.fix));
         match result.fix {

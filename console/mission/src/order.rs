@@ -5,6 +5,7 @@ use crate::{
     planner::{ParamValue, PlannerChoice},
 };
 use serde::{Deserialize, Serialize};
+use world::StationId;
 
 /// One order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,6 +40,39 @@ pub enum Order {
         /// Its new value.
         value: ParamValue,
     },
+    /// For training: a station of the simulation fails for a while. The mission only notes it, and locates without knowing.
+    Inject(Injection),
+    /// Whether the ranges of a station are used; without them the robot is located by the others.
+    UseStation {
+        /// Which station.
+        station: StationId,
+        /// Whether they are.
+        used: bool,
+    },
+}
+
+/// A fault of a simulated station, injected on purpose.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Injection {
+    /// Which station.
+    pub station: StationId,
+    /// What is wrong with it.
+    pub fault: RangeFault,
+    /// For how long, from the next tick on, seconds of mission time.
+    pub for_s: f64,
+    /// Who injected it, if the console knows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by: Option<String>,
+}
+
+/// What is wrong with a station.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RangeFault {
+    /// It is silent.
+    Dead,
+    /// Its ranges are too long by so many metres.
+    Offset(f64),
 }
 
 /// What a robot moves to that is held and is let go for a while.

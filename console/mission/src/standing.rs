@@ -105,9 +105,9 @@ impl Standing<'_> {
     pub fn allows(&self, order: &Order) -> Result<(), Refusal> {
         match (order, self.phase) {
             (_, Phase::Ended(outcome)) => Err(Refusal::Ended(*outcome)),
-            (Order::Abort, _)
+            (Order::Abort | Order::UseStation { .. }, _)
             | (Order::Plan | Order::Start | Order::NoteChecks(_), Phase::Waiting)
-            | (Order::Hold, Phase::Running(_) | Phase::Held(_))
+            | (Order::Hold | Order::Inject(_), Phase::Running(_) | Phase::Held(_))
             | (Order::NoteOutlooks(_), Phase::Held(_))
             | (Order::ChoosePlanner(_) | Order::SetParameter { .. }, Phase::Waiting | Phase::Held(_)) => {
                 Ok(())
@@ -116,7 +116,12 @@ impl Standing<'_> {
                 Err(Refusal::AlreadyStarted)
             }
             (
-                Order::Hold | Order::Resume | Order::Step | Order::StepTo(_) | Order::NoteOutlooks(_),
+                Order::Hold
+                | Order::Resume
+                | Order::Step
+                | Order::StepTo(_)
+                | Order::NoteOutlooks(_)
+                | Order::Inject(_),
                 Phase::Waiting,
             ) => Err(Refusal::NotStarted),
             (Order::Resume | Order::Step | Order::StepTo(_), Phase::Held(_)) => self.can_move(),

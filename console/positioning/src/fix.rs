@@ -52,6 +52,8 @@ pub enum Exclusion {
         /// Largest one accepted, metres.
         gate_m: f64,
     },
+    /// The operator excluded it.
+    ByOrder,
 }
 
 /// How far the fix can be trusted.

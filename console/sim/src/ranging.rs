@@ -40,6 +40,11 @@ impl Sounder {
         Self { config, stations, propagation, streams, ended: 0.0 }
     }
 
+    /// A station fails, besides what the configuration holds.
+    pub(crate) fn inject(&mut self, fault: StationFault) {
+        self.config.disturbances.faults.push(fault);
+    }
+
     /// The ranges of a cycle, if one ends at time `t_s`; empty if no station was heard.
     ///
     /// The first cycle ends after one period. A period shorter than a tick means one cycle in every tick.

@@ -1,7 +1,7 @@
 //! The simulator: sense and act.
 
 use crate::{
-    config::{RobotConfig, SimConfig, TetherTruth, Truth},
+    config::{RobotConfig, SimConfig, StationFault, TetherTruth, Truth},
     motion::{Arc, Tracks, bounded},
     movers::Movers,
     random::{RandomStreams, normal},
@@ -10,7 +10,7 @@ use crate::{
     sweep::sweep,
 };
 use geometry::Drive;
-use world::{Medium, Mode, ObstacleMap, Odometry, Point, Pose, Readings, tether::Cable};
+use world::{Medium, Mode, ObstacleMap, Odometry, Point, Pose, Readings, StationId, tether::Cable};
 
 /// A hull that touched something keeps touching it until the gap is wider than this, metres.
 const CONTACT_GAP_M: f64 = 1e-3;
@@ -109,6 +109,15 @@ impl Simulator {
             self.tracks.stop();
         }
         self.tick += 1;
+    }
+
+    /// A station fails from this tick on, for so many seconds: its ranges are too long by so many metres, or absent.
+    /// Without acoustic-emission ranging nothing fails.
+    pub fn inject(&mut self, station: StationId, for_s: f64, excess_range_m: Option<f64>) {
+        let from_s = self.tick as f64 * self.config.tick_s.max(0.0);
+        if let Some(sounder) = &mut self.sounder {
+            sounder.inject(StationFault { station, from_s, to_s: from_s + for_s, excess_range_m });
+        }
     }
 
     /// The truth at the start of this tick.

@@ -76,6 +76,12 @@ pub enum ActionId {
     AcknowledgeAll,
     /// Put an alarm aside for a while, or take it back.
     Shelve,
+    /// Make a simulated station fail for a while.
+    Inject,
+    /// Locate the robot without a station.
+    Exclude,
+    /// Locate the robot with a station again.
+    Include,
     /// Run an action of an alarm, by its number.
     Remedy(u8),
     /// Show the place of an alarm or an event on the map.
@@ -215,7 +221,10 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::NextMissed, "next-missed", "Show the next missed area", &[Key::Char('n')], &[Context::Result]).label("missed").repeats(),
     action(ActionId::PreviousMissed, "previous-missed", "Show the missed area before", &[Key::Char('N')], &[Context::Result]).label("missed").repeats(),
     action(ActionId::Again, "again", "Plan the same scenario again", &[Key::Char('a')], &[Context::Result]).label("again"),
-    action(ActionId::Shelve, "shelve", "Shelve the alarm, or take it back", &[Key::Char('d')], &[Context::Alarms]).label("shelve"),
+    action(ActionId::Shelve, "shelve", "Shelve the alarm, or take it back", &[Key::Char('d')], &[Context::Alarms]).label("shelve").args(&[may("time", Kind::Duration), may("reason", Kind::Text), may("alarm", Kind::Alarm)]),
+    action(ActionId::Inject, "inject", "Make a simulated station fail (training)", &[], &[Context::Screen]).args(&[must("station", Kind::Station), must("fault", Kind::Fault), must("time", Kind::Duration)]),
+    action(ActionId::Exclude, "exclude", "Locate the robot without a station", &[], &[Context::Screen]).args(&[must("station", Kind::Station)]),
+    action(ActionId::Include, "include", "Use an excluded station again", &[], &[Context::Screen]).args(&[must("station", Kind::Station)]),
     action(ActionId::ShowPlace, "show-place", "Show the place on the map", &[Key::Char('m')], &[Context::Alarms, Context::Events]).label("map"),
     action(ActionId::NextLike, "next-like", "Next event of the same kind", &[Key::Char('n')], &[Context::Events]).label("same kind"),
     action(ActionId::PreviousLike, "previous-like", "Previous event of the same kind", &[Key::Char('N')], &[Context::Events]).label("same kind"),

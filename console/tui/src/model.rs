@@ -34,7 +34,7 @@ pub use health::{Health, Measured, Recording, Watches};
 pub use history::History;
 pub use home::{Home, PastRun, ScenarioEntry};
 pub use line_edit::LineEdit;
-pub use live::{Busy, Live, RunId, RunResult, Source};
+pub use live::{Access, Busy, Live, RunId, RunResult, Source};
 pub use log::{Entry, Log};
 pub use palette::Palette;
 pub use planning::{PlanShown, Planning};
@@ -74,6 +74,14 @@ impl Model {
         let live = Live { id, source: Some(source), is_opening: true, speed, ..Live::default() };
         let mut model = Self { live, ..Self::default() };
         model.ui.go(Screen::Plan);
+        model
+    }
+
+    /// A console that looks on at the run in a folder.
+    pub fn looking_on(id: RunId, folder: String) -> Self {
+        let mut model = Self::opened(id, Source::File(folder), Speed::default());
+        model.live.access = Access::LookOnly;
+        model.ui.go(Screen::Mission);
         model
     }
 

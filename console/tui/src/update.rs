@@ -17,6 +17,7 @@ mod place;
 mod preflight;
 mod redraw;
 mod send;
+mod stations;
 mod typing;
 mod what_if;
 
@@ -72,6 +73,10 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
 /// How many alarms ring the bell that the operator has not acknowledged.
 fn ringing(model: &Model) -> usize {
     let Bell(Some(least)) = model.console.preferences.bell else { return 0 };
+    // Alarms are acknowledged where the orders are given.
+    if model.live.is_look_only() {
+        return 0;
+    }
     let alarms = model.live.run.alarms.list().iter();
     alarms.filter(|alarm| alarm.is_unacknowledged() && alarm.severity >= least).count()
 }

@@ -24,6 +24,12 @@ impl Mission {
             Order::Plan => self.plan_ahead(),
             Order::Start => self.start(),
             Order::NoteChecks(_) | Order::NoteOutlooks(_) => {}
+            // The simulator obeys it.
+            Order::Inject(_) => self.stay_held(),
+            Order::UseStation { station, used } => {
+                self.locator.use_station(*station, *used);
+                self.stay_held();
+            }
             Order::Hold => self.hold_by_order(),
             Order::Resume => self.resume(Gait::Steady),
             Order::Step => self.resume(Gait::OneTick),
@@ -62,6 +68,16 @@ impl Mission {
         }
     }
 
+    /// A hold that was to end by itself now ends by an order: nobody who changes planners, or which stations are heard,
+    /// expects the robot to move.
+    fn stay_held(&mut self) {
+        if let Phase::Held(hold) = &self.phase
+            && !hold.resumes.is_never()
+        {
+            self.hold(Hold { by: hold.by.clone(), resumes: Resumes::Never });
+        }
+    }
+
     pub(super) fn allow_uncertified(&mut self, fly: bool) {
         if let Some(tether) = &mut self.tether {
             tether.allow_uncertified(fly);
@@ -71,13 +87,9 @@ impl Mission {
     /// Another planner, or the same one with other parameters, is to take over.
     ///
     /// The one before stays until the other has a plan that may be flown, unless it could not drive on anyway: then it is
-    /// replaced at once, so that the operator can have a plan of the other flown that is refused for the tether. A hold that was to end by itself now ends by an order: nobody who changes planners expects the robot to move.
+    /// replaced at once, so that the operator can have a plan of the other flown that is refused for the tether.
     pub(super) fn choose(&mut self, choice: PlannerChoice, reason: Reason) {
-        if let Phase::Held(hold) = &self.phase
-            && !hold.resumes.is_never()
-        {
-            self.hold(Hold { by: hold.by.clone(), resumes: Resumes::Never });
-        }
+        self.stay_held();
         let waiting = self.phase == Phase::Waiting;
         let reason = if waiting { Reason::Start } else { reason };
         let mut slot = self.active.successor(choice, reason);

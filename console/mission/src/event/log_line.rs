@@ -5,7 +5,7 @@ use super::{
     severity::{self, Severity},
 };
 use crate::{
-    order::{Order, StepTo},
+    order::{Injection, Order, RangeFault, StepTo},
     phase::Outcome,
 };
 use planner_api::LogLevel;
@@ -33,9 +33,9 @@ impl Event {
                 "mission",
                 format!("run opened: scenario {}, seed {}", run.scenario, run.seed),
             ),
-            EventKind::Ordered { order } => line(Severity::Info, "cmd", order_text(order)),
+            EventKind::Ordered { order } => line(Severity::Info, "cmd", order_text(order, stations)),
             EventKind::OrderRefused { order, why } => {
-                line(Severity::Warn, "cmd", format!("{} refused: {why}", order_text(order)))
+                line(Severity::Warn, "cmd", format!("{} refused: {why}", order_text(order, stations)))
             }
             EventKind::FixFailed { error, repeated: false } => {
                 line(Severity::Watch, "ae", format!("no fix: {error}"))
@@ -180,7 +180,7 @@ fn of_tether(kind: &EventKind) -> Option<LogLine> {
     })
 }
 
-fn order_text(order: &Order) -> String {
+fn order_text(order: &Order, stations: &[Station]) -> String {
     match order {
         Order::Plan => "plan".into(),
         Order::StepTo(StepTo::LaneEnd) => "step to the end of the lane".into(),
@@ -198,7 +198,21 @@ fn order_text(order: &Order) -> String {
         Order::Abort => "end mission".into(),
         Order::ChoosePlanner(choice) => format!("change planner to {}", choice.id),
         Order::SetParameter { key, value } => format!("set {key} = {value}"),
+        Order::Inject(injection) => injection_text(injection, stations),
+        Order::UseStation { station, used } => {
+            let word = if *used { "use" } else { "exclude" };
+            format!("{word} {}", station_text(*station, stations))
+        }
     }
+}
+
+fn injection_text(Injection { station, fault, for_s, by }: &Injection, stations: &[Station]) -> String {
+    let fault = match fault {
+        RangeFault::Dead => "dead".to_owned(),
+        RangeFault::Offset(metres) => format!("ranges {metres} m too long"),
+    };
+    let by = by.as_ref().map_or_else(String::new, |name| format!(" by {name}"));
+    format!("fault injected{by}: {} {fault} for {for_s} s", station_text(*station, stations))
 }
 
 fn certificate_text(planner: &str, refused: bool, certificate: &Certificate) -> String {
@@ -226,6 +240,7 @@ fn station_text(id: StationId, stations: &[Station]) -> String {
 fn exclusion_text(reason: &Exclusion) -> String {
     match reason {
         Exclusion::Silent => "not heard".into(),
+        Exclusion::ByOrder => "excluded by the operator".into(),
         Exclusion::Residual { residual_m, gate_m } => {
             format!("residual {residual_m:.2} m, gate {gate_m:.2} m")
         }

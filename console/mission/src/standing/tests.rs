@@ -1,9 +1,10 @@
 use super::*;
 use crate::{
-    order::StepTo,
+    order::{Injection, RangeFault, StepTo},
     phase::{Gait, Outcome, Resumes},
     planner::{ParamValue, Parameters, PlannerChoice},
 };
+use world::StationId;
 
 fn phases() -> Vec<Phase> {
     let held = HoldReason::every("m").into_iter().flat_map(|by| {
@@ -34,6 +35,8 @@ fn orders() -> Vec<Order> {
         Order::Abort,
         Order::ChoosePlanner(choice),
         Order::SetParameter { key: "gain".into(), value: ParamValue::Flag(true) },
+        Order::Inject(Injection { station: StationId(1), fault: RangeFault::Dead, for_s: 20.0, by: None }),
+        Order::UseStation { station: StationId(1), used: false },
     ]
 }
 

@@ -1,11 +1,11 @@
 //! Reading a journal, also one whose writer was killed.
 
-use super::{JournalError, upgrade};
+use super::{JournalError, follow::Follow, upgrade};
 use crate::file::open_regular;
 use mission::{Event, event::JOURNAL_VERSION};
 use serde::Deserialize;
 use std::{
-    io::{self, BufRead, BufReader},
+    io::{self, BufRead, BufReader, Read},
     path::{Path, PathBuf},
 };
 
@@ -46,8 +46,22 @@ impl JournalReader {
     /// [`JournalError::Read`] if there is none.
     pub fn open(path: &Path) -> Result<Self, JournalError> {
         let file = open_regular(path).map_err(|error| read_error(path, &error))?;
-        Ok(Self {
-            lines: Box::new(BufReader::with_capacity(1 << 18, file)),
+        Ok(Self::of(file, path))
+    }
+
+    /// Opens a journal that somebody else may still be writing: at the end of the file `goes_on` is asked, which waits a
+    /// little and says whether more may come. A line of which only a part is there is waited for.
+    ///
+    /// # Errors
+    /// [`JournalError::Read`] if there is none.
+    pub fn follow(path: &Path, goes_on: impl FnMut() -> bool + Send + 'static) -> Result<Self, JournalError> {
+        let file = open_regular(path).map_err(|error| read_error(path, &error))?;
+        Ok(Self::of(Follow::new(file, goes_on), path))
+    }
+
+    fn of(bytes: impl Read + Send + 'static, path: &Path) -> Self {
+        Self {
+            lines: Box::new(BufReader::with_capacity(1 << 18, bytes)),
             path: path.to_owned(),
             text: Vec::new(),
             line: 0,
@@ -55,7 +69,7 @@ impl JournalReader {
             ended: false,
             truncated: None,
             unended_bytes: 0,
-        })
+        }
     }
 
     /// The next event with the bytes of its line; `None` after the end.

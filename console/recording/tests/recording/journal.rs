@@ -5,6 +5,7 @@ use mission::{Event, event::JOURNAL_VERSION};
 use recording::{JournalError, JournalReader, JournalWriter, read_ending};
 use std::{
     fs,
+    io::Write,
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
@@ -90,6 +91,26 @@ fn a_journal_cut_anywhere_gives_a_beginning_of_the_run() {
         let journal = read_journal(&path).expect("a torn journal can be read");
         assert!(whole.starts_with(&journal.events), "cut at {length}");
     }
+}
+
+#[test]
+fn a_journal_is_followed_while_it_is_written_and_a_torn_line_is_waited_for() {
+    let (_folder, path) = written(3);
+    let whole = read_journal(&path).expect("a whole journal").events;
+    let bytes = fs::read(&path).expect("readable");
+    let mut at = 10;
+    fs::write(&path, &bytes[..at]).expect("writable");
+    let writer = path.clone();
+    // Each time that the reader is at the end, a little more is written.
+    let reader = JournalReader::follow(&path, move || {
+        let next = (at + 97).min(bytes.len());
+        let mut file = fs::OpenOptions::new().append(true).open(&writer).expect("it is there");
+        file.write_all(&bytes[at..next]).expect("writable");
+        at = next;
+        at < bytes.len()
+    });
+    let read: Result<Vec<_>, _> = reader.expect("readable").collect();
+    assert_eq!(read.expect("every line is whole in the end"), whole);
 }
 
 #[test]

@@ -109,9 +109,9 @@ impl Action {
         self.args.iter().all(|arg| !arg.is_required)
     }
 
-    /// How its command is written, such as `open SCENARIO [planner=PLANNER]`.
+    /// How its command is written, such as `open SCENARIO [PLANNER]`.
     pub fn usage(&self) -> String {
-        let args = self.args.iter().enumerate().map(|(index, arg)| format!(" {}", arg.usage(index > 0)));
+        let args = self.args.iter().map(|arg| format!(" {}", arg.usage()));
         std::iter::once(self.name.to_owned()).chain(args).collect()
     }
 }

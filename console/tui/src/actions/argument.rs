@@ -23,11 +23,19 @@ pub enum Kind {
     Theme,
     /// A screen.
     Screen,
+    /// A span of time.
+    Duration,
+    /// An alarm.
+    Alarm,
+    /// Name of an AE station.
+    Station,
+    /// What is wrong with a station.
+    Fault,
     /// Any text.
     Text,
 }
 
-/// What a command takes; the first one goes without its name, the others need it: `planner=navfn`.
+/// What a command takes: in the order of the table, or by its name: `planner=navfn`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Arg {
     /// Its name.
@@ -48,12 +56,11 @@ pub(super) const fn may(name: &'static str, kind: Kind) -> Arg {
 
 impl Arg {
     /// How it is written.
-    pub(super) fn usage(&self, is_named: bool) -> String {
+    pub(super) fn usage(&self) -> String {
         let value = match self.kind {
             Kind::Parameter => "KEY=VALUE".to_owned(),
             _ => self.name.to_uppercase(),
         };
-        let value = if is_named { format!("{}={value}", self.name) } else { value };
         if self.is_required { value } else { format!("[{value}]") }
     }
 }

@@ -12,6 +12,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 pub struct RunId(pub u32);
 
+/// What the console may do with the run that is open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Access {
+    /// Give orders.
+    #[default]
+    Control,
+    /// Read the journal that another console writes, or has written.
+    LookOnly,
+}
+
 /// Where a scenario comes from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Source {
@@ -55,6 +65,9 @@ pub struct RunResult {
 pub struct Live {
     /// Which.
     pub id: RunId,
+    /// Whether orders can be given.
+    #[serde(default)]
+    pub access: Access,
     /// Where its scenario comes from; `None` as long as none was opened.
     pub source: Option<Source>,
     /// Whether the scenario is being read and its floor being laid out.
@@ -86,10 +99,16 @@ pub struct Live {
 }
 
 impl Live {
-    /// Whether the robot moves, or may begin to move without an order, or because of one that was agreed to
+    /// Whether this console only looks on.
+    pub fn is_look_only(&self) -> bool {
+        self.access == Access::LookOnly
+    }
+
+    /// Whether the robot of this console moves, or may begin to move without an order, or because of one that was agreed to
     /// or sent and not answered yet.
     pub fn may_move(&self) -> bool {
-        self.run.phase().may_move() || self.asked.is_some() || self.preflight.is_starting
+        let may_move = self.run.phase().may_move() || self.asked.is_some() || self.preflight.is_starting;
+        may_move && !self.is_look_only()
     }
 
     /// What the plan that would be flown now promises; `None` while that is not known.
@@ -106,12 +125,13 @@ impl Live {
 
     /// Whether the mission waits for its start.
     pub fn waits(&self) -> bool {
-        self.run.about.is_some() && *self.run.phase() == Phase::Waiting
+        self.run.about.is_some() && *self.run.phase() == Phase::Waiting && !self.is_look_only()
     }
 
     /// Whether leaving would abort a mission: one that was started and has not ended, or whose start was requested.
     pub fn is_under_way(&self) -> bool {
-        !self.run.has_ended() && (*self.run.phase() != Phase::Waiting || self.may_move())
+        let is_open = *self.run.phase() != Phase::Waiting || self.may_move();
+        is_open && !self.run.has_ended() && !self.is_look_only()
     }
 
     /// Notes that the mission accepted or refused an order. Nothing else ends the wait for it: an event of the tick before

@@ -93,6 +93,9 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         | ActionId::Open
         | ActionId::GoTo
         | ActionId::Theme
+        | ActionId::Inject
+        | ActionId::Exclude
+        | ActionId::Include
         | ActionId::Centre => palette::begin(model, id),
         other => look(model, other),
     }

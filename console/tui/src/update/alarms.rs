@@ -7,7 +7,7 @@ use crate::actions::ActionId;
 use crate::guide::{guide, name};
 use crate::model::alarms::State;
 use crate::model::ui::Shelving;
-use crate::model::{Alarm, Cause, LineEdit, Model, Overlay, Screen};
+use crate::model::{Cause, LineEdit, Model, Overlay, Screen};
 use mission::Severity;
 
 fn selected_cause(model: &Model) -> Option<Cause> {
@@ -55,39 +55,61 @@ pub(super) fn shelve(model: &mut Model) -> Vec<Effect> {
 
 /// Puts an alarm aside as typed, or says what is wrong with it.
 pub(super) fn take_shelving(model: &mut Model, shelving: Shelving) -> Vec<Effect> {
-    let cause = shelving.cause.clone();
-    let blocked = model.live.run.alarms.get(&cause).and_then(Alarm::cannot_be_shelved);
-    let longest = model.console.preferences.shelve_max_min;
-    let parsed =
-        blocked.map_or_else(|| parse_shelving(shelving.line.text(), longest), |why| Err(why.to_owned()));
-    match parsed {
-        Ok((minutes, reason)) => {
-            let until_s = model.live.run.clock.t_s + 60.0 * minutes;
-            model.live.run.alarms.shelve(&cause, until_s, &reason);
-            model.ui.overlay = Overlay::None;
-            let text = format!("shelved for {minutes} min: {}", name(&cause, &model.live.run));
-            model.say(Severity::Info, text);
-        }
+    let typed = parse_shelving(shelving.line.text());
+    match typed.and_then(|(minutes, reason)| put_aside(model, &shelving.cause, minutes, &reason)) {
+        Ok(()) => model.ui.overlay = Overlay::None,
         Err(why) => model.ui.overlay = Overlay::Shelve(Shelving { refusal: Some(why), ..shelving }),
     }
     Vec::new()
 }
 
-/// Minutes of mission time and a reason: `15 pump noise`.
-fn parse_shelving(text: &str, longest_min: u32) -> Result<(f64, String), String> {
-    let text = text.trim();
-    let end = text.find(|letter: char| !letter.is_ascii_digit() && letter != '.').unwrap_or(text.len());
-    let minutes: f64 = text[..end].parse().map_err(|_| "minutes first, such as: 15 pump noise".to_owned())?;
+/// Puts the named alarm aside, or the one that is selected, for so many seconds.
+///
+/// # Errors
+/// Why not, and what would be right.
+pub(super) fn shelve_for(
+    model: &mut Model,
+    named: Option<Cause>,
+    for_s: f64,
+    reason: &str,
+) -> Result<(), String> {
+    let selected = || (model.ui.screen == Screen::Alarms).then(|| selected_cause(model)).flatten();
+    let cause =
+        named.or_else(selected).ok_or("no alarm is selected; name one (alarm=NAME) or go to <alarms>");
+    let cause = cause.map_err(|why| model.console.keys.spelled(why))?;
+    put_aside(model, &cause, for_s / 60.0, reason)
+}
+
+fn put_aside(model: &mut Model, cause: &Cause, minutes: f64, reason: &str) -> Result<(), String> {
+    let alarm = model.live.run.alarms.get(cause).ok_or("there is no such alarm")?;
+    if matches!(alarm.state, State::Shelved(_)) {
+        return Err("it is shelved already".into());
+    }
+    if let Some(why) = alarm.cannot_be_shelved() {
+        return Err(why.to_owned());
+    }
+    let longest_min = model.console.preferences.shelve_max_min;
     if !(minutes > 0.0 && minutes <= f64::from(longest_min)) {
         return Err(format!("1 to {longest_min} minutes"));
     }
-    let reason = text[end..].trim_start_matches(|letter: char| !letter.is_alphanumeric()).trim();
-    let unit = ["min ", "m "].iter().find_map(|unit| reason.strip_prefix(unit));
-    let reason = unit.unwrap_or(reason).trim();
     if reason.is_empty() {
         return Err("a reason is needed, such as: 15 pump noise".into());
     }
-    Ok((minutes, reason.to_owned()))
+    let until_s = model.live.run.clock.t_s + 60.0 * minutes;
+    model.live.run.alarms.shelve(cause, until_s, reason);
+    let text = format!("shelved for {minutes} min: {}", name(cause, &model.live.run));
+    model.say(Severity::Info, text);
+    Ok(())
+}
+
+/// Minutes of mission time and a reason: `15 pump noise`.
+fn parse_shelving(text: &str) -> Result<(f64, String), String> {
+    let text = text.trim();
+    let end = text.find(|letter: char| !letter.is_ascii_digit() && letter != '.').unwrap_or(text.len());
+    let minutes: f64 = text[..end].parse().map_err(|_| "minutes first, such as: 15 pump noise".to_owned())?;
+    let reason = text[end..].trim_start_matches(|letter: char| !letter.is_alphanumeric()).trim();
+    let unit = ["min ", "m "].iter().find_map(|unit| reason.strip_prefix(unit));
+    Ok((minutes, unit.unwrap_or(reason).trim().to_owned()))
 }
 
 /// Opens the actions of the selected alarm.
@@ -130,15 +152,13 @@ mod tests {
     #[test]
     fn minutes_and_a_reason_are_taken_however_they_are_separated() {
         for text in ["15 pump noise", " 15m pump noise", "15 min pump noise ", "15,pump noise"] {
-            assert_eq!(parse_shelving(text, 60), Ok((15.0, "pump noise".to_owned())), "{text}");
+            assert_eq!(parse_shelving(text), Ok((15.0, "pump noise".to_owned())), "{text}");
         }
-        for (text, why) in
-            [("", "minutes first"), ("pump", "minutes first"), ("61 x", "1 to 60"), ("0 x", "1 to 60")]
-        {
-            assert!(parse_shelving(text, 60).is_err_and(|error| error.contains(why)), "{text}");
+        for text in ["", "pump", "m pump"] {
+            assert!(parse_shelving(text).is_err_and(|error| error.contains("minutes first")), "{text}");
         }
         for text in ["15", "15 ", "15 ;"] {
-            assert!(parse_shelving(text, 60).is_err_and(|error| error.contains("a reason")), "{text}");
+            assert_eq!(parse_shelving(text), Ok((15.0, String::new())), "{text}");
         }
     }
 }

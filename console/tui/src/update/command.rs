@@ -3,13 +3,17 @@
 pub(super) mod line;
 mod value;
 
+pub(super) use value::Value;
+
 use super::act::{act, hold_only, set_speed};
+use super::alarms;
 use super::events;
 use super::go;
 use super::message::Effect;
-use super::offer::{accepted, offered, refuse};
+use super::offer::{accepted, allowed, offered, refuse};
 use super::overlay;
 use super::send::send;
+use super::stations;
 use super::typing;
 use crate::actions::{Action, ActionId, Arg, find};
 use crate::model::{
@@ -19,7 +23,6 @@ use crate::model::{
 };
 use line::Word;
 use mission::{Order, Parameters, PlannerChoice};
-use value::Value;
 
 /// A command with its values, checked.
 pub(super) struct Command {
@@ -56,19 +59,20 @@ fn read_line(model: &Model, text: &str) -> Result<Command, LineFault> {
     let (name, rest) = words.split_first().ok_or(LineFault { at: 0..0, what: "no command".into() })?;
     let unknown = || LineFault { at: name.at.clone(), what: format!("no command `{}`", name.text) };
     let action = find::named(&name.text).ok_or_else(unknown)?;
-    let mut values = Vec::new();
+    let (mut values, mut given) = (Vec::new(), Vec::new());
     for (index, word) in rest.iter().enumerate() {
         let (arg, text) = arg_of(action, index, word)?;
         let value = value::read(model, arg.kind, text);
         values.push(value.map_err(|what| LineFault { at: word.at.clone(), what })?);
+        given.push(arg);
     }
-    if values.is_empty() && !action.runs_alone() {
+    if action.args.iter().any(|arg| arg.is_required && !given.contains(&arg)) {
         return Err(LineFault { at: text.len()..text.len() + 1, what: format!("usage: {}", action.usage()) });
     }
     Ok(Command { action, values })
 }
 
-/// Which argument a word is, and its value: the first one goes without a name.
+/// Which argument a word is, and its value: by its name, which the first one does without, or by its place.
 fn arg_of<'a>(
     action: &'static Action,
     index: usize,
@@ -81,7 +85,8 @@ fn arg_of<'a>(
         return Ok((arg, &word.text));
     }
     let named = word.text.split_once('=');
-    match named.and_then(|(name, text)| Some((action.args.iter().find(|arg| arg.name == name)?, text))) {
+    let named = named.and_then(|(name, text)| Some((action.args.iter().find(|arg| arg.name == name)?, text)));
+    match named.or_else(|| action.args.get(index).map(|arg| (arg, word.text.as_str()))) {
         Some(found) => Ok(found),
         None if action.args.is_empty() => fault(format!("{} takes no value", action.name)),
         None => fault(format!("usage: {}", action.usage())),
@@ -95,16 +100,14 @@ pub(super) fn candidates(model: &Model, before: &str) -> Option<Vec<String>> {
     let action = find::named(words.next()?).filter(|action| !action.args.is_empty())?;
     let typed = before[begin..].trim_start_matches('"');
     let index = words.count();
-    let all = match (index, action.args) {
-        (0, [arg, ..]) => value::candidates(model, arg.kind, typed),
-        (_, [_, others @ ..]) => others
-            .iter()
-            .flat_map(|arg| {
-                let values = value::candidates(model, arg.kind, typed);
-                values.into_iter().map(move |value| format!("{}={value}", arg.name))
-            })
-            .collect(),
-        _ => Vec::new(),
+    let by_name = |arg: &Arg| {
+        let name = arg.name;
+        let values = value::candidates(model, arg.kind, typed);
+        values.into_iter().map(move |value| format!("{name}={value}"))
+    };
+    let all = match action.args.get(index) {
+        Some(arg) if index == 0 || arg.is_required => value::candidates(model, arg.kind, typed),
+        _ => action.args.iter().skip(1).filter(|arg| !arg.is_required).flat_map(by_name).collect(),
     };
     let small = typed.to_lowercase();
     let fits = |value: &String| value.trim_start_matches('"').to_lowercase().starts_with(&small);
@@ -117,8 +120,10 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
     let Some(first) = values.next() else {
         return if action.id == ActionId::Hold { hold_only(model) } else { act(model, action.id) };
     };
-    let is_about_a_named_run = matches!(first, Value::Run(_));
-    if !is_about_a_named_run && let Err(why) = offered(model, action.id) {
+    // What is named needs no screen on which it is selected.
+    let is_named = matches!(first, Value::Run(_) | Value::Duration(_));
+    let can = if is_named { allowed(model, action.id) } else { offered(model, action.id) };
+    if let Err(why) = can {
         return refuse(model, why);
     }
     match first {
@@ -127,7 +132,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
             let purpose = if action.id == ActionId::Compare { Purpose::Compare } else { Purpose::Drive };
             return overlay::choose(model, purpose, planner);
         }
-        Value::Parameter { key, value } => return set_parameter(model, Order::SetParameter { key, value }),
+        Value::Parameter { key, value } => return give(model, Order::SetParameter { key, value }),
         Value::Scenario(source) => {
             let planner = values.find_map(|value| match value {
                 Value::Planner(info) => Some(PlannerChoice { id: info.id, parameters: Parameters::new() }),
@@ -141,14 +146,38 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
         Value::Place(offset) => model.ui.map = MapView { follow: false, offset, ..model.ui.map },
         Value::Severity(least) => events::set_least(model, least),
         Value::Theme(theme) => model.ui.theme = theme,
+        Value::Duration(for_s) => return shelve(model, for_s, values),
+        Value::Station(station) => {
+            let order = stations::order(model, action.id, station, values);
+            return order.map_or_else(Vec::new, |order| give(model, order));
+        }
+        // These come second.
+        Value::Alarm(_) | Value::Fault(_) => {}
         Value::Text(text) => typing::filter(model, &text),
     }
     Vec::new()
 }
 
-fn set_parameter(model: &mut Model, order: Order) -> Vec<Effect> {
+/// Gives an order that asks nothing, if the mission accepts it.
+fn give(model: &mut Model, order: Order) -> Vec<Effect> {
     match accepted(model, &order) {
         Ok(()) => send(model, order),
+        Err(why) => refuse(model, why),
+    }
+}
+
+/// Puts the named alarm aside, or the selected one.
+fn shelve(model: &mut Model, for_s: f64, values: impl Iterator<Item = Value>) -> Vec<Effect> {
+    let (mut reason, mut named) = (String::new(), None);
+    for value in values {
+        match value {
+            Value::Text(text) => reason = text,
+            Value::Alarm(cause) => named = Some(cause),
+            _ => {}
+        }
+    }
+    match alarms::shelve_for(model, named, for_s, &reason) {
+        Ok(()) => Vec::new(),
         Err(why) => refuse(model, why),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::go::named_run;
 use super::message::Effect;
-use super::typing;
+use super::{stations, typing};
 use crate::actions::ActionId;
 use crate::model::{Alarm, Model, Overlay, Pane, Screen, ui::MAX_ZOOM};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
@@ -12,7 +12,29 @@ use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 /// # Errors
 /// Why not, and what would be right, as a sentence.
 pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
-    can(model, id).map_err(|why| model.console.keys.spelled(&why))
+    allowed(model, id).and_then(|()| can(model, id)).map_err(|why| model.console.keys.spelled(&why))
+}
+
+/// Whether this console may do such things at all.
+pub(super) fn allowed(model: &Model, id: ActionId) -> Result<(), String> {
+    demand(!(model.live.is_look_only() && acts(id)), LOOK_ONLY)
+}
+
+/// Why a console that looks on does not do something.
+const LOOK_ONLY: &str = "VIEW: this console only looks on; use the console that runs the mission";
+
+/// Whether an action does something to a mission or its files.
+fn acts(id: ActionId) -> bool {
+    use ActionId::{
+        Abort, Acknowledge, AcknowledgeAll, Again, CancelPlan, ChoosePlanner, Compare, Exclude, Faster,
+        FlyUncertified, Hold, Include, Inject, Open, PlanAgain, Preflight, Reload, Report, Rescan, Resume,
+        SetParameter, SetSpeed, Shelve, Slower, Start, Step, StepEvent, StepLane, WhatIf,
+    };
+    let moves = matches!(id, Hold | Start | Resume | FlyUncertified | Step | StepLane | StepEvent | Abort);
+    let plans = matches!(id, ChoosePlanner | Compare | PlanAgain | CancelPlan | Preflight | WhatIf | Reload);
+    let sets = matches!(id, SetParameter | SetSpeed | Slower | Faster | Inject | Exclude | Include);
+    let alarms = matches!(id, Acknowledge | AcknowledgeAll | Shelve);
+    moves || plans || sets || alarms || matches!(id, Open | Again | Rescan | Report)
 }
 
 fn can(model: &Model, id: ActionId) -> Result<(), String> {
@@ -45,6 +67,7 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         }
         ActionId::Parameters | ActionId::SetParameter => parameters(model),
         ActionId::SetSpeed => simulating(model),
+        ActionId::Inject | ActionId::Exclude | ActionId::Include => stations::can(model, id),
         ActionId::Open => nothing_under_way(model),
         ActionId::Acknowledge
         | ActionId::AcknowledgeAll
@@ -170,7 +193,7 @@ pub(super) fn refuse(model: &mut Model, why: String) -> Vec<Effect> {
     Vec::new()
 }
 
-fn demand(met: bool, otherwise: &str) -> Result<(), String> {
+pub(super) fn demand(met: bool, otherwise: &str) -> Result<(), String> {
     if met { Ok(()) } else { Err(otherwise.to_owned()) }
 }
 
@@ -208,6 +231,7 @@ fn on_screen(model: &Model, screen: Screen) -> Result<(), String> {
 
 /// Whether the mission would accept an order, by its own table.
 pub(super) fn accepted(model: &Model, order: &Order) -> Result<(), String> {
+    demand(!model.live.is_look_only(), LOOK_ONLY)?;
     model.live.run.standing.standing().allows(order).map_err(|why| {
         match remedy(&why, model.live.run.phase()) {
             Some(remedy) => model.console.keys.spelled(&format!("{why}; {remedy}")),
@@ -262,6 +286,7 @@ fn simulating(model: &Model) -> Result<(), String> {
 
 /// One mission at a time.
 pub(super) fn nothing_under_way(model: &Model) -> Result<(), String> {
+    demand(!model.live.is_look_only(), LOOK_ONLY)?;
     let why = model.console.keys.spelled("a mission is in progress; <mission>: show it, <end>: end it");
     demand(!model.live.is_under_way(), &why)
 }

@@ -27,6 +27,9 @@ pub(super) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
 /// Who stops the robot is in no hurry: the mission goes on no faster than the clock until the operator says so again.
 pub(super) fn hold_now(model: &mut Model) -> Vec<Effect> {
     preflight::cancel(model);
+    if model.live.is_look_only() {
+        return Vec::new();
+    }
     let is_accepted = model.live.run.standing.standing().allows(&Order::Hold).is_ok();
     if !is_accepted && model.live.asked.is_none() {
         return Vec::new();

@@ -20,7 +20,11 @@ pub(super) fn clauses(model: &Model) -> Clauses {
 
 /// What comes next, with the keys that the operator has.
 fn without_notice(model: &Model) -> Clauses {
-    let (role, clauses) = by_phase(model);
+    let (role, mut clauses) = by_phase(model);
+    if model.live.is_look_only() {
+        clauses.retain(|clause| !clause.contains(['<', '>']) && !clause.contains("space:"));
+        clauses.push("VIEW: orders are given on the console that runs the mission.".into());
+    }
     (role, clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
 }
 

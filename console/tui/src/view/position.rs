@@ -169,6 +169,7 @@ fn rejected(run: &Run, id: StationId, why: &Exclusion) -> String {
     let name = run.station_name(id);
     match why {
         Exclusion::Silent => format!("{name} not heard"),
+        Exclusion::ByOrder => format!("{name} excluded"),
         Exclusion::Residual { residual_m, gate_m } => {
             format!("{name} rejected: {} > {} m", text::number(*residual_m, 2), text::number(*gate_m, 2))
         }

@@ -61,6 +61,7 @@ pub(super) fn state(model: &Model) -> Parts {
         Phase::Ended(Outcome::Complete) => ("OPER", Role::Good, "✓ DONE"),
         Phase::Ended(_) => ("OPER", Role::Warn, "■ ENDED"),
     };
+    let who = if model.live.is_look_only() { "VIEW" } else { who };
     vec![(Role::Title, format!("{who} ")), (role, word.into())]
 }
 
@@ -100,6 +101,10 @@ pub(super) fn time(model: &Model) -> Parts {
         }
         None => (Role::Text, format!("T+{} ", text::clock(model.live.run.clock.t_s))),
     };
+    // A journal says neither how fast its mission goes nor whether it is recorded.
+    if model.live.is_look_only() {
+        return vec![clock];
+    }
     vec![clock, (Role::Text, format!("{} ", text::speed(model.live.speed))), recording(model)]
 }
 

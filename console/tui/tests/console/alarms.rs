@@ -131,6 +131,36 @@ fn an_alarm_is_shelved_with_minutes_and_a_reason_and_comes_back() {
 }
 
 #[test]
+fn a_command_shelves_the_named_alarm_or_the_selected_one() {
+    let line = |screen: &mut Screen, line: &str| {
+        screen.model.console.notice = None;
+        screen.type_text(&format!(":{line}"));
+        screen.press(ENTER);
+        assert_eq!(screen.model.ui.overlay, Overlay::None, "{line}");
+        notice(screen).to_owned()
+    };
+    let cases = [
+        ("", "shelve 15m \"pump noise\"", "no alarm is selected; name one (alarm=NAME) or go to 4"),
+        ("4", "shelve 61m noise", "1 to 60 minutes"),
+        ("4", "shelve 15m", "a reason is needed, such as: 15 pump noise"),
+        ("4", "shelve 15m \"pump noise\"", "shelved for 15 min: station S4 rejected"),
+        (
+            "",
+            "shelve 15m reason=\"pump noise\" alarm=\"station S4 rejected\"",
+            "shelved for 15 min: station S4 rejected",
+        ),
+    ];
+    for (keys, typed, said) in cases {
+        let mut screen = Screen::held();
+        screen.type_text(keys);
+        if !keys.is_empty() {
+            screen.model.ui.alarm = Some(Cause::Station(world::StationId(4)));
+        }
+        assert_eq!(line(&mut screen, typed), said, "{typed}");
+    }
+}
+
+#[test]
 fn what_is_critical_or_over_cannot_be_shelved() {
     let mut screen = troubled();
     screen.type_text("d");

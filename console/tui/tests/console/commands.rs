@@ -2,13 +2,14 @@
 
 use crate::fixture::{RICH, Screen, choice, listed};
 use crate::screens::{drawn, text};
-use mission::{Order, ParamValue, Severity};
+use mission::{Injection, Order, ParamValue, RangeFault, Severity};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tui::model::ui::{Ask, MapLayer};
 use tui::model::{Overlay, Palette, PastRun, Screen as Name, home::Found};
 use tui::update::{Choice, choices};
 use tui::{Effect, Job, Key, Msg, RunId, Source, Speed, ThemeName};
+use world::StationId;
 
 /// A screen with scenarios and runs.
 fn with_home(mut screen: Screen) -> Screen {
@@ -161,11 +162,24 @@ fn a_wrong_value_is_underlined_with_what_would_be_right() {
         ("theme pink", "pink", "no theme `pink`; there are: dark, light, contrast"),
         ("goto misson", "misson", "no screen `misson`; did you mean mission?"),
         ("open demmo", "demmo", "no scenario `demmo`; did you mean demo?"),
-        ("open demo seed=3", "seed=3", "usage: open SCENARIO [planner=PLANNER]"),
+        ("open demo seed=3", "seed=3", "no planner `seed=3`; there are: apf, rpf, spiral-tangent"),
         ("open demo planner=x", "planner=x", "no planner `x`; there are: apf, rpf, spiral-tangent"),
         ("verify 20261121", "20261121", "2 runs begin so: 20261121T2-demo, 20261121T1-demo..."),
         ("verify 1999", "1999", "no run begins with `1999`"),
         ("filter \"lost", "\"lost", "the quote is not closed"),
+        ("shelve 15", "15", "no duration `15`; write 20s, 15m or 1h30m"),
+        (
+            "shelve 15m noise alarm=pump",
+            "alarm=pump",
+            "no alarm `pump`; there are: \"new obstacle, not on drawing\", \"station S4 rejected\"",
+        ),
+        ("inject S9 dead 20s", "S9", "no station `S9`; did you mean S1?"),
+        ("inject S3 dead", "", "usage: inject STATION FAULT TIME"),
+        (
+            "inject S3 noise 20s",
+            "noise",
+            "no fault `noise`; write dead (silent) or offset=2.5 (metres too long, to 1000)",
+        ),
         ("hodl", "hodl", "no such command; did you mean hold?"),
     ];
     for (line, at, what) in cases {
@@ -206,6 +220,11 @@ fn tab_completes_names_and_values() {
         ("open demo planner=a", "open demo planner=apf"),
         ("verify l", "verify latest"),
         ("goto p", "goto plan"),
+        ("inject S", "inject S1"),
+        ("inject S1 d", "inject S1 dead"),
+        ("inject S1 dead 2", "inject S1 dead 20s"),
+        ("shelve 15m noise alarm=\"st", "shelve 15m noise alarm=\"station S4 rejected\""),
+        ("exclude S", "exclude S1"),
     ];
     for (typed, completed) in cases {
         let mut screen = with_home(Screen::held());
@@ -214,6 +233,31 @@ fn tab_completes_names_and_values() {
         screen.press([Key::Tab]);
         let Overlay::Commands(palette) = &screen.model.ui.overlay else { panic!("the line is open") };
         assert_eq!(palette.line.text(), completed, "{typed}");
+    }
+}
+
+#[test]
+fn a_station_of_the_simulation_fails_on_order_with_the_name_of_who_ordered_it() {
+    let mut screen = Screen::running();
+    screen.model.console.preferences.operator = Some("lk".into());
+    let inject = |station, fault, for_s| {
+        let by = Some("lk".into());
+        vec![Effect::Order(Order::Inject(Injection { station: StationId(station), fault, for_s, by }))]
+    };
+    assert_eq!(run(&mut screen, "inject ae.S3 dead 20s"), inject(3, RangeFault::Dead, 20.0));
+    assert_eq!(run(&mut screen, "inject S2 offset=2.5 1m"), inject(2, RangeFault::Offset(2.5), 60.0));
+    let mut waiting = Screen::idle();
+    assert_eq!(run(&mut waiting, "inject S3 dead 20s"), []);
+    let said = waiting.model.notice().expect("a refusal").text.clone();
+    assert_eq!(said, "the mission has not been started; S: start");
+}
+
+#[test]
+fn a_station_is_excluded_and_taken_back() {
+    let order = |used| vec![Effect::Order(Order::UseStation { station: StationId(4), used })];
+    for mut screen in [Screen::running(), Screen::held()] {
+        assert_eq!(run(&mut screen, "exclude S4"), order(false));
+        assert_eq!(run(&mut screen, "include S4"), order(true));
     }
 }
 

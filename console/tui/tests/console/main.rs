@@ -6,6 +6,7 @@ mod commands;
 mod events;
 mod fixture;
 mod laws;
+mod look_only;
 mod mouse;
 mod overviews;
 mod panes;

@@ -2,7 +2,10 @@
 //! arrives, and nothing but an order lets it move again.
 
 use super::{covering::covering, tethered::tethered, *};
-use crate::{order::StepTo, phase::Resumes};
+use crate::{
+    order::{Injection, RangeFault, StepTo},
+    phase::Resumes,
+};
 
 /// A flight in some state, with whatever would let the robot move again if nobody held it.
 struct Case {
@@ -281,4 +284,40 @@ fn a_step_ends_after_a_metre_without_lanes_and_goes_on_until_something_happens()
     flight.silent = true;
     flight.fly(60);
     assert!(matches!(flight.mission.phase(), Phase::Held(hold) if hold.resumes.is_never()));
+}
+
+/// A hold that was to end by itself: who makes a station fail, or excludes one, does not let the robot go by it.
+#[test]
+fn what_changes_the_ranges_of_a_held_robot_leaves_it_to_an_order() {
+    let station = StationId(1);
+    let fault = Order::Inject(Injection { station, fault: RangeFault::Dead, for_s: 1.0, by: None });
+    let held = |case: &Case| matches!(case.flight.mission.phase(), Phase::Held(_));
+    for order in [fault, Order::UseStation { station, used: false }] {
+        for Case { name, mut flight, clear } in cases().into_iter().filter(held) {
+            let before = flight.pose;
+            flight.tick(std::slice::from_ref(&order));
+            clear(&mut flight);
+            flight.fly(80);
+            assert_eq!(flight.pose, before, "{name}: {order:?}");
+        }
+    }
+}
+
+#[test]
+fn an_excluded_station_is_not_used_until_it_is_taken_back() {
+    let station = StationId(1);
+    let mut flight = started(config());
+    flight.tick(&[Order::UseStation { station, used: false }]);
+    let used = |flight: &mut Flight| {
+        let events: Vec<EventKind> = (0..20).flat_map(|_| flight.tick(&[])).collect();
+        let ranged = events.iter().filter_map(|kind| match kind {
+            EventKind::Ranged { ranges } => Some(ranges.iter().any(|range| range.station == station)),
+            _ => None,
+        });
+        let ranged: Vec<bool> = ranged.collect();
+        (ranged.len() > 1, ranged.iter().any(|used| *used))
+    };
+    assert_eq!(used(&mut flight), (true, false));
+    flight.tick(&[Order::UseStation { station, used: true }]);
+    assert_eq!(used(&mut flight), (true, true));
 }

@@ -85,6 +85,7 @@ fn chi_squared(chi2: f64, degrees_of_freedom: u32) -> Reading {
 fn residual(reason: &Exclusion) -> Reading {
     match reason {
         Exclusion::Silent => Reading { now: "not heard".into(), limit: String::new() },
+        Exclusion::ByOrder => Reading { now: "excluded".into(), limit: String::new() },
         Exclusion::Residual { residual_m, gate_m } => {
             Reading { now: format!("{residual_m:+.2} m"), limit: format!("{gate_m:.2} m") }
         }

@@ -1,11 +1,12 @@
 //! The values of commands: what there is to choose from, and what a typed word means.
 
-use crate::actions::{ActionId, Kind, find};
+use crate::actions::{ActionId, Kind, duration_s, find};
+use crate::guide;
 use crate::model::ui::MapLayer;
-use crate::model::{Model, Screen, Source, Speed, parameter};
+use crate::model::{Cause, Model, Screen, Source, Speed, parameter};
 use crate::theme::ThemeName;
-use mission::{ParamKind, ParamValue, PlannerInfo, Severity, spelling::nearest};
-use world::{Point, Vector};
+use mission::{ParamKind, ParamValue, PlannerInfo, RangeFault, Severity, spelling::nearest};
+use world::{Point, StationId, Vector};
 
 /// A value, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +31,14 @@ pub(in crate::update) enum Value {
     Theme(ThemeName),
     /// What shows a screen.
     Screen(ActionId),
+    /// A span of time, seconds.
+    Duration(f64),
+    /// An alarm.
+    Alarm(Cause),
+    /// An AE station.
+    Station(StationId),
+    /// What is wrong with a station.
+    Fault(RangeFault),
     /// Any text.
     Text(String),
 }
@@ -47,6 +56,10 @@ pub(super) fn candidates(model: &Model, kind: Kind, typed: &str) -> Vec<String> 
         Kind::Severity => SEVERITIES.map(|(name, _)| name.to_owned()).into(),
         Kind::Theme => ThemeName::ALL.map(|theme| theme.name().to_owned()).into(),
         Kind::Screen => Screen::ALL.map(|screen| screen.name().to_lowercase()).into(),
+        Kind::Duration => ["20s", "1m", "5m", "15m"].map(str::to_owned).into(),
+        Kind::Alarm => alarms(model).map(|(name, _)| name).collect(),
+        Kind::Station => model.live.run.stations().iter().map(|station| station.name.clone()).collect(),
+        Kind::Fault => ["dead", "offset="].map(str::to_owned).into(),
         Kind::Text => Vec::new(),
     };
     all.into_iter().map(|value| if value.contains(' ') { format!("\"{value}\"") } else { value }).collect()
@@ -62,6 +75,8 @@ pub(super) fn read(model: &Model, kind: Kind, text: &str) -> Result<Value, Strin
         Kind::Parameter => read_parameter(model, text),
         Kind::Run => read_run(model, text).map(Value::Run),
         Kind::Text => Ok(Value::Text(text.to_owned())),
+        Kind::Duration => duration_s(text).map(Value::Duration),
+        Kind::Fault => read_fault(text).map(Value::Fault),
         _ => {
             named(model, kind, text).ok_or_else(|| wrong(&text_of(kind), text, &candidates(model, kind, "")))
         }
@@ -90,7 +105,14 @@ fn named(model: &Model, kind: Kind, text: &str) -> Option<Value> {
             let screen = Screen::ALL.into_iter().find(|screen| screen.name().to_lowercase() == text)?;
             find::named(&screen.name().to_lowercase()).map(|action| Value::Screen(action.id))
         }
-        Kind::Speed | Kind::Parameter | Kind::Run | Kind::Text => None,
+        Kind::Alarm => alarms(model).find(|(name, _)| name == text).map(|(_, cause)| Value::Alarm(cause)),
+        Kind::Station => {
+            // As the scenario writes it, too: ae.S3.
+            let name = text.strip_prefix("ae.").unwrap_or(text);
+            let station = model.live.run.stations().iter().find(|station| station.name == name)?;
+            Some(Value::Station(station.id))
+        }
+        Kind::Speed | Kind::Parameter | Kind::Run | Kind::Text | Kind::Duration | Kind::Fault => None,
     }
 }
 
@@ -151,6 +173,28 @@ fn read_parameter(model: &Model, text: &str) -> Result<Value, String> {
     };
     let info = all.iter().find(|info| info.key == key).ok_or_else(unknown)?;
     Ok(Value::Parameter { key: key.to_owned(), value: parameter::parse(info, value)? })
+}
+
+/// The alarms of the run that can be put aside, by name.
+fn alarms(model: &Model) -> impl Iterator<Item = (String, Cause)> {
+    let run = &model.live.run;
+    run.alarms.open().map(|alarm| (guide::name(&alarm.cause, run), alarm.cause.clone()))
+}
+
+/// Longest range error that a fault may have, metres, as in a scenario.
+const LONGEST_M: f64 = 1000.0;
+
+fn read_fault(text: &str) -> Result<RangeFault, String> {
+    let wrong =
+        || format!("no fault `{text}`; write dead (silent) or offset=2.5 (metres too long, to {LONGEST_M})");
+    if text == "dead" {
+        return Ok(RangeFault::Dead);
+    }
+    let metres = text.strip_prefix("offset=").ok_or_else(wrong)?;
+    match metres.trim_end_matches('m').parse() {
+        Ok(metres) if metres > 0.0 && metres <= LONGEST_M => Ok(RangeFault::Offset(metres)),
+        _ => Err(wrong()),
+    }
 }
 
 /// The scenarios that can be opened.

@@ -71,6 +71,7 @@ fn residuals(look: &Look) -> Option<String> {
     let rejected = fix.excluded.iter().map(|(station, why)| {
         let residual = match why {
             Exclusion::Silent => "not heard".to_owned(),
+            Exclusion::ByOrder => "excluded".to_owned(),
             Exclusion::Residual { residual_m, .. } => format!("{residual_m:+.2} m rejected"),
         };
         (*station, residual)

@@ -174,6 +174,7 @@ fn measured(range: &Ranging) -> String {
 fn rejected(run: &Run, id: StationId, reason: &Exclusion, range: Option<&Ranging>) -> Vec<Field> {
     let mut facts = vec![("station", station_text(run, id))];
     match (reason, range) {
+        (Exclusion::ByOrder, _) => facts.push(("reason", "excluded by the operator".into())),
         (Exclusion::Silent, _) => facts.push(("reason", "not heard in this cycle".into())),
         (Exclusion::Residual { residual_m, .. }, Some(range)) => {
             let expected_m = range.range_m - residual_m;

@@ -1,0 +1,107 @@
+//! Looking on at a run: its journal is read while another process writes it, or after it has ended.
+
+use super::inbox::RunOutbox;
+use anyhow::Context;
+use mission::{Event, EventKind, Severity};
+use recording::{JOURNAL_FILE, JournalReader};
+use runs::{Past, Standing, standing};
+use std::{
+    path::{Path, PathBuf},
+    thread,
+    time::{Duration, Instant},
+};
+use tui::{Msg, RunMsg, RunResult};
+
+/// How often a journal that has not grown is looked at again.
+const LOOK_AGAIN: Duration = Duration::from_millis(100);
+/// How long what was read may wait for the rest of its tick.
+const PATIENCE: Duration = Duration::from_millis(50);
+/// Events that are sent together at most, but for those of one tick.
+const MOST: usize = 512;
+/// With this many messages waiting for the screen, the journal is read no further.
+const MOST_BACKLOG: usize = 64;
+
+/// Reads the journal of a run from its beginning, and on as long as it is being written; in a thread of its own.
+///
+/// # Errors
+/// There is no journal; the system gives no thread.
+pub(super) fn begin(folder: &Path, screen: RunOutbox) -> anyhow::Result<()> {
+    let folder = folder.to_owned();
+    let writer = folder.clone();
+    let reader = JournalReader::follow(&folder.join(JOURNAL_FILE), move || {
+        thread::sleep(LOOK_AGAIN);
+        standing(&writer) == Standing::Running
+    })?;
+    let viewing = Viewing { folder, screen, read: Vec::new(), sent_at: Instant::now() };
+    let began = thread::Builder::new().name("journal".into()).spawn(move || viewing.read(reader));
+    began.map(drop).context("starting the thread that reads the journal")
+}
+
+struct Viewing {
+    folder: PathBuf,
+    screen: RunOutbox,
+    /// What was read and not sent yet.
+    read: Vec<Event>,
+    sent_at: Instant,
+}
+
+impl Viewing {
+    fn read(mut self, reader: JournalReader) {
+        let has_ended = match self.read_all(reader) {
+            Ok(has_ended) => has_ended,
+            Err(error) => return self.fail(&error.into()),
+        };
+        if !has_ended {
+            self.say("the run was not closed: its console is gone; values are the last ones of its journal");
+        }
+        match self.result() {
+            Ok(result) => drop(self.screen.send(RunMsg::Closed(Box::new(result)))),
+            Err(error) => self.fail(&error),
+        }
+    }
+
+    /// Sends every event; whether the last one ends the run.
+    fn read_all(&mut self, reader: JournalReader) -> Result<bool, recording::JournalError> {
+        let mut has_ended = false;
+        for event in reader {
+            let event = event?;
+            has_ended = matches!(event.kind, EventKind::Ended { .. });
+            let is_new_tick = self.read.last().is_some_and(|last| last.tick != event.tick);
+            if is_new_tick && (self.read.len() >= MOST || self.sent_at.elapsed() >= PATIENCE) {
+                self.send();
+            }
+            self.read.push(event);
+        }
+        self.send();
+        Ok(has_ended)
+    }
+
+    fn send(&mut self) {
+        while self.screen.backlog() > MOST_BACKLOG {
+            thread::sleep(Duration::from_millis(1));
+        }
+        self.screen.send(RunMsg::Events(std::mem::take(&mut self.read)));
+        self.sent_at = Instant::now();
+    }
+
+    /// What the run leaves, as its journal says.
+    fn result(&self) -> anyhow::Result<RunResult> {
+        let past = Past::read(&self.folder)?;
+        let doubt = past.run.logs.error.clone();
+        Ok(RunResult {
+            summary: Box::new(review::summary(&past)?),
+            name: Some(past.run.name.clone()),
+            kept: doubt.clone().unwrap_or_else(|| format!("run kept in {}", self.folder.display())),
+            is_kept: doubt.is_none(),
+        })
+    }
+
+    fn fail(&self, error: &anyhow::Error) {
+        self.screen.send(RunMsg::OpenFailed(format!("{error:#}")));
+        self.say(&format!("{error:#}"));
+    }
+
+    fn say(&self, text: &str) {
+        self.screen.outbox.send(Msg::Notice { severity: Severity::Crit, text: text.to_owned() });
+    }
+}

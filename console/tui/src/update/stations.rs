@@ -1,0 +1,46 @@
+//! What the operator does about AE stations: excludes one, takes it back, makes a simulated one fail.
+
+use super::command::Value;
+use super::offer::{accepted, demand};
+use crate::actions::ActionId;
+use crate::model::Model;
+use mission::{Injection, Order, RangeFault};
+use world::StationId;
+
+/// Whether something can be done about a station now.
+///
+/// # Errors
+/// Why not, as a sentence.
+pub(super) fn can(model: &Model, id: ActionId) -> Result<(), String> {
+    demand(model.live.run.about.is_some(), "no mission loaded yet")?;
+    let station = model.live.run.stations().first().ok_or("this mission has no AE stations")?.id;
+    let order = match id {
+        ActionId::Inject => {
+            Order::Inject(Injection { station, fault: RangeFault::Dead, for_s: 1.0, by: None })
+        }
+        _ => Order::UseStation { station, used: true },
+    };
+    accepted(model, &order)
+}
+
+/// The order that a command is about a station; nothing if a value is missing.
+pub(super) fn order(
+    model: &Model,
+    id: ActionId,
+    station: StationId,
+    values: impl Iterator<Item = Value>,
+) -> Option<Order> {
+    if id != ActionId::Inject {
+        return Some(Order::UseStation { station, used: id == ActionId::Include });
+    }
+    let (mut fault, mut for_s) = (None, None);
+    for value in values {
+        match value {
+            Value::Fault(found) => fault = Some(found),
+            Value::Duration(seconds) => for_s = Some(seconds),
+            _ => {}
+        }
+    }
+    let by = model.console.preferences.operator.clone();
+    Some(Order::Inject(Injection { station, fault: fault?, for_s: for_s?, by }))
+}

@@ -1,0 +1,104 @@
+//! A second console that looks on at the run of another one.
+
+use crate::bench::Bench;
+use std::{
+    io::{BufRead, BufReader, Write},
+    path::Path,
+    process::{Child, Command, Stdio},
+    sync::mpsc::{Receiver, channel},
+    time::Duration,
+};
+
+const PATIENCE: Duration = Duration::from_mins(1);
+
+/// A console in sentences.
+struct Console {
+    child: Child,
+    said: Receiver<String>,
+}
+
+impl Console {
+    fn open(mut command: Command, arguments: &[&str]) -> Self {
+        command.args(["console", "--plain"]).args(arguments);
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        let lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let (sender, said) = channel();
+        std::thread::spawn(move || lines.map_while(Result::ok).all(|line| sender.send(line).is_ok()));
+        Self { child, said }
+    }
+
+    fn order(&mut self, lines: &str) {
+        self.child.stdin.as_mut().unwrap().write_all(lines.as_bytes()).unwrap();
+    }
+
+    fn hear(&self, words: &str) {
+        let mut heard = Vec::new();
+        while let Ok(line) = self.said.recv_timeout(PATIENCE) {
+            if line.contains(words) {
+                return;
+            }
+            heard.push(line);
+        }
+        panic!("no {words:?} in {heard:#?}");
+    }
+
+    fn leave(mut self) -> Option<i32> {
+        drop(self.child.stdin.take());
+        self.child.wait().unwrap().code()
+    }
+}
+
+fn view(bench: &Bench, run: &Path) -> Console {
+    Console::open(bench.command(), &["--view", run.file_name().unwrap().to_str().unwrap()])
+}
+
+#[test]
+fn an_onlooker_sees_a_run_under_way_and_its_end_and_cannot_stop_it() {
+    let bench = Bench::new();
+    let mut pilot = Console::open(bench.command(), &["--speed", "4"]);
+    pilot.hear("Press S to start");
+    pilot.order("start\nyes\n");
+    pilot.hear("Mission running");
+    let run = bench.runs().remove(0);
+    let mut onlooker = view(&bench, &run);
+    onlooker.hear("Mission running");
+    onlooker.order("hold\nend\n");
+    onlooker.hear("VIEW: this console only looks on");
+    pilot.order("inject A dead 5s\n");
+    onlooker.hear("fault injected: station A dead for 5 s");
+    pilot.order("end\nyes\n");
+    onlooker.hear("ended (aborted): ended by operator");
+    onlooker.hear("Screen 7: Result.");
+    assert_eq!(onlooker.leave(), Some(0));
+    pilot.leave();
+    bench.prove(&run);
+    let past = view(&bench, &run);
+    past.hear("Screen 7: Result.");
+    past.leave();
+}
+
+#[test]
+fn an_onlooker_is_told_that_the_console_of_the_run_was_killed() {
+    let bench = Bench::new();
+    let mut pilot = Console::open(bench.command(), &["--speed", "4"]);
+    pilot.hear("Press S to start");
+    pilot.order("start\nyes\n");
+    pilot.hear("Mission running");
+    let onlooker = view(&bench, &bench.runs().remove(0));
+    onlooker.hear("Mission running");
+    pilot.child.kill().unwrap();
+    onlooker.hear("the run was not closed: its console is gone");
+    onlooker.leave();
+}
+
+#[test]
+fn a_run_that_is_not_there_cannot_be_looked_at_and_a_view_takes_no_script() {
+    let bench = Bench::new();
+    for (arguments, words) in [
+        (&["console", "--plain", "--view", "nothing"][..], "no run"),
+        (&["console", "--view", "nothing", "--script", "file"], "cannot be used with"),
+    ] {
+        let ended = bench.tankops(arguments);
+        assert!(ended.code == Some(2) && ended.err.contains(words), "{ended:?}");
+    }
+}
