@@ -35,6 +35,8 @@ pub(crate) enum Command {
     Plan(PlanArgs),
     /// Forecast the position accuracy that the stations give, and advise where to place them.
     Accuracy(AccuracyArgs),
+    /// Show what becomes of an occupancy map: the floor, its outlines and convex pieces.
+    Map(MapArgs),
     /// List available planners, and refused plugins with the reason.
     Planners {
         /// Print JSON.
@@ -376,6 +378,33 @@ pub(crate) struct AccuracyArgs {
     /// Find the best places on the wall for this many stations, 3 to 32.
     #[arg(long, value_name = "N")]
     pub advise: Option<usize>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MapArgs {
+    /// YAML file of the map, as `map` in `[tank]` of a scenario names it.
+    pub map: PathBuf,
+    /// Keep the floor that holds this place, in metres; default: the largest.
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
+    pub start: Option<[f64; 2]>,
+    /// Floor that may become solid where that spares corners of the outlines, as its distance in metres from what is solid;
+    /// default: half a cell. A scenario sets it by `map_tolerance_m`.
+    #[arg(long, value_name = "M", value_parser = tolerance)]
+    pub simplify: Option<f64>,
+    /// Draw wall and pieces to this file.
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+}
+
+fn place(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
+    let place = <[f64; 2]>::try_from(numbers).ok().filter(|place| place.iter().all(|v| v.is_finite()));
+    place.ok_or_else(|| "write two numbers with a comma, as 1.5,-2".into())
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let metres = text.parse().ok().filter(|metres| (0.0..=1.0).contains(metres));
+    metres.ok_or_else(|| "write metres from 0 to 1".into())
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ mod accuracy;
 mod cli;
 mod headless;
 mod manual;
+mod map;
 mod output;
 mod past_runs;
 mod plan;
@@ -65,6 +66,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Run(args)) => headless::run(&args, &plugins),
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
+        Some(Command::Map(args)) => map::map(&args),
         Some(Command::Planners { json }) => planners::list(&plugins, json),
         Some(Command::Check { files }) => planners::check(&files, &plugins),
         Some(Command::Reproduce(args)) => reproduce::reproduce(&args, &plugins),

@@ -198,6 +198,17 @@ impl PathFollower {
         self.stations_m[self.nearest]
     }
 
+    /// Way from a position to the target and on to the end of the path, metres.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let follower = PathFollower::new(vec![Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
+    /// assert_eq!(follower.left_m(Point::new(-1.0, 0.0)), 8.0);
+    /// ```
+    pub fn left_m(&self, position: Point) -> f64 {
+        (self.target() - position).norm() + self.length_m() - self.stations_m[self.target]
+    }
+
     /// Length of the whole path, metres.
     ///
     /// ```

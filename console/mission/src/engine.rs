@@ -199,12 +199,14 @@ impl Mission {
         if matches!(self.phase, Phase::Waiting | Phase::Ended(_)) {
             return;
         }
+        let here = self.locator.position();
         let seen = Seen {
             config: &self.config,
             now_s: self.now_s(),
-            here: self.locator.position(),
+            here,
             position: self.position_trust(),
             task: &self.task,
+            plan_left_m: self.active.follower.as_ref().map(|plan| plan.left_m(here)),
             scanned: self.floor.coverage.fraction_reachable(),
             touched: readings.contact,
             reached,

@@ -213,12 +213,13 @@ impl Goto {
 
 /// Notices when a moving robot gets nowhere.
 ///
-/// Twice `patience_s` without coming nearer, or one `patience_s` on the same spot, is stuck: a detour may lead away
-/// from the goal for a while, but it leads somewhere.
+/// Twice `patience_s` without coming nearer, or one `patience_s` on the same spot, is stuck. Nearer is what leaves less of the
+/// task or of the planner's path: in rooms a path may lead away from the goal for long.
 #[derive(Clone)]
 pub(crate) struct StuckWatch {
     patience_s: f64,
-    least_left_m: f64,
+    /// The least that was left of the task and of the planner's path, metres.
+    least_left_m: [f64; 2],
     since_progress_s: f64,
     spot: Option<Point>,
     on_spot_s: f64,
@@ -227,7 +228,13 @@ pub(crate) struct StuckWatch {
 impl StuckWatch {
     /// A watch of some patience.
     pub(crate) fn new(patience_s: f64) -> Self {
-        Self { patience_s, least_left_m: f64::INFINITY, since_progress_s: 0.0, spot: None, on_spot_s: 0.0 }
+        Self {
+            patience_s,
+            least_left_m: [f64::INFINITY; 2],
+            since_progress_s: 0.0,
+            spot: None,
+            on_spot_s: 0.0,
+        }
     }
 
     /// Forgets what it saw, for a new try.
@@ -235,12 +242,21 @@ impl StuckWatch {
         *self = Self::new(self.patience_s);
     }
 
-    /// Takes one tick of moving; gives whether the robot is stuck.
-    pub(crate) fn update(&mut self, task: &Task, position: Point, tick_s: f64) -> bool {
-        let left_m = task.left_m();
+    /// Takes one tick of moving, and what is left of the planner's path, metres, if there is one; gives whether the robot is
+    /// stuck.
+    pub(crate) fn update(
+        &mut self,
+        task: &Task,
+        plan_left_m: Option<f64>,
+        position: Point,
+        tick_s: f64,
+    ) -> bool {
         self.since_progress_s += tick_s;
-        if left_m < self.least_left_m - PROGRESS_M {
-            (self.least_left_m, self.since_progress_s) = (left_m, 0.0);
+        let left_m = [task.left_m(), plan_left_m.unwrap_or(f64::INFINITY)];
+        for (least_m, left_m) in self.least_left_m.iter_mut().zip(left_m) {
+            if left_m < *least_m - PROGRESS_M {
+                (*least_m, self.since_progress_s) = (left_m, 0.0);
+            }
         }
         let near = self.spot.is_some_and(|spot| (position - spot).norm() < 3.0 * PROGRESS_M);
         self.on_spot_s = if near { self.on_spot_s + tick_s } else { 0.0 };
@@ -269,15 +285,29 @@ mod tests {
             let angle = f64::from(*tick) * 0.05;
             let position = Point::new(angle.cos(), angle.sin());
             task.advance(position, &map, 0.3);
-            watch.update(&task, position, 0.1)
+            watch.update(&task, None, position, 0.1)
         });
         assert!(stuck_after.is_some_and(|tick| (180..260).contains(&tick)), "{stuck_after:?}");
         let (mut task, mut watch) = (goto((9.0, 0.0)), StuckWatch::new(10.0));
         assert!((0..150).all(|tick| {
             let position = Point::new(-f64::from(tick) * 0.04, 0.0);
             task.advance(position, &map, 0.3);
-            !watch.update(&task, position, 0.1)
+            !watch.update(&task, None, position, 0.1)
         }));
+    }
+
+    #[test]
+    fn a_robot_on_a_long_way_round_is_not_stuck_until_it_stops() {
+        let (task, mut watch) = (goto((0.0, 9.0)), StuckWatch::new(10.0));
+        let mut plan = PathFollower::new(
+            [(0.0, 0.0), (0.0, -40.0), (9.0, -40.0), (9.0, 9.0)].map(|(x, y)| Point::new(x, y)).to_vec(),
+        );
+        let at = |tick: u32| Point::new(0.0, -0.1 * f64::from(tick.min(350)));
+        let stuck_after = (0..1000).find(|tick| {
+            plan.advance(at(*tick), |_| true);
+            watch.update(&task, Some(plan.left_m(at(*tick))), at(*tick), 0.1)
+        });
+        assert!(stuck_after.is_some_and(|tick| (450..=460).contains(&tick)), "{stuck_after:?}");
     }
 
     #[test]

@@ -4,7 +4,7 @@ pub(crate) mod forecast;
 pub mod plan;
 
 use std::fmt::Write;
-use world::{Boundary, Point, Shape};
+use world::{Boundary, Point, Shape, World};
 
 /// Pixels per metre.
 const SCALE: f64 = 50.0;
@@ -37,6 +37,19 @@ pub(crate) fn document(boundary: &Boundary, style: &str, body: &str) -> String {
         height,
         body
     )
+}
+
+/// A floor as an SVG document: wall, obstacles and stations.
+pub fn floor(world: &World) -> String {
+    let mut body = String::new();
+    wall(&mut body, &world.boundary);
+    for obstacle in &world.obstacles {
+        outline(&mut body, &obstacle.shape, 0.0);
+    }
+    for station in &world.stations {
+        circle(&mut body, station.position, 0.15, "station");
+    }
+    document(&world.boundary, "", &body)
 }
 
 /// The wall of the tank.

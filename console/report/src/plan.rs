@@ -9,7 +9,7 @@ use planner_api::Plan;
 use serde::Serialize;
 use world::{
     Cell, Floor, Point, Shape, World, polyline,
-    tether::{Cable, Case, Certificate, Limits, certify},
+    tether::{Cable, Certificate},
 };
 
 /// A plan as scripts read it.
@@ -30,8 +30,7 @@ pub struct Planned {
     warnings: Vec<String>,
     /// The floor that is to be scanned as reports count it; absent for other missions.
     floor: Option<PlannedFloor>,
-    /// What the path does to the tether, or, without one, to a tether that would run from the anchor of a coverage
-    /// mission; absent for other missions.
+    /// What the path does to the tether; absent without one.
     certificate: Option<Certificate>,
 }
 
@@ -92,7 +91,7 @@ impl Planned {
             TaskConfig::Follow { path, .. } => Some(path.as_slice()),
             TaskConfig::Cover { .. } | TaskConfig::Goto { .. } => None,
         };
-        let anchor = anchor(mission);
+        let anchor = mission.tether.as_ref().map(|tether| tether.anchor);
         let cable = anchor.and_then(|anchor| longest_cable(anchor, drawing, &self.path)).unwrap_or_default();
         svg(&Drawn {
             world: drawing,
@@ -136,41 +135,10 @@ fn planned_floor(mission: &MissionConfig, drawing: &World) -> Option<PlannedFloo
     Some(PlannedFloor { swath_m, reachable_m2, shell_margin_m2 })
 }
 
-/// What the path does to the tether, certified independently of its planner; without a tether, what it would do to one of
-/// unlimited length.
+/// What the path does to the tether, certified independently of its planner; nothing without a tether.
 fn certificate(mission: &MissionConfig, drawing: &World, plan: &Plan) -> Option<Certificate> {
-    if plan.path.is_empty() {
-        return None;
-    }
-    if let Some(tether) = &mission.tether {
-        return Some(certify_from_start(tether, mission, &plan.path, &plan.cuts, drawing));
-    }
-    let TaskConfig::Cover { anchor, .. } = &mission.task else { return None };
-    let case = Case {
-        path: &plan.path,
-        anchor: *anchor,
-        cable: None,
-        boundary: &drawing.boundary,
-        obstacles: &drawing.obstacles,
-        room_m: mission.room_m(),
-        limits: Limits {
-            reel_length_m: f64::INFINITY,
-            wrap_max_rad: f64::INFINITY,
-            wrap_total_max_rad: f64::INFINITY,
-        },
-        returns: true,
-        cuts: &plan.cuts,
-    };
-    certify(&case).ok()
-}
-
-/// Where the tether comes in, or would.
-fn anchor(mission: &MissionConfig) -> Option<Point> {
-    match (&mission.tether, &mission.task) {
-        (Some(tether), _) => Some(tether.anchor),
-        (None, TaskConfig::Cover { anchor, .. }) => Some(*anchor),
-        (None, TaskConfig::Goto { .. } | TaskConfig::Follow { .. }) => None,
-    }
+    let tether = mission.tether.as_ref().filter(|_| !plan.path.is_empty())?;
+    Some(certify_from_start(tether, mission, &plan.path, &plan.cuts, drawing))
 }
 
 fn longest_cable(anchor: Point, world: &World, path: &[Point]) -> Option<Vec<Point>> {

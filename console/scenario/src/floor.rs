@@ -18,7 +18,7 @@ pub(crate) fn tank(root: &Section<'_>) -> Option<Boundary> {
         return None;
     }
     if section.has("radius_m") {
-        section.refuse(&["vertices_m"], "radius_m");
+        section.refuse(&["vertices_m", "map_tolerance_m"], "radius_m");
         return Some(Boundary::Circle { radius_m: section.number("radius_m")? });
     }
     if !section.has("vertices_m") {
@@ -26,6 +26,7 @@ pub(crate) fn tank(root: &Section<'_>) -> Option<Boundary> {
             .require("radius_m", "add radius_m = ..., in m, for a round tank, or vertices_m = [[x, y], ...]");
         return None;
     }
+    section.refuse(&["map_tolerance_m"], "vertices_m");
     Some(Boundary::Polygon { vertices: counter_clockwise(&section, "vertices_m")? })
 }
 

@@ -1,152 +1,117 @@
 //! `tank.map`: an occupancy map put into the text of a scenario as wall and obstacles.
 //!
 //! As with settings from the command line, the changed text alone gives the same scenario again: a journal needs no map
-//! file. The wall is the rectangle around the free cells; what is solid within it becomes rectangles.
+//! file.
 
-use super::{
-    occupancy::OccupancyMap,
-    problem::{Complaint, Problem, ScenarioErrors},
-};
-use std::{fmt::Write, ops::Range, path::Path};
-use toml::de::DeTable;
-use world::Point;
-
-/// Cells from a first to one before a last, along x and y.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Rectangle {
-    x: Range<usize>,
-    y: Range<usize>,
-}
+use super::problem::{Complaint, Problem, ScenarioErrors};
+use import::{MapFloor, OccupancyMap};
+use std::{fmt::Write, path::Path};
+use toml::de::{DeTable, DeValue};
+use toml_edit::{DocumentMut, Value, value};
+use world::{Boundary, Point};
 
 /// The text with its map, if it names one, as wall and obstacles; `folder` is where the scenario lies.
 ///
 /// # Errors
-/// The map cannot be read, shows no free floor, or gives more obstacles than a scenario may have.
+/// The map cannot be read or shows no free floor.
 pub(crate) fn put_in(text: &str, shown_name: &str, folder: &Path) -> Result<String, ScenarioErrors> {
-    let Ok(table) = DeTable::parse(text) else { return Ok(text.to_owned()) };
-    let tank = table.get_ref().get("tank").and_then(|tank| tank.get_ref().as_table());
-    let Some((key, value)) = tank.and_then(|tank| tank.get_key_value("map")) else {
+    let (Ok(table), Ok(mut document)) = (DeTable::parse(text), text.parse::<DocumentMut>()) else {
         return Ok(text.to_owned());
     };
-    // What is no text is left to the reader of the schema.
-    let Some(file) = value.get_ref().as_str() else { return Ok(text.to_owned()) };
+    let tank = table.get_ref().get("tank").and_then(|tank| tank.get_ref().as_table());
+    let Some((tank, named)) = tank.and_then(|tank| Some((tank, tank.get("map")?))) else {
+        return Ok(text.to_owned());
+    };
+    // What is no text, and no tolerance, is left to the reader of the schema.
+    let Some(file) = named.get_ref().as_str() else { return Ok(text.to_owned()) };
+    let tolerance = tank.get("map_tolerance_m");
+    let tolerance_m = tolerance.and_then(|tolerance| number(tolerance.get_ref())).filter(|m| *m >= 0.0);
+    if tolerance.is_some() && tolerance_m.is_none() {
+        return Ok(text.to_owned());
+    }
     let wrong = |what: String| ScenarioErrors {
         shown_name: shown_name.to_owned(),
         text: text.to_owned(),
         problems: vec![Problem {
             key: "tank.map".into(),
             value: Some(format!("\"{file}\"")),
-            at: Some(value.span()),
+            at: Some(named.span()),
             what: Complaint::Map(what),
         }],
     };
     let map = OccupancyMap::read(&folder.join(file)).map_err(|error| wrong(error.to_string()))?;
-    let (wall, solid) = rectangles(&map).ok_or_else(|| wrong("shows no free floor".into()))?;
-    if solid.len() > MOST_OBSTACLES {
-        let what = format!(
-            "{} rectangles of solid cells; at most {MOST_OBSTACLES} obstacles: smooth the map or make its cells coarser",
-            solid.len()
-        );
-        return Err(wrong(what));
+    let floor = MapFloor::new(&map, start(table.get_ref()), tolerance_m);
+    let floor = floor.ok_or_else(|| wrong("shows no free floor".into()))?;
+    let tank = document["tank"].as_table_like_mut().expect("the tank has a map");
+    tank.remove("map_tolerance_m");
+    tank.remove("map");
+    let Boundary::Polygon { vertices } = &floor.wall else { panic!("the walls of maps are rectangles") };
+    let wall: Value = corners(vertices).parse().expect("numbers in brackets are TOML");
+    tank.insert("vertices_m", value(wall));
+    let mut changed = document.to_string();
+    if !changed.ends_with('\n') {
+        changed.push('\n');
     }
-    let (before, after) = (&text[..key.span().start], &text[value.span().end..]);
-    let mut changed = format!("{before}vertices_m = {}{after}\n", corners(&map, &wall));
-    for (index, rectangle) in solid.iter().enumerate() {
-        let corners = corners(&map, rectangle);
+    for (index, piece) in floor.pieces.iter().enumerate() {
         // Writing to a String cannot fail.
         let _ = writeln!(
             changed,
-            "\n[[obstacles]]\nname = \"map {}\"\nkind = \"polygon\"\nvertices_m = {corners}",
-            index + 1
+            "\n[[obstacles]]\nname = \"map {}\"\nkind = \"polygon\"\nvertices_m = {}",
+            index + 1,
+            corners(piece)
         );
     }
     Ok(changed)
 }
 
-/// As many obstacles as a scenario may have.
-const MOST_OBSTACLES: usize = 1000;
-
-/// The rectangle around the free cells, and rectangles that cover what is solid within it.
-fn rectangles(map: &OccupancyMap) -> Option<(Rectangle, Vec<Rectangle>)> {
-    let free = || (0..map.is_solid.len()).filter(|cell| !map.is_solid[*cell]);
-    let (x, y) = (|cell: usize| cell % map.columns, |cell: usize| cell / map.columns);
-    let wall = Rectangle {
-        x: free().map(x).min()?..free().map(x).max()? + 1,
-        y: free().map(y).min()?..free().map(y).max()? + 1,
-    };
-    let mut done: Vec<Rectangle> = Vec::new();
-    let mut open: Vec<Rectangle> = Vec::new();
-    for row in wall.y.clone() {
-        let runs = runs(map, &wall.x, row);
-        // A run as wide as the one below it goes on with it.
-        let (going_on, ended): (Vec<Rectangle>, Vec<Rectangle>) =
-            open.into_iter().partition(|rectangle| runs.contains(&rectangle.x));
-        done.extend(ended);
-        let fresh = runs.iter().filter(|run| going_on.iter().all(|rectangle| rectangle.x != **run));
-        let fresh: Vec<Rectangle> = fresh.map(|run| Rectangle { x: run.clone(), y: row..row + 1 }).collect();
-        let longer = going_on.into_iter().map(|r| Rectangle { y: r.y.start..row + 1, ..r });
-        open = longer.chain(fresh).collect();
-    }
-    done.extend(open);
-    Some((wall, done))
+/// Where the robot starts, if the text says so.
+fn start(table: &DeTable<'_>) -> Option<Point> {
+    let robot = || point(table.get("robot")?.get_ref().get("start_m")?.get_ref());
+    let path = || point(table.get("mission")?.get_ref().get("path_m")?.get_ref().get(0)?.get_ref());
+    robot().or_else(path)
 }
 
-/// Runs of solid cells in a row.
-fn runs(map: &OccupancyMap, x: &Range<usize>, row: usize) -> Vec<Range<usize>> {
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    for column in x.clone().filter(|column| map.is_solid[row * map.columns + column]) {
-        match runs.last_mut() {
-            Some(run) if run.end == column => run.end += 1,
-            _ => runs.push(column..column + 1),
-        }
-    }
-    runs
+fn point(value: &DeValue<'_>) -> Option<Point> {
+    let [x, y] = &value.as_array()?[..] else { return None };
+    Some(Point::new(number(x.get_ref())?, number(y.get_ref())?))
 }
 
-/// Corners of a rectangle as TOML, counter-clockwise, to the tenth of a millimetre.
-fn corners(map: &OccupancyMap, rectangle: &Rectangle) -> String {
-    let corner = |column: usize, row: usize| {
-        let at: Point = map.origin + world::Vector::new(column as f64, row as f64) * map.cell_m;
-        format!("[{:.4}, {:.4}]", at.x, at.y)
-    };
-    let Rectangle { x, y } = rectangle;
-    let corners =
-        [(x.start, y.start), (x.end, y.start), (x.end, y.end), (x.start, y.end)].map(|(x, y)| corner(x, y));
+fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(written) => written.as_str().parse().ok(),
+        DeValue::Integer(written) => written.as_str().parse().ok(),
+        _ => None,
+    }
+}
+
+/// Corners as TOML, to the micrometre.
+fn corners(points: &[Point]) -> String {
+    let rounded = |v: f64| (v * 1e6).round() / 1e6 + 0.0;
+    let corners: Vec<String> =
+        points.iter().map(|at| format!("[{}, {}]", rounded(at.x), rounded(at.y))).collect();
     format!("[{}]", corners.join(", "))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn drawn(rows: &[&str]) -> OccupancyMap {
-        let is_solid = rows.iter().rev().flat_map(|row| row.chars().map(|c| c == '#')).collect();
-        OccupancyMap { columns: rows[0].len(), is_solid, cell_m: 0.5, origin: Point::new(-1.0, 0.0) }
-    }
+    use std::fs;
 
     #[test]
-    fn runs_of_the_same_width_become_one_rectangle() {
-        let map = drawn(&["######", "#....#", "#.##.#", "#.##.#", "#....#", "######"]);
-        let (wall, solid) = rectangles(&map).unwrap();
-        assert_eq!(wall, Rectangle { x: 1..5, y: 1..5 });
-        assert_eq!(solid, [Rectangle { x: 2..4, y: 2..4 }]);
+    fn a_map_becomes_the_wall_and_obstacles_that_hold_the_start() {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("m.yaml"), "image: m.pgm\nresolution: 0.5\norigin: [-1, 0, 0]\n").unwrap();
+        let rows = "0 0 0 0 0 0 0 0\n0 9 9 9 9 0 9 0\n0 9 0 0 9 0 9 0\n0 9 9 9 9 0 0 0\n0 0 0 0 0 0 0 0\n";
+        fs::write(dir.path().join("m.pgm"), format!("P2 8 5 9\n{rows}")).unwrap();
+        let text = "[robot]\nstart_m = [1.25, 0.75]\n[tank]\nmap_tolerance_m = 0\nmap = \"m.yaml\" # drawn\n";
+        let changed = put_in(text, "s.toml", dir.path()).unwrap();
         assert_eq!(
-            corners(&map, &solid[0]),
-            "[[0.0000, 1.0000], [1.0000, 1.0000], [1.0000, 2.0000], [0.0000, 2.0000]]"
+            changed,
+            "[robot]\nstart_m = [1.25, 0.75]\n[tank]\n\
+             vertices_m = [[-0.5, 0.5], [1.5, 0.5], [1.5, 2], [-0.5, 2]]\n\n\
+             [[obstacles]]\nname = \"map 1\"\nkind = \"polygon\"\nvertices_m = [[1, 1], [1, 1.5], [0, 1.5], [0, 1]]\n"
         );
-    }
-
-    #[test]
-    fn every_solid_cell_is_covered_once_and_no_free_one() {
-        let rows = ["..#...", ".###..", ".#.#.#", "##...#", "......"];
-        let map = drawn(&rows);
-        let (_, solid) = rectangles(&map).unwrap();
-        for cell in 0..map.is_solid.len() {
-            let (x, y) = (cell % 6, cell / 6);
-            let n = solid.iter().filter(|r| r.x.contains(&x) && r.y.contains(&y)).count();
-            assert_eq!(n, usize::from(map.is_solid[cell]), "{x} {y}");
-        }
-        assert!(rectangles(&drawn(&["##", "##"])).is_none());
+        assert_eq!(put_in(&changed, "s.toml", dir.path()).unwrap(), changed);
     }
 
     #[test]

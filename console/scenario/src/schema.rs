@@ -200,6 +200,7 @@ static TANK: &[Key] = &[
     number("radius_m", "m", LENGTH).or_none("this, `vertices_m` or `map`"),
     key("vertices_m", "m", Kind::Points(3)).or_none("this, `radius_m` or `map`"),
     key("map", "", Kind::Text).or_none("this, `radius_m` or `vertices_m`"),
+    number("map_tolerance_m", "m", at_least(0.0).up_to(1.0)).or_none("half a cell"),
 ];
 
 static PLATES: &[Key] = &[

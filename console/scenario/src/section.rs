@@ -15,7 +15,7 @@ use toml::{
 use world::Point;
 
 /// Obstacles, zones or stations that a scenario may have.
-const MOST_ENTRIES: usize = 1000;
+const MOST_ENTRIES: usize = 50_000;
 
 /// Coordinates beyond this are mistakes, metres.
 const FAR_M: f64 = 10_000.0;

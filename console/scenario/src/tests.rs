@@ -428,7 +428,7 @@ fn what_is_no_scenario_at_all_is_refused_quickly_and_shortly() {
     let folder = tempfile::tempdir().expect("a folder");
     let noise: Vec<u8> = (0..10_000_000_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
     let cases: [(&str, &[u8], &str); 5] = [
-        ("noise.toml", &noise, "larger than 1000 kB"),
+        ("noise.toml", &noise, "larger than 8000 kB"),
         ("binary.toml", &noise[..5000], "is not UTF-8"),
         ("empty.toml", b"", "name: missing"),
         ("words.toml", b"this is not toml\n", "words.toml:1:"),

@@ -15,6 +15,7 @@ fn the_help_of_every_command_is_as_reviewed() {
         "run",
         "plan",
         "accuracy",
+        "map",
         "planners",
         "check",
         "reproduce",

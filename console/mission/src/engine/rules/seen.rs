@@ -22,6 +22,8 @@ pub(in crate::engine) struct Seen<'a> {
     pub here: Point,
     pub position: PositionTrust,
     pub task: &'a Task,
+    /// What is left of the planner's path, metres, if it gave one.
+    pub plan_left_m: Option<f64>,
     /// Scanned share of the reachable floor, 0 to 1.
     pub scanned: f64,
     /// Whether the bumper touched something.

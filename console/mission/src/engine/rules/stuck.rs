@@ -29,7 +29,7 @@ impl StuckRule {
 
     /// One tick of a robot that was free to move.
     pub(crate) fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
-        if !self.watch.update(seen.task, seen.here, seen.config.tick_s) {
+        if !self.watch.update(seen.task, seen.plan_left_m, seen.here, seen.config.tick_s) {
             return None;
         }
         let tried = self.replanned_at.is_some_and(|at| (seen.here - at).norm() < SAME_PLACE_M);

@@ -1,0 +1,63 @@
+//! `tankops map`: what becomes of an occupancy map.
+
+use crate::{cli::MapArgs, output::write_file};
+use flight::failure::{COMPLETE, bad_input};
+use import::{MapFloor, OccupancyMap};
+use report::{drawing, print::say};
+use std::{fmt::Write, process::ExitCode};
+use world::{Obstacle, ObstacleId, Point, Shape, World};
+
+/// `tankops map`.
+pub(crate) fn map(args: &MapArgs) -> anyhow::Result<ExitCode> {
+    let map = OccupancyMap::read(&args.map).map_err(|error| bad_input(error.to_string()))?;
+    let start = args.start.map(|[x, y]| Point::new(x, y));
+    let floor = MapFloor::new(&map, start, args.simplify)
+        .ok_or_else(|| bad_input(format!("{}: shows no free floor", args.map.display())))?;
+    if let Some(file) = &args.svg {
+        write_file("the drawing", file, &drawing::floor(&world_of(&floor)))?;
+    }
+    say(&human(args, &map, &floor))?;
+    Ok(ExitCode::from(COMPLETE))
+}
+
+fn world_of(floor: &MapFloor) -> World {
+    let obstacle = |(index, vertices): (usize, &Vec<Point>)| {
+        let shape = Shape::Polygon { vertices: vertices.clone() };
+        Obstacle { id: ObstacleId(index as u32 + 1), name: format!("map {}", index + 1), shape, known: true }
+    };
+    World {
+        boundary: floor.wall.clone(),
+        obstacles: floor.pieces.iter().enumerate().map(obstacle).collect(),
+        stations: Vec::new(),
+        zones: Vec::new(),
+    }
+}
+
+fn human(args: &MapArgs, map: &OccupancyMap, floor: &MapFloor) -> String {
+    let (columns, rows, cell_m) = (map.columns, map.rows(), map.cell_m);
+    let area_m2 = |cells: usize| cells as f64 * cell_m * cell_m;
+    let size_m = |cells: usize| cells as f64 * cell_m;
+    let mut text = format!(
+        "{}: {columns} x {rows} cells of {cell_m} m, {:.2} x {:.2} m\n",
+        args.map.display(),
+        size_m(columns),
+        size_m(rows)
+    );
+    let elsewhere = floor.n_free_in_map - floor.n_free;
+    let [before, after] = floor.n_corners;
+    // Writing to a String cannot fail.
+    let _ = write!(
+        text,
+        "free floor           {:.1} m2 in {} cells; {elsewhere} free cells elsewhere count as solid\n\
+         outlines             {}, with {before} corners, {after} after simplification\n\
+         convex pieces        {}\n\
+         largest shape error  {:.4} m ({:.2} cells), towards the safe side\n",
+        area_m2(floor.n_free),
+        floor.n_free,
+        floor.n_outlines,
+        floor.pieces.len(),
+        floor.error_m,
+        floor.error_m / cell_m,
+    );
+    text
+}

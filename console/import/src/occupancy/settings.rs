@@ -1,0 +1,135 @@
+//! The YAML file of a map.
+
+use super::image::Pixel;
+use crate::error::ImportError;
+use serde::Deserialize;
+use serde_saphyr::Spanned;
+use std::path::Path;
+
+/// The keys of the file, as they are written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    image: Spanned<String>,
+    resolution: Spanned<f64>,
+    origin: Option<Spanned<Vec<f64>>>,
+    negate: Option<Negate>,
+    occupied_thresh: Option<Spanned<f64>>,
+    free_thresh: Option<Spanned<f64>>,
+    #[serde(default)]
+    mode: Mode,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "must be 0, 1, false or true")]
+enum Negate {
+    Flag(bool),
+    Number(i64),
+}
+
+/// How the brightness of a pixel becomes an occupancy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Mode {
+    /// Free, occupied or unknown.
+    #[default]
+    Trinary,
+    /// Besides these a share between the thresholds.
+    Scale,
+    /// The value is the percentage; above 100 unknown.
+    Raw,
+}
+
+/// The keys of the file, checked.
+pub(super) struct Settings {
+    pub image: String,
+    pub resolution_m: f64,
+    /// Of the lower left corner, metres, and the rotation about it, radians.
+    pub origin: [f64; 3],
+    mode: Mode,
+    negate: bool,
+    occupied: f64,
+    free: f64,
+}
+
+impl Settings {
+    pub(super) fn parse(file: &Path, text: &str) -> Result<Self, ImportError> {
+        let written: Written = serde_saphyr::from_str(text).map_err(|error| {
+            let line = error.location().map(|at| at.line() as usize);
+            let whole = error.without_snippet().to_string();
+            // The place stands before the sentence, not after it.
+            let what = whole.rsplit_once(" at line").map_or(whole.as_str(), |(what, _)| what).to_owned();
+            wrong(file, text, line, what)
+        })?;
+        let at = |line: u64, what: String| wrong(file, text, Some(line as usize), what);
+        let image = &written.image;
+        if image.value.is_empty() {
+            return Err(at(image.referenced.line(), "no file name; write the image's, as map.pgm".into()));
+        }
+        let cell = &written.resolution;
+        if !(1e-3..=10.0).contains(&cell.value) {
+            let what = format!("{} m to the cell; 0.001 to 10 are taken", cell.value);
+            return Err(at(cell.referenced.line(), what));
+        }
+        let share = |share: Option<&Spanned<f64>>, default: f64| match share {
+            None => Ok(default),
+            Some(share) if (0.0..=1.0).contains(&share.value) => Ok(share.value),
+            Some(share) => Err(at(share.referenced.line(), format!("{} is not from 0 to 1", share.value))),
+        };
+        let occupied = share(written.occupied_thresh.as_ref(), 0.65)?;
+        let free = share(written.free_thresh.as_ref(), 0.196)?;
+        if free >= occupied {
+            let line = written.free_thresh.as_ref().or(written.occupied_thresh.as_ref());
+            let line = line.map_or(1, |share| share.referenced.line());
+            return Err(at(line, format!("free_thresh {free} must be less than occupied_thresh {occupied}")));
+        }
+        let origin = match &written.origin {
+            None => [0.0; 3],
+            Some(origin) => place(&origin.value).map_err(|what| at(origin.referenced.line(), what))?,
+        };
+        Ok(Self {
+            image: image.value.clone(),
+            resolution_m: cell.value,
+            origin,
+            mode: written.mode,
+            negate: matches!(written.negate, Some(Negate::Flag(true) | Negate::Number(1..))),
+            occupied,
+            free,
+        })
+    }
+
+    /// Whether a pixel is known to be free.
+    pub(super) fn is_free(&self, pixel: Pixel) -> bool {
+        let bright = f64::from(pixel.grey) / 255.0;
+        let occupancy = if self.negate { bright } else { 1.0 - bright };
+        match self.mode {
+            Mode::Trinary => pixel.is_opaque && occupancy <= self.free,
+            // What rounds to nothing of the hundred steps between the thresholds is free, too.
+            Mode::Scale => {
+                pixel.is_opaque && (occupancy - self.free) / (self.occupied - self.free) * 100.0 < 0.5
+            }
+            Mode::Raw => f64::from(pixel.grey) / 100.0 <= self.free,
+        }
+    }
+}
+
+/// x and y in metres and an angle in radians.
+fn place(numbers: &[f64]) -> Result<[f64; 3], String> {
+    let origin = <[f64; 3]>::try_from(numbers)
+        .map_err(|_| format!("{numbers:?} is not [x, y, angle] in metres and radians"))?;
+    let is_near = |v: &f64| v.abs() <= 10_000.0;
+    let fits = origin.iter().all(is_near);
+    fits.then_some(origin).ok_or_else(|| format!("{numbers:?}: x and y must be finite and within 10 km"))
+}
+
+/// An error at a line; its key is that of the line, or of the last one above that has one.
+fn wrong(file: &Path, text: &str, line: Option<usize>, what: String) -> ImportError {
+    let above = text.lines().take(line.unwrap_or_default()).collect::<Vec<_>>();
+    let key_of = |line: &&str| {
+        let key = line.split_once(':')?.0;
+        let is_plain = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        is_plain.then(|| key.to_owned())
+    };
+    let key = above.iter().rev().find_map(key_of);
+    ImportError { file: file.display().to_string(), line, key, what }
+}
