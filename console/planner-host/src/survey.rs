@@ -6,7 +6,7 @@ use crate::supervisor::{Failure, Worker, WorkerCommand, wait_for_one};
 use crate::wire::answer::{Described, Loaded, loaded_of};
 use crate::wire::body::Writer;
 use crate::wire::{self, kind};
-use mission::PlannerInfo;
+use mission::{PlannerInfo, Sandbox};
 use planner_api::Caps;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -85,10 +85,13 @@ fn look_at(plugin: &PluginFile, worker: &WorkerCommand, known: &mut Vec<String>)
 
 fn probe(plugin: &PluginFile, worker: &WorkerCommand) -> Result<Vec<PlannerInfo>, Failure> {
     let mut worker = Worker::spawn(worker)?;
-    worker.ask(kind::LOAD, LOAD_WITHIN, |w| write_load(w, &plugin.path, "", MEMORY_LIMIT))?;
+    worker.ask(kind::LOAD, LOAD_WITHIN, |w| {
+        write_load(w, &plugin.path, "", MEMORY_LIMIT, false);
+    })?;
     finished(&mut worker)?;
     let loaded = worker.take_answer(loaded_of)?;
-    Ok(loaded.planners.iter().map(|planner| info(planner, &loaded, &plugin.name())).collect())
+    let sandbox = worker.sandbox();
+    Ok(loaded.planners.iter().map(|planner| info(planner, &loaded, &plugin.name(), sandbox)).collect())
 }
 
 /// Waits until a worker has answered.
@@ -102,12 +105,24 @@ fn finished(worker: &mut Worker) -> Result<(), Failure> {
 }
 
 /// A request to load a library and to keep the planner of this id, or to describe all planners for an empty id.
-pub(crate) fn write_load(w: &mut Writer, path: &Path, id: &str, memory_limit_bytes: u64) {
-    w.u32(wire::VERSION).u64(memory_limit_bytes).bytes(path.as_os_str().as_encoded_bytes()).text(id);
+pub(crate) fn write_load(
+    w: &mut Writer,
+    path: &Path,
+    id: &str,
+    memory_limit_bytes: u64,
+    requires_sandbox: bool,
+) {
+    w.u32(wire::VERSION).u64(memory_limit_bytes).flag(requires_sandbox);
+    w.bytes(path.as_os_str().as_encoded_bytes()).text(id);
 }
 
 /// A planner as the mission knows it.
-pub(crate) fn info(planner: &Described, loaded: &Loaded, plugin: &str) -> PlannerInfo {
+pub(crate) fn info(
+    planner: &Described,
+    loaded: &Loaded,
+    plugin: &str,
+    sandbox: Option<&Sandbox>,
+) -> PlannerInfo {
     PlannerInfo {
         id: planner.id.clone(),
         name: planner.name.clone(),
@@ -118,6 +133,7 @@ pub(crate) fn info(planner: &Described, loaded: &Loaded, plugin: &str) -> Planne
         abi: Abi { major: loaded.abi_major, minor: loaded.abi_minor }.to_string(),
         covers: Caps(planner.caps).has(Caps::COVERAGE),
         snapshots: Caps(planner.caps).has(Caps::SNAPSHOT),
+        sandbox: sandbox.cloned(),
         parameters: planner.parameters.clone(),
     }
 }
@@ -129,6 +145,9 @@ pub(crate) fn refusal_text(failure: &Failure) -> String {
         Failure::Died { how, last_output } if last_output.is_empty() => format!("{how} while it was loaded"),
         Failure::Died { how, last_output } => {
             format!("{how} while it was loaded; last output: {last_output}")
+        }
+        Failure::Forbidden { call, .. } => {
+            format!("tried {call} while it was loaded, which no planner may do; its process was killed")
         }
         Failure::Hung | Failure::Late | Failure::Starved => {
             "did not load in time; its process was stopped".to_owned()

@@ -170,6 +170,17 @@ pub(crate) fn workspace() -> PathBuf {
 
 /// Compiles C into a plugin of this name in a folder.
 pub(crate) fn compile(source: &Path, folder: &Path, name: &str, defines: &[&str]) {
+    compile_with(source, folder, name, defines, &[]);
+}
+
+/// Compiles C and links it with other objects.
+pub(crate) fn compile_with(
+    source: &Path,
+    folder: &Path,
+    name: &str,
+    defines: &[&str],
+    objects: &[&std::ffi::OsStr],
+) {
     let include = workspace().join("plugins/planner-api/include");
     let compiled = Run::new("cc")
         .args(["-std=c11", "-O1", "-shared", "-fPIC", "-Wall", "-Wextra", "-Werror", "-pedantic"])
@@ -178,6 +189,7 @@ pub(crate) fn compile(source: &Path, folder: &Path, name: &str, defines: &[&str]
         .arg(include)
         .arg("-o")
         .args([&folder.join(format!("libplanner_{name}.so")), source])
+        .args(objects)
         .arg("-lm")
         .output()
         .unwrap();

@@ -134,6 +134,7 @@ pub(crate) fn planner(id: &str, version: &str, about: &str) -> PlannerInfo {
         abi: "1.0".into(),
         covers: false,
         snapshots: false,
+        sandbox: None,
         parameters: vec![
             parameter("rpf_gain", "Rotating gain", "m3/s", gain, float(0.2, 4.0, 1.2), true),
             parameter(

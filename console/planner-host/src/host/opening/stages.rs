@@ -3,7 +3,7 @@
 use super::{Loaded, Opening, Stage};
 use crate::host::find::Candidate;
 use crate::host::planner::{Asked, Doing, Planner, Ready, unless_refused};
-use crate::host::{Host, fault, fault::Phase};
+use crate::host::{Host, HostConfig, fault, fault::Phase};
 use crate::parameters;
 use crate::supervisor::{Failure, Worker};
 use crate::survey::write_load;
@@ -66,9 +66,9 @@ impl Host {
     /// Starts a worker and asks it to load a file.
     fn load(&self, candidate: &Candidate, planner: &str) -> Result<Worker, Failure> {
         let mut worker = Worker::spawn(&self.config.worker_command)?;
-        let memory_limit_bytes = self.config.memory_limit_bytes;
+        let HostConfig { memory_limit_bytes, requires_sandbox, .. } = self.config;
         worker.ask(kind::LOAD, self.config.load_deadline, |w| {
-            write_load(w, &candidate.path, planner, memory_limit_bytes);
+            write_load(w, &candidate.path, planner, memory_limit_bytes, requires_sandbox);
         })?;
         Ok(worker)
     }
@@ -130,7 +130,10 @@ impl Host {
         answer: Result<answer::Loaded, Failure>,
     ) -> Result<(), Fault> {
         let found = answer.map(|answer| {
-            answer.planners.first().map(|planner| Loaded::new(planner, &answer, &candidate.name))
+            answer
+                .planners
+                .first()
+                .map(|planner| Loaded::new(planner, &answer, &candidate.name, worker.sandbox()))
         });
         let loaded = match found {
             Ok(Some(loaded)) => loaded,
