@@ -50,16 +50,24 @@ impl Survey {
 /// Looks at every plugin: each is loaded and described in a worker of its own that is thrown away.
 pub fn survey(dirs: &PluginDirs, worker: &WorkerCommand) -> Survey {
     let mut known: Vec<String> = Vec::new();
-    let plugins = dirs.plugins().iter().map(|plugin| look_at(plugin, worker, &mut known)).collect();
+    let probing = Probing { worker, requires_sandbox: dirs.requires_sandbox };
+    let plugins = dirs.plugins().iter().map(|plugin| look_at(plugin, &probing, &mut known)).collect();
     Survey { plugins }
 }
 
 /// Looks at one file, wherever it lies and whatever it is called.
-pub fn check_plugin(file: &Path, worker: &WorkerCommand) -> SurveyedPlugin {
-    look_at(&PluginFile::read(file.to_path_buf()), worker, &mut Vec::new())
+pub fn check_plugin(file: &Path, worker: &WorkerCommand, requires_sandbox: bool) -> SurveyedPlugin {
+    let probing = Probing { worker, requires_sandbox };
+    look_at(&PluginFile::read(file.to_path_buf()), &probing, &mut Vec::new())
 }
 
-fn look_at(plugin: &PluginFile, worker: &WorkerCommand, known: &mut Vec<String>) -> SurveyedPlugin {
+/// How plugins are looked at.
+struct Probing<'a> {
+    worker: &'a WorkerCommand,
+    requires_sandbox: bool,
+}
+
+fn look_at(plugin: &PluginFile, probing: &Probing<'_>, known: &mut Vec<String>) -> SurveyedPlugin {
     let mut surveyed = SurveyedPlugin {
         path: plugin.path.clone(),
         abi: plugin.abi.as_ref().ok().map(ToString::to_string),
@@ -69,7 +77,7 @@ fn look_at(plugin: &PluginFile, worker: &WorkerCommand, known: &mut Vec<String>)
         refused: plugin.abi.as_ref().err().cloned(),
     };
     if surveyed.refused.is_none() {
-        match probe(plugin, worker) {
+        match probe(plugin, probing) {
             Ok(planners) => {
                 let is_new = |info: &PlannerInfo| !known.contains(&info.id);
                 let (new, taken): (Vec<_>, Vec<_>) = planners.into_iter().partition(is_new);
@@ -83,10 +91,10 @@ fn look_at(plugin: &PluginFile, worker: &WorkerCommand, known: &mut Vec<String>)
     surveyed
 }
 
-fn probe(plugin: &PluginFile, worker: &WorkerCommand) -> Result<Vec<PlannerInfo>, Failure> {
-    let mut worker = Worker::spawn(worker)?;
+fn probe(plugin: &PluginFile, probing: &Probing<'_>) -> Result<Vec<PlannerInfo>, Failure> {
+    let mut worker = Worker::spawn(probing.worker)?;
     worker.ask(kind::LOAD, LOAD_WITHIN, |w| {
-        write_load(w, &plugin.path, "", MEMORY_LIMIT, false);
+        write_load(w, &plugin.path, "", MEMORY_LIMIT, probing.requires_sandbox);
     })?;
     finished(&mut worker)?;
     let loaded = worker.take_answer(loaded_of)?;

@@ -20,13 +20,11 @@ type Socket = Arc<UnixStream>;
 
 /// Runs a worker: takes the socket that it was given as standard input and answers until the console hangs up.
 pub fn worker_main() -> ExitCode {
-    match confine::take_socket().and_then(|socket| serve(&Arc::new(socket))) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(_) => {
-            let _ = kill_process(getpid(), CHANNEL_LOST);
-            ExitCode::FAILURE
-        }
+    if confine::take_socket().and_then(|socket| serve(&Arc::new(socket))).is_ok() {
+        return ExitCode::SUCCESS;
     }
+    let _ = kill_process(getpid(), CHANNEL_LOST);
+    ExitCode::FAILURE
 }
 
 fn serve(socket: &Socket) -> std::io::Result<()> {

@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What the system enforces on the process of a planner. Nothing less than [`Self::Full`] may look like it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+/// What the system enforces on the process of a planner, the strongest first. Nothing less than [`Self::Full`] may look
+/// like it.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sandbox {
     /// No files, network, terminal, processes or other processes' memory.

@@ -24,8 +24,6 @@ pub struct HostConfig {
     pub state_deadline: Duration,
     /// Address space of a worker, bytes.
     pub memory_limit_bytes: u64,
-    /// Whether a planner is refused whose process cannot be closed off wholly.
-    pub requires_sandbox: bool,
     /// Whether drawings are shown.
     pub wants_drawing: bool,
 }
@@ -41,7 +39,6 @@ impl HostConfig {
             step_deadline,
             state_deadline: Duration::from_millis(100),
             memory_limit_bytes: MEMORY_LIMIT,
-            requires_sandbox: false,
             wants_drawing: true,
         }
     }

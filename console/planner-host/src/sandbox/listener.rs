@@ -73,8 +73,8 @@ const RECEIVE: u64 = request(0, size_of::<libc::seccomp_notif>());
 const ANSWER: u64 = request(1, size_of::<libc::seccomp_notif_resp>());
 
 impl Listener {
-    pub(crate) fn new(descriptor: OwnedFd) -> Option<Self> {
-        Some(Self(descriptor))
+    pub(crate) fn new(descriptor: OwnedFd) -> Self {
+        Self(descriptor)
     }
 
     /// The next call that waits; to be asked only when the descriptor is readable. None if its thread has ended meanwhile.

@@ -12,16 +12,18 @@ use std::os::unix::fs::FileExt;
 const MOST_THREADS: usize = 64;
 /// Longest path that is looked at, bytes.
 const LONGEST_PATH: usize = 256;
-/// What libraries ask for on the way to other things, and do without.
-const CURIOUS: [&str; 9] = [
-    "/proc/self/cgroup",
-    "/proc/self/maps",
+/// What libraries read on the way to other things, and do without: processors, memory, time zone, language. The C library
+/// asks for `overcommit_memory` when it gives memory back.
+const CURIOUS: [&str; 10] = [
+    "/proc/self/",
+    "/proc/sys/vm/",
     "/proc/meminfo",
     "/proc/cpuinfo",
     "/proc/stat",
     "/sys/fs/cgroup/",
-    "/sys/devices/system/cpu/",
+    "/sys/devices/system/",
     "/usr/share/zoneinfo/",
+    "/usr/share/locale/",
     "/etc/localtime",
 ];
 
@@ -41,10 +43,13 @@ pub(crate) fn verdict(call: &Call, is_loading: bool) -> Verdict {
     let Call { number, arguments, .. } = *call;
     match number {
         libc::SYS_clone => on_clone(call),
+        libc::SYS_openat if arguments[2] as i32 & !READING != 0 => written(call, 1),
         libc::SYS_openat => on_path(call, 1, is_loading && arguments[2] as i32 == LOADER_FLAGS),
         libc::SYS_newfstatat | libc::SYS_statx | libc::SYS_readlinkat | libc::SYS_faccessat => {
             on_path(call, 1, is_loading && number == libc::SYS_newfstatat)
         }
+        #[cfg(target_arch = "x86_64")]
+        libc::SYS_open if arguments[1] as i32 & !READING != 0 => written(call, 0),
         #[cfg(target_arch = "x86_64")]
         libc::SYS_open | libc::SYS_stat | libc::SYS_access | libc::SYS_readlink => on_path(call, 0, false),
         // Terminals are asked for their size and kind by libraries that print.
@@ -63,6 +68,8 @@ pub(crate) fn verdict(call: &Call, is_loading: bool) -> Verdict {
 
 /// How the loader opens a library.
 const LOADER_FLAGS: i32 = libc::O_RDONLY | libc::O_CLOEXEC;
+/// How files are opened that are only read.
+const READING: i32 = LOADER_FLAGS | libc::O_DIRECTORY | libc::O_NONBLOCK | libc::O_NOCTTY | libc::O_LARGEFILE;
 
 /// Whether this is the call by which a worker ends the loading of its plugin.
 pub(crate) fn ends_loading(call: &Call) -> bool {
@@ -101,8 +108,18 @@ fn on_path(call: &Call, index: usize, may_load: bool) -> Verdict {
         // The loader tries where a library was when the plugin was built.
         Verdict::Refuse(libc::ENOENT)
     } else {
-        Verdict::Forbid(format!("{} of {}", name(call.number), for_people(&path)))
+        of_path(call, &path)
     }
+}
+
+/// A file that is opened to be changed is forbidden whatever it is.
+fn written(call: &Call, index: usize) -> Verdict {
+    path_at(call.thread, call.arguments[index])
+        .map_or_else(|| Verdict::Forbid(name(call.number)), |path| of_path(call, &path))
+}
+
+fn of_path(call: &Call, path: &str) -> Verdict {
+    Verdict::Forbid(format!("{} of {}", name(call.number), for_people(path)))
 }
 
 /// What a thread's memory holds at an address, up to its first zero.
@@ -119,7 +136,7 @@ fn is_below(folder: &str, path: &str) -> bool {
 }
 
 fn is_library_name(path: &str) -> bool {
-    path.ends_with(".so") || path.contains(".so.")
+    path.rsplit('/').next().is_some_and(|name| name.contains(".so"))
 }
 
 /// A path without what moves a cursor, and without numbers of processes, which differ from run to run.
@@ -142,13 +159,13 @@ fn name(number: i64) -> String {
 mod tests {
     use super::*;
 
-    fn of_path(number: i64, path: &str, flags: i32, is_loading: bool) -> Verdict {
+    fn with_path(number: i64, path: &str, flags: i32, is_loading: bool) -> Verdict {
         let path = format!("{path}\0");
         verdict(&Call::of(number, [0, path.as_ptr() as u64, flags as u64, 0, 0, 0]), is_loading)
     }
 
     fn open(path: &str, flags: i32, is_loading: bool) -> Verdict {
-        of_path(libc::SYS_openat, path, flags, is_loading)
+        with_path(libc::SYS_openat, path, flags, is_loading)
     }
 
     #[test]
@@ -180,8 +197,12 @@ mod tests {
 
     #[test]
     fn what_libraries_ask_for_on_the_way_is_refused_and_survived() {
-        assert_eq!(open("/proc/self/cgroup", LOADER_FLAGS, false), Verdict::Refuse(libc::EACCES));
-        assert_eq!(of_path(libc::SYS_newfstatat, "", 0x1000, false), Verdict::Refuse(libc::EACCES));
+        for path in ["/proc/self/cgroup", "/proc/sys/vm/overcommit_memory"] {
+            assert_eq!(open(path, LOADER_FLAGS, false), Verdict::Refuse(libc::EACCES));
+        }
+        let memory = open("/proc/self/mem", libc::O_RDWR, false);
+        assert_eq!(memory, Verdict::Forbid("openat of /proc/self/mem".into()), "nothing is written");
+        assert_eq!(with_path(libc::SYS_newfstatat, "", 0x1000, false), Verdict::Refuse(libc::EACCES));
         let terminal = Call::of(libc::SYS_ioctl, [1, libc::TCGETS, 0, 0, 0, 0]);
         assert_eq!(verdict(&terminal, false), Verdict::Refuse(libc::ENOTTY));
         let typed = Call::of(libc::SYS_ioctl, [0, libc::TIOCSTI, 0, 0, 0, 0]);

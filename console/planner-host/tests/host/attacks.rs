@@ -19,8 +19,8 @@ fn hostile(moment: &str, attack: &str) -> (TempDir, PluginDirs) {
 
 /// A host for it, and for the planners that were built with this test.
 fn host(dirs: &PluginDirs) -> BlockingHost {
-    let dirs = dirs.0.iter().chain(&built().0).cloned().collect();
-    BlockingHost::new(&PluginDirs(dirs), config())
+    let dirs = dirs.folders.iter().chain(&built().folders).cloned().collect();
+    BlockingHost::new(&PluginDirs::of(dirs), config())
 }
 
 /// The fault of a planner that does this in its fourth step, or until 50 steps have been made.
@@ -245,7 +245,7 @@ fn exceptions_of_cpp_work() {
         &[],
         &[object.as_os_str(), "-lstdc++".as_ref()],
     );
-    let mut host = host(&PluginDirs(vec![folder.path().to_owned()]));
+    let mut host = host(&PluginDirs::of(vec![folder.path().to_owned()]));
     choose(&mut host, "hostile", &Parameters::new()).unwrap();
     (0..10).for_each(|tick| drop(step(&mut host, tick).unwrap()));
 }

@@ -43,7 +43,7 @@ pub(crate) fn host(config: HostConfig) -> BlockingHost {
 /// The folder where plugins land that were built with this test.
 pub(crate) fn built() -> PluginDirs {
     let deps = std::env::current_exe().unwrap().parent().unwrap().to_owned();
-    PluginDirs(vec![deps])
+    PluginDirs::of(vec![deps])
 }
 
 pub(crate) fn pose(position: Point2<f64>) -> PoseEstimate {
@@ -206,6 +206,6 @@ pub(crate) fn folder_with(name: &str, source: &str) -> (TempDir, PluginDirs) {
     let file = folder.path().join(format!("{name}.c"));
     std::fs::write(&file, source).unwrap();
     compile(&file, folder.path(), name, &[]);
-    let dirs = PluginDirs(vec![folder.path().to_owned()]);
+    let dirs = PluginDirs::of(vec![folder.path().to_owned()]);
     (folder, dirs)
 }

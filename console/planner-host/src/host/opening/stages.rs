@@ -3,7 +3,7 @@
 use super::{Loaded, Opening, Stage};
 use crate::host::find::Candidate;
 use crate::host::planner::{Asked, Doing, Planner, Ready, unless_refused};
-use crate::host::{Host, HostConfig, fault, fault::Phase};
+use crate::host::{Host, fault, fault::Phase};
 use crate::parameters;
 use crate::supervisor::{Failure, Worker};
 use crate::survey::write_load;
@@ -66,7 +66,8 @@ impl Host {
     /// Starts a worker and asks it to load a file.
     fn load(&self, candidate: &Candidate, planner: &str) -> Result<Worker, Failure> {
         let mut worker = Worker::spawn(&self.config.worker_command)?;
-        let HostConfig { memory_limit_bytes, requires_sandbox, .. } = self.config;
+        let (memory_limit_bytes, requires_sandbox) =
+            (self.config.memory_limit_bytes, self.catalog.requires_sandbox());
         worker.ask(kind::LOAD, self.config.load_deadline, |w| {
             write_load(w, &candidate.path, planner, memory_limit_bytes, requires_sandbox);
         })?;

@@ -27,7 +27,7 @@ impl Guard {
 
     /// Takes the worker's report; false if there was one before. It comes before anything of the plugin has run.
     pub(super) fn begin(&mut self, sandbox: Sandbox) -> bool {
-        self.listener = self.received.take().and_then(Listener::new);
+        self.listener = self.received.take().map(Listener::new);
         self.sandbox.replace(sandbox).is_none()
     }
 
