@@ -17,12 +17,16 @@ pub(crate) struct Cli {
     pub plugins: PluginArgs,
 }
 
-/// Where planners are searched for, in addition to the program's folder and `$TANKOPS_PLUGIN_PATH`.
+/// Where planners are searched for, in addition to the program's folder and `$TANKOPS_PLUGIN_PATH`, and when they are
+/// refused.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct PluginArgs {
     /// Additional folder of planner plugins, searched first; repeatable.
     #[arg(long, value_name = "DIR", global = true)]
     pub plugin_dir: Vec<PathBuf>,
+    /// Refuse planners unless the system closes off their processes wholly (Linux with Landlock and seccomp).
+    #[arg(long, global = true)]
+    pub require_sandbox: bool,
 }
 
 #[derive(Debug, Subcommand)]

@@ -59,7 +59,10 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
     if let Some(missing) = cli.plugins.plugin_dir.iter().find(|dir| !dir.is_dir()) {
         return Err(bad_input(format!("--plugin-dir {}: there is no such folder", missing.display())));
     }
-    let plugins = PluginDirs::standard(&cli.plugins.plugin_dir);
+    let plugins = PluginDirs {
+        requires_sandbox: cli.plugins.require_sandbox,
+        ..PluginDirs::standard(&cli.plugins.plugin_dir)
+    };
     match cli.command {
         None => by_default(&plugins),
         Some(Command::Console(args)) => interactive::open(&args.into(), &plugins),

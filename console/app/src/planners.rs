@@ -25,7 +25,8 @@ pub(crate) fn list(plugins: &PluginDirs, json: bool) -> anyhow::Result<ExitCode>
 fn listing(survey: &Survey, plugins: &PluginDirs) -> String {
     let mut text: String = survey.plugins.iter().map(plugin_listing).collect();
     if survey.plugins.is_empty() {
-        let places: Vec<String> = plugins.0.iter().map(|dir| format!("  {}\n", dir.display())).collect();
+        let places: Vec<String> =
+            plugins.folders.iter().map(|dir| format!("  {}\n", dir.display())).collect();
         text = format!("no plugins found in\n{}", places.concat());
     }
     text
@@ -43,7 +44,8 @@ fn plugin_listing(plugin: &SurveyedPlugin) -> String {
 }
 
 fn planner_listing(info: &PlannerInfo) -> String {
-    let head = format!("  {} {}  {}\n", info.id, info.version, info.name);
+    let sandbox = info.sandbox.as_ref().map(|sandbox| format!("  sandbox: {sandbox}")).unwrap_or_default();
+    let head = format!("  {} {}  {}{sandbox}\n", info.id, info.version, info.name);
     let about = (!info.about.is_empty()).then(|| format!("      {}\n", info.about));
     std::iter::once(head).chain(about).chain(info.parameters.iter().map(parameter_listing)).collect()
 }
@@ -82,7 +84,7 @@ fn check_file(file: &Path, plugins: &PluginDirs) -> Result<String, String> {
     let is_plugin =
         file.extension().is_some_and(|end| ["so", "dylib", "dll"].iter().any(|known| end == *known));
     if is_plugin {
-        return check_plugin(file);
+        return check_plugin(file, plugins);
     }
     let scenario = Scenario::read_with(file, &Settings::default()).map_err(|errors| errors.render())?;
     check_choices(&scenario, &found(plugins)).map_err(|error| error.to_string())?;
@@ -90,9 +92,9 @@ fn check_file(file: &Path, plugins: &PluginDirs) -> Result<String, String> {
     Ok(format!("scenario {}, planner {}", scenario.name, scenario.mission.planner.id))
 }
 
-fn check_plugin(file: &Path) -> Result<String, String> {
+fn check_plugin(file: &Path, plugins: &PluginDirs) -> Result<String, String> {
     let error = |why: String| format!("error: {}: {why}", file.display());
-    let checked = planner_host::check_plugin(file, &WorkerCommand::default());
+    let checked = planner_host::check_plugin(file, &WorkerCommand::default(), plugins.requires_sandbox);
     if let Some(reason) = checked.refused {
         return Err(error(reason));
     }

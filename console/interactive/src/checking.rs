@@ -46,7 +46,8 @@ fn plugins(tools: &Tools) -> Check {
     let changed: Vec<&str> = planners
         .iter()
         .filter(|info| {
-            let file = tools.plugins.0.iter().map(|dir| dir.join(&info.plugin)).find(|file| file.is_file());
+            let file =
+                tools.plugins.folders.iter().map(|dir| dir.join(&info.plugin)).find(|file| file.is_file());
             file.and_then(|file| sha256(&file).ok()).as_deref() != Some(&info.sha256)
         })
         .map(|info| info.id.as_str())

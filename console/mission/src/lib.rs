@@ -30,7 +30,7 @@ pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
 pub use order::{Check, CheckOutcome, Injection, Order, Outlook, RangeFault, StepTo};
 pub use phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes};
 pub use planner::{
-    Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
+    Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, Sandbox,
     todays_parameter,
 };
 pub use preview::preview;

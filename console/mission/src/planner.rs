@@ -1,8 +1,10 @@
 //! Planners as the mission knows them: who they are, what parameters they take, how they fail.
 
 mod renamed;
+mod sandbox;
 
 pub use renamed::todays_parameter;
+pub use sandbox::Sandbox;
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -125,6 +127,9 @@ pub struct PlannerInfo {
     /// Whether it can save its private state and go on from it in a new process.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub snapshots: bool,
+    /// How far its process is closed off, on the machine where it was found or drives; absent in older journals.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sandbox: Option<Sandbox>,
     /// Its parameters.
     pub parameters: Vec<ParamInfo>,
 }
@@ -185,6 +190,8 @@ pub enum Cause {
     Starved,
     /// It answered with numbers that are not finite or beyond the robot's limits.
     BadOutput,
+    /// It tried to do something outside its process that no planner may do; its process was killed.
+    Forbidden,
     /// It sent something that is no answer.
     Protocol,
     /// The host refused to load or configure it.
@@ -194,10 +201,10 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// Whether the process failed from outside the planner's own logic, or by the clock: computing the run again does
-    /// not show it again. After such a fault the process is gone.
+    /// Whether the process failed from outside the planner's own logic, by the clock, or by what the machine enforces:
+    /// computing the run again need not show it again. After such a fault the process is gone.
     pub fn is_external(self) -> bool {
-        matches!(self, Self::Died | Self::Hung | Self::Late | Self::Starved)
+        matches!(self, Self::Died | Self::Hung | Self::Late | Self::Starved | Self::Forbidden)
     }
 }
 

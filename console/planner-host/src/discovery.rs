@@ -6,11 +6,21 @@ use std::env;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-/// Folders with plugins; the first that has a planner wins.
+/// Folders with plugins, and on which condition these are loaded.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PluginDirs(pub Vec<PathBuf>);
+pub struct PluginDirs {
+    /// The folders; the first that has a planner wins.
+    pub folders: Vec<PathBuf>,
+    /// Whether a plugin is refused where its process cannot be closed off wholly.
+    pub requires_sandbox: bool,
+}
 
 impl PluginDirs {
+    /// These folders; plugins are loaded also where their processes cannot be closed off wholly.
+    pub fn of(folders: Vec<PathBuf>) -> Self {
+        Self { folders, requires_sandbox: false }
+    }
+
     /// The folders given by hand, `$TANKOPS_PLUGIN_PATH`, `plugins` beside the program, the program's own folder and
     /// `deps` in it (where Cargo puts libraries), `$XDG_DATA_HOME/tankops/plugins`.
     pub fn standard(extra: &[PathBuf]) -> Self {
@@ -23,14 +33,14 @@ impl PluginDirs {
         let data = data.or_else(|| env::home_dir().map(|home| home.join(".local/share")));
         dirs.extend(data.map(|data| data.join("tankops/plugins")));
         dirs.retain(|dir| !dir.as_os_str().is_empty());
-        Self(dirs)
+        Self::of(dirs)
     }
 
     /// Every file that is named like a plugin: folder by folder, by name within a folder. A file with the same
     /// content as an earlier one is the same plugin and left out.
     pub fn plugins(&self) -> Vec<PluginFile> {
         let mut found: Vec<PluginFile> = Vec::new();
-        for path in self.0.iter().flat_map(|dir| named_like_plugins(dir)) {
+        for path in self.folders.iter().flat_map(|dir| named_like_plugins(dir)) {
             let plugin = PluginFile::read(path);
             if plugin.sha256.is_empty() || found.iter().all(|known| known.sha256 != plugin.sha256) {
                 found.push(plugin);
@@ -146,21 +156,21 @@ mod tests {
         for (dir, name, content) in [(&first, "b", "1"), (&second, "b", "1"), (&second, "a", "2")] {
             std::fs::write(dir.path().join(format!("libplanner_{name}.so")), content).expect("written");
         }
-        let dirs = PluginDirs(vec![first.path().into(), second.path().into()]);
+        let dirs = PluginDirs::of(vec![first.path().into(), second.path().into()]);
         let names: Vec<PathBuf> = dirs.plugins().into_iter().map(|plugin| plugin.path).collect();
         assert_eq!(names, [first.path().join("libplanner_b.so"), second.path().join("libplanner_a.so")]);
     }
 
     #[test]
     fn a_folder_that_is_not_there_has_no_plugins() {
-        assert!(PluginDirs(vec!["/no/such/folder".into()]).plugins().is_empty());
+        assert!(PluginDirs::of(vec!["/no/such/folder".into()]).plugins().is_empty());
     }
 
     #[test]
     fn folders_given_by_hand_come_first() {
         let dirs = PluginDirs::standard(&["mine".into()]);
-        assert_eq!(dirs.0[0], Path::new("mine"));
-        assert!(dirs.0.iter().any(|dir| dir.ends_with("deps")));
+        assert_eq!(dirs.folders[0], Path::new("mine"));
+        assert!(dirs.folders.iter().any(|dir| dir.ends_with("deps")));
     }
 
     #[test]

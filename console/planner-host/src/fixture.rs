@@ -14,6 +14,7 @@ pub(crate) fn info() -> PlannerInfo {
         abi: String::new(),
         covers: false,
         snapshots: true,
+        sandbox: None,
         parameters: Vec::new(),
     }
 }

@@ -3,6 +3,7 @@
 mod config;
 mod fault;
 mod find;
+mod log_limit;
 mod opening;
 mod planner;
 mod saved;

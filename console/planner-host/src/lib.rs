@@ -1,8 +1,8 @@
 //! Planner plugins: discovery, checks before loading, loader, worker process, supervisor.
 //!
 //! A plugin is a shared library of strangers. The console never loads one: it starts itself again as a worker
-//! process, which loads one plugin and answers requests over a socket. Whatever the plugin does there (crash, hang,
-//! eat memory, print) ends as a [`mission::Fault`] with one sentence, within the budget of what it was asked.
+//! process, which closes itself off, loads one plugin and answers requests over a socket. Whatever the plugin does there
+//! (crash, hang, eat memory, print, reach for files or other processes) ends as a [`mission::Fault`] with one sentence, within the budget of what it was asked.
 //!
 //! [`Host`] answers what the mission asks and waits only where the caller requests it; [`BlockingHost`] is for callers with
 //! nothing else to do than wait; [`survey`] lists what was found; [`worker_main`] is what the hidden
@@ -21,6 +21,7 @@ mod host;
 mod loader;
 mod parameters;
 mod progress;
+mod sandbox;
 pub mod stamp;
 mod stats;
 mod supervisor;

@@ -1,4 +1,4 @@
-//! Loads a library and calls its planners. The only unsafe code of the console, and it runs only in a worker.
+//! Loads a library and calls its planners. Most of the unsafe code of the console, and it runs only in a worker.
 #![expect(unsafe_code, reason = "libraries of strangers are loaded and called here")]
 
 mod instance;
@@ -8,6 +8,7 @@ mod stage;
 pub(crate) use instance::Instance;
 use sink::{LONGEST_TEXT, plain};
 pub(crate) use sink::{Sink, Watch};
+use stage::Staged;
 
 use crate::discovery::sha256_hex;
 use crate::stamp::{self, Abi, CONSOLE_ABI};
@@ -39,45 +40,71 @@ pub(crate) struct Table {
     raw: abi::Planner,
 }
 
-/// Checks a file, loads exactly the bytes that were checked, and checks its table.
-///
-/// # Errors
-/// Why it is refused; reads on after "refused:".
-pub(crate) fn open(path: &Path) -> Result<Plugin, String> {
-    let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
-    let abi = stamp::read(&bytes).map_err(|error| error.to_string())?;
-    let entry = load(&bytes, path)?;
-    check_entry(&entry)?;
-    let tables = (0..entry.n_planners as usize)
-        .map(|index| read_table(&entry, index))
-        .collect::<Result<Vec<_>, _>>()?;
-    if let Some((_, twice)) =
-        tables.iter().enumerate().find(|(i, t)| tables[..*i].iter().any(|u| u.id == t.id))
-    {
-        return Err(format!("exports the planner `{}` twice", twice.id));
-    }
-    Ok(Plugin { sha256: sha256_hex(&bytes), abi, tables })
+/// A plugin's file, checked and set aside; nothing of it has run.
+pub(crate) struct File {
+    name: String,
+    sha256: String,
+    abi: Abi,
+    staged: Staged,
 }
 
-fn load(bytes: &[u8], path: &Path) -> Result<abi::Entry, String> {
-    let staged = stage::stage(bytes).map_err(|error| format!("cannot be set aside for loading: {error}"))?;
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    // All symbols are resolved now: a missing one is a refusal here and not the end of the process at its first use.
-    // SAFETY: runs the library's constructors, whatever they do; this process exists to bear that.
-    let library = unsafe { Library::open(Some(staged.path()), RTLD_NOW | RTLD_LOCAL) }.map_err(|error| {
-        let reason = error.source().map_or_else(|| error.to_string(), ToString::to_string);
-        format!("the loader refused it: {}", reason.replace(&*staged.path().to_string_lossy(), &name))
-    })?;
-    // SAFETY: the stamp promises that this symbol is an entry; its own magic is checked before anything else.
-    let entry = unsafe {
-        let symbol = library.get::<*const abi::Entry>(abi::SYMBOL);
-        let symbol = symbol.map_err(|_| format!("does not export `{}`", abi::SYMBOL))?;
-        symbol.as_ref().ok_or_else(|| format!("exports a null `{}`", abi::SYMBOL))?
-    };
-    let entry = *entry;
-    // Code with thread-local destructors must not be unloaded; the end of the process unloads it.
-    std::mem::forget(library);
-    Ok(entry)
+/// A library whose constructors have run.
+pub(crate) struct Loaded {
+    file: File,
+    entry: abi::Entry,
+}
+
+impl File {
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    /// Why it is refused; reads on after "refused:". So below.
+    pub(crate) fn read(path: &Path) -> Result<Self, String> {
+        let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
+        let abi = stamp::read(&bytes).map_err(|error| error.to_string())?;
+        let staged =
+            stage::stage(&bytes).map_err(|error| format!("cannot be set aside for loading: {error}"))?;
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Self { name, sha256: sha256_hex(&bytes), abi, staged })
+    }
+
+    /// Loads exactly the bytes that were checked.
+    pub(crate) fn load(self) -> Result<Loaded, String> {
+        let staged = self.staged.path();
+        // All symbols are resolved now: a missing one is a refusal here and not the end of the process at its first use.
+        // SAFETY: runs the library's constructors, whatever they do; this process exists to bear that.
+        let library = unsafe { Library::open(Some(staged), RTLD_NOW | RTLD_LOCAL) }.map_err(|error| {
+            let reason = error.source().map_or_else(|| error.to_string(), ToString::to_string);
+            format!("the loader refused it: {}", reason.replace(&*staged.to_string_lossy(), &self.name))
+        })?;
+        // SAFETY: the stamp promises that this symbol is an entry; its own magic is checked before anything else.
+        let entry = unsafe {
+            let symbol = library.get::<*const abi::Entry>(abi::SYMBOL);
+            let symbol = symbol.map_err(|_| format!("does not export `{}`", abi::SYMBOL))?;
+            symbol.as_ref().ok_or_else(|| format!("exports a null `{}`", abi::SYMBOL))?
+        };
+        let entry = *entry;
+        // Code with thread-local destructors must not be unloaded; the end of the process unloads it.
+        std::mem::forget(library);
+        Ok(Loaded { file: self, entry })
+    }
+}
+
+impl Loaded {
+    /// Checks its table.
+    pub(crate) fn plugin(self) -> Result<Plugin, String> {
+        let Self { file, entry } = self;
+        check_entry(&entry)?;
+        let tables = (0..entry.n_planners as usize)
+            .map(|index| read_table(&entry, index))
+            .collect::<Result<Vec<_>, _>>()?;
+        if let Some((_, twice)) =
+            tables.iter().enumerate().find(|(i, t)| tables[..*i].iter().any(|u| u.id == t.id))
+        {
+            return Err(format!("exports the planner `{}` twice", twice.id));
+        }
+        Ok(Plugin { sha256: file.sha256, abi: file.abi, tables })
+    }
 }
 
 fn check_entry(entry: &abi::Entry) -> Result<(), String> {

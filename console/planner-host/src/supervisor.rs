@@ -71,6 +71,13 @@ pub(crate) enum Failure {
         /// The last line that it printed; may be empty.
         last_output: String,
     },
+    /// It tried to do something that no planner may do; the process was killed.
+    Forbidden {
+        /// What.
+        call: String,
+        /// The last line that it printed; may be empty.
+        last_output: String,
+    },
     /// No answer within the budget and the grace period; the process was killed.
     Hung,
     /// An answer, but only within the grace period; the process was killed.

@@ -6,7 +6,7 @@ use crate::supervisor::{Failure, Worker, WorkerCommand, wait_for_one};
 use crate::wire::answer::{Described, Loaded, loaded_of};
 use crate::wire::body::Writer;
 use crate::wire::{self, kind};
-use mission::PlannerInfo;
+use mission::{PlannerInfo, Sandbox};
 use planner_api::Caps;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -50,16 +50,24 @@ impl Survey {
 /// Looks at every plugin: each is loaded and described in a worker of its own that is thrown away.
 pub fn survey(dirs: &PluginDirs, worker: &WorkerCommand) -> Survey {
     let mut known: Vec<String> = Vec::new();
-    let plugins = dirs.plugins().iter().map(|plugin| look_at(plugin, worker, &mut known)).collect();
+    let probing = Probing { worker, requires_sandbox: dirs.requires_sandbox };
+    let plugins = dirs.plugins().iter().map(|plugin| look_at(plugin, &probing, &mut known)).collect();
     Survey { plugins }
 }
 
 /// Looks at one file, wherever it lies and whatever it is called.
-pub fn check_plugin(file: &Path, worker: &WorkerCommand) -> SurveyedPlugin {
-    look_at(&PluginFile::read(file.to_path_buf()), worker, &mut Vec::new())
+pub fn check_plugin(file: &Path, worker: &WorkerCommand, requires_sandbox: bool) -> SurveyedPlugin {
+    let probing = Probing { worker, requires_sandbox };
+    look_at(&PluginFile::read(file.to_path_buf()), &probing, &mut Vec::new())
 }
 
-fn look_at(plugin: &PluginFile, worker: &WorkerCommand, known: &mut Vec<String>) -> SurveyedPlugin {
+/// How plugins are looked at.
+struct Probing<'a> {
+    worker: &'a WorkerCommand,
+    requires_sandbox: bool,
+}
+
+fn look_at(plugin: &PluginFile, probing: &Probing<'_>, known: &mut Vec<String>) -> SurveyedPlugin {
     let mut surveyed = SurveyedPlugin {
         path: plugin.path.clone(),
         abi: plugin.abi.as_ref().ok().map(ToString::to_string),
@@ -69,7 +77,7 @@ fn look_at(plugin: &PluginFile, worker: &WorkerCommand, known: &mut Vec<String>)
         refused: plugin.abi.as_ref().err().cloned(),
     };
     if surveyed.refused.is_none() {
-        match probe(plugin, worker) {
+        match probe(plugin, probing) {
             Ok(planners) => {
                 let is_new = |info: &PlannerInfo| !known.contains(&info.id);
                 let (new, taken): (Vec<_>, Vec<_>) = planners.into_iter().partition(is_new);
@@ -83,12 +91,15 @@ fn look_at(plugin: &PluginFile, worker: &WorkerCommand, known: &mut Vec<String>)
     surveyed
 }
 
-fn probe(plugin: &PluginFile, worker: &WorkerCommand) -> Result<Vec<PlannerInfo>, Failure> {
-    let mut worker = Worker::spawn(worker)?;
-    worker.ask(kind::LOAD, LOAD_WITHIN, |w| write_load(w, &plugin.path, "", MEMORY_LIMIT))?;
+fn probe(plugin: &PluginFile, probing: &Probing<'_>) -> Result<Vec<PlannerInfo>, Failure> {
+    let mut worker = Worker::spawn(probing.worker)?;
+    worker.ask(kind::LOAD, LOAD_WITHIN, |w| {
+        write_load(w, &plugin.path, "", MEMORY_LIMIT, probing.requires_sandbox);
+    })?;
     finished(&mut worker)?;
     let loaded = worker.take_answer(loaded_of)?;
-    Ok(loaded.planners.iter().map(|planner| info(planner, &loaded, &plugin.name())).collect())
+    let sandbox = worker.sandbox();
+    Ok(loaded.planners.iter().map(|planner| info(planner, &loaded, &plugin.name(), sandbox)).collect())
 }
 
 /// Waits until a worker has answered.
@@ -102,12 +113,24 @@ fn finished(worker: &mut Worker) -> Result<(), Failure> {
 }
 
 /// A request to load a library and to keep the planner of this id, or to describe all planners for an empty id.
-pub(crate) fn write_load(w: &mut Writer, path: &Path, id: &str, memory_limit_bytes: u64) {
-    w.u32(wire::VERSION).u64(memory_limit_bytes).bytes(path.as_os_str().as_encoded_bytes()).text(id);
+pub(crate) fn write_load(
+    w: &mut Writer,
+    path: &Path,
+    id: &str,
+    memory_limit_bytes: u64,
+    requires_sandbox: bool,
+) {
+    w.u32(wire::VERSION).u64(memory_limit_bytes).flag(requires_sandbox);
+    w.bytes(path.as_os_str().as_encoded_bytes()).text(id);
 }
 
 /// A planner as the mission knows it.
-pub(crate) fn info(planner: &Described, loaded: &Loaded, plugin: &str) -> PlannerInfo {
+pub(crate) fn info(
+    planner: &Described,
+    loaded: &Loaded,
+    plugin: &str,
+    sandbox: Option<&Sandbox>,
+) -> PlannerInfo {
     PlannerInfo {
         id: planner.id.clone(),
         name: planner.name.clone(),
@@ -118,6 +141,7 @@ pub(crate) fn info(planner: &Described, loaded: &Loaded, plugin: &str) -> Planne
         abi: Abi { major: loaded.abi_major, minor: loaded.abi_minor }.to_string(),
         covers: Caps(planner.caps).has(Caps::COVERAGE),
         snapshots: Caps(planner.caps).has(Caps::SNAPSHOT),
+        sandbox: sandbox.cloned(),
         parameters: planner.parameters.clone(),
     }
 }
@@ -129,6 +153,9 @@ pub(crate) fn refusal_text(failure: &Failure) -> String {
         Failure::Died { how, last_output } if last_output.is_empty() => format!("{how} while it was loaded"),
         Failure::Died { how, last_output } => {
             format!("{how} while it was loaded; last output: {last_output}")
+        }
+        Failure::Forbidden { call, .. } => {
+            format!("tried {call} while it was loaded, which no planner may do; its process was killed")
         }
         Failure::Hung | Failure::Late | Failure::Starved => {
             "did not load in time; its process was stopped".to_owned()

@@ -3,7 +3,8 @@
 //! A frame is `u32 length | u8 kind | u32 sequence | u32 soft deadline | body`, little-endian; the length counts
 //! everything after itself, the soft deadline is in microseconds and zero for none. One request, one answer with the
 //! request's sequence number; a CANCEL may follow a request and is never answered. Any number of PROGRESS frames with the
-//! request's sequence number may come before the answer to a PLAN, and nowhere else; they are never answered either.
+//! request's sequence number may come before the answer to a PLAN, and nowhere else; they are never answered either. One
+//! SEALED frame comes before the answer to a LOAD, and before anything of the plugin runs.
 
 pub(crate) mod answer;
 pub(crate) mod body;
@@ -12,14 +13,15 @@ mod damaged;
 pub(crate) mod frame;
 pub(crate) mod input;
 
+use rustix::process::Signal;
 use std::time::Duration;
 
 /// Raised whenever a frame changes its form: console and worker must be of one build.
-pub(crate) const VERSION: u32 = 3;
+pub(crate) const VERSION: u32 = 4;
 /// Longest frame, bytes.
 pub(crate) const LONGEST: usize = 16 << 20;
-/// Exit code of a worker that cannot talk to its console any more.
-pub(crate) const CHANNEL_LOST: u8 = 70;
+/// The signal by which a worker ends itself that cannot talk to its console any more. No exit code: those are the planner's.
+pub(crate) const CHANNEL_LOST: Signal = Signal::USR2;
 /// A worker that is asked to shut down is given this long to drop its planner cleanly.
 pub(crate) const SHUT_DOWN_WITHIN: Duration = Duration::from_millis(100);
 
@@ -41,4 +43,6 @@ pub(crate) mod kind {
     pub(crate) const REFUSED: u8 = 0x82;
     /// How far a plan is; the answer follows.
     pub(crate) const PROGRESS: u8 = 0x83;
+    /// The worker is closed off, and how far; the descriptor that reports its calls comes along.
+    pub(crate) const SEALED: u8 = 0x84;
 }

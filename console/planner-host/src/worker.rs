@@ -8,27 +8,31 @@ mod session;
 use crate::wire::frame::{Incoming, Received};
 use crate::wire::{CHANNEL_LOST, answer::BAD_OUTPUT, answer::Refusal, body::Writer, kind};
 use deadline::Deadline;
+use rustix::process::{getpid, kill_process};
 use session::{Session, Trouble};
 use std::io::Write;
-use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
 use std::process::ExitCode;
+use std::sync::Arc;
+
+/// The one descriptor of the socket, for all who use it.
+type Socket = Arc<UnixStream>;
 
 /// Runs a worker: takes the socket that it was given as standard input and answers until the console hangs up.
 pub fn worker_main() -> ExitCode {
-    match confine::take_socket().and_then(|socket| serve(&socket)) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(_) => ExitCode::from(CHANNEL_LOST),
+    if confine::take_socket().and_then(|socket| serve(&Arc::new(socket))).is_ok() {
+        return ExitCode::SUCCESS;
     }
+    let _ = kill_process(getpid(), CHANNEL_LOST);
+    ExitCode::FAILURE
 }
 
-fn serve(socket: &OwnedFd) -> std::io::Result<()> {
+fn serve(socket: &Socket) -> std::io::Result<()> {
     confine::confine();
-    confine::die_with_the_console(socket.try_clone()?)?;
-    let mut stream = UnixStream::from(socket.try_clone()?);
-    let deadline = Deadline::new(socket.try_clone()?)?;
+    let mut stream = &**socket;
+    let deadline = Deadline::new(socket);
     let (mut incoming, mut writer, mut session) =
-        (Incoming::default(), Writer::default(), Session::new(&deadline));
+        (Incoming::default(), Writer::default(), Session::new(&deadline, socket));
     loop {
         match incoming.receive(&mut stream) {
             Received::Frame => {}
@@ -46,7 +50,7 @@ fn serve(socket: &OwnedFd) -> std::io::Result<()> {
 fn answer(session: &mut Session<'_>, incoming: &Incoming, writer: &mut Writer) -> std::io::Result<()> {
     let sequence = incoming.sequence();
     writer.begin(kind::DONE, sequence, 0);
-    match session.obey(incoming.kind(), incoming.body(), writer) {
+    match session.obey(incoming, writer) {
         Ok(()) => {}
         Err(Trouble::Failed(refusal)) => {
             writer.begin(kind::FAILED, sequence, 0).refusal(&refusal);

@@ -207,6 +207,7 @@ impl Fold {
 
     fn choose(&mut self, choice: &PlannerChoice, info: &PlannerInfo) {
         let known = &mut self.known;
+        known.sandbox = known.sandbox.take().max(info.sandbox.clone());
         if known.planners.is_empty() {
             known.planner = Some(choice.id.clone());
             known.planner_version = Some(info.version.clone());

@@ -7,7 +7,7 @@ use crate::{
     account::{Account, MissReason},
     summary::{Coverage, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking},
 };
-use mission::{Check, CheckOutcome, Outcome};
+use mission::{Check, CheckOutcome, Outcome, Sandbox};
 use text::{Text, counted, percent};
 
 /// The summary as text: warnings first, then one labelled line for each figure, with units; every percentage names
@@ -30,6 +30,7 @@ pub fn human(run: &Summary) -> String {
     text.lines(run.tracking.iter().flat_map(tracking).map(|line| ("tracking", line)));
     text.lines(run.positioning.iter().flat_map(positioning).map(|line| ("positioning", line)));
     text.some("tether", run.tether.as_ref().map(tether));
+    text.some("sandbox", run.sandbox.as_ref());
     text.some("planner calls", run.planner_calls.as_ref().map(calls));
     text.some("stops", run.stops.as_ref().map(stops));
     text.some("during the run", during(run));
@@ -78,6 +79,12 @@ fn warnings(run: &Summary) -> Vec<String> {
     if let n @ 1.. = run.planner_faults {
         found.push(counted(n, "planner fault"));
     }
+    found.extend(
+        run.sandbox
+            .as_ref()
+            .filter(|sandbox| **sandbox != Sandbox::Full)
+            .map(|sandbox| format!("planners were not wholly closed off: sandbox {sandbox}")),
+    );
     if let Some(position_lost_s) =
         run.positioning.map(|p| p.position_lost_s).filter(|position_lost_s| *position_lost_s > 0.0)
     {

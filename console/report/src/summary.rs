@@ -1,7 +1,7 @@
 //! The figures of one run, as `run --json` prints them.
 
 use crate::account::Account;
-use mission::{Check, Outcome, Parameters};
+use mission::{Check, Outcome, Parameters, Sandbox};
 use serde::{Deserialize, Serialize};
 
 /// Everything that is reported about a run when it is over. What is not known is `None`, in JSON `null`, never zero.
@@ -17,6 +17,10 @@ pub struct Summary {
     pub parameters: Option<Parameters>,
     /// Every planner that drove, in order, each once.
     pub planners: Vec<String>,
+    /// How far the processes of its planners were closed off: the weakest of them. Absent if no planner was loaded, and in
+    /// older reports.
+    #[serde(default)]
+    pub sandbox: Option<Sandbox>,
     /// Start of every random choice.
     pub seed: Option<u64>,
     /// How the run ended; absent if it was cut off.

@@ -1,7 +1,7 @@
 //! A planner's answer beside the one that is recorded.
 
 use super::{Answer, Given};
-use crate::planner::{Cause, Fault};
+use crate::planner::{Cause, Fault, PlannerInfo};
 use planner_api::Command;
 
 /// What comes of comparing a planner's own answer with the recorded one.
@@ -38,7 +38,9 @@ impl Comparison {
 fn differs(own: &Given, recorded: &Given, as_sent: impl Fn(Command) -> Command) -> Option<&'static str> {
     match (own, recorded) {
         (Given::Opened(own), Given::Opened(then)) => {
-            (own != then).then_some("is another build or offers something else")
+            // What encloses a planner is the machine's, not its own.
+            let own = PlannerInfo { sandbox: then.sandbox.clone(), ..(**own).clone() };
+            (own != **then).then_some("is another build or offers something else")
         }
         (Given::Command(own), Given::Command(then)) => {
             (as_sent(*own) != *then).then_some("commands something else")

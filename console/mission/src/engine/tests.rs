@@ -109,6 +109,7 @@ impl Straight {
             abi: text(),
             covers: true,
             snapshots: self.snapshots,
+            sandbox: None,
             parameters: if self.has_stiff_gain { vec![gain] } else { vec![] },
         })
     }

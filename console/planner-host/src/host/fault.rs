@@ -65,10 +65,15 @@ pub(super) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
         Failure::Refused(why) => fault(Cause::Refused, format!("planner {planner} is refused: {why}")),
         Failure::Console(why) => fault(Cause::Refused, format!("planner {planner} {why}")),
         Failure::Died { how, last_output } => {
-            let output =
-                if last_output.is_empty() { String::new() } else { format!("; last output: {last_output}") };
-            fault(Cause::Died, format!("planner {planner} {how} during {phase}{output}"))
+            fault(Cause::Died, format!("planner {planner} {how} during {phase}{}", last_words(&last_output)))
         }
+        Failure::Forbidden { call, last_output } => fault(
+            Cause::Forbidden,
+            format!(
+                "planner {planner} tried {call} during {phase}, which no planner may do; its process was killed{}",
+                last_words(&last_output)
+            ),
+        ),
         Failure::Hung => fault(
             Cause::Hung,
             format!(
@@ -97,6 +102,10 @@ pub(super) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
             fault(Cause::Died, format!("{who} cannot do {phase}: {why}"))
         }
     }
+}
+
+fn last_words(last_output: &str) -> String {
+    if last_output.is_empty() { String::new() } else { format!("; last output: {last_output}") }
 }
 
 fn of_refusal(refusal: Refusal, planner: &str, phase: Phase) -> Fault {

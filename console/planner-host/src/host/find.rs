@@ -40,6 +40,11 @@ impl Catalog {
         Self { dirs, plugins: None, known: BTreeMap::new() }
     }
 
+    /// Whether a plugin is refused where its process cannot be closed off wholly.
+    pub(super) fn requires_sandbox(&self) -> bool {
+        self.dirs.requires_sandbox
+    }
+
     /// Continues the search for a planner: the files to be tried next, in this order. None when all were tried; as a plugin
     /// may have been built meanwhile, the files are read again before, if that is wanted.
     pub(super) fn search_on(
@@ -138,7 +143,7 @@ mod tests {
         let [first, second] = ["a", "b"].map(|name| folder.path().join(format!("libplanner_{name}.so")));
         copy(&built, first).expect("copied");
         write(second, [read(built).expect("read"), vec![0]].concat()).expect("written");
-        let catalog = Catalog::new(PluginDirs(vec![folder.path().to_owned()]));
+        let catalog = Catalog::new(PluginDirs::of(vec![folder.path().to_owned()]));
         (folder, catalog)
     }
 

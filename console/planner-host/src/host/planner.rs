@@ -1,5 +1,6 @@
 //! A planner in its worker: what it is asked, and what it gives.
 
+use super::log_limit::LogLimit;
 use super::opening::{Loaded, Opening, Stage};
 use super::{HostConfig, fault, fault::Phase};
 use crate::supervisor::{Failure, Worker};
@@ -77,6 +78,7 @@ pub(super) struct Ready {
     pub(super) loaded: Loaded,
     parameters: Parameters,
     limits: Limits,
+    log_limit: LogLimit,
 }
 
 /// The outcome of an ask: the planner's answer with its log lines, or its fault.
@@ -84,7 +86,7 @@ pub(super) type Outcome = Result<(Given, Said), Fault>;
 
 impl Ready {
     pub(super) fn new(loaded: Loaded, parameters: Parameters, limits: Limits) -> Self {
-        Self { loaded, parameters, limits }
+        Self { loaded, parameters, limits, log_limit: LogLimit::default() }
     }
 
     /// Refuses new values of parameters that are unknown or not live; all values with the new ones.
@@ -226,9 +228,12 @@ impl Planner {
     pub(super) fn stepped(&mut self, outcome: Result<(), Failure>, tick: u64) -> Outcome {
         let phase = Phase::Step(tick);
         let answer = self.read(outcome, |body| Ok((body.command()?, said_of(body)?)));
-        let (command, said) = answer.map_err(|failure| self.fault(failure, phase))?;
+        let (command, mut said) = answer.map_err(|failure| self.fault(failure, phase))?;
         let checked = self.ready.as_ref().map_or(Ok(()), |ready| checks::command(&command, &ready.limits));
         checked.map_err(|what| self.bad_output(phase, &what))?;
+        if let Some(ready) = &mut self.ready {
+            ready.log_limit.take(&mut said.logs);
+        }
         Ok((Given::Command(command), said))
     }
 

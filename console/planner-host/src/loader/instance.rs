@@ -22,6 +22,11 @@ fn accept(code: i32, sink: &mut Sink<'_>) -> Result<(), Refusal> {
     Err(Refusal { code, message: sink.take_error(), partial })
 }
 
+/// Nothing was handed over that is larger than the console takes.
+fn within_limits(sink: &Sink<'_>) -> Result<(), Refusal> {
+    sink.exceeds.map_or(Ok(()), |what| Err(bad_output(format!("gave {what}"))))
+}
+
 fn bad_output(message: String) -> Refusal {
     Refusal { code: BAD_OUTPUT, message, partial: Vec::new() }
 }
@@ -86,6 +91,7 @@ impl Instance {
         // SAFETY: as above.
         let code = sink.during(|host| unsafe { plan(self.planner, host, &raw const input, &raw mut out) });
         accept(code, sink)?;
+        within_limits(sink)?;
         if out.complete > 1 {
             return Err(bad_output("gave a plan without stating whether it is complete".to_owned()));
         }
@@ -117,6 +123,11 @@ impl Instance {
         // SAFETY: as above.
         let code = sink.during(|host| unsafe { snapshot(self.planner, host) });
         accept(code, sink)?;
+        if let Some(what) = sink.exceeds {
+            // It goes on without.
+            let message = format!("it has {what}");
+            return Err(Refusal { code: Code::State as i32, message, partial: Vec::new() });
+        }
         Ok(std::mem::take(&mut sink.bytes))
     }
 

@@ -8,7 +8,8 @@ use planner_api::LogLevel;
 use planner_api::abi::{self, Draw, Host, Leg, Param, Str, Vec2, output};
 use std::ffi::c_void;
 
-/// Most of everything that one call may hand over; the surplus is counted and dropped.
+/// Most of everything that one call may hand over. Surplus drawings, figures and messages are counted and dropped; a plan
+/// or a state that is too large is refused.
 const MOST_DRAWINGS: usize = 4096;
 const MOST_POINTS: usize = 1_000_000;
 const MOST_CUTS: usize = 10_000;
@@ -38,6 +39,8 @@ pub(crate) struct Sink<'a> {
     error: String,
     said: Said,
     n_dropped: usize,
+    /// What exceeds a limit, of things that are worth nothing in part.
+    pub(super) exceeds: Option<&'static str>,
     pub(super) params: Vec<ParamInfo>,
     pub(super) points: Vec<Point2<f64>>,
     pub(super) legs: Vec<Leg>,
@@ -54,6 +57,7 @@ impl<'a> Sink<'a> {
             error: String::new(),
             said: Said::default(),
             n_dropped: 0,
+            exceeds: None,
             params: Vec::new(),
             points: Vec::new(),
             legs: Vec::new(),
@@ -120,6 +124,21 @@ fn take<'v, T>(values: &'v [T], have: usize, most: usize, n_dropped: &mut usize)
     taken
 }
 
+/// Takes all of some things, or none if there is no room for all: a part of a path is another path.
+fn whole<'v, T>(
+    values: &'v [T],
+    have: usize,
+    most: usize,
+    exceeds: &mut Option<&'static str>,
+    what: &'static str,
+) -> &'v [T] {
+    if values.len() <= most - have {
+        return values;
+    }
+    *exceeds = Some(what);
+    &[]
+}
+
 /// The sink behind a service's first argument.
 unsafe fn sink<'s>(ctx: *mut c_void) -> &'s mut Sink<'s> {
     // SAFETY: `during` passes the sink, nobody else uses it during the call, and services are called one at a time.
@@ -159,14 +178,20 @@ unsafe extern "C" fn take_log(ctx: *mut c_void, level: u32, ptr: *const u8, len:
 unsafe extern "C" fn take_points(ctx: *mut c_void, ptr: *const Vec2, n: usize) {
     // SAFETY: as above, and the plugin promises `n` points.
     let (sink, points) = unsafe { (sink(ctx), abi::slice(ptr, n)) };
-    let taken = take(points, sink.points.len(), MOST_POINTS, &mut sink.n_dropped);
+    let taken = whole(
+        points,
+        sink.points.len(),
+        MOST_POINTS,
+        &mut sink.exceeds,
+        "a path of more than 1000000 points",
+    );
     sink.points.extend(taken.iter().copied().map(Point2::from));
 }
 
 unsafe extern "C" fn take_legs(ctx: *mut c_void, ptr: *const Leg, n: usize) {
     // SAFETY: as above, and the plugin promises `n` legs.
     let (sink, legs) = unsafe { (sink(ctx), abi::slice(ptr, n)) };
-    let taken = take(legs, sink.legs.len(), MOST_POINTS, &mut sink.n_dropped);
+    let taken = whole(legs, sink.legs.len(), MOST_POINTS, &mut sink.exceeds, "more than 1000000 legs");
     sink.legs.extend_from_slice(taken);
 }
 
@@ -174,10 +199,11 @@ unsafe extern "C" fn take_cut(ctx: *mut c_void, ptr: *const Vec2, n: usize) {
     // SAFETY: as above, and the plugin promises `n` points.
     let (sink, points) = unsafe { (sink(ctx), abi::slice(ptr, n)) };
     if sink.cuts.len() >= MOST_CUTS {
-        sink.n_dropped += 1;
+        sink.exceeds = Some("more than 10000 cuts");
         return;
     }
-    let taken = take(points, sink.n_cut_points, MOST_POINTS, &mut sink.n_dropped);
+    let taken =
+        whole(points, sink.n_cut_points, MOST_POINTS, &mut sink.exceeds, "cuts of more than 1000000 points");
     sink.n_cut_points += taken.len();
     sink.cuts.push(taken.iter().copied().map(Point2::from).collect());
 }
@@ -213,7 +239,13 @@ unsafe extern "C" fn take_progress(ctx: *mut c_void, share: f64, ptr: *const u8,
 unsafe extern "C" fn take_bytes(ctx: *mut c_void, ptr: *const u8, n: usize) {
     // SAFETY: as above, and the plugin promises `n` bytes.
     let (sink, bytes) = unsafe { (sink(ctx), abi::slice(ptr, n)) };
-    let taken = take(bytes, sink.bytes.len(), MOST_STATE_BYTES, &mut sink.n_dropped);
+    let taken = whole(
+        bytes,
+        sink.bytes.len(),
+        MOST_STATE_BYTES,
+        &mut sink.exceeds,
+        "a state of more than 1048576 bytes",
+    );
     sink.bytes.extend_from_slice(taken);
 }
 

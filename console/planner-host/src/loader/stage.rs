@@ -11,9 +11,8 @@ pub(super) struct Staged {
 
 enum Place {
     #[cfg(target_os = "linux")]
-    Memory {
-        _fd: std::os::fd::OwnedFd,
-    },
+    Memory { _fd: std::os::fd::OwnedFd },
+    #[cfg(any(test, not(target_os = "linux")))]
     Copy(PathBuf),
 }
 
@@ -28,6 +27,7 @@ impl Drop for Place {
         match self {
             #[cfg(target_os = "linux")]
             Self::Memory { .. } => {}
+            #[cfg(any(test, not(target_os = "linux")))]
             Self::Copy(path) => {
                 // It is loaded or refused by now; a copy that stays behind harms nobody.
                 let _ = std::fs::remove_file(path);
@@ -36,10 +36,10 @@ impl Drop for Place {
     }
 }
 
-/// Sets bytes aside: in sealed memory where the system has it, else in a private copy.
+/// Sets bytes aside in sealed memory: a worker that is closed off reaches no other place.
 #[cfg(target_os = "linux")]
 pub(super) fn stage(bytes: &[u8]) -> io::Result<Staged> {
-    seal(bytes).or_else(|_| copy(bytes))
+    seal(bytes)
 }
 
 /// Sets bytes aside in a private copy.
@@ -59,11 +59,12 @@ fn seal(bytes: &[u8]) -> io::Result<Staged> {
     let fd = OwnedFd::from(file);
     fcntl_add_seals(&fd, SealFlags::WRITE | SealFlags::SHRINK | SealFlags::GROW | SealFlags::SEAL)?;
     let path = PathBuf::from(format!("/proc/self/fd/{}", fd.as_raw_fd()));
-    // Without /proc the private copy is the way.
+    // Without /proc the loader has no way to it.
     std::fs::metadata(&path)?;
     Ok(Staged { path, _place: Place::Memory { _fd: fd } })
 }
 
+#[cfg(any(test, not(target_os = "linux")))]
 fn copy(bytes: &[u8]) -> io::Result<Staged> {
     use std::os::unix::fs::OpenOptionsExt;
 

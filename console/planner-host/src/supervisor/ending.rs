@@ -12,10 +12,10 @@ const LONGEST_LINE: usize = 160;
 /// killed has no status.
 pub(super) fn how_it_ended(status: Option<ExitStatus>) -> String {
     match status.map(|status| (status.signal(), status.code())) {
-        Some((Some(signal), _)) => format!("was killed by {}", signal_text(signal)),
-        Some((_, Some(code))) if code != i32::from(CHANNEL_LOST) => {
-            format!("ended its own process with exit code {code}")
+        Some((Some(signal), _)) if signal != CHANNEL_LOST.as_raw() => {
+            format!("was killed by {}", signal_text(signal))
         }
+        Some((_, Some(code))) => format!("ended its own process with exit code {code}"),
         _ => "lost its channel to the console".to_owned(),
     }
 }
@@ -30,6 +30,9 @@ fn signal_text(number: i32) -> String {
         Some(Signal::SEGV) => ("SIGSEGV", "invalid memory access"),
         Some(Signal::XFSZ) => ("SIGXFSZ", "a file grew too large"),
         Some(Signal::TERM) => ("SIGTERM", "asked to end"),
+        Some(Signal::INT) => ("SIGINT", "interrupted"),
+        Some(Signal::HUP) => ("SIGHUP", "hung up"),
+        Some(Signal::SYS) => ("SIGSYS", "a call of the system that no planner may make"),
         Some(Signal::PIPE) => ("SIGPIPE", "wrote to a closed channel"),
         _ => return format!("signal {number}"),
     };
@@ -78,7 +81,11 @@ mod tests {
         let signalled = |number| how_it_ended(Some(ExitStatus::from_raw(number)));
         assert_eq!(signalled(11), "was killed by SIGSEGV (invalid memory access)");
         assert_eq!(signalled(0), "ended its own process with exit code 0");
-        assert_eq!(signalled(i32::from(CHANNEL_LOST) << 8), "lost its channel to the console");
+        assert_eq!(signalled(70 << 8), "ended its own process with exit code 70");
+        assert_eq!(signalled(CHANNEL_LOST.as_raw()), "lost its channel to the console");
+        assert_eq!(signalled(2), "was killed by SIGINT (interrupted)");
+        assert_eq!(signalled(31), "was killed by SIGSYS (a call of the system that no planner may make)");
+        assert_eq!(signalled(14), "was killed by signal 14");
         assert_eq!(how_it_ended(None), "lost its channel to the console");
     }
 

@@ -1,12 +1,11 @@
 //! The process of a worker: started, watched, killed and reaped, without ever waiting for it.
 
 use super::WorkerCommand;
-use rustix::process::Pid;
+use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
 use std::collections::VecDeque;
 use std::io::{self, PipeReader, Read};
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
-use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, ExitStatus, Stdio};
 
 /// So much of the output is kept, bytes.
@@ -26,7 +25,8 @@ pub(super) struct Process {
 }
 
 impl Process {
-    /// Starts a worker with this socket as its standard input, without environment, in a process group of its own.
+    /// Starts a worker with this socket as its standard input and without environment. It leaves the console's session by
+    /// itself.
     pub(super) fn spawn(command: &WorkerCommand, socket: UnixStream) -> io::Result<Self> {
         let (reader, writer) = io::pipe()?;
         rustix::io::ioctl_fionbio(&reader, true)?;
@@ -34,7 +34,6 @@ impl Process {
         start
             .args(&command.arguments)
             .env_clear()
-            .process_group(0)
             .stdin(Stdio::from(OwnedFd::from(socket)))
             .stdout(writer.try_clone()?)
             .stderr(writer);
@@ -62,10 +61,23 @@ impl Process {
 
     /// Reaps the process if it has ended, and returns how it ended.
     pub(super) fn reap(&mut self) -> Option<ExitStatus> {
-        if self.status.is_none() {
+        if self.status.is_none() && self.has_ended() {
+            // As long as it is not reaped, its number is that of its own group.
+            self.kill_group();
             self.status = self.child.try_wait().ok().flatten();
         }
         self.status
+    }
+
+    fn has_ended(&self) -> bool {
+        let look = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+        waitid(WaitId::Pid(self.pid()), look).is_ok_and(|status| status.is_some())
+    }
+
+    /// Kills what the worker may have started; a worker that is closed off starts nothing.
+    fn kill_group(&self) {
+        // A worker that has not left the console's session yet has no group.
+        let _ = kill_process_group(self.pid(), Signal::KILL);
     }
 
     /// Whether it was reaped.
@@ -76,6 +88,7 @@ impl Process {
     /// Kills the process unless it was reaped.
     pub(super) fn kill(&mut self) {
         if self.status.is_none() {
+            self.kill_group();
             // It may have ended by itself.
             let _ = self.child.kill();
         }

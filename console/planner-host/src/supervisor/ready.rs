@@ -12,6 +12,8 @@ pub(super) enum Source {
     Exit,
     /// What it prints.
     Output,
+    /// Calls of the system that wait for a decision.
+    Calls,
 }
 
 /// A descriptor to wait for, and for what.
@@ -25,11 +27,14 @@ pub(crate) struct Ready {
     pub(super) exited: bool,
     /// It printed something, or closed its output.
     pub(super) printed: bool,
+    /// It waits for a decision about a call of the system.
+    pub(super) called: bool,
 }
 
 impl Ready {
     /// What is known before the first look.
-    pub(super) const NOTHING: Self = Self { socket: PollFlags::empty(), exited: false, printed: false };
+    pub(super) const NOTHING: Self =
+        Self { socket: PollFlags::empty(), exited: false, printed: false, called: false };
 
     /// Something arrived, or the other side hung up.
     pub(super) fn readable(self) -> bool {
@@ -47,6 +52,7 @@ impl Ready {
             Source::Socket => self.socket = happened,
             Source::Exit => self.exited = !happened.is_empty(),
             Source::Output => self.printed = !happened.is_empty(),
+            Source::Calls => self.called = happened.contains(PollFlags::IN),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 mod end;
 mod exchange;
+mod guard;
 mod state;
 
 use super::process::Process;
@@ -10,6 +11,8 @@ use super::{Failure, WorkerCommand, soft};
 use crate::Progress;
 use crate::wire::body::Writer;
 use crate::wire::frame::Incoming;
+use guard::Guard;
+use mission::Sandbox;
 use rustix::event::PollFlags;
 use state::{Request, State};
 use std::io::{ErrorKind, Write};
@@ -25,6 +28,7 @@ pub(crate) struct Worker {
     process: Process,
     socket: UnixStream,
     incoming: Incoming,
+    guard: Guard,
     /// The frame that is being sent, or was sent last.
     writer: Writer,
     /// Bytes of it that were written.
@@ -45,12 +49,18 @@ impl Worker {
             Failure::Console(format!("cannot be run, no worker process could be started: {error}"))
         })?;
         let (incoming, writer) = (Incoming::default(), Writer::default());
-        Ok(Self { process, socket, incoming, writer, n_sent: 0, sequence: 0, state: State::Idle })
+        let guard = Guard::default();
+        Ok(Self { process, socket, incoming, guard, writer, n_sent: 0, sequence: 0, state: State::Idle })
     }
 
     /// Whether the process has ended and was reaped.
     pub(crate) fn is_gone(&self) -> bool {
         matches!(self.state, State::Gone)
+    }
+
+    /// How far its process is closed off; none before it has been asked to load a plugin.
+    pub(crate) fn sandbox(&self) -> Option<&Sandbox> {
+        self.guard.sandbox()
     }
 
     /// Whether it can be asked.
@@ -116,6 +126,9 @@ impl Worker {
             State::Busy(_) | State::Cancelling(..) => {
                 let out = if self.has_sent() { PollFlags::empty() } else { PollFlags::OUT };
                 watch((Source::Socket, self.socket.as_fd(), PollFlags::IN | out));
+                if let Some(calls) = self.guard.calls() {
+                    watch((Source::Calls, calls, PollFlags::IN));
+                }
             }
             State::Dying(_) | State::Leaving(_) => {}
         }

@@ -3,7 +3,7 @@
 use super::body::{Body, Malformed, Read, Writer};
 use crate::Progress;
 pub(crate) use mission::Said;
-use mission::{ParamInfo, ParamKind};
+use mission::{ParamInfo, ParamKind, Sandbox};
 use nalgebra::Point2;
 use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, Plan, abi};
 
@@ -96,6 +96,14 @@ impl Writer {
         })
     }
 
+    pub(crate) fn sandbox(&mut self, sandbox: &Sandbox) -> &mut Self {
+        match sandbox {
+            Sandbox::Full => self.u8(0),
+            Sandbox::Partial(why) => self.u8(1).text(why),
+            Sandbox::None(why) => self.u8(2).text(why),
+        }
+    }
+
     pub(crate) fn progress(&mut self, progress: &Progress) -> &mut Self {
         self.f64(progress.share).text(&progress.what)
     }
@@ -185,6 +193,15 @@ impl Body<'_> {
     fn leg(&mut self) -> Read<Leg> {
         let tag = LegTag::from_number(self.u32()?).ok_or(Malformed)?;
         Ok(Leg { tag, first: self.u32()? as usize, last: self.u32()? as usize })
+    }
+
+    pub(crate) fn sandbox(&mut self) -> Read<Sandbox> {
+        match self.u8()? {
+            0 => Ok(Sandbox::Full),
+            1 => self.text().map(Sandbox::Partial),
+            2 => self.text().map(Sandbox::None),
+            _ => Err(Malformed),
+        }
     }
 
     /// A worker sends only text that can be displayed unchanged.

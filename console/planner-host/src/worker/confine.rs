@@ -1,27 +1,37 @@
 //! The privileges and resources that a worker drops before it loads anything.
 
-use crate::wire::SHUT_DOWN_WITHIN;
+use super::Socket;
+use crate::sandbox::{Sealed, close_all_but, seal};
+use crate::wire::body::Writer;
+use crate::wire::{SHUT_DOWN_WITHIN, kind};
+use mission::Sandbox;
 use rustix::event::{PollFd, PollFlags, poll};
-use rustix::process::{Resource, Rlimit, Signal, getpid, getrlimit, kill_process, setrlimit};
-use std::io;
-use std::os::fd::{AsFd, OwnedFd};
+use rustix::net::{SendAncillaryBuffer, SendAncillaryMessage, SendFlags, sendmsg};
+use rustix::process::{Resource, Rlimit, Signal, getpid, getrlimit, kill_process, setrlimit, setsid};
+use std::io::{self, IoSlice};
+use std::mem::MaybeUninit;
+use std::os::fd::AsFd;
+use std::os::unix::net::UnixStream;
 
-/// The socket lives above the numbers that careless plugins close.
+/// The socket lives above the numbers that careless plugins close; there is only this one descriptor of it.
 const SOCKET_AT: i32 = 200;
 const MOST_FILES: u64 = 256;
 const LARGEST_FILE: u64 = 64 << 20;
 
 /// Takes the socket that came as standard input and puts nothing in its place.
-pub(super) fn take_socket() -> io::Result<OwnedFd> {
+pub(super) fn take_socket() -> io::Result<UnixStream> {
     let socket = rustix::io::fcntl_dupfd_cloexec(io::stdin().as_fd(), SOCKET_AT)?;
     let nothing = std::fs::File::open("/dev/null")?;
     rustix::stdio::dup2_stdin(&nothing)?;
-    Ok(socket)
+    drop(nothing);
+    close_all_but(socket.as_fd());
+    Ok(socket.into())
 }
 
-/// Drops what a planner does not need. Limits that the system does not grant are ignored: they only guard against
-/// accidents, and the deadlines hold without them.
+/// Drops what a planner does not need, the terminal first. Limits that the system does not grant are ignored: they only
+/// guard against accidents, and the deadlines hold without them.
 pub(super) fn confine() {
+    let _ = setsid();
     limit(Resource::Core, 0);
     limit(Resource::Nofile, MOST_FILES);
     limit(Resource::Fsize, LARGEST_FILE);
@@ -30,6 +40,27 @@ pub(super) fn confine() {
         let _ = rustix::thread::set_no_new_privs(true);
         let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
     }
+}
+
+/// Closes the process off, and reports to the console how far, before anything of a plugin runs.
+///
+/// # Errors
+/// The console cannot be told; then nothing may be loaded.
+pub(super) fn close_off(socket: &Socket, sequence: u32) -> io::Result<(Sandbox, bool)> {
+    let Sealed { sandbox, listener, reads_libraries } = seal();
+    let mut frame = Writer::default();
+    let frame = frame.begin(kind::SEALED, sequence, 0).sandbox(&sandbox).finish().expect("a few words");
+    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
+    let mut descriptors = SendAncillaryBuffer::new(&mut space);
+    let listener = listener.as_ref().map(AsFd::as_fd);
+    if let Some(listener) = &listener {
+        descriptors.push(SendAncillaryMessage::ScmRights(std::slice::from_ref(listener)));
+    }
+    let sent = sendmsg(socket, &[IoSlice::new(frame)], &mut descriptors, SendFlags::empty())?;
+    if sent < frame.len() {
+        return Err(io::ErrorKind::WriteZero.into());
+    }
+    Ok((sandbox, reads_libraries))
 }
 
 /// Limits the address space.
@@ -44,7 +75,7 @@ fn limit(resource: Resource, most: u64) {
 
 /// Starts a thread that ends this process when the console has exited, or when the process ignores a request to shut
 /// down; also in the middle of an endless loop.
-pub(super) fn die_with_the_console(socket: OwnedFd) -> io::Result<()> {
+pub(super) fn die_with_the_console(socket: Socket) -> io::Result<()> {
     std::thread::Builder::new().name("watchdog".into()).stack_size(64 << 10).spawn(move || {
         loop {
             let mut sockets = [PollFd::new(&socket, SHUTDOWN_REQUESTED)];

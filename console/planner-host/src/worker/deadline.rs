@@ -1,6 +1,7 @@
 //! The soft deadline of the current request, as the planner sees it: only what its process computes is charged, so that a
 //! planner that the machine does not schedule is not late. The console's own clock charges a planner that sleeps, too.
 
+use super::Socket;
 use super::progress_reporter::ProgressReporter;
 use crate::Progress;
 use crate::loader::Watch;
@@ -9,7 +10,7 @@ use crate::wire::kind;
 use rustix::net::{RecvFlags, recv};
 use rustix::time::{ClockId, clock_gettime};
 use std::cell::Cell;
-use std::os::fd::OwnedFd;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Socket and processor time are looked at no more often than this.
@@ -17,7 +18,7 @@ const CHECK_PERIOD: Duration = Duration::from_millis(1);
 
 /// Deadline of a request, and whether a CANCEL is waiting behind it.
 pub(super) struct Deadline {
-    socket: OwnedFd,
+    socket: Socket,
     budget: Cell<Option<Budget>>,
     looked: Cell<Instant>,
     cancelled: Cell<bool>,
@@ -58,20 +59,16 @@ fn processor_time() -> Duration {
 
 impl Deadline {
     /// No request yet.
-    ///
-    /// # Errors
-    /// When the socket cannot be had twice.
-    pub(super) fn new(socket: OwnedFd) -> std::io::Result<Self> {
-        let progress = ProgressReporter::new(socket.try_clone()?);
-        Ok(Self {
-            socket,
+    pub(super) fn new(socket: &Socket) -> Self {
+        Self {
+            socket: Arc::clone(socket),
             budget: Cell::new(None),
             looked: Cell::new(Instant::now()),
             cancelled: Cell::new(false),
             exhausted: Cell::new(false),
             watched: Cell::new(false),
-            progress,
-        })
+            progress: ProgressReporter::new(Arc::clone(socket)),
+        }
     }
 
     /// A request arrived; only a CANCEL can have arrived behind it.

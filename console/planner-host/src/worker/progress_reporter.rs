@@ -1,10 +1,10 @@
 //! Reports the progress of the current plan to the console, rate-limited to what a person can read.
 
+use super::Socket;
 use crate::Progress;
 use crate::wire::{body::Writer, kind};
 use rustix::net::{SendFlags, send};
 use std::cell::{Cell, RefCell};
-use std::os::fd::OwnedFd;
 use std::time::{Duration, Instant};
 
 /// Minimum time between two reports.
@@ -12,7 +12,7 @@ const REPORT_EVERY: Duration = Duration::from_millis(50);
 
 /// Reports the progress of the current plan to the console.
 pub(super) struct ProgressReporter {
-    socket: OwnedFd,
+    socket: Socket,
     /// Sequence number of the request, while it is one for a plan.
     plan: Cell<Option<u32>>,
     reported_at: Cell<Option<Instant>>,
@@ -22,7 +22,7 @@ pub(super) struct ProgressReporter {
 
 impl ProgressReporter {
     /// No request yet.
-    pub(super) fn new(socket: OwnedFd) -> Self {
+    pub(super) fn new(socket: Socket) -> Self {
         Self { socket, plan: Cell::new(None), reported_at: Cell::new(None), waiting: RefCell::default() }
     }
 

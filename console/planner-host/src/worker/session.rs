@@ -1,14 +1,18 @@
 //! What a worker holds between two requests, and how it obeys them.
 
-use super::confine;
+use super::Socket;
+use super::confine::{close_off, die_with_the_console, limit_memory};
 use super::deadline::Deadline;
-use crate::loader::{self, Instance, Plugin, Sink, Table};
+use crate::loader::{File, Instance, Plugin, Sink, Table};
+use crate::sandbox::close_files;
 use crate::wire::answer::{Loaded, Refusal};
 use crate::wire::body::{Body, Malformed, Writer};
-use crate::wire::{self, kind};
+use crate::wire::{self, frame::Incoming, kind};
+use mission::Sandbox;
 use std::ffi::OsStr;
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Why there is no answer.
 pub(super) enum Trouble {
@@ -35,20 +39,22 @@ impl From<Refusal> for Trouble {
 /// The library, and the planner that was made from it.
 pub(super) struct Session<'a> {
     deadline: &'a Deadline,
+    socket: &'a Socket,
     table: Option<Table>,
     instance: Option<Instance>,
 }
 
 impl<'a> Session<'a> {
     /// Nothing loaded yet.
-    pub(super) fn new(deadline: &'a Deadline) -> Self {
-        Self { deadline, table: None, instance: None }
+    pub(super) fn new(deadline: &'a Deadline, socket: &'a Socket) -> Self {
+        Self { deadline, socket, table: None, instance: None }
     }
 
     /// Obeys a request and writes the body of its answer.
-    pub(super) fn obey(&mut self, kind: u8, body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
-        match kind {
-            kind::LOAD => self.load(body, out),
+    pub(super) fn obey(&mut self, request: &Incoming, out: &mut Writer) -> Result<(), Trouble> {
+        let body = request.body();
+        match request.kind() {
+            kind::LOAD => self.load(body, request.sequence(), out),
             kind::CONFIGURE => self.configure(body, out),
             kind::RECONFIGURE => self.reconfigure(body, out),
             kind::PLAN => self.plan(body, out),
@@ -64,17 +70,25 @@ impl<'a> Session<'a> {
     }
 
     /// Loads a library once; describes one planner of it and keeps that, or all of them when none is named.
-    fn load(&mut self, mut body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
+    fn load(&mut self, mut body: Body<'_>, sequence: u32, out: &mut Writer) -> Result<(), Trouble> {
         if body.u32()? != wire::VERSION {
             return Err(Trouble::Refused(
                 "the worker is of another build than the console; restart tankops".into(),
             ));
         }
-        confine::limit_memory(body.u64()?);
+        limit_memory(body.u64()?);
+        let requires_sandbox = body.flag()?;
         let path = Path::new(OsStr::from_bytes(body.bytes()?));
         let wanted = body.text()?;
         body.end()?;
-        let Plugin { sha256, abi, mut tables } = loader::open(path).map_err(Trouble::Refused)?;
+        let file = File::read(path).map_err(Trouble::Refused)?;
+        let reads_libraries = self.close_off(sequence, requires_sandbox)?;
+        let library = file.load().map_err(Trouble::Refused)?;
+        if reads_libraries {
+            close_files()
+                .map_err(|why| Trouble::Refused(format!("its files cannot be closed off: {why}")))?;
+        }
+        let Plugin { sha256, abi, mut tables } = library.plugin().map_err(Trouble::Refused)?;
         tables.retain(|table| wanted.is_empty() || table.id == wanted);
         let planners =
             tables.iter().map(|table| table.describe(&mut self.sink())).collect::<Result<Vec<_>, _>>();
@@ -82,6 +96,18 @@ impl<'a> Session<'a> {
         self.table = tables.into_iter().next();
         out.loaded(&Loaded { sha256, abi_major: abi.major, abi_minor: abi.minor, planners });
         Ok(())
+    }
+
+    /// From here on the process can only compute. Whether files are still to be closed.
+    fn close_off(&self, sequence: u32, requires_sandbox: bool) -> Result<bool, Trouble> {
+        let lost = |error| Trouble::Refused(format!("the worker cannot be closed off: {error}"));
+        let (sandbox, reads_libraries) = close_off(self.socket, sequence).map_err(lost)?;
+        if requires_sandbox && sandbox != Sandbox::Full {
+            return Err(Trouble::Refused(format!("--require-sandbox is set, and the sandbox is {sandbox}")));
+        }
+        // A thread that had started before would not be closed off.
+        die_with_the_console(Arc::clone(self.socket)).map_err(lost)?;
+        Ok(reads_libraries)
     }
 
     fn configure(&mut self, mut body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {

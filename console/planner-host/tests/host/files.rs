@@ -14,7 +14,7 @@ fn refusal(dirs: &PluginDirs) -> String {
 fn file(name: &str, content: &[u8]) -> (tempfile::TempDir, PluginDirs) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join(name), content).unwrap();
-    let dirs = PluginDirs(vec![folder.path().to_owned()]);
+    let dirs = PluginDirs::of(vec![folder.path().to_owned()]);
     (folder, dirs)
 }
 
@@ -120,7 +120,7 @@ fn the_first_planner_of_an_id_wins_and_later_ones_are_shadowed() {
     compile(&direct_c(), second.path(), "two", &["PI2=1", "NDEBUG"]);
     let other = std::fs::read(second.path().join("libplanner_two.so")).unwrap();
     std::fs::write(second.path().join("libplanner_two.so"), [other, vec![0]].concat()).unwrap();
-    let dirs = PluginDirs([&first, &second].map(|folder| folder.path().to_owned()).into());
+    let dirs = PluginDirs::of([&first, &second].map(|folder| folder.path().to_owned()).into());
     let found = survey(&dirs, &worker());
     assert_eq!((found.plugins[0].planners.len(), found.plugins[1].planners.len()), (1, 0));
     assert_eq!(found.plugins[1].shadowed, ["direct-c"]);
@@ -138,14 +138,15 @@ fn a_bad_file_does_not_hide_a_good_one() {
     let source = folder.path().join("bad.c");
     std::fs::write(&source, bad).unwrap();
     compile(&source, folder.path(), "bad", &[]);
-    let dirs = PluginDirs(vec![folder.path().to_owned()]);
+    let dirs = PluginDirs::of(vec![folder.path().to_owned()]);
     let info = choose(&mut BlockingHost::new(&dirs, config()), "direct-c", &Parameters::new()).unwrap();
     assert_eq!(info.plugin, "libplanner_good.so");
 }
 
 #[test]
 fn a_planner_that_is_not_there_names_the_nearest_one() {
-    let (folder, dirs) = (tempfile::tempdir().unwrap(), |folder: &Path| PluginDirs(vec![folder.to_owned()]));
+    let (folder, dirs) =
+        (tempfile::tempdir().unwrap(), |folder: &Path| PluginDirs::of(vec![folder.to_owned()]));
     let mut empty = BlockingHost::new(&dirs(folder.path()), config());
     let fault = choose(&mut empty, "apf", &Parameters::new()).unwrap_err();
     assert_refused(&fault, &["no plugin has the planner apf", "there are no plugins"]);

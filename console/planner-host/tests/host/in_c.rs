@@ -14,7 +14,7 @@ use planner_host::{BlockingHost, PluginDirs};
 fn host() -> (tempfile::TempDir, BlockingHost) {
     let folder = tempfile::tempdir().unwrap();
     compile(&direct_c(), folder.path(), "direct_c", &[]);
-    let host = BlockingHost::new(&PluginDirs(vec![folder.path().to_owned()]), config());
+    let host = BlockingHost::new(&PluginDirs::of(vec![folder.path().to_owned()]), config());
     (folder, host)
 }
 
@@ -131,6 +131,17 @@ fn a_planner_in_c_covers_regions_and_reports_legs_and_cuts() {
     let leg = |tag, first, last| Leg { tag, first, last };
     assert_eq!(covering.legs, [leg(LegTag::Travel, 0, 1), leg(LegTag::Swath, 1, 2)]);
     assert_eq!(covering.cuts.iter().map(Vec::len).collect::<Vec<_>>(), [3, 1]);
+}
+
+#[test]
+fn a_path_that_is_too_long_is_refused_and_not_cut() {
+    let many = "static tp_vec2 many[1000000]; h->points(h->ctx, many, 1000000);";
+    let fault = plans_to_cover(many).unwrap_err();
+    assert_eq!(fault.cause, Cause::BadOutput);
+    assert_eq!(fault.message, "planner counter gave a path of more than 1000000 points during plan");
+    let cuts = "for (int i = 0; i < 10001; i++) h->cut(h->ctx, in->targets, 1);";
+    let fault = plans_to_cover(cuts).unwrap_err();
+    assert_eq!(fault.message, "planner counter gave more than 10000 cuts during plan");
 }
 
 #[test]

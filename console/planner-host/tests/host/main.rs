@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod asks;
+mod attacks;
 mod desk;
 mod faults;
 mod files;

@@ -43,7 +43,7 @@ pub(crate) fn host(config: HostConfig) -> BlockingHost {
 /// The folder where plugins land that were built with this test.
 pub(crate) fn built() -> PluginDirs {
     let deps = std::env::current_exe().unwrap().parent().unwrap().to_owned();
-    PluginDirs(vec![deps])
+    PluginDirs::of(vec![deps])
 }
 
 pub(crate) fn pose(position: Point2<f64>) -> PoseEstimate {
@@ -170,6 +170,17 @@ pub(crate) fn workspace() -> PathBuf {
 
 /// Compiles C into a plugin of this name in a folder.
 pub(crate) fn compile(source: &Path, folder: &Path, name: &str, defines: &[&str]) {
+    compile_with(source, folder, name, defines, &[]);
+}
+
+/// Compiles C and links it with other objects.
+pub(crate) fn compile_with(
+    source: &Path,
+    folder: &Path,
+    name: &str,
+    defines: &[&str],
+    objects: &[&std::ffi::OsStr],
+) {
     let include = workspace().join("plugins/planner-api/include");
     let compiled = Run::new("cc")
         .args(["-std=c11", "-O1", "-shared", "-fPIC", "-Wall", "-Wextra", "-Werror", "-pedantic"])
@@ -178,6 +189,7 @@ pub(crate) fn compile(source: &Path, folder: &Path, name: &str, defines: &[&str]
         .arg(include)
         .arg("-o")
         .args([&folder.join(format!("libplanner_{name}.so")), source])
+        .args(objects)
         .arg("-lm")
         .output()
         .unwrap();
@@ -194,6 +206,6 @@ pub(crate) fn folder_with(name: &str, source: &str) -> (TempDir, PluginDirs) {
     let file = folder.path().join(format!("{name}.c"));
     std::fs::write(&file, source).unwrap();
     compile(&file, folder.path(), name, &[]);
-    let dirs = PluginDirs(vec![folder.path().to_owned()]);
+    let dirs = PluginDirs::of(vec![folder.path().to_owned()]);
     (folder, dirs)
 }

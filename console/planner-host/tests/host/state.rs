@@ -114,10 +114,10 @@ fn a_planner_that_takes_over_from_a_living_one_goes_on_from_what_that_knows() {
 
 #[test]
 fn the_state_of_another_planner_is_not_restored() {
-    let (_counter, PluginDirs(mut dirs)) = folder_with("counter", COUNTER);
+    let (_counter, PluginDirs { folders: mut dirs, .. }) = folder_with("counter", COUNTER);
     let (_twin, twin) = folder_with("twin", &COUNTER.replace("TP_STR(\"counter\")", "TP_STR(\"twin\")"));
-    dirs.extend(twin.0);
-    let mut desk = Desk::new(&PluginDirs(dirs), config());
+    dirs.extend(twin.folders);
+    let mut desk = Desk::new(&PluginDirs::of(dirs), config());
     desk.ask(ONE, open(None)).unwrap();
     assert_eq!((0..15).map(|tick| desk.count(ONE, tick)).last(), Some(15));
     let saved = desk.save(ONE);

@@ -304,6 +304,7 @@ fn chosen(id: &str, from: Option<String>) -> EventKind {
         abi: "1.0".into(),
         covers: false,
         snapshots: false,
+        sandbox: None,
         parameters: vec![parameter],
     };
     let parameters = [("k_rep".to_owned(), ParamValue::Float(0.6))].into();

@@ -148,7 +148,7 @@ mod tests {
     const STUDY: Study = Study { name: "pan-maps", about: "", layouts: 1, run: |_| Ok(Vec::new()) };
 
     fn chosen(options: &Options, ids: [&'static str; 3]) -> [Result<Vec<&'static str>>; 2] {
-        let runner = Runner::new(&PluginDirs(Vec::new()), 1, &|_, _| ()).unwrap();
+        let runner = Runner::new(&PluginDirs::of(Vec::new()), 1, &|_, _| ()).unwrap();
         let job = Job { study: &STUDY, runner: &runner, options };
         let id = |id: &&str| (*id).to_owned();
         [job.cases(ids, id), job.methods(ids, id)]

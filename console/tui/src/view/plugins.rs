@@ -5,7 +5,7 @@ use super::{table, text};
 use crate::model::plugins::{Plugin, PluginState, plugins};
 use crate::model::ui::Arrangement;
 use crate::theme::Role;
-use mission::{ParamInfo, PlannerInfo};
+use mission::{ParamInfo, PlannerInfo, Sandbox};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 
@@ -89,6 +89,10 @@ fn detail(look: &Look, frame: &mut Frame, area: Rect, plugin: &Plugin<'_>) {
             (Role::Title, format!(" {} {}", info.id, info.version)),
             (Role::Dim, format!("  {}", abilities(info))),
         ]);
+        if let Some(sandbox) = &info.sandbox {
+            let role = if *sandbox == Sandbox::Full { Role::Dim } else { Role::Warn };
+            rows.extend(wrapped(role, &format!("sandbox: {sandbox}")));
+        }
         rows.extend(wrapped(Role::Text, &info.about));
         rows.extend(wrapped(Role::Dim, &parameters(&info.parameters)));
     }

@@ -72,6 +72,7 @@ fn state(look: &Look, station: StationId) -> (Role, Option<f64>, Option<f64>, &'
     let left_out = fix.excluded.iter().find(|(excluded, _)| *excluded == station);
     match left_out {
         Some((_, Exclusion::Silent)) => (Role::Watch, None, None, "SILENT"),
+        Some((_, Exclusion::ByOrder)) => (Role::Watch, None, None, "EXCLUDED"),
         Some((_, Exclusion::Residual { residual_m, gate_m })) => {
             (Role::Watch, Some(*residual_m), Some(*gate_m), "REJECTED")
         }

@@ -4,7 +4,7 @@ use mission::event::{JOURNAL_VERSION, RunOpened, TetherAlarm, TetherContact};
 use mission::planner::{Cause, During, Fault};
 use mission::{
     AskId, Event, EventKind, HoldReason, MissionConfig, Order, Outcome, ParamInfo, ParamKind, Parameters,
-    PlannerChoice, PlannerInfo, Resumes, ScanConfig, TaskConfig, TetherConfig,
+    PlannerChoice, PlannerInfo, Resumes, Sandbox, ScanConfig, TaskConfig, TetherConfig,
 };
 use nalgebra::{Matrix2, Matrix3};
 use planner_api::{Command, Drawing, Layer, Limits, Motion, PoseEstimate, Reason};
@@ -134,6 +134,7 @@ pub(crate) fn planner(id: &str, version: &str, about: &str) -> PlannerInfo {
         abi: "1.0".into(),
         covers: false,
         snapshots: false,
+        sandbox: Some(Sandbox::Full),
         parameters: vec![
             parameter("rpf_gain", "Rotating gain", "m3/s", gain, float(0.2, 4.0, 1.2), true),
             parameter(

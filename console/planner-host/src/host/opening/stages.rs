@@ -66,9 +66,10 @@ impl Host {
     /// Starts a worker and asks it to load a file.
     fn load(&self, candidate: &Candidate, planner: &str) -> Result<Worker, Failure> {
         let mut worker = Worker::spawn(&self.config.worker_command)?;
-        let memory_limit_bytes = self.config.memory_limit_bytes;
+        let (memory_limit_bytes, requires_sandbox) =
+            (self.config.memory_limit_bytes, self.catalog.requires_sandbox());
         worker.ask(kind::LOAD, self.config.load_deadline, |w| {
-            write_load(w, &candidate.path, planner, memory_limit_bytes);
+            write_load(w, &candidate.path, planner, memory_limit_bytes, requires_sandbox);
         })?;
         Ok(worker)
     }
@@ -130,7 +131,10 @@ impl Host {
         answer: Result<answer::Loaded, Failure>,
     ) -> Result<(), Fault> {
         let found = answer.map(|answer| {
-            answer.planners.first().map(|planner| Loaded::new(planner, &answer, &candidate.name))
+            answer
+                .planners
+                .first()
+                .map(|planner| Loaded::new(planner, &answer, &candidate.name, worker.sandbox()))
         });
         let loaded = match found {
             Ok(Some(loaded)) => loaded,

@@ -4,6 +4,7 @@ use super::Worker;
 use super::state::{Budgeted, State};
 use crate::Progress;
 use crate::supervisor::Failure;
+use crate::supervisor::ending::last_line;
 use crate::supervisor::load::load_of;
 use crate::supervisor::ready::Ready;
 use crate::wire::body::{Body, Malformed, Read};
@@ -29,12 +30,20 @@ impl Worker {
         now: Instant,
         on_progress: &mut dyn FnMut(&Progress),
     ) -> Option<Result<(), Failure>> {
+        if ready.called
+            && let Some(call) = self.guard.decide()
+        {
+            self.process.read_output();
+            let last_output = last_line(self.process.tail());
+            return Some(Err(self.end(Failure::Forbidden { call, last_output })));
+        }
         if ready.writable() {
             self.send(now);
         }
         let arrived = if ready.readable() { self.receive(now, on_progress) } else { Arrived::Nothing };
         match arrived {
             Arrived::Answer if matches!(self.state, State::Busy(_)) => {
+                self.guard.end_loading();
                 self.state = State::Idle;
                 return Some(Ok(()));
             }
@@ -54,18 +63,31 @@ impl Worker {
         loop {
             match self.incoming.next_frame() {
                 None if has_read => return Arrived::Nothing,
-                None => match self.incoming.fill(&mut self.socket) {
+                None => match self.incoming.fill(&mut self.guard.read(&self.socket)) {
                     Filled::Some => has_read = true,
                     Filled::Nothing => return Arrived::Nothing,
                     Filled::Closed => return Arrived::Closed,
                     Filled::Broken => return Arrived::Broken,
                 },
                 Some(Ok(())) if self.incoming.sequence() != self.sequence => return Arrived::Broken,
+                Some(Ok(())) if self.incoming.kind() == kind::SEALED => {
+                    if self.take_sandbox().is_err() {
+                        return Arrived::Broken;
+                    }
+                }
                 Some(Ok(())) if self.incoming.kind() != kind::PROGRESS => return Arrived::Answer,
                 Some(Ok(())) if self.forward_progress(now, on_progress).is_ok() => {}
                 Some(_) => return Arrived::Broken,
             }
         }
+    }
+
+    /// Takes the report of how far the worker is closed off, which it gives once.
+    fn take_sandbox(&mut self) -> Read<()> {
+        let mut body = self.incoming.body();
+        let sandbox = body.sandbox()?;
+        body.end()?;
+        if self.guard.begin(sandbox) { Ok(()) } else { Err(Malformed) }
     }
 
     /// Forwards a progress message, unless the rate limit is reached.

@@ -91,6 +91,7 @@ mod tests {
             abi: String::new(),
             covers: false,
             snapshots: false,
+            sandbox: None,
             parameters: vec![
                 info("gain", ParamKind::Float { min: 0.001, max: 1000.0, default: 1.0 }),
                 info("range_m", ParamKind::Float { min: 0.0, max: 4.0, default: 1.0 }),

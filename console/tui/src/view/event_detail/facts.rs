@@ -239,6 +239,7 @@ fn planner(choice: &PlannerChoice, info: &PlannerInfo) -> Vec<Field> {
     vec![
         ("planner", format!("{} {}: {}", choice.id, info.version, info.about)),
         ("plugin", format!("{}, ABI {}, SHA-256 {}", info.plugin, info.abi, text::fit(&info.sha256, 17))),
+        ("sandbox", info.sandbox.as_ref().map_or("not recorded".into(), ToString::to_string)),
         ("parameters", parameters(choice)),
     ]
 }

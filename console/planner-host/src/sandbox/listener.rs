@@ -1,0 +1,107 @@
+//! The kernel's reports of calls that wait for a decision.
+//!
+//! The calls that this takes are offered by no safe crate: installing a filter with a listener, receiving a report,
+//! answering it. All of them only pass a structure of the kernel. A fourth closes what was inherited.
+#![expect(unsafe_code, reason = "calls of the kernel that no safe crate offers")]
+
+use super::Verdict;
+use seccompiler::BpfProgram;
+use std::io;
+use std::os::fd::{AsFd, AsRawFd, BorrowedFd, FromRawFd, OwnedFd};
+
+/// Installs a filter in this process, whose threads to come inherit it; what it leaves open is reported to this
+/// descriptor.
+pub(super) fn install(filter: &BpfProgram) -> io::Result<OwnedFd> {
+    let program = libc::sock_fprog {
+        len: filter.len() as u16,
+        // The kernel only reads it, and both types are the same structure of the kernel.
+        filter: filter.as_ptr().cast_mut().cast(),
+    };
+    // SAFETY: `program` and the filter behind it outlive the call, which copies them.
+    let descriptor = unsafe {
+        libc::syscall(
+            libc::SYS_seccomp,
+            libc::SECCOMP_SET_MODE_FILTER,
+            libc::SECCOMP_FILTER_FLAG_NEW_LISTENER,
+            &raw const program,
+        )
+    };
+    if descriptor < 0 {
+        return Err(io::Error::last_os_error());
+    }
+    // SAFETY: the kernel has just made this descriptor, and nobody else owns it.
+    Ok(unsafe { OwnedFd::from_raw_fd(descriptor as i32) })
+}
+
+/// Closes every descriptor of this process above the standard ones, but this one.
+pub(crate) fn close_all_but(kept: BorrowedFd<'_>) {
+    let kept = kept.as_raw_fd().cast_unsigned();
+    for (first, last) in [(3, kept - 1), (kept + 1, u32::MAX)] {
+        // SAFETY: at the start of a worker nothing owns a descriptor but `kept`. Without this call, before Linux 5.9, what
+        // the console was started with stays open.
+        unsafe { libc::syscall(libc::SYS_close_range, first, last, 0) };
+    }
+}
+
+/// A call of the system that waits for a decision.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Call {
+    id: u64,
+    /// The thread that made it.
+    pub(super) thread: u32,
+    pub(super) number: i64,
+    pub(super) arguments: [u64; 6],
+}
+
+#[cfg(test)]
+impl Call {
+    /// A call of this very process.
+    pub(super) fn of(number: i64, arguments: [u64; 6]) -> Self {
+        Self { id: 0, thread: std::process::id(), number, arguments }
+    }
+}
+
+/// Where a worker's calls are reported.
+#[derive(Debug)]
+pub(crate) struct Listener(OwnedFd);
+
+/// `_IOWR('!', number, size)` of the kernel's header.
+const fn request(number: u64, size: usize) -> u64 {
+    3 << 30 | (size as u64) << 16 | (b'!' as u64) << 8 | number
+}
+const RECEIVE: u64 = request(0, size_of::<libc::seccomp_notif>());
+const ANSWER: u64 = request(1, size_of::<libc::seccomp_notif_resp>());
+
+impl Listener {
+    pub(crate) fn new(descriptor: OwnedFd) -> Self {
+        Self(descriptor)
+    }
+
+    /// The next call that waits; to be asked only when the descriptor is readable. None if its thread has ended meanwhile.
+    pub(crate) fn next(&self) -> Option<Call> {
+        // SAFETY: all zeros is what the kernel wants to be given, and a value of every field.
+        let mut report: libc::seccomp_notif = unsafe { std::mem::zeroed() };
+        // SAFETY: the kernel fills in exactly this structure.
+        let received = unsafe { libc::ioctl(self.0.as_raw_fd(), RECEIVE as libc::Ioctl, &raw mut report) };
+        let libc::seccomp_notif { id, pid, data, .. } = report;
+        (received == 0).then(|| Call { id, thread: pid, number: data.nr.into(), arguments: data.args })
+    }
+
+    /// Lets a call go on or fail. A forbidden one never returns: its process is to be killed.
+    pub(crate) fn answer(&self, call: &Call, verdict: &Verdict) {
+        let (error, flags) = match verdict {
+            Verdict::Allow => (0, libc::SECCOMP_USER_NOTIF_FLAG_CONTINUE as u32),
+            Verdict::Refuse(error) => (-error, 0),
+            Verdict::Forbid(_) => return,
+        };
+        let mut answer = libc::seccomp_notif_resp { id: call.id, val: 0, error, flags };
+        // SAFETY: the kernel reads exactly this structure. It refuses the answer if the thread has ended meanwhile.
+        unsafe { libc::ioctl(self.0.as_raw_fd(), ANSWER as libc::Ioctl, &raw mut answer) };
+    }
+}
+
+impl AsFd for Listener {
+    fn as_fd(&self) -> BorrowedFd<'_> {
+        self.0.as_fd()
+    }
+}

@@ -1,0 +1,82 @@
+//! The console's side of a worker's sandbox: how far it reaches, and decisions about calls of the system.
+
+use crate::sandbox::{Listener, Verdict, ends_loading, verdict};
+use mission::Sandbox;
+use rustix::net::{RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, recvmsg};
+use std::io::{self, IoSliceMut, Read};
+use std::mem::MaybeUninit;
+use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::os::unix::net::UnixStream;
+
+/// What guards a worker.
+#[derive(Default)]
+pub(super) struct Guard {
+    /// None before the worker has reported it.
+    sandbox: Option<Sandbox>,
+    /// The last descriptor that came over the socket.
+    received: Option<OwnedFd>,
+    listener: Option<Listener>,
+    has_loaded: bool,
+}
+
+impl Guard {
+    /// How far the worker is closed off.
+    pub(super) fn sandbox(&self) -> Option<&Sandbox> {
+        self.sandbox.as_ref()
+    }
+
+    /// Takes the worker's report; false if there was one before. It comes before anything of the plugin has run.
+    pub(super) fn begin(&mut self, sandbox: Sandbox) -> bool {
+        self.listener = self.received.take().map(Listener::new);
+        self.sandbox.replace(sandbox).is_none()
+    }
+
+    /// The plugin is loaded.
+    pub(super) fn end_loading(&mut self) {
+        self.has_loaded = true;
+    }
+
+    /// Readable when a call waits for a decision.
+    pub(super) fn calls(&self) -> Option<BorrowedFd<'_>> {
+        self.listener.as_ref().map(AsFd::as_fd)
+    }
+
+    /// Decides about the call that waits; what was tried, if that may not be.
+    pub(super) fn decide(&mut self) -> Option<String> {
+        let listener = self.listener.as_ref()?;
+        let call = listener.next()?;
+        let verdict = verdict(&call, !self.has_loaded);
+        self.has_loaded |= ends_loading(&call);
+        listener.answer(&call, &verdict);
+        match verdict {
+            Verdict::Forbid(what) => Some(what),
+            _ => None,
+        }
+    }
+
+    /// Reads from the socket; as long as the worker has not reported, a descriptor may come along.
+    pub(super) fn read<'a>(&'a mut self, socket: &'a UnixStream) -> impl Read + 'a {
+        Reader { socket, received: self.sandbox.is_none().then_some(&mut self.received) }
+    }
+}
+
+struct Reader<'a> {
+    socket: &'a UnixStream,
+    received: Option<&'a mut Option<OwnedFd>>,
+}
+
+impl Read for Reader<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let Some(received) = &mut self.received else { return self.socket.read(bytes) };
+        let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
+        let mut control = RecvAncillaryBuffer::new(&mut space);
+        let message =
+            recvmsg(self.socket, &mut [IoSliceMut::new(bytes)], &mut control, RecvFlags::CMSG_CLOEXEC)?;
+        for part in control.drain() {
+            if let RecvAncillaryMessage::ScmRights(descriptors) = part {
+                **received = descriptors.last();
+            }
+        }
+        Ok(message.bytes)
+    }
+}

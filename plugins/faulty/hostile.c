@@ -1,0 +1,93 @@
+/* A planner that attacks, for tests. ATTACK is what it does, in C; one of these says when: IN_CONSTRUCTOR, IN_STEP (the
+ * fourth), IN_THREAD (one that its constructor starts, while steps are made), IN_DESTRUCTOR. */
+#define _GNU_SOURCE
+#include "tankops_planner.h"
+#include <fcntl.h>
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <sys/ptrace.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/uio.h>
+#include <time.h>
+#include <unistd.h>
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wunused-result"
+#ifndef ATTACK
+#define ATTACK
+#endif
+
+
+
+/* A file of the console's process. */
+static const char *of_parent(const char *what) {
+  static char path[64];
+  sprintf(path, "/proc/%d/%s", getppid(), what);
+  return path;
+}
+
+static void rest(long milliseconds) {
+  struct timespec time = {milliseconds / 1000, milliseconds % 1000 * 1000000};
+  nanosleep(&time, NULL);
+}
+
+static void attack(void) { ATTACK; }
+
+static void *later(void *nothing) {
+  rest(100);
+  attack();
+  for (;;) rest(1000);
+  return nothing;
+}
+
+#if defined IN_CONSTRUCTOR
+__attribute__((constructor)) static void early(void) { attack(); }
+#elif defined IN_THREAD
+__attribute__((constructor)) static void early(void) {
+  pthread_t thread;
+  pthread_create(&thread, NULL, later, NULL);
+}
+#elif defined IN_DESTRUCTOR
+__attribute__((destructor)) static void late(void) { attack(); }
+#endif
+
+static int n_steps;
+
+static int32_t describe(const tp_host *h) { (void)h; return TP_OK; }
+static int32_t create(const tp_host *h, const tp_site *s, const tp_value *v, uint32_t n, void **out) {
+  (void)h; (void)s; (void)v; (void)n;
+  *out = &n_steps;
+  return TP_OK;
+}
+static void destroy(void *p) { (void)p; }
+static int32_t plan(void *p, const tp_host *h, const tp_plan_in *in, tp_plan_out *out) {
+  const tp_vec2 start = {in->start.x, in->start.y};
+  (void)p;
+  h->points(h->ctx, &start, 1);
+  h->points(h->ctx, in->targets, in->n_targets);
+  out->cost = 0.0; out->complete = 1;
+  return TP_OK;
+}
+static int32_t step(void *p, const tp_host *h, const tp_step_in *in, tp_step_out *out) {
+  (void)p; (void)h; (void)in;
+  rest(5);
+#ifdef IN_STEP
+  if (n_steps == 3) attack();
+#endif
+  n_steps++;
+  out->drive = TP_TWIST; out->status = TP_MOVING; out->a = 0.1; out->b = 0.0;
+  return TP_OK;
+}
+static const tp_planner planner = {
+  sizeof(tp_planner), TP_CAP_LOCAL, 1, 0, TP_STR("hostile"), TP_STR("Attacker"), TP_STR("1"),
+  TP_STR(""), describe, create, destroy, plan, step, 0, 0, 0, 0, 0};
+static const tp_planner *const list[] = {&planner};
+TP_EXPORT const tp_entry tank_planner_entry = TP_ENTRY(list, 1, "C");
+TP_STAMP(TP_ABI_MAJOR, TP_ABI_MINOR);
