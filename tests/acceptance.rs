@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+#[path = "acceptance/account.rs"]
+mod account;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/arrivals.rs"]
 mod arrivals;
@@ -23,6 +25,8 @@ mod planning;
 mod proof;
 #[path = "acceptance/replay.rs"]
 mod replay;
+#[path = "acceptance/report.rs"]
+mod report_file;
 #[path = "acceptance/reproduce.rs"]
 mod reproduce;
 #[path = "acceptance/rescan.rs"]

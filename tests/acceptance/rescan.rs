@@ -27,7 +27,8 @@ fn digest(file: &Path) -> String {
 }
 
 fn tenths(percent: &Value) -> i64 {
-    percent.as_object().unwrap().values().map(|value| (10.0 * value.as_f64().unwrap()).round() as i64).sum()
+    let parts = percent.as_object().unwrap().iter().filter(|(part, _)| *part != "guaranteed");
+    parts.map(|(_, value)| (10.0 * value.as_f64().unwrap()).round() as i64).sum()
 }
 
 #[test]

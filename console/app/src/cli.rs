@@ -87,19 +87,7 @@ pub(crate) enum Command {
         logs: LogsArg,
     },
     /// Show the result of a past run, or of a scan and its re-scans together.
-    Report {
-        /// Run folders, or their names in the logs folder; several runs must be of the same floor.
-        #[arg(required = true, value_name = "RUN")]
-        runs: Vec<PathBuf>,
-        /// Print JSON.
-        #[arg(long)]
-        json: bool,
-        /// Write to this file instead of stdout.
-        #[arg(short = 'o', long, value_name = "FILE")]
-        output: Option<PathBuf>,
-        #[command(flatten)]
-        logs: LogsArg,
-    },
+    Report(ReportArgs),
     /// Create a scenario that scans what one or more past runs missed.
     Rescan(RescanArgs),
     /// Print the completions of this command line for a shell.
@@ -128,6 +116,34 @@ pub(crate) struct RescanArgs {
     /// Ignore missed areas smaller than this, in square metres; areas close together count as one.
     #[arg(long, value_name = "AREA", default_value_t = review::MIN_AREA_M2)]
     pub min_area_m2: f64,
+    #[command(flatten)]
+    pub logs: LogsArg,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReportArgs {
+    /// Run folders, or their names in the logs folder; several runs must be of the same floor.
+    #[arg(required = true, value_name = "RUN")]
+    pub runs: Vec<PathBuf>,
+    /// Print JSON.
+    #[arg(long, conflicts_with = "output")]
+    pub json: bool,
+    /// Write the inspection report to this file: .html, .json, .csv (several files), .geojson or .dxf.
+    #[arg(short = 'o', long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Facts for `[inspection]` that were not known before the run, as a TOML file; they take the place of the scenario's.
+    #[arg(long, value_name = "FILE", requires = "output")]
+    pub inspection: Option<PathBuf>,
+    /// Indications of the instrument as CSV: t_s, and left_m, ahead_m, kind, size_mm, depth_mm, note if there are.
+    #[arg(long, value_name = "FILE", requires = "output")]
+    pub indications: Option<PathBuf>,
+    /// Sign the report (.html): needs every item of the gate answered; a signed report is never changed, the next one is
+    /// another revision.
+    #[arg(long, value_name = "NAME", requires = "output")]
+    pub sign: Option<String>,
+    /// Write over a file that is there already; never over a signed report.
+    #[arg(long, requires = "output", conflicts_with = "sign")]
+    pub force: bool,
     #[command(flatten)]
     pub logs: LogsArg,
 }

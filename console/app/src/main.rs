@@ -10,6 +10,7 @@ mod past_runs;
 mod plan;
 mod planners;
 mod progress;
+mod report_file;
 mod reproduce;
 mod rescan;
 mod stop_signal;
@@ -79,9 +80,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
             past_runs::verify(&run, &logs, &plugins, from_journal)
         }
         Some(Command::Export { run, rrd, logs }) => past_runs::export(&run, &rrd, &logs),
-        Some(Command::Report { runs, json, output, logs }) => {
-            past_runs::report(&runs, &logs, json, output.as_deref())
-        }
+        Some(Command::Report(args)) => past_runs::report(&args),
         Some(Command::Rescan(args)) => rescan::rescan(&args, &plugins),
         Some(Command::Completions { shell }) => manual::completions(shell),
         Some(Command::Man { command }) => manual::man(command.as_deref()),

@@ -1,8 +1,9 @@
 //! `tankops runs`, `report`, `verify` and `export`: what past runs hold.
 
 use crate::{
-    cli::LogsArg,
-    output::{pretty_json, write_file},
+    cli::{LogsArg, ReportArgs},
+    output::pretty_json,
+    report_file,
 };
 use anyhow::Context;
 use flight::failure::{COMPLETE, ENDED_OTHERWISE, bad_input};
@@ -13,10 +14,7 @@ use report::{
     print::{say, say_line},
 };
 use runs::{Past, find, journal_doubt};
-use std::{
-    path::{Path, PathBuf},
-    process::ExitCode,
-};
+use std::{path::Path, process::ExitCode};
 
 /// `tankops runs`.
 pub(crate) fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
@@ -32,24 +30,19 @@ pub(crate) fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
 }
 
 /// `tankops report RUN...`.
-pub(crate) fn report(
-    runs: &[PathBuf],
-    logs: &LogsArg,
-    json: bool,
-    output: Option<&Path>,
-) -> anyhow::Result<ExitCode> {
-    let past = review::read_all(runs, &logs.logs)?;
+pub(crate) fn report(args: &ReportArgs) -> anyhow::Result<ExitCode> {
+    if let Some(output) = &args.output {
+        return report_file::write(args, output);
+    }
+    let past = review::read_all(&args.runs, &args.logs.logs)?;
     let text = if let [only] = &past[..] {
-        one(only, json)?
+        one(only, args.json)?
     } else {
         let past: Vec<PastRun> = past.into_iter().map(|past| past.run).collect();
         let merged = merged(&past).map_err(bad_input)?;
-        if json { pretty_json("the report", &merged)? } else { merged.human() }
+        if args.json { pretty_json("the report", &merged)? } else { merged.human() }
     };
-    match output {
-        None => say(&text)?,
-        Some(file) => write_file("the report", file, &text)?,
-    }
+    say(&text)?;
     Ok(ExitCode::from(COMPLETE))
 }
 

@@ -33,6 +33,11 @@ pub fn sha256(path: &Path) -> io::Result<String> {
     }
 }
 
+/// SHA-256 of some bytes, hexadecimal.
+pub fn sha256_of(bytes: &[u8]) -> String {
+    hexadecimal(&Sha256::digest(bytes))
+}
+
 /// How a file on disk differs from the one that was opened and written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FileChange {

@@ -4,6 +4,7 @@
 //! everything else (recording, report, replay) can be made again, and it does not change with the recording SDK.
 
 mod ending;
+mod fast;
 mod follow;
 mod reader;
 mod ticks;

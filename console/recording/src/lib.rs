@@ -23,7 +23,7 @@ pub mod thread;
 
 pub use error::RecordingError;
 pub use export::export;
-pub use file::{FileChange, sha256};
+pub use file::{FileChange, sha256, sha256_of};
 pub use identity::Identity;
 pub use inspect::{Summary, inspect};
 pub use journal::{

@@ -2,18 +2,26 @@
 
 pub(crate) mod areas;
 mod evidence;
+mod measure;
 mod reason;
+mod reasons;
 mod zone;
 
-pub use areas::{Area, Slivers};
-pub use evidence::{Evidence, Reasons};
+pub use areas::{Area, Cause, Explained, Slivers};
+pub use evidence::{Evidence, Solid};
+pub use measure::Measure;
 pub use reason::{MissReason, OutOfReach};
-pub use zone::CriticalZone;
+pub use reasons::Reasons;
+pub use zone::{CriticalZone, ZoneArc, ZoneOfPlate};
 
+use crate::{accuracy::nearest_rank, scanned::Scanned};
 use areas::areas;
 use mission::event::RunOpened;
 use serde::{Deserialize, Serialize};
-use world::{Cell, CoverageGrid, PlateKind, PlateMap, coverage::percents};
+use world::{
+    Cell, Counts, Floor, PlateKind, PlateMap, Point,
+    coverage::{percent, percents},
+};
 
 /// The account of a floor, by the estimated position: a cell counts as scanned where the position error was within
 /// the mission's limit.
@@ -57,6 +65,9 @@ pub struct Shares {
     pub unreachable: f64,
     /// Out of reach because the robot keeps its distance from the shell.
     pub margin: f64,
+    /// Scanned for every position within the 95 % error: a part of what was scanned. Absent while a mission lasts.
+    #[serde(default)]
+    pub guaranteed: Option<f64>,
     /// The same shares as they are printed.
     #[serde(default)]
     pub percent: Percent,
@@ -73,6 +84,9 @@ pub struct Percent {
     pub unreachable: f64,
     /// Out of reach along the shell.
     pub margin: f64,
+    /// Scanned for every position within the 95 % error: a part of what was scanned.
+    #[serde(default)]
+    pub guaranteed: Option<f64>,
 }
 
 /// One plate.
@@ -82,74 +96,95 @@ pub struct PlateAccount {
     pub name: String,
     /// What kind of plate.
     pub kind: PlateKind,
+    /// The 95 % error with which its floor was scanned: not exceeded by 95 % of its scanned cells, each with the best pass over
+    /// it, metres; absent if nothing of it was scanned.
+    #[serde(default)]
+    pub error_p95_m: Option<f64>,
     /// How it divides.
     #[serde(flatten)]
     pub shares: Shares,
 }
 
+impl Shares {
+    /// How some floor divides whose cells are counted, each of so many square metres.
+    pub fn of(counts: Counts, cell_m2: f64) -> Self {
+        let Counts { floor, reachable, covered, covered_reachable, margin } = counts;
+        let missed = reachable - covered_reachable;
+        let unreachable = floor - covered - missed - margin;
+        let share = |part: usize| if floor == 0 { 0.0 } else { part as f64 / floor as f64 };
+        let shares = [covered, missed, unreachable, margin].map(share);
+        let [scanned, missed, unreachable, margin] = percents(shares);
+        let percent = Percent { scanned, missed, unreachable, margin, guaranteed: None };
+        let [scanned, missed, unreachable, margin] = shares;
+        let area_m2 = floor as f64 * cell_m2;
+        Shares { area_m2, scanned, missed, unreachable, margin, guaranteed: None, percent }
+    }
+
+    /// The same with so many guaranteed cells.
+    fn with_guaranteed(mut self, cells: usize, cell_m2: f64) -> Self {
+        let share = if self.area_m2 > 0.0 { cells as f64 * cell_m2 / self.area_m2 } else { 0.0 };
+        self.guaranteed = Some(share);
+        self.percent.guaranteed = Some(percent(share).min(self.percent.scanned));
+        self
+    }
+}
+
 /// Cells of some part of the floor.
 #[derive(Debug, Clone, Copy, Default)]
 struct Tally {
-    scanned: usize,
-    missed: usize,
-    unreachable: usize,
-    margin: usize,
+    counts: Counts,
+    guaranteed: usize,
 }
 
 impl Tally {
-    fn count(&mut self, kind: Cell, is_scanned: bool) {
-        match kind {
-            Cell::Outside => {}
-            _ if is_scanned => self.scanned += 1,
-            Cell::Reachable => self.missed += 1,
-            Cell::Margin => self.margin += 1,
-            Cell::Unreachable | Cell::Beside | Cell::NoGo => self.unreachable += 1,
-        }
+    fn count(&mut self, kind: Cell, is_scanned: bool, is_guaranteed: bool) {
+        self.counts.add(kind, is_scanned);
+        self.guaranteed += usize::from(is_guaranteed && kind != Cell::Outside);
     }
 
     fn shares(self, cell_m2: f64) -> Shares {
-        let cells = self.scanned + self.missed + self.unreachable + self.margin;
-        let share = |part: usize| if cells == 0 { 0.0 } else { part as f64 / cells as f64 };
-        let shares = [self.scanned, self.missed, self.unreachable, self.margin].map(share);
-        let [scanned, missed, unreachable, margin] = percents(shares);
-        let percent = Percent { scanned, missed, unreachable, margin };
-        let [scanned, missed, unreachable, margin] = shares;
-        Shares { area_m2: cells as f64 * cell_m2, scanned, missed, unreachable, margin, percent }
+        Shares::of(self.counts, cell_m2).with_guaranteed(self.guaranteed, cell_m2)
     }
 }
 
 /// Accounts for a floor. Costs one look at every cell.
-pub fn account(run: &RunOpened, grid: &CoverageGrid, evidence: &Evidence) -> Account {
+pub(crate) fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -> Account {
+    let grid = scanned.believed();
     let floor = grid.floor();
-    let plates = run.plates.map(|layout| layout.map(&run.world.boundary, floor));
+    let plates = plate_map(run, floor);
     let (mut whole, mut reachable) = (Tally::default(), Tally::default());
     let mut by_plate = vec![Tally::default(); plates.as_ref().map_or(0, |map| map.plates.len())];
     for index in 0..floor.len() {
         let (kind, is_scanned) = (floor.kind(index), grid.is_covered(index));
-        whole.count(kind, is_scanned);
+        let is_guaranteed = scanned.is_guaranteed(index);
+        whole.count(kind, is_scanned, is_guaranteed);
         if kind == Cell::Reachable {
-            reachable.count(kind, is_scanned);
+            reachable.count(kind, is_scanned, is_guaranteed);
         }
         if let Some(plate) = plates.as_ref().and_then(|map| map.plate_of(index)) {
-            by_plate[plate].count(kind, is_scanned);
+            by_plate[plate].count(kind, is_scanned, is_guaranteed);
         }
     }
     let reasons = evidence.reasons(run);
     let why_missed = |index: usize| {
-        (floor.is_reachable(index) && !grid.is_covered(index)).then(|| reasons.why_missed(floor, index))
+        let is_missed = floor.is_reachable(index) && !grid.is_covered(index);
+        is_missed.then(|| reasons.why_missed(floor.center(index), index))
     };
     let why_out =
         |index: usize| if grid.is_covered(index) { None } else { OutOfReach::of(floor.kind(index)) };
-    let (missed, slivers) = areas(floor, plates.as_ref(), why_missed);
-    let (unreachable, unreachable_slivers) = areas(floor, plates.as_ref(), why_out);
+    let (missed, slivers) =
+        areas(floor, plates.as_ref(), why_missed, |why, cells| reasons.measure(grid, why, cells));
+    let (unreachable, unreachable_slivers) =
+        areas(floor, plates.as_ref(), why_out, |why, cells| reasons.measure_out_of_reach(grid, why, cells));
+    let plate_at = |place: Point| plate_beside(floor, plates.as_ref()?, place);
     Account {
         cell_m: floor.cell_m,
         swath_m: run.mission.swath_m,
         position_limit_m: run.mission.scan_limit_m(),
         whole: whole.shares(floor.cell_m2()),
         reachable: reachable.shares(floor.cell_m2()),
-        critical_zone: CriticalZone::of(evidence.shell()),
-        plates: plates.map_or_else(Vec::new, |map| plate_accounts(&map, &by_plate, floor.cell_m2())),
+        critical_zone: CriticalZone::of(&evidence.shell(), plate_at),
+        plates: plates.as_ref().map_or_else(Vec::new, |map| plate_accounts(map, &by_plate, scanned)),
         missed,
         slivers,
         unreachable,
@@ -157,15 +192,39 @@ pub fn account(run: &RunOpened, grid: &CoverageGrid, evidence: &Evidence) -> Acc
     }
 }
 
-fn plate_accounts(map: &PlateMap, by_plate: &[Tally], cell_m2: f64) -> Vec<PlateAccount> {
-    let tallied = map.plates.iter().zip(by_plate);
-    tallied
-        .map(|(plate, tally)| PlateAccount {
+/// The plates of a floor, if their layout is known.
+pub(crate) fn plate_map(run: &RunOpened, floor: &Floor) -> Option<PlateMap> {
+    run.plates.map(|layout| layout.map(&run.world.boundary, floor))
+}
+
+/// The plate of the floor beside a place on the wall.
+fn plate_beside(floor: &Floor, map: &PlateMap, place: Point) -> Option<String> {
+    let near = floor.cells_near(place, place, 2.0 * floor.cell_m).into_iter();
+    let off_m = |cell: &usize| (floor.center(*cell) - place).norm();
+    let nearest =
+        near.filter(|cell| map.plate_of(*cell).is_some()).min_by(|a, b| off_m(a).total_cmp(&off_m(b)));
+    Some(map.plates[map.plate_of(nearest?)?].name.clone())
+}
+
+fn plate_accounts(map: &PlateMap, by_plate: &[Tally], scanned: &Scanned) -> Vec<PlateAccount> {
+    let grid = scanned.believed();
+    let mut errors_mm: Vec<Vec<u16>> = vec![Vec::new(); map.plates.len()];
+    for cell in (0..grid.floor().len()).filter(|cell| grid.is_covered(*cell)) {
+        if let Some((plate, error_mm)) = map.plate_of(cell).zip(scanned.passes().error_mm(cell)) {
+            errors_mm[plate].push(error_mm);
+        }
+    }
+    let tallied = map.plates.iter().zip(by_plate).zip(errors_mm);
+    let plate = |((plate, tally), mut errors_mm): ((&world::Plate, &Tally), Vec<u16>)| {
+        errors_mm.sort_unstable();
+        PlateAccount {
             name: plate.name.clone(),
             kind: plate.kind,
-            shares: tally.shares(cell_m2),
-        })
-        .collect()
+            error_p95_m: nearest_rank(&errors_mm, 0.95).map(|mm| f64::from(mm) / 1000.0),
+            shares: tally.shares(grid.floor().cell_m2()),
+        }
+    };
+    tallied.map(plate).collect()
 }
 
 #[cfg(test)]

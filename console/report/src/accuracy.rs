@@ -1,6 +1,6 @@
-//! How far the estimated position was from the true one.
+//! How good the estimated position was: by its own covariance, and by the truth where there is one.
 
-use crate::summary::Positioning;
+use crate::summary::{Accuracy as Statement, Positioning};
 use world::Point;
 
 /// Quantile of the chi-squared distribution with two degrees of freedom: `-2 ln 0.05`.
@@ -22,6 +22,80 @@ impl Estimate {
         let largest = f64::midpoint(a, c) + (((a - c) / 2.0).powi(2) + b * b).sqrt();
         (CHI2_95 * largest.max(0.0)).sqrt()
     }
+
+    /// Half width of the 95 % ellipse across a heading, metres.
+    pub(crate) fn across_95_m(&self, heading_rad: f64) -> f64 {
+        let [a, b, c] = self.covariance_m2;
+        let (sin, cos) = heading_rad.sin_cos();
+        (CHI2_95 * (a * sin * sin - 2.0 * b * sin * cos + c * cos * cos).max(0.0)).sqrt()
+    }
+}
+
+/// The 95 % error by the covariance, tick by tick.
+#[derive(Debug, Default)]
+pub(crate) struct Claimed {
+    errors_m: Vec<f32>,
+    way_m: f64,
+    way_over_m: f64,
+    last: Option<Point>,
+    /// Largest error since the last ranging cycle, and in the cycle before it: between two fixes the error grows and falls
+    /// like a saw, and the tip is what counts.
+    tips_m: [f64; 2],
+    fixes: u64,
+    stations: u64,
+    stations_min: Option<u64>,
+}
+
+impl Claimed {
+    /// Takes in the estimate of a tick.
+    pub(crate) fn estimate(&mut self, estimate: &Estimate, limit_m: f64) {
+        let error_m = estimate.error_95_m();
+        self.errors_m.push(error_m as f32);
+        self.tips_m[0] = self.tips_m[0].max(error_m);
+        let step_m = self.last.map_or(0.0, |last| (estimate.position - last).norm());
+        self.last = Some(estimate.position);
+        self.way_m += step_m;
+        self.way_over_m += if error_m > limit_m { step_m } else { 0.0 };
+    }
+
+    /// A ranging cycle ended.
+    pub(crate) fn end_cycle(&mut self) {
+        self.tips_m = [0.0, self.tips_m[0]];
+    }
+
+    /// The ranges of so many stations gave a position.
+    pub(crate) fn fix(&mut self, stations: usize) {
+        let stations = stations as u64;
+        self.fixes += 1;
+        self.stations += stations;
+        self.stations_min = Some(self.stations_min.map_or(stations, |least| least.min(stations)));
+    }
+
+    /// Largest 95 % error in this ranging cycle and the one before, metres.
+    pub(crate) fn tip_m(&self) -> f64 {
+        self.tips_m[0].max(self.tips_m[1])
+    }
+
+    /// The figures; none without an estimate.
+    pub(crate) fn statement(&self, limit_m: f64) -> Option<Statement> {
+        let mut sorted = self.errors_m.clone();
+        sorted.sort_by(f32::total_cmp);
+        Some(Statement {
+            mean_m: sorted.iter().map(|m| f64::from(*m)).sum::<f64>() / sorted.len() as f64,
+            p95_m: f64::from(nearest_rank(&sorted, 0.95)?),
+            max_m: f64::from(*sorted.last()?),
+            limit_m,
+            over_limit: if self.way_m > 0.0 { self.way_over_m / self.way_m } else { 0.0 },
+            fixes: self.fixes,
+            stations_mean: (self.fixes > 0).then(|| self.stations as f64 / self.fixes as f64),
+            stations_min: self.stations_min,
+        })
+    }
+}
+
+/// The value that a share of sorted values does not exceed.
+pub(crate) fn nearest_rank<T: Copy>(sorted: &[T], share: f64) -> Option<T> {
+    sorted.get(((share * sorted.len() as f64).ceil() as usize).max(1) - 1).copied()
 }
 
 /// Errors so far; truth and estimate of a tick are paired in whichever order they come.
@@ -80,7 +154,7 @@ impl Accuracy {
         let mut sorted = self.errors_m.clone();
         sorted.sort_by(f64::total_cmp);
         let n = sorted.len();
-        let rank = |share: f64| sorted.get(((share * n as f64).ceil() as usize).max(1) - 1).copied();
+        let rank = |share: f64| nearest_rank(&sorted, share);
         Some(Positioning {
             mean_error_m: sorted.iter().sum::<f64>() / n as f64,
             p50_m: rank(0.5)?,

@@ -2,7 +2,7 @@
 
 use crate::{
     account::{Account, Evidence, account},
-    accuracy::{Accuracy, Estimate},
+    accuracy::{Accuracy, Claimed, Estimate},
     scanned::Scanned,
     summary::{Summary, Tether},
     tethered::Tethered,
@@ -10,8 +10,8 @@ use crate::{
     turning::Turning,
 };
 use mission::{
-    Cause, Event, EventKind, Order, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
-    TaskConfig,
+    Cause, Event, EventKind, FoldedStanding, Order, ParamKind, ParamValue, Parameters, Phase, PlannerChoice,
+    PlannerInfo, TaskConfig,
     event::{RunOpened, TetherAlarm},
 };
 use world::{Obstacle, Pose};
@@ -24,6 +24,8 @@ pub struct Fold {
     pub(crate) scanned: Option<Scanned>,
     tracker: Option<Tracker>,
     accuracy: Accuracy,
+    claimed: Claimed,
+    standing: FoldedStanding,
     turning: Turning,
     tethered: Option<Tethered>,
     pub(crate) run: Option<Box<RunOpened>>,
@@ -40,6 +42,7 @@ impl Fold {
     pub fn apply(&mut self, event: &Event) {
         self.known.ticks = Some(event.tick);
         self.known.mission_time_s = Some(event.t_s);
+        self.standing.apply(&event.kind);
         match &event.kind {
             EventKind::RunOpened(run) => self.open(run),
             EventKind::Truth { pose, clearance_m, collided } => {
@@ -56,12 +59,11 @@ impl Fold {
             EventKind::Estimated { pose } => {
                 let covariance_m2 = [(0, 0), (0, 1), (1, 1)].map(|at| pose.covariance[at]);
                 let estimate = Estimate { position: pose.position, covariance_m2 };
-                if let (Some(evidence), Some(run)) = (&mut self.evidence, &self.run) {
-                    let here = Pose { position: pose.position, heading_rad: pose.heading_rad };
-                    evidence.visit(here, estimate.error_95_m() <= run.mission.scan_limit_m());
-                }
+                self.believe(Pose { position: pose.position, heading_rad: pose.heading_rad }, estimate);
                 self.accuracy.estimate(event.tick, estimate);
             }
+            EventKind::Ranged { .. } => self.claimed.end_cycle(),
+            EventKind::Fixed { fix } => self.claimed.fix(fix.used.len()),
             EventKind::Ordered { order: Order::NoteChecks(checks) } => self.known.checks.clone_from(checks),
             EventKind::PositionLost { .. } => self.accuracy.lost(event.t_s),
             EventKind::PositionRegained { .. } => self.accuracy.regained(event.t_s),
@@ -70,9 +72,9 @@ impl Fold {
                     scanned.believe(runs);
                 }
             }
-            EventKind::Planned { path, complete, .. } if !self.is_preset() => {
+            EventKind::Planned { path, complete, cuts, .. } if !self.is_preset() => {
                 if let Some(evidence) = &mut self.evidence {
-                    evidence.plan(path, *complete);
+                    evidence.plan(path, cuts, *complete);
                 }
             }
             EventKind::Certified { refused: true, .. } => {
@@ -112,6 +114,25 @@ impl Fold {
         }
     }
 
+    /// The robot believes to be here.
+    fn believe(&mut self, here: Pose, estimate: Estimate) {
+        let limit_m = self.scan_limit_m();
+        self.claimed.estimate(&estimate, limit_m);
+        let (error_m, runs) = (estimate.error_95_m(), matches!(self.standing.phase, Phase::Running(_)));
+        if let Some(scanned) = &mut self.scanned {
+            let counts = runs && error_m <= limit_m;
+            scanned.visit(here, &estimate, counts.then(|| self.claimed.tip_m()));
+        }
+        if let Some(evidence) = &mut self.evidence {
+            evidence.visit(here, error_m, limit_m);
+        }
+    }
+
+    /// The 95 % error above which nothing counts as scanned, metres.
+    fn scan_limit_m(&self) -> f64 {
+        self.run.as_ref().map_or(f64::INFINITY, |run| run.mission.scan_limit_m())
+    }
+
     fn snag(&mut self, snagged: bool) {
         if let Some(tethered) = &mut self.tethered {
             tethered.snag(snagged);
@@ -120,13 +141,18 @@ impl Fold {
 
     /// The figures so far. Those that no event provides are absent; the app fills them in.
     pub fn summary(&self) -> Summary {
+        Summary { floor: self.account(), ..self.figures() }
+    }
+
+    /// The figures so far without the account of the floor, which costs a look at every cell.
+    pub(crate) fn figures(&self) -> Summary {
         Summary {
-            coverage: self.scanned.as_ref().map(Scanned::coverage),
-            floor: self.account(),
+            coverage: self.scanned.as_ref().map(|scanned| scanned.coverage(self.is_to_scan())),
             turns: self.known.path_length_m.map(|_| self.turning.turns()),
             rotation_turns: self.known.path_length_m.map(|_| self.turning.rotation_turns()),
             tether: self.tether(),
             tracking: self.tracker.as_ref().and_then(Tracker::tracking),
+            accuracy: self.claimed.statement(self.scan_limit_m()),
             positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
             ..self.known.clone()
         }
@@ -134,8 +160,18 @@ impl Fold {
 
     /// The account of the floor; none for missions that are not there to scan it.
     fn account(&self) -> Option<Account> {
-        let run = self.run.as_ref()?;
-        Some(account(run, self.scanned.as_ref()?.believed(), self.evidence.as_ref()?))
+        let run = self.run.as_ref().filter(|_| self.is_to_scan())?;
+        Some(account(run, self.scanned.as_ref()?, self.evidence.as_ref()?))
+    }
+
+    /// Whether the mission is there to scan the floor.
+    fn is_to_scan(&self) -> bool {
+        self.run.as_ref().is_some_and(|run| matches!(run.mission.task, TaskConfig::Cover { .. }))
+    }
+
+    /// What was found that is not on the drawing.
+    pub(crate) fn found(&self) -> impl Iterator<Item = &crate::account::Solid> {
+        self.evidence.iter().flat_map(|evidence| evidence.found().map(|(_, solid)| solid))
     }
 
     fn tether(&self) -> Option<Tether> {
@@ -167,18 +203,18 @@ impl Fold {
     fn open(&mut self, run: &RunOpened) {
         if !matches!(run.mission.task, TaskConfig::Goto { .. }) {
             self.evidence = Some(Evidence::new(run));
-            self.run = Some(Box::new(run.clone()));
         }
+        self.run = Some(Box::new(run.clone()));
         self.tethered = run.mission.tether.as_ref().map(Tethered::new);
         self.known.scenario = Some(run.scenario.clone());
         self.known.seed = Some(run.seed);
         self.known.planner = Some(run.mission.planner.id.clone());
         self.known.parameters = Some(run.mission.planner.parameters.clone());
-        self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool()));
+        self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
         self.tracker = match &run.mission.task {
             TaskConfig::Follow { path, .. } => {
                 if let Some(evidence) = &mut self.evidence {
-                    evidence.plan(path, true);
+                    evidence.plan(path, &[], true);
                 }
                 Some(Tracker::new(path))
             }

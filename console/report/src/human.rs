@@ -5,7 +5,7 @@ pub(crate) mod text;
 
 use crate::{
     account::{Account, MissReason},
-    summary::{Coverage, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking},
+    summary::{Accuracy, Coverage, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking},
 };
 use mission::{Check, CheckOutcome, Outcome, Sandbox};
 use text::{Text, counted, percent};
@@ -28,13 +28,15 @@ pub fn human(run: &Summary) -> String {
     text.lines(run.coverage.iter().flat_map(coverage).map(|line| ("coverage", line)));
     text.lines(run.floor.iter().flat_map(floor::lines));
     text.lines(run.tracking.iter().flat_map(tracking).map(|line| ("tracking", line)));
-    text.lines(run.positioning.iter().flat_map(positioning).map(|line| ("positioning", line)));
+    text.lines(run.accuracy.iter().flat_map(accuracy).map(|line| ("position", line)));
+    text.lines(run.positioning.iter().flat_map(positioning).map(|line| ("true position", line)));
     text.some("tether", run.tether.as_ref().map(tether));
     text.some("sandbox", run.sandbox.as_ref());
     text.some("planner calls", run.planner_calls.as_ref().map(calls));
     text.some("stops", run.stops.as_ref().map(stops));
     text.some("during the run", during(run));
     text.some("events sha256", run.events_sha256.as_ref());
+    text.some("rrd sha256", run.recording_sha256.as_ref());
     text.some("journal", run.logs.as_ref().and_then(|logs| logs.journal.as_ref()));
     text.some("recording", run.logs.as_ref().and_then(|logs| logs.recording.as_ref()));
     text.0
@@ -145,7 +147,16 @@ fn coverage(coverage: &Coverage) -> Vec<String> {
     };
     let mut lines = vec![shares(coverage.reachable, coverage.whole, "estimated")];
     lines.extend(coverage.by_truth.map(|truth| shares(truth.reachable, truth.whole, "true")));
-    lines.push(format!("{:.2} m² of reachable floor missed", coverage.missed_area_m2));
+    lines.extend(
+        coverage.missed_area_m2.map(|missed_m2| format!("{missed_m2:.2} m² of reachable floor missed")),
+    );
+    let claims = coverage.by_truth.and_then(|truth| Some((truth.scanned_truly?, truth.guaranteed_truly)));
+    lines.extend(claims.map(|(scanned, guaranteed)| {
+        let guaranteed =
+            guaranteed.map(|share| format!(", {} of the floor claimed as guaranteed", percent(share)));
+        let (scanned, guaranteed) = (percent(scanned), guaranteed.unwrap_or_default());
+        format!("by truth {scanned} of the floor claimed as scanned{guaranteed} was scanned")
+    }));
     lines.extend(coverage.overlap.map(|share| format!("overlap {} of scanned floor", percent(share))));
     lines
 }
@@ -159,6 +170,22 @@ fn tracking(tracking: &Tracking) -> Vec<String> {
         format!("{recall} of the preset points within {near_m} m of the driven path (recall)"),
         format!("RMS error {:.3} m cross-track{}", tracking.cross_track_rmse_m, points.unwrap_or_default()),
     ]
+}
+
+fn accuracy(accuracy: &Accuracy) -> Vec<String> {
+    let Accuracy { mean_m, p95_m, max_m, limit_m, over_limit, fixes, stations_mean, stations_min } = accuracy;
+    let over = percent(*over_limit);
+    let mut lines = vec![format!(
+        "95 % error by covariance {mean_m:.3} m mean, {p95_m:.3} m p95, {max_m:.3} m maximum, above the limit of {limit_m} m \
+         on {over} of the way"
+    )];
+    lines.extend(stations_mean.zip(*stations_min).map(|(mean, least)| {
+        format!(
+            "{} from {mean:.1} stations on average, {least} at least",
+            format_args!("{fixes} {}", if *fixes == 1 { "fix" } else { "fixes" })
+        )
+    }));
+    lines
 }
 
 fn positioning(positioning: &Positioning) -> Vec<String> {

@@ -1,8 +1,10 @@
 //! Several runs on one floor as if they were one.
 
-use crate::{account::Evidence, fold::Fold, scanned::Scanned, summary::Logs};
+use crate::{
+    account::Evidence, document::Files, fold::Fold, record::Record, scanned::Scanned, summary::Logs,
+};
 use mission::event::RunOpened;
-use std::collections::BTreeSet;
+use std::{borrow::Cow, collections::BTreeSet};
 use world::{Floor, FloorMaker, Obstacle, ObstacleId, Shape};
 
 /// A past run: its name, its files and what is known of it.
@@ -12,20 +14,22 @@ pub struct PastRun {
     pub name: String,
     /// Its files.
     pub logs: Logs,
-    /// SHA-256 of its journal, hexadecimal.
-    pub journal_sha256: Option<String>,
-    /// SHA-256 of its recording, hexadecimal.
-    pub recording_sha256: Option<String>,
-    /// Its events, folded.
+    /// When it began, UTC, as `2026-11-22 04:01`, if its name says so.
+    pub began: Option<String>,
+    /// Digests and lengths of its files.
+    pub files: Files,
+    /// Its events, folded into figures.
     pub fold: Fold,
+    /// What it did over time and place.
+    pub record: Record,
 }
 
 /// What several runs on one floor scanned together.
 pub(crate) struct Joined<'a> {
     /// The last of the runs, as it was opened.
     pub(crate) run: &'a RunOpened,
-    pub(crate) scanned: Scanned,
-    pub(crate) evidence: Evidence,
+    pub(crate) scanned: Cow<'a, Scanned>,
+    pub(crate) evidence: Cow<'a, Evidence>,
 }
 
 /// What several runs scanned together, on the floor as all of them found it.
@@ -33,21 +37,21 @@ pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
     let (last, before) = runs.split_last().ok_or("no run to report")?;
     let mut all = alone(last)?;
     let drawn = all.run.world.obstacles.iter().filter(|obstacle| obstacle.known).map(|obstacle| obstacle.id);
-    let known: BTreeSet<ObstacleId> = all.evidence.found().map(|(id, _)| *id).chain(drawn).collect();
+    let known: BTreeSet<ObstacleId> = all.evidence.found().map(|(id, _)| id).chain(drawn).collect();
     for (index, past) in before.iter().enumerate() {
         if let Some(other) = runs[index + 1..].iter().find(|other| other.name == past.name) {
             return Err(format!("run {} is given twice", other.name));
         }
         let other = alone(past)?;
         fit_together((&past.name, &other), (&last.name, &all))?;
-        all.scanned.join(&other.scanned);
-        all.evidence.join(&other.evidence);
+        all.scanned.to_mut().join(&other.scanned);
+        all.evidence.to_mut().join(&other.evidence);
     }
-    if all.evidence.found().any(|(id, _)| !known.contains(id)) {
+    if all.evidence.found().any(|(id, _)| !known.contains(&id)) {
         // What only the other runs found is no floor either.
         let grid = all.scanned.believed().floor();
         let changes = updated_floor(all.run, grid, &all.evidence, all.run.mission.swath_m).kinds();
-        all.scanned.change(&changes);
+        all.scanned.to_mut().change(&changes);
     }
     Ok(all)
 }
@@ -55,9 +59,13 @@ pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
 /// What one run scanned.
 fn alone(past: &PastRun) -> Result<Joined<'_>, String> {
     let PastRun { name, fold, .. } = past;
-    let found = fold.scanned.clone().zip(fold.evidence.clone()).zip(fold.run.as_deref());
+    let found = fold.scanned.as_ref().zip(fold.evidence.as_ref()).zip(fold.run.as_deref());
     found
-        .map(|((scanned, evidence), run)| Joined { run, scanned, evidence })
+        .map(|((scanned, evidence), run)| Joined {
+            run,
+            scanned: Cow::Borrowed(scanned),
+            evidence: Cow::Borrowed(evidence),
+        })
         .ok_or_else(|| format!("run {name} scans no floor: its task is to reach a goal"))
 }
 
@@ -91,8 +99,9 @@ fn fit_together(
 pub(crate) fn updated_floor(run: &RunOpened, grid: &Floor, evidence: &Evidence, swath_m: f64) -> Floor {
     let mut world = run.world.as_drawn();
     let drawn: BTreeSet<ObstacleId> = world.obstacles.iter().map(|obstacle| obstacle.id).collect();
-    for (id, shape) in evidence.found().filter(|(id, _)| !drawn.contains(id)) {
-        world.obstacles.push(Obstacle { id: *id, name: String::new(), shape: shape.clone(), known: true });
+    for (id, solid) in evidence.found().filter(|(id, _)| !drawn.contains(id)) {
+        let (name, shape) = (solid.name.clone(), solid.shape.clone());
+        world.obstacles.push(Obstacle { id, name, shape, known: true });
     }
     let mission = &run.mission;
     FloorMaker::of(grid, &world, mission.room_m(), swath_m, mission.start.position).into_floor()

@@ -6,6 +6,7 @@
 
 pub mod account;
 mod accuracy;
+pub mod document;
 pub mod drawing;
 pub mod estimate;
 pub mod expect;
@@ -15,8 +16,11 @@ pub mod human;
 mod joined;
 pub mod leg;
 pub mod merged;
+mod overlap;
+mod passes;
 pub mod plan;
 pub mod print;
+pub mod record;
 pub mod rescan;
 mod sampled;
 mod scanned;
@@ -26,13 +30,16 @@ mod tracking;
 mod turning;
 
 pub use account::Account;
+pub use document::{Document, Inspection};
 pub use estimate::Estimate;
 pub use expect::{Expect, Miss};
 pub use fold::Fold;
 pub use human::human;
 pub use joined::PastRun;
 pub use merged::{Merged, MergedRun, merged};
+pub use overlap::Overlap;
+pub use record::Record;
 pub use rescan::{NoLane, Rescan, rescan};
 pub use summary::{
-    Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking,
+    Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking,
 };

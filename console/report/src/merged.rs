@@ -51,19 +51,19 @@ pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
         let mission = opened(past)?;
         Some(MergedRun {
             run: past.name.clone(),
-            journal_sha256: past.journal_sha256.clone(),
-            recording_sha256: past.recording_sha256.clone(),
+            journal_sha256: past.files.journal_sha256.clone(),
+            recording_sha256: past.files.recording_sha256.clone(),
             swath_m: mission.swath_m,
             position_limit_m: mission.scan_limit_m(),
-            summary: Summary { floor: None, logs: Some(past.logs.clone()), ..past.fold.summary() },
+            summary: Summary { floor: None, logs: Some(past.logs.clone()), ..past.fold.figures() },
         })
     });
     let listed: Vec<MergedRun> = listed.collect();
     // What counted in any of the runs counts: the loosest limit is the one that holds for all of it.
     let position_limit_m = listed.iter().map(|run| run.position_limit_m).fold(0.0, f64::max);
     Ok(Merged {
-        coverage: scanned.coverage(),
-        floor: Account { position_limit_m, ..account(run, scanned.believed(), &evidence) },
+        coverage: scanned.coverage(true),
+        floor: Account { position_limit_m, ..account(run, &scanned, &evidence) },
         runs: listed,
     })
 }
@@ -114,7 +114,9 @@ mod tests {
 
     use super::*;
     use crate::{
+        document::Files,
         fold::{Fold, tests::round_tank},
+        record::Record,
         summary::Logs,
     };
     use mission::{Event, EventKind, RunOpened};
@@ -129,9 +131,10 @@ mod tests {
         PastRun {
             name: name.into(),
             logs: Logs { journal: None, recording, error: None },
-            journal_sha256: None,
-            recording_sha256: Some(format!("5a{name}")),
+            began: None,
+            files: Files { recording_sha256: Some(format!("5a{name}")), ..Files::default() },
             fold,
+            record: Record::new(),
         }
     }
 

@@ -4,15 +4,12 @@ mod text;
 
 use crate::{
     account::{
-        Area, MissReason,
+        Area, Explained, Measure, MissReason,
         areas::{area_of, areas as areas_of},
     },
     joined::{Joined, PastRun, joined, updated_floor},
 };
-use std::{
-    collections::{BTreeSet, VecDeque},
-    fmt,
-};
+use std::collections::{BTreeSet, VecDeque};
 use world::{Floor, ObstacleId, Point, coverage::regions};
 
 /// Missed floor this near to other missed floor belongs to it, as a share of the swath.
@@ -40,7 +37,7 @@ pub struct Rescan {
 }
 
 /// Why no lane leads to floor that was missed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum NoLane {
     /// Lanes are laid for the swath less the overlap, which does not reach as far as the whole swath.
     Narrow,
@@ -48,12 +45,13 @@ pub enum NoLane {
     Reel,
 }
 
-impl fmt::Display for NoLane {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+impl Explained for NoLane {
+    fn sentence(self, _: Option<&Measure>) -> String {
+        let reason = match self {
             Self::Narrow => "beyond the lanes, which are laid for the swath less the overlap",
             Self::Reel => "beyond the reel",
-        })
+        };
+        reason.to_owned()
     }
 }
 
@@ -74,7 +72,7 @@ pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan,
     let is_asked = |index: usize| is_missed(index) && evidence.is_asked(index);
     let no_lane: Vec<Option<NoLane>> = (0..floor.len())
         .map(|index| {
-            let is_beyond = || reasons.why_missed(floor, index) == MissReason::BeyondReel;
+            let is_beyond = || reasons.why_missed(floor.center(index), index) == MissReason::BeyondReel;
             match () {
                 () if !is_asked(index) => None,
                 () if !lanes.is_reachable(index) => Some(NoLane::Narrow),
@@ -85,13 +83,12 @@ pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan,
     let is_wanted = |index: usize| is_asked(index) && no_lane[index].is_none();
     let not_asked = (0..floor.len()).filter(|index| is_missed(*index) && !evidence.is_asked(*index)).count();
     let plates = run.plates.map(|layout| layout.map(&run.world.boundary, floor));
-    let (out_of_reach, _) = areas_of(floor, plates.as_ref(), |index| no_lane[index]);
+    let (out_of_reach, _) = areas_of(floor, plates.as_ref(), |index| no_lane[index], |_, _| None);
     let (mut taken, mut areas, mut left) = (vec![false; floor.len()], Vec::new(), Vec::new());
     for cells in clusters(floor, TOGETHER_SWATHS * swath_m, is_wanted) {
-        let reason = most_frequent(cells.iter().map(|index| reasons.why_missed(floor, *index)));
-        let mut area = area_of(floor, None, reason, &cells);
-        let plate = floor.cell_at(area.at).and_then(|index| plates.as_ref()?.plate_of(index));
-        area.plate = plates.as_ref().zip(plate).map(|(map, plate)| map.plates[plate].name.clone());
+        let why = |cell| reasons.why_missed(floor.center(cell), cell);
+        let area =
+            area_of(floor, plates.as_ref(), &cells, why, |why, cells| reasons.measure(grid, why, cells));
         if area.area_m2 < min_area_m2 {
             left.push(area);
         } else {
@@ -115,7 +112,7 @@ pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan,
         left,
         out_of_reach,
         not_asked_m2: not_asked as f64 * floor.cell_m2(),
-        found: evidence.found().map(|(id, _)| *id).collect(),
+        found: evidence.found().map(|(id, _)| id).collect(),
     })
 }
 
@@ -160,26 +157,15 @@ fn around(floor: &Floor, taken: &[bool], within_m: f64) -> Vec<bool> {
     around
 }
 
-/// The reason that most cells have; of equal ones the first in their order.
-fn most_frequent(reasons: impl Iterator<Item = MissReason>) -> MissReason {
-    let mut counts = std::collections::BTreeMap::new();
-    for reason in reasons {
-        *counts.entry(reason).or_insert(0_usize) += 1;
-    }
-    let first = |most: Option<(MissReason, usize)>, (reason, count): (MissReason, usize)| match most {
-        Some((_, many)) if many >= count => most,
-        _ => Some((reason, count)),
-    };
-    counts.into_iter().fold(None, first).map_or(MissReason::NotReached, |(reason, _)| reason)
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
     use super::*;
     use crate::{
+        document::Files,
         fold::{Fold, tests::round_tank},
+        record::Record,
         summary::Logs,
     };
     use mission::{Event, EventKind};
@@ -202,7 +188,7 @@ mod tests {
             fold.apply(&Event { tick: 0, t_s: 0.0, kind });
         }
         let logs = Logs { journal: None, recording: None, error: None };
-        PastRun { name: "a".into(), logs, journal_sha256: None, recording_sha256: None, fold }
+        PastRun { name: "a".into(), logs, began: None, files: Files::default(), fold, record: Record::new() }
     }
 
     fn holds(rescan: &Rescan, x: f64, y: f64) -> bool {

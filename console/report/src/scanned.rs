@@ -1,38 +1,40 @@
 //! How much of the floor was scanned, as believed and by truth, and how much of it again.
 
-use crate::summary::{Coverage, CoverageByTruth};
+use crate::{
+    accuracy::Estimate,
+    passes::Passes,
+    summary::{Coverage, CoverageByTruth},
+};
 use world::{CellRun, CoverageGrid, Floor, KindRun, Pose, Tool};
-
-/// Coming back to a cell counts as scanning it again after this many swaths of way.
-const AGAIN_SWATHS: f64 = 2.0;
 
 /// The floor with what was scanned so far.
 #[derive(Debug, Clone)]
 pub(crate) struct Scanned {
     believed: CoverageGrid,
     truth: CoverageGrid,
+    passes: Passes,
     tool: Tool,
-    /// Way gone so far, metres.
-    way_m: f64,
-    /// Way gone when each cell was last under the tool, metres; negative before the first time.
-    last_m: Vec<f64>,
-    cells: usize,
-    cells_again: usize,
+    last: Pose,
     has_truth: bool,
 }
 
 impl Scanned {
     /// Nothing is scanned yet.
-    pub(crate) fn new(floor: Floor, tool: Tool) -> Self {
-        let last_m = vec![-1.0; floor.len()];
+    pub(crate) fn new(floor: Floor, tool: Tool, start: Pose) -> Self {
+        let passes = Passes::new(&floor, tool);
         let believed = CoverageGrid::new(floor);
         let truth = believed.clone();
-        Self { believed, truth, tool, way_m: 0.0, last_m, cells: 0, cells_again: 0, has_truth: false }
+        Self { believed, truth, passes, tool, last: start, has_truth: false }
     }
 
     /// The floor with what the mission believes to have scanned.
     pub(crate) fn believed(&self) -> &CoverageGrid {
         &self.believed
+    }
+
+    /// What the tool passed by the estimated position.
+    pub(crate) fn passes(&self) -> &Passes {
+        &self.passes
     }
 
     /// The mission says that it scanned these cells.
@@ -44,53 +46,63 @@ impl Scanned {
     pub(crate) fn change(&mut self, changes: &[KindRun]) {
         self.believed.change(changes);
         self.truth.change(changes);
+        self.passes.change(changes);
     }
 
     /// Takes in what another run scanned of the same floor.
     pub(crate) fn join(&mut self, other: &Self) {
-        let is_in_both = |index: &usize| self.truth.is_covered(*index) && other.truth.is_covered(*index);
-        let in_both = (0..self.truth.floor().len().min(other.truth.floor().len())).filter(is_in_both).count();
-        // What both scanned, one of them scanned again.
-        self.cells = (self.cells + other.cells).saturating_sub(in_both);
-        self.cells_again += other.cells_again + in_both;
+        let is_in_both = |cell| self.believed.is_covered(cell) && other.believed.is_covered(cell);
+        self.passes.join(&other.passes, is_in_both);
         self.believed.join(&other.believed);
         self.truth.join(&other.truth);
         self.has_truth &= other.has_truth;
     }
 
-    /// The robot truly went from `a` to `b`.
-    pub(crate) fn pass(&mut self, a: Pose, b: Pose) {
-        self.has_truth = true;
-        let before_m = self.way_m;
-        self.way_m += (b.position - a.position).norm();
-        self.truth.mark(self.tool, a, b);
-        for cell in self.truth.floor().cells_under(self.tool, a, b) {
-            let last_m = std::mem::replace(&mut self.last_m[cell], self.way_m);
-            if !self.truth.is_covered(cell) {
-                continue;
-            }
-            if last_m < 0.0 {
-                self.cells += 1;
-            } else if before_m - last_m > AGAIN_SWATHS * self.tool.swath_m() {
-                self.cells_again += 1;
-            }
+    /// The robot believes to be here; `error_m`, if the passage counts: the largest 95 % error lately.
+    pub(crate) fn visit(&mut self, here: Pose, estimate: &Estimate, error_m: Option<f64>) {
+        let before = std::mem::replace(&mut self.last, here);
+        if let Some(error_m) = error_m {
+            self.passes.pass(&self.believed, (before, here), estimate, error_m);
         }
     }
 
-    /// The figures so far.
-    pub(crate) fn coverage(&self) -> Coverage {
+    /// The robot truly went from `a` to `b`.
+    pub(crate) fn pass(&mut self, a: Pose, b: Pose) {
+        self.has_truth = true;
+        self.truth.mark(self.tool, a, b);
+    }
+
+    /// Whether a cell counts as scanned and is guaranteed to be.
+    pub(crate) fn is_guaranteed(&self, cell: usize) -> bool {
+        self.believed.is_covered(cell) && self.passes.is_guaranteed(cell)
+    }
+
+    /// The figures so far; what was missed only if the floor was `to_scan`.
+    pub(crate) fn coverage(&self, to_scan: bool) -> Coverage {
         let counts = self.believed.counts();
-        let cell_m2 = self.believed.floor().cell_m.powi(2);
-        let by_truth = CoverageByTruth {
-            reachable: self.truth.fraction_reachable(),
-            whole: self.truth.fraction_whole(),
-        };
+        let again = self.passes.overlap().n_again() as f64;
+        let missed = (counts.reachable - counts.covered_reachable) as f64 * self.believed.floor().cell_m2();
         Coverage {
             reachable: self.believed.fraction_reachable(),
             whole: self.believed.fraction_whole(),
-            overlap: (self.cells > 0).then(|| self.cells_again as f64 / self.cells as f64),
-            missed_area_m2: (counts.reachable - counts.covered_reachable) as f64 * cell_m2,
-            by_truth: self.has_truth.then_some(by_truth),
+            overlap: (counts.covered > 0).then(|| again / counts.covered as f64),
+            missed_area_m2: to_scan.then_some(missed),
+            by_truth: self.has_truth.then(|| self.by_truth()),
+        }
+    }
+
+    fn by_truth(&self) -> CoverageByTruth {
+        let truly = |is_claimed: &dyn Fn(usize) -> bool| {
+            let claimed = || (0..self.believed.floor().len()).filter(|cell| is_claimed(*cell));
+            let right = claimed().filter(|cell| self.truth.is_covered(*cell)).count();
+            Some(claimed().count()).filter(|count| *count > 0).map(|count| right as f64 / count as f64)
+        };
+        let is_scanned = |cell| self.believed.floor().is_floor(cell) && self.believed.is_covered(cell);
+        CoverageByTruth {
+            reachable: self.truth.fraction_reachable(),
+            whole: self.truth.fraction_whole(),
+            scanned_truly: truly(&is_scanned),
+            guaranteed_truly: truly(&|cell| is_scanned(cell) && self.passes.is_guaranteed(cell)),
         }
     }
 }

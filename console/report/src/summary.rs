@@ -64,7 +64,10 @@ pub struct Summary {
     pub floor: Option<Account>,
     /// How closely a preset path was followed; absent for other missions.
     pub tracking: Option<Tracking>,
-    /// How good the position was.
+    /// How good the position was by its own covariance, as a real robot can state it.
+    #[serde(default)]
+    pub accuracy: Option<Accuracy>,
+    /// How good the position was by the truth; absent outside simulation.
     pub positioning: Option<Positioning>,
     /// How the tether lay; absent without one.
     pub tether: Option<Tether>,
@@ -75,6 +78,9 @@ pub struct Summary {
     pub stops: Option<Stops>,
     /// SHA-256 of the journal, hexadecimal; set by the app.
     pub events_sha256: Option<String>,
+    /// SHA-256 of the recording, hexadecimal; set by the app.
+    #[serde(default)]
+    pub recording_sha256: Option<String>,
     /// The files of the run; set by the app.
     pub logs: Option<Logs>,
 }
@@ -113,11 +119,12 @@ pub struct Coverage {
     pub reachable: f64,
     /// Share of the whole floor (without what obstacles stand on), as the mission believes.
     pub whole: f64,
-    /// Floor scanned again as a share of the floor scanned, by the true path: the tool came back to it after at
-    /// least two swaths of way. One means that all of it was scanned twice on average. Absent without the truth.
+    /// Floor scanned again as a share of the floor scanned, by the estimated path: the tool came back to it after at
+    /// least two swaths of way. One means that all of it was scanned twice on average. Absent if nothing was scanned.
     pub overlap: Option<f64>,
-    /// Reachable floor that was not scanned, as the mission believes, square metres.
-    pub missed_area_m2: f64,
+    /// Reachable floor that was not scanned, as the mission believes, square metres; absent for missions that were not to
+    /// scan it.
+    pub missed_area_m2: Option<f64>,
     /// The same shares by where the robot truly was; absent without the truth.
     pub by_truth: Option<CoverageByTruth>,
 }
@@ -129,6 +136,34 @@ pub struct CoverageByTruth {
     pub reachable: f64,
     /// Share of the whole floor.
     pub whole: f64,
+    /// Share of the floor claimed as scanned that truly was; absent if nothing is claimed.
+    #[serde(default)]
+    pub scanned_truly: Option<f64>,
+    /// Share of the floor claimed as guaranteed that truly was scanned; absent if nothing is claimed.
+    #[serde(default)]
+    pub guaranteed_truly: Option<f64>,
+}
+
+/// The 95 % error of the position: the longer half axis of the 95 % ellipse of its covariance, over all ticks. It contains
+/// neither errors of the survey and of the sound speed nor the offset of the tool.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Accuracy {
+    /// Mean, metres.
+    pub mean_m: f64,
+    /// Not exceeded in 95 % of the ticks, metres.
+    pub p95_m: f64,
+    /// Largest, metres.
+    pub max_m: f64,
+    /// Above this nothing counts as scanned, metres.
+    pub limit_m: f64,
+    /// Share of the way with a larger error, 0 to 1.
+    pub over_limit: f64,
+    /// Positions from ranges.
+    pub fixes: u64,
+    /// Stations used for one, on average; absent without any.
+    pub stations_mean: Option<f64>,
+    /// Stations used for one, at least; absent without any.
+    pub stations_min: Option<u64>,
 }
 
 /// How closely the true path keeps to the preset path. "Near" is within [`Tracking::NEAR_M`].

@@ -29,6 +29,7 @@ pub fn report_text(folder: &Path) -> anyhow::Result<String> {
 pub fn summary(Past { opened, run, .. }: &Past) -> anyhow::Result<Summary> {
     let scenario = Scenario::parse(&with_todays_keys(&opened.scenario_toml), "the scenario in the journal");
     let expect = scenario.map_err(|errors| bad_input(errors.render()))?.expect;
-    let (logs, events_sha256) = (Some(run.logs.clone()), run.journal_sha256.clone());
-    Ok(expect.evaluated(Summary { logs, events_sha256, ..run.fold.summary() }))
+    let (logs, files) = (Some(run.logs.clone()), &run.files);
+    let (events_sha256, recording_sha256) = (files.journal_sha256.clone(), files.recording_sha256.clone());
+    Ok(expect.evaluated(Summary { logs, events_sha256, recording_sha256, ..run.fold.summary() }))
 }

@@ -15,8 +15,8 @@ use flight::{Flight, failure::bad_input, hosts::host, planners::found};
 use mission::{PlannerInfo, event::JOURNAL_VERSION};
 use planner_host::PluginDirs;
 use planners::{Asked, Replayed};
-use recording::{Difference, JOURNAL_FILE, Ticks, sha256};
-use runs::{end_is_missing, journal_doubt};
+use recording::{Difference, JOURNAL_FILE, RECORDING_FILE, Ticks, sha256};
+use runs::{end_is_missing, journal_doubt, recording_doubt};
 use scenario::Scenario;
 use std::{collections::BTreeMap, path::Path};
 
@@ -71,7 +71,9 @@ fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findi
     let path = folder.join(JOURNAL_FILE);
     let mut findings = compare(&path, plugins)?;
     let sha256 = sha256(&path).with_context(|| format!("reading {}", path.display()))?;
+    let recording = recording::sha256(&folder.join(RECORDING_FILE)).ok();
     findings.doubt = journal_doubt(folder, Some(&sha256))
+        .or_else(|| recording.and_then(|sha256| recording_doubt(folder, Some(&sha256))))
         .or_else(|| findings.no_end.as_ref().and_then(|_| end_is_missing(folder)));
     Ok(findings)
 }

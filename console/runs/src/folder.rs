@@ -6,7 +6,7 @@ use crate::{
     logs::{LogsError, make_logs},
     report_file::ReportFile,
 };
-use recording::{FAILURE_FILE, JOURNAL_FILE};
+use recording::{FAILURE_FILE, JOURNAL_FILE, RECORDING_FILE};
 use report::Summary;
 use std::{
     fs::{self, File, OpenOptions},
@@ -55,10 +55,11 @@ impl RunFolder {
     /// # Errors
     /// The system refuses.
     pub fn write_report(&self, summary: &Summary) -> Result<(), RunError> {
-        let journal_bytes = fs::metadata(self.path.join(JOURNAL_FILE)).ok().map(|journal| journal.len());
+        let bytes = |file: &str| fs::metadata(self.path.join(file)).ok().map(|file| file.len());
+        let (journal_bytes, recording_bytes) = (bytes(JOURNAL_FILE), bytes(RECORDING_FILE));
         let (draft, final_name) = (self.path.join(REPORT_DRAFT), self.path.join(REPORT_FILE));
         let writing = |file: &Path| RunError::during(format!("writing {}", file.display()));
-        let text = serde_json::to_string_pretty(&ReportFile { summary, journal_bytes });
+        let text = serde_json::to_string_pretty(&ReportFile { summary, journal_bytes, recording_bytes });
         let text = text.map_err(io::Error::from).map_err(writing(&draft))? + "\n";
         replace_bytes(&draft, text.as_bytes()).map_err(writing(&draft))?;
         fs::rename(&draft, &final_name).map_err(writing(&final_name))

@@ -13,6 +13,7 @@ mod log;
 mod logs;
 mod past;
 mod report_file;
+mod signed;
 mod standing;
 
 pub use error::RunError;
@@ -23,5 +24,6 @@ pub use list::{Listed, list, table};
 pub use log::{CLOSE_TIMEOUT, Closed, RunLog};
 pub use logs::{check_logs, check_recorder, free_bytes};
 pub use past::Past;
-pub use report_file::{end_is_missing, journal_doubt};
+pub use report_file::{end_is_missing, journal_doubt, recording_doubt};
+pub use signed::{SIGNED_FILE, add_signed, signed_reports};
 pub use standing::{Standing, standing};

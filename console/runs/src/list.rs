@@ -3,6 +3,7 @@
 use crate::{
     error::RunError,
     folder::past_runs,
+    report_file::recording_doubt,
     standing::{Standing, standing},
 };
 use recording::{JOURNAL_FILE, JournalReader};
@@ -55,7 +56,7 @@ fn row(run: &Listed) -> String {
         "{:<16} {:>8} {:>22}  {}{note}\n",
         run.end,
         number(run.mission_time_s, 1.0),
-        number(run.coverage_reachable, 100.0),
+        number(run.coverage_reachable.map(world::coverage::percent), 1.0),
         run.name.replace(char::is_control, "?")
     )
 }
@@ -64,6 +65,7 @@ fn look_at(folder: &Path) -> Listed {
     match standing(folder) {
         Standing::Ended(summary) => {
             let note = summary.logs.as_ref().and_then(|logs| logs.error.clone());
+            let note = note.or_else(|| recording_doubt(folder, None));
             listed(folder, word(&summary), Some(&summary), note)
         }
         Standing::NotRecorded(summary, why) => {

@@ -2,7 +2,7 @@
 
 use crate::{error::RunError, folder::RunFolder, kept::Kept};
 use mission::Event;
-use recording::{Health, JournalWriter, Options, RunRecorder};
+use recording::{Health, JournalWriter, Options, RunRecorder, sha256};
 use report::{Expect, Fold, Logs, PlannerCalls, Stops, Summary};
 use std::{
     path::Path,
@@ -86,6 +86,7 @@ impl RunLog {
         let summary = Summary {
             wall_time_s: Some(began.elapsed().as_secs_f64()),
             events_sha256: finished.events_sha256.clone(),
+            recording_sha256: finished.recording.as_ref().and_then(|path| sha256(path).ok()),
             planner_calls: Some(calls),
             stops,
             logs,

@@ -1,11 +1,17 @@
 //! Past runs, read from their journals.
 
-use crate::{error::RunError, report_file::journal_doubt};
-use mission::{EventKind, RunOpened};
-use recording::{JOURNAL_FILE, JournalError, JournalReader, RECORDING_FILE, sha256};
-use report::{Fold, Logs, PastRun};
-use std::path::Path;
+use crate::{
+    error::RunError,
+    report_file::{journal_doubt, names_digests, recording_doubt},
+};
+use mission::{Event, EventKind, RunOpened};
+use recording::{JOURNAL_FILE, JournalError, JournalReader, RECORDING_FILE, sha256, sha256_of};
+use report::{Fold, Logs, PastRun, Record, document::Files};
+use std::{fs, path::Path, sync::mpsc::sync_channel, thread};
 use world::{CellRun, Floor};
+
+/// Events that are read ahead at a time.
+const BATCH: usize = 512;
 
 /// A past run.
 #[derive(Debug)]
@@ -26,10 +32,11 @@ impl Past {
     pub fn read(folder: &Path) -> Result<Self, RunError> {
         let journal = folder.join(JOURNAL_FILE);
         let mut reader = JournalReader::open(&journal)?;
-        let (mut fold, mut opened, mut beyond_floor) = (Fold::new(), None, None);
-        for event in reader.by_ref() {
-            let event = event?;
+        let (mut fold, mut record) = (Fold::new(), Record::new());
+        let (mut opened, mut beyond_floor): (Option<Box<RunOpened>>, Option<u64>) = (None, None);
+        each_event(&mut reader, |event| {
             fold.apply(&event);
+            record.apply(&event);
             match (event.kind, &opened) {
                 (EventKind::RunOpened(run), None) => opened = Some(run),
                 (EventKind::Covered { runs } | EventKind::Uncounted { runs }, Some(opened))
@@ -39,27 +46,84 @@ impl Past {
                 }
                 _ => {}
             }
-        }
+        })?;
         let opened = opened.ok_or(JournalError::NotOpened)?;
-        let recording = folder.join(RECORDING_FILE);
-        let journal_sha256 = sha256(&journal).ok();
-        let doubt = journal_doubt(folder, journal_sha256.as_deref());
         let shown = |path: &Path| path.exists().then(|| path.display().to_string());
+        let files = files(folder, &opened);
+        let doubts = files.doubts.first().cloned();
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let run = PastRun {
-            name: folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            began: began(&name),
+            name,
             logs: Logs {
                 journal: shown(&journal),
-                recording: shown(&recording),
-                error: doubt.or_else(|| reader.truncated().map(str::to_owned)),
+                recording: shown(&folder.join(RECORDING_FILE)),
+                error: doubts.or_else(|| reader.truncated().map(str::to_owned)),
             },
-            recording_sha256: sha256(&recording).ok(),
-            journal_sha256,
+            files,
             fold,
+            record,
         };
         Ok(Self { opened, run, beyond_floor })
     }
 }
 
+/// Gives every event of a journal, in order; a thread of its own reads ahead.
+fn each_event(reader: &mut JournalReader, mut take: impl FnMut(Event)) -> Result<(), JournalError> {
+    let (send, receive) = sync_channel::<Vec<Event>>(4);
+    thread::scope(|scope| {
+        let reading = scope.spawn(move || {
+            loop {
+                let batch = reader.by_ref().take(BATCH).collect::<Result<Vec<Event>, JournalError>>()?;
+                if batch.is_empty() || send.send(batch).is_err() {
+                    return Ok(());
+                }
+            }
+        });
+        receive.into_iter().flatten().for_each(&mut take);
+        reading.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
+/// The digests of the files of a run, and what speaks against them.
+fn files(folder: &Path, opened: &RunOpened) -> Files {
+    let (journal, recording) = (folder.join(JOURNAL_FILE), folder.join(RECORDING_FILE));
+    let (journal_sha256, recording_sha256) = (sha256(&journal).ok(), sha256(&recording).ok());
+    let bytes = |file: &Path| fs::metadata(file).ok().map(|file| file.len());
+    let doubts = journal_doubt(folder, journal_sha256.as_deref());
+    let doubts = doubts.into_iter().chain(recording_doubt(folder, recording_sha256.as_deref()));
+    let doubts: Vec<String> = doubts.collect();
+    Files {
+        journal_bytes: bytes(&journal),
+        recording_bytes: bytes(&recording),
+        scenario_sha256: Some(sha256_of(opened.scenario_toml.as_bytes())),
+        are_as_reported: names_digests(folder).then_some(doubts.is_empty()),
+        journal_sha256,
+        recording_sha256,
+        doubts,
+    }
+}
+
+/// When a run began, as its name says: `20261122T040132Z-...` as `2026-11-22 04:01`.
+fn began(name: &str) -> Option<String> {
+    let stamp = name.get(..16).filter(|stamp| stamp.ends_with('Z') && stamp.as_bytes()[8] == b'T')?;
+    let digits =
+        |range: std::ops::Range<usize>| stamp.get(range).filter(|d| d.bytes().all(|b| b.is_ascii_digit()));
+    let [year, month, day] = [digits(0..4)?, digits(4..6)?, digits(6..8)?];
+    Some(format!("{year}-{month}-{day} {}:{}", digits(9..11)?, digits(11..13)?))
+}
+
 fn names_cells_beyond(floor: &Floor, runs: &[CellRun]) -> bool {
     runs.iter().any(|CellRun(first, count)| u64::from(*first) + u64::from(*count) > floor.len() as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn when_a_run_began_is_in_its_name() {
+        assert_eq!(began("20261122T040132Z-demo-rpf-1").as_deref(), Some("2026-11-22 04:01"));
+        assert_eq!((began("demo"), began("2026x122T040132Z-demo")), (None, None));
+    }
 }

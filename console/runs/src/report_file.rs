@@ -2,7 +2,7 @@
 
 use crate::files::REPORT_FILE;
 use mission::{Event, EventKind};
-use recording::{JOURNAL_FILE, read_ending, sha256};
+use recording::{JOURNAL_FILE, RECORDING_FILE, read_ending, sha256};
 use report::Summary;
 use serde::{Deserialize, Serialize};
 use std::{
@@ -19,14 +19,20 @@ pub(crate) struct ReportFile<'a> {
     pub summary: &'a Summary,
     /// Absent if there is no journal any more.
     pub journal_bytes: Option<u64>,
+    /// Absent if there is no recording any more.
+    pub recording_bytes: Option<u64>,
 }
 
-/// What a report says of the journal that it was made from.
+/// What a report says of the files that it was made from.
 #[derive(Deserialize)]
 struct Source {
     events_sha256: Option<String>,
     #[serde(default)]
     journal_bytes: Option<u64>,
+    #[serde(default)]
+    recording_sha256: Option<String>,
+    #[serde(default)]
+    recording_bytes: Option<u64>,
 }
 
 /// The report, if it can be read and fits the journal.
@@ -39,7 +45,8 @@ pub(crate) fn read_report(folder: &Path, text: &str) -> Result<Box<Summary>, Str
     let Some(then) = &source.events_sha256 else { return Ok(Box::new(summary)) };
     let path = folder.join(JOURNAL_FILE);
     let no_journal = |error| format!("{JOURNAL_FILE} cannot be read: {error}");
-    if !is_untouched(folder, &source).map_err(no_journal)? && sha256(&path).map_err(no_journal)? != *then {
+    let untouched = is_untouched(&path, source.journal_bytes, folder).map_err(no_journal)?;
+    if !untouched && sha256(&path).map_err(no_journal)? != *then {
         return Err(NOT_THE_ONE.to_owned());
     }
     match read_ending(&path).map_err(no_journal)? {
@@ -52,15 +59,17 @@ pub(crate) fn read_report(folder: &Path, text: &str) -> Result<Box<Summary>, Str
 const NOT_THE_ONE: &str =
     "the journal is not the one that the report was made from: their SHA-256 digests differ";
 
-/// Whether the journal has the length that the report names and was not written after it; then it is not hashed.
+/// What is said of a recording that its report was not made with.
+const NOT_THE_RECORDING: &str = "the recording is not the one that was written with the run: their SHA-256 digests differ; `tankops export` makes it again";
+
+/// Whether a file has the length that the report names and was not written after it; then it is not hashed.
 ///
-/// This is for lists; whoever must be sure reads the journal ([`journal_doubt`]).
-fn is_untouched(folder: &Path, source: &Source) -> io::Result<bool> {
-    // In one tick of the file system's clock both may have been written, or the journal changed.
-    let (journal, report) =
-        (fs::metadata(folder.join(JOURNAL_FILE))?, fs::metadata(folder.join(REPORT_FILE))?);
+/// This is for lists; whoever must be sure reads the file ([`journal_doubt`], [`recording_doubt`]).
+fn is_untouched(file: &Path, bytes: Option<u64>, folder: &Path) -> io::Result<bool> {
+    // In one tick of the file system's clock both may have been written, or the file changed.
+    let (file, report) = (fs::metadata(file)?, fs::metadata(folder.join(REPORT_FILE))?);
     let written = |file: &Metadata| file.modified().unwrap_or(SystemTime::UNIX_EPOCH);
-    Ok(source.journal_bytes == Some(journal.len()) && written(&journal) < written(&report))
+    Ok(bytes == Some(file.len()) && written(&file) < written(&report))
 }
 
 fn agrees(summary: &Summary, ending: &Event) -> bool {
@@ -89,4 +98,30 @@ pub fn end_is_missing(folder: &Path) -> Option<String> {
         serde_json::from_str(&fs::read_to_string(folder.join(REPORT_FILE)).ok()?).ok()?;
     report.get("outcome")?.as_str()?;
     Some("the run has a report, so it came to its end, but the journal has none".to_owned())
+}
+
+/// What speaks against the recording of a run: it is not the one whose digest its report names. `sha256`: its digest, `None`
+/// to look at length and time first, as lists do. A recording that is not there any more can be made again, and is no doubt.
+pub fn recording_doubt(folder: &Path, sha256_now: Option<&str>) -> Option<String> {
+    let text = fs::read_to_string(folder.join(REPORT_FILE)).ok()?;
+    let source: Source = serde_json::from_str(&text).ok()?;
+    let (then, path) = (source.recording_sha256?, folder.join(RECORDING_FILE));
+    if !path.exists() {
+        return None;
+    }
+    let is_same = match sha256_now {
+        Some(now) => now == then,
+        None => {
+            is_untouched(&path, source.recording_bytes, folder).unwrap_or(false)
+                || sha256(&path).is_ok_and(|now| now == then)
+        }
+    };
+    (!is_same).then(|| NOT_THE_RECORDING.to_owned())
+}
+
+/// Whether there is a report of the end of a run that names the digests of its files.
+pub(crate) fn names_digests(folder: &Path) -> bool {
+    let text = fs::read_to_string(folder.join(REPORT_FILE)).ok();
+    let source: Option<Source> = text.and_then(|text| serde_json::from_str(&text).ok());
+    source.is_some_and(|source| source.events_sha256.is_some() && source.recording_sha256.is_some())
 }

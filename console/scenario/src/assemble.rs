@@ -3,7 +3,7 @@
 use super::{
     Scenario,
     checks::{Site, check_cells, check_lanes, check_period, check_ticks},
-    expect, floor, layout,
+    expect, floor, inspection, layout,
     problem::{Complaint, Problem},
     ranging,
     robot::{self, Robot},
@@ -77,6 +77,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let checklist =
         if root.has("checklist") { root.table("checklist")?.texts("items") } else { Some(Vec::new()) };
     let expect = expect::expect(root);
+    let inspection = inspection::section(root);
     let rest = Rest::read(&sections, &floor);
 
     let (planner, fallback) = planner?;
@@ -135,6 +136,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         plates,
         checklist: checklist?,
         expect: expect?,
+        inspection: inspection?,
     })
 }
 

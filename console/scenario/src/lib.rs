@@ -9,6 +9,7 @@ mod assemble;
 mod checks;
 mod expect;
 mod floor;
+mod inspection;
 mod layout;
 mod map;
 mod outline;
@@ -27,13 +28,14 @@ mod suggest;
 mod task;
 mod tether;
 
+pub use inspection::inspection;
 pub use problem::{Complaint, Problem, ScenarioErrors};
 pub use renamed::with_todays_keys;
 pub use rescan::rescan;
 pub use settings::Settings;
 
 use mission::MissionConfig;
-use report::Expect;
+use report::{Expect, Inspection};
 use sim::SimConfig;
 use std::{fs::File, io::Read, path::Path};
 use toml::de::DeTable;
@@ -65,6 +67,8 @@ pub struct Scenario {
     pub checklist: Vec<String>,
     /// Bounds that the run is held to.
     pub expect: Expect,
+    /// What only people know of the inspection.
+    pub inspection: Inspection,
 }
 
 impl Scenario {

@@ -192,6 +192,41 @@ pub(crate) static ROOT: &[Key] = &[
     key("planner", "", Kind::Table(PLANNER)),
     key("checklist", "", Kind::Table(CHECKLIST)).or_none("nothing to tick"),
     key("expect", "", Kind::Table(EXPECT)).or_none("no bounds"),
+    key("inspection", "", Kind::Table(INSPECTION)).or_none("all of it missing"),
+];
+
+/// A file of facts that are known only after the run.
+pub(crate) static INSPECTION_FILE: &[Key] = &[key("inspection", "", Kind::Table(INSPECTION))];
+
+const MISSING: &str = "missing";
+
+/// What only people know of an inspection.
+static INSPECTION: &[Key] = &[
+    key("client", "", Kind::Text).or_none(MISSING),
+    key("site", "", Kind::Text).or_none(MISSING),
+    key("tank_id", "", Kind::Text).or_none(MISSING),
+    key("drawing", "", Kind::Text).or_none(MISSING),
+    number("nominal_thickness_mm", "mm", above(0.0).up_to(100.0)).or_none(MISSING),
+    key("order", "", Kind::Text).or_none(MISSING),
+    key("procedure", "", Kind::Text).or_none(MISSING),
+    key("code", "", Kind::Text).or_none(MISSING),
+    key("inspector", "", Kind::Text).or_none(MISSING),
+    key("inspector_certificate", "", Kind::Text).or_none(MISSING),
+    key("operator", "", Kind::Text).or_none(MISSING),
+    key("approver", "", Kind::Text).or_none(MISSING),
+    key("robot", "", Kind::Text).or_none(MISSING),
+    key("instrument", "", Kind::Text).or_none(MISSING),
+    key("calibration_before", "", Kind::Text).or_none(MISSING),
+    key("calibration_after", "", Kind::Text).or_none(MISSING),
+    key("station_check", "", Kind::Text).or_none(MISSING),
+    key("sound_speed", "", Kind::Text).or_none(MISSING),
+    key("indications", "", Kind::Text).or_none(MISSING),
+    key("events_reviewed_by", "", Kind::Text).or_none(MISSING),
+    key("plates_waiver", "", Kind::Text).or_none(MISSING),
+    key("remarks", "", Kind::Text).or_none(MISSING),
+    key("datum_crs", "", Kind::Text).or_none("none"),
+    key("datum_m", "m", Kind::Point).or_none("none"),
+    number("datum_north_deg", "deg", ANGLE).or_none("0"),
 ];
 
 static CHECKLIST: &[Key] = &[key("items", "", Kind::Texts)];

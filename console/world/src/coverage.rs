@@ -10,8 +10,8 @@ mod tool;
 pub(crate) use floor::neighbours;
 pub use floor::{Cell, CellRun, Floor, KindRun};
 pub use floor_maker::FloorMaker;
-pub use percents::percents;
-pub use shell::{ShellFigures, ShellZone};
+pub use percents::{percent, percents};
+pub use shell::{ShellFigures, ShellStretch, ShellZone};
 pub use tool::Tool;
 
 use geometry::{Point, Pose};
@@ -28,6 +28,41 @@ pub struct Counts {
     pub covered: usize,
     /// Reachable cells that have been scanned.
     pub covered_reachable: usize,
+    /// Cells of the shell margin that have not been scanned.
+    #[serde(default)]
+    pub margin: usize,
+}
+
+impl Counts {
+    /// Takes in a cell.
+    ///
+    /// ```
+    /// use world::{Cell, Counts};
+    /// let mut counts = Counts::default();
+    /// [(Cell::Reachable, true), (Cell::Margin, false), (Cell::Outside, false)].map(|(kind, covered)| counts.add(kind, covered));
+    /// assert_eq!((counts.floor, counts.covered_reachable, counts.margin), (2, 1, 1));
+    /// ```
+    pub fn add(&mut self, kind: Cell, covered: bool) {
+        let (floor, reachable) = (kind != Cell::Outside, kind == Cell::Reachable);
+        self.floor += usize::from(floor);
+        self.reachable += usize::from(reachable);
+        self.covered += usize::from(floor && covered);
+        self.covered_reachable += usize::from(reachable && covered);
+        self.margin += usize::from(kind == Cell::Margin && !covered);
+    }
+
+    /// The same of the reachable floor alone.
+    ///
+    /// ```
+    /// use world::Counts;
+    /// let counts = Counts { floor: 9, reachable: 7, covered: 6, covered_reachable: 5, margin: 1 };
+    /// assert_eq!(counts.of_reachable().floor, 7);
+    /// ```
+    #[must_use]
+    pub fn of_reachable(self) -> Self {
+        let Self { reachable, covered_reachable, .. } = self;
+        Self { floor: reachable, reachable, covered: covered_reachable, covered_reachable, margin: 0 }
+    }
 }
 
 /// A floor with its scanned cells marked.
@@ -69,11 +104,7 @@ impl CoverageGrid {
     fn count(&mut self) {
         self.counts = Counts::default();
         for (index, covered) in self.covered.iter().enumerate() {
-            let (floor, reachable) = (self.floor.is_floor(index), self.floor.is_reachable(index));
-            self.counts.floor += usize::from(floor);
-            self.counts.reachable += usize::from(reachable);
-            self.counts.covered += usize::from(floor && *covered);
-            self.counts.covered_reachable += usize::from(reachable && *covered);
+            self.counts.add(self.floor.kind(index), *covered);
         }
     }
 
@@ -178,6 +209,7 @@ impl CoverageGrid {
                 if !std::mem::replace(&mut self.covered[index], true) {
                     self.counts.covered += usize::from(self.floor.is_floor(index));
                     self.counts.covered_reachable += usize::from(self.floor.is_reachable(index));
+                    self.counts.margin -= usize::from(self.floor.kind(index) == Cell::Margin);
                 }
             }
         }

@@ -16,7 +16,8 @@ pub mod tether;
 mod total;
 
 pub use coverage::{
-    Cell, CellRun, Counts, CoverageGrid, Floor, FloorMaker, KindRun, ShellFigures, ShellZone, Tool,
+    Cell, CellRun, Counts, CoverageGrid, Floor, FloorMaker, KindRun, ShellFigures, ShellStretch, ShellZone,
+    Tool,
 };
 /// Points, poses and shapes, so that a crate that uses the tank need not name two crates.
 pub use geometry::{self, Boundary, Point, Pose, Shape, Vector, polyline, shape};

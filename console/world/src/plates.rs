@@ -54,9 +54,12 @@ pub struct Plate {
 pub struct PlateMap {
     /// The plates that have floor, in order of kind and name.
     pub plates: Vec<Plate>,
-    /// For every cell the index of its plate; `None` where there is no floor.
-    of_cell: Vec<Option<u32>>,
+    /// For every cell the index of its plate; [`NONE`] where there is no floor.
+    of_cell: Vec<u32>,
 }
+
+/// The plate of a cell without one.
+const NONE: u32 = u32::MAX;
 
 /// Where a plate lies: its kind, its row from 1 (0 in the ring), its number from 1.
 type Place = (PlateKind, i64, i64);
@@ -101,17 +104,33 @@ impl PlateLayout {
     /// assert_eq!(layout.map(&tank.boundary, &floor).plates[0].name, "A-01");
     /// ```
     pub fn map(&self, boundary: &Boundary, floor: &Floor) -> PlateMap {
-        let places: Vec<Option<Place>> = (0..floor.len())
-            .map(|index| floor.is_floor(index).then(|| self.place_of(boundary, floor.center(index))))
+        // In the order in which they are met; there are millions of cells, and neighbours mostly share a plate.
+        let mut order: BTreeMap<Place, u32> = BTreeMap::new();
+        let mut last: Option<(Place, u32)> = None;
+        let mut met = |place: Place| match last {
+            Some((same, index)) if same == place => index,
+            _ => {
+                let next = order.len() as u32;
+                let index = *order.entry(place).or_insert(next);
+                last = Some((place, index));
+                index
+            }
+        };
+        let plate_at = |index| self.place_of(boundary, floor.center(index));
+        let mut of_cell: Vec<u32> = (0..floor.len())
+            .map(|index| if floor.is_floor(index) { met(plate_at(index)) } else { NONE })
             .collect();
-        let mut order: BTreeMap<Place, u32> = places.iter().flatten().map(|place| (*place, 0)).collect();
+        let mut sorted = vec![NONE; order.len()];
+        order.values().zip(0..).for_each(|(met, index)| sorted[*met as usize] = index);
+        for index in of_cell.iter_mut().filter(|index| **index != NONE) {
+            *index = sorted[*index as usize];
+        }
         // Plates are counted from the first one of their row that has floor.
         let mut firsts: BTreeMap<i64, i64> = BTreeMap::new();
         for (_, row, number) in order.keys() {
             let first = firsts.entry(*row).or_insert(*number);
             *first = (*first).min(*number);
         }
-        order.values_mut().zip(0..).for_each(|(index, next)| *index = next);
         let plates = order.keys().map(|(kind, row, number)| Plate {
             kind: *kind,
             name: match kind {
@@ -120,11 +139,120 @@ impl PlateLayout {
                 PlateKind::Rectangular => format!("R-{row:02}-{:02}", number - firsts[row] + 1),
             },
         });
-        PlateMap {
-            plates: plates.collect(),
-            of_cell: places.iter().map(|place| place.map(|place| order[&place])).collect(),
-        }
+        PlateMap { plates: plates.collect(), of_cell }
     }
+}
+
+/// Steps in which a seam is followed to where it ends, metres.
+const SEAM_STEP_M: f64 = 0.1;
+
+impl PlateLayout {
+    /// The seams between the plates of a floor, as lines, tank frame.
+    ///
+    /// ```
+    /// use world::{Boundary, PlateLayout};
+    /// let layout = PlateLayout { annular_m: 0.0, n_annular: 0, length_m: 6.0, width_m: 1.8 };
+    /// let seams = layout.seams(&Boundary::Circle { radius_m: 1.7 });
+    /// assert_eq!(seams[0].len(), 2, "one seam across the middle");
+    /// ```
+    pub fn seams(&self, boundary: &Boundary) -> Vec<Vec<Point>> {
+        let (low, high) = boundary.bounds();
+        let middle = nalgebra::center(&low, &high);
+        let n_rows = ((high.y - low.y) / self.width_m).ceil();
+        let south_m = middle.y - n_rows * self.width_m / 2.0;
+        let n_plates = ((high.x - low.x) / self.length_m).ceil() + 1.0;
+        let mut seams = Vec::new();
+        for row in 0..n_rows as usize {
+            let y = south_m + row as f64 * self.width_m;
+            if row > 0 {
+                seams.extend(self.within(boundary, Point::new(low.x, y), Point::new(high.x, y)));
+            }
+            let shift_m = if row % 2 == 0 { 0.0 } else { self.length_m / 2.0 };
+            let west_m = middle.x - n_plates * self.length_m / 2.0 - shift_m;
+            for plate in 0..=n_plates as usize + 1 {
+                let x = west_m + plate as f64 * self.length_m;
+                seams.extend(self.within(boundary, Point::new(x, y), Point::new(x, y + self.width_m)));
+            }
+        }
+        if self.annular_m > 0.0 {
+            seams.extend(self.ring(boundary));
+        }
+        seams
+    }
+
+    /// The parts of a line that lie within the ring.
+    fn within(&self, boundary: &Boundary, a: Point, b: Point) -> Vec<Vec<Point>> {
+        let is_in = |share: f64| {
+            let place = a + (b - a) * share;
+            boundary.contains(place) && boundary.wall_distance_m(place) >= self.annular_m
+        };
+        let steps = ((b - a).norm() / SEAM_STEP_M).ceil().max(1.0) as usize;
+        let at = |k: usize| k as f64 / steps as f64;
+        // Where it enters or leaves, to a thousandth of a step.
+        let edge = |mut inside: f64, mut outside: f64| {
+            for _ in 0..10 {
+                let half = f64::midpoint(inside, outside);
+                *(if is_in(half) { &mut inside } else { &mut outside }) = half;
+            }
+            inside
+        };
+        let (mut parts, mut from) = (Vec::new(), None);
+        for k in 0..=steps {
+            match (is_in(at(k)), from) {
+                (true, None) => from = Some(if k == 0 { 0.0 } else { edge(at(k), at(k - 1)) }),
+                (false, Some(first)) => {
+                    parts.push((first, edge(at(k - 1), at(k))));
+                    from = None;
+                }
+                _ => {}
+            }
+        }
+        parts.extend(from.map(|first| (first, 1.0)));
+        parts.into_iter().map(|(first, last)| vec![a + (b - a) * first, a + (b - a) * last]).collect()
+    }
+
+    /// The inner edge of the ring and the seams between its plates.
+    fn ring(&self, boundary: &Boundary) -> Vec<Vec<Point>> {
+        let n = self.n_annular.max(1);
+        let inner = match boundary {
+            Boundary::Circle { radius_m } => {
+                let inner_m = (radius_m - self.annular_m).max(0.0);
+                let at = |k: u32| TAU * f64::from(k) / 360.0;
+                (0..=360).map(|k| Point::new(inner_m * at(k).cos(), inner_m * at(k).sin())).collect()
+            }
+            Boundary::Polygon { vertices } => inset(vertices, self.annular_m),
+        };
+        let (low, high) = boundary.bounds();
+        let far_m = (high - low).norm();
+        let seam = |k: u32| {
+            let angle = TAU * f64::from(k) / f64::from(n);
+            // Plates are counted by their direction from the origin.
+            let from = |share: f64| Point::new(far_m * share * angle.cos(), far_m * share * angle.sin());
+            let is_in = |share: &f64| {
+                boundary.contains(from(*share)) && boundary.wall_distance_m(from(*share)) < self.annular_m
+            };
+            let steps = (far_m / (SEAM_STEP_M / 10.0)).ceil() as usize;
+            let shares: Vec<f64> = (0..=steps).map(|k| k as f64 / steps as f64).filter(is_in).collect();
+            Some(vec![from(*shares.first()?), from(*shares.last()?)])
+        };
+        std::iter::once(inner).chain((0..n).filter_map(seam)).collect()
+    }
+}
+
+/// A closed outline whose edges lie so much further inwards, metres; counter-clockwise, as walls are.
+fn inset(vertices: &[Point], by_m: f64) -> Vec<Point> {
+    let n = vertices.len();
+    let corner = |k: usize| {
+        let (before, at, after) = (vertices[(k + n - 1) % n], vertices[k % n], vertices[(k + 1) % n]);
+        let inward = |a: Point, b: Point| {
+            let way = (b - a).normalize();
+            Vector::new(-way.y, way.x)
+        };
+        let (one, other) = (inward(before, at), inward(at, after));
+        // Where both edges meet, moved inwards.
+        at + (one + other) * (by_m / (1.0 + one.dot(&other)).max(0.1))
+    };
+    (0..=n).map(corner).collect()
 }
 
 impl PlateMap {
@@ -140,7 +268,7 @@ impl PlateMap {
     /// assert_eq!(layout.map(&tank.boundary, &floor).plate_of(east), Some(0));
     /// ```
     pub fn plate_of(&self, cell: usize) -> Option<usize> {
-        self.of_cell.get(cell).copied().flatten().map(|index| index as usize)
+        self.of_cell.get(cell).filter(|index| **index != NONE).map(|index| *index as usize)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Reading a journal, also one whose writer was killed.
 
-use super::{JournalError, follow::Follow, upgrade};
+use super::{JournalError, fast, follow::Follow, upgrade};
 use crate::file::open_regular;
 use mission::{Event, event::JOURNAL_VERSION};
 use serde::Deserialize;
@@ -148,7 +148,8 @@ impl JournalReader {
             self.version = Some(self.check_head()?);
         }
         let is_old = self.version.is_some_and(|version| version < upgrade::RENAMED_IN);
-        let event = if is_old { upgrade::event(&self.text) } else { serde_json::from_slice(&self.text) };
+        let general = || if is_old { upgrade::event(&self.text) } else { serde_json::from_slice(&self.text) };
+        let event = fast::event(&self.text).filter(|_| !is_old).map_or_else(general, Ok);
         event.map_err(|error| self.misunderstood(&error))
     }
 

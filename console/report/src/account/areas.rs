@@ -1,7 +1,11 @@
-//! Cells that lie together, as areas with a place and a reason.
+//! Cells that lie together, as areas with a place and causes.
 
+use super::measure::Measure;
 use serde::{Deserialize, Serialize};
-use std::fmt;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt,
+};
 use world::{Floor, PlateMap, Point, Vector};
 
 /// Areas smaller than this are not listed but only summed, square metres.
@@ -18,10 +22,29 @@ pub struct Area<R> {
     pub high: Point,
     /// Area, square metres.
     pub area_m2: f64,
-    /// The plate that it lies on; absent if the layout of the plates is not known.
+    /// The plate on which most of it lies; absent if the layout of the plates is not known.
     pub plate: Option<String>,
-    /// Why.
+    /// Every plate on which it lies, the one with most of it first.
+    #[serde(default)]
+    pub plates: Vec<String>,
+    /// The reason for most of it.
     pub reason: R,
+    /// Why, cause by cause, the one for most of it first.
+    #[serde(default = "Vec::new")]
+    pub causes: Vec<Cause<R>>,
+}
+
+/// Why some part of an area was not scanned.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Cause<R> {
+    /// The reason.
+    pub reason: R,
+    /// How much of the area it holds for, square metres.
+    pub area_m2: f64,
+    /// The number behind it; absent where there is none.
+    pub measure: Option<Measure>,
+    /// The same as a sentence.
+    pub text: String,
 }
 
 /// What is too small to be listed.
@@ -33,36 +56,53 @@ pub struct Slivers {
     pub area_m2: f64,
 }
 
-impl<R: fmt::Display> fmt::Display for Area<R> {
+/// A reason that can be said with a number.
+pub trait Explained: Copy + Ord {
+    /// The reason as a sentence.
+    fn sentence(self, measure: Option<&Measure>) -> String;
+}
+
+impl<R> Area<R> {
+    /// Why, as one sentence; parts of areas with several causes carry their areas.
+    pub fn why(&self) -> String {
+        match &self.causes[..] {
+            [only] => only.text.clone(),
+            several => {
+                let part = |cause: &Cause<R>| format!("{} ({:.3} m²)", cause.text, cause.area_m2);
+                several.iter().map(part).collect::<Vec<_>>().join("; ")
+            }
+        }
+    }
+}
+
+impl<R> fmt::Display for Area<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { at, area_m2, plate, reason, .. } = self;
+        let Self { at, area_m2, plate, .. } = self;
         let plate = plate.as_ref().map(|name| format!(", plate {name}")).unwrap_or_default();
         // Rounded before it is written: a coordinate near zero has no sign.
         let [x, y] = [at.x, at.y].map(|m| (10.0 * m).round() / 10.0 + 0.0);
-        write!(f, "{area_m2:.2} m² at {x:.1}, {y:.1} m{plate}: {reason}")
+        write!(f, "{area_m2:.2} m² at {x:.1}, {y:.1} m{plate}: {}", self.why())
     }
 }
 
 /// The areas of the cells that have a reason, the largest first, and what is too small to be listed. Cells lie
-/// together if they touch, be it at a corner, and have the same reason and plate.
-pub(crate) fn areas<R: Copy + PartialEq>(
+/// together if they touch, be it at a corner, whatever their plates and reasons.
+pub(crate) fn areas<R: Explained>(
     floor: &Floor,
     plates: Option<&PlateMap>,
     reason_of: impl Fn(usize) -> Option<R>,
+    measure: impl Fn(R, &[usize]) -> Option<Measure>,
 ) -> (Vec<Area<R>>, Slivers) {
-    let plate_of = |index| plates.and_then(|map| map.plate_of(index));
-    let mut reasons: Vec<Option<(R, Option<usize>)>> =
-        (0..floor.len()).map(|index| Some((reason_of(index)?, plate_of(index)))).collect();
+    let reasons: BTreeMap<usize, R> =
+        (0..floor.len()).filter_map(|index| Some((index, reason_of(index)?))).collect();
     let (mut listed, mut slivers) = (Vec::new(), Slivers::default());
-    for first in 0..floor.len() {
-        let Some(((reason, plate), cells)) = take_together(floor, &mut reasons, first) else { continue };
-        let plate = plates.zip(plate).map(|(map, plate)| map.plates[plate].name.clone());
-        let area = area_of(floor, plate, reason, &cells);
-        if area.area_m2 < LEAST_M2 {
+    for cells in together(floor, reasons.keys().copied().collect()) {
+        let area_m2 = cells.len() as f64 * floor.cell_m2();
+        if area_m2 < LEAST_M2 {
             slivers.count += 1;
-            slivers.area_m2 += area.area_m2;
+            slivers.area_m2 += area_m2;
         } else {
-            listed.push(area);
+            listed.push(area_of(floor, plates, &cells, |cell| reasons[&cell], &measure));
         }
     }
     // Equal areas stay in the order of their first cell.
@@ -70,32 +110,37 @@ pub(crate) fn areas<R: Copy + PartialEq>(
     (listed, slivers)
 }
 
-/// Takes the cells that lie together with the first one out of the reasons.
-fn take_together<R: Copy + PartialEq>(
-    floor: &Floor,
-    reasons: &mut [Option<R>],
-    first: usize,
-) -> Option<(R, Vec<usize>)> {
-    let reason = reasons[first].take()?;
-    let mut queue = vec![first];
-    let mut at = 0;
-    while let Some(index) = queue.get(at).copied() {
-        at += 1;
-        let (column, row) = (index % floor.width, index / floor.width);
-        for y in row.saturating_sub(1)..=(row + 1).min(floor.height - 1) {
-            for x in column.saturating_sub(1)..=(column + 1).min(floor.width - 1) {
-                let next = y * floor.width + x;
-                if reasons[next].take_if(|other| *other == reason).is_some() {
-                    queue.push(next);
-                }
-            }
+/// Cells in groups of those that touch, be it at a corner; in the order of their first cells.
+pub(crate) fn together(floor: &Floor, mut open: BTreeSet<usize>) -> Vec<Vec<usize>> {
+    let mut groups = Vec::new();
+    while let Some(first) = open.pop_first() {
+        let mut cells = vec![first];
+        let mut at = 0;
+        while let Some(cell) = cells.get(at).copied() {
+            at += 1;
+            cells.extend(around(floor, cell).filter(|next| open.remove(next)));
         }
+        groups.push(cells);
     }
-    Some((reason, queue))
+    groups
+}
+
+/// The cells that touch a cell, and itself.
+pub(crate) fn around(floor: &Floor, cell: usize) -> impl Iterator<Item = usize> + use<> {
+    let (column, row, width) = (cell % floor.width, cell / floor.width, floor.width);
+    let columns = column.saturating_sub(1)..=(column + 1).min(width - 1);
+    (row.saturating_sub(1)..=(row + 1).min(floor.height - 1))
+        .flat_map(move |y| columns.clone().map(move |x| y * width + x))
 }
 
 /// Some cells as an area.
-pub(crate) fn area_of<R>(floor: &Floor, plate: Option<String>, reason: R, cells: &[usize]) -> Area<R> {
+pub(crate) fn area_of<R: Explained>(
+    floor: &Floor,
+    plates: Option<&PlateMap>,
+    cells: &[usize],
+    reason_of: impl Fn(usize) -> R,
+    measure: impl Fn(R, &[usize]) -> Option<Measure>,
+) -> Area<R> {
     let centers = || cells.iter().map(|index| floor.center(*index));
     let half = Vector::new(floor.cell_m, floor.cell_m) / 2.0;
     let start = floor.center(cells[0]);
@@ -103,13 +148,35 @@ pub(crate) fn area_of<R>(floor: &Floor, plate: Option<String>, reason: R, cells:
     let middle = Point::from(centers().map(|p| p.coords).sum::<Vector>() / cells.len() as f64);
     let off_m = |index: usize| (floor.center(index) - middle).norm();
     let nearest = cells.iter().copied().min_by(|a, b| off_m(*a).total_cmp(&off_m(*b)));
-    let nearest = nearest.unwrap_or(cells[0]);
+    let causes = by_size(cells, reason_of).into_iter().map(|(reason, cells)| {
+        let measure = measure(reason, &cells);
+        let text = reason.sentence(measure.as_ref());
+        Cause { reason, area_m2: cells.len() as f64 * floor.cell_m2(), measure, text }
+    });
+    let causes: Vec<Cause<R>> = causes.collect();
+    let on = plates.map_or_else(Vec::new, |map| {
+        let by_plate = by_size(cells, |cell| map.plate_of(cell));
+        by_plate.into_iter().filter_map(|(plate, _)| Some(map.plates[plate?].name.clone())).collect()
+    });
     Area {
-        at: floor.center(nearest),
+        at: floor.center(nearest.unwrap_or(cells[0])),
         low: low - half,
         high: high + half,
         area_m2: cells.len() as f64 * floor.cell_m2(),
-        plate,
-        reason,
+        plate: on.first().cloned(),
+        plates: on,
+        reason: causes[0].reason,
+        causes,
     }
+}
+
+/// Cells by some key, the key of most cells first; of equal ones the first in their order.
+fn by_size<K: Copy + Ord>(cells: &[usize], key_of: impl Fn(usize) -> K) -> Vec<(K, Vec<usize>)> {
+    let mut groups: BTreeMap<K, Vec<usize>> = BTreeMap::new();
+    for cell in cells {
+        groups.entry(key_of(*cell)).or_default().push(*cell);
+    }
+    let mut groups: Vec<(K, Vec<usize>)> = groups.into_iter().collect();
+    groups.sort_by_key(|(_, cells)| std::cmp::Reverse(cells.len()));
+    groups
 }

@@ -1,14 +1,17 @@
 //! Evidence of why floor was missed: where plans led, where the robot went, where its position was uncertain.
 
-use super::{reason::MissReason, zone::CRITICAL_ZONE_M};
+use super::{reasons::Reasons, zone::CRITICAL_ZONE_M};
 use crate::sampled::sampled;
 use mission::{TaskConfig, event::RunOpened};
 use world::{
-    CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, ShellFigures, ShellZone, Tool, tether::Reach,
+    Boundary, CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, ShellStretch, ShellZone, Tool,
+    tether::Reach,
 };
 
 /// Plans are laid out on the floor in pieces no longer than this, metres.
 const PIECE_M: f64 = 0.5;
+/// The error of a cell over which nothing passed without counting.
+const NEVER: u16 = u16::MAX;
 /// Ways along a plan that differ by less are the same, metres.
 const NEARLY_M: f64 = 0.01;
 
@@ -25,12 +28,15 @@ pub struct Evidence {
     before: Option<Box<Planned>>,
     /// A plan led there, and was flown past there.
     passed: Vec<bool>,
-    uncertain: Vec<bool>,
+    /// The smallest 95 % error with which the tool passed without counting, millimetres; [`NEVER`] if it did not.
+    uncertain_mm: Vec<u16>,
+    /// The 95 % error now, metres.
+    error_m: f64,
     /// What was to be scanned; `None` for everything.
     asked: Option<Vec<bool>>,
-    found: Vec<(ObstacleId, Shape)>,
-    /// What the drawing shows, for the zone along the shell.
-    drawn: Vec<Shape>,
+    found: Vec<(ObstacleId, Solid)>,
+    drawn: Vec<Solid>,
+    boundary: Boundary,
     shell: ShellZone,
     last: Pose,
 }
@@ -45,18 +51,20 @@ impl Evidence {
             beside_m: run.mission.room_m() + run.mission.swath_m / 2.0,
             plan: Planned::none(run.floor.len()),
             before: None,
-            passed: none.clone(),
-            uncertain: none,
+            passed: none,
+            uncertain_mm: vec![NEVER; run.floor.len()],
+            error_m: 0.0,
             asked: asked(run),
             found: Vec::new(),
-            drawn: run.world.obstacles.iter().filter(|o| o.known).map(|o| o.shape.clone()).collect(),
+            drawn: run.world.obstacles.iter().filter(|o| o.known).map(Solid::of).collect(),
+            boundary: run.world.boundary.clone(),
             shell: ShellZone::new(&run.world.boundary, CRITICAL_ZONE_M),
             last: run.mission.start,
         }
     }
 
     /// A plan was made for what is left; it takes the place of the one before.
-    pub fn plan(&mut self, path: &[Point], is_whole: bool) {
+    pub fn plan(&mut self, path: &[Point], cuts: &[Vec<Point>], is_whole: bool) {
         self.leave_behind();
         let path = sampled(path, PIECE_M);
         let stations_m = world::polyline::stations_m(&path);
@@ -64,6 +72,7 @@ impl Evidence {
             length_m: stations_m.last().copied().unwrap_or(0.0),
             flown_m: self.plan.flown_m + self.plan.along_m,
             is_whole,
+            cuts: cuts.to_vec(),
             ..Planned::none(self.grid.len())
         };
         for (pair, end_m) in
@@ -72,7 +81,7 @@ impl Evidence {
             let ahead = pair[1] - pair[0];
             let at = |position| Pose { position, heading_rad: ahead.y.atan2(ahead.x) };
             for index in self.grid.cells_under(self.tool, at(pair[0]), at(pair[1])) {
-                plan.due_m[index] = Some(*end_m as f32);
+                plan.due_m[index] = *end_m as f32;
             }
         }
         self.before = Some(Box::new(std::mem::replace(&mut self.plan, plan)));
@@ -100,38 +109,45 @@ impl Evidence {
     /// What the plan was flown past stays so when another plan is made.
     fn leave_behind(&mut self) {
         for (passed, due_m) in self.passed.iter_mut().zip(&self.plan.due_m) {
-            *passed |= due_m.is_some_and(|due_m| self.plan.is_past(due_m));
+            *passed |= self.plan.is_past(*due_m);
         }
     }
 
-    /// The robot believed to be here, and what its tool passed since the last time counts or does not.
-    pub fn visit(&mut self, here: Pose, counts: bool) {
+    /// The robot believed to be here, with this 95 % error, metres; what its tool passed since the last time counts if that
+    /// is within a limit.
+    pub fn visit(&mut self, here: Pose, error_m: f64, limit_m: f64) {
         let before = std::mem::replace(&mut self.last, here);
-        if counts {
+        self.error_m = error_m;
+        if error_m <= limit_m {
             self.shell.pass(self.tool, before, here);
         }
     }
 
-    /// How much of the zone along the shell was scanned.
-    pub fn shell(&self) -> ShellFigures {
-        let all = self.drawn.iter().chain(self.found.iter().map(|(_, shape)| shape));
-        let solid: Vec<&Shape> = all.filter(|shape| self.shell.is_beside(shape)).collect();
-        self.shell.figures(|point| solid.iter().any(|shape| shape.distance_m(point) < 0.0))
+    /// How the zone along the shell was scanned, stretch by stretch.
+    pub fn shell(&self) -> Vec<ShellStretch> {
+        let solid: Vec<&Solid> = self.solids().filter(|solid| self.shell.is_beside(&solid.shape)).collect();
+        self.shell.profile(|point| solid.iter().any(|solid| solid.shape.distance_m(point) < 0.0))
+    }
+
+    /// Everything solid on the floor as it is known.
+    fn solids(&self) -> impl Iterator<Item = &Solid> {
+        self.drawn.iter().chain(self.found.iter().map(|(_, solid)| solid))
     }
 
     /// The tool passed, but nothing counted.
     pub fn leave_uncounted(&mut self, runs: &[CellRun]) {
+        let error_mm = (1000.0 * self.error_m).ceil().min(f64::from(NEVER - 1)) as u16;
         for CellRun(first, count) in runs {
-            let first = (*first as usize).min(self.uncertain.len());
-            let end = first.saturating_add(*count as usize).min(self.uncertain.len());
-            self.uncertain[first..end].fill(true);
+            let first = (*first as usize).min(self.uncertain_mm.len());
+            let end = first.saturating_add(*count as usize).min(self.uncertain_mm.len());
+            self.uncertain_mm[first..end].iter_mut().for_each(|mm| *mm = (*mm).min(error_mm));
         }
     }
 
     /// An obstacle was found, or turned out to stand elsewhere.
     pub fn find(&mut self, obstacle: &Obstacle) {
         self.found.retain(|(id, _)| *id != obstacle.id);
-        self.found.push((obstacle.id, obstacle.shape.clone()));
+        self.found.push((obstacle.id, Solid::of(obstacle)));
     }
 
     /// Takes in what another run on the same floor planned and did.
@@ -139,12 +155,15 @@ impl Evidence {
         let or = |own: &mut [bool], others: &[bool]| own.iter_mut().zip(others).for_each(|(a, b)| *a |= b);
         for (index, due_m) in self.plan.due_m.iter_mut().enumerate() {
             self.passed[index] |= other.is_passed(index);
-            if due_m.is_none() && other.is_ahead(index) {
-                *due_m = Some(f32::INFINITY);
+            if due_m.is_nan() && other.is_ahead(index) {
+                *due_m = f32::INFINITY;
             }
         }
         self.plan.is_whole &= other.plan.is_whole;
-        or(&mut self.uncertain, &other.uncertain);
+        self.plan.cuts.extend(other.plan.cuts.iter().cloned());
+        for (own, other) in self.uncertain_mm.iter_mut().zip(&other.uncertain_mm) {
+            *own = (*own).min(*other);
+        }
         self.asked = match (self.asked.take(), &other.asked) {
             (Some(mut asked), Some(others)) => {
                 or(&mut asked, others);
@@ -157,8 +176,8 @@ impl Evidence {
     }
 
     /// What was found on the way.
-    pub fn found(&self) -> impl Iterator<Item = &(ObstacleId, Shape)> {
-        self.found.iter()
+    pub fn found(&self) -> impl Iterator<Item = (ObstacleId, &Solid)> {
+        self.found.iter().map(|(id, solid)| (*id, solid))
     }
 
     /// Whether a cell was to be scanned at all.
@@ -170,65 +189,85 @@ impl Evidence {
     pub fn reasons(&self, run: &RunOpened) -> Reasons<'_> {
         let cable = run.mission.cable_reach().filter(|_| !self.plan.is_whole);
         let reach = cable.map(|(anchor, reach_m)| {
-            let found = self.found.iter().map(|(_, shape)| shape);
-            let shapes: Vec<Shape> = self.drawn.iter().chain(found).cloned().collect();
+            let shapes: Vec<Shape> = self.solids().map(|solid| solid.shape.clone()).collect();
             Reach::new(anchor, &run.world.boundary, &shapes, reach_m)
         });
-        Reasons { evidence: self, reach }
-    }
-
-    /// Whether a plan led to a cell and was flown past there.
-    fn is_passed(&self, index: usize) -> bool {
-        self.passed[index] || self.plan.due_m[index].is_some_and(|due_m| self.plan.is_past(due_m))
-    }
-
-    /// Whether the plan leads to a cell further on than it was flown.
-    fn is_ahead(&self, index: usize) -> bool {
-        self.plan.due_m[index].is_some_and(|due_m| !self.plan.is_past(due_m))
-    }
-}
-
-/// Why floor was missed.
-pub struct Reasons<'a> {
-    evidence: &'a Evidence,
-    /// Where the cable leads; `None` if no plan left floor out because of it.
-    reach: Option<Reach>,
-}
-
-impl Reasons<'_> {
-    /// Why a cell was missed.
-    pub fn why_missed(&self, floor: &Floor, index: usize) -> MissReason {
-        let (evidence, center) = (self.evidence, floor.center(index));
-        if evidence.uncertain[index] {
-            MissReason::PositionUncertain
-        } else if self.is_left_beyond_reel(index, center) {
-            MissReason::BeyondReel
-        } else if evidence.found.iter().any(|(_, shape)| shape.distance_m(center) <= evidence.beside_m) {
-            MissReason::FoundObstacle
-        } else if !evidence.is_asked(index) {
-            MissReason::NotAsked
-        } else if evidence.is_passed(index) {
-            MissReason::PassedBeside
-        } else if evidence.is_ahead(index) {
-            MissReason::NotReached
-        } else {
-            MissReason::NotPlanned
+        let mission = &run.mission;
+        Reasons {
+            evidence: self,
+            reach,
+            lane_m: mission.lane_m(),
+            room_m: mission.room_m(),
+            limit_m: mission.scan_limit_m(),
         }
     }
 
-    /// Whether a cell was to be scanned, and no plan led there, because the cable does not.
-    fn is_left_beyond_reel(&self, index: usize, center: Point) -> bool {
-        let evidence = self.evidence;
-        let is_left = evidence.is_asked(index) && !evidence.is_passed(index) && !evidence.is_ahead(index);
-        is_left && self.reach.as_ref().is_some_and(|reach| reach.is_beyond(center))
+    /// The smallest 95 % error with which the tool passed a cell without counting, metres; `None` if it did not.
+    pub(super) fn uncertain_m(&self, index: usize) -> Option<f64> {
+        Some(self.uncertain_mm[index]).filter(|mm| *mm != NEVER).map(|mm| f64::from(mm) / 1000.0)
+    }
+
+    /// Name and distance of the nearest solid thing, the shell included, metres.
+    pub(super) fn nearest_solid(&self, place: Point) -> (&str, f64) {
+        let obstacles = self.solids().map(|solid| (solid.name.as_str(), solid.shape.distance_m(place)));
+        let shell = ("the shell", self.boundary.wall_distance_m(place));
+        obstacles.fold(shell, |least, other| if other.1 < least.1 { other } else { least })
+    }
+
+    /// Name and distance of the found obstacle that is nearest to one of some places, metres; `None` without any.
+    pub(super) fn nearest_found(&self, places: impl Iterator<Item = Point>) -> Option<(&str, f64)> {
+        let from = |place: Point| {
+            self.found.iter().map(move |(_, solid)| (solid.name.as_str(), solid.shape.distance_m(place)))
+        };
+        places.flat_map(from).min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Whether a found obstacle is to blame for what was missed at a place.
+    pub(super) fn is_beside_found(&self, place: Point) -> bool {
+        self.found.iter().any(|(_, solid)| solid.shape.distance_m(place) <= self.beside_m)
+    }
+
+    /// Lines of the plan that the tethered robot does not cross.
+    pub(super) fn cuts(&self) -> &[Vec<Point>] {
+        &self.plan.cuts
+    }
+
+    /// How far ahead along the plan a cell lies, metres; `None` if it is not ahead.
+    pub(super) fn ahead_m(&self, index: usize) -> Option<f64> {
+        self.is_ahead(index).then(|| f64::from(self.plan.due_m[index]) - self.plan.along_m)
+    }
+
+    /// Whether a plan led to a cell and was flown past there.
+    pub(super) fn is_passed(&self, index: usize) -> bool {
+        self.passed[index] || self.plan.is_past(self.plan.due_m[index])
+    }
+
+    /// Whether the plan leads to a cell further on than it was flown.
+    pub(super) fn is_ahead(&self, index: usize) -> bool {
+        !self.plan.due_m[index].is_nan() && !self.plan.is_past(self.plan.due_m[index])
+    }
+}
+
+/// Something solid on the floor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solid {
+    /// Its name, for people.
+    pub name: String,
+    /// Its outline, tank frame.
+    pub shape: Shape,
+}
+
+impl Solid {
+    fn of(obstacle: &Obstacle) -> Self {
+        Self { name: obstacle.name.clone(), shape: obstacle.shape.clone() }
     }
 }
 
 /// A plan, and how far it was flown.
 #[derive(Debug, Clone)]
 struct Planned {
-    /// Way along the plan by which it has led over each cell for the last time, metres; `None` where it leads nowhere near.
-    due_m: Vec<Option<f32>>,
+    /// Way along the plan by which it has led over each cell for the last time, metres; NaN where it leads nowhere near.
+    due_m: Vec<f32>,
     /// Its length, metres.
     length_m: f64,
     /// How far it was flown, metres.
@@ -237,13 +276,17 @@ struct Planned {
     flown_m: f64,
     /// Whether it was for everything that was left.
     is_whole: bool,
+    /// Lines that the tethered robot does not cross.
+    cuts: Vec<Vec<Point>>,
 }
 
 impl Planned {
     fn none(cells: usize) -> Self {
-        Self { due_m: vec![None; cells], length_m: 0.0, along_m: 0.0, flown_m: 0.0, is_whole: true }
+        let due_m = vec![f32::NAN; cells];
+        Self { due_m, length_m: 0.0, along_m: 0.0, flown_m: 0.0, is_whole: true, cuts: Vec::new() }
     }
 
+    /// Whether it was flown past there; never where it leads nowhere near.
     fn is_past(&self, due_m: f32) -> bool {
         f64::from(due_m) <= self.along_m + NEARLY_M
     }

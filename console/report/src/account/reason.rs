@@ -1,7 +1,7 @@
 //! Why floor was not scanned, or cannot be.
 
+use super::{areas::Explained, measure::Measure};
 use serde::{Deserialize, Serialize};
-use std::fmt;
 use world::Cell;
 
 /// Why floor in reach of the tool was not scanned.
@@ -14,6 +14,12 @@ pub enum MissReason {
     FoundObstacle,
     /// Outside the areas that the mission was to scan.
     NotAsked,
+    /// Beyond lanes that are narrower than the swath by the overlap.
+    Narrow,
+    /// No plan led there: it keeps hull and clearance from something solid.
+    Clearance,
+    /// No plan led there: it lies along a line that keeps the tether from winding round anything.
+    Wrap,
     /// No plan led there.
     NotPlanned,
     /// No plan led there, because the cable does not.
@@ -51,27 +57,73 @@ impl OutOfReach {
     }
 }
 
-impl fmt::Display for MissReason {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+impl Explained for MissReason {
+    fn sentence(self, measure: Option<&Measure>) -> String {
+        let Some(Measure { value_m, limit_m, near }) = measure else { return self.plainly().to_owned() };
+        let (limit_m, near) = (limit_m.unwrap_or(0.0), near.as_deref().unwrap_or("something solid"));
+        match self {
+            Self::PositionUncertain => {
+                format!("passed with position error {value_m:.2} m, limit {limit_m:.2} m")
+            }
+            Self::FoundObstacle => format!("{value_m:.2} m from {near}, found during the run"),
+            Self::NotAsked => self.plainly().to_owned(),
+            Self::Narrow => {
+                format!("{value_m:.2} m beyond lanes of {limit_m:.2} m, the swath less the overlap")
+            }
+            Self::Clearance => {
+                format!("not planned: {value_m:.2} m from {near}, hull and clearance {limit_m:.2} m")
+            }
+            Self::Wrap => format!("not planned: {value_m:.2} m from a line that keeps the tether unwound"),
+            Self::NotPlanned => format!("not planned: {value_m:.2} m beside lanes of {limit_m:.2} m"),
+            Self::BeyondReel => {
+                format!(
+                    "not planned: {value_m:.1} m beyond the reel, lanes within {limit_m:.1} m of the anchor"
+                )
+            }
+            Self::NotReached => format!("planned, but the mission ended up to {value_m:.1} m of path before"),
+            Self::PassedBeside => format!("planned, but the robot passed {value_m:.2} m to one side"),
+        }
+    }
+}
+
+impl MissReason {
+    /// The reason without its number.
+    pub fn plainly(self) -> &'static str {
+        match self {
             Self::PositionUncertain => "passed, but the position error was above the limit",
             Self::FoundObstacle => "beside an obstacle found during the run",
             Self::NotAsked => "not requested",
+            Self::Narrow => "beyond the lanes, which are narrower than the swath by the overlap",
+            Self::Clearance => "not planned, hull and clearance",
+            Self::Wrap => "not planned, along a line that keeps the tether unwound",
             Self::NotPlanned => "not planned",
             Self::BeyondReel => "not planned, beyond the reel",
             Self::NotReached => "planned, but the mission ended first",
             Self::PassedBeside => "planned, but the robot passed to one side",
-        })
+        }
     }
 }
 
-impl fmt::Display for OutOfReach {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+impl OutOfReach {
+    /// The reason without its number.
+    pub fn plainly(self) -> &'static str {
+        match self {
             Self::ShellMargin => "clearance to the shell",
             Self::BesideObstacle => "clearance to an obstacle",
             Self::NoGo => "in a no-go zone",
             Self::ClosedOff => "no passage wide enough",
-        })
+        }
+    }
+}
+
+impl Explained for OutOfReach {
+    fn sentence(self, measure: Option<&Measure>) -> String {
+        match (self, measure) {
+            (Self::ShellMargin | Self::BesideObstacle, Some(Measure { value_m, limit_m, near })) => {
+                let (near, limit_m) = (near.as_deref().unwrap_or("something solid"), limit_m.unwrap_or(0.0));
+                format!("{value_m:.2} m from {near}, hull and clearance {limit_m:.2} m")
+            }
+            _ => self.plainly().to_owned(),
+        }
     }
 }

@@ -1,9 +1,17 @@
 //! Accounts of a small round tank: shares that sum up, gaps that have their reasons, plates and the zone at the shell.
 
 use super::*;
+use crate::accuracy::Estimate;
 use crate::fold::tests::round_tank;
 use proptest::prelude::*;
-use world::{CellRun, Point, Pose, Tool};
+use world::{CellRun, CoverageGrid, Point, Pose, Tool, coverage::runs_of};
+
+/// The account of a grid whose scanned cells are all guaranteed.
+fn account(run: &RunOpened, grid: &CoverageGrid, evidence: &Evidence) -> Account {
+    let mut scanned = Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start);
+    scanned.believe(&runs_of((0..run.floor.len()).filter(|index| grid.is_covered(*index))));
+    super::account(run, &scanned, evidence)
+}
 
 /// Lanes from west to east and back, as a plan.
 fn lanes() -> Vec<Point> {
@@ -20,14 +28,14 @@ fn lanes() -> Vec<Point> {
 fn scanned(run: &RunOpened, flown: usize) -> (CoverageGrid, Evidence) {
     let (mut grid, mut evidence) = (CoverageGrid::new(run.floor.clone()), Evidence::new(run));
     let path = lanes();
-    evidence.plan(&path, true);
+    evidence.plan(&path, &[], true);
     for (k, lane) in path.chunks(2).take(flown).enumerate() {
         let heading_rad = if k.is_multiple_of(2) { 0.0 } else { std::f64::consts::PI };
         let [from, to] = [lane[0], lane[1]].map(|position| Pose { position, heading_rad });
         grid.mark(Tool::Bar { swath_m: 0.6 }, from, to);
         for k in 0..=100 {
             let position = lane[0] + (lane[1] - lane[0]) * f64::from(k) / 100.0;
-            evidence.visit(Pose { position, heading_rad }, k > 0);
+            evidence.visit(Pose { position, heading_rad }, if k > 0 { 0.1 } else { 1.0 }, 0.3);
         }
         evidence.fly(world::polyline::length_m(&path[..2 * k + 2]));
     }
@@ -62,19 +70,20 @@ fn lanes_that_were_not_flown_are_reported_with_place_plate_and_reason() {
     let account = account(&run, &grid, &evidence);
     let north = &account.missed[0];
     assert_eq!(north.reason, MissReason::NotReached);
-    assert!(north.area_m2 > 2.0 && north.at.y > 1.5 && north.low.y > 1.1, "{north:?}");
-    assert!(north.plate.is_some());
-    let corners: Vec<&Area<MissReason>> =
-        account.missed.iter().filter(|area| area.reason == MissReason::NotPlanned).collect();
+    assert!(north.area_m2 > 2.0 && north.high.y > 4.0 && north.plate.is_some(), "{north:?}");
+    // What was not planned touches it: one area with a cause for each part.
+    let reasons: Vec<MissReason> = north.causes.iter().map(|cause| cause.reason).collect();
     assert!(
-        !corners.is_empty() && corners.iter().all(|area| area.area_m2 < 3.0 && area.at.coords.norm() > 4.0),
-        "{corners:?}"
+        reasons.contains(&MissReason::Clearance) && reasons.contains(&MissReason::NotPlanned),
+        "{north:?}"
     );
+    let parts_m2: f64 = north.causes.iter().map(|cause| cause.area_m2).sum();
+    assert!((parts_m2 - north.area_m2).abs() < 1e-9);
 }
 
 fn why_missed(evidence: &Evidence, run: &RunOpened, x: f64, y: f64) -> MissReason {
     let index = run.floor.cell_at(Point::new(x, y)).expect("a place on the floor");
-    evidence.reasons(run).why_missed(&run.floor, index)
+    evidence.reasons(run).why_missed(run.floor.center(index), index)
 }
 
 #[test]
@@ -95,7 +104,7 @@ fn floor_ahead_of_a_run_that_was_cut_short_was_not_passed_however_near_the_robot
 fn a_lane_that_was_flown_beside_its_place_is_reported_as_passed_and_those_ahead_are_not() {
     let run = round_tank(0.05);
     let mut evidence = Evidence::new(&run);
-    evidence.plan(&lanes(), true);
+    evidence.plan(&lanes(), &[], true);
     evidence.fly(world::polyline::length_m(&lanes()[..2]));
     assert_eq!(why_missed(&evidence, &run, 0.0, -4.15), MissReason::PassedBeside);
     assert_eq!(why_missed(&evidence, &run, 0.0, -3.45), MissReason::NotReached);
@@ -108,9 +117,9 @@ fn a_new_plan_takes_the_place_of_the_one_before_unless_it_is_refused() {
     let [first_m, second_m] = [&path[..2], &path[2..8]].map(world::polyline::length_m);
     for (is_refused, north) in [(false, MissReason::NotPlanned), (true, MissReason::NotReached)] {
         let mut evidence = Evidence::new(&run);
-        evidence.plan(&path, true);
+        evidence.plan(&path, &[], true);
         evidence.fly(first_m);
-        evidence.plan(&path[2..8], true);
+        evidence.plan(&path[2..8], &[], true);
         if is_refused {
             evidence.refuse_plan();
         }
@@ -136,21 +145,81 @@ fn floor_that_the_cable_does_not_lead_to_is_reported_as_beyond_the_reel_only_if_
     });
     for (is_whole, north) in [(true, MissReason::NotPlanned), (false, MissReason::BeyondReel)] {
         let mut evidence = Evidence::new(&run);
-        evidence.plan(&lanes()[..16], is_whole);
+        evidence.plan(&lanes()[..16], &[], is_whole);
         assert_eq!(why_missed(&evidence, &run, 0.0, 2.0), north);
         assert_eq!(why_missed(&evidence, &run, 0.0, 1.0), MissReason::NotPlanned, "5.5 m from the anchor");
         assert_eq!(why_missed(&evidence, &run, 0.0, -3.0), MissReason::NotReached);
     }
 }
 
+/// Why the only area of some missed cells was missed.
+fn why(run: &RunOpened, evidence: &Evidence, is_missed: impl Fn(Point) -> bool) -> String {
+    let mut grid = CoverageGrid::new(run.floor.clone());
+    grid.apply(&runs_of((0..run.floor.len()).filter(|index| !is_missed(run.floor.center(*index)))));
+    let account = account(run, &grid, evidence);
+    let [area] = &account.missed[..] else { panic!("one area: {:?}", account.missed) };
+    area.why()
+}
+
+#[test]
+fn every_gap_has_a_cause_with_its_number() {
+    let mut run = round_tank(0.05);
+    run.mission.scan.overlap_m = 0.2;
+    let mut evidence = Evidence::new(&run);
+    let cut = [Point::new(-1.0, 0.0), Point::new(1.0, 0.0)];
+    evidence.plan(&lanes()[..2], &[cut.to_vec()], true);
+    let square = |x: f64, y: f64| move |p: Point| (p.x - x).abs() < 0.1 && (p.y - y).abs() < 0.1;
+    let says = |text: String, expected: &str| assert!(text.contains(expected), "{text}, not {expected}");
+    says(
+        why(&run, &evidence, |p| p.x > 4.0 && p.coords.norm() > 4.77 && p.y.abs() < 0.3),
+        "m beyond lanes of 0.40 m, the swath less the overlap",
+    );
+    says(why(&run, &evidence, square(0.0, 3.4)), "m from column, hull and clearance 0.45 m");
+    says(why(&run, &evidence, square(0.0, 0.2)), "m from a line that keeps the tether unwound");
+    says(why(&run, &evidence, square(0.0, -1.0)), "m beside lanes of 0.40 m");
+    says(why(&run, &evidence, square(0.0, -3.9)), "planned, but the mission ended up to");
+    evidence.fly(1e3);
+    says(why(&run, &evidence, square(0.0, -3.9)), "planned, but the robot passed 0.10 m to one side");
+}
+
+#[test]
+fn guaranteed_is_what_the_tool_passed_wherever_the_robot_stood_within_its_error() {
+    let run = round_tank(0.05);
+    let mut scanned = Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start);
+    let mut believed = CoverageGrid::new(run.floor.clone());
+    // Sure across the way and unsure along it, then the other way round.
+    for (x_m, covariance_m2) in [(-2.0, [0.01, 0.0, 0.0001]), (2.0, [0.0001, 0.0, 0.01])] {
+        let at = |y_m: f64| Pose::new(y_m, x_m, 0.0);
+        let estimate = |pose: Pose| Estimate { position: pose.position, covariance_m2 };
+        scanned.visit(at(-1.0), &estimate(at(-1.0)), None);
+        scanned.visit(at(1.0), &estimate(at(1.0)), Some(0.25));
+        believed.mark(run.mission.tool(), at(-1.0), at(1.0));
+    }
+    scanned.believe(&runs_of((0..run.floor.len()).filter(|index| believed.is_covered(*index))));
+    let width_m = |y_m: f64| {
+        let cells = (0..run.floor.len()).filter(|index| scanned.is_guaranteed(*index));
+        let beside = cells.filter(|index| (run.floor.center(*index).y - y_m).abs() < 1.0);
+        beside.count() as f64 * run.floor.cell_m2() / 2.0
+    };
+    // 0.6 m less twice 2.45 standard deviations across the way.
+    assert!((width_m(-2.0) - 0.55).abs() < 0.051, "{}", width_m(-2.0));
+    assert!((width_m(2.0) - 0.11).abs() < 0.051, "{}", width_m(2.0));
+    let whole = super::account(&run, &scanned, &Evidence::new(&run)).whole;
+    assert!(whole.guaranteed < Some(whole.scanned) && whole.percent.guaranteed.is_some(), "{whole:?}");
+}
+
 #[test]
 fn floor_passed_without_a_position_says_so() {
     let run = round_tank(0.05);
     let (grid, mut evidence) = scanned(&run, 0);
-    evidence.leave_uncounted(&[CellRun(0, run.floor.len() as u32)]);
+    for error_m in [0.74, 0.64, 0.9] {
+        evidence.visit(run.mission.start, error_m, 0.5);
+        evidence.leave_uncounted(&[CellRun(0, run.floor.len() as u32)]);
+    }
     let account = account(&run, &grid, &evidence);
-    assert!(account.missed.iter().all(|area| area.reason == MissReason::PositionUncertain));
-    assert!(account.missed.len() >= account.plates.len() - 2, "each plate has its own");
+    let [area] = &account.missed[..] else { panic!("one area over all plates: {:?}", account.missed) };
+    assert_eq!(area.why(), "passed with position error 0.64 m, limit 0.50 m");
+    assert!(area.plates.len() >= account.plates.len() - 2 && area.plate.as_ref() == area.plates.first());
 }
 
 #[test]
@@ -160,6 +229,28 @@ fn the_critical_zone_is_named_as_not_done_with_the_reason() {
     let zone = account(&run, &grid, &evidence).critical_zone;
     assert!(!zone.done && zone.scanned.is_some_and(|share| share < 0.05), "{zone:?}");
     assert_eq!(zone.why.as_deref(), Some("none of it scanned"));
+    let arcs_m: f64 = zone.arcs.iter().map(|arc| arc.not_done_m).sum();
+    let by_plate_m: f64 = zone.plates.iter().map(|plate| plate.length_m).sum();
+    assert!(
+        (arcs_m - (zone.length_m - zone.done_m)).abs() < 0.2 && (by_plate_m - zone.length_m).abs() < 1e-9
+    );
+    let names: Vec<&str> = zone.plates.iter().map(|plate| plate.plate.as_str()).collect();
+    assert!(names.len() >= 2 && names[0] == "A-01" && names[1] == "A-02", "{names:?}");
+}
+
+#[test]
+fn an_arc_over_the_beginning_of_the_shell_is_one_arc() {
+    let run = round_tank(0.2);
+    let mut evidence = Evidence::new(&run);
+    for k in 100..=1900 {
+        let angle = std::f64::consts::TAU * f64::from(k) / 2000.0;
+        let pose = Pose::new(4.7 * angle.cos(), 4.7 * angle.sin(), angle + std::f64::consts::FRAC_PI_2);
+        evidence.visit(pose, if k > 100 { 0.1 } else { 1.0 }, 0.3);
+    }
+    let zone = account(&run, &CoverageGrid::new(run.floor.clone()), &evidence).critical_zone;
+    let [arc] = &zone.arcs[..] else { panic!("one arc: {:?}", zone.arcs) };
+    assert!((arc.not_done_m - 3.14).abs() < 0.1 && arc.from.y < 0.0 && arc.to.y > 0.0, "{arc:?}");
+    assert!((arc.to_m - arc.from_m - arc.not_done_m).abs() < 1e-6, "{arc:?}");
 }
 
 #[test]
@@ -171,7 +262,8 @@ fn a_tool_that_goes_along_the_shell_does_the_critical_zone_however_coarse_the_ce
             let angle = std::f64::consts::TAU * f64::from(k) / 2000.0;
             let radius_m = 4.7 - off_m;
             let heading_rad = angle + std::f64::consts::FRAC_PI_2;
-            evidence.visit(Pose::new(radius_m * angle.cos(), radius_m * angle.sin(), heading_rad), k > 0);
+            let pose = Pose::new(radius_m * angle.cos(), radius_m * angle.sin(), heading_rad);
+            evidence.visit(pose, if k > 0 { 0.1 } else { 1.0 }, 0.3);
         }
         let zone = account(&run, &CoverageGrid::new(run.floor.clone()), &evidence).critical_zone;
         assert!(zone.done == is_done && (zone.gap_m - gap_mm / 1000.0).abs() < 1e-9, "{zone:?}");
@@ -217,7 +309,7 @@ proptest! {
         let account = account(&run, &grid, &Evidence::new(&run));
         prop_assert!((sum(&account.whole) - 1.0).abs() < 1e-12 && (sum(&account.reachable) - 1.0).abs() < 1e-12);
         let printed = |percent: Percent| {
-            let Percent { scanned, missed, unreachable, margin } = percent;
+            let Percent { scanned, missed, unreachable, margin, .. } = percent;
             [scanned, missed, unreachable, margin].map(|value| (10.0 * value).round() as u32).iter().sum::<u32>()
         };
         let floors = account.plates.iter().map(|plate| plate.shares).chain([account.whole, account.reachable]);
@@ -232,7 +324,7 @@ fn a_plan_without_a_path_or_with_one_that_cannot_be_leads_to_no_floor() {
     let run = round_tank(0.2);
     for path in [vec![], vec![Point::origin()], vec![Point::origin(), Point::new(1e12, 0.0)]] {
         let (grid, mut evidence) = (CoverageGrid::new(run.floor.clone()), Evidence::new(&run));
-        evidence.plan(&path, true);
+        evidence.plan(&path, &[], true);
         evidence.fly_share(0.5);
         let account = account(&run, &grid, &evidence);
         assert!((account.reachable.missed - 1.0).abs() < 1e-12, "{path:?}");

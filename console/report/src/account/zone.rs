@@ -1,12 +1,15 @@
 //! The critical zone along the shell.
 
 use serde::{Deserialize, Serialize};
-use world::ShellFigures;
+use std::collections::BTreeMap;
+use world::{Point, ShellFigures, ShellStretch};
 
 /// Width of the critical zone along the shell, metres (API 653: 3 inches).
 pub(crate) const CRITICAL_ZONE_M: f64 = 0.075;
 /// Share of the shell along which the whole zone is scanned when it counts as done.
 const CRITICAL_DONE: f64 = 0.995;
+/// Arcs that are not done are one if they are nearer than this, and are left out if they are shorter, metres.
+const ARC_M: f64 = 0.1;
 
 /// The zone along the shell, where the floor plate meets it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -29,12 +32,51 @@ pub struct CriticalZone {
     pub done: bool,
     /// Why not, as a sentence; absent if it was.
     pub why: Option<String>,
+    /// The zone plate by plate, in the order along the shell; empty if the layout of the plates is not known.
+    #[serde(default)]
+    pub plates: Vec<ZoneOfPlate>,
+    /// Arcs of the shell of 0.1 m and more that are not done, in their order along the shell; those less than 0.1 m apart
+    /// are one.
+    #[serde(default)]
+    pub arcs: Vec<ZoneArc>,
+}
+
+/// The zone on one plate.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ZoneOfPlate {
+    /// Name of the plate.
+    pub plate: String,
+    /// Length of the shell beside free floor, metres.
+    pub length_m: f64,
+    /// Length along which its whole width was scanned, metres.
+    pub done_m: f64,
+    /// Distance from the shell to the scanned floor, the median where it is not done, metres.
+    pub gap_m: f64,
+}
+
+/// An arc of the shell along which the zone was not scanned over its whole width.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ZoneArc {
+    /// Way along the shell to its beginning, metres: counter-clockwise from due east, or from the first corner on.
+    pub from_m: f64,
+    /// The same to its end, metres; beyond the length of the shell for an arc over its beginning.
+    pub to_m: f64,
+    /// Where it begins, metres.
+    pub from: Point,
+    /// Where it ends, metres.
+    pub to: Point,
+    /// Length of it that is not done, metres.
+    pub not_done_m: f64,
+    /// Distance from the shell to the scanned floor, the median of what is not done, metres.
+    pub gap_m: f64,
+    /// The largest such distance, metres.
+    pub gap_max_m: f64,
 }
 
 impl CriticalZone {
-    /// The zone as the shell was scanned.
-    pub(crate) fn of(shell: ShellFigures) -> Self {
-        let ShellFigures { length_m, done_m, scanned, gap_m } = shell;
+    /// The zone as the shell was scanned; `plate_of` names the plate of a place on the wall.
+    pub(crate) fn of(shell: &[ShellStretch], plate_of: impl Fn(Point) -> Option<String>) -> Self {
+        let ShellFigures { length_m, done_m, scanned, gap_m } = ShellFigures::of(shell);
         let has_floor = length_m > 0.0;
         let done = has_floor && done_m >= CRITICAL_DONE * length_m;
         let why = match gap_m {
@@ -51,6 +93,66 @@ impl CriticalZone {
             }
         };
         let scanned = has_floor.then_some(scanned);
-        Self { width_m: CRITICAL_ZONE_M, length_m, done_m, scanned, gap_m, done, why }
+        let (plates, arcs) = (by_plate(shell, plate_of), arcs(shell));
+        Self { width_m: CRITICAL_ZONE_M, length_m, done_m, scanned, gap_m, done, why, plates, arcs }
     }
+}
+
+fn by_plate(shell: &[ShellStretch], plate_of: impl Fn(Point) -> Option<String>) -> Vec<ZoneOfPlate> {
+    let mut order: Vec<String> = Vec::new();
+    let mut groups: BTreeMap<String, Vec<&ShellStretch>> = BTreeMap::new();
+    for stretch in shell {
+        let Some(plate) = plate_of(stretch.at) else { continue };
+        if !groups.contains_key(&plate) {
+            order.push(plate.clone());
+        }
+        groups.entry(plate).or_default().push(stretch);
+    }
+    let zone = |plate: String| {
+        let ShellFigures { length_m, done_m, gap_m, .. } =
+            ShellFigures::of(groups.get(&plate).into_iter().flatten().copied());
+        ZoneOfPlate { plate, length_m, done_m, gap_m }
+    };
+    order.into_iter().map(zone).collect()
+}
+
+/// The arcs that are not done.
+fn arcs(shell: &[ShellStretch]) -> Vec<ZoneArc> {
+    let end_m = |stretch: &ShellStretch| stretch.along_m + stretch.length_m;
+    let mut open: Vec<Vec<&ShellStretch>> = Vec::new();
+    for stretch in shell.iter().filter(|stretch| stretch.gap_m.is_some()) {
+        match open.last_mut() {
+            Some(arc) if arc.last().is_some_and(|last| stretch.along_m - end_m(last) <= ARC_M) => {
+                arc.push(stretch);
+            }
+            _ => open.push(vec![stretch]),
+        }
+    }
+    // The end of the wall is its beginning.
+    let total_m = shell.last().map_or(0.0, end_m);
+    let is_over_the_end = |first: &[&ShellStretch], last: &[&ShellStretch]| {
+        first[0].along_m + total_m - last.last().map_or(0.0, |stretch| end_m(stretch)) <= ARC_M
+    };
+    let mut over_m = None;
+    if open.len() > 1 && is_over_the_end(&open[0], &open[open.len() - 1]) {
+        let first = open.remove(0);
+        over_m = first.last().map(|stretch| end_m(stretch) + total_m);
+        open.last_mut().expect("two at least").extend(first);
+    }
+    let last = open.len().saturating_sub(1);
+    let arc = |(index, arc): (usize, Vec<&ShellStretch>)| {
+        let (first, end) = (*arc.first()?, *arc.last()?);
+        let figures = ShellFigures::of(arc.iter().copied());
+        Some(ZoneArc {
+            from_m: first.along_m,
+            to_m: over_m.filter(|_| index == last).unwrap_or(end_m(end)),
+            from: first.at,
+            to: end.at,
+            not_done_m: figures.length_m,
+            gap_m: figures.gap_m,
+            gap_max_m: arc.iter().filter_map(|stretch| stretch.gap_m).fold(0.0, f64::max),
+        })
+    };
+    let arcs = open.into_iter().enumerate().filter_map(arc);
+    arcs.filter(|arc| arc.to_m - arc.from_m >= ARC_M - 1e-9).collect()
 }

@@ -1,45 +1,61 @@
-//! The forecast as a picture: green where a fix is good, red towards the limit, dark where there is none.
+//! The forecast as a picture: light where a fix is good, dark towards the limit, hatched where there is none.
 
-use super::{circle, document, outline, wall};
+use super::{
+    frame::Fixtures,
+    sheet::{Sheet, colour},
+};
 use positioning::AccuracyMap;
-use std::fmt::Write;
 use world::{Point, World};
 
-const STYLE: &str = concat!(
-    ".blind{fill:#444;stroke:none}.beyond{fill:#d7301f;stroke:none}.advised{stroke:#1f5fbf;stroke-width:0.06}",
-    ".good0{fill:#1a9850;stroke:none}.good1{fill:#91cf60;stroke:none}",
-    ".good2{fill:#fee08b;stroke:none}.good3{fill:#fc8d59;stroke:none}",
-);
+/// Width of the picture, millimetres.
+const WIDTH_MM: f64 = 180.0;
+/// Shares of the limit up to the whole, above it, and no fix: colour and word.
+const CLASSES: [(&str, &str); 6] = [
+    (colour::ERROR[0], "up to 1/4 of the limit"),
+    (colour::ERROR[1], "up to 1/2"),
+    (colour::ERROR[2], "up to 3/4"),
+    (colour::ERROR[3], "up to the limit"),
+    (colour::MISSED, "above the limit"),
+    (colour::OUT, "no fix"),
+];
 
 /// The picture as an SVG document; advised places are rings.
 pub(crate) fn svg(world: &World, map: &AccuracyMap, limit_m: f64, advised: &[Point]) -> String {
-    let mut body = String::new();
+    let mut sheet = Sheet::new(&world.boundary, "f", WIDTH_MM, 8.0);
+    sheet.wall(&world.boundary, r##"fill="#fff""##);
+    let edge_mm = map.cell_m * sheet.scale;
     for (center, cell) in map.floor() {
         let class = match cell.error_95_m {
-            None => "blind",
-            Some(error_m) if error_m > limit_m => "beyond",
-            Some(error_m) => {
-                ["good0", "good1", "good2", "good3"][((4.0 * error_m / limit_m) as usize).min(3)]
-            }
+            None => 5,
+            Some(error_m) if error_m > limit_m => 4,
+            Some(error_m) => ((4.0 * error_m / limit_m) as usize).min(3),
         };
-        let edge = map.cell_m;
-        // Writing to a String cannot fail.
-        let _ = write!(
-            body,
-            r#"<rect class="{class}" x="{:.4}" y="{:.4}" width="{edge:.4}" height="{edge:.4}"/>"#,
-            center.x - edge / 2.0,
-            -center.y - edge / 2.0,
-        );
+        let at = sheet.at(center);
+        sheet.draw(format_args!(
+            r#"<rect x="{:.2}" y="{:.2}" width="{edge_mm:.2}" height="{edge_mm:.2}" fill="{}"/>"#,
+            at.x - edge_mm / 2.0,
+            at.y - edge_mm / 2.0,
+            CLASSES[class].0
+        ));
     }
-    wall(&mut body, &world.boundary);
-    for obstacle in &world.obstacles {
-        outline(&mut body, &obstacle.shape, 0.0);
-    }
-    for station in &world.stations {
-        circle(&mut body, station.position, 0.15, "station");
-    }
+    let fixtures = Fixtures {
+        boundary: &world.boundary,
+        drawn: world.obstacles.iter().map(|obstacle| &obstacle.shape).collect(),
+        found: Vec::new(),
+        stations: &world.stations,
+        zones: &world.zones,
+        anchor: None,
+    };
+    sheet.obstacles(&fixtures);
     for place in advised {
-        circle(&mut body, *place, 0.25, "advised");
+        let style = format!(r#"class="advised" fill="none" stroke="{}" stroke-width=".6""#, colour::TETHER);
+        sheet.circle(*place, 1.8, &style);
     }
-    document(&world.boundary, STYLE, &body)
+    sheet.frame(&fixtures, 2.4);
+    let mut key = CLASSES.to_vec();
+    if !advised.is_empty() {
+        key.push((colour::TETHER, "advised place"));
+    }
+    sheet.key(&key);
+    sheet.into_document("Forecast of the accuracy")
 }

@@ -2,9 +2,15 @@
 //! path, lanes in the colour of what they are for, the lines that a tethered robot never crosses, and the cable when it
 //! is longest.
 
-use super::{circle, document, line, outline, polyline, wall};
+use super::{
+    frame::Fixtures,
+    sheet::{Sheet, colour},
+};
 use crate::leg::Leg;
-use world::{Point, World};
+use world::{Point, Shape, World};
+
+/// Width of the picture, millimetres.
+const WIDTH_MM: f64 = 180.0;
 
 /// What there is to draw.
 #[derive(Debug, Clone, Copy)]
@@ -29,44 +35,88 @@ pub struct Drawn<'a> {
     pub cable: &'a [Point],
 }
 
+/// What stretches of a plan are called, their colour, and what the legend says.
+const STRETCHES: [(&str, &str, &str); 5] = [
+    ("swath", colour::TRACK, "lane"),
+    ("path", colour::TRACK, "path"),
+    ("connector", "#C77700", "connector"),
+    ("retract", colour::TETHER, "retract"),
+    ("travel", "#2A9D4A", "travel"),
+];
+
 /// The picture as an SVG document; north is up.
 pub fn svg(drawn: &Drawn<'_>) -> String {
     let Drawn { world, path, legs, swath_m, .. } = drawn;
-    let mut body = String::new();
-    wall(&mut body, &world.boundary);
-    for obstacle in &world.obstacles {
-        outline(&mut body, &obstacle.shape, drawn.room_m);
+    let mut sheet = Sheet::new(&world.boundary, "p", WIDTH_MM, 8.0);
+    sheet.wall(&world.boundary, r##"fill="#fff""##);
+    // The tool also scans on the way from lane to lane.
+    let band_mm = swath_m * sheet.scale;
+    for leg in legs.iter().filter(|leg| leg.tag != "path") {
+        let style = format!(
+            r#"class="band" stroke="{}" stroke-width="{band_mm:.2}" stroke-linejoin="round""#,
+            colour::ONCE
+        );
+        sheet.line(&path[leg.first..=leg.last], &style);
     }
     if let Some(path) = drawn.preset {
-        polyline(&mut body, path, "preset");
-    }
-    // The tool also scans on the way from lane to lane.
-    for leg in legs.iter().filter(|leg| leg.tag != "path") {
-        let style = format!(r#"class="band" style="stroke-width:{swath_m}""#);
-        line(&mut body, &path[leg.first..=leg.last], &style);
+        sheet.line(path, &format!(r#"class="preset" stroke="{}" stroke-width=".25""#, colour::OUT));
     }
     for leg in *legs {
-        polyline(&mut body, &path[leg.first..=leg.last], if leg.tag == "path" { "planned" } else { leg.tag });
+        let stroke = STRETCHES
+            .iter()
+            .find(|(tag, ..)| *tag == leg.tag)
+            .map_or(colour::TRACK, |(_, stroke, _)| *stroke);
+        let style =
+            format!(r#"class="{}" stroke="{stroke}" stroke-width=".25" stroke-linejoin="round""#, leg.tag);
+        sheet.line(&path[leg.first..=leg.last], &style);
     }
+    let margin = format!(
+        r#"class="margin" fill="none" stroke="{}" stroke-width=".2" stroke-dasharray=".8 .6""#,
+        colour::MISSED
+    );
+    for obstacle in &world.obstacles {
+        if let Shape::Disc { center, radius_m } = &obstacle.shape {
+            sheet.circle(*center, (radius_m + drawn.room_m) * sheet.scale, &margin);
+        }
+    }
+    let fixtures = Fixtures {
+        boundary: &world.boundary,
+        drawn: world.obstacles.iter().map(|obstacle| &obstacle.shape).collect(),
+        found: Vec::new(),
+        stations: &world.stations,
+        zones: &world.zones,
+        anchor: drawn.anchor,
+    };
+    sheet.obstacles(&fixtures);
     for cut in drawn.cuts {
-        polyline(&mut body, cut, "cut");
+        let style = format!(
+            r#"class="cut" stroke="{}" stroke-width=".35" stroke-dasharray="1.4 .8""#,
+            colour::MISSED
+        );
+        sheet.line(cut, &style);
     }
     if drawn.cable.len() > 1 {
-        polyline(&mut body, drawn.cable, "cable");
+        let style =
+            format!(r#"class="cable" stroke="{}" stroke-width=".5" stroke-linecap="round""#, colour::INK);
+        sheet.line(drawn.cable, &style);
     }
-    if let Some(anchor) = drawn.anchor {
-        circle(&mut body, anchor, 0.15, "anchor");
-    }
-    for station in &world.stations {
-        circle(&mut body, station.position, 0.1, "station");
-    }
-    document(&world.boundary, STYLE, &body)
+    sheet.frame(&fixtures, 2.4);
+    sheet.key(&key(drawn));
+    sheet.into_document("Plan")
 }
 
-const STYLE: &str = concat!(
-    ".preset{stroke:#999}.planned,.swath{stroke:#1f5fbf;stroke-width:0.05}",
-    ".band{stroke:#1f5fbf;stroke-opacity:0.12;stroke-linejoin:round}.connector{stroke:#e07b00}",
-    ".retract{stroke:#8a3ab9}.travel{stroke:#2a9d4a}.anchor{fill:#2a9d4a}",
-    ".cut{stroke:#d00;stroke-width:0.05;stroke-dasharray:0.2 0.12}",
-    ".cable{stroke:#111;stroke-width:0.09;stroke-linecap:round}",
-);
+/// What the colours mean that are on the picture.
+fn key(drawn: &Drawn<'_>) -> Vec<(&'static str, &'static str)> {
+    let is_there = |tag: &str| drawn.legs.iter().any(|leg| leg.tag == tag);
+    let stretches =
+        STRETCHES.iter().filter(|(tag, ..)| is_there(tag)).map(|(_, stroke, word)| (*stroke, *word));
+    let others = [
+        (drawn.preset.is_some(), colour::OUT, "preset path"),
+        (!drawn.cuts.is_empty(), colour::MISSED, "line not to be crossed"),
+        (drawn.cable.len() > 1, colour::INK, "tether at its longest"),
+        (!drawn.world.obstacles.is_empty(), colour::SOLID, "obstacle"),
+    ];
+    stretches
+        .chain(others.into_iter().filter(|(there, ..)| *there).map(|(_, stroke, word)| (stroke, word)))
+        .collect()
+}

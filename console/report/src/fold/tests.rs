@@ -164,17 +164,19 @@ fn coverage_counts_believed_and_true_cells() {
     ]);
     let coverage = run.summary().coverage.unwrap();
     assert_eq!((coverage.reachable, coverage.whole), (0.25, 0.25));
-    assert_eq!(coverage.missed_area_m2, 48.0 * 0.25);
+    assert_eq!(coverage.missed_area_m2, None, "the mission was not to scan");
     assert_eq!(coverage.by_truth.unwrap().whole, 0.25);
     assert_eq!(coverage.overlap, Some(0.0));
+    assert_eq!(coverage.by_truth.unwrap().scanned_truly, Some(1.0));
 }
 
 #[test]
 fn going_back_over_everything_is_an_overlap_of_nearly_one() {
     let there = (0..=35).map(|k| -1.75 + f64::from(k) * 0.1);
     let back = (0..=35).map(|k| 1.75 - f64::from(k) * 0.1);
-    let mut events = vec![(0, opened())];
-    events.extend(there.chain(back).enumerate().map(|(i, x)| (i as u64, truth(x, 0.0, 1.0, false))));
+    let start = json!({ "event": "ordered", "order": "start" });
+    let mut events = vec![(0, opened()), (0, start), (0, json!({ "event": "covered", "runs": [[24, 16]] }))];
+    events.extend(there.chain(back).enumerate().map(|(i, x)| (i as u64, estimated(x, 0.0, 0.01))));
     let overlap = fold(&events).summary().coverage.unwrap().overlap.unwrap();
     // Where it turned it had not gone two swaths since: those cells do not count again.
     assert!((0.5..0.9).contains(&overlap), "{overlap}");

@@ -2,10 +2,11 @@
 
 use super::text::counted;
 use crate::account::{Account, Area, Percent, PlateAccount, Shares, Slivers};
-use std::fmt::Display;
 
 /// Areas that are listed; the report as JSON has all of them.
 const MOST_AREAS: usize = 10;
+/// Arcs of the critical zone that are listed.
+const MOST_ARCS: usize = 3;
 /// Plates that are listed one by one.
 const MOST_PLATES: usize = 30;
 
@@ -15,8 +16,9 @@ pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
         ("floor", format!("whole floor {}", shares(&account.whole))),
         ("floor", format!("reachable floor {}", shares(&account.reachable))),
         ("floor", critical_zone(account)),
-        ("floor", basis(account)),
     ];
+    lines.extend(arcs(account).into_iter().map(|line| ("floor", line)));
+    lines.push(("floor", basis(account)));
     lines.extend(areas(&account.missed).into_iter().map(|line| ("missed", line)));
     lines.extend(slivers(account.slivers).into_iter().map(|line| ("missed", line)));
     lines.extend(areas(&account.unreachable).into_iter().map(|line| ("unreachable", line)));
@@ -27,7 +29,10 @@ pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
 
 /// Every plate in its order; of many only those with most floor missed.
 fn plates(plates: &[PlateAccount]) -> Vec<String> {
-    let line = |plate: &PlateAccount| format!("{} {}", plate.name, shares(&plate.shares));
+    let line = |plate: &PlateAccount| {
+        let error = plate.error_p95_m.map(|m| format!(", 95 % error {m:.3} m p95")).unwrap_or_default();
+        format!("{} {}{error}", plate.name, shares(&plate.shares))
+    };
     if plates.len() <= MOST_PLATES {
         return plates.iter().map(line).collect();
     }
@@ -49,20 +54,34 @@ fn plates(plates: &[PlateAccount]) -> Vec<String> {
 }
 
 fn shares(shares: &Shares) -> String {
-    let Percent { scanned, missed, unreachable, margin } = shares.percent;
-    let classes =
-        [("scanned", scanned), ("missed", missed), ("unreachable", unreachable), ("shell margin", margin)];
+    let Percent { scanned, missed, unreachable, margin, guaranteed } = shares.percent;
+    let guaranteed = guaranteed.map(|percent| format!(" ({percent:.1} % guaranteed)")).unwrap_or_default();
+    let classes = [("missed", missed), ("unreachable", unreachable), ("shell margin", margin)];
     let listed = classes
         .iter()
-        .filter(|(name, percent)| *percent > 0.0 || matches!(*name, "scanned" | "missed"))
-        .map(|(name, percent)| format!("{percent:.1} % {name}"));
-    format!("{:.1} m²: {}", shares.area_m2, listed.collect::<Vec<_>>().join(", "))
+        .filter(|(name, percent)| *percent > 0.0 || *name == "missed")
+        .map(|(name, percent)| format!(", {percent:.1} % {name}"));
+    format!("{:.1} m²: {scanned:.1} % scanned{guaranteed}{}", shares.area_m2, listed.collect::<String>())
 }
 
 fn critical_zone(account: &Account) -> String {
     let zone = &account.critical_zone;
     let state = zone.why.as_ref().map_or_else(|| "done".to_owned(), |why| format!("NOT done, {why}"));
     format!("critical zone, {:.0} mm along the shell: {state}", 1000.0 * zone.width_m)
+}
+
+/// The longest arcs of the critical zone that are not done.
+fn arcs(account: &Account) -> Option<String> {
+    let mut arcs: Vec<_> = account.critical_zone.arcs.iter().collect();
+    arcs.sort_by(|a, b| b.not_done_m.total_cmp(&a.not_done_m));
+    let listed = arcs.iter().take(MOST_ARCS).map(|arc| {
+        let (from, to) = (arc.from, arc.to);
+        format!("{:.1} m from {:.1}, {:.1} to {:.1}, {:.1}", arc.not_done_m, from.x, from.y, to.x, to.y)
+    });
+    let listed = listed.collect::<Vec<_>>().join("; ");
+    let more = arcs.len().saturating_sub(MOST_ARCS);
+    let more = if more > 0 { format!("; {} more", counted(more as u64, "arc")) } else { String::new() };
+    (!arcs.is_empty()).then(|| format!("critical zone not done: {listed}{more}"))
 }
 
 fn basis(account: &Account) -> String {
@@ -77,7 +96,7 @@ fn slivers(slivers: Slivers) -> Option<String> {
     (count > 0).then(|| format!("{area_m2:.2} m² in {} too small to list", counted(count as u64, "area")))
 }
 
-fn areas<R: Display>(areas: &[Area<R>]) -> Vec<String> {
+fn areas<R>(areas: &[Area<R>]) -> Vec<String> {
     let mut lines: Vec<String> = areas.iter().take(MOST_AREAS).map(ToString::to_string).collect();
     if let Some(rest) = areas.get(MOST_AREAS..).filter(|rest| !rest.is_empty()) {
         let area_m2: f64 = rest.iter().map(|area| area.area_m2).sum();
@@ -89,6 +108,7 @@ fn areas<R: Display>(areas: &[Area<R>]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::account::MissReason;
     use world::PlateKind;
 
     #[test]
@@ -99,7 +119,9 @@ mod tests {
             high: world::Point::origin(),
             area_m2: 0.02,
             plate: None,
-            reason: "so",
+            plates: Vec::new(),
+            reason: MissReason::NotAsked,
+            causes: Vec::new(),
         };
         let rest = |count: usize| areas(&(0..count).map(|_| area()).collect::<Vec<_>>()).pop();
         assert_eq!(rest(11).as_deref(), Some("0.02 m² in 1 more area"));
@@ -115,7 +137,12 @@ mod tests {
             let percent =
                 Percent { scanned: 100.0 - 100.0 * missed, missed: 100.0 * missed, ..Percent::default() };
             let shares = Shares { area_m2: 1.0, scanned: 1.0 - missed, missed, percent, ..Shares::default() };
-            PlateAccount { name: format!("R-{k:02}"), kind: PlateKind::Rectangular, shares }
+            PlateAccount {
+                name: format!("R-{k:02}"),
+                kind: PlateKind::Rectangular,
+                error_p95_m: None,
+                shares,
+            }
         };
         let few: Vec<PlateAccount> = (0..30).map(plate).collect();
         assert_eq!(plates(&few).len(), 30);

@@ -2,7 +2,7 @@
 
 use super::Rescan;
 use crate::account::Area;
-use std::fmt::{Display, Write};
+use std::fmt::Write;
 
 /// Areas that are listed one by one.
 const MOST_LISTED: usize = 10;
@@ -43,7 +43,7 @@ impl Rescan {
     }
 }
 
-fn listed<R: Display>(label: &str, areas: &[Area<R>]) -> String {
+fn listed<R>(label: &str, areas: &[Area<R>]) -> String {
     let mut text = String::new();
     for area in areas.iter().take(MOST_LISTED) {
         let _ = writeln!(text, "{label}: {area}");

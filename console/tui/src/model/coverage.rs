@@ -1,14 +1,13 @@
 //! What has been scanned, kept ready for drawing at any zoom.
 
 mod class;
-mod overlap;
 
 pub use class::FloorClass;
 
 use class::Tally;
-use overlap::Overlap;
+use report::{Overlap, account::Shares};
 use serde::{Deserialize, Serialize};
-use world::{Cell, CellRun, CoverageGrid, Floor, KindRun, Pose, Tool, coverage::Counts};
+use world::{CellRun, CoverageGrid, Floor, KindRun, Pose, Tool, coverage::Counts};
 
 /// Blocks of cells at one zoom.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -26,24 +25,9 @@ pub struct Raster {
     grid: CoverageGrid,
     /// The first one halves the grid.
     levels: Vec<Level>,
-    /// Cells along the shell that are out of reach and have not been scanned.
-    n_margin: usize,
     overlap: Overlap,
     /// Differs after every change, and between floors.
     stamp: u64,
-}
-
-/// How the whole floor divides. Shares, 0 to 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Division {
-    /// Scanned.
-    pub scanned: f64,
-    /// In reach and not scanned: to do, or missed when the mission has ended.
-    pub to_do: f64,
-    /// Out of reach along the shell.
-    pub margin: f64,
-    /// Out of reach elsewhere.
-    pub unreachable: f64,
 }
 
 impl Raster {
@@ -54,9 +38,7 @@ impl Raster {
     }
 
     fn of(grid: CoverageGrid, overlap: Overlap) -> Self {
-        let is_margin = |index: &usize| grid.floor().kind(*index) == Cell::Margin && !grid.is_covered(*index);
-        let n_margin = (0..grid.floor().len()).filter(is_margin).count();
-        let mut raster = Self { grid, levels: Vec::new(), n_margin, overlap, stamp: 0 };
+        let mut raster = Self { grid, levels: Vec::new(), overlap, stamp: 0 };
         raster.levels = (1..).map_while(|shift| raster.level(shift)).collect();
         for index in 0..raster.grid.floor().len() {
             raster.note(raster.grid.floor().kind(index) as u64);
@@ -98,7 +80,6 @@ impl Raster {
             let end = (run.0 as usize).saturating_add(run.1 as usize).min(self.grid.floor().len());
             for index in (run.0 as usize)..end {
                 if !self.grid.is_covered(index) && self.grid.floor().is_floor(index) {
-                    self.n_margin -= usize::from(self.grid.floor().kind(index) == Cell::Margin);
                     self.count(index, |block| block.scanned += 1);
                     self.note(index as u64);
                 }
@@ -140,17 +121,14 @@ impl Raster {
         self.counts().covered as f64 * self.grid.floor().cell_m.powi(2)
     }
 
-    /// How the whole floor divides; the shares sum to 1.
-    pub fn division(&self) -> Division {
-        let counts = self.counts();
-        let share = |cells: usize| if counts.floor == 0 { 0.0 } else { cells as f64 / counts.floor as f64 };
-        let out_of_reach = counts.floor - counts.reachable - (counts.covered - counts.covered_reachable);
-        Division {
-            scanned: share(counts.covered),
-            to_do: share(counts.reachable - counts.covered_reachable),
-            margin: share(self.n_margin.min(out_of_reach)),
-            unreachable: share(out_of_reach.saturating_sub(self.n_margin)),
-        }
+    /// How the whole floor divides, as the report counts it.
+    pub fn whole(&self) -> Shares {
+        Shares::of(self.counts(), self.floor().cell_m2())
+    }
+
+    /// How the reachable floor divides, as the report counts it.
+    pub fn reachable(&self) -> Shares {
+        Shares::of(self.counts().of_reachable(), self.floor().cell_m2())
     }
 
     fn level(&self, shift: u32) -> Option<Level> {
@@ -216,9 +194,9 @@ mod tests {
         let mut raster = Raster::new(Floor::new(&world, 0.5, 1.2, 0.4, Point::new(4.0, 4.0)));
         for runs in [vec![], vec![CellRun(0, 40)], vec![CellRun(30, 90)]] {
             raster.apply(&runs);
-            let Division { scanned, to_do, margin, unreachable } = raster.division();
-            assert!((scanned + to_do + margin + unreachable - 1.0).abs() < 1e-12);
-            assert!(margin > 0.1 && unreachable.abs() < 1e-12, "{:?}", raster.division());
+            let Shares { scanned, missed, margin, unreachable, .. } = raster.whole();
+            assert!((scanned + missed + margin + unreachable - 1.0).abs() < 1e-12);
+            assert!(margin > 0.1 && unreachable.abs() < 1e-12, "{:?}", raster.whole());
         }
     }
 

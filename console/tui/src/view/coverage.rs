@@ -2,13 +2,13 @@
 
 use super::look::{Look, fill, ranked};
 use super::text;
-use crate::model::coverage::{Division, Raster};
+use crate::model::coverage::Raster;
 use crate::model::{Pane, Run};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
-use world::coverage::percents;
+use report::account::{Percent, Shares};
 
 /// What the two columns of shares are shares of, on a wide screen.
 const BASES: &str = "reachable  whole floor";
@@ -38,7 +38,10 @@ fn is_stale(look: &Look) -> bool {
 fn wide_lines(look: &Look, columns: usize) -> Vec<(u8, Line<'static>)> {
     let run = look.run;
     let (reachable, whole) = shares(run);
-    let [_, to_do, margin, unreachable] = division(run);
+    let of_whole = |part: fn(&Percent) -> f64| percent(run, Raster::whole, part);
+    let (to_do, margin) = (of_whole(|percent| percent.missed), of_whole(|percent| percent.margin));
+    let unreachable = of_whole(|percent| percent.unreachable);
+    let to_do_reachable = percent(run, Raster::reachable, |percent| percent.missed);
     let row = |rank: u8, label: &str, value: String| {
         (rank, look.line([(Role::Dim, format!(" {label:<LABEL$}")), (Role::Text, value)]))
     };
@@ -55,7 +58,7 @@ fn wide_lines(look: &Look, columns: usize) -> Vec<(u8, Line<'static>)> {
     vec![
         row(0, &format!("{mark}scanned"), shares(format!("{reachable} %"), &whole)),
         (1, look.line([(Role::Good, format!(" {}", bar(run, columns.saturating_sub(2))))])),
-        row(3, to_do_label(run), shares(format!("{} %", to_do_reachable(run)), &to_do)),
+        row(3, to_do_label(run), shares(format!("{to_do_reachable} %"), &to_do)),
         row(7, "unreachable", out_of_reach),
         row(5, "rate", rate(run)),
         row(6, "overlap", format!("{overlap} % of scanned floor")),
@@ -69,7 +72,7 @@ fn narrow_lines(look: &Look) -> Vec<(u8, Line<'static>)> {
     let (reachable, whole) = shares(run);
     let text = |value: String| look.line([(Role::Text, format!(" {value}"))]);
     let left_or_missed = if run.has_ended() {
-        format!("missed {} % of reachable", to_do_reachable(run))
+        format!("missed {} % of reachable", percent(run, Raster::reachable, |percent| percent.missed))
     } else {
         format!("left {}", left(run, false))
     };
@@ -90,32 +93,23 @@ fn narrow_lines(look: &Look) -> Vec<(u8, Line<'static>)> {
 
 /// Scanned shares of the reachable and of the whole floor; dashes before the first step.
 pub(super) fn shares(run: &Run) -> (String, String) {
-    run.progress.as_ref().map_or_else(
-        || ("-".into(), "-".into()),
-        |progress| (text::percent(progress.covered_reachable), text::percent(progress.covered_whole)),
-    )
+    let scanned = |of: fn(&Raster) -> Shares| percent(run, of, |percent| percent.scanned);
+    (scanned(Raster::reachable), scanned(Raster::whole))
+}
+
+/// A share of the floor, as the report prints it; a dash before the first step.
+fn percent(run: &Run, of: fn(&Raster) -> Shares, part: fn(&Percent) -> f64) -> String {
+    let raster = run.coverage.as_ref().filter(|_| run.progress.is_some());
+    raster.map_or_else(|| "-".into(), |raster| text::number(part(&of(raster).percent), 1))
 }
 
 fn bar(run: &Run, columns: usize) -> String {
     text::bar(run.progress.as_ref().map_or(0.0, |progress| progress.covered_reachable), columns)
 }
 
-/// How the whole floor divides, in per cent that sum to 100.0: scanned, to do, shell margin, out of reach elsewhere.
-fn division(run: &Run) -> [String; 4] {
-    let Some(raster) = &run.coverage else { return [(); 4].map(|()| "-".into()) };
-    let Division { scanned, to_do, margin, unreachable } = raster.division();
-    percents([scanned, to_do, margin, unreachable]).map(|percent| text::number(percent, 1))
-}
-
 /// What is not scanned is still to do, and missed when the mission has ended.
 fn to_do_label(run: &Run) -> &'static str {
     if run.has_ended() { "missed" } else { "to do" }
-}
-
-/// The same of the reachable floor.
-fn to_do_reachable(run: &Run) -> String {
-    let scanned = run.progress.as_ref().map(|progress| progress.covered_reachable);
-    scanned.map_or_else(|| "-".into(), |scanned| text::number(percents([scanned, 1.0 - scanned])[1], 1))
 }
 
 fn rate(run: &Run) -> String {

@@ -89,7 +89,7 @@ fn row(index: usize, area: &Area<MissReason>, columns: usize) -> Parts {
         text::column(plate, 8),
         text::place(area.at),
         text::number(area.area_m2, 3),
-        area.reason
+        area.why()
     );
     vec![(Role::Text, text::fit(&words, columns.saturating_sub(1)))]
 }

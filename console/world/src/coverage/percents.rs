@@ -2,8 +2,9 @@
 
 /// Shares as percentages with one decimal; they sum to 100.0 if the shares sum to 1 (largest remainder method).
 ///
-/// The first share is rounded as usual, so that it reads the same where it stands alone. The others are rounded down, and
-/// the tenths that are then missing go to those with the largest remainders.
+/// The first share is rounded as usual, so that it reads the same where it stands alone ([`percent`]), but never up to 100.0
+/// while another one is left. The others are rounded down, and the tenths that are then missing go to those with the largest
+/// remainders.
 ///
 /// ```
 /// use world::coverage::percents;
@@ -14,6 +15,10 @@ pub fn percents<const N: usize>(shares: [f64; N]) -> [f64; N] {
     let mut parts = exact.map(|part| (part + 1e-9).floor());
     let Some(first) = parts.first_mut() else { return shares };
     *first = (exact[0] + 1e-9).round();
+    let is_all = exact[1..].iter().all(|part| *part <= 1e-9);
+    if *first >= 1000.0 && !is_all {
+        *first = 999.0;
+    }
     let lacking = (exact.iter().sum::<f64>().round() - parts.iter().sum::<f64>()).max(0.0) as usize;
     let mut order: Vec<usize> = (1..N).collect();
     order.sort_by(|a, b| (exact[*b] - parts[*b]).total_cmp(&(exact[*a] - parts[*a])));
@@ -21,8 +26,20 @@ pub fn percents<const N: usize>(shares: [f64; N]) -> [f64; N] {
     parts.map(|part| part / 10.0)
 }
 
+/// A share as it is printed wherever it stands alone: in per cent with one decimal, 100.0 only if nothing is left.
+///
+/// ```
+/// use world::coverage::percent;
+/// assert_eq!([0.5, 0.9999, 1.0].map(percent), [50.0, 99.9, 100.0]);
+/// ```
+pub fn percent(share: f64) -> f64 {
+    percents([share, 1.0 - share])[0]
+}
+
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::float_cmp, reason = "tenths are exact")]
+
     use super::*;
     use proptest::prelude::*;
 
@@ -39,6 +56,12 @@ mod tests {
         assert_eq!(percents([1.0, 0.0]).map(|percent| percent as u32), [100, 0]);
     }
 
+    #[test]
+    fn what_is_not_whole_never_reads_as_whole() {
+        assert_eq!(percents([0.9997, 0.0003, 0.0, 0.0]), [99.9, 0.1, 0.0, 0.0]);
+        assert_eq!(percents([1.0, 0.0]), [100.0, 0.0]);
+    }
+
     proptest! {
         #[test]
         fn whatever_is_divided_sums_to_a_hundred_as_it_is_printed(
@@ -50,7 +73,9 @@ mod tests {
             let shares = parts.map(|part| f64::from(part) / f64::from(whole));
             let rounded = percents(shares);
             prop_assert_eq!(tenths(&rounded), 1000, "{:?}", rounded);
-            prop_assert!((rounded[0] - 100.0 * shares[0]).abs() < 0.05 + 1e-6);
+            prop_assert!((rounded[0] - 100.0 * shares[0]).abs() < 0.05 + 1e-6 || rounded[0] == 99.9);
+            prop_assert!((rounded[0] >= 100.0) == (parts[1..] == [0, 0, 0]));
+            prop_assert_eq!(rounded[0], percent(shares[0]));
             for (share, percent) in shares.iter().zip(&rounded) {
                 prop_assert!(*percent >= 0.0 && (percent - 100.0 * share).abs() < 0.1 + 1e-6);
             }

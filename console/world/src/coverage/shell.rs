@@ -64,6 +64,50 @@ pub struct ShellFigures {
     pub gap_m: f64,
 }
 
+/// A short stretch of the shell beside free floor, and how the zone before it was scanned.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShellStretch {
+    /// Its middle, on the wall, metres.
+    pub at: Point,
+    /// Way along the wall to its beginning, metres: counter-clockwise from due east, or from the first corner on.
+    pub along_m: f64,
+    /// Its length, metres.
+    pub length_m: f64,
+    /// Free share of the zone's width, 0 to 1.
+    pub free: f64,
+    /// Scanned share of the zone's width, 0 to 1.
+    pub scanned: f64,
+    /// Distance from the shell to the scanned floor, metres; `None` where the whole width was scanned.
+    pub gap_m: Option<f64>,
+}
+
+impl ShellFigures {
+    /// The figures of some stretches.
+    ///
+    /// ```
+    /// use world::{Boundary, ShellFigures, ShellZone};
+    /// let zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
+    /// assert_eq!(ShellFigures::of(&zone.profile(|_| false)), zone.figures(|_| false));
+    /// ```
+    pub fn of<'a>(stretches: impl IntoIterator<Item = &'a ShellStretch>) -> Self {
+        let mut figures = Self::default();
+        let (mut of_m, mut scanned_m) = (0.0, 0.0);
+        let mut gaps: Vec<(f64, f64)> = Vec::new();
+        for ShellStretch { length_m, free, scanned, gap_m, .. } in stretches {
+            figures.length_m += length_m;
+            of_m += length_m * free;
+            scanned_m += length_m * scanned;
+            match gap_m {
+                None => figures.done_m += length_m,
+                Some(gap_m) => gaps.push((*gap_m, *length_m)),
+            }
+        }
+        figures.scanned = if of_m > 0.0 { scanned_m / of_m } else { 0.0 };
+        figures.gap_m = median(gaps);
+        figures
+    }
+}
+
 impl ShellZone {
     /// The zone of some width along a wall, metres, of which nothing has been scanned.
     ///
@@ -151,30 +195,37 @@ impl ShellZone {
     /// assert!((half.length_m - 15.71).abs() < 0.1 && half.gap_m == 0.075);
     /// ```
     pub fn figures(&self, is_solid: impl Fn(Point) -> bool) -> ShellFigures {
-        let mut figures = ShellFigures::default();
-        let (mut of_m, mut scanned_m) = (0.0, 0.0);
-        let mut gaps: Vec<(f64, f64)> = Vec::new();
-        for stretch in &self.stretches {
+        ShellFigures::of(&self.profile(is_solid))
+    }
+
+    /// The stretches beside free floor, in their order along the wall, apart from points that `is_solid` excludes.
+    ///
+    /// ```
+    /// use world::{Boundary, ShellZone};
+    /// let zone = ShellZone::new(&Boundary::Circle { radius_m: 5.0 }, 0.075);
+    /// assert!(zone.profile(|_| false).iter().all(|stretch| stretch.gap_m == Some(0.075)));
+    /// ```
+    pub fn profile(&self, is_solid: impl Fn(Point) -> bool) -> Vec<ShellStretch> {
+        let mut along_m = 0.0;
+        let profiled = self.stretches.iter().filter_map(|stretch| {
+            let from_m = along_m;
+            along_m += stretch.length_m;
             let is_free =
                 |layer: &usize| stretch.inside & 1 << layer != 0 && !is_solid(stretch.in_layer(*layer));
             let free = (0..LAYERS).filter(is_free).fold(0_u32, |bits, layer| bits | 1 << layer);
-            if free == 0 {
-                continue;
-            }
             let passed = stretch.passed & free;
-            figures.length_m += stretch.length_m;
-            of_m += stretch.length_m * f64::from(free.count_ones());
-            scanned_m += stretch.length_m * f64::from(passed.count_ones());
-            if passed == free {
-                figures.done_m += stretch.length_m;
-            } else {
-                let layers = passed.trailing_zeros().min(LAYERS as u32);
-                gaps.push((f64::from(layers) / LAYERS as f64 * self.width_m, stretch.length_m));
-            }
-        }
-        figures.scanned = if of_m > 0.0 { scanned_m / of_m } else { 0.0 };
-        figures.gap_m = median(gaps);
-        figures
+            let share = |bits: u32| f64::from(bits.count_ones()) / LAYERS as f64;
+            let gap = || f64::from(passed.trailing_zeros().min(LAYERS as u32)) / LAYERS as f64 * self.width_m;
+            (free != 0).then(|| ShellStretch {
+                at: stretch.at,
+                along_m: from_m,
+                length_m: stretch.length_m,
+                free: share(free),
+                scanned: share(passed),
+                gap_m: (passed != free).then(gap),
+            })
+        });
+        profiled.collect()
     }
 }
 

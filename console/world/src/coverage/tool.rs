@@ -35,6 +35,22 @@ impl Tool {
         }
     }
 
+    /// The same tool, narrower by so much on each side, metres; `None` if nothing of it is left.
+    ///
+    /// ```
+    /// use world::Tool;
+    /// assert_eq!(Tool::Bar { swath_m: 0.5 }.narrowed(0.125), Some(Tool::Bar { swath_m: 0.25 }));
+    /// assert_eq!(Tool::Disc { swath_m: 0.5 }.narrowed(0.25), None);
+    /// ```
+    #[must_use]
+    pub fn narrowed(self, by_m: f64) -> Option<Self> {
+        let swath_m = self.swath_m() - 2.0 * by_m;
+        (swath_m > 0.0).then_some(match self {
+            Self::Bar { .. } => Self::Bar { swath_m },
+            Self::Disc { .. } => Self::Disc { swath_m },
+        })
+    }
+
     /// The area that it sweeps between two poses that are close together.
     pub(super) fn passage(self, from: Pose, to: Pose) -> Passage {
         match self {

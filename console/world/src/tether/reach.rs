@@ -35,9 +35,31 @@ impl Reach {
     /// assert!(reach.is_beyond(Point::new(8.0, 0.0)), "8.06 m around the column");
     /// ```
     pub fn is_beyond(&self, place: Point) -> bool {
+        self.beyond_m(place).is_some()
+    }
+
+    /// By how much the shortest path to a point is longer than the tether, metres; `None` if it is not.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, tether::Reach};
+    /// let reach = Reach::new(Point::origin(), &Boundary::Circle { radius_m: 10.0 }, &[], 5.0);
+    /// assert!((reach.beyond_m(Point::new(6.0, 0.0)).unwrap() - 1.0).abs() < 1e-9);
+    /// ```
+    pub fn beyond_m(&self, place: Point) -> Option<f64> {
         let straight_m = (place - self.anchor).norm();
         let path_m = self.paths.distance_m(place);
-        path_m.is_finite() && (straight_m > self.within_m || path_m > self.within_m)
+        let longest_m = straight_m.max(path_m);
+        (path_m.is_finite() && longest_m > self.within_m).then_some(longest_m - self.within_m)
+    }
+
+    /// The longest path that the tether allows, metres.
+    ///
+    /// ```
+    /// use world::{Boundary, Point, tether::Reach};
+    /// assert_eq!(Reach::new(Point::origin(), &Boundary::Circle { radius_m: 10.0 }, &[], 5.0).within_m(), 5.0);
+    /// ```
+    pub fn within_m(&self) -> f64 {
+        self.within_m
     }
 }
 

@@ -1,7 +1,7 @@
 //! What the marks on the map stand for: the floor on the left, lines and marks on the right.
 
 use super::shade::Shade;
-use crate::model::{Raster, coverage::Division, ui::MapLayer};
+use crate::model::{Raster, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use ratatui::Frame;
@@ -9,6 +9,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Clear;
+use report::account::Shares;
 
 /// Columns of the right side, and most rows.
 const SIZE: (u16, u16) = (12, 8);
@@ -38,8 +39,8 @@ fn draw_side(look: &Look, frame: &mut Frame, area: Rect, entries: &[Entry]) {
 fn floor(look: &Look) -> Vec<Entry> {
     let (run, layers) = (look.run, look.model.ui.layers);
     let scanned = layers.shows(MapLayer::Scanned);
-    let division = run.coverage.as_ref().map(Raster::division);
-    let some = |share: fn(&Division) -> f64| {
+    let division = run.coverage.as_ref().map(Raster::whole);
+    let some = |share: fn(&Shares) -> f64| {
         scanned && division.as_ref().is_some_and(|division| share(division) > 0.0)
     };
     let again = run.coverage.as_ref().and_then(Raster::overlap).is_some_and(|share| share > 0.0);
@@ -47,7 +48,7 @@ fn floor(look: &Look) -> Vec<Entry> {
         (scanned, Shade::Scanned, "scanned"),
         (scanned && again, Shade::Overlap, "overlap"),
         (scanned, Shade::Partial, "partial"),
-        (run.has_missed() && some(|division| division.to_do), Shade::Missed, "missed"),
+        (run.has_missed() && some(|division| division.missed), Shade::Missed, "missed"),
         (some(|division| division.unreachable), Shade::Unreachable, "unreachable"),
         (some(|division| division.margin), Shade::Margin, "margin"),
         (layers.shows(MapLayer::Accuracy), Shade::PoorFix, "poor fix"),

@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Coming back to a cell counts as scanning it again after this many swaths of way, as in the report.
+/// Coming back to a cell counts as scanning it again after this many swaths of way.
 const AGAIN_SWATHS: f64 = 2.0;
 /// The way is kept in steps of half a swath: 65 535 of them are 19 km for a swath of 0.6 m.
 const STEPS_PER_SWATH: f64 = 2.0;
 
 /// How often each cell was scanned again.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub(super) struct Overlap {
+pub struct Overlap {
     /// Way gone so far, metres.
     way_m: f64,
     /// Way gone when each cell was last under the tool, in steps, from 1; 0 before the first time.
@@ -20,23 +20,23 @@ pub(super) struct Overlap {
 }
 
 impl Overlap {
-    /// Nothing was scanned yet.
-    pub(super) fn new(cells: usize) -> Self {
+    /// Nothing of so many cells was scanned yet.
+    pub fn new(cells: usize) -> Self {
         Self { last: vec![0; cells], again: vec![0; cells], ..Self::default() }
     }
 
     /// How often a cell was scanned again.
-    pub(super) fn again(&self, index: usize) -> u8 {
+    pub fn again(&self, index: usize) -> u8 {
         self.again[index]
     }
 
     /// How often cells were scanned again, all together.
-    pub(super) fn n_again(&self) -> u64 {
+    pub fn n_again(&self) -> u64 {
         self.n_again
     }
 
     /// The tool has moved on by some way over some cells; which of them it came back to, with whether for the first time.
-    pub(super) fn pass(
+    pub fn pass(
         &mut self,
         way_m: f64,
         swath_m: f64,
@@ -58,6 +58,16 @@ impl Overlap {
             }
         }
         returned
+    }
+
+    /// Takes in another run over the same floor: what both scanned, one of them scanned again.
+    pub(crate) fn join(&mut self, other: &Self, is_in_both: impl Fn(usize) -> bool) {
+        for (cell, (own, others)) in self.again.iter_mut().zip(&other.again).enumerate() {
+            let twice = u8::from(is_in_both(cell));
+            *own = own.saturating_add(*others).saturating_add(twice);
+            self.n_again += u64::from(twice);
+        }
+        self.n_again += other.n_again;
     }
 }
 

@@ -1,0 +1,112 @@
+//! The events of every tick, read straight into their fields: the general reader of an event first reads it as any value and
+//! then sorts out what it is, which takes several times as long.
+
+use mission::{AskId, Event, EventKind, event::TetherContact};
+use planner_api::{Command, LegTag, PoseEstimate};
+use positioning::Ranging;
+use serde::Deserialize;
+use world::{CellRun, Point, Pose};
+
+/// Reads a line with the fields of an event, those after `;` may be absent.
+macro_rules! read {
+    ($line:expr, $kind:ident { $($field:ident: $type:ty),*; $($optional:ident: $some:ty),* }) => {{
+        #[derive(Deserialize)]
+        struct Fields {
+            tick: u64,
+            t_s: f64,
+            $($field: $type,)*
+            $(#[serde(default)] $optional: $some,)*
+        }
+        let Fields { tick, t_s, $($field,)* $($optional,)* } = serde_json::from_slice($line).ok()?;
+        Some(Event { tick, t_s, kind: EventKind::$kind { $($field,)* $($optional,)* } })
+    }};
+}
+
+/// The event of a line as this program writes it, if it is one of those of every tick; `None` for any other line, and for one
+/// that cannot be read: the general reader says what is wrong.
+pub(super) fn event(line: &[u8]) -> Option<Event> {
+    match name_of(line)? {
+        b"estimated" => read!(line, Estimated { pose: PoseEstimate; }),
+        b"truth" => read!(line, Truth { pose: Pose, clearance_m: f64, collided: bool; }),
+        b"covered" => read!(line, Covered { runs: Vec<CellRun>; }),
+        b"uncounted" => read!(line, Uncounted { runs: Vec<CellRun>; }),
+        b"ranged" => read!(line, Ranged { ranges: Vec<Ranging>; }),
+        b"commanded" => read!(line, Commanded { command: Command; ask: Option<AskId> }),
+        b"tether_truth" => read!(
+            line,
+            TetherTruth { length_m: f64, wrap_max_rad: f64, wrap_total_rad: f64, detour_m: f64; }
+        ),
+        b"progressed" => read!(
+            line,
+            Progressed {
+                done: f64, target: Point, covered_reachable: f64, covered_whole: f64;
+                along_m: Option<f64>, cross_track_m: Option<f64>, leg: Option<LegTag>
+            }
+        ),
+        b"tethered" => read!(
+            line,
+            Tethered {
+                length_m: f64, free_m: f64, contacts: Vec<TetherContact>, wrap_max_rad: f64, wrap_total_rad: f64,
+                pull_factor: f64, line: Vec<Point>;
+                paid_out_m: Option<f64>, return_length_m: Option<f64>
+            }
+        ),
+        _ => None,
+    }
+}
+
+/// The name of the event, if it stands where this program writes it.
+fn name_of(line: &[u8]) -> Option<&[u8]> {
+    const KEY: &[u8] = b",\"event\":\"";
+    let head = line.get(..line.len().min(96))?;
+    let at = head.windows(KEY.len()).position(|window| window == KEY)? + KEY.len();
+    line[at..].split(|byte| *byte == b'"').next()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn both_readers_read_the_same() {
+        let pose = json!({ "position": [1.25, -0.1], "heading_rad": 0.3 });
+        let covariance = [0.01, 0.0, 0.0, 0.0, 0.02, 0.0, 0.0, 0.0, 0.001];
+        let estimate = json!({ "position": [1.0, 2.0], "heading_rad": 0.5, "covariance": covariance });
+        let drive =
+            json!({ "drive": { "twist": { "v_m_per_s": 0.4, "w_rad_per_s": 0.1 } }, "status": "moving" });
+        let kinds = [
+            json!({ "event": "estimated", "pose": estimate }),
+            json!({ "event": "truth", "pose": pose, "clearance_m": 0.123_456_789, "collided": false }),
+            json!({ "event": "covered", "runs": [[5, 2], [9, 1]] }),
+            json!({ "event": "uncounted", "runs": [] }),
+            json!({ "event": "commanded", "ask": [1, 28], "command": drive }),
+            json!({ "event": "commanded", "command": drive }),
+            json!({ "event": "tether_truth", "length_m": 1.0, "wrap_max_rad": 0.2, "wrap_total_rad": -0.0, "detour_m": 0.5 }),
+            json!({ "event": "progressed", "done": 0.5, "along_m": null, "cross_track_m": 0.1, "target": [1.0, 2.0],
+                    "covered_reachable": 0.25, "covered_whole": 0.2, "leg": "swath" }),
+            json!({ "event": "tethered", "length_m": 1.0, "free_m": 2.0, "contacts": [{ "on": "C1", "wrap_rad": 0.1, "at": [0.0, 1.0] }],
+                    "wrap_max_rad": 0.1, "wrap_total_rad": 0.1, "pull_factor": 1.1, "return_length_m": null, "line": [[0.0, 0.0]] }),
+        ];
+        for kind in kinds {
+            let mut line = json!({ "tick": 26, "t_s": 2.6 });
+            line.as_object_mut().unwrap().extend(kind.as_object().unwrap().clone());
+            let general: Event = serde_json::from_value(line).unwrap();
+            let text = serde_json::to_string(&general).unwrap();
+            assert_eq!(event(text.as_bytes()), Some(general), "{text}");
+        }
+    }
+
+    #[test]
+    fn other_lines_are_left_to_the_general_reader() {
+        let lines = [
+            r#"{"tick":1,"t_s":0.1,"event":"held","by":"operator"}"#,
+            r#"{"tick":1,"t_s":0.1,"event":"truth","pose":1}"#,
+            r#"{"event":"resumed","tick":1,"t_s":0.1}"#,
+            "",
+        ];
+        assert!(lines.iter().all(|line| event(line.as_bytes()).is_none()));
+    }
+}

@@ -1,0 +1,137 @@
+//! Why cells were missed or are out of reach, and the numbers behind it.
+
+use super::{
+    evidence::Evidence,
+    measure::{Measure, depth_m},
+    reason::{MissReason, OutOfReach},
+};
+use world::{CoverageGrid, Point, polyline, tether::Reach};
+
+/// Why floor was missed.
+pub struct Reasons<'a> {
+    pub(super) evidence: &'a Evidence,
+    /// Where the cable leads; `None` if no plan left floor out because of it.
+    pub(super) reach: Option<Reach>,
+    /// Width of lanes: the swath less the overlap, metres.
+    pub(super) lane_m: f64,
+    /// Hull and clearance, metres.
+    pub(super) room_m: f64,
+    /// The 95 % error above which nothing counts, metres.
+    pub(super) limit_m: f64,
+}
+
+impl Reasons<'_> {
+    /// Why a cell was missed.
+    pub fn why_missed(&self, center: Point, index: usize) -> MissReason {
+        let evidence = self.evidence;
+        if evidence.uncertain_m(index).is_some() {
+            MissReason::PositionUncertain
+        } else if self.is_left_beyond_reel(index, center) {
+            MissReason::BeyondReel
+        } else if evidence.is_beside_found(center) {
+            MissReason::FoundObstacle
+        } else if !evidence.is_asked(index) {
+            MissReason::NotAsked
+        } else if evidence.is_passed(index) {
+            MissReason::PassedBeside
+        } else if evidence.is_ahead(index) {
+            MissReason::NotReached
+        } else {
+            self.why_not_planned(center)
+        }
+    }
+
+    /// Why no plan led to a place.
+    fn why_not_planned(&self, place: Point) -> MissReason {
+        let (_, solid_m) = self.evidence.nearest_solid(place);
+        if self.room_m - solid_m > self.lane_m / 2.0 {
+            MissReason::Narrow
+        } else if solid_m < self.room_m {
+            MissReason::Clearance
+        } else if self.cut_m(place).is_some_and(|cut_m| cut_m <= self.lane_m) {
+            MissReason::Wrap
+        } else {
+            MissReason::NotPlanned
+        }
+    }
+
+    /// The number behind the reason for some cells, of which there is at least one.
+    pub(crate) fn measure(
+        &self,
+        grid: &CoverageGrid,
+        reason: MissReason,
+        cells: &[usize],
+    ) -> Option<Measure> {
+        let (floor, evidence) = (grid.floor(), self.evidence);
+        let most =
+            |of: &dyn Fn(usize) -> Option<f64>| cells.iter().filter_map(|cell| of(*cell)).reduce(f64::max);
+        let least =
+            |of: &dyn Fn(usize) -> Option<f64>| cells.iter().filter_map(|cell| of(*cell)).reduce(f64::min);
+        let solid = |cell: usize| evidence.nearest_solid(floor.center(cell));
+        let depth =
+            |is_other: &dyn Fn(usize) -> bool| Some(depth_m(floor, cells, is_other).unwrap_or(floor.cell_m));
+        match reason {
+            MissReason::PositionUncertain => {
+                most(&|cell| evidence.uncertain_m(cell)).map(|m| Measure::of(m).against(self.limit_m))
+            }
+            MissReason::FoundObstacle => {
+                let (name, distance_m) =
+                    evidence.nearest_found(cells.iter().map(|cell| floor.center(*cell)))?;
+                Some(Measure::of(distance_m.max(0.0)).beside(name))
+            }
+            MissReason::NotAsked => None,
+            MissReason::Narrow => most(&|cell| Some(self.room_m - solid(cell).1 - self.lane_m / 2.0))
+                .map(|m| Measure::of(m).against(self.lane_m)),
+            MissReason::Clearance => {
+                let nearest = cells.iter().map(|cell| solid(*cell)).min_by(|a, b| a.1.total_cmp(&b.1))?;
+                Some(Measure::of(nearest.1.max(0.0)).against(self.room_m).beside(nearest.0))
+            }
+            MissReason::Wrap => least(&|cell| self.cut_m(floor.center(cell))).map(Measure::of),
+            MissReason::NotPlanned => depth(&|cell| evidence.is_passed(cell) || evidence.is_ahead(cell))
+                .map(|m| Measure::of(m).against(self.lane_m)),
+            MissReason::BeyondReel => {
+                let reach = self.reach.as_ref()?;
+                most(&|cell| reach.beyond_m(floor.center(cell)))
+                    .map(|m| Measure::of(m).against(reach.within_m()))
+            }
+            MissReason::NotReached => {
+                most(&|cell| evidence.ahead_m(cell)).filter(|m| m.is_finite()).map(Measure::of)
+            }
+            MissReason::PassedBeside => depth(&|cell| grid.is_covered(cell)).map(Measure::of),
+        }
+    }
+
+    /// The number behind the reason why some cells are out of reach.
+    pub(crate) fn measure_out_of_reach(
+        &self,
+        grid: &CoverageGrid,
+        reason: OutOfReach,
+        cells: &[usize],
+    ) -> Option<Measure> {
+        let farthest = || {
+            let solid = |cell: &usize| self.evidence.nearest_solid(grid.floor().center(*cell));
+            cells.iter().map(solid).max_by(|a, b| a.1.total_cmp(&b.1))
+        };
+        match reason {
+            OutOfReach::ShellMargin | OutOfReach::BesideObstacle => {
+                farthest().map(|(name, m)| Measure::of(m.max(0.0)).against(self.room_m).beside(name))
+            }
+            OutOfReach::NoGo | OutOfReach::ClosedOff => None,
+        }
+    }
+
+    /// Distance from a line that the tethered robot does not cross, metres; `None` if there is none.
+    fn cut_m(&self, place: Point) -> Option<f64> {
+        let edges = self.evidence.cuts().iter().flat_map(|cut| cut.windows(2));
+        edges
+            .map(|edge| (place - polyline::nearest_on_segment(edge[0], edge[1], place)).norm())
+            .reduce(f64::min)
+    }
+
+    /// Whether a cell was to be scanned, and no plan led there, because the cable does not.
+    fn is_left_beyond_reel(&self, index: usize, center: Point) -> bool {
+        let evidence = self.evidence;
+        let is_left = evidence.is_asked(index) && !evidence.is_passed(index) && !evidence.is_ahead(index);
+        is_left && self.reach.as_ref().is_some_and(|reach| reach.is_beyond(center))
+    }
+}

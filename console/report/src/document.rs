@@ -1,0 +1,204 @@
+//! The report that an inspector signs: one model behind HTML, JSON, CSV, GeoJSON and DXF.
+
+mod charts;
+pub mod csv;
+pub mod dxf;
+mod facts;
+mod gate;
+pub mod geojson;
+mod indications;
+pub(crate) mod layers;
+mod maps;
+mod page;
+mod run_part;
+mod sections;
+
+pub use facts::Inspection;
+pub use gate::GateItem;
+pub use indications::Indication;
+pub use maps::Figure;
+pub use page::html;
+pub use run_part::{Driver, Files, RunPart, TetherPart};
+
+use crate::{
+    account::{Account, account},
+    joined::{Joined, PastRun, joined},
+    record::Record,
+    summary::Coverage,
+};
+use layers::Layers;
+use serde::Serialize;
+use world::Point;
+
+/// What is known beside the journals.
+#[derive(Debug, Default)]
+pub struct Context<'a> {
+    /// What only people know.
+    pub inspection: Inspection,
+    /// Indications as CSV, if there are.
+    pub indications_csv: Option<&'a str>,
+    /// Version of the program that makes the report.
+    pub version: &'a str,
+    /// Earlier signed reports on the same runs, in their order.
+    pub revisions: Vec<Revision>,
+    /// Who signs, and when (UTC); none for a draft.
+    pub signature: Option<Signature>,
+}
+
+/// A report that was signed before; it is never changed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, serde::Deserialize)]
+pub struct Revision {
+    /// Its letter.
+    pub revision: String,
+    /// Who signed, and when.
+    #[serde(flatten)]
+    pub signature: Signature,
+    /// Name of its file.
+    pub file: String,
+    /// SHA-256 of its file, hexadecimal.
+    pub sha256: String,
+}
+
+/// Who signs, and when.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, serde::Deserialize)]
+pub struct Signature {
+    /// Name of the inspector.
+    pub by: String,
+    /// When, UTC, as `2026-11-22 04:01`.
+    pub at: String,
+}
+
+/// A report.
+#[derive(Debug, Serialize)]
+pub struct Document {
+    /// Number of the document: when the first run began, and its seed.
+    pub number: String,
+    /// Letter of the revision.
+    pub revision: String,
+    /// Who signs it; absent for a draft.
+    pub signature: Option<Signature>,
+    /// Earlier signed reports on the same runs.
+    pub revisions: Vec<Revision>,
+    /// What made it.
+    pub made_by: String,
+    /// Whether positions and passes were computed and no floor was inspected.
+    pub is_simulation: bool,
+    /// What only people know; `null` is missing.
+    pub inspection: Inspection,
+    /// How much of the floor was scanned by all runs together.
+    pub coverage: Coverage,
+    /// The account of the floor over all runs.
+    pub floor: Account,
+    /// The runs, in the order given.
+    pub runs: Vec<RunPart>,
+    /// Indications of the instrument.
+    pub indications: Vec<Indication>,
+    /// What must be answered before the report can be signed.
+    pub gate: Vec<GateItem>,
+    #[serde(skip)]
+    pub(crate) pictures: Pictures,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Form and size of the tank.
+    pub size: String,
+}
+
+/// The pictures of a report.
+#[derive(Debug, Default)]
+pub(crate) struct Pictures {
+    pub(crate) coverage: Figure,
+    /// Numbers of missed areas that have a badge on it.
+    pub(crate) badges: Vec<usize>,
+    pub(crate) accuracy: Figure,
+    pub(crate) guaranteed: Figure,
+    pub(crate) zone: Figure,
+    /// Track, tether and record of each run.
+    pub(crate) runs: Vec<[Option<Figure>; 3]>,
+}
+
+impl Document {
+    /// The report on some runs on one floor.
+    ///
+    /// # Errors
+    /// As [`crate::merged()`], or indications that cannot be placed.
+    pub fn new(past: &[PastRun], context: Context<'_>) -> Result<Self, String> {
+        let all = joined(past)?;
+        let Joined { run, scanned, evidence } = &all;
+        let floor = account(run, scanned, evidence);
+        let places: Vec<Point> = floor.missed.iter().map(|area| area.at).collect();
+        let layers = Layers::new(run, scanned, evidence, &places);
+        let last = past.last().ok_or("no run to report")?;
+        let place = |csv| indications::indications(csv, &last.record, |at| layers.plate_at(at));
+        let indications = context.indications_csv.map(place).transpose();
+        let indications = indications.map_err(|error| format!("indications: {error}"))?.unwrap_or_default();
+        let runs: Vec<RunPart> = past.iter().filter_map(RunPart::of).collect();
+        let (coverage, badges) = maps::coverage(&layers);
+        let pictures = Pictures {
+            coverage,
+            badges,
+            accuracy: maps::accuracy(&layers),
+            guaranteed: maps::guaranteed(&layers, &floor.whole),
+            zone: charts::zone(run, &floor, &evidence.shell()),
+            runs: past.iter().map(|past| of_run(&layers, past)).collect(),
+        };
+        let mut document = Self {
+            number: number(past),
+            revision: letter(context.revisions.len()),
+            signature: context.signature,
+            revisions: context.revisions,
+            made_by: format!("tankops {}", context.version),
+            is_simulation: runs.iter().any(|run| run.positioning.is_some()),
+            inspection: context.inspection,
+            coverage: scanned.coverage(true),
+            floor,
+            runs,
+            indications,
+            gate: Vec::new(),
+            pictures,
+            scenario: run.scenario.clone(),
+            size: gate::size(run),
+        };
+        document.gate = gate::gate(&document, run);
+        Ok(document)
+    }
+
+    /// The items of the gate that are open; a report is signed without any.
+    pub fn open_items(&self) -> impl Iterator<Item = &GateItem> {
+        self.gate.iter().filter(|item| !item.is_answered)
+    }
+}
+
+fn of_run(layers: &Layers<'_>, past: &PastRun) -> [Option<Figure>; 3] {
+    let record: &Record = &past.record;
+    let marks: Vec<(usize, f64)> = record
+        .incidents()
+        .iter()
+        .enumerate()
+        .filter(|(_, incident)| is_marked(incident))
+        .map(|(index, incident)| (index + 1, incident.t_s))
+        .collect();
+    let over_time = past.fold.run.as_ref().and_then(|run| charts::over_time(run, record, &marks));
+    [maps::track(layers, record), maps::tether(layers, record), over_time]
+}
+
+/// Whether an incident has a number on the chart.
+pub(crate) fn is_marked(incident: &crate::record::Incident) -> bool {
+    incident.needs_review() || matches!(incident.kind, "obstacle" | "end")
+}
+
+/// Number of a document: the beginning of the first run's name, and its seed.
+fn number(past: &[PastRun]) -> String {
+    let first = past.first();
+    let began = first.map_or("", |past| past.name.split('-').next().unwrap_or_default());
+    let seed = first.and_then(|past| past.fold.run.as_ref()).map_or(0, |run| run.seed);
+    format!("{began}-{seed}")
+}
+
+/// Letter of the revision after so many: A, B, ... Z, AA, AB.
+fn letter(index: usize) -> String {
+    let last = char::from(b'A' + (index % 26) as u8);
+    if index < 26 { last.to_string() } else { letter(index / 26 - 1) + &last.to_string() }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,121 @@
+//! The report as tables for spreadsheets.
+
+use super::Document;
+use crate::{account::Shares, joined::PastRun};
+use csv::Writer;
+
+/// The tables, each with what its file's name has behind that of the first: plates with the whole and the reachable floor,
+/// missed areas, obstacles found, indications, and the track of every run with its 95 % error.
+pub fn tables(document: &Document, past: &[PastRun]) -> Vec<(&'static str, String)> {
+    vec![
+        ("", plates(document)),
+        ("-missed", missed(document)),
+        ("-obstacles", obstacles(past)),
+        ("-indications", indications(document)),
+        ("-track", track(past)),
+    ]
+}
+
+/// Rows under a head; writing to memory cannot fail.
+fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let mut writer = Writer::from_writer(Vec::new());
+    let _ = writer.write_record(head);
+    for row in rows {
+        let _ = writer.write_record(row);
+    }
+    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+}
+
+fn plates(document: &Document) -> String {
+    let floor = &document.floor;
+    let row = |name: &str, kind: &str, shares: &Shares, error_m: Option<f64>| {
+        let p = &shares.percent;
+        let mut row = vec![name.to_owned(), kind.to_owned(), format!("{:.4}", shares.area_m2)];
+        let guaranteed = p.guaranteed.unwrap_or(0.0);
+        row.extend(
+            [p.scanned, guaranteed, p.missed, p.unreachable, p.margin].map(|value| format!("{value:.1}")),
+        );
+        row.push(error_m.map(|m| format!("{m:.3}")).unwrap_or_default());
+        row
+    };
+    let bases = [("whole floor", &floor.whole), ("reachable floor", &floor.reachable)];
+    let bases = bases.map(|(name, shares)| row(name, "base", shares, None));
+    let plates = floor.plates.iter().map(|plate| {
+        row(&plate.name, &format!("{:?}", plate.kind).to_lowercase(), &plate.shares, plate.error_p95_m)
+    });
+    let head = [
+        "floor",
+        "kind",
+        "area_m2",
+        "scanned_percent",
+        "guaranteed_percent",
+        "missed_percent",
+        "unreachable_percent",
+        "margin_percent",
+        "error_p95_m",
+    ];
+    table(&head, bases.into_iter().chain(plates))
+}
+
+fn missed(document: &Document) -> String {
+    let rows = (1..).zip(&document.floor.missed).map(|(number, area): (usize, _)| {
+        let mut row = vec![number.to_string()];
+        let places = [area.at, area.low, area.high];
+        row.extend(places.iter().flat_map(|place| [place.x, place.y]).map(|m| format!("{m:.3}")));
+        row.extend([format!("{:.4}", area.area_m2), area.plates.join(" "), area.why()]);
+        row
+    });
+    let head =
+        ["number", "x_m", "y_m", "west_m", "south_m", "east_m", "north_m", "area_m2", "plates", "reason"];
+    table(&head, rows)
+}
+
+fn obstacles(past: &[PastRun]) -> String {
+    let rows = past.iter().flat_map(|past| {
+        past.fold.found().map(|solid| {
+            let (low, high) = solid.shape.bounds();
+            let center = solid.shape.center();
+            let mut row = vec![past.name.clone(), solid.name.clone()];
+            let values = [center.x, center.y, high.x - low.x, high.y - low.y];
+            row.extend(values.map(|m| format!("{m:.3}")));
+            row
+        })
+    });
+    table(&["run", "name", "x_m", "y_m", "extent_x_m", "extent_y_m"], rows)
+}
+
+fn indications(document: &Document) -> String {
+    let optional = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
+    let rows = document.indications.iter().map(|found| {
+        vec![
+            found.number.to_string(),
+            format!("{:.1}", found.t_s),
+            format!("{:.3}", found.at.x),
+            format!("{:.3}", found.at.y),
+            format!("{:.3}", found.error_m),
+            found.plate.clone().unwrap_or_default(),
+            found.kind.clone(),
+            optional(found.size_mm),
+            optional(found.depth_mm),
+            found.note.clone(),
+        ]
+    });
+    let head = ["number", "t_s", "x_m", "y_m", "error_95_m", "plate", "kind", "size_mm", "depth_mm", "note"];
+    table(&head, rows)
+}
+
+fn track(past: &[PastRun]) -> String {
+    let rows = past.iter().flat_map(|past| {
+        past.record.track.iter().map(|point| {
+            vec![
+                past.name.clone(),
+                format!("{:.1}", point.t_s),
+                format!("{:.3}", point.x_m),
+                format!("{:.3}", point.y_m),
+                format!("{:.4}", point.heading_rad),
+                format!("{:.3}", point.error_m),
+            ]
+        })
+    });
+    table(&["run", "t_s", "x_m", "y_m", "heading_rad", "error_95_m"], rows)
+}

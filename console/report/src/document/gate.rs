@@ -1,0 +1,235 @@
+//! What must be answered before a report can be signed.
+
+use super::{Document, RunPart};
+use crate::record::Incident;
+use mission::{RunOpened, TaskConfig};
+use serde::Serialize;
+use world::Boundary;
+
+/// One of the thirteen items.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct GateItem {
+    /// Its number, from 1.
+    pub number: usize,
+    /// What it asks for.
+    pub what: &'static str,
+    /// Whether it is answered.
+    pub is_answered: bool,
+    /// The answer as far as there is one.
+    pub answer: String,
+    /// What is missing: keys of `[inspection]`, or what else must be done.
+    pub missing: Vec<String>,
+}
+
+/// An answer and what it lacks.
+type Answered = (String, Vec<String>);
+
+/// The thirteen items of a document.
+pub(super) fn gate(document: &Document, run: &RunOpened) -> Vec<GateItem> {
+    let items: [(&'static str, Answered); 13] = [
+        ("Tank: number, size, plates, nominal thickness, drawing", tank(document)),
+        ("Scope of the inspection", scope(document, run)),
+        ("Equipment, planner, versions, seed, parameters", equipment(document)),
+        ("Calibration before and after", calibration(document)),
+        ("Coverage of every plate", plates(document)),
+        ("Missed areas, each with a reason", missed(document)),
+        ("Unreachable floor, each area with a reason", unreachable(document)),
+        ("Position accuracy", accuracy(document)),
+        ("Indications", indications(document)),
+        ("Tether record", tether(document)),
+        ("Alarms, faults and holds: who reviewed them", incidents(document)),
+        ("Remarks of the inspector", remarks(document)),
+        ("Journal and recording bound to this report", hashes(document)),
+    ];
+    let numbered = items.into_iter().zip(1..);
+    let item = |((what, (answer, missing)), number): ((&'static str, Answered), usize)| GateItem {
+        number,
+        what,
+        is_answered: missing.is_empty(),
+        answer,
+        missing,
+    };
+    numbered.map(item).collect()
+}
+
+/// The keys whose facts are missing.
+fn missing(facts: &[(&str, bool)]) -> Vec<String> {
+    let absent = facts.iter().filter(|(_, is_there)| !is_there);
+    absent.map(|(key, _)| format!("inspection.{key}")).collect()
+}
+
+/// How large a tank is.
+pub(super) fn size(run: &RunOpened) -> String {
+    match &run.world.boundary {
+        Boundary::Circle { radius_m } => format!("round, inner radius {radius_m} m"),
+        boundary @ Boundary::Polygon { vertices } => {
+            let (low, high) = boundary.bounds();
+            let (x, y) = (high.x - low.x, high.y - low.y);
+            format!("{} straight walls, {x:.1} m by {y:.1} m", vertices.len())
+        }
+    }
+}
+
+fn tank(document: &Document) -> Answered {
+    let facts = &document.inspection;
+    let plates = match document.floor.plates.len() {
+        0 => "layout of the plates not given".to_owned(),
+        n => format!("{n} plates"),
+    };
+    let lacks = missing(&[
+        ("tank_id", facts.tank_id.is_some()),
+        ("drawing", facts.drawing.is_some()),
+        ("nominal_thickness_mm", facts.nominal_thickness_mm.is_some()),
+    ]);
+    (format!("{}, {plates}", document.size), lacks)
+}
+
+fn scope(document: &Document, run: &RunOpened) -> Answered {
+    let what = match &run.mission.task {
+        TaskConfig::Cover { regions, .. } if !regions.is_empty() => "part of the floor",
+        _ => "whole floor",
+    };
+    let facts = &document.inspection;
+    let lacks = missing(&[
+        ("order", facts.order.is_some()),
+        ("procedure", facts.procedure.is_some()),
+        ("code", facts.code.is_some()),
+    ]);
+    let zone_mm = 1000.0 * document.floor.critical_zone.width_m;
+    (format!("{what}, and the critical zone, {zone_mm:.0} mm along the shell"), lacks)
+}
+
+fn equipment(document: &Document) -> Answered {
+    let facts = &document.inspection;
+    let lacks = missing(&[("robot", facts.robot.is_some()), ("instrument", facts.instrument.is_some())]);
+    let flown = |run: &RunPart| {
+        let drivers: Vec<&str> = run.drivers.iter().map(|driver| driver.name.as_str()).collect();
+        format!("tankops {}, {}, seed {}", run.tankops_version, drivers.join(", "), run.seed)
+    };
+    (document.runs.iter().map(flown).collect::<Vec<_>>().join("; "), lacks)
+}
+
+fn calibration(document: &Document) -> Answered {
+    let facts = &document.inspection;
+    let lacks = missing(&[
+        ("calibration_before", facts.calibration_before.is_some()),
+        ("calibration_after", facts.calibration_after.is_some()),
+        ("station_check", facts.station_check.is_some()),
+    ]);
+    (if lacks.is_empty() { "stated in section 8".into() } else { String::new() }, lacks)
+}
+
+fn plates(document: &Document) -> Answered {
+    let plates = &document.floor.plates;
+    if plates.is_empty() {
+        let waiver = document.inspection.plates_waiver.clone();
+        let lacks = missing(&[("plates_waiver", waiver.is_some())]);
+        let waived = waiver.map(|why| format!(": {why}")).unwrap_or_default();
+        return (format!("layout of the plates not given{waived}"), lacks);
+    }
+    // A plate of which nothing could be scanned needs no accuracy.
+    let has_figure = |plate: &&crate::account::PlateAccount| {
+        plate.error_p95_m.is_some() || plate.shares.scanned <= 0.0 && plate.shares.missed <= 0.0
+    };
+    let without: Vec<&str> =
+        plates.iter().filter(|plate| !has_figure(plate)).map(|plate| &*plate.name).collect();
+    let lacks = without.iter().map(|name| format!("accuracy of plate {name}: nothing of it was scanned"));
+    (format!("{} of {} plates with figures", plates.len() - without.len(), plates.len()), lacks.collect())
+}
+
+fn missed(document: &Document) -> Answered {
+    let floor = &document.floor;
+    let without = floor.missed.iter().filter(|area| area.causes.iter().any(|cause| cause.text.is_empty()));
+    let lacks =
+        without.map(|area| format!("reason of the gap at {:.2}, {:.2} m", area.at.x, area.at.y)).collect();
+    let text = format!(
+        "{} areas with a reason, {} smaller ones in total {:.2} m²",
+        floor.missed.len(),
+        floor.slivers.count,
+        floor.slivers.area_m2
+    );
+    (text, lacks)
+}
+
+fn unreachable(document: &Document) -> Answered {
+    let (floor, slivers) = (&document.floor, document.floor.unreachable_slivers);
+    let listed = floor.unreachable.len();
+    let text = format!(
+        "{listed} areas with a reason, {} smaller ones in total {:.2} m²",
+        slivers.count, slivers.area_m2
+    );
+    (text, Vec::new())
+}
+
+fn accuracy(document: &Document) -> Answered {
+    let stated: Vec<_> = document.runs.iter().filter_map(|run| run.accuracy).collect();
+    let text = |a: &crate::Accuracy| {
+        format!("95 % error p95 {:.3} m, largest {:.3} m, limit {} m", a.p95_m, a.max_m, a.limit_m)
+    };
+    let lacks = if stated.len() < document.runs.len() {
+        vec!["a run without an estimated position".to_owned()]
+    } else {
+        vec![]
+    };
+    (stated.iter().map(text).collect::<Vec<_>>().join("; "), lacks)
+}
+
+fn indications(document: &Document) -> Answered {
+    let stated = document.inspection.indications.clone();
+    let placed = document.indications.len();
+    if placed == 0 && stated.is_none() {
+        let lacks = vec!["inspection.indications, or a file with --indications".to_owned()];
+        return (String::new(), lacks);
+    }
+    let placed = (placed > 0).then(|| format!("{placed} with their places"));
+    (placed.into_iter().chain(stated).collect::<Vec<_>>().join("; "), Vec::new())
+}
+
+fn tether(document: &Document) -> Answered {
+    let text = |run: &RunPart| {
+        run.tether.as_ref().map_or_else(
+            || "no tether".to_owned(),
+            |tether| format!("at most {:.1} m of {:.1} m out", tether.length_max_m, tether.reel_length_m),
+        )
+    };
+    (document.runs.iter().map(text).collect::<Vec<_>>().join("; "), Vec::new())
+}
+
+fn incidents(document: &Document) -> Answered {
+    let all = document.runs.iter().flat_map(|run| &run.incidents);
+    let count = all.filter(|incident| Incident::needs_review(incident)).count();
+    let by = &document.inspection.events_reviewed_by;
+    let lacks = if count == 0 { Vec::new() } else { missing(&[("events_reviewed_by", by.is_some())]) };
+    let reviewed = by.as_ref().map(|name| format!(", reviewed by {name}")).unwrap_or_default();
+    (format!("{count} alarms, faults and holds{reviewed}"), lacks)
+}
+
+fn remarks(document: &Document) -> Answered {
+    let remarks = document.inspection.remarks.clone();
+    let lacks =
+        missing(&[("remarks", remarks.is_some()), ("inspector", document.inspection.inspector.is_some())]);
+    (remarks.unwrap_or_default(), lacks)
+}
+
+fn hashes(document: &Document) -> Answered {
+    let mut lacks = Vec::new();
+    for run in &document.runs {
+        let files = &run.files;
+        lacks.extend(files.doubts.iter().map(|doubt| format!("{}: {doubt}", run.run)));
+        if files.are_as_reported.is_none() {
+            lacks.push(format!(
+                "{}: no report of the end of the run that the files could be checked against",
+                run.run
+            ));
+        }
+        if files.recording_sha256.is_none() {
+            lacks.push(format!("{}: the recording is missing", run.run));
+        }
+    }
+    let text = if lacks.is_empty() {
+        "SHA-256 of journal and recording are those of the end of the run"
+    } else {
+        ""
+    };
+    (text.to_owned(), lacks)
+}

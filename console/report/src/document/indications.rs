@@ -1,0 +1,128 @@
+//! Indications of the scanning instrument, by time, placed on the track.
+
+use crate::record::Record;
+use serde::{Deserialize, Serialize};
+use world::{Point, geometry::unit_vector};
+
+/// A row of the file: when, where on the tool, and what.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+struct Row {
+    /// Mission time, seconds.
+    t_s: f64,
+    /// Offset from the middle of the tool to the left of the heading, metres.
+    #[serde(default)]
+    left_m: f64,
+    /// Offset ahead of the middle of the tool, metres.
+    #[serde(default)]
+    ahead_m: f64,
+    #[serde(default)]
+    kind: String,
+    #[serde(default)]
+    size_mm: Option<f64>,
+    #[serde(default)]
+    depth_mm: Option<f64>,
+    #[serde(default)]
+    note: String,
+}
+
+/// An indication with its place.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Indication {
+    /// Its number, from 1.
+    pub number: usize,
+    /// Mission time, seconds.
+    pub t_s: f64,
+    /// Where it lies, metres.
+    pub at: Point,
+    /// 95 % error of the place, metres.
+    pub error_m: f64,
+    /// The plate on which it lies; absent if the layout of the plates is not known.
+    pub plate: Option<String>,
+    /// What kind, as the instrument says.
+    pub kind: String,
+    /// Size, millimetres.
+    pub size_mm: Option<f64>,
+    /// Depth, millimetres.
+    pub depth_mm: Option<f64>,
+    /// Anything else.
+    pub note: String,
+}
+
+/// Reads indications from CSV with the columns `t_s` and, if there are, `left_m`, `ahead_m`, `kind`, `size_mm`, `depth_mm`
+/// and `note`, and places each where the robot believed its tool to be; `plate_at` names the plate of a place.
+///
+/// # Errors
+/// A file that cannot be read, or a time outside the run: with the line, and what would be right.
+pub(super) fn indications(
+    csv: &str,
+    record: &Record,
+    plate_at: impl Fn(Point) -> Option<String>,
+) -> Result<Vec<Indication>, String> {
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(csv.as_bytes());
+    let headers = reader.headers().map_err(|error| error.to_string())?.clone();
+    let known = ["t_s", "left_m", "ahead_m", "kind", "size_mm", "depth_mm", "note"];
+    if let Some(unknown) = headers.iter().find(|name| !known.contains(name)) {
+        return Err(format!("line 1: unknown column `{unknown}`; there are {}", known.join(", ")));
+    }
+    let end_s = record.track.last().map_or(0.0, |point| f64::from(point.t_s));
+    let place = |(index, row): (usize, csv::Result<Row>)| {
+        let line = index + 2;
+        let row = row.map_err(|error| format!("line {line}: {error}"))?;
+        let inside = (0.0..=end_s + 0.5).contains(&row.t_s);
+        let point = record.at(row.t_s).filter(|_| inside);
+        let point =
+            point.ok_or(format!("line {line}: t_s = {}: the run lasts from 0 to {end_s:.1} s", row.t_s))?;
+        let heading = f64::from(point.heading_rad);
+        let left = unit_vector(heading + std::f64::consts::FRAC_PI_2);
+        let at = point.position() + left * row.left_m + unit_vector(heading) * row.ahead_m;
+        Ok(Indication {
+            number: index + 1,
+            t_s: row.t_s,
+            at,
+            error_m: f64::from(point.error_m),
+            plate: plate_at(at),
+            kind: row.kind,
+            size_mm: row.size_mm,
+            depth_mm: row.depth_mm,
+            note: row.note,
+        })
+    };
+    reader.deserialize().enumerate().map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+    use crate::record::TrackPoint;
+
+    fn record() -> Record {
+        let point = |k: u16| TrackPoint {
+            t_s: f32::from(k),
+            x_m: f32::from(k),
+            y_m: 0.0,
+            heading_rad: 0.0,
+            error_m: 0.05,
+            true_error_m: f32::NAN,
+        };
+        Record { track: (0..10).map(point).collect(), ..Record::new() }
+    }
+
+    #[test]
+    fn an_indication_lies_beside_the_robot_at_its_time_with_the_error_of_then() {
+        let csv = "t_s, left_m, kind, depth_mm\n 4.3, 0.2, pit, 2.5\n";
+        let found = indications(csv, &record(), |_| Some("R-01".into())).unwrap();
+        let [pit] = &found[..] else { panic!("{found:?}") };
+        assert!((pit.at - Point::new(4.0, 0.2)).norm() < 1e-6 && (pit.error_m - 0.05).abs() < 1e-6);
+        assert_eq!((pit.kind.as_str(), pit.depth_mm, pit.plate.as_deref()), ("pit", Some(2.5), Some("R-01")));
+    }
+
+    #[test]
+    fn what_cannot_be_placed_is_refused_with_its_line() {
+        let refused = |csv: &str| indications(csv, &record(), |_| None).unwrap_err();
+        assert_eq!(refused("t_s\n1\n99\n"), "line 3: t_s = 99: the run lasts from 0 to 9.0 s");
+        assert!(refused("t_s\nsoon\n").starts_with("line 2: "), "{}", refused("t_s\nsoon\n"));
+        assert!(refused("time\n1\n").contains("unknown column `time`; there are t_s"));
+    }
+}

@@ -1,0 +1,177 @@
+//! What maps show, cell by cell.
+
+use crate::{
+    account::{Evidence, areas::together, plate_map},
+    drawing::{frame::Fixtures, plates::PlateLines},
+    scanned::Scanned,
+};
+use mission::{RunOpened, TaskConfig};
+use world::{Cell, Floor, PlateMap, Point};
+
+/// Smallest missed area with a number, square metres.
+const LEAST_M2: f64 = 0.01;
+
+/// The floor of a report.
+pub(crate) struct Layers<'a> {
+    /// The last of the runs, as it was opened.
+    pub(crate) run: &'a RunOpened,
+    /// What was scanned.
+    pub(crate) scanned: &'a Scanned,
+    evidence: &'a Evidence,
+    /// The plates, if their layout is known.
+    pub(crate) plates: Option<PlateLines>,
+    /// Missed areas that are listed, the largest first: a place in each, and its cells.
+    pub(crate) gaps: Vec<(Point, Vec<usize>)>,
+    plate_map: Option<PlateMap>,
+}
+
+impl<'a> Layers<'a> {
+    /// The layers of what some runs scanned; `places` of the missed areas that are listed, in their order.
+    pub(crate) fn new(
+        run: &'a RunOpened,
+        scanned: &'a Scanned,
+        evidence: &'a Evidence,
+        places: &[Point],
+    ) -> Self {
+        let floor = scanned.believed().floor();
+        let map = plate_map(run, floor);
+        let plates = run
+            .plates
+            .zip(map.as_ref())
+            .map(|(layout, map)| PlateLines::new(&layout, &run.world.boundary, floor, map));
+        let mut layers = Self { run, scanned, evidence, plates, gaps: Vec::new(), plate_map: map };
+        layers.gaps = layers.gaps_at(places);
+        layers
+    }
+
+    fn gaps_at(&self, places: &[Point]) -> Vec<(Point, Vec<usize>)> {
+        let floor = self.floor();
+        let missed = (0..floor.len()).filter(|cell| self.is_missed(*cell)).collect();
+        let is_listed = |cells: &Vec<usize>| cells.len() as f64 * floor.cell_m2() >= LEAST_M2;
+        let mut groups: Vec<Vec<usize>> = together(floor, missed).into_iter().filter(is_listed).collect();
+        groups.iter_mut().for_each(|cells| cells.sort_unstable());
+        let cells_of = |place: &Point| {
+            let cell = floor.cell_at(*place)?;
+            let group = groups.iter().find(|cells| cells.binary_search(&cell).is_ok())?;
+            Some((*place, group.clone()))
+        };
+        places.iter().filter_map(cells_of).collect()
+    }
+
+    /// The floor.
+    pub(crate) fn floor(&self) -> &'a Floor {
+        self.scanned.believed().floor()
+    }
+
+    /// What stands in the tank as it is known.
+    pub(crate) fn fixtures(&self) -> Fixtures<'a> {
+        let world = &self.run.world;
+        let anchor = match (&self.run.mission.tether, &self.run.mission.task) {
+            (Some(tether), _) => tether.anchor,
+            (None, TaskConfig::Cover { anchor, .. }) => *anchor,
+            (None, _) => self.run.mission.start.position,
+        };
+        Fixtures {
+            boundary: &world.boundary,
+            drawn: world
+                .obstacles
+                .iter()
+                .filter(|obstacle| obstacle.known)
+                .map(|obstacle| &obstacle.shape)
+                .collect(),
+            found: self.evidence.found().map(|(_, solid)| &solid.shape).collect(),
+            stations: &world.stations,
+            zones: &world.zones,
+            anchor: Some(anchor),
+        }
+    }
+
+    /// The plate of a place, if the layout is known.
+    pub(crate) fn plate_at(&self, place: Point) -> Option<String> {
+        let map = self.plate_map.as_ref()?;
+        Some(map.plates[map.plate_of(self.floor().cell_at(place)?)?].name.clone())
+    }
+
+    /// Whether a cell of floor was scanned.
+    pub(crate) fn is_scanned(&self, cell: usize) -> bool {
+        let grid = self.scanned.believed();
+        grid.floor().is_floor(cell) && grid.is_covered(cell)
+    }
+
+    /// Whether a cell was in reach and not scanned.
+    pub(crate) fn is_missed(&self, cell: usize) -> bool {
+        let grid = self.scanned.believed();
+        grid.floor().is_reachable(cell) && !grid.is_covered(cell)
+    }
+
+    /// Whether a cell is shell margin.
+    pub(crate) fn is_margin(&self, cell: usize) -> bool {
+        self.floor().kind(cell) == Cell::Margin && !self.is_scanned(cell)
+    }
+
+    /// Whether a cell is out of reach otherwise.
+    pub(crate) fn is_unreachable(&self, cell: usize) -> bool {
+        matches!(self.floor().kind(cell), Cell::Unreachable | Cell::Beside | Cell::NoGo)
+            && !self.is_scanned(cell)
+    }
+
+    /// Whether a cell was scanned again.
+    pub(crate) fn is_twice(&self, cell: usize) -> bool {
+        self.is_scanned(cell) && self.scanned.passes().overlap().again(cell) > 0
+    }
+
+    /// Where most cells around were scanned again: for the eye only.
+    pub(crate) fn smoothed_twice(&self) -> Vec<bool> {
+        let floor = self.floor();
+        let most = |cell: usize| {
+            let around = crate::account::areas::around(floor, cell);
+            self.is_scanned(cell) && around.filter(|near| self.is_twice(*near)).count() >= 5
+        };
+        (0..floor.len()).map(most).collect()
+    }
+
+    /// Four errors that divide the scanned floor into five classes, metres, and the class of each cell, smoothed for the eye;
+    /// `u8::MAX` where nothing was scanned.
+    pub(crate) fn error_classes(&self) -> ([f64; 4], Vec<u8>) {
+        let (floor, passes) = (self.floor(), self.scanned.passes());
+        let error_mm = |cell: usize| passes.error_mm(cell).filter(|_| self.is_scanned(cell));
+        let mut counts = vec![0_usize; usize::from(u16::MAX) + 1];
+        (0..floor.len()).filter_map(error_mm).for_each(|mm| counts[usize::from(mm)] += 1);
+        let quantile = |share: f64| {
+            let wanted = share * counts.iter().sum::<usize>() as f64;
+            let mut below = 0;
+            let found = counts.iter().position(|count| {
+                below += count;
+                below as f64 >= wanted
+            });
+            found.unwrap_or(0) as f64
+        };
+        let (low, high) = (quantile(0.02), quantile(0.985));
+        let step = [2.0, 5.0, 10.0, 20.0, 25.0, 50.0].into_iter().find(|step| (high - low) / step <= 4.2);
+        let step = step.unwrap_or(100.0);
+        let first = (low / step).ceil() * step;
+        let edges_mm = [0.0, 1.0, 2.0, 3.0].map(|k| first + k * step);
+        let class = |cell: usize| {
+            let above = |mm: u16| edges_mm.iter().filter(|edge| f64::from(mm) > **edge).count() as u8;
+            error_mm(cell).map_or(u8::MAX, above)
+        };
+        let rough: Vec<u8> = (0..floor.len()).map(class).collect();
+        // A median of three by three: single cells say nothing about accuracy.
+        let median = |cell: usize| {
+            if rough[cell] == u8::MAX {
+                return u8::MAX;
+            }
+            let mut near = [u8::MAX; 9];
+            let mut count = 0;
+            for class in crate::account::areas::around(floor, cell).map(|near| rough[near]) {
+                if class != u8::MAX {
+                    near[count] = class;
+                    count += 1;
+                }
+            }
+            near[..count].sort_unstable();
+            near[count / 2]
+        };
+        (edges_mm.map(|mm| mm / 1000.0), (0..floor.len()).map(median).collect())
+    }
+}

@@ -1,0 +1,223 @@
+//! A report as one page: what stands where, as texts; the template only sets it.
+
+use super::{Document, maps::Legend, sections::sections};
+use askama::Template;
+use world::coverage::percent;
+
+/// Style sheet of the page.
+const CSS: &str = include_str!("../../templates/report.css");
+
+/// The page.
+#[derive(Template)]
+#[template(path = "report.html", whitespace = "preserve")]
+struct Html<'a> {
+    page: &'a Page,
+}
+
+/// A text, what is missing of it, or both.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Value {
+    pub(super) text: Option<String>,
+    pub(super) missing: Option<String>,
+}
+
+impl Value {
+    /// A fact, or the key under which it is missing.
+    pub(super) fn fact(fact: Option<&String>, key: &str) -> Self {
+        let missing = fact.is_none().then(|| format!("inspection.{key}"));
+        Self { text: fact.cloned(), missing }
+    }
+
+    /// A fact behind what is known anyway.
+    pub(super) fn with_fact(known: impl Into<String>, fact: Option<&String>, key: &str) -> Self {
+        let known = known.into();
+        let text = fact.map_or_else(|| format!("{known};"), |fact| format!("{known}; {fact}"));
+        Self { text: Some(text), missing: fact.is_none().then(|| format!("inspection.{key}")) }
+    }
+}
+
+impl<T: Into<String>> From<T> for Value {
+    fn from(text: T) -> Self {
+        Self { text: Some(text.into()), missing: None }
+    }
+}
+
+/// A field of the title block.
+pub(super) struct Field {
+    pub(super) class: &'static str,
+    pub(super) label: &'static str,
+    pub(super) value: Value,
+    pub(super) note: String,
+}
+
+/// What the report says in one sentence.
+pub(super) struct Verdict {
+    pub(super) class: &'static str,
+    pub(super) lead: String,
+    pub(super) cause: String,
+}
+
+/// A large figure.
+pub(super) struct Share {
+    pub(super) percent: String,
+    pub(super) of: &'static str,
+    pub(super) about: String,
+}
+
+/// Something to be decided.
+pub(super) struct Todo {
+    pub(super) text: String,
+    pub(super) section: usize,
+}
+
+/// A table.
+#[derive(Default)]
+pub(super) struct Table {
+    pub(super) number: usize,
+    pub(super) caption: String,
+    pub(super) heads: Vec<Head>,
+    pub(super) rows: Vec<Row>,
+    /// Whether its rows become cards on a phone.
+    pub(super) is_cards: bool,
+}
+
+pub(super) struct Head {
+    pub(super) text: &'static str,
+    pub(super) unit: &'static str,
+    pub(super) class: &'static str,
+}
+
+#[derive(Default)]
+pub(super) struct Row {
+    pub(super) id: String,
+    pub(super) class: &'static str,
+    pub(super) cells: Vec<Cell>,
+}
+
+#[derive(Default)]
+pub(super) struct Cell {
+    pub(super) value: Value,
+    pub(super) class: &'static str,
+    /// What it is called on a card.
+    pub(super) key: &'static str,
+    pub(super) span: usize,
+    /// A picture before the text.
+    pub(super) svg: String,
+}
+
+impl Table {
+    /// A table with these columns: text, unit, class.
+    pub(super) fn new(
+        caption: impl Into<String>,
+        heads: &[(&'static str, &'static str, &'static str)],
+    ) -> Self {
+        let heads = heads.iter().map(|(text, unit, class)| Head { text, unit, class });
+        Self { caption: caption.into(), heads: heads.collect(), ..Self::default() }
+    }
+
+    /// Adds a row whose cells have the classes of their columns.
+    pub(super) fn row(&mut self, values: Vec<Value>) -> &mut Row {
+        let cells = values.into_iter().zip(&self.heads);
+        let cell = |(value, head): (Value, &Head)| Cell { value, class: head.class, ..Cell::default() };
+        let row = Row { cells: cells.map(cell).collect(), ..Row::default() };
+        let at = self.rows.len();
+        self.rows.push(row);
+        &mut self.rows[at]
+    }
+}
+
+/// A picture on the page.
+pub(super) struct Picture {
+    pub(super) number: usize,
+    pub(super) caption: String,
+    pub(super) svg: String,
+    pub(super) legend: Vec<Legend>,
+}
+
+/// Who signs.
+pub(super) struct SignatureBlock {
+    pub(super) who: &'static str,
+    pub(super) what: &'static str,
+    pub(super) name: Value,
+    pub(super) certificate: Value,
+    pub(super) signed: String,
+}
+
+/// A part of a section.
+pub(super) enum Block {
+    Text(String),
+    Heading(String),
+    Note(String),
+    Words(Vec<(&'static str, String)>),
+    List(Vec<String>),
+    Table(Table),
+    Figure(Picture),
+    Wide(Picture),
+    Pair(Vec<Picture>),
+    Legend(Vec<Legend>),
+    Facts(Vec<(&'static str, Value)>),
+    Hashes(Vec<(String, String)>),
+    Barred(String),
+    Signatures(Vec<SignatureBlock>),
+}
+
+/// A section.
+pub(super) struct Section {
+    pub(super) number: usize,
+    pub(super) title: &'static str,
+    pub(super) is_new_sheet: bool,
+    pub(super) blocks: Vec<Block>,
+}
+
+/// The whole page.
+pub(super) struct Page {
+    pub(super) title: String,
+    pub(super) css: &'static str,
+    pub(super) head: String,
+    pub(super) mark: &'static str,
+    pub(super) foot: String,
+    pub(super) is_simulation: bool,
+    pub(super) is_signed: bool,
+    pub(super) status: String,
+    pub(super) answered: usize,
+    pub(super) items: usize,
+    pub(super) fields: Vec<Field>,
+    pub(super) verdict: Verdict,
+    pub(super) shares: Vec<Share>,
+    pub(super) bases: Table,
+    pub(super) todo: Vec<Todo>,
+    pub(super) sections: Vec<Section>,
+}
+
+/// The report as one self-contained HTML file: no network, no script; prints to A4.
+pub fn html(document: &Document) -> String {
+    let mut page = sections(document);
+    page.css = CSS;
+    number(&mut page);
+    // Nothing in the template can fail.
+    Html { page: &page }.render().unwrap_or_default()
+}
+
+/// Numbers figures and tables in their order.
+fn number(page: &mut Page) {
+    let (mut figures, mut tables) = (0, 0);
+    let next = |count: &mut usize| {
+        *count += 1;
+        *count
+    };
+    for block in page.sections.iter_mut().flat_map(|section| &mut section.blocks) {
+        match block {
+            Block::Table(table) if !table.caption.is_empty() => table.number = next(&mut tables),
+            Block::Figure(picture) | Block::Wide(picture) => picture.number = next(&mut figures),
+            Block::Pair(pictures) => {
+                pictures.iter_mut().for_each(|picture| picture.number = next(&mut figures))
+            }
+            _ => {}
+        }
+    }
+}
+
+/// A share as it is printed everywhere.
+pub(super) fn per_cent(share: f64) -> String {
+    format!("{:.1}", percent(share))
+}

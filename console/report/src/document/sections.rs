@@ -1,0 +1,55 @@
+//! What stands in which section of the page.
+
+mod closing;
+mod floor;
+mod front;
+mod runs;
+
+use super::{
+    Document,
+    maps::Figure,
+    page::{Block, Page, Picture, Section},
+};
+use crate::{drawing::sheet::escaped, human::text::counted};
+
+/// The page of a document.
+pub(super) fn sections(document: &Document) -> Page {
+    let sections = [
+        section("Scope", front::scope(document)),
+        Section { is_new_sheet: true, ..section("Coverage map", floor::map(document)) },
+        section("Missed and unreachable floor", floor::missed(document)),
+        section("Critical zone along the shell", floor::zone(document)),
+        section("Position accuracy and guaranteed coverage", floor::accuracy(document)),
+        section("Plates", floor::plates(document)),
+        section("Track, tether and record", runs::runs(document)),
+        section("Equipment and calibration", closing::equipment(document)),
+        section("Limitations", closing::limitations(document)),
+        section("Gate before signing", closing::gate(document)),
+        section("Signatures and revisions", closing::signatures(document)),
+        section("Provenance", closing::provenance(document)),
+    ];
+    let numbered = (1..).zip(sections).map(|(number, section)| Section { number, ..section });
+    front::page(document, numbered.collect())
+}
+
+fn section(title: &'static str, blocks: Vec<Block>) -> Section {
+    Section { number: 0, title, is_new_sheet: false, blocks }
+}
+
+/// A figure, to be numbered.
+fn picture(figure: &Figure) -> Picture {
+    let Figure { caption, svg, legend } = figure;
+    Picture { number: 0, caption: caption.clone(), svg: svg.clone(), legend: legend.clone() }
+}
+
+/// A number with some decimals and its sign, zero without one.
+fn number(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let is_zero = text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.');
+    if is_zero { text.trim_start_matches('-').to_owned() } else { text.replace('-', "\u{2212}") }
+}
+
+/// Centimetres of metres.
+fn cm(value_m: f64) -> String {
+    number(100.0 * value_m, 1)
+}

@@ -1,0 +1,233 @@
+//! The last sections: equipment, limitations, gate, signatures, provenance.
+
+use super::{
+    super::page::{Block, SignatureBlock, Table, Value},
+    Document, cm, number,
+};
+
+/// Equipment, calibration and what the run says of the stations.
+pub(super) fn equipment(document: &Document) -> Vec<Block> {
+    let facts = &document.inspection;
+    let floor = &document.floor;
+    let thickness = facts.nominal_thickness_mm.map(|mm| format!("{mm} mm"));
+    let mut blocks = vec![Block::Facts(vec![
+        ("Robot", Value::fact(facts.robot.as_ref(), "robot")),
+        (
+            "Instrument",
+            Value::with_fact(format!("swath {} m", floor.swath_m), facts.instrument.as_ref(), "instrument"),
+        ),
+        ("Calibration before", Value::fact(facts.calibration_before.as_ref(), "calibration_before")),
+        ("Calibration after", Value::fact(facts.calibration_after.as_ref(), "calibration_after")),
+        ("Stations, survey and pulse test", Value::fact(facts.station_check.as_ref(), "station_check")),
+        ("Speed of sound", Value::fact(facts.sound_speed.as_ref(), "sound_speed")),
+        ("Nominal thickness of the floor", Value::fact(thickness.as_ref(), "nominal_thickness_mm")),
+        ("Procedure", Value::fact(facts.procedure.as_ref(), "procedure")),
+        ("Operator", Value::fact(facts.operator.as_ref(), "operator")),
+    ])];
+    for run in document.runs.iter().filter(|run| !run.stations.is_empty()) {
+        let of = if document.runs.len() > 1 { format!(" ({})", run.run) } else { String::new() };
+        let mut table = Table::new(
+            format!("Stations, with what the run says of them{of}"),
+            &[
+                ("Station", "", ""),
+                ("x", "m", "r nw"),
+                ("y", "m", "r nw"),
+                ("Used", "fixes", "r"),
+                ("Rejected", "fixes", "r"),
+                ("Residual, mean", "cm", "r"),
+                ("Residual, rms", "cm", "r"),
+            ],
+        );
+        let residual = |m: Option<f64>| m.map_or_else(|| "\u{2013}".to_owned(), cm);
+        for station in &run.stations {
+            table.row(vec![
+                station.name.clone().into(),
+                number(station.at.x, 2).into(),
+                number(station.at.y, 2).into(),
+                station.used.to_string().into(),
+                station.rejected.to_string().into(),
+                residual(station.residual_mean_m).into(),
+                residual(station.residual_rms_m).into(),
+            ]);
+        }
+        blocks.push(Block::Table(table));
+    }
+    blocks
+}
+
+/// What the report does not say.
+pub(super) fn limitations(document: &Document) -> Vec<Block> {
+    let floor = &document.floor;
+    let mut items = Vec::new();
+    if document.is_simulation {
+        items.push(
+            "This report is of a simulation. It shows the form of the record, not the state of any floor."
+                .to_owned(),
+        );
+    }
+    items.extend([
+        "\u{201c}Scanned\u{201d} means that the tool passed over the place with a known position. It does not say that a defect would have \
+         been detected; that rests on the instrument, its calibration and the surface."
+            .to_owned(),
+        format!(
+            "Figures depend on cells of {} cm and a swath of {} m. Areas are sums of cells.",
+            number(100.0 * floor.cell_m, 1),
+            floor.swath_m
+        ),
+        "\u{201c}Guaranteed\u{201d} holds for the position error by the covariance: errors of the heading, of the survey of the stations and \
+         of the speed of sound, and the offset of the tool on the robot are not in it."
+            .to_owned(),
+        "Obstacles are as the robot estimated them; what it did not see is not in this report.".to_owned(),
+        "The critical zone is judged by 15 layers of 5 mm at every 25 mm of shell, along the drawn shell.".to_owned(),
+        "Nothing here replaces the inspector's own assessment of completeness under the code that applies.".to_owned(),
+    ]);
+    let code = Value::fact(document.inspection.code.as_ref(), "code");
+    vec![Block::List(items), Block::Facts(vec![("Code and edition", code)])]
+}
+
+/// The thirteen items.
+pub(super) fn gate(document: &Document) -> Vec<Block> {
+    let mut table = Table::new(
+        "The gate: a report is signed when every item is answered",
+        &[("", "", "r"), ("State", "", "nw"), ("Item", "", ""), ("Answer", "", "")],
+    );
+    for item in &document.gate {
+        let state = if item.is_answered { "\u{2713} answered" } else { "\u{25a1} open" };
+        let answer = Value {
+            text: Some(item.answer.clone()).filter(|answer| !answer.is_empty()),
+            missing: Some(item.missing.join(", ")).filter(|missing| !missing.is_empty()),
+        };
+        let row = table.row(vec![item.number.to_string().into(), state.into(), item.what.into(), answer]);
+        row.cells[1].class = if item.is_answered { "mk ok" } else { "mk open" };
+    }
+    vec![Block::Table(table)]
+}
+
+/// Who signs, and what was signed before.
+pub(super) fn signatures(document: &Document) -> Vec<Block> {
+    let facts = &document.inspection;
+    let open: Vec<String> = document.open_items().map(|item| item.number.to_string()).collect();
+    let mut blocks = Vec::new();
+    if !open.is_empty() {
+        blocks.push(Block::Barred(format!(
+            "{} of {} items are open ({}). A signed report is a revision of its own and is never changed.",
+            open.len(),
+            document.gate.len(),
+            open.join(", ")
+        )));
+    }
+    let signed = document.signature.as_ref().map(|s| format!("signed {} UTC", s.at)).unwrap_or_default();
+    let none = || Value::default();
+    let block =
+        |who, what, name, certificate, signed| SignatureBlock { who, what, name, certificate, signed };
+    blocks.push(Block::Signatures(vec![
+        block(
+            "Operator",
+            "operated the robot",
+            Value::fact(facts.operator.as_ref(), "operator"),
+            none(),
+            String::new(),
+        ),
+        block(
+            "Inspector",
+            "answers for completeness",
+            match &document.signature {
+                Some(signature) => signature.by.clone().into(),
+                None => Value::fact(facts.inspector.as_ref(), "inspector"),
+            },
+            Value::fact(facts.inspector_certificate.as_ref(), "inspector_certificate"),
+            signed,
+        ),
+        block(
+            "Owner",
+            "accepts the record",
+            Value::fact(facts.approver.as_ref(), "approver"),
+            none(),
+            String::new(),
+        ),
+    ]));
+    let remarks = Value::fact(facts.remarks.as_ref(), "remarks");
+    blocks.push(Block::Facts(vec![("Remarks of the inspector", remarks)]));
+    let mut table = Table::new(
+        "Revisions",
+        &[
+            ("Rev.", "", ""),
+            ("Date", "UTC", "nw"),
+            ("What", "", ""),
+            ("SHA-256 of the signed file", "", "hash"),
+        ],
+    );
+    for revision in &document.revisions {
+        let what = format!("signed by {}, {}", revision.signature.by, revision.file);
+        table.row(vec![
+            revision.revision.clone().into(),
+            revision.signature.at.clone().into(),
+            what.into(),
+            grouped(&revision.sha256).into(),
+        ]);
+    }
+    let (at, what, hash) = match &document.signature {
+        Some(signature) => (
+            signature.at.as_str(),
+            format!("signed by {}", signature.by),
+            "in the list of signatures of the run",
+        ),
+        None => ("", "draft, not signed".to_owned(), ""),
+    };
+    table.row(vec![document.revision.clone().into(), at.into(), what.into(), hash.into()]);
+    blocks.push(Block::Table(table));
+    blocks
+}
+
+/// Everything that proves where the figures come from.
+pub(super) fn provenance(document: &Document) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    for run in &document.runs {
+        let files = &run.files;
+        let bytes =
+            |bytes: Option<u64>| bytes.map(|n| format!("{:.1} MB", n as f64 / 1e6)).unwrap_or_default();
+        let state = match files.are_as_reported {
+            Some(true) => "equal to the digests at the end of the run".to_owned(),
+            Some(false) => format!("DIFFERENT: {}", files.doubts.join("; ")),
+            None => "there is no report of the end of the run".to_owned(),
+        };
+        blocks.push(Block::Facts(vec![
+            ("Run", run.run.clone().into()),
+            (
+                "Program",
+                format!("tankops {}, journal version {}", run.tankops_version, run.journal_version).into(),
+            ),
+            ("Scenario and seed", format!("{}, seed {}", run.scenario, run.seed).into()),
+            ("Parameters", run.parameters.join(", ").into()),
+            (
+                "Planner",
+                run.drivers.iter().map(|driver| driver.name.clone()).collect::<Vec<_>>().join("; ").into(),
+            ),
+            (
+                "Journal, recording",
+                format!("{}, {}; {state}", bytes(files.journal_bytes), bytes(files.recording_bytes)).into(),
+            ),
+            (
+                "To repeat",
+                format!("tankops verify {} computes the run again and compares every event", run.run).into(),
+            ),
+        ]));
+        let hashes = [
+            ("Journal SHA-256", &files.journal_sha256),
+            ("Recording SHA-256", &files.recording_sha256),
+            ("Scenario SHA-256", &files.scenario_sha256),
+        ];
+        let stated =
+            hashes.into_iter().filter_map(|(label, hash)| Some((label.to_owned(), grouped(hash.as_ref()?))));
+        let planners =
+            run.drivers.iter().map(|driver| ("Planner SHA-256".to_owned(), grouped(&driver.sha256)));
+        blocks.push(Block::Hashes(stated.chain(planners).collect()));
+    }
+    blocks
+}
+
+/// A digest in groups of eight.
+fn grouped(hash: &str) -> String {
+    let chars: Vec<char> = hash.chars().collect();
+    chars.chunks(8).map(|group| group.iter().collect::<String>()).collect::<Vec<_>>().join(" ")
+}

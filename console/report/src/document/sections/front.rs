@@ -1,0 +1,265 @@
+//! The first sheet: title block, verdict, large figures, what is to be decided, scope and words.
+
+use super::{
+    super::page::{Block, Field, Page, Section, Share, Table, Todo, Value, Verdict},
+    Document, counted, escaped, number,
+};
+use crate::account::Shares;
+use mission::Outcome;
+
+/// The page around its sections.
+pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
+    let answered = document.gate.iter().filter(|item| item.is_answered).count();
+    let status = match &document.signature {
+        Some(signature) => format!("Signed by {}, {} UTC", signature.by, signature.at),
+        None => "Draft, not signed".to_owned(),
+    };
+    let tank = document.inspection.tank_id.as_ref().unwrap_or(&document.scenario);
+    let state = if document.signature.is_some() { "signed" } else { "draft, not signed" };
+    let first = document.runs.first();
+    let hash = first.and_then(|run| run.files.journal_sha256.as_ref());
+    let hash = hash
+        .map_or_else(String::new, |hash| format!("Journal SHA-256 {}...   ", &hash[..hash.len().min(16)]));
+    let css = |text: String| escaped(&text).replace(['\\', '"', '\n'], " ");
+    Page {
+        title: format!("Inspection report {tank} revision {}", document.revision),
+        css: "",
+        head: css(format!(
+            "Tank {tank}   |   Document {}   |   Revision {} ({state})",
+            document.number, document.revision
+        )),
+        mark: if document.is_simulation { "SIMULATION" } else { "" },
+        foot: css(format!("{hash}{}", document.made_by)),
+        is_simulation: document.is_simulation,
+        is_signed: document.signature.is_some(),
+        status,
+        answered,
+        items: document.gate.len(),
+        fields: fields(document),
+        verdict: verdict(document),
+        shares: shares(document),
+        bases: bases(document),
+        todo: todo(document),
+        sections,
+    }
+}
+
+fn fields(document: &Document) -> Vec<Field> {
+    let facts = &document.inspection;
+    let first = document.runs.first();
+    let began = first.and_then(|run| run.began.clone());
+    let time_s: f64 = document.runs.iter().map(|run| run.mission_time_s).sum();
+    let field = |class, label, value: Value| Field { class, label, value, note: String::new() };
+    let joined = |facts: &[(Option<&String>, &str)]| {
+        let known: Vec<&str> = facts.iter().filter_map(|(fact, _)| fact.map(String::as_str)).collect();
+        let missing: Vec<String> = facts
+            .iter()
+            .filter(|(fact, _)| fact.is_none())
+            .map(|(_, key)| format!("inspection.{key}"))
+            .collect();
+        let some = |text: String| Some(text).filter(|text| !text.is_empty());
+        Value { text: some(known.join(", ")), missing: some(missing.join(", ")) }
+    };
+    let tank = Value {
+        text: Some(facts.tank_id.clone().unwrap_or_else(|| document.scenario.clone())),
+        missing: facts.tank_id.is_none().then(|| "inspection.tank_id".to_owned()),
+    };
+    vec![
+        Field { class: "w2", label: "Tank", value: tank, note: document.size.clone() },
+        field(
+            "w2",
+            "Owner and site",
+            joined(&[(facts.client.as_ref(), "client"), (facts.site.as_ref(), "site")]),
+        ),
+        field("w2 e f", "Document number", document.number.clone().into()),
+        field(
+            "",
+            "Date of the run (UTC)",
+            began.map_or_else(|| Value { text: None, missing: Some("date".into()) }, Value::from),
+        ),
+        field("", "Mission time", super::super::charts::clock(time_s).into()),
+        field("", "Revision", document.revision.clone().into()),
+        field("", "Language", "en".into()),
+        field("w2 e f", "Made by", document.made_by.clone().into()),
+        field(
+            "w2 b f",
+            "Inspector",
+            joined(&[
+                (facts.inspector.as_ref(), "inspector"),
+                (facts.inspector_certificate.as_ref(), "inspector_certificate"),
+            ]),
+        ),
+        field("w2 b f", "Approved by", joined(&[(facts.approver.as_ref(), "approver")])),
+        field(
+            "w2 e b f",
+            "Order and drawing",
+            joined(&[(facts.order.as_ref(), "order"), (facts.drawing.as_ref(), "drawing")]),
+        ),
+    ]
+}
+
+fn verdict(document: &Document) -> Verdict {
+    let floor = &document.floor;
+    let last = document.runs.last();
+    let is_complete = last.is_some_and(|run| run.outcome == Some(Outcome::Complete));
+    let (scanned, sure) =
+        (floor.reachable.percent.scanned, floor.reachable.percent.guaranteed.unwrap_or(0.0));
+    let zone = if floor.critical_zone.done { "complete" } else { "not complete" };
+    let missed_m2 = floor.reachable.missed * floor.reachable.area_m2;
+    if is_complete {
+        let is_all = floor.reachable.missed < 0.005 && floor.critical_zone.done;
+        return Verdict {
+            class: if is_all { "" } else { "part" },
+            lead: format!(
+                "{scanned:.1} % of the reachable floor was scanned; {sure:.1} % is guaranteed against the position error. The \
+                 critical zone along the shell is {zone}."
+            ),
+            cause: String::new(),
+        };
+    }
+    let outcome = last.and_then(|run| run.outcome).map_or("cut off", Outcome::word);
+    let reason = last.and_then(|run| run.reason.clone());
+    Verdict {
+        class: "bad",
+        lead: format!(
+            "Not complete: the mission ended as {outcome}. {scanned:.1} % of the reachable floor was scanned, {missed_m2:.1} m² \
+             were not."
+        ),
+        cause: reason.map(|reason| format!("Cause: {reason}.")).unwrap_or_default(),
+    }
+}
+
+fn shares(document: &Document) -> Vec<Share> {
+    let (whole, reachable) = (&document.floor.whole, &document.floor.reachable);
+    let m2 = |share: f64, of: &Shares| format!("{:.1}", share * of.area_m2);
+    let sure = reachable.guaranteed.unwrap_or(0.0);
+    vec![
+        Share {
+            percent: format!("{:.1}", whole.percent.scanned),
+            of: "of the whole floor",
+            about: format!(
+                "{} of {:.1} m² of floor within the shell, without what obstacles stand on",
+                m2(whole.scanned, whole),
+                whole.area_m2
+            ),
+        },
+        Share {
+            percent: format!("{:.1}", reachable.percent.scanned),
+            of: "of the reachable floor",
+            about: format!(
+                "{} of {:.1} m² that the tool can reach with hull and clearance",
+                m2(reachable.scanned, reachable),
+                reachable.area_m2
+            ),
+        },
+        Share {
+            percent: format!("{:.1}", reachable.percent.guaranteed.unwrap_or(0.0)),
+            of: "of the reachable floor, guaranteed",
+            about: format!(
+                "{} m² under the tool wherever the robot stood within its 95 % position error; {:.1} % of the whole floor",
+                m2(sure, reachable),
+                whole.percent.guaranteed.unwrap_or(0.0)
+            ),
+        },
+    ]
+}
+
+fn bases(document: &Document) -> Table {
+    let mut table = Table::new(
+        "",
+        &[
+            ("Base", "", ""),
+            ("Area", "m²", "r"),
+            ("Scanned", "%", "r"),
+            ("Missed", "%", "r"),
+            ("Unreachable", "%", "r"),
+            ("Shell margin", "%", "r"),
+            ("Sum", "%", "r"),
+            ("of which guaranteed", "%", "r"),
+        ],
+    );
+    for (name, shares) in
+        [("Whole floor", &document.floor.whole), ("Reachable floor", &document.floor.reachable)]
+    {
+        let p = &shares.percent;
+        let tenth = |value: f64| Value::from(format!("{value:.1}"));
+        table.row(vec![
+            name.into(),
+            tenth(shares.area_m2),
+            tenth(p.scanned),
+            tenth(p.missed),
+            tenth(p.unreachable),
+            tenth(p.margin),
+            tenth(p.scanned + p.missed + p.unreachable + p.margin),
+            tenth(p.guaranteed.unwrap_or(0.0)),
+        ]);
+    }
+    table
+}
+
+fn todo(document: &Document) -> Vec<Todo> {
+    let (floor, zone) = (&document.floor, &document.floor.critical_zone);
+    let mut todo = Vec::new();
+    let mut decide = |text: String, section| todo.push(Todo { text, section });
+    if !zone.done {
+        let (left_m, of_m, width_mm) = (zone.length_m - zone.done_m, zone.length_m, 1000.0 * zone.width_m);
+        decide(
+            format!(
+                "Critical zone: {left_m:.1} of {of_m:.1} m of shell not scanned over the whole {width_mm:.0} mm."
+            ),
+            4,
+        );
+    }
+    if let Some(largest) = floor.missed.first() {
+        let (count, area_m2) = (counted(floor.missed.len() as u64, "missed area"), largest.area_m2);
+        decide(
+            format!(
+                "{count} of 0.01 m² and more, the largest {area_m2:.2} m²: accept, scan again, or inspect by hand."
+            ),
+            3,
+        );
+    }
+    if document.runs.last().is_none_or(|run| run.outcome != Some(Outcome::Complete)) {
+        decide(
+            "Mission incomplete: decide whether another run joins this report (tankops rescan).".into(),
+            7,
+        );
+    }
+    let open: Vec<String> = document.open_items().map(|item| item.number.to_string()).collect();
+    if !open.is_empty() {
+        decide(format!("Items of the gate that are open: {}.", open.join(", ")), 10);
+    }
+    todo
+}
+
+/// What was asked for, and what the words mean.
+pub(super) fn scope(document: &Document) -> Vec<Block> {
+    let floor = &document.floor;
+    let zone_mm = 1000.0 * floor.critical_zone.width_m;
+    let cell_cm = 100.0 * floor.cell_m;
+    let runs: Vec<&str> = document.runs.iter().map(|run| run.run.as_str()).collect();
+    let asked = &document.gate[1].answer;
+    vec![
+        Block::Text(format!(
+            "Scenario {}: {asked}. From {}: {}. Tool: swath {} m. Cells of {} cm; a cell counts as scanned if its middle came under \
+             the tool while the 95 % position error was at most {} m. Every percentage names its base.",
+            document.scenario,
+            counted(runs.len() as u64, "run"),
+            runs.join(", "),
+            floor.swath_m,
+            number(cell_cm, 1),
+            floor.position_limit_m
+        )),
+        Block::Heading("Words".into()),
+        Block::Words(vec![
+            ("Whole floor", "all floor within the shell, without what obstacles stand on".into()),
+            ("Reachable floor", "floor that the tool can cover from where the robot may stand, with hull and clearance".into()),
+            ("Scanned", "the middle of the cell came under the tool while the 95 % position error was within the limit".into()),
+            ("Guaranteed", "scanned, and it would have been for every position within the 95 % error".into()),
+            ("Missed", "reachable, but not scanned; each area has a number, a place and a reason".into()),
+            ("Unreachable", "beside obstacles, in no-go zones, or closed off".into()),
+            ("Shell margin", "out of reach because the robot keeps its distance from the shell".into()),
+            ("Critical zone", format!("{zone_mm:.0} mm along the shell, judged by itself in layers of 5 mm")),
+        ]),
+    ]
+}

@@ -1,0 +1,187 @@
+//! The section on what each run did: track, tether, chart, incidents, indications.
+
+use super::{
+    super::{
+        RunPart,
+        charts::clock,
+        is_marked,
+        page::{Block, Table, Value},
+        run_part::TetherPart,
+    },
+    Document, counted, number, picture,
+};
+use mission::Severity;
+
+/// Incidents that are listed for a run; plans and orders are left out first.
+const MOST_INCIDENTS: usize = 120;
+
+/// Every run, then the indications.
+pub(super) fn runs(document: &Document) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    for (run, figures) in document.runs.iter().zip(&document.pictures.runs) {
+        if document.runs.len() > 1 {
+            blocks.push(Block::Heading(format!("Run {}", run.run)));
+        }
+        let way = run.path_length_m.map(|m| format!(", {m:.1} m of way")).unwrap_or_default();
+        let collisions = run.collisions.map(|n| format!(", {}", counted(n, "collision"))).unwrap_or_default();
+        blocks.push(Block::Text(format!("{}{way}{collisions}.", clock(run.mission_time_s))));
+        let [track, tether, over_time] = figures;
+        blocks.push(Block::Pair(track.iter().chain(tether).map(picture).collect()));
+        blocks.extend(run.tether.as_ref().map(|tether| Block::Table(tether_table(tether))));
+        blocks.extend(over_time.as_ref().map(|figure| Block::Wide(picture(figure))));
+        blocks.extend(incidents(document, run));
+    }
+    blocks.extend(indications(document));
+    blocks
+}
+
+fn tether_table(tether: &TetherPart) -> Table {
+    let mut table = Table::new(
+        "Tether record",
+        &[
+            ("Tether", "", ""),
+            ("Record", "by the estimate", "r"),
+            ("When", "h:m:s", "r"),
+            ("Limit", "", "r"),
+            ("Share", "of the limit", "r"),
+            ("Truth", "simulation only", "r"),
+        ],
+    );
+    let truth = tether.truth;
+    let mut row =
+        |name: &str, value: f64, at_s: Option<f64>, limit: Option<f64>, unit: &str, truth: Option<f64>| {
+            let decimals = usize::from(unit == " m");
+            let text = |value: f64| format!("{}{unit}", number(value, decimals));
+            let share = limit.map(|limit| {
+                if value > limit { "over".into() } else { format!("{:.0} %", 100.0 * value / limit) }
+            });
+            table.row(vec![
+                name.into(),
+                text(value).into(),
+                at_s.map(clock).unwrap_or_default().into(),
+                limit.map(text).unwrap_or_default().into(),
+                share.unwrap_or_default().into(),
+                truth.map(text).unwrap_or_default().into(),
+            ]);
+        };
+    let degrees = f64::to_degrees;
+    row(
+        "Most out",
+        tether.length_max_m,
+        Some(tether.length_max_at_s),
+        Some(tether.reel_length_m),
+        " m",
+        truth.map(|truth| truth.tether_length_max_m),
+    );
+    row(
+        "Largest wrap on one obstacle",
+        degrees(tether.wrap_max_rad),
+        None,
+        Some(degrees(tether.wrap_limit_rad)),
+        "°",
+        truth.map(|truth| degrees(truth.wrap_max_rad)),
+    );
+    row(
+        "All wraps together",
+        degrees(tether.wrap_total_max_rad),
+        Some(tether.wrap_total_max_at_s),
+        Some(degrees(tether.wrap_total_limit_rad)),
+        "°",
+        truth.map(|truth| degrees(truth.wrap_total_max_rad)),
+    );
+    row("Out at the end", tether.end_length_m, None, None, " m", truth.map(|truth| truth.end_length_m));
+    if let Some(off_m) = tether.reel_off_max_m {
+        row("Reel against map, largest difference", off_m, None, None, " m", None);
+    }
+    let pull = format!("×{:.2}", tether.pull_factor_max);
+    let name = format!("Largest capstan factor (friction {})", tether.friction);
+    table.row(vec![name.into(), pull.into(), "".into(), "".into(), "".into(), "".into()]);
+    let snags = truth.map_or(0, |truth| truth.snags);
+    table.row(vec!["Snags".into(), snags.to_string().into(), "".into(), "".into(), "".into(), "".into()]);
+    table
+}
+
+fn incidents(document: &Document, run: &RunPart) -> Option<Block> {
+    let mut table = Table::new(
+        "Alarms, holds, faults, obstacles, plans and stations",
+        &[
+            ("Time", "h:m:s", "r nw"),
+            ("No.", "on the chart", "c"),
+            ("What", "", ""),
+            ("Detail", "", ""),
+            ("Until", "h:m:s", "r nw"),
+            ("Reviewed by", "", ""),
+        ],
+    );
+    let is_many = run.incidents.len() > MOST_INCIDENTS;
+    let is_listed = |severity: Severity, is_marked: bool| !is_many || is_marked || severity > Severity::Watch;
+    let mut left_out = 0;
+    for (index, incident) in run.incidents.iter().enumerate() {
+        let mark = is_marked(incident);
+        if !is_listed(incident.severity, mark) {
+            left_out += 1;
+            continue;
+        }
+        let until = match incident.until_s {
+            Some(until_s) => clock(until_s),
+            None if matches!(incident.kind, "alarm" | "hold") => "to the end".into(),
+            None => String::new(),
+        };
+        let reviewed = if incident.needs_review() {
+            Value::fact(document.inspection.events_reviewed_by.as_ref(), "events_reviewed_by")
+        } else {
+            Value::default()
+        };
+        table.row(vec![
+            clock(incident.t_s).into(),
+            if mark { (index + 1).to_string() } else { String::new() }.into(),
+            incident.kind.into(),
+            incident.text.clone().into(),
+            until.into(),
+            reviewed,
+        ]);
+    }
+    if left_out > 0 {
+        let caption = format!("{}; {left_out} without consequence are left out", table.caption);
+        table.caption = caption;
+    }
+    (!table.rows.is_empty()).then_some(Block::Table(table))
+}
+
+fn indications(document: &Document) -> Vec<Block> {
+    let stated = Value::fact(document.inspection.indications.as_ref(), "indications");
+    if document.indications.is_empty() {
+        return vec![Block::Heading("Indications".into()), Block::Facts(vec![("Statement", stated)])];
+    }
+    let mut table = Table::new(
+        "Indications of the instrument, placed by time on the track",
+        &[
+            ("No.", "", "r"),
+            ("Time", "h:m:s", "r nw"),
+            ("x", "m", "r nw"),
+            ("y", "m", "r nw"),
+            ("±", "m, 95 %", "r"),
+            ("Plate", "", "nw"),
+            ("Kind", "", ""),
+            ("Size", "mm", "r"),
+            ("Depth", "mm", "r"),
+            ("Note", "", ""),
+        ],
+    );
+    let optional = |value: Option<f64>| value.map_or_else(|| "\u{2013}".to_owned(), |value| number(value, 1));
+    for found in &document.indications {
+        table.row(vec![
+            found.number.to_string().into(),
+            clock(found.t_s).into(),
+            number(found.at.x, 2).into(),
+            number(found.at.y, 2).into(),
+            number(found.error_m, 2).into(),
+            found.plate.clone().unwrap_or_default().into(),
+            found.kind.clone().into(),
+            optional(found.size_mm).into(),
+            optional(found.depth_mm).into(),
+            found.note.clone().into(),
+        ]);
+    }
+    vec![Block::Heading("Indications".into()), Block::Table(table)]
+}

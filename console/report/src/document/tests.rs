@@ -1,0 +1,3 @@
+//! Reports on a small round tank.
+
+#![allow(clippy::unwrap_used, reason = "tests")]

@@ -1,0 +1,89 @@
+//! Plates on a map: their seams and names.
+
+use super::sheet::Sheet;
+use world::{Boundary, Floor, PlateKind, PlateLayout, PlateMap, Point};
+
+/// The seams of the plates of a floor, and where their names stand.
+pub(crate) struct PlateLines {
+    seams: Vec<Vec<Point>>,
+    names: Vec<PlateName>,
+}
+
+struct PlateName {
+    name: String,
+    at: Point,
+    /// Turned by so much, degrees clockwise on the paper.
+    turn_deg: f64,
+    /// Extent of the plate, metres.
+    room_m: [f64; 2],
+}
+
+impl PlateLines {
+    /// The seams and names of a layout on a floor.
+    pub(crate) fn new(layout: &PlateLayout, boundary: &Boundary, floor: &Floor, map: &PlateMap) -> Self {
+        let mut sums = vec![(0_usize, Point::origin(), None::<(Point, Point)>); map.plates.len()];
+        for cell in 0..floor.len() {
+            let Some(plate) = map.plate_of(cell) else { continue };
+            let (center, (count, sum, bounds)) = (floor.center(cell), &mut sums[plate]);
+            *count += 1;
+            *sum += center.coords;
+            *bounds =
+                Some(bounds.map_or((center, center), |(low, high)| (low.inf(&center), high.sup(&center))));
+        }
+        let name =
+            |(plate, (count, sum, bounds)): (&world::Plate, &(usize, Point, Option<(Point, Point)>))| {
+                let mean = Point::from(sum.coords / (*count).max(1) as f64);
+                let extent = bounds.map_or([0.0, 0.0], |(low, high)| [high.x - low.x, high.y - low.y]);
+                match boundary {
+                    Boundary::Circle { radius_m } if plate.kind == PlateKind::Annular => {
+                        let angle = mean.y.atan2(mean.x);
+                        let at = radius_m - layout.annular_m / 2.0;
+                        let turn = if angle.sin() >= 0.0 { 90.0 } else { 270.0 } - angle.to_degrees();
+                        let arc_m = std::f64::consts::TAU * radius_m / f64::from(layout.n_annular.max(1));
+                        let at = Point::new(at * angle.cos(), at * angle.sin());
+                        PlateName {
+                            name: plate.name.clone(),
+                            at,
+                            turn_deg: turn,
+                            room_m: [arc_m, layout.annular_m],
+                        }
+                    }
+                    _ => PlateName { name: plate.name.clone(), at: mean, turn_deg: 0.0, room_m: extent },
+                }
+            };
+        Self { seams: layout.seams(boundary), names: map.plates.iter().zip(&sums).map(name).collect() }
+    }
+}
+
+impl Sheet {
+    /// The seams of the plates.
+    pub(crate) fn plates(&mut self, plates: Option<&PlateLines>) {
+        for seam in plates.iter().flat_map(|plates| &plates.seams) {
+            self.line(seam, r##"stroke="#7D8A93" stroke-width=".13""##);
+        }
+    }
+
+    /// The names of the plates that have room for them, in letters of so many millimetres; returns their boxes.
+    pub(crate) fn plate_names(&mut self, plates: Option<&PlateLines>, letters_mm: f64) -> Vec<[Point; 2]> {
+        let mut boxes = Vec::new();
+        self.draw(format_args!(r#"<g class="pn" font-size="{letters_mm}">"#));
+        for plate in plates.iter().flat_map(|plates| &plates.names) {
+            let [width_mm, height_mm] = plate.room_m.map(|m| m * self.scale);
+            let needed_mm = 0.62 * letters_mm * plate.name.len() as f64;
+            if width_mm < needed_mm || height_mm < 0.8 * letters_mm {
+                continue;
+            }
+            let (at, letters) = (self.at(plate.at), letters_mm.min(0.8 * height_mm));
+            self.draw(format_args!(
+                r#"<text x="{x:.2}" y="{y:.2}" transform="rotate({:.1} {x:.2} {y:.2})" dy=".35em" font-size="{letters:.2}">{}</text>"#,
+                plate.turn_deg,
+                plate.name,
+                x = at.x,
+                y = at.y
+            ));
+            boxes.push([at - world::Vector::new(4.0, 1.3), at + world::Vector::new(4.0, 1.3)]);
+        }
+        self.draw("</g>");
+        boxes
+    }
+}

@@ -1,0 +1,221 @@
+//! Cells as outlines: rings on the lattice of their corners, simplified, as SVG path data.
+
+use crate::account::areas::together;
+use std::{collections::BTreeMap, fmt::Write};
+use world::{Floor, Point};
+
+/// A corner of cells: column and row from the south-west corner of the grid.
+type Corner = (i32, i32);
+
+/// The outlines of the cells that are asked for, as path data in units of cells: x to the right, y up from the south-west
+/// corner of the grid. Points nearer than `tolerance` cells to the simplified outline are left out; 0 keeps every corner.
+pub(crate) fn outlines(floor: &Floor, is_in: impl Fn(usize) -> bool, tolerance: f64) -> String {
+    let mut path = String::new();
+    for ring in rings(floor, is_in) {
+        write_ring(&mut path, &simplified(&ring, tolerance));
+    }
+    path
+}
+
+/// Closed rings around the cells, counter-clockwise about cells and clockwise about holes.
+fn rings(floor: &Floor, is_in: impl Fn(usize) -> bool) -> Vec<Vec<Corner>> {
+    let (width, height) = (floor.width as i32, floor.height as i32);
+    let inside: Vec<bool> = (0..floor.len()).map(is_in).collect();
+    let at = |x: i32, y: i32| {
+        (0..width).contains(&x) && (0..height).contains(&y) && inside[(y * width + x) as usize]
+    };
+    let mut next: BTreeMap<Corner, Vec<Corner>> = BTreeMap::new();
+    for cell in (0..floor.len()).filter(|cell| inside[*cell]) {
+        let (x, y) = (cell as i32 % width, cell as i32 / width);
+        let sides = [
+            (at(x, y - 1), (x, y), (x + 1, y)),
+            (at(x + 1, y), (x + 1, y), (x + 1, y + 1)),
+            (at(x, y + 1), (x + 1, y + 1), (x, y + 1)),
+            (at(x - 1, y), (x, y + 1), (x, y)),
+        ];
+        for (_, from, to) in sides.into_iter().filter(|(is_same, ..)| !is_same) {
+            next.entry(from).or_default().push(to);
+        }
+    }
+    let mut rings = Vec::new();
+    while let Some(first) = next.keys().next().copied() {
+        rings.push(take_ring(&mut next, first));
+    }
+    rings
+}
+
+/// Takes a ring out of the edges; where cells only touch at a corner it turns left, so that they stay apart.
+fn take_ring(next: &mut BTreeMap<Corner, Vec<Corner>>, first: Corner) -> Vec<Corner> {
+    let mut ring = vec![first];
+    let mut came = None;
+    let mut here = first;
+    while let Some(ways) = next.get_mut(&here) {
+        let left = |to: &Corner| {
+            came.map_or(0, |from: Corner| {
+                (here.0 - from.0) * (to.1 - here.1) - (here.1 - from.1) * (to.0 - here.0)
+            })
+        };
+        let best = (0..ways.len()).max_by_key(|index| left(&ways[*index])).unwrap_or(0);
+        let to = ways.swap_remove(best);
+        if ways.is_empty() {
+            next.remove(&here);
+        }
+        came = Some(here);
+        here = to;
+        if here == first {
+            break;
+        }
+        ring.push(here);
+    }
+    ring
+}
+
+fn simplified(ring: &[Corner], tolerance: f64) -> Vec<Corner> {
+    if tolerance <= 0.0 || ring.len() < 5 {
+        let n = ring.len();
+        let turns = |k: &usize| {
+            let (a, b, c) = (ring[(k + n - 1) % n], ring[*k], ring[(k + 1) % n]);
+            (b.0 - a.0) * (c.1 - b.1) != (b.1 - a.1) * (c.0 - b.0)
+        };
+        return (0..n).filter(turns).map(|k| ring[k]).collect();
+    }
+    let far = |k: &usize| {
+        let (dx, dy) = (ring[*k].0 - ring[0].0, ring[*k].1 - ring[0].1);
+        i64::from(dx).pow(2) + i64::from(dy).pow(2)
+    };
+    let middle = (0..ring.len()).max_by_key(far).unwrap_or(0);
+    let closed: Vec<Corner> = ring[middle..].iter().chain(&ring[..1]).copied().collect();
+    let points = |part: &[Corner]| -> Vec<Point> {
+        part.iter().map(|(x, y)| Point::new(f64::from(*x), f64::from(*y))).collect()
+    };
+    let mut kept: Vec<Corner> = Vec::new();
+    for part in [&ring[..=middle], &closed] {
+        let thinned = thinned(&points(part), tolerance);
+        kept.extend(thinned[..thinned.len() - 1].iter().map(|p| (p.x as i32, p.y as i32)));
+    }
+    if kept.len() < 3 { simplified(ring, 0.0) } else { kept }
+}
+
+/// A line without the points that lie nearer to the rest of it than a tolerance (Douglas and Peucker).
+pub(crate) fn thinned(points: &[Point], tolerance: f64) -> Vec<Point> {
+    if points.len() < 3 {
+        return points.to_vec();
+    }
+    let mut kept = vec![false; points.len()];
+    (kept[0], kept[points.len() - 1]) = (true, true);
+    let mut open = vec![(0, points.len() - 1)];
+    while let Some((first, last)) = open.pop() {
+        let (a, b) = (points[first], points[last]);
+        let off = |k: &usize| (points[*k] - world::polyline::nearest_on_segment(a, b, points[*k])).norm();
+        let farthest = (first + 1..last).map(|k| (off(&k), k)).max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((_, k)) = farthest.filter(|(off, _)| *off > tolerance) {
+            kept[k] = true;
+            open.extend([(first, k), (k, last)]);
+        }
+    }
+    points.iter().zip(kept).filter(|(_, kept)| *kept).map(|(point, _)| *point).collect()
+}
+
+fn write_ring(path: &mut String, ring: &[Corner]) {
+    let Some((first, rest)) = ring.split_first() else { return };
+    // Writing to a String cannot fail.
+    let _ = write!(path, "M{} {}", first.0, first.1);
+    let mut at = *first;
+    for corner in rest {
+        let (dx, dy) = (corner.0 - at.0, corner.1 - at.1);
+        let _ = match (dx, dy) {
+            (_, 0) => write!(path, "h{dx}"),
+            (0, _) => write!(path, "v{dy}"),
+            _ => write!(path, "l{dx} {dy}"),
+        };
+        at = *corner;
+    }
+    path.push('z');
+}
+
+/// The cell of a group that lies deepest in it, and how deep, in cells.
+pub(crate) fn deepest(floor: &Floor, cells: &[usize]) -> (usize, usize) {
+    let mut left: std::collections::BTreeSet<usize> = cells.iter().copied().collect();
+    let mut depth = 0;
+    loop {
+        let inner: std::collections::BTreeSet<usize> = left
+            .iter()
+            .filter(|cell| {
+                let (column, row) = (*cell % floor.width, *cell / floor.width);
+                let is_inside = column > 0 && column + 1 < floor.width && row > 0 && row + 1 < floor.height;
+                is_inside
+                    && [*cell - 1, *cell + 1, *cell - floor.width, *cell + floor.width]
+                        .iter()
+                        .all(|next| left.contains(next))
+            })
+            .copied()
+            .collect();
+        if inner.is_empty() || depth > 60 {
+            let mut groups = together(floor, left);
+            groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
+            let largest = groups.first().map_or(cells, Vec::as_slice);
+            return (largest[largest.len() / 2], depth + 1);
+        }
+        left = inner;
+        depth += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use world::{Boundary, World};
+
+    fn floor() -> Floor {
+        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y));
+        let boundary = Boundary::Polygon { vertices: corners.to_vec() };
+        let world = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+        Floor::new(&world, 0.1, 0.0, 0.2, Point::new(0.5, 0.5))
+    }
+
+    fn signed_area(path: &str) -> i32 {
+        let mut area = 0;
+        let (mut x, mut y, mut start) = (0, 0, (0, 0));
+        let numbers = |text: &str| -> Vec<i32> { text.split(' ').filter_map(|n| n.parse().ok()).collect() };
+        let mut rest = path;
+        while let Some(command) = rest.chars().next() {
+            let end = rest[1..].find(|c: char| c.is_ascii_alphabetic()).map_or(rest.len(), |at| at + 1);
+            let n = numbers(&rest[1..end]);
+            let (dx, dy) = match command {
+                'M' => {
+                    (x, y) = (n[0], n[1]);
+                    start = (x, y);
+                    (0, 0)
+                }
+                'h' => (n[0], 0),
+                'v' => (0, n[0]),
+                'l' => (n[0], n[1]),
+                _ => (start.0 - x, start.1 - y),
+            };
+            area += x * dy - y * dx;
+            (x, y) = (x + dx, y + dy);
+            rest = &rest[end..];
+        }
+        area / 2
+    }
+
+    #[test]
+    fn outlines_enclose_as_many_cells_as_there_are_holes_left_out_and_touching_cells_apart() {
+        let floor = floor();
+        let ring = |cell: usize| (2..7).contains(&(cell % 10)) && (2..7).contains(&(cell / 10)) && cell != 44;
+        assert_eq!(signed_area(&outlines(&floor, ring, 0.0)), 24);
+        let touching = |cell: usize| cell == 11 || cell == 22;
+        let path = outlines(&floor, touching, 0.0);
+        assert_eq!((path.matches('M').count(), signed_area(&path)), (2, 2), "{path}");
+        assert_eq!(outlines(&floor, |_| false, 0.0), "");
+        assert_eq!(outlines(&floor, |_| true, 0.75), "M0 0h10v10h-10z");
+    }
+
+    #[test]
+    fn the_deepest_cell_of_a_square_is_its_middle() {
+        let floor = floor();
+        let square: Vec<usize> =
+            (0..100).filter(|c| (2..7).contains(&(c % 10)) && (2..7).contains(&(c / 10))).collect();
+        assert_eq!(deepest(&floor, &square), (44, 3));
+    }
+}

@@ -1,0 +1,152 @@
+//! What a report shows over time and place: the track, the tether, stations, and what happened.
+
+mod incidents;
+mod stations;
+mod tether;
+
+pub use incidents::Incident;
+pub use stations::StationRecord;
+pub use tether::{Lay, TetherPoint, TetherRecord};
+
+use crate::accuracy::Estimate;
+use incidents::Incidents;
+use mission::{Event, EventKind, PlannerInfo};
+use planner_api::LegTag;
+use stations::Stations;
+use world::{Point, Pose};
+
+/// Shares of the floor are kept this far apart, seconds.
+const PROGRESS_S: f64 = 5.0;
+
+/// Where the robot believed to be in a tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrackPoint {
+    /// Mission time, seconds.
+    pub t_s: f32,
+    /// East, metres.
+    pub x_m: f32,
+    /// North, metres.
+    pub y_m: f32,
+    /// Heading, radians.
+    pub heading_rad: f32,
+    /// 95 % error by the covariance, metres.
+    pub error_m: f32,
+    /// Distance to where it truly was, metres; NaN outside simulation.
+    pub true_error_m: f32,
+}
+
+impl TrackPoint {
+    /// The place.
+    pub fn position(&self) -> Point {
+        Point::new(f64::from(self.x_m), f64::from(self.y_m))
+    }
+}
+
+/// A stretch of mission time, seconds.
+pub type Span = (f64, f64);
+
+/// Everything that a report shows over time and place.
+#[derive(Debug, Default)]
+pub struct Record {
+    /// Every tick.
+    pub track: Vec<TrackPoint>,
+    /// Scanned share of the reachable floor over time.
+    pub progress: Vec<(f64, f64)>,
+    /// When a lane was under the robot, and when anything else.
+    pub scanning: [Vec<Span>; 2],
+    /// How the tether lay; absent without one.
+    pub tether: Option<TetherRecord>,
+    /// The planners that drove, in order.
+    pub planners: Vec<PlannerInfo>,
+    truth: Option<(u64, Pose)>,
+    stations: Stations,
+    incidents: Incidents,
+}
+
+impl Record {
+    /// Nothing has happened yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Takes in one event; they must come in the order of the journal.
+    pub fn apply(&mut self, event: &Event) {
+        self.incidents.apply(event);
+        match &event.kind {
+            EventKind::RunOpened(run) => {
+                self.stations = Stations::new(&run.world.stations);
+                self.tether = run.mission.tether.as_ref().map(TetherRecord::new);
+            }
+            EventKind::Truth { pose, .. } => self.truth = Some((event.tick, *pose)),
+            EventKind::Estimated { pose } => {
+                let covariance_m2 = [(0, 0), (0, 1), (1, 1)].map(|at| pose.covariance[at]);
+                let error_m = Estimate { position: pose.position, covariance_m2 }.error_95_m();
+                let truth = self.truth.filter(|(tick, _)| *tick == event.tick);
+                let off = truth.map_or(f64::NAN, |(_, truth)| (truth.position - pose.position).norm());
+                self.track.push(TrackPoint {
+                    t_s: event.t_s as f32,
+                    x_m: pose.position.x as f32,
+                    y_m: pose.position.y as f32,
+                    heading_rad: pose.heading_rad as f32,
+                    error_m: error_m as f32,
+                    true_error_m: off as f32,
+                });
+            }
+            EventKind::Progressed { covered_reachable, leg, .. } => {
+                if self.progress.last().is_none_or(|(t_s, _)| event.t_s - t_s >= PROGRESS_S) {
+                    self.progress.push((event.t_s, *covered_reachable));
+                }
+                extend(&mut self.scanning[usize::from(*leg != Some(LegTag::Swath))], event.t_s);
+            }
+            EventKind::Tethered {
+                length_m,
+                paid_out_m,
+                wrap_max_rad,
+                wrap_total_rad,
+                pull_factor,
+                line,
+                ..
+            } => {
+                if let Some(tether) = &mut self.tether {
+                    let point = TetherPoint {
+                        t_s: event.t_s as f32,
+                        length_m: *length_m as f32,
+                        wrap_max_rad: wrap_max_rad.abs() as f32,
+                        wrap_total_rad: wrap_total_rad.abs() as f32,
+                    };
+                    let reel_off_m = paid_out_m.map(|out_m| (out_m - length_m).abs());
+                    tether.lie(point, reel_off_m, *pull_factor, line);
+                }
+            }
+            EventKind::PlannerChosen { info, .. } if self.planners.last() != Some(info) => {
+                self.planners.push((**info).clone());
+            }
+            EventKind::Fixed { fix } => self.stations.fix(fix),
+            _ => {}
+        }
+    }
+
+    /// What happened, in order; alarms and holds with their ends.
+    pub fn incidents(&self) -> &[Incident] {
+        self.incidents.all()
+    }
+
+    /// What the fixes say of each station.
+    pub fn stations(&self) -> Vec<StationRecord> {
+        self.stations.records()
+    }
+
+    /// Where the robot believed to be at a time: the last tick not after it; `None` before the first.
+    pub fn at(&self, t_s: f64) -> Option<&TrackPoint> {
+        let after = self.track.partition_point(|point| f64::from(point.t_s) <= t_s + 1e-3);
+        self.track.get(after.checked_sub(1)?)
+    }
+}
+
+/// Adds a moment to the last span if it follows it closely, or begins another.
+fn extend(spans: &mut Vec<Span>, t_s: f64) {
+    match spans.last_mut() {
+        Some((_, to_s)) if t_s - *to_s < 2.0 => *to_s = t_s,
+        _ => spans.push((t_s, t_s)),
+    }
+}

@@ -1,0 +1,96 @@
+//! What happened during a run, for people: alarms and holds with when they began and ended.
+
+use mission::{Event, EventKind, LogLine, Order, Severity};
+use serde::Serialize;
+use world::Station;
+
+/// Something that happened.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Incident {
+    /// Mission time, seconds.
+    pub t_s: f64,
+    /// When it was over, seconds; absent for what has no length, and for what lasted to the end.
+    pub until_s: Option<f64>,
+    /// What kind: `alarm`, `hold`, `fault`, `obstacle`, `plan`, `order`, `station` or `end`.
+    pub kind: &'static str,
+    /// How much it asked of the operator.
+    pub severity: Severity,
+    /// What, as a sentence.
+    pub text: String,
+}
+
+impl Incident {
+    /// Whether somebody must have looked at it.
+    pub fn needs_review(&self) -> bool {
+        matches!(self.kind, "alarm" | "hold" | "fault")
+    }
+}
+
+/// What happened so far.
+#[derive(Debug, Default)]
+pub(super) struct Incidents {
+    stations: Vec<Station>,
+    all: Vec<Incident>,
+    /// What is still open: what ends it, and its index.
+    open: Vec<(String, usize)>,
+}
+
+impl Incidents {
+    pub(super) fn all(&self) -> &[Incident] {
+        &self.all
+    }
+
+    pub(super) fn apply(&mut self, event: &Event) {
+        if let EventKind::RunOpened(run) = &event.kind {
+            self.stations.clone_from(&run.world.stations);
+            return;
+        }
+        let Some((kind, begins, ends)) = sort(&event.kind) else { return };
+        if let Some(key) = ends {
+            self.end(&key, event.t_s);
+        }
+        let Some(line) = event.log_line(&self.stations).filter(|_| !kind.is_empty()) else { return };
+        let LogLine { severity, text, .. } = line;
+        if let Some(key) = begins {
+            self.open.push((key, self.all.len()));
+        }
+        self.all.push(Incident { t_s: event.t_s, until_s: None, kind, severity, text });
+    }
+
+    fn end(&mut self, key: &str, t_s: f64) {
+        let all = &mut self.all;
+        self.open.retain(|(open, index)| {
+            if open == key {
+                all[*index].until_s = Some(t_s);
+            }
+            open != key
+        });
+    }
+}
+
+/// The kind of an event that is reported (none for one that only ends another), what it begins, and what it ends.
+fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String>)> {
+    let key = |text: &str| Some(text.to_owned());
+    Some(match kind {
+        EventKind::Held { .. } => ("hold", key("hold"), key("hold")),
+        EventKind::Resumed => ("", None, key("hold")),
+        EventKind::PositionLost { .. } => ("alarm", key("position"), None),
+        EventKind::PositionRegained { .. } => ("", None, key("position")),
+        EventKind::RangesInconsistent { .. } => ("alarm", key("ranges"), None),
+        EventKind::RangesConsistent => ("", None, key("ranges")),
+        EventKind::TetherAlarmRaised { alarm, .. } => ("alarm", key(alarm.word()), None),
+        EventKind::TetherAlarmCleared { alarm } => ("", None, key(alarm.word())),
+        EventKind::Truth { collided: true, .. } => ("alarm", None, None),
+        EventKind::PlannerFailed { .. } => ("fault", None, None),
+        EventKind::ObstacleFound { .. } => ("obstacle", None, None),
+        EventKind::Planned { .. } | EventKind::Certified { .. } => ("plan", None, None),
+        EventKind::StationRejected { station, .. } => {
+            ("station", key(&format!("station {}", station.0)), None)
+        }
+        EventKind::StationRestored { station } => ("", None, key(&format!("station {}", station.0))),
+        EventKind::Ordered { order: Order::NoteChecks(_) | Order::NoteOutlooks(_) } => return None,
+        EventKind::Ordered { .. } => ("order", None, None),
+        EventKind::Ended { .. } => ("end", None, None),
+        _ => return None,
+    })
+}

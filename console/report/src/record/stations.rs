@@ -1,0 +1,72 @@
+//! What the fixes of a run say of each station.
+
+use positioning::Fix;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use world::{Point, Station, StationId};
+
+/// A station and what the fixes say of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StationRecord {
+    /// Its name.
+    pub name: String,
+    /// Surveyed position, metres.
+    pub at: Point,
+    /// Fixes in which it was used.
+    pub used: u64,
+    /// Fixes from which it was left out.
+    pub rejected: u64,
+    /// Mean of its residuals, metres; absent if it was never used.
+    pub residual_mean_m: Option<f64>,
+    /// Root mean square of its residuals, metres; absent if it was never used.
+    pub residual_rms_m: Option<f64>,
+}
+
+#[derive(Debug, Default)]
+struct Sums {
+    used: u64,
+    rejected: u64,
+    sum_m: f64,
+    squares_m2: f64,
+}
+
+#[derive(Debug, Default)]
+pub(super) struct Stations {
+    stations: Vec<Station>,
+    sums: BTreeMap<StationId, Sums>,
+}
+
+impl Stations {
+    pub(super) fn new(stations: &[Station]) -> Self {
+        Self { stations: stations.to_vec(), sums: BTreeMap::new() }
+    }
+
+    pub(super) fn fix(&mut self, fix: &Fix) {
+        for residual in &fix.residuals {
+            let sums = self.sums.entry(residual.station).or_default();
+            sums.used += 1;
+            sums.sum_m += residual.residual_m;
+            sums.squares_m2 += residual.residual_m.powi(2);
+        }
+        for (station, _) in &fix.excluded {
+            self.sums.entry(*station).or_default().rejected += 1;
+        }
+    }
+
+    pub(super) fn records(&self) -> Vec<StationRecord> {
+        let none = Sums::default();
+        let record = |station: &Station| {
+            let sums = self.sums.get(&station.id).unwrap_or(&none);
+            let mean = |sum: f64| (sums.used > 0).then(|| sum / sums.used as f64);
+            StationRecord {
+                name: station.name.clone(),
+                at: station.position,
+                used: sums.used,
+                rejected: sums.rejected,
+                residual_mean_m: mean(sums.sum_m),
+                residual_rms_m: mean(sums.squares_m2).map(f64::sqrt),
+            }
+        };
+        self.stations.iter().map(record).collect()
+    }
+}

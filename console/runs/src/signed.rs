@@ -1,0 +1,73 @@
+//! Signed reports of a run: which there are, and that none is changed.
+
+use crate::error::RunError;
+use recording::sha256;
+use report::document::Revision;
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+/// The list of signed reports in the folder of a run.
+pub const SIGNED_FILE: &str = "signed.json";
+
+/// The signed reports of the run in a folder, in their order, and what speaks against them: a file that is still where it was
+/// written and has another digest.
+///
+/// # Errors
+/// The list cannot be read.
+pub fn signed_reports(folder: &Path) -> Result<(Vec<Revision>, Vec<String>), RunError> {
+    let path = folder.join(SIGNED_FILE);
+    let reading = || RunError::during(format!("reading the list of signed reports: {}", path.display()));
+    let text = match fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((Vec::new(), Vec::new())),
+        Err(error) => return Err(reading()(error)),
+    };
+    let revisions: Vec<Revision> = serde_json::from_str(&text).map_err(io::Error::from).map_err(reading())?;
+    let doubt = |revision: &Revision| {
+        let now = sha256(&PathBuf::from(&revision.file)).ok()?;
+        let (letter, file) = (&revision.revision, &revision.file);
+        (now != revision.sha256)
+            .then(|| format!("signed revision {letter} was changed after it was signed: {file}"))
+    };
+    let doubts = revisions.iter().filter_map(doubt).collect();
+    Ok((revisions, doubts))
+}
+
+/// Adds a signed report to the list of its run.
+///
+/// # Errors
+/// The list cannot be read or written.
+pub fn add_signed(folder: &Path, revision: Revision) -> Result<(), RunError> {
+    let (mut revisions, _) = signed_reports(folder)?;
+    revisions.push(revision);
+    let (path, draft) = (folder.join(SIGNED_FILE), folder.join(format!("{SIGNED_FILE}.part")));
+    let writing = || RunError::during(format!("writing the list of signed reports: {}", path.display()));
+    let text = serde_json::to_string_pretty(&revisions).map_err(io::Error::from).map_err(writing())? + "\n";
+    fs::write(&draft, text).and_then(|()| fs::rename(&draft, &path)).map_err(writing())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+    use report::document::Signature;
+
+    #[test]
+    fn signed_reports_are_listed_and_one_that_was_changed_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.html");
+        fs::write(&file, "signed").unwrap();
+        assert_eq!(signed_reports(folder.path()).unwrap(), (vec![], vec![]));
+        let signature = Signature { by: "L. Kern".into(), at: "2026-11-22 04:01".into() };
+        let (name, digest) = (file.display().to_string(), sha256(&file).unwrap());
+        let revision = Revision { revision: "A".into(), signature, file: name, sha256: digest };
+        add_signed(folder.path(), revision.clone()).unwrap();
+        assert_eq!(signed_reports(folder.path()).unwrap(), (vec![revision], vec![]));
+        fs::write(&file, "forged").unwrap();
+        let (_, doubts) = signed_reports(folder.path()).unwrap();
+        assert!(doubts.len() == 1 && doubts[0].starts_with("signed revision A was changed"), "{doubts:?}");
+    }
+}
