@@ -7,6 +7,7 @@ mod events;
 mod go;
 mod health;
 mod hear;
+mod look_only;
 mod map;
 mod message;
 mod mouse;
@@ -15,6 +16,7 @@ mod overlay;
 mod palette;
 mod place;
 mod preflight;
+mod preset;
 mod redraw;
 mod send;
 mod stations;
@@ -58,6 +60,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Time(now) => model.console.now = now,
         Msg::Measured(measured) => health::take(model, measured),
         Msg::Run(id, msg) => effects = hear::hear(model, id, msg),
+        Msg::Presets(presets) => model.console.presets = presets,
         Msg::Found(found) => model.home.found = Some(*found),
         Msg::Done(job, result) => effects = go::done(model, &job, result),
         Msg::Planners { found, refused } => take_planners(model, found, refused),
