@@ -24,7 +24,7 @@ mod typing;
 mod what_if;
 
 pub use act::act;
-pub use message::{Effect, Job, Mouse, Msg, RunMsg, Signal, Target};
+pub use message::{Effect, Job, Mouse, Msg, Rows, RunMsg, Signal, Target};
 pub use offer::offered;
 pub use palette::{Choice, choices};
 pub use redraw::{Redraw, redraw};

@@ -94,8 +94,27 @@ pub enum Target {
     Map(Point),
     /// The name of a key.
     Key(ActionId),
+    /// A line of a list, by its place in it.
+    Row(Rows, usize),
     /// Something else.
     Else,
+}
+
+/// A list of a screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Rows {
+    /// Scenarios on the home screen.
+    Scenarios,
+    /// Past runs on the home screen.
+    Runs,
+    /// The table of alarms.
+    Alarms,
+    /// The events, the newest first.
+    Events,
+    /// Plugin files.
+    Plugins,
+    /// Missed areas of the result.
+    Missed,
 }
 
 /// News of a run that is open.

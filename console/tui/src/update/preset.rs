@@ -38,7 +38,8 @@ pub(super) fn load(model: &mut Model, name: &str) -> Vec<Effect> {
 
 fn loaded(model: &Model, name: &str) -> Result<PlannerChoice, String> {
     let found = model.console.presets.iter().find(|preset| preset.name == name);
-    let choice = found.ok_or_else(|| format!("there is no preset {name}"))?.choice.clone()?;
+    let choice = found.ok_or_else(|| format!("there is no preset {name}"))?.choice.clone();
+    let choice = choice.map_err(|why| format!("preset {name} is refused: {why}"))?;
     let info = model.info_of(&choice.id).ok_or_else(|| format!("planner {} was not found", choice.id))?;
     if let Some(why) = model.live.run.cannot_fly(info) {
         return Err(format!("planner {} {why}", info.id));

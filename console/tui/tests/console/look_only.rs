@@ -21,19 +21,12 @@ fn onlookers() -> Vec<Screen> {
 
 /// Whether an effect concerns nothing but this console, its configuration, and runs that are written already.
 fn looks(effect: &Effect) -> bool {
-    use Effect::{Bell, Copy, Do, Look, Mouse, Quit, Redraw, SavePreset, StopForecasting, Suspend};
+    use Effect::{Bell, Copy, Do, Look, Mouse, Quit, Redraw, SavePreset, Suspend};
     match effect {
         Do(job) => !matches!(job, Job::Report(_)),
         other => matches!(
             other,
-            Look | Redraw
-                | Suspend
-                | Bell
-                | Mouse(_)
-                | Copy(_)
-                | Quit { .. }
-                | StopComparing
-                | StopForecasting
+            Look | Redraw | Suspend | Bell | Mouse(_) | Copy(_) | Quit { .. } | SavePreset { .. }
         ),
     }
 }

@@ -59,7 +59,10 @@ fn a_preset_is_taken_after_a_look_at_what_it_changes() {
 
 #[test]
 fn what_cannot_be_taken_says_why() {
-    let cases = [("bad", "bad.toml:3:9: k: no such parameter"), ("plain", "preset plain changes nothing")];
+    let cases = [
+        ("bad", "preset bad is refused: bad.toml:3:9: k: no such parameter"),
+        ("plain", "preset plain changes nothing"),
+    ];
     for (name, why) in cases {
         let mut screen = offered(Screen::held());
         assert_eq!((run(&mut screen, &format!("preset-load {name}")), notice(&screen)), (vec![], why));
