@@ -175,6 +175,7 @@ mod tests {
             plugin: String::new(),
             sha256: String::new(),
             abi: String::new(),
+            sandbox: None,
             covers: false,
             snapshots: false,
             parameters: vec![
