@@ -44,7 +44,7 @@ impl Bench {
         let mut command = Command::new(program);
         command.current_dir(self.path()).env_remove("TANKOPS_PLUGIN_PATH");
         // What the developer has set up is none of the tests' business.
-        command.env("XDG_CONFIG_HOME", self.path());
+        command.env("XDG_CONFIG_HOME", self.path()).env("XDG_STATE_HOME", self.path());
         command.arg("--plugin-dir").arg(program.parent().unwrap().join("deps"));
         command
     }

@@ -48,6 +48,7 @@ impl Session {
         command.args(["-c", &script]);
         command.cwd(bench.path());
         command.env("XDG_CONFIG_HOME", bench.path());
+        command.env("XDG_STATE_HOME", bench.path());
         command.env("TERM", "xterm-256color");
         command.env("LANG", "C.UTF-8");
         command.env_remove("NO_COLOR");

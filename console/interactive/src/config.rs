@@ -2,6 +2,7 @@
 
 mod fault;
 mod keys;
+pub(crate) mod presets;
 mod settings;
 
 pub use settings::colours;
@@ -97,10 +98,16 @@ fn point(severity: Severity, text: String) -> Attention {
 }
 
 fn folder() -> Option<PathBuf> {
+    folder_of("XDG_CONFIG_HOME", ".config")
+}
+
+/// A folder of tankops by the XDG base directory specification: in the folder that a variable names, else in one of the
+/// operator's.
+pub(crate) fn folder_of(variable: &str, otherwise: &str) -> Option<PathBuf> {
     let set = |name| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    // The XDG base directory specification asks to ignore a path that is not absolute.
-    let base = set("XDG_CONFIG_HOME").filter(|path| path.is_absolute());
-    base.or_else(|| Some(set("HOME")?.join(".config"))).map(|base| base.join("tankops"))
+    // The specification asks to ignore a path that is not absolute.
+    let base = set(variable).filter(|path| path.is_absolute());
+    base.or_else(|| Some(set("HOME")?.join(otherwise))).map(|base| base.join("tankops"))
 }
 
 fn name_of(file: &Path) -> String {

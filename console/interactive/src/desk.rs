@@ -13,9 +13,14 @@ use super::{
     line::Current,
     look::Disk,
 };
-use crate::{Drill, config::Config, survey::surveyed};
+use crate::{
+    Drill,
+    config::{Config, presets},
+    history,
+    survey::surveyed,
+};
 use flight::{Flight, planners::check_choices, scenarios};
-use mission::{PlannerChoice, PlannerInfo};
+use mission::{PlannerChoice, PlannerInfo, Severity};
 use planner_host::PluginDirs;
 use review::rescan_of;
 use runs::Closed;
@@ -44,6 +49,10 @@ pub(super) enum Request {
     Forecast(Vec<PlannerChoice>),
     /// Give the forecasts up.
     StopForecasting,
+    /// Keep parameters under a name.
+    SavePreset { name: String, choice: PlannerChoice },
+    /// Keep a command line for later sessions.
+    Remember(String),
     /// Look at the plugins again.
     Survey,
     /// Look at the disk again.
@@ -165,6 +174,8 @@ impl Desk {
                 Request::StopComparing => self.comparing = None,
                 Request::Forecast(choices) => self.forecast(choices),
                 Request::StopForecasting => self.forecasting = None,
+                Request::SavePreset { name, choice } => self.save_preset(&name, &choice),
+                Request::Remember(line) => history::append(&line),
                 Request::Survey => self.survey(),
                 Request::Look => self.look(),
                 Request::Do(job) => jobs::begin(job, &self.tools),
@@ -224,6 +235,16 @@ impl Desk {
             Ok(forecasting) => self.forecasting = Some(forecasting),
             Err(error) => jobs::report(&self.tools.outbox, &format!("cannot forecast: {error}")),
         }
+    }
+
+    fn save_preset(&self, name: &str, choice: &PlannerChoice) {
+        let Tools { outbox, planners, .. } = &self.tools;
+        let (severity, text) = match presets::save(name, choice) {
+            Ok(file) => (Severity::Info, format!("preset {name} saved: {}", file.display())),
+            Err(error) => (Severity::Warn, format!("preset {name} is not saved: {error:#}")),
+        };
+        outbox.send(Msg::Presets(presets::load(&planners.get())));
+        outbox.send(Msg::Notice { severity, text });
     }
 
     /// Every plugin is opened in a worker of its own; the desk does not wait for them.

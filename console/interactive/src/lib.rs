@@ -8,6 +8,7 @@ mod crash;
 mod desk;
 mod engine;
 mod forecasting;
+mod history;
 mod inbox;
 mod jobs;
 mod line;
@@ -143,7 +144,10 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     let current = desk.current();
     let (desk, thread) = desk.start()?;
     desk.request(Request::Look);
-    let session = Session::new(config.apply(model), inbox, (current.clone(), desk.clone()));
+    let mut session = Session::new(config.apply(model), inbox, (current.clone(), desk.clone()));
+    if options.by == By::Keys {
+        session.remember();
+    }
     let ended = match script {
         Some(script) => script.run(session, &outbox, &current).map(Ended::Script),
         None if options.by == By::Lines => plain::speak(session, &outbox, &current).map(Ended::Left),

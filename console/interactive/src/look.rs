@@ -1,6 +1,6 @@
 //! What the home screen shows: scenarios, past runs, and what is wrong on the disk.
 
-use super::{desk::Tools, inbox::Outbox};
+use super::{config::presets, desk::Tools, inbox::Outbox};
 use flight::{planners::check_choices, scenarios};
 use mission::{Severity, TaskConfig};
 use runs::Listed;
@@ -40,6 +40,7 @@ impl Disk {
     /// Looks at it, and tells the screen.
     pub(super) fn look(&self) {
         let outbox: &Outbox = &self.tools.outbox;
+        outbox.send(Msg::Presets(presets::load(&self.tools.planners.get())));
         outbox.send(Msg::Found(Box::new(self.found())));
     }
 

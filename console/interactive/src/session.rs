@@ -2,6 +2,7 @@
 
 use super::{
     desk::{DeskHandle, Request},
+    history,
     inbox::Inbox,
     line::Current,
 };
@@ -15,12 +16,20 @@ pub(super) struct Session {
     engine: Current,
     desk: DeskHandle,
     began: Instant,
+    /// The command line that was kept last; `None` if they are not kept.
+    kept: Option<String>,
 }
 
 impl Session {
     /// A session that begins now.
     pub(super) fn new(model: Model, inbox: Inbox, (engine, desk): (Current, DeskHandle)) -> Self {
-        Self { model, inbox, engine, desk, began: Instant::now() }
+        Self { model, inbox, engine, desk, began: Instant::now(), kept: None }
+    }
+
+    /// Begins with the command lines of earlier sessions, and keeps those of this one for later ones.
+    pub(super) fn remember(&mut self) {
+        self.model.console.history = history::load();
+        self.kept = Some(self.model.console.history.last().cloned().unwrap_or_default());
     }
 
     /// The next message; waits until the given time, or without one for as long as it takes.
@@ -45,6 +54,12 @@ impl Session {
     /// Takes in a message and carries out what follows, but for what concerns the terminal: that is the answer.
     pub(super) fn take(&mut self, msg: Msg) -> Vec<Effect> {
         let effects = update(&mut self.model, msg);
+        if let (Some(kept), Some(line)) = (&mut self.kept, self.model.console.history.last())
+            && kept != line
+        {
+            kept.clone_from(line);
+            self.desk.request(Request::Remember(line.clone()));
+        }
         if let Some(engine) = self.engine.get() {
             engine.report(self.model.live.may_move(), is_typing(&self.model));
         }
@@ -59,6 +74,7 @@ impl Session {
             Effect::Forecast(choices) => self.desk.request(Request::Forecast(choices)),
             Effect::StopForecasting => self.desk.request(Request::StopForecasting),
             Effect::StopComparing => self.desk.request(Request::StopComparing),
+            Effect::SavePreset { name, choice } => self.desk.request(Request::SavePreset { name, choice }),
             Effect::Survey => self.desk.request(Request::Survey),
             Effect::Look => self.desk.request(Request::Look),
             Effect::Do(job) => self.desk.request(Request::Do(job)),

@@ -48,6 +48,14 @@ pub enum ActionId {
     WhatIf,
     /// Forecast another planner too.
     AddCandidate,
+    /// Change parameters for a further forecast.
+    TryParameters,
+    /// Forecast with the parameters that were changed.
+    ForecastDraft,
+    /// Keep the parameters under a name.
+    PresetSave,
+    /// Take the parameters that are kept under a name.
+    PresetLoad,
     /// Look at the next forecast.
     NextCandidate,
     /// Look at the forecast before.
@@ -210,6 +218,10 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::NextCandidate, "next-candidate", "Look at the next forecast", &[Key::Right, Key::Char('l')], &[Context::WhatIf]).label("select").repeats(),
     action(ActionId::PreviousCandidate, "previous-candidate", "Look at the forecast before", &[Key::Left, Key::Char('h')], &[Context::WhatIf]).label("select").repeats(),
     action(ActionId::AddCandidate, "add-candidate", "Forecast another planner", &[Key::Char('+')], &[Context::WhatIf]).label("add"),
+    action(ActionId::TryParameters, "try-parameters", "Change parameters for a further forecast", &[Key::Char('p')], &[Context::WhatIf]).label("parameters"),
+    action(ActionId::ForecastDraft, "forecast-draft", "Forecast with these parameters", &[Key::Char('w')], &[Context::Draft]).label("forecast"),
+    action(ActionId::PresetLoad, "preset-load", "Show what a parameter preset changes", &[], &[Context::Screen]).args(&[must("preset", Kind::Preset)]),
+    action(ActionId::PresetSave, "preset-save", "Keep the parameters as a preset", &[], &[Context::Screen]).args(&[must("name", Kind::Text)]),
     action(ActionId::Preflight, "preflight", "Check what the start depends on", &[Key::Char('A')], &[Context::Plan, Context::Mission]).label("pre-flight"),
     action(ActionId::Compare, "compare", "Plan with another planner, side by side", &[Key::Char('c')], &[Context::Plan]).label("compare").args(&[may("planner", Kind::Planner)]),
     action(ActionId::Preflight, "check-again", "Check once more", &[Key::Char('r')], &[Context::Preflight]).label("check again"),

@@ -19,6 +19,7 @@ pub mod plans;
 pub mod plugins;
 pub mod position;
 pub mod preflight;
+pub mod preset;
 pub mod run;
 pub mod tether;
 pub mod trail;
@@ -41,13 +42,14 @@ pub use planning::{PlanShown, Planning};
 pub use plans::{Ghost, GhostPlan, Plans};
 pub use position::Position;
 pub use preflight::Preflight;
+pub use preset::Preset;
 pub use run::{About, Clock, Progress, Run};
 pub use tether::Tether;
 pub use trail::Trail;
 pub use ui::{Overlay, Pane, Screen, Ui};
 pub use what_if::{Candidate, Forecast, WhatIf};
 
-use mission::{PlannerInfo, Severity};
+use mission::{PlannerChoice, PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
 
 /// Seconds for which a refusal or a piece of news stays in the line above the keys.
@@ -91,6 +93,21 @@ impl Model {
         let id = run.planner_id();
         let listed = || self.console.planners.iter().find(|planner| Some(planner.id.as_str()) == id);
         run.planning.info.as_ref().or_else(listed)
+    }
+
+    /// What is known of a planner.
+    pub fn info_of(&self, id: &str) -> Option<&PlannerInfo> {
+        let driving = self.live.run.planning.info.as_ref();
+        driving.into_iter().chain(&self.console.planners).find(|info| info.id == id)
+    }
+
+    /// The planner whose parameters are listed, and the choice that they belong to: a draft for a forecast if there is one,
+    /// else the active planner.
+    pub fn edited(&self) -> Option<(&PlannerInfo, Option<&PlannerChoice>)> {
+        match self.live.what_if.as_ref().and_then(|what_if| what_if.draft.as_ref()) {
+            Some(draft) => Some((self.info_of(&draft.id)?, Some(draft))),
+            None => Some((self.planner()?, self.live.run.planning.choice.as_ref())),
+        }
     }
 
     /// The selected alarm; without a selection the first one of the table.

@@ -7,6 +7,7 @@ mod events;
 mod go;
 mod health;
 mod hear;
+mod look_only;
 mod map;
 mod message;
 mod mouse;
@@ -15,6 +16,7 @@ mod overlay;
 mod palette;
 mod place;
 mod preflight;
+mod preset;
 mod redraw;
 mod send;
 mod stations;
@@ -22,7 +24,7 @@ mod typing;
 mod what_if;
 
 pub use act::act;
-pub use message::{Effect, Job, Mouse, Msg, RunMsg, Signal, Target};
+pub use message::{Effect, Job, Mouse, Msg, Rows, RunMsg, Signal, Target};
 pub use offer::offered;
 pub use palette::{Choice, choices};
 pub use redraw::{Redraw, redraw};
@@ -58,6 +60,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Time(now) => model.console.now = now,
         Msg::Measured(measured) => health::take(model, measured),
         Msg::Run(id, msg) => effects = hear::hear(model, id, msg),
+        Msg::Presets(presets) => model.console.presets = presets,
         Msg::Found(found) => model.home.found = Some(*found),
         Msg::Done(job, result) => effects = go::done(model, &job, result),
         Msg::Planners { found, refused } => take_planners(model, found, refused),

@@ -23,6 +23,8 @@ pub enum Kind {
     Theme,
     /// A screen.
     Screen,
+    /// Name of a preset.
+    Preset,
     /// A span of time.
     Duration,
     /// An alarm.

@@ -39,6 +39,8 @@ pub enum Context {
     Preflight,
     /// In the list of parameters.
     Parameters,
+    /// In the list of parameters that are changed for a forecast.
+    Draft,
     /// In the actions of an alarm.
     Remedies,
     /// In a line where text is typed.
@@ -86,6 +88,7 @@ pub const TOGETHER: &[&[Context]] = &[
     &[Context::Anywhere, Context::Screen, Context::Plugins, Context::Rows],
     &[Context::Anywhere, Context::List, Context::Rows],
     &[Context::Anywhere, Context::List, Context::Rows, Context::Parameters],
+    &[Context::Anywhere, Context::List, Context::Rows, Context::Parameters, Context::Draft],
     &[Context::Anywhere, Context::List, Context::Rows, Context::Preflight],
     &[Context::Anywhere, Context::WhatIf, Context::Map],
     &[Context::Anywhere, Context::Text],
@@ -104,11 +107,18 @@ pub fn contexts(model: &Model) -> Vec<Context> {
         Overlay::Parameters { edit: Some(_), .. } | Overlay::Filter(_) | Overlay::Shelve(_) => {
             &[Context::Text]
         }
+        Overlay::Parameters { edit: None, .. }
+            if model.live.what_if.as_ref().is_some_and(|what_if| what_if.draft.is_some()) =>
+        {
+            &[Context::List, Context::Rows, Context::Parameters, Context::Draft]
+        }
         Overlay::Parameters { edit: None, .. } => &[Context::List, Context::Rows, Context::Parameters],
         Overlay::WhatIf => &[Context::WhatIf, Context::Map],
         Overlay::Preflight { .. } => &[Context::List, Context::Rows, Context::Preflight],
         Overlay::Remedies { .. } => &[Context::List, Context::Rows, Context::Remedies],
-        Overlay::Planners { .. } | Overlay::Layers { .. } => &[Context::List, Context::Rows],
+        Overlay::Planners { .. } | Overlay::Preset { .. } | Overlay::Layers { .. } => {
+            &[Context::List, Context::Rows]
+        }
     };
     [&[Context::Anywhere], here].concat()
 }

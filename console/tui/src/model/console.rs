@@ -1,6 +1,6 @@
 //! The console itself: time, speeds, plugins, and what it tells the operator.
 
-use super::Watches;
+use super::{Preset, Watches};
 use crate::actions::keymap::Keymap;
 use mission::{PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
@@ -140,6 +140,9 @@ pub struct Console {
     pub notice: Option<Notice>,
     /// Which keys run which actions.
     pub keys: Keymap,
+    /// Parameters under names.
+    #[serde(default)]
+    pub presets: Vec<Preset>,
     /// The last command lines, the newest last.
     pub history: Vec<String>,
     /// What the operator has set up.

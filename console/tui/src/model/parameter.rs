@@ -1,11 +1,10 @@
 //! A planner's parameters as the operator reads and types them.
 
-use super::planning::Planning;
-use mission::{ParamInfo, ParamKind, ParamValue};
+use mission::{ParamInfo, ParamKind, ParamValue, PlannerChoice};
 
-/// The value that a parameter has now: set by hand, or its default.
-pub fn value(planning: &Planning, info: &ParamInfo) -> ParamValue {
-    let by_hand = planning.choice.as_ref().and_then(|choice| choice.parameters.get(&info.key));
+/// The value that a parameter of a planner has: set by hand, or its default.
+pub fn value(choice: Option<&PlannerChoice>, info: &ParamInfo) -> ParamValue {
+    let by_hand = choice.and_then(|choice| choice.parameters.get(&info.key));
     by_hand.cloned().unwrap_or_else(|| default(&info.kind))
 }
 

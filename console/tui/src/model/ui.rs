@@ -267,6 +267,15 @@ pub enum Overlay {
         /// The value being typed.
         edit: Option<Edit>,
     },
+    /// What a preset would change.
+    Preset {
+        /// Its name.
+        name: String,
+        /// The planner with its parameters.
+        choice: PlannerChoice,
+        /// Which line is selected.
+        selected: usize,
+    },
     /// The layers of the map.
     Layers {
         /// Which line is selected.

@@ -16,6 +16,9 @@ pub struct WhatIf {
     pub candidates: Vec<Candidate>,
     /// The one that is looked at.
     pub selected: usize,
+    /// A planner whose parameters are being changed for a further forecast.
+    #[serde(default)]
+    pub draft: Option<PlannerChoice>,
 }
 
 /// A planner that could go on.

@@ -83,7 +83,12 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Preflight => preflight::open(model),
         ActionId::PlanAgain => vec![Effect::Order(Order::Plan)],
         ActionId::CancelPlan => overlay::cancel_plan(model),
-        ActionId::Parameters => open(model, Overlay::Parameters { selected: 0, edit: None }),
+        ActionId::Parameters => {
+            what_if::take_draft(model);
+            open(model, Overlay::Parameters { selected: 0, edit: None })
+        }
+        ActionId::TryParameters => what_if::draft(model),
+        ActionId::ForecastDraft => what_if::forecast_draft(model),
         ActionId::Layers => open(model, Overlay::Layers { selected: 0 }),
         ActionId::Filter => events::open_filter(model),
         ActionId::Commands => open(model, Overlay::Commands(Palette::default())),
@@ -96,6 +101,8 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         | ActionId::Inject
         | ActionId::Exclude
         | ActionId::Include
+        | ActionId::PresetSave
+        | ActionId::PresetLoad
         | ActionId::Centre => palette::begin(model, id),
         other => look(model, other),
     }

@@ -9,9 +9,11 @@ use super::act::{act, hold_only, set_speed};
 use super::alarms;
 use super::events;
 use super::go;
+use super::look_only::allowed;
 use super::message::Effect;
-use super::offer::{accepted, allowed, offered, refuse};
+use super::offer::{accepted, offered, refuse};
 use super::overlay;
+use super::preset;
 use super::send::send;
 use super::stations;
 use super::typing;
@@ -153,6 +155,8 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
         }
         // These come second.
         Value::Alarm(_) | Value::Fault(_) => {}
+        Value::Preset(name) => return preset::load(model, &name),
+        Value::Text(name) if action.id == ActionId::PresetSave => return preset::save(model, name),
         Value::Text(text) => typing::filter(model, &text),
     }
     Vec::new()

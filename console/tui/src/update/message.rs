@@ -3,7 +3,8 @@
 use crate::actions::ActionId;
 use crate::keys::KeyPress;
 use crate::model::{
-    Forecast, GhostPlan, Health, Measured, Refused, RunId, RunResult, Source, Speed, Times, home::Found,
+    Forecast, GhostPlan, Health, Measured, Preset, Refused, RunId, RunResult, Source, Speed, Times,
+    home::Found,
 };
 use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, Severity};
 use report::Estimate;
@@ -36,6 +37,8 @@ pub enum Msg {
     Run(RunId, RunMsg),
     /// What was found on the disk.
     Found(Box<Found>),
+    /// Which parameters are kept under names.
+    Presets(Vec<Preset>),
     /// A job is done, or why it failed, as a sentence.
     Done(Job, Result<String, String>),
     /// Which planners were found, and which plugins were not accepted.
@@ -91,8 +94,27 @@ pub enum Target {
     Map(Point),
     /// The name of a key.
     Key(ActionId),
+    /// A line of a list, by its place in it.
+    Row(Rows, usize),
     /// Something else.
     Else,
+}
+
+/// A list of a screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Rows {
+    /// Scenarios on the home screen.
+    Scenarios,
+    /// Past runs on the home screen.
+    Runs,
+    /// The table of alarms.
+    Alarms,
+    /// The events, the newest first.
+    Events,
+    /// Plugin files.
+    Plugins,
+    /// Missed areas of the result.
+    Missed,
 }
 
 /// News of a run that is open.
@@ -188,6 +210,13 @@ pub enum Effect {
     StopForecasting,
     /// Give up the plan that is being made for comparison.
     StopComparing,
+    /// Keep parameters of a planner under a name.
+    SavePreset {
+        /// The name.
+        name: String,
+        /// The planner with the value of every parameter.
+        choice: PlannerChoice,
+    },
     /// Look at the plugins again.
     Survey,
     /// Look at scenarios, past runs and the disk again.

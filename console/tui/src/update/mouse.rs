@@ -1,8 +1,10 @@
-//! The mouse. It reads, scrolls and opens; questions about moving or ending are answered on the keyboard alone.
+//! The mouse. It reads, scrolls, selects and opens; questions about moving or ending are answered on the keyboard alone.
 
 use super::act::{act, select};
 use super::map;
-use super::message::{Effect, Mouse, Target};
+use super::message::{Effect, Mouse, Rows, Target};
+use crate::actions::ActionId;
+use crate::model::home::HomeList;
 use crate::model::{Model, Overlay};
 
 /// Lines that a step of the wheel scrolls.
@@ -18,12 +20,56 @@ pub(super) fn take(model: &mut Model, mouse: Mouse) -> Vec<Effect> {
     match mouse {
         Mouse::Click(Target::Key(id)) => return act(model, id),
         Mouse::Click(Target::Map(place)) if is_open => map::read(model, place),
+        Mouse::Click(Target::Row(list, index)) if is_open => return click(model, list, index),
         Mouse::Wheel { up, on: Target::Map(place) } if is_open => {
             map::zoom_at(model, if up { 1 } else { -1 }, place);
         }
-        Mouse::Wheel { up, .. } => select(model, if up { -WHEEL } else { WHEEL }),
+        Mouse::Wheel { up, on } => {
+            if let Target::Row(list, _) = on {
+                focus(model, list);
+            }
+            select(model, if up { -WHEEL } else { WHEEL });
+        }
         Mouse::Drag { from, to } if is_open && model.ui.map.zoom > 0 => map::shift(model, from - to),
         Mouse::Click(_) | Mouse::Drag { .. } => {}
     }
     Vec::new()
+}
+
+/// Selects a line; a click on the line that is selected opens it, as Enter does, which moves nothing.
+fn click(model: &mut Model, list: Rows, index: usize) -> Vec<Effect> {
+    let was_focused = !focus(model, list);
+    let before = selected(model, list);
+    let opens = matches!(list, Rows::Scenarios | Rows::Runs | Rows::Alarms | Rows::Events);
+    if was_focused && before == index {
+        return if opens { act(model, ActionId::Accept) } else { Vec::new() };
+    }
+    select(model, index as isize - before as isize);
+    Vec::new()
+}
+
+/// Gives a list of the home screen the arrow keys; whether it did not have them.
+fn focus(model: &mut Model, list: Rows) -> bool {
+    let wanted = match list {
+        Rows::Scenarios => HomeList::Scenarios,
+        Rows::Runs => HomeList::Runs,
+        Rows::Alarms | Rows::Events | Rows::Plugins | Rows::Missed => return false,
+    };
+    std::mem::replace(&mut model.home.list, wanted) != wanted
+}
+
+/// The place of the selected line in a list.
+fn selected(model: &Model, list: Rows) -> usize {
+    match list {
+        Rows::Scenarios => model.home.scenario,
+        Rows::Runs => model.home.run,
+        Rows::Alarms => {
+            let chosen = model.selected_alarm().map(|alarm| &alarm.cause);
+            let table = model.live.run.alarms.table();
+            table.iter().position(|alarm| Some(&alarm.cause) == chosen).unwrap_or(0)
+        }
+        Rows::Events => model.ui.events.newer(),
+        Rows::Plugins => model.ui.plugin,
+        Rows::Missed => model.ui.missed,
+    }
 }

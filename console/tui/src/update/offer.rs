@@ -1,8 +1,9 @@
 //! What can be done now, and why not otherwise. Footer and keys ask the same question.
 
 use super::go::named_run;
+use super::look_only::{LOOK_ONLY, allowed};
 use super::message::Effect;
-use super::{stations, typing};
+use super::{preset, stations, typing};
 use crate::actions::ActionId;
 use crate::model::{Alarm, Model, Overlay, Pane, Screen, ui::MAX_ZOOM};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
@@ -13,28 +14,6 @@ use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 /// Why not, and what would be right, as a sentence.
 pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
     allowed(model, id).and_then(|()| can(model, id)).map_err(|why| model.console.keys.spelled(&why))
-}
-
-/// Whether this console may do such things at all.
-pub(super) fn allowed(model: &Model, id: ActionId) -> Result<(), String> {
-    demand(!(model.live.is_look_only() && acts(id)), LOOK_ONLY)
-}
-
-/// Why a console that looks on does not do something.
-const LOOK_ONLY: &str = "VIEW: this console only looks on; use the console that runs the mission";
-
-/// Whether an action does something to a mission or its files.
-fn acts(id: ActionId) -> bool {
-    use ActionId::{
-        Abort, Acknowledge, AcknowledgeAll, Again, CancelPlan, ChoosePlanner, Compare, Exclude, Faster,
-        FlyUncertified, Hold, Include, Inject, Open, PlanAgain, Preflight, Reload, Report, Rescan, Resume,
-        SetParameter, SetSpeed, Shelve, Slower, Start, Step, StepEvent, StepLane, WhatIf,
-    };
-    let moves = matches!(id, Hold | Start | Resume | FlyUncertified | Step | StepLane | StepEvent | Abort);
-    let plans = matches!(id, ChoosePlanner | Compare | PlanAgain | CancelPlan | Preflight | WhatIf | Reload);
-    let sets = matches!(id, SetParameter | SetSpeed | Slower | Faster | Inject | Exclude | Include);
-    let alarms = matches!(id, Acknowledge | AcknowledgeAll | Shelve);
-    moves || plans || sets || alarms || matches!(id, Open | Again | Rescan | Report)
 }
 
 fn can(model: &Model, id: ActionId) -> Result<(), String> {
@@ -55,17 +34,11 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
             demand(model.ui.overlay != Overlay::None || opens, "Enter has nothing to open here")
         }
         ActionId::WhatIf => accepted(model, &Order::NoteOutlooks(Vec::new())),
-        ActionId::Preflight => demand(model.live.waits(), "checks are made before the start"),
-        ActionId::Compare => compare(model),
-        ActionId::PlanAgain => demand(model.live.waits(), "no mission waits for its start"),
-        ActionId::CancelPlan => {
-            let is_planning = model.live.waits() && model.live.busy.is_some();
-            demand(
-                is_planning || model.live.plans.ghost.is_some() || model.live.preflight.is_starting,
-                "nothing is being planned",
-            )
+        ActionId::Preflight | ActionId::Compare | ActionId::PlanAgain | ActionId::CancelPlan => {
+            before_start(model, id)
         }
-        ActionId::Parameters | ActionId::SetParameter => parameters(model),
+        ActionId::Parameters | ActionId::SetParameter | ActionId::PresetSave => parameters(model),
+        ActionId::PresetLoad => preset::can_load(model),
         ActionId::SetSpeed => simulating(model),
         ActionId::Inject | ActionId::Exclude | ActionId::Include => stations::can(model, id),
         ActionId::Open => nothing_under_way(model),
@@ -127,6 +100,8 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::Mouse
         | ActionId::Cancel
         | ActionId::AddCandidate
+        | ActionId::TryParameters
+        | ActionId::ForecastDraft
         | ActionId::NextCandidate
         | ActionId::PreviousCandidate
         | ActionId::Up
@@ -268,9 +243,22 @@ fn swap(model: &Model) -> Result<(), String> {
     demand(!model.console.planners.is_empty(), "no planners found yet")
 }
 
-fn compare(model: &Model) -> Result<(), String> {
-    demand(model.live.waits(), "plans are compared before the start")?;
-    demand(!model.console.planners.is_empty(), "no planners found yet")
+/// Whether something that is done about a mission that waits can be done now.
+fn before_start(model: &Model, id: ActionId) -> Result<(), String> {
+    let live = &model.live;
+    match id {
+        ActionId::Preflight => demand(live.waits(), "checks are made before the start"),
+        ActionId::PlanAgain => demand(live.waits(), "no mission waits for its start"),
+        ActionId::Compare => {
+            demand(live.waits(), "plans are compared before the start")?;
+            demand(!model.console.planners.is_empty(), "no planners found yet")
+        }
+        _ => {
+            let is_planning = live.waits() && live.busy.is_some();
+            let is_open = is_planning || live.plans.ghost.is_some() || live.preflight.is_starting;
+            demand(is_open, "nothing is being planned")
+        }
+    }
 }
 
 fn parameters(model: &Model) -> Result<(), String> {

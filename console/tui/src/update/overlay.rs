@@ -5,13 +5,14 @@ use super::alarms;
 use super::message::Effect;
 use super::offer::{accepted, offered, refuse};
 use super::preflight;
+use super::preset::take as take_preset;
 use super::send::send;
 use super::{palette, typing, what_if};
 use crate::actions::ActionId;
 use crate::guide::guide;
 use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
-use crate::model::{Ghost, Model, Overlay, Palette, parameter};
-use mission::{Order, Parameters, PlannerChoice, PlannerInfo, Severity};
+use crate::model::{Ghost, Model, Overlay, Palette, parameter, preset};
+use mission::{Order, ParamValue, Parameters, PlannerChoice, PlannerInfo, Severity};
 
 /// Puts something over the screen.
 pub(super) fn open(model: &mut Model, overlay: Overlay) -> Vec<Effect> {
@@ -57,6 +58,7 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
             }
             Vec::new()
         }
+        Overlay::Preset { name, choice, .. } => take_preset(model, &name, choice),
         Overlay::WhatIf => what_if::choose(model),
         Overlay::Preflight { .. } => preflight::tick(model),
         Overlay::Filter(_) => open(model, Overlay::None),
@@ -66,15 +68,22 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
 
 /// Back without doing anything.
 pub(super) fn cancel(model: &mut Model) {
-    match &mut model.ui.overlay {
-        Overlay::Parameters { edit, .. } if edit.is_some() => *edit = None,
+    if let Overlay::Parameters { edit: edit @ Some(_), .. } = &mut model.ui.overlay {
+        *edit = None;
+        return;
+    }
+    match &model.ui.overlay {
         Overlay::Filter(_) => {
             typing::filter(model, "");
             model.ui.overlay = Overlay::None;
         }
         Overlay::WhatIf => what_if::close(model),
+        Overlay::Parameters { .. } => {
+            let was_draft = what_if::take_draft(model).is_some();
+            model.ui.overlay = if was_draft { Overlay::WhatIf } else { Overlay::None };
+        }
         Overlay::Planners { purpose: Purpose::WhatIf, .. } => model.ui.overlay = Overlay::WhatIf,
-        other => *other = Overlay::None,
+        _ => model.ui.overlay = Overlay::None,
     }
 }
 
@@ -150,11 +159,10 @@ pub(super) fn cancel_plan(model: &mut Model) -> Vec<Effect> {
 /// Opens the line in which a value is typed.
 pub(super) fn edit(model: &mut Model) -> Vec<Effect> {
     let Overlay::Parameters { selected, .. } = model.ui.overlay else { return Vec::new() };
-    let info = model.planner().and_then(|info| info.parameters.get(selected));
-    let Some(info) = info else { return Vec::new() };
-    let value = parameter::value(&model.live.run.planning, info);
-    let order = Order::SetParameter { key: info.key.clone(), value: value.clone() };
-    if let Err(why) = accepted(model, &order) {
+    let Some((planner, choice)) = model.edited() else { return Vec::new() };
+    let Some(info) = planner.parameters.get(selected) else { return Vec::new() };
+    let value = parameter::value(choice, info);
+    if let Err(why) = settable(model, &info.key, &value) {
         return refuse(model, why);
     }
     let line = value.to_string().as_str().into();
@@ -162,19 +170,35 @@ pub(super) fn edit(model: &mut Model) -> Vec<Effect> {
     Vec::new()
 }
 
+/// Whether a parameter can be set now; that of a draft always can.
+fn settable(model: &Model, key: &str, value: &ParamValue) -> Result<(), String> {
+    if is_drafting(model) {
+        return Ok(());
+    }
+    accepted(model, &Order::SetParameter { key: key.to_owned(), value: value.clone() })
+}
+
+fn is_drafting(model: &Model) -> bool {
+    model.live.what_if.as_ref().is_some_and(|what_if| what_if.draft.is_some())
+}
+
 fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
-    let info = model.planner().and_then(|info| info.parameters.get(selected));
+    let info = model.edited().and_then(|(planner, _)| planner.parameters.get(selected));
     let Some(info) = info else { return open(model, Overlay::None) };
-    let order = |value| Order::SetParameter { key: info.key.clone(), value };
+    let key = info.key.clone();
     // Checked again: the mission may have changed while the value was typed.
-    let checked = parameter::parse(info, edit.line.text()).map(order).and_then(|order| {
-        accepted(model, &order)?;
-        Ok(order)
+    let checked = parameter::parse(info, edit.line.text()).and_then(|value| {
+        settable(model, &key, &value)?;
+        Ok(value)
     });
     match checked {
-        Ok(order) => {
+        Ok(value) => {
             model.ui.overlay = Overlay::Parameters { selected, edit: None };
-            send(model, order)
+            if is_drafting(model) {
+                what_if::set(model, &key, value);
+                return Vec::new();
+            }
+            send(model, Order::SetParameter { key, value })
         }
         Err(why) => {
             let refused = Edit { refusal: Some(why), ..edit };
@@ -189,7 +213,11 @@ pub(super) fn select(model: &mut Model, by: isize) {
     let lines = match &model.ui.overlay {
         Overlay::Commands(palette) => palette::choices(model, palette).len(),
         Overlay::Planners { .. } => model.console.planners.len(),
-        Overlay::Parameters { .. } => model.planner().map_or(0, |info| info.parameters.len()),
+        Overlay::Parameters { .. } => model.edited().map_or(0, |(info, _)| info.parameters.len()),
+        Overlay::Preset { choice, .. } => {
+            let now = model.live.run.planning.choice.as_ref();
+            model.info_of(&choice.id).map_or(0, |info| preset::differences(now, choice, info).len())
+        }
         Overlay::Layers { .. } => MapLayer::ALL.len(),
         Overlay::Preflight { .. } => model.checks().len(),
         Overlay::Remedies { cause, .. } => guide(cause).remedies.len(),
@@ -204,6 +232,7 @@ pub(super) fn select(model: &mut Model, by: isize) {
     if let Overlay::Commands(Palette { selected, .. })
     | Overlay::Planners { selected, .. }
     | Overlay::Parameters { selected, .. }
+    | Overlay::Preset { selected, .. }
     | Overlay::Preflight { selected }
     | Overlay::Remedies { selected, .. }
     | Overlay::Layers { selected } = &mut model.ui.overlay

@@ -21,6 +21,7 @@ pub fn redraw(model: &Model, msg: &Msg) -> Redraw {
         // What is measured of the console shows only in its alarms.
         Msg::Time(_) | Msg::Measured(_) => Redraw::No,
         Msg::Found(found) if model.home.found.as_ref() == Some(found) => Redraw::No,
+        Msg::Presets(presets) if model.console.presets == *presets => Redraw::No,
         Msg::Run(id, _) if *id != model.live.id => Redraw::No,
         Msg::Run(_, RunMsg::Health(health)) if is_same(&model.live.health, health) => Redraw::No,
         Msg::Run(_, RunMsg::Events(events)) => {

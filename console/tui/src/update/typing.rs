@@ -31,7 +31,8 @@ pub(super) fn completes(model: &Model) -> bool {
 /// The words that the parameter takes whose value is being typed.
 fn options(model: &Model) -> &[String] {
     let Overlay::Parameters { selected, edit: Some(_) } = &model.ui.overlay else { return &[] };
-    match model.planner().and_then(|info| info.parameters.get(*selected)).map(|info| &info.kind) {
+    let info = model.edited().and_then(|(planner, _)| planner.parameters.get(*selected));
+    match info.map(|info| &info.kind) {
         Some(ParamKind::Choice { options, .. }) => options,
         _ => &[],
     }

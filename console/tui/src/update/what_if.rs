@@ -5,8 +5,8 @@ use super::offer::refuse;
 use super::overlay::ask;
 use crate::model::ui::Ask;
 use crate::model::what_if::MOST;
-use crate::model::{Candidate, Forecast, Model, Overlay, WhatIf};
-use mission::{Order, Parameters, PlannerChoice, Severity};
+use crate::model::{Candidate, Forecast, Model, Overlay, WhatIf, preset};
+use mission::{Order, ParamValue, Parameters, PlannerChoice, Severity};
 
 /// Opens the comparison: the planner as it is, and the others that can fly this mission.
 pub(super) fn open(model: &mut Model) -> Vec<Effect> {
@@ -22,7 +22,7 @@ pub(super) fn open(model: &mut Model) -> Vec<Effect> {
         .map(|info| PlannerChoice { id: info.id.clone(), parameters: Parameters::new() });
     let choices: Vec<PlannerChoice> = current.into_iter().chain(others).take(MOST).collect();
     let candidates = choices.iter().map(|choice| candidate(choice.clone())).collect();
-    model.live.what_if = Some(WhatIf { t_s: run.clock.t_s, candidates, selected: 0 });
+    model.live.what_if = Some(WhatIf { t_s: run.clock.t_s, candidates, selected: 0, draft: None });
     vec![Effect::Forecast(choices)]
 }
 
@@ -42,6 +42,41 @@ pub(super) fn add(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
     what_if.selected = what_if.candidates.len() - 1;
     let open = what_if.candidates.iter().filter(|candidate| candidate.made.is_none());
     vec![Effect::Forecast(open.map(|candidate| candidate.choice.clone()).collect())]
+}
+
+/// Opens the parameters of the selected candidate, to be changed for a further forecast.
+pub(super) fn draft(model: &mut Model) -> Vec<Effect> {
+    let chosen = model.live.what_if.as_ref().and_then(WhatIf::candidate).map(|found| found.choice.clone());
+    let Some(choice) = chosen else { return Vec::new() };
+    if model.info_of(&choice.id).is_none_or(|info| info.parameters.is_empty()) {
+        return refuse(model, format!("planner {} has no parameters", choice.id));
+    }
+    if let Some(what_if) = &mut model.live.what_if {
+        what_if.draft = Some(choice);
+    }
+    model.ui.overlay = Overlay::Parameters { selected: 0, edit: None };
+    Vec::new()
+}
+
+/// Takes the value of a parameter into the draft.
+pub(super) fn set(model: &mut Model, key: &str, value: ParamValue) {
+    let Some(mut draft) = take_draft(model) else { return };
+    draft.parameters.insert(key.to_owned(), value);
+    let info = model.info_of(&draft.id);
+    let draft = info.map_or_else(|| draft.clone(), |info| preset::by_hand(&draft, info));
+    if let Some(what_if) = &mut model.live.what_if {
+        what_if.draft = Some(draft);
+    }
+}
+
+/// Takes the draft out of the comparison.
+pub(super) fn take_draft(model: &mut Model) -> Option<PlannerChoice> {
+    model.live.what_if.as_mut()?.draft.take()
+}
+
+/// Forecasts the draft.
+pub(super) fn forecast_draft(model: &mut Model) -> Vec<Effect> {
+    take_draft(model).map_or_else(Vec::new, |draft| add(model, draft))
 }
 
 /// Looks at another candidate, so many further on.
@@ -81,10 +116,9 @@ pub(super) fn close(model: &mut Model) {
 
 /// Forgets forecasts that no longer hold.
 pub(super) fn forget(model: &mut Model) -> Vec<Effect> {
-    if model.live.what_if.take().is_none() {
-        return Vec::new();
-    }
-    if model.ui.overlay == Overlay::WhatIf {
+    let Some(what_if) = model.live.what_if.take() else { return Vec::new() };
+    let is_drafting = what_if.draft.is_some() && matches!(model.ui.overlay, Overlay::Parameters { .. });
+    if is_drafting || model.ui.overlay == Overlay::WhatIf {
         model.ui.overlay = Overlay::None;
     }
     vec![Effect::StopForecasting]

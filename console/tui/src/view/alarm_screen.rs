@@ -12,6 +12,7 @@ use crate::model::alarms::State;
 use crate::model::ui::Arrangement;
 use crate::model::{Alarm, Model, Overlay, Screen};
 use crate::theme::Role;
+use crate::update::Rows;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
@@ -106,6 +107,7 @@ fn draw_table(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
     let mut selected = 0;
     let chosen = look.model.selected_alarm().map(|alarm| &alarm.cause);
     let mut group = None;
+    let mut places = Vec::new();
     for alarm in alarms {
         let heading = rows::heading(&alarm.state);
         if heading != group {
@@ -117,9 +119,14 @@ fn draw_table(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
         if is_selected {
             selected = lines.len();
         }
+        places.push(lines.len());
         lines.push(table::row(look, rows::row(look, alarm, columns, wide), is_selected, columns));
     }
     let shown = table::window(selected, lines.len(), height);
+    for (index, line) in places.into_iter().enumerate().filter(|(_, line)| shown.contains(line)) {
+        let row = Rect { y: inner.y + (line - shown.start) as u16, height: 1, ..inner };
+        table::place(look, row, Rows::Alarms, index..index + 1);
+    }
     let lines = lines.into_iter().enumerate().filter(|(index, _)| shown.contains(index));
     fill(frame, area, block, lines.map(|(_, line)| line).collect());
 }

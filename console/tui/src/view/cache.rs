@@ -3,7 +3,7 @@
 
 use super::map::{PlateDrawing, PlateKey, ShadeKey, Shades, Window};
 use crate::actions::ActionId;
-use crate::update::Target;
+use crate::update::{Rows, Target};
 use ratatui::layout::{Position, Rect};
 use std::rc::Rc;
 use world::{Floor, PlateMap};
@@ -22,6 +22,7 @@ pub struct Cache {
 pub struct Places {
     map: Option<(Rect, Window)>,
     keys: Vec<(Rect, ActionId)>,
+    rows: Vec<(Rect, Rows, usize)>,
 }
 
 /// What the plates of cells depend on.
@@ -51,6 +52,11 @@ impl Cache {
     /// Notes where a key is named.
     pub(super) fn place_key(&mut self, area: Rect, id: ActionId) {
         self.places.keys.push((area, id));
+    }
+
+    /// Notes where a line of a list is.
+    pub(super) fn place_row(&mut self, area: Rect, list: Rows, index: usize) {
+        self.places.rows.push((area, list, index));
     }
 
     pub(super) fn shades(&mut self, key: ShadeKey, make: impl FnOnce() -> Shades) -> Shades {
@@ -83,6 +89,9 @@ impl Places {
         let at = Position { x: column, y: row };
         if let Some((_, id)) = self.keys.iter().find(|(area, _)| area.contains(at)) {
             return Target::Key(*id);
+        }
+        if let Some((_, list, index)) = self.rows.iter().find(|(area, ..)| area.contains(at)) {
+            return Target::Row(*list, *index);
         }
         match self.map.filter(|(area, _)| area.contains(at)) {
             Some((area, window)) => Target::Map(window.middle_of(column - area.x, row - area.y)),

@@ -84,7 +84,12 @@ fn asked(model: &Model) -> Option<Vec<String>> {
         }
         Overlay::Confirm(Ask::Swap(choice)) => {
             let next = text::fit(&choice.id, 18);
-            let question = format!("Change planner to {next}? Enter: change, Esc: cancel.");
+            let question = match (choice.parameters.len(), model.live.run.planner_id()) {
+                (n @ 1.., Some(id)) if id == choice.id => {
+                    format!("Restart {next} with {n} parameters set? Enter: change, Esc: cancel.")
+                }
+                _ => format!("Change planner to {next}? Enter: change, Esc: cancel."),
+            };
             vec![question, "No motion yet.".into()]
         }
         Overlay::Stepping => {

@@ -7,6 +7,7 @@ use crate::model::log::severity_word;
 use crate::model::ui::Arrangement;
 use crate::model::{Entry, Overlay, Pane};
 use crate::theme::Role;
+use crate::update::Rows;
 use mission::Severity;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -68,6 +69,8 @@ fn list(look: &Look, frame: &mut Frame, area: Rect) {
     let height = usize::from(inner.height).saturating_sub(lines.len());
     let newer = events.newer();
     let shown = table::window(newer, events.matches.len(), height);
+    let below = Rect { y: inner.y + lines.len() as u16, height: height as u16, ..inner };
+    table::place(look, below, Rows::Events, shown.clone());
     let entries = events.matches.newest(&look.run.log, shown.start).take(shown.len());
     lines.extend(entries.enumerate().map(|(index, (_, entry))| {
         let parts = row(entry, columns.saturating_sub(1));

@@ -133,6 +133,7 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Accept, Overlay::Commands(_) | Overlay::Remedies { .. }) => "run",
         (ActionId::Accept, Overlay::Planners { .. } | Overlay::WhatIf) => "choose",
         (ActionId::Accept, Overlay::Preflight { .. }) => "tick",
+        (ActionId::Accept, Overlay::Preset { .. }) => "take",
         (ActionId::Accept, Overlay::Layers { .. }) => "show/hide",
         (ActionId::Accept, Overlay::Parameters { edit: None, .. }) => "edit",
         (ActionId::Accept, Overlay::Parameters { edit: Some(_), .. }) => "send",
@@ -145,6 +146,7 @@ fn label(action: &Action, model: &Model) -> String {
             Overlay::Commands(_)
             | Overlay::Planners { .. }
             | Overlay::Layers { .. }
+            | Overlay::Preset { .. }
             | Overlay::Preflight { .. }
             | Overlay::WhatIf
             | Overlay::Remedies { .. }

@@ -6,6 +6,7 @@ use crate::model::home::{Attention, Found, HomeList};
 use crate::model::ui::Arrangement;
 use crate::model::{PastRun, ScenarioEntry};
 use crate::theme::Role;
+use crate::update::Rows;
 use mission::Severity;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -71,6 +72,8 @@ fn scenarios(look: &Look, frame: &mut Frame, area: Rect) {
     let rows: Vec<Parts> = listed.iter().map(|entry| scenario_row(look, entry, names, columns)).collect();
     let selected = (home.list == HomeList::Scenarios).then_some(home.scenario);
     let about = if height > 12 { ABOUT } else { 0 };
+    let shown = table::window(selected.unwrap_or(0), rows.len(), height - about);
+    table::place(look, inner, Rows::Scenarios, shown);
     let mut lines = table::rows(look, rows, selected, (columns, height - about));
     if lines.is_empty() {
         lines.push(look.line([(Role::Dim, " No scenarios here; `tankops console FILE` opens one.".into())]));
@@ -132,6 +135,7 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height));
     let rows: Vec<Parts> = listed.iter().map(|run| run_row(run, columns)).collect();
     let selected = (home.list == HomeList::Runs).then_some(home.run);
+    table::place(look, inner, Rows::Runs, table::window(selected.unwrap_or(0), rows.len(), height));
     let mut lines = table::rows(look, rows, selected, (columns, height));
     if lines.is_empty() {
         lines.push(look.line([(Role::Dim, " No runs yet.".into())]));

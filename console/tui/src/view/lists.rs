@@ -5,6 +5,7 @@ pub(super) mod list;
 mod parameters;
 mod planners;
 mod preflight;
+mod preset;
 
 use super::alarm_screen;
 use super::look::Look;
@@ -26,6 +27,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         Overlay::Commands(palette) => commands::list(look, palette, columns),
         Overlay::Planners { purpose, selected } => planners::list(look, *purpose, *selected, columns),
         Overlay::Parameters { selected, edit } => parameters::list(look, *selected, edit.as_ref(), columns),
+        Overlay::Preset { name, choice, selected } => preset::list(look, name, choice, *selected, columns),
         Overlay::Preflight { selected } => preflight::list(look, *selected, columns),
         Overlay::Layers { selected } => layers(look, *selected),
         Overlay::Remedies { cause, selected } if !alarm_screen::shows_actions(look.model) => {

@@ -5,6 +5,7 @@ use super::{table, text};
 use crate::model::plugins::{Plugin, PluginState, plugins};
 use crate::model::ui::Arrangement;
 use crate::theme::Role;
+use crate::update::Rows;
 use mission::{ParamInfo, PlannerInfo, Sandbox};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -36,6 +37,7 @@ fn files(look: &Look, frame: &mut Frame, area: Rect, (found, selected): (&[Plugi
     let columns = usize::from(inner.width);
     let name = 30.min(columns / 3);
     let rows = found.iter().map(|plugin| row(plugin, name, columns)).collect();
+    table::place(look, inner, Rows::Plugins, table::window(selected, found.len(), usize::from(inner.height)));
     let mut lines = table::rows(look, rows, Some(selected), (columns, usize::from(inner.height)));
     if lines.is_empty() {
         lines.push(look.line([(

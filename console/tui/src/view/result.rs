@@ -7,6 +7,7 @@ use super::look::{Look, Parts, fill};
 use super::{map, table, text};
 use crate::model::{RunResult, ui::Arrangement};
 use crate::theme::Role;
+use crate::update::Rows;
 use mission::Outcome;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -75,6 +76,7 @@ fn missed(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
     let columns = usize::from(inner.width);
     let rows: Vec<Parts> = listed.iter().enumerate().map(|(index, area)| row(index, area, columns)).collect();
     let height = usize::from(inner.height).saturating_sub(1);
+    table::place(look, inner, Rows::Missed, table::window(look.model.ui.missed, rows.len(), height));
     let mut lines = table::rows(look, rows, Some(look.model.ui.missed), (columns, height));
     lines
         .push(look.line([(kept_role, text::fit(&format!(" {}", text::capitalized(&result.kept)), columns))]));

@@ -3,6 +3,8 @@
 use super::look::{Look, Parts};
 use super::text;
 use crate::theme::Role;
+use crate::update::Rows;
+use ratatui::layout::Rect;
 use ratatui::text::Line;
 use std::ops::Range;
 
@@ -37,6 +39,13 @@ pub(super) fn rows(
     let shown = window(selected.unwrap_or(0), all.len(), height);
     let numbered = all.into_iter().enumerate().filter(|(index, _)| shown.contains(index));
     numbered.map(|(index, parts)| row(look, parts, selected == Some(index), columns)).collect()
+}
+
+/// Notes for the mouse where the shown rows of a list are; the first of them is at the top of an area.
+pub(super) fn place(look: &Look, area: Rect, list: Rows, shown: Range<usize>) {
+    for (y, index) in (area.top()..area.bottom()).zip(shown) {
+        look.cache.borrow_mut().place_row(Rect { y, height: 1, ..area }, list, index);
+    }
 }
 
 #[cfg(test)]

@@ -102,7 +102,12 @@ fn remarks(what_if: &WhatIf, columns: usize) -> Vec<Parts> {
          recording are not affected; choosing another planner asks first and does not move the robot."
             .to_owned(),
     );
-    let words = selected.into_iter().chain([basis]);
+    let set = what_if.candidate().filter(|candidate| !candidate.choice.parameters.is_empty());
+    let set = set.map(|candidate| {
+        let values = candidate.choice.parameters.iter().map(|(key, value)| format!("{key} = {value}"));
+        (Role::Text, format!("{} with {}.", candidate.choice.id, values.collect::<Vec<_>>().join(", ")))
+    });
+    let words = set.into_iter().chain(selected).chain([basis]);
     words
         .flat_map(|(role, words)| {
             text::wrap(&words, columns.saturating_sub(2))

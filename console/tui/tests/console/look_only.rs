@@ -13,25 +13,20 @@ fn onlookers() -> Vec<Screen> {
     let events = vec![ended.mission.ended(Outcome::Aborted, "ended by operator")];
     ended.hear(RunMsg::Events(events));
     let mut all = vec![Screen::running(), Screen::held(), ended];
-    all.iter_mut().for_each(|screen| screen.model.live.access = Access::LookOnly);
+    for screen in &mut all {
+        screen.model.live.access = Access::LookOnly;
+    }
     all
 }
 
-/// Whether an effect concerns nothing but this console and what is written already.
+/// Whether an effect concerns nothing but this console, its configuration, and runs that are written already.
 fn looks(effect: &Effect) -> bool {
-    use Effect::{Bell, Copy, Do, Look, Mouse, Quit, Redraw, StopComparing, StopForecasting, Suspend};
+    use Effect::{Bell, Copy, Do, Look, Mouse, Quit, Redraw, SavePreset, Suspend};
     match effect {
         Do(job) => !matches!(job, Job::Report(_)),
         other => matches!(
             other,
-            Look | Redraw
-                | Suspend
-                | Bell
-                | Mouse(_)
-                | Copy(_)
-                | Quit { .. }
-                | StopComparing
-                | StopForecasting
+            Look | Redraw | Suspend | Bell | Mouse(_) | Copy(_) | Quit { .. } | SavePreset { .. }
         ),
     }
 }

@@ -10,6 +10,7 @@ mod look_only;
 mod mouse;
 mod overviews;
 mod panes;
+mod presets;
 mod reference;
 mod screens;
 mod scripts;

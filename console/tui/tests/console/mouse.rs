@@ -1,11 +1,13 @@
 //! The mouse, and the cursor on the map.
 
-use crate::fixture::{RICH, Screen};
+use crate::fixture::{RICH, Screen, listed};
 use crate::screens::{drawn, text};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tui::actions::ActionId;
-use tui::{Cache, Effect, Key, Mouse, Msg, Target, view_cached};
+use tui::model::Overlay;
+use tui::model::home::{Found, HomeList};
+use tui::{Cache, Effect, Key, Mouse, Msg, Rows, Target, view_cached};
 use world::Point;
 
 /// What lies at a place of the screen.
@@ -56,11 +58,59 @@ fn a_click_on_a_key_does_what_the_key_does_and_only_the_keyboard_answers_questio
     assert_eq!(hold, Target::Key(ActionId::Hold));
     assert_eq!(screen.send(Msg::Mouse(Mouse::Click(hold))), []);
     let asked = screen.model.ui.overlay.clone();
-    assert!(matches!(asked, tui::model::Overlay::Confirm(_)));
+    assert!(matches!(asked, Overlay::Confirm(_)));
     for id in [ActionId::Accept, ActionId::Resume, ActionId::Step] {
         assert_eq!(screen.send(Msg::Mouse(Mouse::Click(Target::Key(id)))), []);
     }
     assert_eq!(screen.model.ui.overlay, asked);
+}
+
+/// Where a line of a list is on a screen of 120 columns and 36 rows, and the click on it.
+fn row(screen: &Screen, list: Rows, index: usize) -> Msg {
+    let places = (0..36).flat_map(|y| (0..120).map(move |x| (x, y)));
+    let wanted = Target::Row(list, index);
+    let found = places.map(|(x, y)| at(screen, (120, 36), x, y)).find(|target| *target == wanted);
+    Msg::Mouse(Mouse::Click(found.unwrap_or_else(|| panic!("no {wanted:?}"))))
+}
+
+#[test]
+fn a_click_selects_a_line_and_a_second_one_opens_it() {
+    let mut screen = with_mouse(Screen::held());
+    let scenarios = vec![listed("one", None), listed("two", None)];
+    screen.send(Msg::Found(Box::new(Found { scenarios, ..Found::default() })));
+    screen.type_text("1");
+    let click = row(&screen, Rows::Scenarios, 1);
+    assert_eq!((screen.send(click.clone()), screen.model.home.scenario), (vec![], 1));
+    assert_eq!(screen.send(click), [], "a mission is in progress");
+    screen.type_text("4");
+    let click = row(&screen, Rows::Alarms, 1);
+    screen.send(click.clone());
+    assert_eq!(screen.model.ui.overlay, Overlay::None);
+    let chosen = screen.model.live.run.alarms.table()[1].cause.clone();
+    assert_eq!(screen.model.selected_alarm().map(|alarm| &alarm.cause), Some(&chosen));
+    screen.send(click);
+    assert_eq!(screen.model.ui.overlay, Overlay::Remedies { cause: chosen, selected: 0 });
+    screen.press([Key::Esc, Key::Char('5')]);
+    let click = row(&screen, Rows::Events, 3);
+    screen.send(click.clone());
+    assert_eq!((screen.model.ui.events.newer(), screen.model.ui.events.is_open), (3, false));
+    screen.send(click);
+    assert!(screen.model.ui.events.is_open);
+    screen.type_text("8");
+    let click = row(&screen, Rows::Plugins, 1);
+    assert_eq!((screen.send(click.clone()), screen.send(click)), (vec![], vec![]));
+    assert_eq!((screen.model.ui.plugin, &screen.model.ui.overlay), (1, &Overlay::None));
+}
+
+#[test]
+fn the_wheel_scrolls_the_list_under_it() {
+    let mut screen = with_mouse(Screen::held());
+    let scenarios = vec![listed("one", None), listed("two", None)];
+    screen.send(Msg::Found(Box::new(Found { scenarios, ..Found::default() })));
+    screen.type_text("1");
+    screen.press([Key::Tab]);
+    screen.send(Msg::Mouse(Mouse::Wheel { up: false, on: Target::Row(Rows::Scenarios, 0) }));
+    assert_eq!((screen.model.home.list, screen.model.home.scenario), (HomeList::Scenarios, 1));
 }
 
 #[test]

@@ -54,6 +54,7 @@ fn kind(kind: Kind) -> &'static str {
         Kind::Severity => "`info`, `watch`, `warn` or `crit`",
         Kind::Theme => "`dark`, `light` or `contrast`",
         Kind::Screen => "name of a screen",
+        Kind::Preset => "name of a parameter preset",
         Kind::Duration => "a span of time: `20s`, `15m`, `1h30m`",
         Kind::Alarm => "name of an alarm, as the list of alarms shows it",
         Kind::Station => "name of an AE station",

@@ -59,6 +59,7 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Parameters { selected: 0, edit: None },
         Overlay::Parameters { selected: 0, edit },
         Overlay::Layers { selected: 0 },
+        Overlay::Preset { name: "soft".into(), choice: choice("apf"), selected: 0 },
         Overlay::Preflight { selected: 0 },
         Overlay::WhatIf,
         Overlay::Filter("a".into()),
@@ -76,6 +77,7 @@ fn overlays() -> Vec<Overlay> {
             | Overlay::Planners { .. }
             | Overlay::Parameters { .. }
             | Overlay::Layers { .. }
+            | Overlay::Preset { .. }
             | Overlay::Preflight { .. }
             | Overlay::WhatIf
             | Overlay::Remedies { .. }

@@ -31,6 +31,8 @@ pub(in crate::update) enum Value {
     Theme(ThemeName),
     /// What shows a screen.
     Screen(ActionId),
+    /// Name of a preset.
+    Preset(String),
     /// A span of time, seconds.
     Duration(f64),
     /// An alarm.
@@ -56,6 +58,7 @@ pub(super) fn candidates(model: &Model, kind: Kind, typed: &str) -> Vec<String> 
         Kind::Severity => SEVERITIES.map(|(name, _)| name.to_owned()).into(),
         Kind::Theme => ThemeName::ALL.map(|theme| theme.name().to_owned()).into(),
         Kind::Screen => Screen::ALL.map(|screen| screen.name().to_lowercase()).into(),
+        Kind::Preset => model.console.presets.iter().map(|preset| preset.name.clone()).collect(),
         Kind::Duration => ["20s", "1m", "5m", "15m"].map(str::to_owned).into(),
         Kind::Alarm => alarms(model).map(|(name, _)| name).collect(),
         Kind::Station => model.live.run.stations().iter().map(|station| station.name.clone()).collect(),
@@ -104,6 +107,10 @@ fn named(model: &Model, kind: Kind, text: &str) -> Option<Value> {
         Kind::Screen => {
             let screen = Screen::ALL.into_iter().find(|screen| screen.name().to_lowercase() == text)?;
             find::named(&screen.name().to_lowercase()).map(|action| Value::Screen(action.id))
+        }
+        Kind::Preset => {
+            let preset = model.console.presets.iter().find(|preset| preset.name == text)?;
+            Some(Value::Preset(preset.name.clone()))
         }
         Kind::Alarm => alarms(model).find(|(name, _)| name == text).map(|(_, cause)| Value::Alarm(cause)),
         Kind::Station => {

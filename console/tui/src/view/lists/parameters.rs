@@ -8,7 +8,7 @@ use crate::view::look::{Look, Parts as Row};
 use crate::view::text;
 
 pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u16) -> List {
-    let Some(planner) = look.model.planner() else {
+    let Some((planner, choice)) = look.model.edited() else {
         return List { title: "Parameters".into(), ..List::default() };
     };
     let room = usize::from(columns).saturating_sub(3);
@@ -19,7 +19,7 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
         _ => (14, 9, 0, 8),
     };
     let rows = planner.parameters.iter().map(|info| {
-        let (now, unset) = (parameter::value(&look.run.planning, info), parameter::default(&info.kind));
+        let (now, unset) = (parameter::value(choice, info), parameter::default(&info.kind));
         let changed = if now == unset { " " } else { "*" };
         vec![
             (Role::Text, text::column(&info.key, name)),
@@ -55,8 +55,10 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
         let about = format!("{}. {}", info.label, info.help);
         below.extend(paragraph(Role::Text, &about, room));
     }
+    let is_draft = look.model.live.what_if.as_ref().is_some_and(|what_if| what_if.draft.is_some());
+    let what = if is_draft { "Forecast with parameters" } else { "Parameters" };
     List {
-        title: format!("Parameters of {} {}", planner.id, planner.version),
+        title: format!("{what} of {} {}", planner.id, planner.version),
         note: "* changed",
         above: vec![hint(&format!(" {}", head.concat()))],
         rows: rows.collect(),

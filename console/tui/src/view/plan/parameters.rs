@@ -34,7 +34,8 @@ fn changed(look: &Look) -> Vec<(String, String)> {
     infos
         .iter()
         .filter_map(|info| {
-            let (unset, now) = (parameter::default(&info.kind), parameter::value(&look.run.planning, info));
+            let (unset, now) =
+                (parameter::default(&info.kind), parameter::value(look.run.planning.choice.as_ref(), info));
             let unit = if info.unit.is_empty() { String::new() } else { format!(" {}", info.unit) };
             (now != unset).then(|| (info.key.clone(), format!("{unset} → {now}{unit}")))
         })

@@ -1,0 +1,98 @@
+//! The command lines of earlier sessions: `history` in the XDG state folder, one a line, the newest last. Nothing depends on
+//! it: what cannot be read or written is left out.
+
+use crate::config::folder_of;
+use std::{
+    fs::{self, OpenOptions},
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+/// Command lines that are recalled at most.
+const RECALLED: usize = 100;
+/// Lines of the file from which on the old ones are dropped.
+const MOST: usize = 1000;
+
+/// The command lines of earlier sessions, each once, the newest last.
+pub(super) fn load() -> Vec<String> {
+    file().map_or_else(Vec::new, |file| load_from(&file))
+}
+
+/// Adds a command line.
+pub(super) fn append(line: &str) {
+    // The console goes on without its history.
+    let _ = file().map(|file| append_to(&file, line));
+}
+
+fn file() -> Option<PathBuf> {
+    folder_of("XDG_STATE_HOME", ".local/state").map(|folder| folder.join("history"))
+}
+
+fn load_from(file: &Path) -> Vec<String> {
+    let text = if file.is_file() { fs::read(file).unwrap_or_default() } else { Vec::new() };
+    let text = String::from_utf8_lossy(&text);
+    let mut recalled: Vec<String> = Vec::new();
+    for line in text.lines().rev().map(str::trim).filter(|line| !line.is_empty()) {
+        if recalled.len() < RECALLED && !recalled.iter().any(|later| later == line) {
+            recalled.push(line.replace(char::is_control, ""));
+        }
+    }
+    recalled.reverse();
+    if text.lines().count() > MOST {
+        let _ = replace(file, &recalled);
+    }
+    recalled
+}
+
+/// Whole or not at all: another console may be reading it.
+fn replace(file: &Path, lines: &[String]) -> io::Result<()> {
+    let draft = file.with_extension("part");
+    fs::write(&draft, lines.join("\n") + "\n")?;
+    fs::rename(draft, file)
+}
+
+fn append_to(file: &Path, line: &str) -> io::Result<()> {
+    if let Some(folder) = file.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    let mut file = OpenOptions::new().append(true).create(true).open(file)?;
+    // In one piece, so that the lines of two consoles do not mix.
+    file.write_all(format!("{line}\n").as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_recalled_once_and_the_newest_last() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("tankops").join("history");
+        assert_eq!(load_from(&file), Vec::<String>::new(), "there is none at first");
+        for line in ["speed 2", "verify latest", "speed 2"] {
+            append_to(&file, line).expect("writable");
+        }
+        assert_eq!(load_from(&file), ["verify latest", "speed 2"]);
+    }
+
+    #[test]
+    fn the_file_stays_short() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("history");
+        let lines: Vec<String> = (0..=MOST).map(|n| format!("speed {n}")).collect();
+        fs::write(&file, lines.join("\n")).expect("writable");
+        let recalled = load_from(&file);
+        assert_eq!((recalled.len(), recalled.last().map(String::as_str)), (RECALLED, Some("speed 1000")));
+        assert_eq!(fs::read_to_string(&file).expect("readable").lines().count(), RECALLED);
+    }
+
+    #[test]
+    fn what_is_no_text_and_no_file_does_no_harm() {
+        let folder = tempfile::tempdir().expect("a folder");
+        assert_eq!(load_from(folder.path()), Vec::<String>::new());
+        assert!(append_to(folder.path(), "speed 2").is_err());
+        let file = folder.path().join("history");
+        fs::write(&file, b"\xff\xfe\nsp\x1beed 2\n").expect("writable");
+        assert_eq!(load_from(&file).last().map(String::as_str), Some("speed 2"));
+    }
+}

@@ -1,0 +1,65 @@
+//! Parameters under a name: kept, and taken after a look at what they change.
+
+use super::message::Effect;
+use super::offer::{accepted, demand, refuse};
+use super::overlay::open;
+use super::send::send;
+use crate::model::{Model, Overlay, preset};
+use mission::{Order, PlannerChoice, Severity};
+
+/// Whether a preset can be taken now.
+///
+/// # Errors
+/// Why not, as a sentence.
+pub(super) fn can_load(model: &Model) -> Result<(), String> {
+    demand(!model.console.presets.is_empty(), "there are no presets yet; preset-save NAME keeps one")?;
+    accepted(model, &Order::ChoosePlanner(PlannerChoice::default()))
+}
+
+/// Keeps the parameters of the active planner under a name. One that there is already stays as it is.
+pub(super) fn save(model: &mut Model, name: String) -> Vec<Effect> {
+    let Some(info) = model.planner() else { return refuse(model, "no planner loaded yet".into()) };
+    if let Err(why) = preset::check_name(&name) {
+        return refuse(model, why);
+    }
+    if model.console.presets.iter().any(|preset| preset.name == name) {
+        return refuse(model, format!("there is a preset {name} already; choose another name"));
+    }
+    vec![Effect::SavePreset { name, choice: preset::whole(model.live.run.planning.choice.as_ref(), info) }]
+}
+
+/// Shows what a preset changes; it is taken from there.
+pub(super) fn load(model: &mut Model, name: &str) -> Vec<Effect> {
+    match loaded(model, name) {
+        Ok(choice) => open(model, Overlay::Preset { name: name.to_owned(), choice, selected: 0 }),
+        Err(why) => refuse(model, why),
+    }
+}
+
+fn loaded(model: &Model, name: &str) -> Result<PlannerChoice, String> {
+    let found = model.console.presets.iter().find(|preset| preset.name == name);
+    let choice = found.ok_or_else(|| format!("there is no preset {name}"))?.choice.clone();
+    let choice = choice.map_err(|why| format!("preset {name} is refused: {why}"))?;
+    let info = model.info_of(&choice.id).ok_or_else(|| format!("planner {} was not found", choice.id))?;
+    if let Some(why) = model.live.run.cannot_fly(info) {
+        return Err(format!("planner {} {why}", info.id));
+    }
+    let now = model.live.run.planning.choice.as_ref();
+    let is_other = now.is_none_or(|now| now.id != choice.id);
+    if !is_other && preset::differences(now, &choice, info).is_empty() {
+        return Err(format!("preset {name} changes nothing"));
+    }
+    Ok(preset::by_hand(&choice, info))
+}
+
+/// Takes a preset that was looked at. Nothing moves: the planner plans with it.
+pub(super) fn take(model: &mut Model, name: &str, choice: PlannerChoice) -> Vec<Effect> {
+    model.ui.overlay = Overlay::None;
+    let order = Order::ChoosePlanner(choice);
+    // Checked again: the mission may have changed meanwhile.
+    if let Err(why) = accepted(model, &order) {
+        return refuse(model, why);
+    }
+    model.say(Severity::Info, format!("preset {name} taken; the planner plans with it"));
+    send(model, order)
+}

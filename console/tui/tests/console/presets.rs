@@ -1,0 +1,125 @@
+//! Parameters under names, and drafts of them for forecasts.
+
+use crate::fixture::{RICH, Screen, choice};
+use crate::screens::{drawn, text};
+use mission::{Order, ParamValue, PlannerChoice};
+use tui::model::{Overlay, Preset};
+use tui::{Effect, Key, Msg, RunMsg};
+
+fn with(id: &str, parameters: &[(&str, ParamValue)]) -> PlannerChoice {
+    let parameters = parameters.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
+    PlannerChoice { parameters, ..choice(id) }
+}
+
+fn offered(mut screen: Screen) -> Screen {
+    let soft = with("rpf", &[("rpf_gain", ParamValue::Float(0.8)), ("order", ParamValue::Int(2))]);
+    let presets = vec![
+        Preset { name: "bad".into(), choice: Err("bad.toml:3:9: k: no such parameter".into()) },
+        Preset { name: "other".into(), choice: Ok(choice("apf")) },
+        Preset { name: "plain".into(), choice: Ok(choice("rpf")) },
+        Preset { name: "soft".into(), choice: Ok(soft) },
+    ];
+    screen.send(Msg::Presets(presets));
+    screen
+}
+
+fn run(screen: &mut Screen, line: &str) -> Vec<Effect> {
+    screen.model.console.notice = None;
+    screen.type_text(&format!(":{line}"));
+    screen.press([Key::Enter])
+}
+
+fn notice(screen: &Screen) -> &str {
+    screen.model.notice().map_or("", |notice| notice.text.as_str())
+}
+
+#[test]
+fn a_preset_is_taken_after_a_look_at_what_it_changes() {
+    let taken = with("rpf", &[("rpf_gain", ParamValue::Float(0.8))]);
+    let order = Effect::Order(Order::ChoosePlanner(taken));
+    for (mut screen, effects) in [
+        (offered(Screen::held()), vec![order.clone()]),
+        (offered(Screen::idle()), vec![order, Effect::Order(Order::Plan)]),
+    ] {
+        assert_eq!(run(&mut screen, "preset-load soft"), []);
+        let shown = text(&drawn(&screen.model, RICH, (80, 24)));
+        for words in
+            ["Preset soft (rpf)", "rpf_gain", "1 of 5 parameters change. Enter: take them.", "Nothing moves"]
+        {
+            assert!(shown.contains(words), "{words}: {shown}");
+        }
+        assert_eq!(screen.press([Key::Enter]), effects);
+        assert_eq!(screen.model.ui.overlay, Overlay::None);
+    }
+    let mut screen = offered(Screen::held());
+    run(&mut screen, "preset-load other");
+    assert!(text(&drawn(&screen.model, RICH, (80, 24))).contains("Enter: change planner to apf."));
+    assert_eq!(screen.press([Key::Esc, Key::Enter]), [], "Esc leaves everything as it is");
+}
+
+#[test]
+fn what_cannot_be_taken_says_why() {
+    let cases = [
+        ("bad", "preset bad is refused: bad.toml:3:9: k: no such parameter"),
+        ("plain", "preset plain changes nothing"),
+    ];
+    for (name, why) in cases {
+        let mut screen = offered(Screen::held());
+        assert_eq!((run(&mut screen, &format!("preset-load {name}")), notice(&screen)), (vec![], why));
+    }
+    let mut screen = offered(Screen::running());
+    assert_eq!(run(&mut screen, "preset-load soft"), []);
+    assert_eq!(notice(&screen), "changing the planner requires HOLD first; space: HOLD");
+    let mut screen = offered(Screen::held());
+    run(&mut screen, "preset-load soft");
+    let resumed = screen.mission.obeyed(Order::Resume);
+    screen.hear(RunMsg::Events(resumed));
+    assert_eq!(screen.press([Key::Enter]), [], "checked again when it is taken");
+}
+
+#[test]
+fn the_parameters_are_kept_whole_under_a_new_name() {
+    let mut screen = offered(Screen::idle());
+    let saved = run(&mut screen, "preset-save mine");
+    let [Effect::SavePreset { name, choice }] = &saved[..] else { panic!("{saved:?}") };
+    assert_eq!((name.as_str(), choice.id.as_str(), choice.parameters.len()), ("mine", "rpf", 5));
+    for (name, why) in [
+        ("soft", "there is a preset soft already; choose another name"),
+        ("../x", "no name for a preset: `../x`; write 1 to 40 letters, digits, - or _"),
+    ] {
+        assert_eq!((run(&mut screen, &format!("preset-save {name}")), notice(&screen)), (vec![], why));
+    }
+}
+
+#[test]
+fn a_draft_is_forecast_and_moves_nothing() {
+    let mut screen = Screen::held();
+    screen.type_text("w");
+    assert_eq!(screen.press([Key::Char('p'), Key::Enter]), []);
+    screen.press([Key::Ctrl('u')]);
+    screen.type_text("0.8");
+    assert_eq!(screen.press([Key::Enter]), [], "a draft is no order");
+    assert!(text(&drawn(&screen.model, RICH, (120, 36))).contains("Forecast with parameters of rpf"));
+    let draft = with("rpf", &[("rpf_gain", ParamValue::Float(0.8))]);
+    let forecast = screen.type_text("w");
+    let [Effect::Forecast(choices)] = &forecast[..] else { panic!("{forecast:?}") };
+    assert_eq!(choices.last(), Some(&draft));
+    assert_eq!(screen.model.ui.overlay, Overlay::WhatIf);
+    assert!(text(&drawn(&screen.model, RICH, (120, 36))).contains("rpf with rpf_gain = 0.8."));
+    // The same once more, and one that is given up.
+    assert_eq!(screen.type_text("pw"), []);
+    assert_eq!(notice(&screen), "planner rpf is compared already");
+    screen.press([Key::Char('p'), Key::Esc]);
+    assert_eq!(screen.model.ui.overlay, Overlay::WhatIf);
+    screen.press([Key::Esc, Key::Char('p')]);
+    assert!(text(&drawn(&screen.model, RICH, (120, 36))).contains("Parameters of rpf"), "those that drive");
+}
+
+#[test]
+fn a_draft_is_forgotten_when_the_robot_moves_again() {
+    let mut screen = Screen::held();
+    screen.type_text("wp");
+    let resumed = screen.mission.obeyed(Order::Resume);
+    assert_eq!(screen.hear(RunMsg::Events(resumed)), [Effect::StopForecasting]);
+    assert_eq!(screen.model.ui.overlay, Overlay::None);
+}
