@@ -4,14 +4,15 @@
 //! the singular or the plural. Blocks are taken apart, with the layer of their insertion for what lies on layer 0.
 
 mod entities;
+mod groups;
 mod rings;
 
 use crate::{
     error::ImportError,
     plan::{FloorPlan, Named, convex, round},
 };
-use dxf::{Drawing, enums::Units};
 use entities::{Drawn, Outline};
+use groups::Drawing;
 use std::{collections::BTreeMap, path::Path};
 use world::{Boundary, Point, Shape, Vector, shape::ring_area_m2};
 
@@ -44,26 +45,25 @@ pub struct Assumed {
 /// It is no DXF, names no unit and none is assumed, or has no closed outline on layer SHELL.
 pub fn read(file: &Path, assumed: Assumed) -> Result<FloorPlan, ImportError> {
     let of_file = |what: String| ImportError::of_file(file, what);
-    let drawing = Drawing::load_file(file)
-        .map_err(|error| of_file(format!("no DXF drawing that can be read: {error}")))?;
-    let units = drawing.header.default_drawing_units;
-    let unit_m = metres(units).or(assumed.unit_m).ok_or_else(|| {
+    let drawing = Drawing::read(file)?;
+    let units = drawing.units.and_then(metres);
+    let unit_m = units.or(assumed.unit_m).ok_or_else(|| {
         of_file(
             "the header ($INSUNITS) names no unit of length; state it with --units, as in --units mm".into(),
         )
     })?;
     let mut notes = Vec::new();
-    if metres(units).is_none() {
+    if units.is_none() {
         notes.push(format!("the drawing names no unit; one unit was taken as {unit_m} m"));
     }
     let mut by_role: BTreeMap<Role, Vec<Drawn>> = BTreeMap::new();
     let mut unused: BTreeMap<String, usize> = BTreeMap::new();
     for drawn in entities::all(&drawing, unit_m) {
         match (role_of(&drawn.layer), &drawn.outline) {
-            (Some(Role::Plates), _) | (None, _) | (_, Err(_)) => {
+            (Some(Role::Plates), _) | (None, _) | (_, None) => {
                 *unused.entry(format!("layer {}: {}", drawn.layer, drawn.kind)).or_default() += 1;
             }
-            (Some(role), Ok(_)) => by_role.entry(role).or_default().push(drawn),
+            (Some(role), Some(_)) => by_role.entry(role).or_default().push(drawn),
         }
     }
     notes.extend(unused.into_iter().map(|(what, n)| format!("not used: {what}, {n} of them")));
@@ -110,16 +110,16 @@ fn role_of(layer: &str) -> Option<Role> {
     })
 }
 
-/// Metres to a unit, if it is one of length that drawings have.
-fn metres(units: Units) -> Option<f64> {
+/// Metres to a unit by its number in `$INSUNITS`, if it is one of length that drawings have.
+fn metres(units: i32) -> Option<f64> {
     match units {
-        Units::Inches | Units::USSurveyInch => Some(0.0254),
-        Units::Feet | Units::USSurveyFeet => Some(0.3048),
-        Units::Yards | Units::USSurveyYard => Some(0.9144),
-        Units::Millimeters => Some(1e-3),
-        Units::Centimeters => Some(1e-2),
-        Units::Decimeters => Some(0.1),
-        Units::Meters => Some(1.0),
+        1 => Some(0.0254),
+        2 => Some(0.3048),
+        4 => Some(1e-3),
+        5 => Some(1e-2),
+        6 => Some(1.0),
+        10 => Some(0.9144),
+        14 => Some(0.1),
         _ => None,
     }
 }
@@ -183,7 +183,7 @@ fn closed(role: Role, name: &str, drawn: Vec<Drawn>, notes: &mut Vec<String>) ->
 
 fn pipes(drawn: Vec<Drawn>, assumed_m: f64, notes: &mut Vec<String>) -> Vec<Shape> {
     let mut n_thin = 0;
-    let mut shape = |drawn: Drawn| match drawn.outline.ok()? {
+    let mut shape = |drawn: Drawn| match drawn.outline? {
         Outline::Circle { center, radius_m } => Some(Shape::Disc { center, radius_m }),
         Outline::Chain { mut points, is_closed, width_m } => {
             if is_closed {
@@ -204,7 +204,7 @@ fn pipes(drawn: Vec<Drawn>, assumed_m: f64, notes: &mut Vec<String>) -> Vec<Shap
 /// Circles, and chains of points with whether they are closed.
 fn parted(drawn: Vec<Drawn>) -> (Vec<(Point, f64)>, Vec<(Vec<Point>, bool)>) {
     let (mut circles, mut chains) = (Vec::new(), Vec::new());
-    for outline in drawn.into_iter().filter_map(|drawn| drawn.outline.ok()) {
+    for outline in drawn.into_iter().filter_map(|drawn| drawn.outline) {
         match outline {
             Outline::Circle { center, radius_m } => circles.push((center, radius_m)),
             Outline::Chain { points, is_closed, .. } => chains.push((points, is_closed)),

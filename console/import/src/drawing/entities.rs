@@ -1,11 +1,8 @@
 //! What a drawing holds, in metres and with its blocks taken apart.
 
-use dxf::{
-    Drawing,
-    entities::{Entity, EntityType, Insert},
-};
-use nalgebra::Affine2;
-use std::collections::HashMap;
+use super::groups::{Block, Drawing, Entity};
+use nalgebra::{Affine2, Rotation2, Translation2};
+use std::{collections::HashMap, f64::consts::TAU};
 use world::{Point, Vector};
 
 /// Blocks within blocks are followed this far.
@@ -20,25 +17,28 @@ pub(super) enum Outline {
     Chain { points: Vec<Point>, is_closed: bool, width_m: f64 },
 }
 
-/// An entity, or why it is none that can be used.
+/// An entity, with its outline if it has one that can be used.
 pub(super) struct Drawn {
     pub layer: String,
     /// What programs call it.
     pub kind: String,
-    pub outline: Result<Outline, ()>,
+    pub outline: Option<Outline>,
 }
 
 /// Everything in the model space of a drawing with some metres to the unit.
 pub(super) fn all(drawing: &Drawing, unit_m: f64) -> Vec<Drawn> {
-    let blocks: HashMap<&str, &dxf::Block> =
-        drawing.blocks().map(|block| (block.name.as_str(), block)).collect();
+    let blocks = drawing.blocks.iter();
+    let blocks: Blocks<'_> = blocks.map(|block| (block.head.text(2).unwrap_or_default(), block)).collect();
     let mut found = Vec::new();
     let place = Place { map: scaling(unit_m, unit_m), layer: None };
-    for entity in drawing.entities().filter(|entity| !entity.common.is_in_paper_space) {
+    // Code 67 is 1 for what lies on the paper.
+    for entity in drawing.entities.iter().filter(|entity| entity.number(67, 0.0) < 0.5) {
         collect(entity, &blocks, &place, 0, &mut found);
     }
     found
 }
+
+type Blocks<'a> = HashMap<&'a str, &'a Block>;
 
 /// Where a block is put.
 struct Place {
@@ -50,97 +50,90 @@ fn scaling(x: f64, y: f64) -> Affine2<f64> {
     Affine2::from_matrix_unchecked(nalgebra::Matrix3::new_nonuniform_scaling(&Vector::new(x, y)))
 }
 
-fn collect(
-    entity: &Entity,
-    blocks: &HashMap<&str, &dxf::Block>,
-    place: &Place,
-    depth: usize,
-    found: &mut Vec<Drawn>,
-) {
-    let own = &entity.common.layer;
-    let layer = place.layer.as_ref().filter(|_| own == "0").unwrap_or(own).clone();
-    if let EntityType::Insert(insert) = &entity.specific
-        && let Some(block) = blocks.get(insert.name.as_str())
-        && depth < DEEPEST
-    {
-        for shift in copies(insert) {
-            let base = Vector::new(block.base_point.x, block.base_point.y);
-            let at = Vector::new(insert.location.x, insert.location.y);
-            let turn = nalgebra::Rotation2::new(insert.rotation.to_radians());
-            let inner = nalgebra::Translation2::from(at)
-                * turn
-                * nalgebra::Translation2::from(shift)
-                * scaling(insert.x_scale_factor, insert.y_scale_factor)
-                * nalgebra::Translation2::from(-base);
-            let place = Place { map: place.map * inner, layer: Some(layer.clone()) };
-            for entity in &block.entities {
-                collect(entity, blocks, &place, depth + 1, found);
-            }
-        }
+fn collect(entity: &Entity, blocks: &Blocks<'_>, place: &Place, depth: usize, found: &mut Vec<Drawn>) {
+    let own = entity.text(8).unwrap_or("0");
+    let layer = place.layer.as_deref().filter(|_| own == "0").unwrap_or(own).to_owned();
+    let block = entity.text(2).filter(|_| entity.kind == "INSERT").and_then(|name| blocks.get(name));
+    let Some(block) = block.filter(|_| depth < DEEPEST) else {
+        found.push(Drawn { layer, kind: entity.kind.clone(), outline: outline(entity, &place.map) });
         return;
+    };
+    let at = Vector::new(entity.number(10, 0.0), entity.number(20, 0.0));
+    let base = Vector::new(block.head.number(10, 0.0), block.head.number(20, 0.0));
+    for shift in copies(entity) {
+        let inner = mirroring(entity.number(230, 1.0))
+            * Translation2::from(at)
+            * Rotation2::new(entity.number(50, 0.0).to_radians())
+            * Translation2::from(shift)
+            * scaling(entity.number(41, 1.0), entity.number(42, 1.0))
+            * Translation2::from(-base);
+        let place = Place { map: place.map * inner, layer: Some(layer.clone()) };
+        for entity in &block.entities {
+            collect(entity, blocks, &place, depth + 1, found);
+        }
     }
-    let debug = format!("{:?}", entity.specific);
-    let kind = debug.split(['(', ' ']).next().unwrap_or_default().to_owned();
-    found.push(Drawn { layer, kind, outline: outline(&entity.specific, &place.map).ok_or(()) });
 }
 
 /// Where the rows and columns of an insertion lie.
-fn copies(insert: &Insert) -> impl Iterator<Item = Vector> + '_ {
-    let count = |n: i16| i32::from(n).clamp(1, 1000);
-    let columns = move |row: i32| (0..count(insert.column_count)).map(move |column| (column, row));
-    (0..count(insert.row_count)).flat_map(columns).map(|(column, row)| {
-        Vector::new(f64::from(column) * insert.column_spacing, f64::from(row) * insert.row_spacing)
-    })
+fn copies(insert: &Entity) -> Vec<Vector> {
+    let count = |code: i32| insert.number(code, 1.0).clamp(1.0, 1000.0) as usize;
+    let (columns, rows) = (count(70), count(71));
+    let (dx, dy) = (insert.number(44, 0.0), insert.number(45, 0.0));
+    (0..columns * rows).map(|k| Vector::new((k % columns) as f64 * dx, (k / columns) as f64 * dy)).collect()
 }
 
-fn outline(entity: &EntityType, map: &Affine2<f64>) -> Option<Outline> {
-    let at = |p: &dxf::Point| map * Point::new(p.x, p.y);
+fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
+    let at = |x: i32, y: i32| Some(Point::new(entity.numbers(x).next()?, entity.numbers(y).next()?));
+    let placed =
+        |points: Vec<Point>, map: &Affine2<f64>| points.into_iter().map(|point| map * point).collect();
+    // Lines are in the coordinates of the drawing, all others in those of their own plane.
+    let in_plane = *map * mirroring(entity.number(230, 1.0));
     let scale = map.matrix().fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
-    let open = |points| Some(Outline::Chain { points, is_closed: false, width_m: 0.0 });
-    match entity {
-        EntityType::Circle(circle) if is_even(map) => {
-            let center = Point::new(mirrored(circle.normal.z) * circle.center.x, circle.center.y);
-            Some(Outline::Circle { center: map * center, radius_m: circle.radius * scale })
+    match entity.kind.as_str() {
+        "LINE" => {
+            let points = placed(vec![at(10, 20)?, at(11, 21)?], map);
+            Some(Outline::Chain { points, is_closed: false, width_m: 0.0 })
         }
-        EntityType::Circle(circle) => {
-            let center = Point::new(mirrored(circle.normal.z) * circle.center.x, circle.center.y);
+        "CIRCLE" => {
+            let (center, radius) = (at(10, 20)?, entity.number(40, 0.0));
+            if radius <= 0.0 {
+                return None;
+            }
+            if is_even(map) {
+                return Some(Outline::Circle { center: in_plane * center, radius_m: radius * scale });
+            }
+            let points = along_arc(center, radius, 0.0, TAU).split_off(1);
+            Some(Outline::Chain { points: placed(points, &in_plane), is_closed: true, width_m: 0.0 })
+        }
+        "ARC" => {
             let points =
-                arc(center, circle.radius, 0.0, 360.0).into_iter().skip(1).map(|p| map * p).collect();
-            Some(Outline::Chain { points, is_closed: true, width_m: 0.0 })
+                arc(at(10, 20)?, entity.number(40, 0.0), entity.number(50, 0.0), entity.number(51, 360.0));
+            Some(Outline::Chain { points: placed(points, &in_plane), is_closed: false, width_m: 0.0 })
         }
-        EntityType::Arc(drawn) => {
-            let side = mirrored(drawn.normal.z);
-            let center = Point::new(drawn.center.x, drawn.center.y);
-            let points = arc(center, drawn.radius, drawn.start_angle, drawn.end_angle);
-            open(points.into_iter().map(|p| map * Point::new(side * p.x, p.y)).collect())
-        }
-        EntityType::Line(line) => open(vec![at(&line.p1), at(&line.p2)]),
-        EntityType::LwPolyline(line) => {
-            let side = mirrored(line.extrusion_direction.z);
-            let bent: Vec<(Point, f64)> =
-                line.vertices.iter().map(|v| (Point::new(v.x, v.y), v.bulge)).collect();
-            let own_width = line.vertices.iter().map(|v| v.starting_width).fold(0.0, f64::max);
-            let points = chain(&bent, line.is_closed()).into_iter();
-            let points = points.map(|p| map * Point::new(side * p.x, p.y)).collect();
-            let width_m = line.constant_width.max(own_width) * scale;
-            Some(Outline::Chain { points, is_closed: line.is_closed(), width_m })
-        }
-        EntityType::Polyline(line) => {
-            let side = mirrored(line.normal.z);
-            let bent: Vec<(Point, f64)> =
-                line.vertices().map(|v| (Point::new(v.location.x, v.location.y), v.bulge)).collect();
-            let points = chain(&bent, line.is_closed()).into_iter();
-            let points = points.map(|p| map * Point::new(side * p.x, p.y)).collect();
-            let width_m = line.default_starting_width * scale;
-            Some(Outline::Chain { points, is_closed: line.is_closed(), width_m })
+        "LWPOLYLINE" | "POLYLINE" => {
+            let corners = match entity.kind.as_str() {
+                "POLYLINE" => entity
+                    .vertices
+                    .iter()
+                    .map(|v| [v.number(10, 0.0), v.number(20, 0.0), v.number(42, 0.0)])
+                    .collect(),
+                _ => entity.corners(),
+            };
+            let corners: Vec<(Point, f64)> =
+                corners.iter().map(|[x, y, bulge]| (Point::new(*x, *y), *bulge)).collect();
+            let is_closed = entity.has_flag(1);
+            // A width for all, or that at the beginning of every stretch.
+            let width = entity.numbers(43).chain(entity.numbers(40)).fold(0.0, f64::max);
+            let points = placed(chain(&corners, is_closed), &in_plane);
+            (points.len() > 1).then_some(Outline::Chain { points, is_closed, width_m: width * scale })
         }
         _ => None,
     }
 }
 
-/// Entities drawn from below have x to the other side.
-fn mirrored(normal_z: f64) -> f64 {
-    if normal_z < 0.0 { -1.0 } else { 1.0 }
+/// Planes that are looked at from below have x to the other side.
+fn mirroring(normal_z: f64) -> Affine2<f64> {
+    scaling(if normal_z < 0.0 { -1.0 } else { 1.0 }, 1.0)
 }
 
 /// Whether a map keeps circles round.
@@ -154,7 +147,7 @@ fn is_even(map: &Affine2<f64>) -> bool {
 fn arc(center: Point, radius: f64, from_deg: f64, to_deg: f64) -> Vec<Point> {
     let from = from_deg.to_radians();
     let sweep = (to_deg - from_deg).rem_euclid(360.0).to_radians();
-    let sweep = if sweep < 1e-9 { std::f64::consts::TAU } else { sweep };
+    let sweep = if sweep < 1e-9 { TAU } else { sweep };
     along_arc(center, radius, from, sweep)
 }
 
