@@ -41,6 +41,8 @@ pub(crate) enum Command {
     Accuracy(AccuracyArgs),
     /// Show what becomes of an occupancy map: the floor, its outlines and convex pieces.
     Map(MapArgs),
+    /// Create a scenario from a floor drawing (DXF) or a list of columns (CSV).
+    Import(ImportArgs),
     /// List available planners, and refused plugins with the reason.
     Planners {
         /// Print JSON.
@@ -414,6 +416,60 @@ pub(crate) struct MapArgs {
     /// Draw wall and pieces to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ImportArgs {
+    /// Drawing (.dxf) with layers SHELL, COLUMNS, PIPES, SUMP and NOGO, or list of columns (.csv) with the fields x_m, y_m,
+    /// radius_m or diameter_m, and name.
+    pub file: PathBuf,
+    /// Scenario file to write; must not exist.
+    #[arg(short = 'o', long, value_name = "SCENARIO")]
+    pub output: PathBuf,
+    /// Inner radius of the tank of a list of columns, in metres.
+    #[arg(long, value_name = "M", value_parser = length)]
+    pub tank_radius: Option<f64>,
+    /// Unit of a drawing whose header names none.
+    #[arg(long, value_name = "UNIT")]
+    pub units: Option<UnitArg>,
+    /// Width of pipes that are drawn as lines without one, in metres.
+    #[arg(long, value_name = "M", value_parser = length, default_value_t = import::drawing::PIPE_WIDTH_M)]
+    pub pipe_width: f64,
+    /// Draw the floor to this file.
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+}
+
+/// A unit of length of drawings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum UnitArg {
+    /// Millimetres.
+    Mm,
+    /// Centimetres.
+    Cm,
+    /// Metres.
+    M,
+    /// Inches.
+    In,
+    /// Feet.
+    Ft,
+}
+
+impl From<UnitArg> for f64 {
+    fn from(unit: UnitArg) -> Self {
+        match unit {
+            UnitArg::Mm => 1e-3,
+            UnitArg::Cm => 1e-2,
+            UnitArg::M => 1.0,
+            UnitArg::In => 0.0254,
+            UnitArg::Ft => 0.3048,
+        }
+    }
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    let metres = text.parse().ok().filter(|metres: &f64| *metres > 0.0 && *metres <= 1000.0);
+    metres.ok_or_else(|| "write metres, more than 0 and at most 1000".into())
 }
 
 fn place(text: &str) -> Result<[f64; 2], String> {

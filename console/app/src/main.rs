@@ -3,6 +3,7 @@
 mod accuracy;
 mod cli;
 mod headless;
+mod import;
 mod manual;
 mod map;
 mod output;
@@ -71,6 +72,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
         Some(Command::Map(args)) => map::map(&args),
+        Some(Command::Import(args)) => import::import(&args),
         Some(Command::Planners { json }) => planners::list(&plugins, json),
         Some(Command::Check { files }) => planners::check(&files, &plugins),
         Some(Command::Reproduce(args)) => reproduce::reproduce(&args, &plugins),

@@ -1,8 +1,8 @@
 //! `tankops map`: what becomes of an occupancy map.
 
 use crate::{cli::MapArgs, output::write_file};
+use ::import::{MapFloor, OccupancyMap};
 use flight::failure::{COMPLETE, bad_input};
-use import::{MapFloor, OccupancyMap};
 use report::{drawing, print::say};
 use std::{fmt::Write, process::ExitCode};
 use world::{Obstacle, ObstacleId, Point, Shape, World};

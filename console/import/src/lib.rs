@@ -1,17 +1,23 @@
 //! Floors from the files of other programs.
 //!
 //! [`OccupancyMap::read`] takes the map of a ROS map server, [`MapFloor::new`] makes a wall and convex obstacles of it.
+//! [`drawing::read`] takes a DXF drawing, [`columns::read`] a list of columns; both give a [`FloorPlan`], of which
+//! [`FloorPlan::scenario`] makes a scenario.
 //!
 //! Frame: the tank frame, metres, unless a comment says *lattice*: cells of the map, x right, y up, the origin at the lower
 //! left corner of the lower left cell.
 
+pub mod columns;
 mod contour;
+pub mod drawing;
 mod error;
 mod floor;
 mod occupancy;
 mod pieces;
+pub mod plan;
 mod simplify;
 
 pub use error::ImportError;
 pub use floor::MapFloor;
 pub use occupancy::OccupancyMap;
+pub use plan::{FloorPlan, Named};

@@ -4,7 +4,7 @@
 //! file.
 
 use super::problem::{Complaint, Problem, ScenarioErrors};
-use import::{MapFloor, OccupancyMap};
+use import::{MapFloor, OccupancyMap, plan::points};
 use std::{fmt::Write, path::Path};
 use toml::de::{DeTable, DeValue};
 use toml_edit::{DocumentMut, Value, value};
@@ -46,7 +46,7 @@ pub(crate) fn put_in(text: &str, shown_name: &str, folder: &Path) -> Result<Stri
     tank.remove("map_tolerance_m");
     tank.remove("map");
     let Boundary::Polygon { vertices } = &floor.wall else { panic!("the walls of maps are rectangles") };
-    let wall: Value = corners(vertices).parse().expect("numbers in brackets are TOML");
+    let wall: Value = points(vertices).parse().expect("numbers in brackets are TOML");
     tank.insert("vertices_m", value(wall));
     let mut changed = document.to_string();
     if !changed.ends_with('\n') {
@@ -58,7 +58,7 @@ pub(crate) fn put_in(text: &str, shown_name: &str, folder: &Path) -> Result<Stri
             changed,
             "\n[[obstacles]]\nname = \"map {}\"\nkind = \"polygon\"\nvertices_m = {}",
             index + 1,
-            corners(piece)
+            points(piece)
         );
     }
     Ok(changed)
@@ -82,14 +82,6 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
         DeValue::Integer(written) => written.as_str().parse().ok(),
         _ => None,
     }
-}
-
-/// Corners as TOML, to the micrometre.
-fn corners(points: &[Point]) -> String {
-    let rounded = |v: f64| (v * 1e6).round() / 1e6 + 0.0;
-    let corners: Vec<String> =
-        points.iter().map(|at| format!("[{}, {}]", rounded(at.x), rounded(at.y))).collect();
-    format!("[{}]", corners.join(", "))
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use field::{
 };
 use std::collections::VecDeque;
 use steering::{Forces, KnownMap, Nearby};
-use world::{Boundary, Point, Shape, Vector, shortest::GrownFloor};
+use world::{Point, Shape, Vector, shortest::GrownFloor};
 
 /// Steps over which the robot must have come on (the paper's loop looks at 60).
 const STALL_STEPS: usize = 60;
@@ -56,6 +56,8 @@ pub struct Guide {
     places: VecDeque<Point>,
     way: Vec<Point>,
     age: usize,
+    /// Floors of the map as it is, one for each attempt to find a way.
+    floors: Vec<GrownFloor>,
 }
 
 impl Guide {
@@ -67,6 +69,7 @@ impl Guide {
             places: VecDeque::new(),
             way: Vec::new(),
             age: usize::MAX,
+            floors: Vec::new(),
         }
     }
 
@@ -74,6 +77,7 @@ impl Guide {
     pub fn forget_map(&mut self) {
         self.nearby.forget();
         self.age = usize::MAX;
+        self.floors.clear();
     }
 
     /// The virtual goal in use.
@@ -146,7 +150,7 @@ impl Guide {
     }
 
     fn find_way(&mut self, field: &Field, map: &KnownMap, at: Point, goal: Point) {
-        self.way = shortest_way(map, at, goal, field.keep_m);
+        self.way = shortest_way(map, at, goal, field.keep_m, &mut self.floors);
         self.age = 0;
     }
 
@@ -160,31 +164,39 @@ impl Guide {
     }
 }
 
-/// The corners of the shortest way from a place, the goal last; only the goal if no way is found.
-pub fn shortest_way(map: &KnownMap, at: Point, goal: Point, keep_m: f64) -> Vec<Point> {
-    let shapes: Vec<Shape> = map.solids.iter().map(|solid| solid.part.to_shape()).collect();
+/// The corners of the shortest way from a place, the goal last; only the goal if no way is found. `floors` are those made
+/// so far for this map and this distance.
+pub fn shortest_way(
+    map: &KnownMap,
+    at: Point,
+    goal: Point,
+    keep_m: f64,
+    floors: &mut Vec<GrownFloor>,
+) -> Vec<Point> {
     for attempt in 0..ATTEMPTS {
         let room_m = if attempt + 1 == ATTEMPTS { 0.0 } else { ROOM_M / f64::from(1 << attempt) };
         // A robot that stands, or is to stand, nearer than that finds a way with less room.
         let wished_m = keep_m + room_m;
-        if let Some(way) = way_with(map, &shapes, at, goal, wished_m) {
-            return way;
+        if floors.len() <= attempt as usize {
+            floors.push(grown(map, wished_m));
+        }
+        if let Ok(way) = floors[attempt as usize].shortest(at, goal, &mut || true) {
+            return way.points().into_iter().skip(1).collect();
         }
     }
     vec![goal]
 }
 
-fn way_with(map: &KnownMap, shapes: &[Shape], at: Point, goal: Point, keep_m: f64) -> Option<Vec<Point>> {
-    let wall: &Boundary = &map.wall;
-    let floor = GrownFloor::new(wall, keep_m, shapes.iter().map(|shape| (shape, keep_m)));
-    let way = floor.shortest(at, goal, &mut || true).ok()?;
-    Some(way.points().into_iter().skip(1).collect())
+fn grown(map: &KnownMap, keep_m: f64) -> GrownFloor {
+    let shapes: Vec<Shape> = map.solids.iter().map(|solid| solid.part.to_shape()).collect();
+    GrownFloor::new(&map.wall, keep_m, shapes.iter().map(|shape| (shape, keep_m)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use steering::Solid;
+    use world::Boundary;
 
     fn map(discs: &[(f64, f64, f64)]) -> KnownMap {
         let disc =
@@ -199,14 +211,20 @@ mod tests {
     #[test]
     fn a_free_way_has_no_corner_and_a_blocked_one_leads_past() {
         let goal = Point::new(6.0, 0.0);
-        assert_eq!(shortest_way(&map(&[]), Point::origin(), goal, 0.3), [goal]);
-        let way = shortest_way(&map(&[(3.0, 0.1, 0.5)]), Point::origin(), goal, 0.3);
+        assert_eq!(shortest_way(&map(&[]), Point::origin(), goal, 0.3, &mut Vec::new()), [goal]);
+        let way = shortest_way(&map(&[(3.0, 0.1, 0.5)]), Point::origin(), goal, 0.3, &mut Vec::new());
         assert!(way.len() > 1 && way[0].y < -0.2 && way[way.len() - 1] == goal);
     }
 
     #[test]
     fn near_something_the_way_is_found_with_less_room() {
-        let way = shortest_way(&map(&[(1.0, 0.0, 0.5)]), Point::new(0.18, 0.0), Point::new(6.0, 0.0), 0.3);
+        let way = shortest_way(
+            &map(&[(1.0, 0.0, 0.5)]),
+            Point::new(0.18, 0.0),
+            Point::new(6.0, 0.0),
+            0.3,
+            &mut Vec::new(),
+        );
         assert!(way.len() > 1);
     }
 }

@@ -131,6 +131,10 @@ impl NearThings {
             least = least.min(squared.sqrt() - bar.half_width_m);
         }
         for other in &self.others {
+            let reach_m = least + span_m + other.velocity.norm() * last_s;
+            if other.part.distance(*first).0 > reach_m {
+                continue;
+            }
             let step = other.velocity * dt_s;
             for (index, point) in points.iter().enumerate() {
                 least = least.min(other.part.distance(point - step * (index + 1) as f64).0);

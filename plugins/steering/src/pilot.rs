@@ -18,6 +18,8 @@ use planner_api::{Command, Drive, PoseEstimate, Sensed, Site, Status};
 const SPARE_M: f64 = 0.02;
 /// The position error widens the guard by no more than this, metres: a robot that is lost shall still move.
 const MOST_WIDENING_M: f64 = 0.15;
+/// A guard that leaves less than this share of the speed wanted has wedged the robot.
+const WEDGED_SHARE: f64 = 0.05;
 /// Within this distance of the last point the robot slows down, metres.
 const ARRIVING_M: f64 = 0.5;
 /// After this share of the time to being stuck, and every such share again, another remedy is tried.
@@ -102,7 +104,12 @@ impl Pilot {
         let along = wanted.try_normalize(1e-9);
         let speed = self.speed(flight, tick, along.unwrap_or_else(Vector::zeros), near);
         let velocity = self.smoothed(along, tick) * speed;
-        self.guarded(velocity, tick, self.keep_m(flight, &tick.pose))
+        let keep_m = self.keep_m(flight, &tick.pose);
+        let spare_m = flight.guard_m.max(self.clearance_m + SPARE_M) - self.clearance_m;
+        let safe = self.guarded(velocity, tick, keep_m);
+        // Wedged where the plan, which keeps the mission's clearance, passes.
+        let is_wedged = safe.norm() < WEDGED_SHARE * velocity.norm();
+        if is_wedged { self.guarded(velocity, tick, keep_m - spare_m) } else { safe }
     }
 
     /// What the robot can do.

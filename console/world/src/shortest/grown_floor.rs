@@ -10,6 +10,8 @@ use geometry::{
     shape::{reflex_corners, ring_contains},
 };
 
+use std::collections::{HashMap, HashSet};
+
 /// Least radius of a disc or corner, metres: a path could lead across one without any extent.
 const LEAST_RADIUS_M: f64 = 1e-6;
 
@@ -48,7 +50,8 @@ impl GrownFloor {
             parts.add(shape, keep_m);
         }
         let wall = parts.enclose(boundary, wall_keep_m);
-        let Parts { bars, circles, rings } = parts;
+        parts.join_pieces();
+        let Parts { bars, circles, rings, .. } = parts;
         let bars = Bars::new(bars);
         let round_m = match wall {
             Wall::Round { radius_m } => Some(radius_m),
@@ -100,6 +103,8 @@ impl GrownFloor {
 #[derive(Default)]
 struct Parts {
     bars: Vec<Bar>,
+    /// Sides of polygons, counter-clockwise.
+    sides: Vec<Bar>,
     circles: Vec<(Point, f64)>,
     rings: Vec<Vec<Point>>,
 }
@@ -111,8 +116,7 @@ impl Parts {
             Shape::Polyline { points, half_width_m } => self.add_line(points, half_width_m + keep_m),
             Shape::Polygon { vertices } => {
                 let radius_m = keep_m.max(LEAST_RADIUS_M);
-                self.bars.extend(edges(vertices).map(|(a, b)| Bar { a, b, radius_m }));
-                self.circles.extend(vertices.iter().map(|at| (*at, radius_m)));
+                self.sides.extend(edges(vertices).map(|(a, b)| Bar { a, b, radius_m }));
                 self.rings.push(vertices.clone());
             }
         }
@@ -125,6 +129,38 @@ impl Parts {
             [only] => self.bars.push(Bar { a: *only, b: *only, radius_m }),
             _ => self.bars.extend(points.windows(2).map(|w| Bar { a: w[0], b: w[1], radius_m })),
         }
+    }
+
+    /// Adds the sides and corners of polygons, except those that polygons side by side hide: a path comes neither to the
+    /// side that two of them share nor to a corner that does not stick out.
+    fn join_pieces(&mut self) {
+        let bits = |at: Point| (at.x.to_bits(), at.y.to_bits());
+        let key = |a: Point, b: Point, bar: &Bar| (bits(a), bits(b), bar.radius_m.to_bits());
+        let all: HashSet<_> = self.sides.iter().map(|side| key(side.a, side.b, side)).collect();
+        self.sides.retain(|side| !all.contains(&key(side.b, side.a, side)));
+        let mut leaving: HashMap<_, Vec<&Bar>> = HashMap::new();
+        let mut n_arriving: HashMap<_, usize> = HashMap::new();
+        for side in &self.sides {
+            leaving.entry(bits(side.a)).or_default().push(side);
+            *n_arriving.entry(bits(side.b)).or_default() += 1;
+        }
+        let mut seen = HashSet::new();
+        for side in &self.sides {
+            let next = leaving.get(&bits(side.b)).map_or(&[][..], Vec::as_slice);
+            let is_hidden = match next {
+                [next]
+                    if n_arriving[&bits(side.b)] == 1
+                        && next.radius_m.to_bits() == side.radius_m.to_bits() =>
+                {
+                    (side.b - side.a).perp(&(next.b - next.a)) <= 0.0
+                }
+                _ => false,
+            };
+            if !is_hidden && seen.insert((bits(side.b), side.radius_m.to_bits())) {
+                self.circles.push((side.b, side.radius_m));
+            }
+        }
+        self.bars.append(&mut self.sides);
     }
 
     /// The wall: only corners that point into the tank can be turned about.

@@ -216,3 +216,18 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_solid_in_pieces_is_as_good_as_a_whole_one() {
+    let piece = |west: f64, south: f64, east: f64, north: f64| Shape::Polygon {
+        vertices: geometry::shape::rectangle(Point::new(west, south), Point::new(east, north)),
+    };
+    let whole = floor(&ROUND, &[piece(0.0, -2.0, 3.0, 2.0)], 0.5);
+    let pieces = [(0.0, -2.0, 1.0, 0.5), (0.0, 0.5, 1.0, 2.0), (1.0, -2.0, 3.0, 0.5), (1.0, 0.5, 3.0, 2.0)];
+    let pieces = floor(&ROUND, &pieces.map(|(w, s, e, n)| piece(w, s, e, n)), 0.5);
+    let length_m = |floor| shortest(floor, (-3.0, -0.4), (5.0, 0.3)).unwrap().length_m;
+    assert!((length_m(&whole) - length_m(&pieces)).abs() < 1e-12);
+    // The points where pieces meet along a straight side are no corners.
+    assert_eq!((whole.corners.len(), pieces.corners.len()), (4, 4));
+    assert!(pieces.spare_m(Point::new(1.0, 0.5)) < 0.0);
+}

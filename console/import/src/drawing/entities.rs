@@ -1,0 +1,183 @@
+//! What a drawing holds, in metres and with its blocks taken apart.
+
+use super::groups::{Block, Drawing, Entity};
+use nalgebra::{Affine2, Rotation2, Translation2};
+use std::{collections::HashMap, f64::consts::TAU};
+use world::{Point, Vector};
+
+/// Blocks within blocks are followed this far.
+const DEEPEST: usize = 16;
+/// Longest arc between two points of a curve, radians.
+const STEP_RAD: f64 = 0.1;
+
+/// An outline, metres.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Outline {
+    Circle { center: Point, radius_m: f64 },
+    Chain { points: Vec<Point>, is_closed: bool, width_m: f64 },
+}
+
+/// An entity, with its outline if it has one that can be used.
+pub(super) struct Drawn {
+    pub layer: String,
+    /// What programs call it.
+    pub kind: String,
+    pub outline: Option<Outline>,
+}
+
+/// Everything in the model space of a drawing with some metres to the unit.
+pub(super) fn all(drawing: &Drawing, unit_m: f64) -> Vec<Drawn> {
+    let blocks = drawing.blocks.iter();
+    let blocks: Blocks<'_> = blocks.map(|block| (block.head.text(2).unwrap_or_default(), block)).collect();
+    let mut found = Vec::new();
+    let place = Place { map: scaling(unit_m, unit_m), layer: None };
+    // Code 67 is 1 for what lies on the paper.
+    for entity in drawing.entities.iter().filter(|entity| entity.number(67, 0.0) < 0.5) {
+        collect(entity, &blocks, &place, 0, &mut found);
+    }
+    found
+}
+
+type Blocks<'a> = HashMap<&'a str, &'a Block>;
+
+/// Where a block is put.
+struct Place {
+    map: Affine2<f64>,
+    layer: Option<String>,
+}
+
+fn scaling(x: f64, y: f64) -> Affine2<f64> {
+    Affine2::from_matrix_unchecked(nalgebra::Matrix3::new_nonuniform_scaling(&Vector::new(x, y)))
+}
+
+fn collect(entity: &Entity, blocks: &Blocks<'_>, place: &Place, depth: usize, found: &mut Vec<Drawn>) {
+    let own = entity.text(8).unwrap_or("0");
+    let layer = place.layer.as_deref().filter(|_| own == "0").unwrap_or(own).to_owned();
+    let block = entity.text(2).filter(|_| entity.kind == "INSERT").and_then(|name| blocks.get(name));
+    let Some(block) = block.filter(|_| depth < DEEPEST) else {
+        found.push(Drawn { layer, kind: entity.kind.clone(), outline: outline(entity, &place.map) });
+        return;
+    };
+    let at = Vector::new(entity.number(10, 0.0), entity.number(20, 0.0));
+    let base = Vector::new(block.head.number(10, 0.0), block.head.number(20, 0.0));
+    for shift in copies(entity) {
+        let inner = mirroring(entity.number(230, 1.0))
+            * Translation2::from(at)
+            * Rotation2::new(entity.number(50, 0.0).to_radians())
+            * Translation2::from(shift)
+            * scaling(entity.number(41, 1.0), entity.number(42, 1.0))
+            * Translation2::from(-base);
+        let place = Place { map: place.map * inner, layer: Some(layer.clone()) };
+        for entity in &block.entities {
+            collect(entity, blocks, &place, depth + 1, found);
+        }
+    }
+}
+
+/// Where the rows and columns of an insertion lie.
+fn copies(insert: &Entity) -> Vec<Vector> {
+    let count = |code: i32| insert.number(code, 1.0).clamp(1.0, 1000.0) as usize;
+    let (columns, rows) = (count(70), count(71));
+    let (dx, dy) = (insert.number(44, 0.0), insert.number(45, 0.0));
+    (0..columns * rows).map(|k| Vector::new((k % columns) as f64 * dx, (k / columns) as f64 * dy)).collect()
+}
+
+fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
+    let at = |x: i32, y: i32| Some(Point::new(entity.numbers(x).next()?, entity.numbers(y).next()?));
+    let placed =
+        |points: Vec<Point>, map: &Affine2<f64>| points.into_iter().map(|point| map * point).collect();
+    // Lines are in the coordinates of the drawing, all others in those of their own plane.
+    let in_plane = *map * mirroring(entity.number(230, 1.0));
+    let scale = map.matrix().fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
+    match entity.kind.as_str() {
+        "LINE" => {
+            let points = placed(vec![at(10, 20)?, at(11, 21)?], map);
+            Some(Outline::Chain { points, is_closed: false, width_m: 0.0 })
+        }
+        "CIRCLE" => {
+            let (center, radius) = (at(10, 20)?, entity.number(40, 0.0));
+            if radius <= 0.0 {
+                return None;
+            }
+            if is_even(map) {
+                return Some(Outline::Circle { center: in_plane * center, radius_m: radius * scale });
+            }
+            let points = along_arc(center, radius, 0.0, TAU).split_off(1);
+            Some(Outline::Chain { points: placed(points, &in_plane), is_closed: true, width_m: 0.0 })
+        }
+        "ARC" => {
+            let points =
+                arc(at(10, 20)?, entity.number(40, 0.0), entity.number(50, 0.0), entity.number(51, 360.0));
+            Some(Outline::Chain { points: placed(points, &in_plane), is_closed: false, width_m: 0.0 })
+        }
+        "LWPOLYLINE" | "POLYLINE" => {
+            let corners = match entity.kind.as_str() {
+                "POLYLINE" => entity
+                    .vertices
+                    .iter()
+                    .map(|v| [v.number(10, 0.0), v.number(20, 0.0), v.number(42, 0.0)])
+                    .collect(),
+                _ => entity.corners(),
+            };
+            let corners: Vec<(Point, f64)> =
+                corners.iter().map(|[x, y, bulge]| (Point::new(*x, *y), *bulge)).collect();
+            let is_closed = entity.has_flag(1);
+            // A width for all, or that at the beginning of every stretch.
+            let width = entity.numbers(43).chain(entity.numbers(40)).fold(0.0, f64::max);
+            let points = placed(chain(&corners, is_closed), &in_plane);
+            (points.len() > 1).then_some(Outline::Chain { points, is_closed, width_m: width * scale })
+        }
+        _ => None,
+    }
+}
+
+/// Planes that are looked at from below have x to the other side.
+fn mirroring(normal_z: f64) -> Affine2<f64> {
+    scaling(if normal_z < 0.0 { -1.0 } else { 1.0 }, 1.0)
+}
+
+/// Whether a map keeps circles round.
+fn is_even(map: &Affine2<f64>) -> bool {
+    let linear = map.matrix().fixed_view::<2, 2>(0, 0).into_owned();
+    let (x, y) = (linear.column(0).norm(), linear.column(1).norm());
+    (x - y).abs() < 1e-9 * x.max(y) && linear.column(0).dot(&linear.column(1)).abs() < 1e-9 * x * y
+}
+
+/// Points of an arc counter-clockwise, angles in degrees.
+fn arc(center: Point, radius: f64, from_deg: f64, to_deg: f64) -> Vec<Point> {
+    let from = from_deg.to_radians();
+    let sweep = (to_deg - from_deg).rem_euclid(360.0).to_radians();
+    let sweep = if sweep < 1e-9 { TAU } else { sweep };
+    along_arc(center, radius, from, sweep)
+}
+
+fn along_arc(center: Point, radius: f64, from: f64, sweep: f64) -> Vec<Point> {
+    let n = (sweep.abs() / STEP_RAD).ceil().max(1.0) as usize;
+    let point = |k: usize| {
+        let angle = from + sweep * k as f64 / n as f64;
+        center + Vector::new(angle.cos(), angle.sin()) * radius
+    };
+    (0..=n).map(point).collect()
+}
+
+/// Points of a polyline; a bulge is the tangent of a quarter of the arc to the next vertex.
+fn chain(vertices: &[(Point, f64)], is_closed: bool) -> Vec<Point> {
+    let n = vertices.len();
+    let mut points = Vec::new();
+    for (k, (here, bulge)) in vertices.iter().enumerate() {
+        points.push(*here);
+        let is_last = k + 1 == n;
+        if bulge.abs() < 1e-9 || (is_last && !is_closed) {
+            continue;
+        }
+        let next = vertices[(k + 1) % n].0;
+        let (chord, sweep) = (next - here, 4.0 * bulge.atan());
+        let apothem = chord.norm() / 2.0 / (sweep / 2.0).tan();
+        let across = Vector::new(-chord.y, chord.x).try_normalize(1e-12).unwrap_or_else(Vector::zeros);
+        let center = nalgebra::center(here, &next) + across * apothem;
+        let off = here - center;
+        let arc = along_arc(center, off.norm(), off.y.atan2(off.x), sweep);
+        points.extend(&arc[1..arc.len() - 1]);
+    }
+    points
+}

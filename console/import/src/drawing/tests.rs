@@ -1,0 +1,135 @@
+use super::*;
+use std::fs;
+
+const METRES: Assumed = Assumed { unit_m: None, pipe_width_m: 0.1 };
+
+/// A drawing as text: groups `code value` separated by commas, sections and tables left to the caller.
+fn read_text(units: &str, blocks: &str, entities: &str, assumed: Assumed) -> Result<FloorPlan, String> {
+    let groups = |text: &str| {
+        let pairs = text.split(',').map(str::trim).filter(|pair| !pair.is_empty());
+        pairs.map(|pair| pair.replacen(' ', "\n", 1) + "\n").collect::<String>()
+    };
+    let section = |name: &str, body: &str| {
+        format!("{}{}{}", groups(&format!("0 SECTION,2 {name}")), groups(body), groups("0 ENDSEC"))
+    };
+    let header = format!("9 $ACADVER,1 AC1015{units}");
+    let text =
+        section("HEADER", &header) + &section("BLOCKS", blocks) + &section("ENTITIES", entities) + "0\nEOF\n";
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("d.dxf");
+    fs::write(&file, text).unwrap();
+    read(&file, assumed).map_err(|error| {
+        let file = "d.dxf".into();
+        ImportError { file, ..error }.to_string()
+    })
+}
+
+fn shapes(all: &[Named]) -> Vec<String> {
+    let rounded = |p: &Point| format!("({:.3} {:.3})", p.x, p.y);
+    let shown = |named: &Named| match &named.shape {
+        Shape::Disc { center, radius_m } => format!("{}: disc {} {radius_m:.3}", named.name, rounded(center)),
+        Shape::Polygon { vertices } => format!("{}: polygon of {} corners", named.name, vertices.len()),
+        Shape::Polyline { points, half_width_m } => {
+            let points: Vec<String> = points.iter().map(rounded).collect();
+            format!("{}: line {} {:.3}", named.name, points.join(" "), 2.0 * half_width_m)
+        }
+    };
+    all.iter().map(shown).collect()
+}
+
+const SHELL: &str = "0 CIRCLE,8 SHELL,10 20000,20 15000,40 10000,";
+
+#[test]
+fn a_round_tank_in_millimetres_is_centred_and_scaled() {
+    let block = "0 BLOCK,8 0,2 COL,10 0,20 0,0 CIRCLE,8 0,10 0,20 0,40 200,0 ENDBLK";
+    let entities = [
+        SHELL,
+        "0 INSERT,8 COLUMNS,2 COL,10 17000,20 15000,41 2,42 2,",
+        "0 LWPOLYLINE,8 PIPES,90 2,70 0,43 150,10 15000,20 10000,10 18000,20 10000,",
+        "0 LINE,8 PIPES,10 25000,20 18000,11 25000,21 20000,",
+        "0 CIRCLE,8 SUMP,10 13000,20 17000,40 300,",
+        "0 LINE,8 PLATES,10 0,20 0,11 1,21 1,",
+        "0 CIRCLE,8 COLUMNS,10 90000,20 0,40 10",
+    ];
+    let plan = read_text(",9 $INSUNITS,70 4", block, &entities.concat(), METRES).unwrap();
+    assert_eq!(plan.boundary, Boundary::Circle { radius_m: 10.0 });
+    assert_eq!(
+        shapes(&plan.obstacles),
+        [
+            "column 1: disc (-3.000 0.000) 0.400",
+            "pipe 1: line (-5.000 -5.000) (-2.000 -5.000) 0.150",
+            "pipe 2: line (5.000 3.000) (5.000 5.000) 0.100",
+        ]
+    );
+    assert_eq!(shapes(&plan.no_go), ["sump 1: disc (-7.000 2.000) 0.300"]);
+    assert_eq!(
+        plan.notes,
+        [
+            "not used: layer PLATES: LINE, 1 of them",
+            "PIPES: 1 lines without a width were taken as 0.1 m wide",
+            "column 2 lies outside the shell and is left out",
+        ]
+    );
+}
+
+#[test]
+fn two_half_circles_are_a_round_shell_and_lines_in_any_order_a_straight_one() {
+    let halves = "0 LWPOLYLINE,8 TANK-SHELL,90 2,70 1,10 -6,20 0,42 1,10 6,20 0,42 1";
+    let plan = read_text(",9 $INSUNITS,70 6", "", halves, METRES).unwrap();
+    let Boundary::Circle { radius_m } = plan.boundary else { panic!("{:?}", plan.boundary) };
+    assert!((radius_m - 6.0).abs() < 1e-9);
+    let sides = [
+        "0 LINE,8 SHELL,10 12,20 8,11 0,21 8,",
+        "0 LINE,8 SHELL,10 0,20 0,11 12,21 0,",
+        "0 LINE,8 SHELL,10 0,20 0,11 0,21 8,",
+        "0 LINE,8 SHELL,10 12,20 0,11 12,21 8,",
+        "0 LWPOLYLINE,8 column,90 6,70 1,10 2,20 2,10 4,20 2,10 4,20 3,10 3,20 3,10 3,20 4,10 2,20 4",
+    ];
+    let plan = read_text("", "", &sides.concat(), Assumed { unit_m: Some(1.0), ..METRES }).unwrap();
+    assert!((plan.boundary.area_m2() - 96.0).abs() < 1e-9);
+    assert_eq!(shapes(&plan.obstacles), ["column 1: polygon of 5 corners"]);
+    assert_eq!(
+        plan.notes,
+        [
+            "the drawing names no unit; one unit was taken as 1 m",
+            "column 1 is not convex; its convex hull was taken"
+        ]
+    );
+}
+
+#[test]
+fn what_is_missing_is_named() {
+    let error = |units: &str, entities: &str| read_text(units, "", entities, METRES).unwrap_err();
+    assert_eq!(
+        error("", SHELL),
+        "d.dxf: the header ($INSUNITS) names no unit of length; state it with --units, as in --units mm"
+    );
+    assert_eq!(
+        error(",9 $INSUNITS,70 6", "0 LINE,8 SHELL,10 0,20 0,11 1,21 1"),
+        "d.dxf: no circle and no closed outline on a layer SHELL; draw the inner side of the shell there"
+    );
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("d.dxf");
+    fs::write(&file, "this is not a drawing\nat all\n").unwrap();
+    assert!(
+        read(&file, METRES)
+            .unwrap_err()
+            .to_string()
+            .contains("line 1: no DXF drawing: `this is not a drawing` is no group code")
+    );
+}
+
+#[test]
+fn the_scenario_holds_shell_obstacles_and_zones() {
+    let entities = format!(
+        "{SHELL}0 CIRCLE,8 COLUMNS,10 20000,20 15000,40 250,0 CIRCLE,8 NOGO,10 15000,20 15000,40 500"
+    );
+    let text = read_text(",9 $INSUNITS,70 4", "", &entities, METRES).unwrap().scenario("t", "d.dxf");
+    for wanted in [
+        "radius_m = 10\n",
+        "[[obstacles]]\nname = \"column 1\"\nkind = \"circle\"\ncenter_m = [0, 0]\nradius_m = 0.25\n",
+        "[[zones]]\nname = \"no-go area 1\"\nkind = \"no_go\"\nshape = \"circle\"\ncenter_m = [-5, 0]\n",
+    ] {
+        assert!(text.contains(wanted), "{text}");
+    }
+}

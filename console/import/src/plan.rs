@@ -1,0 +1,210 @@
+//! A floor as another program's file states it, and the scenario made of it.
+
+use std::{f64::consts::TAU, fmt::Write};
+use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, World, shape::ring_area_m2};
+
+/// Stations of a scenario whose file names none.
+const N_STATIONS: usize = 5;
+/// Places along a side of the floor among which the start is chosen.
+const N_PLACES: usize = 64;
+/// Width of floor scanned in one pass, metres, and the pace by which the time limit is estimated, metres per second.
+const SWATH_M: f64 = 0.6;
+const PACE_M_PER_S: f64 = 0.1;
+
+/// Something with a name, tank frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Named {
+    /// What it is called; no two are called the same.
+    pub name: String,
+    /// Its outline, convex if a polygon.
+    pub shape: Shape,
+}
+
+/// A floor plan, tank frame: a round tank is centred at the origin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FloorPlan {
+    /// The shell.
+    pub boundary: Boundary,
+    /// Columns and pipes.
+    pub obstacles: Vec<Named>,
+    /// Where the robot must not go: sumps and no-go areas.
+    pub no_go: Vec<Named>,
+    /// What was assumed, changed or not understood, for people.
+    pub notes: Vec<String>,
+}
+
+impl FloorPlan {
+    /// The plan as a world, for a picture.
+    pub fn world(&self) -> World {
+        let obstacle = |(index, named): (usize, &Named)| Obstacle {
+            id: ObstacleId(index as u32 + 1),
+            name: named.name.clone(),
+            shape: named.shape.clone(),
+            known: true,
+        };
+        let zone = |named: &Named| world::Zone {
+            name: named.name.clone(),
+            kind: world::ZoneKind::NoGo,
+            shape: named.shape.clone(),
+        };
+        World {
+            boundary: self.boundary.clone(),
+            obstacles: self.obstacles.iter().enumerate().map(obstacle).collect(),
+            stations: Vec::new(),
+            zones: self.no_go.iter().map(zone).collect(),
+        }
+    }
+
+    /// The text of a scenario that scans this floor; what the file does not say is a default that a comment names.
+    pub fn scenario(&self, name: &str, source: &str) -> String {
+        let mut text = format!("# The floor is that of {source}.\n");
+        for note in &self.notes {
+            let _ = writeln!(text, "# - {note}");
+        }
+        // Writing to a String cannot fail.
+        let _ = write!(text, "\nname = \"{name}\"\nabout = \"The floor of {source}\"\nseed = 1\n\n[tank]\n");
+        let _ = match &self.boundary {
+            Boundary::Circle { radius_m } => writeln!(text, "radius_m = {}", micrometres(*radius_m)),
+            Boundary::Polygon { vertices } => writeln!(text, "vertices_m = {}", points(vertices)),
+        };
+        entries(&mut text, "obstacles", "kind", &self.obstacles);
+        entries(&mut text, "zones", "kind = \"no_go\"\nshape", &self.no_go);
+        let start = self.roomiest();
+        let seconds = (self.boundary.area_m2() / (SWATH_M * PACE_M_PER_S)).max(600.0).ceil();
+        let cell_m = (self.boundary.area_m2().sqrt() / 400.0).max(0.05);
+        let _ = write!(
+            text,
+            "\n# Where the robot is put down, the place with the most room; change it to the manhole.\n\
+             [robot]\nstart_m = {}\n\n\
+             # Assumed: replace these stations by the surveyed ones.\n\
+             [ae]\nnoise = {{ model = \"uniform\", ratio = 0.02 }}\nstations = [\n",
+            point(start)
+        );
+        for (index, at) in self.stations().into_iter().enumerate() {
+            let letter = char::from(b'A' + index as u8);
+            let _ = writeln!(text, "    {{ name = \"{letter}\", at_m = {} }},", point(at));
+        }
+        let _ = write!(
+            text,
+            "]\n\n[mission]\nkind = \"cover\"\nswath_m = {SWATH_M}\noverlap_m = 0.1\nclearance_m = 0.1\n\
+             cell_m = {:.2}\ntime_limit_s = {seconds:.1}\n\n[planner]\nid = \"boustrophedon\"\n",
+            cell_m
+        );
+        text
+    }
+
+    /// The place with the most room, of those on a grid.
+    fn roomiest(&self) -> Point {
+        let world = self.world();
+        let solids: Vec<Obstacle> = world
+            .obstacles
+            .into_iter()
+            .chain(world.zones.into_iter().map(|zone| Obstacle {
+                id: ObstacleId(0),
+                name: zone.name,
+                shape: zone.shape,
+                known: true,
+            }))
+            .collect();
+        let map = ObstacleMap::new(&self.boundary, &solids);
+        let (low, high) = self.boundary.bounds();
+        let step = (high - low) / N_PLACES as f64;
+        let place = |k: usize| {
+            let (column, row) = ((k % N_PLACES) as f64 + 0.5, (k / N_PLACES) as f64 + 0.5);
+            Point::new(low.x + column * step.x, low.y + row * step.y)
+        };
+        let places = (0..N_PLACES * N_PLACES).map(place);
+        let best = places.max_by(|a, b| map.clearance_m(*a).total_cmp(&map.clearance_m(*b)));
+        best.unwrap_or_else(Point::origin)
+    }
+
+    /// Places on the shell, spread evenly.
+    fn stations(&self) -> Vec<Point> {
+        match &self.boundary {
+            Boundary::Circle { radius_m } => {
+                let at = |k: usize| TAU * k as f64 / N_STATIONS as f64;
+                let inside_m = radius_m - 1e-3;
+                (0..N_STATIONS).map(|k| Point::new(inside_m * at(k).cos(), inside_m * at(k).sin())).collect()
+            }
+            Boundary::Polygon { vertices } => {
+                let n = N_STATIONS.min(vertices.len());
+                (0..n).map(|k| vertices[k * vertices.len() / n]).collect()
+            }
+        }
+    }
+}
+
+fn entries(text: &mut String, list: &str, kind: &str, all: &[Named]) {
+    for Named { name, shape } in all {
+        let outline = match shape {
+            Shape::Disc { center, radius_m } => {
+                format!("\"circle\"\ncenter_m = {}\nradius_m = {}", point(*center), micrometres(*radius_m))
+            }
+            Shape::Polygon { vertices } => format!("\"polygon\"\nvertices_m = {}", points(vertices)),
+            Shape::Polyline { points: line, half_width_m } => {
+                format!(
+                    "\"polyline\"\npoints_m = {}\nwidth_m = {}",
+                    points(line),
+                    micrometres(2.0 * half_width_m)
+                )
+            }
+        };
+        // Names may hold anything that a drawing does.
+        let _ = write!(text, "\n[[{list}]]\nname = {name:?}\n{kind} = {outline}\n");
+    }
+}
+
+fn micrometres(v: f64) -> f64 {
+    (v * 1e6).round() / 1e6 + 0.0
+}
+
+fn point(at: Point) -> String {
+    format!("[{}, {}]", micrometres(at.x), micrometres(at.y))
+}
+
+/// Points as TOML, to the micrometre.
+pub fn points(points: &[Point]) -> String {
+    let all: Vec<String> = points.iter().map(|at| point(*at)).collect();
+    format!("[{}]", all.join(", "))
+}
+
+/// A closed outline as a convex shape: a disc if it is drawn as one, else its convex hull; and whether that added anything.
+pub(crate) fn convex(ring: &[Point]) -> (Shape, bool) {
+    if let Some((center, _, radius_m)) = round(ring) {
+        return (Shape::Disc { center, radius_m }, false);
+    }
+    let hull = hull(ring);
+    let grew = ring_area_m2(&hull) > ring_area_m2(ring).abs() * (1.0 + 1e-6);
+    (Shape::Polygon { vertices: hull }, grew)
+}
+
+/// Centre, least and largest radius of a ring of many corners that is a circle to within half a per cent.
+pub(crate) fn round(ring: &[Point]) -> Option<(Point, f64, f64)> {
+    const MANY: usize = 16;
+    let center = world::shape::mean_of(ring);
+    let radii = || ring.iter().map(|at| (at - center).norm());
+    let (least_m, largest_m) = (radii().fold(f64::INFINITY, f64::min), radii().fold(0.0, f64::max));
+    (ring.len() >= MANY && largest_m - least_m < 0.005 * largest_m).then_some((center, least_m, largest_m))
+}
+
+/// The convex hull of some points, counter-clockwise, without collinear corners (Andrew's monotone chain).
+fn hull(points: &[Point]) -> Vec<Point> {
+    let mut sorted = points.to_vec();
+    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let chain = |points: &mut dyn Iterator<Item = &Point>| {
+        let mut chain: Vec<Point> = Vec::new();
+        for point in points {
+            while let [.., a, b] = &chain[..]
+                && (b - a).perp(&(point - b)) <= 1e-9
+            {
+                chain.pop();
+            }
+            chain.push(*point);
+        }
+        chain.pop();
+        chain
+    };
+    let mut hull = chain(&mut sorted.iter());
+    hull.extend(chain(&mut sorted.iter().rev()));
+    hull
+}
