@@ -105,7 +105,7 @@ impl Standing<'_> {
     pub fn allows(&self, order: &Order) -> Result<(), Refusal> {
         match (order, self.phase) {
             (_, Phase::Ended(outcome)) => Err(Refusal::Ended(*outcome)),
-            (Order::Abort, _)
+            (Order::Abort | Order::Terminate, _)
             | (Order::Plan | Order::Start | Order::NoteChecks(_), Phase::Waiting)
             | (Order::Hold, Phase::Running(_) | Phase::Held(_))
             | (Order::NoteOutlooks(_), Phase::Held(_))
