@@ -106,7 +106,9 @@ mod tests {
             error_m: 0.05,
             true_error_m: f32::NAN,
         };
-        Record { track: (0..10).map(point).collect(), ..Record::new() }
+        let mut record = Record::new();
+        record.track = (0..10).map(point).collect();
+        record
     }
 
     #[test]
