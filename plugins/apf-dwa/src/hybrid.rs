@@ -137,8 +137,11 @@ fn drivable(state: &State, goal: Point, pace: Pace) -> f64 {
 
 fn distances_m(map: &KnownMap, at: Point) -> Vec<f64> {
     let mut all: Vec<f64> = map.solids.iter().map(|s| s.distance(at).0 - map.hull_m).collect();
+    if all.len() > N_DISTANCES {
+        all.select_nth_unstable_by(N_DISTANCES, f64::total_cmp);
+        all.truncate(N_DISTANCES);
+    }
     all.sort_by(f64::total_cmp);
-    all.truncate(N_DISTANCES);
     all
 }
 

@@ -43,24 +43,13 @@ impl Bar {
     }
 }
 
-/// A thing of any other form, perhaps moving.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Other {
-    /// Its outline now.
-    pub part: Part,
-    /// How it moves, metres per second.
-    pub velocity: Vector,
-}
-
 /// Everything that a robot might come near to within the horizon.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct NearThings {
     /// Round ones.
     pub discs: Vec<Disc>,
-    /// Straight ones, pieces of a straight wall among them.
+    /// Straight ones: sides of polygons and pieces of a straight wall among them.
     pub bars: Vec<Bar>,
-    /// Others.
-    pub others: Vec<Other>,
     /// Radius of a round wall, metres, if it is near.
     pub round_wall_m: Option<f64>,
 }
@@ -90,7 +79,10 @@ impl NearThings {
                 self.discs.push(Disc { center: solid.center, radius_m: solid.radius_m, velocity });
             }
             Part::Capsule { a, b, half_width_m } => self.bars.push(Bar::new(*a, *b, *half_width_m, velocity)),
-            part @ Part::Polygon { .. } => self.others.push(Other { part: part.clone(), velocity }),
+            // The hull is wider than the way between two points, so none jumps over a side.
+            Part::Polygon { vertices } => {
+                self.bars.extend(edges(vertices).map(|(a, b)| Bar::new(a, b, 0.0, velocity)));
+            }
         }
     }
 
@@ -129,16 +121,6 @@ impl NearThings {
                 squared = squared.min(bar.squared(*point, moved));
             }
             least = least.min(squared.sqrt() - bar.half_width_m);
-        }
-        for other in &self.others {
-            let reach_m = least + span_m + other.velocity.norm() * last_s;
-            if other.part.distance(*first).0 > reach_m {
-                continue;
-            }
-            let step = other.velocity * dt_s;
-            for (index, point) in points.iter().enumerate() {
-                least = least.min(other.part.distance(point - step * (index + 1) as f64).0);
-            }
         }
         if let Some(radius_m) = self.round_wall_m {
             let furthest = points.iter().map(|p| p.coords.norm_squared()).fold(0.0, f64::max).sqrt();

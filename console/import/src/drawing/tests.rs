@@ -115,7 +115,7 @@ fn what_is_missing_is_named() {
         read(&file, METRES)
             .unwrap_err()
             .to_string()
-            .contains("line 1: no DXF drawing: `this is not a drawing` is no group code")
+            .contains("line 1: no DXF drawing: `this is not a drawin` is no group code")
     );
 }
 
