@@ -21,6 +21,8 @@ pub struct GrownFloor {
     wall: Wall,
     rings: Vec<Vec<Point>>,
     bars: Bars,
+    /// Sides that two polygons share: no path comes to them, but a place may lie on one.
+    seams: Vec<Bar>,
     pub(super) corners: Vec<Corner>,
 }
 
@@ -51,7 +53,7 @@ impl GrownFloor {
         }
         let wall = parts.enclose(boundary, wall_keep_m);
         parts.join_pieces();
-        let Parts { bars, circles, rings, .. } = parts;
+        let Parts { bars, seams, circles, rings, .. } = parts;
         let bars = Bars::new(bars);
         let round_m = match wall {
             Wall::Round { radius_m } => Some(radius_m),
@@ -59,7 +61,7 @@ impl GrownFloor {
         };
         let corners = circles.into_iter().map(|(at, radius_m)| Corner::new(at, radius_m, &bars, round_m));
         let corners = corners.filter(|corner| !corner.free.is_empty()).collect();
-        Self { wall, rings, bars, corners }
+        Self { wall, rings, bars, seams, corners }
     }
 
     /// Distance from a point to everything grown, metres; negative where the robot does not fit.
@@ -78,7 +80,7 @@ impl GrownFloor {
         };
         let inside = self.rings.iter().filter(|ring| ring_contains(ring, at));
         let ring_m = inside.map(|ring| -distance_to_ring_m(ring, at)).fold(wall_m, f64::min);
-        self.bars.iter().map(|bar| bar.distance_m(at)).fold(ring_m, f64::min)
+        self.bars.iter().chain(&self.seams).map(|bar| bar.distance_m(at)).fold(ring_m, f64::min)
     }
 
     /// Whether the robot can drive straight from one point to another.
@@ -105,6 +107,7 @@ struct Parts {
     bars: Vec<Bar>,
     /// Sides of polygons, counter-clockwise.
     sides: Vec<Bar>,
+    seams: Vec<Bar>,
     circles: Vec<(Point, f64)>,
     rings: Vec<Vec<Point>>,
 }
@@ -137,7 +140,8 @@ impl Parts {
         let bits = |at: Point| (at.x.to_bits(), at.y.to_bits());
         let key = |a: Point, b: Point, bar: &Bar| (bits(a), bits(b), bar.radius_m.to_bits());
         let all: HashSet<_> = self.sides.iter().map(|side| key(side.a, side.b, side)).collect();
-        self.sides.retain(|side| !all.contains(&key(side.b, side.a, side)));
+        let is_seam = |side: &Bar| all.contains(&key(side.b, side.a, side));
+        (self.seams, self.sides) = std::mem::take(&mut self.sides).into_iter().partition(is_seam);
         let mut leaving: HashMap<_, Vec<&Bar>> = HashMap::new();
         let mut n_arriving: HashMap<_, usize> = HashMap::new();
         for side in &self.sides {
