@@ -48,11 +48,9 @@ pub fn read(file: &Path, tank_radius_m: f64) -> Result<FloorPlan, ImportError> {
     let index = |field: &str| header.iter().position(|name| name == field);
     let missing = |field: &str| wrong(1, field, "missing in the first line, as in x_m,y_m,radius_m".into());
     let (x, y) = (index("x_m").ok_or_else(|| missing("x_m"))?, index("y_m").ok_or_else(|| missing("y_m"))?);
-    let size = ["radius_m", "diameter_m"].into_iter().zip([1.0, 0.5]);
-    let (size, per_size) = size
-        .filter_map(|(field, factor)| Some((index(field)?, factor)))
-        .next()
-        .ok_or_else(|| missing("radius_m"))?;
+    let mut size = ["radius_m", "diameter_m"].into_iter().zip([1.0, 0.5]);
+    let (size, per_size) =
+        size.find_map(|(field, factor)| Some((index(field)?, factor))).ok_or_else(|| missing("radius_m"))?;
     let (mut names, mut obstacles) = (HashSet::new(), Vec::new());
     for record in reader.records() {
         let record = record.map_err(|error| bad(&error))?;

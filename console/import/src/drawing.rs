@@ -60,7 +60,7 @@ pub fn read(file: &Path, assumed: Assumed) -> Result<FloorPlan, ImportError> {
     let mut unused: BTreeMap<String, usize> = BTreeMap::new();
     for drawn in entities::all(&drawing, unit_m) {
         match (role_of(&drawn.layer), &drawn.outline) {
-            (Some(Role::Plates), _) | (None, _) | (_, None) => {
+            (Some(Role::Plates) | None, _) | (_, None) => {
                 *unused.entry(format!("layer {}: {}", drawn.layer, drawn.kind)).or_default() += 1;
             }
             (Some(role), Some(_)) => by_role.entry(role).or_default().push(drawn),
@@ -202,7 +202,7 @@ fn pipes(drawn: Vec<Drawn>, assumed_m: f64, notes: &mut Vec<String>) -> Vec<Shap
 }
 
 /// Circles, and chains of points with whether they are closed.
-fn parted(drawn: Vec<Drawn>) -> (Vec<(Point, f64)>, Vec<(Vec<Point>, bool)>) {
+fn parted(drawn: Vec<Drawn>) -> (Vec<(Point, f64)>, Vec<rings::Chain>) {
     let (mut circles, mut chains) = (Vec::new(), Vec::new());
     for outline in drawn.into_iter().filter_map(|drawn| drawn.outline) {
         match outline {

@@ -49,7 +49,7 @@ pub(crate) fn pieces(component: &Component, outlines: &Simplified) -> Vec<Vec<No
     for [a, b] in inner {
         joined.join(a, b);
     }
-    joined.polygons.into_iter().flatten().map(without_collinear).collect()
+    joined.polygons.into_iter().flatten().map(|ring| without_collinear(&ring)).collect()
 }
 
 /// Polygons and which of them has an edge.

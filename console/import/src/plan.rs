@@ -87,8 +87,7 @@ impl FloorPlan {
         let _ = write!(
             text,
             "]\n\n[mission]\nkind = \"cover\"\nswath_m = {SWATH_M}\noverlap_m = 0.1\nclearance_m = 0.1\n\
-             cell_m = {:.2}\ntime_limit_s = {seconds:.1}\n\n[planner]\nid = \"boustrophedon\"\n",
-            cell_m
+             cell_m = {cell_m:.2}\ntime_limit_s = {seconds:.1}\n\n[planner]\nid = \"boustrophedon\"\n"
         );
         text
     }

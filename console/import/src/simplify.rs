@@ -34,7 +34,7 @@ impl Simplified {
         let mut simplified = Self { rings: Vec::new(), chords: HashMap::new(), error_cells: 0.0 };
         for ring in component.rings() {
             let short = simplified.shorten(component, ring, tolerance);
-            simplified.rings.push(without_collinear(short));
+            simplified.rings.push(without_collinear(&short));
         }
         simplified
     }
@@ -233,7 +233,7 @@ pub(crate) fn cross(a: Node, b: Node, c: Node) -> i64 {
 }
 
 /// A closed chain without the corners at which it does not turn.
-pub(crate) fn without_collinear(ring: Vec<Node>) -> Vec<Node> {
+pub(crate) fn without_collinear(ring: &[Node]) -> Vec<Node> {
     let n = ring.len();
     let turns = |k: &usize| cross(ring[(k + n - 1) % n], ring[*k], ring[(k + 1) % n]) != 0;
     (0..n).filter(turns).map(|k| ring[k]).collect()

@@ -104,7 +104,7 @@ impl Drawing {
                 (2, _) if section.is_empty() => value.clone_into(&mut section),
                 (9, _) if section == "HEADER" => value.clone_into(&mut variable),
                 (70, _) if section == "HEADER" && variable == "$INSUNITS" => {
-                    drawing.units = value.parse().ok()
+                    drawing.units = value.parse().ok();
                 }
                 (0, "BLOCK") if section == "BLOCKS" => {
                     block = Some(Block { head: Entity::new("BLOCK"), entities: Vec::new() });

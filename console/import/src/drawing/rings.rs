@@ -5,8 +5,11 @@ use world::Point;
 /// Ends nearer than this are one, metres.
 const SAME_M: f64 = 2e-3;
 
+/// Points, and whether the last is joined to the first.
+pub(super) type Chain = (Vec<Point>, bool);
+
 /// Closed rings of chains, each with whether it is closed already, and the chains that close nothing.
-pub(super) fn closed(chains: Vec<(Vec<Point>, bool)>) -> (Vec<Vec<Point>>, Vec<Vec<Point>>) {
+pub(super) fn closed(chains: Vec<Chain>) -> (Vec<Vec<Point>>, Vec<Vec<Point>>) {
     let is_same =
         |a: Option<&Point>, b: Option<&Point>| a.zip(b).is_some_and(|(a, b)| (a - b).norm() < SAME_M);
     let (mut rings, mut open, mut loose) = (Vec::new(), Vec::new(), Vec::new());
@@ -27,9 +30,9 @@ pub(super) fn closed(chains: Vec<(Vec<Point>, bool)>) -> (Vec<Vec<Point>>, Vec<V
             chain.extend(other.into_iter().skip(1));
         }
         if chain.len() > 3 && is_same(chain.first(), chain.last()) {
-            rings.push(chain)
+            rings.push(chain);
         } else {
-            open.push(chain)
+            open.push(chain);
         }
     }
     for ring in &mut rings {
