@@ -150,7 +150,7 @@ fn a_plan_that_is_cut_short_by_an_interrupt_ends_the_mission_at_once_and_is_prov
         let events = journal(&run);
         let kinds = ["planned", "planner_failed"].map(|kind| first_of(&events, kind));
         assert_eq!(kinds, [None, None], "the plan was not cut short");
-        assert_eq!(events.last().unwrap()["reason"], "ended by operator");
+        assert_eq!(events.last().unwrap()["reason"], "ended by a signal to the process");
         bench.prove(&run);
     }
 }

@@ -105,7 +105,7 @@ fn fly_to_end(
     let mut orders = vec![Order::Start];
     while !matches!(flight.phase(), Phase::Ended(_)) {
         if stop.requested() {
-            orders.push(Order::Abort);
+            orders.push(Order::Terminate);
         }
         take(if live_deadlines {
             let window = Window::real_time(flight.tick_length());

@@ -31,6 +31,7 @@ fn main() -> ExitCode {
     if matches!(cli.command, Some(Command::Worker)) {
         return planner_host::worker_main();
     }
+    close_memory();
     survive_file_size_limit();
     dispatch(cli).unwrap_or_else(|error| fail(&error))
 }
@@ -45,6 +46,16 @@ fn fail(error: &anyhow::Error) -> ExitCode {
     }
     warn_line(&format!("error: {error:#}"));
     ExitCode::from(INTERNAL)
+}
+
+/// Keeps other processes of the same user, planners among them, from reading or changing this one; leaves no core dump.
+fn close_memory() {
+    #[cfg(target_os = "linux")]
+    {
+        use rustix::process::{DumpableBehavior, set_dumpable_behavior};
+        // Where the system refuses, planners are still closed off.
+        let _ = set_dumpable_behavior(DumpableBehavior::NotDumpable);
+    }
 }
 
 /// A file that may not grow (`ulimit -f`) is an error of the write, as a full disk is, and not the end of the process.

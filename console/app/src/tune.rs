@@ -68,7 +68,7 @@ fn value(written: &str) -> ParamValue {
     match written.parse() {
         Ok(Value::Boolean(flag)) => ParamValue::Flag(flag.into_value()),
         Ok(Value::Integer(number)) => ParamValue::Int(number.into_value()),
-        Ok(Value::Float(number)) => ParamValue::Float(number.into_value()),
+        Ok(Value::Float(number)) if number.value().is_finite() => ParamValue::Float(number.into_value()),
         Ok(Value::String(word)) => ParamValue::Word(word.into_value()),
         _ => ParamValue::Word(written.to_owned()),
     }

@@ -94,7 +94,7 @@ impl Engine {
 
     /// Ends the run, closes its files and waits for that; less time is allowed after a signal (`hurry`).
     pub(super) fn close(self, hurry: bool) -> anyhow::Result<Option<Closed>> {
-        self.handle.close(if hurry { HURRY } else { CLOSE_TIMEOUT });
+        self.handle.close(hurry);
         self.thread.join().map_err(|panic| anyhow::anyhow!("the engine panicked: {}", words(&*panic)))
     }
 }
@@ -138,8 +138,8 @@ impl EngineThread {
         let mut due = Instant::now();
         loop {
             let (orders, close) = self.wait_until(due);
-            if let Some(within) = close {
-                return self.close(orders, within);
+            if let Some(hurry) = close {
+                return self.close(orders, hurry);
             }
             if !orders.is_empty() || self.is_under_way() {
                 due = next_due(due, Instant::now(), self.flight.tick_length(), self.speed, self.waits());
@@ -217,12 +217,12 @@ impl EngineThread {
     }
 
     /// Ends the mission in a tick that waits for nobody, and closes its files.
-    fn close(mut self, mut orders: Vec<Order>, within: Duration) -> Option<Closed> {
+    fn close(mut self, mut orders: Vec<Order>, hurry: bool) -> Option<Closed> {
         if matches!(self.flight.phase(), Phase::Running(_) | Phase::Held(_)) {
-            orders.push(Order::Abort);
+            orders.push(if hurry { Order::Terminate } else { Order::Abort });
             self.fly_tick(&orders, Window::real_time(Duration::ZERO));
         }
-        self.close_log(within);
+        self.close_log(if hurry { HURRY } else { CLOSE_TIMEOUT });
         self.closed
     }
 

@@ -25,8 +25,8 @@ pub(super) enum Request {
     Fork(Sender<Flight>),
     /// End the run, close everything, stop.
     Close {
-        /// How long that may take.
-        within: Duration,
+        /// Whether a signal has asked the process to exit: then less time is allowed.
+        hurry: bool,
     },
 }
 
@@ -91,8 +91,8 @@ impl EngineHandle {
     }
 
     /// Ends the run and closes its files.
-    pub(super) fn close(&self, within: Duration) {
-        self.request(Request::Close { within }, true);
+    pub(super) fn close(&self, hurry: bool) {
+        self.request(Request::Close { hurry }, true);
     }
 
     fn request(&self, request: Request, is_urgent: bool) {

@@ -31,6 +31,8 @@ pub enum Order {
     FlyUncertified,
     /// End the mission here.
     Abort,
+    /// End the mission here: the process that runs it was told to exit by a signal.
+    Terminate,
     /// While held or waiting: another planner takes over.
     ChoosePlanner(PlannerChoice),
     /// Change one parameter of the planner; while the mission runs only live ones.

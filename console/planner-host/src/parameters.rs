@@ -75,7 +75,9 @@ fn number(planner: &str, param: &ParamInfo, value: &ParamValue) -> Result<f64, S
             in_range(planner, param, *n as f64, *min as f64, *max as f64)
         }
         (ParamKind::Flag { .. }, ParamValue::Flag(on)) => Ok(f64::from(u8::from(*on))),
-        (ParamKind::Choice { options, .. }, ParamValue::Word(word)) => {
+        // A word may look like something else: `true`, `1`.
+        (ParamKind::Choice { options, .. }, value) => {
+            let word = &value.to_string();
             if let Some(index) = options.iter().position(|known| known == word) {
                 return Ok(index as f64);
             }
@@ -86,9 +88,6 @@ fn number(planner: &str, param: &ParamInfo, value: &ParamValue) -> Result<f64, S
         (ParamKind::Float { .. }, other) => wrong(format!("a number, not `{other}`")),
         (ParamKind::Int { .. }, other) => wrong(format!("a whole number, not `{other}`")),
         (ParamKind::Flag { .. }, other) => wrong(format!("true or false, not `{other}`")),
-        (ParamKind::Choice { options, .. }, other) => {
-            wrong(format!("one of {}, not `{other}`", options.join(", ")))
-        }
     }
 }
 
@@ -175,6 +174,21 @@ mod tests {
         assert_eq!(message, "parameter `k_rep` of planner apf takes 0 to 10 m3/s, not 12.5");
         assert!(refused("k_rep", ParamValue::Float(f64::NAN)).ends_with("not NaN"));
         assert_eq!(refused("n", ParamValue::Int(-1)), "parameter `n` of planner apf takes 0 to 4, not -1");
+    }
+
+    #[test]
+    fn a_word_may_look_like_a_flag_or_a_number() {
+        let options = ["off", "true", "1", "nan"].map(str::to_owned);
+        let kind = ParamKind::Choice { options: options.into(), default: "off".into() };
+        let planner = PlannerInfo { parameters: vec![param("mode", "", kind)], ..info() };
+        let index = |value| {
+            let set = Parameters::from([("mode".to_owned(), value)]);
+            numbers(&planner, &set).map(|values| values[0].1)
+        };
+        assert_eq!(index(ParamValue::Flag(true)), Ok(1.0));
+        assert_eq!(index(ParamValue::Int(1)), Ok(2.0));
+        assert_eq!(index(ParamValue::Word("nan".into())), Ok(3.0));
+        assert!(index(ParamValue::Flag(false)).expect_err("no word").contains("not `false`"));
     }
 
     #[test]

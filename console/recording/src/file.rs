@@ -58,6 +58,12 @@ pub enum FileChange {
         /// Which file.
         path: PathBuf,
     },
+    /// The file has the length of what was written to it, and other content.
+    #[error("the file was changed by somebody else: {}", path.display())]
+    Content {
+        /// Which file.
+        path: PathBuf,
+    },
     /// The system does not say what is there.
     #[error("the file cannot be examined ({why}): {}", path.display())]
     Unknown {
@@ -98,6 +104,17 @@ impl FileWatch {
     /// Whether the path shows the file with exactly so many bytes.
     pub(crate) fn check_closed(&self, written: u64) -> Result<(), FileChange> {
         self.check_length(written, |found| found == written)
+    }
+
+    /// Whether the path shows the file with exactly so many bytes, and with this hash.
+    pub(crate) fn check_content(&self, written: u64, expected: &str) -> Result<(), FileChange> {
+        self.check_closed(written)?;
+        let path = || self.path.clone();
+        match sha256(&self.path) {
+            Ok(found) if found == expected => Ok(()),
+            Ok(_) => Err(FileChange::Content { path: path() }),
+            Err(error) => Err(FileChange::Unknown { why: error.to_string(), path: path() }),
+        }
     }
 
     fn check_length(&self, written: u64, fits: impl Fn(u64) -> bool) -> Result<(), FileChange> {
@@ -143,6 +160,15 @@ mod tests {
         assert_eq!(watch.check(8), Err(FileChange::Deleted { path: path.clone() }));
         fs::write(&path, "12345678").expect("writable");
         assert_eq!(watch.check(8), Err(FileChange::Replaced { path }));
+    }
+
+    #[test]
+    fn a_file_of_the_same_length_and_other_content_is_noticed() {
+        let (_folder, path, _file, watch) = written();
+        let expected = sha256(&path).expect("readable");
+        assert_eq!(watch.check_content(8, &expected), Ok(()));
+        fs::write(&path, "1234x678").expect("ours");
+        assert_eq!(watch.check_content(8, &expected), Err(FileChange::Content { path }));
     }
 
     #[test]

@@ -74,11 +74,15 @@ fn put_setting(document: &mut DocumentMut, setting: &str) -> Result<(), String> 
         return Err("must be KEY=VALUE, with dots between the parts of the key".into());
     }
     // What is no TOML value is a word: --set mode=literal needs no quotes.
-    let value: Value = written.parse().unwrap_or_else(|_| written.into());
+    let mut value: Value = written.parse().unwrap_or_else(|_| written.into());
     let path: Vec<&str> = match key.split('.').collect::<Vec<_>>()[..] {
         [only] if !TOP_KEYS.contains(&only) => vec!["planner", "parameters", only],
         ref path => path.to_vec(),
     };
+    // No parameter takes such a number, but one may take the word.
+    if path.starts_with(&["planner", "parameters"]) && value.as_float().is_some_and(|x| !x.is_finite()) {
+        value = written.into();
+    }
     put(document.as_item_mut(), &path, &value)
 }
 

@@ -143,7 +143,7 @@ fn a_robot_that_comes_back_to_the_anchor_has_room_there() {
 #[test]
 fn the_text_of_a_scenario_gives_the_same_scenario_again() {
     let settings = Settings {
-        set: ["k_rep=2", "mode=literal", "tank.radius_m=5.5", "obstacles.0.known=false"]
+        set: ["k_rep=2", "mode=literal", "other=nan", "tank.radius_m=5.5", "obstacles.0.known=false"]
             .map(str::to_owned)
             .to_vec(),
         planner: Some("apf".into()),
@@ -153,6 +153,7 @@ fn the_text_of_a_scenario_gives_the_same_scenario_again() {
     assert_eq!((scenario.seed, scenario.mission.planner.id.as_str()), (99, "apf"));
     assert_eq!(scenario.mission.planner.parameters["k_rep"], ParamValue::Int(2));
     assert_eq!(scenario.mission.planner.parameters["mode"], ParamValue::Word("literal".into()));
+    assert_eq!(scenario.mission.planner.parameters["other"], ParamValue::Word("nan".into()));
     assert!(!scenario.sim.world.obstacles[0].known);
     assert_eq!(Scenario::parse(&scenario.text, &scenario.shown_name).expect("right"), scenario);
 }

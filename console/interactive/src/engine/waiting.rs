@@ -3,7 +3,7 @@
 use super::{EngineThread, keeping::HEALTH_PERIOD};
 use crate::line::Request;
 use mission::Order;
-use runs::{CLOSE_TIMEOUT, RunLog};
+use runs::RunLog;
 use std::{
     sync::mpsc::RecvTimeoutError,
     time::{Duration, Instant},
@@ -18,8 +18,8 @@ const LOOK_AFTER: Duration = Duration::from_millis(20);
 
 impl EngineThread {
     /// Waits for the next tick, or, while no ticks pass, for a request; gives the orders that came and whether to
-    /// close.
-    pub(super) fn wait_until(&mut self, due: Instant) -> (Vec<Order>, Option<Duration>) {
+    /// close, and then whether in a hurry.
+    pub(super) fn wait_until(&mut self, due: Instant) -> (Vec<Order>, Option<bool>) {
         // A wake-up from here on belongs to a request that has not been taken yet.
         self.host.clear_wake_ups();
         let mut orders = Vec::new();
@@ -54,11 +54,11 @@ impl EngineThread {
                     // Whoever asked may have given up.
                     let _ = answer.send(());
                 }
-                Ok(Request::Close { within }) => return (orders, Some(within)),
+                Ok(Request::Close { hurry }) => return (orders, Some(hurry)),
                 // A slow mission has ticks further apart than the screen hears of its recording.
                 Err(RecvTimeoutError::Timeout) if is_ahead || Instant::now() < due => self.send_health(),
                 Err(RecvTimeoutError::Timeout) => return (orders, None),
-                Err(RecvTimeoutError::Disconnected) => return (orders, Some(CLOSE_TIMEOUT)),
+                Err(RecvTimeoutError::Disconnected) => return (orders, Some(false)),
             }
         }
     }

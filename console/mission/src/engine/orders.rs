@@ -38,6 +38,7 @@ impl Mission {
                 self.resume(Gait::To(*to));
             }
             Order::Abort => self.end(Outcome::Aborted, "ended by operator".into()),
+            Order::Terminate => self.end(Outcome::Aborted, "ended by a signal to the process".into()),
             Order::ChoosePlanner(choice) => {
                 let from = self.active.choice.id.clone();
                 self.choose(choice.clone(), Reason::Swap { from });

@@ -196,6 +196,7 @@ fn order_text(order: &Order, stations: &[Station]) -> String {
         Order::Step => "single step".into(),
         Order::FlyUncertified => "run uncertified plan".into(),
         Order::Abort => "end mission".into(),
+        Order::Terminate => "end mission, by a signal to the process".into(),
         Order::ChoosePlanner(choice) => format!("change planner to {}", choice.id),
         Order::SetParameter { key, value } => format!("set {key} = {value}"),
         Order::Inject(injection) => injection_text(injection, stations),

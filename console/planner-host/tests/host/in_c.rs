@@ -135,11 +135,11 @@ fn a_planner_in_c_covers_regions_and_reports_legs_and_cuts() {
 
 #[test]
 fn a_path_that_is_too_long_is_refused_and_not_cut() {
-    let many = "static tp_vec2 many[1000000]; h->points(h->ctx, many, 1000000);";
+    let many = "static tp_vec2 many[1000000];\n h->points(h->ctx, many, 1000000);";
     let fault = plans_to_cover(many).unwrap_err();
     assert_eq!(fault.cause, Cause::BadOutput);
     assert_eq!(fault.message, "planner counter gave a path of more than 1000000 points during plan");
-    let cuts = "for (int i = 0; i < 10001; i++) h->cut(h->ctx, in->targets, 1);";
+    let cuts = "for (int i = 0; i < 10001; i++) { h->cut(h->ctx, in->targets, 1); }\n";
     let fault = plans_to_cover(cuts).unwrap_err();
     assert_eq!(fault.message, "planner counter gave more than 10000 cuts during plan");
 }

@@ -129,8 +129,8 @@ impl JournalWriter {
         if let Some(why) = self.unwritable.as_deref().or(self.backlog.trouble()) {
             return Err(JournalError::Write { bytes, why: why.to_owned() });
         }
-        self.watch.as_ref().map_or(Ok(()), |watch| watch.check_closed(bytes))?;
         let events_sha256 = hexadecimal(&self.hasher.finalize());
+        self.watch.as_ref().map_or(Ok(()), |watch| watch.check_content(bytes, &events_sha256))?;
         Ok(JournalEnd { events_sha256, events: self.events, bytes })
     }
 
