@@ -6,9 +6,10 @@ use mission::planner::Parameters;
 use nalgebra::{Matrix3, Point2};
 use planner_api::{Boundary, Limits, Motion, Obstacle, Outline, PoseEstimate, Sensed, Site};
 use planner_host::{BlockingHost, HostConfig, PluginDirs, WorkerCommand};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 const N_OBSTACLES: u32 = 16;
+const N_STARTS: usize = 200;
 
 fn host() -> BlockingHost {
     let worker = env!("CARGO_BIN_EXE_planner-worker");
@@ -80,6 +81,15 @@ fn round_trip(criterion: &mut Criterion) {
     criterion.bench_function("choose, from nothing to ready", |bench| {
         bench.iter(|| host.choose("faulty", &Parameters::new(), &site).expect("chosen"));
     });
+    let mut starts: Vec<Duration> = (0..N_STARTS)
+        .map(|_| {
+            let began = Instant::now();
+            host.choose("faulty", &Parameters::new(), &site).expect("chosen");
+            began.elapsed()
+        })
+        .collect();
+    starts.sort_unstable();
+    println!("{N_STARTS} starts, fastest {:?}, p10 {:?}, p50 {:?}", starts[0], starts[20], starts[100]);
 }
 
 criterion_group!(benches, round_trip);

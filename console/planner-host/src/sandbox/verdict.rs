@@ -54,14 +54,7 @@ pub(crate) fn verdict(call: &Call, is_loading: bool) -> Verdict {
         libc::SYS_open | libc::SYS_stat | libc::SYS_access | libc::SYS_readlink => on_path(call, 0, false),
         // Terminals are asked for their size and kind by libraries that print.
         libc::SYS_ioctl if arguments[1] == libc::TCGETS => Verdict::Refuse(libc::ENOTTY),
-        libc::SYS_mmap
-        | libc::SYS_mprotect
-        | libc::SYS_landlock_create_ruleset
-        | libc::SYS_landlock_restrict_self
-            if is_loading =>
-        {
-            Verdict::Allow
-        }
+        libc::SYS_landlock_restrict_self if is_loading => Verdict::Allow,
         number => Verdict::Forbid(name(number)),
     }
 }
