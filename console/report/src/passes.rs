@@ -1,7 +1,7 @@
 //! What the tool passed by the estimated position: how well the position was known, how often, and what is guaranteed.
 
 use crate::{accuracy::Estimate, overlap::Overlap};
-use world::{CoverageGrid, Floor, KindRun, Pose, Tool};
+use world::{CoverageGrid, Floor, Pose, Tool};
 
 /// The error of a cell that was never passed.
 const NEVER: u16 = u16::MAX;
@@ -10,7 +10,7 @@ const NEVER: u16 = u16::MAX;
 #[derive(Debug, Clone)]
 pub(crate) struct Passes {
     tool: Tool,
-    guaranteed: CoverageGrid,
+    guaranteed: Vec<bool>,
     /// The smallest 95 % error with which each cell was passed, millimetres.
     error_mm: Vec<u16>,
     overlap: Overlap,
@@ -21,7 +21,7 @@ impl Passes {
     pub(crate) fn new(floor: &Floor, tool: Tool) -> Self {
         Self {
             tool,
-            guaranteed: CoverageGrid::new(floor.clone()),
+            guaranteed: vec![false; floor.len()],
             error_mm: vec![NEVER; floor.len()],
             overlap: Overlap::new(floor.len()),
         }
@@ -38,7 +38,7 @@ impl Passes {
         estimate: &Estimate,
         error_m: f64,
     ) {
-        let floor = self.guaranteed.floor();
+        let floor = believed.floor();
         let cells = floor.cells_under(self.tool, from, to);
         let way_m = (to.position - from.position).norm();
         if way_m.is_finite() {
@@ -55,25 +55,22 @@ impl Passes {
             Tool::Disc { .. } => estimate.error_95_m(),
         };
         if let Some(narrowed) = self.tool.narrowed(across_m) {
-            self.guaranteed.mark(narrowed, from, to);
+            for cell in floor.cells_under(narrowed, from, to) {
+                self.guaranteed[cell] = true;
+            }
         }
-    }
-
-    /// An obstacle that was found changed the floor.
-    pub(crate) fn change(&mut self, changes: &[KindRun]) {
-        self.guaranteed.change(changes);
     }
 
     /// Takes in the passes of another run over the same floor.
     pub(crate) fn join(&mut self, other: &Self, is_in_both: impl Fn(usize) -> bool) {
-        self.guaranteed.join(&other.guaranteed);
+        self.guaranteed.iter_mut().zip(&other.guaranteed).for_each(|(own, other)| *own |= other);
         self.error_mm.iter_mut().zip(&other.error_mm).for_each(|(own, other)| *own = (*own).min(*other));
         self.overlap.join(&other.overlap, is_in_both);
     }
 
     /// Whether a cell was under the tool for every position within the 95 % error.
     pub(crate) fn is_guaranteed(&self, cell: usize) -> bool {
-        self.guaranteed.is_covered(cell)
+        self.guaranteed[cell]
     }
 
     /// The smallest 95 % error with which a cell was passed, millimetres; `None` if it never was.

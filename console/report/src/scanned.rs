@@ -5,13 +5,14 @@ use crate::{
     passes::Passes,
     summary::{Coverage, CoverageByTruth},
 };
-use world::{CellRun, CoverageGrid, Floor, KindRun, Pose, Tool};
+use world::{CellRun, Counts, CoverageGrid, Floor, KindRun, Pose, Tool};
 
 /// The floor with what was scanned so far.
 #[derive(Debug, Clone)]
 pub(crate) struct Scanned {
     believed: CoverageGrid,
-    truth: CoverageGrid,
+    /// Cells that the tool truly passed.
+    truth: Vec<bool>,
     passes: Passes,
     tool: Tool,
     last: Pose,
@@ -22,8 +23,8 @@ impl Scanned {
     /// Nothing is scanned yet.
     pub(crate) fn new(floor: Floor, tool: Tool, start: Pose) -> Self {
         let passes = Passes::new(&floor, tool);
+        let truth = vec![false; floor.len()];
         let believed = CoverageGrid::new(floor);
-        let truth = believed.clone();
         Self { believed, truth, passes, tool, last: start, has_truth: false }
     }
 
@@ -45,8 +46,6 @@ impl Scanned {
     /// An obstacle that was found changed the floor.
     pub(crate) fn change(&mut self, changes: &[KindRun]) {
         self.believed.change(changes);
-        self.truth.change(changes);
-        self.passes.change(changes);
     }
 
     /// Takes in what another run scanned of the same floor.
@@ -54,7 +53,7 @@ impl Scanned {
         let is_in_both = |cell| self.believed.is_covered(cell) && other.believed.is_covered(cell);
         self.passes.join(&other.passes, is_in_both);
         self.believed.join(&other.believed);
-        self.truth.join(&other.truth);
+        self.truth.iter_mut().zip(&other.truth).for_each(|(own, other)| *own |= other);
         self.has_truth &= other.has_truth;
     }
 
@@ -69,7 +68,9 @@ impl Scanned {
     /// The robot truly went from `a` to `b`.
     pub(crate) fn pass(&mut self, a: Pose, b: Pose) {
         self.has_truth = true;
-        self.truth.mark(self.tool, a, b);
+        for cell in self.believed.floor().cells_under(self.tool, a, b) {
+            self.truth[cell] = true;
+        }
     }
 
     /// Whether a cell counts as scanned and is guaranteed to be.
@@ -94,13 +95,18 @@ impl Scanned {
     fn by_truth(&self) -> CoverageByTruth {
         let truly = |is_claimed: &dyn Fn(usize) -> bool| {
             let claimed = || (0..self.believed.floor().len()).filter(|cell| is_claimed(*cell));
-            let right = claimed().filter(|cell| self.truth.is_covered(*cell)).count();
+            let right = claimed().filter(|cell| self.truth[*cell]).count();
             Some(claimed().count()).filter(|count| *count > 0).map(|count| right as f64 / count as f64)
         };
         let is_scanned = |cell| self.believed.floor().is_floor(cell) && self.believed.is_covered(cell);
+        let mut counts = Counts::default();
+        for (cell, truly) in self.truth.iter().enumerate() {
+            counts.add(self.believed.floor().kind(cell), *truly);
+        }
+        let share = |part: usize, of: usize| if of == 0 { 0.0 } else { part as f64 / of as f64 };
         CoverageByTruth {
-            reachable: self.truth.fraction_reachable(),
-            whole: self.truth.fraction_whole(),
+            reachable: share(counts.covered_reachable, counts.reachable),
+            whole: share(counts.covered, counts.floor),
             scanned_truly: truly(&is_scanned),
             guaranteed_truly: truly(&|cell| is_scanned(cell) && self.passes.is_guaranteed(cell)),
         }

@@ -1,3 +1,119 @@
 //! Reports on a small round tank.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
+
+use super::*;
+use crate::{
+    fold::{Fold, tests::round_tank},
+    summary::Logs,
+};
+use mission::{Event, EventKind};
+use world::{CellRun, Floor};
+
+/// A run that scanned everything but two cells out of the middle.
+fn past() -> PastRun {
+    let run = round_tank(0.1);
+    let middle = run.floor.cell_at(Point::new(1.0, -1.0)).unwrap() as u32;
+    let rest = run.floor.len() as u32 - middle - 2;
+    let covered = EventKind::Covered { runs: vec![CellRun(0, middle), CellRun(middle + 2, rest)] };
+    let (mut fold, mut record) = (Fold::new(), Record::new());
+    for kind in [EventKind::RunOpened(Box::new(run)), covered] {
+        let event = Event { tick: 0, t_s: 0.0, kind };
+        fold.apply(&event);
+        record.apply(&event);
+    }
+    let logs = Logs { journal: None, recording: None, error: None };
+    PastRun { name: "20261122T040132Z-tiny".into(), logs, began: None, files: Files::default(), fold, record }
+}
+
+fn document(inspection: Inspection) -> Document {
+    Document::new(&[past()], Context { inspection, version: "1", ..Context::default() }).unwrap()
+}
+
+fn open(document: &Document) -> Vec<usize> {
+    document.open_items().map(|item| item.number).collect()
+}
+
+#[test]
+fn what_is_missing_is_printed_with_its_key_and_what_is_given_is_escaped() {
+    let tank_id = Some("T-07 <b>".to_owned());
+    let html = html(&document(Inspection { tank_id, ..Inspection::default() }));
+    assert!(html.contains("inspection.drawing]") && !html.contains("[inspection.tank_id"), "facts");
+    assert!(!html.contains("T-07 <b>") && html.contains("T-07 &#60;b&#62;"), "escaped");
+    for section in 1..=12 {
+        assert!(html.contains(&format!(r#"<h2 id="s{section}">"#)), "section {section}");
+    }
+}
+
+#[test]
+fn a_gap_without_a_reason_and_a_plate_without_a_figure_are_open_items() {
+    let run = round_tank(0.1);
+    let mut document = document(Inspection::default());
+    // Nothing was passed by an estimated position, so no plate has an accuracy.
+    assert!(open(&document).contains(&5) && !open(&document).contains(&6), "{:?}", document.gate);
+    document.floor.plates.iter_mut().for_each(|plate| plate.error_p95_m = Some(0.05));
+    document.floor.missed[0].causes[0].text.clear();
+    document.gate = gate::gate(&document, &run);
+    assert!(!open(&document).contains(&5) && open(&document).contains(&6), "{:?}", document.gate);
+    let lacks = &document.gate[5].missing;
+    assert!(lacks.len() == 1 && lacks[0].starts_with("reason of the gap at 1."), "{lacks:?}");
+}
+
+#[test]
+fn files_that_are_not_those_of_the_end_of_the_run_are_an_open_item() {
+    let mut past = past();
+    past.files = Files {
+        journal_sha256: Some("a1".repeat(32)),
+        recording_sha256: Some("b2".repeat(32)),
+        are_as_reported: Some(true),
+        ..Files::default()
+    };
+    let gate = |past: PastRun| Document::new(&[past], Context::default()).unwrap().gate[12].clone();
+    let (name, files) = (past.name.clone(), past.files.clone());
+    assert!(gate(past).is_answered);
+    let mut changed = self::past();
+    changed.files =
+        Files { are_as_reported: Some(false), doubts: vec!["the journal is another one".into()], ..files };
+    assert_eq!(gate(changed).missing, [format!("{name}: the journal is another one")]);
+}
+
+#[test]
+fn every_format_has_the_gap_and_the_letters_of_revisions_go_on_after_z() {
+    let (runs, document) = ([past()], document(Inspection::default()));
+    let tables = csv::tables(&document, &runs);
+    let missed = &tables.iter().find(|(suffix, _)| *suffix == "-missed").unwrap().1;
+    assert!(missed.lines().count() == 2 && missed.contains("not planned"), "{missed}");
+    assert!(geojson::geojson(&document, &runs).contains(r#""layer":"missed""#));
+    assert!(dxf::dxf(&document, &runs).contains("MISSED"));
+    assert_eq!([0, 1, 25, 26, 51, 52].map(letter), ["A", "B", "Z", "AA", "AZ", "BA"]);
+}
+
+#[test]
+fn a_datum_moves_and_turns_what_geojson_says() {
+    let facts = Inspection {
+        datum_m: Some([1000.0, 2000.0]),
+        datum_north_deg: Some(90.0),
+        datum_crs: Some("EPSG:25832".into()),
+        ..Inspection::default()
+    };
+    let runs = [past()];
+    let map: serde_json::Value = serde_json::from_str(&geojson::geojson(&document(facts), &runs)).unwrap();
+    assert_eq!(map["crs"]["properties"]["name"], "EPSG:25832");
+    let shell =
+        map["features"].as_array().unwrap().iter().find(|f| f["properties"]["layer"] == "shell").unwrap();
+    // East of the tank is its south there.
+    assert_eq!(shell["geometry"]["coordinates"][0][0], serde_json::json!([1000.0, 1995.0]));
+}
+
+#[test]
+fn seams_end_at_the_ring() {
+    let run = round_tank(0.1);
+    let layout = run.plates.unwrap();
+    let floor: &Floor = &run.floor;
+    let map = layout.map(&run.world.boundary, floor);
+    for seam in layout.seams(&run.world.boundary) {
+        for place in &seam {
+            assert!(place.coords.norm() < 5.0 + 1e-6, "{seam:?} of {} plates", map.plates.len());
+        }
+    }
+}

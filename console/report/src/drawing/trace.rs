@@ -6,6 +6,8 @@ use world::{Floor, Point};
 
 /// A corner of cells: column and row from the south-west corner of the grid.
 type Corner = (i32, i32);
+/// Where the outline goes on from each corner: two ways where cells only touch there.
+type Edges = BTreeMap<Corner, (Corner, Option<Corner>)>;
 
 /// The outlines of the cells that are asked for, as path data in units of cells: x to the right, y up from the south-west
 /// corner of the grid. Points nearer than `tolerance` cells to the simplified outline are left out; 0 keeps every corner.
@@ -24,7 +26,7 @@ fn rings(floor: &Floor, is_in: impl Fn(usize) -> bool) -> Vec<Vec<Corner>> {
     let at = |x: i32, y: i32| {
         (0..width).contains(&x) && (0..height).contains(&y) && inside[(y * width + x) as usize]
     };
-    let mut next: BTreeMap<Corner, Vec<Corner>> = BTreeMap::new();
+    let mut next: Edges = BTreeMap::new();
     for cell in (0..floor.len()).filter(|cell| inside[*cell]) {
         let (x, y) = (cell as i32 % width, cell as i32 / width);
         let sides = [
@@ -34,7 +36,7 @@ fn rings(floor: &Floor, is_in: impl Fn(usize) -> bool) -> Vec<Vec<Corner>> {
             (at(x - 1, y), (x, y + 1), (x, y)),
         ];
         for (_, from, to) in sides.into_iter().filter(|(is_same, ..)| !is_same) {
-            next.entry(from).or_default().push(to);
+            next.entry(from).and_modify(|ways| ways.1 = Some(to)).or_insert((to, None));
         }
     }
     let mut rings = Vec::new();
@@ -45,21 +47,24 @@ fn rings(floor: &Floor, is_in: impl Fn(usize) -> bool) -> Vec<Vec<Corner>> {
 }
 
 /// Takes a ring out of the edges; where cells only touch at a corner it turns left, so that they stay apart.
-fn take_ring(next: &mut BTreeMap<Corner, Vec<Corner>>, first: Corner) -> Vec<Corner> {
+fn take_ring(next: &mut Edges, first: Corner) -> Vec<Corner> {
     let mut ring = vec![first];
     let mut came = None;
     let mut here = first;
-    while let Some(ways) = next.get_mut(&here) {
+    while let Some((one, other)) = next.remove(&here) {
         let left = |to: &Corner| {
             came.map_or(0, |from: Corner| {
                 (here.0 - from.0) * (to.1 - here.1) - (here.1 - from.1) * (to.0 - here.0)
             })
         };
-        let best = (0..ways.len()).max_by_key(|index| left(&ways[*index])).unwrap_or(0);
-        let to = ways.swap_remove(best);
-        if ways.is_empty() {
-            next.remove(&here);
-        }
+        let to = match other {
+            Some(other) => {
+                let (to, rest) = if left(&other) > left(&one) { (other, one) } else { (one, other) };
+                next.insert(here, (rest, None));
+                to
+            }
+            None => one,
+        };
         came = Some(here);
         here = to;
         if here == first {
