@@ -177,17 +177,13 @@ fn runs_of_earlier_versions_are_listed_reported_exported_and_rescanned_but_not_r
         assert_eq!((&report["outcome"], &report["ticks"]), (&end.into(), &ticks.into()), "{reported:?}");
         let then = std::fs::read_to_string(logs.join(name).join("report.json")).unwrap();
         let then = recording::with_todays_names(serde_json::from_str(&then).unwrap());
-        for key in [
-            "planner",
-            "parameters",
-            "path_length_m",
-            "coverage",
-            "positioning",
-            "tether",
-            "events_sha256",
-            "violations",
-        ] {
+        for key in
+            ["planner", "parameters", "path_length_m", "positioning", "tether", "events_sha256", "violations"]
+        {
             assert_eq!(report[key], then[key], "{key}");
+        }
+        for share in ["reachable", "whole", "overlap"] {
+            assert_eq!(report["coverage"][share], then["coverage"][share], "{share}");
         }
         let exported = bench.tankops(&[&["export", name, "--rrd", "again.rrd"][..], &at].concat());
         assert_eq!(exported.code, Some(0), "{exported:?}");

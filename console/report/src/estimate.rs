@@ -214,7 +214,7 @@ mod tests {
         assert!((clearance.value - (1.0 - mission.limits.radius_m)).abs() < 0.02, "{clearance:?}");
         let drive_s = 12.5 / mission.limits.v_max_m_per_s;
         let turn_s = std::f64::consts::FRAC_PI_2 / mission.limits.w_max_rad_per_s;
-        assert!((estimate.time_s - drive_s - turn_s).abs() < 1e-9);
+        assert!((estimate.time_s - drive_s - turn_s - CORNER_S).abs() < 1e-9);
         assert_eq!((estimate.tether, estimate.accuracy_worst, estimate.reachable), (None, None, None));
     }
 
