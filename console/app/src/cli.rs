@@ -136,7 +136,7 @@ pub(crate) struct ReportArgs {
     /// Facts for `[inspection]` that were not known before the run, as a TOML file; they take the place of the scenario's.
     #[arg(long, value_name = "FILE", requires = "output")]
     pub inspection: Option<PathBuf>,
-    /// Indications of the instrument as CSV: t_s, and left_m, ahead_m, kind, size_mm, depth_mm, note if there are.
+    /// Indications of the instrument as CSV: `t_s`, and `left_m`, `ahead_m`, kind, `size_mm`, `depth_mm`, note if there are.
     #[arg(long, value_name = "FILE", requires = "output")]
     pub indications: Option<PathBuf>,
     /// Sign the report (.html): needs every item of the gate answered; a signed report is never changed, the next one is
@@ -420,8 +420,8 @@ pub(crate) struct MapArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ImportArgs {
-    /// Drawing (.dxf) with layers SHELL, COLUMNS, PIPES, SUMP and NOGO, or list of columns (.csv) with the fields x_m, y_m,
-    /// radius_m or diameter_m, and name.
+    /// Drawing (.dxf) with layers SHELL, COLUMNS, PIPES, SUMP and NOGO, or list of columns (.csv) with the fields `x_m`, `y_m`,
+    /// `radius_m` or `diameter_m`, and name.
     pub file: PathBuf,
     /// Scenario file to write; must not exist.
     #[arg(short = 'o', long, value_name = "SCENARIO")]

@@ -1,4 +1,4 @@
-//! The report that an inspector signs: one model behind HTML, JSON, CSV, GeoJSON and DXF.
+//! The report that an inspector signs: one model behind HTML, JSON, CSV, `GeoJSON` and DXF.
 
 mod charts;
 pub mod csv;

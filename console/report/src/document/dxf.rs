@@ -38,7 +38,8 @@ pub fn dxf(document: &Document, past: &[PastRun]) -> String {
         drawing.text("MISSED", area.high, &number.to_string());
     }
     for past in past {
-        let places: Vec<Point> = past.record.track.iter().map(|point| point.position()).collect();
+        let places: Vec<Point> =
+            past.record.track.iter().map(super::super::record::TrackPoint::position).collect();
         drawing.polyline("TRACK", &thinned(&places, TRACK_M), false);
     }
     for found in &document.indications {
@@ -79,7 +80,9 @@ impl Drawing {
             (2, "LAYER"),
             (70, "6"),
         ];
-        pairs.into_iter().for_each(|(code, value)| self.pair(code, value));
+        for (code, value) in pairs {
+            self.pair(code, value);
+        }
         for (name, colour) in LAYERS {
             self.pair(0, "LAYER");
             self.pair(2, name);

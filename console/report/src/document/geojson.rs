@@ -25,7 +25,8 @@ pub fn geojson(document: &Document, past: &[PastRun]) -> String {
     let feature = |geometry: Value, properties: Value| json!({ "type": "Feature", "geometry": geometry, "properties": properties });
     let mut features = Vec::new();
     for past in past {
-        let places: Vec<Point> = past.record.track.iter().map(|point| point.position()).collect();
+        let places: Vec<Point> =
+            past.record.track.iter().map(super::super::record::TrackPoint::position).collect();
         features
             .push(feature(line(&thinned(&places, TRACK_M)), json!({ "layer": "track", "run": past.name })));
     }

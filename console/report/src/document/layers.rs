@@ -49,7 +49,9 @@ impl<'a> Layers<'a> {
         let missed = (0..floor.len()).filter(|cell| self.is_missed(*cell)).collect();
         let is_listed = |cells: &Vec<usize>| cells.len() as f64 * floor.cell_m2() >= LEAST_M2;
         let mut groups: Vec<Vec<usize>> = together(floor, missed).into_iter().filter(is_listed).collect();
-        groups.iter_mut().for_each(|cells| cells.sort_unstable());
+        for cells in &mut groups {
+            cells.sort_unstable();
+        }
         let cells_of = |place: &Point| {
             let cell = floor.cell_at(*place)?;
             let group = groups.iter().find(|cells| cells.binary_search(&cell).is_ok())?;

@@ -103,7 +103,7 @@ pub(super) fn coverage(layers: &Layers<'_>) -> (Figure, Vec<usize>) {
         r#"<circle cx="3.5" cy="2" r=".35"/>"#
     );
     let anchor = r##"<path d="M2.2,3L4.8,3L3.5,.7z" fill="#fff" stroke="#1C2731" stroke-width=".35"/>"##;
-    let found = format!(r##"fill="url(#cfound)" stroke="{solid}" stroke-width=".3""##);
+    let found = format!(r#"fill="url(#cfound)" stroke="{solid}" stroke-width=".3""#);
     let mut entries = vec![
         legend(filled(colour::ONCE), "scanned once", m2(once)),
         legend(filled(colour::TWICE), "scanned twice or more", m2(again)),

@@ -210,7 +210,9 @@ fn number(page: &mut Page) {
             Block::Table(table) if !table.caption.is_empty() => table.number = next(&mut tables),
             Block::Figure(picture) | Block::Wide(picture) => picture.number = next(&mut figures),
             Block::Pair(pictures) => {
-                pictures.iter_mut().for_each(|picture| picture.number = next(&mut figures))
+                for picture in pictures {
+                    picture.number = next(&mut figures);
+                }
             }
             _ => {}
         }

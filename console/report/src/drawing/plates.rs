@@ -18,10 +18,13 @@ struct PlateName {
     room_m: [f64; 2],
 }
 
+/// How many cells a plate has, the sum of their centres, and the corners of the box about them; metres.
+type Sum = (usize, Point, Option<(Point, Point)>);
+
 impl PlateLines {
     /// The seams and names of a layout on a floor.
     pub(crate) fn new(layout: &PlateLayout, boundary: &Boundary, floor: &Floor, map: &PlateMap) -> Self {
-        let mut sums = vec![(0_usize, Point::origin(), None::<(Point, Point)>); map.plates.len()];
+        let mut sums: Vec<Sum> = vec![(0, Point::origin(), None); map.plates.len()];
         for cell in 0..floor.len() {
             let Some(plate) = map.plate_of(cell) else { continue };
             let (center, (count, sum, bounds)) = (floor.center(cell), &mut sums[plate]);
@@ -30,27 +33,26 @@ impl PlateLines {
             *bounds =
                 Some(bounds.map_or((center, center), |(low, high)| (low.inf(&center), high.sup(&center))));
         }
-        let name =
-            |(plate, (count, sum, bounds)): (&world::Plate, &(usize, Point, Option<(Point, Point)>))| {
-                let mean = Point::from(sum.coords / (*count).max(1) as f64);
-                let extent = bounds.map_or([0.0, 0.0], |(low, high)| [high.x - low.x, high.y - low.y]);
-                match boundary {
-                    Boundary::Circle { radius_m } if plate.kind == PlateKind::Annular => {
-                        let angle = mean.y.atan2(mean.x);
-                        let at = radius_m - layout.annular_m / 2.0;
-                        let turn = if angle.sin() >= 0.0 { 90.0 } else { 270.0 } - angle.to_degrees();
-                        let arc_m = std::f64::consts::TAU * radius_m / f64::from(layout.n_annular.max(1));
-                        let at = Point::new(at * angle.cos(), at * angle.sin());
-                        PlateName {
-                            name: plate.name.clone(),
-                            at,
-                            turn_deg: turn,
-                            room_m: [arc_m, layout.annular_m],
-                        }
+        let name = |(plate, (count, sum, bounds)): (&world::Plate, &Sum)| {
+            let mean = Point::from(sum.coords / (*count).max(1) as f64);
+            let extent = bounds.map_or([0.0, 0.0], |(low, high)| [high.x - low.x, high.y - low.y]);
+            match boundary {
+                Boundary::Circle { radius_m } if plate.kind == PlateKind::Annular => {
+                    let angle = mean.y.atan2(mean.x);
+                    let at = radius_m - layout.annular_m / 2.0;
+                    let turn = if angle.sin() >= 0.0 { 90.0 } else { 270.0 } - angle.to_degrees();
+                    let arc_m = std::f64::consts::TAU * radius_m / f64::from(layout.n_annular.max(1));
+                    let at = Point::new(at * angle.cos(), at * angle.sin());
+                    PlateName {
+                        name: plate.name.clone(),
+                        at,
+                        turn_deg: turn,
+                        room_m: [arc_m, layout.annular_m],
                     }
-                    _ => PlateName { name: plate.name.clone(), at: mean, turn_deg: 0.0, room_m: extent },
                 }
-            };
+                _ => PlateName { name: plate.name.clone(), at: mean, turn_deg: 0.0, room_m: extent },
+            }
+        };
         Self { seams: layout.seams(boundary), names: map.plates.iter().zip(&sums).map(name).collect() }
     }
 }

@@ -129,7 +129,7 @@ impl Sheet {
     pub(crate) fn shape(&mut self, shape: &Shape, style: &str) {
         match shape {
             Shape::Disc { center, radius_m } => {
-                self.circle(*center, (radius_m * self.scale).max(0.35), style)
+                self.circle(*center, (radius_m * self.scale).max(0.35), style);
             }
             Shape::Polygon { vertices } => self.polygon(vertices, style),
             Shape::Polyline { points, half_width_m } => {
