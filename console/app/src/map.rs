@@ -48,7 +48,7 @@ fn human(args: &MapArgs, map: &OccupancyMap, floor: &MapFloor) -> String {
     // Writing to a String cannot fail.
     let _ = write!(
         text,
-        "free floor           {:.1} m2 in {} cells; {elsewhere} free cells elsewhere count as solid\n\
+        "free floor           {:.1} m² in {} cells; {elsewhere} free cells elsewhere count as solid\n\
          outlines             {}, with {before} corners, {after} after simplification\n\
          convex pieces        {}\n\
          largest shape error  {:.4} m ({:.2} cells), towards the safe side\n",

@@ -38,11 +38,12 @@ pub(crate) fn write(args: &ReportArgs, output: &Path) -> anyhow::Result<ExitCode
     let past = review::read_all(&args.runs, &args.logs.logs)?;
     let inspection = inspection(args, past.last())?;
     let indications = args.indications.as_deref().map(read).transpose()?;
+    let name = args.indications.as_ref().map(|file| file.display().to_string());
     let past: Vec<PastRun> = past.into_iter().map(|past| past.run).collect();
     let signature = args.sign.clone().map(|by| Signature { by, at: now() });
     let context = Context {
         inspection,
-        indications_csv: indications.as_deref(),
+        indications_csv: name.as_deref().zip(indications.as_deref()),
         version: env!("CARGO_PKG_VERSION"),
         revisions,
         signature: signature.clone(),

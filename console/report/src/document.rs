@@ -35,8 +35,8 @@ use world::Point;
 pub struct Context<'a> {
     /// What only people know.
     pub inspection: Inspection,
-    /// Indications as CSV, if there are.
-    pub indications_csv: Option<&'a str>,
+    /// Indications, if there are: the name of their file, and its text as CSV.
+    pub indications_csv: Option<(&'a str, &'a str)>,
     /// Version of the program that makes the report.
     pub version: &'a str,
     /// Earlier signed reports on the same runs, in their order.
@@ -128,9 +128,11 @@ impl Document {
         let places: Vec<Point> = floor.missed.iter().map(|area| area.at).collect();
         let layers = Layers::new(run, scanned, evidence, &places);
         let last = past.last().ok_or("no run to report")?;
-        let place = |csv| indications::indications(csv, &last.record, |at| layers.plate_at(at));
-        let indications = context.indications_csv.map(place).transpose();
-        let indications = indications.map_err(|error| format!("indications: {error}"))?.unwrap_or_default();
+        let place = |(name, csv)| {
+            let placed = indications::indications(csv, &last.record, |at| layers.plate_at(at));
+            placed.map_err(|error| format!("{name}: {error}"))
+        };
+        let indications = context.indications_csv.map(place).transpose()?.unwrap_or_default();
         let runs: Vec<RunPart> = past.iter().filter_map(RunPart::of).collect();
         let (coverage, badges) = maps::coverage(&layers);
         let pictures = Pictures {

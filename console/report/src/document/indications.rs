@@ -65,9 +65,10 @@ pub(super) fn indications(
         return Err(format!("line 1: unknown column `{unknown}`; there are {}", known.join(", ")));
     }
     let end_s = record.track.last().map_or(0.0, |point| f64::from(point.t_s));
-    let place = |(index, row): (usize, csv::Result<Row>)| {
-        let line = index + 2;
-        let row = row.map_err(|error| format!("line {line}: {error}"))?;
+    let place = |(index, fields): (usize, csv::Result<csv::StringRecord>)| {
+        let fields = fields.map_err(|error| error.to_string())?;
+        let line = fields.position().map_or(0, csv::Position::line);
+        let row = row(&fields, &headers).map_err(|error| format!("line {line}: {error}"))?;
         let inside = (0.0..=end_s + 0.5).contains(&row.t_s);
         let point = record.at(row.t_s).filter(|_| inside);
         let point =
@@ -87,7 +88,27 @@ pub(super) fn indications(
             note: row.note,
         })
     };
-    reader.deserialize().enumerate().map(place).collect()
+    reader.records().enumerate().map(place).collect()
+}
+
+/// A row, read and within what numbers can be.
+fn row(fields: &csv::StringRecord, headers: &csv::StringRecord) -> Result<Row, String> {
+    let row: Row = fields.deserialize(Some(headers)).map_err(|error| match error.kind() {
+        csv::ErrorKind::Deserialize { err, .. } => {
+            let column = err.field().and_then(|index| usize::try_from(index).ok());
+            let name = column.and_then(|index| headers.get(index)).unwrap_or("the row");
+            format!("{name}: {}", err.kind())
+        }
+        _ => error.to_string(),
+    })?;
+    let numbers = [
+        ("left_m", Some(row.left_m)),
+        ("ahead_m", Some(row.ahead_m)),
+        ("size_mm", row.size_mm),
+        ("depth_mm", row.depth_mm),
+    ];
+    let odd = numbers.into_iter().find(|(_, number)| number.is_some_and(|number| !number.is_finite()));
+    odd.map_or(Ok(row), |(name, _)| Err(format!("{name}: must be a finite number")))
 }
 
 #[cfg(test)]
@@ -124,7 +145,8 @@ mod tests {
     fn what_cannot_be_placed_is_refused_with_its_line() {
         let refused = |csv: &str| indications(csv, &record(), |_| None).unwrap_err();
         assert_eq!(refused("t_s\n1\n99\n"), "line 3: t_s = 99: the run lasts from 0 to 9.0 s");
-        assert!(refused("t_s\nsoon\n").starts_with("line 2: "), "{}", refused("t_s\nsoon\n"));
+        assert_eq!(refused("t_s\n\nsoon\n"), "line 3: t_s: invalid float literal");
+        assert_eq!(refused("t_s,left_m\n1,nan\n"), "line 2: left_m: must be a finite number");
         assert!(refused("time\n1\n").contains("unknown column `time`; there are t_s"));
     }
 }

@@ -10,14 +10,7 @@ const WIDTH_MM: f64 = 180.0;
 pub fn floor(world: &World) -> String {
     let mut sheet = Sheet::new(&world.boundary, "f", WIDTH_MM, 8.0);
     sheet.wall(&world.boundary, r##"fill="#fff""##);
-    let fixtures = Fixtures {
-        boundary: &world.boundary,
-        drawn: world.obstacles.iter().map(|obstacle| &obstacle.shape).collect(),
-        found: Vec::new(),
-        stations: &world.stations,
-        zones: &world.zones,
-        anchor: None,
-    };
+    let fixtures = Fixtures::of(world, None);
     sheet.obstacles(&fixtures);
     sheet.frame(&fixtures, 2.4);
     sheet.into_document("Floor")

@@ -38,14 +38,7 @@ pub(crate) fn svg(world: &World, map: &AccuracyMap, limit_m: f64, advised: &[Poi
             CLASSES[class].0
         ));
     }
-    let fixtures = Fixtures {
-        boundary: &world.boundary,
-        drawn: world.obstacles.iter().map(|obstacle| &obstacle.shape).collect(),
-        found: Vec::new(),
-        stations: &world.stations,
-        zones: &world.zones,
-        anchor: None,
-    };
+    let fixtures = Fixtures::of(world, None);
     sheet.obstacles(&fixtures);
     for place in advised {
         let style = format!(r#"class="advised" fill="none" stroke="{}" stroke-width=".6""#, colour::TETHER);

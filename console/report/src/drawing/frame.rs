@@ -1,7 +1,7 @@
 //! What stands on every map: obstacles, shell, stations, anchor, north, scale bar.
 
 use super::sheet::{Sheet, colour, escaped};
-use world::{Boundary, Point, Shape, Station, Zone};
+use world::{Boundary, Point, Shape, Station, World, Zone};
 
 /// What is solid or named in a tank.
 pub(crate) struct Fixtures<'a> {
@@ -17,6 +17,20 @@ pub(crate) struct Fixtures<'a> {
     pub(crate) zones: &'a [Zone],
     /// Where the tether comes in, or where the robot starts.
     pub(crate) anchor: Option<Point>,
+}
+
+impl<'a> Fixtures<'a> {
+    /// What stands in a world, with nothing found.
+    pub(crate) fn of(world: &'a World, anchor: Option<Point>) -> Self {
+        Self {
+            boundary: &world.boundary,
+            drawn: world.obstacles.iter().map(|obstacle| &obstacle.shape).collect(),
+            found: Vec::new(),
+            stations: &world.stations,
+            zones: &world.zones,
+            anchor,
+        }
+    }
 }
 
 impl Sheet {

@@ -79,14 +79,7 @@ pub fn svg(drawn: &Drawn<'_>) -> String {
             sheet.circle(*center, (radius_m + drawn.room_m) * sheet.scale, &margin);
         }
     }
-    let fixtures = Fixtures {
-        boundary: &world.boundary,
-        drawn: world.obstacles.iter().map(|obstacle| &obstacle.shape).collect(),
-        found: Vec::new(),
-        stations: &world.stations,
-        zones: &world.zones,
-        anchor: drawn.anchor,
-    };
+    let fixtures = Fixtures::of(world, drawn.anchor);
     sheet.obstacles(&fixtures);
     for cut in drawn.cuts {
         let style = format!(

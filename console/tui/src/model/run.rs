@@ -115,11 +115,9 @@ impl Run {
         self.about.as_ref().is_some_and(|about| matches!(about.mission.task, TaskConfig::Cover { .. }))
     }
 
-    /// Whether floor that is not scanned is floor that was missed.
+    /// Whether floor that is not scanned is floor that was missed; the report holds only missions to that that were to scan.
     pub fn has_missed(&self) -> bool {
-        let scans =
-            self.about.as_ref().is_some_and(|about| !matches!(about.mission.task, TaskConfig::Goto { .. }));
-        scans && self.has_ended()
+        self.covers() && self.has_ended()
     }
 
     /// Why a planner cannot fly this mission, if it cannot.

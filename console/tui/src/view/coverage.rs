@@ -71,7 +71,7 @@ fn narrow_lines(look: &Look) -> Vec<(u8, Line<'static>)> {
     let run = look.run;
     let (reachable, whole) = shares(run);
     let text = |value: String| look.line([(Role::Text, format!(" {value}"))]);
-    let left_or_missed = if run.has_ended() {
+    let left_or_missed = if run.has_missed() {
         format!("missed {} % of reachable", percent(run, Raster::reachable, |percent| percent.missed))
     } else {
         format!("left {}", left(run, false))
@@ -107,9 +107,13 @@ fn bar(run: &Run, columns: usize) -> String {
     text::bar(run.progress.as_ref().map_or(0.0, |progress| progress.covered_reachable), columns)
 }
 
-/// What is not scanned is still to do, and missed when the mission has ended.
+/// What is not scanned is still to do, and missed when a mission that was to scan has ended.
 fn to_do_label(run: &Run) -> &'static str {
-    if run.has_ended() { "missed" } else { "to do" }
+    match (run.has_missed(), run.has_ended()) {
+        (true, _) => "missed",
+        (false, true) => "not scanned",
+        (false, false) => "to do",
+    }
 }
 
 fn rate(run: &Run) -> String {
