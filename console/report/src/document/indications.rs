@@ -145,7 +145,7 @@ mod tests {
     fn what_cannot_be_placed_is_refused_with_its_line() {
         let refused = |csv: &str| indications(csv, &record(), |_| None).unwrap_err();
         assert_eq!(refused("t_s\n1\n99\n"), "line 3: t_s = 99: the run lasts from 0 to 9.0 s");
-        assert_eq!(refused("t_s\n\nsoon\n"), "line 3: t_s: invalid float literal");
+        assert_eq!(refused("t_s,note\n1,\"two\nlines\"\nsoon,\n"), "line 4: t_s: invalid float literal");
         assert_eq!(refused("t_s,left_m\n1,nan\n"), "line 2: left_m: must be a finite number");
         assert!(refused("time\n1\n").contains("unknown column `time`; there are t_s"));
     }

@@ -1,11 +1,12 @@
 //! Stored screens: the text, and beside it what each cell stands for.
 
 use crate::fixture::{ASCII, PLAIN, RICH, Screen};
-use mission::{EventKind, HoldReason, Order, Outcome, Resumes};
+use mission::{EventKind, HoldReason, Order, Outcome, Resumes, TaskConfig};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
 use tui::{Caps, Key, Model, Msg, Recording, RunMsg, Theme, view, view_with};
+use world::Point;
 
 /// The sizes that the console is made for.
 const SIZES: [(u16, u16); 4] = [(120, 36), (80, 24), (60, 16), (44, 10)];
@@ -192,8 +193,12 @@ fn ended() {
 }
 
 #[test]
-fn ended_in_a_collision_without_recording() {
+fn a_scan_that_ended_in_a_collision_without_recording() {
     let mut screen = Screen::running();
+    if let Some(about) = &mut screen.model.live.run.about {
+        about.mission.task =
+            TaskConfig::Cover { anchor: Point::new(-8.0, 0.0), regions: Vec::new(), tolerance_m: 0.2 };
+    }
     let events = vec![screen.mission.ended(Outcome::Collision, "bumper contact")];
     let recording = Recording::Failed("the disk is full".into());
     screen.hear(RunMsg::Events(events));
