@@ -37,7 +37,7 @@ use tui::{Job, Msg, RunId, RunMsg, Source, Speed};
 
 /// What the desk is asked for.
 pub(super) enum Request {
-    /// Close the run that is open and open another one.
+    /// Close the run that is open and open another one; it stays open if that cannot be.
     Open { id: RunId, source: Source, planner: Option<PlannerChoice> },
     /// Look at what the start depends on.
     Check { needed_bytes: u64 },
@@ -149,6 +149,10 @@ impl Desk {
     /// Its planners are not there or do not take their parameters; the system gives no thread.
     pub(super) fn open(&mut self, id: RunId, scenario: &Scenario, flight: Flight) -> anyhow::Result<()> {
         check_choices(scenario, &self.tools.planners.get())?;
+        self.launch(id, scenario, flight)
+    }
+
+    fn launch(&mut self, id: RunId, scenario: &Scenario, flight: Flight) -> anyhow::Result<()> {
         let Tools { logs, plugins, outbox, .. } = &self.tools;
         let screen = RunOutbox { run: id, outbox: outbox.clone() };
         let engine = Engine::start((scenario, flight), (logs, plugins), screen, self.speed, self.drill)?;
@@ -188,18 +192,29 @@ impl Desk {
         Ok(self.flown)
     }
 
+    /// Everything that can be wrong with a scenario is found before the run that is open is closed.
     fn replace(&mut self, id: RunId, source: &Source, planner: Option<PlannerChoice>) -> anyhow::Result<()> {
-        self.close(false)?;
-        let opened = self.read(source).and_then(|mut scenario| {
-            if let Some(planner) = planner {
-                scenario.mission.planner = planner;
+        let opened = match self.prepare(source, planner) {
+            Ok((scenario, flight)) => {
+                self.close(false)?;
+                self.launch(id, &scenario, flight)
             }
-            self.open(id, &scenario, Flight::prepare(&scenario, true))
-        });
+            Err(error) => Err(error),
+        };
         if let Err(error) = opened {
             self.tools.outbox.send(Msg::Run(id, RunMsg::OpenFailed(format!("{error:#}"))));
         }
         Ok(())
+    }
+
+    fn prepare(&self, source: &Source, planner: Option<PlannerChoice>) -> anyhow::Result<(Scenario, Flight)> {
+        let mut scenario = self.read(source)?;
+        if let Some(planner) = planner {
+            scenario.mission.planner = planner;
+        }
+        check_choices(&scenario, &self.tools.planners.get())?;
+        let flight = Flight::prepare(&scenario, true);
+        Ok((scenario, flight))
     }
 
     fn read(&self, source: &Source) -> anyhow::Result<Scenario> {

@@ -87,6 +87,22 @@ impl Explained for MissReason {
 }
 
 impl MissReason {
+    /// The reason in at most 32 characters, for a row of a list.
+    pub fn briefly(self) -> &'static str {
+        match self {
+            Self::PositionUncertain => "position error above the limit",
+            Self::FoundObstacle => "beside a found obstacle",
+            Self::NotAsked => "not requested",
+            Self::Narrow => "beyond the lanes",
+            Self::Clearance => "not planned, clearance",
+            Self::Wrap => "not planned, tether",
+            Self::NotPlanned => "not planned",
+            Self::BeyondReel => "not planned, beyond the reel",
+            Self::NotReached => "the mission ended first",
+            Self::PassedBeside => "the robot passed to one side",
+        }
+    }
+
     /// The reason without its number.
     pub fn plainly(self) -> &'static str {
         match self {

@@ -74,6 +74,9 @@ pub struct Live {
     pub is_opening: bool,
     /// Why it could not be opened, with file, line and key.
     pub failure: Option<String>,
+    /// The run that was open before, while this one is being opened: it stays open if this one cannot be.
+    #[serde(default)]
+    pub before: Option<Box<Live>>,
     /// What its events say.
     pub run: Run,
     /// What is known of it before it moves.

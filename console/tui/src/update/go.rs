@@ -2,10 +2,10 @@
 
 use super::message::{Effect, Job};
 use super::offer::{nothing_under_way, refuse};
-use super::{alarms, events};
+use super::{alarms, events, news};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
-use crate::model::{Live, Model, Pane, RunId, Screen, Source};
+use crate::model::{Cause, Live, Model, Pane, RunId, Screen, Source};
 use mission::{PlannerChoice, Severity};
 use world::Point;
 
@@ -68,10 +68,26 @@ pub(super) fn open(model: &mut Model, source: Source, planner: Option<PlannerCho
         return refuse(model, why);
     }
     let id = RunId(model.live.id.0 + 1);
-    model.live = Live { id, source: Some(source.clone()), is_opening: true, ..Live::default() };
+    let before = std::mem::take(&mut model.live);
+    // Of runs that are opened in haste, the last that was open is kept.
+    let before =
+        if before.is_opening { before.before } else { before.source.is_some().then(|| Box::new(before)) };
+    model.live = Live { id, source: Some(source.clone()), is_opening: true, before, ..Live::default() };
     (model.ui.map, model.ui.cursor) = (crate::model::ui::MapView::default(), None);
     model.ui.go(Screen::Plan);
     vec![Effect::Open { id, source, planner }]
+}
+
+/// A scenario cannot be opened: the run that was open before stays open, if there is one.
+pub(super) fn not_opened(model: &mut Model, why: String) {
+    let Some(before) = model.live.before.take() else {
+        model.live.is_opening = false;
+        model.live.failure = Some(why);
+        return;
+    };
+    model.live = *before;
+    model.ui.screen = model.ui.back.pop().unwrap_or(Screen::Home);
+    news(model, &Cause::Console, Severity::Warn, format!("not opened: {why}"));
 }
 
 /// Opens the scenario of the run that is open once more, with the planner that it had.

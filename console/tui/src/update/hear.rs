@@ -1,21 +1,26 @@
 //! News of the run that is open.
 
-use super::{Effect, RunMsg, health, news, preflight, what_if};
+use super::{Effect, RunMsg, go, health, news, preflight, what_if};
 use crate::model::{
-    Busy, Cause, Change, Health, Model, Overlay, Recording, RunId, RunResult, Screen, Withdrawn, ui::Ask,
+    Busy, Cause, Change, Health, Live, Model, Overlay, Recording, RunId, RunResult, Screen, Withdrawn,
+    ui::Ask,
 };
 use mission::{Event, EventKind, Order, Severity};
 
-/// Takes in news of a run. News of one that is not open any more is late and dropped.
+/// Takes in news of a run. News of one that is not open any more is late and dropped; of one that may stay open, because
+/// the next cannot be opened, it is taken in, but nothing follows from it.
 pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
+    if let Some(before) = model.live.before.take_if(|before| before.id == id) {
+        let next = std::mem::replace(&mut model.live, *before);
+        hear(model, id, msg);
+        model.live = Live { before: Some(Box::new(std::mem::take(&mut model.live))), ..next };
+        return Vec::new();
+    }
     if id != model.live.id {
         return Vec::new();
     }
     match msg {
-        RunMsg::OpenFailed(why) => {
-            model.live.is_opening = false;
-            model.live.failure = Some(why);
-        }
+        RunMsg::OpenFailed(why) => go::not_opened(model, why),
         RunMsg::Events(events) => {
             model.live.heard_mono_s = model.console.now.mono_s;
             for event in &events {
@@ -77,7 +82,7 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
 fn take(model: &mut Model, event: &Event) {
     let Change { withdrawn, notice, answered } = model.live.run.fold(event);
     match &event.kind {
-        EventKind::RunOpened(_) => model.live.is_opening = false,
+        EventKind::RunOpened(_) => (model.live.is_opening, model.live.before) = (false, None),
         EventKind::Ended { .. } => (model.live.asked, model.live.hold_asked) = (None, false),
         _ => {}
     }

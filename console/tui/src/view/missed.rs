@@ -6,7 +6,7 @@ use crate::model::Pane;
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use report::account::Account;
+use report::account::{Account, Area, MissReason};
 
 /// The account of the floor of a run that is over.
 pub(super) fn account<'a>(look: &Look<'a>) -> Option<&'a Account> {
@@ -21,11 +21,26 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let mut lines: Vec<_> = account
         .missed
         .iter()
-        .map(|area| look.line([(Role::Text, format!(" {}", text::fit(&area.to_string(), columns)))]))
+        .map(|area| look.line([(Role::Text, format!(" {}", row(area, columns)))]))
         .take(usize::from(inner.height))
         .collect();
     if lines.is_empty() {
         lines.push(look.line([(Role::Good, " None.".into())]));
     }
     fill(frame, area, block, lines);
+}
+
+fn row(area: &Area<MissReason>, columns: usize) -> String {
+    let Area { at, area_m2, .. } = area;
+    let place =
+        format!("{} m² at {}, {} m", text::number(*area_m2, 2), text::number(at.x, 1), text::number(at.y, 1));
+    text::wording([area.to_string(), format!("{place}: {}", brief(area)), place], columns)
+}
+
+/// The reason for most of an area, and how many more there are.
+pub(super) fn brief(area: &Area<MissReason>) -> String {
+    match area.causes.len().saturating_sub(1) {
+        0 => area.reason.briefly().to_owned(),
+        more => format!("{} +{more}", area.reason.briefly()),
+    }
 }

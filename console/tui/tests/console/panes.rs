@@ -71,7 +71,15 @@ fn result() -> Screen {
 /// The summary of a run that missed an area.
 fn missed_summary() -> Summary {
     let area = serde_json::json!({
-        "at": [1.0, 2.0], "low": [0.5, 1.5], "high": [1.5, 2.5], "area_m2": 0.75, "plate": "R-03-05", "reason": "not_reached"
+        "at": [1.0, 2.0], "low": [0.5, 1.5], "high": [1.5, 2.5], "area_m2": 0.75, "plate": "R-03-05", "reason": "beyond_reel",
+        "causes": [
+            { "reason": "beyond_reel", "area_m2": 0.5, "measure": null,
+              "text": "not planned: 1.3 m beyond the reel, lanes within 12.4 m of the anchor" },
+            { "reason": "position_uncertain", "area_m2": 0.2, "measure": null,
+              "text": "passed with position error 0.24 m, limit 0.15 m" },
+            { "reason": "clearance", "area_m2": 0.05, "measure": null,
+              "text": "not planned: 0.31 m from column C-north-east, hull and clearance 0.35 m" },
+        ]
     });
     let shares = serde_json::json!({
         "area_m2": 1011.8, "scanned": 1.0, "missed": 0.0, "unreachable": 0.0, "margin": 0.0
@@ -79,7 +87,7 @@ fn missed_summary() -> Summary {
     let slivers = serde_json::json!({ "count": 0, "area_m2": 0.0 });
     let floor = serde_json::json!({
         "cell_m": 0.1, "swath_m": 0.6, "position_limit_m": 0.15, "whole": shares, "reachable": shares,
-        "critical_zone": { "width_m": 0.075, "scanned": null, "done": true, "why": null },
+        "critical_zone": { "width_m": 0.075, "length_m": 113.1, "done_m": 24.6, "scanned": 0.2, "done": false, "why": null },
         "plates": [], "missed": [area], "slivers": slivers, "unreachable": [],
     });
     Summary { floor: Some(serde_json::from_value(floor).unwrap()), ..Summary::default() }
@@ -107,7 +115,8 @@ fn lose_fix(screen: &mut Screen) -> Vec<Event> {
 
 /// Whether a line holds words that others chose: of the log, of an alarm (the only lines so far indented), of a fault.
 fn is_free(line: &str) -> bool {
-    line.starts_with("   ") || ["T+00:", "fault", "rejected: "].iter().any(|word| line.contains(word))
+    let is_indented = line.starts_with("   ") && !line.trim_start().starts_with(|c: char| c.is_ascii_digit());
+    is_indented || ["T+00:", "fault", "rejected: "].iter().any(|word| line.contains(word))
 }
 
 #[test]

@@ -558,6 +558,29 @@ fn another_mission_is_opened_only_when_none_is_in_progress() {
 }
 
 #[test]
+fn a_scenario_that_cannot_be_opened_leaves_the_ready_mission_open() {
+    let mut screen = Screen::idle();
+    screen.model.live.source = Some(Source::Demo);
+    let (ready, id) = (screen.model.live.run.clone(), screen.model.live.id);
+    let scenarios = vec![listed("one", None)];
+    screen.send(Msg::Found(Box::new(Found { scenarios, ..Found::default() })));
+    screen.type_text("1");
+    screen.press([Key::Enter]);
+    let opening = screen.model.live.id;
+    assert!(screen.model.live.is_opening);
+    // What it says meanwhile is not lost.
+    let prepared = screen.mission.wait(1);
+    screen.send(Msg::Run(id, RunMsg::Events(prepared)));
+    screen.send(Msg::Run(opening, RunMsg::OpenFailed("one.toml:3:1: unknown key `tnak`".into())));
+    assert_eq!(notice(&screen), "not opened: one.toml:3:1: unknown key `tnak`");
+    assert_eq!(screen.model.ui.screen, tui::model::Screen::Home);
+    let live = &screen.model.live;
+    assert!(live.waits() && live.id == id && live.before.is_none() && live.failure.is_none());
+    assert_eq!(live.run.about, ready.about);
+    assert!(live.run.clock.t_s > ready.clock.t_s, "{} {}", live.run.clock.t_s, ready.clock.t_s);
+}
+
+#[test]
 fn a_run_that_ends_shows_its_result_and_what_comes_next() {
     let mut screen = Screen::running();
     let ended = screen.mission.ended(Outcome::Complete, "task complete");

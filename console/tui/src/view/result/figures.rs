@@ -14,7 +14,8 @@ type Figure = [String; 4];
 
 /// Rows of the table, in some columns.
 pub(super) fn rows(look: &Look, result: &RunResult, columns: u16) -> u16 {
-    2 + (reason(result, columns.into()).len() + figures(look, result).len()) as u16
+    let words = reason(result, columns.into()).len() + trouble(look, result, columns.into()).len();
+    1 + (words + figures(look, result).len()) as u16
 }
 
 /// Why the mission ended, in lines.
@@ -41,7 +42,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, title: &str, resu
             (Role::Dim, format!("{limit:>width$}")),
         ])
     }));
-    lines.push(look.line(trouble(look, result)));
+    lines.extend(trouble(look, result, columns).into_iter().map(|parts| look.line(parts)));
     fill(frame, area, block, lines);
 }
 
@@ -117,15 +118,16 @@ fn dash() -> String {
     "-".to_owned()
 }
 
-/// Holds, collisions, faults and alarms.
-fn trouble(look: &Look, result: &RunResult) -> Parts {
+/// Holds, collisions, faults and alarms, in lines.
+fn trouble(look: &Look, result: &RunResult, columns: usize) -> Vec<Parts> {
     let summary = &result.summary;
     let alarms = look.run.alarms.open().count();
     let words = format!(
-        " Holds {}, collisions {}, planner faults {}, alarms open {alarms}.",
+        "Holds {}, collisions {}, planner faults {}, alarms open {alarms}.",
         summary.holds,
         summary.collisions.unwrap_or(0),
         summary.planner_faults
     );
-    vec![(Role::Text, words)]
+    let lines = text::wrap(&words, columns.saturating_sub(1)).into_iter();
+    lines.map(|line| vec![(Role::Text, format!(" {line}"))]).collect()
 }
