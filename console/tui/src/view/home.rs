@@ -14,8 +14,9 @@ use ratatui::text::Line;
 
 /// Rows of the attention pane with its frame, at most.
 const ATTENTION: u16 = 10;
-/// Rows about the selected scenario.
-const ABOUT: usize = 3;
+/// Columns of the task of a scenario, and the least for how its last run ended.
+const TASK: usize = 7;
+const END: usize = 10;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let Some(found) = &look.model.home.found else {
@@ -40,7 +41,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
         Constraint::Length(rows.min(if wide { ATTENTION } else { 6 })),
     ])
     .areas(area);
-    let share = if wide { Constraint::Length(62) } else { Constraint::Percentage(50) };
+    let share = if wide { Constraint::Length(62) } else { Constraint::Percentage(53) };
     let [left, right] = Layout::horizontal([share, Constraint::Fill(1)]).areas(lists);
     scenarios(look, frame, left);
     if wide {
@@ -71,7 +72,9 @@ fn scenarios(look: &Look, frame: &mut Frame, area: Rect) {
     let names = name_columns(&listed, columns);
     let rows: Vec<Parts> = listed.iter().map(|entry| scenario_row(look, entry, names, columns)).collect();
     let selected = (home.list == HomeList::Scenarios).then_some(home.scenario);
-    let about = if height > 12 { ABOUT } else { 0 };
+    // As many rows as the longest text takes: the list keeps its height whatever is selected.
+    let longest = listed.iter().map(|entry| about_lines(look, entry, columns).len()).max().unwrap_or(0);
+    let about = if height > 12 { longest.min(height / 2) } else { 0 };
     let shown = table::window(selected.unwrap_or(0), rows.len(), height - about);
     table::place(look, inner, Rows::Scenarios, shown);
     let mut lines = table::rows(look, rows, selected, (columns, height - about));
@@ -80,14 +83,14 @@ fn scenarios(look: &Look, frame: &mut Frame, area: Rect) {
     }
     lines.resize(height - about, Line::default());
     lines.extend(
-        listed.get(home.scenario).map_or_else(Vec::new, |entry| about_lines(look, entry, columns, about)),
+        listed.get(home.scenario).into_iter().flat_map(|entry| about_lines(look, entry, columns)).take(about),
     );
     fill(frame, area, block, lines);
 }
 
 fn name_columns(listed: &[&ScenarioEntry], columns: usize) -> usize {
     let widest = listed.iter().map(|entry| text::width(&entry.name)).max().unwrap_or(0);
-    (widest + 1).min(columns / 2)
+    (widest + 1).min(columns.saturating_sub(TASK + END + 1))
 }
 
 fn scenario_row(look: &Look, entry: &ScenarioEntry, names: usize, columns: usize) -> Parts {
@@ -96,7 +99,7 @@ fn scenario_row(look: &Look, entry: &ScenarioEntry, names: usize, columns: usize
     if entry.problem.is_some() {
         return vec![name, (Role::Warn, text::fit("INVALID", rest))];
     }
-    let mut parts = vec![name, (Role::Dim, text::column(&entry.task, 7))];
+    let mut parts = vec![name, (Role::Dim, text::column(&entry.task, TASK))];
     if rest >= 34 {
         parts.push((Role::Dim, text::column(&entry.tank, 9)));
         parts.push((Role::Dim, text::column(&entry.planner, 12)));
@@ -111,19 +114,28 @@ fn scenario_row(look: &Look, entry: &ScenarioEntry, names: usize, columns: usize
 fn end(run: &PastRun) -> String {
     match run.reachable {
         Some(share) if run.end == "complete" => format!("{} %", text::percent(share)),
-        _ => run.end.clone(),
+        _ => end_word(run).to_owned(),
     }
 }
 
-fn about_lines(look: &Look, entry: &ScenarioEntry, columns: usize, rows: usize) -> Vec<Line<'static>> {
+/// How a run ended, in at most ten columns.
+fn end_word(run: &PastRun) -> &str {
+    match run.end.as_str() {
+        "RECORDING FAILED" => "REC FAILED",
+        "time_limit" => "time limit",
+        other => other,
+    }
+}
+
+fn about_lines(look: &Look, entry: &ScenarioEntry, columns: usize) -> Vec<Line<'static>> {
     let words = match (&entry.problem, entry.expected.is_empty()) {
         (Some(problem), _) => problem.clone(),
         (None, true) => format!("{}.", entry.about),
         (None, false) => format!("{}. Expected: {}.", entry.about, entry.expected),
     };
     let role = if entry.problem.is_some() { Role::Warn } else { Role::Dim };
-    let wrapped = text::wrap(&words, columns.saturating_sub(2)).into_iter().take(rows);
-    wrapped.map(|line| look.line([(role, format!(" {line}"))])).collect()
+    let wrapped = text::wrap(&words, columns.saturating_sub(2));
+    wrapped.into_iter().map(|line| look.line([(role, format!(" {line}"))])).collect()
 }
 
 fn runs(look: &Look, frame: &mut Frame, area: Rect) {
@@ -133,7 +145,9 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
     let block = look.block(border(look, HomeList::Runs), &format!("Past runs  {}", listed.len()), logs);
     let inner = block.inner(area);
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height));
-    let rows: Vec<Parts> = listed.iter().map(|run| run_row(run, columns)).collect();
+    let names = listed.iter().map(|run| text::width(name_of(run)) + 1).max().unwrap_or(0);
+    let widths = run_columns(names, columns);
+    let rows: Vec<Parts> = listed.iter().map(|run| run_row(run, widths)).collect();
     let selected = (home.list == HomeList::Runs).then_some(home.run);
     table::place(look, inner, Rows::Runs, table::window(selected.unwrap_or(0), rows.len(), height));
     let mut lines = table::rows(look, rows, selected, (columns, height));
@@ -143,23 +157,40 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, lines);
 }
 
-fn run_row(run: &PastRun, columns: usize) -> Parts {
-    let wide = columns >= 50;
-    let time = run.mission_time_s.map_or_else(|| "-".into(), text::clock);
-    let reach = run.reachable.map_or_else(String::new, |share| format!("{} %", text::percent(share)));
-    let is_sound = matches!(run.end.as_str(), "complete" | "aborted");
-    let role = if is_sound { Role::Text } else { Role::Warn };
-    let name = if run.scenario.is_empty() { &run.name } else { &run.scenario };
-    let (began, room) =
-        if wide { (12, columns.saturating_sub(12 + 10 + 9 + 8)) } else { (0, columns.saturating_sub(11)) };
-    let mut parts =
-        vec![(Role::Dim, text::column(&run.began, began)), (Role::Text, text::column(name, room))];
-    parts.push((role, text::column(&run.end, 10)));
-    if wide {
-        parts.push((Role::Dim, text::column(&time, 9)));
-        parts.push((Role::Text, format!("{reach:>7}")));
+/// Columns of when a run began, how long it took and what it scanned, each with a blank.
+const BEGAN: usize = 12;
+const TIME: usize = 9;
+const REACH: usize = 7;
+
+/// What is left out of the rows of runs so that their names fit: the time first, then all but the end.
+fn run_columns(names: usize, columns: usize) -> [usize; 4] {
+    let least = 1 + names + END + 1;
+    let room = |rest: usize| columns.saturating_sub(1 + END + 1 + rest);
+    if columns >= least + BEGAN + TIME + REACH {
+        [BEGAN, room(BEGAN + TIME + REACH), TIME, REACH]
+    } else if columns >= least + BEGAN + REACH {
+        [BEGAN, room(BEGAN + REACH), 0, REACH]
+    } else {
+        [0, room(0), 0, 0]
     }
-    parts
+}
+
+fn name_of(run: &PastRun) -> &str {
+    if run.scenario.is_empty() { &run.name } else { &run.scenario }
+}
+
+fn run_row(run: &PastRun, [began, name, time, reach]: [usize; 4]) -> Parts {
+    let took = run.mission_time_s.map_or_else(|| "-".into(), text::clock);
+    let scanned = run.reachable.map_or_else(String::new, |share| format!("{} %", text::percent(share)));
+    let is_sound = matches!(run.end.as_str(), "complete" | "aborted");
+    let parts = [
+        (Role::Dim, text::column(&run.began, began)),
+        (Role::Text, text::column(name_of(run), name)),
+        (if is_sound { Role::Text } else { Role::Warn }, text::column(end_word(run), END + 1)),
+        (Role::Dim, text::column(&took, time)),
+        (Role::Text, if reach > 0 { format!("{scanned:>reach$}") } else { String::new() }),
+    ];
+    parts.into()
 }
 
 fn plugins(look: &Look, frame: &mut Frame, area: Rect) {
@@ -168,11 +199,11 @@ fn plugins(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = usize::from(block.inner(area).width);
     let plugins: std::collections::BTreeSet<&str> =
         console.planners.iter().map(|info| info.plugin.as_str()).collect();
-    let found = format!(" {} planners in {} plugins", console.planners.len(), plugins.len());
+    let found = format!(" planners {}, plugins {}", console.planners.len(), plugins.len());
     let mut lines = vec![look.line([(Role::Text, found)])];
     lines.extend(console.refused.iter().take(2).map(|refused| {
         let words = format!(" REFUSED {}: {}", refused.plugin, refused.reason);
-        look.line([(Role::Watch, text::fit(&words, columns))])
+        look.line([(Role::Watch, text::clauses(&words, columns))])
     }));
     fill(frame, area, block, lines);
 }

@@ -64,25 +64,26 @@ fn row(plugin: &Plugin<'_>, name: usize, columns: usize) -> Parts {
     ];
     let rest = columns.saturating_sub(name + 9 + 1);
     let words = match plugin.planners.first() {
-        None => plugin.reason.to_owned(),
+        None => text::clauses(plugin.reason, rest),
         Some(first) => {
             let ids: Vec<&str> = plugin.planners.iter().map(|info| info.id.as_str()).collect();
             let hash = first.sha256.get(..HASH).unwrap_or(&first.sha256);
-            format!("{:<5}{hash:<13} {}", first.abi, ids.join(" "))
+            let about = format!("{:<5}{hash:<13} ", first.abi);
+            let room = rest.saturating_sub(text::width(&about));
+            about + &text::names(&ids, room)
         }
     };
-    parts.push((Role::Text, text::fit(&words, rest)));
+    parts.push((Role::Text, words));
     parts
 }
 
 fn detail(look: &Look, frame: &mut Frame, area: Rect, plugin: &Plugin<'_>) {
     let block = look.block(Role::Border, plugin.file, "");
     let columns = usize::from(block.inner(area).width).saturating_sub(1);
-    let mut rows: Vec<Parts> =
-        vec![vec![(Role::Dim, " State  ".into()), (role(plugin.state), state_words(plugin.state))]];
     let wrapped = |role: Role, words: &str| -> Vec<Parts> {
         text::wrap(words, columns).into_iter().map(|line| vec![(role, format!(" {line}"))]).collect()
     };
+    let mut rows = wrapped(role(plugin.state), state_words(plugin.state));
     if !plugin.reason.is_empty() {
         rows.extend(wrapped(Role::Warn, plugin.reason));
     }
@@ -101,12 +102,12 @@ fn detail(look: &Look, frame: &mut Frame, area: Rect, plugin: &Plugin<'_>) {
     fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
 }
 
-fn state_words(state: PluginState) -> String {
+fn state_words(state: PluginState) -> &'static str {
     match state {
-        PluginState::Ready => "ready".into(),
-        PluginState::Active => "active: one of its planners drives".into(),
-        PluginState::Changed => "CHANGED on disk; P: choose the planner again to use the new build".into(),
-        PluginState::Refused => "REFUSED".into(),
+        PluginState::Ready => "ready",
+        PluginState::Active => "active: one of its planners drives",
+        PluginState::Changed => "CHANGED on disk; P: choose the planner again to use the new build",
+        PluginState::Refused => "REFUSED",
     }
 }
 

@@ -68,6 +68,27 @@ pub(super) fn wording<const N: usize>(wordings: [String; N], columns: usize) -> 
     wordings.into_iter().nth(fits).unwrap_or_default()
 }
 
+/// The leading clauses of a sentence that fit into some columns, for a row whose whole sentence stands elsewhere; an
+/// ellipsis only if not even the first clause fits.
+pub(super) fn clauses(sentence: &str, columns: usize) -> String {
+    if width(sentence) <= columns {
+        return sentence.to_owned();
+    }
+    let ends = sentence.match_indices([';', ':', ',']).map(|(at, _)| at);
+    let ends = ends.filter(|at| sentence[at + 1..].starts_with(' '));
+    let fitting = ends.map(|at| &sentence[..at]).filter(|head| width(head) <= columns).last();
+    fitting.map_or_else(|| fit(sentence, columns), str::to_owned)
+}
+
+/// As many of some names as fit, and how many more there are.
+pub(super) fn names(names: &[&str], columns: usize) -> String {
+    let wordings = (0..names.len()).map(|left_out| match left_out {
+        0 => names.join(" "),
+        _ => format!("{} +{left_out}", names[..names.len() - left_out].join(" ")),
+    });
+    wordings.into_iter().find(|words| width(words) <= columns).unwrap_or_else(|| format!("{}", names.len()))
+}
+
 /// A sentence without its full stop, with a capital letter.
 pub(super) fn capitalized(sentence: &str) -> String {
     let mut letters = sentence.chars();
@@ -149,6 +170,16 @@ mod tests {
     fn the_fullest_wording_that_fits_is_taken() {
         let at = |columns| wording(["standing still".to_owned(), "still".to_owned()], columns);
         assert_eq!([at(14), at(13), at(2)], ["standing still", "still", "still"]);
+    }
+
+    #[test]
+    fn a_sentence_loses_whole_clauses_and_a_list_whole_names() {
+        let sentence = "12 MB free, 91 MB needed; delete runs";
+        let at = |columns| clauses(sentence, columns);
+        assert_eq!([at(37), at(36), at(23)], [sentence, "12 MB free, 91 MB needed", "12 MB free"]);
+        assert_eq!([at(5), clauses("at 14:10:00", 9)], ["12 M…", "at 14:10…"]);
+        let at = |columns| names(&["apf", "rpf", "navfn"], columns);
+        assert_eq!([at(13), at(12), at(6), at(1)], ["apf rpf navfn", "apf rpf +1", "apf +2", "3"]);
     }
 
     #[test]

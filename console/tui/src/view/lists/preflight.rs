@@ -78,10 +78,13 @@ fn row(check: &Check, by_hand: bool, room: usize) -> Row {
         (CheckOutcome::Failed, true) => (Role::Crit, "[    ]"),
         (CheckOutcome::Failed, false) => (Role::Crit, "[FAIL]"),
     };
+    let room = room.saturating_sub(7);
     let words = if by_hand {
-        format!(" by hand: {}", check.what)
+        text::clauses(&format!(" by hand: {}", check.what), room)
     } else {
-        format!(" {} {}", text::column(&check.what, WHAT), check.found)
+        let what = format!(" {} ", text::column(&check.what, WHAT));
+        let found = text::clauses(&check.found, room.saturating_sub(text::width(&what)));
+        what + &found
     };
-    vec![(role, mark.to_owned()), (Role::Text, text::fit(&words, room.saturating_sub(7)))]
+    vec![(role, mark.to_owned()), (Role::Text, words)]
 }
