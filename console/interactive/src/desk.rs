@@ -38,7 +38,7 @@ use tui::{Job, Msg, RunId, RunMsg, Source, Speed};
 /// What the desk is asked for.
 pub(super) enum Request {
     /// Close the run that is open and open another one; it stays open if that cannot be.
-    Open { id: RunId, source: Source, planner: Option<PlannerChoice> },
+    Open { id: RunId, source: Source, planner: Option<PlannerChoice>, speed: Speed },
     /// Look at what the start depends on.
     Check { needed_bytes: u64 },
     /// Have another planner plan the mission that is open.
@@ -95,6 +95,7 @@ pub(super) struct Desk {
     disk: Arc<Disk>,
     /// What the command line changes in the scenario that it names.
     settings: Settings,
+    /// The pace at which runs are opened.
     speed: Speed,
     drill: Option<Drill>,
     current: Current,
@@ -155,9 +156,9 @@ impl Desk {
     fn launch(&mut self, id: RunId, scenario: &Scenario, flight: Flight) -> anyhow::Result<()> {
         let Tools { logs, plugins, outbox, .. } = &self.tools;
         let screen = RunOutbox { run: id, outbox: outbox.clone() };
-        let engine = Engine::start((scenario, flight), (logs, plugins), screen, self.speed, self.drill)?;
-        self.current.set(Some(engine.handle()));
-        self.engine = Some(engine);
+        let screen = (&self.current, screen);
+        let started = Engine::start((scenario, flight), (logs, plugins), screen, self.speed, self.drill);
+        self.engine = Some(started.inspect_err(|_| self.current.set(None))?);
         self.opened = Some((id, Arc::new(scenario.clone())));
         Ok(())
     }
@@ -172,7 +173,10 @@ impl Desk {
     fn work(mut self, asked: &Receiver<Request>) -> anyhow::Result<Option<Closed>> {
         for request in asked {
             match request {
-                Request::Open { id, source, planner } => self.replace(id, &source, planner)?,
+                Request::Open { id, source, planner, speed } => {
+                    self.speed = speed;
+                    self.replace(id, &source, planner)?;
+                }
                 Request::Check { needed_bytes } => self.check(needed_bytes),
                 Request::Compare(choice) => self.compare(choice),
                 Request::StopComparing => self.comparing = None,

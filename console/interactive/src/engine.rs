@@ -9,7 +9,7 @@ mod waiting;
 
 use super::{
     inbox::RunOutbox,
-    line::{EngineHandle, Request, line},
+    line::{Current, EngineHandle, Request, line},
     pace::{Reached, next_due, window},
 };
 use crate::Drill;
@@ -48,7 +48,7 @@ impl Engine {
     pub(super) fn start(
         (scenario, flight): (&Scenario, Flight),
         (logs, plugins): (&Path, &PluginDirs),
-        screen: RunOutbox,
+        (current, screen): (&Current, RunOutbox),
         speed: Speed,
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
@@ -59,6 +59,8 @@ impl Engine {
             // The receiver lives as long as the host.
             let _ = progress.send((ask, at.clone()));
         }));
+        // Before the screen hears of the run, so that its first order finds an engine.
+        current.set(Some(handle.clone()));
         // Before the thread runs, so that the first frame of the screen shows the scenario and every key counts.
         screen.send(RunMsg::Events(vec![flight.opened()]));
         let now = Instant::now();
@@ -85,11 +87,6 @@ impl Engine {
         };
         let thread = thread::Builder::new().name("engine".into()).spawn(move || engine.fly())?;
         Ok(Self { handle, thread })
-    }
-
-    /// A handle to the engine.
-    pub(super) fn handle(&self) -> EngineHandle {
-        self.handle.clone()
     }
 
     /// Ends the run, closes its files and waits for that; less time is allowed after a signal (`hurry`).

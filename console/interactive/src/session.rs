@@ -68,7 +68,9 @@ impl Session {
 
     fn carry_out(&self, effect: Effect) -> Option<Effect> {
         match effect {
-            Effect::Open { id, source, planner } => self.desk.request(Request::Open { id, source, planner }),
+            Effect::Open { id, source, planner, speed } => {
+                self.desk.request(Request::Open { id, source, planner, speed });
+            }
             Effect::Check { needed_bytes } => self.desk.request(Request::Check { needed_bytes }),
             Effect::Compare(choice) => self.desk.request(Request::Compare(choice)),
             Effect::Forecast(choices) => self.desk.request(Request::Forecast(choices)),

@@ -33,7 +33,10 @@ pub fn missed_scan(past: Vec<Past>, min_area_m2: f64, shown_name: &str) -> anyho
     let missed = report::rescan(&past, min_area_m2, MOST_BOXES).map_err(bad_input)?;
     if missed.boxes.is_empty() {
         let why = missed.why_nothing(min_area_m2);
-        return Err(bad_input(format!("{}{why}; --min-area-m2 sets the limit", missed.human_out_of_reach())));
+        return Err(bad_input(format!(
+            "{why}; --min-area-m2 sets the limit\n{}",
+            missed.human_out_of_reach().trim_end()
+        )));
     }
     let names: Vec<&str> = past.iter().map(|run| run.name.as_str()).collect();
     let last = opened.last().context("there is no run")?;

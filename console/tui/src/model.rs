@@ -54,6 +54,8 @@ use serde::{Deserialize, Serialize};
 
 /// Seconds for which a refusal or a piece of news stays in the line above the keys.
 const NOTICE_S: f64 = 8.0;
+/// Characters that an operator reads in a second beside other work.
+const READ_PER_S: f64 = 10.0;
 /// Seconds without any event after which a running mission counts as silent.
 const SILENCE_S: f64 = 2.0;
 
@@ -144,7 +146,9 @@ impl Model {
 
     /// Shows the operator a message in the line above the keys.
     pub(crate) fn say(&mut self, severity: Severity, text: impl Into<String>) {
-        self.say_for(NOTICE_S, severity, text);
+        let text = text.into();
+        let reading_s = text.chars().count() as f64 / READ_PER_S;
+        self.say_for(NOTICE_S.max(reading_s), severity, text);
     }
 
     /// Shows the operator a message that is true for so many seconds only.

@@ -88,7 +88,7 @@ fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) 
     let [top, body, next, keys] = Layout::vertical([
         Constraint::Length(1),
         Constraint::Fill(1),
-        Constraint::Length(1),
+        Constraint::Length(confirm::rows(look, area.width)),
         Constraint::Length(1),
     ])
     .areas(area);

@@ -68,14 +68,17 @@ pub(super) fn open(model: &mut Model, source: Source, planner: Option<PlannerCho
         return refuse(model, why);
     }
     let id = RunId(model.live.id.0 + 1);
+    // The pace that the screen shows is the one that the operator has set, in this run as in the one before.
+    let speed = model.live.speed;
     let before = std::mem::take(&mut model.live);
     // Of runs that are opened in haste, the last that was open is kept.
     let before =
         if before.is_opening { before.before } else { before.source.is_some().then(|| Box::new(before)) };
-    model.live = Live { id, source: Some(source.clone()), is_opening: true, before, ..Live::default() };
+    model.live =
+        Live { id, source: Some(source.clone()), is_opening: true, before, speed, ..Live::default() };
     (model.ui.map, model.ui.cursor) = (crate::model::ui::MapView::default(), None);
     model.ui.go(Screen::Plan);
-    vec![Effect::Open { id, source, planner }]
+    vec![Effect::Open { id, source, planner, speed }]
 }
 
 /// A scenario cannot be opened: the run that was open before stays open, if there is one.
@@ -88,6 +91,8 @@ pub(super) fn not_opened(model: &mut Model, why: String) {
     model.live = *before;
     model.ui.screen = model.ui.back.pop().unwrap_or(Screen::Home);
     news(model, &Cause::Console, Severity::Warn, format!("not opened: {why}"));
+    // The rest is in the events.
+    model.say(Severity::Warn, format!("not opened: {}", why.lines().next().unwrap_or_default()));
 }
 
 /// Opens the scenario of the run that is open once more, with the planner that it had.

@@ -196,6 +196,8 @@ pub enum Effect {
         source: Source,
         /// The planner to use instead of the scenario's.
         planner: Option<PlannerChoice>,
+        /// How fast it shall go.
+        speed: Speed,
     },
     /// Look at everything outside the screen that the start depends on.
     Check {

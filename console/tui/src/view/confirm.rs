@@ -12,8 +12,35 @@ use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
+use ratatui::widgets::Paragraph;
+
+/// Rows of a message that is longer than the screen is wide, at most.
+const MOST_ROWS: usize = 3;
+
+/// Rows that the line takes: more than one only for a long message.
+pub(super) fn rows(look: &Look, columns: u16) -> u16 {
+    long_message(look.model, columns).map_or(1, |(_, lines)| lines.len() as u16)
+}
+
+/// A message that one line does not hold, in as many as it takes.
+fn long_message(model: &Model, columns: u16) -> Option<(Role, Vec<String>)> {
+    let has_line = matches!(model.ui.overlay, Overlay::Filter(_) | Overlay::Shelve(_));
+    if has_line || asked(model).is_some() {
+        return None;
+    }
+    model.notice()?;
+    let (role, clauses) = next::clauses(model);
+    let mut lines = text::wrap(&clauses.join(" "), usize::from(columns).saturating_sub(2));
+    lines.truncate(MOST_ROWS);
+    (lines.len() > 1).then_some((role, lines))
+}
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    if let Some((role, lines)) = long_message(look.model, area.width).filter(|_| area.height > 1) {
+        let lines: Vec<Line> =
+            lines.into_iter().map(|line| look.line([(role, format!(" {line}"))])).collect();
+        return frame.render_widget(Paragraph::new(lines), area);
+    }
     if let Overlay::Filter(line) = &look.model.ui.overlay {
         return filter(look, frame, area, line);
     }

@@ -122,7 +122,12 @@ fn commands_take_values() {
     let set = Effect::Order(Order::SetParameter { key, value: ParamValue::Float(1.5) });
     assert_eq!(run(&mut Screen::running(), "set rpf_gain=1.5"), [set]);
     let open = |planner| {
-        vec![Effect::Open { id: RunId(2), source: Source::File("cover-circle.toml".into()), planner }]
+        vec![Effect::Open {
+            id: RunId(2),
+            source: Source::File("cover-circle.toml".into()),
+            planner,
+            speed: Speed::default(),
+        }]
     };
     assert_eq!(run(&mut with_home(Screen::idle()), "open cover-circle"), open(None));
     assert_eq!(

@@ -546,9 +546,11 @@ fn another_mission_is_opened_only_when_none_is_in_progress() {
     assert_eq!(notice(&screen), "two.toml:3:1: unknown key");
     screen.type_text("k");
     let source = Source::File("one.toml".into());
-    let opens = Effect::Open { id: RunId(2), source, planner: None };
+    screen.model.live.speed = Speed::Times(4.0);
+    let opens = Effect::Open { id: RunId(2), source, planner: None, speed: Speed::Times(4.0) };
     assert_eq!(screen.press([Key::Enter]), [opens]);
     assert_eq!(screen.model.ui.screen, tui::model::Screen::Plan);
+    assert_eq!(screen.model.live.speed, Speed::Times(4.0));
     // What the run before still says is late.
     let late = screen.mission.drive(3);
     screen.hear(RunMsg::Events(late));
@@ -601,7 +603,12 @@ fn a_run_that_ends_shows_its_result_and_what_comes_next() {
     assert_eq!(screen.type_text("r"), []);
     assert!(notice(&screen).starts_with("planner rpf does not support coverage missions"));
     screen.model.live.run.planning.info.iter_mut().for_each(|planner| planner.covers = true);
-    let again = Effect::Open { id: RunId(2), source: Source::Rescan(vec![run()]), planner: None };
+    let again = Effect::Open {
+        id: RunId(2),
+        source: Source::Rescan(vec![run()]),
+        planner: None,
+        speed: Speed::default(),
+    };
     assert_eq!(screen.type_text("r"), [again]);
 }
 
