@@ -54,8 +54,14 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
         runs(look, frame, right);
     }
     let block = look.block(Role::Border, &format!("Attention  {}", open_points(found)), &disk(found));
-    let lines = attention_rows(found).into_iter().map(|parts| look.line(parts)).collect();
-    fill(frame, attention, block, lines);
+    let height = usize::from(block.inner(attention).height);
+    let mut rows = attention_rows(found);
+    if rows.len() > height {
+        let more = rows.len() - height.saturating_sub(1);
+        rows.truncate(height.saturating_sub(1));
+        rows.push(vec![(Role::Watch, format!(" {more} more points; `tankops runs` lists every run"))]);
+    }
+    fill(frame, attention, block, rows.into_iter().map(|parts| look.line(parts)).collect());
 }
 
 fn border(look: &Look, list: HomeList) -> Role {
@@ -79,7 +85,12 @@ fn scenarios(look: &Look, frame: &mut Frame, area: Rect) {
     table::place(look, inner, Rows::Scenarios, shown);
     let mut lines = table::rows(look, rows, selected, (columns, height - about));
     if lines.is_empty() {
-        lines.push(look.line([(Role::Dim, " No scenarios here; `tankops console FILE` opens one.".into())]));
+        let words = if home.filter.is_empty() {
+            " No scenarios here; `tankops console FILE` opens one.".to_owned()
+        } else {
+            format!(" No scenario matches `{}`.", text::fit(&home.filter, columns.saturating_sub(26)))
+        };
+        lines.push(look.line([(Role::Dim, words)]));
     }
     lines.resize(height - about, Line::default());
     lines.extend(
@@ -152,7 +163,8 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
     table::place(look, inner, Rows::Runs, table::window(selected.unwrap_or(0), rows.len(), height));
     let mut lines = table::rows(look, rows, selected, (columns, height));
     if lines.is_empty() {
-        lines.push(look.line([(Role::Dim, " No runs yet.".into())]));
+        let words = if home.filter.is_empty() { " No runs yet." } else { " No run matches." };
+        lines.push(look.line([(Role::Dim, words.into())]));
     }
     fill(frame, area, block, lines);
 }

@@ -3,6 +3,7 @@
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
+use mission::MissionConfig;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use report::Estimate;
@@ -21,22 +22,61 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let width = columns.saturating_sub(LABEL + 2) / if ghost.is_some() { 2 } else { 1 };
     let head =
         (look.run.planner_id().unwrap_or("-").to_owned(), ghost.map(|(ghost, _)| ghost.choice.id.clone()));
-    let mut rows = vec![row("", Role::Title, head, width)];
+    let (mine, other) = head;
+    let head = ((Role::Title, mine), other.map(|other| (Role::Ghost, other)));
+    let mut rows = vec![row("", head, width)];
     let other = ghost.map(|(_, plan)| &plan.estimate);
     let estimate = live.estimate();
+    let mission = look.run.about.as_ref().map(|about| &about.mission);
     for (label, figure) in FIGURES {
-        let of = |estimate: Option<&Estimate>| {
-            estimate.map_or_else(|| "-".to_owned(), |estimate| figure(estimate, width))
+        let of = |estimate: Option<&Estimate>, role: Role| {
+            let Some(estimate) = estimate else { return (role, "-".to_owned()) };
+            match mission.and_then(|mission| beyond(label, estimate, mission)) {
+                Some(words) => (Role::Warn, words),
+                None => (role, figure(estimate, width)),
+            }
         };
-        rows.push(row(label, Role::Text, (of(estimate), other.map(|other| of(Some(other)))), width));
+        let other = other.map(|other| of(Some(other), Role::Ghost));
+        rows.push(row(label, (of(estimate, Role::Text), other), width));
     }
     fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
 }
 
-fn row(label: &str, role: Role, (mine, other): (String, Option<String>), width: usize) -> Parts {
-    let mut parts = vec![(Role::Dim, format!(" {label:<LABEL$}")), (role, text::column(&mine, width))];
-    parts.extend(other.map(|other| (Role::Ghost, text::column(&other, width))));
-    parts
+/// A cell of the table.
+type Figured = (Role, String);
+
+fn row(label: &str, (mine, other): (Figured, Option<Figured>), width: usize) -> Parts {
+    let cells = std::iter::once(mine).chain(other);
+    let cells = cells.map(|(role, words)| (role, text::column(&words, width)));
+    std::iter::once((Role::Dim, format!(" {label:<LABEL$}"))).chain(cells).collect()
+}
+
+/// A figure that breaks a limit of the mission, with the limit.
+fn beyond(label: &str, estimate: &Estimate, mission: &MissionConfig) -> Option<String> {
+    let metres = |value: f64, limit: f64, decimals| {
+        let words = || format!("{} m > {} m", text::number(value, decimals), text::number(limit, decimals));
+        (value > limit).then(words)
+    };
+    let tether = || Some((estimate.tether.as_ref()?, mission.tether.as_ref()?.limits));
+    match label {
+        "tether out" => {
+            tether().and_then(|(tether, limits)| metres(tether.length_max.value, limits.reel_length_m, 1))
+        }
+        "wrap" => tether().and_then(|(tether, limits)| {
+            let (wrap, limit) = (tether.wrap_max.value.to_degrees(), limits.wrap_max_rad.to_degrees());
+            let words = || format!("{}° > {}°", text::number(wrap, 0), text::number(limit, 0));
+            (wrap > limit).then(words)
+        }),
+        "AE error" => {
+            estimate.accuracy_worst.and_then(|worst| metres(worst.value, mission.position_limit_m, 2))
+        }
+        "time" => {
+            let words =
+                || format!("{} > {}", text::clock(estimate.time_s), text::clock(mission.time_limit_s));
+            (estimate.time_s > mission.time_limit_s).then(words)
+        }
+        _ => None,
+    }
 }
 
 type Figure = fn(&Estimate, usize) -> String;
