@@ -76,7 +76,7 @@ pub(super) fn clauses(sentence: &str, columns: usize) -> String {
     }
     let ends = sentence.match_indices([';', ':', ',']).map(|(at, _)| at);
     let ends = ends.filter(|at| sentence[at + 1..].starts_with(' '));
-    let fitting = ends.map(|at| &sentence[..at]).filter(|head| width(head) <= columns).last();
+    let fitting = ends.map(|at| &sentence[..at]).rfind(|head| width(head) <= columns);
     fitting.map_or_else(|| fit(sentence, columns), str::to_owned)
 }
 
