@@ -39,6 +39,7 @@ impl Flight {
             floor: floor.clone(),
             plates: scenario.plates,
             checklist: scenario.checklist.clone(),
+            measured: None,
         };
         Self {
             simulator: Simulator::new(scenario.sim.clone(), scenario.seed),
