@@ -194,12 +194,7 @@ impl Columns {
         })
     }
 
-    fn heard(
-        &self,
-        cells: &StringRecord,
-        line: u64,
-        range_m: Option<f64>,
-    ) -> Result<Option<Heard>, Problem> {
+    fn heard(&self, cells: &StringRecord, line: u64, range_m: Option<f64>) -> Result<Option<Heard>, Problem> {
         let written = self.cell(cells, STATION);
         let measured = [RANGE, ARRIVAL, DIFFERENCE].into_iter().find(|column| self.has(*column));
         let range_m = match (written.is_empty(), range_m) {
@@ -230,7 +225,11 @@ impl Columns {
             text => {
                 let number = text.parse().ok().filter(|n| (1..=REPETITIONS_MAX).contains(n));
                 number.ok_or_else(|| {
-                    self.problem(line, REPETITIONS, format!("`{text}` is no number from 1 to {REPETITIONS_MAX}"))
+                    self.problem(
+                        line,
+                        REPETITIONS,
+                        format!("`{text}` is no number from 1 to {REPETITIONS_MAX}"),
+                    )
                 })?
             }
         };

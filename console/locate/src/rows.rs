@@ -14,11 +14,7 @@ use std::{
 /// A file that gives rows.
 pub(crate) enum Rows {
     /// Text with a line of names first.
-    Csv {
-        reader: csv::Reader<BufReader<File>>,
-        header: StringRecord,
-        has_commas: bool,
-    },
+    Csv { reader: csv::Reader<BufReader<File>>, header: StringRecord, has_commas: bool },
     /// Messages as JSON objects, whose keys are the names.
     Messages(Messages),
 }

@@ -108,6 +108,13 @@ impl Calibration {
         (self.common().offset_m, self.offset_sigma_m)
     }
 
+    /// A calibration that begins anew where this one came to: cycles are linear about what is believed while they are taken, so
+    /// that taking a session again mends what the first ones were off.
+    #[must_use]
+    pub fn again(&self) -> Self {
+        Self { estimate: self.estimate.clone(), ..Self::new(&self.stations, self.unknowns) }
+    }
+
     /// What is common to all ranges, as far as it is known.
     fn common(&self) -> Common {
         let offset_m = if self.unknowns.has_offset() { self.estimate[self.estimate.len() - 1] } else { 0.0 };
@@ -275,13 +282,11 @@ impl Cycle {
             return Ok(None);
         }
         let position = solve_anchors(&shrunk, near)?.position;
-        let own = OwnFit::of(anchors, position, common, free);
+        let own = own_chi2(anchors, position, common, free);
         let df = u32::try_from(anchors.len() - 2 - free.count()).unwrap_or(u32::MAX);
-        let Some(own) = own.filter(|own| own.chi2 <= chi_squared_quantile(ALARM_Z, df)) else {
+        if own.is_none_or(|chi2| chi2 > chi_squared_quantile(ALARM_Z, df)) {
             return Ok(None);
-        };
-        // An offset that is still far off bends the position more than the cycle's own scatter does.
-        let position = if free.offset { own.position } else { position };
+        }
         let rows: Vec<Row> = anchors.iter().enumerate().map(|(i, a)| row(i, a, position, common)).collect();
         let information: Matrix2<f64> =
             rows.iter().map(|r| r.by_position * r.by_position.transpose() * r.weight).sum();
@@ -301,36 +306,28 @@ fn row(index: usize, anchor: &Anchor, position: Point, common: Common) -> Row {
     }
 }
 
-/// A cycle with everything free that may be.
-struct OwnFit {
-    position: Point,
-    /// Sum of the squared residuals.
-    chi2: f64,
-}
-
-impl OwnFit {
-    fn of(anchors: &[Anchor], mut position: Point, mut common: Common, free: Free) -> Option<Self> {
-        for _ in 0..ROUNDS {
-            let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
-            // What is not free has a column of zeros; one on the diagonal keeps it where it is.
-            normal[(2, 2)] = f64::from(u8::from(!free.scale));
-            normal[(3, 3)] = f64::from(u8::from(!free.offset));
-            for row in anchors.iter().map(|a| row(0, a, position, common)) {
-                let by_scale = if free.scale { row.by_scale } else { 0.0 };
-                let by_offset = f64::from(u8::from(free.offset));
-                let by = Vector4::new(row.by_position.x, row.by_position.y, by_scale, by_offset);
-                normal += by * by.transpose() * row.weight;
-                right += by * (row.weight * row.error);
-            }
-            let step = normal.cholesky()?.solve(&right);
-            position += step.xy();
-            common.scale = (common.scale + step.z).clamp(-MOST_SCALE, MOST_SCALE);
-            common.offset_m += step.w;
+/// Sum of the squared residuals of a cycle with everything free that may be.
+fn own_chi2(anchors: &[Anchor], mut position: Point, mut common: Common, free: Free) -> Option<f64> {
+    for _ in 0..ROUNDS {
+        let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
+        // What is not free has a column of zeros; one on the diagonal keeps it where it is.
+        normal[(2, 2)] = f64::from(u8::from(!free.scale));
+        normal[(3, 3)] = f64::from(u8::from(!free.offset));
+        for row in anchors.iter().map(|a| row(0, a, position, common)) {
+            let by_scale = if free.scale { row.by_scale } else { 0.0 };
+            let by_offset = f64::from(u8::from(free.offset));
+            let by = Vector4::new(row.by_position.x, row.by_position.y, by_scale, by_offset);
+            normal += by * by.transpose() * row.weight;
+            right += by * (row.weight * row.error);
         }
-        let residuals = anchors.iter().map(|a| row(0, a, position, common));
-        let chi2: f64 = residuals.map(|r| r.error.powi(2) * r.weight).sum();
-        chi2.is_finite().then_some(Self { position, chi2 })
+        let step = normal.cholesky()?.solve(&right);
+        position += step.xy();
+        common.scale = (common.scale + step.z).clamp(-MOST_SCALE, MOST_SCALE);
+        common.offset_m += step.w;
     }
+    let residuals = anchors.iter().map(|a| row(0, a, position, common));
+    let chi2: f64 = residuals.map(|r| r.error.powi(2) * r.weight).sum();
+    chi2.is_finite().then_some(chi2)
 }
 
 #[cfg(test)]

@@ -166,7 +166,8 @@ impl Fold {
 
     /// Whether the mission is there to scan the floor.
     fn is_to_scan(&self) -> bool {
-        self.run.as_ref().is_some_and(|run| matches!(run.mission.task, TaskConfig::Cover { .. }))
+        let scans = |run: &RunOpened| matches!(run.mission.task, TaskConfig::Cover { .. });
+        self.run.as_ref().is_some_and(|run| scans(run) && run.measured.is_none())
     }
 
     /// What was found that is not on the drawing.
@@ -201,15 +202,19 @@ impl Fold {
     }
 
     fn open(&mut self, run: &RunOpened) {
-        if !matches!(run.mission.task, TaskConfig::Goto { .. }) {
-            self.evidence = Some(Evidence::new(run));
-        }
         self.run = Some(Box::new(run.clone()));
-        self.tethered = run.mission.tether.as_ref().map(Tethered::new);
         self.known.scenario = Some(run.scenario.clone());
         self.known.seed = Some(run.seed);
         self.known.planner = Some(run.mission.planner.id.clone());
         self.known.parameters = Some(run.mission.planner.parameters.clone());
+        if run.measured.is_some() {
+            // Where something was, and nothing of what it did there.
+            return;
+        }
+        if !matches!(run.mission.task, TaskConfig::Goto { .. }) {
+            self.evidence = Some(Evidence::new(run));
+        }
+        self.tethered = run.mission.tether.as_ref().map(Tethered::new);
         self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
         self.tracker = match &run.mission.task {
             TaskConfig::Follow { path, .. } => {

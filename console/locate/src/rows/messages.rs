@@ -34,7 +34,8 @@ impl Messages {
             count: 0,
         };
         let first = messages.message().map_err(|problem| problem.to_string())?;
-        let first = first.ok_or("no messages; each is to be a JSON object, as {\"t_s\": 0.5, \"station\": \"A\"}")?;
+        let first =
+            first.ok_or("no messages; each is to be a JSON object, as {\"t_s\": 0.5, \"station\": \"A\"}")?;
         messages.header = first.keys().map(String::as_str).collect();
         messages.first = Some(first);
         Ok(messages)
@@ -61,36 +62,37 @@ impl Messages {
             }
         }
         match message.keys().find(|key| !self.header.iter().any(|name| name == *key)) {
-            Some(new) => Err(self.problem(format!("the first message had no `{new}`"))),
+            Some(new) => {
+                let what = format!("the first message had no `{new}`");
+                Err(Problem { line: self.count, column: None, what })
+            }
             None => Ok(Some(self.count)),
         }
     }
 
-    fn problem(&self, what: String) -> Problem {
-        Problem { line: self.count, column: None, what }
-    }
-
     /// The next message.
     fn message(&mut self) -> Result<Option<Map<String, Value>>, Problem> {
-        while let Some(event) = self.reader.next_event() {
-            let damaged = |error: &dyn std::fmt::Display| format!("damaged MCAP: {error}");
-            match event.map_err(|error| self.problem(damaged(&error)))? {
+        let Self { file, reader, channels, count, .. } = self;
+        let problem = |line: u64, what: String| Problem { line, column: None, what };
+        let damaged =
+            |line: u64, error: &dyn std::fmt::Display| problem(line, format!("damaged MCAP: {error}"));
+        while let Some(event) = reader.next_event() {
+            match event.map_err(|error| damaged(*count, &error))? {
                 LinearReadEvent::ReadRequest(length) => {
-                    let read = self.file.read(self.reader.insert(length));
-                    let read = read.map_err(|error| self.problem(error.to_string()))?;
-                    self.reader.notify_read(read);
+                    let read = file.read(reader.insert(length));
+                    reader.notify_read(read.map_err(|error| problem(*count, error.to_string()))?);
                 }
                 LinearReadEvent::Record { opcode, data } => match parse_record(opcode, data) {
                     Ok(Record::Channel(channel)) => {
-                        self.channels.insert(channel.id, (channel.topic, channel.message_encoding));
+                        channels.insert(channel.id, (channel.topic, channel.message_encoding));
                     }
                     Ok(Record::Message { header, data }) => {
-                        self.count += 1;
-                        let row = object(self.channels.get(&header.channel_id), &data);
-                        return row.map(Some).map_err(|what| self.problem(what));
+                        *count += 1;
+                        let row = object(channels.get(&header.channel_id), &data);
+                        return row.map(Some).map_err(|what| problem(*count, what));
                     }
                     Ok(_) => {}
-                    Err(error) => return Err(self.problem(damaged(&error))),
+                    Err(error) => return Err(damaged(*count, &error)),
                 },
             }
         }
