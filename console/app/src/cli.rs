@@ -372,6 +372,9 @@ pub(crate) struct PlanArgs {
     /// Draw the tank, obstacles, preset path and planned path to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+    /// Write the plan to this file: .csv (points), .geojson or .dxf.
+    #[arg(short = 'o', long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

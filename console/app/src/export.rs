@@ -9,7 +9,7 @@ use report::print::say_line;
 use runs::{find, journal_doubt};
 use std::{
     fs::File,
-    io::BufWriter,
+    io::{BufWriter, Write},
     path::{Path, PathBuf},
     process::ExitCode,
 };
@@ -75,6 +75,6 @@ fn ranges(folder: &Path, csv: &Path) -> anyhow::Result<()> {
     let file = BufWriter::new(File::create_new(csv).map_err(|error| refused(&error))?);
     let mut writer = MeasuredWriter::new(file, &stations).map_err(|error| refused(&error))?;
     review::readings(folder, |t_s, readings, truth| writer.write(t_s, readings, truth))?;
-    writer.finish().map_err(|error| refused(&error))?;
+    writer.into_inner().flush().map_err(|error| refused(&error))?;
     Ok(say_line(&format!("{} computed from {}", csv.display(), path.display()))?)
 }

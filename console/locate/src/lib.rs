@@ -19,3 +19,6 @@ pub use located::{Survey, Task};
 pub use measured::MeasuredWriter;
 pub use problem::Problem;
 pub use tally::Tally;
+
+#[cfg(test)]
+mod tests;

@@ -39,12 +39,9 @@ impl<W: Write> MeasuredWriter<W> {
         Ok(())
     }
 
-    /// Writes what is still held back.
-    ///
-    /// # Errors
-    /// Nothing can be written.
-    pub fn finish(mut self) -> io::Result<()> {
-        self.out.flush()
+    /// Where it was written to.
+    pub fn into_inner(self) -> W {
+        self.out
     }
 }
 
