@@ -25,6 +25,9 @@ use std::{
     process::ExitCode,
 };
 
+/// A speed of sound that is less known than this, as a share, does not serve to correct ranges.
+const DOUBTFUL_SCALE: f64 = 0.005;
+
 /// The figures as JSON.
 #[derive(Serialize)]
 struct Figures<'a> {
@@ -161,6 +164,9 @@ fn human(args: &LocateArgs, scenario: &Scenario, survey: &Survey, tally: &Tally)
             "clock offset",
             format!("ranges too long by {offset_m:.4} ± {sigma_m:.4} m{}", time.unwrap_or_default()),
         );
+    }
+    if found.range_scale.is_some_and(|[_, sigma]| sigma > DOUBTFUL_SCALE) {
+        line("", "poorly known: the robot has to come near stations and go far from them".into());
     }
     let fixes: u64 = tally.fixes.values().sum();
     let by_word: Vec<String> = tally.fixes.iter().map(|(word, count)| format!("{count} {word}")).collect();

@@ -233,7 +233,10 @@ impl Fold {
         let before = self.truth.replace(pose).unwrap_or(pose);
         let way_m = (pose.position - before.position).norm();
         known.path_length_m = Some(known.path_length_m.unwrap_or(0.0) + way_m);
-        known.collisions = Some(known.collisions.unwrap_or(0) + u64::from(collided));
+        // Whether what was located touched anything is not in its readings.
+        if self.run.as_ref().is_none_or(|run| run.measured.is_none()) {
+            known.collisions = Some(known.collisions.unwrap_or(0) + u64::from(collided));
+        }
         if clearance_m.is_finite() {
             known.clearance_min_m =
                 Some(known.clearance_min_m.map_or(clearance_m, |least| least.min(clearance_m)));
