@@ -19,7 +19,7 @@ pub(crate) fn export(args: &ExportArgs) -> anyhow::Result<ExitCode> {
     let folder = find(&args.run, &args.logs.logs)?;
     let to = &args.to;
     if let Some(there) = [&to.rrd, &to.mcap, &to.ranges].into_iter().flatten().find(|file| file.exists()) {
-        return Err(bad_input(format!("{} already exists; exports are never written over", there.display())));
+        return Err(bad_input(format!("{} already exists; exports are never overwritten", there.display())));
     }
     let whole = |file: &PathBuf, write: fn(&Path, &Path) -> anyhow::Result<()>| {
         let written = write(&folder, file);
