@@ -251,6 +251,11 @@ impl Columns {
         Ok(Some(number * factor))
     }
 
+    /// What is wrong with the time of a row.
+    pub(crate) fn wrong_time(&self, line: u64, what: String) -> Problem {
+        self.problem(line, if self.has(T) { T } else { ARRIVAL }, what)
+    }
+
     fn problem(&self, line: u64, column: usize, what: String) -> Problem {
         let name = self.at[column].map_or(COLUMNS[column].0, |(index, _)| self.names[index].as_str());
         Problem { line, column: Some(name.to_owned()), what }

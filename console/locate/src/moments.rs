@@ -100,7 +100,7 @@ impl Iterator for Moments {
         };
         if first.t_s < self.last_s {
             let what = format!("{} s is earlier than the row before ({} s)", first.t_s, self.last_s);
-            return Some(Err(Problem { line: first.line, column: Some("t".into()), what }));
+            return Some(Err(self.columns.wrong_time(first.line, what)));
         }
         self.last_s = first.t_s;
         Some(Ok(self.moment(first)))
