@@ -80,7 +80,7 @@ impl Task<'_> {
         let (mut moments, columns) = self.open()?;
         let calibration = self.calibration(&columns)?;
         let (mut problems, mut bad, mut first_s) = (Vec::new(), 0, None);
-        while let Some(moment) = moments.next() {
+        for moment in moments.by_ref() {
             match moment {
                 Ok(moment) => {
                     first_s.get_or_insert(moment.t_s);

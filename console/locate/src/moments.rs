@@ -66,14 +66,14 @@ impl Moments {
         self.columns.row(&self.cells, line).map_err(|problem| self.found = Some(problem)).ok()
     }
 
-    fn moment(&mut self, first: Row) -> Moment {
+    fn moment(&mut self, first: &Row) -> Moment {
         let mut moment =
             Moment { t_s: first.t_s, ranges: Vec::new(), odometry: Odometry::default(), truth: None };
         let mut row = first.clone();
         loop {
             moment.add(&row);
             match self.row() {
-                Some(next) if belongs(&next, &first) => row = next,
+                Some(next) if belongs(&next, first) => row = next,
                 other => {
                     self.next = other;
                     break;
@@ -94,16 +94,15 @@ impl Iterator for Moments {
         if let Some(problem) = self.found.take() {
             return Some(Err(problem));
         }
-        let first = match self.next.take().or_else(|| self.row()) {
-            Some(first) => first,
-            None => return self.found.take().map(Err),
+        let Some(first) = self.next.take().or_else(|| self.row()) else {
+            return self.found.take().map(Err);
         };
         if first.t_s < self.last_s {
             let what = format!("{} s is earlier than the row before ({} s)", first.t_s, self.last_s);
             return Some(Err(self.columns.wrong_time(first.line, what)));
         }
         self.last_s = first.t_s;
-        Some(Ok(self.moment(first)))
+        Some(Ok(self.moment(&first)))
     }
 }
 

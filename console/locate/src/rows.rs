@@ -16,7 +16,7 @@ pub(crate) enum Rows {
     /// Text with a line of names first.
     Csv { reader: csv::Reader<BufReader<File>>, header: StringRecord, has_commas: bool },
     /// Messages as JSON objects, whose keys are the names.
-    Messages(Messages),
+    Messages(Box<Messages>),
 }
 
 impl Rows {
@@ -27,7 +27,7 @@ impl Rows {
     pub(crate) fn open(file: &Path) -> Result<Self, String> {
         let opened = File::open(file).map_err(|error| error.to_string())?;
         if file.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("mcap")) {
-            return Ok(Self::Messages(Messages::open(opened)?));
+            return Ok(Self::Messages(Box::new(Messages::open(opened)?)));
         }
         Self::text(opened)
     }

@@ -22,7 +22,12 @@ use cdr::Cdr;
 use mission::{Event, EventKind, Severity, event::RunOpened};
 use nalgebra::{Matrix2, Matrix3};
 use ros::{Pose3, Stamp};
-use std::{collections::BTreeMap, fs::File, io::BufWriter, path::Path};
+use std::{
+    collections::{BTreeMap, btree_map::Entry},
+    fs::File,
+    io::BufWriter,
+    path::Path,
+};
 use world::{Cell, CoverageGrid, Floor, Point, Pose, Station};
 
 /// A picture of what is scanned is written this often, seconds.
@@ -144,7 +149,7 @@ impl Export {
             .i32(sec)
             .u32(nanosec)
             .u8(level)
-            .text(&line.source.to_string())
+            .text(line.source)
             .text(&line.text)
             .text("")
             .text("")
@@ -200,12 +205,12 @@ impl Export {
     }
 
     fn message(&mut self, topic: &'static str, schema: ros::Schema, t_s: f64, message: &Cdr) -> Done {
-        let channel = match self.channels.get_mut(topic) {
-            Some(channel) => channel,
-            None => {
+        let channel = match self.channels.entry(topic) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
                 let id = self.out.add_schema(schema.name, "ros2msg", schema.text().as_bytes())?;
                 let id = self.out.add_channel(id, topic, "cdr", &BTreeMap::new())?;
-                self.channels.entry(topic).or_insert((id, 0))
+                new.insert((id, 0))
             }
         };
         let time = Stamp::of(t_s).nanoseconds();

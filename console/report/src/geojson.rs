@@ -51,7 +51,8 @@ impl<'a> Datum<'a> {
 
 /// A feature.
 pub(crate) fn feature(geometry: Value, properties: Value) -> Value {
-    json!({ "type": "Feature", "geometry": geometry, "properties": properties })
+    let members = [("type", "Feature".into()), ("geometry", geometry), ("properties", properties)];
+    Value::Object(members.into_iter().map(|(key, value)| (key.to_owned(), value)).collect())
 }
 
 /// The wall as a ring.
