@@ -16,6 +16,8 @@ mod faults;
 #[cfg(unix)]
 #[path = "acceptance/killed.rs"]
 mod killed;
+#[path = "acceptance/located.rs"]
+mod located;
 #[path = "acceptance/looking_on.rs"]
 mod looking_on;
 #[cfg(target_os = "linux")]

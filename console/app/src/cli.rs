@@ -78,16 +78,10 @@ pub(crate) enum Command {
         #[command(flatten)]
         logs: LogsArg,
     },
-    /// Regenerate the recording of a past run from its journal.
-    Export {
-        /// Run folder, or its name in the logs folder.
-        run: PathBuf,
-        /// File to write; must not exist.
-        #[arg(long, value_name = "FILE")]
-        rrd: PathBuf,
-        #[command(flatten)]
-        logs: LogsArg,
-    },
+    /// Write a past run as another file: its recording anew, or the readings of its sensors.
+    Export(ExportArgs),
+    /// Locate a robot by readings that a real system measured: fixes, track, recording and report.
+    Locate(LocateArgs),
     /// Show the result of a past run, or of a scan and its re-scans together.
     Report(ReportArgs),
     /// Create a scenario that scans what one or more past runs missed.
@@ -105,6 +99,72 @@ pub(crate) enum Command {
     /// A planner's own process; started by the console.
     #[command(hide = true)]
     Worker,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportArgs {
+    /// Run folder, or its name in the logs folder.
+    pub run: PathBuf,
+    #[command(flatten)]
+    pub to: ExportTo,
+    #[command(flatten)]
+    pub logs: LogsArg,
+}
+
+/// What to write; the files must not exist.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = true)]
+pub(crate) struct ExportTo {
+    /// The recording for the rerun viewer, regenerated from the journal.
+    #[arg(long, value_name = "FILE")]
+    pub rrd: Option<PathBuf>,
+    /// The run as messages of ROS 2 (map, coverage, plan, pose, fixes, log) for Foxglove and the MCAP tools.
+    #[arg(long, value_name = "FILE")]
+    pub mcap: Option<PathBuf>,
+    /// The readings of ranges and odometry with the truth as CSV, in the form that `locate` reads; computes the run again.
+    #[arg(long, value_name = "FILE")]
+    pub ranges: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LocateArgs {
+    /// Readings as CSV, or as MCAP with JSON messages of the same names: `t_s`, `station`, and `range_m`, `arrival_s` (with or
+    /// without `emitted_s`) or `tdoa_s`; also in mm, ms and us.
+    pub readings: PathBuf,
+    /// Scenario with tank, stations, start and noise.
+    #[arg(long, value_name = "FILE")]
+    pub scenario: PathBuf,
+    #[command(flatten)]
+    pub changes: Changes,
+    /// Speed of sound in metres per second, for arrival times.
+    #[arg(long, value_name = "M_PER_S", value_parser = sound_speed)]
+    pub sound_speed: Option<f64>,
+    /// Find out from the readings themselves; repeatable.
+    #[arg(long, value_name = "WHAT")]
+    pub find: Vec<FindArg>,
+    /// Leave bad rows out instead of refusing the file.
+    #[arg(long)]
+    pub skip_bad_rows: bool,
+    /// Write fixes and track as CSV to this file.
+    #[arg(short = 'o', long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write neither journal nor recording.
+    #[arg(long)]
+    pub no_record: bool,
+    /// Print the figures as JSON.
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub logs: LogsArg,
+}
+
+/// What readings can reveal besides positions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum FindArg {
+    /// The speed of sound; four stations at a time.
+    SoundSpeed,
+    /// The offset between the clocks of robot and stations; four stations at a time, five for both.
+    ClockOffset,
 }
 
 #[derive(Debug, Args)]
@@ -312,6 +372,9 @@ pub(crate) struct PlanArgs {
     /// Draw the tank, obstacles, preset path and planned path to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+    /// Write the plan to this file: .csv (points), .geojson or .dxf.
+    #[arg(short = 'o', long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -465,6 +528,11 @@ impl From<UnitArg> for f64 {
             UnitArg::Ft => 0.3048,
         }
     }
+}
+
+fn sound_speed(text: &str) -> Result<f64, String> {
+    let speed = text.parse().ok().filter(|speed| (50.0..=10_000.0).contains(speed));
+    speed.ok_or_else(|| "write metres per second from 50 to 10000".into())
 }
 
 fn length(text: &str) -> Result<f64, String> {

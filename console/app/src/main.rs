@@ -2,8 +2,10 @@
 
 mod accuracy;
 mod cli;
+mod export;
 mod headless;
 mod import;
+mod locate;
 mod manual;
 mod map;
 mod output;
@@ -92,7 +94,8 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Verify { run, from_journal, logs }) => {
             past_runs::verify(&run, &logs, &plugins, from_journal)
         }
-        Some(Command::Export { run, rrd, logs }) => past_runs::export(&run, &rrd, &logs),
+        Some(Command::Export(args)) => export::export(&args),
+        Some(Command::Locate(args)) => locate::locate(&args),
         Some(Command::Report(args)) => past_runs::report(&args),
         Some(Command::Rescan(args)) => rescan::rescan(&args, &plugins),
         Some(Command::Completions { shell }) => manual::completions(shell),

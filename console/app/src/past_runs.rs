@@ -1,19 +1,17 @@
-//! `tankops runs`, `report`, `verify` and `export`: what past runs hold.
+//! `tankops runs`, `report` and `verify`: what past runs hold.
 
 use crate::{
     cli::{LogsArg, ReportArgs},
     output::pretty_json,
     report_file,
 };
-use anyhow::Context;
 use flight::failure::{COMPLETE, ENDED_OTHERWISE, bad_input};
 use planner_host::PluginDirs;
-use recording::{JOURNAL_FILE, RecordingError, Ticks, sha256};
 use report::{
     PastRun, human, merged,
     print::{say, say_line},
 };
-use runs::{Past, find, journal_doubt};
+use runs::{Past, find};
 use std::{path::Path, process::ExitCode};
 
 /// `tankops runs`.
@@ -63,31 +61,4 @@ pub(crate) fn verify(
         say_line(line)?;
     }
     Ok(ExitCode::from(if verified.is_equal { COMPLETE } else { ENDED_OTHERWISE }))
-}
-
-/// `tankops export`.
-pub(crate) fn export(run: &Path, rrd: &Path, logs: &LogsArg) -> anyhow::Result<ExitCode> {
-    let folder = find(run, &logs.logs)?;
-    if rrd.exists() {
-        return Err(bad_input(format!("{} already exists; recordings are never overwritten", rrd.display())));
-    }
-    let path = folder.join(JOURNAL_FILE);
-    Ticks::open(&path)?.opened()?;
-    let made = recording::export(&path, rrd);
-    if made.is_err() {
-        // What was begun must not stand in the way of the next try.
-        let _ = std::fs::remove_file(rrd);
-    }
-    if let Err(RecordingError::Journal(error)) = made {
-        return Err(error.into());
-    }
-    let sha256 = sha256(&path).ok();
-    if let Some(doubt) = journal_doubt(&folder, sha256.as_deref()) {
-        say_line(&format!("note: {doubt}; the recording holds what it holds"))?;
-    }
-    if let Some(damage) = made.context("regenerating the recording")? {
-        say_line(&format!("note: the journal stops early ({damage}); the recording holds what it holds"))?;
-    }
-    say_line(&format!("{} regenerated from {}", rrd.display(), path.display()))?;
-    Ok(ExitCode::from(COMPLETE))
 }

@@ -17,11 +17,12 @@ use report::{
     print::say,
 };
 use scenario::Scenario;
-use std::{process::ExitCode, sync::Arc, time::Instant};
+use std::{path::Path, process::ExitCode, sync::Arc, time::Instant};
 
 /// `tankops plan`.
 pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
+    let format = args.output.as_deref().map(format_of).transpose()?;
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
     let planned = Planned::new(mission, &drawing, make_plan(&scenario, plugins)?);
     if args.json {
@@ -32,7 +33,32 @@ pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<Exit
     if let Some(file) = &args.svg {
         write_file("the drawing", file, &planned.svg(mission, &drawing))?;
     }
+    if let (Some(file), Some(format)) = (&args.output, format) {
+        let text = match format {
+            Format::Csv => planned.csv(),
+            Format::GeoJson => planned.geojson(&drawing, &scenario.inspection),
+            Format::Dxf => planned.dxf(&drawing),
+        };
+        write_file("the plan", file, &text)?;
+    }
     Ok(ExitCode::from(if planned.flies(mission) { COMPLETE } else { ENDED_OTHERWISE }))
+}
+
+/// How a plan is written.
+#[derive(Clone, Copy)]
+enum Format {
+    Csv,
+    GeoJson,
+    Dxf,
+}
+
+fn format_of(file: &Path) -> anyhow::Result<Format> {
+    match file.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
+        "csv" => Ok(Format::Csv),
+        "geojson" => Ok(Format::GeoJson),
+        "dxf" => Ok(Format::Dxf),
+        _ => Err(bad_input(format!("{}: plans are written as .csv, .geojson or .dxf", file.display()))),
+    }
 }
 
 fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Made> {

@@ -9,7 +9,7 @@ use mission::{
 use scenario::Scenario;
 use sim::{AeConfig, Disturbances, SimConfig, Simulator};
 use std::time::Duration;
-use world::Floor;
+use world::{Floor, Readings};
 
 /// A scenario being flown.
 #[derive(Clone)]
@@ -19,6 +19,7 @@ pub struct Flight {
     tick: u64,
     tick_s: f64,
     opened: RunOpened,
+    readings: Readings,
 }
 
 impl Flight {
@@ -39,6 +40,7 @@ impl Flight {
             floor: floor.clone(),
             plates: scenario.plates,
             checklist: scenario.checklist.clone(),
+            measured: None,
         };
         Self {
             simulator: Simulator::new(scenario.sim.clone(), scenario.seed),
@@ -46,6 +48,7 @@ impl Flight {
             tick_s: config.tick_s,
             mission: Mission::new(config, drawing, floor, scenario.seed),
             opened,
+            readings: Readings::default(),
         }
     }
 
@@ -65,6 +68,7 @@ impl Flight {
             tick: 0,
             tick_s: self.tick_s,
             opened: self.opened.clone(),
+            readings: Readings::default(),
         }
     }
 
@@ -83,6 +87,11 @@ impl Flight {
         self.mission.phase()
     }
 
+    /// What was sensed in the last tick.
+    pub fn readings(&self) -> &Readings {
+        &self.readings
+    }
+
     /// Length of a tick, mission time.
     pub fn tick_length(&self) -> Duration {
         Duration::from_secs_f64(self.tick_s)
@@ -90,9 +99,9 @@ impl Flight {
 
     /// Flies one tick: sense, ask and be answered, act. The truth goes into the events first, and nowhere else.
     pub fn tick(&mut self, orders: &[Order], answers: &mut impl Answers) -> Vec<Event> {
-        let readings = self.simulator.sense();
+        self.readings = self.simulator.sense();
         let mut events = self.truth();
-        self.mission.sense(&Input { readings: &readings, orders });
+        self.mission.sense(&Input { readings: &self.readings, orders });
         loop {
             while let Some(ask) = self.mission.poll_ask() {
                 answers.submit(ask);

@@ -12,8 +12,10 @@ use std::{
 use world::{Point, Pose, Readings, StationId, World};
 
 /// The positioner with its memory of which stations were used and whether the position was good.
+///
+/// A mission has one; so has whoever locates a robot by readings that were measured before.
 #[derive(Clone)]
-pub(crate) struct Locator {
+pub struct Locator {
     positioner: Positioner,
     limit_m: f64,
     /// Stations that the operator excluded.
@@ -26,7 +28,7 @@ pub(crate) struct Locator {
 
 impl Locator {
     /// A locator at the surveyed start.
-    pub(crate) fn new(config: &MissionConfig, drawing: &World) -> Self {
+    pub fn new(config: &MissionConfig, drawing: &World) -> Self {
         let locating = &config.locating;
         let normal = RangeNoise::Gaussian { sigma_ratio: config.range_sigma_ratio };
         let positioner = Positioner::new(PositionerConfig {
@@ -66,8 +68,13 @@ impl Locator {
         }
     }
 
+    /// Makes the position less known by a motion that nothing measured, of this standard deviation in x and in y, metres.
+    pub fn wander(&mut self, sigma_m: f64) {
+        self.positioner.wander(sigma_m);
+    }
+
     /// Takes what was sensed since the last tick; gives the resulting events.
-    pub(crate) fn take(&mut self, readings: &Readings) -> Vec<EventKind> {
+    pub fn take(&mut self, readings: &Readings) -> Vec<EventKind> {
         self.positioner.predict(&readings.odometry);
         let mut events = if readings.ranging_cycle { self.cycle(readings) } else { Vec::new() };
         events.push(EventKind::Estimated { pose: self.pose_estimate() });

@@ -1,4 +1,4 @@
-//! What a whole session reveals about the speed of sound and about the positions of the stations.
+//! What a whole session reveals about the speed of sound, the offset of the clocks and the positions of the stations.
 
 use crate::{
     anchor::{Anchor, anchored},
@@ -6,14 +6,16 @@ use crate::{
     nonlinear::solve_anchors,
     quality::{ALARM_Z, chi_squared_quantile},
 };
-use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, SMatrix, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix4, Vector4};
 use serde::{Deserialize, Serialize};
 use world::{Point, Station};
 
 /// Largest error of the assumed sound speed that is believed, as a share.
 const MOST_SCALE: f64 = 0.3;
-/// Rounds of fitting position and scale together.
-const ROUNDS: usize = 4;
+/// Largest share of an error of scale that cannot be told from none.
+const LEAST_SCALE: f64 = 1e-6;
+/// Rounds of fitting the position together with what is common to the ranges of a cycle.
+const ROUNDS: usize = 6;
 
 /// What is to be found out, by how much it may be off.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -22,13 +24,35 @@ pub struct Unknowns {
     pub sound_sigma_ratio: f64,
     /// Standard deviation of the surveyed places in x and in y, metres; 0: they are right.
     pub survey_sigma_m: f64,
+    /// Standard deviation of the length by which all ranges are too long because clocks differ, metres; 0: they agree.
+    #[serde(default)]
+    pub offset_sigma_m: f64,
 }
 
 impl Default for Unknowns {
-    /// A speed of sound known to 2 %, and stations where the survey says.
+    /// A speed of sound known to 2 %, stations where the survey says, and clocks that agree.
     fn default() -> Self {
-        Self { sound_sigma_ratio: 0.02, survey_sigma_m: 0.0 }
+        Self { sound_sigma_ratio: 0.02, survey_sigma_m: 0.0, offset_sigma_m: 0.0 }
     }
+}
+
+impl Unknowns {
+    /// Whether the speed of sound is sought; a scale of a millionth cannot be told from none.
+    fn has_scale(&self) -> bool {
+        self.sound_sigma_ratio > LEAST_SCALE
+    }
+
+    fn has_offset(&self) -> bool {
+        is_positive(self.offset_sigma_m)
+    }
+
+    fn has_survey(&self) -> bool {
+        is_positive(self.survey_sigma_m)
+    }
+}
+
+fn is_positive(sigma: f64) -> bool {
+    sigma > 0.0 && sigma.is_finite()
 }
 
 /// Pools the cycles of a session: each alone says little about the scale of all ranges, together they say it exactly.
@@ -36,7 +60,7 @@ impl Default for Unknowns {
 /// Every cycle is fitted with its position free; what is left over of its information goes into one system of linear
 /// equations (a Schur complement), so a session costs the same memory however long it is. Cycles that contradict
 /// themselves even with their scale free, as those with a wrong station do, are left out. Four stations are needed to
-/// separate a scale from a position; the survey also needs a robot that moves about.
+/// separate a scale or an offset from a position, five for both; the survey also needs a robot that moves about.
 #[derive(Debug, Clone)]
 pub struct Calibration {
     stations: Vec<Station>,
@@ -45,19 +69,23 @@ pub struct Calibration {
     weighted: DVector<f64>,
     estimate: DVector<f64>,
     scale_sigma: f64,
+    offset_sigma_m: f64,
     cycles: u64,
 }
 
 impl Calibration {
     /// A calibration of these stations that knows nothing yet.
     pub fn new(stations: &[Station], unknowns: Unknowns) -> Self {
-        let surveys = unknowns.survey_sigma_m > 0.0 && unknowns.survey_sigma_m.is_finite();
-        let n = 1 + if surveys { 2 * stations.len() } else { 0 };
+        let surveyed = if unknowns.has_survey() { 2 * stations.len() } else { 0 };
+        let n = 1 + surveyed + usize::from(unknowns.has_offset());
         // `max` also turns what is no number into the least.
-        let at_least = unknowns.sound_sigma_ratio.max(1e-6);
+        let at_least = unknowns.sound_sigma_ratio.max(LEAST_SCALE);
         let sound = at_least.min(1.0);
         let mut information = DMatrix::from_diagonal_element(n, n, unknowns.survey_sigma_m.powi(-2));
         information[(0, 0)] = sound.powi(-2);
+        if unknowns.has_offset() {
+            information[(n - 1, n - 1)] = unknowns.offset_sigma_m.powi(-2);
+        }
         Self {
             stations: stations.to_vec(),
             unknowns,
@@ -65,6 +93,7 @@ impl Calibration {
             weighted: DVector::zeros(n),
             estimate: DVector::zeros(n),
             scale_sigma: sound,
+            offset_sigma_m: unknowns.offset_sigma_m,
             cycles: 0,
         }
     }
@@ -74,11 +103,31 @@ impl Calibration {
         (self.estimate[0], self.scale_sigma)
     }
 
+    /// By how much too long all ranges are, metres, and its standard deviation.
+    pub fn offset_m(&self) -> (f64, f64) {
+        (self.common().offset_m, self.offset_sigma_m)
+    }
+
+    /// A calibration that begins anew where this one came to: cycles are linear about what is believed while they are taken, so
+    /// that taking a session again mends what the first ones were off.
+    #[must_use]
+    pub fn again(&self) -> Self {
+        Self { estimate: self.estimate.clone(), ..Self::new(&self.stations, self.unknowns) }
+    }
+
+    /// What is common to all ranges, as far as it is known.
+    fn common(&self) -> Common {
+        let offset_m = if self.unknowns.has_offset() { self.estimate[self.estimate.len() - 1] } else { 0.0 };
+        Common { scale: self.estimate[0], offset_m }
+    }
+
     /// The stations where the session says they are.
     pub fn stations(&self) -> Vec<Station> {
         let moved = |(i, station): (usize, &Station)| {
             let mut station = station.clone();
-            if let (Some(x), Some(y)) = (self.estimate.get(1 + 2 * i), self.estimate.get(2 + 2 * i)) {
+            if self.unknowns.has_survey()
+                && let (Some(x), Some(y)) = (self.estimate.get(1 + 2 * i), self.estimate.get(2 + 2 * i))
+            {
                 station.position += nalgebra::Vector2::new(*x, *y);
             }
             station
@@ -98,13 +147,13 @@ impl Calibration {
 
     /// The ranges with their common error taken out; what is left of it widens their sigmas.
     pub fn corrected(&self, ranges: &[Ranging]) -> Vec<Ranging> {
-        let (scale, sigma) = self.scale();
+        let Common { scale, offset_m } = self.common();
         let by = 1.0 / (1.0 + scale);
         let one = |r: &Ranging| Ranging {
-            range_m: r.range_m * by,
-            sigma_m: (r.sigma_m * by).hypot(r.range_m * sigma),
-            least_m: r.least_m * by,
-            most_m: r.most_m * by,
+            range_m: (r.range_m - offset_m) * by,
+            sigma_m: (r.sigma_m * by).hypot(r.range_m * self.scale_sigma).hypot(self.offset_sigma_m),
+            least_m: (r.least_m - offset_m) * by,
+            most_m: (r.most_m - offset_m) * by,
             ..*r
         };
         ranges.iter().map(one).collect()
@@ -116,10 +165,11 @@ impl Calibration {
     /// See [`FixError`]: a cycle without a position contributes nothing.
     pub fn take(&mut self, ranges: &[Ranging], near: Option<Prior>) -> Result<bool, FixError> {
         let anchors = anchored(ranges, &self.stations())?;
-        if anchors.len() < 4 {
+        let free = Free::of(&self.unknowns);
+        if anchors.len() < 3 + free.count() {
             return Ok(false);
         }
-        let Some(cycle) = Cycle::fitted(&anchors, self.scale().0, near)? else { return Ok(false) };
+        let Some(cycle) = Cycle::fitted(&anchors, self.common(), free, near)? else { return Ok(false) };
         self.add(&cycle, &anchors);
         self.solve();
         self.cycles += 1;
@@ -134,7 +184,10 @@ impl Calibration {
             let mut by_unknown = DVector::zeros(n);
             by_unknown[0] = row.by_scale;
             let index = self.stations.iter().position(|s| s.id == anchors[row.anchor].station);
-            if let Some(i) = index.filter(|_| n > 1) {
+            if self.unknowns.has_offset() {
+                by_unknown[n - 1] = 1.0;
+            }
+            if let Some(i) = index.filter(|_| self.unknowns.has_survey()) {
                 by_unknown[1 + 2 * i] = -row.by_position.x;
                 by_unknown[2 + 2 * i] = -row.by_position.y;
             }
@@ -159,10 +212,41 @@ impl Calibration {
         let estimate = factors.solve(&self.weighted);
         if estimate.iter().all(|number| number.is_finite()) && estimate[0].abs() < MOST_SCALE {
             self.estimate = estimate;
-            let mut first = DVector::zeros(self.estimate.len());
-            first[0] = 1.0;
-            self.scale_sigma = factors.solve(&first)[0].max(0.0).sqrt();
+            let sigma = |index: usize| {
+                let mut only = DVector::zeros(self.estimate.len());
+                only[index] = 1.0;
+                factors.solve(&only)[index].max(0.0).sqrt()
+            };
+            self.scale_sigma = sigma(0);
+            if self.unknowns.has_offset() {
+                self.offset_sigma_m = sigma(self.estimate.len() - 1);
+            }
         }
+    }
+}
+
+/// What all ranges have in common: `range = distance * (1 + scale) + offset`.
+#[derive(Debug, Clone, Copy)]
+struct Common {
+    scale: f64,
+    offset_m: f64,
+}
+
+/// What a cycle may choose for itself when it is asked whether it contradicts itself.
+#[derive(Debug, Clone, Copy)]
+struct Free {
+    scale: bool,
+    offset: bool,
+}
+
+impl Free {
+    fn of(unknowns: &Unknowns) -> Self {
+        let offset = unknowns.has_offset();
+        Self { scale: unknowns.has_scale() || !offset, offset }
+    }
+
+    fn count(self) -> usize {
+        usize::from(self.scale) + usize::from(self.offset)
     }
 }
 
@@ -182,52 +266,67 @@ struct Cycle {
 }
 
 impl Cycle {
-    /// The cycle at the given scale; `None` if it contradicts itself even with its scale free.
-    fn fitted(anchors: &[Anchor], scale: f64, near: Option<Prior>) -> Result<Option<Self>, FixError> {
+    /// The cycle at what is common; `None` if it contradicts itself even with that free.
+    fn fitted(
+        anchors: &[Anchor],
+        common: Common,
+        free: Free,
+        near: Option<Prior>,
+    ) -> Result<Option<Self>, FixError> {
+        let by = 1.0 / (1.0 + common.scale);
         let shrunk: Vec<Anchor> = anchors
             .iter()
-            .map(|a| Anchor { range_m: a.range_m / (1.0 + scale), sigma_m: a.sigma_m / (1.0 + scale), ..*a })
+            .map(|a| Anchor { range_m: (a.range_m - common.offset_m) * by, sigma_m: a.sigma_m * by, ..*a })
             .collect();
+        if shrunk.iter().any(|a| a.range_m <= 0.0) {
+            return Ok(None);
+        }
         let position = solve_anchors(&shrunk, near)?.position;
-        let own = own_scale_chi2(anchors, position, scale);
-        let df = u32::try_from(anchors.len() - 3).unwrap_or(u32::MAX);
+        let own = own_chi2(anchors, position, common, free);
+        let df = u32::try_from(anchors.len() - 2 - free.count()).unwrap_or(u32::MAX);
         if own.is_none_or(|chi2| chi2 > chi_squared_quantile(ALARM_Z, df)) {
             return Ok(None);
         }
-        let rows: Vec<Row> = anchors.iter().enumerate().map(|(i, a)| row(i, a, position, scale)).collect();
+        let rows: Vec<Row> = anchors.iter().enumerate().map(|(i, a)| row(i, a, position, common)).collect();
         let information: Matrix2<f64> =
             rows.iter().map(|r| r.by_position * r.by_position.transpose() * r.weight).sum();
         Ok(information.try_inverse().map(|position_inverse| Self { rows, position_inverse }))
     }
 }
 
-fn row(index: usize, anchor: &Anchor, position: Point, scale: f64) -> Row {
+fn row(index: usize, anchor: &Anchor, position: Point, common: Common) -> Row {
     let view = anchor.view_from(position);
+    let stretch = 1.0 + common.scale;
     Row {
         anchor: index,
-        by_position: view.direction * (1.0 + scale),
+        by_position: view.direction * stretch,
         by_scale: view.distance_m,
-        error: anchor.range_m - view.distance_m * (1.0 + scale),
-        weight: (view.sigma_m * (1.0 + scale)).powi(-2),
+        error: anchor.range_m - view.distance_m * stretch - common.offset_m,
+        weight: (view.sigma_m * stretch).powi(-2),
     }
 }
 
-/// Sum of the squared residuals with position and scale of this one cycle free.
-fn own_scale_chi2(anchors: &[Anchor], mut position: Point, mut scale: f64) -> Option<f64> {
+/// Sum of the squared residuals of a cycle with everything free that may be.
+fn own_chi2(anchors: &[Anchor], mut position: Point, mut common: Common, free: Free) -> Option<f64> {
     for _ in 0..ROUNDS {
-        let mut normal = Matrix3::zeros();
-        let mut right = Vector3::zeros();
-        for row in anchors.iter().map(|a| row(0, a, position, scale)) {
-            let by: SMatrix<f64, 3, 1> = Vector3::new(row.by_position.x, row.by_position.y, row.by_scale);
+        let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
+        // What is not free has a column of zeros; one on the diagonal keeps it where it is.
+        normal[(2, 2)] = f64::from(u8::from(!free.scale));
+        normal[(3, 3)] = f64::from(u8::from(!free.offset));
+        for row in anchors.iter().map(|a| row(0, a, position, common)) {
+            let by_scale = if free.scale { row.by_scale } else { 0.0 };
+            let by_offset = f64::from(u8::from(free.offset));
+            let by = Vector4::new(row.by_position.x, row.by_position.y, by_scale, by_offset);
             normal += by * by.transpose() * row.weight;
             right += by * (row.weight * row.error);
         }
         let step = normal.cholesky()?.solve(&right);
         position += step.xy();
-        scale = (scale + step.z).clamp(-MOST_SCALE, MOST_SCALE);
+        common.scale = (common.scale + step.z).clamp(-MOST_SCALE, MOST_SCALE);
+        common.offset_m += step.w;
     }
-    let chi2: f64 =
-        anchors.iter().map(|a| row(0, a, position, scale)).map(|r| r.error.powi(2) * r.weight).sum();
+    let residuals = anchors.iter().map(|a| row(0, a, position, common));
+    let chi2: f64 = residuals.map(|r| r.error.powi(2) * r.weight).sum();
     chi2.is_finite().then_some(chi2)
 }
 

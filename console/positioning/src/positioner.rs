@@ -5,6 +5,7 @@ use crate::{
     bounded::Bounded,
     calibration::{Calibration, Unknowns},
     consensus::Consensus,
+    differences::{Differences, common_excess_m},
     ekf::{Ekf, MotionNoise},
     fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Prior, Ranging},
     linear::LinearLs,
@@ -38,6 +39,8 @@ pub enum SolverKind {
     Bounded,
     /// [`Consensus`] among late ranges.
     Consensus,
+    /// [`Differences`]: all ranges of a cycle are too long by one unknown length.
+    Differences,
 }
 
 impl SolverKind {
@@ -56,6 +59,7 @@ impl SolverKind {
             (Self::Linear, _) => Screened(LinearLs).solve(ranges, stations, prior),
             (Self::WeightedLinear, _) => Screened(WeightedLinear).solve(ranges, stations, prior),
             (Self::Consensus, _) => Consensus::default().solve(ranges, stations, prior),
+            (Self::Differences, _) => Screened(Differences).solve(ranges, stations, prior),
             (Self::Bounded, Some(ratio)) => {
                 Bounded { ratio }.solve(ranges, stations, prior).or_else(|error| match error {
                     FixError::EmptySet { .. } => doubted(Screened(Nls).solve(ranges, stations, prior)),
@@ -156,6 +160,11 @@ impl Positioner {
         self.filter.predict(odometry);
     }
 
+    /// Makes the position less known by a motion that nothing measured, of this standard deviation in x and in y, metres.
+    pub fn wander(&mut self, sigma_m: f64) {
+        self.filter.doubt_motion(&Odometry { forward_m: sigma_m, ..Odometry::default() });
+    }
+
     /// Takes in a ranging cycle: ranges to a fix, the fix into the estimate unless its residuals raise an alarm.
     ///
     /// With one or two stations there is no fix to be had without help: with two the estimate chooses the mirror, with
@@ -172,9 +181,12 @@ impl Positioner {
             rangings = self.sound.corrected(&rangings);
         }
         let mut fix = self.solve(&rangings);
+        if let (SolverKind::Differences, Ok(fix)) = (self.config.solver, &fix) {
+            take_excess_out(fix, &mut rangings, &self.config.stations);
+        }
         let accepted = match &mut fix {
             Ok(fix) => self.take_fix(fix, &rangings),
-            Err(FixError::TooFewStations { .. }) => self.take_ranges(&rangings),
+            Err(FixError::TooFewStations { .. }) if self.are_distances() => self.take_ranges(&rangings),
             Err(_) => false,
         };
         CycleResult { rangings, fix, accepted }
@@ -201,6 +213,11 @@ impl Positioner {
         fix.excluded.extend(silent.map(|id| (id, Exclusion::Silent)));
         fix.excluded.sort_by_key(|(id, _)| *id);
         Ok(fix)
+    }
+
+    /// Whether single ranges are distances; otherwise only all of them together say anything.
+    fn are_distances(&self) -> bool {
+        self.config.solver != SolverKind::Differences
     }
 
     /// Hands a fix to the filter; a fix that contradicts the filter is suspect.
@@ -232,7 +249,7 @@ impl Positioner {
     /// Close to a station the error of a fix is bent like the range circle and no ellipse holds it; a filter that is
     /// surer than the fix takes the ranges instead, as seen from where it believes to be.
     fn filter_accepts(&mut self, fix: &Fix, rangings: &[Ranging]) -> bool {
-        if self.filter.error_95_m() < fix.ellipse_95().0 {
+        if self.are_distances() && self.filter.error_95_m() < fix.ellipse_95().0 {
             let used: Vec<Ranging> =
                 rangings.iter().filter(|r| fix.used.contains(&r.station)).copied().collect();
             self.take_ranges(&used)
@@ -257,6 +274,18 @@ impl Positioner {
             self.filter = filter;
         }
         is_taken
+    }
+}
+
+/// Takes out by how much all ranges are too long, as the fix says.
+fn take_excess_out(fix: &Fix, rangings: &mut [Ranging], stations: &[Station]) {
+    let Some(excess_m) = common_excess_m(fix, rangings, stations) else { return };
+    for ranging in rangings {
+        let range_m = ranging.range_m - excess_m;
+        ranging.sigma_m *= range_m / ranging.range_m;
+        ranging.least_m -= excess_m;
+        ranging.most_m -= excess_m;
+        ranging.range_m = range_m;
     }
 }
 

@@ -16,11 +16,13 @@ pub mod identity;
 pub mod inspect;
 pub mod journal;
 pub mod marker;
+pub mod mcap;
 pub mod recorder;
 mod rr;
 mod sink;
 pub mod thread;
 
+pub use self::mcap::export_mcap;
 pub use error::RecordingError;
 pub use export::export;
 pub use file::{FileChange, sha256, sha256_of};

@@ -166,7 +166,8 @@ impl Fold {
 
     /// Whether the mission is there to scan the floor.
     fn is_to_scan(&self) -> bool {
-        self.run.as_ref().is_some_and(|run| matches!(run.mission.task, TaskConfig::Cover { .. }))
+        let scans = |run: &RunOpened| matches!(run.mission.task, TaskConfig::Cover { .. });
+        self.run.as_ref().is_some_and(|run| scans(run) && run.measured.is_none())
     }
 
     /// What was found that is not on the drawing.
@@ -201,15 +202,19 @@ impl Fold {
     }
 
     fn open(&mut self, run: &RunOpened) {
-        if !matches!(run.mission.task, TaskConfig::Goto { .. }) {
-            self.evidence = Some(Evidence::new(run));
-        }
         self.run = Some(Box::new(run.clone()));
-        self.tethered = run.mission.tether.as_ref().map(Tethered::new);
         self.known.scenario = Some(run.scenario.clone());
         self.known.seed = Some(run.seed);
         self.known.planner = Some(run.mission.planner.id.clone());
         self.known.parameters = Some(run.mission.planner.parameters.clone());
+        if run.measured.is_some() {
+            // Where something was, and nothing of what it did there.
+            return;
+        }
+        if !matches!(run.mission.task, TaskConfig::Goto { .. }) {
+            self.evidence = Some(Evidence::new(run));
+        }
+        self.tethered = run.mission.tether.as_ref().map(Tethered::new);
         self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
         self.tracker = match &run.mission.task {
             TaskConfig::Follow { path, .. } => {
@@ -228,7 +233,10 @@ impl Fold {
         let before = self.truth.replace(pose).unwrap_or(pose);
         let way_m = (pose.position - before.position).norm();
         known.path_length_m = Some(known.path_length_m.unwrap_or(0.0) + way_m);
-        known.collisions = Some(known.collisions.unwrap_or(0) + u64::from(collided));
+        // Whether what was located touched anything is not in its readings.
+        if self.run.as_ref().is_none_or(|run| run.measured.is_none()) {
+            known.collisions = Some(known.collisions.unwrap_or(0) + u64::from(collided));
+        }
         if clearance_m.is_finite() {
             known.clearance_min_m =
                 Some(known.clearance_min_m.map_or(clearance_m, |least| least.min(clearance_m)));

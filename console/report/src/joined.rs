@@ -66,7 +66,12 @@ fn alone(past: &PastRun) -> Result<Joined<'_>, String> {
             scanned: Cow::Borrowed(scanned),
             evidence: Cow::Borrowed(evidence),
         })
-        .ok_or_else(|| format!("run {name} scans no floor: its task is to reach a goal"))
+        .ok_or_else(|| {
+            let is_measured = fold.run.as_deref().is_some_and(|run| run.measured.is_some());
+            let why =
+                if is_measured { "it was located from readings" } else { "its task is to reach a goal" };
+            format!("run {name} scans no floor: {why}")
+        })
 }
 
 /// Refuses runs of which one contains nothing about the floor of the other.

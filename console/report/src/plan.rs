@@ -15,15 +15,15 @@ use world::{
 /// A plan as scripts read it.
 #[derive(Debug, Serialize)]
 pub struct Planned {
-    planner: String,
+    pub(crate) planner: String,
     parameters: Parameters,
-    path: Vec<Point>,
-    legs: Vec<Leg>,
+    pub(crate) path: Vec<Point>,
+    pub(crate) legs: Vec<Leg>,
     /// Lines that the tethered robot never crosses.
-    cuts: Vec<Vec<Point>>,
-    length_m: f64,
+    pub(crate) cuts: Vec<Vec<Point>>,
+    pub(crate) length_m: f64,
     plan_time_ms: f64,
-    complete: bool,
+    pub(crate) complete: bool,
     /// Why it is not complete.
     reason: Option<String>,
     /// What the planner warned of: floor that it leaves out and why, ways of its own where the method has none.

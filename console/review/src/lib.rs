@@ -1,9 +1,11 @@
 //! What can be done with past runs: read, report, verify, scan again what they missed.
 
 mod past;
+mod readings;
 mod rescan;
 mod verify;
 
 pub use past::{read_all, report_text, summary};
+pub use readings::readings;
 pub use rescan::{MIN_AREA_M2, MissedScan, doubt, missed_scan, rescan_of};
 pub use verify::{Verified, verdict, verify};

@@ -1,7 +1,7 @@
 //! Past runs as their journals tell them.
 
 use flight::failure::bad_input;
-use report::{Summary, human};
+use report::{Expect, Summary, human};
 use runs::{Past, find};
 use scenario::{Scenario, with_todays_keys};
 use std::path::{Path, PathBuf};
@@ -28,7 +28,9 @@ pub fn report_text(folder: &Path) -> anyhow::Result<String> {
 /// The scenario in its journal is refused.
 pub fn summary(Past { opened, run, .. }: &Past) -> anyhow::Result<Summary> {
     let scenario = Scenario::parse(&with_todays_keys(&opened.scenario_toml), "the scenario in the journal");
-    let expect = scenario.map_err(|errors| bad_input(errors.render()))?.expect;
+    let scenario = scenario.map_err(|errors| bad_input(errors.render()))?;
+    // The bounds are those of a mission, and readings that were located are none.
+    let expect = if opened.measured.is_some() { Expect::default() } else { scenario.expect };
     let (logs, files) = (Some(run.logs.clone()), &run.files);
     let (events_sha256, recording_sha256) = (files.journal_sha256.clone(), files.recording_sha256.clone());
     Ok(expect.evaluated(Summary { logs, events_sha256, recording_sha256, ..run.fold.summary() }))

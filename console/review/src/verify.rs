@@ -8,11 +8,14 @@
 //!
 //! The journal is read tick by tick; memory does not grow with it.
 
-mod planners;
+pub(crate) mod planners;
 
 use anyhow::Context;
 use flight::{Flight, failure::bad_input, hosts::host, planners::found};
-use mission::{PlannerInfo, event::JOURNAL_VERSION};
+use mission::{
+    PlannerInfo,
+    event::{JOURNAL_VERSION, Measured},
+};
 use planner_host::PluginDirs;
 use planners::{Asked, Replayed};
 use recording::{Difference, JOURNAL_FILE, RECORDING_FILE, Ticks, sha256};
@@ -136,9 +139,15 @@ fn proven(planners: Option<&Asked>) -> String {
     format!("{same} answers of planners are the same again{rest}")
 }
 
-fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
-    let mut ticks = Ticks::open(path)?;
+/// The run of a journal, ready to be flown again.
+pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenario, Flight)> {
     let opened = ticks.opened()?.clone();
+    if let Some(Measured { file, .. }) = &opened.measured {
+        return Err(bad_input(format!(
+            "nothing was flown: the readings of {file} were located; `tankops locate` computes them again: {}",
+            path.display()
+        )));
+    }
     if opened.journal_version != JOURNAL_VERSION {
         return Err(bad_input(format!(
             "the journal has version {}, and this tankops verifies only version {JOURNAL_VERSION}: verify the run with the \
@@ -149,7 +158,13 @@ fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings
     }
     let scenario = Scenario::parse(&opened.scenario_toml, "the scenario in the journal")
         .map_err(|errors| bad_input(errors.render()))?;
-    let mut flight = Flight::prepare(&scenario, opened.mission.attended);
+    let flight = Flight::prepare(&scenario, opened.mission.attended);
+    Ok((scenario, flight))
+}
+
+fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
+    let mut ticks = Ticks::open(path)?;
+    let (scenario, mut flight) = prepared(path, &mut ticks)?;
     let mut replayed = Replayed::new(plugins.map(|plugins| host(&scenario, plugins)));
     let mut findings = Findings::default();
     let mut head = vec![flight.opened()];

@@ -17,6 +17,7 @@ fn the_help_of_every_command_is_as_reviewed() {
         "accuracy",
         "map",
         "import",
+        "locate",
         "planners",
         "check",
         "reproduce",

@@ -85,7 +85,7 @@ fn a_session_finds_where_the_stations_are() {
     }
     let mut calibration =
         // With the speed of sound free as well a large array could not be distinguished from slow sound.
-        Calibration::new(&surveyed, Unknowns { survey_sigma_m: 0.1, sound_sigma_ratio: 0.0 });
+        Calibration::new(&surveyed, Unknowns { survey_sigma_m: 0.1, sound_sigma_ratio: 0.0, offset_sigma_m: 0.0 });
     for _ in 0..400 {
         let truth = draws.on_disc();
         calibration.take(&draws.rangings(&real, truth, Aggregation::Mean), None).unwrap();
@@ -142,4 +142,41 @@ fn corrected_ranges_of_a_slow_medium_no_longer_alarm() {
         }
     }
     assert!(good >= 144 && raw < 60, "{good} {raw}");
+}
+
+#[test]
+fn a_session_finds_the_offset_of_the_clocks_with_and_without_the_speed_of_sound() {
+    let stations = ring(8, 7.5);
+    for (sound_sigma_ratio, offset_m) in [(0.0, 1.5), (0.02, 1.5), (0.02, -0.6)] {
+        let unknowns = Unknowns { sound_sigma_ratio, survey_sigma_m: 0.0, offset_sigma_m: 5.0 };
+        let mut draws = Draws::new(0.03, 20, 9);
+        let mut cycle = || {
+            let truth = draws.on_disc();
+            let mut ranges = if sound_sigma_ratio > 0.0 {
+                slow(&mut draws, &stations, truth)
+            } else {
+                draws.rangings(&stations, truth, Aggregation::Mean)
+            };
+            ranges.iter_mut().for_each(|range| range.range_m += offset_m);
+            ranges.retain(|range| range.range_m > 0.0);
+            ranges
+        };
+        let session: Vec<_> = (0..300).map(|_| cycle()).collect();
+        let mut calibration = Calibration::new(&stations, unknowns);
+        for _ in 0..6 {
+            calibration = calibration.again();
+            for ranges in &session {
+                // A cycle whose position does not settle contributes nothing.
+                let _ = calibration.take(ranges, None);
+            }
+        }
+        let ((found_m, offset_sigma_m), (scale, scale_sigma)) = (calibration.offset_m(), calibration.scale());
+        assert!(calibration.cycles() > 200, "{}", calibration.cycles());
+        assert!(
+            (found_m - offset_m).abs() < 4.0 * offset_sigma_m + 0.01 && offset_sigma_m < 0.1,
+            "{found_m}"
+        );
+        let slower = if sound_sigma_ratio > 0.0 { 0.02 } else { 0.0 };
+        assert!((scale - slower).abs() < 4.0 * scale_sigma + 1e-3, "{scale}");
+    }
 }

@@ -338,6 +338,7 @@ fn opened() -> RunOpened {
         scenario: "synthetic".into(),
         plates: None,
         checklist: Vec::new(),
+        measured: None,
         scenario_toml: "[tank]\nradius_m = 8.0\n".into(),
         seed: 42,
         floor: Floor::new(&world, 0.1, limits.radius_m, 0.6, start.position),

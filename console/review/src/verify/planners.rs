@@ -7,7 +7,7 @@ use recording::RecordedTick;
 use std::collections::BTreeMap;
 
 /// Answers asks from the journal, and has planners answer them, too.
-pub(super) struct Replayed {
+pub(crate) struct Replayed {
     recorded: RecordedAnswers,
     /// `None` when planners are not asked, or no longer, since one answered otherwise.
     host: Option<Host>,
@@ -19,7 +19,7 @@ pub(super) struct Replayed {
 
 /// What came of asking the planners again.
 #[derive(Debug, Default)]
-pub(super) struct Asked {
+pub(crate) struct Asked {
     /// Answers that were compared and are the same.
     pub same: usize,
     /// Answers that cannot be compared: the mission refused them, or made no use of them.
@@ -32,13 +32,13 @@ pub(super) struct Asked {
 
 impl Replayed {
     /// With a host, planners are asked, too.
-    pub(super) fn new(host: Option<Host>) -> Self {
+    pub(crate) fn new(host: Option<Host>) -> Self {
         let asked = host.is_some().then(Asked::default);
         Self { recorded: RecordedAnswers::default(), host, early: Vec::new(), asked, tick: 0 }
     }
 
     /// Takes the recorded events of the tick that begins.
-    pub(super) fn begin_tick(&mut self, recorded: &RecordedTick) {
+    pub(crate) fn begin_tick(&mut self, recorded: &RecordedTick) {
         self.tick = recorded.tick;
         self.recorded.begin_tick(recorded.events());
     }

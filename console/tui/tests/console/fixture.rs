@@ -206,6 +206,7 @@ pub(crate) fn opened() -> EventKind {
         floor,
         plates: None,
         checklist: Vec::new(),
+        measured: None,
     }))
 }
 

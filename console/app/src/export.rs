@@ -1,0 +1,80 @@
+//! `tankops export`: a past run as another file.
+
+use crate::cli::ExportArgs;
+use ::locate::MeasuredWriter;
+use anyhow::Context;
+use flight::failure::{COMPLETE, bad_input};
+use recording::{JOURNAL_FILE, RecordingError, Ticks, sha256};
+use report::print::say_line;
+use runs::{find, journal_doubt};
+use std::{
+    fs::File,
+    io::{BufWriter, Write},
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+/// `tankops export RUN`.
+pub(crate) fn export(args: &ExportArgs) -> anyhow::Result<ExitCode> {
+    let folder = find(&args.run, &args.logs.logs)?;
+    let to = &args.to;
+    if let Some(there) = [&to.rrd, &to.mcap, &to.ranges].into_iter().flatten().find(|file| file.exists()) {
+        return Err(bad_input(format!("{} already exists; exports are never overwritten", there.display())));
+    }
+    let whole = |file: &PathBuf, write: fn(&Path, &Path) -> anyhow::Result<()>| {
+        let written = write(&folder, file);
+        if written.is_err() {
+            // What was begun must not stand in the way of the next try.
+            let _ = std::fs::remove_file(file);
+        }
+        written
+    };
+    to.rrd.as_ref().map_or(Ok(()), |file| whole(file, recording))?;
+    to.mcap.as_ref().map_or(Ok(()), |file| whole(file, messages))?;
+    to.ranges.as_ref().map_or(Ok(()), |file| whole(file, ranges))?;
+    Ok(ExitCode::from(COMPLETE))
+}
+
+fn recording(folder: &Path, rrd: &Path) -> anyhow::Result<()> {
+    of_journal(folder, rrd, recording::export, "regenerated")
+}
+
+fn messages(folder: &Path, mcap: &Path) -> anyhow::Result<()> {
+    of_journal(folder, mcap, recording::export_mcap, "written")
+}
+
+/// A file that is made of the journal alone; says what it lacks.
+fn of_journal(
+    folder: &Path,
+    file: &Path,
+    make: fn(&Path, &Path) -> Result<Option<String>, RecordingError>,
+    done: &str,
+) -> anyhow::Result<()> {
+    let path = folder.join(JOURNAL_FILE);
+    Ticks::open(&path)?.opened()?;
+    let truncated = match make(&path, file) {
+        Err(RecordingError::Journal(error)) => return Err(error.into()),
+        made => made.with_context(|| format!("making {}", file.display()))?,
+    };
+    let sha256 = sha256(&path).ok();
+    if let Some(doubt) = journal_doubt(folder, sha256.as_deref()) {
+        say_line(&format!("note: {doubt}; the recording holds what it holds"))?;
+    }
+    if let Some(damage) = truncated {
+        say_line(&format!("note: the journal stops early ({damage}); the recording holds what it holds"))?;
+    }
+    Ok(say_line(&format!("{} {done} from {}", file.display(), path.display()))?)
+}
+
+fn ranges(folder: &Path, csv: &Path) -> anyhow::Result<()> {
+    let path = folder.join(JOURNAL_FILE);
+    let stations = Ticks::open(&path)?.opened()?.world.stations.clone();
+    let refused = |error: &std::io::Error| {
+        bad_input(format!("the readings cannot be written: {error}: {}", csv.display()))
+    };
+    let file = BufWriter::new(File::create_new(csv).map_err(|error| refused(&error))?);
+    let mut writer = MeasuredWriter::new(file, &stations).map_err(|error| refused(&error))?;
+    review::readings(folder, |t_s, readings, truth| writer.write(t_s, readings, truth))?;
+    writer.into_inner().flush().map_err(|error| refused(&error))?;
+    Ok(say_line(&format!("{} computed from {}", csv.display(), path.display()))?)
+}

@@ -1,0 +1,272 @@
+//! The columns of a file of readings, and what a row of cells says.
+
+use crate::problem::Problem;
+use csv::StringRecord;
+use std::collections::HashMap;
+use world::{Odometry, Point, Pose, Station, StationId};
+
+/// A quantity with the suffixes of its units, each with its factor to seconds, metres or radians.
+type Column = (&'static str, &'static [(&'static str, f64)]);
+
+const TIME: &[(&str, f64)] = &[("_s", 1.0), ("_ms", 1e-3), ("_us", 1e-6)];
+const LENGTH: &[(&str, f64)] = &[("_m", 1.0), ("_mm", 1e-3)];
+const ANGLE: &[(&str, f64)] = &[("_rad", 1.0), ("_deg", std::f64::consts::PI / 180.0)];
+const NAME: &[(&str, f64)] = &[("", 1.0)];
+
+const T: usize = 0;
+const EMISSION: usize = 1;
+const STATION: usize = 2;
+const RANGE: usize = 3;
+const ARRIVAL: usize = 4;
+const EMITTED: usize = 5;
+const DIFFERENCE: usize = 6;
+const REPETITIONS: usize = 7;
+const FORWARD: usize = 8;
+const SIDEWAYS: usize = 9;
+const TURN: usize = 10;
+const TRUE_X: usize = 11;
+const TRUE_Y: usize = 12;
+const TRUE_HEADING: usize = 13;
+
+const COLUMNS: [Column; 14] = [
+    ("t", TIME),
+    ("emission", NAME),
+    ("station", NAME),
+    ("range", LENGTH),
+    ("arrival", TIME),
+    ("emitted", TIME),
+    ("tdoa", TIME),
+    ("repetitions", NAME),
+    ("forward", LENGTH),
+    ("sideways", LENGTH),
+    ("turn", ANGLE),
+    ("true_x", LENGTH),
+    ("true_y", LENGTH),
+    ("true_heading", ANGLE),
+];
+
+/// A mean of more repetitions than this is no reading.
+const REPETITIONS_MAX: u32 = 1000;
+
+/// What the readings of a file are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Distances, or times of flight.
+    Ranges,
+    /// Times of arrival without the time of emission, or their differences: only differences count.
+    Differences,
+}
+
+/// Where the columns of a file stand.
+#[derive(Debug, Clone)]
+pub(crate) struct Columns {
+    names: Vec<String>,
+    /// Where each of [`COLUMNS`] stands, and its factor.
+    at: [Option<(usize, f64)>; COLUMNS.len()],
+    /// Metres per second; for files of times.
+    sound_speed_m_s: f64,
+    stations: HashMap<String, StationId>,
+    station_names: String,
+    /// Whether numbers have a decimal comma.
+    pub has_commas: bool,
+}
+
+/// What a row says.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Row {
+    pub line: u64,
+    pub t_s: f64,
+    /// Rows of one emission belong together.
+    pub emission: Option<String>,
+    pub range: Option<Heard>,
+    pub motion: Option<Odometry>,
+    pub truth: Option<Pose>,
+}
+
+/// A station was heard.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Heard {
+    pub station: StationId,
+    /// Metres; if only differences count, too long by any length, and perhaps negative.
+    pub range_m: f64,
+    pub repetitions: u32,
+}
+
+impl Columns {
+    /// The columns that the first line names.
+    pub(crate) fn new(
+        header: &StringRecord,
+        stations: &[Station],
+        sound_speed_m_s: Option<f64>,
+    ) -> Result<Self, String> {
+        let names: Vec<String> = header.iter().map(str::to_owned).collect();
+        let mut at = [None; COLUMNS.len()];
+        for (index, name) in names.iter().enumerate() {
+            let Some((column, factor)) = known(name) else { continue };
+            if at[column].replace((index, factor)).is_some() {
+                return Err(format!("column {name}: {} is there twice", COLUMNS[column].0));
+            }
+        }
+        let is_there = |column: usize| at[column].is_some();
+        let measured = [RANGE, ARRIVAL, DIFFERENCE].into_iter().filter(|column| is_there(*column)).count();
+        let has_time = is_there(T) || (is_there(ARRIVAL) && is_there(EMISSION));
+        let wrong = if !is_there(STATION) {
+            Some("no column `station`")
+        } else if measured == 0 {
+            Some("no column says what was measured: range_m, arrival_s or tdoa_s (also in mm, ms and us)")
+        } else if measured > 1 {
+            Some("more than one column says what was measured; keep one of range, arrival and tdoa")
+        } else if !has_time {
+            Some("no column t_s (or t_ms, t_us); only files with `arrival_s` and `emission` do without")
+        } else if !is_there(RANGE) && sound_speed_m_s.is_none() {
+            Some("times need the speed of sound: add --sound-speed with metres per second")
+        } else if is_there(TRUE_X) != is_there(TRUE_Y) {
+            Some("true_x and true_y belong together")
+        } else {
+            None
+        };
+        if let Some(wrong) = wrong {
+            return Err(format!("{wrong}; the first line has {}", names.join(", ")));
+        }
+        let by_number = stations.iter().map(|station| (station.id.0.to_string(), station.id));
+        let by_name = stations.iter().map(|station| (station.name.clone(), station.id));
+        Ok(Self {
+            names,
+            at,
+            sound_speed_m_s: sound_speed_m_s.unwrap_or(1.0),
+            stations: by_number.chain(by_name).collect(),
+            station_names: stations.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(", "),
+            has_commas: false,
+        })
+    }
+
+    /// What the readings are.
+    pub(crate) fn kind(&self) -> Kind {
+        let is_known = self.has(RANGE) || (self.has(ARRIVAL) && self.has(EMITTED));
+        if is_known { Kind::Ranges } else { Kind::Differences }
+    }
+
+    /// Columns that say nothing here.
+    pub(crate) fn ignored(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().map(String::as_str).filter(|name| known(name).is_none())
+    }
+
+    /// Whether the motion between readings was measured.
+    pub(crate) fn has_motion(&self) -> bool {
+        self.has(FORWARD) || self.has(SIDEWAYS)
+    }
+
+    fn has(&self, column: usize) -> bool {
+        self.at[column].is_some()
+    }
+
+    /// Reads a row of cells.
+    pub(crate) fn row(&self, cells: &StringRecord, line: u64) -> Result<Row, Problem> {
+        let number = |column| self.number(cells, line, column);
+        let (arrival_s, emitted_s) = (number(ARRIVAL)?, number(EMITTED)?);
+        let t_s = match (number(T)?, arrival_s) {
+            (Some(t_s), _) => t_s,
+            (None, Some(arrival_s)) if !self.has(T) => arrival_s,
+            _ => return Err(self.problem(line, T, "empty, and a row needs its time".into())),
+        };
+        let is_known = self.kind() == Kind::Ranges;
+        let time_s = match (arrival_s, number(DIFFERENCE)?) {
+            (Some(arrival_s), _) if is_known => emitted_s.map(|emitted_s| arrival_s - emitted_s),
+            (arrival_s, difference_s) => arrival_s.or(difference_s),
+        };
+        let range_m = number(RANGE)?.or(time_s.map(|time_s| time_s * self.sound_speed_m_s));
+        let (forward_m, sideways_m, turn_rad) = (number(FORWARD)?, number(SIDEWAYS)?, number(TURN)?);
+        let is_moved = forward_m.or(sideways_m).or(turn_rad).is_some();
+        let motion = is_moved.then(|| Odometry {
+            forward_m: forward_m.unwrap_or_default(),
+            sideways_m: sideways_m.unwrap_or_default(),
+            turn_rad: turn_rad.unwrap_or_default(),
+        });
+        let truth = number(TRUE_X)?.zip(number(TRUE_Y)?);
+        let heading_rad = number(TRUE_HEADING)?.unwrap_or_default();
+        Ok(Row {
+            line,
+            t_s,
+            emission: Some(self.cell(cells, EMISSION)).filter(|text| !text.is_empty()).map(str::to_owned),
+            range: self.heard(cells, line, range_m)?,
+            motion,
+            truth: truth.map(|(x, y)| Pose { position: Point::new(x, y), heading_rad }),
+        })
+    }
+
+    fn heard(&self, cells: &StringRecord, line: u64, range_m: Option<f64>) -> Result<Option<Heard>, Problem> {
+        let written = self.cell(cells, STATION);
+        let measured = [RANGE, ARRIVAL, DIFFERENCE].into_iter().find(|column| self.has(*column));
+        let range_m = match (written.is_empty(), range_m) {
+            (true, None) => return Ok(None),
+            (true, Some(_)) => {
+                return Err(self.problem(line, STATION, "empty, and the row has a reading".into()));
+            }
+            (false, None) => {
+                let column = measured.filter(|column| self.cell(cells, *column).is_empty());
+                return Err(self.problem(
+                    line,
+                    column.unwrap_or(EMITTED),
+                    format!("empty, and station {written} was heard"),
+                ));
+            }
+            (false, Some(range_m)) => range_m,
+        };
+        let station = *self.stations.get(written).ok_or_else(|| {
+            let what = format!("the scenario has no station `{written}`; it has {}", self.station_names);
+            self.problem(line, STATION, what)
+        })?;
+        if self.kind() == Kind::Ranges && !(1e-3..=1e6).contains(&range_m) {
+            let what = format!("{range_m} m is no distance in a tank");
+            return Err(self.problem(line, measured.unwrap_or(RANGE), what));
+        }
+        let repetitions = match self.cell(cells, REPETITIONS) {
+            "" => 1,
+            text => {
+                let number = text.parse().ok().filter(|n| (1..=REPETITIONS_MAX).contains(n));
+                number.ok_or_else(|| {
+                    self.problem(
+                        line,
+                        REPETITIONS,
+                        format!("`{text}` is no number from 1 to {REPETITIONS_MAX}"),
+                    )
+                })?
+            }
+        };
+        Ok(Some(Heard { station, range_m, repetitions }))
+    }
+
+    fn cell<'a>(&self, cells: &'a StringRecord, column: usize) -> &'a str {
+        self.at[column].and_then(|(index, _)| cells.get(index)).unwrap_or_default()
+    }
+
+    fn number(&self, cells: &StringRecord, line: u64, column: usize) -> Result<Option<f64>, Problem> {
+        let (text, Some((_, factor))) = (self.cell(cells, column), self.at[column]) else { return Ok(None) };
+        if text.is_empty() {
+            return Ok(None);
+        }
+        let parsed = if self.has_commas { text.replace(',', ".").parse::<f64>() } else { text.parse() };
+        let number = parsed.ok().filter(|number| number.is_finite());
+        let number = number.ok_or_else(|| self.problem(line, column, format!("`{text}` is no number")))?;
+        Ok(Some(number * factor))
+    }
+
+    /// What is wrong with the time of a row.
+    pub(crate) fn wrong_time(&self, line: u64, what: String) -> Problem {
+        self.problem(line, if self.has(T) { T } else { ARRIVAL }, what)
+    }
+
+    fn problem(&self, line: u64, column: usize, what: String) -> Problem {
+        let name = self.at[column].map_or(COLUMNS[column].0, |(index, _)| self.names[index].as_str());
+        Problem { line, column: Some(name.to_owned()), what }
+    }
+}
+
+/// Which of [`COLUMNS`] a name means, and its factor.
+fn known(name: &str) -> Option<(usize, f64)> {
+    COLUMNS.iter().enumerate().find_map(|(index, (base, units))| {
+        let suffix = name.strip_prefix(base)?;
+        let (_, factor) = units.iter().find(|(unit, _)| *unit == suffix)?;
+        Some((index, *factor))
+    })
+}

@@ -1,0 +1,24 @@
+//! Readings measured by others, an acoustic-emission system on a real robot for example: to fixes and a track, by the same
+//! estimator as in a mission, as the events of a run, so that journal, recording and report are made of them as of any run.
+//!
+//! A file is read twice, row by row: once to check it and to find out about clocks and sound, once to locate. Memory does not
+//! grow with it.
+
+mod columns;
+mod fixes;
+mod located;
+mod measured;
+mod moments;
+mod problem;
+mod rows;
+mod tally;
+
+pub use columns::Kind;
+pub use fixes::Fixes;
+pub use located::{Survey, Task};
+pub use measured::MeasuredWriter;
+pub use problem::Problem;
+pub use tally::Tally;
+
+#[cfg(test)]
+mod tests;

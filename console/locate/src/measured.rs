@@ -1,0 +1,55 @@
+//! Readings of a run, written in the form that is read here.
+
+use std::io::{self, Write};
+use world::{Odometry, Pose, RangeSet, Readings, Station};
+
+const HEADER: &str = "t_s,station,range_m,forward_m,sideways_m,turn_rad,true_x_m,true_y_m,true_heading_rad\n";
+
+/// Writes readings, tick by tick.
+pub struct MeasuredWriter<W: Write> {
+    out: W,
+    stations: Vec<Station>,
+}
+
+impl<W: Write> MeasuredWriter<W> {
+    /// A file with its first line.
+    ///
+    /// # Errors
+    /// Nothing can be written.
+    pub fn new(mut out: W, stations: &[Station]) -> io::Result<Self> {
+        out.write_all(HEADER.as_bytes())?;
+        Ok(Self { out, stations: stations.to_vec() })
+    }
+
+    /// Writes what was sensed in a tick: a row for the motion and the truth, and one for each range.
+    ///
+    /// # Errors
+    /// Nothing can be written.
+    pub fn write(&mut self, t_s: f64, readings: &Readings, truth: Pose) -> io::Result<()> {
+        let Odometry { forward_m, sideways_m, turn_rad } = readings.odometry;
+        let Pose { position, heading_rad } = truth;
+        let (x, y) = (position.x, position.y);
+        writeln!(self.out, "{t_s},,,{forward_m},{sideways_m},{turn_rad},{x},{y},{heading_rad}")?;
+        for RangeSet { station, ranges_m } in &readings.ranges {
+            let name = self.stations.iter().find(|s| s.id == *station).map_or("", |s| s.name.as_str());
+            for range_m in ranges_m {
+                writeln!(self.out, "{t_s},{},{range_m},,,,,,", quoted(name))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Where it was written to.
+    pub fn into_inner(self) -> W {
+        self.out
+    }
+}
+
+/// A name as a cell.
+fn quoted(name: &str) -> String {
+    if name.contains(['"', ',', '\n', '#']) {
+        format!("\"{}\"", name.replace('"', "\"\""))
+    } else {
+        name.into()
+    }
+}

@@ -1,0 +1,100 @@
+//! Rows of cells out of a file, one at a time.
+
+mod messages;
+
+use crate::problem::Problem;
+use csv::StringRecord;
+use messages::Messages;
+use std::{
+    fs::File,
+    io::{self, BufRead, BufReader, Seek},
+    path::Path,
+};
+
+/// A file that gives rows.
+pub(crate) enum Rows {
+    /// Text with a line of names first.
+    Csv { reader: csv::Reader<BufReader<File>>, header: StringRecord, has_commas: bool },
+    /// Messages as JSON objects, whose keys are the names.
+    Messages(Box<Messages>),
+}
+
+impl Rows {
+    /// Opens a file: `.mcap`, or text for any other suffix.
+    ///
+    /// # Errors
+    /// It cannot be read, or has no names.
+    pub(crate) fn open(file: &Path) -> Result<Self, String> {
+        let opened = File::open(file).map_err(|error| error.to_string())?;
+        if file.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("mcap")) {
+            return Ok(Self::Messages(Box::new(Messages::open(opened)?)));
+        }
+        Self::text(opened)
+    }
+
+    fn text(file: File) -> Result<Self, String> {
+        let mut text = BufReader::with_capacity(1 << 16, file);
+        let (delimiter, skip) = delimiter(&mut text).map_err(|error| error.to_string())?;
+        text.seek(io::SeekFrom::Start(skip)).map_err(|error| error.to_string())?;
+        let mut reader = csv::ReaderBuilder::new()
+            .delimiter(delimiter)
+            .comment(Some(b'#'))
+            .trim(csv::Trim::All)
+            .from_reader(text);
+        let header = reader.headers().map_err(|error| format!("no CSV: {error}"))?.clone();
+        if header.is_empty() {
+            return Err("empty; the first line names the columns, as in t_s,station,range_m".into());
+        }
+        Ok(Self::Csv { reader, header, has_commas: delimiter == b';' })
+    }
+
+    /// The names of the columns.
+    pub(crate) fn header(&self) -> &StringRecord {
+        match self {
+            Self::Csv { header, .. } => header,
+            Self::Messages(messages) => messages.header(),
+        }
+    }
+
+    /// Whether numbers may have a decimal comma.
+    pub(crate) fn has_commas(&self) -> bool {
+        matches!(self, Self::Csv { has_commas: true, .. })
+    }
+
+    /// The next row into `cells`; gives its line, or `None` at the end.
+    ///
+    /// # Errors
+    /// What is wrong with the row; the one after it can still be read.
+    pub(crate) fn next(&mut self, cells: &mut StringRecord) -> Result<Option<u64>, Problem> {
+        match self {
+            Self::Csv { reader, .. } => match reader.read_record(cells) {
+                Ok(true) => Ok(Some(cells.position().map_or(0, csv::Position::line))),
+                Ok(false) => Ok(None),
+                Err(error) => Err(of_csv(&error)),
+            },
+            Self::Messages(messages) => messages.next(cells),
+        }
+    }
+}
+
+fn of_csv(error: &csv::Error) -> Problem {
+    let line = error.position().map_or(0, csv::Position::line);
+    let what = match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            format!("{len} cells, and the first line has {expected_len}")
+        }
+        csv::ErrorKind::Utf8 { .. } => "no UTF-8 text".into(),
+        _ => error.to_string(),
+    };
+    Problem { line, column: None, what }
+}
+
+/// What separates the cells, and how many bytes of a mark come before the first.
+fn delimiter(text: &mut BufReader<File>) -> io::Result<(u8, u64)> {
+    let bytes = text.fill_buf()?;
+    let skip = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+    let mut lines = bytes[skip..].split(|byte| *byte == b'\n');
+    let names = lines.find(|line| !line.starts_with(b"#")).unwrap_or_default();
+    let delimiter = [b';', b'\t'].into_iter().find(|delimiter| names.contains(delimiter)).unwrap_or(b',');
+    Ok((delimiter, skip as u64))
+}

@@ -1,0 +1,247 @@
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use crate::{Kind, MeasuredWriter, Survey, Tally, Task};
+use mission::{Event, EventKind};
+use scenario::Scenario;
+use std::{collections::BTreeMap, fmt::Write as _, path::PathBuf};
+use tempfile::TempDir;
+use world::{Odometry, Point, Pose, RangeSet, Readings};
+
+const SCENARIO: &str = r#"
+name = "bare"
+seed = 1
+[tank]
+radius_m = 10.0
+[robot]
+start_m = [3.0, 0.0]
+start_heading_deg = 90.0
+[ae]
+stations = [
+    { name = "A", at_m = [10.0, 0.0] },
+    { name = "B", at_m = [5.0, 8.66] },
+    { name = "C", at_m = [-5.0, 8.66] },
+    { name = "D", at_m = [-10.0, 0.0] },
+    { name = "E", at_m = [-5.0, -8.66] },
+    { name = "F", at_m = [5.0, -8.66] },
+]
+noise = { model = "gaussian", sigma_ratio = 0.005 }
+[mission]
+kind = "goto"
+goal_m = [0.0, 5.0]
+[planner]
+id = "navfn"
+"#;
+
+fn scenario() -> Scenario {
+    Scenario::parse(SCENARIO, "bare.toml").map_err(|errors| errors.render()).unwrap()
+}
+
+/// A file of readings in a folder of its own.
+struct Readable {
+    _dir: TempDir,
+    file: PathBuf,
+}
+
+impl Readable {
+    fn new(name: &str, bytes: impl AsRef<[u8]>) -> Self {
+        let dir = tempfile::tempdir().unwrap();
+        let file = dir.path().join(name);
+        std::fs::write(&file, bytes).unwrap();
+        Self { _dir: dir, file }
+    }
+
+    fn task<'a>(&'a self, scenario: &'a Scenario) -> Task<'a> {
+        Task {
+            file: &self.file,
+            scenario,
+            sound_speed_m_s: None,
+            finds_sound_speed: false,
+            finds_clock_offset: false,
+            skips_bad_rows: false,
+        }
+    }
+
+    /// What is wrong with the file, without its folder.
+    fn refused(&self) -> String {
+        let scenario = scenario();
+        let error = self.task(&scenario).survey().unwrap_err().to_string();
+        error.replace(&self.file.display().to_string(), "r.csv")
+    }
+}
+
+fn located(task: &Task, survey: &Survey) -> (Tally, Vec<Event>) {
+    let (mut tally, mut all) = (Tally::default(), Vec::new());
+    task.locate(survey, |events| {
+        tally.take(events);
+        all.extend_from_slice(events);
+    })
+    .unwrap();
+    (tally, all)
+}
+
+/// The k-th place of a walk round the middle.
+fn place(k: u32) -> Point {
+    let angle = f64::from(k) * 0.05;
+    Point::new(3.0 * angle.cos(), 3.0 * angle.sin())
+}
+
+/// Ranges of a walk with errors that look like chance, as a row for each station: time, name, range, place.
+fn walk(moments: u32) -> Vec<(f64, String, f64, Point)> {
+    let stations = scenario().sim.world.stations;
+    let error = |k: u32, i: usize| 0.005 * ((f64::from(k) * 12.9 + i as f64 * 78.2).sin() * 43_758.5).sin();
+    let row = |k: u32, (i, station): (usize, &world::Station)| {
+        let distance_m = (place(k) - station.position).norm();
+        (f64::from(k) * 0.5, station.name.clone(), distance_m * (1.0 + error(k, i)), place(k))
+    };
+    (0..moments)
+        .flat_map(|k| stations.iter().enumerate().map(move |station| row(k, station)).collect::<Vec<_>>())
+        .collect()
+}
+
+#[test]
+fn ranges_in_any_unit_and_form_are_the_same_readings() {
+    let (mut metres, mut german) =
+        (String::from("t_s,station,range_m\n"), String::from("\u{feff}# AE\nstation;range_mm;t_ms;dB\n"));
+    for (t_s, station, range_m, _) in walk(20) {
+        let _ = writeln!(metres, "{t_s},{station},{range_m:.6}");
+        let _ = writeln!(
+            german,
+            "{}",
+            format!("{station};{:.3};{};63.5", range_m * 1e3, t_s * 1e3).replace('.', ",")
+        );
+    }
+    let (scenario, metres, german) =
+        (scenario(), Readable::new("r.csv", metres), Readable::new("g.csv", german));
+    let (one, other) = (metres.task(&scenario), german.task(&scenario));
+    let survey = other.survey().unwrap();
+    assert_eq!((survey.rows, survey.ignored.as_slice()), (120, &["dB".to_owned()][..]));
+    let places = |events: &[Event]| -> Vec<Point> {
+        let fix = |event: &Event| match &event.kind {
+            EventKind::Fixed { fix } => Some(fix.position),
+            _ => None,
+        };
+        events.iter().filter_map(fix).collect()
+    };
+    let (a, b) = (located(&one, &one.survey().unwrap()).1, located(&other, &survey).1);
+    assert_eq!(places(&a).len(), 20);
+    assert!(places(&a).iter().zip(places(&b)).all(|(a, b)| (a - b).norm() < 1e-5));
+}
+
+#[test]
+fn bad_rows_are_named_by_line_and_column() {
+    let bad = "t_s,station,range_m,repetitions\n0,A,5.1,1\n0.5,G,5,1\n0.5,B,x,1\n0.5,C,,1\n0.5,,4,1\n0.5,D,-3,1\n\
+               0.5,E,3,0\n,F,3,1\n0.4,A,1\n-1,B,2,1\n";
+    insta::assert_snapshot!(Readable::new("r.csv", bad).refused());
+    let scenario = scenario();
+    let file = Readable::new("r.csv", bad);
+    let survey = Task { skips_bad_rows: true, ..file.task(&scenario) }.survey().unwrap();
+    assert_eq!((survey.rows, survey.bad), (10, 9));
+}
+
+#[test]
+fn a_file_without_what_it_needs_is_refused_with_what_would_be_right() {
+    let cases = [
+        "",
+        "t_s,range_m\n0,1\n",
+        "t_s,station,rnage_m\n0,A,1\n",
+        "station,range_m\nA,1\n",
+        "t_s,station,arrival_us\n0,A,1\n",
+        "t_s,station,range_m,range_mm\n0,A,1,1\n",
+        "t_s,station,range_m\n",
+    ];
+    let all: Vec<String> = cases.iter().map(|text| Readable::new("r.csv", text).refused()).collect();
+    insta::assert_snapshot!(all.join("\n"));
+}
+
+#[test]
+fn arrivals_with_a_late_clock_and_slow_sound_are_located_once_both_are_found() {
+    let mut text = String::from("t_s,station,emitted_us,arrival_us,true_x_m,true_y_m\n");
+    for (t_s, station, range_m, at) in walk(600) {
+        let emitted_us = t_s * 1e6;
+        let arrival_us = emitted_us + range_m / 1176.0 * 1e6 + 850.0;
+        let _ = writeln!(text, "{t_s},{station},{emitted_us},{arrival_us:.3},{},{}", at.x, at.y);
+    }
+    let (scenario, file) = (scenario(), Readable::new("r.csv", text));
+    let task = Task { sound_speed_m_s: Some(1200.0), ..file.task(&scenario) };
+    let asked = Task { finds_sound_speed: true, finds_clock_offset: true, ..task };
+    let survey = asked.survey().unwrap();
+    let calibration = survey.calibration.as_ref().unwrap();
+    let ((scale, scale_sigma), (offset_m, offset_sigma_m)) = (calibration.scale(), calibration.offset_m());
+    assert!((scale - (1200.0 / 1176.0 - 1.0)).abs() < 4.0 * scale_sigma, "{scale} ± {scale_sigma}");
+    assert!((offset_m - 850e-6 * 1200.0).abs() < 4.0 * offset_sigma_m, "{offset_m} ± {offset_sigma_m}");
+    let [found_m, _] = located(&asked, &survey).0.track_error_m.unwrap();
+    let [unasked_m, _] = located(&task, &task.survey().unwrap()).0.track_error_m.unwrap();
+    assert!(found_m < 0.05 && unasked_m > 0.2, "{found_m} {unasked_m}");
+}
+
+#[test]
+fn arrivals_without_the_time_of_emission_are_located_by_their_differences() {
+    let mut text = String::from("emission,station,arrival_s,true_x_m,true_y_m\n");
+    for (t_s, station, range_m, at) in walk(100) {
+        // By the clock of the stations, which counts from 1970, and some time after the tick of the robot.
+        let arrival_s = 1.7e9 + t_s + 0.013 + range_m / 1200.0;
+        let _ = writeln!(text, "hit {t_s},{station},{arrival_s:.7},{},{}", at.x, at.y);
+    }
+    let (scenario, file) = (scenario(), Readable::new("r.csv", text));
+    let task = Task { sound_speed_m_s: Some(1200.0), ..file.task(&scenario) };
+    let survey = task.survey().unwrap();
+    assert_eq!(survey.kind, Kind::Differences);
+    let (tally, events) = located(&task, &survey);
+    assert!(tally.fixes["ok"] > 95, "{:?}", tally.fixes);
+    let [error_m, _] = tally.fix_error_m.unwrap();
+    assert!(error_m < 0.06, "{error_m}");
+    let last = events.last().unwrap();
+    assert!((last.t_s - 49.5).abs() < 0.01, "mission time counts from the first row: {}", last.t_s);
+}
+
+#[test]
+fn messages_of_json_are_rows() {
+    let mut writer = mcap::Writer::new(std::io::Cursor::new(Vec::new())).unwrap();
+    let channel = writer.add_channel(0, "/ranges", "json", &BTreeMap::new()).unwrap();
+    let mut text = String::from("t_s,station,range_m\n");
+    for (sequence, (t_s, station, range_m, _)) in (0..).zip(walk(30)) {
+        let _ = writeln!(text, "{t_s},{station},{range_m}");
+        let json = serde_json::json!({ "t_s": t_s, "station": station, "range_m": range_m }).to_string();
+        let header =
+            mcap::records::MessageHeader { channel_id: channel, sequence, log_time: 0, publish_time: 0 };
+        writer.write_to_known_channel(&header, json.as_bytes()).unwrap();
+    }
+    writer.finish().unwrap();
+    let (scenario, file) = (scenario(), Readable::new("r.mcap", writer.into_inner().into_inner()));
+    let (csv, task) = (Readable::new("r.csv", text), file.task(&scenario));
+    let (csv, survey) = (csv.task(&scenario), task.survey().unwrap());
+    assert_eq!(survey.rows, 180);
+    let kinds = |events: Vec<Event>| -> Vec<EventKind> {
+        let inside = events.len() - 1;
+        events.into_iter().take(inside).skip(1).map(|event| event.kind).collect()
+    };
+    assert_eq!(kinds(located(&task, &survey).1), kinds(located(&csv, &csv.survey().unwrap()).1));
+}
+
+#[test]
+fn what_is_written_is_read_again() {
+    let stations = scenario().sim.world.stations;
+    let mut writer = MeasuredWriter::new(Vec::new(), &stations).unwrap();
+    for k in 0..40 {
+        let moved = Odometry { forward_m: 0.15, sideways_m: 0.0, turn_rad: 0.05 };
+        let ranges = stations.iter().map(|station| RangeSet {
+            station: station.id,
+            ranges_m: vec![(place(k) - station.position).norm(); 3],
+        });
+        let readings = Readings {
+            ranging_cycle: k % 4 == 0,
+            ranges: if k % 4 == 0 { ranges.collect() } else { Vec::new() },
+            odometry: if k == 0 { Odometry::default() } else { moved },
+            ..Readings::default()
+        };
+        let truth = Pose { position: place(k), heading_rad: 1.57 + 0.05 * f64::from(k) };
+        writer.write(f64::from(k) * 0.1, &readings, truth).unwrap();
+    }
+    let (scenario, file) = (scenario(), Readable::new("r.csv", writer.into_inner()));
+    let task = file.task(&scenario);
+    let survey = task.survey().unwrap();
+    let (tally, events) = located(&task, &survey);
+    let estimates = events.iter().filter(|event| matches!(event.kind, EventKind::Estimated { .. })).count();
+    assert_eq!((survey.has_motion, tally.emissions, estimates), (true, 10, 40));
+    assert!(tally.track_error_m.unwrap()[1] < 0.02, "{:?}", tally.track_error_m);
+}

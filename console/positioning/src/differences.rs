@@ -1,0 +1,209 @@
+//! Positions from arrivals whose time of emission nobody knows: only the differences count.
+
+use crate::{
+    anchor::{Anchor, anchored},
+    fix::{Fix, FixError, PositionSolver, Prior, Ranging},
+    linear::conditioning,
+    quality::{assess, integrity_of},
+};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
+use world::{Point, Station};
+
+/// Stations needed: two for the position, one for the time of emission, one to tell mirror positions apart.
+const NEEDED: usize = 4;
+/// Steps tried before giving up; six are usual.
+const MAX_ITERATIONS: usize = 60;
+/// The search ends when a step is shorter than this, metres.
+const SETTLED_M: f64 = 1e-9;
+
+/// Least squares on ranges that are all too long by one length that nobody knows, as arrival times without the time of
+/// emission are: position and length are free, and the covariance of the position contains the doubt about the length.
+///
+/// The scatter of a range is its sigma as a share of the range as given, taken to the true distance. Several starts are tried,
+/// because differences of distances have valleys behind the stations; the best one wins, and a prior is only one of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Differences;
+
+impl PositionSolver for Differences {
+    fn solve(&self, ranges: &[Ranging], stations: &[Station], prior: Option<Prior>) -> Result<Fix, FixError> {
+        let anchors = anchored(ranges, stations)?;
+        if anchors.len() < NEEDED {
+            return Err(FixError::TooFewStations { have: anchors.len(), need: NEEDED });
+        }
+        let found = starts(&anchors, prior)
+            .filter_map(|start| descend(&anchors, start))
+            .min_by(|a, b| a.cost.total_cmp(&b.cost))
+            .ok_or(FixError::NotConverged { iterations: MAX_ITERATIONS })?;
+        let shares = |a: &Anchor| Anchor {
+            range_m: a.range_m - found.excess_m,
+            sigma_m: a.sigma_m / a.range_m * (a.range_m - found.excess_m),
+            ..*a
+        };
+        let ranges: Vec<Anchor> = anchors.iter().map(shares).collect();
+        if ranges.iter().any(|a| a.range_m <= 0.0) {
+            return Err(FixError::NotConverged { iterations: MAX_ITERATIONS });
+        }
+        let covariance = found.covariance.fixed_view::<2, 2>(0, 0).into_owned();
+        let mut fix = assess(&ranges, found.position, covariance, conditioning(&ranges), None)?;
+        fix.degrees_of_freedom -= 1;
+        // Leaving a station out also frees the length; the bound for known ranges does not hold.
+        fix.protection_level_m = None;
+        fix.integrity = integrity_of(fix.chi2, fix.degrees_of_freedom);
+        Ok(fix)
+    }
+}
+
+/// By how much all ranges behind a fix of [`Differences`] are too long, metres.
+pub(crate) fn common_excess_m(fix: &Fix, ranges: &[Ranging], stations: &[Station]) -> Option<f64> {
+    let residual = fix.residuals.first()?;
+    let range = ranges.iter().find(|range| range.station == residual.station)?;
+    let station = stations.iter().find(|station| station.id == residual.station)?;
+    Some(range.range_m - residual.residual_m - (fix.position - station.position).norm())
+}
+
+/// A minimum: position, common excess of the ranges, and the covariance of both.
+struct Minimum {
+    position: Point,
+    excess_m: f64,
+    cost: f64,
+    covariance: Matrix3<f64>,
+}
+
+/// Where to begin: the solution of the squared equations, what is believed, and the middle between the stations and round it.
+fn starts(anchors: &[Anchor], prior: Option<Prior>) -> impl Iterator<Item = Point> {
+    let n = anchors.len() as f64;
+    let middle = Point::from(anchors.iter().map(|a| a.at.coords).sum::<world::Vector>() / n);
+    let round = anchors.iter().map(move |a| middle + (a.at - middle) * 0.5);
+    let believed = prior.map(|(at, _)| at).filter(|at| at.iter().all(|c| c.is_finite()));
+    squared(anchors).into_iter().chain(believed).chain([middle]).chain(round.collect::<Vec<_>>())
+}
+
+/// The solution that is linear in place, excess, and the difference of their squares.
+fn squared(anchors: &[Anchor]) -> Option<Point> {
+    let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
+    for anchor in anchors {
+        let row = Vector4::new(2.0 * anchor.at.x, 2.0 * anchor.at.y, -2.0 * anchor.range_m, 1.0);
+        normal += row * row.transpose();
+        right += row * (anchor.at.coords.norm_squared() - anchor.range_m.powi(2));
+    }
+    let solved = normal.lu().solve(&right)?;
+    Some(Point::new(solved.x, solved.y)).filter(|at| at.iter().all(|c| c.is_finite()))
+}
+
+/// Goes down from a place by Gauss and Newton's steps under Levenberg and Marquardt's damping.
+fn descend(anchors: &[Anchor], start: Point) -> Option<Minimum> {
+    let mut state = Vector3::new(start.x, start.y, 0.0);
+    state.z = best_excess_m(anchors, start);
+    let (mut damping, mut here) = (1e-9, slope(anchors, &state));
+    for _ in 0..MAX_ITERATIONS {
+        let damped = here.curvature + Matrix3::from_diagonal(&(here.curvature.diagonal() * damping));
+        let step = damped.cholesky()?.solve(&-here.gradient);
+        let there = slope(anchors, &(state + step));
+        if there.cost <= here.cost {
+            (state, here) = (state + step, there);
+            damping = (damping * 0.1_f64).max(1e-9);
+        } else {
+            damping = (damping * 10.0).max(1e-4);
+        }
+        if step.norm() < SETTLED_M {
+            let covariance = here.curvature.try_inverse()?;
+            return Some(Minimum {
+                position: Point::new(state.x, state.y),
+                excess_m: state.z,
+                cost: here.cost,
+                covariance,
+            });
+        }
+    }
+    None
+}
+
+/// The excess that fits a place best.
+fn best_excess_m(anchors: &[Anchor], at: Point) -> f64 {
+    anchors.iter().map(|a| a.range_m - (at - a.at).norm()).sum::<f64>() / anchors.len() as f64
+}
+
+struct Slope {
+    cost: f64,
+    gradient: Vector3<f64>,
+    curvature: Matrix3<f64>,
+}
+
+fn slope(anchors: &[Anchor], state: &Vector3<f64>) -> Slope {
+    let mut slope = Slope { cost: 0.0, gradient: Vector3::zeros(), curvature: Matrix3::zeros() };
+    for anchor in anchors {
+        let view = anchor.view_from(Point::new(state.x, state.y));
+        let error = (view.residual_m - state.z) / view.sigma_m;
+        let by = Vector3::new(view.direction.x, view.direction.y, 1.0) / view.sigma_m;
+        // The sigma grows with the distance, too.
+        let by = by + Vector3::new(view.direction.x, view.direction.y, 0.0) * (error / view.distance_m);
+        slope.cost += error * error;
+        slope.gradient -= by * error;
+        slope.curvature += by * by.transpose();
+    }
+    slope
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Nls, Screened, fix::Integrity};
+    use proptest::prelude::*;
+    use world::StationId;
+
+    const PLACES: [(f64, f64); 6] =
+        [(10.0, 0.0), (5.0, 8.66), (-5.0, 8.66), (-10.0, 0.0), (-5.0, -8.66), (5.0, -8.66)];
+
+    fn stations() -> Vec<Station> {
+        let station = |(id, (x, y)): (u32, (f64, f64))| Station {
+            id: StationId(id),
+            name: format!("S{id}"),
+            position: Point::new(x, y),
+        };
+        (1..).zip(PLACES).map(station).collect()
+    }
+
+    fn heard(at: Point, excess_m: f64) -> Vec<Ranging> {
+        let range = |station: &Station| {
+            let range_m = (at - station.position).norm() + excess_m;
+            Ranging::single(station.id, range_m, 0.01 * range_m)
+        };
+        stations().iter().map(range).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn exact_differences_give_the_place_whenever_it_was_emitted(
+            x in -6.0..6.0f64, y in -6.0..6.0f64, excess_m in 0.0..200.0f64,
+        ) {
+            let at = Point::new(x, y);
+            let fix = Differences.solve(&heard(at, excess_m), &stations(), None).unwrap();
+            prop_assert!((fix.position - at).norm() < 1e-5, "{} for {at}", fix.position);
+            prop_assert_eq!((fix.degrees_of_freedom, fix.integrity), (3, Integrity::Ok));
+            let found_m = common_excess_m(&fix, &heard(at, excess_m), &stations()).unwrap();
+            prop_assert!((found_m - excess_m).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn not_knowing_when_costs_accuracy() {
+        let at = Point::new(2.0, 3.0);
+        let known = Nls.solve(&heard(at, 0.0), &stations(), None).unwrap();
+        let unknown = Differences.solve(&heard(at, 0.0), &stations(), None).unwrap();
+        assert!(unknown.covariance.trace() > known.covariance.trace());
+    }
+
+    #[test]
+    fn three_stations_are_too_few_and_a_late_one_is_left_out() {
+        let mut ranges = heard(Point::new(2.0, 3.0), 50.0);
+        assert_eq!(
+            Differences.solve(&ranges[..3], &stations(), None),
+            Err(FixError::TooFewStations { have: 3, need: 4 })
+        );
+        ranges.iter_mut().for_each(|range| range.sigma_m = 0.001 * range.range_m);
+        ranges[2].range_m += 3.0;
+        let fix = Screened(Differences).solve(&ranges, &stations(), None).unwrap();
+        assert!((fix.position - Point::new(2.0, 3.0)).norm() < 0.01, "{}", fix.position);
+        assert_eq!(fix.excluded[0].0, StationId(3));
+    }
+}

@@ -1,0 +1,96 @@
+//! The messages of ROS 2 that are written, with their definitions as `ros2msg` has them.
+
+use world::Pose;
+
+/// The frame of everything.
+pub(super) const FRAME: &str = "tank";
+
+/// A time of ROS.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Stamp {
+    pub sec: i32,
+    pub nanosec: u32,
+}
+
+impl Stamp {
+    /// A mission time, seconds.
+    pub(super) fn of(t_s: f64) -> Self {
+        let nanoseconds = (t_s.max(0.0) * 1e9).round() as u64;
+        Self { sec: (nanoseconds / 1_000_000_000) as i32, nanosec: (nanoseconds % 1_000_000_000) as u32 }
+    }
+
+    pub(super) fn nanoseconds(self) -> u64 {
+        self.sec as u64 * 1_000_000_000 + u64::from(self.nanosec)
+    }
+}
+
+/// Place and quaternion, x, y, z and x, y, z, w.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pose3(pub [f64; 7]);
+
+impl Pose3 {
+    pub(super) fn of(Pose { position, heading_rad }: Pose) -> Self {
+        let (sin, cos) = (heading_rad / 2.0).sin_cos();
+        Self([position.x, position.y, 0.0, 0.0, 0.0, sin, cos])
+    }
+}
+
+/// A type of message.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Schema {
+    /// Package and name.
+    pub name: &'static str,
+    own: &'static str,
+    /// The types that it is made of.
+    parts: &'static [&'static (&'static str, &'static str)],
+}
+
+impl Schema {
+    /// The definition with those of its parts.
+    pub(super) fn text(self) -> String {
+        let part = |(name, text): &(&str, &str)| format!("{}\nMSG: {name}\n{text}", "=".repeat(80));
+        self.own.to_owned() + &self.parts.iter().map(|named| part(named)).collect::<String>()
+    }
+}
+
+type Part = (&'static str, &'static str);
+
+const TIME: Part = ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n");
+const HEADER: Part = ("std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n");
+const POINT: Part = ("geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n");
+const QUATERNION: Part = ("geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n");
+const POSE_PART: Part =
+    ("geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n");
+const POSE_STAMPED: Part = ("geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n");
+const COVARIANCE: Part =
+    ("geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n");
+const GRID_DATA: Part = (
+    "nav_msgs/MapMetaData",
+    "builtin_interfaces/Time map_load_time\nfloat32 resolution\nuint32 width\nuint32 height\ngeometry_msgs/Pose origin\n",
+);
+
+pub(super) const POSE: Schema = Schema {
+    name: "geometry_msgs/msg/PoseStamped",
+    own: POSE_STAMPED.1,
+    parts: &[&HEADER, &TIME, &POSE_PART, &POINT, &QUATERNION],
+};
+pub(super) const POSE_WITH_COVARIANCE: Schema = Schema {
+    name: "geometry_msgs/msg/PoseWithCovarianceStamped",
+    own: "std_msgs/Header header\ngeometry_msgs/PoseWithCovariance pose\n",
+    parts: &[&HEADER, &TIME, &COVARIANCE, &POSE_PART, &POINT, &QUATERNION],
+};
+pub(super) const PATH: Schema = Schema {
+    name: "nav_msgs/msg/Path",
+    own: "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n",
+    parts: &[&HEADER, &TIME, &POSE_STAMPED, &POSE_PART, &POINT, &QUATERNION],
+};
+pub(super) const GRID: Schema = Schema {
+    name: "nav_msgs/msg/OccupancyGrid",
+    own: "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n",
+    parts: &[&HEADER, &TIME, &GRID_DATA, &POSE_PART, &POINT, &QUATERNION],
+};
+pub(super) const LOG: Schema = Schema {
+    name: "rcl_interfaces/msg/Log",
+    own: "builtin_interfaces/Time stamp\nuint8 level\nstring name\nstring msg\nstring file\nstring function\nuint32 line\n",
+    parts: &[&TIME],
+};
