@@ -16,6 +16,7 @@ pub mod identity;
 pub mod inspect;
 pub mod journal;
 pub mod marker;
+mod merge;
 pub mod recorder;
 mod rr;
 mod sink;

@@ -1,8 +1,7 @@
 //! Who drives, whether the robot moves, and whether its position is known: lanes of the timeline of states.
 //!
-//! The viewer fits this timeline only once, to what it has read when the first lane appears. So the lanes are written
-//! all together at the end, where they are fitted to the whole run. A recording whose writer was killed has none;
-//! the event log shows the same, and a recording regenerated from the journal has them.
+//! The viewer fits a timeline of states only once, to what it has read when the first lane appears; linked to the time axis of
+//! all views ([`super::layout`]) it always shows the whole run.
 
 use super::{
     paths,
@@ -14,16 +13,17 @@ use mission::{EventKind, HoldReason, Order, Outcome};
 
 type Done = Result<(), RecordingError>;
 
+/// Short words: the viewer cuts what does not fit on its band.
 const WAITING: &str = "waiting";
 const MOVING: &str = "moving";
-const HELD: &str = "held by the operator";
-const STEPPED: &str = "held after a step";
-const HELD_LOST: &str = "held, position lost";
-const HELD_ALARMED: &str = "held, ranges contradict";
-const HELD_FAULT: &str = "held, planner fault";
-const HELD_STUCK: &str = "held, stuck";
-const HELD_TETHER: &str = "held, tether";
-const HELD_REFUSED: &str = "held, plan refused";
+const HELD: &str = "held";
+const STEPPED: &str = "step";
+const HELD_LOST: &str = "held: lost";
+const HELD_ALARMED: &str = "held: ranges";
+const HELD_FAULT: &str = "held: fault";
+const HELD_STUCK: &str = "held: stuck";
+const HELD_TETHER: &str = "held: tether";
+const HELD_REFUSED: &str = "held: refused";
 const KNOWN: &str = "known";
 const LOST: &str = "lost";
 
@@ -31,7 +31,6 @@ const LOST: &str = "lost";
 pub(crate) struct States {
     mission: &'static str,
     planners: Vec<String>,
-    changes: Vec<(&'static str, At, String)>,
 }
 
 impl States {
@@ -61,52 +60,43 @@ impl States {
         ];
         stream.always(paths::STATE_MISSION, &configuration(&mission))?;
         stream.always(paths::STATE_POSITION, &configuration(&[(KNOWN, green), (LOST, red)]))?;
-        let mut states = Self { mission: WAITING, planners: Vec::new(), changes: Vec::new() };
-        states.change(paths::STATE_MISSION, at, WAITING);
-        states.change(paths::STATE_POSITION, at, KNOWN);
-        Ok(states)
+        change(stream, paths::STATE_MISSION, at, WAITING)?;
+        change(stream, paths::STATE_POSITION, at, KNOWN)?;
+        Ok(Self { mission: WAITING, planners: Vec::new() })
     }
 
-    pub(crate) fn apply(&mut self, event: &EventKind, at: At) {
+    pub(crate) fn apply(&mut self, stream: &Stream, event: &EventKind, at: At) -> Done {
         match event {
-            EventKind::Ordered { order: Order::Start } | EventKind::Resumed => self.enter(MOVING, at),
+            EventKind::Ordered { order: Order::Start } | EventKind::Resumed => self.enter(stream, MOVING, at),
             // A run without an operator never receives a start order.
-            EventKind::Commanded { .. } if self.mission == WAITING => self.enter(MOVING, at),
-            EventKind::Held { by, .. } => self.enter(held(by), at),
-            EventKind::Ended { outcome, .. } => self.enter(outcome.word(), at),
-            EventKind::PositionLost { .. } => self.change(paths::STATE_POSITION, at, LOST),
-            EventKind::PositionRegained { .. } => self.change(paths::STATE_POSITION, at, KNOWN),
-            EventKind::PlannerChosen { choice, .. } => self.planner(&choice.id, at),
-            _ => {}
+            EventKind::Commanded { .. } if self.mission == WAITING => self.enter(stream, MOVING, at),
+            EventKind::Held { by, .. } => self.enter(stream, held(by), at),
+            EventKind::Ended { outcome, .. } => self.enter(stream, outcome.word(), at),
+            EventKind::PositionLost { .. } => change(stream, paths::STATE_POSITION, at, LOST),
+            EventKind::PositionRegained { .. } => change(stream, paths::STATE_POSITION, at, KNOWN),
+            EventKind::PlannerChosen { choice, .. } => self.planner(stream, &choice.id, at),
+            _ => Ok(()),
         }
     }
 
-    /// Writes all lanes.
-    pub(crate) fn finish(&self, stream: &Stream) -> Done {
-        let colors = style::SERIES.into_iter().cycle();
-        let planners: Vec<_> = self.planners.iter().map(String::as_str).zip(colors).collect();
-        stream.always(paths::STATE_PLANNER, &configuration(&planners))?;
-        for (path, at, state) in &self.changes {
-            stream.once(path, *at, &rr::StateChange::single(state.as_str()))?;
-        }
-        Ok(())
-    }
-
-    fn enter(&mut self, state: &'static str, at: At) {
+    fn enter(&mut self, stream: &Stream, state: &'static str, at: At) -> Done {
         self.mission = state;
-        self.change(paths::STATE_MISSION, at, state);
+        change(stream, paths::STATE_MISSION, at, state)
     }
 
-    fn planner(&mut self, id: &str, at: At) {
+    fn planner(&mut self, stream: &Stream, id: &str, at: At) -> Done {
         if !self.planners.iter().any(|known| known == id) {
             self.planners.push(id.to_owned());
+            let colors = style::SERIES.into_iter().cycle();
+            let planners: Vec<_> = self.planners.iter().map(String::as_str).zip(colors).collect();
+            stream.always(paths::STATE_PLANNER, &configuration(&planners))?;
         }
-        self.change(paths::STATE_PLANNER, at, id);
+        change(stream, paths::STATE_PLANNER, at, id)
     }
+}
 
-    fn change(&mut self, path: &'static str, at: At, state: &str) {
-        self.changes.push((path, at, state.to_owned()));
-    }
+fn change(stream: &Stream, path: &str, at: At, state: &str) -> Done {
+    stream.once(path, at, &rr::StateChange::single(state))
 }
 
 fn held(by: &HoldReason) -> &'static str {

@@ -72,7 +72,7 @@ impl Passage {
     /// South-west and north-east corners of the box around it.
     pub(super) fn bounds(&self) -> (Point, Point) {
         match self {
-            Self::Bar(swept) => swept.bounds(),
+            Self::Bar(swept) => (swept.low, swept.high),
             Self::Disc { from, to, reach_m } => {
                 let reach = Vector::new(*reach_m, *reach_m);
                 (from.inf(to) - reach, from.sup(to) + reach)
@@ -90,32 +90,59 @@ impl Passage {
     }
 }
 
-/// The area that a bar sweeps between two poses that are close together: two triangles for each half.
-pub(super) struct Swept([[Point; 3]; 4]);
-
 /// A point this far outside a triangle still counts, metres: neighbouring triangles leave no seam.
 const SEAM_M: f64 = 1e-9;
+/// Points this far outside the band across the way are not looked at, metres.
+const BESIDE_M: f64 = 1e-3;
+
+/// The area that a bar sweeps between two poses that are close together: two triangles for each half.
+pub(super) struct Swept {
+    low: Point,
+    high: Point,
+    triangles: [Triangle; 4],
+    /// The direction across the bar, and how far everything lies along it.
+    ahead: Vector,
+    band: (f64, f64),
+}
 
 impl Swept {
     fn new(swath_m: f64, from: Pose, to: Pose) -> Self {
         let half =
             |pose: Pose| Vector::new(-pose.heading_rad.sin(), pose.heading_rad.cos()) * (swath_m / 2.0);
         let (a, b) = (from.position, to.position);
-        let (a_left, a_right, b_left, b_right) = (a + half(from), a - half(from), b + half(to), b - half(to));
-        Self([[a, a_left, b_left], [a, b_left, b], [a, a_right, b_right], [a, b_right, b]])
-    }
-
-    fn bounds(&self) -> (Point, Point) {
-        bounds_of(self.0.as_flattened())
+        let (from, to) = (half(from), half(to));
+        let (a_left, a_right, b_left, b_right) = (a + from, a - from, b + to, b - to);
+        let (low, high) = bounds_of(&[a, b, a_left, a_right, b_left, b_right]);
+        let ahead = Vector::new(from.y, -from.x) * 2.0 / swath_m;
+        let along = [a_left, a_right, b_left, b_right].map(|corner| ahead.dot(&corner.coords));
+        let band = (
+            along.into_iter().fold(f64::INFINITY, f64::min) - BESIDE_M,
+            along.into_iter().fold(f64::NEG_INFINITY, f64::max) + BESIDE_M,
+        );
+        let corners = [[a, a_left, b_left], [a, b_left, b], [a, a_right, b_right], [a, b_right, b]];
+        Self { low, high, triangles: corners.map(Triangle::new), ahead, band }
     }
 
     fn contains(&self, point: Point) -> bool {
-        self.0.iter().any(|[a, b, c]| {
-            let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(from, to)| (to - from).perp(&(point - from)));
-            let area = (b - a).perp(&(c - a));
-            let turned = area.signum();
-            area != 0.0 && [ab, bc, ca].iter().all(|side| side * turned >= -SEAM_M)
-        })
+        let along = self.ahead.dot(&point.coords);
+        (self.band.0..=self.band.1).contains(&along)
+            && self.triangles.iter().any(|triangle| triangle.contains(point))
+    }
+}
+
+/// A triangle: its corners, and from each the way to the next, counter-clockwise; `None` without an area.
+struct Triangle(Option<[(Point, Vector); 3]>);
+
+impl Triangle {
+    fn new([a, b, c]: [Point; 3]) -> Self {
+        let area = (b - a).perp(&(c - a));
+        let turned = area.signum();
+        Self((area != 0.0).then(|| [(a, b), (b, c), (c, a)].map(|(from, to)| (from, (to - from) * turned))))
+    }
+
+    fn contains(&self, point: Point) -> bool {
+        let is_left = |(from, edge): &(Point, Vector)| edge.perp(&(point - from)) >= -SEAM_M;
+        self.0.as_ref().is_some_and(|edges| edges.iter().all(is_left))
     }
 }
 
