@@ -99,7 +99,7 @@ impl Summary {
             paths::COVERED => self.last_coverage_percent = last_number(chunk).or(self.last_coverage_percent),
             "__properties" => self.name = text(chunk, rr::RecordingInfo::descriptor_name().component),
             _ if entity.strip_prefix("__properties/") == Some(FIGURES) => self.figures = numbers(chunk),
-            "__properties/end" => self.outcome = text(chunk, "outcome".into()),
+            paths::END => self.outcome = text(chunk, "outcome".into()),
             _ if entity.starts_with(paths::LOG) => self.log_lines += rows,
             _ => {}
         }

@@ -3,7 +3,7 @@
 //! While a run lasts, what happened is in the file within seconds, so its chunks are small. A file that was cut off by a kill
 //! keeps them; it says the same.
 
-use crate::{error::RecordingError, rr};
+use crate::{error::RecordingError, recorder::paths, rr};
 use std::{
     collections::BTreeMap,
     fs::{self, File},
@@ -14,8 +14,8 @@ use std::{
 /// Larger recordings keep their chunks: closing a run must not take long.
 const MOST_FILE_BYTES: u64 = 32 << 20;
 /// No chunk is made larger than this.
-const MOST_ROWS: usize = 8192;
-const MOST_CHUNK_BYTES: usize = 1 << 20;
+const MOST_ROWS: usize = 1 << 15;
+const MOST_CHUNK_BYTES: usize = 4 << 20;
 /// Ending of the file that takes the place of the recording when it is whole.
 const ENDING: &str = "merging";
 
@@ -64,8 +64,27 @@ fn write(from: &Path, to: &Path) -> Result<(), String> {
     out.flush().map_err(|error| text(&error))
 }
 
-/// Chunks of one entity with the same columns; of one that holds for the whole recording only the last counts.
-type Key = (String, Vec<String>, bool);
+/// Chunks of one kind, entity and set of columns.
+type Key = (Kind, String, Vec<String>);
+
+/// In this order they are written: a recording that is cut off must not say that it has an end.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    /// It holds for the whole recording; only the last counts.
+    Static,
+    Temporal,
+    End,
+}
+
+impl Kind {
+    fn of(chunk: &rr::Chunk) -> Self {
+        match chunk.entity_path().to_string().trim_start_matches('/') {
+            paths::END => Self::End,
+            _ if chunk.is_static() => Self::Static,
+            _ => Self::Temporal,
+        }
+    }
+}
 
 /// Chunks that wait for others like them.
 #[derive(Default)]
@@ -83,11 +102,13 @@ impl Merger {
         }
         self.store.get_or_insert_with(|| store.clone());
         let chunk = rr::Chunk::from_arrow_msg(arrow).map_err(|error| error.to_string())?;
-        let is_static = chunk.is_static();
+        let kind = Kind::of(&chunk);
         let mut columns: Vec<String> = chunk.components_identifiers().map(|c| c.to_string()).collect();
         columns.sort();
-        let waiting = self.waiting.entry((chunk.entity_path().to_string(), columns, is_static)).or_default();
-        if is_static {
+        let is_last_only = kind != Kind::Temporal;
+        let key = (kind, chunk.entity_path().to_string(), columns);
+        let waiting = self.waiting.entry(key).or_default();
+        if is_last_only {
             *waiting = vec![chunk];
             return Ok(Vec::new());
         }

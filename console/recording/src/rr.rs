@@ -6,7 +6,7 @@ pub(crate) use rerun::{
     RecordingStreamError, SerializationError, SerializedComponentBatch, SerializedComponentColumn, StoreId,
     StoreKind, TimeCell, TimeColumn,
     archetypes::{
-        AnnotationContext, Arrows2D, Boxes2D, Ellipses2D, LineStrips2D, Points2D, RecordingInfo, Scalars,
+        AnnotationContext, Arrows2D, Ellipses2D, LineStrips2D, Points2D, RecordingInfo, Scalars,
         SegmentationImage, SeriesLines, StateChange, StateConfiguration, TextDocument, TextLog, Transform3D,
     },
     blueprint as bp,

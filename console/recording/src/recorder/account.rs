@@ -13,6 +13,7 @@ use report::{
     account::{Area, MissReason, Shares},
 };
 use std::sync::Arc;
+use world::shape::rectangle;
 
 type Done = Result<(), RecordingError>;
 
@@ -76,10 +77,15 @@ fn draw(stream: &Stream, at: At, areas: &[&Area<MissReason>]) -> Done {
     let (labelled, more) = areas.split_at(areas.len().min(LABELLED));
     for (path, areas, first) in [(paths::MISSED, labelled, 1), (paths::MISSED_MORE, more, LABELLED + 1)] {
         let label = |(area, number): (&&Area<MissReason>, usize)| format!("{number}: {:.2} m²", area.area_m2);
-        let boxes = rr::Boxes2D::update_fields()
-            .with_centers(areas.iter().map(|area| flat(nalgebra::center(&area.low, &area.high))))
-            .with_half_sizes(areas.iter().map(|area| flat((area.high - area.low) / 2.0)))
-            .with_colors([style::color(style::MISSED)])
+        // Not as boxes: the viewer puts the labels of those where they were without the turn of the map.
+        let outline = |area: &&Area<MissReason>| {
+            let corners = rectangle(area.low, area.high);
+            rr::LineStrip2D::from_iter(corners.iter().chain(corners.first()).map(|corner| flat(*corner)))
+        };
+        let boxes = rr::LineStrips2D::update_fields()
+            .with_strips(areas.iter().map(outline))
+            .with_colors([style::color(style::MISSED_EDGE)])
+            .with_radii([style::on_screen(1.0)])
             .with_labels(areas.iter().zip(first..).map(label))
             .with_show_labels(path == paths::MISSED);
         stream.once(path, at, &boxes)?;

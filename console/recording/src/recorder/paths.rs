@@ -1,5 +1,7 @@
 //! Names of the entities: where in the recording things are found.
 
+/// The property that says how the run ended.
+pub(crate) const END: &str = "__properties/end";
 /// Root of the map's view.
 pub(crate) const MAP: &str = "map";
 /// The tank frame, turned over for the viewer.
@@ -17,6 +19,7 @@ pub(crate) const MISSED: &str = "map/world/missed";
 pub(crate) const MISSED_MORE: &str = "map/world/missed/more";
 /// What the colours mean.
 pub(crate) const KEY: &str = "map/world/key";
+pub(crate) const KEY_NAMES: &str = "map/world/key/names";
 pub(crate) const STATIONS: &str = "map/world/ae/stations";
 pub(crate) const RANGES: &str = "map/world/ae/ranges";
 pub(crate) const FIX: &str = "map/world/ae/fix";

@@ -109,15 +109,18 @@ fn draw_plates(stream: &Stream, run: &RunOpened) -> Done {
 
 /// What the colours mean: a row of dots below the tank.
 fn draw_key(stream: &Stream, run: &RunOpened) -> Done {
-    let floor = [
-        ("scanned", style::SCANNED),
-        ("to do", style::TO_DO),
-        ("missed", style::MISSED),
-        ("out of reach", style::OUT_OF_REACH),
-    ];
+    let floor = match &run.mission.task {
+        TaskConfig::Goto { .. } => &[][..],
+        TaskConfig::Follow { .. } => &[("scanned", style::SCANNED), ("out of reach", style::OUT_OF_REACH)],
+        TaskConfig::Cover { .. } => &[
+            ("scanned", style::SCANNED),
+            ("to do", style::TO_DO),
+            ("missed", style::MISSED),
+            ("out of reach", style::OUT_OF_REACH),
+        ],
+    };
     let ways = [("true", style::TRUE), ("estimated", style::ESTIMATE), ("planned", style::PLAN)];
-    let is_floor_shown = !matches!(run.mission.task, TaskConfig::Goto { .. });
-    let entries: Vec<_> = floor.into_iter().filter(|_| is_floor_shown).chain(ways).collect();
+    let entries: Vec<_> = floor.iter().chain(&ways).collect();
     let (low, high) = run.world.boundary.bounds();
     let size_m = (high - low).max();
     let middle = nalgebra::center(&low, &high);
@@ -125,12 +128,18 @@ fn draw_key(stream: &Stream, run: &RunOpened) -> Done {
         let step = index as f64 - (entries.len() - 1) as f64 / 2.0;
         flat([middle.x + 0.15 * size_m * step, low.y - 0.06 * size_m])
     };
-    let key = rr::Points2D::new((0..entries.len()).map(at))
+    let places = || (0..entries.len()).map(at);
+    let dots = rr::Points2D::new(places())
         .with_colors(entries.iter().map(|(_, color)| style::color(*color)))
-        .with_radii([style::on_screen(6.0)])
+        .with_radii([style::on_screen(6.0)]);
+    stream.always(paths::KEY, &dots)?;
+    // Labels have the colour of their points, and floor is dark.
+    let names = rr::Points2D::new(places())
+        .with_colors([style::color(style::WALL)])
+        .with_radii([style::on_screen(1.0)])
         .with_labels(entries.iter().map(|(name, _)| *name))
         .with_show_labels(true);
-    stream.always(paths::KEY, &key)
+    stream.always(paths::KEY_NAMES, &names)
 }
 
 fn draw_stations(stream: &Stream, run: &RunOpened) -> Done {

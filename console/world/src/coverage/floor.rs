@@ -279,11 +279,14 @@ impl Floor {
     pub fn cells_under(&self, tool: Tool, a: Pose, b: Pose) -> Vec<usize> {
         let passage = tool.passage(a, b);
         let (low, high) = passage.bounds();
-        let (columns, rows) = self.spans(low, high);
+        let (_, rows) = self.spans(low, high);
         let mut cells = Vec::new();
         for row in rows {
+            let y = self.center_of(0, row).y;
+            let (west, east) = passage.ends_at(y);
+            let (columns, _) = self.spans(Point::new(low.x.max(west), y), Point::new(high.x.min(east), y));
             let is_under = |column: &usize| passage.contains(self.center_of(*column, row));
-            cells.extend(columns.clone().filter(is_under).map(|column| row * self.width + column));
+            cells.extend(columns.filter(is_under).map(|column| row * self.width + column));
         }
         cells
     }

@@ -80,6 +80,14 @@ impl Passage {
         }
     }
 
+    /// West and east ends of all of it that lies at a height.
+    pub(super) fn ends_at(&self, y: f64) -> (f64, f64) {
+        match self {
+            Self::Bar(swept) => swept.ends_at(y),
+            Self::Disc { .. } => (f64::NEG_INFINITY, f64::INFINITY),
+        }
+    }
+
     pub(super) fn contains(&self, point: Point) -> bool {
         match self {
             Self::Bar(swept) => swept.contains(point),
@@ -92,7 +100,7 @@ impl Passage {
 
 /// A point this far outside a triangle still counts, metres: neighbouring triangles leave no seam.
 const SEAM_M: f64 = 1e-9;
-/// Points this far outside the band across the way are not looked at, metres.
+/// Everything lies at least this far within its band, metres.
 const BESIDE_M: f64 = 1e-3;
 
 /// The area that a bar sweeps between two poses that are close together: two triangles for each half.
@@ -100,7 +108,7 @@ pub(super) struct Swept {
     low: Point,
     high: Point,
     triangles: [Triangle; 4],
-    /// The direction across the bar, and how far everything lies along it.
+    /// The direction across the bar, and the band along it in which everything lies.
     ahead: Vector,
     band: (f64, f64),
 }
@@ -123,10 +131,19 @@ impl Swept {
         Self { low, high, triangles: corners.map(Triangle::new), ahead, band }
     }
 
+    /// Where the band begins and ends at a height.
+    fn ends_at(&self, y: f64) -> (f64, f64) {
+        let at = |along: f64| (along - self.ahead.y * y) / self.ahead.x;
+        let (one, other) = (at(self.band.0), at(self.band.1));
+        if one.is_finite() && other.is_finite() {
+            (one.min(other), one.max(other))
+        } else {
+            (f64::NEG_INFINITY, f64::INFINITY)
+        }
+    }
+
     fn contains(&self, point: Point) -> bool {
-        let along = self.ahead.dot(&point.coords);
-        (self.band.0..=self.band.1).contains(&along)
-            && self.triangles.iter().any(|triangle| triangle.contains(point))
+        self.triangles.iter().any(|triangle| triangle.contains(point))
     }
 }
 
