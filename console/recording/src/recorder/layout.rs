@@ -106,12 +106,9 @@ impl Sketch {
 
     fn right(&mut self, run: &RunOpened) -> bp::ContainerLike {
         let error = self.plot("Error (pink), 95 % (blue) [m]", &[paths::ERROR, paths::ERROR_95], None);
-        let beside = match &run.mission.task {
-            TaskConfig::Goto { .. } => self.residuals(),
-            TaskConfig::Follow { .. } | TaskConfig::Cover { .. } => {
-                self.plot("Reachable floor scanned [%]", &[paths::COVERED], Some([0.0, 105.0]))
-            }
-        };
+        let scans = !matches!(run.mission.task, TaskConfig::Goto { .. });
+        let covered =
+            scans.then(|| self.plot("Reachable floor scanned [%]", &[paths::COVERED], Some([0.0, 105.0])));
         let speed = self.plot("Speed (green), sent (blue) [m/s]", &[paths::SPEED, paths::SPEED_SENT], None);
         let clearance = self.plot("Clearance [m]", &[paths::CLEARANCE], None);
         let planning = self.planning(&run.mission.task, run.mission.tether.is_some());
@@ -127,7 +124,7 @@ impl Sketch {
         let scenario =
             bp::TextDocumentView::new("Scenario").with_origin(format!("/{}", paths::SCENARIO)).into();
         bp::Vertical::new([
-            bp::Horizontal::new([error, beside]).into(),
+            bp::Horizontal::new([error].into_iter().chain(covered)).into(),
             bp::Horizontal::new([speed, clearance]).into(),
             planning,
             states,
@@ -155,7 +152,10 @@ impl Sketch {
                 let residuals = self.residuals();
                 bp::Tabs::new([cross_track, residuals, forces, figures]).into()
             }
-            TaskConfig::Goto { .. } => bp::Tabs::new([forces, figures]).into(),
+            TaskConfig::Goto { .. } => {
+                let residuals = self.residuals();
+                bp::Tabs::new([forces, figures, residuals]).into()
+            }
         }
     }
 

@@ -13,17 +13,16 @@ use mission::{EventKind, HoldReason, Order, Outcome};
 
 type Done = Result<(), RecordingError>;
 
-/// Short words: the viewer cuts what does not fit on its band.
 const WAITING: &str = "waiting";
 const MOVING: &str = "moving";
-const HELD: &str = "held";
-const STEPPED: &str = "step";
-const HELD_LOST: &str = "held: lost";
-const HELD_ALARMED: &str = "held: ranges";
-const HELD_FAULT: &str = "held: fault";
-const HELD_STUCK: &str = "held: stuck";
-const HELD_TETHER: &str = "held: tether";
-const HELD_REFUSED: &str = "held: refused";
+const HELD: &str = "held by the operator";
+const STEPPED: &str = "held after a step";
+const HELD_LOST: &str = "held, position lost";
+const HELD_ALARMED: &str = "held, ranges contradict";
+const HELD_FAULT: &str = "held, planner fault";
+const HELD_STUCK: &str = "held, stuck";
+const HELD_TETHER: &str = "held, tether";
+const HELD_REFUSED: &str = "held, plan refused";
 const KNOWN: &str = "known";
 const LOST: &str = "lost";
 
@@ -35,22 +34,22 @@ pub(crate) struct States {
 
 impl States {
     pub(crate) fn open(stream: &Stream, at: At) -> Result<Self, RecordingError> {
-        let outcome = |outcome: Outcome, color| (outcome.word(), color);
+        let outcome = |outcome: Outcome, color| (outcome.word(), outcome.word(), color);
         let grey = style::rgb(90, 100, 115);
         let amber = style::rgb(190, 140, 50);
         let red = style::rgb(200, 70, 65);
         let green = style::rgb(70, 150, 95);
         let mission = [
-            (WAITING, grey),
-            (MOVING, green),
-            (HELD, amber),
-            (STEPPED, amber),
-            (HELD_LOST, red),
-            (HELD_ALARMED, red),
-            (HELD_FAULT, red),
-            (HELD_STUCK, red),
-            (HELD_TETHER, red),
-            (HELD_REFUSED, red),
+            (WAITING, WAITING, grey),
+            (MOVING, MOVING, green),
+            (HELD, "held", amber),
+            (STEPPED, "step", amber),
+            (HELD_LOST, "lost", red),
+            (HELD_ALARMED, "ranges", red),
+            (HELD_FAULT, "fault", red),
+            (HELD_STUCK, "stuck", red),
+            (HELD_TETHER, "tether", red),
+            (HELD_REFUSED, "refused", red),
             outcome(Outcome::Complete, style::rgb(60, 120, 200)),
             outcome(Outcome::Stuck, amber),
             outcome(Outcome::Collision, red),
@@ -59,7 +58,7 @@ impl States {
             outcome(Outcome::Aborted, amber),
         ];
         stream.always(paths::STATE_MISSION, &configuration(&mission))?;
-        stream.always(paths::STATE_POSITION, &configuration(&[(KNOWN, green), (LOST, red)]))?;
+        stream.always(paths::STATE_POSITION, &configuration(&[(KNOWN, KNOWN, green), (LOST, LOST, red)]))?;
         change(stream, paths::STATE_MISSION, at, WAITING)?;
         change(stream, paths::STATE_POSITION, at, KNOWN)?;
         Ok(Self { mission: WAITING, planners: Vec::new() })
@@ -88,7 +87,8 @@ impl States {
         if !self.planners.iter().any(|known| known == id) {
             self.planners.push(id.to_owned());
             let colors = style::SERIES.into_iter().cycle();
-            let planners: Vec<_> = self.planners.iter().map(String::as_str).zip(colors).collect();
+            let planners = self.planners.iter().zip(colors);
+            let planners: Vec<_> = planners.map(|(id, color)| (id.as_str(), id.as_str(), color)).collect();
             stream.always(paths::STATE_PLANNER, &configuration(&planners))?;
         }
         change(stream, paths::STATE_PLANNER, at, id)
@@ -112,8 +112,10 @@ fn held(by: &HoldReason) -> &'static str {
     }
 }
 
-fn configuration(states: &[(&str, [u8; 4])]) -> rr::StateConfiguration {
+/// How states look: each with a short word, because the viewer cuts what does not fit on its band, and a colour.
+fn configuration(states: &[(&str, &str, [u8; 4])]) -> rr::StateConfiguration {
     rr::StateConfiguration::new()
         .with_values(states.iter().map(|state| state.0))
-        .with_colors(states.iter().map(|state| style::color(state.1)))
+        .with_labels(states.iter().map(|state| state.1))
+        .with_colors(states.iter().map(|state| style::color(state.2)))
 }

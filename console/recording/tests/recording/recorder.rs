@@ -164,7 +164,7 @@ fn the_timeline_of_states_shows_who_drove_and_what_the_mission_did() {
     };
     let half = TICKS as i64 / 2;
     assert_eq!(states("state/planner"), [(0, "rpf".to_owned()), (half + 19, "apf".to_owned())]);
-    let mission = [(0, "moving"), (0, "waiting"), (half, "held"), (half + 19, "moving")];
+    let mission = [(0, "moving"), (0, "waiting"), (half, "held by the operator"), (half + 19, "moving")];
     let last = (TICKS as i64 - 1, "complete");
     let expected: Vec<_> =
         mission.iter().chain([&last]).map(|(tick, state)| (*tick, (*state).to_owned())).collect();
