@@ -214,6 +214,22 @@ mod tests {
     }
 
     #[test]
+    fn no_cell_is_overlooked_whatever_the_heading() {
+        let grid = grid(0.05);
+        let floor = grid.floor();
+        for (heading, turn, step_m) in (0..48).map(|k| (0.131 * f64::from(k), 0.05 * f64::from(k % 5), 0.04))
+        {
+            let from = Pose::new(0.3, -1.2, heading);
+            let to = from.moved(step_m, 0.0, turn);
+            let passage = BAR.passage(from, to);
+            let all: Vec<usize> =
+                (0..floor.len()).filter(|cell| passage.contains(floor.center(*cell))).collect();
+            assert!(all.len() > 3);
+            assert_eq!(floor.cells_under(BAR, from, to), all, "{heading} {turn}");
+        }
+    }
+
+    #[test]
     fn a_scanned_area_converges_as_the_cells_get_smaller() {
         let scanned_m2 = |cell_m: f64| {
             let mut grid = grid(cell_m);
