@@ -31,6 +31,8 @@ mod replay;
 mod report_file;
 #[path = "acceptance/reproduce.rs"]
 mod reproduce;
+#[path = "acceptance/rerun.rs"]
+mod rerun;
 #[path = "acceptance/rescan.rs"]
 mod rescan;
 #[path = "acceptance/scenarios.rs"]

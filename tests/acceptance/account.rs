@@ -1,7 +1,7 @@
 //! One account of the floor: whoever prints a share prints the same one, to the last digit.
 
 use crate::bench::{Bench, scenario};
-use recording::{JOURNAL_FILE, JournalReader};
+use recording::{JOURNAL_FILE, JournalReader, RECORDING_FILE};
 use report::account::{Percent, Shares};
 use serde_json::Value;
 use std::path::Path;
@@ -48,6 +48,14 @@ fn of_csv(csv: &str, floor: &str) -> Printed {
     [3, 5, 6, 7, 4].map(|cell| row[cell].to_owned())
 }
 
+/// The properties of the recording.
+fn of_recording(run: &Path, floor: &str) -> Printed {
+    let figures = recording::inspect(&run.join(RECORDING_FILE)).unwrap().figures;
+    // The reachable floor has neither of the other two.
+    let part = |part: &str| format!("{:.1}", figures.get(&format!("{floor}_{part}_percent")).unwrap_or(&0.0));
+    ["scanned", "missed", "unreachable", "margin", "guaranteed"].map(part)
+}
+
 /// What the console's pane shows when the run is over.
 fn of_pane(run: &Path) -> [Percent; 2] {
     let mut model = Run::default();
@@ -59,7 +67,7 @@ fn of_pane(run: &Path) -> [Percent; 2] {
 }
 
 #[test]
-fn console_text_json_html_and_csv_print_the_same_shares_of_every_cover_scenario() {
+fn console_text_json_html_csv_and_recording_have_the_same_shares_of_every_cover_scenario() {
     for name in COVER {
         let bench = Bench::new();
         let flown = bench.fly(&scenario(name), &[]).json();
@@ -81,6 +89,7 @@ fn console_text_json_html_and_csv_print_the_same_shares_of_every_cover_scenario(
             assert!((parts - 100.0).abs() < 1e-9, "{name} {floor}: {printed:?}");
             assert_eq!(of_json(&json["floor"][key]["percent"]), printed, "{name} {floor}, JSON");
             assert_eq!(of_text(&text, floor), printed, "{name} {floor}, text");
+            assert_eq!(of_recording(&run, key), printed, "{name} {floor}, recording");
             let capital = floor.replacen(['w', 'r'], if key == "whole" { "W" } else { "R" }, 1);
             assert_eq!(of_html(&html, &capital), printed, "{name} {floor}, HTML");
             assert_eq!(of_csv(&csv, floor), printed, "{name} {floor}, CSV");

@@ -40,6 +40,14 @@ pub enum RecordingError {
         /// What the system says.
         why: String,
     },
+    /// The chunks of a recording cannot be merged; it is whole without that.
+    #[error("the chunks of the recording cannot be merged ({why}): {}", path.display())]
+    Merge {
+        /// What the system or the format says.
+        why: String,
+        /// Which file.
+        path: PathBuf,
+    },
     /// The file on disk is not the one that was written.
     #[error("the recording is not on disk as it was written: {0}")]
     Changed(#[from] FileChange),

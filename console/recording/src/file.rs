@@ -101,6 +101,11 @@ impl FileWatch {
         Ok((file, Self { path, device: opened.dev(), inode: opened.ino() }))
     }
 
+    /// Its path, absolute.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Whether the path shows the file with at least so many bytes; more may be on their way.
     pub(crate) fn check(&self, written: u64) -> Result<(), FileChange> {
         self.check_length(written, |found| found >= written)

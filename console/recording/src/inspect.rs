@@ -2,7 +2,7 @@
 
 use crate::{
     error::RecordingError,
-    recorder::{paths, stream::TICK},
+    recorder::{FIGURES, paths, stream::TICK},
     rr,
 };
 use std::{collections::BTreeMap, fs::File, io::BufReader, path::Path};
@@ -28,6 +28,8 @@ pub struct Summary {
     pub log_lines: u64,
     /// How the run ended; absent if the run was killed or is still going on.
     pub outcome: Option<String>,
+    /// The figures of the run by name, in the units that their names say.
+    pub figures: BTreeMap<String, f64>,
     /// Whether a layout is embedded.
     pub has_layout: bool,
     /// What could not be read, if something could not.
@@ -96,7 +98,8 @@ impl Summary {
         match entity {
             paths::COVERED => self.last_coverage_percent = last_number(chunk).or(self.last_coverage_percent),
             "__properties" => self.name = text(chunk, rr::RecordingInfo::descriptor_name().component),
-            "__properties/end" => self.outcome = text(chunk, "outcome".into()),
+            _ if entity.strip_prefix("__properties/") == Some(FIGURES) => self.figures = numbers(chunk),
+            paths::END => self.outcome = text(chunk, "outcome".into()),
             _ if entity.starts_with(paths::LOG) => self.log_lines += rows,
             _ => {}
         }
@@ -106,6 +109,16 @@ impl Summary {
 fn last_number(chunk: &rr::Chunk) -> Option<f64> {
     let component = rr::Scalars::descriptor_scalars().component;
     chunk.iter_slices::<f64>(component).last().and_then(|row| row.first().copied())
+}
+
+/// The numbers that a chunk has, by the names of its components.
+fn numbers(chunk: &rr::Chunk) -> BTreeMap<String, f64> {
+    let number = |component: rr::ComponentIdentifier| {
+        let float = chunk.iter_slices::<f64>(component).last().and_then(|row| row.first().copied());
+        let count = || chunk.iter_slices::<u64>(component).last().and_then(|row| row.first().copied());
+        Some((component.to_string(), float.or_else(|| count().map(|count| count as f64))?))
+    };
+    chunk.components_identifiers().filter_map(number).collect()
 }
 
 fn text(chunk: &rr::Chunk, component: rr::ComponentIdentifier) -> Option<String> {

@@ -17,6 +17,7 @@ pub mod inspect;
 pub mod journal;
 pub mod marker;
 pub mod mcap;
+mod merge;
 pub mod recorder;
 mod rr;
 mod sink;

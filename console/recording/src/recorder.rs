@@ -1,5 +1,6 @@
 //! Events to a recording for the rerun viewer.
 
+mod account;
 mod document;
 mod drawings;
 mod fold;
@@ -14,12 +15,16 @@ mod states;
 pub(crate) mod stream;
 pub(crate) mod style;
 mod table;
+mod tables;
 mod tick;
+
+pub(crate) use account::FIGURES;
 
 use crate::{
     error::RecordingError,
     file::{FileChange, FileWatch},
     identity::Identity,
+    merge,
     sink::{SafeSink, SinkHealth},
 };
 use fold::Fold;
@@ -142,8 +147,13 @@ impl Recorder {
         if let Some(why) = self.health.error() {
             return Err(RecordingError::Write { why });
         }
-        let bytes = self.health.bytes();
-        Ok(self.watch.as_ref().map_or(Ok(()), |watch| watch.check_closed(bytes))?)
+        let Some(watch) = &self.watch else { return Ok(()) };
+        watch.check_closed(self.health.bytes())?;
+        if let Err(error) = merge::merge(watch.path()) {
+            // The recording is whole, only slower to open.
+            tracing::warn!("{error}");
+        }
+        Ok(())
     }
 
     fn send(&mut self, now: Instant) -> Result<(), RecordingError> {

@@ -3,8 +3,8 @@
 pub(crate) use re_log_encoding::{DecoderApp, Encoder, EncodingOptions};
 pub(crate) use rerun::{
     AnyValues, AsComponents, ComponentIdentifier, RecordingStream, RecordingStreamBuilder,
-    RecordingStreamError, SerializationError, SerializedComponentBatch, SerializedComponentColumn, StoreKind,
-    TimeCell, TimeColumn,
+    RecordingStreamError, SerializationError, SerializedComponentBatch, SerializedComponentColumn, StoreId,
+    StoreKind, TimeCell, TimeColumn,
     archetypes::{
         AnnotationContext, Arrows2D, Ellipses2D, LineStrips2D, Points2D, RecordingInfo, Scalars,
         SegmentationImage, SeriesLines, StateChange, StateConfiguration, TextDocument, TextLog, Transform3D,
@@ -13,9 +13,10 @@ pub(crate) use rerun::{
     components::{Color, ImageFormat, LineStrip2D, MediaType, Radius, Text, TextLogLevel},
     datatypes::{self, Angle, AnnotationInfo, ChannelDatatype, Rgba32, RotationAxisAngle},
     external::{
+        arrow::array::{Array, ArrayRef, Float64Array, UInt64Array},
         re_build_info::CrateVersion,
         re_log_types::BlueprintActivationCommand,
-        re_sdk_types::blueprint::{archetypes as view, components as view_part},
+        re_sdk_types::blueprint::{archetypes as view, components as view_part, datatypes as view_data},
     },
     log::{Chunk, ChunkBatcherConfig, LogMsg},
     sink::{LogSink, SinkFlushError},

@@ -208,7 +208,8 @@ fn plate_beside(floor: &Floor, map: &PlateMap, place: Point) -> Option<String> {
 
 fn plate_accounts(map: &PlateMap, by_plate: &[Tally], scanned: &Scanned) -> Vec<PlateAccount> {
     let grid = scanned.believed();
-    let mut errors_mm: Vec<Vec<u16>> = vec![Vec::new(); map.plates.len()];
+    let mut errors_mm: Vec<Vec<u16>> =
+        by_plate.iter().map(|tally| Vec::with_capacity(tally.counts.covered)).collect();
     for cell in (0..grid.floor().len()).filter(|cell| grid.is_covered(*cell)) {
         if let Some((plate, error_mm)) = map.plate_of(cell).zip(scanned.passes().error_mm(cell)) {
             errors_mm[plate].push(error_mm);

@@ -34,7 +34,7 @@ impl Past {
         let mut reader = JournalReader::open(&journal)?;
         let (mut fold, mut record) = (Fold::new(), Record::new());
         let (mut opened, mut beyond_floor): (Option<Box<RunOpened>>, Option<u64>) = (None, None);
-        each_event(&mut reader, |event| {
+        let digests = each_event(&mut reader, folder, |event| {
             fold.apply(&event);
             record.apply(&event);
             match (event.kind, &opened) {
@@ -49,7 +49,7 @@ impl Past {
         })?;
         let opened = opened.ok_or(JournalError::NotOpened)?;
         let shown = |path: &Path| path.exists().then(|| path.display().to_string());
-        let files = files(folder, &opened);
+        let files = files(folder, &opened, digests);
         let doubts = files.doubts.first().cloned();
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let run = PastRun {
@@ -68,10 +68,17 @@ impl Past {
     }
 }
 
-/// Gives every event of a journal, in order; a thread of its own reads ahead.
-fn each_event(reader: &mut JournalReader, mut take: impl FnMut(Event)) -> Result<(), JournalError> {
+/// Gives every event of a journal, in order; a thread of its own reads ahead. Another one computes the digests of journal and
+/// recording meanwhile, which are returned.
+fn each_event(
+    reader: &mut JournalReader,
+    folder: &Path,
+    mut take: impl FnMut(Event),
+) -> Result<[Option<String>; 2], JournalError> {
     let (send, receive) = sync_channel::<Vec<Event>>(4);
     thread::scope(|scope| {
+        let hashing =
+            scope.spawn(|| [JOURNAL_FILE, RECORDING_FILE].map(|file| sha256(&folder.join(file)).ok()));
         let reading = scope.spawn(move || {
             loop {
                 let batch = reader.by_ref().take(BATCH).collect::<Result<Vec<Event>, JournalError>>()?;
@@ -81,14 +88,20 @@ fn each_event(reader: &mut JournalReader, mut take: impl FnMut(Event)) -> Result
             }
         });
         receive.into_iter().flatten().for_each(&mut take);
-        reading.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        let read: Result<(), JournalError> =
+            reading.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        let digests = hashing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        read.map(|()| digests)
     })
 }
 
 /// The digests of the files of a run, and what speaks against them.
-fn files(folder: &Path, opened: &RunOpened) -> Files {
+fn files(
+    folder: &Path,
+    opened: &RunOpened,
+    [journal_sha256, recording_sha256]: [Option<String>; 2],
+) -> Files {
     let (journal, recording) = (folder.join(JOURNAL_FILE), folder.join(RECORDING_FILE));
-    let (journal_sha256, recording_sha256) = (sha256(&journal).ok(), sha256(&recording).ok());
     let bytes = |file: &Path| fs::metadata(file).ok().map(|file| file.len());
     let doubts = journal_doubt(folder, journal_sha256.as_deref());
     let doubts = doubts.into_iter().chain(recording_doubt(folder, recording_sha256.as_deref()));

@@ -3,7 +3,7 @@
 
 use mission::{AskId, Event, EventKind, event::TetherContact};
 use planner_api::{Command, LegTag, PoseEstimate};
-use positioning::Ranging;
+use positioning::{Fix, Ranging};
 use serde::Deserialize;
 use world::{CellRun, Point, Pose};
 
@@ -17,7 +17,7 @@ macro_rules! read {
             $($field: $type,)*
             $(#[serde(default)] $optional: $some,)*
         }
-        let Fields { tick, t_s, $($field,)* $($optional,)* } = serde_json::from_slice($line).ok()?;
+        let Fields { tick, t_s, $($field,)* $($optional,)* } = serde_json::from_str($line).ok()?;
         Some(Event { tick, t_s, kind: EventKind::$kind { $($field,)* $($optional,)* } })
     }};
 }
@@ -25,12 +25,16 @@ macro_rules! read {
 /// The event of a line as this program writes it, if it is one of those of every tick; `None` for any other line, and for one
 /// that cannot be read: the general reader says what is wrong.
 pub(super) fn event(line: &[u8]) -> Option<Event> {
-    match name_of(line)? {
+    let name = name_of(line)?;
+    // Once for the whole line instead of once for each key.
+    let line = std::str::from_utf8(line).ok()?;
+    match name {
         b"estimated" => read!(line, Estimated { pose: PoseEstimate; }),
         b"truth" => read!(line, Truth { pose: Pose, clearance_m: f64, collided: bool; }),
         b"covered" => read!(line, Covered { runs: Vec<CellRun>; }),
         b"uncounted" => read!(line, Uncounted { runs: Vec<CellRun>; }),
         b"ranged" => read!(line, Ranged { ranges: Vec<Ranging>; }),
+        b"fixed" => read!(line, Fixed { fix: Fix; }),
         b"commanded" => read!(line, Commanded { command: Command; ask: Option<AskId> }),
         b"tether_truth" => read!(
             line,
@@ -75,11 +79,18 @@ mod tests {
         let pose = json!({ "position": [1.25, -0.1], "heading_rad": 0.3 });
         let covariance = [0.01, 0.0, 0.0, 0.0, 0.02, 0.0, 0.0, 0.0, 0.001];
         let estimate = json!({ "position": [1.0, 2.0], "heading_rad": 0.5, "covariance": covariance });
+        let fix = json!({
+            "position": [1.0, 2.0], "covariance": [0.01, 0.0, 0.0, 0.02], "used": [1, 2, 3],
+            "residuals": [{ "station": 1, "residual_m": -0.02, "sigma_m": 0.05 }],
+            "excluded": [[4, { "residual": { "residual_m": 0.6, "gate_m": 0.2 } }]], "degrees_of_freedom": 1,
+            "chi2": 1.5, "gdop": 1.2, "conditioning": 1.4, "mirror": null, "protection_level_m": 0.3, "integrity": "ok",
+        });
         let drive =
             json!({ "drive": { "twist": { "v_m_per_s": 0.4, "w_rad_per_s": 0.1 } }, "status": "moving" });
         let kinds = [
             json!({ "event": "estimated", "pose": estimate }),
             json!({ "event": "truth", "pose": pose, "clearance_m": 0.123_456_789, "collided": false }),
+            json!({ "event": "fixed", "fix": fix }),
             json!({ "event": "covered", "runs": [[5, 2], [9, 1]] }),
             json!({ "event": "uncounted", "runs": [] }),
             json!({ "event": "commanded", "ask": [1, 28], "command": drive }),

@@ -1,8 +1,10 @@
 //! The mission in words: the text beside the map, and the properties of the recording.
 
+use super::tables;
 use crate::rr;
 use mission::{Outcome, PlannerChoice, PlannerInfo, TaskConfig, event::RunOpened};
-use std::fmt::Write;
+use report::Account;
+use std::{fmt::Write, sync::Arc};
 use world::Boundary;
 
 /// A planner that drove in this run.
@@ -16,11 +18,12 @@ pub(crate) struct Document {
     run: RunOpened,
     drivers: Vec<Driver>,
     end: Option<(Outcome, String)>,
+    floor: Option<Account>,
 }
 
 impl Document {
     pub(crate) fn new(run: RunOpened) -> Self {
-        Self { run, drivers: Vec::new(), end: None }
+        Self { run, drivers: Vec::new(), end: None, floor: None }
     }
 
     pub(crate) fn planner_chosen(&mut self, choice: &PlannerChoice, info: &PlannerInfo) {
@@ -37,12 +40,16 @@ impl Document {
         self.end = Some((outcome, reason.to_owned()));
     }
 
+    pub(crate) fn accounted(&mut self, floor: Option<Account>) {
+        self.floor = floor;
+    }
+
     /// Properties that hold from the start.
     pub(crate) fn run_properties(&self) -> rr::AnyValues {
         let run = &self.run;
         rr::AnyValues::default()
             .with_component::<rr::Text>("scenario", [run.scenario.as_str()])
-            .with_component::<rr::Text>("seed", [run.seed.to_string()])
+            .with_component_from_data("seed", Arc::new(rr::UInt64Array::from(vec![run.seed])) as rr::ArrayRef)
             .with_component::<rr::Text>("tankops_version", [run.tankops_version.as_str()])
             .with_component::<rr::Text>("journal_version", [run.journal_version.to_string()])
     }
@@ -74,6 +81,9 @@ impl Document {
             let _ = writeln!(text, "**{}**: {reason}\n", outcome.word());
         }
         self.table(&mut text);
+        if let Some(floor) = &self.floor {
+            text.push_str(&tables::floor(floor, self.end.is_some()));
+        }
         for driver in &self.drivers {
             driver.describe(&mut text);
         }
@@ -126,9 +136,15 @@ const LEGEND: &str = "
 ## How to read the map
 
 Green is where the robot truly is, pink where it believes to be, with the ellipse that should hold the truth in 95 of
-100 cases. Blue cells are scanned, grey ones out of reach. Red outlines are on the drawing, dark red ones must be
+100 cases. The bar across the robot is what it scans; the key below the tank names the kinds of floor. Red outlines are on the drawing, dark red ones must be
 discovered, orange ones were discovered and stand as estimated. Yellow lines are acoustic-emission ranges, red ones
 were left out of the fix. Arrows are the planner's forces; their length grows with the logarithm of the force.
+
+## How to read the plots
+
+Pink is what is estimated, green what is true, blue what is claimed or sent. Tether: pink is paid out, green truly out, blue the
+return path, which has gaps where there is none. Wraps: orange is the largest, blue the total. Forces have the colours of
+their arrows. On the timeline `utc` a run begins when its name says and goes on with mission time.
 ";
 
 fn parameters(choice: &PlannerChoice) -> String {

@@ -1,6 +1,7 @@
 //! The fold from events to entities.
 
 use super::{
+    account::Accounting,
     document::Document,
     drawings::Drawings,
     layout, paths, ranging,
@@ -13,7 +14,9 @@ use super::{
     tick::Tick,
 };
 use crate::{error::RecordingError, rr};
-use mission::{Event, EventKind, Severity, event::RunOpened};
+use mission::{Event, EventKind, Severity, TaskConfig, event::RunOpened};
+use ranging::Residuals;
+use report::Summary;
 use world::{Obstacle, Point, Station};
 
 type Done = Result<(), RecordingError>;
@@ -29,8 +32,11 @@ struct Opened {
     tick: Tick,
     table: Table,
     stations: Vec<Station>,
+    residuals: Residuals,
     drawings: Drawings,
-    raster: Raster,
+    /// Absent if the mission is not there to scan floor.
+    raster: Option<Raster>,
+    accounting: Accounting,
     states: States,
     document: Document,
     target: Option<Point>,
@@ -44,7 +50,7 @@ impl Fold {
         let at = At::of(event);
         match (&mut self.opened, &event.kind) {
             (None, EventKind::RunOpened(run)) => {
-                self.opened = Some(Box::new(Opened::new(run, at, stream)?));
+                self.opened = Some(Box::new(Opened::new(event, run, at, stream)?));
                 log(stream, event, &[], at)?;
                 Ok(0)
             }
@@ -67,20 +73,27 @@ impl Fold {
         let at = opened.tick.at;
         opened.close_tick(stream, at)?;
         opened.table.finish();
-        opened.raster.picture(stream, at)?;
-        opened.states.finish(stream)
+        let summary = opened.accounting.write(stream, at)?;
+        if let Some(raster) = &mut opened.raster {
+            if summary.outcome.is_some() && summary.floor.is_some() {
+                raster.end();
+            }
+            raster.picture(stream, at)?;
+        }
+        opened.account(summary, stream, at)
     }
 
     /// Sends waiting rows.
     pub(crate) fn send(&mut self, stream: &Stream) -> Done {
         let Some(opened) = &mut self.opened else { return Ok(()) };
         opened.table.send(stream)?;
+        opened.residuals.send(stream)?;
         opened.drawings.send(stream)
     }
 }
 
 impl Opened {
-    fn new(run: &RunOpened, at: At, stream: &Stream) -> Result<Self, RecordingError> {
+    fn new(event: &Event, run: &RunOpened, at: At, stream: &Stream) -> Result<Self, RecordingError> {
         stream.layout(layout::messages(run)?);
         scene::draw(stream, run)?;
         let document = Document::new(run.clone());
@@ -91,26 +104,33 @@ impl Opened {
                 .with_media_type(rr::MediaType::markdown()),
         )?;
         let (low, high) = run.world.boundary.bounds();
-        let opened = Self {
+        let scans = !matches!(run.mission.task, TaskConfig::Goto { .. });
+        let mut opened = Self {
             tick: Tick::first(at, run.mission.start.position),
             table: Table::open(stream, run)?,
             stations: run.world.stations.clone(),
             drawings: Drawings::new((high.x - low.x).min(high.y - low.y)),
-            raster: Raster::open(stream, run)?,
+            residuals: Residuals::open(stream, &run.world.stations)?,
+            raster: scans.then(|| Raster::open(stream, run)).transpose()?,
+            accounting: Accounting::open(run, at),
             states: States::open(stream, at)?,
             document,
             target: None,
             has_cuts: false,
         };
+        opened.accounting.apply(event);
         opened.write_document(stream, at)?;
         Ok(opened)
     }
 
     fn apply(&mut self, event: &Event, at: At, stream: &Stream) -> Done {
-        self.states.apply(&event.kind, at);
+        self.accounting.apply(event);
+        self.states.apply(stream, &event.kind, at)?;
         match &event.kind {
-            EventKind::Covered { runs } => self.raster.mark(runs),
-            EventKind::FloorChanged { changes } => self.raster.change(changes),
+            EventKind::Covered { runs } => self.raster.iter_mut().for_each(|raster| raster.mark(runs)),
+            EventKind::FloorChanged { changes } => {
+                self.raster.iter_mut().for_each(|raster| raster.change(changes));
+            }
             EventKind::Planned { path, cuts, .. } => {
                 let strip = |points: &Vec<Point>| {
                     rr::LineStrip2D::from_iter(points.iter().map(|point| super::lane::flat(*point)))
@@ -157,9 +177,20 @@ impl Opened {
         let next = self.tick.next(next);
         let tick = std::mem::replace(&mut self.tick, next);
         self.drawings.show(stream, tick.at, &tick.drawings)?;
-        self.raster.picture_if_due(stream, tick.at)?;
+        self.raster.iter_mut().try_for_each(|raster| raster.picture_if_due(stream, tick.at))?;
         ranging::draw(stream, &self.stations, &tick)?;
-        self.table.push(stream, &tick)
+        self.residuals.push(&tick);
+        self.table.push(stream, &tick)?;
+        match self.accounting.write_if_due(stream, tick.at)? {
+            Some(summary) => self.account(summary, stream, tick.at),
+            None => Ok(()),
+        }
+    }
+
+    /// Shows an account in the text beside the map.
+    fn account(&mut self, summary: Summary, stream: &Stream, at: At) -> Done {
+        self.document.accounted(summary.floor);
+        self.write_document(stream, at)
     }
 
     fn write_document(&self, stream: &Stream, at: At) -> Done {
@@ -177,10 +208,11 @@ fn draw_found(stream: &Stream, at: At, obstacle: &Obstacle) -> Done {
 
 fn log(stream: &Stream, event: &Event, stations: &[Station], at: At) -> Done {
     let Some(line) = event.log_line(stations) else { return Ok(()) };
+    // The viewer has no level for what is worth watching, and shows a word of its own without a colour.
     let level = match line.severity {
         Severity::Info => rr::TextLogLevel::INFO,
-        Severity::Watch => rr::TextLogLevel::WARN,
-        Severity::Warn => rr::TextLogLevel::ERROR,
+        Severity::Watch => "WATCH",
+        Severity::Warn => rr::TextLogLevel::WARN,
         Severity::Crit => rr::TextLogLevel::CRITICAL,
     };
     let text = rr::TextLog::new(line.text).with_level(level);

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     error::RecordingError,
-    rr::{self, bp, datatypes, view, view_part},
+    rr::{self, bp, datatypes, view, view_data, view_part},
 };
 use mission::{TaskConfig, event::RunOpened};
 use rr::AsComponents;
@@ -105,50 +105,90 @@ impl Sketch {
     }
 
     fn right(&mut self, run: &RunOpened) -> bp::ContainerLike {
-        let error = self.plot("Position error [m]", &[paths::ERROR, paths::ERROR_95], None);
-        let covered = self.plot("Coverage of the reachable floor [%]", &[paths::COVERED], Some([0.0, 105.0]));
-        let speeds = [paths::SPEED, paths::SPEED_SENT, paths::CLEARANCE];
-        let motion = self.plot("Speed [m/s] and clearance [m]", &speeds, None);
+        let error = self.plot("Error (pink), 95 % (blue) [m]", &[paths::ERROR, paths::ERROR_95], None);
+        let scans = !matches!(run.mission.task, TaskConfig::Goto { .. });
+        let covered =
+            scans.then(|| self.plot("Reachable floor scanned [%]", &[paths::COVERED], Some([0.0, 105.0])));
+        let speed = self.plot("Speed (green), sent (blue) [m/s]", &[paths::SPEED, paths::SPEED_SENT], None);
+        let clearance = self.plot("Clearance [m]", &[paths::CLEARANCE], None);
         let planning = self.planning(&run.mission.task, run.mission.tether.is_some());
         let states = bp::StateTimelineView::new("States")
             .with_origin(format!("/{}", paths::STATE))
             .with_contents(["$origin/**"])
             .into();
-        let log = bp::TextLogView::new("Events").with_origin(format!("/{}", paths::LOG)).into();
+        // As long as the run is, also while it is being read.
+        let link = view::TimeAxis::update_fields().with_link(view_part::LinkAxis::LinkToGlobal);
+        self.add(&view_path(&states), "TimeAxis", &link);
+        let log = self.log();
         let mission = bp::TextDocumentView::new("Mission").with_origin(format!("/{}", paths::SUMMARY)).into();
         let scenario =
             bp::TextDocumentView::new("Scenario").with_origin(format!("/{}", paths::SCENARIO)).into();
         bp::Vertical::new([
-            bp::Horizontal::new([error, covered]).into(),
-            bp::Horizontal::new([motion, planning]).into(),
+            bp::Horizontal::new([error].into_iter().chain(covered)).into(),
+            bp::Horizontal::new([speed, clearance]).into(),
+            planning,
             states,
             bp::Tabs::new([log, mission, scenario]).into(),
         ])
-        .with_row_shares(vec![2.0, 2.0, 1.8, 2.2])
+        .with_row_shares(vec![1.5, 1.5, 1.7, 1.8, 1.9])
         .into()
     }
 
     /// How the planner does its work: one plot at a time, the most informative first.
     fn planning(&mut self, task: &TaskConfig, has_tether: bool) -> bp::ContainerLike {
         let forces = self.plot("Forces [N]", &[paths::FORCE_SIZES], None);
-        let figures = self.plot("Planner", &[&format!("{}/**", paths::PLANNER_SCALARS)], None);
+        let figures = self.plot_with_legend("Planner", paths::PLANNER_SCALARS);
         match task {
             _ if has_tether => {
                 let out = [paths::TETHER_OUT, paths::TETHER_OUT_TRUE, paths::TETHER_HOME];
                 let out = self.plot("Tether [m]", &out, None);
                 let wraps = self.plot("Wraps [deg]", &[paths::TETHER_WRAP, paths::TETHER_SUM], None);
                 let cross_track = self.plot("Cross-track [m]", &[paths::CROSS_TRACK], None);
-                bp::Tabs::new([out, wraps, cross_track, forces, figures]).into()
+                let residuals = self.residuals();
+                bp::Tabs::new([out, wraps, cross_track, residuals, forces, figures]).into()
             }
             TaskConfig::Follow { .. } | TaskConfig::Cover { .. } => {
                 let cross_track = self.plot("Cross-track [m]", &[paths::CROSS_TRACK], None);
-                bp::Tabs::new([cross_track, forces, figures]).into()
+                let residuals = self.residuals();
+                bp::Tabs::new([cross_track, residuals, forces, figures]).into()
             }
-            TaskConfig::Goto { .. } => bp::Tabs::new([forces, figures]).into(),
+            TaskConfig::Goto { .. } => {
+                let residuals = self.residuals();
+                bp::Tabs::new([forces, figures, residuals]).into()
+            }
         }
     }
 
+    /// The event log: the path only repeats what the text says.
+    fn log(&mut self) -> bp::ContainerLike {
+        let log = bp::TextLogView::new("Events").with_origin(format!("/{}", paths::LOG)).into();
+        let shown = |kind| view_data::TextLogColumn { visible: true.into(), kind };
+        let columns = [view_data::TextLogColumnKind::LogLevel, view_data::TextLogColumnKind::Body];
+        let columns = view::TextLogColumns::update_fields().with_text_log_columns(columns.map(shown));
+        self.add(&view_path(&log), "TextLogColumns", &columns);
+        log
+    }
+
+    fn residuals(&mut self) -> bp::ContainerLike {
+        self.plot_with_legend("Residuals [m]", paths::RESIDUALS)
+    }
+
+    /// A plot of everything below an entity, whose names are known only later.
+    fn plot_with_legend(&mut self, name: &str, below: &str) -> bp::ContainerLike {
+        let plot = self.plot_of(name, &[&format!("{below}/**")], None);
+        let legend = view::PlotLegend::new().with_corner(view_part::Corner2D::RightTop);
+        self.add(&view_path(&plot), "PlotLegend", &legend);
+        plot
+    }
+
+    /// A plot without a legend, which would lie on the curves: its name says what they are, or the text beside the map.
     fn plot(&mut self, name: &str, entities: &[&str], range: Option<[f64; 2]>) -> bp::ContainerLike {
+        let plot = self.plot_of(name, entities, range);
+        self.add(&view_path(&plot), "PlotLegend", &view::PlotLegend::new().with_visible(false));
+        plot
+    }
+
+    fn plot_of(&mut self, name: &str, entities: &[&str], range: Option<[f64; 2]>) -> bp::ContainerLike {
         let plot = bp::TimeSeriesView::new(name)
             .with_origin(format!("/{}", paths::SCALARS))
             .with_contents(entities.iter().map(|entity| format!("/{entity}")))
@@ -162,7 +202,6 @@ impl Sketch {
             end: datatypes::TimeRangeBoundary::Infinite,
         };
         self.add(&path, "TimeAxis", &view::TimeAxis::new().with_view_range(whole));
-        self.add(&path, "PlotLegend", &view::PlotLegend::new().with_corner(view_part::Corner2D::LeftTop));
         plot
     }
 
@@ -178,10 +217,11 @@ fn view_path(view: &bp::ContainerLike) -> String {
     }
 }
 
-/// The part of the map that is seen at first: the tank with a margin, turned over like the map itself.
+/// The part of the map that is seen at first: the tank with a margin and the key below it, turned over like the map itself.
 fn bounds(run: &RunOpened) -> view::VisualBounds2D {
-    let (low, high) = run.world.boundary.bounds();
+    let (mut low, high) = run.world.boundary.bounds();
     let margin = MARGIN * (high - low).max();
+    low.y -= margin;
     view::VisualBounds2D::new(view_part::VisualBounds2D(datatypes::Range2D {
         x_range: [low.x - margin, high.x + margin].into(),
         y_range: [-high.y - margin, -low.y + margin].into(),

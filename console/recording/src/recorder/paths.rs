@@ -1,5 +1,7 @@
 //! Names of the entities: where in the recording things are found.
 
+/// The property that says how the run ended.
+pub(crate) const END: &str = "__properties/end";
 /// Root of the map's view.
 pub(crate) const MAP: &str = "map";
 /// The tank frame, turned over for the viewer.
@@ -10,6 +12,14 @@ pub(crate) const OBSTACLES_KNOWN: &str = "map/world/obstacles/known";
 pub(crate) const OBSTACLES_HIDDEN: &str = "map/world/obstacles/hidden";
 pub(crate) const OBSTACLES_FOUND: &str = "map/world/obstacles/found";
 pub(crate) const ZONES: &str = "map/world/zones";
+pub(crate) const PLATES: &str = "map/world/plates";
+pub(crate) const PLATE_NAMES: &str = "map/world/plates/names";
+/// The largest missed areas, with labels, and the others.
+pub(crate) const MISSED: &str = "map/world/missed";
+pub(crate) const MISSED_MORE: &str = "map/world/missed/more";
+/// What the colours mean.
+pub(crate) const KEY: &str = "map/world/key";
+pub(crate) const KEY_NAMES: &str = "map/world/key/names";
 pub(crate) const STATIONS: &str = "map/world/ae/stations";
 pub(crate) const RANGES: &str = "map/world/ae/ranges";
 pub(crate) const FIX: &str = "map/world/ae/fix";
@@ -26,6 +36,8 @@ pub(crate) const ESTIMATE: &str = "map/world/robot/est";
 pub(crate) const BODY: &str = "map/world/robot/body";
 pub(crate) const HEADING: &str = "map/world/robot/body/heading";
 pub(crate) const HULL: &str = "map/world/robot/body/hull";
+/// What the tool scans.
+pub(crate) const SWATH: &str = "map/world/robot/body/swath";
 pub(crate) const COVARIANCE: &str = "map/world/robot/cov";
 /// Arrows of planners, one entity a layer below it.
 pub(crate) const FORCES: &str = "map/world/forces";
@@ -45,6 +57,8 @@ pub(crate) const SPEED: &str = "scalars/speed";
 pub(crate) const SPEED_SENT: &str = "scalars/speed_commanded";
 pub(crate) const CLEARANCE: &str = "scalars/clearance";
 pub(crate) const CROSS_TRACK: &str = "scalars/cross_track";
+/// Residuals of the ranges, one entity a station below it.
+pub(crate) const RESIDUALS: &str = "scalars/residual";
 pub(crate) const FORCE_SIZES: &str = "scalars/forces";
 /// Figures that planners report, one entity a name below it.
 pub(crate) const PLANNER_SCALARS: &str = "scalars/planner";

@@ -1,15 +1,15 @@
 //! Ranges from their stations towards the believed position: the gap between tip and robot is the residual.
 
 use super::{
-    lane::{Flat, flat},
+    lane::{Flat, Lane, flat},
     paths,
     stream::Stream,
-    style,
+    style, table,
     tick::Tick,
 };
 use crate::{error::RecordingError, rr};
-use positioning::Ranging;
-use world::Station;
+use positioning::{Exclusion, Fix, Ranging};
+use world::{Station, StationId};
 
 /// Draws the ranges and the fix of a tick.
 pub(crate) fn draw(stream: &Stream, stations: &[Station], tick: &Tick) -> Result<(), RecordingError> {
@@ -35,4 +35,46 @@ fn line(range: &Ranging, stations: &[Station], tick: &Tick) -> Option<[Flat; 2]>
     let station = stations.iter().find(|station| station.id == range.station)?;
     let towards = (tick.believed - station.position).try_normalize(1e-9)?;
     Some([flat(station.position), flat(station.position + towards * range.range_m)])
+}
+
+/// The residuals of each station: measured minus expected range, also of those that were rejected for it.
+pub(crate) struct Residuals(Vec<(StationId, Lane<f64>)>);
+
+impl Residuals {
+    /// The stations of a run, and how their curves look.
+    pub(crate) fn open(stream: &Stream, stations: &[Station]) -> Result<Self, RecordingError> {
+        let mut lanes = Vec::new();
+        for (station, color) in stations.iter().zip(style::SERIES.into_iter().cycle()) {
+            let lane = Lane::new(format!("{}/{}", paths::RESIDUALS, table::entity_name(&station.name)));
+            stream.always(lane.path(), &table::curve(&station.name, color))?;
+            lanes.push((station.id, lane));
+        }
+        Ok(Self(lanes))
+    }
+
+    /// Takes in a tick that is over.
+    pub(crate) fn push(&mut self, tick: &Tick) {
+        let Some(fix) = &tick.fix else { return };
+        for (station, lane) in &mut self.0 {
+            if let Some(residual_m) = residual_m(fix, *station) {
+                lane.push(tick.at, residual_m);
+            }
+        }
+    }
+
+    /// Sends the waiting rows.
+    pub(crate) fn send(&mut self, stream: &Stream) -> Result<(), RecordingError> {
+        self.0.iter_mut().try_for_each(|(_, lane)| lane.send(stream))
+    }
+}
+
+fn residual_m(fix: &Fix, station: StationId) -> Option<f64> {
+    let used = fix.residuals.iter().find(|residual| residual.station == station);
+    let rejected = || {
+        fix.excluded.iter().find_map(|(id, why)| match why {
+            Exclusion::Residual { residual_m, .. } if *id == station => Some(*residual_m),
+            _ => None,
+        })
+    };
+    used.map(|residual| residual.residual_m).or_else(rejected)
 }

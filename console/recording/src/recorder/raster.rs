@@ -3,6 +3,7 @@
 use super::{
     paths,
     stream::{At, Stream},
+    style,
 };
 use crate::{error::RecordingError, rr};
 use mission::event::RunOpened;
@@ -14,9 +15,11 @@ const PERIOD_S: f64 = 5.0;
 const CELLS_PER_TICK: usize = 500;
 
 /// What a cell looks like; class 0 is not drawn.
-const OPEN: u8 = 0;
+const OUTSIDE: u8 = 0;
 const UNREACHABLE: u8 = 1;
 const SCANNED: u8 = 2;
+const TO_DO: u8 = 3;
+const MISSED: u8 = 4;
 
 /// The scanned floor, and when it was pictured last.
 pub(crate) struct Raster {
@@ -43,14 +46,16 @@ impl Raster {
             color: Some(rr::Rgba32::from_unmultiplied_rgba(red, green, blue, alpha)),
         };
         let classes = [
-            class(OPEN, "not scanned", [0, 0, 0, 0]),
-            class(UNREACHABLE, "out of reach", [95, 85, 80, 255]),
-            class(SCANNED, "scanned", [40, 110, 200, 255]),
+            class(OUTSIDE, "no floor", [0, 0, 0, 0]),
+            class(UNREACHABLE, "out of reach", style::OUT_OF_REACH),
+            class(SCANNED, "scanned", style::SCANNED),
+            class(TO_DO, "to do", style::TO_DO),
+            class(MISSED, "missed", style::MISSED),
         ];
         stream.always(paths::COVERAGE, &rr::AnnotationContext::new(classes))?;
         let mut cells: Vec<u8> = (0..floor.len()).map(|index| bare(floor.kind(index))).collect();
         // A journal that was edited by hand may claim more cells than it lists.
-        cells.resize(floor.width * floor.height, OPEN);
+        cells.resize(floor.width * floor.height, OUTSIDE);
         let small_floor = (PERIOD_S / run.mission.tick_s).round().max(1.0) as i64;
         Ok(Self {
             classes: cells,
@@ -88,6 +93,14 @@ impl Raster {
         }
     }
 
+    /// The mission has ended: what was to do is missed.
+    pub(crate) fn end(&mut self) {
+        for class in self.classes.iter_mut().filter(|class| **class == TO_DO) {
+            *class = MISSED;
+            self.changed = true;
+        }
+    }
+
     /// Pictures the floor if it changed and the last picture is old enough.
     pub(crate) fn picture_if_due(&mut self, stream: &Stream, at: At) -> Result<(), RecordingError> {
         let due = self.pictured.is_none_or(|tick| at.tick - tick >= self.period_ticks);
@@ -104,13 +117,14 @@ impl Raster {
         let size = [self.width as u32, self.height as u32];
         let format = rr::ImageFormat::segmentation(size, rr::ChannelDatatype::U8);
         let image = rr::SegmentationImage::new(self.classes.clone(), format);
-        stream.once(paths::COVERAGE, at, &image.with_opacity(0.55).with_draw_order(-10.0))
+        stream.once(paths::COVERAGE, at, &image.with_opacity(1.0).with_draw_order(-10.0))
     }
 }
 
 fn bare(cell: Cell) -> u8 {
     match cell {
-        Cell::Outside | Cell::Reachable => OPEN,
+        Cell::Outside => OUTSIDE,
+        Cell::Reachable => TO_DO,
         Cell::Unreachable | Cell::Margin | Cell::Beside | Cell::NoGo => UNREACHABLE,
     }
 }

@@ -9,7 +9,7 @@ use super::{
 use crate::{error::RecordingError, rr};
 use mission::{TaskConfig, event::RunOpened};
 use std::f64::consts::TAU;
-use world::{Boundary, Obstacle, Point, Shape, ZoneKind};
+use world::{Boundary, Obstacle, Point, Shape, Tool, Vector, ZoneKind};
 
 type Done = Result<(), RecordingError>;
 
@@ -31,6 +31,8 @@ pub(crate) fn draw(stream: &Stream, run: &RunOpened) -> Done {
     draw_obstacles(stream, paths::OBSTACLES_KNOWN, &known, style::OBSTACLE, 2.0)?;
     draw_obstacles(stream, paths::OBSTACLES_HIDDEN, &hidden, style::HIDDEN, 1.0)?;
     draw_zones(stream, run)?;
+    draw_plates(stream, run)?;
+    draw_key(stream, run)?;
     draw_stations(stream, run)?;
     draw_task(stream, run)?;
     let at = run.mission.start.position;
@@ -82,6 +84,64 @@ fn draw_zones(stream: &Stream, run: &RunOpened) -> Done {
     stream.always(paths::ZONES, &drawn)
 }
 
+/// The seams of the plates, and their names where most of each plate is.
+fn draw_plates(stream: &Stream, run: &RunOpened) -> Done {
+    let Some(layout) = run.plates else { return Ok(()) };
+    let seams = layout.seams(&run.world.boundary);
+    let seams = seams.iter().map(|seam| seam.iter().map(|point| flat(*point)).collect());
+    stream.always(paths::PLATES, &lines(seams, style::PLATE, 0.6).with_draw_order(-8.0))?;
+    let map = layout.map(&run.world.boundary, &run.floor);
+    let mut sums = vec![(0.0, Vector::zeros()); map.plates.len()];
+    for cell in 0..run.floor.len() {
+        if let Some((count, sum)) = map.plate_of(cell).and_then(|plate| sums.get_mut(plate)) {
+            *count += 1.0;
+            *sum += run.floor.center(cell).coords;
+        }
+    }
+    let middles = sums.iter().map(|(count, sum)| flat(*sum / f64::max(*count, 1.0)));
+    let names = rr::Points2D::new(middles)
+        .with_colors([style::color(style::PLATE)])
+        .with_radii([style::on_screen(0.0)])
+        .with_labels(map.plates.iter().map(|plate| plate.name.as_str()))
+        .with_show_labels(map.plates.len() <= MOST_LABELS);
+    stream.always(paths::PLATE_NAMES, &names)
+}
+
+/// What the colours mean: a row of dots below the tank.
+fn draw_key(stream: &Stream, run: &RunOpened) -> Done {
+    let floor = match &run.mission.task {
+        TaskConfig::Goto { .. } => &[][..],
+        TaskConfig::Follow { .. } => &[("scanned", style::SCANNED), ("out of reach", style::OUT_OF_REACH)],
+        TaskConfig::Cover { .. } => &[
+            ("scanned", style::SCANNED),
+            ("to do", style::TO_DO),
+            ("missed", style::MISSED),
+            ("out of reach", style::OUT_OF_REACH),
+        ],
+    };
+    let ways = [("true", style::TRUE), ("estimated", style::ESTIMATE), ("planned", style::PLAN)];
+    let entries: Vec<_> = floor.iter().chain(&ways).collect();
+    let (low, high) = run.world.boundary.bounds();
+    let size_m = (high - low).max();
+    let middle = nalgebra::center(&low, &high);
+    let at = |index: usize| {
+        let step = index as f64 - (entries.len() - 1) as f64 / 2.0;
+        flat([middle.x + 0.15 * size_m * step, low.y - 0.06 * size_m])
+    };
+    let places = || (0..entries.len()).map(at);
+    let dots = rr::Points2D::new(places())
+        .with_colors(entries.iter().map(|(_, color)| style::color(*color)))
+        .with_radii([style::on_screen(6.0)]);
+    stream.always(paths::KEY, &dots)?;
+    // Labels have the colour of their points, and floor is dark.
+    let names = rr::Points2D::new(places())
+        .with_colors([style::color(style::WALL)])
+        .with_radii([style::on_screen(1.0)])
+        .with_labels(entries.iter().map(|(name, _)| *name))
+        .with_show_labels(true);
+    stream.always(paths::KEY_NAMES, &names)
+}
+
 fn draw_stations(stream: &Stream, run: &RunOpened) -> Done {
     let stations = &run.world.stations;
     let drawn = rr::Points2D::new(stations.iter().map(|station| flat(station.position)))
@@ -122,6 +182,14 @@ fn style_moving(stream: &Stream, run: &RunOpened) -> Done {
         &heading.with_colors([style::color(style::TRUE)]).with_radii([style::on_screen(2.0)]),
     )?;
     stream.always(paths::HULL, &lines([circle(Point::origin(), radius_m, 32)], style::TRUE, 1.5))?;
+    if !matches!(run.mission.task, TaskConfig::Goto { .. }) {
+        let half_m = (run.mission.swath_m / 2.0) as f32;
+        let swath = match run.mission.tool() {
+            Tool::Bar { .. } => vec![[0.0, -half_m], [0.0, half_m]],
+            Tool::Disc { swath_m } => circle(Point::origin(), swath_m / 2.0, 32),
+        };
+        stream.always(paths::SWATH, &lines([swath], style::SWATH, 2.0))?;
+    }
     let dots = |color, radius| {
         rr::Points2D::update_fields()
             .with_colors([style::color(color)])

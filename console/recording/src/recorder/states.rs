@@ -1,8 +1,7 @@
 //! Who drives, whether the robot moves, and whether its position is known: lanes of the timeline of states.
 //!
-//! The viewer fits this timeline only once, to what it has read when the first lane appears. So the lanes are written
-//! all together at the end, where they are fitted to the whole run. A recording whose writer was killed has none;
-//! the event log shows the same, and a recording regenerated from the journal has them.
+//! The viewer fits a timeline of states only once, to what it has read when the first lane appears; linked to the time axis of
+//! all views ([`super::layout`]) it always shows the whole run.
 
 use super::{
     paths,
@@ -31,27 +30,26 @@ const LOST: &str = "lost";
 pub(crate) struct States {
     mission: &'static str,
     planners: Vec<String>,
-    changes: Vec<(&'static str, At, String)>,
 }
 
 impl States {
     pub(crate) fn open(stream: &Stream, at: At) -> Result<Self, RecordingError> {
-        let outcome = |outcome: Outcome, color| (outcome.word(), color);
+        let outcome = |outcome: Outcome, color| (outcome.word(), outcome.word(), color);
         let grey = style::rgb(90, 100, 115);
         let amber = style::rgb(190, 140, 50);
         let red = style::rgb(200, 70, 65);
         let green = style::rgb(70, 150, 95);
         let mission = [
-            (WAITING, grey),
-            (MOVING, green),
-            (HELD, amber),
-            (STEPPED, amber),
-            (HELD_LOST, red),
-            (HELD_ALARMED, red),
-            (HELD_FAULT, red),
-            (HELD_STUCK, red),
-            (HELD_TETHER, red),
-            (HELD_REFUSED, red),
+            (WAITING, WAITING, grey),
+            (MOVING, MOVING, green),
+            (HELD, "held", amber),
+            (STEPPED, "step", amber),
+            (HELD_LOST, "lost", red),
+            (HELD_ALARMED, "ranges", red),
+            (HELD_FAULT, "fault", red),
+            (HELD_STUCK, "stuck", red),
+            (HELD_TETHER, "tether", red),
+            (HELD_REFUSED, "refused", red),
             outcome(Outcome::Complete, style::rgb(60, 120, 200)),
             outcome(Outcome::Stuck, amber),
             outcome(Outcome::Collision, red),
@@ -60,53 +58,45 @@ impl States {
             outcome(Outcome::Aborted, amber),
         ];
         stream.always(paths::STATE_MISSION, &configuration(&mission))?;
-        stream.always(paths::STATE_POSITION, &configuration(&[(KNOWN, green), (LOST, red)]))?;
-        let mut states = Self { mission: WAITING, planners: Vec::new(), changes: Vec::new() };
-        states.change(paths::STATE_MISSION, at, WAITING);
-        states.change(paths::STATE_POSITION, at, KNOWN);
-        Ok(states)
+        stream.always(paths::STATE_POSITION, &configuration(&[(KNOWN, KNOWN, green), (LOST, LOST, red)]))?;
+        change(stream, paths::STATE_MISSION, at, WAITING)?;
+        change(stream, paths::STATE_POSITION, at, KNOWN)?;
+        Ok(Self { mission: WAITING, planners: Vec::new() })
     }
 
-    pub(crate) fn apply(&mut self, event: &EventKind, at: At) {
+    pub(crate) fn apply(&mut self, stream: &Stream, event: &EventKind, at: At) -> Done {
         match event {
-            EventKind::Ordered { order: Order::Start } | EventKind::Resumed => self.enter(MOVING, at),
+            EventKind::Ordered { order: Order::Start } | EventKind::Resumed => self.enter(stream, MOVING, at),
             // A run without an operator never receives a start order.
-            EventKind::Commanded { .. } if self.mission == WAITING => self.enter(MOVING, at),
-            EventKind::Held { by, .. } => self.enter(held(by), at),
-            EventKind::Ended { outcome, .. } => self.enter(outcome.word(), at),
-            EventKind::PositionLost { .. } => self.change(paths::STATE_POSITION, at, LOST),
-            EventKind::PositionRegained { .. } => self.change(paths::STATE_POSITION, at, KNOWN),
-            EventKind::PlannerChosen { choice, .. } => self.planner(&choice.id, at),
-            _ => {}
+            EventKind::Commanded { .. } if self.mission == WAITING => self.enter(stream, MOVING, at),
+            EventKind::Held { by, .. } => self.enter(stream, held(by), at),
+            EventKind::Ended { outcome, .. } => self.enter(stream, outcome.word(), at),
+            EventKind::PositionLost { .. } => change(stream, paths::STATE_POSITION, at, LOST),
+            EventKind::PositionRegained { .. } => change(stream, paths::STATE_POSITION, at, KNOWN),
+            EventKind::PlannerChosen { choice, .. } => self.planner(stream, &choice.id, at),
+            _ => Ok(()),
         }
     }
 
-    /// Writes all lanes.
-    pub(crate) fn finish(&self, stream: &Stream) -> Done {
-        let colors = style::SERIES.into_iter().cycle();
-        let planners: Vec<_> = self.planners.iter().map(String::as_str).zip(colors).collect();
-        stream.always(paths::STATE_PLANNER, &configuration(&planners))?;
-        for (path, at, state) in &self.changes {
-            stream.once(path, *at, &rr::StateChange::single(state.as_str()))?;
-        }
-        Ok(())
-    }
-
-    fn enter(&mut self, state: &'static str, at: At) {
+    fn enter(&mut self, stream: &Stream, state: &'static str, at: At) -> Done {
         self.mission = state;
-        self.change(paths::STATE_MISSION, at, state);
+        change(stream, paths::STATE_MISSION, at, state)
     }
 
-    fn planner(&mut self, id: &str, at: At) {
+    fn planner(&mut self, stream: &Stream, id: &str, at: At) -> Done {
         if !self.planners.iter().any(|known| known == id) {
             self.planners.push(id.to_owned());
+            let colors = style::SERIES.into_iter().cycle();
+            let planners = self.planners.iter().zip(colors);
+            let planners: Vec<_> = planners.map(|(id, color)| (id.as_str(), id.as_str(), color)).collect();
+            stream.always(paths::STATE_PLANNER, &configuration(&planners))?;
         }
-        self.change(paths::STATE_PLANNER, at, id);
+        change(stream, paths::STATE_PLANNER, at, id)
     }
+}
 
-    fn change(&mut self, path: &'static str, at: At, state: &str) {
-        self.changes.push((path, at, state.to_owned()));
-    }
+fn change(stream: &Stream, path: &str, at: At, state: &str) -> Done {
+    stream.once(path, at, &rr::StateChange::single(state))
 }
 
 fn held(by: &HoldReason) -> &'static str {
@@ -122,8 +112,10 @@ fn held(by: &HoldReason) -> &'static str {
     }
 }
 
-fn configuration(states: &[(&str, [u8; 4])]) -> rr::StateConfiguration {
+/// How states look: each with a short word, because the viewer cuts what does not fit on its band, and a colour.
+fn configuration(states: &[(&str, &str, [u8; 4])]) -> rr::StateConfiguration {
     rr::StateConfiguration::new()
         .with_values(states.iter().map(|state| state.0))
-        .with_colors(states.iter().map(|state| style::color(state.1)))
+        .with_labels(states.iter().map(|state| state.1))
+        .with_colors(states.iter().map(|state| style::color(state.2)))
 }

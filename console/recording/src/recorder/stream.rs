@@ -9,6 +9,8 @@ pub(crate) const APPLICATION: &str = "tankops";
 pub(crate) const TICK: &str = "tick";
 /// Timeline of mission time.
 pub(crate) const SIM_TIME: &str = "sim_time";
+/// Timeline of the calendar: the beginning of the run by its name, and mission time.
+pub(crate) const UTC: &str = "utc";
 
 /// A moment of the mission on both timelines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -29,6 +31,7 @@ impl At {
 /// A recording that is being written.
 pub(crate) struct Stream {
     inner: rr::RecordingStream,
+    began_ns: Option<i64>,
 }
 
 type Done = Result<(), RecordingError>;
@@ -39,15 +42,19 @@ impl Stream {
         let builder =
             rr::RecordingStreamBuilder::new(APPLICATION).recording_id(identity.recording_id.clone());
         let (_, store, _, _, hooks, _) = builder.into_args();
-        // Without a start time: two recordings of one run shall not differ.
+        // By the name, not by the clock: two recordings of one run shall not differ.
         let info = rr::RecordingInfo::update_fields().with_name(identity.name.clone());
+        let info = match identity.began_ns {
+            Some(began_ns) => info.with_start_time(began_ns),
+            None => info,
+        };
         let batcher =
             rr::ChunkBatcherConfig { flush_tick: Duration::from_secs(5), ..rr::ChunkBatcherConfig::DEFAULT };
         let inner = rr::RecordingStream::new(store, Some(info), Some(batcher), hooks, Box::new(sink));
         let inner = inner.map_err(|error| RecordingError::sdk(&error))?;
         inner.set_log_time_enabled(false);
         inner.set_log_tick_enabled(false);
-        Ok(Self { inner })
+        Ok(Self { inner, began_ns: identity.began_ns })
     }
 
     /// Logs what holds for the whole recording.
@@ -64,15 +71,22 @@ impl Stream {
     pub(crate) fn once(&self, path: &str, at: At, what: &dyn rr::AsComponents) -> Done {
         self.inner.set_time_sequence(TICK, at.tick);
         self.inner.set_time(SIM_TIME, rr::TimeCell::from_duration_nanos(at.sim_ns));
+        if let Some(began_ns) = self.began_ns {
+            self.inner.set_time(UTC, rr::TimeCell::from_timestamp_nanos_since_epoch(began_ns + at.sim_ns));
+        }
         self.inner.log(path, what).map_err(|error| RecordingError::sdk(&error))
     }
 
     /// Sends many moments of one entity as one chunk.
     pub(crate) fn columns(&self, path: &str, at: &[At], columns: Vec<rr::SerializedComponentColumn>) -> Done {
+        let utc = self.began_ns.map(|began_ns| {
+            rr::TimeColumn::new_timestamp_nanos_since_epoch(UTC, at.iter().map(|at| began_ns + at.sim_ns))
+        });
         let times = [
             rr::TimeColumn::new_sequence(TICK, at.iter().map(|at| at.tick)),
             rr::TimeColumn::new_duration_nanos(SIM_TIME, at.iter().map(|at| at.sim_ns)),
         ];
+        let times = times.into_iter().chain(utc);
         self.inner.send_columns(path, times, columns).map_err(|error| RecordingError::sdk(&error))
     }
 

@@ -36,6 +36,18 @@ pub(crate) const FIGURE: [u8; 4] = rgb(120, 200, 255);
 /// A figure that warns.
 pub(crate) const WARNING: [u8; 4] = rgb(255, 160, 60);
 
+/// Floor that is scanned, to be scanned, missed, out of reach.
+pub(crate) const SCANNED: [u8; 4] = rgb(38, 60, 76);
+pub(crate) const TO_DO: [u8; 4] = rgb(26, 30, 36);
+pub(crate) const MISSED: [u8; 4] = rgb(176, 118, 48);
+pub(crate) const OUT_OF_REACH: [u8; 4] = rgb(58, 52, 50);
+/// The box around a missed area.
+pub(crate) const MISSED_EDGE: [u8; 4] = rgb(240, 180, 90);
+/// What the tool scans.
+pub(crate) const SWATH: [u8; 4] = rgb(235, 235, 215);
+/// Seams of plates.
+pub(crate) const PLATE: [u8; 4] = [150, 165, 180, 90];
+
 /// The tether.
 pub(crate) const TETHER: [u8; 4] = rgb(250, 250, 235);
 

@@ -119,12 +119,13 @@ impl Table {
     }
 }
 
-fn curve(name: &str, color: [u8; 4]) -> rr::SeriesLines {
+/// How a figure looks in the plots.
+pub(crate) fn curve(name: &str, color: [u8; 4]) -> rr::SeriesLines {
     rr::SeriesLines::new().with_names([name]).with_colors([style::color(color)]).with_widths([1.5])
 }
 
-/// A planner's name for a figure as one part of an entity path.
-fn entity_name(name: &str) -> String {
+/// A name as one part of an entity path.
+pub(crate) fn entity_name(name: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || matches!(c, '_' | '-' | '.') { c } else { '_' };
     name.chars().map(plain).collect()
 }

@@ -34,6 +34,13 @@ pub(crate) fn content(path: &Path) -> Content {
     content
 }
 
+/// How many chunks of data a recording has.
+pub(crate) fn chunks(path: &Path) -> usize {
+    let messages = DecoderApp::decode_lazy(BufReader::new(File::open(path).expect("the file is there")));
+    let is_data = |message: &LogMsg| matches!(message, LogMsg::ArrowMsg(store, _) if store.kind() == StoreKind::Recording);
+    messages.filter(|message| is_data(message.as_ref().expect("the file is whole"))).count()
+}
+
 fn take(chunk: &Chunk, content: &mut Content) {
     let entity = chunk.entity_path().to_string().trim_start_matches('/').to_owned();
     for component in chunk.components_identifiers() {

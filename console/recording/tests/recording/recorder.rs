@@ -189,6 +189,74 @@ fn the_last_picture_of_the_floor_holds_every_scanned_cell() {
 }
 
 #[test]
+fn a_run_with_a_date_in_its_name_has_a_calendar() {
+    let folder = tempdir().expect("a folder");
+    let path = folder.path().join("recording.rrd");
+    let now = Instant::now();
+    let identity = Identity::of_run("20261122T040132Z-demo-rpf-1");
+    let mut recorder = Recorder::create(&path, &identity, now).expect("a new file");
+    events(20).iter().for_each(|event| recorder.push(event, now).expect("room on the disk"));
+    recorder.finish().expect("room on the disk");
+    let content = content(&path);
+    let began_ns = 1_795_320_092_000_000_000_i64;
+    let (times, _) = rows(&content, "map/world/robot/true", "Points2D:positions").last().expect("rows");
+    assert_eq!(times.last(), Some(&("utc".to_owned(), began_ns + 1_900_000_000)));
+    let (_, start) = rows(&content, "__properties", "RecordingInfo:start_time").last().expect("a property");
+    assert_eq!(start, &began_ns.to_string());
+}
+
+#[test]
+fn stations_have_their_residuals_also_those_that_were_rejected() {
+    let content = recorded(&events(TICKS));
+    let fixes = TICKS as usize / 10;
+    let of = |station: &str| rows(&content, &format!("scalars/residual/{station}"), "Scalars:scalars");
+    assert!(
+        of("AE0").len() == fixes && of("AE0").iter().all(|(_, value)| value == "0.01"),
+        "{:?}",
+        of("AE0")
+    );
+    assert!(
+        of("AE2").len() == fixes && of("AE2").iter().any(|(_, value)| value == "0.61"),
+        "{:?}",
+        of("AE2")
+    );
+}
+
+#[test]
+fn a_closed_recording_has_few_chunks() {
+    let folder = tempdir().expect("a folder");
+    let path = folder.path().join("recording.rrd");
+    record(&path, &events(TICKS), Duration::from_millis(700));
+    let kinds: std::collections::BTreeSet<_> = content(&path).into_keys().map(|(entity, _)| entity).collect();
+    let chunks = crate::content::chunks(&path);
+    assert!(chunks <= 2 * kinds.len(), "{chunks} chunks of {} entities", kinds.len());
+    assert_eq!(std::fs::read_dir(folder.path()).expect("readable").count(), 1, "nothing else is left");
+}
+
+#[test]
+fn a_recording_whose_writer_is_killed_says_the_same_up_to_there() {
+    let folder = tempdir().expect("a folder");
+    let (path, whole) = (folder.path().join("killed.rrd"), folder.path().join("whole.rrd"));
+    let events = events(2 * TICKS);
+    let mut now = Instant::now();
+    let mut recorder = Recorder::create(&path, &Identity::of_run("test"), now).expect("a new file");
+    for event in &events {
+        recorder.push(event, now).expect("room on the disk");
+        now += Duration::from_millis(700);
+    }
+    recorder.idle(now + Duration::from_secs(6)).expect("room on the disk");
+    // Nothing is written that only a recorder in good order writes at its end.
+    drop(recorder);
+    let killed = content(&path);
+    record(&whole, &events, Duration::ZERO);
+    let whole = content(&whole);
+    let kinds = |content: &Content| content.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(kinds(&killed), kinds(&whole), "nothing is written only at the end");
+    let states = |content: &Content| rows(content, "state/mission", "StateChange:state").to_vec();
+    assert_eq!(states(&killed), states(&whole));
+}
+
+#[test]
 fn chunks_do_not_change_what_is_recorded() {
     let folder = tempdir().expect("a folder");
     let events = events(TICKS);

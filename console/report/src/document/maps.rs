@@ -68,8 +68,10 @@ pub(super) fn coverage(layers: &Layers<'_>) -> (Figure, Vec<usize>) {
     // Never painted as scanned where nothing is: an error would read as good.
     sheet.wall(fixtures.boundary, r##"fill="#fff""##);
     sheet.cells(floor, |cell| layers.is_scanned(cell), 0.75, &format!(r#"fill="{}""#, colour::ONCE));
-    let twice = layers.smoothed_twice();
-    sheet.cells(floor, |cell| twice[cell], 1.0, &format!(r#"fill="{}""#, colour::TWICE));
+    {
+        let twice = layers.smoothed_twice();
+        sheet.cells(floor, |cell| twice[cell], 1.0, &format!(r#"fill="{}""#, colour::TWICE));
+    }
     sheet.plates(layers.plates.as_ref());
     let line = |fill: &str, stroke: &str| format!(r#"fill="{fill}" stroke="{stroke}" stroke-width=".2""#);
     sheet.cells(floor, |cell| layers.is_margin(cell), 0.0, &line(&margin, colour::MARGIN));

@@ -1,13 +1,11 @@
 //! Cells as outlines: rings on the lattice of their corners, simplified, as SVG path data.
 
 use crate::account::areas::together;
-use std::{collections::BTreeMap, fmt::Write};
+use std::fmt::Write;
 use world::{Floor, Point};
 
 /// A corner of cells: column and row from the south-west corner of the grid.
 type Corner = (i32, i32);
-/// Where the outline goes on from each corner: two ways where cells only touch there.
-type Edges = BTreeMap<Corner, (Corner, Option<Corner>)>;
 
 /// The outlines of the cells that are asked for, as path data in units of cells: x to the right, y up from the south-west
 /// corner of the grid. Points nearer than `tolerance` cells to the simplified outline are left out; 0 keeps every corner.
@@ -19,54 +17,83 @@ pub(crate) fn outlines(floor: &Floor, is_in: impl Fn(usize) -> bool, tolerance: 
     path
 }
 
+/// The ways on from a corner; of two, the first of this order belongs to the cell further south.
+const WAYS: [Corner; 4] = [(0, -1), (-1, 0), (1, 0), (0, 1)];
+
+/// Where the outline goes on from each corner, column by column: a bit for each of [`WAYS`], two where cells only touch.
+struct Edges {
+    rows: usize,
+    ways: Vec<u8>,
+}
+
+impl Edges {
+    fn of(floor: &Floor, is_in: impl Fn(usize) -> bool) -> Self {
+        let (width, height) = (floor.width, floor.height);
+        let rows = height + 1;
+        let mut ways = vec![0; (width + 1) * rows];
+        // Cell by cell, with what lies west and south of it; beyond the grid is outside.
+        let mut south = vec![false; width];
+        for y in 0..=height {
+            let mut west = false;
+            for x in 0..=width {
+                let here = x < width && y < height && is_in(y * width + x);
+                let below = x < width && south[x];
+                let corner = |x: usize, y: usize| x * rows + y;
+                match (below, here) {
+                    (false, true) => ways[corner(x, y)] |= 1 << 2,
+                    (true, false) => ways[corner(x + 1, y)] |= 1 << 1,
+                    _ => {}
+                }
+                match (west, here) {
+                    (true, false) => ways[corner(x, y)] |= 1 << 3,
+                    (false, true) => ways[corner(x, y + 1)] |= 1,
+                    _ => {}
+                }
+                if x < width {
+                    south[x] = here;
+                }
+                west = here;
+            }
+        }
+        Self { rows, ways }
+    }
+
+    fn at(&mut self, (x, y): Corner) -> &mut u8 {
+        &mut self.ways[x as usize * self.rows + y as usize]
+    }
+
+    /// Takes the way on from a corner to which one came by another; where cells only touch it turns left, so that they stay
+    /// apart.
+    fn take(&mut self, here: Corner, came: Option<Corner>) -> Option<Corner> {
+        let open = self.at(here);
+        let left = |way: Corner| came.map_or(0, |came| came.0 * way.1 - came.1 * way.0);
+        let ways = (0..WAYS.len()).filter(|way| *open >> way & 1 == 1);
+        let way = ways.reduce(|one, other| if left(WAYS[other]) > left(WAYS[one]) { other } else { one })?;
+        *open &= !(1 << way);
+        Some(WAYS[way])
+    }
+}
+
 /// Closed rings around the cells, counter-clockwise about cells and clockwise about holes.
 fn rings(floor: &Floor, is_in: impl Fn(usize) -> bool) -> Vec<Vec<Corner>> {
-    let (width, height) = (floor.width as i32, floor.height as i32);
-    let inside: Vec<bool> = (0..floor.len()).map(is_in).collect();
-    let at = |x: i32, y: i32| {
-        (0..width).contains(&x) && (0..height).contains(&y) && inside[(y * width + x) as usize]
-    };
-    let mut next: Edges = BTreeMap::new();
-    for cell in (0..floor.len()).filter(|cell| inside[*cell]) {
-        let (x, y) = (cell as i32 % width, cell as i32 / width);
-        let sides = [
-            (at(x, y - 1), (x, y), (x + 1, y)),
-            (at(x + 1, y), (x + 1, y), (x + 1, y + 1)),
-            (at(x, y + 1), (x + 1, y + 1), (x, y + 1)),
-            (at(x - 1, y), (x, y + 1), (x, y)),
-        ];
-        for (_, from, to) in sides.into_iter().filter(|(is_same, ..)| !is_same) {
-            next.entry(from).and_modify(|ways| ways.1 = Some(to)).or_insert((to, None));
-        }
-    }
+    let mut edges = Edges::of(floor, is_in);
     let mut rings = Vec::new();
-    while let Some(first) = next.keys().next().copied() {
-        rings.push(take_ring(&mut next, first));
+    for index in 0..edges.ways.len() {
+        let first = ((index / edges.rows) as i32, (index % edges.rows) as i32);
+        while edges.ways[index] != 0 {
+            rings.push(take_ring(&mut edges, first));
+        }
     }
     rings
 }
 
-/// Takes a ring out of the edges; where cells only touch at a corner it turns left, so that they stay apart.
-fn take_ring(next: &mut Edges, first: Corner) -> Vec<Corner> {
+/// Takes a ring out of the edges.
+fn take_ring(edges: &mut Edges, first: Corner) -> Vec<Corner> {
     let mut ring = vec![first];
-    let mut came = None;
-    let mut here = first;
-    while let Some((one, other)) = next.remove(&here) {
-        let left = |to: &Corner| {
-            came.map_or(0, |from: Corner| {
-                (here.0 - from.0) * (to.1 - here.1) - (here.1 - from.1) * (to.0 - here.0)
-            })
-        };
-        let to = match other {
-            Some(other) => {
-                let (to, rest) = if left(&other) > left(&one) { (other, one) } else { (one, other) };
-                next.insert(here, (rest, None));
-                to
-            }
-            None => one,
-        };
-        came = Some(here);
-        here = to;
+    let (mut here, mut came) = (first, None);
+    while let Some(way) = edges.take(here, came) {
+        came = Some(way);
+        here = (here.0 + way.0, here.1 + way.1);
         if here == first {
             break;
         }

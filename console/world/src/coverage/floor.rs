@@ -3,6 +3,7 @@
 use super::tool::Tool;
 use geometry::{Point, Pose, Vector};
 use serde::{Deserialize, Serialize};
+use std::{ops::Range, sync::Arc};
 
 /// What a cell of the floor is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -47,7 +48,8 @@ pub struct Floor {
     pub width: usize,
     /// Cells from south to north.
     pub height: usize,
-    pub(super) cells: Vec<Cell>,
+    /// Shared by copies until one of them changes.
+    pub(super) cells: Arc<Vec<Cell>>,
 }
 
 /// Some cells of one row: index of the first and how many.
@@ -108,7 +110,10 @@ impl Floor {
     /// assert!((floor.center(0) - Point::new(-4.95, -4.95)).norm() < 1e-9);
     /// ```
     pub fn center(&self, index: usize) -> Point {
-        let (column, row) = (index % self.width, index / self.width);
+        self.center_of(index % self.width, index / self.width)
+    }
+
+    fn center_of(&self, column: usize, row: usize) -> Point {
         self.origin + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m
     }
 
@@ -186,8 +191,12 @@ impl Floor {
         for KindRun(kind, first, count) in changes {
             let end = (*first as usize).saturating_add(*count as usize).min(self.cells.len());
             let first = (*first as usize).min(end);
-            self.cells[first..end].fill(*kind);
+            Arc::make_mut(&mut self.cells)[first..end].fill(*kind);
         }
+    }
+
+    pub(super) fn set(&mut self, index: usize, kind: Cell) {
+        Arc::make_mut(&mut self.cells)[index] = kind;
     }
 
     /// The whole floor as runs of equal cells; [`Floor::change`] with them turns any aligned floor into this one.
@@ -270,19 +279,33 @@ impl Floor {
     pub fn cells_under(&self, tool: Tool, a: Pose, b: Pose) -> Vec<usize> {
         let passage = tool.passage(a, b);
         let (low, high) = passage.bounds();
-        self.cells_in(low, high).filter(|index| passage.contains(self.center(*index))).collect()
+        let (_, rows) = self.spans(low, high);
+        let mut cells = Vec::new();
+        for row in rows {
+            let y = self.center_of(0, row).y;
+            let (west, east) = passage.ends_at(y);
+            let (columns, _) = self.spans(Point::new(low.x.max(west), y), Point::new(high.x.min(east), y));
+            let is_under = |column: &usize| passage.contains(self.center_of(*column, row));
+            cells.extend(columns.filter(is_under).map(|column| row * self.width + column));
+        }
+        cells
     }
 
     /// The cells of a box, perhaps with some beside it, in order of their index.
     pub(super) fn cells_in(&self, low: Point, high: Point) -> impl Iterator<Item = usize> + use<> {
+        let (columns, rows) = self.spans(low, high);
+        let width = self.width;
+        rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
+    }
+
+    /// The columns and rows of a box, perhaps with some beside it.
+    fn spans(&self, low: Point, high: Point) -> (Range<usize>, Range<usize>) {
         let first = (low - self.origin) / self.cell_m;
         let last = (high - self.origin) / self.cell_m;
         let span = |from: f64, to: f64, count: usize| {
             (from.floor().max(0.0) as usize)..((to.ceil().max(0.0) as usize).min(count))
         };
-        let (columns, width) = (span(first.x, last.x, self.width), self.width);
-        span(first.y, last.y, self.height)
-            .flat_map(move |row| columns.clone().map(move |column| row * width + column))
+        (span(first.x, last.x, self.width), span(first.y, last.y, self.height))
     }
 }
 
@@ -340,6 +363,6 @@ impl TryFrom<FloorRuns> for Floor {
             return Err(format!("a floor of {width} by {height} cells with {in_runs} in its runs"));
         }
         let cells = runs.iter().flat_map(|(cell, length)| std::iter::repeat_n(*cell, *length as usize));
-        Ok(Self { origin, cell_m, width, height, cells: cells.collect() })
+        Ok(Self { origin, cell_m, width, height, cells: Arc::new(cells.collect()) })
     }
 }

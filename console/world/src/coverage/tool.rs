@@ -72,11 +72,19 @@ impl Passage {
     /// South-west and north-east corners of the box around it.
     pub(super) fn bounds(&self) -> (Point, Point) {
         match self {
-            Self::Bar(swept) => swept.bounds(),
+            Self::Bar(swept) => (swept.low, swept.high),
             Self::Disc { from, to, reach_m } => {
                 let reach = Vector::new(*reach_m, *reach_m);
                 (from.inf(to) - reach, from.sup(to) + reach)
             }
+        }
+    }
+
+    /// West and east ends of all of it that lies at a height.
+    pub(super) fn ends_at(&self, y: f64) -> (f64, f64) {
+        match self {
+            Self::Bar(swept) => swept.ends_at(y),
+            Self::Disc { .. } => (f64::NEG_INFINITY, f64::INFINITY),
         }
     }
 
@@ -90,32 +98,68 @@ impl Passage {
     }
 }
 
-/// The area that a bar sweeps between two poses that are close together: two triangles for each half.
-pub(super) struct Swept([[Point; 3]; 4]);
-
 /// A point this far outside a triangle still counts, metres: neighbouring triangles leave no seam.
 const SEAM_M: f64 = 1e-9;
+/// Everything lies at least this far within its band, metres.
+const BESIDE_M: f64 = 1e-3;
+
+/// The area that a bar sweeps between two poses that are close together: two triangles for each half.
+pub(super) struct Swept {
+    low: Point,
+    high: Point,
+    triangles: [Triangle; 4],
+    /// The direction across the bar, and the band along it in which everything lies.
+    ahead: Vector,
+    band: (f64, f64),
+}
 
 impl Swept {
     fn new(swath_m: f64, from: Pose, to: Pose) -> Self {
         let half =
             |pose: Pose| Vector::new(-pose.heading_rad.sin(), pose.heading_rad.cos()) * (swath_m / 2.0);
         let (a, b) = (from.position, to.position);
-        let (a_left, a_right, b_left, b_right) = (a + half(from), a - half(from), b + half(to), b - half(to));
-        Self([[a, a_left, b_left], [a, b_left, b], [a, a_right, b_right], [a, b_right, b]])
+        let (from, to) = (half(from), half(to));
+        let (a_left, a_right, b_left, b_right) = (a + from, a - from, b + to, b - to);
+        let (low, high) = bounds_of(&[a, b, a_left, a_right, b_left, b_right]);
+        let ahead = Vector::new(from.y, -from.x) * 2.0 / swath_m;
+        let along = [a_left, a_right, b_left, b_right].map(|corner| ahead.dot(&corner.coords));
+        let band = (
+            along.into_iter().fold(f64::INFINITY, f64::min) - BESIDE_M,
+            along.into_iter().fold(f64::NEG_INFINITY, f64::max) + BESIDE_M,
+        );
+        let corners = [[a, a_left, b_left], [a, b_left, b], [a, a_right, b_right], [a, b_right, b]];
+        Self { low, high, triangles: corners.map(Triangle::new), ahead, band }
     }
 
-    fn bounds(&self) -> (Point, Point) {
-        bounds_of(self.0.as_flattened())
+    /// Where the band begins and ends at a height.
+    fn ends_at(&self, y: f64) -> (f64, f64) {
+        let at = |along: f64| (along - self.ahead.y * y) / self.ahead.x;
+        let (one, other) = (at(self.band.0), at(self.band.1));
+        if one.is_finite() && other.is_finite() {
+            (one.min(other), one.max(other))
+        } else {
+            (f64::NEG_INFINITY, f64::INFINITY)
+        }
     }
 
     fn contains(&self, point: Point) -> bool {
-        self.0.iter().any(|[a, b, c]| {
-            let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(from, to)| (to - from).perp(&(point - from)));
-            let area = (b - a).perp(&(c - a));
-            let turned = area.signum();
-            area != 0.0 && [ab, bc, ca].iter().all(|side| side * turned >= -SEAM_M)
-        })
+        self.triangles.iter().any(|triangle| triangle.contains(point))
+    }
+}
+
+/// A triangle: its corners, and from each the way to the next, counter-clockwise; `None` without an area.
+struct Triangle(Option<[(Point, Vector); 3]>);
+
+impl Triangle {
+    fn new([a, b, c]: [Point; 3]) -> Self {
+        let area = (b - a).perp(&(c - a));
+        let turned = area.signum();
+        Self((area != 0.0).then(|| [(a, b), (b, c), (c, a)].map(|(from, to)| (from, (to - from) * turned))))
+    }
+
+    fn contains(&self, point: Point) -> bool {
+        let is_left = |(from, edge): &(Point, Vector)| edge.perp(&(point - from)) >= -SEAM_M;
+        self.0.as_ref().is_some_and(|edges| edges.iter().all(is_left))
     }
 }
 
@@ -167,6 +211,22 @@ mod tests {
             }
         }
         assert!((area_m2(&grid) - 4.0 * 3.0).abs() < 1e-9, "{}", area_m2(&grid));
+    }
+
+    #[test]
+    fn no_cell_is_overlooked_whatever_the_heading() {
+        let grid = grid(0.05);
+        let floor = grid.floor();
+        for (heading, turn, step_m) in (0..48).map(|k| (0.131 * f64::from(k), 0.05 * f64::from(k % 5), 0.04))
+        {
+            let from = Pose::new(0.3, -1.2, heading);
+            let to = from.moved(step_m, 0.0, turn);
+            let passage = BAR.passage(from, to);
+            let all: Vec<usize> =
+                (0..floor.len()).filter(|cell| passage.contains(floor.center(*cell))).collect();
+            assert!(all.len() > 3);
+            assert_eq!(floor.cells_under(BAR, from, to), all, "{heading} {turn}");
+        }
     }
 
     #[test]

@@ -357,7 +357,7 @@ pub(super) fn plates(document: &Document) -> Vec<Block> {
             ("Margin", "%", "r"),
             ("Not guaranteed", "", "nw"),
             ("95 % error", "p95, cm", "r"),
-            ("Missed", "no.", ""),
+            ("Missed", "no.", "no"),
             ("Indic.", "", "r"),
         ],
     );
@@ -382,7 +382,7 @@ pub(super) fn plates(document: &Document) -> Vec<Block> {
             tenth(p.margin),
             Value::default(),
             error.map_or_else(|| "\u{2013}".to_owned(), cm).into(),
-            format!("{}{more}", numbers.iter().take(6).cloned().collect::<Vec<_>>().join(" ")).into(),
+            format!("{}{more}", numbers.iter().take(6).cloned().collect::<Vec<_>>().join(", ")).into(),
             if bar { found.to_string() } else { document.indications.len().to_string() }.into(),
         ]);
         if bar {

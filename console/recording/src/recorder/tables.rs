@@ -1,0 +1,55 @@
+//! The account of the floor as tables of the text beside the map.
+
+use super::account::missed;
+use report::account::{Account, Shares};
+use std::fmt::Write;
+
+/// Missed areas that are listed; the report has all of them.
+const MOST_AREAS: usize = 60;
+
+/// The tables of a floor: all of it, plate by plate, and what was missed.
+pub(crate) fn floor(account: &Account, is_over: bool) -> String {
+    // Writing to a String cannot fail.
+    let mut text = String::from("\n## Floor\n\n");
+    text.push_str(
+        "| part | area m² | scanned % | guaranteed % | missed % | unreachable % | margin % | 95 % error m |\n",
+    );
+    text.push_str("|---|---|---|---|---|---|---|---|\n");
+    row(&mut text, "whole floor", &account.whole, None);
+    row(&mut text, "reachable floor", &account.reachable, None);
+    for plate in &account.plates {
+        row(&mut text, &plate.name, &plate.shares, plate.error_p95_m);
+    }
+    let areas = missed(&account.missed, is_over);
+    if areas.is_empty() {
+        return text;
+    }
+    text.push_str("\n## Missed areas\n\n| no. | area m² | at, m | plate | why |\n|---|---|---|---|---|\n");
+    for (area, number) in areas.iter().take(MOST_AREAS).zip(1..) {
+        let (at, plate) = (area.at, area.plate.as_deref().unwrap_or("–"));
+        let (area_m2, why) = (area.area_m2, area.why());
+        let _ = writeln!(text, "| {number} | {area_m2:.2} | {:.1}, {:.1} | {plate} | {why} |", at.x, at.y);
+    }
+    if let Some(more) = areas.len().checked_sub(MOST_AREAS).filter(|more| *more > 0) {
+        let _ = writeln!(text, "\n{more} more are in the report.");
+    }
+    text
+}
+
+fn row(text: &mut String, name: &str, shares: &Shares, error_m: Option<f64>) {
+    let percent = shares.percent;
+    let optional = |number: Option<f64>, decimals: usize| {
+        number.map_or_else(|| "–".to_owned(), |number| format!("{number:.decimals$}"))
+    };
+    let _ = writeln!(
+        text,
+        "| {name} | {:.1} | {:.1} | {} | {:.1} | {:.1} | {:.1} | {} |",
+        shares.area_m2,
+        percent.scanned,
+        optional(percent.guaranteed, 1),
+        percent.missed,
+        percent.unreachable,
+        percent.margin,
+        optional(error_m, 3)
+    );
+}
