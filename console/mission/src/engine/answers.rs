@@ -32,11 +32,14 @@ impl Mission {
             if let Some(pending) = self.active.pending.take() {
                 self.answer_active(pending, answer);
             }
-        } else if let Some(mut slot) = self.candidate.take() {
-            match slot.pending.take_if(|pending| pending.id == answer.ask) {
-                Some(pending) => self.candidate = self.answer_candidate(slot, pending, answer),
-                None => self.candidate = Some(slot),
+        } else if let Some(mut slot) = self.candidate.take_if(|slot| is_owed(slot)) {
+            if let Some(pending) = slot.pending.take() {
+                self.candidate = self.answer_candidate(slot, pending, answer);
             }
+        } else if let Some(mut shadow) = self.shadow.take_if(|shadow| is_owed(&shadow.slot))
+            && let Some(pending) = shadow.slot.pending.take()
+        {
+            self.shadow = self.answer_shadow(shadow, pending, answer);
         }
     }
 
@@ -116,7 +119,7 @@ impl Mission {
     fn plan_arrived(&mut self, ask: AskId, asked: AskedPlan, plan: Plan, said: Said) {
         let id = self.active.choice.id.clone();
         self.pass_on(said, &id);
-        let Evaluated { plan, events, objection } = self.evaluate(ask, &id, &asked, plan);
+        let Evaluated { plan, events, objection } = self.evaluate(Some(ask), &id, &asked, plan);
         self.happened.extend(events);
         match objection {
             None => {
