@@ -14,6 +14,7 @@ mod progress;
 mod report_file;
 mod reproduce;
 mod rescan;
+mod shadowing;
 mod stop_signal;
 mod tune;
 

@@ -1,0 +1,67 @@
+//! A planner in shadow: it takes over without a hold, its faults are its own, and verify repeats all of it.
+
+use crate::bench::{Bench, Ended, journal, of_kind, scenario};
+use serde_json::Value;
+use std::path::PathBuf;
+
+fn fly(bench: &Bench, name: &str, more: &[&str]) -> (PathBuf, Vec<Value>, Ended) {
+    let flown = bench.fly(&scenario(name), more);
+    let run = bench.runs().pop().unwrap();
+    let events = journal(&run);
+    (run, events, flown)
+}
+
+/// Ticks in which the robot was sent a command.
+fn driven(events: &[Value]) -> Vec<u64> {
+    of_kind(events, "commanded").iter().map(|event| event["tick"].as_u64().unwrap()).collect()
+}
+
+#[test]
+fn a_thousand_planners_take_over_in_one_mission() {
+    let bench = Bench::new();
+    let more =
+        ["--planner", "coverage-boustrophedon", "--shadow", "coverage-spiral", "--promote-every", "1.2"];
+    let (run, events, flown) = fly(&bench, "cover-circle.toml", &more);
+    assert!(of_kind(&events, "promoted").len() >= 1000, "{flown:?}");
+    assert_eq!(of_kind(&events, "held").len(), 0, "{flown:?}");
+    let driven = driven(&events);
+    assert!(driven.windows(2).all(|pair| pair[1] == pair[0] + 1), "a command in every tick");
+    let verified = bench.verify(&run, &[]);
+    assert_eq!(verified.code, Some(0), "{verified:?}");
+}
+
+#[test]
+fn whatever_a_planner_does_in_shadow_the_robot_drives_as_without_it() {
+    let plain = Bench::new();
+    let (_, alone, _) = fly(&plain, "goto-single-obstacle.toml", &[]);
+    let truth = |events: &[Value]| -> Vec<Value> { of_kind(events, "truth").into_iter().cloned().collect() };
+    for fault in [
+        "panic",
+        "segv",
+        "exit",
+        "hang",
+        "sleep",
+        "alloc",
+        "nan",
+        "huge",
+        "stack",
+        "close_fds",
+        "configure_hang",
+        "plan_panic",
+    ] {
+        let bench = Bench::new();
+        let set = format!("fault=\"{fault}\"");
+        let more = ["--shadow", "faulty", "--shadow-set", &set, "--shadow-set", "at_step=12"];
+        let (run, events, flown) = fly(&bench, "goto-single-obstacle.toml", &more);
+        assert_eq!(flown.json()["outcome"], "complete", "{fault}: {flown:?}");
+        assert_eq!(flown.json()["planner_faults"], 0, "{fault}: {flown:?}");
+        assert_eq!(truth(&events), truth(&alone), "{fault}: the robot moves as without a shadow");
+        assert_eq!(of_kind(&events, "shadow_ended").len(), 1, "{fault}");
+        assert!(
+            of_kind(&events, "held").is_empty() && of_kind(&events, "planner_failed").is_empty(),
+            "{fault}"
+        );
+        let verified = bench.verify(&run, &[]);
+        assert_eq!(verified.code, Some(0), "{fault}: {verified:?}");
+    }
+}
