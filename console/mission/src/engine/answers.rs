@@ -60,6 +60,10 @@ impl Mission {
                 let usable = usable && self.is_running();
                 self.take_command(&pending, usable, command, said);
             }
+            (PendingKind::StepInShadow, Given::Command(_)) => {
+                self.pass_on(said, &self.active.choice.id.clone());
+                self.happened.push(EventKind::Discarded { ask });
+            }
             (PendingKind::Snapshot, Given::State { bytes }) => {
                 self.pass_on(said, &self.active.choice.id.clone());
                 if bytes > 0 {
@@ -172,7 +176,11 @@ impl Mission {
                 }
                 return;
             }
-            PendingKind::Plan(_) | PendingKind::Step { .. } | PendingKind::Snapshot if says_no => {}
+            PendingKind::Plan(_)
+            | PendingKind::Step { .. }
+            | PendingKind::StepInShadow
+            | PendingKind::Snapshot
+                if says_no => {}
             _ => self.close_active(),
         }
         if !self.active.has_plan() {

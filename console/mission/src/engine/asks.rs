@@ -35,9 +35,10 @@ impl Mission {
         match &self.active.pending {
             Some(pending) if is_running => match pending.kind {
                 PendingKind::Open | PendingKind::Plan(_) => Awaits::Work,
-                PendingKind::Reconfigure(_) | PendingKind::Step { .. } | PendingKind::Snapshot => {
-                    Awaits::Step
-                }
+                PendingKind::Reconfigure(_)
+                | PendingKind::Step { .. }
+                | PendingKind::StepInShadow
+                | PendingKind::Snapshot => Awaits::Step,
             },
             Some(_) => Awaits::Candidate,
             None => match self.candidate.as_ref().filter(|slot| slot.pending.is_some()) {

@@ -4,12 +4,12 @@ use super::{
     super::{
         Mission,
         planning::Evaluated,
-        slot::{AskedPlan, PlanState, Prepare},
+        slot::{AskedPlan, PendingKind, PlanState, Prepare},
     },
     Promotion, Shadow,
     rest::rest_of,
 };
-use crate::{event::EventKind, phase::Phase, task::Task};
+use crate::{event::EventKind, phase::Phase, standing::PositionTrust, task::Task};
 use planner_api::{Plan, Reason};
 use world::{Point, polyline};
 
@@ -38,7 +38,7 @@ impl Mission {
     /// Lets the shadow take over if it was ordered to and can; gives it back if not.
     pub(super) fn promote_if_due(&mut self, mut shadow: Shadow) -> Option<Shadow> {
         let Promotion::Ordered { n_plans } = shadow.promotion else { return Some(shadow) };
-        if !shadow.may_take_over(self.tick) || self.locator.is_lost() {
+        if !shadow.may_take_over(self.tick) || self.position_trust() != PositionTrust::Good {
             return Some(shadow);
         }
         let from = self.active.choice.id.clone();
@@ -86,6 +86,9 @@ impl Mission {
             self.reject(candidate, format!("planner {planner} was promoted from shadow"));
         }
         slot.before = self.active.known().cloned();
+        if let Some(pending) = &mut slot.pending {
+            pending.kind = PendingKind::StepInShadow;
+        }
         // A hold that blames the planner before has lost its reason.
         slot.prepare = if matches!(self.phase, Phase::Held(_)) { Prepare::Plan } else { Prepare::No };
         self.happened.push(EventKind::Promoted { planner, tally });

@@ -106,6 +106,22 @@ fn an_answer_two_ticks_late_is_a_miss_and_a_row_begins_anew() {
 }
 
 #[test]
+fn an_answer_on_its_way_when_the_planner_takes_over_is_neither_used_nor_late() {
+    let mut flight = Flight::new(rounds(1));
+    flight.tick(&[Order::Start]);
+    flight.tick(&[shadow("other")]);
+    flight.delay = Box::new(|ask, _| u64::from(ask.id.worker.0 == 2));
+    flight.fly(30);
+    flight.delay = Box::new(|_, _| 0);
+    let n_before = commanded_by(&flight).len();
+    flight.tick(&[Order::Promote]);
+    assert_eq!(commanded_by(&flight).len(), n_before + 1, "by the planner that took over, in this tick");
+    assert_eq!(commanded_by(&flight).last().map(|(_, worker)| worker.0), Some(2));
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PlannerLate { .. })), 0);
+    assert_eq!(replay(rounds(1), &flight), flight.events);
+}
+
+#[test]
 fn a_robot_that_has_left_the_plan_gets_another_one_first_and_never_stands() {
     let mut flight = Flight::new(covering());
     flight.tick(&[Order::Start]);
