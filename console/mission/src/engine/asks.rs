@@ -79,7 +79,7 @@ impl Mission {
             if !is_running && self.active.prepare < Prepare::Plan {
                 return None;
             }
-            let (kind, what) = self.plan_ask(reason.clone(), *from_anchor);
+            let (kind, what) = self.plan_ask(reason.clone(), *from_anchor, self.trail.len());
             self.active.found_since.clear();
             return self.ask_of_active(kind, what);
         }
@@ -123,7 +123,7 @@ impl Mission {
             return Some(slot.open(worker, self.tick, site));
         }
         let PlanState::Due { reason, from_anchor } = slot.plan.clone() else { return None };
-        let (kind, what) = self.plan_ask(reason, from_anchor);
+        let (kind, what) = self.plan_ask(reason, from_anchor, self.trail.len());
         let slot = self.candidate.as_mut()?;
         slot.found_since.clear();
         slot.ask(self.tick, kind, what)
@@ -140,12 +140,13 @@ impl Mission {
     /// The inputs of a plan from the end of a return path, or from where the robot stands.
     ///
     /// A cable that is caught is freed first. A plan that was refused because of the cable out there is asked for once
-    /// more from the anchor, after a way back along the cable: no planner has to know how the cable lies.
-    pub(super) fn plan_ask(&self, reason: Reason, from_anchor: bool) -> (PendingKind, What) {
+    /// more from the anchor, after a way back along the cable: no planner has to know how the cable lies. Planners are told
+    /// of the first `n_flown` points of the path flown.
+    pub(super) fn plan_ask(&self, reason: Reason, from_anchor: bool, n_flown: usize) -> (PendingKind, What) {
         let return_path = if from_anchor { self.way_to_anchor() } else { self.way_out() }.unwrap_or_default();
         let here = self.locator.pose_estimate();
         let start = return_path.last().map_or(here, |home| PoseEstimate { position: *home, ..here });
-        let previous: Vec<Point> = self.trail.iter().chain(&return_path).copied().collect();
+        let previous: Vec<Point> = self.trail[..n_flown].iter().chain(&return_path).copied().collect();
         let task = self.task.left(&self.floor.coverage, self.config.lane_m(), self.config.tether_limits());
         let site = Arc::new(self.chart.site());
         let what = What::Plan(Box::new(PlanAsk { reason: reason.clone(), start, task, site, previous }));

@@ -12,7 +12,6 @@ use super::{
 use crate::{
     ask::{Ask, What},
     event::{EventKind, ShadowTally},
-    phase::Phase,
     planner::PlannerChoice,
     task::Task,
 };
@@ -40,8 +39,21 @@ pub(super) struct Shadow {
     n_flown: usize,
     /// Mission time then, seconds.
     asked_at_s: f64,
+    /// What it is asked in this tick depends on the readings alone, and on no other planner's answer.
+    now: Now,
     /// Whether it is to take over.
     promotion: Promotion,
+}
+
+/// What a planner in shadow may be asked in a tick, as it stands when the tick begins.
+#[derive(Debug, Clone, Copy, Default)]
+struct Now {
+    /// Whether the robot runs.
+    is_running: bool,
+    /// Whether there is anything to plan for: lanes are handed over once the planner that drives has some.
+    may_plan: bool,
+    /// How many points the path flown has.
+    n_flown: usize,
 }
 
 /// Whether a planner in shadow is to take over.
@@ -67,6 +79,7 @@ impl Mission {
             from_anchor: false,
             n_flown: self.trail.len(),
             asked_at_s: self.now_s(),
+            now: Now::default(),
             promotion: Promotion::No,
         });
     }
@@ -92,7 +105,12 @@ impl Mission {
         let Some(mut shadow) = self.shadow.take() else { return };
         let here = self.locator.position();
         self.advance_shadow(&mut shadow, here);
-        if self.is_running() {
+        shadow.now = Now {
+            is_running: self.is_running(),
+            may_plan: !matches!(self.task, Task::Cover(_)) || self.task.lanes().is_some(),
+            n_flown: self.trail.len(),
+        };
+        if shadow.now.is_running {
             shadow.task.wait(self.config.tick_s);
             let asked_s = self.now_s() - shadow.asked_at_s;
             if asked_s >= PLAN_AGAIN_S && !shadow.is_near(here) {
@@ -112,29 +130,28 @@ impl Mission {
 
     /// What is asked of the planner in shadow next.
     pub(super) fn ask_shadow(&mut self) -> Option<Ask> {
-        let is_running = self.is_running();
-        if matches!(self.phase, Phase::Ended(_)) {
-            return None;
-        }
         let mut shadow = self.shadow.take_if(|shadow| shadow.slot.pending.is_none())?;
-        let ask = self.ask_of_shadow(&mut shadow, is_running);
+        let ask = self.ask_of_shadow(&mut shadow);
         self.shadow = Some(shadow);
         ask
     }
 
-    fn ask_of_shadow(&mut self, shadow: &mut Shadow, is_running: bool) -> Option<Ask> {
+    fn ask_of_shadow(&mut self, shadow: &mut Shadow) -> Option<Ask> {
         let tick = self.tick;
         if !shadow.slot.is_ready {
             let (worker, site) = (self.workers.next(), self.chart.site());
             return Some(shadow.slot.open(worker, tick, site));
         }
         if let PlanState::Due { reason, from_anchor } = shadow.slot.plan.clone() {
-            let (kind, what) = self.plan_ask(reason, from_anchor);
-            (shadow.n_flown, shadow.asked_at_s) = (self.trail.len(), self.now_s());
+            if !shadow.now.may_plan {
+                return None;
+            }
+            let (kind, what) = self.plan_ask(reason, from_anchor, shadow.now.n_flown);
+            (shadow.n_flown, shadow.asked_at_s) = (shadow.now.n_flown, self.now_s());
             shadow.slot.found_since.clear();
             return shadow.slot.ask(tick, kind, what);
         }
-        if !is_running || shadow.slot.stepped_at == Some(tick) {
+        if !shadow.now.is_running || shadow.slot.stepped_at == Some(tick) {
             return None;
         }
         shadow.slot.stepped_at = Some(tick);

@@ -5,7 +5,7 @@ use super::{
         Mission,
         answers::mismatch,
         planning::after,
-        slot::{AskedPlan, Pending, PendingKind, PlanState},
+        slot::{AskedPlan, Pending, PendingKind},
     },
     Shadow,
 };
@@ -26,7 +26,7 @@ impl Mission {
         pending: Pending,
         Answer { ask, result, said }: Answer,
     ) -> Option<Shadow> {
-        match (pending.kind, result.and_then(|given| self.checked(&shadow.slot, given))) {
+        match (pending.kind, result.and_then(|given| self.fitting(&shadow.slot, given))) {
             (PendingKind::Open, Ok(Given::Opened(info))) => {
                 self.pass_on_of_shadow(&mut shadow, said);
                 (shadow.slot.info, shadow.slot.is_ready) = (Some((*info).clone()), true);
@@ -36,7 +36,7 @@ impl Mission {
             }
             (PendingKind::Plan(asked), Ok(Given::Plan(plan))) => {
                 self.pass_on_of_shadow(&mut shadow, said);
-                self.shadow_planned(shadow, ask, &asked, plan)
+                Some(self.shadow_planned(shadow, ask, &asked, plan))
             }
             (PendingKind::Step { .. }, Ok(Given::Command(command))) => {
                 self.shadow_stepped(&mut shadow, (ask, self.tick - pending.tick), command, said);
@@ -70,46 +70,24 @@ impl Mission {
         self.note_shadow(shadow, EventKind::Commanded { ask: Some(ask), command });
     }
 
-    fn shadow_planned(
-        &mut self,
-        mut shadow: Shadow,
-        ask: AskId,
-        asked: &AskedPlan,
-        plan: Plan,
-    ) -> Option<Shadow> {
+    /// Takes a plan; whether it flies from where the robot is decides who promotes the planner.
+    fn shadow_planned(&mut self, mut shadow: Shadow, ask: AskId, asked: &AskedPlan, plan: Plan) -> Shadow {
         let id = shadow.slot.choice.id.clone();
         let plan = after(&asked.return_path, plan);
         let planned = Self::planned(Some(ask), &id, asked, &plan);
         self.note_shadow(&mut shadow, planned);
         shadow.take_plan(plan, self.task.clone(), asked);
         // The robot went on meanwhile: perhaps along this plan.
-        for flown in &self.trail[shadow.n_flown..] {
+        for flown in &self.trail[shadow.n_flown..shadow.now.n_flown] {
             self.advance_shadow(&mut shadow, *flown);
         }
-        let here = self.locator.position();
-        self.advance_shadow(&mut shadow, here);
+        self.advance_shadow(&mut shadow, self.locator.position());
         let room_m = self.config.room_m();
         let found = std::mem::take(&mut shadow.slot.found_since);
         if found.iter().any(|shape| shadow.task.is_in_the_way(shape, room_m)) {
             shadow.slot.want_plan(Reason::MapChanged);
         }
-        let Some(rest) = shadow.rest_from(here, &self.trail) else { return Some(shadow) };
-        let mut events = Vec::new();
-        let objection = self.objection(&id, &rest, &mut events);
-        for kind in events {
-            self.note_shadow(&mut shadow, kind);
-        }
-        match objection {
-            Some(objection) if !(objection.by_tether && self.may_try_from_anchor(asked)) => {
-                self.close_shadow(shadow, objection.message);
-                return None;
-            }
-            Some(_) => {
-                shadow.slot.plan = PlanState::Due { reason: asked.reason.clone(), from_anchor: true };
-            }
-            None => {}
-        }
-        Some(shadow)
+        shadow
     }
 
     /// Reports what the shadow drew, reported and said besides an answer.

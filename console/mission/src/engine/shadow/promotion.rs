@@ -9,7 +9,7 @@ use super::{
     Promotion, Shadow,
     rest::rest_of,
 };
-use crate::{event::EventKind, phase::Phase, standing::PositionTrust, task::Task};
+use crate::{event::EventKind, order::Order, phase::Phase, standing::Standing, task::Task};
 use planner_api::{Plan, Reason};
 use world::{Point, polyline};
 
@@ -38,7 +38,14 @@ impl Mission {
     /// Lets the shadow take over if it was ordered to and can; gives it back if not.
     pub(super) fn promote_if_due(&mut self, mut shadow: Shadow) -> Option<Shadow> {
         let Promotion::Ordered { n_plans } = shadow.promotion else { return Some(shadow) };
-        if !shadow.may_take_over(self.tick) || self.position_trust() != PositionTrust::Good {
+        // Nobody expects another planner to take over long after the order.
+        let refusal = self.standing_of(&shadow).allows(&Order::Promote).err().map(|why| why.to_string());
+        let barred = || shadow.slot.info.as_ref().and_then(|info| self.barred(info));
+        if let Some(why) = refusal.or_else(barred) {
+            self.refuse_promotion(&mut shadow, why);
+            return Some(shadow);
+        }
+        if !shadow.may_take_over(self.tick) {
             return Some(shadow);
         }
         let from = self.active.choice.id.clone();
@@ -69,6 +76,11 @@ impl Mission {
             Some(objection) => self.refuse_promotion(&mut shadow, objection.message.clone()),
         }
         Some(shadow)
+    }
+
+    /// What decides about orders while this planner flies in shadow.
+    fn standing_of(&self, shadow: &Shadow) -> Standing<'_> {
+        Standing { shadow: Some(shadow.tally), ..self.standing() }
     }
 
     fn refuse_promotion(&mut self, shadow: &mut Shadow, why: String) {
@@ -103,7 +115,7 @@ impl Shadow {
     /// Whether it has a plan, and no answer of it is overdue.
     fn may_take_over(&self, tick: u64) -> bool {
         let owes = self.slot.pending.as_ref().is_some_and(|pending| pending.tick + 1 < tick);
-        self.tally.is_ready() && self.slot.has_plan() && !owes
+        self.slot.has_plan() && !owes
     }
 
     /// What is left of its plan from where the robot is, which has flown this way. `None` if the plan is too far off.

@@ -106,6 +106,21 @@ fn an_answer_two_ticks_late_is_a_miss_and_a_row_begins_anew() {
 }
 
 #[test]
+fn a_planner_that_falls_behind_before_it_takes_over_stays_in_shadow() {
+    let mut flight = Flight::new(rounds(1));
+    flight.tick(&[Order::Start]);
+    flight.tick(&[shadow("other")]);
+    flight.fly(20);
+    flight.delay = Box::new(|ask, _| if ask.id.worker.0 == 2 { 4 } else { 0 });
+    flight.fly(2);
+    flight.tick(&[Order::Promote]);
+    flight.delay = Box::new(|_, _| 0);
+    flight.fly(40);
+    assert_eq!(promotions(&flight), 0);
+    assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PromotionRefused { .. })), 1);
+}
+
+#[test]
 fn an_answer_on_its_way_when_the_planner_takes_over_is_neither_used_nor_late() {
     let mut flight = Flight::new(rounds(1));
     flight.tick(&[Order::Start]);
@@ -156,7 +171,7 @@ fn a_shadow_may_take_over_from_a_planner_that_has_failed() {
 }
 
 #[test]
-fn a_shadow_whose_plan_is_not_certified_ends_and_holds_nobody() {
+fn a_shadow_whose_plan_is_not_certified_does_not_take_over_and_holds_nobody() {
     let tether =
         tethered(40.0).tether.map(|tether| crate::TetherConfig { allow_uncertified: false, ..tether });
     let mut flight = Flight::new(MissionConfig { tether, ..config() });
@@ -164,10 +179,10 @@ fn a_shadow_whose_plan_is_not_certified_ends_and_holds_nobody() {
     flight.fly(10);
     flight.planner.plans_to_m = Some(9.0);
     flight.tick(&[shadow("other")]);
-    flight.fly(5);
-    let ended =
-        |kind: &EventKind| matches!(kind, EventKind::ShadowEnded { why, .. } if why.contains("not safe"));
-    assert_eq!(count(&flight, ended), 1);
+    flight.fly(20);
+    flight.tick(&[Order::Promote]);
+    let refused = |kind: &EventKind| matches!(kind, EventKind::PromotionRefused { why, .. } if why.contains("not safe"));
+    assert_eq!(count(&flight, refused), 1);
     flight.fly(200);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
     assert_eq!(count(&flight, |kind| matches!(kind, EventKind::Held { .. })), 0);
