@@ -42,6 +42,8 @@ mod script;
 #[cfg(unix)]
 #[path = "acceptance/session.rs"]
 mod session;
+#[path = "acceptance/shadow.rs"]
+mod shadow;
 #[cfg(unix)]
 #[path = "acceptance/terminal.rs"]
 mod terminal;

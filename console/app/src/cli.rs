@@ -355,9 +355,25 @@ pub(crate) struct RunArgs {
     /// of a tick is late. The result then depends on the machine; the journal can still be verified.
     #[arg(long)]
     pub live_deadlines: bool,
+    #[command(flatten)]
+    pub shadow: ShadowArgs,
     /// Print the report as JSON on stdout, and nothing else.
     #[arg(long)]
     pub json: bool,
+}
+
+/// A planner in shadow of a run.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct ShadowArgs {
+    /// Fly this planner in shadow: it plans and commands beside the one that drives, and moves nothing.
+    #[arg(long, value_name = "ID")]
+    pub shadow: Option<String>,
+    /// Set a parameter of the planner in shadow.
+    #[arg(long, value_name = "KEY=VALUE", requires = "shadow")]
+    pub shadow_set: Vec<String>,
+    /// Have the planner in shadow take over so often, in seconds of mission time; the one before it then flies in shadow.
+    #[arg(long, value_name = "SECONDS", requires = "shadow")]
+    pub promote_every: Option<f64>,
 }
 
 #[derive(Debug, Args)]

@@ -5,6 +5,7 @@ use crate::{
     cli::{LogsArg, RunArgs},
     output::pretty_json,
     progress,
+    shadowing::Shadowing,
     stop_signal::{self, StopSignal},
 };
 use flight::{
@@ -16,7 +17,7 @@ use flight::{
     planners, scenarios,
 };
 use indicatif::{ProgressBar, ProgressStyle};
-use mission::{Event, EventKind, Order, Outcome, Phase};
+use mission::{Event, EventKind, Order, Outcome, Phase, PlannerInfo};
 use planner_host::{Host, PluginDirs};
 use report::print::{say, say_line, warn_line};
 use runs::{CLOSE_TIMEOUT, Closed, RunLog};
@@ -39,7 +40,10 @@ pub(crate) struct RunOptions {
 pub(crate) fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     let (json, record, live_deadlines) = (args.json, !args.no_record, args.live_deadlines);
-    fly(&scenario, plugins, &args.logs, RunOptions { json, record, live_deadlines })
+    let known = planners::found(plugins);
+    let shadowing = Shadowing::read(&args.shadow, &args.scenario, &scenario, &known)?;
+    let options = RunOptions { json, record, live_deadlines };
+    fly_beside(&scenario, (plugins, &known), &args.logs, options, shadowing)
 }
 
 /// Flies a scenario to its end and prints the result.
@@ -49,8 +53,19 @@ pub(crate) fn fly(
     logs: &LogsArg,
     options: RunOptions,
 ) -> anyhow::Result<ExitCode> {
+    fly_beside(scenario, (plugins, &planners::found(plugins)), logs, options, None)
+}
+
+/// The same, perhaps with a planner in shadow.
+fn fly_beside(
+    scenario: &Scenario,
+    (plugins, known): (&PluginDirs, &[PlannerInfo]),
+    logs: &LogsArg,
+    options: RunOptions,
+    shadowing: Option<Shadowing>,
+) -> anyhow::Result<ExitCode> {
     let stop = stop_signal::listen();
-    planners::check_choices(scenario, &planners::found(plugins))?;
+    planners::check_choices(scenario, known)?;
     warn_of_clearance(scenario);
     let flight = Flight::prepare(scenario, false);
     let mut log = if options.record {
@@ -66,7 +81,8 @@ pub(crate) fn fly(
         report_trouble(&mut trouble, log.health().error);
     };
     take(vec![flight.opened()]);
-    let host = fly_to_end(flight, host(scenario, plugins), take, (&bar, &stop), options.live_deadlines);
+    let live_deadlines = options.live_deadlines;
+    let host = fly_to_end((flight, shadowing), host(scenario, plugins), take, (&bar, &stop), live_deadlines);
     bar.finish_and_clear();
     let Closed { summary, kept } = log.close(CLOSE_TIMEOUT, hosts::calls(&host), None, &scenario.expect);
     say(&if options.json { pretty_json("the report", &summary)? } else { report::human(&summary) })?;
@@ -91,7 +107,7 @@ fn report_trouble(reported: &mut Option<String>, trouble: Option<String>) {
 
 /// Flies to the end; every ask is answered before time moves on, or within the console's windows.
 fn fly_to_end(
-    mut flight: Flight,
+    (mut flight, mut shadowing): (Flight, Option<Shadowing>),
     host: Host,
     mut take: impl FnMut(Vec<Event>),
     (bar, stop): (&ProgressBar, &StopSignal),
@@ -102,19 +118,24 @@ fn fly_to_end(
     answers.host().set_on_progress(on_progress);
     stop_signal::wake_on_signal(answers.host().waker());
     let mut watch = PlanWatch::new(answers.host().plan_budget(), Some(on_work));
-    let mut orders = vec![Order::Start];
+    let mut orders: Vec<Order> =
+        std::iter::once(Order::Start).chain(shadowing.as_ref().map(Shadowing::begin)).collect();
     while !matches!(flight.phase(), Phase::Ended(_)) {
         if stop.requested() {
             orders.push(Order::Terminate);
         }
-        take(if live_deadlines {
-            let window = Window::real_time(flight.tick_length());
+        let events = if live_deadlines {
+            // Nothing paces the ticks: the planner in shadow is given the time that it has in the console.
+            let tick = flight.tick_length();
+            let window = Window { shadow: tick, ..Window::real_time(tick) };
             let mut windowed = Windowed::new(answers.host(), window);
             flight.tick(&orders, &mut Watched::new(&mut windowed, &mut watch))
         } else {
             flight.tick(&orders, &mut Watched::new(&mut answers, &mut watch))
-        });
+        };
         orders.clear();
+        orders.extend(shadowing.as_mut().and_then(|shadowing| shadowing.next(&events)));
+        take(events);
     }
     answers.into_host()
 }

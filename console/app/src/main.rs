@@ -16,6 +16,7 @@ mod progress;
 mod report_file;
 mod reproduce;
 mod rescan;
+mod shadowing;
 mod stop_signal;
 mod tune;
 

@@ -76,13 +76,16 @@ pub struct Windowed<'a> {
     step: Option<Duration>,
     /// How long a tick waits for work that the robot stands for.
     work: Duration,
+    /// How long a tick waits for the planner in shadow alone.
+    shadow: Duration,
     began: Instant,
 }
 
 impl<'a> Windowed<'a> {
     /// For the tick that begins now.
     pub fn new(host: &'a mut Host, window: Window) -> Self {
-        Self { host, step: window.step, work: window.work, began: Instant::now() }
+        let Window { step, work, shadow } = window;
+        Self { host, step, work, shadow, began: Instant::now() }
     }
 }
 
@@ -95,6 +98,7 @@ impl Answers for Windowed<'_> {
         let until = match mission.awaits() {
             Awaits::Step => self.step.map(|window| self.began + window),
             Awaits::Work => Some(self.began + self.work),
+            Awaits::Shadow => Some(self.began + self.shadow),
             // What is there already enters; nobody waits for the rest.
             Awaits::Candidate | Awaits::Nothing => Some(self.began),
         };
@@ -109,6 +113,9 @@ pub struct Window {
     pub step: Option<Duration>,
     /// For opening a planner or making a plan, for which the robot stands.
     pub work: Duration,
+    /// For the planner in shadow, when nothing else is asked. At the pace of the clock nobody waits for it: it has the time
+    /// until the next tick.
+    pub shadow: Duration,
 }
 
 /// Share of a tick that is left for answers.
@@ -120,17 +127,17 @@ impl Window {
     /// At the pace of the clock.
     pub fn real_time(tick: Duration) -> Self {
         let share = tick.mul_f64(SHARE);
-        Self { step: Some(share), work: share }
+        Self { step: Some(share), work: share, shadow: Duration::ZERO }
     }
 
     /// Faster than the clock.
     pub fn faster(tick: Duration) -> Self {
         let real_time = Self::real_time(tick);
-        Self { step: Some(real_time.work.max(AT_LEAST)), ..real_time }
+        Self { step: Some(real_time.work.max(AT_LEAST)), shadow: AT_LEAST, ..real_time }
     }
 
     /// As fast as it goes.
     pub fn unbounded(tick: Duration) -> Self {
-        Self { step: None, ..Self::real_time(tick) }
+        Self { step: None, shadow: AT_LEAST, ..Self::real_time(tick) }
     }
 }

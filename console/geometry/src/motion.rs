@@ -1,6 +1,6 @@
 //! How a robot moves, its limits, and the control law that turns a planner's command into a drive within them.
 
-use crate::{Vector, unit_vector, wrap_angle_rad};
+use crate::{Point, Pose, Vector, unit_vector, wrap_angle_rad};
 
 /// Heading error above which a unicycle turns on the spot before it drives, radians.
 pub const TURN_FIRST_RAD: f64 = 1.0;
@@ -8,6 +8,9 @@ pub const TURN_FIRST_RAD: f64 = 1.0;
 pub const TURN_FIRST_IN_LANES_RAD: f64 = 0.25;
 /// Turn rate per heading error, 1/s: a 0.5 rad error decays in about a second.
 const HEADING_GAIN_PER_S: f64 = 2.5;
+
+/// Between the poses of a rollout, seconds.
+const ROLLOUT_STEP_S: f64 = 0.1;
 
 /// Share by which rounding may leave a speed above the limit.
 const ROUNDING: f64 = 1e-12;
@@ -106,6 +109,39 @@ pub fn drive_for(command: Drive, heading_rad: f64, limits: &Limits, turn_first_r
             turn_into(velocity, heading_rad, limits, turn_first_rad)
         }
     }
+}
+
+/// Where a robot that obeys one command all the time would be, every tenth of a second, from a pose on for some time, seconds.
+///
+/// ```
+/// use geometry::{Drive, Limits, Motion, Pose, Vector, motion::{TURN_FIRST_RAD, rollout}};
+/// # let (motion, radius_m, sensing_range_m) = (Motion::Unicycle, 0.25, 2.0);
+/// let limits = Limits { motion, v_max_m_per_s: 0.4, w_max_rad_per_s: 1.0, radius_m, sensing_range_m };
+/// let north = Drive::Velocity(Vector::new(0.0, 0.3));
+/// let way = rollout(north, Pose::new(0.0, 0.0, 0.0), &limits, TURN_FIRST_RAD, 5.0);
+/// let end = way.last().unwrap();
+/// assert!((end.heading_rad - std::f64::consts::FRAC_PI_2).abs() < 0.01 && end.position.y > 0.9);
+/// ```
+pub fn rollout(
+    command: Drive,
+    from: Pose,
+    limits: &Limits,
+    turn_first_rad: f64,
+    duration_s: f64,
+) -> Vec<Pose> {
+    let step = |pose: &Pose| {
+        let heading_rad = pose.heading_rad;
+        let (velocity, turn_rad) = match drive_for(command, heading_rad, limits, turn_first_rad) {
+            Drive::Twist { v_m_per_s, w_rad_per_s } => {
+                (unit_vector(heading_rad) * v_m_per_s, w_rad_per_s * ROLLOUT_STEP_S)
+            }
+            Drive::Velocity(velocity) => (velocity, 0.0),
+        };
+        let position: Point = pose.position + velocity * ROLLOUT_STEP_S;
+        Some(Pose { position, heading_rad: wrap_angle_rad(heading_rad + turn_rad) })
+    };
+    let n_steps = (duration_s / ROLLOUT_STEP_S).round() as usize;
+    std::iter::successors(Some(from), step).take(n_steps + 1).collect()
 }
 
 /// The angle from a heading to the direction of a velocity, radians in (-pi, pi].

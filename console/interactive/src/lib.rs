@@ -16,6 +16,7 @@ mod look;
 mod measure;
 mod pace;
 mod plain;
+mod rebuilt;
 mod screen;
 mod script;
 mod session;
@@ -144,6 +145,7 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     let current = desk.current();
     let (desk, thread) = desk.start()?;
     desk.request(Request::Look);
+    rebuilt::watch(desk.clone(), plugins.clone())?;
     let mut session = Session::new(config.apply(model), inbox, (current.clone(), desk.clone()));
     if options.by == By::Keys {
         session.remember();

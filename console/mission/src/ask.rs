@@ -244,6 +244,8 @@ pub struct Said {
 pub enum Awaits {
     /// Nothing is asked.
     Nothing,
+    /// Only the planner in shadow has been asked; nothing depends on the answer.
+    Shadow,
     /// Only a planner that does not drive yet has been asked; the robot does not depend on the answer.
     Candidate,
     /// The robot stands until the planner that drives has been opened or has planned.

@@ -1,6 +1,7 @@
 //! What a mission is to do, and within which limits.
 
 use crate::planner::PlannerChoice;
+use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD};
 use planner_api::{Limits, Motion, TetherLimits};
 use positioning::{Aggregation, Forecast, RangeNoise, SolverKind};
 use serde::{Deserialize, Serialize};
@@ -43,6 +44,14 @@ impl TaskConfig {
             Self::Goto { goal, .. } => Some(*goal),
             Self::Follow { path, .. } => path.last().copied(),
             Self::Cover { anchor, .. } => Some(*anchor),
+        }
+    }
+
+    /// Heading error above which a unicycle turns on the spot before it drives, radians.
+    pub fn turn_first_rad(&self) -> f64 {
+        match self {
+            Self::Cover { .. } => TURN_FIRST_IN_LANES_RAD,
+            Self::Goto { .. } | Self::Follow { .. } => TURN_FIRST_RAD,
         }
     }
 }

@@ -16,6 +16,7 @@ mod orders;
 mod planning;
 mod rules;
 mod scanning;
+mod shadow;
 mod slot;
 mod stepping;
 mod tethering;
@@ -36,6 +37,7 @@ use floor::ScannedFloor;
 pub use fork::Fork;
 use planner_api::{Drive, Reason};
 use rules::{PlannerSeen, Rules, Seen};
+use shadow::Shadow;
 use slot::PlannerSlot;
 use stepping::PlaceOnPlan;
 use workers::Workers;
@@ -81,6 +83,8 @@ pub struct Mission {
     active: PlannerSlot,
     /// A planner that is being prepared to take over.
     candidate: Option<PlannerSlot>,
+    /// A planner that flies beside the one that drives, and moves nothing.
+    shadow: Option<Shadow>,
     workers: Workers,
     /// Where the robot was let go that moves until something happens.
     stepped_from: Option<PlaceOnPlan>,
@@ -91,6 +95,8 @@ pub struct Mission {
 #[derive(Clone)]
 struct Happened {
     events: Vec<EventKind>,
+    /// What came of the answers of the planner in shadow: reported last, in whatever order answers arrive.
+    of_shadow: Vec<EventKind>,
     /// The end of the mission, reported after all other events of the tick.
     ending: Option<EventKind>,
     last_drive: Drive,
@@ -127,9 +133,15 @@ impl Mission {
             rules: Rules::new(&config),
             active: PlannerSlot::new(config.planner.clone(), Reason::Start),
             candidate: None,
+            shadow: None,
             workers: Workers::default(),
             stepped_from: None,
-            happened: Happened { events: Vec::new(), ending: None, last_drive: Drive::STILL },
+            happened: Happened {
+                events: Vec::new(),
+                of_shadow: Vec::new(),
+                ending: None,
+                last_drive: Drive::STILL,
+            },
             config,
         }
     }
@@ -150,7 +162,12 @@ impl Mission {
 
     /// Everything that decides whether an order is accepted now.
     pub fn standing(&self) -> Standing<'_> {
-        Standing { phase: &self.phase, position: self.position_trust(), planner: self.active.known() }
+        Standing {
+            phase: &self.phase,
+            position: self.position_trust(),
+            planner: self.active.known(),
+            shadow: self.shadow.as_ref().map(|shadow| shadow.tally),
+        }
     }
 
     fn position_trust(&self) -> PositionTrust {
@@ -175,6 +192,7 @@ impl Mission {
         self.scan_from(before);
         let reached = self.drag_tether(map_changed, input.readings.paid_out_m);
         self.apply_rules(input.readings, reached.as_ref());
+        self.lead_shadow();
     }
 
     /// Ends a tick: what the robot does until the next one, and everything that happened. To be called once, last.
@@ -183,6 +201,7 @@ impl Mission {
         self.end_step();
         let (tick, t_s) = (self.tick, self.now_s());
         let mut happened = std::mem::take(&mut self.happened.events);
+        happened.append(&mut self.happened.of_shadow);
         happened.extend(self.happened.ending.take());
         let events = happened.into_iter().map(|kind| Event { tick, t_s, kind }).collect();
         self.tick += 1;

@@ -6,11 +6,13 @@
 mod log_line;
 mod recorded;
 mod severity;
+mod shadow;
 mod tether;
 
 pub use log_line::{LogLine, late_text};
 pub use recorded::RecordedAnswers;
 pub use severity::Severity;
+pub use shadow::{READY_AFTER, ShadowTally};
 pub use tether::{TetherAlarm, TetherContact};
 
 use crate::{
@@ -303,6 +305,49 @@ pub enum EventKind {
         ask: Option<AskId>,
         /// How.
         fault: Fault,
+    },
+    /// A planner was opened that flies in shadow from now on.
+    ShadowBegan {
+        /// Which ask this answers.
+        ask: AskId,
+        /// Which, with its parameters.
+        choice: PlannerChoice,
+        /// Who it is.
+        info: Box<PlannerInfo>,
+    },
+    /// The planner in shadow did something that moved nothing: it planned, drew, said, commanded or failed. A command is as
+    /// the planner gave it.
+    Shadowed {
+        /// What would have happened had it driven.
+        of: Box<EventKind>,
+    },
+    /// The planner in shadow answered a step after the tick that followed it; the answer counts for nothing.
+    ShadowMissed {
+        /// Which ask it answers.
+        ask: AskId,
+        /// So many ticks late.
+        ticks: u64,
+    },
+    /// The planner in shadow was ordered to take over and is not let; it stays in shadow.
+    PromotionRefused {
+        /// Which.
+        planner: String,
+        /// Why, as a sentence.
+        why: String,
+    },
+    /// The planner in shadow took over in this tick; that it drives, its plan from here and the certificate of it follow.
+    Promoted {
+        /// Which.
+        planner: String,
+        /// What it had done in shadow.
+        tally: ShadowTally,
+    },
+    /// No planner flies in shadow any more.
+    ShadowEnded {
+        /// Which did.
+        planner: String,
+        /// Why, as a sentence.
+        why: String,
     },
     /// Floor was scanned, by the estimated pose.
     Covered {

@@ -35,6 +35,12 @@ pub enum Order {
     Terminate,
     /// While held or waiting: another planner takes over.
     ChoosePlanner(PlannerChoice),
+    /// Fly a planner in shadow: it plans and commands beside the one that drives, and moves nothing.
+    Shadow(PlannerChoice),
+    /// The planner in shadow takes over, without a hold.
+    Promote,
+    /// End the shadow.
+    DropShadow,
     /// Change one parameter of the planner; while the mission runs only live ones.
     SetParameter {
         /// Which parameter.

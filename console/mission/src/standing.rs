@@ -8,6 +8,7 @@ mod folded;
 pub use folded::FoldedStanding;
 
 use crate::{
+    event::{READY_AFTER, ShadowTally},
     order::Order,
     phase::{Hold, HoldReason, Outcome, Phase},
     planner::PlannerInfo,
@@ -39,6 +40,8 @@ pub struct Standing<'a> {
     pub position: PositionTrust,
     /// The planner that was opened last to drive.
     pub planner: Option<&'a PlannerInfo>,
+    /// How the planner in shadow does; `None` without one.
+    pub shadow: Option<ShadowTally>,
 }
 
 /// Why an order is not accepted.
@@ -70,6 +73,13 @@ pub enum Refusal {
     RangesInconsistent,
     /// No plan has been refused because of the tether.
     NoPlanRefused,
+    /// No planner flies in shadow.
+    NoShadow,
+    /// The planner in shadow has not proven itself yet.
+    ShadowNotReady {
+        /// Steps that it has answered in a row.
+        in_row: u64,
+    },
 }
 
 impl fmt::Display for Refusal {
@@ -91,6 +101,11 @@ impl fmt::Display for Refusal {
                 f.write_str("the ranges contradict each other; resuming requires a consistent fix")
             }
             Self::NoPlanRefused => f.write_str("no plan has been refused because of the tether"),
+            Self::NoShadow => f.write_str("no planner flies in shadow"),
+            Self::ShadowNotReady { in_row } => write!(
+                f,
+                "the planner in shadow has answered {in_row} steps in a row, taking over requires {READY_AFTER}"
+            ),
         }
     }
 }
@@ -107,7 +122,7 @@ impl Standing<'_> {
             (_, Phase::Ended(outcome)) => Err(Refusal::Ended(*outcome)),
             (Order::Abort | Order::Terminate | Order::UseStation { .. }, _)
             | (Order::Plan | Order::Start | Order::NoteChecks(_), Phase::Waiting)
-            | (Order::Hold | Order::Inject(_), Phase::Running(_) | Phase::Held(_))
+            | (Order::Hold | Order::Inject(_) | Order::Shadow(_), Phase::Running(_) | Phase::Held(_))
             | (Order::NoteOutlooks(_), Phase::Held(_))
             | (Order::ChoosePlanner(_) | Order::SetParameter { .. }, Phase::Waiting | Phase::Held(_)) => {
                 Ok(())
@@ -121,7 +136,10 @@ impl Standing<'_> {
                 | Order::Step
                 | Order::StepTo(_)
                 | Order::NoteOutlooks(_)
-                | Order::Inject(_),
+                | Order::Inject(_)
+                | Order::Shadow(_)
+                | Order::Promote
+                | Order::DropShadow,
                 Phase::Waiting,
             ) => Err(Refusal::NotStarted),
             (Order::Resume | Order::Step | Order::StepTo(_), Phase::Held(_)) => self.can_move(),
@@ -130,6 +148,8 @@ impl Standing<'_> {
             (Order::FlyUncertified, Phase::Held(Hold { by: HoldReason::PlanRefused { .. }, .. })) => {
                 self.can_move()
             }
+            (Order::Promote, _) => self.can_promote(),
+            (Order::DropShadow, _) => self.shadow.map(|_| ()).ok_or(Refusal::NoShadow),
             (Order::FlyUncertified, _) => Err(Refusal::NoPlanRefused),
             (Order::ChoosePlanner(_), Phase::Running(_)) => Err(Refusal::SwapNeedsHold),
             (Order::SetParameter { key, .. }, Phase::Running(_)) => {
@@ -147,6 +167,17 @@ impl Standing<'_> {
             PositionTrust::Good => Ok(()),
             PositionTrust::Lost { limit_m } => Err(Refusal::PositionLost { limit_m }),
             PositionTrust::Alarmed => Err(Refusal::RangesInconsistent),
+        }
+    }
+
+    /// The plan of the planner that takes over is certified from where the robot is.
+    fn can_promote(&self) -> Result<(), Refusal> {
+        match self.shadow {
+            None => Err(Refusal::NoShadow),
+            Some(ShadowTally { in_row, .. }) if in_row < READY_AFTER => {
+                Err(Refusal::ShadowNotReady { in_row })
+            }
+            Some(_) => self.can_move(),
         }
     }
 

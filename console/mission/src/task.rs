@@ -116,6 +116,14 @@ impl Task {
         }
     }
 
+    /// Progress along the lanes; `None` unless there are any.
+    pub(crate) fn lanes(&self) -> Option<&PathFollower> {
+        match self {
+            Self::Cover(cover) => cover.lanes(),
+            Self::Goto(_) | Self::Follow { .. } => None,
+        }
+    }
+
     /// What the stretch of the plan under the robot is for, if the planner says.
     pub(crate) fn leg(&self) -> Option<api::LegTag> {
         match self {

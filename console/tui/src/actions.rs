@@ -44,6 +44,12 @@ pub enum ActionId {
     Abort,
     /// Let another planner drive.
     ChoosePlanner,
+    /// Fly a planner in shadow.
+    Shadow,
+    /// Let the planner in shadow take over.
+    Promote,
+    /// End the shadow.
+    DropShadow,
     /// Forecast how the mission would go on with one planner or another.
     WhatIf,
     /// Forecast another planner too.
@@ -212,6 +218,9 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::SetSpeed, "speed", "Set the speed of the simulation", &[], &[Context::Screen]).args(&[must("factor", Kind::Speed)]).also(&["rate", "pace"]),
     action(ActionId::Abort, "end", "HOLD, then ask to end the mission", &[Key::Char('X')], &[Context::Screen]).label("end").risk(Risk::Destroys).also(&["abort", "finish"]),
     action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[Context::Plan, Context::Mission]).label("planner").risk(Risk::Moves).args(&[may("planner", Kind::Planner)]),
+    action(ActionId::Shadow, "shadow", "Fly a planner in shadow", &[], &[Context::Screen]).args(&[may("planner", Kind::Planner)]),
+    action(ActionId::Promote, "promote", "Let the planner in shadow take over", &[], &[Context::Screen]).risk(Risk::Moves),
+    action(ActionId::DropShadow, "shadow-off", "End the shadow", &[], &[Context::Screen]),
     action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[Context::Plan, Context::Mission]).label("parameters"),
     action(ActionId::SetParameter, "set", "Change a planner parameter", &[], &[Context::Screen]).args(&[must("parameter", Kind::Parameter)]),
     action(ActionId::WhatIf, "what-if", "Forecast with other planners (held)", &[Key::Char('w')], &[Context::Mission]).label("what-if"),

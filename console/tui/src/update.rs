@@ -19,6 +19,7 @@ mod preflight;
 mod preset;
 mod redraw;
 mod send;
+mod shadow;
 mod stations;
 mod typing;
 mod what_if;
@@ -144,6 +145,7 @@ fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<Refuse
         let changes = differences(&model.console.planners, &found);
         model.say(Severity::Info, format!("plugins looked at again: {} changed", changes.len()));
         model.console.reloaded = Some(changes);
+        shadow::tell_rebuilt(model, &found);
     }
     (model.console.planners, model.console.refused) = (found, refused);
 }

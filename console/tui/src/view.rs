@@ -23,6 +23,7 @@ mod planner;
 mod plugins;
 mod position;
 mod result;
+mod shadow;
 mod stations;
 mod strip;
 mod table;

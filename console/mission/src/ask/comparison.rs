@@ -17,7 +17,7 @@ pub enum Comparison {
 
 impl Comparison {
     /// Compares two answers to one ask. `as_sent` is what a command becomes on its way to the robot: that is what is
-    /// recorded.
+    /// recorded of the planner that drives, and it changes no command twice.
     pub fn of(own: &Answer, recorded: &Answer, as_sent: impl Fn(Command) -> Command) -> Self {
         let why = match (&own.result, &recorded.result) {
             (Ok(Given::Opened(_)), Err(Fault { cause: Cause::Quarantined | Cause::Refused, .. })) => {
@@ -43,7 +43,7 @@ fn differs(own: &Given, recorded: &Given, as_sent: impl Fn(Command) -> Command) 
             (own != **then).then_some("is another build or offers something else")
         }
         (Given::Command(own), Given::Command(then)) => {
-            (as_sent(*own) != *then).then_some("commands something else")
+            (as_sent(*own) != as_sent(*then)).then_some("commands something else")
         }
         (Given::Plan(own), Given::Plan(then)) => {
             let is_same = own.path == then.path

@@ -32,11 +32,14 @@ impl Mission {
             if let Some(pending) = self.active.pending.take() {
                 self.answer_active(pending, answer);
             }
-        } else if let Some(mut slot) = self.candidate.take() {
-            match slot.pending.take_if(|pending| pending.id == answer.ask) {
-                Some(pending) => self.candidate = self.answer_candidate(slot, pending, answer),
-                None => self.candidate = Some(slot),
+        } else if let Some(mut slot) = self.candidate.take_if(|slot| is_owed(slot)) {
+            if let Some(pending) = slot.pending.take() {
+                self.candidate = self.answer_candidate(slot, pending, answer);
             }
+        } else if let Some(mut shadow) = self.shadow.take_if(|shadow| is_owed(&shadow.slot))
+            && let Some(pending) = shadow.slot.pending.take()
+        {
+            self.shadow = self.answer_shadow(shadow, pending, answer);
         }
     }
 
@@ -57,6 +60,10 @@ impl Mission {
                 let usable = usable && self.is_running();
                 self.take_command(&pending, usable, command, said);
             }
+            (PendingKind::StepInShadow, Given::Command(_)) => {
+                self.pass_on(said, &self.active.choice.id.clone());
+                self.happened.push(EventKind::Discarded { ask });
+            }
             (PendingKind::Snapshot, Given::State { bytes }) => {
                 self.pass_on(said, &self.active.choice.id.clone());
                 if bytes > 0 {
@@ -73,6 +80,28 @@ impl Mission {
 
     /// Refuses a planner that may not or cannot fly this mission, although it could be opened.
     pub(super) fn checked(&self, slot: &PlannerSlot, given: Given) -> Result<Given, Fault> {
+        if let Given::Opened(info) = &given
+            && let Some(message) = self.barred(info)
+        {
+            return Err(refused(info, During::Load, Cause::Quarantined, message));
+        }
+        self.fitting(slot, given)
+    }
+
+    /// Why a planner may not drive again in this mission, if it may not.
+    pub(super) fn barred(&self, info: &PlannerInfo) -> Option<String> {
+        let (faults, window_s) = (workers::MOST_FAULTS, workers::WINDOW_S);
+        let message = || {
+            format!(
+                "planner {} failed {faults} times within {window_s} s and may not drive again in this mission",
+                info.id
+            )
+        };
+        self.workers.quarantine.holds(&info.sha256).then(message)
+    }
+
+    /// Refuses a planner that cannot fly this mission.
+    pub(super) fn fitting(&self, slot: &PlannerSlot, given: Given) -> Result<Given, Fault> {
         let id = &slot.choice.id;
         if let Given::Plan(plan) = &given
             && let Err(what) = self.check_extent(plan)
@@ -82,21 +111,11 @@ impl Mission {
             let (during, cause) = (During::Plan, Cause::BadOutput);
             return Err(Fault { planner: id.clone(), during, cause, message, partial, plugin_sha256 });
         }
-        let Given::Opened(info) = &given else { return Ok(given) };
-        let refuse = |during, cause, message| {
-            let plugin_sha256 = Some(info.sha256.clone());
-            Err(Fault { planner: id.clone(), during, cause, message, partial: Vec::new(), plugin_sha256 })
-        };
-        if self.workers.quarantine.holds(&info.sha256) {
-            let (faults, window_s) = (workers::MOST_FAULTS, workers::WINDOW_S);
-            let message = format!(
-                "planner {id} failed {faults} times within {window_s} s and may not drive again in this mission"
-            );
-            return refuse(During::Load, Cause::Quarantined, message);
-        }
-        if let (TaskConfig::Cover { .. }, Some(why)) = (&self.config.task, info.why_no_coverage()) {
+        if let (Given::Opened(info), TaskConfig::Cover { .. }) = (&given, &self.config.task)
+            && let Some(why) = info.why_no_coverage()
+        {
             let message = format!("planner {id} {why}: choose one that does");
-            return refuse(During::Configure, Cause::Refused, message);
+            return Err(refused(info, During::Configure, Cause::Refused, message));
         }
         Ok(given)
     }
@@ -116,7 +135,7 @@ impl Mission {
     fn plan_arrived(&mut self, ask: AskId, asked: AskedPlan, plan: Plan, said: Said) {
         let id = self.active.choice.id.clone();
         self.pass_on(said, &id);
-        let Evaluated { plan, events, objection } = self.evaluate(ask, &id, &asked, plan);
+        let Evaluated { plan, events, objection } = self.evaluate(Some(ask), &id, &asked, plan);
         self.happened.extend(events);
         match objection {
             None => {
@@ -169,7 +188,11 @@ impl Mission {
                 }
                 return;
             }
-            PendingKind::Plan(_) | PendingKind::Step { .. } | PendingKind::Snapshot if says_no => {}
+            PendingKind::Plan(_)
+            | PendingKind::Step { .. }
+            | PendingKind::StepInShadow
+            | PendingKind::Snapshot
+                if says_no => {}
             _ => self.close_active(),
         }
         if !self.active.has_plan() {
@@ -205,6 +228,12 @@ impl Mission {
         }
         self.happened.push(EventKind::PlannerFailed { ask: Some(ask), fault });
     }
+}
+
+/// A planner that was opened and is not let drive.
+fn refused(info: &PlannerInfo, during: During, cause: Cause, message: String) -> Fault {
+    let (planner, plugin_sha256) = (info.id.clone(), Some(info.sha256.clone()));
+    Fault { planner, during, cause, message, partial: Vec::new(), plugin_sha256 }
 }
 
 /// An answer of another kind than the ask.

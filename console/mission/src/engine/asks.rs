@@ -10,6 +10,7 @@ use crate::{
     phase::Phase,
     task::Task,
 };
+use geometry::PathFollower;
 use planner_api::{Drive, PoseEstimate, Reason};
 use std::sync::Arc;
 use world::Point;
@@ -21,7 +22,11 @@ impl Mission {
     /// The next thing that is wanted of a planner, if anything is. To be called until it gives nothing, after
     /// [`Mission::sense`] and after every [`Mission::answer`].
     pub fn poll_ask(&mut self) -> Option<Ask> {
-        self.workers.poll().or_else(|| self.ask_active()).or_else(|| self.ask_candidate())
+        self.workers
+            .poll()
+            .or_else(|| self.ask_active())
+            .or_else(|| self.ask_candidate())
+            .or_else(|| self.ask_shadow())
     }
 
     /// What the mission would like to have before the tick ends.
@@ -30,14 +35,18 @@ impl Mission {
         match &self.active.pending {
             Some(pending) if is_running => match pending.kind {
                 PendingKind::Open | PendingKind::Plan(_) => Awaits::Work,
-                PendingKind::Reconfigure(_) | PendingKind::Step { .. } | PendingKind::Snapshot => {
-                    Awaits::Step
-                }
+                PendingKind::Reconfigure(_)
+                | PendingKind::Step { .. }
+                | PendingKind::StepInShadow
+                | PendingKind::Snapshot => Awaits::Step,
             },
             Some(_) => Awaits::Candidate,
             None => match self.candidate.as_ref().filter(|slot| slot.pending.is_some()) {
                 Some(slot) if is_running && slot.robot_waits => Awaits::Work,
                 Some(_) => Awaits::Candidate,
+                None if self.shadow.as_ref().is_some_and(|shadow| shadow.slot.pending.is_some()) => {
+                    Awaits::Shadow
+                }
                 None => Awaits::Nothing,
             },
         }
@@ -45,7 +54,9 @@ impl Mission {
 
     /// Whether a planner is being opened or is making a plan, whether or not the robot stands for it.
     pub fn is_preparing(&self) -> bool {
-        self.active.is_being_prepared() || self.candidate.as_ref().is_some_and(PlannerSlot::is_being_prepared)
+        let shadow = self.shadow.as_ref().map(|shadow| &shadow.slot);
+        self.active.is_being_prepared()
+            || self.candidate.as_ref().into_iter().chain(shadow).any(PlannerSlot::is_being_prepared)
     }
 
     fn ask_active(&mut self) -> Option<Ask> {
@@ -68,7 +79,7 @@ impl Mission {
             if !is_running && self.active.prepare < Prepare::Plan {
                 return None;
             }
-            let (kind, what) = self.plan_ask(reason.clone(), *from_anchor);
+            let (kind, what) = self.plan_ask(reason.clone(), *from_anchor, self.trail.len());
             self.active.found_since.clear();
             return self.ask_of_active(kind, what);
         }
@@ -112,7 +123,7 @@ impl Mission {
             return Some(slot.open(worker, self.tick, site));
         }
         let PlanState::Due { reason, from_anchor } = slot.plan.clone() else { return None };
-        let (kind, what) = self.plan_ask(reason, from_anchor);
+        let (kind, what) = self.plan_ask(reason, from_anchor, self.trail.len());
         let slot = self.candidate.as_mut()?;
         slot.found_since.clear();
         slot.ask(self.tick, kind, what)
@@ -129,12 +140,13 @@ impl Mission {
     /// The inputs of a plan from the end of a return path, or from where the robot stands.
     ///
     /// A cable that is caught is freed first. A plan that was refused because of the cable out there is asked for once
-    /// more from the anchor, after a way back along the cable: no planner has to know how the cable lies.
-    fn plan_ask(&self, reason: Reason, from_anchor: bool) -> (PendingKind, What) {
+    /// more from the anchor, after a way back along the cable: no planner has to know how the cable lies. Planners are told
+    /// of the first `n_flown` points of the path flown.
+    pub(super) fn plan_ask(&self, reason: Reason, from_anchor: bool, n_flown: usize) -> (PendingKind, What) {
         let return_path = if from_anchor { self.way_to_anchor() } else { self.way_out() }.unwrap_or_default();
         let here = self.locator.pose_estimate();
         let start = return_path.last().map_or(here, |home| PoseEstimate { position: *home, ..here });
-        let previous: Vec<Point> = self.trail.iter().chain(&return_path).copied().collect();
+        let previous: Vec<Point> = self.trail[..n_flown].iter().chain(&return_path).copied().collect();
         let task = self.task.left(&self.floor.coverage, self.config.lane_m(), self.config.tether_limits());
         let site = Arc::new(self.chart.site());
         let what = What::Plan(Box::new(PlanAsk { reason: reason.clone(), start, task, site, previous }));
@@ -142,40 +154,40 @@ impl Mission {
     }
 
     fn ask_for_step(&mut self) -> Option<Ask> {
-        let pose = self.locator.pose_estimate();
-        let here = pose.position;
+        let here = self.locator.position();
         self.keep_trail();
         if let Some(plan) = &mut self.active.follower {
             let map = self.chart.map();
             plan.advance(here, |at| map.clearance_m(at) >= 0.0);
         }
+        let step = self.step_ask(&self.task, self.active.follower.as_ref());
+        self.active.stepped_at = Some(self.tick);
+        self.ask_of_active(PendingKind::Step { usable: true }, What::Step(Box::new(step)))
+    }
+
+    /// The inputs of a command on the way along a task and a plan.
+    pub(super) fn step_ask(&self, task: &Task, plan: Option<&PathFollower>) -> StepAsk {
+        let pose = self.locator.pose_estimate();
         let (v_m_per_s, w_rad_per_s) = match self.happened.last_drive {
             Drive::Twist { v_m_per_s, w_rad_per_s } => (v_m_per_s, w_rad_per_s),
             Drive::Velocity(velocity) => (velocity.norm(), 0.0),
         };
-        let step = StepAsk {
+        // Lanes are followed by the task itself, which knows how far it is.
+        let path_ahead = match task {
+            Task::Cover(_) => task.targets_ahead(AHEAD_M),
+            Task::Goto(_) | Task::Follow { .. } => plan.map_or(&[][..], |plan| plan.ahead(AHEAD_M)),
+        };
+        StepAsk {
             tick: self.tick,
             t_s: self.now_s(),
             dt_s: self.config.tick_s,
             pose,
             v_m_per_s,
             w_rad_per_s,
-            target: self.task.target(),
-            targets_ahead: self.task.targets_ahead(AHEAD_M).to_vec(),
-            path_ahead: self.path_ahead().to_vec(),
-            obstacles: self.chart.near(here),
-        };
-        self.active.stepped_at = Some(self.tick);
-        self.ask_of_active(PendingKind::Step { usable: true }, What::Step(Box::new(step)))
-    }
-
-    /// The plan from here on. Lanes are followed by the task itself, which knows how far it is.
-    fn path_ahead(&self) -> &[Point] {
-        match &self.task {
-            Task::Cover(_) => self.task.targets_ahead(AHEAD_M),
-            Task::Goto(_) | Task::Follow { .. } => {
-                self.active.follower.as_ref().map_or(&[], |plan| plan.ahead(AHEAD_M))
-            }
+            target: task.target(),
+            targets_ahead: task.targets_ahead(AHEAD_M).to_vec(),
+            path_ahead: path_ahead.to_vec(),
+            obstacles: self.chart.near(pose.position),
         }
     }
 }

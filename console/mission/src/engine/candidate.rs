@@ -60,7 +60,7 @@ impl Mission {
             slot.robot_waits = true;
             return Some(slot);
         }
-        let Evaluated { plan, events, objection } = self.evaluate(ask, &id, &asked, plan);
+        let Evaluated { plan, events, objection } = self.evaluate(Some(ask), &id, &asked, plan);
         if objection.is_none() {
             self.promote(slot);
             self.pass_on(said, &id);
@@ -84,7 +84,7 @@ impl Mission {
     }
 
     /// The planner that was being prepared takes over.
-    fn promote(&mut self, slot: PlannerSlot) {
+    pub(super) fn promote(&mut self, slot: PlannerSlot) {
         let from = slot.before.as_ref().map(|before| before.id.clone());
         let (choice, info) = (slot.choice.clone(), slot.info.clone());
         self.replace_active(slot);

@@ -11,7 +11,7 @@ use crate::{
     phase::{Gait, Hold, HoldReason, Phase, Resumes},
     task::Task,
 };
-use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD, drive_for};
+use geometry::motion::drive_for;
 use planner_api::{Command, Drive};
 
 /// How much of the targets and of the plan a planner sees ahead, metres.
@@ -42,10 +42,7 @@ impl Mission {
     /// A command as the robot would be sent it now: within its limits and in its own way of moving. Doing this to a
     /// command that was sent changes nothing, so that recorded commands can be fed in again.
     pub fn as_sent(&self, command: Command) -> Command {
-        let turn_first_rad = match self.task {
-            Task::Cover(_) => TURN_FIRST_IN_LANES_RAD,
-            Task::Goto(_) | Task::Follow { .. } => TURN_FIRST_RAD,
-        };
+        let turn_first_rad = self.config.task.turn_first_rad();
         let heading_rad = self.locator.pose().heading_rad;
         let drive = drive_for(command.drive, heading_rad, &self.config.limits, turn_first_rad);
         Command { drive, status: command.status }

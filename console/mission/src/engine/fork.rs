@@ -25,6 +25,7 @@ impl Mission {
         if let Some(mut candidate) = mission.candidate.take() {
             candidate.leave_worker();
         }
+        mission.shadow = None;
         mission.active.leave_worker();
         mission.active.saved = None;
         let estimate = mission.locator.pose();

@@ -80,6 +80,7 @@ impl Mission {
         self.happened.ending = Some(EventKind::Ended { outcome, reason });
         self.phase = Phase::Ended(outcome);
         self.drop_candidate();
+        self.drop_shadow();
         self.close_active();
     }
 }

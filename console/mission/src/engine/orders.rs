@@ -43,6 +43,9 @@ impl Mission {
                 let from = self.active.choice.id.clone();
                 self.choose(choice.clone(), Reason::Swap { from });
             }
+            Order::Shadow(choice) => self.begin_shadow(choice.clone()),
+            Order::Promote => self.order_promotion(),
+            Order::DropShadow => self.end_shadow(),
             Order::SetParameter { key, value } => self.set_parameter(key, value),
             Order::FlyUncertified => {
                 self.allow_uncertified(true);
@@ -71,7 +74,7 @@ impl Mission {
 
     /// A hold that was to end by itself now ends by an order: nobody who changes planners, or which stations are heard,
     /// expects the robot to move.
-    fn stay_held(&mut self) {
+    pub(super) fn stay_held(&mut self) {
         if let Phase::Held(hold) = &self.phase
             && !hold.resumes.is_never()
         {
@@ -91,6 +94,7 @@ impl Mission {
     /// replaced at once, so that the operator can have a plan of the other flown that is refused for the tether.
     pub(super) fn choose(&mut self, choice: PlannerChoice, reason: Reason) {
         self.stay_held();
+        self.cancel_promotion();
         let waiting = self.phase == Phase::Waiting;
         let reason = if waiting { Reason::Start } else { reason };
         let mut slot = self.active.successor(choice, reason);

@@ -65,10 +65,23 @@ impl Mission {
     }
 
     /// Judges a plan on the map as it is known now.
-    pub(super) fn evaluate(&self, ask: AskId, planner: &str, asked: &AskedPlan, plan: Plan) -> Evaluated {
+    pub(super) fn evaluate(
+        &self,
+        ask: Option<AskId>,
+        planner: &str,
+        asked: &AskedPlan,
+        plan: Plan,
+    ) -> Evaluated {
         let plan = after(&asked.return_path, plan);
-        let planned = EventKind::Planned {
-            ask: Some(ask),
+        let mut events = vec![Self::planned(ask, planner, asked, &plan)];
+        let objection = self.objection(planner, &plan, &mut events);
+        Evaluated { plan, events, objection }
+    }
+
+    /// That a plan was made, after its return path.
+    pub(super) fn planned(ask: Option<AskId>, planner: &str, asked: &AskedPlan, plan: &Plan) -> EventKind {
+        EventKind::Planned {
+            ask,
             return_path: asked.return_path.len(),
             planner: planner.to_owned(),
             reason: asked.reason.clone(),
@@ -77,11 +90,18 @@ impl Mission {
             complete: plan.complete,
             legs: plan.legs.clone(),
             cuts: plan.cuts.clone(),
-        };
-        let mut events = vec![planned];
-        let by_tether = self.certified(planner, &plan, &mut events);
-        let objection = by_tether.or_else(|| self.objection_to_way(planner, &plan));
-        Evaluated { plan, events, objection }
+        }
+    }
+
+    /// Why a plan is not flown; its certificate goes into the events.
+    pub(super) fn objection(
+        &self,
+        planner: &str,
+        plan: &Plan,
+        events: &mut Vec<EventKind>,
+    ) -> Option<Objection> {
+        let by_tether = self.certified(planner, plan, events);
+        by_tether.or_else(|| self.objection_to_way(planner, plan))
     }
 
     /// Why a plan is not safe for the tether; its certificate goes into the events.
@@ -140,21 +160,24 @@ impl Mission {
 
     /// Passes on what a planner drew, reported and said besides its answer.
     pub(super) fn pass_on(&mut self, said: Said, planner: &str) {
-        let Said { drawings, scalars, logs } = said;
-        if !drawings.is_empty() {
-            self.happened.push(EventKind::Drawn { drawings });
-        }
-        if !scalars.is_empty() {
-            self.happened.push(EventKind::Scalars { scalars });
-        }
-        for (level, message) in logs {
-            self.happened.push(EventKind::PlannerLogged { planner: planner.to_owned(), level, message });
-        }
+        self.happened.extend(said.into_events(planner));
+    }
+}
+
+impl Said {
+    /// What was said, as events of a planner.
+    pub(super) fn into_events(self, planner: &str) -> impl Iterator<Item = EventKind> {
+        let Self { drawings, scalars, logs } = self;
+        let drawn = (!drawings.is_empty()).then_some(EventKind::Drawn { drawings });
+        let figures = (!scalars.is_empty()).then_some(EventKind::Scalars { scalars });
+        let logged =
+            move |(level, message)| EventKind::PlannerLogged { planner: planner.to_owned(), level, message };
+        drawn.into_iter().chain(figures).chain(logs.into_iter().map(logged))
     }
 }
 
 /// A plan with a return path before it.
-fn after(return_path: &[Point], mut plan: Plan) -> Plan {
+pub(super) fn after(return_path: &[Point], mut plan: Plan) -> Plan {
     let Some(last) = return_path.len().checked_sub(1) else { return plan };
     let shifted = |leg: &Leg| Leg { first: leg.first + last + 1, last: leg.last + last + 1, ..*leg };
     let retract = Leg { tag: LegTag::Retract, first: 0, last };

@@ -24,14 +24,21 @@ impl Mission {
         // What moves is no part of the floor.
         let still = events.iter().filter(|event| !self.chart.moves(event));
         let shapes: Vec<Shape> = still.filter_map(shape_of).collect();
-        let is_due =
-            changes_plans && (events.is_empty() || events.iter().any(|event| self.is_in_the_way(event)));
-        if is_due {
+        let is_due = |task: &Task| {
+            changes_plans && (events.is_empty() || events.iter().any(|event| self.is_in_the_way(task, event)))
+        };
+        let shadow_is_due = self.shadow.as_ref().is_some_and(|shadow| is_due(&shadow.task));
+        if is_due(&self.task) {
             self.active.want_plan(Reason::MapChanged);
         }
+        let shadow = self.shadow.as_mut().map(|shadow| &mut shadow.slot);
         if changes_plans {
             self.active.found_since.extend_from_slice(&shapes);
-            self.candidate.iter_mut().for_each(|slot| slot.found_since.extend_from_slice(&shapes));
+            let others = self.candidate.iter_mut().chain(shadow);
+            others.for_each(|slot| slot.found_since.extend_from_slice(&shapes));
+        }
+        if shadow_is_due {
+            self.shadow.iter_mut().for_each(|shadow| shadow.slot.want_plan(Reason::MapChanged));
         }
         self.happened.extend(events);
         let changes = self.floor.survey(&self.config, &self.chart, &shapes);
@@ -43,14 +50,14 @@ impl Mission {
 
     /// An obstacle that was found is in the way with the clearance demanded; one that was planned for already and
     /// stands a little elsewhere only when half of it is gone.
-    fn is_in_the_way(&self, event: &EventKind) -> bool {
+    fn is_in_the_way(&self, task: &Task, event: &EventKind) -> bool {
         let (radius_m, clearance_m) = (self.config.limits.radius_m, self.config.clearance_m);
         match event {
             EventKind::ObstacleMoved { obstacle, .. } => {
-                self.task.is_in_the_way(&obstacle.shape, radius_m + 0.5 * clearance_m)
+                task.is_in_the_way(&obstacle.shape, radius_m + 0.5 * clearance_m)
             }
             EventKind::ObstacleFound { obstacle } => {
-                self.task.is_in_the_way(&obstacle.shape, radius_m + clearance_m)
+                task.is_in_the_way(&obstacle.shape, radius_m + clearance_m)
             }
             _ => false,
         }

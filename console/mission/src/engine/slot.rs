@@ -118,6 +118,8 @@ pub(super) enum PendingKind {
         usable: bool,
     },
     Snapshot,
+    /// A step that was asked of it in shadow, before it took over: the answer is of no use, and not late.
+    StepInShadow,
 }
 
 /// What has to be remembered of a plan that is being made.

@@ -3,6 +3,7 @@
 mod arrivals;
 mod caught;
 mod covering;
+mod shadow;
 mod stopping;
 mod tethered;
 
@@ -25,6 +26,8 @@ use world::{Boundary, Obstacle, ObstacleId, Odometry, Pose, RangeSet, Shape, Sig
 struct Straight {
     fail_at_tick: Option<u64>,
     fail_at_ticks: Vec<u64>,
+    /// Its second worker fails in this tick.
+    second_fails_at_tick: Option<u64>,
     /// Its plans lead to the goal instead of nowhere in particular.
     plans_to_goal: bool,
     /// It talks with every answer.
@@ -69,6 +72,9 @@ impl Straight {
             What::Open { choice, .. } => self.open(&choice.id).map(|info| Given::Opened(Box::new(info))),
             What::Reconfigure(_) => self.reconfigure().map(|()| Given::Reconfigured),
             What::Plan(request) => Ok(Given::Plan(self.plan(&request))),
+            What::Step(sensed) if id.worker.0 == 2 && self.second_fails_at_tick == Some(sensed.tick) => {
+                Err(self.fault(During::Step, Cause::Died))
+            }
             What::Step(sensed) => self.step(&sensed).map(Given::Command),
             What::Snapshot => Ok(Given::State { bytes: 1 }),
             What::Close => return None,

@@ -80,6 +80,12 @@ impl Event {
             | EventKind::PlannerLogged { .. }
             | EventKind::PlannerLate { .. }
             | EventKind::PlannerFailed { .. } => of_planner(&self.kind)?,
+            EventKind::ShadowBegan { .. }
+            | EventKind::Shadowed { .. }
+            | EventKind::ShadowMissed { .. }
+            | EventKind::PromotionRefused { .. }
+            | EventKind::Promoted { .. }
+            | EventKind::ShadowEnded { .. } => of_shadow(&self.kind)?,
             EventKind::Truth { collided: true, pose, .. } => line(
                 Severity::Crit,
                 "robot",
@@ -155,10 +161,45 @@ fn of_planner(kind: &EventKind) -> Option<LogLine> {
     })
 }
 
+fn of_shadow(kind: &EventKind) -> Option<LogLine> {
+    Some(match kind {
+        EventKind::ShadowBegan { choice, info, .. } => {
+            line(Severity::Info, "plan", format!("planner {} {} flies in shadow", choice.id, info.version))
+        }
+        // Its faults are its own: they ask nothing of the operator who flies with another planner.
+        EventKind::Shadowed { of } => {
+            let LogLine { severity, source, text } = match &**of {
+                EventKind::Certified { .. } => of_tether(of)?,
+                other => of_planner(other)?,
+            };
+            line(severity.min(Severity::Watch), source, format!("shadow: {text}"))
+        }
+        EventKind::ShadowMissed { ticks, .. } => {
+            line(Severity::Info, "plan", format!("shadow: {} missed", ticks_text(*ticks)))
+        }
+        EventKind::PromotionRefused { planner, why } => {
+            line(Severity::Warn, "plan", format!("planner {planner} stays in shadow: {why}"))
+        }
+        EventKind::Promoted { planner, tally } => {
+            let (answered, missed) = (tally.answered, ticks_text(tally.missed));
+            let text =
+                format!("planner {planner} promoted from shadow: {answered} steps answered, {missed} missed");
+            line(Severity::Info, "plan", text)
+        }
+        EventKind::ShadowEnded { planner, why } => {
+            line(Severity::Watch, "plan", format!("planner {planner} no longer flies in shadow: {why}"))
+        }
+        _ => return None,
+    })
+}
+
 /// How late a planner answered, without a full stop.
 pub fn late_text(planner: &str, ticks: u64) -> String {
-    let plural = if ticks == 1 { "" } else { "s" };
-    format!("planner {planner} answered {ticks} tick{plural} late")
+    format!("planner {planner} answered {} late", ticks_text(ticks))
+}
+
+fn ticks_text(ticks: u64) -> String {
+    if ticks == 1 { "1 tick".into() } else { format!("{ticks} ticks") }
 }
 
 fn of_tether(kind: &EventKind) -> Option<LogLine> {
@@ -198,6 +239,9 @@ fn order_text(order: &Order, stations: &[Station]) -> String {
         Order::Abort => "end mission".into(),
         Order::Terminate => "end mission, by a signal to the process".into(),
         Order::ChoosePlanner(choice) => format!("change planner to {}", choice.id),
+        Order::Shadow(choice) => format!("fly planner {} in shadow", choice.id),
+        Order::Promote => "promote the planner in shadow".into(),
+        Order::DropShadow => "end the shadow".into(),
         Order::SetParameter { key, value } => format!("set {key} = {value}"),
         Order::Inject(injection) => injection_text(injection, stations),
         Order::UseStation { station, used } => {

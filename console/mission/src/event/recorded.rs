@@ -30,6 +30,8 @@ impl RecordedAnswers {
         self.due.clear();
         let mut said = Said::default();
         for event in events {
+            // A planner in shadow answers like any other.
+            let event = if let EventKind::Shadowed { of } = event { of } else { event };
             match event {
                 EventKind::Drawn { drawings } => said.drawings.clone_from(drawings),
                 EventKind::Scalars { scalars } => said.scalars.clone_from(scalars),
@@ -64,7 +66,7 @@ impl RecordedAnswers {
         let Recorded { ask, closing, said } = self.due.remove(at)?;
         let (_, is_plan) = self.open.swap_remove(open);
         let result = closing.recorded_answer(is_plan)?;
-        let is_used = !matches!(closing, EventKind::Discarded { .. });
+        let is_used = !matches!(closing, EventKind::Discarded { .. } | EventKind::ShadowMissed { .. });
         Some((Answer { ask, result, said }, is_used))
     }
 }
@@ -74,9 +76,12 @@ impl EventKind {
     /// the answer arrived.
     pub fn closes(&self) -> Option<AskId> {
         match self {
-            Self::PlannerPrepared { ask, .. } | Self::Snapshotted { ask, .. } | Self::Discarded { ask } => {
-                Some(*ask)
-            }
+            Self::PlannerPrepared { ask, .. }
+            | Self::ShadowBegan { ask, .. }
+            | Self::ShadowMissed { ask, .. }
+            | Self::Snapshotted { ask, .. }
+            | Self::Discarded { ask } => Some(*ask),
+            Self::Shadowed { of } => of.closes(),
             Self::PlannerChosen { ask, .. }
             | Self::ParametersChanged { ask, .. }
             | Self::Planned { ask, .. }
@@ -92,9 +97,9 @@ impl EventKind {
     /// planner can have given (the journal was edited) is a fault. `is_plan`: whether a plan was asked for.
     pub fn recorded_answer(&self, is_plan: bool) -> Option<Result<Given, Fault>> {
         Some(match self {
-            Self::PlannerChosen { ask: Some(_), info, .. } | Self::PlannerPrepared { info, .. } => {
-                Ok(Given::Opened(info.clone()))
-            }
+            Self::PlannerChosen { ask: Some(_), info, .. }
+            | Self::PlannerPrepared { info, .. }
+            | Self::ShadowBegan { info, .. } => Ok(Given::Opened(info.clone())),
             Self::ParametersChanged { ask: Some(_), .. } => Ok(Given::Reconfigured),
             Self::Planned { ask: Some(_), return_path, path, complete, legs, cuts, .. } => {
                 without_return_path(*return_path, path, *complete, legs, cuts).map(Given::Plan)
@@ -102,7 +107,10 @@ impl EventKind {
             Self::Commanded { ask: Some(_), command } => Ok(Given::Command(*command)),
             Self::Snapshotted { bytes, .. } => Ok(Given::State { bytes: *bytes }),
             Self::Discarded { .. } if is_plan => Ok(Given::Plan(Plan::default())),
-            Self::Discarded { .. } => Ok(Given::Command(Command::still(Status::Waiting))),
+            Self::Discarded { .. } | Self::ShadowMissed { .. } => {
+                Ok(Given::Command(Command::still(Status::Waiting)))
+            }
+            Self::Shadowed { of } => return of.recorded_answer(is_plan),
             Self::PlannerFailed { ask: Some(_), fault } => Err(fault.clone()),
             _ => return None,
         })

@@ -2,7 +2,7 @@
 
 use super::{PositionTrust, Standing};
 use crate::{
-    event::EventKind,
+    event::{EventKind, ShadowTally},
     order::Order,
     phase::{Gait, Hold, Phase},
     planner::PlannerInfo,
@@ -22,6 +22,9 @@ pub struct FoldedStanding {
     is_alarmed: bool,
     /// The planner that was opened last to drive.
     planner: Option<Box<PlannerInfo>>,
+    /// How the planner in shadow does; `None` without one.
+    #[serde(default)]
+    shadow: Option<ShadowTally>,
 }
 
 impl FoldedStanding {
@@ -31,6 +34,9 @@ impl FoldedStanding {
             EventKind::RunOpened(_) => *self = Self::default(),
             EventKind::Ordered { order: Order::Start } => self.phase = Phase::Running(Gait::Steady),
             EventKind::Ordered { order } => {
+                if matches!(order, Order::Shadow(_)) {
+                    self.shadow = Some(ShadowTally::default());
+                }
                 self.gait = match order {
                     Order::Step => Some(Gait::OneTick),
                     Order::StepTo(to) => Some(Gait::To(*to)),
@@ -49,8 +55,10 @@ impl FoldedStanding {
             EventKind::RangesInconsistent { .. } => self.is_alarmed = true,
             EventKind::RangesConsistent => self.is_alarmed = false,
             EventKind::PlannerChosen { info, .. } => self.planner = Some(info.clone()),
+            EventKind::Promoted { .. } | EventKind::ShadowEnded { .. } => self.shadow = None,
             _ => {}
         }
+        self.shadow.iter_mut().for_each(|shadow| shadow.apply(event));
     }
 
     /// Everything that decides whether an order is accepted now.
@@ -60,6 +68,6 @@ impl FoldedStanding {
             None if self.is_alarmed => PositionTrust::Alarmed,
             None => PositionTrust::Good,
         };
-        Standing { phase: &self.phase, position, planner: self.planner.as_deref() }
+        Standing { phase: &self.phase, position, planner: self.planner.as_deref(), shadow: self.shadow }
     }
 }

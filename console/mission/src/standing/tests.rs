@@ -33,7 +33,10 @@ fn orders() -> Vec<Order> {
         Order::StepTo(StepTo::LaneEnd),
         Order::FlyUncertified,
         Order::Abort,
-        Order::ChoosePlanner(choice),
+        Order::ChoosePlanner(choice.clone()),
+        Order::Shadow(choice),
+        Order::Promote,
+        Order::DropShadow,
         Order::SetParameter { key: "gain".into(), value: ParamValue::Flag(true) },
         Order::Inject(Injection { station: StationId(1), fault: RangeFault::Dead, for_s: 20.0, by: None }),
         Order::UseStation { station: StationId(1), used: false },
@@ -41,7 +44,8 @@ fn orders() -> Vec<Order> {
 }
 
 fn standing(phase: &Phase, position: PositionTrust) -> Standing<'_> {
-    Standing { phase, position, planner: None }
+    let shadow = ShadowTally { answered: 40, in_row: READY_AFTER, missed: 2 };
+    Standing { phase, position, planner: None, shadow: Some(shadow) }
 }
 
 #[test]
@@ -87,4 +91,15 @@ fn the_whole_table() {
         }
     }
     insta::assert_snapshot!(table.join("\n"));
+}
+
+#[test]
+fn a_planner_takes_over_from_shadow_only_after_it_has_answered_some_steps_in_a_row() {
+    let running = Phase::Running(Gait::Steady);
+    let promote =
+        |shadow| Standing { shadow, ..standing(&running, PositionTrust::Good) }.allows(&Order::Promote);
+    assert_eq!(promote(None), Err(Refusal::NoShadow));
+    let fresh = ShadowTally { in_row: READY_AFTER - 1, ..ShadowTally::default() };
+    assert_eq!(promote(Some(fresh)), Err(Refusal::ShadowNotReady { in_row: READY_AFTER - 1 }));
+    assert_eq!(promote(Some(ShadowTally { in_row: READY_AFTER, ..fresh })), Ok(()));
 }

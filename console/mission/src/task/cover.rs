@@ -107,6 +107,11 @@ impl Cover {
         self.lanes.as_ref().map(|lanes| lanes.follower.remaining())
     }
 
+    /// Progress along the plan.
+    pub(crate) fn lanes(&self) -> Option<&PathFollower> {
+        self.lanes.as_ref().map(|lanes| &lanes.follower)
+    }
+
     /// What the stretch under the robot is for.
     pub(crate) fn leg(&self) -> Option<LegTag> {
         let lanes = self.lanes.as_ref()?;

@@ -46,7 +46,9 @@ impl RecordedTick {
     /// The planners that were opened in this tick.
     pub fn opened_planners(&self) -> impl Iterator<Item = &PlannerInfo> {
         self.events().filter_map(|event| match event {
-            EventKind::PlannerChosen { info, .. } | EventKind::PlannerPrepared { info, .. } => Some(&**info),
+            EventKind::PlannerChosen { info, .. }
+            | EventKind::PlannerPrepared { info, .. }
+            | EventKind::ShadowBegan { info, .. } => Some(&**info),
             _ => None,
         })
     }
@@ -87,6 +89,7 @@ impl RecordedTick {
                     | EventKind::Scalars { .. }
                     | EventKind::PlannerLogged { .. }
                     | EventKind::PlannerLate { .. }
+                    | EventKind::Shadowed { .. }
             );
             is_said || event.kind.closes().is_some()
         };

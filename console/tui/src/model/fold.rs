@@ -4,6 +4,7 @@ mod figures;
 mod line;
 mod planner;
 mod position;
+mod shadow;
 mod tether;
 
 use super::{About, Cause, Change, Progress, Raster, Run, Withdrawn};
@@ -31,6 +32,7 @@ impl Run {
                     self.clock.started_s = Some(event.t_s);
                 }
                 change.answered = Some(order.clone());
+                self.shadowed(event, &mut change);
             }
             EventKind::OrderRefused { order, why } => {
                 change.answered = Some(order.clone());
@@ -58,6 +60,12 @@ impl Run {
             | EventKind::PlannerFailed { .. }
             | EventKind::PlannerLate { .. }
             | EventKind::PlannerRejected { .. } => self.planned(event, &mut change),
+            EventKind::ShadowBegan { .. }
+            | EventKind::Shadowed { .. }
+            | EventKind::ShadowMissed { .. }
+            | EventKind::PromotionRefused { .. }
+            | EventKind::Promoted { .. }
+            | EventKind::ShadowEnded { .. } => self.shadowed(event, &mut change),
             EventKind::Covered { runs } => {
                 if let Some(coverage) = &mut self.coverage {
                     coverage.apply(runs);
@@ -68,26 +76,7 @@ impl Run {
                     coverage.change(changes);
                 }
             }
-            EventKind::Progressed {
-                done,
-                along_m,
-                cross_track_m,
-                target,
-                covered_reachable,
-                covered_whole,
-                ..
-            } => {
-                self.scanned_history.add(event.t_s, 100.0 * covered_reachable);
-                self.progress = Some(Progress {
-                    t_s: event.t_s,
-                    done: *done,
-                    along_m: *along_m,
-                    cross_track_m: *cross_track_m,
-                    target: *target,
-                    covered_reachable: *covered_reachable,
-                    covered_whole: *covered_whole,
-                });
-            }
+            EventKind::Progressed { .. } => self.progress(event),
             EventKind::Tethered { .. }
             | EventKind::TetherAlarmRaised { .. }
             | EventKind::TetherAlarmCleared { .. }
@@ -114,6 +103,31 @@ impl Run {
             self.alarms.note(&cause, number, place);
         }
         change
+    }
+
+    fn progress(&mut self, event: &Event) {
+        let EventKind::Progressed {
+            done,
+            along_m,
+            cross_track_m,
+            target,
+            covered_reachable,
+            covered_whole,
+            ..
+        } = &event.kind
+        else {
+            return;
+        };
+        self.scanned_history.add(event.t_s, 100.0 * covered_reachable);
+        self.progress = Some(Progress {
+            t_s: event.t_s,
+            done: *done,
+            along_m: *along_m,
+            cross_track_m: *cross_track_m,
+            target: *target,
+            covered_reachable: *covered_reachable,
+            covered_whole: *covered_whole,
+        });
     }
 
     fn update_clock(&mut self, event: &Event) {

@@ -1,6 +1,6 @@
 //! A run as its events tell it: the same fold serves a run that is flown now and one that is replayed.
 
-use super::{Alarms, History, Log, Planning, Position, Raster, Tether, Trail, log::What};
+use super::{Alarms, History, Log, Planning, Position, Raster, Shadow, Tether, Trail, log::What};
 use mission::{FoldedStanding, MissionConfig, Phase, PlannerInfo, TaskConfig};
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
@@ -34,6 +34,9 @@ pub struct Run {
     pub tether: Option<Tether>,
     /// The planner and what it last did.
     pub planning: Planning,
+    /// The planner in shadow; `None` without one.
+    #[serde(default)]
+    pub shadow: Option<Shadow>,
     /// What is wrong.
     pub alarms: Alarms,
     /// What happened.

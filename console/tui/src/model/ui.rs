@@ -321,6 +321,8 @@ pub enum Purpose {
     Compare,
     /// To forecast how the mission would go on.
     WhatIf,
+    /// To fly in shadow.
+    Shadow,
 }
 
 /// What a confirm line asks for.
@@ -336,6 +338,8 @@ pub enum Ask {
     Abort,
     /// Let another planner drive.
     Swap(PlannerChoice),
+    /// Let the planner in shadow take over.
+    Promote,
 }
 
 impl Ask {
@@ -347,6 +351,7 @@ impl Ask {
             Self::FlyUncertified => Order::FlyUncertified,
             Self::Abort => Order::Abort,
             Self::Swap(choice) => Order::ChoosePlanner(choice.clone()),
+            Self::Promote => Order::Promote,
         }
     }
 }

@@ -73,6 +73,11 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::ChoosePlanner => {
             open(model, Overlay::Planners { purpose: Purpose::Drive, selected: driving(model) })
         }
+        ActionId::Shadow => {
+            open(model, Overlay::Planners { purpose: Purpose::Shadow, selected: driving(model) })
+        }
+        ActionId::Promote => ask(model, Ask::Promote),
+        ActionId::DropShadow => send(model, Order::DropShadow),
         ActionId::Compare => {
             open(model, Overlay::Planners { purpose: Purpose::Compare, selected: driving(model) })
         }

@@ -131,7 +131,11 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
     match first {
         Value::Speed(speed) => return set_speed(model, speed),
         Value::Planner(planner) => {
-            let purpose = if action.id == ActionId::Compare { Purpose::Compare } else { Purpose::Drive };
+            let purpose = match action.id {
+                ActionId::Compare => Purpose::Compare,
+                ActionId::Shadow => Purpose::Shadow,
+                _ => Purpose::Drive,
+            };
             return overlay::choose(model, purpose, planner);
         }
         Value::Parameter { key, value } => return give(model, Order::SetParameter { key, value }),

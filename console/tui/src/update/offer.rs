@@ -3,7 +3,7 @@
 use super::go::named_run;
 use super::look_only::{LOOK_ONLY, allowed};
 use super::message::Effect;
-use super::{preset, stations, typing};
+use super::{preset, shadow, stations, typing};
 use crate::actions::ActionId;
 use crate::model::{Alarm, Model, Overlay, Pane, Screen, ui::MAX_ZOOM};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
@@ -25,6 +25,9 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Step | ActionId::StepLane | ActionId::StepEvent => accepted(model, &Order::Step),
         ActionId::Abort => abort(model),
         ActionId::ChoosePlanner => swap(model),
+        ActionId::Shadow => shadow::can_begin(model),
+        ActionId::Promote => accepted(model, &Order::Promote),
+        ActionId::DropShadow => accepted(model, &Order::DropShadow),
         ActionId::Accept => {
             let opens = match model.ui.screen {
                 Screen::Home | Screen::Alarms | Screen::Events => true,
@@ -300,10 +303,12 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::StepNeedsHold
         | Refusal::SwapNeedsHold => Some("space: HOLD"),
         Refusal::Ended(_) => Some("<home>: open another one"),
+        Refusal::NoShadow => Some(":shadow NAME flies one"),
         // These say themselves what would be right, as far as there is anything.
         Refusal::NotLive { .. }
         | Refusal::PositionLost { .. }
         | Refusal::RangesInconsistent
-        | Refusal::NoPlanRefused => None,
+        | Refusal::NoPlanRefused
+        | Refusal::ShadowNotReady { .. } => None,
     }
 }

@@ -7,7 +7,7 @@ use super::offer::{accepted, offered, refuse};
 use super::preflight;
 use super::preset::take as take_preset;
 use super::send::send;
-use super::{palette, typing, what_if};
+use super::{palette, shadow, typing, what_if};
 use crate::actions::ActionId;
 use crate::guide::guide;
 use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
@@ -96,6 +96,7 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
         Ask::FlyUncertified => ActionId::FlyUncertified,
         Ask::Abort => ActionId::Abort,
         Ask::Swap(_) => ActionId::ChoosePlanner,
+        Ask::Promote => ActionId::Promote,
     };
     match offered(model, id) {
         Ok(()) => {
@@ -131,6 +132,7 @@ pub(super) fn choose(model: &mut Model, purpose: Purpose, planner: PlannerInfo) 
         Purpose::Drive => ask(model, Ask::Swap(choice)),
         Purpose::Compare => compare(model, choice),
         Purpose::WhatIf => what_if::add(model, choice),
+        Purpose::Shadow => shadow::begin(model, choice),
     }
 }
 

@@ -119,6 +119,15 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             };
             vec![question, "No motion yet.".into()]
         }
+        Overlay::Confirm(Ask::Promote) => {
+            let shadow = model.live.run.shadow.as_ref();
+            let next = text::fit(shadow.map_or("-", |shadow| &shadow.choice.id), 18);
+            let driving = model.live.run.planner_id().unwrap_or("-");
+            vec![
+                format!("Promote {next} from shadow? Enter: promote, Esc: cancel."),
+                format!("It takes over from {driving} without a hold."),
+            ]
+        }
         Overlay::Stepping => {
             let tick_s = model.live.run.about.as_ref().map_or(0.0, |run| run.mission.tick_s);
             vec![

@@ -5,6 +5,7 @@ mod pen;
 mod plates;
 mod readout;
 mod shade;
+mod shadow;
 mod shapes;
 
 pub(super) use plates::{Key as PlateKey, PlateDrawing};
@@ -102,6 +103,7 @@ fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
         pen.drawings(ctx);
         pen.solid(ctx);
         pen.tether(ctx);
+        pen.shadow(ctx);
         pen.robot(ctx);
         ctx.layer();
         pen.labels(ctx);

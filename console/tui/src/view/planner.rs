@@ -1,7 +1,7 @@
 //! The planner pane: the active planner, its target, and the last command.
 
 use super::look::{Look, fill, marked, ranked};
-use super::text;
+use super::{shadow, text};
 use crate::model::{Pane, Run};
 use crate::theme::Role;
 use planner_api::{Drive, Status};
@@ -45,6 +45,7 @@ fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value
             words.map(|(words, rank)| (rank, if rank == 2 { "fault" } else { "" }, (Role::Crit, words))),
         );
     }
+    rows.extend(shadow::rows(run, room));
     rows.extend([
         (0, "speed", pose(motion(run, room))),
         (1, "command", command(look, room)),

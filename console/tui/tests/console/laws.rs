@@ -270,7 +270,14 @@ proptest! {
                 let Effect::Order(order) = &effect else { continue };
                 // A planner that is opened or that plans before the start moves nothing.
                 let waits = screen.model.live.waits() && matches!(order, Order::Plan | Order::ChoosePlanner(_));
-                let is_harmless = matches!(order, Order::Hold | Order::SetParameter { .. } | Order::UseStation { .. });
+                let is_harmless = matches!(
+                    order,
+                    Order::Hold
+                        | Order::SetParameter { .. }
+                        | Order::UseStation { .. }
+                        | Order::Shadow(_)
+                        | Order::DropShadow
+                );
                 let moves = !waits && !is_harmless;
                 prop_assert!(!moves, "{mouse:?}: {effect:?}");
             }

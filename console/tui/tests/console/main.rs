@@ -14,4 +14,5 @@ mod presets;
 mod reference;
 mod screens;
 mod scripts;
+mod shadow;
 mod stopping;

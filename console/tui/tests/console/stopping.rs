@@ -51,6 +51,7 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Confirm(Ask::FlyUncertified),
         Overlay::Confirm(Ask::Abort),
         Overlay::Confirm(Ask::Swap(choice("apf"))),
+        Overlay::Confirm(Ask::Promote),
         Overlay::Stepping,
         Overlay::Quit,
         commands(false),
@@ -70,7 +71,9 @@ fn overlays() -> Vec<Overlay> {
     for overlay in &all {
         match overlay {
             Overlay::None
-            | Overlay::Confirm(Ask::Start | Ask::Resume | Ask::FlyUncertified | Ask::Abort | Ask::Swap(_))
+            | Overlay::Confirm(
+                Ask::Start | Ask::Resume | Ask::FlyUncertified | Ask::Abort | Ask::Swap(_) | Ask::Promote,
+            )
             | Overlay::Stepping
             | Overlay::Quit
             | Overlay::Commands(_)

@@ -96,10 +96,13 @@ pub(in crate::model) fn slim(kind: &EventKind) -> EventKind {
                 cuts: Vec::new(),
             }
         }
+        EventKind::Shadowed { of } => EventKind::Shadowed { of: Box::new(slim(of)) },
         other => {
             let mut kind = other.clone();
             match &mut kind {
-                EventKind::PlannerChosen { info, .. } | EventKind::PlannerPrepared { info, .. } => {
+                EventKind::PlannerChosen { info, .. }
+                | EventKind::PlannerPrepared { info, .. }
+                | EventKind::ShadowBegan { info, .. } => {
                     info.parameters.clear();
                 }
                 EventKind::PlannerFailed { fault, .. } => fault.partial.clear(),

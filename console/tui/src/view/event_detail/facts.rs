@@ -30,6 +30,11 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::PlannerRejected { .. } => "planner rejected",
         EventKind::ParametersChanged { .. } => "parameters changed",
         EventKind::Planned { .. } => "plan",
+        EventKind::ShadowBegan { .. } | EventKind::Shadowed { .. } => "planner in shadow",
+        EventKind::ShadowMissed { .. } => "planner in shadow late",
+        EventKind::PromotionRefused { .. } => "promotion refused",
+        EventKind::Promoted { .. } => "planner promoted",
+        EventKind::ShadowEnded { .. } => "shadow ended",
         EventKind::PlannerLogged { .. } => "message of the planner",
         EventKind::PlannerLate { .. } => "planner late",
         EventKind::PlannerFailed { .. } => "planner failed",
@@ -96,11 +101,21 @@ fn of_planner(kind: &EventKind) -> Vec<Field> {
             let from = from.iter().map(|from| ("before", from.clone()));
             planner(choice, info).into_iter().chain(from).collect()
         }
-        EventKind::PlannerPrepared { choice, info, .. } => planner(choice, info),
+        EventKind::PlannerPrepared { choice, info, .. } | EventKind::ShadowBegan { choice, info, .. } => {
+            planner(choice, info)
+        }
+        EventKind::Shadowed { of } => of_planner(of),
+        EventKind::Promoted { planner, tally } => vec![
+            ("planner", planner.clone()),
+            ("answered", format!("{} steps", tally.answered)),
+            ("missed", format!("{} ticks", tally.missed)),
+        ],
         EventKind::ParametersChanged { choice, .. } => {
             vec![("planner", choice.id.clone()), ("parameters", parameters(choice))]
         }
-        EventKind::PlannerRejected { planner, why } => {
+        EventKind::PlannerRejected { planner, why }
+        | EventKind::ShadowEnded { planner, why }
+        | EventKind::PromotionRefused { planner, why } => {
             vec![("planner", planner.clone()), ("reason", why.clone())]
         }
         EventKind::Planned { planner, reason, path, length_m, complete, return_path, .. } => {

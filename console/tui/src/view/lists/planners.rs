@@ -10,6 +10,7 @@ pub(super) fn list(look: &Look, purpose: Purpose, selected: usize, columns: u16)
     let (title, enter) = match purpose {
         Purpose::Drive => ("Planners", " Enter: change planner (asks first); coverage is kept."),
         Purpose::Compare => ("Compare with", " Enter: have it plan beside the active planner."),
+        Purpose::Shadow => ("Fly in shadow", " Enter: fly it in shadow; it moves nothing."),
         Purpose::WhatIf => ("Forecast with", " Enter: add it to the forecasts."),
     };
     let driving = look.run.planner_id();

@@ -66,6 +66,7 @@ fn marks(look: &Look) -> Vec<Entry> {
     let entries = [
         (layers.shows(MapLayer::Trail), Role::Trail, line("⠤⠤", ".."), "trail"),
         (layers.shows(MapLayer::Plan), Role::Plan, line("⠄⠠", ",,"), "plan"),
+        (look.run.shadow.is_some(), Role::Ghost, line("⠤⠤", ";;"), "shadow"),
         (look.run.tether.is_some(), Role::Tether, line("⠤⠤", "~~"), "tether"),
         (true, Role::Obstacle, "# ", "obstacle"),
         (found, Role::Found, "? ", "found"),

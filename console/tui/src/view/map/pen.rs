@@ -31,13 +31,13 @@ pub(super) struct Pen<'a> {
 
 impl Pen<'_> {
     /// Without braille each kind of line has a character of its own, on a layer of its own.
-    fn take_up(&self, ctx: &mut Context<'_>, plain: char) {
+    pub(super) fn take_up(&self, ctx: &mut Context<'_>, plain: char) {
         if !self.look.caps.glyphs.has_dots() {
             ctx.marker(Marker::Custom(plain));
         }
     }
 
-    fn stroke(&self, ctx: &mut Context<'_>, points: &[Point], role: Role, dotted: bool) {
+    pub(super) fn stroke(&self, ctx: &mut Context<'_>, points: &[Point], role: Role, dotted: bool) {
         let color = self.look.theme.color(role);
         ctx.draw(&Stroke { points, window: self.window, dotted, color });
     }
@@ -209,7 +209,7 @@ impl Pen<'_> {
 }
 
 /// The first points of a path up to some length.
-fn within(path: &[Point], length_m: f64) -> &[Point] {
+pub(super) fn within(path: &[Point], length_m: f64) -> &[Point] {
     let mut walked_m = 0.0;
     let steps = path.windows(2).take_while(|pair| {
         walked_m += (pair[1] - pair[0]).norm();
@@ -220,7 +220,7 @@ fn within(path: &[Point], length_m: f64) -> &[Point] {
 }
 
 /// Index of the point of a path that is nearest to a place; 0 for an empty path.
-fn nearest(path: &[Point], place: Point) -> usize {
+pub(super) fn nearest(path: &[Point], place: Point) -> usize {
     let distance = |point: &Point| (point - place).norm_squared();
     let best = path.iter().enumerate().min_by(|one, other| distance(one.1).total_cmp(&distance(other.1)));
     best.map_or(0, |(index, _)| index)

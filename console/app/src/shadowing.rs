@@ -1,0 +1,93 @@
+//! A planner in shadow of a headless run, and the two that take over from each other.
+
+use crate::cli::ShadowArgs;
+use flight::{planners, scenarios};
+use mission::{Event, EventKind, Order, PlannerChoice, PlannerInfo, event::ShadowTally};
+use scenario::{Scenario, Settings};
+use std::path::Path;
+
+/// Gives the orders about a planner in shadow.
+pub(crate) struct Shadowing {
+    /// The planner in shadow, and the one that drives.
+    choices: [PlannerChoice; 2],
+    every_s: Option<f64>,
+    tally: ShadowTally,
+    /// Mission time of the next promotion, seconds.
+    due_s: f64,
+}
+
+impl Shadowing {
+    /// What the command line asks for, of a scenario that was read from a file.
+    ///
+    /// # Errors
+    /// There is no such planner, or it does not take its parameters.
+    pub(crate) fn read(
+        args: &ShadowArgs,
+        file: &Path,
+        scenario: &Scenario,
+        known: &[PlannerInfo],
+    ) -> anyhow::Result<Option<Self>> {
+        let Some(planner) = &args.shadow else { return Ok(None) };
+        let settings = Settings { planner: Some(planner.clone()), set: args.shadow_set.clone(), seed: None };
+        let shadowed = scenarios::read(file, &settings)?;
+        planners::check_choices(&shadowed, known)?;
+        let choices = [shadowed.mission.planner, scenario.mission.planner.clone()];
+        Ok(Some(Self::new(choices, args.promote_every)))
+    }
+
+    fn new(choices: [PlannerChoice; 2], every_s: Option<f64>) -> Self {
+        Self { choices, every_s, tally: ShadowTally::default(), due_s: every_s.unwrap_or_default() }
+    }
+
+    /// The order with which the mission begins.
+    pub(crate) fn begin(&self) -> Order {
+        Order::Shadow(self.choices[0].clone())
+    }
+
+    /// The order for the next tick, after the events of a tick.
+    pub(crate) fn next(&mut self, events: &[Event]) -> Option<Order> {
+        let every_s = self.every_s?;
+        events.iter().for_each(|event| self.tally.apply(&event.kind));
+        if events.iter().any(|event| matches!(event.kind, EventKind::Promoted { .. })) {
+            self.tally = ShadowTally::default();
+            self.choices.reverse();
+            return Some(self.begin());
+        }
+        let is_due = self.tally.is_ready() && events.first()?.t_s >= self.due_s;
+        is_due.then(|| {
+            self.due_s += every_s;
+            Order::Promote
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mission::AskId;
+    use planner_api::{Command, Status};
+
+    fn event(tick: u32, kind: EventKind) -> Event {
+        Event { tick: tick.into(), t_s: f64::from(tick) * 0.1, kind }
+    }
+
+    fn answered(tick: u32) -> Event {
+        let ask = Some(AskId::from((mission::WorkerId(2), tick)));
+        let command = Command::still(Status::Waiting);
+        event(tick, EventKind::Shadowed { of: Box::new(EventKind::Commanded { ask, command }) })
+    }
+
+    #[test]
+    fn two_planners_take_over_from_each_other_when_they_are_ready_and_it_is_time() {
+        let choice = |id: &str| PlannerChoice { id: id.into(), ..PlannerChoice::default() };
+        let mut shadowing = Shadowing::new([choice("apf"), choice("rpf")], Some(2.0));
+        assert_eq!(shadowing.begin(), Order::Shadow(choice("apf")));
+        let orders: Vec<u32> = (0..=20).filter(|tick| shadowing.next(&[answered(*tick)]).is_some()).collect();
+        assert_eq!(orders, [20]);
+        let promoted = EventKind::Promoted { planner: "apf".into(), tally: ShadowTally::default() };
+        assert_eq!(shadowing.next(&[event(21, promoted)]), Some(Order::Shadow(choice("rpf"))));
+        let orders: Vec<u32> =
+            (22..=45).filter(|tick| shadowing.next(&[answered(*tick)]).is_some()).collect();
+        assert_eq!(orders, [40]);
+    }
+}

@@ -1,0 +1,41 @@
+//! Planners in shadow: which one flies there, and that it takes over.
+
+use super::message::Effect;
+use super::news;
+use super::offer::{accepted, demand};
+use super::overlay::open;
+use super::send::send;
+use crate::model::{Cause, Model, Overlay};
+use mission::{Order, PlannerChoice, PlannerInfo, Severity};
+
+/// Whether a planner can begin to fly in shadow.
+pub(super) fn can_begin(model: &Model) -> Result<(), String> {
+    accepted(model, &Order::Shadow(PlannerChoice::default()))?;
+    demand(!model.console.planners.is_empty(), "no planners found yet")
+}
+
+/// Flies a planner in shadow; the one that drives, perhaps from another build, with the parameters that it has.
+pub(super) fn begin(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
+    open(model, Overlay::None);
+    let driving = model.live.run.planning.choice.clone().filter(|driving| driving.id == choice.id);
+    send(model, Order::Shadow(driving.unwrap_or(choice)))
+}
+
+/// Tells the operator of a mission under way which planners were built anew.
+pub(super) fn tell_rebuilt(model: &mut Model, found: &[PlannerInfo]) {
+    let is_rebuilt = |now: &&PlannerInfo| {
+        model.console.planners.iter().any(|before| before.id == now.id && before.sha256 != now.sha256)
+    };
+    let ids: Vec<&str> = found.iter().filter(is_rebuilt).map(|info| info.id.as_str()).collect();
+    let text = match ids[..] {
+        [] => return,
+        [id] => format!("planner {id} was rebuilt: :shadow {id} flies the new build beside the old"),
+        _ => {
+            let ids = ids.join(", ");
+            format!("planners {ids} were rebuilt: :shadow NAME flies a new build beside the old")
+        }
+    };
+    if can_begin(model).is_ok() {
+        news(model, &Cause::Console, Severity::Info, text);
+    }
+}

@@ -1,0 +1,32 @@
+//! The planner in shadow on the map: its plan, and a ghost of the robot that its command would lead.
+
+use super::pen::{Pen, within};
+use super::shapes::ellipse;
+use crate::model::ui::MapLayer;
+use crate::theme::Role;
+use ratatui::widgets::canvas::Context;
+use world::Point;
+
+/// Length of its plan that is drawn, metres.
+const AHEAD_M: f64 = 4.0;
+
+impl Pen<'_> {
+    /// Draws plan and ghost.
+    pub(super) fn shadow(&self, ctx: &mut Context<'_>) {
+        let run = self.look.run;
+        let Some(shadow) = run.shadow.as_ref().filter(|_| run.is_running()) else { return };
+        self.take_up(ctx, ';');
+        if self.look.model.ui.layers.shows(MapLayer::Plan) {
+            let robot = run.position.pose.as_ref().map(|pose| pose.position);
+            let from = robot.map_or(0, |robot| super::pen::nearest(&shadow.path, robot));
+            let ahead: &[Point] = shadow.path.get(from..).unwrap_or_default();
+            self.stroke(ctx, within(ahead, AHEAD_M), Role::Ghost, true);
+        }
+        let Some(ghost) = run.ghost() else { return };
+        self.stroke(ctx, &ghost, Role::Ghost, false);
+        let radius_m = run.about.as_ref().map_or(0.0, |about| about.mission.limits.radius_m);
+        if let Some(end) = ghost.last().filter(|_| radius_m > self.window.column_m) {
+            self.stroke(ctx, &ellipse(*end, (radius_m, radius_m), 0.0, 48), Role::Ghost, true);
+        }
+    }
+}

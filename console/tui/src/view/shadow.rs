@@ -1,0 +1,52 @@
+//! The planner in shadow, in the planner pane: whether it may take over, and how it differs from the one that drives.
+
+use super::text;
+use crate::model::{Run, Shadow, shadow::GHOST_S};
+use crate::theme::Role;
+use mission::event::READY_AFTER;
+
+/// Rows of the planner pane, each with its rank; none without a planner in shadow.
+pub(super) fn rows(run: &Run, room: usize) -> Vec<(u8, &'static str, (Role, String))> {
+    let Some(shadow) = &run.shadow else { return Vec::new() };
+    let mut rows = vec![(2, "shadow", (Role::Ghost, text::wording(state(shadow), room)))];
+    if let Some(by) = run.shadow_differences() {
+        let speed = signed(by.speed_m_per_s, 2);
+        let turn = signed(by.turn_rad_per_s.to_degrees(), 0);
+        let (clearance, here) = (text::number(by.clearance_m, 2), text::number(by.here_m, 2));
+        let commands = [format!("{speed} m/s, turn {turn} °/s"), format!("{speed} m/s {turn} °/s")];
+        let clear = [
+            format!("{clearance} m in {GHOST_S} s, here {here} m"),
+            format!("{clearance} m, here {here} m"),
+            format!("{clearance} m"),
+        ];
+        rows.push((3, "differs", (Role::Text, text::wording(commands, room))));
+        rows.push((3, "clear", (Role::Text, text::wording(clear, room))));
+    }
+    rows
+}
+
+/// A difference with its sign.
+fn signed(value: f64, decimals: usize) -> String {
+    let sign = if value < 0.0 { "-" } else { "+" };
+    format!("{sign}{}", text::number(value.abs(), decimals))
+}
+
+/// Whether it may take over, and what it missed, in fewer and fewer words.
+fn state(shadow: &Shadow) -> [String; 4] {
+    let (id, tally) = (&shadow.choice.id, &shadow.tally);
+    let state = match &shadow.info {
+        None => "opening".to_owned(),
+        Some(_) if shadow.is_promoted => "taking over".to_owned(),
+        Some(_) if tally.is_ready() => "ready".to_owned(),
+        Some(_) if tally.answered == 0 => "planning".to_owned(),
+        Some(_) => format!("{} of {READY_AFTER} steps", tally.in_row),
+    };
+    let version = shadow.info.as_ref().map_or_else(String::new, |info| format!(" {}", info.version));
+    let missed = tally.missed;
+    [
+        format!("{id}{version}, {state}, {missed} missed of {}", tally.answered + missed),
+        format!("{id}, {state}, {missed} missed"),
+        format!("{state}, {missed} missed"),
+        state,
+    ]
+}
