@@ -31,6 +31,8 @@ mod report_file;
 mod reproduce;
 #[path = "acceptance/rescan.rs"]
 mod rescan;
+#[path = "acceptance/reviewing.rs"]
+mod reviewing;
 #[path = "acceptance/scenarios.rs"]
 mod scenarios;
 #[path = "acceptance/script.rs"]

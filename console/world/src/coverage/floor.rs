@@ -3,6 +3,7 @@
 use super::tool::Tool;
 use geometry::{Point, Pose, Vector};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// What a cell of the floor is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -47,7 +48,8 @@ pub struct Floor {
     pub width: usize,
     /// Cells from south to north.
     pub height: usize,
-    pub(super) cells: Vec<Cell>,
+    /// Shared by copies: the kinds of cells rarely change.
+    pub(super) cells: Arc<Vec<Cell>>,
 }
 
 /// Some cells of one row: index of the first and how many.
@@ -186,7 +188,7 @@ impl Floor {
         for KindRun(kind, first, count) in changes {
             let end = (*first as usize).saturating_add(*count as usize).min(self.cells.len());
             let first = (*first as usize).min(end);
-            self.cells[first..end].fill(*kind);
+            Arc::make_mut(&mut self.cells)[first..end].fill(*kind);
         }
     }
 
@@ -340,6 +342,6 @@ impl TryFrom<FloorRuns> for Floor {
             return Err(format!("a floor of {width} by {height} cells with {in_runs} in its runs"));
         }
         let cells = runs.iter().flat_map(|(cell, length)| std::iter::repeat_n(*cell, *length as usize));
-        Ok(Self { origin, cell_m, width, height, cells: cells.collect() })
+        Ok(Self { origin, cell_m, width, height, cells: Arc::new(cells.collect()) })
     }
 }

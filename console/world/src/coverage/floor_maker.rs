@@ -6,7 +6,7 @@ use crate::{
     tank::{World, ZoneKind},
 };
 use geometry::{Point, Shape, Vector};
-use std::collections::VecDeque;
+use std::{collections::VecDeque, sync::Arc};
 
 /// Difference of distances up to which the wall counts as nearer than an obstacle, metres.
 const ROUNDING_M: f64 = 1e-6;
@@ -57,7 +57,7 @@ impl FloorMaker {
         let (low, high) = world.boundary.bounds();
         let count = |span_m: f64| (span_m / cell_m).ceil().max(1.0) as usize;
         let (width, height) = (count(high.x - low.x), count(high.y - low.y));
-        let cells = vec![Cell::Outside; width * height];
+        let cells = Arc::new(vec![Cell::Outside; width * height]);
         Self::of(&Floor { origin: low, cell_m, width, height, cells }, world, room_m, swath_m, start)
     }
 
@@ -114,7 +114,7 @@ impl FloorMaker {
     /// assert!(!maker.update(&tank, &map, &[shape]).is_empty());
     /// ```
     pub fn update(&mut self, world: &World, map: &ObstacleMap, changed: &[Shape]) -> Vec<KindRun> {
-        let before = self.floor.cells.clone();
+        let before = Arc::clone(&self.floor.cells);
         // Wide enough for the former outline of a moved obstacle too: it moved only slightly.
         let reach_m = self.room_m + self.swath_m;
         for shape in changed {
@@ -128,7 +128,7 @@ impl FloorMaker {
     }
 
     fn classify(&mut self, world: &World) {
-        for (cell, clearance) in self.floor.cells.iter_mut().zip(&self.clearance_m) {
+        for (cell, clearance) in Arc::make_mut(&mut self.floor.cells).iter_mut().zip(&self.clearance_m) {
             *cell = if *clearance >= 0.0 { Cell::Beside } else { Cell::Outside };
         }
         let room_m = self.room_m as f32;
@@ -139,7 +139,8 @@ impl FloorMaker {
         self.reach(&free, Cell::Unreachable);
         for index in 0..self.floor.len() {
             if self.floor.cells[index] == Cell::Beside {
-                self.floor.cells[index] = self.why_not(index, world);
+                let why = self.why_not(index, world);
+                Arc::make_mut(&mut self.floor.cells)[index] = why;
             }
         }
     }
@@ -181,14 +182,14 @@ impl FloorMaker {
         let edge: Vec<usize> = cells.iter().copied().filter(at_edge).collect();
         for index in cells {
             if self.floor.cells[index] == Cell::Beside {
-                self.floor.cells[index] = kind;
+                Arc::make_mut(&mut self.floor.cells)[index] = kind;
             }
         }
         for index in edge {
             let center = self.floor.center(index);
             for near in self.floor.cells_near(center, center, self.swath_m / 2.0) {
                 if self.floor.cells[near] == Cell::Beside {
-                    self.floor.cells[near] = kind;
+                    Arc::make_mut(&mut self.floor.cells)[near] = kind;
                 }
             }
         }
