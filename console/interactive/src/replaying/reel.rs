@@ -11,7 +11,7 @@ use std::{
 };
 use tui::model::{
     Run,
-    replay::{Mark, Marker, Track},
+    replay::{Mark, MarkKind, Marker, Track},
 };
 
 /// Copies of a run that are kept at most.
@@ -144,7 +144,10 @@ impl Loading {
         if begins {
             self.end_tick(reel);
         }
-        if let Some(mark) = self.marker.fold(&mut self.run, event).filter(|_| self.n_marks < MOST_MARKS) {
+        let Some(mark) = self.marker.fold(&mut self.run, event) else { return };
+        // A planner that talks leaves room for what matters.
+        let most = if mark.kind == MarkKind::Event { MOST_MARKS / 2 } else { MOST_MARKS };
+        if self.n_marks < most {
             self.n_marks += 1;
             self.marks.push(mark);
         }

@@ -64,7 +64,7 @@ fn summary(share: f64, path_m: f64) -> Box<Summary> {
 }
 
 /// A run that is played back, with another one beside it.
-fn replaying(is_compared: bool) -> Screen {
+pub(crate) fn replaying(is_compared: bool) -> Screen {
     let mut screen = Screen::idle();
     screen.model = Model::replaying(RunId(1), A.into(), is_compared.then(|| B.into()));
     screen.send(Msg::Found(Box::new(found())));
