@@ -302,7 +302,7 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::GoMission, "mission", "Screen 3: the mission", &[Key::Char('3')], &[Context::Screen]),
     action(ActionId::GoAlarms, "alarms", "Screen 4: what is wrong, what to do", &[Key::Char('4')], &[Context::Screen]),
     action(ActionId::GoEvents, "events", "Screen 5: what happened", &[Key::Char('5')], &[Context::Screen]),
-    action(ActionId::GoReview, "review", "Screen 6: past runs: replay, compare", &[Key::Char('6')], &[Context::Screen]).also(&["runs"]),
+    action(ActionId::GoReview, "review", "Screen 6: past runs: replay, compare", &[Key::Char('6')], &[Context::Screen]),
     action(ActionId::GoResult, "result", "Screen 7: what was achieved", &[Key::Char('7')], &[Context::Screen]),
     action(ActionId::GoPlugins, "plugins", "Screen 8: plugins and their planners", &[Key::Char('8')], &[Context::Screen]),
     action(ActionId::Reload, "reload", "Look at the plugins again", &[Key::Char('r')], &[Context::Plugins]).label("reload"),
