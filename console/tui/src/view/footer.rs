@@ -20,11 +20,7 @@ use ratatui::text::Line;
 const DISPENSABLE: [ActionId; 19] = [
     ActionId::Difference,
     ActionId::Align,
-    ActionId::View,
     ActionId::Jump(Jump::Minute),
-    ActionId::Verify,
-    ActionId::Report,
-    ActionId::Rescan,
     ActionId::Complete,
     ActionId::AcknowledgeAll,
     ActionId::NextPane,
@@ -36,6 +32,10 @@ const DISPENSABLE: [ActionId; 19] = [
     ActionId::Acknowledge,
     ActionId::Commands,
     ActionId::Step,
+    ActionId::View,
+    ActionId::Report,
+    ActionId::Verify,
+    ActionId::Rescan,
     ActionId::Help,
 ];
 

@@ -173,7 +173,9 @@ fn about(look: &Look, frame: &mut Frame, area: Rect) {
         lines.extend(wrapped(look, Role::Text, &words, columns));
     }
     if replay.is_none() && run.bookmarks > 0 {
-        lines.extend(wrapped(look, Role::Dim, &format!("● {} bookmarks", run.bookmarks), columns));
+        let plural = if run.bookmarks == 1 { "" } else { "s" };
+        let words = format!("● {} bookmark{plural}", run.bookmarks);
+        lines.extend(wrapped(look, Role::Dim, &words, columns));
     }
     fill(frame, area, block, lines);
 }

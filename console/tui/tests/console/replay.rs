@@ -4,6 +4,7 @@ use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
 use mission::{Event, Severity};
 use report::{Coverage, Fold, Summary, notes::Notes};
+use std::sync::OnceLock;
 use tui::actions::ACTIONS;
 use tui::model::home::Found;
 use tui::model::replay::{Mark, MarkKind, Reel, Side};
@@ -65,6 +66,11 @@ fn summary(share: f64, path_m: f64) -> Box<Summary> {
 
 /// A run that is played back, with another one beside it.
 pub(crate) fn replaying(is_compared: bool) -> Screen {
+    static MADE: [OnceLock<Screen>; 2] = [OnceLock::new(), OnceLock::new()];
+    MADE[usize::from(is_compared)].get_or_init(|| make_replaying(is_compared)).clone()
+}
+
+fn make_replaying(is_compared: bool) -> Screen {
     let mut screen = Screen::idle();
     screen.model = Model::replaying(RunId(1), A.into(), is_compared.then(|| B.into()));
     screen.send(Msg::Found(Box::new(found())));
