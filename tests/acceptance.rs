@@ -35,6 +35,8 @@ mod reproduce;
 mod rerun;
 #[path = "acceptance/rescan.rs"]
 mod rescan;
+#[path = "acceptance/reviewing.rs"]
+mod reviewing;
 #[path = "acceptance/scenarios.rs"]
 mod scenarios;
 #[path = "acceptance/script.rs"]

@@ -1,7 +1,7 @@
 //! The command line.
 
 use clap::{Args, Parser, Subcommand};
-use interactive::{By, Drill, Options};
+use interactive::{By, Drill, Options, Replay};
 use scenario::Settings;
 use std::path::PathBuf;
 
@@ -59,6 +59,8 @@ pub(crate) enum Command {
     Reproduce(ReproduceArgs),
     /// Optimize planner parameters on one set of layouts, and evaluate them on another.
     Tune(TuneArgs),
+    /// Play a past run back in the console; no order can be given.
+    Replay(ReplayArgs),
     /// List past runs.
     Runs {
         /// Print JSON.
@@ -270,6 +272,40 @@ pub(crate) struct ConsoleArgs {
     pub drill: Option<DrillArg>,
 }
 
+#[derive(Debug, Args)]
+pub(crate) struct ReplayArgs {
+    /// Run folder, its name in the logs folder, or `latest`.
+    pub run: PathBuf,
+    /// Another run to compare it with.
+    #[arg(long, value_name = "RUN")]
+    pub compare: Option<PathBuf>,
+    #[command(flatten)]
+    pub logs: LogsArg,
+    /// Speed at first: 0.25 to 64 times real time, or `max`.
+    #[arg(long, value_name = "FACTOR", value_parser = tui::Speed::parse)]
+    pub speed: Option<tui::Speed>,
+    /// Number of colours: none, 16, 256 or true (24 bit); default: that of config.toml, or what the terminal has.
+    #[arg(long, value_name = "NUMBER", visible_alias = "color", value_parser = interactive::config::colours)]
+    pub colour: Option<tui::Colours>,
+    /// Characters of the map and the charts; default: what the terminal's environment promises.
+    #[arg(long, value_name = "SET")]
+    pub glyphs: Option<GlyphSet>,
+    /// Run console commands from a file instead of the keyboard, without a terminal; exit code 1 if a line fails.
+    #[arg(long, value_name = "FILE", conflicts_with = "plain")]
+    pub script: Option<PathBuf>,
+    /// Print what changes as sentences, one a line, and read console commands from stdin: for screen readers and logs.
+    #[arg(long)]
+    pub plain: bool,
+}
+
+impl From<ReplayArgs> for Options {
+    fn from(args: ReplayArgs) -> Self {
+        let ReplayArgs { run, compare, logs, speed, colour, glyphs, script, plain } = args;
+        let console = ConsoleArgs { logs, speed, colour, glyphs, script, plain, ..ConsoleArgs::default() };
+        Self { replay: Some(Replay { run, with: compare }), ..console.into() }
+    }
+}
+
 /// Characters that the terminal's font has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum GlyphSet {
@@ -317,6 +353,7 @@ impl From<ConsoleArgs> for Options {
             glyphs: args.glyphs.map(Into::into),
             by,
             view: args.view,
+            replay: None,
             drill: args.drill.map(Into::into),
         }
     }

@@ -91,6 +91,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Check { files }) => planners::check(&files, &plugins),
         Some(Command::Reproduce(args)) => reproduce::reproduce(&args, &plugins),
         Some(Command::Tune(args)) => tune::tune(&args, &plugins),
+        Some(Command::Replay(args)) => interactive::open(&args.into(), &plugins),
         Some(Command::Runs { json, logs }) => past_runs::list(&logs, json),
         Some(Command::Verify { run, from_journal, logs }) => {
             past_runs::verify(&run, &logs, &plugins, from_journal)

@@ -12,6 +12,7 @@ use super::{
     jobs,
     line::Current,
     look::Disk,
+    replaying::Player,
 };
 use crate::{
     Drill,
@@ -33,12 +34,18 @@ use std::{
     },
     thread::{self, JoinHandle},
 };
-use tui::{Job, Msg, RunId, RunMsg, Source, Speed};
+use tui::{Job, Msg, RunId, RunMsg, Source, Speed, Transport};
 
 /// What the desk is asked for.
 pub(super) enum Request {
     /// Close the run that is open and open another one; it stays open if that cannot be.
     Open { id: RunId, source: Source, planner: Option<PlannerChoice>, speed: Speed },
+    /// Close the run that is open and play a past one back.
+    Replay { id: RunId, run: String },
+    /// Something for the replay that is open.
+    Transport(Transport),
+    /// Play back at another pace.
+    Pace(Speed),
     /// Look at what the start depends on.
     Check { needed_bytes: u64 },
     /// Have another planner plan the mission that is open.
@@ -100,6 +107,8 @@ pub(super) struct Desk {
     drill: Option<Drill>,
     current: Current,
     engine: Option<Engine>,
+    /// The past run that is played back; then there is no engine.
+    player: Option<Player>,
     /// The mission that is open.
     opened: Option<(RunId, Arc<Scenario>)>,
     comparing: Option<Comparing>,
@@ -132,6 +141,7 @@ impl Desk {
             drill,
             current,
             engine: None,
+            player: None,
             opened: None,
             comparing: None,
             forecasting: None,
@@ -177,6 +187,9 @@ impl Desk {
                     self.speed = speed;
                     self.replace(id, &source, planner)?;
                 }
+                Request::Replay { id, run } => self.replay(id, run)?,
+                Request::Transport(transport) => self.transport(&transport),
+                Request::Pace(speed) => self.pace(speed),
                 Request::Check { needed_bytes } => self.check(needed_bytes),
                 Request::Compare(choice) => self.compare(choice),
                 Request::StopComparing => self.comparing = None,
@@ -219,6 +232,31 @@ impl Desk {
         check_choices(&scenario, &self.tools.planners.get())?;
         let flight = Flight::prepare(&scenario, true);
         Ok((scenario, flight))
+    }
+
+    /// Closes the run that is open and plays a past one back.
+    ///
+    /// # Errors
+    /// The run that is open cannot be closed.
+    pub(super) fn replay(&mut self, id: RunId, run: String) -> anyhow::Result<()> {
+        self.close(false)?;
+        let Tools { logs, outbox, .. } = &self.tools;
+        let screen = RunOutbox { run: id, outbox: outbox.clone() };
+        match Player::begin(run, logs, screen.clone()) {
+            Ok(player) => self.player = Some(player),
+            Err(error) => drop(screen.send(RunMsg::OpenFailed(format!("{error:#}")))),
+        }
+        Ok(())
+    }
+
+    /// Hands something to the replay that is open.
+    pub(super) fn transport(&self, transport: &Transport) {
+        self.player.iter().for_each(|player| player.transport(transport.clone()));
+    }
+
+    /// Plays back at another pace.
+    pub(super) fn pace(&self, speed: Speed) {
+        self.player.iter().for_each(|player| player.speed(speed));
     }
 
     fn read(&self, source: &Source) -> anyhow::Result<Scenario> {
@@ -291,6 +329,7 @@ impl Desk {
     /// Closes the run that is open.
     fn close(&mut self, hurry: bool) -> anyhow::Result<()> {
         self.current.set(None);
+        self.player = None;
         (self.opened, self.comparing, self.forecasting) = (None, None, None);
         let Some(engine) = self.engine.take() else { return Ok(()) };
         if let Some(closed) = engine.close(hurry)? {

@@ -42,6 +42,11 @@ fn carry_out(job: &Job, Tools { logs, plugins, .. }: &Tools) -> anyhow::Result<S
             Ok(format!("report written: {}", file.display()))
         }
         Job::View(_) => view(&folder.join(RECORDING_FILE)),
+        // The viewer takes a moment only in the address of a server, not beside a file.
+        Job::ViewAt(_, at) => {
+            let opened = view(&folder.join(RECORDING_FILE)).with_context(|| format!("at {at}"))?;
+            Ok(format!("go to {at} there: {opened}"))
+        }
     }
 }
 

@@ -17,6 +17,7 @@ mod measure;
 mod pace;
 mod plain;
 mod rebuilt;
+mod replaying;
 mod screen;
 mod script;
 mod session;
@@ -44,7 +45,7 @@ use std::{
     thread,
 };
 use survey::surveyed;
-use tui::{Caps, Colours, Glyphs, Model, Msg, RunId, Source, Speed, terminal};
+use tui::{Caps, Colours, Glyphs, Model, Msg, RunId, Source, Speed, Transport, terminal};
 
 /// What a console is opened with; `None` leaves a choice to `config.toml` and then to the terminal.
 #[derive(Debug)]
@@ -65,8 +66,19 @@ pub struct Options {
     pub by: By,
     /// A run to look on at, instead of opening a scenario: its folder, or its name in `logs`.
     pub view: Option<PathBuf>,
+    /// A past run to play back, instead of opening a scenario.
+    pub replay: Option<Replay>,
     /// A part that fails on purpose.
     pub drill: Option<Drill>,
+}
+
+/// A past run to play back: its folder, or its name in the folder of the runs.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Replay {
+    /// The run.
+    pub run: PathBuf,
+    /// Another one to compare it with.
+    pub with: Option<PathBuf>,
 }
 
 /// Who operates a console.
@@ -140,6 +152,16 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
             viewing::begin(&folder, RunOutbox { run, outbox: outbox.clone() })?;
             Model::looking_on(run, folder.display().to_string())
         }
+        Opening::Replay { run: name, with } => {
+            desk.replay(run, name.clone())?;
+            let mut model = Model::replaying(run, name, with.clone());
+            if let Some(with) = with {
+                desk.transport(&Transport::Compare(Some(with)));
+            }
+            desk.pace(speed);
+            model.live.speed = speed;
+            model
+        }
     };
     outbox.send(Msg::Planners { found, refused });
     let current = desk.current();
@@ -172,10 +194,16 @@ enum Opening {
     Mission(Source, Box<(Scenario, Flight)>),
     /// A run to look on at, in this folder.
     View(PathBuf),
+    /// A past run to play back, and another one to compare it with.
+    Replay { run: String, with: Option<String> },
 }
 
 impl Opening {
-    fn of(Options { scenario, settings, logs, view, .. }: &Options) -> anyhow::Result<Self> {
+    fn of(Options { scenario, settings, logs, view, replay, .. }: &Options) -> anyhow::Result<Self> {
+        if let Some(Replay { run, with }) = replay {
+            let name = |run: &PathBuf| anyhow::Ok(named(&past(run, logs)?, logs));
+            return Ok(Self::Replay { run: name(run)?, with: with.as_ref().map(name).transpose()? });
+        }
         if let Some(run) = view {
             return Ok(Self::View(runs::find(run, logs)?));
         }
@@ -187,6 +215,21 @@ impl Opening {
         let flight = Flight::prepare(&scenario, true);
         Ok(Self::Mission(source, Box::new((scenario, flight))))
     }
+}
+
+/// The folder of a past run; `latest` is the newest one.
+fn past(run: &Path, logs: &Path) -> anyhow::Result<PathBuf> {
+    if run == Path::new("latest") && !run.exists() {
+        let newest = runs::list(logs)?.pop().map(|listed| listed.folder);
+        return newest.ok_or_else(|| bad_input(format!("there are no runs in {}", logs.display())));
+    }
+    Ok(runs::find(run, logs)?)
+}
+
+/// What a run is called on the screen: its name in the folder of the runs, or its folder if it lies elsewhere.
+fn named(folder: &Path, logs: &Path) -> String {
+    let name = folder.file_name().filter(|name| folder == logs.join(name).as_path());
+    name.map_or_else(|| folder.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
 
 fn caps(options: &Options, config: &Config) -> Caps {

@@ -167,10 +167,13 @@ fn past_run(listed: &Listed) -> PastRun {
         name: listed.name.clone(),
         began: began(&listed.name),
         scenario: listed.scenario.clone().unwrap_or_default(),
+        planner: listed.planner.clone().unwrap_or_default(),
         end: listed.end.clone(),
         mission_time_s: listed.mission_time_s,
         reachable: listed.coverage_reachable,
         note: listed.note.clone(),
+        remark: listed.remark.clone(),
+        bookmarks: listed.bookmarks,
     }
 }
 

@@ -71,6 +71,8 @@ impl Session {
             Effect::Open { id, source, planner, speed } => {
                 self.desk.request(Request::Open { id, source, planner, speed });
             }
+            Effect::Replay { id, run } => self.desk.request(Request::Replay { id, run }),
+            Effect::Transport(transport) => self.desk.request(Request::Transport(transport)),
             Effect::Check { needed_bytes } => self.desk.request(Request::Check { needed_bytes }),
             Effect::Compare(choice) => self.desk.request(Request::Compare(choice)),
             Effect::Forecast(choices) => self.desk.request(Request::Forecast(choices)),
@@ -85,11 +87,10 @@ impl Session {
                     engine.order(order);
                 }
             }
-            Effect::Speed(speed) => {
-                if let Some(engine) = self.engine.get() {
-                    engine.speed(speed);
-                }
-            }
+            Effect::Speed(speed) => match self.engine.get() {
+                Some(engine) => engine.speed(speed),
+                None => self.desk.request(Request::Pace(speed)),
+            },
             Effect::Redraw
             | Effect::Bell
             | Effect::Mouse(_)

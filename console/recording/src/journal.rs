@@ -12,7 +12,7 @@ mod upgrade;
 mod writer;
 
 pub use ending::read_ending;
-pub use reader::{JournalLine, JournalReader};
+pub use reader::{JournalLine, JournalPlace, JournalReader};
 pub use ticks::{Difference, RecordedTick, Ticks};
 pub use upgrade::with_todays_names;
 pub use writer::{JournalEnd, JournalWriter};

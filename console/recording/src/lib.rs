@@ -30,8 +30,8 @@ pub use file::{FileChange, sha256, sha256_of};
 pub use identity::Identity;
 pub use inspect::{Summary, inspect};
 pub use journal::{
-    Difference, JOURNAL_FILE, JournalEnd, JournalError, JournalLine, JournalReader, JournalWriter,
-    RecordedTick, Ticks, read_ending, with_todays_names,
+    Difference, JOURNAL_FILE, JournalEnd, JournalError, JournalLine, JournalPlace, JournalReader,
+    JournalWriter, RecordedTick, Ticks, read_ending, with_todays_names,
 };
 pub use marker::{FAILURE_FILE, recorded_failure};
 pub use recorder::{RECORDING_FILE, Recorder};

@@ -18,6 +18,7 @@ pub mod human;
 mod joined;
 pub mod leg;
 pub mod merged;
+pub mod notes;
 mod overlap;
 mod passes;
 pub mod plan;

@@ -1,6 +1,7 @@
 //! Floor that the tool came back to, worked out from the estimated track: the events name a cell only the first time.
 
 use serde::{Deserialize, Serialize};
+use world::Tiles;
 
 /// Coming back to a cell counts as scanning it again after this many swaths of way.
 const AGAIN_SWATHS: f64 = 2.0;
@@ -13,21 +14,21 @@ pub struct Overlap {
     /// Way gone so far, metres.
     way_m: f64,
     /// Way gone when each cell was last under the tool, in steps, from 1; 0 before the first time.
-    last: Vec<u16>,
-    again: Vec<u8>,
+    last: Tiles<u16>,
+    again: Tiles<u8>,
     /// Sum of `again` without its bound.
     n_again: u64,
 }
 
 impl Overlap {
-    /// Nothing of so many cells was scanned yet.
-    pub fn new(cells: usize) -> Self {
-        Self { last: vec![0; cells], again: vec![0; cells], ..Self::default() }
+    /// Nothing of so many cells, so many in a row, was scanned yet.
+    pub fn new(width: usize, cells: usize) -> Self {
+        Self { last: Tiles::new(width, cells, 0), again: Tiles::new(width, cells, 0), ..Self::default() }
     }
 
     /// How often a cell was scanned again.
     pub fn again(&self, index: usize) -> u8 {
-        self.again[index]
+        self.again.at(index)
     }
 
     /// How often cells were scanned again, all together.
@@ -49,11 +50,12 @@ impl Overlap {
         let now = step(self.way_m).saturating_add(1);
         let mut returned = Vec::new();
         for cell in cells {
-            let last = std::mem::replace(&mut self.last[*cell], now);
+            let last = std::mem::replace(self.last.at_mut(*cell), now);
             let since = f64::from(before.saturating_sub(last)) / STEPS_PER_SWATH;
             if last > 0 && since > AGAIN_SWATHS && is_scanned(*cell) {
-                returned.push((*cell, self.again[*cell] == 0));
-                self.again[*cell] = self.again[*cell].saturating_add(1);
+                let again = self.again.at_mut(*cell);
+                returned.push((*cell, *again == 0));
+                *again = again.saturating_add(1);
                 self.n_again += 1;
             }
         }
@@ -62,9 +64,10 @@ impl Overlap {
 
     /// Takes in another run over the same floor: what both scanned, one of them scanned again.
     pub(crate) fn join(&mut self, other: &Self, is_in_both: impl Fn(usize) -> bool) {
-        for (cell, (own, others)) in self.again.iter_mut().zip(&other.again).enumerate() {
+        for (cell, others) in other.again.iter().enumerate() {
             let twice = u8::from(is_in_both(cell));
-            *own = own.saturating_add(*others).saturating_add(twice);
+            let own = self.again.at_mut(cell);
+            *own = own.saturating_add(others).saturating_add(twice);
             self.n_again += u64::from(twice);
         }
         self.n_again += other.n_again;
@@ -77,7 +80,7 @@ mod tests {
 
     #[test]
     fn only_coming_back_after_two_swaths_counts() {
-        let mut overlap = Overlap::new(3);
+        let mut overlap = Overlap::new(3, 3);
         let mut pass = |way_m, cells: &[usize]| overlap.pass(way_m, 0.6, cells, |cell| cell != 2);
         assert_eq!(pass(0.0, &[0, 1, 2]), []);
         assert_eq!(pass(0.3, &[0]), [], "still under the tool");

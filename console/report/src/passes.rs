@@ -23,7 +23,7 @@ impl Passes {
             tool,
             guaranteed: vec![false; floor.len()],
             error_mm: vec![NEVER; floor.len()],
-            overlap: Overlap::new(floor.len()),
+            overlap: Overlap::new(floor.width, floor.len()),
         }
     }
 

@@ -3,11 +3,12 @@
 use crate::{
     error::RunError,
     folder::past_runs,
+    notes::read_notes,
     report_file::recording_doubt,
     standing::{Standing, standing},
 };
 use recording::{JOURNAL_FILE, JournalReader};
-use report::{Fold, Summary};
+use report::{Fold, Summary, notes::Notes};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -32,6 +33,11 @@ pub struct Listed {
     pub folder: PathBuf,
     /// What is wrong with it.
     pub note: Option<String>,
+    /// What people remark about it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub remark: Option<String>,
+    /// How many bookmarks people have set in it.
+    pub bookmarks: usize,
 }
 
 /// The past runs in a folder, oldest first; also those that have lost their journal.
@@ -52,13 +58,25 @@ fn row(run: &Listed) -> String {
     let number =
         |value: Option<f64>, scale: f64| value.map_or_else(|| "-".into(), |v| format!("{:.1}", v * scale));
     let note = run.note.as_ref().map(|note| format!("  ({note})")).unwrap_or_default();
+    let people = people(run).map(|words| format!("  {words}")).unwrap_or_default();
     format!(
-        "{:<16} {:>8} {:>22}  {}{note}\n",
+        "{:<16} {:>8} {:>22}  {}{note}{people}\n",
         run.end,
         number(run.mission_time_s, 1.0),
         number(run.coverage_reachable.map(world::coverage::percent), 1.0),
         run.name.replace(char::is_control, "?")
     )
+}
+
+/// What people noted about a run.
+fn people(run: &Listed) -> Option<String> {
+    let bookmarks = match run.bookmarks {
+        0 => None,
+        1 => Some("1 bookmark".to_owned()),
+        n => Some(format!("{n} bookmarks")),
+    };
+    let words: Vec<String> = run.remark.clone().into_iter().chain(bookmarks).collect();
+    (!words.is_empty()).then(|| format!("[{}]", words.join("; ")))
 }
 
 fn look_at(folder: &Path) -> Listed {
@@ -78,6 +96,11 @@ fn look_at(folder: &Path) -> Listed {
 }
 
 fn listed(folder: &Path, end: &str, summary: Option<&Summary>, note: Option<String>) -> Listed {
+    let (notes, doubt) = match read_notes(folder) {
+        Ok(notes) => (notes, None),
+        Err(why) => (Notes::default(), Some(format!("notes not read: {why}"))),
+    };
+    let note = note.into_iter().chain(doubt).reduce(|one, other| format!("{one}; {other}"));
     Listed {
         name: folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default(),
         end: end.to_owned(),
@@ -88,6 +111,8 @@ fn listed(folder: &Path, end: &str, summary: Option<&Summary>, note: Option<Stri
         coverage_reachable: summary.and_then(|summary| summary.coverage.as_ref()).map(|c| c.reachable),
         folder: folder.to_path_buf(),
         note,
+        remark: Some(notes.remark).filter(|remark| !remark.is_empty()),
+        bookmarks: notes.bookmarks.len(),
     }
 }
 

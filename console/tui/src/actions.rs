@@ -9,9 +9,10 @@ pub mod keymap;
 mod tests;
 
 pub use action::{Action, Risk};
-pub use argument::{Arg, Kind, duration_s};
+pub use argument::{Arg, Kind, duration_s, moment_s};
 
 use crate::keys::Key;
+use crate::model::replay::Jump;
 use action::action;
 use argument::{may, must};
 use context::Context;
@@ -158,6 +159,8 @@ pub enum ActionId {
     GoAlarms,
     /// Show what happened.
     GoEvents,
+    /// Show the past runs.
+    GoReview,
     /// Show what the mission has achieved.
     GoResult,
     /// Show the plugins.
@@ -178,6 +181,28 @@ pub enum ActionId {
     Report,
     /// Open the recording of a run in its viewer.
     View,
+    /// Play a past run back.
+    Replay,
+    /// Let the time of the run that is played back go on, or stop it.
+    Play,
+    /// Go to another moment of the run.
+    Jump(Jump),
+    /// Go to a moment that is typed.
+    Seek,
+    /// Set a bookmark, or change its text.
+    Bookmark,
+    /// Remove a bookmark.
+    Unmark,
+    /// Note a remark about the whole run.
+    Remark,
+    /// Read another run beside the one that is played back.
+    CompareRun,
+    /// Show which floor only one of two runs scanned.
+    Difference,
+    /// Choose which moments of two runs correspond.
+    Align,
+    /// Sort the list by something else.
+    Sort,
     /// Go back to the screen before; on the first one, leave.
     Back,
     /// Leave the console.
@@ -250,10 +275,32 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::NextLike, "next-like", "Next event of the same kind", &[Key::Char('n')], &[Context::Events]).label("same kind"),
     action(ActionId::PreviousLike, "previous-like", "Previous event of the same kind", &[Key::Char('N')], &[Context::Events]).label("same kind"),
     action(ActionId::Copy, "copy", "Copy the line of the event", &[Key::Char('y')], &[Context::Events]).label("copy"),
-    action(ActionId::Rescan, "rescan", "Scan what a run has missed", &[Key::Char('r')], &[Context::Home, Context::Result]).label("re-scan").args(&[may("run", Kind::Run)]),
-    action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[Context::Home, Context::Result]).label("verify").args(&[may("run", Kind::Run)]),
-    action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[Context::Home, Context::Result]).label("report").args(&[may("run", Kind::Run)]),
-    action(ActionId::View, "view", "Open the recording of a run in rerun", &[Key::Char('o')], &[Context::Home, Context::Result]).label("rerun").args(&[may("run", Kind::Run)]),
+    action(ActionId::Play, "play", "Play the run, or pause it (space)", &[], &[Context::Replay]),
+    action(ActionId::Jump(Jump::TickBack), "tick-back", "Go back by one tick", &[Key::Char(',')], &[Context::Replay]).label("tick").repeats(),
+    action(ActionId::Jump(Jump::Tick), "tick-on", "Go on by one tick", &[Key::Char('.')], &[Context::Replay]).label("tick").repeats(),
+    action(ActionId::Jump(Jump::EventBack), "event-back", "Go to the event before", &[Key::Char('[')], &[Context::Replay]).label("event").repeats(),
+    action(ActionId::Jump(Jump::Event), "event-on", "Go to the next event", &[Key::Char(']')], &[Context::Replay]).label("event").repeats(),
+    action(ActionId::Jump(Jump::AlarmBack), "alarm-back", "Go to the alarm before", &[Key::Char('{')], &[Context::Replay]).label("alarm").repeats(),
+    action(ActionId::Jump(Jump::Alarm), "alarm-on", "Go to the next alarm", &[Key::Char('}')], &[Context::Replay]).label("alarm").repeats(),
+    action(ActionId::Jump(Jump::MinuteBack), "minute-back", "Go back by one minute", &[Key::Char('(')], &[Context::Replay]).label("minute").repeats(),
+    action(ActionId::Jump(Jump::Minute), "minute-on", "Go on by one minute", &[Key::Char(')')], &[Context::Replay]).label("minute").repeats(),
+    action(ActionId::Jump(Jump::Start), "to-start", "Go to the beginning of the run", &[Key::Char('^')], &[Context::Replay]),
+    action(ActionId::Jump(Jump::End), "to-end", "Go to the end of the run", &[Key::Char('$')], &[Context::Replay]),
+    action(ActionId::Seek, "seek", "Go to a moment of the run", &[], &[Context::Replay]).args(&[must("moment", Kind::Moment)]),
+    action(ActionId::Bookmark, "bookmark", "Set a bookmark, or change its text", &[Key::Char('b')], &[Context::Replay]).label("bookmark").args(&[may("text", Kind::Text)]),
+    action(ActionId::Unmark, "remove-bookmark", "Remove the bookmark at this moment", &[Key::Char('B')], &[Context::Replay]),
+    action(ActionId::Jump(Jump::Bookmark), "next-bookmark", "Go to the next bookmark", &[Key::Char('n')], &[Context::Replay]).repeats(),
+    action(ActionId::Jump(Jump::BookmarkBack), "previous-bookmark", "Go to the bookmark before", &[Key::Char('N')], &[Context::Replay]).repeats(),
+    action(ActionId::Remark, "remark", "Note a remark about the whole run", &[], &[Context::Replay]).args(&[must("text", Kind::Text)]),
+    action(ActionId::Difference, "difference", "Show floor that only one run scanned", &[Key::Char('D')], &[Context::Replay]).label("difference"),
+    action(ActionId::Align, "align", "Align two runs by time, path or place", &[Key::Char('T')], &[Context::Replay]).label("align"),
+    action(ActionId::Replay, "replay", "Play a past run back", &[], &[Context::Screen]).args(&[may("run", Kind::Run)]),
+    action(ActionId::CompareRun, "compare-run", "Compare a run with the one played back", &[Key::Char('c')], &[Context::Review]).label("compare").args(&[may("run", Kind::Run)]),
+    action(ActionId::Sort, "sort", "Sort the list by something else", &[Key::Char('s')], &[Context::Review]).label("sort"),
+    action(ActionId::Rescan, "rescan", "Scan what a run has missed", &[Key::Char('r')], &[Context::Home, Context::Review, Context::Result]).label("re-scan").args(&[may("run", Kind::Run)]),
+    action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[Context::Home, Context::Review, Context::Result]).label("verify").args(&[may("run", Kind::Run)]),
+    action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[Context::Home, Context::Review, Context::Result]).label("report").args(&[may("run", Kind::Run)]),
+    action(ActionId::View, "view", "Open the recording of a run in rerun", &[Key::Char('o')], &[Context::Home, Context::Review, Context::Replay, Context::Result]).label("rerun").args(&[may("run", Kind::Run)]),
     action(ActionId::Commands, "commands", "Find a command by name", &[Key::Char(':'), Key::Ctrl('p')], &[Context::Screen]).label("command"),
     action(ActionId::Help, "help", "Show keys and commands", &[Key::Char('?'), Key::F(1)], &[Context::Screen]).label("keys"),
     action(ActionId::NextPane, "next-pane", "Go to the next pane", &[Key::Tab], &[Context::Screen]).label("pane").repeats(),
@@ -264,6 +311,7 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::GoMission, "mission", "Screen 3: the mission", &[Key::Char('3')], &[Context::Screen]),
     action(ActionId::GoAlarms, "alarms", "Screen 4: what is wrong, what to do", &[Key::Char('4')], &[Context::Screen]),
     action(ActionId::GoEvents, "events", "Screen 5: what happened", &[Key::Char('5')], &[Context::Screen]),
+    action(ActionId::GoReview, "review", "Screen 6: past runs: replay, compare", &[Key::Char('6')], &[Context::Screen]),
     action(ActionId::GoResult, "result", "Screen 7: what was achieved", &[Key::Char('7')], &[Context::Screen]),
     action(ActionId::GoPlugins, "plugins", "Screen 8: plugins and their planners", &[Key::Char('8')], &[Context::Screen]),
     action(ActionId::Reload, "reload", "Look at the plugins again", &[Key::Char('r')], &[Context::Plugins]).label("reload"),
@@ -278,8 +326,8 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Centre, "centre", "Centre the map on a named object", &[], &[Context::Map]).args(&[must("place", Kind::Place)]),
     action(ActionId::Inspect, "inspect", "Read the map at a cursor (Esc: end)", &[Key::Char('i')], &[Context::Map]),
     action(ActionId::Mouse, "mouse", "Use the mouse in the console, or not", &[], &[Context::Screen]),
-    action(ActionId::Severity, "severity", "Minimum severity of the events shown", &[Key::Char('m')], &[Context::Mission]).args(&[may("severity", Kind::Severity)]),
-    action(ActionId::Filter, "filter", "Filter the list", &[Key::Char('/')], &[Context::Home, Context::Mission, Context::Events]).args(&[may("text", Kind::Text)]),
+    action(ActionId::Severity, "severity", "Minimum severity of the events shown", &[Key::Char('m')], &[Context::Mission, Context::Replay]).args(&[may("severity", Kind::Severity)]),
+    action(ActionId::Filter, "filter", "Filter the list", &[Key::Char('/')], &[Context::Home, Context::Mission, Context::Replay, Context::Events, Context::Review]).args(&[may("text", Kind::Text)]),
     action(ActionId::PanLeft, "pan-west", "Pan the map west", &[Key::Left, Key::Char('h')], &[Context::Pan]).repeats(),
     action(ActionId::PanRight, "pan-east", "Pan the map east", &[Key::Right, Key::Char('l')], &[Context::Pan]).repeats(),
     action(ActionId::PanUp, "pan-north", "Pan the map north", &[Key::Up, Key::Char('k')], &[Context::Pan]).repeats(),

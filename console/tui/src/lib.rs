@@ -23,5 +23,8 @@ pub use caps::{Caps, Colours, Glyphs};
 pub use keys::{Key, KeyPress};
 pub use model::{Health, Measured, Model, Recording, Refused, RunId, RunResult, Source, Speed, Times};
 pub use theme::{Role, Theme, ThemeName};
-pub use update::{Effect, Job, Mouse, Msg, Redraw, Rows, RunMsg, Signal, Target, is_typing, redraw, update};
+pub use update::{
+    Effect, Job, Mouse, Msg, Redraw, ReplayMsg, Rows, RunMsg, Signal, Target, Transport, is_typing, redraw,
+    update,
+};
 pub use view::{Cache, Places, view, view_cached, view_with};

@@ -20,6 +20,8 @@ pub mod plugins;
 pub mod position;
 pub mod preflight;
 pub mod preset;
+pub mod replay;
+pub mod review;
 pub mod run;
 pub mod shadow;
 pub mod tether;
@@ -44,6 +46,8 @@ pub use plans::{Ghost, GhostPlan, Plans};
 pub use position::Position;
 pub use preflight::Preflight;
 pub use preset::Preset;
+pub use replay::Replay;
+pub use review::Review;
 pub use run::{About, Clock, Progress, Run};
 pub use shadow::Shadow;
 pub use tether::Tether;
@@ -66,6 +70,9 @@ const SILENCE_S: f64 = 2.0;
 pub struct Model {
     /// What there is to open: scenarios, past runs.
     pub home: Home,
+    /// The list of past runs.
+    #[serde(default)]
+    pub review: Review,
     /// The run that is open, and what is between the operator and its mission.
     pub live: Live,
     /// The console itself.
@@ -89,6 +96,30 @@ impl Model {
         model.live.access = Access::LookOnly;
         model.ui.go(Screen::Mission);
         model
+    }
+
+    /// A console that plays a past run back, beside another one if there is one to compare it with; there is no engine.
+    pub fn replaying(id: RunId, run: String, with: Option<String>) -> Self {
+        let mut model = Self::default();
+        model.replay(id, run);
+        if let Some(replay) = &mut model.live.replay {
+            replay.other = with.map(|name| replay::Other { name, ..replay::Other::default() });
+        }
+        model
+    }
+
+    /// A past run takes the place of the run that is open.
+    pub(crate) fn replay(&mut self, id: RunId, run: String) {
+        self.live = Live {
+            id,
+            access: Access::Replay,
+            source: Some(Source::File(run.clone())),
+            is_opening: true,
+            replay: Some(Replay::of(run)),
+            ..Live::default()
+        };
+        (self.ui.map, self.ui.cursor) = (ui::MapView::default(), None);
+        self.ui.go(Screen::Mission);
     }
 
     /// What is known of the active planner, or of the first one.
@@ -124,7 +155,12 @@ impl Model {
     /// Whether the mission runs and yet nothing was heard of it, and for how long, seconds.
     pub fn silent_s(&self) -> Option<f64> {
         let silence_s = self.console.now.mono_s - self.live.heard_mono_s;
-        (self.live.run.is_running() && silence_s > SILENCE_S).then_some(silence_s)
+        (self.is_heard() && silence_s > SILENCE_S).then_some(silence_s)
+    }
+
+    /// Whether events come as long as the mission runs.
+    fn is_heard(&self) -> bool {
+        self.live.run.is_running() && !self.live.is_replay()
     }
 
     /// The notice, while it is fresh.
@@ -135,7 +171,7 @@ impl Model {
     /// When the screen next changes by itself, on the console's own clock, seconds; `None` if it does not.
     pub fn wakes_at_mono_s(&self) -> Option<f64> {
         let notice = self.notice().map(|notice| notice.until_mono_s);
-        let silence = self.live.run.is_running().then(|| match self.silent_s() {
+        let silence = self.is_heard().then(|| match self.silent_s() {
             None => self.live.heard_mono_s + SILENCE_S,
             Some(_) => self.console.now.mono_s + 1.0,
         });

@@ -42,7 +42,12 @@ impl Said {
     fn entries(&mut self, model: &Model) -> Vec<Entry> {
         let log = &model.live.run.log;
         // Another run begins with a log of its own.
-        let from = if log.end() < self.next_line { 0 } else { self.next_line };
+        let from = match log.end() < self.next_line {
+            // What a replay goes back over was said before.
+            true if model.live.is_replay() => log.end(),
+            true => 0,
+            false => self.next_line,
+        };
         self.next_line = log.end();
         (from.max(log.oldest())..log.end()).filter_map(|number| log.get(number)).cloned().collect()
     }

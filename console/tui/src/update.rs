@@ -18,6 +18,8 @@ mod place;
 mod preflight;
 mod preset;
 mod redraw;
+mod replay;
+mod review;
 mod send;
 mod shadow;
 mod stations;
@@ -25,7 +27,7 @@ mod typing;
 mod what_if;
 
 pub use act::act;
-pub use message::{Effect, Job, Mouse, Msg, Rows, RunMsg, Signal, Target};
+pub use message::{Effect, Job, Mouse, Msg, ReplayMsg, Rows, RunMsg, Signal, Target, Transport};
 pub use offer::offered;
 pub use palette::{Choice, choices};
 pub use redraw::{Redraw, redraw};

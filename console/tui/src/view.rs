@@ -24,11 +24,13 @@ mod plugins;
 mod position;
 mod result;
 mod shadow;
+mod review;
 mod stations;
 mod strip;
 mod table;
 mod tether;
 mod text;
+mod timeline;
 mod top;
 mod what_if;
 
@@ -105,6 +107,7 @@ fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) 
         Screen::Plugins => plugins::draw(look, frame, body, arrangement),
         Screen::Alarms => alarm_screen::draw(look, frame, body, arrangement),
         Screen::Events => events::screen(look, frame, body, arrangement),
+        Screen::Review => review::draw(look, frame, body, arrangement),
         Screen::Result => result::draw(look, frame, body, arrangement),
         Screen::Mission => mission(look, frame, body, (area.width, area.height)),
     }
@@ -113,6 +116,7 @@ fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) 
 }
 
 fn mission(look: &Look, frame: &mut Frame, area: Rect, size: (u16, u16)) {
+    let area = timeline::draw(look, frame, area, Arrangement::of(size.0, size.1));
     let shown = Shown::of(look.run, missed::account(look).is_some());
     let mut panes = layout::mission(area, size, shown);
     if panes.is_empty() {

@@ -14,6 +14,7 @@ pub use percents::{percent, percents};
 pub use shell::{ShellFigures, ShellStretch, ShellZone};
 pub use tool::Tool;
 
+use crate::tiles::Tiles;
 use geometry::{Point, Pose};
 use serde::{Deserialize, Serialize};
 
@@ -79,7 +80,7 @@ impl Counts {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CoverageGrid {
     floor: Floor,
-    covered: Vec<bool>,
+    covered: Tiles<bool>,
     counts: Counts,
 }
 
@@ -95,7 +96,7 @@ impl CoverageGrid {
     /// assert_eq!(grid.counts().covered, 0);
     /// ```
     pub fn new(floor: Floor) -> Self {
-        let covered = vec![false; floor.len()];
+        let covered = Tiles::new(floor.width, floor.len(), false);
         let mut grid = Self { floor, covered, counts: Counts::default() };
         grid.count();
         grid
@@ -104,7 +105,7 @@ impl CoverageGrid {
     fn count(&mut self) {
         self.counts = Counts::default();
         for (index, covered) in self.covered.iter().enumerate() {
-            self.counts.add(self.floor.kind(index), *covered);
+            self.counts.add(self.floor.kind(index), covered);
         }
     }
 
@@ -187,7 +188,7 @@ impl CoverageGrid {
     /// assert_eq!(new.len(), 6, "one run in each row");
     /// ```
     pub fn not_covered_under(&self, tool: Tool, a: Pose, b: Pose) -> Vec<CellRun> {
-        let is_new = |index: &usize| !self.covered[*index] && self.floor.is_floor(*index);
+        let is_new = |index: &usize| !self.covered.at(*index) && self.floor.is_floor(*index);
         runs_of(self.floor.cells_under(tool, a, b).into_iter().filter(is_new))
     }
 
@@ -206,7 +207,8 @@ impl CoverageGrid {
         for CellRun(first, count) in runs {
             let end = (*first as usize + *count as usize).min(self.floor.len());
             for index in (*first as usize)..end {
-                if !std::mem::replace(&mut self.covered[index], true) {
+                if !self.covered.at(index) {
+                    *self.covered.at_mut(index) = true;
                     self.counts.covered += usize::from(self.floor.is_floor(index));
                     self.counts.covered_reachable += usize::from(self.floor.is_reachable(index));
                     self.counts.margin -= usize::from(self.floor.kind(index) == Cell::Margin);
@@ -229,7 +231,7 @@ impl CoverageGrid {
     /// assert_eq!(grid.counts().covered, 4);
     /// ```
     pub fn join(&mut self, other: &Self) {
-        let covered = other.covered.iter().enumerate().filter(|(_, covered)| **covered);
+        let covered = other.covered.iter().enumerate().filter(|(_, covered)| *covered);
         self.apply(&runs_of(covered.map(|(index, _)| index)));
     }
 
@@ -245,7 +247,7 @@ impl CoverageGrid {
     /// assert!(grid.is_covered(5053) && !grid.is_covered(5054));
     /// ```
     pub fn is_covered(&self, index: usize) -> bool {
-        self.covered[index]
+        self.covered.at(index)
     }
 
     /// Number of cells of each kind.

@@ -13,6 +13,7 @@ pub mod shortest;
 pub mod spiral;
 pub mod tank;
 pub mod tether;
+mod tiles;
 mod total;
 
 pub use coverage::{
@@ -26,3 +27,4 @@ pub use obstacles::{Near, ObstacleMap};
 pub use plates::{Plate, PlateKind, PlateLayout, PlateMap};
 pub use readings::{Odometry, RangeSet, Readings, Sighting};
 pub use tank::{Obstacle, ObstacleId, Station, StationId, World, Zone, ZoneKind};
+pub use tiles::Tiles;

@@ -5,7 +5,7 @@ use crate::file::open_regular;
 use mission::{Event, event::JOURNAL_VERSION};
 use serde::Deserialize;
 use std::{
-    io::{self, BufRead, BufReader, Read},
+    io::{self, BufRead, BufReader, Read, Seek, SeekFrom},
     path::{Path, PathBuf},
 };
 
@@ -18,6 +18,16 @@ pub struct JournalLine<'a> {
     pub event: Event,
 }
 
+/// Where the next event of a journal begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct JournalPlace {
+    /// Bytes before it.
+    pub bytes: u64,
+    /// Lines before it.
+    lines: usize,
+    version: Option<u32>,
+}
+
 /// Reads a journal event by event; as an iterator, or line by line with the bytes of the file.
 ///
 /// Ends after the first error.
@@ -25,6 +35,8 @@ pub struct JournalReader {
     lines: Box<dyn BufRead + Send>,
     path: PathBuf,
     text: Vec<u8>,
+    /// Bytes of the lines that were read.
+    bytes: u64,
     line: usize,
     version: Option<u32>,
     ended: bool,
@@ -59,11 +71,28 @@ impl JournalReader {
         Ok(Self::of(Follow::new(file, goes_on), path))
     }
 
+    /// Opens a journal at a place that was met while it was read before.
+    ///
+    /// # Errors
+    /// [`JournalError::Read`] if there is none any more.
+    pub fn open_at(path: &Path, place: JournalPlace) -> Result<Self, JournalError> {
+        let mut file = open_regular(path).map_err(|error| read_error(path, &error))?;
+        file.seek(SeekFrom::Start(place.bytes)).map_err(|error| read_error(path, &error))?;
+        let JournalPlace { bytes, lines, version } = place;
+        Ok(Self { bytes, line: lines, version, ..Self::of(file, path) })
+    }
+
+    /// Where the next event begins.
+    pub fn place(&self) -> JournalPlace {
+        JournalPlace { bytes: self.bytes, lines: self.line, version: self.version }
+    }
+
     fn of(bytes: impl Read + Send + 'static, path: &Path) -> Self {
         Self {
             lines: Box::new(BufReader::with_capacity(1 << 18, bytes)),
             path: path.to_owned(),
             text: Vec::new(),
+            bytes: 0,
             line: 0,
             version: None,
             ended: false,
@@ -114,6 +143,7 @@ impl JournalReader {
         let length =
             self.lines.read_until(b'\n', &mut self.text).map_err(|error| read_error(&self.path, &error))?;
         self.line += 1;
+        self.bytes += length as u64;
         if length == 0 {
             return Ok(self.end_of_file());
         }

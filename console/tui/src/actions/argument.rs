@@ -27,6 +27,8 @@ pub enum Kind {
     Preset,
     /// A span of time.
     Duration,
+    /// A moment of a run.
+    Moment,
     /// An alarm.
     Alarm,
     /// Name of an AE station.
@@ -90,9 +92,40 @@ pub fn duration_s(text: &str) -> Result<f64, String> {
     if total_s > 0.0 { Ok(total_s) } else { Err(wrong()) }
 }
 
+/// Reads a moment of a run such as `01:12:30`, `12:30`, `T+00:12:30` or `12m30s`; seconds of mission time.
+///
+/// # Errors
+/// How it is written.
+pub fn moment_s(text: &str) -> Result<f64, String> {
+    let wrong = || format!("no moment `{text}`; write 01:12:30, 12:30 or 12m30s");
+    let text = text.strip_prefix("T+").unwrap_or(text);
+    if !text.contains(':') {
+        return duration_s(text).map_err(|_| wrong());
+    }
+    let parts: Vec<&str> = text.split(':').collect();
+    let is_number = |part: &&str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit() || b == b'.');
+    if parts.len() > 3 || !parts.iter().all(is_number) {
+        return Err(wrong());
+    }
+    let mut numbers = parts.iter().map(|part| part.parse::<f64>());
+    let total_s = numbers.try_fold(0.0, |sum_s, number| number.map(|number| 60.0 * sum_s + number));
+    total_s.map_err(|_| wrong())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn moments_are_clock_times_or_spans() {
+        for (text, seconds) in [("01:12:30", 4350.0), ("12:30", 750.0), ("T+00:00:05.5", 5.5), ("2m", 120.0)]
+        {
+            assert_eq!(moment_s(text), Ok(seconds), "{text}");
+        }
+        for wrong in ["", "12", "1:2:3:4", ":", "1:-2", "1:x", "T+"] {
+            assert!(moment_s(wrong).is_err(), "{wrong}");
+        }
+    }
 
     #[test]
     fn durations_have_units() {

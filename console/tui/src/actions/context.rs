@@ -19,6 +19,10 @@ pub enum Context {
     Alarms,
     /// On the events screen.
     Events,
+    /// On the mission screen while a past run is played back.
+    Replay,
+    /// On the review screen.
+    Review,
     /// On the result screen.
     Result,
     /// On the plugins screen.
@@ -60,6 +64,8 @@ impl Context {
             Self::Home => Some("Home"),
             Self::Plan => Some("Plan"),
             Self::Mission => Some("Mission"),
+            Self::Replay => Some("Replay"),
+            Self::Review => Some("Review"),
             Self::Result => Some("Result"),
             Self::Plugins => Some("Plugins"),
             _ => None,
@@ -68,8 +74,11 @@ impl Context {
 
     /// Whether its actions are commands of their own, and no mere steps within a list or a line.
     pub fn has_commands(self) -> bool {
-        use Context::{Alarms, Anywhere, Events, Home, Map, Mission, Pan, Plan, Plugins, Result, Screen};
-        let of_screen = matches!(self, Home | Plan | Mission | Alarms | Events | Result | Plugins);
+        use Context::{
+            Alarms, Anywhere, Events, Home, Map, Mission, Pan, Plan, Plugins, Replay, Result, Review, Screen,
+        };
+        let of_screen =
+            matches!(self, Home | Plan | Mission | Replay | Alarms | Events | Review | Result | Plugins);
         of_screen || matches!(self, Anywhere | Screen | Map | Pan)
     }
 }
@@ -81,9 +90,14 @@ pub const TOGETHER: &[&[Context]] = &[
     &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Pan],
     &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Rows],
     &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map],
+    &[Context::Anywhere, Context::Screen, Context::Replay, Context::Map, Context::Pan],
+    &[Context::Anywhere, Context::Screen, Context::Replay, Context::Map, Context::Rows],
+    &[Context::Anywhere, Context::Screen, Context::Replay, Context::Map],
+    &[Context::Anywhere, Context::Screen, Context::Review, Context::Rows],
     &[Context::Anywhere, Context::Screen, Context::Result, Context::Map, Context::Rows],
     &[Context::Anywhere, Context::Screen, Context::Map, Context::Pan, Context::Cursor],
     &[Context::Anywhere, Context::Screen, Context::Mission, Context::Map, Context::Pan, Context::Cursor],
+    &[Context::Anywhere, Context::Screen, Context::Replay, Context::Map, Context::Pan, Context::Cursor],
     &[Context::Anywhere, Context::Screen, Context::Result, Context::Map, Context::Pan, Context::Cursor],
     &[Context::Anywhere, Context::Screen, Context::Plugins, Context::Rows],
     &[Context::Anywhere, Context::List, Context::Rows],
@@ -104,9 +118,10 @@ pub fn contexts(model: &Model) -> Vec<Context> {
         Overlay::Confirm(_) | Overlay::Quit => [Context::Confirm].as_slice(),
         Overlay::Stepping => &[Context::Stepping],
         Overlay::Commands(_) => &[Context::Text, Context::Commands],
-        Overlay::Parameters { edit: Some(_), .. } | Overlay::Filter(_) | Overlay::Shelve(_) => {
-            &[Context::Text]
-        }
+        Overlay::Parameters { edit: Some(_), .. }
+        | Overlay::Filter(_)
+        | Overlay::Shelve(_)
+        | Overlay::Bookmark(_) => &[Context::Text],
         Overlay::Parameters { edit: None, .. }
             if model.live.what_if.as_ref().is_some_and(|what_if| what_if.draft.is_some()) =>
         {
@@ -125,11 +140,15 @@ pub fn contexts(model: &Model) -> Vec<Context> {
 
 /// The contexts of the screen that is shown, with nothing over it.
 pub(crate) fn of_screen(model: &Model) -> &'static [Context] {
+    let is_replay = model.live.is_replay();
     if model.ui.cursor.is_some() {
         match model.ui.screen {
-            Screen::Home | Screen::Alarms | Screen::Events | Screen::Plugins => {}
+            Screen::Home | Screen::Alarms | Screen::Events | Screen::Review | Screen::Plugins => {}
             // Esc ends the cursor here, and nothing else.
             Screen::Plan => return &[Context::Map, Context::Pan, Context::Cursor],
+            Screen::Mission if is_replay => {
+                return &[Context::Replay, Context::Map, Context::Pan, Context::Cursor];
+            }
             Screen::Mission => return &[Context::Mission, Context::Map, Context::Pan, Context::Cursor],
             Screen::Result => return &[Context::Result, Context::Map, Context::Pan, Context::Cursor],
         }
@@ -137,12 +156,16 @@ pub(crate) fn of_screen(model: &Model) -> &'static [Context] {
     match (model.ui.screen, model.ui.pane) {
         (Screen::Home, _) => &[Context::Home, Context::Rows],
         (Screen::Plan, _) => &[Context::Plan, Context::Map, Context::Pan],
+        (Screen::Mission, Pane::Map) if is_replay => &[Context::Replay, Context::Map, Context::Pan],
+        (Screen::Mission, Pane::Events) if is_replay => &[Context::Replay, Context::Map, Context::Rows],
+        (Screen::Mission, _) if is_replay => &[Context::Replay, Context::Map],
         (Screen::Mission, Pane::Map) => &[Context::Mission, Context::Map, Context::Pan],
         (Screen::Mission, Pane::Events) => &[Context::Mission, Context::Map, Context::Rows],
         (Screen::Mission, _) => &[Context::Mission, Context::Map],
         (Screen::Plugins, _) => &[Context::Plugins, Context::Rows],
         (Screen::Alarms, _) => &[Context::Alarms, Context::Rows],
         (Screen::Events, _) => &[Context::Events, Context::Rows],
+        (Screen::Review, _) => &[Context::Review, Context::Rows],
         (Screen::Result, _) => &[Context::Result, Context::Map, Context::Rows],
     }
 }

@@ -233,7 +233,10 @@ mod tests {
     fn what_cannot_be_bound_says_why_and_changes_nothing() {
         let f = Key::Char('f');
         let cases: [(Pairs, &str); 6] = [
-            (&[("zoom-in", &[f])], "0: \"f\" is already follow (Plan, Mission, Result); zoom-in keeps \"z\""),
+            (
+                &[("zoom-in", &[f])],
+                "0: \"f\" is already follow (Plan, Mission, Replay, Result); zoom-in keeps \"z\"",
+            ),
             (
                 &[("zoom-in", &[Key::F(5)]), ("zoom-out", &[Key::F(5)])],
                 "1: \"F5\" is already zoom-in (Plan, Mission, Result); zoom-out keeps \"Z\"",

@@ -7,13 +7,13 @@ pub use class::FloorClass;
 use class::Tally;
 use report::{Overlap, account::Shares};
 use serde::{Deserialize, Serialize};
-use world::{CellRun, CoverageGrid, Floor, KindRun, Pose, Tool, coverage::Counts};
+use world::{CellRun, CoverageGrid, Floor, KindRun, Pose, Tiles, Tool, coverage::Counts};
 
 /// Blocks of cells at one zoom.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Level {
     width: usize,
-    tallies: Vec<Tally>,
+    tallies: Tiles<Tally>,
 }
 
 /// The scanned floor with its own reductions by 2, 4, 8 and so on.
@@ -33,12 +33,8 @@ pub struct Raster {
 impl Raster {
     /// A floor of which nothing has been scanned.
     pub fn new(floor: Floor) -> Self {
-        let overlap = Overlap::new(floor.len());
-        Self::of(CoverageGrid::new(floor), overlap)
-    }
-
-    fn of(grid: CoverageGrid, overlap: Overlap) -> Self {
-        let mut raster = Self { grid, levels: Vec::new(), overlap, stamp: 0 };
+        let overlap = Overlap::new(floor.width, floor.len());
+        let mut raster = Self { grid: CoverageGrid::new(floor), levels: Vec::new(), overlap, stamp: 0 };
         raster.levels = (1..).map_while(|shift| raster.level(shift)).collect();
         for index in 0..raster.grid.floor().len() {
             raster.note(raster.grid.floor().kind(index) as u64);
@@ -65,13 +61,23 @@ impl Raster {
         self.grid.floor()
     }
 
-    /// Makes some cells another kind of floor; costs one look at every cell, and happens when an obstacle is found.
+    /// Makes some cells another kind of floor; happens when an obstacle is found.
     pub fn change(&mut self, changes: &[KindRun]) {
-        let mut grid = self.grid.clone();
-        grid.change(changes);
-        let stamp = self.stamp;
-        *self = Self::of(grid, std::mem::take(&mut self.overlap));
-        self.note(stamp);
+        let len = self.grid.floor().len();
+        let cells = changes.iter().flat_map(|KindRun(_, first, count)| {
+            let end = (*first as usize).saturating_add(*count as usize).min(len);
+            *first as usize..end
+        });
+        let mut before: Vec<(usize, Tally)> = cells.map(|index| (index, self.cell_tally(index))).collect();
+        before.sort_unstable_by_key(|(index, _)| *index);
+        before.dedup_by_key(|(index, _)| *index);
+        self.grid.change(changes);
+        for (index, before) in before {
+            let now = self.cell_tally(index);
+            self.count(index, |block| block.replace(before, now));
+            self.note(index as u64);
+            self.note(self.grid.floor().kind(index) as u64);
+        }
     }
 
     /// Marks cells as scanned.
@@ -111,6 +117,11 @@ impl Raster {
         (scanned > 0).then(|| self.overlap.n_again() as f64 / scanned as f64)
     }
 
+    /// Whether a cell has been scanned.
+    pub fn is_scanned(&self, index: usize) -> bool {
+        self.grid.is_covered(index)
+    }
+
     /// How many cells of each kind.
     pub fn counts(&self) -> Counts {
         self.grid.counts()
@@ -137,7 +148,7 @@ impl Raster {
         let (width, height) = (half(floor.width), half(floor.height));
         // The level before this one already was a single block.
         let useful = shift < 20 && floor.width.max(floor.height) > 1 << (shift - 1);
-        useful.then(|| Level { width, tallies: vec![Tally::default(); width * height] })
+        useful.then(|| Level { width, tallies: Tiles::new(width, width * height, Tally::default()) })
     }
 
     fn count(&mut self, index: usize, mut add: impl FnMut(&mut Tally)) {
@@ -145,7 +156,7 @@ impl Raster {
         let (column, row) = (index % width, index / width);
         for (shift, level) in (1..).zip(&mut self.levels) {
             let block = (row >> shift) * level.width + (column >> shift);
-            add(&mut level.tallies[block]);
+            add(level.tallies.at_mut(block));
         }
     }
 }

@@ -34,6 +34,8 @@ pub struct PastRun {
     pub began: String,
     /// Name of its scenario; empty if it is not known.
     pub scenario: String,
+    /// Id of the planner that drove first; empty if it is not known.
+    pub planner: String,
     /// `complete`, `stuck`, …, `RUNNING`, `CRASHED`, `RECORDING FAILED` or `UNREADABLE`.
     pub end: String,
     /// Mission time that passed, seconds.
@@ -42,6 +44,10 @@ pub struct PastRun {
     pub reachable: Option<f64>,
     /// What is wrong with it.
     pub note: Option<String>,
+    /// What people remark about it.
+    pub remark: Option<String>,
+    /// How many bookmarks people have set in it.
+    pub bookmarks: usize,
 }
 
 /// Something that the operator should know before a mission is opened.

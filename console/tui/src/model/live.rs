@@ -1,6 +1,6 @@
 //! The run that is open, and what is between the operator and its mission.
 
-use super::{Health, Plans, Preflight, Run, Speed, WhatIf};
+use super::{Health, Plans, Preflight, Replay, Run, Speed, WhatIf};
 use mission::{Order, Phase};
 use report::{
     Estimate, Summary,
@@ -20,6 +20,8 @@ pub enum Access {
     Control,
     /// Read the journal that another console writes, or has written.
     LookOnly,
+    /// Play back a past run.
+    Replay,
 }
 
 /// Where a scenario comes from.
@@ -99,12 +101,20 @@ pub struct Live {
     pub heard_mono_s: f64,
     /// What the run leaves, when it has ended and its files are closed.
     pub result: Option<RunResult>,
+    /// How the run is played back, if it is.
+    #[serde(default)]
+    pub replay: Option<Replay>,
 }
 
 impl Live {
-    /// Whether this console only looks on.
+    /// Whether there is no mission here to give orders to: this console only looks on, or plays a past run back.
     pub fn is_look_only(&self) -> bool {
-        self.access == Access::LookOnly
+        self.access != Access::Control
+    }
+
+    /// Whether a past run is played back.
+    pub fn is_replay(&self) -> bool {
+        self.access == Access::Replay
     }
 
     /// Whether the robot of this console moves, or may begin to move without an order, or because of one that was agreed to

@@ -84,6 +84,8 @@ pub enum Screen {
     Alarms,
     /// What happened.
     Events,
+    /// Past runs.
+    Review,
     /// What a mission has achieved.
     Result,
     /// Which plugins there are.
@@ -92,8 +94,16 @@ pub enum Screen {
 
 impl Screen {
     /// Every screen, in the order of their keys.
-    pub const ALL: [Self; 7] =
-        [Self::Home, Self::Plan, Self::Mission, Self::Alarms, Self::Events, Self::Result, Self::Plugins];
+    pub const ALL: [Self; 8] = [
+        Self::Home,
+        Self::Plan,
+        Self::Mission,
+        Self::Alarms,
+        Self::Events,
+        Self::Review,
+        Self::Result,
+        Self::Plugins,
+    ];
 
     /// Its name, as the top line shows it.
     pub fn name(self) -> &'static str {
@@ -103,6 +113,7 @@ impl Screen {
             Self::Mission => "Mission",
             Self::Alarms => "Alarms",
             Self::Events => "Events",
+            Self::Review => "Review",
             Self::Result => "Result",
             Self::Plugins => "Plugins",
         }
@@ -116,6 +127,7 @@ impl Screen {
             Self::Mission => 3,
             Self::Alarms => 4,
             Self::Events => 5,
+            Self::Review => 6,
             Self::Result => 7,
             Self::Plugins => 8,
         }
@@ -299,6 +311,8 @@ pub enum Overlay {
     },
     /// The line in which is typed for how long and why an alarm is put aside.
     Shelve(Shelving),
+    /// The line in which the text of a bookmark at the cursor of a replay is typed.
+    Bookmark(LineEdit),
 }
 
 /// For how long and why an alarm is put aside, being typed.

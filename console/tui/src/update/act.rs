@@ -6,7 +6,7 @@ use super::message::Effect;
 use super::offer::{offered, refuse};
 use super::overlay::{self, ask, open};
 use super::send::{hold_now, send};
-use super::{alarms, events, palette, preflight, typing, what_if};
+use super::{alarms, events, palette, preflight, replay, review, typing, what_if};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
 use crate::model::plugins::plugins;
@@ -31,6 +31,7 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         return refuse(model, why);
     }
     match id {
+        ActionId::Hold if model.live.is_replay() => replay::act(model, id),
         ActionId::Hold => hold(model),
         ActionId::Cancel if model.ui.overlay == Overlay::Stepping => end_steps(model),
         ActionId::Interrupt => interrupt(model),
@@ -41,8 +42,18 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::GoMission => go(model, Screen::Mission),
         ActionId::GoAlarms => go(model, Screen::Alarms),
         ActionId::GoEvents => go(model, Screen::Events),
+        ActionId::GoReview => go(model, Screen::Review),
         ActionId::GoResult => go(model, Screen::Result),
         ActionId::GoPlugins => go(model, Screen::Plugins),
+        ActionId::Replay => go::begin(model, id),
+        ActionId::Play
+        | ActionId::Jump(_)
+        | ActionId::Bookmark
+        | ActionId::Unmark
+        | ActionId::CompareRun
+        | ActionId::Difference
+        | ActionId::Align => replay::act(model, id),
+        ActionId::Sort => review::sort(model),
         ActionId::Reload => vec![Effect::Survey],
         ActionId::Again => go::again(model),
         ActionId::Rescan | ActionId::Verify | ActionId::Report | ActionId::View => go::begin(model, id),
@@ -108,6 +119,8 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         | ActionId::Include
         | ActionId::PresetSave
         | ActionId::PresetLoad
+        | ActionId::Seek
+        | ActionId::Remark
         | ActionId::Centre => palette::begin(model, id),
         other => look(model, other),
     }
@@ -183,6 +196,9 @@ fn leave(model: &mut Model) -> Vec<Effect> {
 
 /// HOLD for who cannot see whether the robot moves: it never asks to resume.
 pub(super) fn hold_only(model: &mut Model) -> Vec<Effect> {
+    if model.live.is_replay() {
+        return replay::pause(model);
+    }
     let withdrawn = overlay::withdraw_motion(model);
     match offered(model, ActionId::Hold) {
         _ if model.live.may_move() => hold_now(model),
@@ -266,6 +282,7 @@ pub(super) fn select(model: &mut Model, by: isize) {
     }
     match (&model.ui.overlay, model.ui.screen) {
         (Overlay::None, Screen::Home) => model.home.select(by),
+        (Overlay::None, Screen::Review) => model.review.select(&model.home, by),
         (Overlay::None, Screen::Mission | Screen::Events) => model.ui.events.select(by),
         (Overlay::None, Screen::Alarms) => alarms::select(model, by),
         (Overlay::None, Screen::Result) => go::select_missed(model, by),

@@ -14,6 +14,7 @@ use super::message::Effect;
 use super::offer::{accepted, offered, refuse};
 use super::overlay;
 use super::preset;
+use super::replay;
 use super::send::send;
 use super::stations;
 use super::typing;
@@ -123,7 +124,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
         return if action.id == ActionId::Hold { hold_only(model) } else { act(model, action.id) };
     };
     // What is named needs no screen on which it is selected.
-    let is_named = matches!(first, Value::Run(_) | Value::Duration(_));
+    let is_named = matches!(first, Value::Run(_) | Value::Duration(_)) && action.id != ActionId::CompareRun;
     let can = if is_named { allowed(model, action.id) } else { offered(model, action.id) };
     if let Err(why) = can {
         return refuse(model, why);
@@ -161,6 +162,12 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
         Value::Alarm(_) | Value::Fault(_) => {}
         Value::Preset(name) => return preset::load(model, &name),
         Value::Text(name) if action.id == ActionId::PresetSave => return preset::save(model, name),
+        Value::Text(text) if action.id == ActionId::Remark => return replay::remark(model, &text),
+        Value::Text(text) if action.id == ActionId::Bookmark => {
+            let t_s = model.live.run.clock.t_s;
+            return replay::bookmark(model, t_s, &text);
+        }
+        Value::Moment(t_s) => return replay::seek_to(model, t_s),
         Value::Text(text) => typing::filter(model, &text),
     }
     Vec::new()

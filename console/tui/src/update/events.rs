@@ -82,7 +82,7 @@ pub(super) fn set_least(model: &mut Model, least: Severity) {
 /// Opens the line in which the filter is typed; what is typed next is a term of its own.
 pub(super) fn open_filter(model: &mut Model) -> Vec<Effect> {
     let mut text = typing::filtered(model).to_owned();
-    if !text.is_empty() && model.ui.screen != Screen::Home && !text.ends_with(' ') {
+    if !text.is_empty() && !matches!(model.ui.screen, Screen::Home | Screen::Review) && !text.ends_with(' ') {
         text.push(' ');
     }
     model.ui.overlay = Overlay::Filter(text.as_str().into());

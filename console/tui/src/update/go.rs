@@ -2,9 +2,10 @@
 
 use super::message::{Effect, Job};
 use super::offer::{nothing_under_way, refuse};
-use super::{alarms, events, news};
+use super::{alarms, events, news, replay, review};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
+use crate::model::log::clock;
 use crate::model::{Cause, Live, Model, Pane, RunId, Screen, Source};
 use mission::{PlannerChoice, Severity};
 use world::Point;
@@ -12,14 +13,19 @@ use world::Point;
 /// Goes to a screen; home is looked at again each time.
 pub(super) fn go(model: &mut Model, screen: Screen) -> Vec<Effect> {
     model.ui.go(screen);
-    if screen == Screen::Home { vec![Effect::Look] } else { Vec::new() }
+    if lists_runs(screen) { vec![Effect::Look] } else { Vec::new() }
+}
+
+/// Whether a screen shows what is on the disk.
+fn lists_runs(screen: Screen) -> bool {
+    matches!(screen, Screen::Home | Screen::Review)
 }
 
 /// Goes back to the screen before, if there is one.
 pub(super) fn back(model: &mut Model) -> Option<Vec<Effect>> {
     let before = model.ui.back.pop().or((model.ui.screen != Screen::Home).then_some(Screen::Home))?;
     model.ui.screen = before;
-    Some(if before == Screen::Home { vec![Effect::Look] } else { Vec::new() })
+    Some(if lists_runs(before) { vec![Effect::Look] } else { Vec::new() })
 }
 
 /// Enter on a screen without anything over it.
@@ -27,6 +33,7 @@ pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
     match model.ui.screen {
         Screen::Home => open_selected(model),
         Screen::Alarms => alarms::open_actions(model),
+        Screen::Review => review::enter(model),
         Screen::Events => events::enter(model),
         Screen::Mission if model.ui.pane == Pane::Events => events::enter(model),
         Screen::Plan | Screen::Mission | Screen::Result | Screen::Plugins => Vec::new(),
@@ -50,16 +57,10 @@ fn open_selected(model: &mut Model) -> Vec<Effect> {
     open(model, source, None)
 }
 
-/// The result of the selected run, as far as it is the run that is open.
+/// The result of the selected run, if it is the run that is open; any other is played back.
 fn go_to_run(model: &mut Model) -> Vec<Effect> {
     let is_open = selected_run(model).is_some() && selected_run(model) == result_name(model);
-    if is_open {
-        go(model, Screen::Result)
-    } else {
-        let why =
-            model.console.keys.spelled("this run is not open; <report>: report, <view>: open it in rerun");
-        refuse(model, why)
-    }
+    if is_open { go(model, Screen::Result) } else { begin(model, ActionId::Replay) }
 }
 
 /// Opens a scenario: its mission is laid out and waits; nothing moves.
@@ -117,7 +118,11 @@ pub(super) fn select_missed(model: &mut Model, by: isize) {
 
 /// The run that a command is about: on the home screen the selected one, else the one that is open.
 pub(super) fn named_run(model: &Model) -> Option<String> {
-    if model.ui.screen == Screen::Home { selected_run(model) } else { result_name(model) }
+    match model.ui.screen {
+        Screen::Home => selected_run(model),
+        Screen::Review => model.review.run(&model.home).map(|run| run.name.clone()),
+        _ => model.live.replay.as_ref().map(|replay| replay.name.clone()).or_else(|| result_name(model)),
+    }
 }
 
 fn selected_run(model: &Model) -> Option<String> {
@@ -140,13 +145,25 @@ pub(super) fn begin(model: &mut Model, id: ActionId) -> Vec<Effect> {
 pub(super) fn begin_on(model: &mut Model, id: ActionId, run: String) -> Vec<Effect> {
     let (job, news) = match id {
         ActionId::Rescan => return open(model, Source::Rescan(vec![run]), None),
+        ActionId::Replay => return replay::open(model, run),
+        ActionId::CompareRun => return replay::compare(model, run),
         ActionId::Verify => (Job::Verify(run), "verifying"),
         ActionId::Report => (Job::Report(run), "writing the report of"),
-        _ => (Job::View(run), "opening the recording of"),
+        _ => (view(model, run), "opening the recording of"),
     };
     let run = job.run().to_owned();
     model.say(Severity::Info, format!("{news} {run}..."));
     vec![Effect::Do(job)]
+}
+
+/// The recording of a run; of the one that is played back at the moment that is shown.
+fn view(model: &Model, run: String) -> Job {
+    match &model.live.replay {
+        Some(replay) if replay.name == run => {
+            Job::ViewAt(run, format!("T+{}", clock(model.live.run.clock.t_s)))
+        }
+        _ => Job::View(run),
+    }
 }
 
 /// Work on a past run is done.
@@ -164,7 +181,7 @@ impl Job {
     /// Name of the run that it is about.
     pub fn run(&self) -> &str {
         match self {
-            Self::Verify(run) | Self::Report(run) | Self::View(run) => run,
+            Self::Verify(run) | Self::Report(run) | Self::View(run) | Self::ViewAt(run, _) => run,
         }
     }
 
@@ -172,7 +189,7 @@ impl Job {
         match self {
             Self::Verify(_) => "verifying the run",
             Self::Report(_) => "writing the report",
-            Self::View(_) => "opening the recording",
+            Self::View(_) | Self::ViewAt(..) => "opening the recording",
         }
     }
 }

@@ -1,6 +1,6 @@
 //! News of the run that is open.
 
-use super::{Effect, RunMsg, go, health, news, preflight, what_if};
+use super::{Effect, RunMsg, go, health, news, preflight, replay, what_if};
 use crate::model::{
     Busy, Cause, Change, Health, Live, Model, Overlay, Recording, RunId, RunResult, Screen, Withdrawn,
     ui::Ask,
@@ -75,6 +75,7 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
             what_if::made(model, &choice, forecast.map(|forecast| *forecast));
         }
         RunMsg::Closed(result) => return closed(model, *result),
+        RunMsg::Replay(msg) => replay::hear(model, msg),
     }
     Vec::new()
 }

@@ -3,11 +3,12 @@
 use crate::actions::ActionId;
 use crate::keys::KeyPress;
 use crate::model::{
-    Forecast, GhostPlan, Health, Measured, Preset, Refused, RunId, RunResult, Source, Speed, Times,
+    Forecast, GhostPlan, Health, Measured, Preset, Refused, Run, RunId, RunResult, Source, Speed, Times,
     home::Found,
+    replay::{Align, Reel, Side},
 };
 use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, Severity};
-use report::Estimate;
+use report::{Estimate, Summary, notes::Notes};
 use serde::{Deserialize, Serialize};
 use world::Point;
 
@@ -115,6 +116,8 @@ pub enum Rows {
     Plugins,
     /// Missed areas of the result.
     Missed,
+    /// Past runs on the review screen.
+    Past,
 }
 
 /// News of a run that is open.
@@ -157,6 +160,42 @@ pub enum RunMsg {
     Forecast(PlannerChoice, Result<Box<Forecast>, String>),
     /// The run has ended and its files are closed.
     Closed(Box<RunResult>),
+    /// News of a past run that is played back.
+    Replay(ReplayMsg),
+}
+
+/// News of a past run that is played back.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum ReplayMsg {
+    /// More of a run is loaded; the marks are those that are new.
+    Loaded(Side, Reel),
+    /// The run at another moment.
+    At(Side, Box<Run>),
+    /// Events between the moment before and a later one.
+    Moved(Side, Vec<Event>),
+    /// The time of the run goes on no more: its end is reached.
+    Stopped,
+    /// The report of a run; for the one that is played with where it is kept.
+    Reported(Side, Box<Summary>, String),
+    /// A run cannot be read, with the reason as a sentence.
+    Failed(Side, String),
+    /// What people noted about the run that is played, or why that cannot be read or written.
+    Noted(Result<Notes, String>),
+}
+
+/// What a replay is asked for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Transport {
+    /// Let time go on, or stop it.
+    Play(bool),
+    /// Go to a moment: mission time, seconds.
+    Seek(f64),
+    /// Which moments of the two runs correspond.
+    Align(Align),
+    /// Read another run beside it, by the name of its folder, or none.
+    Compare(Option<String>),
+    /// Keep what people noted.
+    Keep(Notes),
 }
 
 /// A signal to the process.
@@ -183,6 +222,8 @@ pub enum Job {
     Report(String),
     /// Open the recording of a run in the viewer.
     View(String),
+    /// The same while the run is played back, with the moment that is shown, such as `T+00:12:30`.
+    ViewAt(String, String),
 }
 
 /// What the caller has to do, in order.
@@ -199,6 +240,15 @@ pub enum Effect {
         /// How fast it shall go.
         speed: Speed,
     },
+    /// Close the run that is open, if one is, and play a past one back.
+    Replay {
+        /// What the new run is called.
+        id: RunId,
+        /// Name of its folder.
+        run: String,
+    },
+    /// Something for the replay that is open.
+    Transport(Transport),
     /// Look at everything outside the screen that the start depends on.
     Check {
         /// Space that the recording of the mission is expected to take, bytes.

@@ -40,7 +40,7 @@ pub(super) fn take(model: &mut Model, mouse: Mouse) -> Vec<Effect> {
 fn click(model: &mut Model, list: Rows, index: usize) -> Vec<Effect> {
     let was_focused = !focus(model, list);
     let before = selected(model, list);
-    let opens = matches!(list, Rows::Scenarios | Rows::Runs | Rows::Alarms | Rows::Events);
+    let opens = matches!(list, Rows::Scenarios | Rows::Runs | Rows::Alarms | Rows::Events | Rows::Past);
     if was_focused && before == index {
         return if opens { act(model, ActionId::Accept) } else { Vec::new() };
     }
@@ -53,7 +53,7 @@ fn focus(model: &mut Model, list: Rows) -> bool {
     let wanted = match list {
         Rows::Scenarios => HomeList::Scenarios,
         Rows::Runs => HomeList::Runs,
-        Rows::Alarms | Rows::Events | Rows::Plugins | Rows::Missed => return false,
+        Rows::Alarms | Rows::Events | Rows::Plugins | Rows::Missed | Rows::Past => return false,
     };
     std::mem::replace(&mut model.home.list, wanted) != wanted
 }
@@ -71,5 +71,6 @@ fn selected(model: &Model, list: Rows) -> usize {
         Rows::Events => model.ui.events.newer(),
         Rows::Plugins => model.ui.plugin,
         Rows::Missed => model.ui.missed,
+        Rows::Past => model.review.selected,
     }
 }

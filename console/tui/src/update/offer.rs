@@ -1,9 +1,9 @@
 //! What can be done now, and why not otherwise. Footer and keys ask the same question.
 
 use super::go::named_run;
-use super::look_only::{LOOK_ONLY, allowed};
+use super::look_only::{allowed, no_orders};
 use super::message::Effect;
-use super::{preset, shadow, stations, typing};
+use super::{preset, replay, shadow, stations, typing};
 use crate::actions::ActionId;
 use crate::model::{Alarm, Model, Overlay, Pane, Screen, ui::MAX_ZOOM};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
@@ -30,7 +30,7 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::DropShadow => accepted(model, &Order::DropShadow),
         ActionId::Accept => {
             let opens = match model.ui.screen {
-                Screen::Home | Screen::Alarms | Screen::Events => true,
+                Screen::Home | Screen::Alarms | Screen::Events | Screen::Review => true,
                 Screen::Mission => model.ui.pane == Pane::Events,
                 Screen::Plan | Screen::Result | Screen::Plugins => false,
             };
@@ -85,6 +85,17 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
             demand(turns, "there is one pane only")
         }
         ActionId::Complete => demand(typing::completes(model), "nothing to complete here"),
+        ActionId::Replay
+        | ActionId::Play
+        | ActionId::Jump(_)
+        | ActionId::Seek
+        | ActionId::Bookmark
+        | ActionId::Unmark
+        | ActionId::Remark
+        | ActionId::CompareRun
+        | ActionId::Difference
+        | ActionId::Align => replay::can(model, id),
+        ActionId::Sort => on_screen(model, Screen::Review),
         ActionId::Interrupt
         | ActionId::Redraw
         | ActionId::Suspend
@@ -94,6 +105,7 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::GoPlugins
         | ActionId::GoAlarms
         | ActionId::GoEvents
+        | ActionId::GoReview
         | ActionId::Remedy(_)
         | ActionId::Back
         | ActionId::Leave
@@ -209,7 +221,7 @@ fn on_screen(model: &Model, screen: Screen) -> Result<(), String> {
 
 /// Whether the mission would accept an order, by its own table.
 pub(super) fn accepted(model: &Model, order: &Order) -> Result<(), String> {
-    demand(!model.live.is_look_only(), LOOK_ONLY)?;
+    no_orders(model)?;
     model.live.run.standing.standing().allows(order).map_err(|why| {
         match remedy(&why, model.live.run.phase()) {
             Some(remedy) => model.console.keys.spelled(&format!("{why}; {remedy}")),
@@ -219,6 +231,9 @@ pub(super) fn accepted(model: &Model, order: &Order) -> Result<(), String> {
 }
 
 fn hold(model: &Model) -> Result<(), String> {
+    if model.live.is_replay() {
+        return replay::can(model, ActionId::Play);
+    }
     if model.live.may_move() { Ok(()) } else { accepted(model, &Order::Hold) }
 }
 
@@ -272,12 +287,17 @@ fn parameters(model: &Model) -> Result<(), String> {
 }
 
 fn simulating(model: &Model) -> Result<(), String> {
+    if model.live.is_replay() {
+        return Ok(());
+    }
     demand(model.live.run.about.is_some() && !model.live.run.has_ended(), "no mission is open")
 }
 
 /// One mission at a time.
 pub(super) fn nothing_under_way(model: &Model) -> Result<(), String> {
-    demand(!model.live.is_look_only(), LOOK_ONLY)?;
+    if !model.live.is_replay() {
+        no_orders(model)?;
+    }
     let why = model.console.keys.spelled("a mission is in progress; <mission>: show it, <end>: end it");
     demand(!model.live.is_under_way(), &why)
 }

@@ -6,6 +6,7 @@ use super::message::Effect;
 use super::offer::{accepted, offered, refuse};
 use super::preflight;
 use super::preset::take as take_preset;
+use super::replay;
 use super::send::send;
 use super::{palette, shadow, typing, what_if};
 use crate::actions::ActionId;
@@ -63,6 +64,7 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
         Overlay::Preflight { .. } => preflight::tick(model),
         Overlay::Filter(_) => open(model, Overlay::None),
         Overlay::Shelve(shelving) => alarms::take_shelving(model, shelving),
+        Overlay::Bookmark(line) => replay::take_bookmark(model, &line),
     }
 }
 
@@ -229,7 +231,8 @@ pub(super) fn select(model: &mut Model, by: isize) {
         | Overlay::Quit
         | Overlay::WhatIf
         | Overlay::Filter(_)
-        | Overlay::Shelve(_) => 0,
+        | Overlay::Shelve(_)
+        | Overlay::Bookmark(_) => 0,
     };
     if let Overlay::Commands(Palette { selected, .. })
     | Overlay::Planners { selected, .. }

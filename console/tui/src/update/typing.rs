@@ -7,8 +7,9 @@ use mission::{ParamKind, Severity};
 
 /// Whether a line is open in which text is typed: letters and the space do nothing else then.
 pub fn is_typing(model: &Model) -> bool {
-    use Overlay::{Commands, Filter, Parameters, Shelve};
-    matches!(model.ui.overlay, Commands(_) | Parameters { edit: Some(_), .. } | Filter(_) | Shelve(_))
+    use Overlay::{Bookmark, Commands, Filter, Parameters, Shelve};
+    let overlay = &model.ui.overlay;
+    matches!(overlay, Commands(_) | Parameters { edit: Some(_), .. } | Filter(_) | Shelve(_) | Bookmark(_))
 }
 
 /// Gives a key to the line that is open; whether there is such a line and the key does something in it.
@@ -69,7 +70,7 @@ fn line(overlay: &mut Overlay) -> Option<&mut LineEdit> {
     match overlay {
         Overlay::Commands(palette) => Some(&mut palette.line),
         Overlay::Parameters { edit: Some(edit), .. } => Some(&mut edit.line),
-        Overlay::Filter(line) => Some(line),
+        Overlay::Filter(line) | Overlay::Bookmark(line) => Some(line),
         Overlay::Shelve(shelving) => Some(&mut shelving.line),
         _ => None,
     }
@@ -90,14 +91,21 @@ fn changed(model: &mut Model) {
 
 /// The text by which the list of the screen is filtered.
 pub(super) fn filtered(model: &Model) -> &str {
-    if model.ui.screen == Screen::Home { &model.home.filter } else { &model.ui.needle }
+    match model.ui.screen {
+        Screen::Home => &model.home.filter,
+        Screen::Review => &model.review.filter,
+        _ => &model.ui.needle,
+    }
 }
 
 /// Filters the list of the screen by a text.
 pub(super) fn filter(model: &mut Model, text: &str) {
-    let home = model.ui.screen == Screen::Home;
-    let filter = if home { &mut model.home.filter } else { &mut model.ui.needle };
+    let filter = match model.ui.screen {
+        Screen::Home => &mut model.home.filter,
+        Screen::Review => &mut model.review.filter,
+        _ => &mut model.ui.needle,
+    };
     text.clone_into(filter);
-    (model.home.scenario, model.home.run) = (0, 0);
+    (model.home.scenario, model.home.run, model.review.selected) = (0, 0, 0);
     model.ui.events.at = None;
 }

@@ -3,6 +3,7 @@
 
 use super::map::{PlateDrawing, PlateKey, ShadeKey, Shades, Window};
 use crate::actions::ActionId;
+use crate::model::{Raster, replay::Shares};
 use crate::update::{Rows, Target};
 use ratatui::layout::{Position, Rect};
 use std::rc::Rc;
@@ -14,6 +15,7 @@ pub struct Cache {
     shades: Option<(ShadeKey, Shades)>,
     plate_map: Option<(PlateMapKey, Rc<PlateMap>)>,
     plates: Option<(PlateKey, Rc<PlateDrawing>)>,
+    shares: Option<((u64, u64), Shares)>,
     places: Places,
 }
 
@@ -69,6 +71,11 @@ impl Cache {
         make: impl FnOnce() -> Rc<PlateDrawing>,
     ) -> Rc<PlateDrawing> {
         kept(&mut self.plates, key, make)
+    }
+
+    /// Which floor only one of two runs scanned.
+    pub(super) fn shares(&mut self, a: &Raster, b: &Raster) -> Shares {
+        kept(&mut self.shares, (a.stamp(), b.stamp()), || Shares::of(a, b))
     }
 
     /// The plate of every cell of a floor.

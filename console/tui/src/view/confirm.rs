@@ -53,6 +53,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
             &shelve(look.model, shelving),
         );
     }
+    if let Overlay::Bookmark(line) = &look.model.ui.overlay {
+        return typed(look, frame, area, (" Bookmark: ", line), "  Enter: set, Esc: cancel.");
+    }
     let (role, clauses) = clauses(look.model);
     let columns = usize::from(area.width).saturating_sub(1);
     let text = next::joined(&clauses, columns.saturating_sub(1));
@@ -63,8 +66,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 /// The line in which a filter is typed, what is wrong with it, and which keys end it.
 fn filter(look: &Look, frame: &mut Frame, area: Rect, line: &LineEdit) {
     let problem = look.model.ui.events.matches.filter().problems.first();
-    let problem =
-        problem.filter(|_| look.model.ui.screen != Screen::Home).map(|problem| format!("  {}.", problem.why));
+    let problem = problem
+        .filter(|_| !matches!(look.model.ui.screen, Screen::Home | Screen::Review))
+        .map(|problem| format!("  {}.", problem.why));
     typed(
         look,
         frame,

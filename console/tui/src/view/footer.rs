@@ -7,6 +7,7 @@ use crate::actions::{
     context::{Context, contexts},
 };
 use crate::keys::Key;
+use crate::model::replay::Jump;
 use crate::model::{Model, Overlay, Screen, ui::Arrangement};
 use crate::theme::Role;
 use crate::update::{is_typing, offered};
@@ -16,16 +17,25 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 /// What goes first when there is too little room.
-const DISPENSABLE: [ActionId; 10] = [
+const DISPENSABLE: [ActionId; 19] = [
+    ActionId::Difference,
+    ActionId::Align,
+    ActionId::Jump(Jump::Minute),
     ActionId::Complete,
     ActionId::AcknowledgeAll,
     ActionId::NextPane,
     ActionId::Parameters,
     ActionId::Faster,
+    ActionId::Bookmark,
+    ActionId::Jump(Jump::Tick),
     ActionId::ChoosePlanner,
     ActionId::Acknowledge,
     ActionId::Commands,
     ActionId::Step,
+    ActionId::View,
+    ActionId::Report,
+    ActionId::Verify,
+    ActionId::Rescan,
     ActionId::Help,
 ];
 
@@ -117,7 +127,10 @@ fn shown(action: &Action, contexts: &[Context], model: &Model) -> bool {
 }
 
 fn label(action: &Action, model: &Model) -> String {
+    let is_playing = model.live.replay.as_ref().map(|replay| replay.is_playing);
     let word = match (action.id, &model.ui.overlay) {
+        (ActionId::Hold, Overlay::None) if is_playing == Some(true) => "pause",
+        (ActionId::Hold, Overlay::None) if is_playing == Some(false) => "play",
         (ActionId::Hold, _) if matches!(model.live.run.phase(), Phase::Held(_)) && !model.live.may_move() => {
             "resume?"
         }
@@ -127,6 +140,7 @@ fn label(action: &Action, model: &Model) -> String {
             Screen::Alarms => "actions",
             Screen::Events if model.ui.events.is_open => "close detail",
             Screen::Events => "detail",
+            Screen::Review => "replay",
             _ => "open",
         },
         (ActionId::Back, _) if model.ui.screen == Screen::Home => "quit",
@@ -139,6 +153,7 @@ fn label(action: &Action, model: &Model) -> String {
         (ActionId::Accept, Overlay::Parameters { edit: Some(_), .. }) => "send",
         (ActionId::Accept, Overlay::Filter(_)) => "keep",
         (ActionId::Accept, Overlay::Shelve(_)) => "shelve",
+        (ActionId::Accept, Overlay::Bookmark(_)) => "set",
         (ActionId::Accept, Overlay::Stepping) => "step",
         (ActionId::Cancel, Overlay::Filter(_)) => "clear",
         (

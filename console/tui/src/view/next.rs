@@ -1,7 +1,7 @@
 //! The line that says what comes next and whether anybody is needed.
 
 use super::{events, text};
-use crate::model::{Busy, Model, Screen};
+use crate::model::{Busy, Model, Replay, Screen};
 use crate::theme::Role;
 use mission::{Hold, HoldReason, Order, Outcome, Phase, PositionTrust, Resumes, Severity};
 
@@ -23,9 +23,22 @@ fn without_notice(model: &Model) -> Clauses {
     let (role, mut clauses) = by_phase(model);
     if model.live.is_look_only() {
         clauses.retain(|clause| !clause.contains(['<', '>']) && !clause.contains("space:"));
-        clauses.push("VIEW: orders are given on the console that runs the mission.".into());
+        clauses.push(match &model.live.replay {
+            Some(replay) => played(model, replay),
+            None => "VIEW: orders are given on the console that runs the mission.".into(),
+        });
     }
     (role, clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
+}
+
+/// What a replay is, and which key goes on.
+fn played(model: &Model, replay: &Replay) -> String {
+    let next = match (model.live.is_opening, replay.is_playing) {
+        (true, _) => "reading the run...",
+        (false, true) => "space: pause.",
+        (false, false) => "space: play.",
+    };
+    format!("Past run, no robot connected; {next}")
 }
 
 fn by_phase(model: &Model) -> Clauses {

@@ -49,6 +49,10 @@ fn right_of(area: Rect, width: u16) -> Rect {
 
 /// Who is in charge, and whether the robot moves.
 pub(super) fn state(model: &Model) -> Parts {
+    if let Some(replay) = &model.live.replay {
+        let word = if replay.is_playing { "▶ PLAY" } else { "‖ PAUSE" };
+        return vec![(Role::Selected, "REPLAY".into()), (Role::Title, format!(" {word}"))];
+    }
     let (who, role, word) = match model.live.run.phase() {
         Phase::Waiting => ("OPER", Role::Title, "■ IDLE"),
         Phase::Running(Gait::Steady) => ("AUTO", Role::Run, "▶ RUN"),
@@ -101,6 +105,10 @@ pub(super) fn time(model: &Model) -> Parts {
         }
         None => (Role::Text, format!("T+{} ", text::clock(model.live.run.clock.t_s))),
     };
+    // How fast it is played back; the robot is not connected.
+    if model.live.is_replay() {
+        return vec![clock, (Role::Text, format!("{} ", text::speed(model.live.speed)))];
+    }
     // A journal says neither how fast its mission goes nor whether it is recorded.
     if model.live.is_look_only() {
         return vec![clock];

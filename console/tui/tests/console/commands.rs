@@ -17,10 +17,13 @@ fn with_home(mut screen: Screen) -> Screen {
         name: name.into(),
         began: String::new(),
         scenario: "demo".into(),
+        planner: String::new(),
         end: "complete".into(),
         mission_time_s: None,
         reachable: None,
         note: None,
+        remark: None,
+        bookmarks: 0,
     };
     let found = Found {
         scenarios: vec![

@@ -1,6 +1,7 @@
 //! Laws that hold for every screen.
 
 use crate::fixture::{ASCII, PLAIN, RICH, Screen, choice, of_run, planner};
+use crate::replay::replaying;
 use crate::screens::{drawn, text};
 use mission::{AskId, Event, EventKind, HoldReason, Order, Outcome, Resumes, Severity, WorkerId};
 use proptest::prelude::*;
@@ -16,7 +17,7 @@ use world::Point;
 
 fn key() -> impl Strategy<Value = Key> {
     prop_oneof![
-        6 => prop::sample::select(" SX.P<>pa:?qzZ0ifLm/hjklgGeq19xyz\u{7}é漢".chars().collect::<Vec<_>>()).prop_map(Key::Char),
+        6 => prop::sample::select(" SX.P<>pa:?qzZ0ifLm/hjklgGeq1369xyz[]{}(),^$bBnNDTcs\u{7}é漢".chars().collect::<Vec<_>>()).prop_map(Key::Char),
         2 => prop::sample::select(vec![Key::Enter, Key::Esc, Key::Tab, Key::BackTab, Key::Backspace, Key::Delete]),
         2 => prop::sample::select(vec![Key::Up, Key::Down, Key::Left, Key::Right, Key::CtrlLeft, Key::CtrlRight, Key::PageUp, Key::PageDown, Key::Home, Key::End]),
         1 => prop::sample::select("cpzudlw".chars().collect::<Vec<_>>()).prop_map(Key::Ctrl),
@@ -203,13 +204,15 @@ proptest! {
     #[test]
     fn no_messages_and_no_size_make_the_screen_fail(
         msgs in prop::collection::vec(msg(), 0..40),
-        start in 0..3_u8,
+        start in 0..5_u8,
         caps in caps(),
         size in (0..300_u16, 0..100_u16),
     ) {
         let mut screen = if start == 1 { Screen::held() } else { Screen::idle() };
-        if start == 2 {
-            screen.model = Model::default();
+        match start {
+            2 => screen.model = Model::default(),
+            3 | 4 => screen = replaying(start == 4),
+            _ => {}
         }
         for msg in msgs {
             screen.send(msg);
@@ -320,8 +323,26 @@ fn the_smallest_and_largest_screens_are_drawn() {
     for (width, height) in
         [(0, 0), (1, 1), (0, 9), (9, 0), (3, 2), (24, 7), (59, 16), (60, 15), (80, 24), (300, 100)]
     {
-        for mut screen in [Screen::idle(), Screen::running()] {
-            for keys in ["", "?", ":z", "P", "p", "L", "/x", "q", "S", "X", "4", "4d15;x", "5", "5/sevv>=x"] {
+        for mut screen in [Screen::idle(), Screen::running(), replaying(false), replaying(true)] {
+            for keys in [
+                "",
+                "6",
+                "3D",
+                "b",
+                "?",
+                ":z",
+                "P",
+                "p",
+                "L",
+                "/x",
+                "q",
+                "S",
+                "X",
+                "4",
+                "4d15;x",
+                "5",
+                "5/sevv>=x",
+            ] {
                 screen.type_text(keys);
                 drawn(&screen.model, RICH, (width, height));
                 screen.press([Key::Esc]);

@@ -12,6 +12,7 @@ mod overviews;
 mod panes;
 mod presets;
 mod reference;
+mod replay;
 mod screens;
 mod scripts;
 mod shadow;

@@ -38,10 +38,13 @@ fn past(name: &str, end: &str, reachable: Option<f64>) -> PastRun {
         name: format!("20261122T040049Z-{name}"),
         began: "11-22 04:00".into(),
         scenario: name.into(),
+        planner: "rpf".into(),
         end: end.into(),
         mission_time_s: Some(875.0),
         reachable,
         note: None,
+        remark: None,
+        bookmarks: 0,
     }
 }
 

@@ -56,6 +56,7 @@ fn kind(kind: Kind) -> &'static str {
         Kind::Screen => "name of a screen",
         Kind::Preset => "name of a parameter preset",
         Kind::Duration => "a span of time: `20s`, `15m`, `1h30m`",
+        Kind::Moment => "a moment of the run: `01:12:30`, `12:30` or `12m30s`",
         Kind::Alarm => "name of an alarm, as the list of alarms shows it",
         Kind::Station => "name of an AE station",
         Kind::Fault => "`dead`: not heard; `offset=METRES`: ranges too long by more than 0 to 1000 m",

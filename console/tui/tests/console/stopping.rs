@@ -66,6 +66,7 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Filter("a".into()),
         Overlay::Remedies { cause: Cause::PositionLost, selected: 0 },
         Overlay::Shelve(Shelving { cause: Cause::Stuck, line: "15".into(), refusal: None }),
+        Overlay::Bookmark("pump".into()),
     ];
     // A new overlay does not compile until it is in the list above.
     for overlay in &all {
@@ -85,6 +86,7 @@ fn overlays() -> Vec<Overlay> {
             | Overlay::WhatIf
             | Overlay::Remedies { .. }
             | Overlay::Shelve(_)
+            | Overlay::Bookmark(_)
             | Overlay::Filter(_) => {}
         }
     }
@@ -110,6 +112,7 @@ impl Where {
             Overlay::Commands(_)
                 | Overlay::Filter(_)
                 | Overlay::Shelve(_)
+                | Overlay::Bookmark(_)
                 | Overlay::Parameters { edit: Some(_), .. }
         );
         match self {

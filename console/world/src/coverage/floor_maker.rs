@@ -114,7 +114,7 @@ impl FloorMaker {
     /// assert!(!maker.update(&tank, &map, &[shape]).is_empty());
     /// ```
     pub fn update(&mut self, world: &World, map: &ObstacleMap, changed: &[Shape]) -> Vec<KindRun> {
-        let before = self.floor.cells.clone();
+        let before = Arc::clone(&self.floor.cells);
         // Wide enough for the former outline of a moved obstacle too: it moved only slightly.
         let reach_m = self.room_m + self.swath_m;
         for shape in changed {

@@ -47,6 +47,13 @@ impl AddAssign for Tally {
 }
 
 impl Tally {
+    /// A part of it counts as something else now.
+    pub(super) fn replace(&mut self, before: Self, now: Self) {
+        self.floor = self.floor - before.floor + now.floor;
+        self.scanned = self.scanned - before.scanned + now.scanned;
+        self.again = self.again - before.again + now.again;
+    }
+
     /// What the scanned part says; `None` if next to nothing is scanned.
     fn class(self) -> Option<FloorClass> {
         let share = f64::from(self.scanned) / f64::from(self.floor.max(1));
@@ -113,7 +120,7 @@ impl Raster {
             return self.cell_tally(index);
         }
         let level = &self.levels[shift - 1];
-        level.tallies[((index / floor.width) >> shift) * level.width + ((index % floor.width) >> shift)]
+        level.tallies.at(((index / floor.width) >> shift) * level.width + ((index % floor.width) >> shift))
     }
 }
 

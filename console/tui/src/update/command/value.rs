@@ -1,6 +1,6 @@
 //! The values of commands: what there is to choose from, and what a typed word means.
 
-use crate::actions::{ActionId, Kind, duration_s, find};
+use crate::actions::{ActionId, Kind, duration_s, find, moment_s};
 use crate::guide;
 use crate::model::ui::MapLayer;
 use crate::model::{Cause, Model, Screen, Source, Speed, parameter};
@@ -41,6 +41,8 @@ pub(in crate::update) enum Value {
     Station(StationId),
     /// What is wrong with a station.
     Fault(RangeFault),
+    /// A moment of a run: mission time, seconds.
+    Moment(f64),
     /// Any text.
     Text(String),
 }
@@ -63,7 +65,7 @@ pub(super) fn candidates(model: &Model, kind: Kind, typed: &str) -> Vec<String> 
         Kind::Alarm => alarms(model).map(|(name, _)| name).collect(),
         Kind::Station => model.live.run.stations().iter().map(|station| station.name.clone()).collect(),
         Kind::Fault => ["dead", "offset="].map(str::to_owned).into(),
-        Kind::Text => Vec::new(),
+        Kind::Moment | Kind::Text => Vec::new(),
     };
     all.into_iter().map(|value| if value.contains(' ') { format!("\"{value}\"") } else { value }).collect()
 }
@@ -79,6 +81,7 @@ pub(super) fn read(model: &Model, kind: Kind, text: &str) -> Result<Value, Strin
         Kind::Run => read_run(model, text).map(Value::Run),
         Kind::Text => Ok(Value::Text(text.to_owned())),
         Kind::Duration => duration_s(text).map(Value::Duration),
+        Kind::Moment => moment_s(text).map(Value::Moment),
         Kind::Fault => read_fault(text).map(Value::Fault),
         _ => {
             named(model, kind, text).ok_or_else(|| wrong(&text_of(kind), text, &candidates(model, kind, "")))
@@ -119,7 +122,13 @@ fn named(model: &Model, kind: Kind, text: &str) -> Option<Value> {
             let station = model.live.run.stations().iter().find(|station| station.name == name)?;
             Some(Value::Station(station.id))
         }
-        Kind::Speed | Kind::Parameter | Kind::Run | Kind::Text | Kind::Duration | Kind::Fault => None,
+        Kind::Speed
+        | Kind::Parameter
+        | Kind::Run
+        | Kind::Text
+        | Kind::Duration
+        | Kind::Moment
+        | Kind::Fault => None,
     }
 }
 

@@ -1,6 +1,6 @@
 //! What the marks on the map stand for: the floor on the left, lines and marks on the right.
 
-use super::shade::Shade;
+use super::shade::{Shade, compared};
 use crate::model::{Raster, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
@@ -44,6 +44,10 @@ fn floor(look: &Look) -> Vec<Entry> {
         scanned && division.as_ref().is_some_and(|division| share(division) > 0.0)
     };
     let again = run.coverage.as_ref().and_then(Raster::overlap).is_some_and(|share| share > 0.0);
+    if compared(look).is_some() {
+        let shades = [(Shade::OnlyA, "only A"), (Shade::OnlyB, "only B"), (Shade::Partial, "both")];
+        return shades.map(|(shade, word)| (shade.role(), shade.glyph().to_string().repeat(2), word)).into();
+    }
     let entries = [
         (scanned, Shade::Scanned, "scanned"),
         (scanned && again, Shade::Overlap, "overlap"),
@@ -63,8 +67,10 @@ fn marks(look: &Look) -> Vec<Entry> {
     let has_dots = look.caps.glyphs.has_dots();
     let line = |dots: &'static str, letters: &'static str| if has_dots { dots } else { letters };
     let found = look.run.about.iter().flat_map(|run| &run.world.obstacles).any(|obstacle| !obstacle.known);
+    let has_other = look.model.live.replay.as_ref().is_some_and(|replay| replay.other.is_some());
     let entries = [
         (layers.shows(MapLayer::Trail), Role::Trail, line("⠤⠤", ".."), "trail"),
+        (has_other, Role::Ghost, line("⠤⠤", ";;"), "run B"),
         (layers.shows(MapLayer::Plan), Role::Plan, line("⠄⠠", ",,"), "plan"),
         (look.run.shadow.is_some(), Role::Ghost, line("⠤⠤", ";;"), "shadow"),
         (look.run.tether.is_some(), Role::Tether, line("⠤⠤", "~~"), "tether"),

@@ -85,6 +85,7 @@ impl Pen<'_> {
 
     /// Another planner's plan or forecast, where they are compared.
     fn ghost(&self, ctx: &mut Context<'_>) {
+        self.other(ctx);
         let (live, ui) = (&self.look.model.live, &self.look.model.ui);
         let made = match (&ui.overlay, ui.screen) {
             (Overlay::WhatIf, _) => {
@@ -101,6 +102,16 @@ impl Pen<'_> {
             self.take_up(ctx, ';');
             self.stroke(ctx, path, Role::Ghost, true);
         }
+    }
+
+    /// The run with which the one that is played back is compared.
+    fn other(&self, ctx: &mut Context<'_>) {
+        let other = self.look.model.live.replay.as_ref().and_then(|replay| replay.other.as_ref());
+        let Some(other) = other.filter(|_| self.look.model.ui.screen == Screen::Mission) else { return };
+        self.take_up(ctx, ';');
+        let newest: Vec<Point> = other.run.trail.points().iter().rev().copied().collect();
+        let behind = self.reach_m().map_or(newest.as_slice(), |reach_m| within(&newest, reach_m));
+        self.stroke(ctx, behind, Role::Ghost, false);
     }
 
     /// How much of plan and trail is drawn, metres: where neighbouring passes would merge on the map, only what lies
@@ -202,6 +213,10 @@ impl Pen<'_> {
         let (at, heading_rad) = estimated.unwrap_or((start.position, start.heading_rad));
         let role = if run.position.lost { Role::Crit } else { Role::Robot };
         print(at, role, arrow(self.look.caps.glyphs, heading_rad).into());
+        let other = self.look.model.live.replay.as_ref().and_then(|replay| replay.other.as_ref());
+        if let Some(pose) = other.and_then(|other| other.run.position.pose.as_ref()) {
+            print(pose.position, Role::Ghost, "B".into());
+        }
         if let Some(cursor) = ui.cursor {
             print(cursor, Role::Selected, "┼".into());
         }

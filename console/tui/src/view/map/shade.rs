@@ -1,7 +1,7 @@
 //! The floor below everything else on the map: what has been scanned and what not, each by a character and a colour.
 
 use super::shapes::Window;
-use crate::model::{FloorClass, Raster, ui::MapLayer};
+use crate::model::{FloorClass, Raster, replay::Scans, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use ratatui::buffer::Buffer;
@@ -22,6 +22,10 @@ pub(crate) enum Shade {
     PoorFix,
     /// They are forecast to locate beyond half of the limit here.
     WeakFix,
+    /// Of two runs only the one that is played scanned it.
+    OnlyA,
+    /// Only the one that it is compared with.
+    OnlyB,
 }
 
 impl Shade {
@@ -48,6 +52,8 @@ impl Shade {
             Self::Margin => '-',
             Self::PoorFix => '%',
             Self::WeakFix => ':',
+            Self::OnlyA => 'A',
+            Self::OnlyB => 'B',
         }
     }
 
@@ -62,6 +68,8 @@ impl Shade {
             Self::Margin => Role::Margin,
             Self::PoorFix => Role::Crit,
             Self::WeakFix => Role::Warn,
+            Self::OnlyA => Role::Good,
+            Self::OnlyB => Role::Ghost,
         }
     }
 
@@ -74,9 +82,10 @@ impl Shade {
 /// The shades in a window, row by row from the north west.
 pub(crate) type Shades = Rc<[Option<Shade>]>;
 
-/// What the shades of the floor depend on: the stamp of the raster, the window, rows per row, whether the mission has ended.
+/// What the shades of the floor depend on: the stamp of the raster, the window, rows per row, whether the mission has ended,
+/// and the stamp of the raster of which the difference is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Key(u64, Window, u16, bool);
+pub(crate) struct Key(u64, Window, u16, bool, Option<u64>);
 
 /// Paints the floor where nothing else is drawn, and its ground below lines.
 pub(super) fn paint(look: &Look, window: Window, area: Rect, buffer: &mut Buffer) {
@@ -133,10 +142,30 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
             .collect();
     }
     let Some(raster) = raster else { return Rc::new([]) };
-    let key = Key(raster.stamp(), window, rows_per_row, run.has_missed());
+    let other = compared(look);
+    let key = Key(raster.stamp(), window, rows_per_row, run.has_missed(), other.map(Raster::stamp));
     look.cache.borrow_mut().shades(key, || {
-        window.dots(rows_per_row).map(|(at, edge_m)| floor(raster, at, edge_m, run.has_missed())).collect()
+        let shade = |(at, edge_m)| match other {
+            Some(other) => Scans::in_square(raster, other, at, edge_m).and_then(difference),
+            None => floor(raster, at, edge_m, run.has_missed()),
+        };
+        window.dots(rows_per_row).map(shade).collect()
     })
+}
+
+/// The floor of the run with which the one that is played is compared, if their difference is shown.
+pub(super) fn compared<'a>(look: &Look<'a>) -> Option<&'a Raster> {
+    let replay = look.model.live.replay.as_ref().filter(|replay| replay.shows_difference)?;
+    replay.other.as_ref()?.run.coverage.as_ref()
+}
+
+fn difference(scans: Scans) -> Option<Shade> {
+    match scans {
+        Scans::None => None,
+        Scans::OnlyA => Some(Shade::OnlyA),
+        Scans::OnlyB => Some(Shade::OnlyB),
+        Scans::Both => Some(Shade::Partial),
+    }
 }
 
 fn floor(raster: &Raster, at: Point, edge_m: f64, has_missed: bool) -> Option<Shade> {

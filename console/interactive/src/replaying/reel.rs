@@ -1,0 +1,194 @@
+//! A journal, read once from beginning to end: copies of the run on the way, and what can be gone to.
+
+use anyhow::Context;
+use mission::Event;
+use recording::{JOURNAL_FILE, JournalError, JournalPlace, JournalReader};
+use std::{
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex, MutexGuard, PoisonError, Weak},
+    thread,
+    time::{Duration, Instant},
+};
+use tui::model::{
+    Run,
+    replay::{Mark, MarkKind, Marker, Track},
+};
+
+/// Copies of a run that are kept at most.
+pub(super) const MOST_FRAMES: u64 = 128;
+/// Bytes of the journal between two copies at least: a few milliseconds to read.
+const LEAST_SPACING: u64 = 1 << 18;
+/// Marks of a run at most.
+const MOST_MARKS: usize = 100_000;
+/// How often the screen hears how far the journal is read.
+const NEWS: Duration = Duration::from_millis(100);
+/// Events between two looks at the clock.
+const BURST: usize = 512;
+
+/// The run as its events tell it up to a moment.
+pub(super) struct Frame {
+    /// Mission time of the last tick that is in it, seconds.
+    pub t_s: f64,
+    /// Where the next tick begins.
+    pub place: JournalPlace,
+    pub run: Arc<Run>,
+}
+
+/// What of a journal was read.
+#[derive(Default)]
+pub(super) struct Content {
+    /// Copies of the run, ascending by time.
+    pub frames: Vec<Frame>,
+    pub track: Track,
+    pub until_s: f64,
+    /// Bytes of the journal that were read and understood.
+    pub bytes: u64,
+    pub is_whole: bool,
+}
+
+/// A journal that is read in a thread of its own, as long as somebody holds this.
+pub(super) struct Reel {
+    pub journal: PathBuf,
+    content: Mutex<Content>,
+}
+
+impl Reel {
+    /// Begins to read the journal in a folder; `report` hears how far it is, from the thread that reads.
+    ///
+    /// # Errors
+    /// There is no journal; the system gives no thread.
+    pub(super) fn begin(
+        folder: &Path,
+        report: impl Fn(tui::model::replay::Reel) -> bool + Send + 'static,
+    ) -> anyhow::Result<Arc<Self>> {
+        let journal = folder.join(JOURNAL_FILE);
+        let reader = JournalReader::open(&journal)?;
+        let bytes = std::fs::metadata(&journal).map_or(0, |file| file.len());
+        let reel = Arc::new(Self { journal, content: Mutex::default() });
+        let loading = Loading {
+            reel: Arc::downgrade(&reel),
+            place: reader.place(),
+            reader,
+            bytes,
+            spacing: (bytes / (MOST_FRAMES - 1)).max(LEAST_SPACING),
+            run: Run::default(),
+            marker: Marker::default(),
+            marks: Vec::new(),
+            n_marks: 0,
+            kept_at: None,
+        };
+        let began = thread::Builder::new().name("replay loader".into()).spawn(move || loading.read(&report));
+        began.map(|_| reel).context("starting the thread that reads the journal")
+    }
+
+    pub(super) fn content(&self) -> MutexGuard<'_, Content> {
+        self.content.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+struct Loading {
+    reel: Weak<Reel>,
+    reader: JournalReader,
+    /// Where the next event begins.
+    place: JournalPlace,
+    bytes: u64,
+    /// Bytes between two copies.
+    spacing: u64,
+    run: Run,
+    marker: Marker,
+    /// Those that the screen has not heard of.
+    marks: Vec<Mark>,
+    n_marks: usize,
+    /// Where the last copy was made.
+    kept_at: Option<u64>,
+}
+
+impl Loading {
+    fn read(mut self, report: &impl Fn(tui::model::replay::Reel) -> bool) {
+        let mut told = Instant::now();
+        loop {
+            match self.burst() {
+                Ok(true) if told.elapsed() < NEWS && self.kept_at.is_some() => {}
+                Ok(true) => {
+                    told = Instant::now();
+                    if !self.tell(report, false, None) {
+                        return;
+                    }
+                }
+                Ok(false) => {
+                    let cut = self.reader.truncated().map(str::to_owned);
+                    self.tell(report, true, cut);
+                    return;
+                }
+                Err(error) => {
+                    self.tell(report, true, Some(error.to_string()));
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Reads on for a while; `false` at the end, or when nobody wants the run any more.
+    fn burst(&mut self) -> Result<bool, JournalError> {
+        let Some(reel) = self.reel.upgrade() else { return Ok(false) };
+        for _ in 0..BURST {
+            self.place = self.reader.place();
+            let Some(event) = self.reader.next().transpose()? else { return Ok(false) };
+            self.take(&reel, &event);
+        }
+        Ok(true)
+    }
+
+    fn take(&mut self, reel: &Reel, event: &Event) {
+        let begins = self.run.about.is_some() && event.tick != self.run.clock.tick;
+        if begins {
+            self.end_tick(reel);
+        }
+        let Some(mark) = self.marker.fold(&mut self.run, event) else { return };
+        // A planner that talks leaves room for what matters.
+        let most = if mark.kind == MarkKind::Event { MOST_MARKS / 2 } else { MOST_MARKS };
+        if self.n_marks < most {
+            self.n_marks += 1;
+            self.marks.push(mark);
+        }
+    }
+
+    /// A tick is whole.
+    fn end_tick(&mut self, reel: &Reel) {
+        let (t_s, place) = (self.run.clock.t_s, self.place);
+        let mut content = reel.content();
+        content.track.add(&self.run);
+        (content.until_s, content.bytes) = (t_s, place.bytes);
+        if self.kept_at.is_none_or(|at| place.bytes - at >= self.spacing) {
+            self.kept_at = Some(place.bytes);
+            content.frames.push(Frame { t_s, place, run: Arc::new(self.run.clone()) });
+        }
+    }
+
+    /// Reports how far it is; `false` if nobody listens.
+    fn tell(
+        &mut self,
+        report: &impl Fn(tui::model::replay::Reel) -> bool,
+        is_whole: bool,
+        problem: Option<String>,
+    ) -> bool {
+        let Some(reel) = self.reel.upgrade() else { return false };
+        let place = self.place;
+        let mut content = reel.content();
+        if is_whole {
+            // The last tick ends with the journal.
+            (content.until_s, content.bytes) = (self.run.clock.t_s, place.bytes);
+            content.is_whole = true;
+            content.track.add(&self.run);
+            if content.frames.is_empty() && self.run.about.is_some() {
+                let run = Arc::new(self.run.clone());
+                content.frames.push(Frame { t_s: self.run.clock.t_s, place, run });
+            }
+        }
+        let until_s = content.until_s;
+        drop(content);
+        let share = if self.bytes > 0 { place.bytes as f64 / self.bytes as f64 } else { 1.0 };
+        let marks = std::mem::take(&mut self.marks);
+        report(tui::model::replay::Reel { until_s, share: share.min(1.0), is_whole, problem, marks })
+    }
+}

@@ -1,0 +1,102 @@
+//! What people note about a run: a remark, and bookmarks at moments of it.
+
+use serde::{Deserialize, Serialize};
+
+/// Bookmarks this close together are one, seconds.
+const SAME_S: f64 = 0.005;
+/// Longest text of a note, characters.
+pub const MOST_LETTERS: usize = 500;
+/// Most bookmarks of a run.
+pub const MOST_BOOKMARKS: usize = 1000;
+
+/// A moment of a run that somebody wants to find again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bookmark {
+    /// Mission time, seconds.
+    pub t_s: f64,
+    /// What is there; may be empty.
+    #[serde(default)]
+    pub text: String,
+}
+
+/// What people note about a run.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Notes {
+    /// A remark about the whole run; may be empty.
+    #[serde(default)]
+    pub remark: String,
+    /// Bookmarks, ascending by time.
+    #[serde(default)]
+    pub bookmarks: Vec<Bookmark>,
+}
+
+impl Notes {
+    /// Sets a bookmark; one that is there already takes the new text.
+    ///
+    /// # Errors
+    /// There are too many, or the text is too long.
+    pub fn mark(&mut self, t_s: f64, text: &str) -> Result<(), String> {
+        let text = checked(text)?;
+        match self.at(t_s) {
+            Some(index) => self.bookmarks[index].text = text,
+            None if self.bookmarks.len() >= MOST_BOOKMARKS => {
+                return Err(format!("there are {MOST_BOOKMARKS} bookmarks already; remove one"));
+            }
+            None => {
+                let index = self.bookmarks.partition_point(|other| other.t_s < t_s);
+                self.bookmarks.insert(index, Bookmark { t_s, text });
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes the bookmark of a moment; whether there was one.
+    pub fn unmark(&mut self, t_s: f64) -> bool {
+        self.at(t_s).map(|index| self.bookmarks.remove(index)).is_some()
+    }
+
+    /// The bookmark of a moment.
+    pub fn bookmark(&self, t_s: f64) -> Option<&Bookmark> {
+        self.at(t_s).map(|index| &self.bookmarks[index])
+    }
+
+    /// Sets the remark about the whole run.
+    ///
+    /// # Errors
+    /// It is too long.
+    pub fn remark(&mut self, text: &str) -> Result<(), String> {
+        self.remark = checked(text)?;
+        Ok(())
+    }
+
+    fn at(&self, t_s: f64) -> Option<usize> {
+        self.bookmarks.iter().position(|bookmark| (bookmark.t_s - t_s).abs() < SAME_S)
+    }
+}
+
+fn checked(text: &str) -> Result<String, String> {
+    let text = text.trim();
+    match text.chars().count() {
+        0..=MOST_LETTERS => Ok(text.replace(char::is_control, " ")),
+        letters => Err(format!("the text has {letters} characters; at most {MOST_LETTERS}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bookmarks_are_kept_in_order_and_a_moment_has_one() {
+        let mut notes = Notes::default();
+        for (t_s, text) in [(5.0, "five"), (1.0, " one "), (5.001, "again"), (9.0, "")] {
+            notes.mark(t_s, text).expect("room");
+        }
+        let all: Vec<(f64, &str)> = notes.bookmarks.iter().map(|b| (b.t_s, b.text.as_str())).collect();
+        assert_eq!(all, [(1.0, "one"), (5.0, "again"), (9.0, "")]);
+        assert!(notes.unmark(9.0) && !notes.unmark(2.0) && notes.bookmark(1.0).is_some());
+        assert!(notes.mark(2.0, &"x".repeat(MOST_LETTERS + 1)).is_err());
+    }
+}

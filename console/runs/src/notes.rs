@@ -1,0 +1,86 @@
+//! The notes of people, in a file of their own beside the journal: no file of the run changes.
+
+use recording::JOURNAL_FILE;
+use report::notes::Notes;
+use std::{
+    fs::{self, File},
+    io::{self, Write},
+    path::Path,
+};
+
+/// Name of the notes in the folder of a run.
+pub const NOTES_FILE: &str = "notes.json";
+
+/// The notes about the run in a folder; none if there is no such file.
+///
+/// # Errors
+/// The file cannot be read or understood: a sentence with its line and column.
+pub fn read_notes(folder: &Path) -> Result<Notes, String> {
+    let path = folder.join(NOTES_FILE);
+    let text = match fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Notes::default()),
+        Err(error) => return Err(format!("{}: {error}", path.display())),
+    };
+    let mut notes: Notes = serde_json::from_str(&text).map_err(|error| {
+        let (line, column) = (error.line(), error.column());
+        let sentence = error.to_string();
+        let why = sentence.split_once(" at line ").map_or(sentence.as_str(), |(why, _)| why);
+        format!("{}:{line}:{column}: {why}; correct or remove the file", path.display())
+    })?;
+    // Nothing in it shall reach a terminal as a command.
+    let plain = |text: &mut String| *text = text.replace(char::is_control, " ");
+    plain(&mut notes.remark);
+    notes.bookmarks.iter_mut().for_each(|bookmark| plain(&mut bookmark.text));
+    notes.bookmarks.retain(|bookmark| bookmark.t_s.is_finite());
+    notes.bookmarks.sort_by(|one, other| one.t_s.total_cmp(&other.t_s));
+    Ok(notes)
+}
+
+/// Writes the notes about the run in a folder, whole or not at all. A file that cannot be understood is not written over.
+///
+/// # Errors
+/// What [`read_notes`] says of the file that is there; there is no run in the folder; the system refuses.
+pub fn write_notes(folder: &Path, notes: &Notes) -> Result<(), String> {
+    read_notes(folder)?;
+    if !folder.join(JOURNAL_FILE).exists() {
+        return Err(format!("{}: there is no run any more", folder.display()));
+    }
+    let (path, draft) = (folder.join(NOTES_FILE), folder.join(format!("{NOTES_FILE}.part")));
+    let text = serde_json::to_string_pretty(notes).map_err(|error| error.to_string())? + "\n";
+    let written = File::create(&draft).and_then(|mut file| {
+        file.write_all(text.as_bytes())?;
+        file.sync_all()?;
+        fs::rename(&draft, &path)
+    });
+    written.map_err(|error| format!("{}: {error}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    #[test]
+    fn notes_are_kept_beside_the_journal_and_damaged_ones_are_named_and_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut notes = Notes::default();
+        assert!(write_notes(folder.path(), &notes).unwrap_err().contains("there is no run"));
+        fs::write(folder.path().join(JOURNAL_FILE), "journal").unwrap();
+        assert_eq!(read_notes(folder.path()), Ok(Notes::default()));
+        notes.mark(12.5, "pump noise").unwrap();
+        notes.remark("second pass").unwrap();
+        write_notes(folder.path(), &notes).unwrap();
+        assert_eq!(read_notes(folder.path()), Ok(notes.clone()));
+        assert_eq!(fs::read(folder.path().join(JOURNAL_FILE)).unwrap(), b"journal");
+
+        let damaged = "{\n  \"remark\": 3\n}";
+        fs::write(folder.path().join(NOTES_FILE), damaged).unwrap();
+        for error in [read_notes(folder.path()).unwrap_err(), write_notes(folder.path(), &notes).unwrap_err()]
+        {
+            assert!(error.contains("notes.json:2:13: invalid type: integer `3`"), "{error}");
+        }
+        assert_eq!(fs::read_to_string(folder.path().join(NOTES_FILE)).unwrap(), damaged);
+    }
+}

@@ -1,0 +1,56 @@
+//! What can be gone to in a run: events, alarms, holds.
+
+use crate::model::Run;
+use mission::{Event, EventKind, Severity};
+use serde::{Deserialize, Serialize};
+
+/// What a mark stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum MarkKind {
+    /// A line of the log.
+    Event,
+    /// The robot was held.
+    Hold,
+    /// An alarm came up.
+    Alarm,
+}
+
+/// A moment that can be gone to.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Mark {
+    /// Mission time, seconds.
+    pub t_s: f64,
+    /// How much it asks of the operator.
+    pub severity: Severity,
+    /// What it stands for.
+    pub kind: MarkKind,
+}
+
+/// Finds the marks while a run is folded.
+#[derive(Debug, Clone, Default)]
+pub struct Marker {
+    /// Lines of the log so far.
+    lines: u64,
+    /// Alarms that were active.
+    active: usize,
+}
+
+impl Marker {
+    /// Folds an event into a run; the mark that it leaves.
+    pub fn fold(&mut self, run: &mut Run, event: &Event) -> Option<Mark> {
+        run.fold(event);
+        let lines = run.log.end();
+        if std::mem::replace(&mut self.lines, lines) == lines {
+            return None;
+        }
+        let active = run.alarms.list().iter().filter(|alarm| alarm.is_active()).count();
+        let is_alarm = std::mem::replace(&mut self.active, active) < active;
+        let kind = match event.kind {
+            _ if is_alarm => MarkKind::Alarm,
+            EventKind::Held { .. } => MarkKind::Hold,
+            _ => MarkKind::Event,
+        };
+        let severity = run.log.get(lines - 1).map_or(Severity::Info, |entry| entry.severity);
+        Some(Mark { t_s: event.t_s, severity, kind })
+    }
+}

@@ -1,0 +1,29 @@
+//! The review screen: past runs, chosen to be played back or compared.
+
+use super::message::Effect;
+use super::offer::{offered, refuse};
+use super::replay;
+use crate::actions::ActionId;
+use crate::model::Model;
+use mission::Severity;
+
+/// Plays the selected run back; one that is played already is shown.
+pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
+    let selected = model.review.run(&model.home).map(|run| run.name.clone());
+    let Some(run) = selected else { return refuse(model, "no run is selected".into()) };
+    if model.live.replay.as_ref().is_some_and(|replay| replay.name == run) {
+        return replay::show(model);
+    }
+    match offered(model, ActionId::Replay) {
+        Ok(()) => replay::open(model, run),
+        Err(why) => refuse(model, why),
+    }
+}
+
+/// Sorts the list by something else.
+pub(super) fn sort(model: &mut Model) -> Vec<Effect> {
+    model.review.sort = model.review.sort.next();
+    model.review.selected = 0;
+    model.say(Severity::Info, format!("sorted by {}", model.review.sort.word()));
+    Vec::new()
+}

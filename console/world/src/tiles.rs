@@ -1,0 +1,143 @@
+//! One value for every cell of a grid, in square tiles: a copy shares the tiles that neither side has changed since.
+
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Cells along the edge of a tile, as a power of two.
+const SHIFT: usize = 5;
+/// Cells along the edge of a tile.
+const EDGE: usize = 1 << SHIFT;
+/// Cells of a tile.
+const AREA: usize = EDGE * EDGE;
+
+/// One value for every cell of a grid, row by row. What a robot passes over in a while touches few tiles, whichever way it
+/// drives, so that many copies of a grid that fills up cost little more than one.
+///
+/// ```
+/// use world::Tiles;
+/// let mut early = Tiles::new(100, 5000, 0_u8);
+/// *early.at_mut(4242) = 7;
+/// let mut late = early.clone();
+/// *late.at_mut(4242) += 1;
+/// assert_eq!((early.at(4242), late.at(4242), late.at(4243)), (7, 8, 0));
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(from = "Flat<T>", into = "Flat<T>")]
+#[serde(bound(serialize = "T: Copy + Serialize", deserialize = "T: Copy + Default + Deserialize<'de>"))]
+pub struct Tiles<T> {
+    width: usize,
+    len: usize,
+    tiles: Vec<Arc<[T; AREA]>>,
+}
+
+/// The same without tiles.
+#[derive(Serialize, Deserialize)]
+struct Flat<T> {
+    width: usize,
+    cells: Vec<T>,
+}
+
+impl<T: Copy> Tiles<T> {
+    /// The same value for each of so many cells, so many in a row.
+    pub fn new(width: usize, len: usize, value: T) -> Self {
+        let width = width.max(1);
+        let tiles = width.div_ceil(EDGE) * len.div_ceil(width).div_ceil(EDGE);
+        Self { width, len, tiles: vec![Arc::new([value; AREA]); tiles] }
+    }
+
+    /// Which tile a cell is in, and where.
+    fn place(&self, index: usize) -> (usize, usize) {
+        assert!(index < self.len, "cell {index} of {}", self.len);
+        let (row, column) = (index / self.width, index % self.width);
+        let tile = (row >> SHIFT) * self.width.div_ceil(EDGE) + (column >> SHIFT);
+        (tile, ((row % EDGE) << SHIFT) + column % EDGE)
+    }
+
+    /// The value of a cell. Panics beyond the last one, as a slice does.
+    pub fn at(&self, index: usize) -> T {
+        let (tile, cell) = self.place(index);
+        self.tiles[tile][cell]
+    }
+
+    /// The value of a cell, to be changed. Panics beyond the last one, as a slice does.
+    pub fn at_mut(&mut self, index: usize) -> &mut T {
+        let (tile, cell) = self.place(index);
+        &mut Arc::make_mut(&mut self.tiles[tile])[cell]
+    }
+
+    /// How many cells there are.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The values, row by row.
+    pub fn iter(&self) -> impl Iterator<Item = T> + '_ {
+        (0..self.len).map(|index| self.at(index))
+    }
+}
+
+impl<T: Copy + Default> Default for Tiles<T> {
+    fn default() -> Self {
+        Self::new(1, 0, T::default())
+    }
+}
+
+impl<T: Copy> From<Tiles<T>> for Flat<T> {
+    fn from(tiles: Tiles<T>) -> Self {
+        Self { width: tiles.width, cells: tiles.iter().collect() }
+    }
+}
+
+impl<T: Copy + Default> From<Flat<T>> for Tiles<T> {
+    fn from(Flat { width, cells }: Flat<T>) -> Self {
+        let mut tiles = Self::new(width, cells.len(), T::default());
+        for (index, value) in cells.into_iter().enumerate() {
+            *tiles.at_mut(index) = value;
+        }
+        tiles
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn tiles_hold_what_a_list_holds_and_copies_do_not_change_each_other(
+            width in 1..90_usize,
+            len in 1..5000_usize,
+            changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u16>()), 0..60),
+        ) {
+            let mut list = vec![0_u16; len];
+            let mut tiles = Tiles::new(width, len, 0_u16);
+            let mut before = (tiles.clone(), list.clone());
+            for (index, value) in changes {
+                before = (tiles.clone(), list.clone());
+                *tiles.at_mut(index.index(len)) = value;
+                list[index.index(len)] = value;
+            }
+            prop_assert_eq!(tiles.iter().collect::<Vec<_>>(), &list[..]);
+            prop_assert_eq!(before.0.iter().collect::<Vec<_>>(), &before.1[..]);
+            let text = serde_json::to_string(&tiles).unwrap();
+            prop_assert_eq!(serde_json::from_str::<Tiles<u16>>(&text).unwrap(), tiles);
+        }
+    }
+
+    #[test]
+    fn a_lane_costs_a_copy_few_tiles_whichever_way_it_goes() {
+        let blank = Tiles::new(1600, 1600 * 1600, false);
+        for lane in [|i: usize| 800 * 1600 + i, |i: usize| i * 1600 + 800] {
+            let mut copy = blank.clone();
+            (0..1600).for_each(|i| *copy.at_mut(lane(i)) = true);
+            let own = copy.tiles.iter().zip(&blank.tiles).filter(|(one, other)| !Arc::ptr_eq(one, other));
+            assert_eq!(own.count(), 50);
+        }
+    }
+}
