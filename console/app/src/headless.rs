@@ -13,7 +13,7 @@ use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, exit_code},
     hosts::{self, host},
     plan_watch::{PlanWatch, Watched},
-    planners, scenarios,
+    planners, remains, scenarios,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use mission::{Event, EventKind, Order, Outcome, Phase};
@@ -50,22 +50,29 @@ pub(crate) fn fly(
     options: RunOptions,
 ) -> anyhow::Result<ExitCode> {
     let stop = stop_signal::listen();
-    planners::check_choices(scenario, &planners::found(plugins))?;
+    planners::check_installed(scenario, plugins)?;
     warn_of_clearance(scenario);
     let flight = Flight::prepare(scenario, false);
     let mut log = if options.record {
-        RunLog::create(&logs.logs, &scenario.name, &scenario.mission.planner.id, scenario.seed)?
+        RunLog::create(&logs.folder(), &scenario.name, &scenario.mission.planner.id, scenario.seed)?
     } else {
         RunLog::unwritten()?
     };
     let bar = progress_bar(scenario, options);
     let mut trouble = None;
-    let mut take = |events: Vec<Event>| {
+    let mut take = |events: Vec<Event>, host: Option<&mut Host>| {
         log.keep(&events);
+        if let Some(host) = host {
+            remains::keep(
+                host,
+                Some(&mut log),
+                events.last().map_or((0, 0.0), |event| (event.tick, event.t_s)),
+            );
+        }
         show_progress(&bar, &events, &scenario.sim.world.stations);
         report_trouble(&mut trouble, log.health().error);
     };
-    take(vec![flight.opened()]);
+    take(vec![flight.opened()], None);
     let host = fly_to_end(flight, host(scenario, plugins), take, (&bar, &stop), options.live_deadlines);
     bar.finish_and_clear();
     let Closed { summary, kept } = log.close(CLOSE_TIMEOUT, hosts::calls(&host), None, &scenario.expect);
@@ -93,7 +100,7 @@ fn report_trouble(reported: &mut Option<String>, trouble: Option<String>) {
 fn fly_to_end(
     mut flight: Flight,
     host: Host,
-    mut take: impl FnMut(Vec<Event>),
+    mut take: impl FnMut(Vec<Event>, Option<&mut Host>),
     (bar, stop): (&ProgressBar, &StopSignal),
     live_deadlines: bool,
 ) -> Host {
@@ -107,13 +114,14 @@ fn fly_to_end(
         if stop.requested() {
             orders.push(Order::Terminate);
         }
-        take(if live_deadlines {
+        let events = if live_deadlines {
             let window = Window::real_time(flight.tick_length());
             let mut windowed = Windowed::new(answers.host(), window);
             flight.tick(&orders, &mut Watched::new(&mut windowed, &mut watch))
         } else {
             flight.tick(&orders, &mut Watched::new(&mut answers, &mut watch))
-        });
+        };
+        take(events, Some(answers.host()));
         orders.clear();
     }
     answers.into_host()

@@ -1,6 +1,7 @@
 //! Where plugins are looked for, and which files there are plugins.
 
 use crate::stamp::{self, Abi};
+use crate::user_folder::user_folder;
 use sha2::{Digest, Sha256};
 use std::env;
 use std::ffi::OsStr;
@@ -13,27 +14,31 @@ pub struct PluginDirs {
     pub folders: Vec<PathBuf>,
     /// Whether a plugin is refused where its process cannot be closed off wholly.
     pub requires_sandbox: bool,
+    /// Folder that keeps what plugins were found to hold.
+    pub cache: Option<PathBuf>,
 }
 
 impl PluginDirs {
-    /// These folders; plugins are loaded also where their processes cannot be closed off wholly.
+    /// These folders; plugins are loaded also where their processes cannot be closed off wholly, and nothing is kept about
+    /// them.
     pub fn of(folders: Vec<PathBuf>) -> Self {
-        Self { folders, requires_sandbox: false }
+        Self { folders, requires_sandbox: false, cache: None }
     }
 
     /// The folders given by hand, `$TANKOPS_PLUGIN_PATH`, `plugins` beside the program, the program's own folder and
-    /// `deps` in it (where Cargo puts libraries), `$XDG_DATA_HOME/tankops/plugins`.
+    /// `deps` in it (where Cargo puts libraries), `../lib/tankops/plugins` seen from the program,
+    /// `$XDG_DATA_HOME/tankops/plugins`. What they hold is kept in `$XDG_CACHE_HOME/tankops/plugins`.
     pub fn standard(extra: &[PathBuf]) -> Self {
         let mut dirs = extra.to_vec();
         dirs.extend(env::var_os("TANKOPS_PLUGIN_PATH").iter().flat_map(env::split_paths));
         if let Some(beside) = env::current_exe().ok().as_deref().and_then(Path::parent) {
             dirs.extend([beside.join("plugins"), beside.to_owned(), beside.join("deps")]);
+            dirs.extend(beside.parent().map(|prefix| prefix.join("lib/tankops/plugins")));
         }
-        let data = env::var_os("XDG_DATA_HOME").map(PathBuf::from);
-        let data = data.or_else(|| env::home_dir().map(|home| home.join(".local/share")));
-        dirs.extend(data.map(|data| data.join("tankops/plugins")));
+        let plugins_in = |folder: PathBuf| folder.join("plugins");
+        dirs.extend(user_folder("XDG_DATA_HOME", ".local/share").map(plugins_in));
         dirs.retain(|dir| !dir.as_os_str().is_empty());
-        Self::of(dirs)
+        Self { cache: user_folder("XDG_CACHE_HOME", ".cache").map(plugins_in), ..Self::of(dirs) }
     }
 
     /// Every file that is named like a plugin: folder by folder, by name within a folder. A file with the same

@@ -17,6 +17,7 @@ fn the_help_of_every_command_is_as_reviewed() {
         "accuracy",
         "map",
         "import",
+        "new-planner",
         "planners",
         "check",
         "reproduce",
@@ -26,6 +27,7 @@ fn the_help_of_every_command_is_as_reviewed() {
         "export",
         "report",
         "rescan",
+        "replay-worker",
         "completions",
         "man",
     ] {
