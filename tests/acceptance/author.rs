@@ -47,7 +47,11 @@ fn a_new_planner_in_each_language_builds_and_flies_at_once() {
         let bench = Bench::new();
         let plugin = built(&bench, lang);
         let flown = fly_first(&bench, &plugin);
-        assert_eq!((flown.code, flown.json()["planner"].as_str()), (Some(0), Some("my-own")), "{lang}: {flown:?}");
+        assert_eq!(
+            (flown.code, flown.json()["planner"].as_str()),
+            (Some(0), Some("my-own")),
+            "{lang}: {flown:?}"
+        );
         bench.prove_with(&bench.runs()[0], &["--plugin-dir", plugin.parent().unwrap().to_str().unwrap()]);
     }
 }
@@ -82,12 +86,16 @@ fn a_planner_that_uses_a_clock_or_crashes_fails_its_checks() {
     let good = std::fs::read_to_string(&source).unwrap();
     let with = |by: &str| {
         let step = "const direct *self = instance;";
-        std::fs::write(&source, good.replacen(&format!("  {step}"), &format!("  {step}\n  {by}"), 1)).unwrap();
+        std::fs::write(&source, good.replacen(&format!("  {step}"), &format!("  {step}\n  {by}"), 1))
+            .unwrap();
         let plugin = rebuilt(&plugin);
         bench.tankops(&["check", plugin.to_str().unwrap(), "--fly", "1"])
     };
     let crashes = with("if (in->tick == 7) abort();");
-    assert!(crashes.code == Some(1) && crashes.out.contains("FAIL  answers soundly in every tank"), "{crashes:?}");
+    assert!(
+        crashes.code == Some(1) && crashes.out.contains("FAIL  answers soundly in every tank"),
+        "{crashes:?}"
+    );
     let clock = "static double noise; noise += (double)(size_t)in / 1e18; host->scalar(host->ctx, (tp_str)TP_STR(\"n\"), \
                  (double)(size_t)&noise, (tp_str)TP_STR(\"\"));";
     let random = with(clock);
@@ -108,7 +116,11 @@ fn what_a_planner_prints_and_its_crash_are_kept_and_the_crash_can_be_replayed() 
     let good = std::fs::read_to_string(&source).unwrap();
     let by = "if (in->tick == 3) { puts(\"in step 3\"); fflush(stdout); }\n  if (in->tick == 7) abort();";
     let step = "const direct *self = instance;";
-    let bad = good.replacen(step, &format!("{step}\n  {by}"), 1).replacen("#include <math.h>", "#include <math.h>\n#include <stdio.h>", 1);
+    let bad = good.replacen(step, &format!("{step}\n  {by}"), 1).replacen(
+        "#include <math.h>",
+        "#include <math.h>\n#include <stdio.h>",
+        1,
+    );
     std::fs::write(&source, bad).unwrap();
     let flown = fly_first(&bench, &rebuilt(&plugin));
     assert_eq!(flown.code, Some(1), "{flown:?}");

@@ -1,6 +1,7 @@
 //! Where plugins are looked for, and which files there are plugins.
 
 use crate::stamp::{self, Abi};
+use crate::survey::Cache;
 use crate::user_folder::user_folder;
 use sha2::{Digest, Sha256};
 use std::env;
@@ -45,8 +46,13 @@ impl PluginDirs {
     /// content as an earlier one is the same plugin and left out.
     pub fn plugins(&self) -> Vec<PluginFile> {
         let mut found: Vec<PluginFile> = Vec::new();
+        let cache = Cache::new(self.cache.as_deref());
         for path in self.folders.iter().flat_map(|dir| named_like_plugins(dir)) {
-            let plugin = PluginFile::read(path);
+            let plugin = cache.seen(&path).unwrap_or_else(|| {
+                let plugin = PluginFile::read(path);
+                cache.note(&plugin);
+                plugin
+            });
             if plugin.sha256.is_empty() || found.iter().all(|known| known.sha256 != plugin.sha256) {
                 found.push(plugin);
             }
@@ -85,7 +91,16 @@ pub struct PluginFile {
     pub sha256: String,
     /// ABI of its stamp, or why it is refused.
     pub abi: Result<Abi, String>,
-    words: Vec<u8>,
+    pub(crate) words: Words,
+}
+
+/// Where the ids of a plugin's planners can be looked up.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Words {
+    /// These are all of them.
+    Ids(Vec<String>),
+    /// Somewhere in the bytes of the file.
+    Bytes(Vec<u8>),
 }
 
 impl PluginFile {
@@ -94,16 +109,17 @@ impl PluginFile {
         match read_bytes(&path) {
             Ok(words) => {
                 let abi = stamp::read(&words).map_err(|error| error.to_string());
-                Self {
-                    path,
-                    sha256: sha256_hex(&words),
-                    words: if abi.is_ok() { words } else { Vec::new() },
-                    abi,
-                }
+                let (sha256, ids) = (sha256_hex(&words), stamp::ids(&words));
+                let words = match ids {
+                    _ if abi.is_err() => Words::Ids(Vec::new()),
+                    Some(ids) => Words::Ids(ids),
+                    None => Words::Bytes(words),
+                };
+                Self { path, sha256, abi, words }
             }
             Err(error) => {
                 let abi = Err(error);
-                Self { path, sha256: String::new(), abi, words: Vec::new() }
+                Self { path, sha256: String::new(), abi, words: Words::Ids(Vec::new()) }
             }
         }
     }
@@ -113,10 +129,15 @@ impl PluginFile {
         self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Whether the bytes of this planner's id are in the file at all, so that it is worth loading. Nothing is in a refused
-    /// file, and nobody finds a planner that composes its id only when it is loaded.
+    /// Whether it has this planner, as far as its file says: a Rust library names its ids, in others the bytes of the id have to
+    /// be there, so that nobody finds a planner that composes its id only when it is loaded. Nothing is in a refused file.
     pub fn may_have(&self, id: &str) -> bool {
-        !id.is_empty() && self.words.windows(id.len()).any(|window| window == id.as_bytes())
+        match &self.words {
+            Words::Ids(ids) => ids.iter().any(|known| known == id),
+            Words::Bytes(bytes) => {
+                !id.is_empty() && bytes.windows(id.len()).any(|window| window == id.as_bytes())
+            }
+        }
     }
 }
 

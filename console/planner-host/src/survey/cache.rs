@@ -4,58 +4,107 @@
 //! differently, another kernel may close a process off less. It says what a probe said that was closed off wholly; whoever
 //! flies a planner loads and checks its file again.
 
-use crate::discovery::{PluginFile, sha256_hex};
-use crate::stamp::CONSOLE_ABI;
+use crate::discovery::{PluginFile, Words, sha256_hex};
+use crate::stamp::{Abi, CONSOLE_ABI};
 use crate::wire;
 use mission::{PlannerInfo, Sandbox};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs;
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
-use std::time::UNIX_EPOCH;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// With more entries than this the folder is emptied: an author's builds are each a new file.
 const MOST_ENTRIES: usize = 256;
 
-/// A folder with what plugins hold, one file for each.
+/// A file that was written to less than this ago may be written to again unnoticed: its times are no finer.
+const SETTLED: Duration = Duration::from_secs(1);
+
+/// A folder with what plugins hold, one file for each content, and which content lies where, one file for each place.
 pub(crate) struct Cache {
     folder: Option<PathBuf>,
     circumstances: String,
 }
 
-/// What is kept of a plugin.
+/// Something that is kept, with the program and the system that found it.
 #[derive(Serialize, Deserialize)]
-struct Entry {
-    /// Program and system that found it.
+struct Entry<T> {
     circumstances: String,
-    /// The plugin's own hash.
-    sha256: String,
-    planners: Vec<PlannerInfo>,
+    /// The hash of the plugin's content, or of its path.
+    of: String,
+    kept: T,
 }
+
+/// A plugin file as it was read.
+#[derive(Serialize, Deserialize)]
+struct Place {
+    identity: Identity,
+    sha256: String,
+    abi: Abi,
+    ids: Option<Vec<String>>,
+}
+
+/// What changes whenever somebody writes to a file: device, inode, length, times of the last writing and of the last change.
+type Identity = (u64, u64, u64, (i64, i64), (i64, i64));
 
 impl Cache {
     /// A cache in this folder; without a folder it holds nothing.
     pub(crate) fn new(folder: Option<&Path>) -> Self {
-        Self { folder: folder.map(Path::to_owned), circumstances: circumstances() }
+        let circumstances = folder.map(|_| circumstances()).unwrap_or_default();
+        Self { folder: folder.map(Path::to_owned), circumstances }
     }
 
     /// The planners of a plugin, if they are known.
     pub(crate) fn get(&self, plugin: &PluginFile) -> Option<Vec<PlannerInfo>> {
-        let text = fs::read_to_string(self.file_of(plugin)?).ok()?;
-        let (hash, text) = text.split_once('\n')?;
-        let is_whole = sha256_hex(text.as_bytes()) == hash;
-        let entry: Entry = is_whole.then(|| serde_json::from_str(text).ok())??;
-        let is_of_it = entry.sha256 == plugin.sha256 && entry.circumstances == self.circumstances;
+        let planners: Vec<PlannerInfo> = self.read(&plugin.sha256)?;
         // The same content may be there under another name.
         let named = |info| PlannerInfo { plugin: plugin.name(), ..info };
-        is_of_it.then(|| entry.planners.into_iter().map(named).collect())
+        Some(planners.into_iter().map(named).collect())
     }
 
-    /// Keeps the planners of a plugin, as a probe described them. A cache that cannot be written is none.
+    /// Keeps the planners of a plugin, as a probe described them.
     pub(crate) fn put(&self, plugin: &PluginFile, planners: &[PlannerInfo]) {
-        let is_closed_off = planners.iter().all(|info| info.sandbox == Some(Sandbox::Full));
-        let (Some(file), true) = (self.file_of(plugin), is_closed_off) else { return };
-        let (circumstances, sha256) = (self.circumstances.clone(), plugin.sha256.clone());
-        let entry = Entry { circumstances, sha256, planners: planners.to_vec() };
+        if planners.iter().all(|info| info.sandbox == Some(Sandbox::Full)) {
+            self.write(&plugin.sha256, planners);
+        }
+    }
+
+    /// A plugin file that was read before and has not been touched since.
+    pub(crate) fn seen(&self, path: &Path) -> Option<PluginFile> {
+        let Place { identity, sha256, abi, ids } = self.read(&hash_of(path)?)?;
+        let (now, _) = identity_of(path)?;
+        let plugin =
+            PluginFile { path: path.to_owned(), sha256, abi: Ok(abi), words: Words::Ids(Vec::new()) };
+        let known = || Some(self.get(&plugin)?.into_iter().map(|info| info.id).collect());
+        let ids = ids.or_else(known).filter(|_| now == identity)?;
+        Some(PluginFile { words: Words::Ids(ids), ..plugin })
+    }
+
+    /// Notes a plugin file that was just read.
+    pub(crate) fn note(&self, plugin: &PluginFile) {
+        let settled = identity_of(&plugin.path).filter(|(_, age)| *age > SETTLED);
+        if let (Ok(abi), Some((identity, _)), Some(of)) = (&plugin.abi, settled, hash_of(&plugin.path)) {
+            let ids = match &plugin.words {
+                Words::Ids(ids) => Some(ids.clone()),
+                Words::Bytes(_) => None,
+            };
+            self.write(&of, &Place { identity, sha256: plugin.sha256.clone(), abi: *abi, ids });
+        }
+    }
+
+    fn read<T: DeserializeOwned>(&self, of: &str) -> Option<T> {
+        let text = fs::read_to_string(self.file_of(of)?).ok()?;
+        let (hash, text) = text.split_once('\n')?;
+        let is_whole = sha256_hex(text.as_bytes()) == hash;
+        let entry: Entry<T> = is_whole.then(|| serde_json::from_str(text).ok())??;
+        (entry.of == of && entry.circumstances == self.circumstances).then_some(entry.kept)
+    }
+
+    /// A cache that cannot be written is none.
+    fn write<T: Serialize + ?Sized>(&self, of: &str, kept: &T) {
+        let Some(file) = self.file_of(of) else { return };
+        let entry = Entry { circumstances: self.circumstances.clone(), of: of.to_owned(), kept };
         if let Ok(text) = serde_json::to_string(&entry) {
             // What others read meanwhile is the old entry or the new one.
             let new = file.with_extension(format!("new-{}", std::process::id()));
@@ -65,10 +114,25 @@ impl Cache {
         }
     }
 
-    fn file_of(&self, plugin: &PluginFile) -> Option<PathBuf> {
-        let name = format!("{}.json", plugin.sha256);
-        self.folder.as_ref().filter(|_| !plugin.sha256.is_empty()).map(|folder| folder.join(name))
+    fn file_of(&self, of: &str) -> Option<PathBuf> {
+        self.folder.as_ref().filter(|_| !of.is_empty()).map(|folder| folder.join(format!("{of}.json")))
     }
+}
+
+/// The hash of where a file is.
+fn hash_of(path: &Path) -> Option<String> {
+    let absolute = std::path::absolute(path).ok()?;
+    Some(sha256_hex(absolute.as_os_str().as_encoded_bytes()))
+}
+
+/// What tells a file from others and from itself as it was, and how long ago it was changed.
+fn identity_of(path: &Path) -> Option<(Identity, Duration)> {
+    let about = fs::metadata(path).ok()?;
+    let changed =
+        UNIX_EPOCH + Duration::new(about.ctime().try_into().ok()?, about.ctime_nsec().try_into().ok()?);
+    let times = ((about.mtime(), about.mtime_nsec()), (about.ctime(), about.ctime_nsec()));
+    let age = SystemTime::now().duration_since(changed).unwrap_or_default();
+    Some(((about.dev(), about.ino(), about.len(), times.0, times.1), age))
 }
 
 fn make_room(file: &Path) -> std::io::Result<()> {
@@ -140,7 +204,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let cache = Cache::new(Some(folder.path()));
         cache.put(&plugin("1"), &planners());
-        let file = cache.file_of(&plugin("1")).expect("a folder was given");
+        let file = cache.file_of(&plugin("1").sha256).expect("a folder was given");
         let good = fs::read(&file).expect("kept");
         for at in 0..good.len() {
             let mut bad = good.clone();
@@ -162,6 +226,24 @@ mod tests {
             cache.put(&plugin("1"), &planners);
             assert_eq!(cache.get(&plugin("1")), None);
         }
+    }
+
+    #[test]
+    fn a_file_is_read_again_once_it_was_touched() {
+        let (folder, place) =
+            (tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder"));
+        let built = std::env::current_exe().expect("a path").with_file_name("libplanner_faulty.so");
+        let file = place.path().join("libplanner_it.so");
+        fs::copy(built, &file).expect("copied");
+        let (cache, plugin) = (Cache::new(Some(folder.path())), PluginFile::read(file.clone()));
+        cache.note(&plugin);
+        assert_eq!(cache.seen(&file), None, "it may be written to once more in the same moment");
+        std::thread::sleep(SETTLED + Duration::from_millis(100));
+        cache.note(&plugin);
+        assert_eq!(cache.seen(&file), Some(plugin));
+        let touched = fs::File::options().append(true).open(&file).expect("opened");
+        touched.set_modified(SystemTime::now()).expect("touched");
+        assert_eq!(cache.seen(&file), None);
     }
 
     #[test]

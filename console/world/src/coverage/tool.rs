@@ -91,7 +91,11 @@ impl Passage {
 }
 
 /// The area that a bar sweeps between two poses that are close together: two triangles for each half.
-pub(super) struct Swept([[Point; 3]; 4]);
+pub(super) struct Swept {
+    triangles: [[Point; 3]; 4],
+    /// Those with an area: corners with the edges that leave them, and the sign of their turn.
+    sides: Vec<([(Point, Vector); 3], f64)>,
+}
 
 /// A point this far outside a triangle still counts, metres: neighbouring triangles leave no seam.
 const SEAM_M: f64 = 1e-9;
@@ -102,21 +106,25 @@ impl Swept {
             |pose: Pose| Vector::new(-pose.heading_rad.sin(), pose.heading_rad.cos()) * (swath_m / 2.0);
         let (a, b) = (from.position, to.position);
         let (a_left, a_right, b_left, b_right) = (a + half(from), a - half(from), b + half(to), b - half(to));
-        Self([[a, a_left, b_left], [a, b_left, b], [a, a_right, b_right], [a, b_right, b]])
+        let triangles = [[a, a_left, b_left], [a, b_left, b], [a, a_right, b_right], [a, b_right, b]];
+        Self { triangles, sides: triangles.iter().filter_map(sides_of).collect() }
     }
 
     fn bounds(&self) -> (Point, Point) {
-        bounds_of(self.0.as_flattened())
+        bounds_of(self.triangles.as_flattened())
     }
 
     fn contains(&self, point: Point) -> bool {
-        self.0.iter().any(|[a, b, c]| {
-            let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(from, to)| (to - from).perp(&(point - from)));
-            let area = (b - a).perp(&(c - a));
-            let turned = area.signum();
-            area != 0.0 && [ab, bc, ca].iter().all(|side| side * turned >= -SEAM_M)
+        self.sides.iter().any(|(sides, turned)| {
+            sides.iter().all(|(from, along)| along.perp(&(point - from)) * turned >= -SEAM_M)
         })
     }
+}
+
+/// Corners and edges of a triangle with the sign of its turn; none for one without an area.
+fn sides_of([a, b, c]: &[Point; 3]) -> Option<([(Point, Vector); 3], f64)> {
+    let area = (b - a).perp(&(c - a));
+    (area != 0.0).then(|| ([(*a, b - a), (*b, c - b), (*c, a - c)], area.signum()))
 }
 
 #[cfg(test)]
