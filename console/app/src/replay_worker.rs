@@ -30,9 +30,8 @@ pub(crate) fn replay(bundle: &Path, gdb: bool) -> anyhow::Result<ExitCode> {
 /// A worker inside gdb, which has the terminal; the worker's socket is kept at descriptor 3 for it.
 fn in_gdb() -> anyhow::Result<WorkerCommand> {
     let program = env::current_exe()?;
-    // The plugin is loaded from memory: gdb is told where its symbols are once it stops.
-    let script = "exec 3<&0 </dev/tty >/dev/tty 2>&1; export TERM=xterm HOME=/; \
-                  exec gdb -q -nx -ex 'set confirm off' -ex 'run <&3' --args \"$0\" worker";
+    let script = "exec 3<&0 </dev/tty >/dev/tty 2>&1; export TERM=xterm HOME=/nonexistent; \
+                  exec gdb -q -nx -ex 'set confirm off' -ex 'run worker <&3' \"$0\"";
     Ok(WorkerCommand {
         program: "/bin/sh".into(),
         arguments: vec!["-c".into(), script.into(), program.into()],

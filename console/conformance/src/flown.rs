@@ -12,7 +12,9 @@ use scenario::Scenario;
 #[derive(Debug)]
 pub(crate) struct Flown {
     pub(crate) summary: Summary,
-    /// Time for a step that 99 of 100 do not exceed, milliseconds by the wall clock; absent without steps.
+    /// Median time for a step, milliseconds by the wall clock; absent without steps.
+    pub(crate) p50_ms: Option<f64>,
+    /// Time that 99 of 100 steps do not exceed.
     pub(crate) p99_ms: Option<f64>,
     /// First fault that no good planner has.
     pub(crate) misbehaved: Option<String>,
@@ -88,6 +90,7 @@ impl Pilot {
         let calls = hosts::calls(self.answers.host());
         Flown {
             summary: self.fold.summary(),
+            p50_ms: calls.p50_us.map(|us| us / 1000.0),
             p99_ms: calls.p99_us.map(|us| us / 1000.0),
             misbehaved: self.misbehaved,
             unsupported: self.unsupported,
