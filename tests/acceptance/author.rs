@@ -160,7 +160,9 @@ fn a_program_and_its_planners_work_below_any_prefix_from_any_folder() {
     let program = Path::new(env!("CARGO_BIN_EXE_tankops"));
     let (bin, plugins) = (bench.path().join("p/bin"), bench.path().join("p/lib/tankops/plugins"));
     let elsewhere = bench.path().join("elsewhere");
-    [&bin, &plugins, &elsewhere].map(|folder| std::fs::create_dir_all(folder).unwrap());
+    for folder in [&bin, &plugins, &elsewhere] {
+        std::fs::create_dir_all(folder).unwrap();
+    }
     std::fs::copy(program, bin.join("tankops")).unwrap();
     let spiral = "libplanner_spiral.so";
     std::fs::copy(program.with_file_name("deps").join(spiral), plugins.join(spiral)).unwrap();
