@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn nothing_keeps_the_name_of_the_example() {
-        for (lang, example) in [(Lang::Rust, "straight"), (Lang::C, "direct"), (Lang::Cpp, "direct")] {
+        for (lang, example) in [(Lang::Rust, "straight"), (Lang::C, "direct-c"), (Lang::Cpp, "direct-c")] {
             for (name, text) in files("my-own", lang, "\"0.1.0\"") {
                 assert!(!text.contains(example) && !name.contains(example), "{name}: {text}");
             }
