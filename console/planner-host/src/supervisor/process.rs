@@ -27,7 +27,7 @@ pub(super) struct Process {
 }
 
 impl Process {
-    /// Starts a worker with this socket as its standard input and without environment, but for what asks a planner in Rust for backtraces. It leaves the console's session by
+    /// Starts a worker with this socket as its standard input and without environment. It leaves the console's session by
     /// itself.
     pub(super) fn spawn(command: &WorkerCommand, socket: UnixStream) -> io::Result<Self> {
         let (reader, writer) = io::pipe()?;
@@ -36,7 +36,6 @@ impl Process {
         start
             .args(&command.arguments)
             .env_clear()
-            .envs(std::env::var_os("RUST_BACKTRACE").map(|value| ("RUST_BACKTRACE", value)))
             .stdin(Stdio::from(OwnedFd::from(socket)))
             .stdout(writer.try_clone()?)
             .stderr(writer);
