@@ -7,6 +7,9 @@ mod account;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/arrivals.rs"]
 mod arrivals;
+#[cfg(target_os = "linux")]
+#[path = "acceptance/author.rs"]
+mod author;
 #[path = "acceptance/bench.rs"]
 mod bench;
 #[path = "acceptance/command_line.rs"]

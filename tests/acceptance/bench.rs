@@ -24,7 +24,9 @@ pub(crate) struct Bench {
 
 impl Bench {
     pub(crate) fn new() -> Self {
-        Self { folder: tempfile::tempdir().unwrap() }
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("logs")).unwrap();
+        Self { folder }
     }
 
     pub(crate) fn path(&self) -> &Path {
@@ -45,6 +47,7 @@ impl Bench {
         command.current_dir(self.path()).env_remove("TANKOPS_PLUGIN_PATH");
         // What the developer has set up is none of the tests' business.
         command.env("XDG_CONFIG_HOME", self.path()).env("XDG_STATE_HOME", self.path());
+        command.env("XDG_CACHE_HOME", env!("CARGO_TARGET_TMPDIR"));
         command.arg("--plugin-dir").arg(program.parent().unwrap().join("deps"));
         command
     }
@@ -68,8 +71,13 @@ impl Bench {
 
     /// Makes sure that a run is computed again equally, with the planners asked again and without.
     pub(crate) fn prove(&self, run: &Path) {
+        self.prove_with(run, &[]);
+    }
+
+    /// The same, with more options.
+    pub(crate) fn prove_with(&self, run: &Path, options: &[&str]) {
         for more in [&[][..], &["--from-journal"]] {
-            let verified = self.verify(run, more);
+            let verified = self.verify(run, &[more, options].concat());
             assert!(verified.code == Some(0) && verified.out.contains("equal: "), "{more:?}: {verified:?}");
         }
     }

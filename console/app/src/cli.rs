@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 use interactive::{By, Drill, Options, Replay};
+use planner_host::user_folder;
 use scenario::Settings;
 use std::path::PathBuf;
 
@@ -43,6 +44,8 @@ pub(crate) enum Command {
     Map(MapArgs),
     /// Create a scenario from a floor drawing (DXF) or a list of columns (CSV).
     Import(ImportArgs),
+    /// Create a folder with a planner of your own that builds and flies.
+    NewPlanner(NewPlannerArgs),
     /// List available planners, and refused plugins with the reason.
     Planners {
         /// Print JSON.
@@ -54,6 +57,16 @@ pub(crate) enum Command {
         /// Scenario files (.toml), plugins (.so, .dylib, .dll), and files named config.toml or keys.toml.
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
+        /// For plugins: check what every planner must do, and fly each of theirs in so many random tanks beside the planners that
+        /// are installed.
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+        fly: Option<u64>,
+        /// Seed of the first random tank; the others follow.
+        #[arg(long, value_name = "SEED", default_value_t = 0, requires = "fly")]
+        seed: u64,
+        /// Print what came of the flights as JSON, and nothing else on stdout.
+        #[arg(long, requires = "fly")]
+        json: bool,
     },
     /// Reproduce a table or figure of a paper, with the printed values beside ours.
     Reproduce(ReproduceArgs),
@@ -97,6 +110,15 @@ pub(crate) enum Command {
     Man {
         /// A command of tankops.
         command: Option<String>,
+    },
+    /// Ask a plugin once more what it was asked before it failed, and show each answer.
+    ReplayWorker {
+        /// Folder `crash-N` in the folder of a run.
+        #[arg(value_name = "BUNDLE")]
+        bundle: PathBuf,
+        /// Run the plugin's process in gdb, without deadlines.
+        #[arg(long)]
+        gdb: bool,
     },
     /// A planner's own process; started by the console.
     #[command(hide = true)]
@@ -170,6 +192,33 @@ pub(crate) enum FindArg {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct NewPlannerArgs {
+    /// Id of the planner: a letter, then up to 31 of a-z, 0-9, _ and -.
+    pub name: String,
+    /// Language of the planner.
+    #[arg(long, value_name = "LANG", default_value = "rust")]
+    pub lang: Lang,
+    /// Folder in which the new folder is created.
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    pub out: PathBuf,
+    /// Folder of the crate `planner-api` (Rust only); default: the one installed with tankops or that it was built with, else
+    /// the published one.
+    #[arg(long, value_name = "DIR")]
+    pub api: Option<PathBuf>,
+}
+
+/// A language for planners.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Lang {
+    /// Rust, with the crate `planner-api`.
+    Rust,
+    /// C11, with the header `tankops_planner.h`.
+    C,
+    /// C++17, with the same header.
+    Cpp,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct RescanArgs {
     /// Run folders, or their names in the logs folder: a scan and any re-scans of it.
     #[arg(required = true, value_name = "RUN")]
@@ -213,16 +262,20 @@ pub(crate) struct ReportArgs {
 }
 
 /// Where runs are kept.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub(crate) struct LogsArg {
-    /// Folder that holds the runs.
-    #[arg(long, value_name = "DIR", default_value = "logs")]
-    pub logs: PathBuf,
+    /// Folder that holds the runs; default: `logs` if there is such a folder here, else `$XDG_STATE_HOME/tankops/logs`.
+    #[arg(long, value_name = "DIR")]
+    pub logs: Option<PathBuf>,
 }
 
-impl Default for LogsArg {
-    fn default() -> Self {
-        Self { logs: PathBuf::from("logs") }
+impl LogsArg {
+    /// The folder that holds the runs.
+    pub(crate) fn folder(&self) -> PathBuf {
+        let here = PathBuf::from("logs");
+        let of_user = || user_folder("XDG_STATE_HOME", ".local/state").map(|folder| folder.join("logs"));
+        let by_default = || if here.is_dir() { here.clone() } else { of_user().unwrap_or(here.clone()) };
+        self.logs.clone().unwrap_or_else(by_default)
     }
 }
 
@@ -347,7 +400,7 @@ impl From<ConsoleArgs> for Options {
         Self {
             scenario: args.scenario,
             settings: (&args.changes).into(),
-            logs: args.logs.logs,
+            logs: args.logs.folder(),
             speed: args.speed,
             colours: args.colour,
             glyphs: args.glyphs.map(Into::into),

@@ -14,10 +14,10 @@ use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, exit_code},
     hosts::{self, host},
     plan_watch::{PlanWatch, Watched},
-    planners, scenarios,
+    planners, remains, scenarios,
 };
 use indicatif::{ProgressBar, ProgressStyle};
-use mission::{Event, EventKind, Order, Outcome, Phase, PlannerInfo};
+use mission::{Event, EventKind, Order, Outcome, Phase};
 use planner_host::{Host, PluginDirs};
 use report::print::{say, say_line, warn_line};
 use runs::{CLOSE_TIMEOUT, Closed, RunLog};
@@ -40,10 +40,9 @@ pub(crate) struct RunOptions {
 pub(crate) fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     let (json, record, live_deadlines) = (args.json, !args.no_record, args.live_deadlines);
-    let known = planners::found(plugins);
-    let shadowing = Shadowing::read(&args.shadow, &args.scenario, &scenario, &known)?;
+    let shadowing = Shadowing::read(&args.shadow, &args.scenario, &scenario, plugins)?;
     let options = RunOptions { json, record, live_deadlines };
-    fly_beside(&scenario, (plugins, &known), &args.logs, options, shadowing)
+    fly_beside(&scenario, plugins, &args.logs, options, shadowing)
 }
 
 /// Flies a scenario to its end and prints the result.
@@ -53,34 +52,41 @@ pub(crate) fn fly(
     logs: &LogsArg,
     options: RunOptions,
 ) -> anyhow::Result<ExitCode> {
-    fly_beside(scenario, (plugins, &planners::found(plugins)), logs, options, None)
+    fly_beside(scenario, plugins, logs, options, None)
 }
 
 /// The same, perhaps with a planner in shadow.
 fn fly_beside(
     scenario: &Scenario,
-    (plugins, known): (&PluginDirs, &[PlannerInfo]),
+    plugins: &PluginDirs,
     logs: &LogsArg,
     options: RunOptions,
     shadowing: Option<Shadowing>,
 ) -> anyhow::Result<ExitCode> {
     let stop = stop_signal::listen();
-    planners::check_choices(scenario, known)?;
+    planners::check_installed(scenario, plugins)?;
     warn_of_clearance(scenario);
     let flight = Flight::prepare(scenario, false);
     let mut log = if options.record {
-        RunLog::create(&logs.logs, &scenario.name, &scenario.mission.planner.id, scenario.seed)?
+        RunLog::create(&logs.folder(), &scenario.name, &scenario.mission.planner.id, scenario.seed)?
     } else {
         RunLog::unwritten()?
     };
     let bar = progress_bar(scenario, options);
     let mut trouble = None;
-    let mut take = |events: Vec<Event>| {
+    let mut take = |events: Vec<Event>, host: Option<&mut Host>| {
         log.keep(&events);
+        if let Some(host) = host {
+            remains::keep(
+                host,
+                Some(&mut log),
+                events.last().map_or((0, 0.0), |event| (event.tick, event.t_s)),
+            );
+        }
         show_progress(&bar, &events, &scenario.sim.world.stations);
         report_trouble(&mut trouble, log.health().error);
     };
-    take(vec![flight.opened()]);
+    take(vec![flight.opened()], None);
     let live_deadlines = options.live_deadlines;
     let host = fly_to_end((flight, shadowing), host(scenario, plugins), take, (&bar, &stop), live_deadlines);
     bar.finish_and_clear();
@@ -109,7 +115,7 @@ fn report_trouble(reported: &mut Option<String>, trouble: Option<String>) {
 fn fly_to_end(
     (mut flight, mut shadowing): (Flight, Option<Shadowing>),
     host: Host,
-    mut take: impl FnMut(Vec<Event>),
+    mut take: impl FnMut(Vec<Event>, Option<&mut Host>),
     (bar, stop): (&ProgressBar, &StopSignal),
     live_deadlines: bool,
 ) -> Host {
@@ -135,7 +141,7 @@ fn fly_to_end(
         };
         orders.clear();
         orders.extend(shadowing.as_mut().and_then(|shadowing| shadowing.next(&events)));
-        take(events);
+        take(events, Some(answers.host()));
     }
     answers.into_host()
 }

@@ -8,16 +8,19 @@ mod import;
 mod locate;
 mod manual;
 mod map;
+mod new_planner;
 mod output;
 mod past_runs;
 mod plan;
 mod planners;
 mod progress;
+mod replay_worker;
 mod report_file;
 mod reproduce;
 mod rescan;
 mod shadowing;
 mod stop_signal;
+mod trial;
 mod tune;
 
 use clap::Parser;
@@ -87,8 +90,12 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
         Some(Command::Map(args)) => map::map(&args),
         Some(Command::Import(args)) => import::import(&args),
+        Some(Command::NewPlanner(args)) => new_planner::create(&args),
         Some(Command::Planners { json }) => planners::list(&plugins, json),
-        Some(Command::Check { files }) => planners::check(&files, &plugins),
+        Some(Command::Check { files, fly: Some(n), seed, json }) => {
+            trial::fly(&files, &plugins, (n, seed), json)
+        }
+        Some(Command::Check { files, .. }) => planners::check(&files, &plugins),
         Some(Command::Reproduce(args)) => reproduce::reproduce(&args, &plugins),
         Some(Command::Tune(args)) => tune::tune(&args, &plugins),
         Some(Command::Replay(args)) => interactive::open(&args.into(), &plugins),
@@ -100,6 +107,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Locate(args)) => locate::locate(&args),
         Some(Command::Report(args)) => past_runs::report(&args),
         Some(Command::Rescan(args)) => rescan::rescan(&args, &plugins),
+        Some(Command::ReplayWorker { bundle, gdb }) => replay_worker::replay(&bundle, gdb),
         Some(Command::Completions { shell }) => manual::completions(shell),
         Some(Command::Man { command }) => manual::man(command.as_deref()),
         Some(Command::Worker) => Ok(planner_host::worker_main()),

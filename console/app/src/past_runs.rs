@@ -16,11 +16,11 @@ use std::{path::Path, process::ExitCode};
 
 /// `tankops runs`.
 pub(crate) fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
-    let listed = runs::list(&logs.logs)?;
+    let listed = runs::list(&logs.folder())?;
     say(&if json {
         pretty_json("the list", &listed)?
     } else if listed.is_empty() {
-        format!("no runs in {}\n", logs.logs.display())
+        format!("no runs in {}\n", logs.folder().display())
     } else {
         runs::table(&listed)
     })?;
@@ -32,7 +32,7 @@ pub(crate) fn report(args: &ReportArgs) -> anyhow::Result<ExitCode> {
     if let Some(output) = &args.output {
         return report_file::write(args, output);
     }
-    let past = review::read_all(&args.runs, &args.logs.logs)?;
+    let past = review::read_all(&args.runs, &args.logs.folder())?;
     let text = if let [only] = &past[..] {
         one(only, args.json)?
     } else {
@@ -56,7 +56,7 @@ pub(crate) fn verify(
     plugins: &PluginDirs,
     from_journal: bool,
 ) -> anyhow::Result<ExitCode> {
-    let verified = review::verify(&find(run, &logs.logs)?, plugins, from_journal)?;
+    let verified = review::verify(&find(run, &logs.folder())?, plugins, from_journal)?;
     for line in &verified.lines {
         say_line(line)?;
     }

@@ -3,7 +3,7 @@
 use crate::{accuracy::warn_of_clearance, output::pretty_json};
 use flight::{
     failure::{BAD_INPUT, COMPLETE},
-    planners::{check_choices, found},
+    planners::check_installed,
 };
 use interactive::config;
 use mission::{ParamInfo, ParamKind, PlannerInfo};
@@ -87,7 +87,7 @@ fn check_file(file: &Path, plugins: &PluginDirs) -> Result<String, String> {
         return check_plugin(file, plugins);
     }
     let scenario = Scenario::read_with(file, &Settings::default()).map_err(|errors| errors.render())?;
-    check_choices(&scenario, &found(plugins)).map_err(|error| error.to_string())?;
+    check_installed(&scenario, plugins).map_err(|error| error.to_string())?;
     warn_of_clearance(&scenario);
     Ok(format!("scenario {}, planner {}", scenario.name, scenario.mission.planner.id))
 }

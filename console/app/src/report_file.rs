@@ -29,13 +29,13 @@ pub(crate) fn write(args: &ReportArgs, output: &Path) -> anyhow::Result<ExitCode
     if args.sign.is_some() && format != "html" {
         return Err(bad_input(format!("--sign signs an .html file, not {}", output.display())));
     }
-    let folder = find(args.runs.last().map_or(Path::new(""), PathBuf::as_path), &args.logs.logs)?;
+    let folder = find(args.runs.last().map_or(Path::new(""), PathBuf::as_path), &args.logs.folder())?;
     let (revisions, doubts) = signed_reports(&folder)?;
     for doubt in &doubts {
         say_line(&format!("WARNING: {doubt}"))?;
     }
     may_write(output, args.force, &revisions)?;
-    let past = review::read_all(&args.runs, &args.logs.logs)?;
+    let past = review::read_all(&args.runs, &args.logs.folder())?;
     let inspection = inspection(args, past.last())?;
     let indications = args.indications.as_deref().map(read).transpose()?;
     let name = args.indications.as_ref().map(|file| file.display().to_string());

@@ -21,7 +21,7 @@ pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<
     if !(min_area_m2.is_finite() && min_area_m2 >= 0.0) {
         return Err(bad_input(format!("--min-area-m2 {min_area_m2}: must be an area of 0 m² or more")));
     }
-    let past = review::read_all(&args.runs, &args.logs.logs)?;
+    let past = review::read_all(&args.runs, &args.logs.folder())?;
     for note in past.iter().map(doubt).collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten() {
         say_line(&note)?;
     }
@@ -46,7 +46,8 @@ fn planners_instead(scenario: &Scenario, plugins: &PluginDirs) -> Vec<String> {
 
 /// How the re-scan is flown.
 fn print_advice(args: &RescanArgs, names: &[String], instead: &[String]) -> anyhow::Result<()> {
-    let (logs, output) = (args.logs.logs.display(), args.output.display());
+    let (logs, output) = (args.logs.folder(), args.output.display());
+    let logs = logs.display();
     let option = if instead.is_empty() { "" } else { " --planner PLANNER" };
     if !instead.is_empty() {
         say_line(&format!(

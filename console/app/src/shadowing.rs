@@ -2,7 +2,8 @@
 
 use crate::cli::ShadowArgs;
 use flight::{planners, scenarios};
-use mission::{Event, EventKind, Order, PlannerChoice, PlannerInfo, event::ShadowTally};
+use mission::{Event, EventKind, Order, PlannerChoice, event::ShadowTally};
+use planner_host::PluginDirs;
 use scenario::{Scenario, Settings};
 use std::path::Path;
 
@@ -25,12 +26,12 @@ impl Shadowing {
         args: &ShadowArgs,
         file: &Path,
         scenario: &Scenario,
-        known: &[PlannerInfo],
+        plugins: &PluginDirs,
     ) -> anyhow::Result<Option<Self>> {
         let Some(planner) = &args.shadow else { return Ok(None) };
         let settings = Settings { planner: Some(planner.clone()), set: args.shadow_set.clone(), seed: None };
         let shadowed = scenarios::read(file, &settings)?;
-        planners::check_choices(&shadowed, known)?;
+        planners::check_installed(&shadowed, plugins)?;
         let choices = [shadowed.mission.planner, scenario.mission.planner.clone()];
         Ok(Some(Self::new(choices, args.promote_every)))
     }

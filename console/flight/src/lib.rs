@@ -9,6 +9,7 @@ mod flown;
 pub mod hosts;
 pub mod plan_watch;
 pub mod planners;
+pub mod remains;
 pub mod scenarios;
 
 pub use flown::Flight;

@@ -2,12 +2,30 @@
 
 use crate::failure::bad_input;
 use mission::{PlannerChoice, PlannerInfo, TaskConfig};
-use planner_host::{PluginDirs, WorkerCommand, parameter_problems, survey};
+use planner_host::{PluginDirs, WorkerCommand, find_planners, parameter_problems, survey};
 use scenario::Scenario;
 
 /// Planners that can be chosen.
 pub fn found(plugins: &PluginDirs) -> Vec<PlannerInfo> {
     survey(plugins, &WorkerCommand::default()).planners().cloned().collect()
+}
+
+/// Makes sure, before anything is flown, that the planners of a scenario are there and take their parameters. Only the plugins
+/// that may have them are looked at; all of them if something is wrong, to say what there is instead.
+///
+/// # Errors
+/// Every objection, with its place in the scenario.
+pub fn check_installed(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<()> {
+    let ids: Vec<&str> = chosen(scenario).map(|(_, choice)| choice.id.as_str()).collect();
+    let known = find_planners(&ids, plugins, &WorkerCommand::default());
+    check_choices(scenario, &known).or_else(|_| check_choices(scenario, &found(plugins)))
+}
+
+/// The planners of a scenario, with the sections that name them.
+fn chosen(scenario: &Scenario) -> impl Iterator<Item = (&'static str, &PlannerChoice)> {
+    let mission = &scenario.mission;
+    let fallback = mission.fallback.iter().map(|choice| ("planner.fallback", choice));
+    std::iter::once(("planner", &mission.planner)).chain(fallback)
 }
 
 /// Makes sure, before anything is flown, that the planners of a scenario are among the known ones and take their
@@ -16,12 +34,10 @@ pub fn found(plugins: &PluginDirs) -> Vec<PlannerInfo> {
 /// # Errors
 /// Every objection, with its place in the scenario.
 pub fn check_choices(scenario: &Scenario, known: &[PlannerInfo]) -> anyhow::Result<()> {
-    let mission = &scenario.mission;
-    let fallback = mission.fallback.iter().map(|choice| ("planner.fallback", choice));
-    let choices = std::iter::once(("planner", &mission.planner)).chain(fallback);
-    let must_cover = matches!(mission.task, TaskConfig::Cover { .. });
-    let objections: Vec<_> =
-        choices.flat_map(|(section, choice)| objections(section, choice, known, must_cover)).collect();
+    let must_cover = matches!(scenario.mission.task, TaskConfig::Cover { .. });
+    let objections: Vec<_> = chosen(scenario)
+        .flat_map(|(section, choice)| objections(section, choice, known, must_cover))
+        .collect();
     if objections.is_empty() { Ok(()) } else { Err(bad_input(scenario.refused(objections).render())) }
 }
 

@@ -9,6 +9,7 @@ pub use settings::colours;
 
 use fault::{Fault, Place};
 use mission::Severity;
+use planner_host::user_folder;
 use std::path::{Path, PathBuf};
 use tui::{
     Colours, Model, Speed, ThemeName,
@@ -98,16 +99,7 @@ fn point(severity: Severity, text: String) -> Attention {
 }
 
 fn folder() -> Option<PathBuf> {
-    folder_of("XDG_CONFIG_HOME", ".config")
-}
-
-/// A folder of tankops by the XDG base directory specification: in the folder that a variable names, else in one of the
-/// operator's.
-pub(crate) fn folder_of(variable: &str, otherwise: &str) -> Option<PathBuf> {
-    let set = |name| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    // The specification asks to ignore a path that is not absolute.
-    let base = set(variable).filter(|path| path.is_absolute());
-    base.or_else(|| Some(set("HOME")?.join(otherwise))).map(|base| base.join("tankops"))
+    user_folder("XDG_CONFIG_HOME", ".config")
 }
 
 fn name_of(file: &Path) -> String {

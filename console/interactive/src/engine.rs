@@ -18,6 +18,7 @@ use flight::{
     answers::{Window, Windowed},
     hosts::host,
     plan_watch::{PlanWatch, Watched, Work},
+    remains,
 };
 use mission::{AskId, Awaits, Event, Hold, HoldReason, Order, Phase};
 use planner_host::{Host, PluginDirs, Progress};
@@ -80,6 +81,7 @@ impl Engine {
             stop_asked: None,
             stops_ms: Vec::new(),
             log: None,
+            printed: Vec::new(),
             closed: None,
             health_sent_at: now,
             reached: Reached::since(now),
@@ -124,6 +126,8 @@ struct EngineThread {
     /// How long each stop took, milliseconds.
     stops_ms: Vec<f64>,
     log: Option<RunLog>,
+    /// What planners printed in this tick, for the screen alone.
+    printed: Vec<Event>,
     closed: Option<Closed>,
     health_sent_at: Instant,
     reached: Reached,
@@ -178,7 +182,8 @@ impl EngineThread {
         assert!(!failing, "drill: the engine fails on purpose");
         self.send_work();
         self.estimate(&events);
-        self.send(RunMsg::Events(events));
+        let printed = std::mem::take(&mut self.printed);
+        self.send(RunMsg::Events(events.into_iter().chain(printed).collect()));
         self.send_health();
         if matches!(self.flight.phase(), Phase::Ended(_)) {
             self.close_log(CLOSE_TIMEOUT);
@@ -194,6 +199,8 @@ impl EngineThread {
         }
         self.reached.count();
         self.keep(&events);
+        let at = events.last().map_or((0, 0.0), |event| (event.tick, event.t_s));
+        self.printed = remains::keep(&mut self.host, self.log.as_mut(), at);
         events
     }
 

@@ -1,7 +1,7 @@
 //! The command lines of earlier sessions: `history` in the XDG state folder, one a line, the newest last. Nothing depends on
 //! it: what cannot be read or written is left out.
 
-use crate::config::folder_of;
+use planner_host::user_folder;
 use std::{
     fs::{self, OpenOptions},
     io::{self, Write},
@@ -25,7 +25,7 @@ pub(super) fn append(line: &str) {
 }
 
 fn file() -> Option<PathBuf> {
-    folder_of("XDG_STATE_HOME", ".local/state").map(|folder| folder.join("history"))
+    user_folder("XDG_STATE_HOME", ".local/state").map(|folder| folder.join("history"))
 }
 
 fn load_from(file: &Path) -> Vec<String> {

@@ -1,6 +1,8 @@
 //! Where plugins are looked for, and which files there are plugins.
 
 use crate::stamp::{self, Abi};
+use crate::survey::Cache;
+use crate::user_folder::user_folder;
 use sha2::{Digest, Sha256};
 use std::env;
 use std::ffi::OsStr;
@@ -14,35 +16,44 @@ pub struct PluginDirs {
     pub folders: Vec<PathBuf>,
     /// Whether a plugin is refused where its process cannot be closed off wholly.
     pub requires_sandbox: bool,
+    /// Folder that keeps what plugins were found to hold.
+    pub cache: Option<PathBuf>,
 }
 
 impl PluginDirs {
-    /// These folders; plugins are loaded also where their processes cannot be closed off wholly.
+    /// These folders; plugins are loaded also where their processes cannot be closed off wholly, and nothing is kept about
+    /// them.
     pub fn of(folders: Vec<PathBuf>) -> Self {
-        Self { folders, requires_sandbox: false }
+        Self { folders, requires_sandbox: false, cache: None }
     }
 
     /// The folders given by hand, `$TANKOPS_PLUGIN_PATH`, `plugins` beside the program, the program's own folder and
-    /// `deps` in it (where Cargo puts libraries), `$XDG_DATA_HOME/tankops/plugins`.
+    /// `deps` in it (where Cargo puts libraries), `../lib/tankops/plugins` seen from the program,
+    /// `$XDG_DATA_HOME/tankops/plugins`. What they hold is kept in `$XDG_CACHE_HOME/tankops/plugins`.
     pub fn standard(extra: &[PathBuf]) -> Self {
         let mut dirs = extra.to_vec();
         dirs.extend(env::var_os("TANKOPS_PLUGIN_PATH").iter().flat_map(env::split_paths));
         if let Some(beside) = env::current_exe().ok().as_deref().and_then(Path::parent) {
             dirs.extend([beside.join("plugins"), beside.to_owned(), beside.join("deps")]);
+            dirs.extend(beside.parent().map(|prefix| prefix.join("lib/tankops/plugins")));
         }
-        let data = env::var_os("XDG_DATA_HOME").map(PathBuf::from);
-        let data = data.or_else(|| env::home_dir().map(|home| home.join(".local/share")));
-        dirs.extend(data.map(|data| data.join("tankops/plugins")));
+        let plugins_in = |folder: PathBuf| folder.join("plugins");
+        dirs.extend(user_folder("XDG_DATA_HOME", ".local/share").map(plugins_in));
         dirs.retain(|dir| !dir.as_os_str().is_empty());
-        Self::of(dirs)
+        Self { cache: user_folder("XDG_CACHE_HOME", ".cache").map(plugins_in), ..Self::of(dirs) }
     }
 
     /// Every file that is named like a plugin: folder by folder, by name within a folder. A file with the same
     /// content as an earlier one is the same plugin and left out.
     pub fn plugins(&self) -> Vec<PluginFile> {
         let mut found: Vec<PluginFile> = Vec::new();
+        let cache = Cache::new(self.cache.as_deref());
         for path in self.folders.iter().flat_map(|dir| named_like_plugins(dir)) {
-            let plugin = PluginFile::read(path);
+            let plugin = cache.seen(&path).unwrap_or_else(|| {
+                let plugin = PluginFile::read(path);
+                cache.note(&plugin);
+                plugin
+            });
             if plugin.sha256.is_empty() || found.iter().all(|known| known.sha256 != plugin.sha256) {
                 found.push(plugin);
             }
@@ -99,7 +110,16 @@ pub struct PluginFile {
     pub sha256: String,
     /// ABI of its stamp, or why it is refused.
     pub abi: Result<Abi, String>,
-    words: Vec<u8>,
+    pub(crate) words: Words,
+}
+
+/// Where the ids of a plugin's planners can be looked up.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Words {
+    /// These are all of them.
+    Ids(Vec<String>),
+    /// Somewhere in the bytes of the file.
+    Bytes(Vec<u8>),
 }
 
 impl PluginFile {
@@ -108,16 +128,17 @@ impl PluginFile {
         match read_bytes(&path) {
             Ok(words) => {
                 let abi = stamp::read(&words).map_err(|error| error.to_string());
-                Self {
-                    path,
-                    sha256: sha256_hex(&words),
-                    words: if abi.is_ok() { words } else { Vec::new() },
-                    abi,
-                }
+                let (sha256, ids) = (sha256_hex(&words), stamp::ids(&words));
+                let words = match ids {
+                    _ if abi.is_err() => Words::Ids(Vec::new()),
+                    Some(ids) => Words::Ids(ids),
+                    None => Words::Bytes(words),
+                };
+                Self { path, sha256, abi, words }
             }
             Err(error) => {
                 let abi = Err(error);
-                Self { path, sha256: String::new(), abi, words: Vec::new() }
+                Self { path, sha256: String::new(), abi, words: Words::Ids(Vec::new()) }
             }
         }
     }
@@ -127,10 +148,15 @@ impl PluginFile {
         self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Whether the bytes of this planner's id are in the file at all, so that it is worth loading. Nothing is in a refused
-    /// file, and nobody finds a planner that composes its id only when it is loaded.
+    /// Whether it has this planner, as far as its file says: a Rust library names its ids, in others the bytes of the id have to
+    /// be there, so that nobody finds a planner that composes its id only when it is loaded. Nothing is in a refused file.
     pub fn may_have(&self, id: &str) -> bool {
-        !id.is_empty() && self.words.windows(id.len()).any(|window| window == id.as_bytes())
+        match &self.words {
+            Words::Ids(ids) => ids.iter().any(|known| known == id),
+            Words::Bytes(bytes) => {
+                !id.is_empty() && bytes.windows(id.len()).any(|window| window == id.as_bytes())
+            }
+        }
     }
 }
 

@@ -14,6 +14,7 @@ pub(crate) use planner::Wanted;
 
 use crate::OnProgress;
 use crate::discovery::PluginDirs;
+use crate::remains::{Crash, Printed, is_crash};
 use crate::stats::{Durations, HostStats};
 use crate::supervisor::{Failure, Ready, WakeReceiver, Waker, Worker, wait};
 use find::Catalog;
@@ -22,6 +23,11 @@ use planner::{Asked, Doing, Outcome, Planner};
 use saved::SavedStates;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
+
+/// So many lines of planners are kept for those who do not take them.
+const MOST_PRINTED: usize = 256;
+/// What is left of so many planners is kept for those who do not take it.
+const MOST_CRASHES: usize = 4;
 
 /// Runs planners for missions, each in a worker process.
 ///
@@ -45,6 +51,10 @@ pub struct Host {
     step_times: Durations,
     n_faults: u64,
     on_progress: Option<OnProgress>,
+    printed: Vec<Printed>,
+    crashes: Vec<Crash>,
+    /// Last requests and output of a worker that failed while its planner was being opened.
+    remains: Option<(Vec<u8>, String)>,
 }
 
 impl Host {
@@ -63,12 +73,25 @@ impl Host {
             step_times: Durations::default(),
             n_faults: 0,
             on_progress: None,
+            printed: Vec::new(),
+            crashes: Vec::new(),
+            remains: None,
         }
     }
 
     /// Sets the callback that receives the progress of plans while they are being computed.
     pub fn set_on_progress(&mut self, on_progress: OnProgress) {
         self.on_progress = Some(on_progress);
+    }
+
+    /// What planners printed since the last time.
+    pub fn take_printed(&mut self) -> Vec<Printed> {
+        std::mem::take(&mut self.printed)
+    }
+
+    /// What is left of the planners that failed since the last time.
+    pub fn take_crashes(&mut self) -> Vec<Crash> {
+        std::mem::take(&mut self.crashes)
     }
 
     /// How long a plan may take.
@@ -209,7 +232,12 @@ impl Host {
                 }
             };
             outcomes.extend(worker.advance(ready, now, forward).map(|outcome| (planner.id, outcome)));
+            let lines = worker.take_printed().into_iter();
+            let name = planner.ready.as_ref().map_or("", |ready| &ready.loaded.info.id);
+            self.printed.extend(lines.map(|line| Printed { planner: name.to_owned(), line }));
         }
+        let surplus = self.printed.len().saturating_sub(MOST_PRINTED);
+        self.printed.drain(..surplus);
         self.leaving.retain_mut(|worker| {
             if let Some(ready) = ready.next() {
                 worker.advance(ready, now, &mut |_| {});
@@ -255,10 +283,23 @@ impl Host {
             Ok((given, said)) => (Ok(given), said),
             Err(fault) => (Err(fault), Said::default()),
         };
-        if result.is_err() {
+        if let Err(fault) = &result {
+            self.keep_remains(ask.worker, fault);
             self.retire(ask.worker);
         }
         self.answers.push_back(Answer { ask, result, said });
+    }
+
+    /// Keeps what is left of a planner whose author has to find out why it failed.
+    fn keep_remains(&mut self, id: WorkerId, fault: &Fault) {
+        let planner = self.planners.iter_mut().find(|planner| planner.id == id);
+        let of_worker = planner.and_then(|planner| planner.worker.as_mut()).map(Worker::remains);
+        let remains = of_worker.or(self.remains.take());
+        if let Some((frames, output)) =
+            remains.filter(|_| is_crash(fault.cause) && self.crashes.len() < MOST_CRASHES)
+        {
+            self.crashes.push(Crash { fault: fault.clone(), frames, output });
+        }
     }
 
     /// Removes a worker that cannot be asked any more.

@@ -7,7 +7,7 @@ use planner_api::abi;
 use std::fmt;
 
 /// The version of the planner ABI that a library was built for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Abi {
     /// Must be the console's own.
     pub major: u32,
@@ -81,6 +81,17 @@ pub fn read(bytes: &[u8]) -> Result<Abi, StampError> {
         abi::SECTIONS.iter().find_map(|name| file.section_by_name(name)).ok_or(StampError::NoStamp)?;
     let stamp = section.data().map_err(|error| StampError::Damaged(error.to_string()))?;
     accept(parse(stamp).ok_or(StampError::NoStamp)?)
+}
+
+/// The ids of the planners of a library with a stamp, if it names them there.
+pub fn ids(bytes: &[u8]) -> Option<Vec<String>> {
+    let file = File::parse(bytes).ok()?;
+    let section = abi::SECTIONS.iter().find_map(|name| file.section_by_name(name))?;
+    let ids = section.data().ok()?.get(size_of::<abi::Stamp>()..)?;
+    let ids = ids.split(|byte| *byte == 0).filter(|id| !id.is_empty());
+    let ids: Vec<String> = ids.map(|id| String::from_utf8_lossy(id).into_owned()).collect();
+    let are_ids = !ids.is_empty() && ids.iter().all(|id| planner_api::export::is_id(id));
+    are_ids.then_some(ids)
 }
 
 /// Accepts every ABI of the console's own major version.

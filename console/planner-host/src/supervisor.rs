@@ -4,10 +4,12 @@
 
 mod clock;
 mod ending;
+mod lines;
 mod load;
 mod poller;
 mod process;
 mod ready;
+mod tape;
 mod waker;
 mod worker;
 

@@ -1,5 +1,9 @@
 //! Everything that was found: plugins with their planners, and bad ones with the reason.
 
+mod cache;
+
+pub(crate) use cache::Cache;
+
 use crate::discovery::{PluginDirs, PluginFile};
 use crate::stamp::Abi;
 use crate::supervisor::{Failure, Worker, WorkerCommand, wait_for_one};
@@ -47,17 +51,28 @@ impl Survey {
     }
 }
 
-/// Looks at every plugin: each is loaded and described in a worker of its own that is thrown away.
+/// Looks at every plugin: one that is not known yet is loaded and described in a worker of its own that is thrown away.
 pub fn survey(dirs: &PluginDirs, worker: &WorkerCommand) -> Survey {
     let mut known: Vec<String> = Vec::new();
-    let probing = Probing { worker, requires_sandbox: dirs.requires_sandbox };
+    let probing = Probing::of(dirs, worker);
     let plugins = dirs.plugins().iter().map(|plugin| look_at(plugin, &probing, &mut known)).collect();
     Survey { plugins }
 }
 
-/// Looks at one file, wherever it lies and whatever it is called.
+/// The planners of these ids that there are, each of the first plugin that has it; no other plugin is looked at.
+pub fn find_planners(ids: &[&str], dirs: &PluginDirs, worker: &WorkerCommand) -> Vec<PlannerInfo> {
+    let (probing, plugins) = (Probing::of(dirs, worker), dirs.plugins());
+    let find = |id: &&str| {
+        let may_have = plugins.iter().filter(|plugin| plugin.may_have(id));
+        let found = may_have.filter_map(|plugin| probing.planners_of(plugin).ok());
+        found.flatten().find(|info| info.id == **id)
+    };
+    ids.iter().filter_map(find).collect()
+}
+
+/// Looks at one file, wherever it lies and whatever it is called; it is loaded also when it is known.
 pub fn check_plugin(file: &Path, worker: &WorkerCommand, requires_sandbox: bool) -> SurveyedPlugin {
-    let probing = Probing { worker, requires_sandbox };
+    let probing = Probing { worker, requires_sandbox, cache: Cache::new(None) };
     look_at(&PluginFile::read(file.to_path_buf()), &probing, &mut Vec::new())
 }
 
@@ -65,6 +80,22 @@ pub fn check_plugin(file: &Path, worker: &WorkerCommand, requires_sandbox: bool)
 struct Probing<'a> {
     worker: &'a WorkerCommand,
     requires_sandbox: bool,
+    cache: Cache,
+}
+
+impl<'a> Probing<'a> {
+    fn of(dirs: &PluginDirs, worker: &'a WorkerCommand) -> Self {
+        Self { worker, requires_sandbox: dirs.requires_sandbox, cache: Cache::new(dirs.cache.as_deref()) }
+    }
+
+    fn planners_of(&self, plugin: &PluginFile) -> Result<Vec<PlannerInfo>, Failure> {
+        if let Some(planners) = self.cache.get(plugin) {
+            return Ok(planners);
+        }
+        let planners = probe(plugin, self)?;
+        self.cache.put(plugin, &planners);
+        Ok(planners)
+    }
 }
 
 fn look_at(plugin: &PluginFile, probing: &Probing<'_>, known: &mut Vec<String>) -> SurveyedPlugin {
@@ -77,7 +108,7 @@ fn look_at(plugin: &PluginFile, probing: &Probing<'_>, known: &mut Vec<String>) 
         refused: plugin.abi.as_ref().err().cloned(),
     };
     if surveyed.refused.is_none() {
-        match probe(plugin, probing) {
+        match probing.planners_of(plugin) {
             Ok(planners) => {
                 let is_new = |info: &PlannerInfo| !known.contains(&info.id);
                 let (new, taken): (Vec<_>, Vec<_>) = planners.into_iter().partition(is_new);

@@ -4,6 +4,7 @@
 //! way, the report at its end. The journal is the truth; the report is a copy of what it says, and is believed as long as it
 //! fits it ([`standing()`]).
 
+mod beside;
 mod error;
 mod files;
 mod folder;

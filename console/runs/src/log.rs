@@ -1,6 +1,6 @@
 //! What is written about a run while it is flown: journal, recording and, at its end, the report.
 
-use crate::{error::RunError, folder::RunFolder, kept::Kept};
+use crate::{beside::Beside, error::RunError, folder::RunFolder, kept::Kept};
 use mission::Event;
 use recording::{Health, JournalWriter, Options, RunRecorder, sha256};
 use report::{Expect, Fold, Logs, PlannerCalls, Stops, Summary};
@@ -15,6 +15,7 @@ pub const CLOSE_TIMEOUT: Duration = Duration::from_secs(10);
 /// A run that is being written, or, without a folder, only computed.
 pub struct RunLog {
     folder: Option<RunFolder>,
+    beside: Option<Beside>,
     recorder: RunRecorder,
     fold: Fold,
     began: Instant,
@@ -36,7 +37,8 @@ impl RunLog {
     pub fn create(logs: &Path, scenario: &str, planner: &str, seed: u64) -> Result<Self, RunError> {
         let folder = RunFolder::create(logs, scenario, planner, seed)?;
         let recorder = RunRecorder::start(folder.path(), Options::default())?;
-        Ok(Self { folder: Some(folder), recorder, fold: Fold::new(), began: Instant::now() })
+        let beside = Some(Beside::new(folder.path()));
+        Ok(Self { folder: Some(folder), beside, recorder, fold: Fold::new(), began: Instant::now() })
     }
 
     /// Writes nothing, but computes report and hash.
@@ -46,7 +48,7 @@ impl RunLog {
     pub fn unwritten() -> Result<Self, RunError> {
         let began = Instant::now();
         let recorder = RunRecorder::spawn(JournalWriter::unwritten(began), None)?;
-        Ok(Self { folder: None, recorder, fold: Fold::new(), began })
+        Ok(Self { folder: None, beside: None, recorder, fold: Fold::new(), began })
     }
 
     /// Takes the events of a tick; waits while the recorder's queue is full.
@@ -55,6 +57,20 @@ impl RunLog {
             self.fold.apply(event);
         }
         self.recorder.send(events);
+    }
+
+    /// Keeps lines that planners printed, in a file beside the journal.
+    pub fn keep_output(&mut self, text: &str) {
+        if let Some(beside) = &mut self.beside {
+            beside.keep_output(text);
+        }
+    }
+
+    /// Keeps what is left of a planner that failed: files by name, in a folder of its own.
+    pub fn keep_crash(&mut self, files: &[(&str, Vec<u8>)]) {
+        if let Some(beside) = &mut self.beside {
+            beside.keep_crash(files);
+        }
     }
 
     /// How recording goes.
@@ -76,7 +92,7 @@ impl RunLog {
         stops: Option<Stops>,
         expect: &Expect,
     ) -> Closed {
-        let Self { folder, recorder, fold, began } = self;
+        let Self { folder, recorder, fold, began, .. } = self;
         let finished = recorder.finish(within);
         let logs = folder.is_some().then(|| Logs {
             journal: finished.journal.as_ref().map(|path| path.display().to_string()),

@@ -1,9 +1,4 @@
-/* direct.c - a planner in plain C: turn to the target, drive there. It looks at no obstacle.
- *
- * Build it into a folder that the console searches:
- *     cc -std=c11 -O2 -shared -fPIC -I plugins/planner-api/include plugins/examples/direct-c/direct.c \
- *         -o libplanner_direct_c.so -lm
- */
+/* A planner in C: turn to the target, drive there. It looks at no obstacle. */
 #include "tankops_planner.h"
 
 #include <math.h>

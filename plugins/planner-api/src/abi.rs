@@ -12,7 +12,7 @@ pub mod table;
 
 pub use input::{Obstacle, Outline, PlanIn, Site, StepIn, Zone};
 pub use output::{Draw, Leg, Param, PlanOut, StepOut, Value};
-pub use table::{Entry, Host, Planner, PlannerList, Stamp};
+pub use table::{Entry, Host, Label, Planner, PlannerList, Stamp, label_len};
 
 /// First bytes of entry and stamp.
 pub const MAGIC: [u8; 8] = *b"TANKPLAN";

@@ -21,6 +21,8 @@ macro_rules! export_planners {
             #[allow(non_upper_case_globals)]
             pub static tank_planner_entry: $crate::abi::Entry = PLANNERS.entry();
 
+            const IDS: &[&str] = &[$(<$planner as $crate::Planner>::ID),+];
+
             #[used]
             #[cfg_attr(any(target_os = "macos", target_os = "ios"), unsafe(link_section = "__DATA,__tankplan"))]
             #[cfg_attr(windows, unsafe(link_section = ".tankpln"))]
@@ -28,7 +30,7 @@ macro_rules! export_planners {
                 not(any(windows, target_os = "macos", target_os = "ios")),
                 unsafe(link_section = ".tankplan")
             )]
-            static STAMP: $crate::abi::Stamp = $crate::abi::Stamp::CURRENT;
+            static LABEL: $crate::abi::Label<{ $crate::abi::label_len(IDS) }> = $crate::abi::Label::of(IDS);
         };
     };
 }

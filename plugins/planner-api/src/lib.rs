@@ -1,4 +1,5 @@
-//! What the author of a tankops planner links to.
+#![doc = include_str!("../README.md")]
+//! # Rust
 //!
 //! Write a type, implement [`Planner`] for it, and export it with `export_planners!(MyPlanner)` from a crate of type
 //! `cdylib`. Everything else (the C table, catching panics, copying) is done here; the author's crate may

@@ -29,7 +29,7 @@ impl Planner for Idle {
 export_planners!(Idle);
 
 #[test]
-fn the_macro_puts_the_stamp_into_the_file() {
+fn the_macro_puts_stamp_and_ids_into_the_file() {
     let own = std::env::current_exe().and_then(std::fs::read).expect("the test can read itself");
     // Built at run time, so that the bytes searched for are not found in the test's own constants.
     let stamp: Vec<u8> = "NALPKNAT"
@@ -37,6 +37,7 @@ fn the_macro_puts_the_stamp_into_the_file() {
         .rev()
         .chain(planner_api::abi::MAJOR.to_le_bytes())
         .chain(planner_api::abi::MINOR.to_le_bytes())
+        .chain(*b"idle\0")
         .collect();
     assert!(own.windows(stamp.len()).any(|bytes| bytes == stamp), "the stamp is in the file");
 }

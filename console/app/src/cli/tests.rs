@@ -18,6 +18,7 @@ fn the_help_of_every_command_is_as_reviewed() {
         "map",
         "import",
         "locate",
+        "new-planner",
         "planners",
         "check",
         "reproduce",
@@ -27,6 +28,7 @@ fn the_help_of_every_command_is_as_reviewed() {
         "export",
         "report",
         "rescan",
+        "replay-worker",
         "completions",
         "man",
     ] {

@@ -1,6 +1,7 @@
 //! From a planner's id to the plugin files that may have it.
 
 use crate::discovery::{PluginDirs, PluginFile};
+use crate::survey::Cache;
 use mission::spelling::nearest;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::PathBuf;
@@ -17,6 +18,7 @@ pub(super) struct Candidate {
 /// The plugin files, read when they are first needed and again when a planner is missing.
 pub(super) struct Catalog {
     dirs: PluginDirs,
+    cache: Cache,
     plugins: Option<Vec<PluginFile>>,
     /// Ids of planners that were loaded, each with the file that is the first to have it since the files were read.
     known: BTreeMap<String, Option<Candidate>>,
@@ -37,7 +39,8 @@ pub(super) enum Search {
 
 impl Catalog {
     pub(super) fn new(dirs: PluginDirs) -> Self {
-        Self { dirs, plugins: None, known: BTreeMap::new() }
+        let cache = Cache::new(dirs.cache.as_deref());
+        Self { dirs, cache, plugins: None, known: BTreeMap::new() }
     }
 
     /// Whether a plugin is refused where its process cannot be closed off wholly.
@@ -86,7 +89,11 @@ impl Catalog {
     /// The files that may have this planner, in the order in which they are to be tried. To know that, all of their bytes are
     /// searched.
     fn candidates(&self, id: &str) -> VecDeque<Candidate> {
-        let may_have = self.plugins().iter().filter(|plugin| plugin.may_have(id));
+        let is_known_to_lack = |plugin: &PluginFile| {
+            self.cache.get(plugin).is_some_and(|planners| planners.iter().all(|info| info.id != id))
+        };
+        let may_have =
+            self.plugins().iter().filter(|plugin| plugin.may_have(id) && !is_known_to_lack(plugin));
         may_have
             .map(|plugin| Candidate {
                 path: plugin.path.clone(),

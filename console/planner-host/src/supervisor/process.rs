@@ -1,6 +1,7 @@
 //! The process of a worker: started, watched, killed and reaped, without ever waiting for it.
 
 use super::WorkerCommand;
+use super::lines::Lines;
 use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
 use std::collections::VecDeque;
 use std::io::{self, PipeReader, Read};
@@ -22,6 +23,7 @@ pub(super) struct Process {
     status: Option<ExitStatus>,
     output: Option<PipeReader>,
     tail: VecDeque<u8>,
+    lines: Lines,
 }
 
 impl Process {
@@ -41,7 +43,14 @@ impl Process {
         // Dropping the command closes our copies of the pipe, so that its end can be seen.
         drop(start);
         let pidfd = pidfd_of(&child);
-        Ok(Self { child, pidfd, status: None, output: Some(reader), tail: VecDeque::new() })
+        Ok(Self {
+            child,
+            pidfd,
+            status: None,
+            output: Some(reader),
+            tail: VecDeque::new(),
+            lines: Lines::default(),
+        })
     }
 
     /// Its process id; it is not given to another process before this one is reaped.
@@ -101,6 +110,7 @@ impl Process {
             let Some(output) = &mut self.output else { return };
             match output.read(&mut piece) {
                 Ok(n @ 1..) => {
+                    self.lines.extend(&piece[..n]);
                     self.tail.extend(&piece[..n]);
                     let surplus = self.tail.len().saturating_sub(TAIL);
                     self.tail.drain(..surplus);
@@ -110,6 +120,11 @@ impl Process {
                 Ok(_) | Err(_) => self.output = None,
             }
         }
+    }
+
+    /// The lines that were printed since the last time.
+    pub(super) fn take_lines(&mut self) -> Vec<String> {
+        if self.output.is_some() { self.lines.take() } else { self.lines.take_rest() }
     }
 
     /// The end of what was printed.

@@ -7,6 +7,7 @@ mod state;
 
 use super::process::Process;
 use super::ready::{Ready, Source, Watched};
+use super::tape::Tape;
 use super::{Failure, WorkerCommand, soft};
 use crate::Progress;
 use crate::wire::body::Writer;
@@ -35,6 +36,7 @@ pub(crate) struct Worker {
     n_sent: usize,
     sequence: u32,
     state: State,
+    tape: Tape,
 }
 
 impl Worker {
@@ -50,7 +52,8 @@ impl Worker {
         })?;
         let (incoming, writer) = (Incoming::default(), Writer::default());
         let guard = Guard::default();
-        Ok(Self { process, socket, incoming, guard, writer, n_sent: 0, sequence: 0, state: State::Idle })
+        let (state, tape) = (State::Idle, Tape::default());
+        Ok(Self { process, socket, incoming, guard, writer, n_sent: 0, sequence: 0, state, tape })
     }
 
     /// Whether the process has ended and was reaped.
@@ -61,6 +64,17 @@ impl Worker {
     /// How far its process is closed off; none before it has been asked to load a plugin.
     pub(crate) fn sandbox(&self) -> Option<&Sandbox> {
         self.guard.sandbox()
+    }
+
+    /// The lines that it printed since the last time.
+    pub(crate) fn take_printed(&mut self) -> Vec<String> {
+        self.process.take_lines()
+    }
+
+    /// Its last requests as they were sent, and the end of what it printed.
+    pub(crate) fn remains(&mut self) -> (Vec<u8>, String) {
+        self.process.read_output();
+        (self.tape.bytes(), String::from_utf8_lossy(self.process.tail()).into_owned())
     }
 
     /// Whether it can be asked.
@@ -93,6 +107,7 @@ impl Worker {
         self.writer.finish().map_err(|length| {
             Failure::Console(format!("cannot be asked: the request has {length} bytes, 16 MiB is the most"))
         })?;
+        self.tape.note(kind, self.writer.frame());
         self.n_sent = 0;
         self.state = State::Busy(Request::new(kind, budget, now));
         self.send(now);

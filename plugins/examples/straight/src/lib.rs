@@ -1,17 +1,18 @@
-//! Drives straight to its target. The planner guide shows this file.
+//! A planner that drives from target to target.
 
 use planner_api::{
     Caps, Code, Command, Config, Ctx, Layer, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result,
     Sensed, Site, Task, export_planners, float,
 };
 
-struct Straight {
+struct Mine {
     speed_m_per_s: f64,
 }
 
-impl Planner for Straight {
-    const ID: &'static str = "straight";
+impl Planner for Mine {
+    const ID: &'static str = env!("CARGO_PKG_NAME");
     const NAME: &'static str = "Straight to the target";
+    const ABOUT: &'static str = "Drives to the target; looks at no obstacle.";
     const CAPS: Caps = Caps::LOCAL;
     const PARAMS: &'static [ParamSpec] =
         &[float("speed", "Speed", "m/s", 0.01, 2.0, 0.2).help("Speed on the way.").live()];
@@ -21,12 +22,14 @@ impl Planner for Straight {
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, _ctx: &Ctx<'_>) -> Result<Plan> {
-        let Task::Goto { goal, .. } = request.task else {
-            return Err(PlannerError::new(Code::Unsupported, "straight flies to single goals only"));
+        let targets = match request.task {
+            Task::Goto { goal, .. } => vec![goal],
+            Task::Follow { targets, .. } => targets.to_vec(),
+            Task::Cover { .. } => return Err(PlannerError::new(Code::Unsupported, "covers no floor")),
         };
-        let start = request.start.position;
-        let cost = (goal - start).norm();
-        Ok(Plan { path: vec![start, goal], cost, complete: true, ..Plan::default() })
+        let path = [vec![request.start.position], targets].concat();
+        let cost = path.windows(2).map(|leg| (leg[1] - leg[0]).norm()).sum();
+        Ok(Plan { path, cost, complete: true, ..Plan::default() })
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
@@ -34,20 +37,11 @@ impl Planner for Straight {
         ctx.arrow(Layer::Attraction, sensed.pose.position, way);
         Ok(Command::velocity(way.cap_magnitude(self.speed_m_per_s)))
     }
-}
 
-export_planners!(Straight);
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn the_guide_shows_this_file() {
-        let guide = include_str!("../../../../console/docs/planner-guide.md");
-        let source = include_str!("lib.rs").split("\n#[cfg(test)]").next().unwrap_or_default();
-        let (_, code) = source.split_once("\n\n").expect("a line of documentation comes first");
-        assert!(
-            guide.contains(&format!("```rust\n{code}```\n")),
-            "console/docs/planner-guide.md shows other code"
-        );
+    fn reconfigure(&mut self, config: &Config<'_>, _ctx: &Ctx<'_>) -> Result<()> {
+        self.speed_m_per_s = config.float("speed");
+        Ok(())
     }
 }
+
+export_planners!(Mine);

@@ -100,6 +100,15 @@ pub struct Stamp {
     pub abi_minor: u32,
 }
 
+/// What the stamp's section of a Rust library holds: the stamp, and the ids of its planners, each ended by a zero. So the console
+/// knows them before it loads anything; a library without ids, as one in C, has to be searched for them.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Label<const N: usize> {
+    pub stamp: Stamp,
+    pub ids: [u8; N],
+}
+
 /// The list that [`Entry::planners`] points at.
 #[repr(transparent)]
 #[derive(Debug)]
@@ -119,6 +128,35 @@ unsafe impl Sized32 for Planner {}
 impl Stamp {
     /// The stamp of libraries that are built against this crate.
     pub const CURRENT: Self = Self { magic: super::MAGIC, abi_major: super::MAJOR, abi_minor: super::MINOR };
+}
+
+impl<const N: usize> Label<N> {
+    /// The label of a library that is built against this crate; `N` is what [`label_len`] says of these ids.
+    pub const fn of(of: &[&str]) -> Self {
+        let mut ids = [0; N];
+        let (mut at, mut i) = (0, 0);
+        while i < of.len() {
+            let bytes = of[i].as_bytes();
+            let mut k = 0;
+            while k < bytes.len() {
+                ids[at + k] = bytes[k];
+                k += 1;
+            }
+            at += bytes.len() + 1;
+            i += 1;
+        }
+        Self { stamp: Stamp::CURRENT, ids }
+    }
+}
+
+/// Bytes that ids take in a [`Label`].
+pub const fn label_len(ids: &[&str]) -> usize {
+    let (mut n, mut i) = (0, 0);
+    while i < ids.len() {
+        n += ids[i].len() + 1;
+        i += 1;
+    }
+    n
 }
 
 impl<const N: usize> PlannerList<N> {

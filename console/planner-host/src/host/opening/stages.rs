@@ -116,7 +116,8 @@ impl Host {
     }
 
     /// Shuts down a worker whose planner cannot be opened.
-    fn part(&mut self, worker: Worker, fault: Fault) -> Result<(), Fault> {
+    fn part(&mut self, mut worker: Worker, fault: Fault) -> Result<(), Fault> {
+        self.remains = Some(worker.remains());
         self.dismiss(worker);
         Err(fault)
     }
@@ -139,6 +140,7 @@ impl Host {
         let loaded = match found {
             Ok(Some(loaded)) => loaded,
             other => {
+                self.remains = other.is_err().then(|| worker.remains());
                 self.dismiss(worker);
                 if let Err(failure) = other {
                     opening.note(failure, &candidate);

@@ -52,6 +52,7 @@ impl Worker {
     /// no outcome any more.
     pub(crate) fn shut_down(&mut self) {
         let now = Instant::now();
+        self.process.read_output();
         match self.state {
             State::Gone | State::Leaving(_) => return,
             State::Dying(_) => return self.kill(),

@@ -1,0 +1,191 @@
+//! What a planner must do whatever it plans.
+
+use crate::flown::{Flown, Pilot, with_planner};
+use crate::tape::Player;
+use flight::hosts;
+use mission::{
+    Cause, EventKind, Order, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, What,
+};
+use planner_host::{Host, HostConfig, PluginDirs};
+use scenario::Scenario;
+use serde::Serialize;
+use std::time::Duration;
+
+/// In the console a tick waits so long for a command, milliseconds: 60 % of a tick of 0.1 s.
+const STEP_WITHIN_MS: f64 = 60.0;
+/// Ticks at which the planner takes over from another.
+const SWAPS_AT: [u64; 3] = [5, 40, 120];
+/// So many ticks a planner is looked at after something was done to it.
+const LOOK_FOR: u64 = 30;
+
+/// Something that a planner must do, and whether it does.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Check {
+    /// What.
+    pub what: &'static str,
+    /// Why it failed; absent if it passed.
+    pub failure: Option<String>,
+}
+
+impl Check {
+    pub(crate) fn line(&self) -> String {
+        match &self.failure {
+            None => format!("ok    {}\n", self.what),
+            Some(why) => format!("FAIL  {}: {why}\n", self.what),
+        }
+    }
+}
+
+/// A planner that is checked.
+pub(crate) struct Subject<'a> {
+    pub(crate) planner: &'a PlannerInfo,
+    pub(crate) plugins: &'a PluginDirs,
+    /// A tank to fly in.
+    pub(crate) tank: &'a Scenario,
+    /// Another planner that flies such missions.
+    pub(crate) beside: Option<&'a str>,
+}
+
+/// Every check, with the flights that were flown already.
+pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown]) -> Vec<Check> {
+    let check = |what, failure| Check { what, failure };
+    vec![
+        check("answers soundly in every tank", flown.iter().find_map(|flown| flown.misbehaved.clone())),
+        check("answers steps in time", in_time(flown)),
+        check("flies the same flight twice", subject.twice()),
+        check("takes the least and the greatest parameters", subject.extremes()),
+        check("stops planning when it is asked to", subject.stops()),
+        check("takes over under way", subject.takes_over()),
+        check("goes on from its saved state", subject.restores()),
+    ]
+}
+
+fn in_time(flown: &[Flown]) -> Option<String> {
+    // The median, because a busy machine is not the planner's fault.
+    let slowest = flown.iter().filter_map(|flown| flown.p50_ms).fold(0.0, f64::max);
+    (slowest > STEP_WITHIN_MS)
+        .then(|| format!("half of the steps took {slowest:.0} ms; the console waits {STEP_WITHIN_MS} ms"))
+}
+
+impl Subject<'_> {
+    fn pilot(&self, id: &str, parameters: Parameters, attended: bool) -> Pilot {
+        Pilot::new(&with_planner(self.tank, id, parameters), self.plugins, attended)
+    }
+
+    fn twice(&self) -> Option<String> {
+        let mut pilots = [0, 1].map(|_| self.pilot(&self.planner.id, Parameters::new(), false));
+        loop {
+            let [first, second] = pilots.each_mut().map(|pilot| pilot.tick(&[]));
+            let written = |events| serde_json::to_string(events).unwrap_or_default();
+            if written(&first) != written(&second) {
+                let t_s = first.and_then(|events| Some(events.first()?.t_s)).unwrap_or_default();
+                return Some(format!(
+                    "after {t_s:.1} s the second flight is another one; start every random choice from the site's seed, and \
+                     use no clock"
+                ));
+            }
+            first?;
+        }
+    }
+
+    fn extremes(&self) -> Option<String> {
+        [false, true].into_iter().find_map(|greatest| {
+            let values =
+                self.planner.parameters.iter().map(|info| (info.key.clone(), extreme(info, greatest)));
+            let mut pilot = self.pilot(&self.planner.id, values.collect(), false);
+            let _ = (0..LOOK_FOR).try_for_each(|_| pilot.tick(&[]).map(|_| ()));
+            let which = if greatest { "greatest" } else { "least" };
+            pilot.misbehaved().map(|why| format!("with the {which} ones: {why}"))
+        })
+    }
+
+    /// What it is asked on its first flight.
+    fn tape(&self) -> Vec<What> {
+        let mut pilot = self.pilot(&self.planner.id, Parameters::new(), true);
+        let _ = (0..LOOK_FOR).try_for_each(|_| pilot.tick(&[]).map(|_| ()));
+        pilot.into_tape()
+    }
+
+    fn player(&self, config: HostConfig) -> Player {
+        Player::new(Host::new(self.plugins, config))
+    }
+
+    fn stops(&self) -> Option<String> {
+        let hurry = Duration::from_millis(1);
+        let config = HostConfig { plan_deadline: hurry, ..hosts::config(&self.tank.mission) };
+        let mut player = self.player(config);
+        let until_plan = self.tape().into_iter().take(2);
+        let hung = until_plan
+            .filter_map(|what| player.ask(0, what).1.err())
+            .find(|fault| fault.cause == Cause::Hung);
+        hung.map(|_| {
+            "it ignored the request for 0.1 s and was killed; call ctx.check()? in every loop".to_owned()
+        })
+    }
+
+    fn takes_over(&self) -> Option<String> {
+        let from = self.beside.unwrap_or(&self.planner.id);
+        SWAPS_AT.into_iter().find_map(|at| {
+            let mut pilot = self.pilot(from, Parameters::new(), true);
+            let choice = PlannerChoice { id: self.planner.id.clone(), parameters: Parameters::new() };
+            let mut has_taken_over = false;
+            for tick in 0..at + LOOK_FOR {
+                let orders = match tick.checked_sub(at) {
+                    Some(0) => vec![Order::Hold],
+                    Some(1) => vec![Order::ChoosePlanner(choice.clone())],
+                    Some(3) => vec![Order::Resume],
+                    _ => Vec::new(),
+                };
+                let Some(events) = pilot.tick(&orders) else { break };
+                has_taken_over |= events.iter().any(|event| {
+                    matches!(&event.kind, EventKind::PlannerChosen { choice, .. } if tick > at && choice.id == self.planner.id)
+                });
+                // What the other one does before is not on trial.
+                let blamed = pilot.misbehaved().filter(|_| tick > at || from == self.planner.id);
+                if let Some(why) = blamed {
+                    return Some(format!("from {from} at tick {at}: {why}"));
+                }
+                if tick + 1 == at + LOOK_FOR && !has_taken_over {
+                    return Some(format!("from {from} at tick {at}: it gave no plan to go on with"));
+                }
+            }
+            None
+        })
+    }
+
+    fn restores(&self) -> Option<String> {
+        if !self.planner.snapshots {
+            return None;
+        }
+        let mut player = self.player(hosts::config(&self.tank.mission));
+        let tape = self.tape();
+        let half = tape.len() / 2;
+        for what in &tape[..half] {
+            player.ask(0, what.clone()).1.err().map_or(Ok(()), |fault| Err(fault.message)).err();
+        }
+        let (state, saved) = player.ask(0, What::Snapshot);
+        if let Err(fault) = saved {
+            return Some(fault.message);
+        }
+        let Some(What::Open { choice, site, .. }) = tape.first().cloned() else { return None };
+        if let Err(fault) = player.ask(1, What::Open { choice, site, restore: Some(state) }).1 {
+            return Some(fault.message);
+        }
+        let differs = |what: &What| player.ask(0, what.clone()).1 != player.ask(1, what.clone()).1;
+        tape[half..].iter().any(differs).then(|| {
+            "an instance that was given the state of another answers otherwise than that one".to_owned()
+        })
+    }
+}
+
+fn extreme(info: &ParamInfo, greatest: bool) -> ParamValue {
+    match &info.kind {
+        ParamKind::Float { min, max, .. } => ParamValue::Float(if greatest { *max } else { *min }),
+        ParamKind::Int { min, max, .. } => ParamValue::Int(if greatest { *max } else { *min }),
+        ParamKind::Flag { .. } => ParamValue::Flag(greatest),
+        ParamKind::Choice { options, .. } => {
+            let word = if greatest { options.last() } else { options.first() };
+            ParamValue::Word(word.cloned().unwrap_or_default())
+        }
+    }
+}

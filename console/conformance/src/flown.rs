@@ -1,0 +1,99 @@
+//! One flight, as fast as it goes.
+
+use crate::tape::Taping;
+use flight::{Flight, hosts};
+use mission::{Cause, Event, EventKind, Order, Parameters, Phase, PlannerChoice};
+use planner_api::Code;
+use planner_host::{Host, PluginDirs};
+use report::{Fold, Summary};
+use scenario::Scenario;
+
+/// What came of a flight.
+#[derive(Debug)]
+pub(crate) struct Flown {
+    pub(crate) summary: Summary,
+    /// Median time for a step, milliseconds by the wall clock; absent without steps.
+    pub(crate) p50_ms: Option<f64>,
+    /// Time that 99 of 100 steps do not exceed.
+    pub(crate) p99_ms: Option<f64>,
+    /// First fault that no good planner has.
+    pub(crate) misbehaved: Option<String>,
+    /// It said that it does not fly such missions.
+    pub(crate) unsupported: bool,
+}
+
+/// A flight that goes on until its mission ends, or somebody stops looking.
+pub(crate) struct Pilot {
+    flight: Flight,
+    answers: Taping,
+    fold: Fold,
+    misbehaved: Option<String>,
+    unsupported: bool,
+    tick: u64,
+}
+
+/// A tank, to be flown by this planner.
+pub(crate) fn with_planner(tank: &Scenario, id: &str, parameters: Parameters) -> Scenario {
+    let mut scenario = tank.clone();
+    scenario.mission.planner = PlannerChoice { id: id.to_owned(), parameters };
+    scenario
+}
+
+/// Flies a tank with a planner to the end.
+pub(crate) fn fly(tank: &Scenario, id: &str, plugins: &PluginDirs) -> Flown {
+    let mut pilot = Pilot::new(&with_planner(tank, id, Parameters::new()), plugins, false);
+    while pilot.tick(&[]).is_some() {}
+    pilot.land()
+}
+
+impl Pilot {
+    /// Ready to start; with an operator a hold does not end the mission.
+    pub(crate) fn new(scenario: &Scenario, plugins: &PluginDirs, attended: bool) -> Self {
+        let flight = Flight::prepare(scenario, attended);
+        let host = Host::new(plugins, hosts::config(&scenario.mission));
+        let mut fold = Fold::new();
+        fold.apply(&flight.opened());
+        Self { flight, answers: Taping::new(host), fold, misbehaved: None, unsupported: false, tick: 0 }
+    }
+
+    /// Flies one tick with these orders; its events, or none when the mission has ended.
+    pub(crate) fn tick(&mut self, orders: &[Order]) -> Option<Vec<Event>> {
+        if matches!(self.flight.phase(), Phase::Ended(_)) {
+            return None;
+        }
+        let start = [Order::Start];
+        let events = self.flight.tick(if self.tick == 0 { &start } else { orders }, &mut self.answers);
+        self.tick += 1;
+        for event in &events {
+            self.fold.apply(event);
+            if let EventKind::PlannerFailed { fault, .. } = &event.kind {
+                self.unsupported |= fault.cause == Cause::Planner(Code::Unsupported);
+                if !matches!(fault.cause, Cause::Planner(_) | Cause::Quarantined) {
+                    self.misbehaved.get_or_insert_with(|| fault.message.clone());
+                }
+            }
+        }
+        Some(events)
+    }
+
+    /// First fault that no good planner has.
+    pub(crate) fn misbehaved(&self) -> Option<&str> {
+        self.misbehaved.as_deref()
+    }
+
+    /// What the planners were asked first.
+    pub(crate) fn into_tape(self) -> Vec<mission::What> {
+        self.answers.into_tape()
+    }
+
+    fn land(mut self) -> Flown {
+        let calls = hosts::calls(self.answers.host());
+        Flown {
+            summary: self.fold.summary(),
+            p50_ms: calls.p50_us.map(|us| us / 1000.0),
+            p99_ms: calls.p99_us.map(|us| us / 1000.0),
+            misbehaved: self.misbehaved,
+            unsupported: self.unsupported,
+        }
+    }
+}

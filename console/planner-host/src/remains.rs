@@ -1,0 +1,29 @@
+//! What planners leave beside their answers: what they print, and what is left of one that failed. It depends on the machine
+//! when it arrives, so it enters neither journal nor recording.
+
+use mission::{Cause, Fault};
+
+/// A line that a planner printed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Printed {
+    /// Which planner; empty while its plugin is being loaded.
+    pub planner: String,
+    /// The line, without control characters.
+    pub line: String,
+}
+
+/// What is left of a planner that failed: enough to ask its plugin the same once more ([`crate::replay`]).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Crash {
+    /// How it failed.
+    pub fault: Fault,
+    /// The last requests, as they went to its worker.
+    pub frames: Vec<u8>,
+    /// The end of what it printed.
+    pub output: String,
+}
+
+/// Whether an author has to find out why: the planner did not refuse by itself, and the console did not refuse it.
+pub(crate) fn is_crash(cause: Cause) -> bool {
+    !matches!(cause, Cause::Planner(_) | Cause::Refused | Cause::Quarantined | Cause::Starved)
+}

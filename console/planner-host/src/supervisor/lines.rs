@@ -1,0 +1,80 @@
+//! What a process prints, line by line, for people.
+
+/// So many lines are kept until somebody takes them; of more only the number is known.
+const MOST: usize = 64;
+/// Longest line, bytes.
+const LONGEST: usize = 400;
+
+/// Lines that were printed and not taken yet.
+#[derive(Debug, Default)]
+pub(super) struct Lines {
+    partial: Vec<u8>,
+    whole: Vec<String>,
+    n_dropped: usize,
+}
+
+impl Lines {
+    /// Takes what was printed.
+    pub(super) fn extend(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            match byte {
+                b'\n' => self.end_line(),
+                _ if self.partial.len() < LONGEST => self.partial.push(*byte),
+                _ => {}
+            }
+        }
+    }
+
+    fn end_line(&mut self) {
+        let text = String::from_utf8_lossy(&self.partial).chars().filter(|c| !c.is_control()).collect();
+        self.partial.clear();
+        if self.whole.len() < MOST {
+            self.whole.push(text);
+        } else {
+            self.n_dropped += 1;
+        }
+    }
+
+    /// The lines since the last time.
+    pub(super) fn take(&mut self) -> Vec<String> {
+        let dropped = std::mem::take(&mut self.n_dropped);
+        let mut lines = std::mem::take(&mut self.whole);
+        if dropped > 0 {
+            lines.push(format!("({dropped} more lines at once are not kept)"));
+        }
+        lines
+    }
+
+    /// The lines since the last time, and what was begun: the process prints no more.
+    pub(super) fn take_rest(&mut self) -> Vec<String> {
+        if !self.partial.is_empty() {
+            self.end_line();
+        }
+        self.take()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_whole_and_without_escapes() {
+        let mut lines = Lines::default();
+        lines.extend(b"one\ntw\x1b[31mo");
+        assert_eq!(lines.take(), ["one"]);
+        lines.extend(b"\nthr");
+        assert_eq!(lines.take(), ["tw[31mo"]);
+        assert_eq!((lines.take_rest(), lines.take_rest()), (vec!["thr".to_owned()], vec![]));
+    }
+
+    #[test]
+    fn a_flood_is_counted_and_not_kept() {
+        let mut lines = Lines::default();
+        lines.extend(&b"x\n".repeat(MOST + 3));
+        let taken = lines.take();
+        assert_eq!((taken.len(), taken[MOST].as_str()), (MOST + 1, "(3 more lines at once are not kept)"));
+        lines.extend(&[b'x'; 10 * LONGEST]);
+        assert_eq!(lines.take_rest()[0].len(), LONGEST);
+    }
+}

@@ -1,0 +1,185 @@
+//! A planner's author, with nothing but `tankops` and a compiler.
+
+use crate::bench::{Bench, Ended, workspace};
+use std::{
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// A new planner, and the file that comes of building it as the guide says.
+fn built(bench: &Bench, lang: &str) -> PathBuf {
+    let created = bench.tankops(&["new-planner", "my-own", "--lang", lang]);
+    assert_eq!(created.code, Some(0), "{created:?}");
+    let folder = bench.path().join("my-own");
+    let (program, arguments, place) = match lang {
+        "rust" => {
+            // The versions that were tested; the machine may be offline.
+            std::fs::copy(workspace().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
+            (env!("CARGO"), &["build", "--release", "--offline"][..], author_target().join("release"))
+        }
+        _ => ("make", &["-s"][..], folder.clone()),
+    };
+    let built = Command::new(program)
+        .args(arguments)
+        .current_dir(&folder)
+        .env("CARGO_TARGET_DIR", author_target())
+        .env_remove("RUSTFLAGS")
+        .output()
+        .unwrap();
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    place.join("libplanner_my_own.so")
+}
+
+/// Built once for all runs of this test.
+fn author_target() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("author")
+}
+
+fn fly_first(bench: &Bench, plugin: &Path) -> Ended {
+    let folder = plugin.parent().unwrap().to_str().unwrap();
+    let scenario = bench.path().join("my-own/scenario.toml");
+    bench.fly(&scenario, &["--plugin-dir", folder])
+}
+
+#[test]
+fn a_new_planner_in_each_language_builds_and_flies_at_once() {
+    for lang in ["c", "cpp", "rust"] {
+        let bench = Bench::new();
+        let plugin = built(&bench, lang);
+        let flown = fly_first(&bench, &plugin);
+        assert_eq!(
+            (flown.code, flown.json()["planner"].as_str()),
+            (Some(0), Some("my-own")),
+            "{lang}: {flown:?}"
+        );
+        bench.prove_with(&bench.runs()[0], &["--plugin-dir", plugin.parent().unwrap().to_str().unwrap()]);
+    }
+}
+
+#[test]
+fn a_new_planner_is_never_written_over_another() {
+    let bench = Bench::new();
+    bench.file("my-own", "precious");
+    let refused = bench.tankops(&["new-planner", "my-own"]);
+    assert!(refused.code == Some(2) && refused.err.contains("already exists"), "{refused:?}");
+}
+
+#[test]
+fn a_planner_is_checked_and_flown_beside_others() {
+    let bench = Bench::new();
+    let plugin = built(&bench, "c");
+    let tried = bench.tankops(&["check", plugin.to_str().unwrap(), "--fly", "2", "--json"]);
+    let trial = &tried.json()[0];
+    assert_eq!((tried.code, trial["planner"].as_str()), (Some(0), Some("my-own")), "{tried:?}");
+    assert!(trial["checks"].as_array().unwrap().iter().all(|check| check["failure"].is_null()), "{trial}");
+    let rows: Vec<&str> =
+        trial["rows"].as_array().unwrap().iter().map(|row| row["planner"].as_str().unwrap()).collect();
+    assert!(rows[0] == "my-own" && rows.contains(&"navfn"), "{rows:?}");
+    assert!(trial["rows"][0]["tanks"] == 2, "{trial}");
+}
+
+#[test]
+fn a_planner_that_uses_a_clock_or_crashes_fails_its_checks() {
+    let bench = Bench::new();
+    let plugin = built(&bench, "c");
+    let source = bench.path().join("my-own/my_own.c");
+    let good = std::fs::read_to_string(&source).unwrap();
+    let with = |by: &str| {
+        let step = "const direct *self = instance;";
+        std::fs::write(&source, good.replacen(&format!("  {step}"), &format!("  {step}\n  {by}"), 1))
+            .unwrap();
+        let plugin = rebuilt(&plugin);
+        bench.tankops(&["check", plugin.to_str().unwrap(), "--fly", "1"])
+    };
+    let crashes = with("if (in->tick == 7) abort();");
+    assert!(
+        crashes.code == Some(1) && crashes.out.contains("FAIL  answers soundly in every tank"),
+        "{crashes:?}"
+    );
+    let clock = "static double noise; noise += (double)(size_t)in / 1e18; host->scalar(host->ctx, (tp_str)TP_STR(\"n\"), \
+                 (double)(size_t)&noise, (tp_str)TP_STR(\"\"));";
+    let random = with(clock);
+    assert!(random.code == Some(1) && random.out.contains("FAIL  flies the same flight twice"), "{random:?}");
+}
+
+fn rebuilt(plugin: &Path) -> PathBuf {
+    let made = Command::new("make").arg("-sB").current_dir(plugin.parent().unwrap()).output().unwrap();
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    plugin.to_owned()
+}
+
+#[test]
+fn what_a_planner_prints_and_its_crash_are_kept_and_the_crash_can_be_replayed() {
+    let bench = Bench::new();
+    let plugin = built(&bench, "c");
+    let source = bench.path().join("my-own/my_own.c");
+    let good = std::fs::read_to_string(&source).unwrap();
+    let by = "if (in->tick == 3) { puts(\"in step 3\"); fflush(stdout); }\n  if (in->tick == 7) { puts(\"bye\"); fflush(stdout); abort(); }";
+    let step = "const direct *self = instance;";
+    let bad = good.replacen(step, &format!("{step}\n  {by}"), 1).replacen(
+        "#include <math.h>",
+        "#include <math.h>\n#include <stdio.h>",
+        1,
+    );
+    std::fs::write(&source, bad).unwrap();
+    let flown = fly_first(&bench, &rebuilt(&plugin));
+    assert_eq!(flown.code, Some(1), "{flown:?}");
+    let run = &bench.runs()[0];
+    let printed = std::fs::read_to_string(run.join("planner.log")).unwrap();
+    assert!(printed.starts_with("T+0.3 s  my-own: in step 3\n"), "{printed}");
+    assert!(!std::fs::read_to_string(run.join("events.jsonl")).unwrap().contains("in step 3"));
+    let bundle = run.join("crash-1");
+    let replayed = bench.tankops(&["replay-worker", bundle.to_str().unwrap()]);
+    assert!(replayed.code == Some(1) && replayed.out.contains("killed by SIGABRT"), "{replayed:?}");
+    std::fs::write(&source, good).unwrap();
+    rebuilt(&plugin);
+    let mended = bench.tankops(&["replay-worker", bundle.to_str().unwrap()]);
+    assert!(mended.code == Some(0) && mended.out.contains("every request was answered"), "{mended:?}");
+}
+
+#[test]
+fn a_run_looks_only_at_plugins_that_may_have_its_planner() {
+    let bench = Bench::new();
+    let cache = bench.path().join("cache");
+    let fly = || {
+        let mut command = bench.command();
+        command.env("XDG_CACHE_HOME", &cache).args(["run", "--json", "--no-record"]);
+        Ended::from(command.arg(crate::bench::scenario("corridor.toml")).output().unwrap())
+    };
+    let known = || {
+        let files = std::fs::read_dir(cache.join("tankops/plugins")).unwrap();
+        let texts = files.map(|file| std::fs::read_to_string(file.unwrap().path()).unwrap());
+        texts.filter(|text| text.contains("\"parameters\"")).count()
+    };
+    assert!(fly().code.is_some_and(|code| code < 2));
+    let first = known();
+    assert!(first == 1, "{first} plugins were loaded to find one planner");
+    fly();
+    assert_eq!(known(), first);
+}
+
+#[test]
+fn a_program_and_its_planners_work_below_any_prefix_from_any_folder() {
+    let bench = Bench::new();
+    let program = Path::new(env!("CARGO_BIN_EXE_tankops"));
+    let (bin, plugins) = (bench.path().join("p/bin"), bench.path().join("p/lib/tankops/plugins"));
+    let elsewhere = bench.path().join("elsewhere");
+    for folder in [&bin, &plugins, &elsewhere] {
+        std::fs::create_dir_all(folder).unwrap();
+    }
+    std::fs::copy(program, bin.join("tankops")).unwrap();
+    let spiral = "libplanner_spiral.so";
+    std::fs::copy(program.with_file_name("deps").join(spiral), plugins.join(spiral)).unwrap();
+    let state = bench.path().join("state");
+    let flown = Command::new(bin.join("tankops"))
+        .current_dir(&elsewhere)
+        .env_remove("TANKOPS_PLUGIN_PATH")
+        .env("XDG_STATE_HOME", &state)
+        .env("XDG_CACHE_HOME", bench.path().join("cache"))
+        .output()
+        .unwrap();
+    let flown = Ended::from(flown);
+    let kept = format!("run kept in {}", state.join("tankops/logs").display());
+    assert!(flown.code == Some(0) && flown.out.contains(&kept), "{flown:?}");
+    assert_eq!(std::fs::read_dir(&elsewhere).unwrap().count(), 0);
+}
