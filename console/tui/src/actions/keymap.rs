@@ -239,7 +239,7 @@ mod tests {
             ),
             (
                 &[("zoom-in", &[Key::F(5)]), ("zoom-out", &[Key::F(5)])],
-                "1: \"F5\" is already zoom-in (Plan, Mission, Result); zoom-out keeps \"Z\"",
+                "1: \"F5\" is already zoom-in (Plan, Mission, Replay, Result); zoom-out keeps \"Z\"",
             ),
             (&[("zoomin", &[f])], "0: no action \"zoomin\"; did you mean zoom-in?"),
             (
