@@ -354,7 +354,7 @@ pub(crate) struct ReplayArgs {
 impl From<ReplayArgs> for Options {
     fn from(args: ReplayArgs) -> Self {
         let ReplayArgs { run, compare, logs, speed, colour, glyphs, script, plain } = args;
-        let console = ConsoleArgs { logs, speed, colour, glyphs, script, plain, ..ConsoleArgs::default() };
+        let console = ConsoleArgs { logs, speed, colour, script, plain, glyphs, ..ConsoleArgs::default() };
         Self { replay: Some(Replay { run, with: compare }), ..console.into() }
     }
 }

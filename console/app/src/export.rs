@@ -16,7 +16,7 @@ use std::{
 
 /// `tankops export RUN`.
 pub(crate) fn export(args: &ExportArgs) -> anyhow::Result<ExitCode> {
-    let folder = find(&args.run, &args.logs.logs)?;
+    let folder = find(&args.run, &args.logs.folder())?;
     let to = &args.to;
     if let Some(there) = [&to.rrd, &to.mcap, &to.ranges].into_iter().flatten().find(|file| file.exists()) {
         return Err(bad_input(format!("{} already exists; exports are never overwritten", there.display())));

@@ -83,7 +83,7 @@ fn located(args: &LocateArgs, task: &Task, survey: &Survey) -> anyhow::Result<(T
     let mut log = if args.no_record {
         None
     } else {
-        Some(RunLog::create(&args.logs.logs, &scenario.name, "located", scenario.seed)?)
+        Some(RunLog::create(&args.logs.folder(), &scenario.name, "located", scenario.seed)?)
     };
     let (mut tally, mut refused) = (Tally::default(), None);
     task.locate(survey, |events: &[Event]| {

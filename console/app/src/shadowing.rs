@@ -48,7 +48,9 @@ impl Shadowing {
     /// The order for the next tick, after the events of a tick.
     pub(crate) fn next(&mut self, events: &[Event]) -> Option<Order> {
         let every_s = self.every_s?;
-        events.iter().for_each(|event| self.tally.apply(&event.kind));
+        for event in events {
+            self.tally.apply(&event.kind);
+        }
         if events.iter().any(|event| matches!(event.kind, EventKind::Promoted { .. })) {
             self.tally = ShadowTally::default();
             self.choices.reverse();

@@ -200,7 +200,9 @@ mod tests {
             Differences.solve(&ranges[..3], &stations(), None),
             Err(FixError::TooFewStations { have: 3, need: 4 })
         );
-        ranges.iter_mut().for_each(|range| range.sigma_m = 0.001 * range.range_m);
+        for range in &mut ranges {
+            range.sigma_m = 0.001 * range.range_m;
+        }
         ranges[2].range_m += 3.0;
         let fix = Screened(Differences).solve(&ranges, &stations(), None).unwrap();
         assert!((fix.position - Point::new(2.0, 3.0)).norm() < 0.01, "{}", fix.position);

@@ -112,7 +112,7 @@ impl Merger {
             *waiting = vec![chunk];
             return Ok(Vec::new());
         }
-        let full = is_full(waiting, &chunk).then(|| std::mem::take(waiting)).unwrap_or_default();
+        let full = if is_full(waiting, &chunk) { std::mem::take(waiting) } else { Vec::new() };
         waiting.push(chunk);
         shrink(waiting, |one, other| one.num_rows() <= 2 * other.num_rows())?;
         self.merged(full)

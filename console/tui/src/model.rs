@@ -115,7 +115,7 @@ impl Model {
             access: Access::Replay,
             source: Some(Source::File(run.clone())),
             is_opening: true,
-            replay: Some(Replay::of(run)),
+            replay: Some(Box::new(Replay::of(run))),
             ..Live::default()
         };
         (self.ui.map, self.ui.cursor) = (ui::MapView::default(), None);

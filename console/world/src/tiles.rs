@@ -27,7 +27,7 @@ const AREA: usize = EDGE * EDGE;
 pub struct Tiles<T> {
     width: usize,
     len: usize,
-    tiles: Vec<Arc<[T; AREA]>>,
+    squares: Vec<Arc<[T; AREA]>>,
 }
 
 /// The same without tiles.
@@ -42,7 +42,8 @@ impl<T: Copy> Tiles<T> {
     pub fn new(width: usize, len: usize, value: T) -> Self {
         let width = width.max(1);
         let tiles = width.div_ceil(EDGE) * len.div_ceil(width).div_ceil(EDGE);
-        Self { width, len, tiles: vec![Arc::new([value; AREA]); tiles] }
+        // All are one and the same until they change.
+        Self { width, len, squares: std::iter::repeat_n(Arc::new([value; AREA]), tiles).collect() }
     }
 
     /// Which tile a cell is in, and where.
@@ -56,13 +57,13 @@ impl<T: Copy> Tiles<T> {
     /// The value of a cell. Panics beyond the last one, as a slice does.
     pub fn at(&self, index: usize) -> T {
         let (tile, cell) = self.place(index);
-        self.tiles[tile][cell]
+        self.squares[tile][cell]
     }
 
     /// The value of a cell, to be changed. Panics beyond the last one, as a slice does.
     pub fn at_mut(&mut self, index: usize) -> &mut T {
         let (tile, cell) = self.place(index);
-        &mut Arc::make_mut(&mut self.tiles[tile])[cell]
+        &mut Arc::make_mut(&mut self.squares[tile])[cell]
     }
 
     /// How many cells there are.
@@ -136,7 +137,7 @@ mod tests {
         for lane in [|i: usize| 800 * 1600 + i, |i: usize| i * 1600 + 800] {
             let mut copy = blank.clone();
             (0..1600).for_each(|i| *copy.at_mut(lane(i)) = true);
-            let own = copy.tiles.iter().zip(&blank.tiles).filter(|(one, other)| !Arc::ptr_eq(one, other));
+            let own = copy.squares.iter().zip(&blank.squares).filter(|(one, other)| !Arc::ptr_eq(one, other));
             assert_eq!(own.count(), 50);
         }
     }

@@ -21,8 +21,8 @@ fn events() -> Vec<Event> {
     let of_tick = |tick: u64| {
         let runs = vec![CellRun(tick as u32 * 7, 3), CellRun(tick as u32 * 5, 2)];
         let station = StationId(tick as u32 / 100 % 4);
-        let noted = (tick % 100 == 0).then_some(EventKind::StationRestored { station });
-        let held = (tick % 1000 == 0).then(|| EventKind::Ordered { order: Order::Hold });
+        let noted = tick.is_multiple_of(100).then_some(EventKind::StationRestored { station });
+        let held = tick.is_multiple_of(1000).then_some(EventKind::Ordered { order: Order::Hold });
         let scalars = vec![("share".to_owned(), tick as f64, "%".to_owned()); 4];
         [EventKind::Covered { runs }, EventKind::Scalars { scalars }]
             .into_iter()

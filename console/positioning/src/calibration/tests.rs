@@ -157,7 +157,9 @@ fn a_session_finds_the_offset_of_the_clocks_with_and_without_the_speed_of_sound(
             } else {
                 draws.rangings(&stations, truth, Aggregation::Mean)
             };
-            ranges.iter_mut().for_each(|range| range.range_m += offset_m);
+            for range in &mut ranges {
+                range.range_m += offset_m;
+            }
             ranges.retain(|range| range.range_m > 0.0);
             ranges
         };

@@ -195,7 +195,9 @@ fn a_run_with_a_date_in_its_name_has_a_calendar() {
     let now = Instant::now();
     let identity = Identity::of_run("20261122T040132Z-demo-rpf-1");
     let mut recorder = Recorder::create(&path, &identity, now).expect("a new file");
-    events(20).iter().for_each(|event| recorder.push(event, now).expect("room on the disk"));
+    for event in &events(20) {
+        recorder.push(event, now).expect("room on the disk");
+    }
     recorder.finish().expect("room on the disk");
     let content = content(&path);
     let began_ns = 1_795_320_092_000_000_000_i64;

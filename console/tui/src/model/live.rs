@@ -103,7 +103,7 @@ pub struct Live {
     pub result: Option<RunResult>,
     /// How the run is played back, if it is.
     #[serde(default)]
-    pub replay: Option<Replay>,
+    pub replay: Option<Box<Replay>>,
 }
 
 impl Live {

@@ -126,8 +126,8 @@ impl Replay {
     pub fn target_s(&self, jump: Jump, from_s: f64, tick_s: f64) -> Option<f64> {
         let marks = || self.reel.marks.iter();
         let times = |kinds: fn(&Mark) -> bool| marks().filter(move |mark| kinds(mark)).map(|mark| mark.t_s);
-        let (any, alarm): (fn(&Mark) -> bool, fn(&Mark) -> bool) =
-            (|_| true, |mark| mark.kind == MarkKind::Alarm);
+        let any = |_: &Mark| true;
+        let alarm = |mark: &Mark| mark.kind == MarkKind::Alarm;
         let after = move |t_s: &f64| *t_s > from_s + SAME_S;
         let before = move |t_s: &f64| *t_s < from_s - SAME_S;
         let by = |way_s: f64| Some((from_s + way_s).clamp(0.0, self.reel.until_s));

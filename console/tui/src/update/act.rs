@@ -45,7 +45,6 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::GoReview => go(model, Screen::Review),
         ActionId::GoResult => go(model, Screen::Result),
         ActionId::GoPlugins => go(model, Screen::Plugins),
-        ActionId::Replay => go::begin(model, id),
         ActionId::Play
         | ActionId::Jump(_)
         | ActionId::Bookmark
@@ -56,7 +55,9 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Sort => review::sort(model),
         ActionId::Reload => vec![Effect::Survey],
         ActionId::Again => go::again(model),
-        ActionId::Rescan | ActionId::Verify | ActionId::Report | ActionId::View => go::begin(model, id),
+        ActionId::Replay | ActionId::Rescan | ActionId::Verify | ActionId::Report | ActionId::View => {
+            go::begin(model, id)
+        }
         ActionId::Back => back(model).unwrap_or_else(|| leave(model)),
         ActionId::Leave => leave(model),
         ActionId::Abort => [hold_now(model), ask(model, Ask::Abort)].concat(),
@@ -81,21 +82,13 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Accept if model.ui.overlay == Overlay::None => go::enter(model),
         ActionId::Accept => overlay::accept(model),
         ActionId::Edit => overlay::edit(model),
-        ActionId::ChoosePlanner => {
-            open(model, Overlay::Planners { purpose: Purpose::Drive, selected: driving(model) })
-        }
-        ActionId::Shadow => {
-            open(model, Overlay::Planners { purpose: Purpose::Shadow, selected: driving(model) })
-        }
+        ActionId::ChoosePlanner => choose(model, Purpose::Drive),
+        ActionId::Shadow => choose(model, Purpose::Shadow),
         ActionId::Promote => ask(model, Ask::Promote),
         ActionId::DropShadow => send(model, Order::DropShadow),
-        ActionId::Compare => {
-            open(model, Overlay::Planners { purpose: Purpose::Compare, selected: driving(model) })
-        }
+        ActionId::Compare => choose(model, Purpose::Compare),
         ActionId::WhatIf => what_if::open(model),
-        ActionId::AddCandidate => {
-            open(model, Overlay::Planners { purpose: Purpose::WhatIf, selected: driving(model) })
-        }
+        ActionId::AddCandidate => choose(model, Purpose::WhatIf),
         ActionId::Preflight => preflight::open(model),
         ActionId::PlanAgain => vec![Effect::Order(Order::Plan)],
         ActionId::CancelPlan => overlay::cancel_plan(model),
@@ -124,6 +117,12 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         | ActionId::Centre => palette::begin(model, id),
         other => look(model, other),
     }
+}
+
+/// Opens the list of planners, on the one that drives.
+fn choose(model: &mut Model, purpose: Purpose) -> Vec<Effect> {
+    let selected = driving(model);
+    open(model, Overlay::Planners { purpose, selected })
 }
 
 /// Changes what the operator looks at, and nothing else.

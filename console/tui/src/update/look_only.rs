@@ -42,9 +42,9 @@ fn opens(id: ActionId) -> bool {
 /// Whether an action does something to a mission or its files.
 fn acts(id: ActionId) -> bool {
     use ActionId::{
-        Abort, Acknowledge, AcknowledgeAll, Again, CancelPlan, ChoosePlanner, Compare, DropShadow, Exclude, Faster,
-        FlyUncertified, Hold, Include, Inject, PlanAgain, Preflight, Promote, Reload, Resume, SetParameter, SetSpeed, Shadow,
-        Shelve, Slower, Start, Step, StepEvent, StepLane, WhatIf,
+        Abort, Acknowledge, AcknowledgeAll, Again, CancelPlan, ChoosePlanner, Compare, DropShadow, Exclude,
+        Faster, FlyUncertified, Hold, Include, Inject, PlanAgain, Preflight, Promote, Reload, Resume,
+        SetParameter, SetSpeed, Shadow, Shelve, Slower, Start, Step, StepEvent, StepLane, WhatIf,
     };
     let moves = matches!(id, Hold | Start | Resume | FlyUncertified | Step | StepLane | StepEvent | Abort);
     let plans = matches!(id, ChoosePlanner | Compare | PlanAgain | CancelPlan | Preflight | WhatIf | Reload);

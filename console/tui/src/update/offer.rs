@@ -28,14 +28,7 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Shadow => shadow::can_begin(model),
         ActionId::Promote => accepted(model, &Order::Promote),
         ActionId::DropShadow => accepted(model, &Order::DropShadow),
-        ActionId::Accept => {
-            let opens = match model.ui.screen {
-                Screen::Home | Screen::Alarms | Screen::Events | Screen::Review => true,
-                Screen::Mission => model.ui.pane == Pane::Events,
-                Screen::Plan | Screen::Result | Screen::Plugins => false,
-            };
-            demand(model.ui.overlay != Overlay::None || opens, "Enter has nothing to open here")
-        }
+        ActionId::Accept => accept(model),
         ActionId::WhatIf => accepted(model, &Order::NoteOutlooks(Vec::new())),
         ActionId::Preflight | ActionId::Compare | ActionId::PlanAgain | ActionId::CancelPlan => {
             before_start(model, id)
@@ -80,10 +73,7 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::Verify
         | ActionId::Report
         | ActionId::View => around(model, id),
-        ActionId::NextPane | ActionId::PreviousPane => {
-            let turns = model.ui.screen == Screen::Home || !model.ui.panes().is_empty();
-            demand(turns, "there is one pane only")
-        }
+        ActionId::NextPane | ActionId::PreviousPane => other_pane(model),
         ActionId::Complete => demand(typing::completes(model), "nothing to complete here"),
         ActionId::Replay
         | ActionId::Play
@@ -127,6 +117,22 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         | ActionId::Last
         | ActionId::Edit => Ok(()),
     }
+}
+
+/// Whether there is something that Enter opens.
+fn accept(model: &Model) -> Result<(), String> {
+    let opens = match model.ui.screen {
+        Screen::Home | Screen::Alarms | Screen::Events | Screen::Review => true,
+        Screen::Mission => model.ui.pane == Pane::Events,
+        Screen::Plan | Screen::Result | Screen::Plugins => false,
+    };
+    demand(model.ui.overlay != Overlay::None || opens, "Enter has nothing to open here")
+}
+
+/// Whether there is another pane to go to.
+fn other_pane(model: &Model) -> Result<(), String> {
+    let turns = model.ui.screen == Screen::Home || !model.ui.panes().is_empty();
+    demand(turns, "there is one pane only")
 }
 
 /// Whether the map that is shown can be looked at in another way.

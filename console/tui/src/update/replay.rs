@@ -88,7 +88,7 @@ pub(super) fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
 }
 
 fn with<T>(model: &mut Model, change: impl FnOnce(&mut Replay) -> T) -> Option<T> {
-    model.live.replay.as_mut().map(change)
+    model.live.replay.as_deref_mut().map(change)
 }
 
 /// Lets time go on, from the beginning if it is at the end, or stops it.
@@ -151,7 +151,7 @@ pub(super) fn seek_to(model: &Model, t_s: f64) -> Vec<Effect> {
 /// Reads another run beside the one that is played; the same run once more takes it away.
 pub(super) fn compare(model: &mut Model, run: String) -> Vec<Effect> {
     let is_other = |replay: &Replay| replay.other.as_ref().is_some_and(|other| other.name == run);
-    if model.live.replay.as_ref().is_some_and(is_other) {
+    if model.live.replay.as_deref().is_some_and(is_other) {
         with(model, |replay| (replay.other, replay.shows_difference) = (None, false));
         return vec![Effect::Transport(Transport::Compare(None))];
     }

@@ -56,7 +56,7 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height).saturating_sub(1));
     let widths = widths(&listed, columns);
     let rows: Vec<Parts> =
-        listed.iter().map(|run| row(run, mark(model.live.replay.as_ref(), run), widths)).collect();
+        listed.iter().map(|run| row(run, mark(model.live.replay.as_deref(), run), widths)).collect();
     let selected = review.selected.min(rows.len().saturating_sub(1));
     let shown = table::window(selected, rows.len(), height);
     table::place(

@@ -323,7 +323,10 @@ fn the_smallest_and_largest_screens_are_drawn() {
     for (width, height) in
         [(0, 0), (1, 1), (0, 9), (9, 0), (3, 2), (24, 7), (59, 16), (60, 15), (80, 24), (300, 100)]
     {
-        for mut screen in [Screen::idle(), Screen::running(), replaying(false), replaying(true)] {
+        let screens: [fn() -> Screen; 4] =
+            [Screen::idle, Screen::running, || replaying(false), || replaying(true)];
+        for make in screens {
+            let mut screen = make();
             for keys in [
                 "",
                 "6",

@@ -53,7 +53,9 @@ fn events() -> Vec<Event> {
 
 fn summary(share: f64, path_m: f64) -> Box<Summary> {
     let mut fold = Fold::new();
-    events().iter().for_each(|event| fold.apply(event));
+    for event in &events() {
+        fold.apply(event);
+    }
     let coverage = Coverage {
         reachable: share,
         whole: 0.9 * share,

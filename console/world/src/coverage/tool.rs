@@ -63,6 +63,7 @@ impl Tool {
 }
 
 /// The area that a tool sweeps.
+#[expect(clippy::large_enum_variant, reason = "made and dropped once a tick, never kept")]
 pub(super) enum Passage {
     Bar(Swept),
     Disc { from: Point, to: Point, reach_m: f64 },
