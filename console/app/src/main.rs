@@ -1,6 +1,7 @@
 //! tankops: console for robots that inspect the floors of oil storage tanks.
 
 mod accuracy;
+mod campaign;
 mod cli;
 mod export;
 mod headless;
@@ -99,6 +100,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Reproduce(args)) => reproduce::reproduce(&args, &plugins),
         Some(Command::Tune(args)) => tune::tune(&args, &plugins),
         Some(Command::Replay(args)) => interactive::open(&args.into(), &plugins),
+        Some(Command::Campaign(command)) => campaign::campaign(&command, &plugins),
         Some(Command::Runs { json, logs }) => past_runs::list(&logs, json),
         Some(Command::Verify { run, from_journal, logs }) => {
             past_runs::verify(&run, &logs, &plugins, from_journal)

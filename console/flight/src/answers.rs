@@ -40,6 +40,13 @@ impl InOrder {
         &mut self.host
     }
 
+    /// Ends a mission; the next one begins as with a new host, but for the processes of its planners.
+    pub fn end_mission(&mut self) {
+        self.host.end_mission();
+        self.open.clear();
+        self.early.clear();
+    }
+
     /// The host, after the flight.
     pub fn into_host(self) -> Host {
         self.host

@@ -11,5 +11,6 @@ pub mod plan_watch;
 pub mod planners;
 pub mod remains;
 pub mod scenarios;
+pub mod unrecorded;
 
 pub use flown::Flight;

@@ -7,6 +7,7 @@ mod log_limit;
 mod opening;
 mod planner;
 mod saved;
+mod spare;
 
 pub use config::HostConfig;
 pub(crate) use opening::Opening;
@@ -21,6 +22,7 @@ use find::Catalog;
 use mission::{Answer, Ask, AskId, Fault, Given, Said, What, WorkerId};
 use planner::{Asked, Doing, Outcome, Planner};
 use saved::SavedStates;
+use spare::Spares;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -46,6 +48,7 @@ pub struct Host {
     /// What the last look found, kept for its memory.
     ready: Vec<Ready>,
     saved: SavedStates,
+    spares: Spares,
     wake_ups: WakeReceiver,
     plan_times: Durations,
     step_times: Durations,
@@ -68,6 +71,7 @@ impl Host {
             answers: VecDeque::new(),
             ready: Vec::new(),
             saved: SavedStates::default(),
+            spares: Spares::default(),
             wake_ups: WakeReceiver::new(),
             plan_times: Durations::default(),
             step_times: Durations::default(),
@@ -112,6 +116,22 @@ impl Host {
     /// Drops pending wake-ups.
     pub fn clear_wake_ups(&mut self) {
         self.wake_ups.take();
+    }
+
+    /// Ends a mission, so that the next one begins as with a new host, but for the processes: a planner that has answered all
+    /// it was asked is made anew in the process that has loaded it, when it is opened again.
+    pub fn end_mission(&mut self) {
+        for planner in std::mem::take(&mut self.planners) {
+            let Some(worker) = planner.worker else { continue };
+            let surplus = match planner.ready {
+                Some(ready) if worker.is_idle() => self.spares.keep(worker, ready.loaded),
+                _ => Some(worker),
+            };
+            surplus.into_iter().for_each(|worker| self.dismiss(worker));
+        }
+        self.answers.clear();
+        self.saved = SavedStates::default();
+        (self.plan_times, self.step_times, self.n_faults) = Default::default();
     }
 
     /// Begins what is asked. A worker with an open ask takes no other one but [`What::Close`].
@@ -315,6 +335,6 @@ impl Drop for Host {
     /// Kills all workers at once, then reaps them.
     fn drop(&mut self) {
         let asked = self.planners.iter_mut().filter_map(|planner| planner.worker.as_mut());
-        asked.chain(&mut self.leaving).for_each(Worker::kill);
+        asked.chain(&mut self.leaving).chain(self.spares.workers()).for_each(Worker::kill);
     }
 }

@@ -115,6 +115,8 @@ impl<'a> Session<'a> {
         body.end()?;
         let table = self.table.as_ref().ok_or(Trouble::Malformed)?;
         let mut sink = self.sink();
+        // The one of an earlier mission, if there was one, is dropped first.
+        self.instance = None;
         self.instance = Some(site.lend(|site| table.create(site, &values, &mut sink))?);
         out.said(&sink.take_said());
         Ok(())

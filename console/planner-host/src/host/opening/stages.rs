@@ -3,6 +3,7 @@
 use super::{Loaded, Opening, Stage};
 use crate::host::find::Candidate;
 use crate::host::planner::{Asked, Doing, Planner, Ready, unless_refused};
+use crate::host::spare::Spare;
 use crate::host::{Host, fault, fault::Phase};
 use crate::parameters;
 use crate::supervisor::{Failure, Worker};
@@ -19,7 +20,10 @@ impl Host {
     pub(crate) fn open(&mut self, id: AskId, opening: Opening) {
         self.close(id.worker);
         self.planners.push(Planner::new(id.worker));
-        let begun = self.load_next(id, opening);
+        let begun = match self.spares.take(&opening.planner) {
+            Some(Spare { worker, loaded }) => self.create(id, worker, opening, loaded),
+            None => self.load_next(id, opening),
+        };
         self.close_unless(begun, id);
     }
 
@@ -122,11 +126,11 @@ impl Host {
         Err(fault)
     }
 
-    /// Makes the planner in a worker that has loaded it; else tries the next file.
+    /// Makes the planner if the worker has loaded it; else tries the next file.
     fn configure(
         &mut self,
         id: AskId,
-        mut worker: Worker,
+        worker: Worker,
         mut opening: Opening,
         candidate: Candidate,
         answer: Result<answer::Loaded, Failure>,
@@ -151,6 +155,17 @@ impl Host {
         // A file before it that failed may work the next time.
         let first = opening.first_fault.is_none().then_some(candidate);
         self.catalog.learn(&loaded.info.id, first);
+        self.create(id, worker, opening, loaded)
+    }
+
+    /// Makes the planner in a worker that has loaded it.
+    fn create(
+        &mut self,
+        id: AskId,
+        mut worker: Worker,
+        opening: Opening,
+        loaded: Loaded,
+    ) -> Result<(), Fault> {
         let info = &loaded.info;
         let values = parameters::numbers(info, &opening.parameters);
         let values = values.map_err(|message| fault::of_parameters(&info.id, message));

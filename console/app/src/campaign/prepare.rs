@@ -1,0 +1,127 @@
+//! From a plan to a frozen campaign: everything is checked before the first mission.
+
+use anyhow::Context;
+use campaign::{Campaign, Plan, PlanKey, Program, ScenarioText, table::hex};
+use flight::{
+    failure::bad_input,
+    planners::{check_choices, choice_of},
+};
+use mission::PlannerInfo;
+use planner_host::{PluginDirs, Survey, WorkerCommand, survey};
+use scenario::{Scenario, Settings};
+use sha2::{Digest, Sha256};
+use std::{collections::BTreeMap, fs, path::Path};
+
+/// What flies a campaign here, found once for a process.
+pub(crate) struct Here {
+    pub program: Program,
+    pub known: Vec<PlannerInfo>,
+}
+
+impl Here {
+    /// Looks at the program and at every plugin.
+    pub(crate) fn survey(plugins: &PluginDirs) -> anyhow::Result<Self> {
+        let Survey { plugins } = survey(plugins, &WorkerCommand::default());
+        let program = std::env::current_exe().and_then(fs::read).context("reading the program itself")?;
+        let sound = plugins.iter().filter(|plugin| plugin.refused.is_none());
+        let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let program = Program {
+            tankops_version: env!("CARGO_PKG_VERSION").to_owned(),
+            tankops_sha256: hex(&Sha256::digest(&program)),
+            plugins_sha256: sound.map(|plugin| (name(&plugin.path), plugin.sha256.clone())).collect(),
+        };
+        Ok(Self { program, known: plugins.into_iter().flat_map(|plugin| plugin.planners).collect() })
+    }
+
+    /// Makes sure that a campaign was frozen with what is here.
+    pub(crate) fn check(&self, campaign: &Campaign) -> anyhow::Result<()> {
+        if campaign.program == self.program {
+            return Ok(());
+        }
+        let plugins = &self.program.plugins_sha256;
+        let differs = |(name, sha256): &(&String, &String)| plugins.get(*name) != Some(*sha256);
+        let other = campaign.program.plugins_sha256.iter().find(differs).map(|(name, _)| name.as_str());
+        let what = match other {
+            Some(plugin) => format!("plugin {plugin} is not the one"),
+            None if campaign.program.tankops_sha256 != self.program.tankops_sha256 => {
+                "tankops is not the one".to_owned()
+            }
+            None => "there are other plugins than those".to_owned(),
+        };
+        Err(bad_input(format!(
+            "{what} that the campaign was prepared with; prepare it again, with another --out"
+        )))
+    }
+}
+
+/// Reads a plan and freezes it with the texts of its scenarios.
+pub(crate) fn freeze(file: &Path, here: &Here) -> anyhow::Result<Campaign> {
+    let shown = file.display().to_string();
+    let text = fs::read_to_string(file).map_err(|error| bad_input(format!("{shown}: {error}")))?;
+    let name = file.file_stem().unwrap_or_default().to_string_lossy();
+    let plan = Plan::parse(&text, &shown, &name).map_err(|errors| bad_input(errors.render()))?;
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let scenarios = scenarios(&plan, folder)?;
+    for (at, id) in plan.planners.iter().enumerate() {
+        choice_of(id, &here.known)
+            .map_err(|why| bad_input(plan.refused(PlanKey::Planner(at), &why).render()))?;
+    }
+    let campaign = Campaign::freeze(plan.clone(), here.program.clone(), scenarios);
+    check_values(&plan, &campaign, &here.known)?;
+    Ok(campaign)
+}
+
+fn scenarios(plan: &Plan, folder: &Path) -> anyhow::Result<Vec<ScenarioText>> {
+    let mut names: BTreeMap<String, usize> = BTreeMap::new();
+    let mut texts = Vec::new();
+    for (at, written) in plan.scenarios.iter().enumerate() {
+        let path = folder.join(written);
+        let scenario = Scenario::read_with(&path, &Settings::default()).map_err(|errors| {
+            bad_input(format!(
+                "{}\n{}",
+                plan.refused(PlanKey::Scenario(at), "is refused:").render(),
+                errors.render()
+            ))
+        })?;
+        let times = names.entry(scenario.name.clone()).or_default();
+        *times += 1;
+        let name = if *times == 1 { scenario.name } else { format!("{}-{times}", scenario.name) };
+        let sha256 = hex(&Sha256::digest(&scenario.text));
+        texts.push(ScenarioText { name, path: path.display().to_string(), text: scenario.text, sha256 });
+    }
+    Ok(texts)
+}
+
+/// Refuses a plan with bounds that no scenario takes, or a key that is refused wherever it is set: that is a slip of the pen.
+/// What only some combinations refuse becomes a row of the table.
+fn check_values(plan: &Plan, campaign: &Campaign, known: &[PlannerInfo]) -> anyhow::Result<()> {
+    let tried = |set: Vec<String>, planner: Option<&String>, scenario: &ScenarioText| {
+        let settings = Settings { set, planner: planner.cloned(), seed: Some(campaign.seeds.first) };
+        let scenario = Scenario::parse_with(&scenario.text, &scenario.name, &settings);
+        let scenario = scenario.map_err(|errors| errors.to_string())?;
+        check_choices(&scenario, known)
+            .map_err(|why| why.to_string().lines().next().unwrap_or_default().to_owned())
+    };
+    let everywhere = |set: &Vec<String>| -> Result<(), String> {
+        let planners: Vec<Option<&String>> =
+            if plan.planners.is_empty() { vec![None] } else { plan.planners.iter().map(Some).collect() };
+        let mut first = None;
+        for scenario in &campaign.scenarios {
+            for planner in &planners {
+                match tried(set.clone(), *planner, scenario) {
+                    Ok(()) => return Ok(()),
+                    Err(why) => drop(first.get_or_insert(why)),
+                }
+            }
+        }
+        first.map_or(Ok(()), Err)
+    };
+    let bare = campaign.settings(&campaign.case(0)).set;
+    let expect = bare[..plan.expect.len()].to_vec();
+    everywhere(&expect).map_err(|why| bad_input(plan.refused(PlanKey::Expect, &why).render()))?;
+    for (key, setting) in bare[plan.expect.len()..].iter().enumerate() {
+        everywhere(&vec![setting.clone()])
+            .map_err(|why| bad_input(plan.refused(PlanKey::Grid(key), &why).render()))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,98 @@
+//! From the parts of a campaign to its table and summary.
+
+use super::folder::Folder;
+use anyhow::anyhow;
+use campaign::{Campaign, Findings, Table, Watch, findings, page, table};
+use flight::failure::bad_input;
+use sha2::{Digest, Sha256};
+use std::{fs, path::Path};
+
+/// What was merged.
+pub(crate) struct Results {
+    pub findings: Findings,
+    /// SHA-256 of the table, hexadecimal.
+    pub sha256: String,
+}
+
+/// Blocks that are still to be flown; none if those without a gap are enough.
+pub(crate) fn missing(folder: &Folder, campaign: &Campaign) -> anyhow::Result<Vec<u64>> {
+    let missing = folder.missing(campaign);
+    let whole = missing.first().copied().unwrap_or(campaign.blocks());
+    let enough = enough(campaign, (0..whole).map(|block| folder.read_part(campaign, block)))?;
+    Ok(if enough.is_some() { Vec::new() } else { missing })
+}
+
+/// Seeds after which enough is known, looking at parts in their order.
+fn enough(
+    campaign: &Campaign,
+    parts: impl Iterator<Item = anyhow::Result<Table>>,
+) -> anyhow::Result<Option<u64>> {
+    let Some(mut watch) = Watch::new(campaign) else { return Ok(None) };
+    for part in parts {
+        if let Some(seeds) = watch.take(&part?) {
+            return Ok(Some(seeds));
+        }
+    }
+    Ok(None)
+}
+
+/// Puts the parts together and writes table, summary and page; with `partial` also when some are missing.
+pub(crate) fn merge(folder: &Folder, campaign: &Campaign, partial: bool) -> anyhow::Result<Results> {
+    let missing = missing(folder, campaign)?;
+    if !missing.is_empty() && !partial {
+        let list = list(&missing);
+        return Err(bad_input(format!(
+            "blocks are missing: {list}; fly them, or merge what is there with --partial"
+        )));
+    }
+    let there = (0..campaign.blocks()).filter(|block| folder.has_part(*block));
+    let parts: Vec<Table> = there.map(|block| folder.read_part(campaign, block)).collect::<Result<_, _>>()?;
+    let failed = |error: table::TableError| anyhow!("merging: {error}");
+    let parts = match enough(campaign, parts.iter().cloned().map(Ok))?.filter(|_| missing.is_empty()) {
+        Some(seeds) => {
+            let rows = (seeds * campaign.per_seed()) as usize;
+            vec![Table::joined(&parts).map_err(failed)?.first(rows)]
+        }
+        None => parts,
+    };
+    let bytes = table::merged(campaign, &parts).map_err(failed)?;
+    let findings = findings(campaign, &Table::joined(&parts).map_err(failed)?);
+    folder.publish(Path::new("results.parquet"), &bytes)?;
+    folder.publish(Path::new("summary.json"), &serde_json::to_vec_pretty(&findings)?)?;
+    folder.publish(
+        Path::new("summary.html"),
+        page(campaign, &findings).map_err(|why| anyhow!(why))?.as_bytes(),
+    )?;
+    if missing.is_empty() {
+        folder.tidy();
+    }
+    Ok(Results { findings, sha256: table::hex(&Sha256::digest(&bytes)) })
+}
+
+/// The table of a campaign's folder, or of a file.
+pub(crate) fn read(path: &Path) -> anyhow::Result<Table> {
+    let file = if path.is_dir() { path.join("results.parquet") } else { path.to_owned() };
+    let shown = file.display();
+    let open = fs::File::open(&file)
+        .map_err(|error| bad_input(format!("{shown}: {error}; `tankops campaign merge` writes it")))?;
+    Table::read(open).map_err(|error| bad_input(format!("{shown}: {error}")))
+}
+
+/// Numbers with ranges, as Slurm and people read them: `3,7-9`.
+pub(crate) fn list(numbers: &[u64]) -> String {
+    let runs = numbers.chunk_by(|a, b| *b == a + 1);
+    let run = |run: &[u64]| match run {
+        [only] => only.to_string(),
+        run => format!("{}-{}", run[0], run[run.len() - 1]),
+    };
+    runs.map(run).collect::<Vec<_>>().join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn runs_of_numbers_are_ranges() {
+        assert_eq!(super::list(&[3, 7, 8, 9, 11]), "3,7-9,11");
+        assert_eq!(super::list(&[]), "");
+    }
+}

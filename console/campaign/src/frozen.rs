@@ -1,0 +1,296 @@
+//! A campaign as it is frozen before the first mission: what every block is flown from, and nothing else.
+
+use crate::{plan::Plan, until::Until, value::Value};
+use scenario::Settings;
+use serde::{Deserialize, Serialize};
+use std::{collections::BTreeMap, ops::Range};
+
+/// Version of the frozen form; another one is refused.
+const FORMAT: u32 = 1;
+/// Missions of a block where the plan sets none ...
+const BLOCK: u64 = 64;
+/// ... unless that were more blocks than this.
+const MOST_BLOCKS: u64 = 1000;
+
+/// Seeds that follow each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Seeds {
+    /// The first.
+    pub first: u64,
+    /// How many.
+    pub count: u64,
+}
+
+/// The program and the plugins that fly the missions.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Program {
+    /// Version of tankops.
+    pub tankops_version: String,
+    /// SHA-256 of the program, hexadecimal.
+    pub tankops_sha256: String,
+    /// SHA-256 of every plugin file, hexadecimal, by its name.
+    pub plugins_sha256: BTreeMap<String, String>,
+}
+
+/// A scenario as it was when the campaign was frozen.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ScenarioText {
+    /// Its name in the table, unlike that of every other.
+    pub name: String,
+    /// The file, for the command that flies a mission again.
+    pub path: String,
+    /// The text, with maps written out.
+    pub text: String,
+    /// SHA-256 of the text, hexadecimal.
+    pub sha256: String,
+}
+
+/// A plan with the texts of its scenarios and the program that flies them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Campaign {
+    format: u32,
+    /// What it is called.
+    pub name: String,
+    /// What flies it.
+    pub program: Program,
+    /// Scenarios.
+    pub scenarios: Vec<ScenarioText>,
+    /// Planners; empty for those of the scenarios.
+    pub planners: Vec<String>,
+    /// Keys that change from mission to mission.
+    pub keys: Vec<String>,
+    /// Their values; at least one point.
+    pub points: Vec<Vec<Value>>,
+    /// Bounds that every run is held to.
+    pub expect: Vec<(String, Value)>,
+    /// Seeds.
+    pub seeds: Seeds,
+    /// Columns of the table that the summary is about.
+    pub metrics: Vec<String>,
+    /// When it may end early.
+    pub until: Option<Until>,
+    /// Missions of a block; has no part in the table.
+    block: u64,
+}
+
+/// One mission of a campaign.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case<'a> {
+    /// Its number, from 0.
+    pub n: u64,
+    /// Its scenario.
+    pub scenario: &'a ScenarioText,
+    /// Its planner; none for that of the scenario.
+    pub planner: Option<&'a str>,
+    /// The values of the campaign's keys.
+    pub point: &'a [Value],
+    /// Its seed.
+    pub seed: u64,
+}
+
+impl Campaign {
+    /// Freezes a plan.
+    pub fn freeze(plan: Plan, program: Program, scenarios: Vec<ScenarioText>) -> Self {
+        let Plan { name, planners, keys, points, expect, seeds, metrics, until, block, .. } = plan;
+        let mut campaign = Self {
+            format: FORMAT,
+            name,
+            program,
+            scenarios,
+            planners,
+            keys,
+            points,
+            expect,
+            seeds,
+            metrics,
+            until,
+            block: 1,
+        };
+        campaign.block = block.unwrap_or(BLOCK).max(campaign.cases().div_ceil(MOST_BLOCKS));
+        campaign
+    }
+
+    /// Reads a frozen campaign.
+    ///
+    /// # Errors
+    /// It is none, or of another format.
+    pub fn thaw(json: &[u8]) -> Result<Self, String> {
+        let campaign: Self =
+            serde_json::from_slice(json).map_err(|error| format!("is no campaign: {error}"))?;
+        if campaign.format != FORMAT {
+            return Err(format!("has format {}; this tankops knows format {FORMAT}", campaign.format));
+        }
+        if campaign.block == 0 || campaign.points.is_empty() || campaign.scenarios.is_empty() {
+            return Err("was changed by hand: it has no missions".to_owned());
+        }
+        Ok(campaign)
+    }
+
+    /// Whether another campaign flies the same missions by the same program, in whatever blocks.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self == &Self { block: self.block, ..other.clone() }
+    }
+
+    /// Missions of one seed.
+    pub fn per_seed(&self) -> u64 {
+        (self.scenarios.len() * self.planners.len().max(1) * self.points.len()) as u64
+    }
+
+    /// Number of missions.
+    pub fn cases(&self) -> u64 {
+        self.per_seed() * self.seeds.count
+    }
+
+    /// Number of blocks.
+    pub fn blocks(&self) -> u64 {
+        self.cases().div_ceil(self.block)
+    }
+
+    /// Numbers of the missions of a block.
+    pub fn block(&self, block: u64) -> Range<u64> {
+        let end = (block + 1) * self.block;
+        block * self.block..end.min(self.cases())
+    }
+
+    /// A mission by its number. Seeds are outermost, so that blocks cost alike and a part of a campaign is still paired.
+    pub fn case(&self, n: u64) -> Case<'_> {
+        let mut rest = (n % self.per_seed()) as usize;
+        let mut take = |count: usize| {
+            let digit = rest % count;
+            rest /= count;
+            digit
+        };
+        let point = &self.points[take(self.points.len())];
+        let planner = take(self.planners.len().max(1));
+        Case {
+            n,
+            scenario: &self.scenarios[take(self.scenarios.len())],
+            planner: self.planners.get(planner).map(String::as_str),
+            point,
+            seed: self.seeds.first + n / self.per_seed(),
+        }
+    }
+
+    /// What is compared: every planner at every point, counted from 0.
+    pub(crate) fn arms(&self) -> usize {
+        self.planners.len().max(1) * self.points.len()
+    }
+
+    /// Which of them a mission is of.
+    pub(crate) fn arm(&self, n: u64) -> usize {
+        (n % self.arms() as u64) as usize
+    }
+
+    /// What one of them is called.
+    pub(crate) fn arm_name(&self, arm: usize) -> String {
+        let planner =
+            self.planners.get(arm / self.points.len()).map_or("planner of the scenario", String::as_str);
+        let values = self.keys.iter().zip(&self.points[arm % self.points.len()]);
+        let set: String = values.map(|(key, value)| format!(" {key}={value}")).collect();
+        format!("{planner}{set}")
+    }
+
+    /// What a mission changes about its scenario.
+    pub fn settings(&self, case: &Case<'_>) -> Settings {
+        let expect = self.expect.iter().map(|(key, bound)| format!("expect.{key}={}", quoted(bound)));
+        let set = expect.chain(self.set(case)).collect();
+        Settings { set, planner: case.planner.map(str::to_owned), seed: Some(case.seed) }
+    }
+
+    fn set(&self, case: &Case<'_>) -> impl Iterator<Item = String> {
+        self.keys.iter().zip(case.point).map(|(key, value)| format!("{key}={}", quoted(value)))
+    }
+
+    /// The command that flies a mission again.
+    pub fn command(&self, case: &Case<'_>) -> String {
+        let planner = case.planner.map(|id| format!(" --planner {id}")).unwrap_or_default();
+        let set: String = self.set(case).map(|set| format!(" --set {}", shell(&set))).collect();
+        format!("tankops run {}{planner}{set} --seed {}", shell(&case.scenario.path), case.seed)
+    }
+
+    /// What the table says of where it comes from: everything but the blocks, the texts and the places of files.
+    pub(crate) fn provenance(&self) -> String {
+        let without_text =
+            |s: &ScenarioText| ScenarioText { path: String::new(), text: String::new(), ..s.clone() };
+        let scenarios = self.scenarios.iter().map(without_text).collect();
+        let bare = Self { block: 1, scenarios, ..self.clone() };
+        serde_json::to_string(&bare).expect("numbers are finite and keys are texts")
+    }
+}
+
+/// A word that could be read as a number or flag keeps its quotes.
+fn quoted(value: &Value) -> String {
+    match value {
+        Value::Word(word) if word.is_empty() || !word.starts_with(|c: char| c.is_ascii_alphabetic()) => {
+            format!("{word:?}")
+        }
+        Value::Word(word) if ["true", "false", "nan", "inf"].contains(&word.as_str()) => format!("{word:?}"),
+        value => value.to_string(),
+    }
+}
+
+/// A word of a command line.
+fn shell(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    pub(crate) fn campaign(plan: &str) -> Campaign {
+        let plan = Plan::parse(plan, "plan.toml", "plan").expect("nothing is wrong");
+        let text = |path: &String| ScenarioText {
+            name: path.trim_end_matches(".toml").to_owned(),
+            path: path.clone(),
+            text: String::new(),
+            sha256: "ab".into(),
+        };
+        let scenarios = plan.scenarios.iter().map(text).collect();
+        let program = Program {
+            tankops_version: "1".into(),
+            tankops_sha256: "cd".into(),
+            plugins_sha256: BTreeMap::new(),
+        };
+        Campaign::freeze(plan, program, scenarios)
+    }
+
+    const PLAN: &str = "scenarios = [\"a.toml\", \"b b.toml\"]\nplanners = [\"p\", \"q\", \"r\"]\nblock = 7\n\
+                        seeds = { first = 10, count = 5 }\n[grid]\nmode = [\"x\", \"1\"]\nk = [0.5, 2.0]\n";
+
+    #[test]
+    fn seeds_are_outermost_and_every_combination_comes_once_a_seed() {
+        let campaign = campaign(PLAN);
+        assert_eq!((campaign.per_seed(), campaign.cases(), campaign.blocks()), (24, 120, 18));
+        let of = |n| campaign.command(&campaign.case(n));
+        assert_eq!(of(0), "tankops run a.toml --planner p --set mode=x --set k=0.5 --seed 10");
+        assert_eq!(of(119), "tankops run 'b b.toml' --planner r --set 'mode=\"1\"' --set k=2.0 --seed 14");
+        let all: std::collections::BTreeSet<String> = (0..120).map(of).collect();
+        assert_eq!(all.len(), 120);
+    }
+
+    #[test]
+    fn what_is_frozen_thaws_and_the_blocks_are_no_part_of_where_a_table_comes_from() {
+        let frozen = campaign(PLAN);
+        let thawed = Campaign::thaw(&serde_json::to_vec(&frozen).expect("written")).expect("read");
+        assert_eq!(thawed, frozen);
+        let other = campaign(&PLAN.replace("block = 7", "block = 50"));
+        assert!(other.is_same(&frozen) && other.provenance() == frozen.provenance());
+        assert!(!campaign(&PLAN.replace("count = 5", "count = 6")).is_same(&frozen));
+    }
+
+    proptest! {
+        #[test]
+        fn blocks_hold_every_case_once(count in 1_u64..400, block in 1_u64..90) {
+            let plan = format!("scenarios = [\"a.toml\"]\nseeds = {{ count = {count} }}\nblock = {block}\n");
+            let campaign = campaign(&plan);
+            let all: Vec<u64> = (0..campaign.blocks()).flat_map(|block| campaign.block(block)).collect();
+            prop_assert_eq!(all, (0..campaign.cases()).collect::<Vec<_>>());
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! Many missions of one plan: which there are, in which blocks they are flown, the table of their results, and what it says.
+//!
+//! A [`Plan`] is a file; [`Campaign`] is the plan frozen, with the texts of its scenarios: [`Campaign::case`] gives every mission
+//! of it, in blocks. What came of a mission is a [`Row`]; rows become a [`table`], and a table becomes a [`Findings`], as text
+//! and as a page. Nothing here knows files, threads, clocks or processes: the table's bytes depend on nothing but the plan.
+
+mod compare;
+mod findings;
+mod frozen;
+mod grid;
+mod page;
+mod plan;
+mod plots;
+mod reader;
+mod row;
+pub mod statistics;
+pub mod table;
+mod text;
+mod until;
+mod value;
+
+pub use compare::{Comparison, compare};
+pub use findings::{Findings, findings};
+pub use frozen::{Campaign, Case, Program, ScenarioText, Seeds};
+pub use page::page;
+pub use plan::{Plan, PlanKey};
+pub use row::{Row, Status};
+pub use table::{Table, TableError};
+pub use until::{Until, Watch};
+pub use value::Value;

@@ -1,0 +1,70 @@
+//! Findings as one HTML page.
+
+use crate::{findings::Findings, frozen::Campaign, plots, text};
+use askama::Template;
+
+#[derive(Template)]
+#[template(path = "campaign.html", escape = "html")]
+struct Page<'a> {
+    campaign: &'a Campaign,
+    findings: &'a Findings,
+    success: String,
+    distribution: Option<String>,
+    pareto: Option<String>,
+    means: Vec<(&'a str, Vec<String>)>,
+    differences: Vec<(&'a str, Vec<String>)>,
+    scenarios: Vec<(&'a str, Vec<String>)>,
+}
+
+/// The page of a campaign; it names no time and no machine.
+///
+/// # Errors
+/// None that a reader can do anything about.
+pub fn page(campaign: &Campaign, findings: &Findings) -> Result<String, String> {
+    let arms = findings.arms.iter();
+    let means = arms.clone().map(|arm| {
+        let means = arm.means.iter().map(|mean| text::interval(mean.as_ref()));
+        (arm.name.as_str(), std::iter::once(text::share(&arm.success)).chain(means).collect())
+    });
+    let differences = arms.clone().skip(1).map(|arm| {
+        let others = arm.differences[1..].iter().map(|mean| text::interval(mean.as_ref()));
+        let success = text::points(arm.differences[0].as_ref());
+        (arm.name.as_str(), std::iter::once(success).chain(others).collect())
+    });
+    let scenarios = arms.filter(|arm| !arm.scenarios.is_empty()).map(|arm| {
+        (arm.name.as_str(), arm.scenarios.iter().map(|(_, success)| text::share(success)).collect())
+    });
+    let page = Page {
+        campaign,
+        findings,
+        success: plots::success(findings),
+        distribution: plots::distribution(findings),
+        pareto: plots::pareto(findings),
+        means: means.collect(),
+        differences: differences.collect(),
+        scenarios: scenarios.collect(),
+    };
+    page.render().map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{findings::tests::example, frozen::tests::campaign, table::tests::PLAN};
+
+    #[test]
+    fn a_page_has_every_section_and_refers_to_nothing_outside() {
+        let page = super::page(&campaign(&PLAN.replace("\"p\"", "\"<p>\"")), &example()).expect("a page");
+        for part in [
+            "Success",
+            "Paired differences",
+            "Distribution",
+            "Pareto",
+            "To be looked at first",
+            "tankops run",
+        ] {
+            assert!(page.contains(part), "{part}");
+        }
+        assert_eq!(page.matches("<svg").count(), 3);
+        assert!(!page.contains("src=") && !page.contains("href="), "the page stands alone");
+    }
+}

@@ -1,0 +1,122 @@
+//! Findings as text for a terminal.
+
+use crate::{
+    findings::{Arm, Findings},
+    statistics::{Mean, Share},
+};
+use std::fmt;
+
+/// Arms that are shown; a page has all of them.
+const MOST_ARMS: usize = 20;
+/// Names of arms are cut to this.
+const NAME: usize = 40;
+
+/// A share as per cent with its interval.
+pub(crate) fn share(share: &Share) -> String {
+    match share.share() {
+        Some(p) => format!("{:.1} % ({:.1} to {:.1})", 100.0 * p, 100.0 * share.low, 100.0 * share.high),
+        None => "-".into(),
+    }
+}
+
+/// A mean with its interval; four digits say enough.
+pub(crate) fn interval(mean: Option<&Mean>) -> String {
+    let digits = |mean: &Mean| {
+        let size = mean.mean.abs().max(mean.half.unwrap_or(0.0)).max(1e-9).log10().floor() as i32;
+        (3 - size).clamp(0, 6) as usize
+    };
+    match mean {
+        None => "-".into(),
+        Some(m @ Mean { mean, half: Some(half), .. }) => format!("{mean:.0$} ± {half:.0$}", digits(m)),
+        Some(m) => format!("{:.1$}", m.mean, digits(m)),
+    }
+}
+
+/// A difference of shares, in points of per cent.
+pub(crate) fn points(mean: Option<&Mean>) -> String {
+    mean.map_or_else(
+        || "-".into(),
+        |m| match m.half {
+            Some(half) => format!("{:+.1} ± {:.1} points", 100.0 * m.mean, 100.0 * half),
+            None => format!("{:+.1} points", 100.0 * m.mean),
+        },
+    )
+}
+
+/// Rows of cells in columns, the first left, the others right.
+pub(crate) fn columns(rows: &[Vec<String>]) -> String {
+    let wide = |at: usize| rows.iter().filter_map(|row| row.get(at)).map(|cell| cell.chars().count()).max();
+    let cell = |at: usize, cell: &String| {
+        let width = wide(at).unwrap_or(0);
+        if at == 0 { format!("{cell:<width$}") } else { format!("  {cell:>width$}") }
+    };
+    let line = |row: &Vec<String>| {
+        let cells: String = row.iter().enumerate().map(|(at, text)| cell(at, text)).collect();
+        format!("  {}\n", cells.trim_end())
+    };
+    rows.iter().map(line).collect()
+}
+
+fn short(name: &str) -> String {
+    if name.chars().count() <= NAME {
+        return name.to_owned();
+    }
+    name.chars().take(NAME - 1).chain(['…']).collect()
+}
+
+impl fmt::Display for Findings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shown = &self.arms[..self.arms.len().min(MOST_ARMS)];
+        let table = |head: &[String], cells: &dyn Fn(&Arm) -> Vec<String>, arms: &[Arm]| {
+            let head = std::iter::once(String::new()).chain(head.iter().cloned()).collect::<Vec<_>>();
+            let row = |arm: &Arm| std::iter::once(short(&arm.name)).chain(cells(arm)).collect();
+            let head = (head.len() > 1).then_some(head);
+            columns(&head.into_iter().chain(arms.iter().map(row)).collect::<Vec<_>>())
+        };
+        writeln!(f, "{}: {} of {} missions", self.name, self.rows, self.planned)?;
+        for (n, what) in [
+            (self.refused, "refused"),
+            (self.failed, "failed"),
+            (self.with_faults, "with faults of planners"),
+        ] {
+            if n > 0 {
+                writeln!(f, "  {n} {what}")?;
+            }
+        }
+        writeln!(f, "\nSuccess (complete, every bound kept; 95 % interval)")?;
+        let cells =
+            |arm: &Arm| vec![share(&arm.success), format!("{} of {}", arm.success.hits, arm.success.n)];
+        f.write_str(&table(&[], &cells, shown))?;
+        writeln!(f, "\nMeans over the missions flown (± 95 %)")?;
+        let means = |arm: &Arm| arm.means.iter().map(|mean| interval(mean.as_ref())).collect();
+        f.write_str(&table(&self.metrics, &means, shown))?;
+        if self.arms.len() > 1 {
+            writeln!(f, "\nDifferences to {}, same scenario and seed (± 95 %)", short(&self.arms[0].name))?;
+            let differences = |arm: &Arm| {
+                let others = arm.differences[1..].iter().map(|mean| interval(mean.as_ref()));
+                std::iter::once(points(arm.differences[0].as_ref())).chain(others).collect()
+            };
+            let head: Vec<String> =
+                std::iter::once("success".to_owned()).chain(self.metrics.clone()).collect();
+            f.write_str(&table(&head, &differences, &shown[1..]))?;
+        }
+        if self.arms.len() > MOST_ARMS {
+            writeln!(f, "  ({} more in summary.html and summary.json)", self.arms.len() - MOST_ARMS)?;
+        }
+        writeln!(f, "\nTo be looked at first")?;
+        for worst in self.worst.iter().take(5) {
+            writeln!(f, "  {}\n    {}", worst.what, worst.command)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::findings::tests::example;
+
+    #[test]
+    fn findings_are_read_on_a_terminal() {
+        insta::assert_snapshot!(example().to_string());
+    }
+}

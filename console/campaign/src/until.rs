@@ -1,0 +1,81 @@
+//! When a campaign may end before its last seed.
+
+use crate::{
+    frozen::Campaign,
+    statistics::{Share, Sums},
+    table::Table,
+};
+use serde::{Deserialize, Serialize};
+
+/// Enough is known when the 95 % interval of a figure is narrow for every planner and point.
+///
+/// It is looked at after every whole seed, in order, so that the end does not depend on who flew what when, nor on the blocks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Until {
+    /// A column of the table, or `success`.
+    pub metric: String,
+    /// Half width that is enough.
+    pub below: f64,
+    /// Seeds that are flown in any case.
+    pub seeds_min: u64,
+}
+
+impl Until {
+    /// Seeds that are flown in any case, unless the plan says otherwise: a few equal values would seem certain.
+    pub(crate) const SEEDS_MIN: u64 = 10;
+}
+
+/// Looks at missions in their order until enough is known.
+pub struct Watch<'a> {
+    campaign: &'a Campaign,
+    until: &'a Until,
+    arms: Vec<(u64, u64, Sums)>,
+    taken: u64,
+    /// Seeds that are enough.
+    enough: Option<u64>,
+}
+
+impl<'a> Watch<'a> {
+    /// Nothing seen yet; `None` for a campaign that flies every seed.
+    pub fn new(campaign: &'a Campaign) -> Option<Self> {
+        let until = campaign.until.as_ref()?;
+        let arms = vec![(0, 0, Sums::default()); campaign.arms()];
+        Some(Self { campaign, until, arms, taken: 0, enough: None })
+    }
+
+    /// Takes the next rows, and says how many seeds are enough once that is known.
+    pub fn take(&mut self, rows: &Table) -> Option<u64> {
+        let success = rows.flags("success");
+        let values = rows.numbers(&self.until.metric);
+        for row in 0..rows.len() {
+            if self.enough.is_some() {
+                break;
+            }
+            let (hits, n, sums) = &mut self.arms[self.campaign.arm(self.taken)];
+            *n += 1;
+            *hits += u64::from(success[row]);
+            if let Some(value) = values.get(row).copied().flatten() {
+                sums.take(value);
+            }
+            self.taken += 1;
+            let seeds = self.taken / self.campaign.per_seed();
+            if self.taken.is_multiple_of(self.campaign.per_seed())
+                && seeds >= self.until.seeds_min
+                && self.is_narrow()
+            {
+                self.enough = Some(seeds);
+            }
+        }
+        self.enough
+    }
+
+    fn is_narrow(&self) -> bool {
+        self.arms.iter().all(|(hits, n, sums)| {
+            let half = match self.until.metric.as_str() {
+                "success" => Some(Share::of(*hits, *n).half()),
+                _ => sums.mean().and_then(|mean| mean.half),
+            };
+            half.is_some_and(|half| half < self.until.below)
+        })
+    }
+}

@@ -1,0 +1,38 @@
+//! Processes of planners whose mission has ended, kept for the next one.
+
+use super::opening::Loaded;
+use crate::supervisor::Worker;
+
+/// So many are kept; a mission needs one or two planners, a campaign one for each that it compares.
+const MOST: usize = 16;
+
+/// A worker that has loaded a planner and waits.
+pub(super) struct Spare {
+    pub(super) worker: Worker,
+    pub(super) loaded: Loaded,
+}
+
+/// One worker for each planner, the one used last at the end.
+#[derive(Default)]
+pub(super) struct Spares(Vec<Spare>);
+
+impl Spares {
+    /// Keeps a worker; gives back the one that there is no room for.
+    pub(super) fn keep(&mut self, worker: Worker, loaded: Loaded) -> Option<Worker> {
+        let same = self.0.iter().position(|spare| spare.loaded.info.id == loaded.info.id);
+        let surplus = same.or((self.0.len() >= MOST).then_some(0)).map(|at| self.0.remove(at).worker);
+        self.0.push(Spare { worker, loaded });
+        surplus
+    }
+
+    /// The worker that has loaded this planner.
+    pub(super) fn take(&mut self, planner: &str) -> Option<Spare> {
+        let at = self.0.iter().position(|spare| spare.loaded.info.id == planner)?;
+        Some(self.0.remove(at))
+    }
+
+    /// All workers.
+    pub(super) fn workers(&mut self) -> impl Iterator<Item = &mut Worker> {
+        self.0.iter_mut().map(|spare| &mut spare.worker)
+    }
+}
