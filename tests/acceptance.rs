@@ -12,6 +12,9 @@ mod arrivals;
 mod author;
 #[path = "acceptance/bench.rs"]
 mod bench;
+#[cfg(unix)]
+#[path = "acceptance/campaign.rs"]
+mod campaign;
 #[path = "acceptance/command_line.rs"]
 mod command_line;
 #[path = "acceptance/faults.rs"]
@@ -49,6 +52,9 @@ mod script;
 mod session;
 #[path = "acceptance/shadow.rs"]
 mod shadow;
+#[cfg(target_os = "linux")]
+#[path = "acceptance/slurm.rs"]
+mod slurm;
 #[cfg(unix)]
 #[path = "acceptance/terminal.rs"]
 mod terminal;

@@ -130,6 +130,9 @@ impl Host {
             surplus.into_iter().for_each(|worker| self.dismiss(worker));
         }
         self.answers.clear();
+        self.printed.clear();
+        self.crashes.clear();
+        self.remains = None;
         self.saved = SavedStates::default();
         (self.plan_times, self.step_times, self.n_faults) = Default::default();
     }

@@ -1,9 +1,11 @@
 //! No process of a worker is left behind, neither a running one nor a zombie.
 #![cfg(target_os = "linux")]
 
-use crate::desk::{Desk, LONG, ONE, TWO, plan, soon, step};
-use crate::stand::{built, config, impatient, worker};
-use mission::What;
+use crate::desk::{Desk, LONG, ONE, TWO, opening, plan, soon, step};
+use crate::stand::{built, config, folder_with, impatient, worker};
+use crate::state::COUNTER;
+use mission::planner::Parameters;
+use mission::{Given, What};
 use planner_host::{HostConfig, WorkerCommand};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
@@ -24,9 +26,19 @@ fn own_worker() -> (TempDir, WorkerCommand, String) {
 
 /// States of the processes of this name that this very process has started and not reaped.
 fn states(name: &str) -> Vec<char> {
+    children(name).into_iter().map(|(_, state)| state).collect()
+}
+
+/// Their numbers.
+fn pids(name: &str) -> Vec<String> {
+    children(name).into_iter().map(|(pid, _)| pid).collect()
+}
+
+fn children(name: &str) -> Vec<(String, char)> {
     let processes = std::fs::read_dir("/proc").unwrap().flatten();
     let stats = processes.filter_map(|process| std::fs::read_to_string(process.path().join("stat")).ok());
-    stats.filter_map(|stat| state_of_child(&stat, name)).collect()
+    let child = |stat: String| Some((stat.split_once(' ')?.0.to_owned(), state_of_child(&stat, name)?));
+    stats.filter_map(child).collect()
 }
 
 fn state_of_child(stat: &str, name: &str) -> Option<char> {
@@ -96,4 +108,37 @@ fn a_host_that_is_dropped_takes_its_workers_along() {
     drop(desk);
     let gave_up = began.elapsed() >= REAPED_WITHIN;
     assert!(states(&name).is_empty() || gave_up, "{:?}", states(&name));
+}
+
+#[test]
+fn the_process_of_a_planner_serves_the_next_mission_from_the_beginning() {
+    let (_counters, dirs) = folder_with("counter", COUNTER);
+    let (_folder, worker_command, name) = own_worker();
+    let mut desk = Desk::new(&dirs, HostConfig { worker_command, ..config() });
+    let mut fly = |seen: &mut Vec<u32>| {
+        let opened = desk.ask(ONE, opening("counter", &Parameters::new(), None));
+        assert!(matches!(opened, Ok(Given::Opened(_))), "{opened:?}");
+        // The counter aborts at its thirtieth step.
+        (0..20).for_each(|tick| seen.push(desk.count(ONE, tick)));
+        desk.host.end_mission();
+        pids(&name)
+    };
+    let (mut first, mut second) = (Vec::new(), Vec::new());
+    let process = fly(&mut first);
+    assert_eq!(process.len(), 1);
+    assert_eq!(fly(&mut second), process);
+    assert_eq!(first, second);
+}
+
+#[test]
+fn who_has_not_answered_when_a_mission_ends_serves_no_other_one() {
+    let (_folder, worker_command, name) = own_worker();
+    let mut desk = Desk::new(&built(), HostConfig { worker_command, ..config() });
+    desk.open(ONE, "plan_hang");
+    let before = pids(&name);
+    desk.submit(ONE, plan());
+    desk.host.end_mission();
+    desk.open(ONE, "none");
+    assert!(pids(&name).iter().any(|pid| !before.contains(pid)), "{before:?}");
+    assert!(desk.ask(ONE, step(0)).is_ok());
 }

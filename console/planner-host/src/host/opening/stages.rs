@@ -130,7 +130,7 @@ impl Host {
     fn configure(
         &mut self,
         id: AskId,
-        worker: Worker,
+        mut worker: Worker,
         mut opening: Opening,
         candidate: Candidate,
         answer: Result<answer::Loaded, Failure>,

@@ -1,0 +1,163 @@
+//! Campaigns: the same table whoever flies which part of it, and however often somebody is killed on the way.
+
+use crate::bench::{Bench, Ended, scenario};
+use std::{
+    path::{Path, PathBuf},
+    process::Stdio,
+    time::Duration,
+};
+
+/// Two scenarios, two planners, two values, some seeds: about 0.1 s a mission.
+pub(crate) fn plan(bench: &Bench, name: &str, head: &str, seeds: u32) -> PathBuf {
+    let of = |name: &str| format!("{:?}", scenario(name));
+    let scenarios = [of("goto-single-obstacle.toml"), of("papers/yang-case3.toml")].join(", ");
+    let text = format!(
+        "name = \"mixed\"\nscenarios = [{scenarios}]\nplanners = [\"apf\", \"navfn\"]\n\
+         metrics = [\"mission_time_s\", \"clearance_min_m\"]\nseeds = {{ first = 3, count = {seeds} }}\n{head}\n\
+         [grid]\n\"robot.v_max_m_per_s\" = [0.25, 0.3]\n[expect]\ncollisions_max = 0\n"
+    );
+    bench.file(name, text)
+}
+
+/// `tankops campaign` with words and paths.
+pub(crate) fn campaign(bench: &Bench, words: &str, paths: &[&Path]) -> Ended {
+    let mut command = bench.command();
+    command.arg("campaign").args(words.split_whitespace()).args(paths);
+    Ended::from(command.output().unwrap())
+}
+
+/// Merges a campaign and gives the bytes of its table.
+pub(crate) fn table(bench: &Bench, folder: &str) -> Vec<u8> {
+    let merged = campaign(bench, "merge", &[Path::new(folder)]);
+    assert_eq!(merged.code, Some(0), "{merged:?}");
+    std::fs::read(bench.path().join(folder).join("results.parquet")).unwrap()
+}
+
+fn works(bench: &Bench, words: &str, folder: &str) {
+    let worked = campaign(bench, &format!("work {words}"), &[Path::new(folder)]);
+    assert_eq!(worked.code, Some(0), "{words}: {worked:?}");
+}
+
+#[test]
+fn the_table_does_not_depend_on_who_flew_what() {
+    let bench = Bench::new();
+    let (one, other) =
+        (plan(&bench, "one.toml", "block = 5", 4), plan(&bench, "other.toml", "block = 13", 4));
+    let ran = campaign(&bench, "run --out local --jobs 2", &[&one]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert!(ran.out.contains("mixed: 32 of 32 missions") && ran.out.contains("± "), "{}", ran.out);
+    let expected = table(&bench, "local");
+
+    campaign(&bench, "prepare --out two", &[&other]);
+    for shard in ["1/2", "0/2"] {
+        works(&bench, &format!("--threads 1 --shard {shard}"), "two");
+    }
+    assert!(table(&bench, "two") == expected, "two shards and another block size");
+
+    campaign(&bench, "prepare --out three", &[&one]);
+    let status = campaign(&bench, "status", &[Path::new("three")]);
+    assert!(status.code == Some(1) && status.out.contains("missing: 0-6"), "{status:?}");
+    let early = campaign(&bench, "merge", &[Path::new("three")]);
+    assert!(early.code == Some(2) && early.err.contains("--partial"), "{early:?}");
+    for shard in ["2/3", "0/3", "1/3"] {
+        works(&bench, &format!("--shard {shard}"), "three");
+    }
+    assert_eq!(campaign(&bench, "status", &[Path::new("three")]).code, Some(0));
+    assert!(table(&bench, "three") == expected, "three shards");
+
+    let compared =
+        campaign(&bench, "compare --by planner --metric mission_time_s", &["local", "two"].map(Path::new));
+    assert!(compared.code == Some(0) && compared.out.matches("equal").count() == 2, "{compared:?}");
+    let page = std::fs::read_to_string(bench.path().join("two/summary.html")).unwrap();
+    assert!(page.contains("Paired differences") && page.contains("--planner"), "{page}");
+}
+
+#[test]
+fn whoever_is_killed_loses_only_the_blocks_that_were_open() {
+    let bench = Bench::new();
+    let plan = plan(&bench, "plan.toml", "block = 4", 8);
+    assert_eq!(campaign(&bench, "run --out quiet", &[&plan]).code, Some(0));
+    let spawn = |words: &str, path: &Path| {
+        let mut command = bench.command();
+        command.arg("campaign").args(words.split_whitespace()).arg(path);
+        command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+    };
+    for wait_ms in [300, 900, 1400] {
+        let mut run = spawn("run --out killed", &plan);
+        std::thread::sleep(Duration::from_millis(wait_ms));
+        run.kill().unwrap();
+        run.wait().unwrap();
+    }
+    let resumed = campaign(&bench, "run --out killed", &[&plan]);
+    assert_eq!(resumed.code, Some(0), "{resumed:?}");
+    assert!(table(&bench, "killed") == table(&bench, "quiet"), "killed and run again");
+
+    campaign(&bench, "prepare --out pulled", &[&plan]);
+    let mut killed = spawn("work --pull --threads 1", Path::new("pulled"));
+    let mut other = spawn("work --pull --threads 1", Path::new("pulled"));
+    std::thread::sleep(Duration::from_millis(700));
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    other.wait().unwrap();
+    // The claim of the killed one is void after ten minutes; who is asked by number asks nobody.
+    works(&bench, "--threads 2", "pulled");
+    assert!(table(&bench, "pulled") == table(&bench, "quiet"), "pulled by two of which one was killed");
+}
+
+#[test]
+fn a_campaign_ends_when_enough_is_known_or_the_budget_is_spent() {
+    let bench = Bench::new();
+    let until = "block = 3\n[until]\nci95 = { metric = \"mission_time_s\", below = 1e9 }\nseeds_min = 2";
+    let (small, large) =
+        (plan(&bench, "a.toml", until, 40), plan(&bench, "b.toml", &until.replace('3', "20"), 40));
+    for (out, plan) in [("small", &small), ("large", &large)] {
+        let ran = campaign(&bench, &format!("run --out {out}"), &[plan]);
+        assert!(ran.code == Some(0) && ran.out.contains("16 of 320 missions"), "{ran:?}");
+    }
+    assert!(table(&bench, "small") == table(&bench, "large"), "the end does not depend on the blocks");
+    let dear = plan(&bench, "c.toml", "block = 4", 4);
+    let ran = campaign(&bench, "run --out dear --budget 0.00001ch", &[&dear]);
+    assert!(ran.code == Some(1) && ran.err.contains("the budget is spent"), "{ran:?}");
+    assert_eq!(campaign(&bench, "run --out dear", &[&dear]).code, Some(0));
+}
+
+#[test]
+fn a_slip_in_a_plan_is_refused_with_its_place() {
+    let bench = Bench::new();
+    for (from, to, line, why) in [
+        ("navfn", "navfm", ":3:20: planners.1", "there is no planner `navfm`"),
+        ("yang-case3", "yang-case33", ":2:", "cannot be read"),
+        ("v_max_m_per_s", "v_max", ":8:25: grid.robot.v_max", "unknown key"),
+        ("collisions_max", "colisions_max", ":9:", "expect"),
+        ("count", "cuont", ":5:", "did you mean `count`?"),
+    ] {
+        let plan = plan(&bench, "plan.toml", "", 1);
+        let text = std::fs::read_to_string(&plan).unwrap().replace(from, to);
+        let refused = campaign(&bench, "prepare --out out", &[&bench.file("plan.toml", text)]);
+        let says = refused.code == Some(2) && refused.err.contains(why) && refused.err.contains(line);
+        assert!(says, "{to}: {refused:?}");
+    }
+    let plan = plan(&bench, "plan.toml", "", 1);
+    assert_eq!(campaign(&bench, "prepare --out out", &[&plan]).code, Some(0));
+    let text = std::fs::read_to_string(&plan).unwrap().replace("0.25", "0.2");
+    let other = campaign(&bench, "run --out out", &[&bench.file("plan.toml", text)]);
+    assert!(other.code == Some(2) && other.err.contains("holds another campaign"), "{other:?}");
+}
+
+#[test]
+fn a_mission_of_the_table_is_flown_again_by_its_command() {
+    let bench = Bench::new();
+    let plan = plan(&bench, "plan.toml", "", 1);
+    assert_eq!(campaign(&bench, "run --out out", &[&plan]).code, Some(0));
+    let summary = std::fs::read_to_string(bench.path().join("out/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let worst = &summary["worst"][0];
+    let words: Vec<&str> = worst["command"].as_str().unwrap().split_whitespace().skip(1).collect();
+    let again = bench.tankops(&[&words[..], &["--json", "--no-record"]].concat()).json();
+    let what = format!(
+        "{}, mission_time_s {:.2}",
+        again["outcome"].as_str().unwrap(),
+        again["mission_time_s"].as_f64().unwrap()
+    );
+    assert!(worst["what"].as_str().unwrap().starts_with(&what), "{worst} but {what}");
+}
