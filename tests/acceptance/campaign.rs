@@ -14,7 +14,7 @@ pub(crate) fn plan(bench: &Bench, name: &str, head: &str, seeds: u32) -> PathBuf
     let text = format!(
         "name = \"mixed\"\nscenarios = [{scenarios}]\nplanners = [\"apf\", \"navfn\"]\n\
          metrics = [\"mission_time_s\", \"clearance_min_m\"]\nseeds = {{ first = 3, count = {seeds} }}\n{head}\n\
-         [grid]\n\"robot.v_max_m_per_s\" = [0.25, 0.3]\n[expect]\ncollisions_max = 0\n"
+         [grid]\n\"robot.speed_max_m_per_s\" = [0.25, 0.3]\n[expect]\ncollisions_max = 0\n"
     );
     bench.file(name, text)
 }
@@ -127,7 +127,7 @@ fn a_slip_in_a_plan_is_refused_with_its_place() {
     for (from, to, line, why) in [
         ("navfn", "navfm", ":3:20: planners.1", "there is no planner `navfm`"),
         ("yang-case3", "yang-case33", ":2:", "cannot be read"),
-        ("v_max_m_per_s", "v_max", ":8:25: grid.robot.v_max", "unknown key"),
+        ("speed_max_m_per_s", "speed_mix", ":8:25: grid.robot.speed_mix", "unknown key"),
         ("collisions_max", "colisions_max", ":9:", "expect"),
         ("count", "cuont", ":5:", "did you mean `count`?"),
     ] {

@@ -186,7 +186,8 @@ impl Campaign {
         let planner =
             self.planners.get(arm / self.points.len()).map_or("planner of the scenario", String::as_str);
         let values = self.keys.iter().zip(&self.points[arm % self.points.len()]);
-        let set: String = values.map(|(key, value)| format!(" {key}={value}")).collect();
+        let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();
+        let set: String = values.map(|(key, value)| format!(" {}={value}", last(key))).collect();
         format!("{planner}{set}")
     }
 
