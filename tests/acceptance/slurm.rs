@@ -144,7 +144,7 @@ fn an_array_with_a_task_requeued_and_a_task_killed_gives_the_same_table() {
         return;
     };
     let bench = Bench::new();
-    let plan = plan(&bench, "plan.toml", "block = 16", 12);
+    let plan = plan(&bench, "plan.toml", "block = 60", 30);
     assert_eq!(campaign(&bench, "run --out local", &[&plan]).code, Some(0));
     let submit = || {
         let mut command = bench.command();
