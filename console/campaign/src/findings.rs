@@ -201,7 +201,8 @@ fn worst(campaign: &Campaign, table: &Table, columns: &Columns) -> Vec<Worst> {
         };
         let figure = columns.value(1, row).map(|value| format!(", {metric} {value:.2}")).unwrap_or_default();
         let head = if outcome.is_empty() { columns.status[row].clone().unwrap_or_default() } else { outcome };
-        format!("{head}{figure}: {why}")
+        let why = if why.is_empty() { why } else { format!(": {why}") };
+        format!("{head}{figure}{why}")
     };
     let named =
         |row: usize| Worst { what: what(row), command: campaign.command(&campaign.case(columns.cases[row])) };
