@@ -62,6 +62,15 @@ impl<'a> Draft<'a> {
         Ok(draft)
     }
 
+    pub(crate) fn domain(&self) -> &SlitDomain<'a> {
+        &self.domain
+    }
+
+    /// The first tour.
+    pub(crate) fn path(&self) -> Vec<Point> {
+        joined(&self.pieces)
+    }
+
     /// Estimated cost of the finished path, metres, at this price of a whole turn.
     pub(crate) fn estimate_m(&self, turn_m: f64) -> f64 {
         self.length_m + turn_m * self.turns

@@ -147,7 +147,9 @@ fn pieces(section: &[Side], is_reversed: bool) -> Vec<Piece> {
     let mut pieces: Vec<Piece> = section.chunk_by(|a, b| a.is_lane == b.is_lane).map(piece).collect();
     if is_reversed {
         pieces.reverse();
-        pieces.iter_mut().for_each(|piece| piece.points.reverse());
+        for piece in &mut pieces {
+            piece.points.reverse();
+        }
     }
     pieces
 }

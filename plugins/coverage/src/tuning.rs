@@ -134,6 +134,10 @@ pub(crate) mod choice {
     /// Shares of the largest cut angle, tried until a candidate meets the preferences for the cable: the first suffices in
     /// about half of all tanks (tuning.md).
     pub(crate) const ANGLES: [f64; 3] = [1.0, 0.5, 0.0];
+    /// How far the tether of a first tour may exceed what is preferred, as multiples of its length and of its wraps:
+    /// polishing changes them by less.
+    pub(crate) const DRAFT_CABLE: f64 = 1.015;
+    pub(crate) const DRAFT_WRAP: f64 = 1.1;
     /// First tours that cost more than the best by this share never win.
     pub(crate) const HOPELESS: f64 = 0.02;
     /// Within this many swaths of home no cable lies across a cut.

@@ -1,7 +1,6 @@
 //! What the operator sets of a tether-safe plan.
 
 use crate::tour::Effort;
-use crate::tuning::repair::{LONGER_CABLE, MORE_WRAP};
 use planner_api::{Config, ParamSpec, TetherLimits, choice, float, int};
 use std::f64::consts::TAU;
 use steering::params as p;
@@ -147,13 +146,13 @@ impl Preferences {
         Self { limits, demanded: Limits { reel_length_m, wrap_max_rad, wrap_total_max_rad }, ..self }
     }
 
-    /// The same for a repair of a plan, which may exceed them a little.
-    pub(super) fn lenient(&self) -> Self {
+    /// The same with so many times the length and the wraps of the tether.
+    pub(super) fn with_leeway(&self, length: f64, wrap: f64) -> Self {
         let limits = Limits {
-            wrap_max_rad: self.limits.wrap_max_rad * MORE_WRAP,
-            wrap_total_max_rad: self.limits.wrap_total_max_rad * MORE_WRAP,
+            wrap_max_rad: self.limits.wrap_max_rad * wrap,
+            wrap_total_max_rad: self.limits.wrap_total_max_rad * wrap,
             ..self.limits
         };
-        Self { cable_share: self.cable_share * LONGER_CABLE, limits, ..*self }
+        Self { cable_share: self.cable_share * length, limits, ..*self }
     }
 }

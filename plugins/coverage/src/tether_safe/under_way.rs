@@ -9,7 +9,7 @@ use crate::stages::Stages;
 use crate::tether_safe::candidate::Worth;
 use crate::tether_safe::pipeline::Pipeline;
 use crate::tuning::choice::COMPLETE;
-use crate::tuning::repair::{AHEAD_M, AS_BEFORE_M, LONGER, LONGER_M};
+use crate::tuning::repair::{AHEAD_M, AS_BEFORE_M, LONGER, LONGER_CABLE, LONGER_M, MORE_WRAP};
 use planner_api::{LogLevel, Reason, Result};
 use world::{Point, polyline};
 
@@ -24,7 +24,7 @@ pub(super) fn repaired<'a>(
     let (Some(current), Some(cable), true) = (current, pipeline.cable, is_change) else { return Ok(None) };
     let Pipeline { workspace, preferences, scope, site, .. } = *pipeline;
     let repair = Repair { workspace, scope, effort: preferences.effort, current, tether: cable.taut_line() };
-    let lenient = preferences.lenient();
+    let lenient = preferences.with_leeway(LONGER_CABLE, MORE_WRAP);
     let most_m = current.left_m() * (1.0 + LONGER) + LONGER_M;
     stages.end = stages.toward(1.0, 0.3);
     let tried = run_all(repair.domains(), &stages.next(1.0, "repair"), |domain, job| {
