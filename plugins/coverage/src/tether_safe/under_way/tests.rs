@@ -26,11 +26,11 @@ impl UnderWay {
     fn find(tank: Tank, values: &[(&str, f64)]) -> Self {
         let mut known = tank.clone();
         let column = known.columns.pop().unwrap();
-        Self::between(&known, tank, values, column.0, Reason::MapChanged)
+        Self::between(&known, tank, values, column.0, &Reason::MapChanged)
     }
 
     /// Plans a tank, comes near a place, and plans it as it is known by then.
-    fn between(before: &Tank, tank: Tank, values: &[(&str, f64)], near: Point, reason: Reason) -> Self {
+    fn between(before: &Tank, tank: Tank, values: &[(&str, f64)], near: Point, reason: &Reason) -> Self {
         let (bench, obstacles) = (Bench::new(), before.obstacles());
         let mut planner: TetherSafe = bench.configure(values, &before.site(&obstacles)).unwrap();
         let first = asked(&mut planner, before, &bench, (&Reason::Start, tank.anchor), &[], &[]);
@@ -41,7 +41,7 @@ impl UnderWay {
         let left: Vec<&[Point]> = left.iter().map(Vec::as_slice).collect();
         aim(&mut planner, &bench, fine[at], rest[2.min(rest.len() - 1)]);
         bench.clear();
-        let second = asked(&mut planner, &tank, &bench, (&reason, fine[at]), &left, &flown);
+        let second = asked(&mut planner, &tank, &bench, (reason, fine[at]), &left, &flown);
         Self { tank, flown, first, rest, second, bench }
     }
 
@@ -113,9 +113,9 @@ fn a_robot_that_is_blocked_where_nothing_was_found_gets_a_plan_made_anew() {
     let tank = Known::E1.tank(32);
     let near = tank.columns[0].0;
     let values = [("pattern", 1.0), ("kicks", 0.5)];
-    let case = UnderWay::between(&tank.clone(), tank.clone(), &values, near, Reason::Blocked);
+    let case = UnderWay::between(&tank.clone(), tank.clone(), &values, near, &Reason::Blocked);
     assert!(!case.is_repaired(), "{:?}", case.bench.logs());
-    let case = UnderWay::between(&tank.clone(), tank, &values, near, Reason::MapChanged);
+    let case = UnderWay::between(&tank.clone(), tank, &values, near, &Reason::MapChanged);
     assert!(case.is_repaired(), "nothing in the way changes nothing: {:?}", case.bench.logs());
 }
 
