@@ -3,6 +3,7 @@
 use planner_api::testing::Bench;
 use planner_api::{Plan, PlanRequest, Planner, PoseEstimate, Reason, Result, Task, TetherLimits};
 use trials::tanks::Tank;
+use world::Point;
 
 /// Plans a tank from its anchor.
 pub(crate) fn plan<P: Planner>(
@@ -15,6 +16,13 @@ pub(crate) fn plan<P: Planner>(
     let mut planner: P = bench.configure(values, &tank.site(&obstacles)).unwrap();
     let plan = ask(&mut planner, tank, tether, &bench);
     (plan, bench)
+}
+
+/// Plans what is left of a tank from somewhere in it.
+pub(crate) fn plan_from<P: Planner>(tank: &Tank, start: Point) -> Result<Plan> {
+    let (bench, obstacles) = (Bench::new(), tank.obstacles());
+    let mut planner: P = bench.configure(&[], &tank.site(&obstacles)).unwrap();
+    ask_from(&mut planner, tank, start, None, &bench)
 }
 
 /// Asserts that the progress a planner reports rises from near zero, in more than a few steps.
@@ -44,10 +52,19 @@ fn ask<P: Planner>(
     tether: Option<TetherLimits>,
     bench: &Bench,
 ) -> Result<Plan> {
+    ask_from(planner, tank, tank.anchor, tether, bench)
+}
+
+fn ask_from<P: Planner>(
+    planner: &mut P,
+    tank: &Tank,
+    position: Point,
+    tether: Option<TetherLimits>,
+    bench: &Bench,
+) -> Result<Plan> {
     let obstacles = tank.obstacles();
     let site = tank.site(&obstacles);
-    let start =
-        PoseEstimate { position: tank.anchor, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
+    let start = PoseEstimate { position, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
     let task = Task::Cover { anchor: tank.anchor, regions: &[], tether, tolerance_m: 0.3 };
     let request = PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[] };
     planner.plan(&request, &bench.ctx())

@@ -5,6 +5,7 @@
 //! are the same to the tether. The cuts form a forest that is rooted at the wall.
 
 mod cluster;
+mod extension;
 mod forest;
 #[cfg(test)]
 mod tests;
@@ -14,6 +15,7 @@ use crate::slit_domain::SlitDomain;
 use crate::triangulation::{SNAPPED_M, SealedRegion};
 use crate::tuning::cuts::{SLIVER_M2, TRIES};
 use crate::workspace::Workspace;
+pub(crate) use extension::Extension;
 pub(crate) use forest::CutRule;
 use forest::{Ban, cuts};
 use world::{Point, polyline};

@@ -62,6 +62,15 @@ impl<'a> Draft<'a> {
         Ok(draft)
     }
 
+    pub(crate) fn domain(&self) -> &SlitDomain<'a> {
+        &self.domain
+    }
+
+    /// The first tour.
+    pub(crate) fn path(&self) -> Vec<Point> {
+        joined(&self.pieces)
+    }
+
     /// Estimated cost of the finished path, metres, at this price of a whole turn.
     pub(crate) fn estimate_m(&self, turn_m: f64) -> f64 {
         self.length_m + turn_m * self.turns
@@ -90,19 +99,15 @@ impl<'a> Draft<'a> {
         Ok(pieces)
     }
 
-    fn is_in_reach(&self, at: Point) -> bool {
-        let Scope { reel_length_m, .. } = self.scope;
-        let way_m = || self.domain.way_home_m(at);
-        reel_length_m.is_infinite() || way_m().is_some_and(|way_m| way_m <= reel_length_m)
-    }
-
     /// The pieces of lanes that are in reach and have floor to scan.
     fn wanted(&self, lanes: Vec<Lane>) -> Vec<Lane> {
         let Scope { reel_length_m, regions, .. } = self.scope;
         if reel_length_m.is_infinite() && regions.is_empty() {
             return lanes;
         }
-        let is_wanted = |at: Point| self.is_in_reach(at) && (regions.is_empty() || self.floor.is_near(at));
+        let is_wanted = |at: Point| {
+            self.scope.is_in_reach(&self.domain, at) && (regions.is_empty() || self.floor.is_near(at))
+        };
         lanes.iter().flat_map(|lane| wanted_pieces(lane, is_wanted)).collect()
     }
 
@@ -121,15 +126,9 @@ impl<'a> Draft<'a> {
         job.stage(0.27);
         let pieces = self.toured(1.0, job)?;
         job.stage(0.32);
-        let terms = Terms {
-            turn_m_per_rad: self.effort.turn_m_per_rad,
-            floor_m_per_m2: tuning::polish::FLOOR / swath_m,
-            bend_m_per_m2: tuning::polish::BENT_FLOOR / swath_m,
-            enough: self.scope.enough,
-            is_wanted: &|at| self.is_in_reach(at),
-            job,
-        };
-        let mut track = Track::new(&self.domain, &pieces, swept.floor);
+        let is_wanted = |at| self.scope.is_in_reach(&self.domain, at);
+        let terms = Terms::of(&self.scope, self.effort, swath_m, &is_wanted, job);
+        let mut track = Track::new(&self.domain, &pieces, |_| true, swept.floor);
         polish(&mut track, &terms, self.scope.regions.is_empty())?;
         let (pieces, swept) = track.into_pieces();
         Ok(Scan { pieces, domain: self.domain, swept })

@@ -3,7 +3,7 @@
 //! How a tether-safe plan comes about: the `workspace` of the site is divided by `cuts` into a `slit_domain` that has no way
 //! round an obstacle; `lanes` are laid into it, put into an order (`tour`) and joined to a path (`draft`), which is shortened
 //! and bent until it sweeps enough of the `floor` (`polish`). [`tether_safe`] does so for several patterns of lanes and
-//! chooses. `tuning` holds the numbers.
+//! chooses. What is found on the way changes the plan only round itself (`repair`). `tuning` holds the numbers.
 #![forbid(unsafe_code)]
 
 pub mod boustrophedon;
@@ -21,6 +21,7 @@ mod lanes;
 mod pattern;
 mod plane;
 mod polish;
+mod repair;
 mod scan;
 mod scope;
 mod slit_domain;

@@ -1,5 +1,6 @@
 //! What is to be scanned.
 
+use crate::slit_domain::SlitDomain;
 use planner_api::{Code, PlanRequest, PlannerError, Result, Task, TetherLimits};
 use world::Point;
 
@@ -49,5 +50,11 @@ impl<'a> Scope<'a> {
             enough: 1.0,
             cell_m,
         })
+    }
+
+    /// Whether the reel lets the robot be at a place of a domain.
+    pub(crate) fn is_in_reach(&self, domain: &SlitDomain<'_>, at: Point) -> bool {
+        let way_m = || domain.way_home_m(at);
+        self.reel_length_m.is_infinite() || way_m().is_some_and(|way_m| way_m <= self.reel_length_m)
     }
 }

@@ -9,7 +9,7 @@ mod funnel;
 use crate::buckets::Buckets;
 use crate::plane::meets;
 use crate::triangulation::{NEARLY, NONE, SealedRegion, Triangle, Walk, least_side};
-use crate::workspace::Workspace;
+use crate::workspace::{Workspace, places_around};
 use funnel::funnel;
 use world::{Point, polyline};
 
@@ -104,9 +104,15 @@ impl<'a> SlitDomain<'a> {
         self.spot(at).is_some()
     }
 
-    /// Where a path from a place begins: there, or at home where it lies outside the domain.
+    /// Where a path from a place begins: there, beside it where that lies outside the domain, or else at home.
     pub(crate) fn start(&self, at: Point) -> Point {
-        if self.contains(at) { at } else { self.workspace.home }
+        self.beside(at).unwrap_or(self.workspace.home)
+    }
+
+    /// A place, or the nearest one in the domain: a robot may stand a little too near to what it has just found.
+    pub(crate) fn beside(&self, at: Point) -> Option<Point> {
+        let is_open = |place: &Point| self.contains(*place) && !self.crosses_cut(at, *place);
+        places_around(at, self.workspace.keep_m).find(is_open)
     }
 
     /// The pieces of a line between the places where it would cross a cut.

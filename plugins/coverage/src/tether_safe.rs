@@ -5,8 +5,10 @@ mod parameters;
 mod pipeline;
 #[cfg(test)]
 mod tests;
+mod under_way;
 
 use crate::follow::Follow;
+use crate::repair::{CurrentPlan, Repaired};
 use crate::scope::Scope;
 use crate::stages::Stages;
 use crate::tether::{laid_cable, least_cable_m, return_path};
@@ -26,6 +28,8 @@ use world::Point;
 pub struct TetherSafe {
     preferences: Preferences,
     follow: Follow,
+    /// The plan that was given last.
+    current: Option<CurrentPlan>,
 }
 
 impl Planner for TetherSafe {
@@ -37,7 +41,8 @@ impl Planner for TetherSafe {
     const PARAMS: &'static [ParamSpec] = parameters::ALL;
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
-        Ok(Self { preferences: Preferences::of(config, site.seed), follow: Follow::new(config, site) })
+        let preferences = Preferences::of(config, site.seed);
+        Ok(Self { preferences, follow: Follow::new(config, site), current: None })
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
@@ -52,8 +57,14 @@ impl Planner for TetherSafe {
         let (site, workspace, preferences, cable) = (request.site, &workspace, &preferences, cable.as_ref());
         let pipeline = Pipeline { site, workspace, preferences, scope, cable };
         let mut stages = Stages::new(ctx);
-        let (tried, lead_in) = tried_from_here_or_home(&pipeline, &mut stages)?;
-        let (worth, scan) = tried.chosen(ctx).ok_or_else(|| workspace.no_room())?;
+        let repaired = under_way::repaired(&pipeline, self.current.as_ref(), request.reason, &mut stages)?;
+        let (worth, scan, lead_in, enough) = if let Some((worth, Repaired { scan, enough })) = repaired {
+            (worth, scan, Vec::new(), enough)
+        } else {
+            let (tried, lead_in) = tried_from_here_or_home(&pipeline, &mut stages)?;
+            let (worth, scan) = tried.chosen(ctx).ok_or_else(|| workspace.no_room())?;
+            (worth, scan, lead_in, scope.enough)
+        };
         stages.end = 1.0;
         stages.next(1.0, "floor out of reach").begin();
         unreachable::report(&scan, &scope, ctx);
@@ -62,14 +73,18 @@ impl Planner for TetherSafe {
         }
         let mut plan = scan.plan(scope.start, &lead_in);
         // A reel near the least that can do may still reach all there is.
-        let least = if scope.reel_length_m.is_finite() { scope.enough - BY_REEL } else { COMPLETE };
-        plan.complete = worth.coverage >= scope.enough.min(least);
+        let least = if scope.reel_length_m.is_finite() { enough - BY_REEL } else { COMPLETE };
+        plan.complete = worth.coverage >= enough.min(least);
         warn(&worth, preferences, &scope, plan.complete, ctx);
         self.follow.take(&plan);
+        self.current = Some(CurrentPlan::new(&scan.pieces, &plan.cuts, worth.meets(preferences)));
         Ok(plan)
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
+        if let (Some(current), Some(target)) = (&mut self.current, sensed.path_ahead.first()) {
+            current.aim(*target);
+        }
         self.follow.step(sensed, ctx)
     }
 }

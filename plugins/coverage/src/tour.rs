@@ -14,6 +14,16 @@ pub(crate) use costs::{Costs, Tour};
 use planner_api::Result;
 pub(crate) use search::Effort;
 
+/// Improves a tour of few lanes.
+pub(crate) fn tour_from(
+    entries: Tour,
+    connectors: &Connectors<'_>,
+    effort: &Effort,
+    job: &Job,
+) -> Result<Tour> {
+    search::improved(connectors, &greedy::neighbours_of_few(connectors), entries, effort, job)
+}
+
 /// Finds a good tour.
 pub(crate) fn tour(connectors: &Connectors<'_>, effort: &Effort, job: &Job) -> Result<Tour> {
     let near = greedy::neighbours(connectors, job)?;

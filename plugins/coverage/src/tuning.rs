@@ -134,6 +134,10 @@ pub(crate) mod choice {
     /// Shares of the largest cut angle, tried until a candidate meets the preferences for the cable: the first suffices in
     /// about half of all tanks (tuning.md).
     pub(crate) const ANGLES: [f64; 3] = [1.0, 0.5, 0.0];
+    /// How far the tether of a first tour may exceed what is preferred, as multiples of its length and of its wraps:
+    /// polishing changes them by less.
+    pub(crate) const DRAFT_CABLE: f64 = 1.015;
+    pub(crate) const DRAFT_WRAP: f64 = 1.1;
     /// First tours that cost more than the best by this share never win.
     pub(crate) const HOPELESS: f64 = 0.02;
     /// Within this many swaths of home no cable lies across a cut.
@@ -145,6 +149,35 @@ pub(crate) mod choice {
     /// Most cells of a floor: more cost memory and time, and in a large tank the edges, where cells matter, are a
     /// smaller share of the floor (tuning.md).
     pub(crate) const MOST_CELLS: f64 = 4e6;
+}
+
+/// Repair of a plan under way.
+pub(crate) mod repair {
+    use std::f64::consts::FRAC_PI_2;
+
+    /// Rays tried on either side of the ray from the anchor for the cut of a new obstacle.
+    pub(crate) const RAYS: i32 = 16;
+    /// Cost of a metre of such a cut, in broken lanes.
+    pub(crate) const COST_PER_M: f64 = 0.1;
+    /// Largest angles between these cuts and that ray, tried one after another: an oblique cut breaks fewer lanes, a
+    /// straight one bends the tether less.
+    pub(crate) const ANGLES_RAD: [f64; 3] = [FRAC_PI_2, 0.8, 0.2];
+    /// How far a certified repair may exceed what is preferred of the tether, as multiples: of its length and of its wraps.
+    pub(crate) const LONGER_CABLE: f64 = 1.1;
+    pub(crate) const MORE_WRAP: f64 = 1.5;
+    /// Lanes within so many swaths of what has changed are put in order anew.
+    pub(crate) const NEAR: f64 = 5.0;
+    /// Changes tried per lane of these.
+    pub(crate) const KICKS: f64 = 30.0;
+    /// Lanes are broken to pieces of this length where they cannot be driven any more, metres.
+    pub(crate) const BIT_M: f64 = 0.1;
+    /// A robot that is blocked is helped by a path that within so many metres does not run where the old one did.
+    pub(crate) const AHEAD_M: f64 = 1.0;
+    pub(crate) const AS_BEFORE_M: f64 = 0.05;
+    /// A repaired path that is longer than the rest of the old one by this share, and by so many metres, gives way
+    /// to a plan made anew.
+    pub(crate) const LONGER: f64 = 0.03;
+    pub(crate) const LONGER_M: f64 = 12.0;
 }
 
 /// The published partition and its genetic algorithm (Pan 2025, with the figures of the method where the paper has none).

@@ -16,9 +16,9 @@ const MOST_PLACES: usize = 8;
 /// Logs which floor cannot be scanned, and why.
 pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) {
     let Workspace { swath_m, keep_m, .. } = *scan.domain.workspace;
-    let log = |why: &str, is_meant: &dyn Fn(usize, Point) -> bool| {
-        let raster = scan.swept.raster();
-        let groups = raster.groups(|cell| is_meant(cell, raster.center(cell)));
+    let raster = scan.swept.raster();
+    let log = |why: &str, is_meant: &dyn Fn(usize) -> bool| {
+        let groups = raster.groups(is_meant);
         let area_m2 = |group: &Vec<usize>| group.len() as f64 * raster.cell_m2();
         let worth: Vec<&Vec<usize>> = groups.iter().filter(|group| area_m2(group) > LEAST_M2).collect();
         for group in worth.iter().take(MOST_PLACES) {
@@ -33,20 +33,23 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) {
             ctx.log(LogLevel::Warn, &format!("{places}, {area_m2:.2} m2 together, {why}"));
         }
     };
-    let is_closed = |cell: usize, at: Point| {
-        !scan.swept.floor.cells[cell] && scope.regions.is_empty() && scan.domain.workspace.is_floor(at)
+    let is_closed = |cell: usize| {
+        !scan.swept.floor.cells[cell]
+            && scope.regions.is_empty()
+            && scan.domain.workspace.is_floor(raster.center(cell))
     };
+    let is_margin = |cell: usize| is_shell_margin(scan, raster.center(cell));
     let margin = format!(
         "along the shell is beyond lanes of {swath_m:.2} m, the swath less the overlap, from where the hull fits"
     );
-    log(&margin, &|cell, at| is_closed(cell, at) && is_shell_margin(scan, at));
+    log(&margin, &|cell| is_closed(cell) && is_margin(cell));
     let gaps = "cannot be reached: gaps are narrower than hull and clearance need";
-    log(gaps, &|cell, at| is_closed(cell, at) && !is_shell_margin(scan, at));
+    log(gaps, &|cell| is_closed(cell) && !is_margin(cell));
     if scope.reel_length_m.is_finite() {
         let is_far =
             |at: Point| scan.domain.way_home_m(at).is_none_or(|way_m| way_m > scope.reel_length_m - swath_m);
         let why = format!("is beyond the reel of {:.1} m", scope.reel_length_m);
-        log(&why, &|cell, at| scan.swept.is_missed(cell) && is_far(at));
+        log(&why, &|cell| scan.swept.is_missed(cell) && is_far(raster.center(cell)));
     }
 }
 

@@ -1,5 +1,6 @@
 //! The tank as a coverage planner sees it: wall, solid parts, and where the middle of the hull may be.
 
+use crate::floor::ReachableFloor;
 use crate::inflation::SLACK_M;
 use crate::plane::direction;
 use crate::triangulation::Triangulation;
@@ -24,6 +25,8 @@ pub(crate) struct Workspace {
     /// Exact distances.
     pub room: Room,
     triangulation: OnceLock<Triangulation>,
+    /// The floor that the tool can reach if no cut seals any off; made when it is first asked for.
+    pub floor: OnceLock<ReachableFloor>,
 }
 
 impl Workspace {
@@ -40,8 +43,8 @@ impl Workspace {
             return Err(PlannerError::new(code, why));
         }
         let room = Room::new(site, Keep { obstacle_m: keep_m, wall_m: keep_m });
-        let (home, triangulation) = (home(&room, anchor), OnceLock::new());
-        Ok(Self { wall, parts, keep_m, swath_m, anchor, home, room, triangulation })
+        let (home, triangulation, floor) = (home(&room, anchor), OnceLock::new(), OnceLock::new());
+        Ok(Self { wall, parts, keep_m, swath_m, anchor, home, room, triangulation, floor })
     }
 
     /// The floor for the middle of the hull in triangles; made when it is first asked for.
@@ -105,8 +108,13 @@ fn refused_anchor(wall: &Boundary, parts: &[Part], anchor: Point) -> Option<(Cod
 /// The anchor, or the nearest place with room on circles around it, up to 2 m away.
 fn home(room: &Room, anchor: Point) -> Point {
     let is_roomy = |at: &Point| room.spare_m(*at) >= SLACK_M;
-    let circles = (1..=80).map(|k| f64::from(k) * 0.025);
+    places_around(anchor, 2.0).find(is_roomy).unwrap_or(anchor)
+}
+
+/// A place, and places on circles around it, nearest first, up to a distance, metres.
+pub(crate) fn places_around(at: Point, far_m: f64) -> impl Iterator<Item = Point> {
+    let circles = (1..=(far_m / 0.025).round() as u32).map(|k| f64::from(k) * 0.025);
     let bearings = || (0..72).map(|k| direction(TAU * f64::from(k) / 72.0));
-    let around = circles.flat_map(|radius_m| bearings().map(move |toward| anchor + toward * radius_m));
-    std::iter::once(anchor).chain(around).find(is_roomy).unwrap_or(anchor)
+    let around = circles.flat_map(move |radius_m| bearings().map(move |toward| at + toward * radius_m));
+    std::iter::once(at).chain(around)
 }

@@ -151,7 +151,13 @@ impl Cover {
                 && !coverage.is_covered(index)
                 && wanted.as_ref().is_none_or(|w| w[index])
         };
-        let block = ((BLOCK_LANES * lane_m / floor.cell_m).round() as usize).max(1);
+        // Floor that is asked for in pieces narrower than a lane would fall through blocks.
+        let is_narrow = |region: &Vec<Point>| {
+            let (low, high) = world::shape::bounds_of(region);
+            (high - low).min() < lane_m
+        };
+        let block_m = if self.regions.iter().any(is_narrow) { 0.0 } else { BLOCK_LANES * lane_m };
+        let block = ((block_m / floor.cell_m).round() as usize).max(1);
         let left = regions::boxes(floor, block, is_left);
         if left.is_empty() { vec![regions::square(self.anchor, floor.cell_m)] } else { left }
     }
@@ -246,6 +252,19 @@ mod tests {
         let cover = Cover::new(Point::origin(), vec![region], 0.2, Point::origin());
         let left_m2 = area_m2(&cover.regions_left(&CoverageGrid::new(floor()), 0.6));
         assert!((left_m2 - 1.0).abs() < 0.3, "{left_m2}");
+    }
+
+    #[test]
+    fn regions_narrower_than_a_lane_are_asked_for_all_the_same() {
+        let row =
+            |x: i32| (0..6).map(move |y| Point::new(0.3 * f64::from(x) - 0.95, 0.3 * f64::from(y) - 0.75));
+        let boxes: Vec<Vec<Point>> = (0..6).flat_map(row).map(|at| regions::square(at, 0.1)).collect();
+        let cover = Cover::new(Point::origin(), boxes, 0.2, Point::origin());
+        let boundary = Boundary::Circle { radius_m: 3.0 };
+        let world = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+        let grid = CoverageGrid::new(Floor::new(&world, 0.05, 0.3, 0.6, Point::origin()));
+        let left_m2 = area_m2(&cover.regions_left(&grid, 0.5));
+        assert!((left_m2 - 0.36).abs() < 0.04, "{left_m2}");
     }
 
     #[test]

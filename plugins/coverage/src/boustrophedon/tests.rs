@@ -1,6 +1,6 @@
 use super::*;
 use crate::bench;
-use trials::tanks::{CELL_M, Known};
+use trials::tanks::{CELL_M, CLEARANCE_M, HULL_M, Known};
 
 #[test]
 fn the_traditional_way_covers_most_and_leaves_the_cable_entangled() {
@@ -25,4 +25,13 @@ fn an_empty_square_is_swept_row_by_row() {
     let scan = tank.score(&plan.path, &[], CELL_M).unwrap();
     assert!(scan.coverage_reachable > 0.99 && scan.certificate.certified, "{scan:?}");
     assert!(scan.length_over_lower_bound < 1.07, "{}", scan.length_over_lower_bound);
+}
+
+#[test]
+fn a_robot_a_little_too_near_to_a_column_goes_on_from_beside_it() {
+    let tank = Known::E1.tank(2);
+    let (column, radius_m) = tank.columns[0];
+    let start = column + world::Vector::new(radius_m + HULL_M + CLEARANCE_M - 0.03, 0.0);
+    let path = bench::plan_from::<Boustrophedon>(&tank, start).unwrap().path;
+    assert!((path[0] - start).norm() < 1e-9 && (path[1] - start).norm() < 0.1, "{} {}", path[0], path[1]);
 }

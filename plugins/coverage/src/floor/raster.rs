@@ -3,9 +3,9 @@
 //! The rows are turned against the tank's axes. A planner that shortens paths as long as no cell is lost would otherwise
 //! keep off every straight wall by the half cell that no row of centres represents.
 
-use crate::plane::{direction, left_of};
+use crate::plane::{direction, extent, left_of};
 use std::ops::Range;
-use world::{Boundary, Point, Vector, shape::bounds_of};
+use world::{Boundary, Point, Vector, polyline::edges, shape::bounds_of};
 
 /// Direction of the rows, radians from east: along no wall and no lanes that people build or plan.
 const ROWS_RAD: f64 = 0.3;
@@ -79,6 +79,23 @@ impl Raster {
         })
     }
 
+    /// The meant cells with a cell across an edge that is not meant, or none, in order.
+    pub(super) fn rim(&self, is_meant: &[bool]) -> Vec<usize> {
+        let (columns, last) = (self.columns, self.columns - 1);
+        let rows: Vec<&[bool]> = is_meant.chunks_exact(columns).collect();
+        let mut rim = Vec::new();
+        for (row, cells) in rows.iter().enumerate() {
+            let beside = [row.checked_sub(1), Some(row + 1)].map(|row| rows.get(row?));
+            for column in (0..columns).filter(|column| cells[*column]) {
+                let is_inside = column > 0 && column < last && cells[column - 1] && cells[column + 1];
+                if !(is_inside && beside.iter().all(|row| row.is_some_and(|row| row[column]))) {
+                    rim.push(row * columns + column);
+                }
+            }
+        }
+        rim
+    }
+
     /// Groups of neighbouring cells among those that are meant, largest first.
     pub(crate) fn groups(&self, is_meant: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
         let mut open: Vec<bool> = (0..self.len()).map(is_meant).collect();
@@ -142,12 +159,34 @@ impl Raster {
             let band = start..rows.end.min(start + BAND);
             let spans = self.spans(polygon, &corner_rows, &band);
             for (row, (from, to)) in band.zip(spans).filter(|(_, (from, to))| from <= to) {
-                let column_of = |x: f64| (x - self.low.x) / self.cell_m - 0.5;
-                let (left, past) =
-                    (index_from(column_of(from)), index_from(column_of(to) + NEXT).min(self.columns));
-                if left < past {
-                    visit(row * self.columns + left..row * self.columns + past);
-                }
+                self.fill_row(row, from, to, &mut visit);
+            }
+        }
+    }
+
+    /// The cells of a row with their centres between two places along it.
+    fn fill_row(&self, row: usize, from: f64, to: f64, visit: &mut impl FnMut(Range<usize>)) {
+        let column_of = |x: f64| (x - self.low.x) / self.cell_m - 0.5;
+        let (left, past) = (index_from(column_of(from)), index_from(column_of(to) + NEXT).min(self.columns));
+        if left < past {
+            visit(row * self.columns + left..row * self.columns + past);
+        }
+    }
+
+    /// Every cell whose centre lies in a closed polygon, convex or not, in runs of one row each.
+    pub(super) fn fill_ring(&self, ring: &[Point], mut visit: impl FnMut(Range<usize>)) {
+        let turned: Vec<Point> = ring.iter().map(|corner| along_and_across(self.ahead, *corner)).collect();
+        let (low, high) = extent(turned.iter().map(|p| p.y));
+        let row_of = |y: f64| (y - self.low.y) / self.cell_m - 0.5;
+        for row in index_from(row_of(low))..index_from(row_of(high) + NEXT).min(self.rows) {
+            let y = self.row_y(row);
+            let crossing = |(a, b): (Point, Point)| {
+                ((a.y > y) != (b.y > y)).then(|| a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)))
+            };
+            let mut crossings: Vec<f64> = edges(&turned).filter_map(crossing).collect();
+            crossings.sort_by(f64::total_cmp);
+            for pair in crossings.chunks_exact(2) {
+                self.fill_row(row, pair[0], pair[1], &mut visit);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::floor::raster::Raster;
 use crate::slit_domain::SlitDomain;
-use world::{Point, shape::ring_contains};
+use world::Point;
 
 /// Cells of the floor, and which of them the tool can reach.
 #[derive(Clone)]
@@ -17,21 +17,29 @@ pub(crate) struct ReachableFloor {
 impl ReachableFloor {
     /// The floor that the tool can reach from a domain, in cells with this edge, metres.
     pub(crate) fn new(domain: &SlitDomain<'_>, cell_m: f64) -> Self {
+        if domain.sealed.area_m2 > 0.0 {
+            return Self::of(domain, cell_m);
+        }
+        // Cuts take no floor away: it is the same for all domains of the workspace.
+        let floor = domain.workspace.floor.get_or_init(|| Self::of(domain, cell_m));
+        if floor.raster.cell_m.total_cmp(&cell_m).is_eq() { floor.clone() } else { Self::of(domain, cell_m) }
+    }
+
+    fn of(domain: &SlitDomain<'_>, cell_m: f64) -> Self {
         let workspace = domain.workspace;
         let raster = Raster::over(&workspace.wall, cell_m, workspace.swath_m);
         let mut free = vec![false; raster.len()];
         for triangle in domain.triangles() {
             raster.fill(&triangle, |cells| free[cells].fill(true));
         }
-        let is_free = |cell: Option<usize>| cell.is_some_and(|cell| free[cell]);
-        let is_at_edge = |cell: usize| !raster.neighbours(cell).take(4).all(is_free);
-        let mut cells = free.clone();
+        let (mut cells, mut is_known) = (free.clone(), free.clone());
         // What the tool reaches beyond the middle of the hull lies within half a swath of the last free cells, as it
         // does when the mission counts.
-        for cell in (0..free.len()).filter(|cell| free[*cell] && is_at_edge(*cell)) {
-            let near = raster.near(raster.center(cell), raster.bar_m / 2.0, |other| !cells[other]);
-            let fresh = near.filter(|(_, at)| workspace.is_floor(*at)).map(|(other, _)| other);
-            fresh.collect::<Vec<_>>().into_iter().for_each(|other| cells[other] = true);
+        for cell in raster.rim(&free) {
+            let near = raster.near(raster.center(cell), raster.bar_m / 2.0, |other| !is_known[other]);
+            for (other, at) in near.collect::<Vec<_>>() {
+                (cells[other], is_known[other]) = (workspace.is_floor(at), true);
+            }
         }
         let n = cells.iter().filter(|reachable| **reachable).count();
         Self { raster, cells, n }
@@ -42,10 +50,11 @@ impl ReachableFloor {
         if regions.is_empty() {
             return self;
         }
-        for cell in 0..self.cells.len() {
-            let at = self.raster.center(cell);
-            self.cells[cell] = self.cells[cell] && regions.iter().any(|ring| ring_contains(ring, at));
+        let mut within = vec![false; self.cells.len()];
+        for ring in regions {
+            self.raster.fill_ring(ring, |cells| within[cells].fill(true));
         }
+        self.cells.iter_mut().zip(within).for_each(|(cell, within)| *cell &= within);
         self.n = self.cells.iter().filter(|reachable| **reachable).count();
         self
     }

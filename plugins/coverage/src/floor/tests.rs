@@ -71,3 +71,22 @@ proptest! {
         prop_assert_eq!(lost == 0, is_sound);
     }
 }
+
+proptest! {
+    #[test]
+    fn the_floor_within_some_polygons_is_what_lies_in_any_of_them(
+        rings in prop::collection::vec(prop::collection::vec((-11.0..11.0_f64, -11.0..11.0_f64), 3..8), 1..4),
+    ) {
+        let rings: Vec<Vec<Point>> =
+            rings.into_iter().map(|ring| ring.into_iter().map(|(x, y)| Point::new(x, y)).collect()).collect();
+        let regions: Vec<&[Point]> = rings.iter().map(Vec::as_slice).collect();
+        let whole = empty().floor;
+        let within = whole.clone().within(&regions);
+        for cell in 0..whole.cells.len() {
+            let at = whole.raster.center(cell);
+            let is_meant = whole.cells[cell] && regions.iter().any(|ring| world::shape::ring_contains(ring, at));
+            prop_assert_eq!(within.cells[cell], is_meant, "{}", at);
+        }
+        prop_assert_eq!(within.n, within.cells.iter().filter(|meant| **meant).count());
+    }
+}

@@ -36,6 +36,9 @@ impl Track<'_> {
     /// Bends the path to missed floor until the coverage is reached, wherever a square metre costs little enough. Returns the
     /// number of bends.
     pub(super) fn bend(&mut self, terms: &Terms<'_>) -> Result<usize> {
+        if self.coverage() >= terms.enough {
+            return Ok(0);
+        }
         let mut offers: Vec<Offer> = Vec::new();
         let places = self.places();
         let missed = self.swept.missed();
@@ -165,7 +168,7 @@ mod tests {
                 job: &Job::default(),
             };
             let piece = Piece { points: points.clone(), is_lane: true };
-            let mut track = Track::new(&domain, &[piece], floor.clone());
+            let mut track = Track::new(&domain, &[piece], |_| true, floor.clone());
             let before = track.coverage();
             let n = track.bend(&terms).unwrap();
             (n, track.coverage() - before, track.points(0..track.sides.len()))

@@ -40,6 +40,9 @@ impl Track<'_> {
     /// Ties lanes over missed floor into the path, the most worthwhile first, until the coverage is reached; groups of
     /// fewer cells than the least are left. Returns the number of lanes.
     pub(super) fn tie_in_lanes(&mut self, terms: &Terms<'_>, least: usize) -> Result<usize> {
+        if self.coverage() >= terms.enough {
+            return Ok(0);
+        }
         let mut offers: Vec<Offer> = Vec::new();
         let places = self.places();
         let missed = self.swept.missed();

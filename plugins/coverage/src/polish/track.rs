@@ -5,7 +5,10 @@ use crate::floor::{ReachableFloor, Run, SweptFloor};
 use crate::jobs::Job;
 use crate::plane::{Course, angle_rad, left_of};
 use crate::scan::Piece;
+use crate::scope::Scope;
 use crate::slit_domain::SlitDomain;
+use crate::tour::Effort;
+use crate::tuning::polish::{BENT_FLOOR, FLOOR};
 use crate::tuning::shortcuts::SAMPLES;
 use std::ops::Range;
 use world::{Point, Vector};
@@ -66,20 +69,47 @@ struct Samples {
     n_exchanges: Option<u32>,
 }
 
+impl<'a> Terms<'a> {
+    /// The terms for what is to be scanned, with the prices of a path under work.
+    pub(crate) fn of(
+        scope: &Scope<'_>,
+        effort: Effort,
+        swath_m: f64,
+        is_wanted: &'a dyn Fn(Point) -> bool,
+        job: &'a Job,
+    ) -> Self {
+        Self {
+            turn_m_per_rad: effort.turn_m_per_rad,
+            floor_m_per_m2: FLOOR / swath_m,
+            bend_m_per_m2: BENT_FLOOR / swath_m,
+            enough: scope.enough,
+            is_wanted,
+            job,
+        }
+    }
+}
+
 impl<'a> Track<'a> {
-    /// A track along some pieces, each of them a lane or a way between lanes.
-    pub(crate) fn new(domain: &'a SlitDomain<'a>, pieces: &[Piece], floor: ReachableFloor) -> Self {
+    /// A track along some pieces, each of them a lane or a way between lanes; only the new ones, and what leads up to them,
+    /// will be shortened.
+    pub(crate) fn new(
+        domain: &'a SlitDomain<'a>,
+        pieces: &[Piece],
+        is_new: impl Fn(usize) -> bool,
+        floor: ReachableFloor,
+    ) -> Self {
         let start =
             pieces.iter().flat_map(|piece| &piece.points).next().copied().unwrap_or_else(Point::origin);
         let mut sides: Vec<Side> = Vec::new();
-        for piece in pieces {
-            let mut at = sides.last().map_or(start, |side| side.to);
+        for (k, piece) in pieces.iter().enumerate() {
+            let (mut at, n_before) = (sides.last().map_or(start, |side| side.to), sides.len());
             for point in piece.points.iter().skip(1) {
                 if (point - at).norm() >= 1e-6 {
                     divide(at, *point, piece.is_lane, &mut sides);
                     at = *point;
                 }
             }
+            sides[n_before..].iter_mut().for_each(|side| side.is_new = is_new(k));
         }
         let n = sides.len();
         let mut track = Self { domain, start, sides, swept: SweptFloor::new(floor) };

@@ -1,7 +1,7 @@
 //! Candidates of a tether-safe plan: how lanes and cuts may lie.
 
 use crate::cuts::{CutRule, domain};
-use crate::draft::rotation_turns;
+use crate::draft::{Draft, rotation_turns};
 use crate::pattern::{Pattern, Rows};
 use crate::scan::Scan;
 use crate::slit_domain::SlitDomain;
@@ -12,7 +12,7 @@ use crate::workspace::Workspace;
 use planner_api::Site;
 use std::f64::consts::PI;
 use world::tether::{Cable, Certificate};
-use world::{Boundary, polyline};
+use world::{Boundary, Point, polyline};
 
 /// One way to make a plan.
 pub(super) struct Candidate {
@@ -93,12 +93,30 @@ impl Worth {
         scan: &Scan<'_>,
         cable: Option<&Cable>,
     ) -> Self {
-        let path = scan.path();
+        Self::of_path(site, preferences, (&scan.domain, &scan.path(), scan.swept.coverage()), cable)
+    }
+
+    /// The same of a first tour; its coverage does not count yet.
+    pub(super) fn of_draft(
+        site: &Site<'_>,
+        preferences: &Preferences,
+        draft: &Draft<'_>,
+        cable: Option<&Cable>,
+    ) -> Self {
+        Self::of_path(site, preferences, (draft.domain(), &draft.path(), 0.0), cable)
+    }
+
+    fn of_path(
+        site: &Site<'_>,
+        preferences: &Preferences,
+        (domain, path, coverage): (&SlitDomain<'_>, &[Point], f64),
+        cable: Option<&Cable>,
+    ) -> Self {
         Self {
-            length_m: polyline::length_m(&path),
-            turns: rotation_turns(&path),
-            coverage: scan.swept.coverage(),
-            certificate: certificate(&scan.domain, site, preferences.demanded, &path, cable),
+            length_m: polyline::length_m(path),
+            turns: rotation_turns(path),
+            coverage,
+            certificate: certificate(domain, site, preferences.demanded, path, cable),
         }
     }
 
@@ -135,9 +153,13 @@ impl Worth {
 
     /// Whether it is certified and meets the preferences for the cable as well.
     pub(super) fn meets(&self, preferences: &Preferences) -> bool {
-        let Certificate { certified, wrap_max_rad, wrap_total_max_rad, .. } = self.certificate;
-        certified
-            && self.cable_share() <= preferences.cable_share + 1e-6
+        self.certificate.certified && self.is_preferred(preferences)
+    }
+
+    /// Whether the tether is as short and straight as is preferred.
+    pub(super) fn is_preferred(&self, preferences: &Preferences) -> bool {
+        let Certificate { wrap_max_rad, wrap_total_max_rad, .. } = self.certificate;
+        self.cable_share() <= preferences.cable_share + 1e-6
             && wrap_max_rad <= preferences.limits.wrap_max_rad
             && wrap_total_max_rad <= preferences.limits.wrap_total_max_rad
     }

@@ -145,4 +145,14 @@ impl Preferences {
         };
         Self { limits, demanded: Limits { reel_length_m, wrap_max_rad, wrap_total_max_rad }, ..self }
     }
+
+    /// The same with so many times the length and the wraps of the tether.
+    pub(super) fn with_leeway(&self, length: f64, wrap: f64) -> Self {
+        let limits = Limits {
+            wrap_max_rad: self.limits.wrap_max_rad * wrap,
+            wrap_total_max_rad: self.limits.wrap_total_max_rad * wrap,
+            ..self.limits
+        };
+        Self { cable_share: self.cable_share * length, limits, ..*self }
+    }
 }

@@ -7,7 +7,7 @@ use crate::scope::Scope;
 use crate::stages::{Stage, Stages};
 use crate::tether_safe::candidate::{Candidate, Worth};
 use crate::tether_safe::parameters::{Choice, Preferences};
-use crate::tuning::choice::{ANGLES, HOPELESS};
+use crate::tuning::choice::{ANGLES, DRAFT_CABLE, DRAFT_WRAP, HOPELESS};
 use crate::workspace::Workspace;
 use planner_api::{Ctx, LogLevel, Result, Site};
 use world::tether::Cable;
@@ -28,6 +28,8 @@ struct Drafted<'a> {
     name: String,
     /// Estimated cost of the finished path, metres.
     estimate_m: f64,
+    /// Whether its tether may come to be as short and straight as is preferred.
+    may_meet: bool,
     draft: Draft<'a>,
 }
 
@@ -39,9 +41,12 @@ struct Finished<'a> {
     scan: Option<Scan<'a>>,
 }
 
-/// All finished candidates.
+/// All finished candidates, and those left because of their tether.
 #[derive(Default)]
-pub(super) struct Tried<'a>(Vec<Finished<'a>>);
+pub(super) struct Tried<'a> {
+    finished: Vec<Finished<'a>>,
+    left: Vec<Drafted<'a>>,
+}
 
 impl<'a> Pipeline<'a> {
     /// Finishes the candidates that may win; tries straighter cuts as well if none meets the preferences.
@@ -60,18 +65,25 @@ impl<'a> Pipeline<'a> {
                 break;
             }
         }
+        if !tried.is_enough(self.preferences) && !tried.left.is_empty() {
+            stages.end = end;
+            let left = std::mem::take(&mut tried.left);
+            self.finish(left, &stages.next(1.0, "candidates with more tether"), &mut tried)?;
+        }
         Ok(tried)
     }
 
     /// The first tours of all candidates with cuts up to an angle, the cheapest first.
     fn drafts(&self, alpha_rad: f64, stage: &Stage<'_>) -> Result<Vec<Drafted<'a>>> {
-        let Self { workspace, preferences, scope, .. } = *self;
+        let Self { site, workspace, preferences, scope, cable } = *self;
+        let lenient = preferences.with_leeway(DRAFT_CABLE, DRAFT_WRAP);
         let drafted = |candidate: Candidate, job: &Job| {
             job.stage(0.25);
             let Some(domain) = candidate.domain(workspace, preferences) else { return Ok(None) };
             let draft = Draft::new(&candidate.pattern, domain, scope, preferences.effort, job)?;
             let estimate_m = draft.estimate_m(preferences.choice_turn_m);
-            Ok(Some(Drafted { name: candidate.name(), estimate_m, draft }))
+            let may_meet = Worth::of_draft(site, preferences, &draft, cable).is_preferred(&lenient);
+            Ok(Some(Drafted { name: candidate.name(), estimate_m, may_meet, draft }))
         };
         let drafts = run_all(Candidate::all(workspace, preferences, alpha_rad), stage, drafted)?;
         let mut drafts: Vec<Drafted<'a>> = drafts.into_iter().flatten().collect();
@@ -79,7 +91,8 @@ impl<'a> Pipeline<'a> {
         Ok(drafts)
     }
 
-    /// Finishes the drafts that may win, and those that look worse if none of the former meets the preferences.
+    /// Finishes the drafts that may win, and those that look worse if none of the former meets the preferences. Those whose
+    /// tether is too long or winds too much are left for the time being.
     fn finish_promising(
         &self,
         mut drafts: Vec<Drafted<'a>>,
@@ -87,6 +100,8 @@ impl<'a> Pipeline<'a> {
         what: &'static str,
         tried: &mut Tried<'a>,
     ) -> Result<()> {
+        let left: Vec<Drafted<'a>> = drafts.extract_if(.., |draft| !draft.may_meet).collect();
+        tried.left.extend(left);
         let least_m = drafts.first().map_or(0.0, |draft| draft.estimate_m);
         let may_win = |draft: &Drafted<'_>| {
             self.preferences.choice != Choice::Shortest || draft.estimate_m <= least_m * (1.0 + HOPELESS)
@@ -110,7 +125,7 @@ impl<'a> Pipeline<'a> {
     /// Finishes drafts, and keeps the scan of the best candidate so far.
     fn finish(&self, drafts: Vec<Drafted<'a>>, stage: &Stage<'_>, tried: &mut Tried<'a>) -> Result<()> {
         let Self { site, preferences, cable, .. } = *self;
-        tried.0.extend(run_all(drafts, stage, |Drafted { name, draft, .. }, job| {
+        tried.finished.extend(run_all(drafts, stage, |Drafted { name, draft, .. }, job| {
             let scan = draft.finished(job)?;
             job.stage(1.0);
             let worth = Worth::of(site, preferences, &scan, cable);
@@ -124,30 +139,30 @@ impl<'a> Pipeline<'a> {
 impl<'a> Tried<'a> {
     /// Whether a candidate meets the preferences.
     fn is_enough(&self, preferences: &Preferences) -> bool {
-        self.0.iter().any(|finished| finished.worth.meets(preferences))
+        self.finished.iter().any(|finished| finished.worth.meets(preferences))
     }
 
     /// Whether a candidate is certified.
     pub(super) fn is_certified(&self) -> bool {
-        self.0.iter().any(|finished| finished.worth.certificate.certified)
+        self.finished.iter().any(|finished| finished.worth.certificate.certified)
     }
 
     fn keep_best(&mut self, preferences: &Preferences) {
         let mut best = 0;
-        for k in 1..self.0.len() {
-            let is_better = self.0[k].worth.is_before(&self.0[best].worth, preferences);
+        for k in 1..self.finished.len() {
+            let is_better = self.finished[k].worth.is_before(&self.finished[best].worth, preferences);
             let worse = if is_better { std::mem::replace(&mut best, k) } else { k };
-            self.0[worse].scan = None;
+            self.finished[worse].scan = None;
         }
     }
 
     /// The best candidate; logs every candidate that no other beats.
     pub(super) fn chosen(self, ctx: &Ctx<'_>) -> Option<(Worth, Scan<'a>)> {
-        for Finished { name, worth, .. } in &self.0 {
-            if !self.0.iter().any(|other| worth.is_beaten_by(&other.worth)) {
+        for Finished { name, worth, .. } in &self.finished {
+            if !self.finished.iter().any(|other| worth.is_beaten_by(&other.worth)) {
                 ctx.log(LogLevel::Info, &worth.summary(name));
             }
         }
-        self.0.into_iter().find_map(|finished| Some((finished.worth, finished.scan?)))
+        self.finished.into_iter().find_map(|finished| Some((finished.worth, finished.scan?)))
     }
 }

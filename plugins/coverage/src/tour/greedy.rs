@@ -28,6 +28,15 @@ pub(super) fn neighbours(connectors: &Connectors<'_>, job: &Job) -> Result<Vec<V
     (0..n).map(list).collect()
 }
 
+/// The same for so few ends that all others can be looked at.
+pub(super) fn neighbours_of_few(connectors: &Connectors<'_>) -> Vec<Vec<End>> {
+    let list = |u: End| {
+        let others = (0..connectors.len()).filter(|v| v / 2 != u / 2).collect();
+        cheapest(connectors, u, nearest_of(connectors, u, others))
+    };
+    (0..connectors.len()).map(list).collect()
+}
+
 /// The square of one metre that a place lies in.
 fn bucket(at: Point) -> (i64, i64) {
     (at.x.floor() as i64, at.y.floor() as i64)
@@ -44,9 +53,14 @@ fn nearest(connectors: &Connectors<'_>, buckets: &HashMap<(i64, i64), Vec<End>>,
         found = ends.copied().filter(|v| v / 2 != u / 2).collect();
         rings += 1;
     }
-    found.sort_by(|a, b| connectors.least(u, *a).total_cmp(&connectors.least(u, *b)).then(a.cmp(b)));
-    found.truncate(LOOKED_AT);
-    found
+    nearest_of(connectors, u, found)
+}
+
+/// The nearest of some ends, nearest first.
+fn nearest_of(connectors: &Connectors<'_>, u: End, mut ends: Vec<End>) -> Vec<End> {
+    ends.sort_by(|a, b| connectors.least(u, *a).total_cmp(&connectors.least(u, *b)).then(a.cmp(b)));
+    ends.truncate(LOOKED_AT);
+    ends
 }
 
 /// The cheapest of some ends, which come nearest first.

@@ -1,0 +1,155 @@
+//! Repair of a plan under way: what was found on the way changes it only round itself.
+//!
+//! The cuts stay, and an obstacle that none of them holds gets one of its own, laid where it crosses the rest of the path
+//! least. What can still be driven of that rest stays as it is, in sections: long ones far away, single lanes near what has
+//! changed. The sections are put in order anew, from the order in which they were to be flown, and the ways between them are
+//! polished as those of any path.
+
+mod current;
+
+use crate::cuts::Extension;
+use crate::floor::ReachableFloor;
+use crate::jobs::Job;
+use crate::polish::{Terms, Track, polish};
+use crate::scan::{Piece, Scan};
+use crate::scope::Scope;
+use crate::slit_domain::SlitDomain;
+use crate::tour::{Connectors, Costs, Effort, tour_from};
+use crate::tuning::{self, cuts::SLIVER_M2, repair as tuned};
+use crate::workspace::Workspace;
+pub(crate) use current::{CurrentPlan, Side};
+use planner_api::Result;
+use world::{Point, polyline};
+
+/// What a repair starts from.
+pub(crate) struct Repair<'a, 'f> {
+    pub workspace: &'a Workspace,
+    pub scope: Scope<'a>,
+    pub effort: Effort,
+    pub current: &'f CurrentPlan,
+    /// The tether as it lies.
+    pub tether: Vec<Point>,
+}
+
+/// The domain of a plan under way with cuts for what was found.
+pub(crate) struct Extended<'a> {
+    domain: SlitDomain<'a>,
+    new_cuts: Vec<Vec<Point>>,
+}
+
+/// A repaired path.
+pub(crate) struct Repaired<'a> {
+    pub scan: Scan<'a>,
+    /// Share of the floor left that is enough: what the first plan might leave of all floor, this one may.
+    pub enough: f64,
+}
+
+impl<'a> Repair<'a, '_> {
+    /// The repaired path in one of these domains; `None` where the robot stands outside it.
+    pub(crate) fn scan(
+        &self,
+        Extended { domain, new_cuts }: Extended<'a>,
+        job: &Job,
+    ) -> Result<Option<Repaired<'a>>> {
+        let rest = self.current.rest();
+        let Some(start) = domain.beside(self.scope.start) else { return Ok(None) };
+        let sections = sections(&domain, &rest, &new_cuts);
+        job.stage(0.3);
+        let laid = self.laid(&domain, &sections, start, job)?;
+        job.stage(0.5);
+        let whole = ReachableFloor::new(&domain, self.scope.cell_m);
+        let n_whole = whole.n;
+        let floor = whole.within(self.scope.regions);
+        let left = (1.0 - self.scope.enough) * n_whole as f64 / floor.n.max(1) as f64;
+        let enough = (1.0 - left).max(tuning::polish::KEPT);
+        let scope = Scope { enough, ..self.scope };
+        let (pieces, is_new): (Vec<Piece>, Vec<bool>) = laid.into_iter().unzip();
+        let is_wanted = |at| scope.is_in_reach(&domain, at);
+        let terms = Terms::of(&scope, self.effort, domain.workspace.swath_m, &is_wanted, job);
+        let mut track = Track::new(&domain, &pieces, |piece| is_new[piece], floor);
+        polish(&mut track, &terms, true)?;
+        let (pieces, swept) = track.into_pieces();
+        Ok(Some(Repaired { scan: Scan { pieces, domain, swept }, enough }))
+    }
+
+    /// The domains that a repair may use, with different cuts for what was found; none where all of them seal floor off.
+    pub(crate) fn domains(&self) -> Vec<Extended<'a>> {
+        let path: Vec<(Point, Point)> = self.current.rest().iter().map(|side| (side.from, side.to)).collect();
+        let (workspace, cuts) = (self.workspace, &self.current.cuts);
+        let extension = Extension { workspace, cuts, tether: &self.tether, path: &path };
+        let mut all: Vec<Vec<Vec<Point>>> =
+            tuned::ANGLES_RAD.into_iter().filter_map(|angle_rad| extension.new_cuts(angle_rad)).collect();
+        all.dedup();
+        all.into_iter().filter_map(|new_cuts| self.domain(new_cuts)).collect()
+    }
+
+    fn domain(&self, new_cuts: Vec<Vec<Point>>) -> Option<Extended<'a>> {
+        let mut domain = SlitDomain::new(self.workspace, [&self.current.cuts[..], &new_cuts].concat())?;
+        domain.close_up();
+        (domain.sealed.area_m2 <= SLIVER_M2).then_some(Extended { domain, new_cuts })
+    }
+
+    /// Sections and ways between them in a good order, from the start to home; each with whether it is new.
+    fn laid(
+        &self,
+        domain: &SlitDomain<'_>,
+        sections: &[Vec<Side>],
+        start: Point,
+        job: &Job,
+    ) -> Result<Vec<(Piece, bool)>> {
+        let lanes: Vec<Vec<Point>> = sections.iter().map(|section| points(section)).collect();
+        let ends = (self.workspace.home, start);
+        let effort = Effort { kicks_per_lane: tuned::KICKS, ..self.effort };
+        let connectors = Connectors::new(domain, &lanes, ends, effort.turn_m_per_rad, Costs::default());
+        let as_before = std::iter::once(lanes.len()).chain(0..lanes.len()).map(|lane| 2 * lane).collect();
+        let order = tour_from(as_before, &connectors, &effort, job)?;
+        let mut laid = Vec::new();
+        for (entry, next) in order.iter().zip(order.iter().cycle().skip(1)) {
+            if let Some(section) = sections.get(entry / 2) {
+                laid.extend(pieces(section, entry % 2 == 1).into_iter().map(|piece| (piece, false)));
+            }
+            laid.push((Piece { points: connectors.path(entry ^ 1, *next), is_lane: false }, true));
+        }
+        Ok(laid)
+    }
+}
+
+/// What can still be driven of a path, without what joins lanes near what has changed.
+fn sections(domain: &SlitDomain<'_>, rest: &[Side], new_cuts: &[Vec<Point>]) -> Vec<Vec<Side>> {
+    let mut bits: Vec<(Side, bool)> = Vec::with_capacity(rest.len());
+    for side in rest {
+        if domain.sees(side.from, side.to) {
+            bits.push((*side, true));
+        } else {
+            bits.extend(side.divided(tuned::BIT_M).map(|bit| (bit, domain.sees(bit.from, bit.to))));
+        }
+    }
+    let broken: Vec<Point> = bits.iter().filter(|(_, is_open)| !is_open).map(|(bit, _)| bit.from).collect();
+    let near_m = tuned::NEAR * domain.workspace.swath_m;
+    let is_near = |at: Point| {
+        broken.iter().any(|place| (place - at).norm() < near_m)
+            || new_cuts.iter().any(|cut| polyline::distance_m(cut, at) < near_m)
+    };
+    let is_kept = |(bit, is_open): &(Side, bool)| *is_open && (bit.is_lane || !is_near(bit.from));
+    let least_m = domain.workspace.swath_m / tuning::lanes::LEAST_IN_SWATH;
+    let runs = bits.chunk_by(|a, b| is_kept(a) && is_kept(b));
+    let runs = runs.filter(|run| is_kept(&run[0])).map(|run| run.iter().map(|(bit, _)| *bit).collect());
+    runs.filter(|section: &Vec<Side>| polyline::length_m(&points(section)) >= least_m).collect()
+}
+
+fn points(section: &[Side]) -> Vec<Point> {
+    section.first().map(|side| side.from).into_iter().chain(section.iter().map(|side| side.to)).collect()
+}
+
+/// A section in pieces of one kind, the other way round if so.
+fn pieces(section: &[Side], is_reversed: bool) -> Vec<Piece> {
+    let piece = |run: &[Side]| Piece { points: points(run), is_lane: run[0].is_lane };
+    let mut pieces: Vec<Piece> = section.chunk_by(|a, b| a.is_lane == b.is_lane).map(piece).collect();
+    if is_reversed {
+        pieces.reverse();
+        for piece in &mut pieces {
+            piece.points.reverse();
+        }
+    }
+    pieces
+}

@@ -1,0 +1,134 @@
+use super::*;
+use crate::tether_safe::TetherSafe;
+use planner_api::testing::Bench;
+use planner_api::{Plan, PlanRequest, Planner, PoseEstimate, Sensed, Task};
+use proptest::prelude::*;
+use trials::tanks::{CELL_M, CLEARANCE_M, HULL_M, Known, SWATH_M, Tank};
+use world::{CoverageGrid, Floor, coverage::regions};
+
+/// Distance at which a column is found, metres.
+const SEEN_M: f64 = 2.0;
+const ROOM_M: f64 = HULL_M + CLEARANCE_M;
+
+/// A plan for a tank of which one column was not known, and the one that follows when the robot has come near it.
+struct UnderWay {
+    tank: Tank,
+    flown: Vec<Point>,
+    first: Plan,
+    /// The rest of the first plan.
+    rest: Vec<Point>,
+    second: Plan,
+    bench: Bench,
+}
+
+impl UnderWay {
+    /// Finds the last column of a tank.
+    fn find(tank: Tank, values: &[(&str, f64)]) -> Self {
+        let mut known = tank.clone();
+        let column = known.columns.pop().unwrap();
+        Self::between(&known, tank, values, column.0, &Reason::MapChanged)
+    }
+
+    /// Plans a tank, comes near a place, and plans it as it is known by then.
+    fn between(before: &Tank, tank: Tank, values: &[(&str, f64)], near: Point, reason: &Reason) -> Self {
+        let (bench, obstacles) = (Bench::new(), before.obstacles());
+        let mut planner: TetherSafe = bench.configure(values, &before.site(&obstacles)).unwrap();
+        let first = asked(&mut planner, before, &bench, (&Reason::Start, tank.anchor), &[], &[]);
+        let fine = polyline::resampled(&first.path, 0.1);
+        let at = fine.iter().position(|p| (p - near).norm() < SEEN_M).unwrap();
+        let (flown, rest) = (fine[..=at].to_vec(), fine[at..].to_vec());
+        let left = left_to_scan(&tank, &flown);
+        let left: Vec<&[Point]> = left.iter().map(Vec::as_slice).collect();
+        aim(&mut planner, &bench, fine[at], rest[2.min(rest.len() - 1)]);
+        bench.clear();
+        let second = asked(&mut planner, &tank, &bench, (reason, fine[at]), &left, &flown);
+        Self { tank, flown, first, rest, second, bench }
+    }
+
+    fn is_repaired(&self) -> bool {
+        self.bench.logs().iter().any(|(_, said)| said.starts_with("plan under way, repaired"))
+    }
+
+    /// All that is driven.
+    fn driven(&self) -> Vec<Point> {
+        [&self.flown[..], &self.second.path].concat()
+    }
+}
+
+fn asked(
+    planner: &mut TetherSafe,
+    tank: &Tank,
+    bench: &Bench,
+    (reason, at): (&Reason, Point),
+    regions: &[&[Point]],
+    previous: &[Point],
+) -> Plan {
+    let obstacles = tank.obstacles();
+    let start = PoseEstimate { position: at, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
+    let task = Task::Cover { anchor: tank.anchor, regions, tether: None, tolerance_m: 0.3 };
+    let request = PlanRequest { reason, start, task, site: &tank.site(&obstacles), previous };
+    planner.plan(&request, &bench.ctx()).unwrap()
+}
+
+fn aim(planner: &mut TetherSafe, bench: &Bench, at: Point, target: Point) {
+    let pose = PoseEstimate { position: at, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
+    let sensed = Sensed {
+        tick: 0,
+        t_s: 0.0,
+        dt_s: 0.1,
+        pose,
+        v_m_per_s: 0.0,
+        w_rad_per_s: 0.0,
+        target,
+        targets_ahead: &[],
+        path_ahead: &[target],
+        obstacles: &[],
+    };
+    planner.step(&sensed, &bench.ctx()).unwrap();
+}
+
+fn left_to_scan(tank: &Tank, flown: &[Point]) -> Vec<Vec<Point>> {
+    let mut grid = CoverageGrid::new(Floor::new(&tank.world(), 0.1, ROOM_M, SWATH_M, tank.anchor));
+    for w in flown.windows(2) {
+        grid.mark_swath(w[0], w[1], SWATH_M);
+    }
+    let floor = grid.floor();
+    regions::boxes(floor, 1, |cell| floor.is_reachable(cell) && !grid.is_covered(cell))
+}
+
+#[test]
+fn a_column_that_is_found_changes_the_plan_only_round_itself() {
+    let case = UnderWay::find(Known::E1.tank(31), &[("pattern", 1.0)]);
+    assert!(case.is_repaired() && case.second.complete, "{:?}", case.bench.logs());
+    let is_kept = |p: &&Point| polyline::distance_m(&case.second.path, **p) < 0.01;
+    let kept = case.rest.iter().filter(is_kept).count() as f64 / case.rest.len() as f64;
+    assert!(kept > 0.8, "{kept} of the rest is kept");
+    assert!(case.first.cuts.iter().all(|cut| case.second.cuts.contains(cut)));
+    let (before_m, after_m) = (polyline::length_m(&case.rest), polyline::length_m(&case.second.path));
+    assert!(after_m < 1.03 * before_m, "{before_m} m became {after_m} m");
+}
+
+#[test]
+fn a_robot_that_is_blocked_where_nothing_was_found_gets_a_plan_made_anew() {
+    let tank = Known::E1.tank(32);
+    let near = tank.columns[0].0;
+    let values = [("pattern", 1.0), ("kicks", 0.5)];
+    let case = UnderWay::between(&tank.clone(), tank.clone(), &values, near, &Reason::Blocked);
+    assert!(!case.is_repaired(), "{:?}", case.bench.logs());
+    let case = UnderWay::between(&tank.clone(), tank, &values, near, &Reason::MapChanged);
+    assert!(case.is_repaired(), "nothing in the way changes nothing: {:?}", case.bench.logs());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn whatever_is_found_the_whole_drive_scans_the_floor_and_the_tether_comes_in(seed in 0_u64..100_000) {
+        let tank = Known::ALL[seed as usize % 3].tank(1000 + seed);
+        let case = UnderWay::find(tank, &[("pattern", 1.0), ("kicks", 0.5)]);
+        let scan = case.tank.score(&case.driven(), &[], CELL_M).unwrap();
+        prop_assert_eq!(scan.certificate.collisions, 0);
+        prop_assert!(scan.certificate.end_length_m.is_some_and(|m| m < 1e-6), "{:?}", scan.certificate.reasons);
+        prop_assert!(scan.coverage_reachable > 0.99, "{}", scan.coverage_reachable);
+    }
+}
