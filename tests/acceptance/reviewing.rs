@@ -22,7 +22,7 @@ fn name(run: &Path) -> &str {
 #[test]
 fn a_mission_is_flown_then_reviewed_in_one_session_and_its_journal_stays_as_it_is() {
     let bench = Bench::new();
-    let script = "speed max\nstart\nkey enter\nwait until screen result within 2m\nreplay latest\n\
+    let script = "speed max\nstart\nkey enter\nwait until phase running within 1m\nwait until screen result within 2m\nreplay latest\n\
                   wait until text \"all loaded\" within 30s\nassert text REPLAY\nassert text \"T+00:00:00\"\n\
                   key space\nwait until text \"T+00:00:02\" within 20s\nkey space\nassert text \"‖ PAUSE\"\n\
                   seek 00:30\nwait until text \"T+00:00:30\" within 5s\nbookmark \"pump noise\"\n\
@@ -72,6 +72,6 @@ fn a_journal_that_is_cut_off_plays_up_to_its_last_event_and_a_run_that_is_not_th
     let script = "wait until text \"is cut off after\" within 30s\nkey $\nassert text REPLAY\n";
     let ended = replayed(&bench, &[name(&run)], script);
     assert_eq!(ended.code, Some(0), "{ended:?}");
-    let ended = bench.tankops(&["replay", "nothing"]);
+    let ended = replayed(&bench, &["nothing"], "theme dark\n");
     assert!(ended.code == Some(2) && ended.err.contains("nothing"), "{ended:?}");
 }

@@ -108,11 +108,11 @@ fn a_faulty_binding_names_both_places_and_keeps_the_key() {
     let cases = [
         (
             "preset = \"default\"\n\n[keys]\nhold = [\"F12\"]\nzoom-in = [\"f\"]\n",
-            "keys.toml:5:12: \"f\" is already follow (Plan, Mission, Result); zoom-in keeps \"z\"".to_owned(),
+            "keys.toml:5:12: \"f\" is already follow (Plan, Mission, Replay, Result); zoom-in keeps \"z\"".to_owned(),
         ),
         (
             "[keys]\nzoom-in = [\"F5\"]\nzoom-out = [\"F6\", \"F5\"]\n",
-            "keys.toml:3:19: \"F5\" is already zoom-in (Plan, Mission, Result), keys.toml:2:1; zoom-out keeps \"Z\""
+            "keys.toml:3:19: \"F5\" is already zoom-in (Plan, Mission, Replay, Result), keys.toml:2:1; zoom-out keeps \"Z\""
                 .to_owned(),
         ),
         ("[keys]\nzoomin = [\"f\"]\n", "keys.toml:2:1: no action \"zoomin\"; did you mean zoom-in?".to_owned()),
