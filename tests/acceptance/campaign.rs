@@ -127,7 +127,7 @@ fn a_slip_in_a_plan_is_refused_with_its_place() {
     for (from, to, line, why) in [
         ("navfn", "navfm", ":3:20: planners.1", "there is no planner `navfm`"),
         ("yang-case3", "yang-case33", ":2:", "cannot be read"),
-        ("speed_max_m_per_s", "speed_mix", ":8:25: grid.robot.speed_mix", "unknown key"),
+        ("speed_max_m_per_s", "speed_mix", ":8:21: grid.robot.speed_mix", "unknown key"),
         ("collisions_max", "colisions_max", ":9:", "expect"),
         ("count", "cuont", ":5:", "did you mean `count`?"),
     ] {
