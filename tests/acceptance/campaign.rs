@@ -9,7 +9,7 @@ use std::{
 
 /// Two scenarios, two planners, two values, some seeds: about 0.1 s a mission.
 pub(crate) fn plan(bench: &Bench, name: &str, head: &str, seeds: u32) -> PathBuf {
-    let of = |name: &str| format!("{:?}", scenario(name));
+    let of = |name: &str| format!("\"{}\"", scenario(name).display());
     let scenarios = [of("goto-single-obstacle.toml"), of("papers/yang-case3.toml")].join(", ");
     let text = format!(
         "name = \"mixed\"\nscenarios = [{scenarios}]\nplanners = [\"apf\", \"navfn\"]\n\

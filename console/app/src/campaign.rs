@@ -72,10 +72,10 @@ fn run(args: &RunCampaignArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     )?;
     let left = results::missing(&folder, &campaign)?;
     if stop.requested() {
-        return incomplete(&left, "stopped");
+        return Ok(incomplete(&left, "stopped"));
     }
     let code = merge(&folder, !left.is_empty())?;
-    if left.is_empty() { Ok(code) } else { incomplete(&left, "the budget is spent") }
+    Ok(if left.is_empty() { code } else { incomplete(&left, "the budget is spent") })
 }
 
 fn submit(
@@ -98,9 +98,9 @@ fn submit(
     Ok(ExitCode::from(COMPLETE))
 }
 
-fn incomplete(missing: &[u64], why: &str) -> anyhow::Result<ExitCode> {
+fn incomplete(missing: &[u64], why: &str) -> ExitCode {
     warn_line(&format!("{why}; {} blocks are missing; run again to resume", missing.len()));
-    Ok(ExitCode::from(ENDED_OTHERWISE))
+    ExitCode::from(ENDED_OTHERWISE)
 }
 
 /// What of a campaign one process flies.
@@ -170,9 +170,9 @@ fn work(args: &WorkArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let left: Vec<u64> = blocks.into_iter().filter(|block| !folder.has_part(*block)).collect();
     match (left.is_empty(), stop.requested()) {
         (true, _) => Ok(ExitCode::from(COMPLETE)),
-        (false, true) => incomplete(&left, "stopped"),
+        (false, true) => Ok(incomplete(&left, "stopped")),
         (false, false) if results::missing(&folder, &campaign)?.is_empty() => Ok(ExitCode::from(COMPLETE)),
-        (false, false) => incomplete(&left, "other workers have them"),
+        (false, false) => Ok(incomplete(&left, "other workers have them")),
     }
 }
 

@@ -78,12 +78,10 @@ impl Verdict {
 /// # Errors
 /// There is no such column.
 pub fn compare(first: &Table, second: &Table, metric: &str, by: Option<&str>) -> Result<Comparison, String> {
-    for name in [Some(metric), by].into_iter().flatten().filter(|name| !(first.has(name) && second.has(name)))
-    {
-        return Err(format!(
-            "not both tables have a column `{name}`; known metrics: success, {}",
-            crate::table::metrics().collect::<Vec<_>>().join(", ")
-        ));
+    let is_missing = |name: &&str| !(first.has(name) && second.has(name));
+    if let Some(name) = [Some(metric), by].into_iter().flatten().find(is_missing) {
+        let known = crate::table::metrics().collect::<Vec<_>>().join(", ");
+        return Err(format!("not both tables have a column `{name}`; known metrics: success, {known}"));
     }
     let of = |table: &Table| missions(table, metric, by);
     let (one, mut other) = (of(first), of(second));

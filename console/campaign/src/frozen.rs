@@ -187,7 +187,7 @@ impl Campaign {
             self.planners.get(arm / self.points.len()).map_or("planner of the scenario", String::as_str);
         let values = self.keys.iter().zip(&self.points[arm % self.points.len()]);
         let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();
-        let set: String = values.map(|(key, value)| format!(" {}={value}", last(key))).collect();
+        let set = values.map(|(key, value)| format!(" {}={value}", last(key))).collect::<Vec<_>>().concat();
         format!("{planner}{set}")
     }
 
@@ -205,7 +205,7 @@ impl Campaign {
     /// The command that flies a mission again.
     pub fn command(&self, case: &Case<'_>) -> String {
         let planner = case.planner.map(|id| format!(" --planner {id}")).unwrap_or_default();
-        let set: String = self.set(case).map(|set| format!(" --set {}", shell(&set))).collect();
+        let set = self.set(case).map(|set| format!(" --set {}", shell(&set))).collect::<Vec<_>>().concat();
         format!("tankops run {}{planner}{set} --seed {}", shell(&case.scenario.path), case.seed)
     }
 

@@ -198,16 +198,17 @@ fn until(root: &Reader<'_>) -> Option<Until> {
 /// Bounds of `[expect]`; the scenarios know their keys.
 fn expect(root: &Reader<'_>) -> Vec<(String, Value)> {
     let Some(table) = root.table("expect", &[]) else { return Vec::new() };
-    let bound = |(name, value): (String, &Placed<'_>)| match Value::read(value.get_ref()) {
-        Some(bound) => Some((name, bound)),
-        None => {
-            let what = Complaint::WrongType {
-                wanted: "a number or a word".into(),
-                remedy: "as in a scenario".into(),
-            };
-            table.complain(&name, value.span(), what);
-            None
+    let bound = |(name, value): (String, &Placed<'_>)| {
+        let bound = Value::read(value.get_ref());
+        if bound.is_none() {
+            let wanted = "a number or a word".into();
+            table.complain(
+                &name,
+                value.span(),
+                Complaint::WrongType { wanted, remedy: "as in a scenario".into() },
+            );
         }
+        Some((name, bound?))
     };
     table.entries().into_iter().filter_map(bound).collect()
 }
@@ -225,15 +226,13 @@ fn axis(grid: &Reader<'_>, name: &str, value: &Placed<'_>) -> Option<Axis> {
     match value.get_ref() {
         DeValue::Array(list) => {
             let values: Option<Vec<Value>> = list.iter().map(|entry| Value::read(entry.get_ref())).collect();
-            match values.filter(|values| !values.is_empty()) {
-                Some(values) => Some(Axis::List(values)),
-                None => {
-                    let remedy = "write [0.1, 0.2], or { from = 0.1, to = 0.9, steps = 5 }".to_owned();
-                    let wanted = "a list of numbers, words or flags".to_owned();
-                    grid.complain(name, value.span(), Complaint::WrongType { wanted, remedy });
-                    None
-                }
+            let values = values.filter(|values| !values.is_empty());
+            if values.is_none() {
+                let remedy = "write [0.1, 0.2], or { from = 0.1, to = 0.9, steps = 5 }".to_owned();
+                let wanted = "a list of numbers, words or flags".to_owned();
+                grid.complain(name, value.span(), Complaint::WrongType { wanted, remedy });
             }
+            values.map(Axis::List)
         }
         DeValue::Table(_) => {
             let range = grid.table(name, &["from", "to", "steps", "log"])?;

@@ -90,8 +90,8 @@ impl Axis {
         let power = 10_f64.powf(raw.log10().floor());
         let step =
             [1.0, 2.0, 5.0, 10.0].map(|k| k * power).into_iter().find(|step| *step >= raw).unwrap_or(raw);
-        let first = (low / step).ceil() as i64;
-        (first..).map(|k| k as f64 * step).take_while(|tick| *tick <= high).collect()
+        let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
+        (first..=last).map(|k| k as f64 * step).collect()
     }
 }
 
@@ -176,8 +176,8 @@ pub(crate) fn pareto(findings: &Findings) -> Option<String> {
     let mut plot = Plot::new(HEIGHT);
     axes(&mut plot, (&across, one), (&up, two));
     let front = front(&points, [more_is_better(one), more_is_better(two)]);
-    let line: String =
-        front.iter().map(|(_, x, y)| format!("{:.1},{:.1} ", across.at(*x), up.at(*y))).collect();
+    let place = |(_, x, y): &(usize, f64, f64)| format!("{:.1},{:.1} ", across.at(*x), up.at(*y));
+    let line: String = front.iter().map(place).collect();
     plot.draw(format_args!(
         r##"<polyline points="{line}" fill="none" stroke="#53616C" stroke-dasharray="4 3"/>"##
     ));

@@ -47,13 +47,13 @@ impl<'a> Watch<'a> {
     pub fn take(&mut self, rows: &Table) -> Option<u64> {
         let success = rows.flags("success");
         let values = rows.numbers(&self.until.metric);
-        for row in 0..rows.len() {
+        for (row, success) in success.into_iter().enumerate() {
             if self.enough.is_some() {
                 break;
             }
             let (hits, n, sums) = &mut self.arms[self.campaign.arm(self.taken)];
             *n += 1;
-            *hits += u64::from(success[row]);
+            *hits += u64::from(success);
             if let Some(value) = values.get(row).copied().flatten() {
                 sums.take(value);
             }

@@ -127,7 +127,9 @@ impl Host {
                 Some(ready) if worker.is_idle() => self.spares.keep(worker, ready.loaded),
                 _ => Some(worker),
             };
-            surplus.into_iter().for_each(|worker| self.dismiss(worker));
+            if let Some(worker) = surplus {
+                self.dismiss(worker);
+            }
         }
         self.answers.clear();
         self.printed.clear();

@@ -18,7 +18,8 @@ pub(crate) fn script(
     let program = std::env::current_exe().context("finding the program itself")?;
     let quoted = |path: &std::path::Path| format!("'{}'", path.display().to_string().replace('\'', r"'\''"));
     let folders = plugins.folders.iter().filter_map(|folder| fs::canonicalize(folder).ok());
-    let plugin_dirs: String = folders.map(|folder| format!(" --plugin-dir {}", quoted(&folder))).collect();
+    let plugin_dirs =
+        folders.map(|folder| format!(" --plugin-dir {}", quoted(&folder))).collect::<Vec<_>>().concat();
     let sandbox = if plugins.requires_sandbox { " --require-sandbox" } else { "" };
     let here = folder.path();
     let text = format!(
