@@ -24,7 +24,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     let rows = lines.len() as u16 + if is_framed { 2 } else { 0 };
     let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(rows)]).areas(area);
     if is_framed {
-        let block = look.block(Role::Border, &format!("Timeline  {}", title(replay)), LEGEND);
+        let block = look.block(Role::Border, &format!("Timeline  {}", title(look, replay)), LEGEND);
         super::look::fill(frame, below, block, lines);
     } else {
         frame.render_widget(Paragraph::new(lines), below);
@@ -34,8 +34,10 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
 
 const LEGEND: &str = "· event  ▲ hold  ! alarm  ● bookmark  ┃ now";
 
-fn title(replay: &Replay) -> String {
-    match (replay.reel.is_whole, &replay.other) {
+fn title(look: &Look, replay: &Replay) -> String {
+    // A short journal is read before the first picture of it is there.
+    let is_whole = replay.reel.is_whole && !look.model.live.is_opening;
+    match (is_whole, &replay.other) {
         (false, _) => format!("loading {} %", percent(&replay.reel)),
         (true, None) => "all loaded".into(),
         (true, Some(other)) if !other.reel.is_whole => {
