@@ -41,7 +41,7 @@ pub(crate) fn campaign(command: &CampaignCommand, plugins: &PluginDirs) -> anyho
 
 fn prepare(args: &OutArgs, here: &Here) -> anyhow::Result<(Folder, Campaign)> {
     let campaign = freeze(&args.plan, here)?;
-    let out = args.out.clone().unwrap_or_else(|| Path::new("campaigns").join(&campaign.name));
+    let out = args.out.clone().unwrap_or_else(|| Path::new("campaigns").join(&campaign.design.name));
     let folder = Folder::new(&out);
     let campaign = folder.freeze(campaign)?;
     Ok((folder, campaign))
@@ -85,7 +85,7 @@ fn submit(
     blocks: &[u64],
     plugins: &PluginDirs,
 ) -> anyhow::Result<ExitCode> {
-    let script = slurm::script(folder, &campaign.name, blocks, plugins)?;
+    let script = slurm::script(folder, &campaign.design.name, blocks, plugins)?;
     if args.print {
         say_line(&format!("sbatch {}", script.display()))?;
     } else {

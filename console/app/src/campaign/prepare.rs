@@ -62,7 +62,7 @@ pub(crate) fn freeze(file: &Path, here: &Here) -> anyhow::Result<Campaign> {
     let plan = Plan::parse(&text, &shown, &name).map_err(|errors| bad_input(errors.render()))?;
     let folder = file.parent().unwrap_or(Path::new(""));
     let scenarios = scenarios(&plan, folder)?;
-    for (at, id) in plan.planners.iter().enumerate() {
+    for (at, id) in plan.design.planners.iter().enumerate() {
         choice_of(id, &here.known)
             .map_err(|why| bad_input(plan.refused(PlanKey::Planner(at), &why).render()))?;
     }
@@ -96,15 +96,18 @@ fn scenarios(plan: &Plan, folder: &Path) -> anyhow::Result<Vec<ScenarioText>> {
 /// What only some combinations refuse becomes a row of the table.
 fn check_values(plan: &Plan, campaign: &Campaign, known: &[PlannerInfo]) -> anyhow::Result<()> {
     let tried = |set: Vec<String>, planner: Option<&String>, scenario: &ScenarioText| {
-        let settings = Settings { set, planner: planner.cloned(), seed: Some(campaign.seeds.first) };
+        let settings = Settings { set, planner: planner.cloned(), seed: Some(campaign.design.seeds.first) };
         let scenario = Scenario::parse_with(&scenario.text, &scenario.name, &settings);
         let scenario = scenario.map_err(|errors| errors.to_string())?;
         check_choices(&scenario, known)
             .map_err(|why| why.to_string().lines().next().unwrap_or_default().to_owned())
     };
     let everywhere = |set: &Vec<String>| -> Result<(), String> {
-        let planners: Vec<Option<&String>> =
-            if plan.planners.is_empty() { vec![None] } else { plan.planners.iter().map(Some).collect() };
+        let planners: Vec<Option<&String>> = if plan.design.planners.is_empty() {
+            vec![None]
+        } else {
+            plan.design.planners.iter().map(Some).collect()
+        };
         let mut first = None;
         for scenario in &campaign.scenarios {
             for planner in &planners {
@@ -117,9 +120,9 @@ fn check_values(plan: &Plan, campaign: &Campaign, known: &[PlannerInfo]) -> anyh
         first.map_or(Ok(()), Err)
     };
     let bare = campaign.settings(&campaign.case(0)).set;
-    let expect = bare[..plan.expect.len()].to_vec();
+    let expect = bare[..plan.design.expect.len()].to_vec();
     everywhere(&expect).map_err(|why| bad_input(plan.refused(PlanKey::Expect, &why).render()))?;
-    for (key, setting) in bare[plan.expect.len()..].iter().enumerate() {
+    for (key, setting) in bare[plan.design.expect.len()..].iter().enumerate() {
         everywhere(&vec![setting.clone()])
             .map_err(|why| bad_input(plan.refused(PlanKey::Grid(key), &why).render()))?;
     }

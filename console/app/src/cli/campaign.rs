@@ -1,0 +1,113 @@
+//! Campaigns: many missions.
+
+use clap::{Args, Subcommand};
+use std::path::PathBuf;
+
+/// What to do with a campaign.
+#[derive(Debug, Subcommand)]
+pub(crate) enum CampaignCommand {
+    /// Fly a campaign and show what comes of it; what is already flown is kept.
+    Run(RunCampaignArgs),
+    /// Check a plan and freeze it with its scenarios, so that several machines can work on it.
+    Prepare(OutArgs),
+    /// Fly blocks of a campaign that was prepared.
+    Work(WorkArgs),
+    /// Show how far a campaign is; exit code 1 while blocks are missing.
+    Status {
+        /// Folder of the campaign.
+        dir: PathBuf,
+    },
+    /// Put the blocks together: results.parquet, summary.json and summary.html.
+    Merge {
+        /// Folder of the campaign.
+        dir: PathBuf,
+        /// Also when blocks are missing.
+        #[arg(long)]
+        partial: bool,
+    },
+    /// Compare a metric of two campaigns, mission by mission.
+    Compare(CompareArgs),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct OutArgs {
+    /// Plan of the campaign (TOML).
+    pub plan: PathBuf,
+    /// Folder of the campaign; default: campaigns/NAME.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// What flies a campaign.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Engine {
+    /// All cores of this machine
+    Local,
+    /// An array of Slurm jobs, one task for each block
+    Slurm,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunCampaignArgs {
+    #[command(flatten)]
+    pub out: OutArgs,
+    /// What flies the missions.
+    #[arg(long, default_value = "local")]
+    pub engine: Engine,
+    /// Number of missions at once; 0: one per core.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub jobs: usize,
+    /// Begin no further block after so many core hours, counted over all runs of the campaign: 5ch.
+    #[arg(long, value_name = "TIME", value_parser = core_hours)]
+    pub budget: Option<f64>,
+    /// With --engine slurm: write the script, and print the command that submits it.
+    #[arg(long)]
+    pub print: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct WorkArgs {
+    /// Folder of the campaign.
+    pub dir: PathBuf,
+    /// Fly this block.
+    #[arg(long, value_name = "N", conflicts_with_all = ["shard", "pull"])]
+    pub block: Option<u64>,
+    /// Fly every Nth block, beginning with I, which counts from 0.
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    pub shard: Option<(u64, u64)>,
+    /// Share the blocks with other workers of the same folder: each takes what nobody has.
+    #[arg(long)]
+    pub pull: bool,
+    /// Number of missions at once; 0: one per core.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    /// Folder of a campaign, or its results.parquet.
+    pub first: PathBuf,
+    /// The other one.
+    pub second: PathBuf,
+    /// Column to compare.
+    #[arg(long, value_name = "METRIC", default_value = "success")]
+    pub metric: String,
+    /// Column that makes groups, for example planner or scenario.
+    #[arg(long, value_name = "COLUMN")]
+    pub by: Option<String>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Core hours as seconds of one core.
+fn core_hours(text: &str) -> Result<f64, String> {
+    let hours =
+        text.strip_suffix("ch").and_then(|hours| hours.parse().ok()).filter(|hours: &f64| *hours >= 0.0);
+    hours.map(|hours| 3600.0 * hours).ok_or_else(|| "write core hours, as 5ch or 0.5ch".into())
+}
+
+fn shard(text: &str) -> Result<(u64, u64), String> {
+    let parts = text.split_once('/').and_then(|(at, of)| Some((at.parse().ok()?, of.parse().ok()?)));
+    parts.filter(|(at, of)| at < of).ok_or_else(|| "write I/N, as 0/3, 1/3 and 2/3 for three shards".into())
+}

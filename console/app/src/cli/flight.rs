@@ -1,0 +1,75 @@
+//! A mission: flown headless, planned, forecast.
+
+use super::{Changes, LogsArg};
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArgs {
+    /// Scenario file.
+    pub scenario: PathBuf,
+    #[command(flatten)]
+    pub changes: Changes,
+    #[command(flatten)]
+    pub logs: LogsArg,
+    /// Write neither journal nor recording.
+    #[arg(long)]
+    pub no_record: bool,
+    /// Hold planners to the console's real-time deadlines (for planner authors): a step that is not answered within 60 %
+    /// of a tick is late. The result then depends on the machine; the journal can still be verified.
+    #[arg(long)]
+    pub live_deadlines: bool,
+    #[command(flatten)]
+    pub shadow: ShadowArgs,
+    /// Print the report as JSON on stdout, and nothing else.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// A planner in shadow of a run.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct ShadowArgs {
+    /// Fly this planner in shadow: it plans and commands beside the one that drives, and moves nothing.
+    #[arg(long, value_name = "ID")]
+    pub shadow: Option<String>,
+    /// Set a parameter of the planner in shadow.
+    #[arg(long, value_name = "KEY=VALUE", requires = "shadow")]
+    pub shadow_set: Vec<String>,
+    /// Have the planner in shadow take over so often, in seconds of mission time; the one before it then flies in shadow.
+    #[arg(long, value_name = "SECONDS", requires = "shadow")]
+    pub promote_every: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlanArgs {
+    /// Scenario file.
+    pub scenario: PathBuf,
+    #[command(flatten)]
+    pub changes: Changes,
+    /// Print the plan as JSON on stdout.
+    #[arg(long)]
+    pub json: bool,
+    /// Draw the tank, obstacles, preset path and planned path to this file.
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// Write the plan to this file: .csv (points), .geojson or .dxf.
+    #[arg(short = 'o', long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct AccuracyArgs {
+    /// Scenario file.
+    pub scenario: PathBuf,
+    #[command(flatten)]
+    pub changes: Changes,
+    /// Print the forecast of every cell as JSON on stdout.
+    #[arg(long)]
+    pub json: bool,
+    /// Draw the forecast to this file.
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// Find the best places on the wall for this many stations, 3 to 32.
+    #[arg(long, value_name = "N")]
+    pub advise: Option<usize>,
+}

@@ -1,0 +1,73 @@
+//! What is made of past runs.
+
+use super::LogsArg;
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportArgs {
+    /// Run folder, or its name in the logs folder.
+    pub run: PathBuf,
+    #[command(flatten)]
+    pub to: ExportTo,
+    #[command(flatten)]
+    pub logs: LogsArg,
+}
+
+/// What to write; the files must not exist.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = true)]
+pub(crate) struct ExportTo {
+    /// The recording for the rerun viewer, regenerated from the journal.
+    #[arg(long, value_name = "FILE")]
+    pub rrd: Option<PathBuf>,
+    /// The run as messages of ROS 2 (map, coverage, plan, pose, fixes, log) for Foxglove and the MCAP tools.
+    #[arg(long, value_name = "FILE")]
+    pub mcap: Option<PathBuf>,
+    /// The readings of ranges and odometry with the truth as CSV, in the form that `locate` reads; computes the run again.
+    #[arg(long, value_name = "FILE")]
+    pub ranges: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RescanArgs {
+    /// Run folders, or their names in the logs folder: a scan and any re-scans of it.
+    #[arg(required = true, value_name = "RUN")]
+    pub runs: Vec<PathBuf>,
+    /// Scenario file to write; must not exist.
+    #[arg(short = 'o', long, value_name = "SCENARIO")]
+    pub output: PathBuf,
+    /// Ignore missed areas smaller than this, in square metres; areas close together count as one.
+    #[arg(long, value_name = "AREA", default_value_t = review::MIN_AREA_M2)]
+    pub min_area_m2: f64,
+    #[command(flatten)]
+    pub logs: LogsArg,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReportArgs {
+    /// Run folders, or their names in the logs folder; several runs must be of the same floor.
+    #[arg(required = true, value_name = "RUN")]
+    pub runs: Vec<PathBuf>,
+    /// Print JSON.
+    #[arg(long, conflicts_with = "output")]
+    pub json: bool,
+    /// Write the inspection report to this file: .html, .json, .csv (several files), .geojson or .dxf.
+    #[arg(short = 'o', long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Facts for `[inspection]` that were not known before the run, as a TOML file; they take the place of the scenario's.
+    #[arg(long, value_name = "FILE", requires = "output")]
+    pub inspection: Option<PathBuf>,
+    /// Indications of the instrument as CSV: `t_s`, and `left_m`, `ahead_m`, kind, `size_mm`, `depth_mm`, note if there are.
+    #[arg(long, value_name = "FILE", requires = "output")]
+    pub indications: Option<PathBuf>,
+    /// Sign the report (.html): needs every item of the gate answered; a signed report is never changed, the next one is
+    /// another revision.
+    #[arg(long, value_name = "NAME", requires = "output")]
+    pub sign: Option<String>,
+    /// Write over a file that is there already; never over a signed report.
+    #[arg(long, requires = "output", conflicts_with = "sign")]
+    pub force: bool,
+    #[command(flatten)]
+    pub logs: LogsArg,
+}
